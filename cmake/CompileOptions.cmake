@@ -1,0 +1,14 @@
+# Warnings, sanitizers and floating-point flags as one INTERFACE target. Linked privately, so users never inherit it.
+add_library(chicane_options INTERFACE)
+target_compile_features(chicane_options INTERFACE cxx_std_20)
+target_compile_options(chicane_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wold-style-cast
+  -Wnon-virtual-dtor -Woverloaded-virtual -Wdouble-promotion
+  -ffp-contract=off      # same bits from gcc and clang, Debug and Release
+  -fno-math-errno
+  $<$<BOOL:${CHICANE_WERROR}>:-Werror>)
+if(CHICANE_SANITIZE)
+  target_compile_options(chicane_options INTERFACE -fsanitize=${CHICANE_SANITIZE} -fno-omit-frame-pointer
+                         -fno-sanitize-recover=all)
+  target_link_options(chicane_options INTERFACE -fsanitize=${CHICANE_SANITIZE})
+endif()

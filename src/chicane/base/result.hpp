@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <tl/expected.hpp>
+#include <utility>
+
+namespace chicane {
+
+/// What went wrong in the world outside the program.
+enum class ErrorCode { kInvalidArgument, kParse, kUnsupportedVersion, kNotFound, kIo };
+
+/// An answer a stranger understands: "scenarios/wet.yaml:14: car.mass_kg: got -900, expected > 0".
+struct Error {
+  ErrorCode code = ErrorCode::kInvalidArgument;
+  std::string message;
+};
+
+/// A value, or the reason why there is none.
+template <class T>
+using Result = tl::expected<T, Error>;
+
+/// The unhappy end of a function that returns Result: `return fail(ErrorCode::kIo, "...")`.
+inline tl::unexpected<Error> fail(ErrorCode code, std::string message) {
+  return tl::unexpected<Error>(Error{code, std::move(message)});
+}
+inline tl::unexpected<Error> fail(Error error) { return tl::unexpected<Error>(std::move(error)); }
+
+}  // namespace chicane

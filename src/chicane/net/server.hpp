@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+
+namespace chicane::net {
+
+/// One connection of one server, never reused.
+using ConnectionId = std::uint64_t;
+
+/// An HTTP upgrade as it arrived; bounded sizes are already checked.
+struct UpgradeRequest {
+  std::string target;                      ///< path and query, e.g. "/socket.io/?EIO=4&transport=websocket"
+  std::string peer;                        ///< "127.0.0.1:51234"
+  std::string origin;                      ///< empty when absent
+  std::string host;
+  std::vector<std::string> subprotocols;   ///< as offered, in order
+};
+
+/// What to do with an upgrade.
+struct UpgradeAnswer {
+  bool accept = false;
+  std::string subprotocol;    ///< one of those offered, or empty
+  int status = 403;           ///< HTTP status when refused
+  std::string reason;         ///< one sentence, sent as the body when refused
+  int endpoint = 0;           ///< caller's own tag, handed back with every event
+};
+
+/// A file of the dashboard, embedded in the program; no file system at run time.
+struct Asset {
+  std::string_view path;          ///< "/index.html"; "/" serves "/index.html"
+  std::string_view content_type;
+  std::string_view content;       ///< gzip-compressed when `gzip`
+  bool gzip = false;
+};
+
+struct ServerOptions {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 4567;               ///< 0 = any free port (see Server::port)
+  std::size_t max_message = 64 * 1024;     ///< larger messages close the connection with 1009 [byte]
+  std::size_t max_connections = 1024;
+  std::chrono::milliseconds handshake_timeout{5000};
+  std::size_t max_queue = 256;             ///< queued messages for one connection before a reliable one is closed
+};
+
+/// Called on the network thread, one at a time. They must not block.
+struct ServerHandlers {
+  std::function<UpgradeAnswer(const UpgradeRequest&)> on_upgrade;
+  std::function<void(ConnectionId, int endpoint)> on_open;
+  std::function<void(ConnectionId, int endpoint, std::string_view bytes, bool binary)> on_message;
+  std::function<void(ConnectionId, int endpoint, std::string_view why)> on_close;
+};
+
+/// How a message waits for a slow reader.
+enum class Delivery {
+  kReliable,  ///< queued in order; a connection whose queue is full is closed
+  kNewest,    ///< replaces a waiting message of the same `topic`: slow clients lose frames, we lose nothing
+};
+
+/// HTTP and WebSocket server on one port and one network thread of its own. It knows bytes, no message and no car.
+/// All member functions may be called from any thread, and never wait for the network.
+class Server {
+ public:
+  /// Binds and starts. kIo with the sentence that helps when the port is taken ("port 4567 is in use by ...").
+  [[nodiscard]] static Result<std::unique_ptr<Server>> create(const ServerOptions& options, ServerHandlers handlers,
+                                                              std::vector<Asset> assets);
+  virtual ~Server() = default;  ///< closes all connections and joins the thread
+
+  [[nodiscard]] virtual std::uint16_t port() const noexcept = 0;
+  virtual void send(ConnectionId to, std::string bytes, bool binary, Delivery delivery = Delivery::kReliable,
+                    std::uint32_t topic = 0) = 0;
+  virtual void close(ConnectionId id, std::uint16_t code, std::string_view reason) = 0;
+  /// Runs `task` on the network thread after `delay` (0 = as soon as possible).
+  virtual void run_after(std::chrono::nanoseconds delay, std::function<void()> task) = 0;
+};
+
+}  // namespace chicane::net

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace chicane::solver {
+
+/// How a solve ended. Zero and above: the solution may be used. Below zero: it must not be.
+enum class SolveStatus : std::int8_t {
+  kOptimal = 0,      ///< all residuals <= tolerance
+  kBudgetSpent = 1,  ///< deadline or max_iterations reached; input bounds hold, residuals <= loose_tolerance
+  kStalled = -1,     ///< no further progress, or budget spent, before loose_tolerance
+  kInfeasible = -2,  ///< converged, but a soft constraint is violated by more than its cap
+  kNotFinite = -3,   ///< a NaN or infinity in the data or an iterate
+};
+
+[[nodiscard]] constexpr bool usable(SolveStatus status) noexcept { return static_cast<int>(status) >= 0; }
+[[nodiscard]] constexpr std::string_view to_string(SolveStatus status) noexcept {
+  switch (status) {
+    case SolveStatus::kOptimal: return "optimal";
+    case SolveStatus::kBudgetSpent: return "budget_spent";
+    case SolveStatus::kStalled: return "stalled";
+    case SolveStatus::kInfeasible: return "infeasible";
+    case SolveStatus::kNotFinite: return "not_finite";
+  }
+  return "unknown";
+}
+
+/// What one solve did.
+struct SolveReport {
+  SolveStatus status = SolveStatus::kNotFinite;
+  int iterations = 0;            ///< turns of the outer (SQP) loop
+  int sweeps = 0;                ///< Riccati sweeps, active-set flips included
+  double cost = 0.0;             ///< objective at the returned trajectory
+  double stationarity = 0.0;     ///< ‖u − Proj(u − ∇L)‖∞ from the exact adjoint
+  double defect = 0.0;           ///< ‖x_{k+1} − f(x_k, u_k)‖∞
+  double complementarity = 0.0;  ///< largest residual of the soft constraints' KKT block
+  double violation = 0.0;        ///< largest soft-constraint violation, in the constraint's own unit
+  int worst_stage = -1;          ///< where it is; -1 when nothing is violated
+  int worst_constraint = -1;
+};
+
+}  // namespace chicane::solver

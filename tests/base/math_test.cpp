@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/base/math.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "chicane/base/random.hpp"
+
+namespace chicane {
+namespace {
+
+double ulps(double got, long double want) {
+  const double rounded = static_cast<double>(want);
+  const double ulp = std::nextafter(std::fabs(rounded), 1e308) - std::fabs(rounded);
+  return static_cast<double>(std::fabs((static_cast<long double>(got) - want)) / static_cast<long double>(ulp));
+}
+
+/// Largest error in units of the last place over random arguments, against long double.
+template <class F, class G>
+double worst(F ours, G theirs, double low, double high) {
+  Random random(7);
+  double result = 0.0;
+  for (int i = 0; i < 200000; ++i) {
+    const double x = random.uniform(low, high);
+    result = std::max(result, ulps(ours(x), theirs(static_cast<long double>(x))));
+  }
+  return result;
+}
+
+TEST(Math, IsWithinOneUlpOfLongDouble) {
+  using L = long double;
+  EXPECT_LT(worst([](double x) { return sin(x); }, [](L x) { return std::sin(x); }, -50.0, 50.0), 1.0);
+  EXPECT_LT(worst([](double x) { return cos(x); }, [](L x) { return std::cos(x); }, -50.0, 50.0), 1.0);
+  EXPECT_LT(worst([](double x) { return atan(x); }, [](L x) { return std::atan(x); }, -5.0, 5.0), 1.0);
+  EXPECT_LT(worst([](double x) { return exp(x); }, [](L x) { return std::exp(x); }, -50.0, 50.0), 1.0);
+  EXPECT_LT(worst([](double x) { return log(x); }, [](L x) { return std::log(x); }, 1e-6, 50.0), 1.0);
+}
+
+TEST(Math, CompositesAreWithinThreeUlp) {
+  using L = long double;
+  EXPECT_LT(worst([](double x) { return tan(x); }, [](L x) { return std::tan(x); }, -1.5, 1.5), 3.0);
+  EXPECT_LT(worst([](double x) { return tanh(x); }, [](L x) { return std::tanh(x); }, 0.1, 20.0), 3.0);
+  EXPECT_LT(worst([](double x) { return atan2(x, -0.7); }, [](L x) { return std::atan2(x, L(-0.7)); }, -5.0, 5.0), 3.0);
+}
+
+TEST(Math, KeepsNotANumberAndTheAxes) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(sin(nan)) && std::isnan(cos(nan)) && std::isnan(atan(nan)) && std::isnan(exp(nan)));
+  EXPECT_TRUE(std::isnan(log(-1.0)) && std::isnan(atan2(nan, 1.0)) && std::isnan(sin(1e300)));
+  EXPECT_EQ(atan2(0.0, -1.0), kPi);
+  EXPECT_EQ(atan2(-1.0, 0.0), -kPi / 2);
+  EXPECT_EQ(sin(0.0), 0.0);
+  EXPECT_EQ(cos(0.0), 1.0);
+  EXPECT_EQ(exp(0.0), 1.0);
+}
+
+}  // namespace
+}  // namespace chicane
