@@ -16,7 +16,7 @@ namespace chicane {
 [[nodiscard]] double atan2(double y, double x) noexcept;
 [[nodiscard]] double exp(double x) noexcept;    ///< |x| < 700, saturates to 0 and infinity beyond
 [[nodiscard]] double log(double x) noexcept;    ///< x > 0; NaN for x < 0, -inf for 0
-[[nodiscard]] double tanh(double x) noexcept;   ///< error up to 3 ulp
+[[nodiscard]] double tanh(double x) noexcept;   ///< error up to 4 ulp
 
 /// IEEE 754 prescribes the bits of these.
 [[nodiscard]] inline double sqrt(double x) noexcept { return std::sqrt(x); }
