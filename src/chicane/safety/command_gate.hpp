@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "chicane/model/state.hpp"
+#include "chicane/model/vehicle.hpp"
+
+namespace chicane::safety {
+
+/// Why the gate changed a command.
+enum class GateReason : signed char { kNone = 0, kNotFinite = 1, kRange = 2, kRate = 3 };
+
+struct GateResult {
+  model::Command command;                  ///< always finite, inside range and rate limits
+  GateReason reason = GateReason::kNone;   ///< worst one that applied
+};
+
+/// The only way to an actuator: whatever is asked, what leaves is finite, inside the vehicle's steering and throttle range,
+/// and no faster than its steering rate allows. Non-finite parts are replaced by the last sent steering and gentle braking.
+/// A nominal command passes unchanged, bit for bit. No allocation; one thread.
+class CommandGate {
+ public:
+  explicit CommandGate(const model::VehicleParams& vehicle) noexcept : vehicle_{vehicle} {}
+  /// `elapsed` [s] since the last command, for the rate limit; <= 0 or non-finite skips the rate check.
+  [[nodiscard]] GateResult pass(const model::Command& asked, double elapsed) noexcept;
+  void reset() noexcept { last_ = {}; }
+
+ private:
+  model::VehicleParams vehicle_;
+  model::Command last_;
+};
+
+}  // namespace chicane::safety
