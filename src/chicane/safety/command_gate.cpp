@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/command_gate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace chicane::safety {
+namespace {
+
+/// Share of the useful braking that stands for "gentle".
+constexpr double kGentleBraking = 0.4;
+
+/// Severity of a reason; the worst one is reported.
+constexpr int severity(GateReason reason) noexcept {
+  switch (reason) {
+    case GateReason::kNone:
+      return 0;
+    case GateReason::kRate:
+      return 1;
+    case GateReason::kRange:
+      return 2;
+    case GateReason::kNotFinite:
+      return 3;
+  }
+  return 3;
+}
+
+}  // namespace
+
+GateResult CommandGate::pass(const model::Command& asked, double elapsed) noexcept {
+  GateResult result{asked, GateReason::kNone};
+  model::Command& command = result.command;
+  const auto note = [&](GateReason reason) {
+    if (severity(reason) > severity(result.reason)) result.reason = reason;
+  };
+
+  // Finite first, and explicitly: std::clamp and std::min let a NaN through.
+  if (!std::isfinite(command.steer)) {
+    command.steer = last_.steer;
+    note(GateReason::kNotFinite);
+  }
+  if (!std::isfinite(command.throttle)) {
+    command.throttle = -kGentleBraking * vehicle_.brake_throttle_limit;
+    note(GateReason::kNotFinite);
+  }
+
+  if (std::fabs(command.steer) > vehicle_.steer_limit) {
+    command.steer = std::copysign(vehicle_.steer_limit, command.steer);
+    note(GateReason::kRange);
+  }
+  if (std::fabs(command.throttle) > 1.0) {
+    command.throttle = std::copysign(1.0, command.throttle);
+    note(GateReason::kRange);
+  }
+
+  if (std::isfinite(elapsed) && elapsed > 0.0) {
+    const double reach = vehicle_.steer_rate_limit * elapsed;
+    if (command.steer > last_.steer + reach) {
+      command.steer = last_.steer + reach;
+      note(GateReason::kRate);
+    } else if (command.steer < last_.steer - reach) {
+      command.steer = last_.steer - reach;
+      note(GateReason::kRate);
+    }
+  }
+
+  last_ = command;
+  return result;
+}
+
+}  // namespace chicane::safety

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/command_gate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "chicane/base/random.hpp"
+
+namespace chicane::safety {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+model::VehicleParams road_car() {
+  model::VehicleParams vehicle;
+  vehicle.steer_rate_limit = 1.5;
+  vehicle.brake_throttle_limit = 1.0;
+  return vehicle;
+}
+
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+TEST(CommandGate, PassesANominalCommandBitForBit) {
+  CommandGate gate{road_car()};
+  Random random{7};
+  double steer = 0.0;
+  for (int i = 0; i < 10'000; ++i) {
+    steer += random.uniform(-0.01, 0.01);
+    steer = std::fmod(steer, 0.4);
+    const model::Command asked{steer, random.uniform(-1.0, 1.0)};
+    const GateResult result =
+        gate.pass(asked, 0.5);  // 0.5 s at 1.5 rad/s reaches every angle in (-0.4, 0.4) from near
+    ASSERT_EQ(result.reason, GateReason::kNone);
+    ASSERT_TRUE(same_bits(result.command.steer, asked.steer));
+    ASSERT_TRUE(same_bits(result.command.throttle, asked.throttle));
+  }
+}
+
+TEST(CommandGate, PassesTheLimitsThemselvesAndNegativeZero) {
+  CommandGate gate{model::VehicleParams{}};
+  const double limit = model::VehicleParams{}.steer_limit;
+  for (const model::Command asked : {model::Command{limit, 1.0}, {-limit, -1.0}, {-0.0, -0.0}}) {
+    const GateResult result = gate.pass(asked, 0.1);
+    EXPECT_EQ(result.reason, GateReason::kNone);
+    EXPECT_TRUE(same_bits(result.command.steer, asked.steer));
+    EXPECT_TRUE(same_bits(result.command.throttle, asked.throttle));
+  }
+}
+
+TEST(CommandGate, ReplacesWhatIsNotFiniteByTheLastSteeringAndGentleBraking) {
+  const model::VehicleParams vehicle;
+  CommandGate gate{vehicle};
+  ASSERT_EQ(gate.pass({0.2, 0.5}, 0.1).reason, GateReason::kNone);
+  for (const double bad : {kNaN, -kNaN, kInfinity, -kInfinity}) {
+    const GateResult steer = gate.pass({bad, 0.5}, 0.1);
+    EXPECT_EQ(steer.reason, GateReason::kNotFinite);
+    EXPECT_EQ(steer.command.steer, 0.2);
+    EXPECT_EQ(steer.command.throttle, 0.5);
+    const GateResult throttle = gate.pass({0.2, bad}, 0.1);
+    EXPECT_EQ(throttle.reason, GateReason::kNotFinite);
+    EXPECT_EQ(throttle.command.steer, 0.2);
+    EXPECT_LT(throttle.command.throttle, 0.0);
+    EXPECT_GT(throttle.command.throttle, -vehicle.brake_throttle_limit);
+  }
+}
+
+TEST(CommandGate, ClampsToTheRange) {
+  const model::VehicleParams vehicle;
+  CommandGate gate{vehicle};
+  const GateResult high = gate.pass({3.0, 7.0}, 0.1);
+  EXPECT_EQ(high.reason, GateReason::kRange);
+  EXPECT_EQ(high.command.steer, vehicle.steer_limit);
+  EXPECT_EQ(high.command.throttle, 1.0);
+  const GateResult low = gate.pass({-3.0, -7.0}, 0.1);
+  EXPECT_EQ(low.command.steer, -vehicle.steer_limit);
+  EXPECT_EQ(low.command.throttle, -1.0);
+}
+
+TEST(CommandGate, LimitsTheSteeringRateBothWays) {
+  CommandGate gate{road_car()};
+  const GateResult left = gate.pass({0.4, 0.0}, 0.1);
+  EXPECT_EQ(left.reason, GateReason::kRate);
+  EXPECT_DOUBLE_EQ(left.command.steer, 0.15);
+  const GateResult right = gate.pass({-0.4, 0.0}, 0.1);
+  EXPECT_EQ(right.reason, GateReason::kRate);
+  EXPECT_NEAR(right.command.steer, 0.0, 1e-15);  // rounding of one addition and one subtraction
+}
+
+TEST(CommandGate, SkipsTheRateCheckWithoutAUsableElapsedTime) {
+  for (const double elapsed : {0.0, -1.0, kNaN, kInfinity, -kInfinity}) {
+    CommandGate gate{road_car()};
+    EXPECT_EQ(gate.pass({0.4, 0.0}, elapsed).reason, GateReason::kNone) << elapsed;
+  }
+}
+
+TEST(CommandGate, ReportsTheWorstReason) {
+  CommandGate gate{road_car()};
+  EXPECT_EQ(gate.pass({9.0, kNaN}, 0.1).reason, GateReason::kNotFinite);
+  EXPECT_EQ(gate.pass({-9.0, 0.0}, 0.1).reason, GateReason::kRange);
+}
+
+TEST(CommandGate, ForgetsTheLastCommandOnReset) {
+  CommandGate gate{model::VehicleParams{}};
+  ASSERT_EQ(gate.pass({0.3, 0.0}, 0.1).command.steer, 0.3);
+  gate.reset();
+  EXPECT_EQ(gate.pass({kNaN, 0.0}, 0.1).command.steer, 0.0);
+}
+
+/// Any double at all: all bit patterns, with the special ones more often than chance gives them.
+double hostile(Random& random) {
+  constexpr double kSpecial[] = {kNaN, kInfinity, -kInfinity,      0.0, -0.0, 1e308, -1e308, 5e-324,
+                                 1.0,  -1.0,      0.43633231299858};
+  const std::uint64_t bits = random.bits();
+  if (bits % 4U == 0U) return kSpecial[(bits >> 8U) % std::size(kSpecial)];
+  if (bits % 4U == 1U) return random.uniform(-2.0, 2.0);
+  return std::bit_cast<double>(random.bits());
+}
+
+TEST(CommandGate, LetsNothingOutOfBoundsThroughInAMillionHostileCommands) {
+  const model::VehicleParams vehicle = road_car();
+  CommandGate gate{vehicle};
+  Random random{2024};
+  double last = 0.0;
+  for (int i = 0; i < 1'000'000; ++i) {
+    const double elapsed = hostile(random);
+    const GateResult result = gate.pass({hostile(random), hostile(random)}, elapsed);
+    const model::Command& command = result.command;
+    ASSERT_TRUE(std::isfinite(command.steer) && std::isfinite(command.throttle)) << i;
+    ASSERT_LE(std::fabs(command.steer), vehicle.steer_limit) << i;
+    ASSERT_LE(std::fabs(command.throttle), 1.0) << i;
+    if (std::isfinite(elapsed) && elapsed > 0.0) {
+      // 1e-15: the sum last + rate * elapsed is rounded once.
+      ASSERT_LE(std::fabs(command.steer - last), vehicle.steer_rate_limit * elapsed + 1e-15) << i;
+    }
+    last = command.steer;
+  }
+}
+
+}  // namespace
+}  // namespace chicane::safety
