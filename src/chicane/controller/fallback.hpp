@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+
+#include "chicane/controller/controller.hpp"
+#include "chicane/controller/plan.hpp"
+#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
+#include "chicane/model/vehicle.hpp"
+
+namespace chicane::controller {
+
+/// What a car does when there is no answer, for every controller: the one place where that is decided.
+///
+///     answer usable                                    kController     (the controller's own business; tell
+///     accept()) last plan at most kPlanAge old, and not over     kShiftedPlan    its command for the time
+///     that has come less than kHoldAge since the last usable plan    kHoldAndBrake   last steering, gentle
+///     braking otherwise                                        kBrake          last steering, full useful
+///     braking
+///
+/// Braking fades below kFadeSpeed, so that a car whose negative pedal drives backwards comes to rest instead.
+/// Everything returned is finite and inside the vehicle's range, whatever came in. No allocation; one thread.
+class Fallback {
+ public:
+  static constexpr double kPlanAge = 0.5;  ///< [s]
+  static constexpr double kHoldAge = 1.5;  ///< [s]
+  static constexpr double kGentleBraking =
+      0.4;  ///< share of the useful braking, VehicleParams::brake_throttle_limit
+  static constexpr double kFadeSpeed = 2.5;  ///< [m/s]
+
+  struct Answer {
+    model::Command command;
+    Rung rung = Rung::kBrake;
+  };
+
+  explicit Fallback(const model::VehicleParams& vehicle) noexcept : vehicle_{vehicle} {}
+
+  /// The controller answered: `plan` is what it intends, its first command is what it sends. Keeps the part
+  /// of the plan before the first point that is not finite.
+  void accept(const Plan& plan) noexcept;
+
+  /// The controller did not: the command to act from `act_time` [s, clock of the run] on. An `act_time` that
+  /// is not finite or runs backwards counts as 0.1 s after the one before; a speed that is not finite counts
+  /// as fast.
+  [[nodiscard]] Answer command(double act_time, const model::Measurement& now) noexcept;
+
+  /// Forgets plan and steering: a new run begins.
+  void reset() noexcept;
+
+ private:
+  struct Intention {
+    double time = 0.0;
+    model::Command command;
+  };
+  [[nodiscard]] const model::Command* planned(double time) const noexcept;
+
+  model::VehicleParams vehicle_;
+  std::array<Intention, Plan::kCapacity> plan_{};
+  int plan_size_ = 0;
+  bool has_time_ = false;    ///< good_time_ and last_time_ hold something
+  double good_time_ = 0.0;   ///< when the last usable plan began [s]
+  double last_time_ = 0.0;   ///< act time of the last command [s]
+  double last_steer_ = 0.0;  ///< of the last command [rad]
+};
+
+}  // namespace chicane::controller
