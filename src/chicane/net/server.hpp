@@ -7,52 +7,69 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "chicane/base/result.hpp"
 
 namespace chicane::net {
 
+class Server;
+
 /// One connection of one server, never reused.
 using ConnectionId = std::uint64_t;
 
 /// An HTTP upgrade as it arrived; bounded sizes are already checked.
 struct UpgradeRequest {
-  std::string target;                      ///< path and query, e.g. "/socket.io/?EIO=4&transport=websocket"
-  std::string peer;                        ///< "127.0.0.1:51234"
-  std::string origin;                      ///< empty when absent
+  std::string target;  ///< path and query, e.g. "/socket.io/?EIO=4&transport=websocket"
+  std::string peer;    ///< "127.0.0.1:51234"
+  std::string origin;  ///< empty when absent
   std::string host;
-  std::vector<std::string> subprotocols;   ///< as offered, in order
+  std::vector<std::string> subprotocols;  ///< as offered, in order
 };
 
-/// What to do with an upgrade.
+/// What to do with an upgrade. Refused before anybody is asked: a Host that is not ours (see
+/// ServerOptions::allowed_hosts), an Origin that is neither Host nor allowed, a connection too many.
 struct UpgradeAnswer {
   bool accept = false;
-  std::string subprotocol;    ///< one of those offered, or empty
-  int status = 403;           ///< HTTP status when refused
-  std::string reason;         ///< one sentence, sent as the body when refused
-  int endpoint = 0;           ///< caller's own tag, handed back with every event
+  std::string subprotocol;  ///< one of those offered, or empty
+  int status = 403;         ///< HTTP status when refused
+  std::string reason;       ///< one sentence, sent as the body when refused
+  int endpoint = 0;         ///< caller's own tag, handed back with every event
 };
 
 /// A file of the dashboard, embedded in the program; no file system at run time.
 struct Asset {
-  std::string_view path;          ///< "/index.html"; "/" serves "/index.html"
+  std::string_view path;  ///< "/index.html"; "/" serves "/index.html"
   std::string_view content_type;
-  std::string_view content;       ///< gzip-compressed when `gzip`
+  std::string_view content;  ///< gzip-compressed when `gzip`
   bool gzip = false;
 };
 
+/// Limits and rules. Against web pages that talk to local programs: the Host header must be `localhost`, a
+/// loopback address, the bound address, any IP address when bound to more than loopback, or in
+/// `allowed_hosts`; an Origin header, where present (browsers always send it), must name the same host and
+/// port or be in `allowed_origins`.
 struct ServerOptions {
-  std::string address = "127.0.0.1";
-  std::uint16_t port = 4567;               ///< 0 = any free port (see Server::port)
-  std::size_t max_message = 64 * 1024;     ///< larger messages close the connection with 1009 [byte]
-  std::size_t max_connections = 1024;
-  std::chrono::milliseconds handshake_timeout{5000};
-  std::size_t max_queue = 256;             ///< queued messages for one connection before a reliable one is closed
+  std::string address = "127.0.0.1";    ///< numeric; "::" listens on every IPv6 and IPv4 address
+  std::uint16_t port = 4567;            ///< 0 = any free port (see Server::port)
+  std::size_t max_message = 64 * 1024;  ///< larger messages close the connection with 1009 [byte]
+  std::size_t max_header = 8 * 1024;    ///< of an HTTP request; larger ones get 431 [byte]
+  std::size_t max_connections = 1024;   ///< more get 503
+  std::chrono::milliseconds handshake_timeout{
+      5000};  ///< for a whole HTTP request, and between two on one connection
+  /// A WebSocket peer that has sent nothing for half of it is pinged; one that stays silent for all of it is
+  /// closed. That also ends peers that stopped reading, because they never see the ping.
+  std::chrono::milliseconds idle_timeout{10000};
+  std::size_t max_queue = 256;             ///< messages waiting for one connection before it is closed
+  std::vector<std::string> allowed_hosts;  ///< further names without port, e.g. "car.local"
+  std::vector<std::string> allowed_origins{"https://app.foxglove.dev",
+                                           "file://"};  ///< hosted and desktop viewers
 };
 
-/// Called on the network thread, one at a time. They must not block.
+/// Called on the network thread, one at a time. They must not block. None is called once ~Server has begun.
 struct ServerHandlers {
+  std::function<void(Server&)> on_start;  ///< before the first connection; may be empty
   std::function<UpgradeAnswer(const UpgradeRequest&)> on_upgrade;
   std::function<void(ConnectionId, int endpoint)> on_open;
   std::function<void(ConnectionId, int endpoint, std::string_view bytes, bool binary)> on_message;
@@ -65,18 +82,31 @@ enum class Delivery {
   kNewest,    ///< replaces a waiting message of the same `topic`: slow clients lose frames, we lose nothing
 };
 
-/// HTTP and WebSocket server on one port and one network thread of its own. It knows bytes, no message and no car.
-/// All member functions may be called from any thread, and never wait for the network.
+/// What is sent, shared so that one frame for many viewers is stored once.
+using Bytes = std::shared_ptr<const std::string>;
+
+/// HTTP and WebSocket server on one port and one network thread of its own. It knows bytes, no message and no
+/// car. Assets answer GET and HEAD; everything that asks for an upgrade, on any path, goes to `on_upgrade`.
+/// No extension is ever negotiated. All member functions may be called from any thread, and never wait for
+/// the network.
 class Server {
  public:
-  /// Binds and starts. kIo with the sentence that helps when the port is taken ("port 4567 is in use by ...").
-  [[nodiscard]] static Result<std::unique_ptr<Server>> create(const ServerOptions& options, ServerHandlers handlers,
+  /// Binds and starts. kIo with the sentence that helps when the port is taken ("port 4567 is in use by
+  /// ...").
+  [[nodiscard]] static Result<std::unique_ptr<Server>> create(const ServerOptions& options,
+                                                              ServerHandlers handlers,
                                                               std::vector<Asset> assets);
   virtual ~Server() = default;  ///< closes all connections and joins the thread
 
   [[nodiscard]] virtual std::uint16_t port() const noexcept = 0;
-  virtual void send(ConnectionId to, std::string bytes, bool binary, Delivery delivery = Delivery::kReliable,
+  /// Nothing happens when the connection has ended meanwhile.
+  virtual void send(ConnectionId to, Bytes bytes, bool binary, Delivery delivery = Delivery::kReliable,
                     std::uint32_t topic = 0) = 0;
+  void send(ConnectionId to, std::string bytes, bool binary, Delivery delivery = Delivery::kReliable,
+            std::uint32_t topic = 0) {
+    send(to, std::make_shared<const std::string>(std::move(bytes)), binary, delivery, topic);
+  }
+  /// Sends what waits, then a close frame with `code` (RFC 6455 §7.4); on_close follows.
   virtual void close(ConnectionId id, std::uint16_t code, std::string_view reason) = 0;
   /// Runs `task` on the network thread after `delay` (0 = as soon as possible).
   virtual void run_after(std::chrono::nanoseconds delay, std::function<void()> task) = 0;
