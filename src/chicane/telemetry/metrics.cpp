@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/telemetry/metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace chicane::telemetry {
+namespace {
+
+std::uint64_t nanoseconds(double seconds) noexcept {
+  return std::isfinite(seconds) && seconds > 0.0 ? static_cast<std::uint64_t>(std::min(seconds, 1e9) * 1e9)
+                                                 : 0;
+}
+
+TimeSummary summarise(const Durations& times) noexcept {
+  const auto seconds = [](std::uint64_t ns) { return static_cast<double>(ns) * 1e-9; };
+  return {seconds(times.percentile(0.5)), seconds(times.percentile(0.99)), seconds(times.percentile(0.999)),
+          seconds(times.max())};
+}
+
+void add_to(Fnv& hash, const model::State& state) noexcept {
+  for (const double value : {state.x, state.y, state.psi, state.vx, state.vy, state.r, state.steer})
+    hash.add(value);
+}
+
+}  // namespace
+
+void Metrics::Stretch::add(double dt, double speed, double error) noexcept {
+  if (!std::isfinite(speed) || !std::isfinite(error)) return;  // what a broken client told is not a measurement
+  time += dt;
+  speed_time += speed * dt;
+  error_squared_time += error * error * dt;
+  top_speed = std::max(top_speed, speed);
+  max_abs_error = std::max(max_abs_error, std::fabs(error));
+}
+
+void Metrics::Stretch::add_rate(double dt, double rate) noexcept {
+  rate_time += dt;
+  rate_squared_time += rate * rate * dt;
+}
+
+LapSummary Metrics::Stretch::summary(double lap_time) const noexcept {
+  LapSummary lap;
+  lap.lap_time = lap_time;
+  lap.mean_speed = time > 0.0 ? speed_time / time : 0.0;
+  lap.top_speed = top_speed;
+  lap.rms_lateral_error = time > 0.0 ? std::sqrt(error_squared_time / time) : 0.0;
+  lap.max_abs_lateral_error = max_abs_error;
+  if (std::isfinite(min_edge_distance)) lap.min_edge_distance = min_edge_distance;
+  lap.max_lateral_acceleration = max_lateral_acceleration;
+  lap.steering_rate_rms = rate_time > 0.0 ? std::sqrt(rate_squared_time / rate_time) : 0.0;
+  return lap;
+}
+
+Metrics::Metrics(int lap_capacity, double deadline) : deadline_{deadline} {
+  laps_.reserve(static_cast<std::size_t>(std::max(0, lap_capacity)));
+}
+
+void Metrics::add_physics(const PhysicsSample& sample) noexcept {
+  add_to(hash_, sample.state);
+  const double speed = std::sqrt(sample.state.vx * sample.state.vx + sample.state.vy * sample.state.vy);
+  for (Stretch* stretch : {&lap_, &total_}) {
+    stretch->add(sample.step, speed, sample.lateral_error);
+    stretch->min_edge_distance = std::min(stretch->min_edge_distance, sample.edge_distance);
+    stretch->max_lateral_acceleration =
+        std::max(stretch->max_lateral_acceleration, std::fabs(sample.lateral_acceleration));
+  }
+  if (sample.is_off_track) {
+    out_of_track_time_ += sample.step;
+    if (!is_off_track_) ++off_track_events_;
+  }
+  is_off_track_ = sample.is_off_track;
+}
+
+void Metrics::add(const Frame& frame) noexcept {
+  const controller::StepReport& report = frame.result.report;
+  hash_.add(frame.result.command.steer);
+  hash_.add(frame.result.command.throttle);
+
+  const double steer = frame.has_truth ? frame.truth.steer : frame.measurement.steer;
+  const double elapsed = frame.time - last_time_;
+  if (cycles_ > 0 && elapsed > 0.0) {
+    for (Stretch* stretch : {&lap_, &total_}) {
+      stretch->add_rate(elapsed, (steer - last_steer_) / elapsed);
+      if (!frame.has_truth) stretch->add(elapsed, frame.measurement.speed, report.lateral_error);
+    }
+  }
+  last_time_ = frame.time;
+  last_steer_ = steer;
+
+  ++cycles_;
+  step_times_.add(nanoseconds(frame.step_time));
+  solve_times_.add(nanoseconds(frame.solve_time));
+  if (frame.step_time > deadline_) ++deadline_misses_;
+  iterations_ += static_cast<std::uint64_t>(std::max(0, report.solve.iterations));
+  if (!solver::usable(report.solve.status)) ++not_usable_;
+  if (report.rung != controller::Rung::kController) ++fallbacks_;
+  if (report.gated) ++gated_;
+}
+
+void Metrics::lap_completed(double lap_time) noexcept {
+  ++laps_completed_;
+  if (laps_.size() < laps_.capacity()) laps_.push_back(lap_.summary(lap_time));
+  lap_ = {};
+}
+
+RunSummary Metrics::summary() const {
+  RunSummary run;
+  run.laps_completed = laps_completed_;
+  run.off_track_events = off_track_events_;
+  run.out_of_track_time = out_of_track_time_;
+  run.duration = total_.time;
+  run.laps = laps_;
+  run.total = total_.summary(total_.time);
+  run.step_time = summarise(step_times_);
+  run.solve_time = summarise(solve_times_);
+  run.cycles = cycles_;
+  run.mean_iterations = cycles_ > 0 ? static_cast<double>(iterations_) / static_cast<double>(cycles_) : 0.0;
+  run.not_usable = not_usable_;
+  run.fallbacks = fallbacks_;
+  run.gate_interventions = gated_;
+  run.deadline_misses = deadline_misses_;
+  run.state_hash = hash_.value();
+  return run;
+}
+
+}  // namespace chicane::telemetry

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chicane/base/durations.hpp"
+#include "chicane/base/fnv.hpp"
+#include "chicane/model/state.hpp"
+#include "chicane/telemetry/frame.hpp"
+
+namespace chicane::telemetry {
+
+/// What the world says after one physics step: exact extremes need every step, not every control cycle.
+struct PhysicsSample {
+  double step = 0.0;                  ///< length of the step [s]
+  model::State state;                 ///< at its end
+  double lateral_acceleration = 0.0;  ///< [m/s²], left positive
+  double lateral_error = 0.0;         ///< from the track's line [m], left positive
+  double edge_distance = 0.0;  ///< of the outermost contact patch to the edge [m], negative = off the road
+  bool is_off_track = false;   ///< any contact patch beyond the drivable surface
+};
+
+/// One lap, or any stretch of a run, in numbers. NaN where nothing was measured.
+struct LapSummary {
+  double lap_time = 0.0;                                                ///< [s]
+  double mean_speed = 0.0;                                              ///< over time [m/s]
+  double top_speed = 0.0;                                               ///< [m/s]
+  double rms_lateral_error = 0.0;                                       ///< over time [m]
+  double max_abs_lateral_error = 0.0;                                   ///< [m]
+  double min_edge_distance = std::numeric_limits<double>::quiet_NaN();  ///< signed, outermost tyre [m]
+  double max_lateral_acceleration = 0.0;                                ///< magnitude [m/s²]
+  double steering_rate_rms = 0.0;  ///< road wheel, from control cycle to control cycle [rad/s]
+  std::optional<double>
+      gap_to_limit;  ///< lap time over the physical limit's, minus one; none when not computed
+};
+
+/// Percentiles of durations [s]; bins are 4.4 % wide (base/durations.hpp), `max` is exact.
+struct TimeSummary {
+  double p50 = 0.0;
+  double p99 = 0.0;
+  double p999 = 0.0;
+  double max = 0.0;
+};
+
+/// Everything one run is judged by. The run time fills in what was asked (track to laps_wanted, completed);
+/// Metrics the rest.
+struct RunSummary {
+  std::string track, car, controller, preset;
+  std::uint64_t seed = 0;
+  double latency = 0.0;    ///< actuation delay of the plant [s]
+  int laps_wanted = 0;     ///< 0 = until stopped
+  bool completed = false;  ///< all wanted laps were driven
+  std::string end_reason;  ///< why it ended otherwise, one sentence; empty when completed
+
+  int laps_completed = 0;
+  int off_track_events = 0;        ///< times a contact patch left the drivable surface
+  double out_of_track_time = 0.0;  ///< [s]
+  double duration = 0.0;           ///< of the run, in its own time [s]
+  double wall_time = 0.0;          ///< of the run, on the wall [s]; filled by the run time
+  std::vector<LapSummary> laps;    ///< completed laps
+  LapSummary total;                ///< the whole run, unfinished lap included; lap_time is its duration
+  TimeSummary step_time;           ///< of whole control steps, wall clock
+  TimeSummary solve_time;          ///< of the optimisation in them, wall clock
+  std::uint64_t cycles = 0;        ///< control steps
+  double mean_iterations = 0.0;
+  std::uint64_t not_usable = 0;  ///< solves whose answer must not be used
+  std::uint64_t fallbacks = 0;   ///< steps whose command came from a rung below the controller
+  std::uint64_t gate_interventions = 0;
+  std::uint64_t deadline_misses = 0;  ///< steps that took longer than the control period
+  std::uint64_t state_hash =
+      0;  ///< of every plant state and command: same scenario and seed, same number, everywhere
+};
+
+/// True when the run did all it promised: every wanted lap, no tyre off the road.
+[[nodiscard]] inline bool kept_its_promises(const RunSummary& run) noexcept {
+  return run.completed && run.off_track_events == 0;
+}
+
+/// Counts and measures a run while it happens. No allocation after construction; one thread.
+///
+/// Call add_physics() after each physics step and add() once each control cycle. Where the plant is outside
+/// (a frame without truth) add() also measures speed and lateral error, from what the controller was told.
+class Metrics {
+ public:
+  /// Remembers up to `lap_capacity` laps one by one (more are only counted). `deadline` [s]: longer steps are
+  /// misses.
+  Metrics(int lap_capacity, double deadline);
+
+  void add_physics(const PhysicsSample& sample) noexcept;
+  void add(const Frame& frame) noexcept;
+  /// The running lap ended; `lap_time` [s] may be interpolated between physics steps.
+  void lap_completed(double lap_time) noexcept;
+
+  [[nodiscard]] int laps_completed() const noexcept { return laps_completed_; }
+  [[nodiscard]] int off_track_events() const noexcept { return off_track_events_; }
+  [[nodiscard]] std::uint64_t state_hash() const noexcept { return hash_.value(); }
+  /// The run so far; what the run time knows (names, seed, completed) is left at its defaults. Allocates.
+  [[nodiscard]] RunSummary summary() const;
+
+ private:
+  /// Sums over a stretch of time.
+  struct Stretch {
+    double time = 0.0;
+    double speed_time = 0.0;          // ∫ v dt
+    double error_squared_time = 0.0;  // ∫ e² dt
+    double top_speed = 0.0;
+    double max_abs_error = 0.0;
+    double min_edge_distance = std::numeric_limits<double>::infinity();
+    double max_lateral_acceleration = 0.0;
+    double rate_time = 0.0;
+    double rate_squared_time = 0.0;  // ∫ δ'² dt
+    void add(double dt, double speed, double error) noexcept;
+    void add_rate(double dt, double rate) noexcept;
+    [[nodiscard]] LapSummary summary(double lap_time) const noexcept;
+  };
+
+  std::vector<LapSummary> laps_;
+  double deadline_;
+  Stretch lap_, total_;
+  Durations step_times_, solve_times_;
+  Fnv hash_;
+  int laps_completed_ = 0;
+  int off_track_events_ = 0;
+  bool is_off_track_ = false;
+  double out_of_track_time_ = 0.0;
+  std::uint64_t cycles_ = 0, iterations_ = 0, not_usable_ = 0, fallbacks_ = 0, gated_ = 0,
+                deadline_misses_ = 0;
+  double last_time_ = 0.0;
+  double last_steer_ = 0.0;
+};
+
+}  // namespace chicane::telemetry

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/telemetry/metrics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <new>
+
+namespace {
+int allocations = 0;
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc{};
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace chicane::telemetry {
+namespace {
+
+PhysicsSample sample(double speed, double error, double edge, bool off = false) {
+  PhysicsSample s;
+  s.step = 0.5;
+  s.state.vx = speed;
+  s.lateral_error = error;
+  s.edge_distance = edge;
+  s.is_off_track = off;
+  return s;
+}
+
+std::unique_ptr<Frame> frame(double time, double steer) {
+  auto f = std::make_unique<Frame>();
+  f->time = time;
+  f->has_truth = true;
+  f->truth.steer = steer;
+  f->result.report.solve.status = solver::SolveStatus::kOptimal;
+  return f;
+}
+
+constexpr double kRounding = 1e-12;  // sums of a few exact numbers
+
+TEST(Metrics, MeasuresALapFromEveryPhysicsStep) {
+  Metrics metrics(3, 0.1);
+  metrics.add_physics(sample(10.0, -3.0, 0.5));
+  PhysicsSample second = sample(30.0, 1.0, 2.0);
+  second.lateral_acceleration = -7.0;
+  metrics.add_physics(second);
+  metrics.lap_completed(0.93);
+  const RunSummary run = metrics.summary();
+  ASSERT_EQ(run.laps.size(), 1u);
+  EXPECT_EQ(run.laps_completed, 1);
+  EXPECT_EQ(run.laps[0].lap_time, 0.93);
+  EXPECT_NEAR(run.laps[0].mean_speed, 20.0, kRounding);
+  EXPECT_EQ(run.laps[0].top_speed, 30.0);
+  EXPECT_NEAR(run.laps[0].rms_lateral_error, std::sqrt(5.0), kRounding);
+  EXPECT_EQ(run.laps[0].max_abs_lateral_error, 3.0);
+  EXPECT_EQ(run.laps[0].min_edge_distance, 0.5);
+  EXPECT_EQ(run.laps[0].max_lateral_acceleration, 7.0);
+  EXPECT_FALSE(run.laps[0].gap_to_limit.has_value());
+}
+
+TEST(Metrics, ANewLapStartsFromZeroAndTheTotalGoesOn) {
+  Metrics metrics(3, 0.1);
+  metrics.add_physics(sample(40.0, 4.0, -1.0));
+  metrics.lap_completed(0.5);
+  metrics.add_physics(sample(20.0, 1.0, 3.0));
+  metrics.lap_completed(0.5);
+  const RunSummary run = metrics.summary();
+  ASSERT_EQ(run.laps.size(), 2u);
+  EXPECT_EQ(run.laps[1].top_speed, 20.0);
+  EXPECT_EQ(run.laps[1].min_edge_distance, 3.0);
+  EXPECT_EQ(run.total.top_speed, 40.0);
+  EXPECT_EQ(run.total.min_edge_distance, -1.0);
+  EXPECT_NEAR(run.duration, 1.0, kRounding);
+}
+
+TEST(Metrics, CountsEachExcursionOnceAndItsWholeTime) {
+  Metrics metrics(3, 0.1);
+  for (const bool off : {false, true, true, false, true, false}) metrics.add_physics(sample(1, 0, 0, off));
+  const RunSummary run = metrics.summary();
+  EXPECT_EQ(run.off_track_events, 2);
+  EXPECT_NEAR(run.out_of_track_time, 1.5, kRounding);
+}
+
+TEST(Metrics, PromisesNeedAllLapsAndAllTyresOnTheRoad) {
+  RunSummary run;
+  EXPECT_FALSE(kept_its_promises(run));
+  run.completed = true;
+  EXPECT_TRUE(kept_its_promises(run));
+  run.off_track_events = 1;
+  EXPECT_FALSE(kept_its_promises(run));
+}
+
+TEST(Metrics, SteeringRateIsTakenFromCycleToCycle) {
+  Metrics metrics(3, 0.1);
+  metrics.add(*frame(0.0, 0.0));
+  metrics.add(*frame(0.1, 0.02));
+  metrics.add(*frame(0.2, 0.00));
+  EXPECT_NEAR(metrics.summary().total.steering_rate_rms, 0.2, kRounding);
+}
+
+TEST(Metrics, CountsWhatWentWrongInTheSteps) {
+  Metrics metrics(3, 0.1);
+  auto f = frame(0.0, 0.0);
+  f->result.report.solve.iterations = 4;
+  metrics.add(*f);
+  f->time = 0.1;
+  f->result.report.solve.iterations = 2;
+  f->result.report.solve.status = solver::SolveStatus::kStalled;
+  f->result.report.rung = controller::Rung::kShiftedPlan;
+  f->result.report.gated = true;
+  f->step_time = 0.2;
+  f->solve_time = 0.15;
+  metrics.add(*f);
+  const RunSummary run = metrics.summary();
+  EXPECT_EQ(run.cycles, 2u);
+  EXPECT_EQ(run.mean_iterations, 3.0);
+  EXPECT_EQ(run.not_usable, 1u);
+  EXPECT_EQ(run.fallbacks, 1u);
+  EXPECT_EQ(run.gate_interventions, 1u);
+  EXPECT_EQ(run.deadline_misses, 1u);
+  EXPECT_NEAR(run.step_time.max, 0.2, 1e-9);  // counted in whole nanoseconds
+  EXPECT_NEAR(run.solve_time.max, 0.15, 1e-9);
+}
+
+TEST(Metrics, WithoutTruthItMeasuresWhatTheControllerWasTold) {
+  Metrics metrics(3, 0.1);
+  auto f = frame(0.0, 0.0);
+  f->has_truth = false;
+  f->measurement.speed = 12.0;
+  f->result.report.lateral_error = -0.5;
+  metrics.add(*f);
+  f->time = 0.1;
+  metrics.add(*f);
+  f->time = 0.2;
+  f->measurement.speed = std::nan("");
+  metrics.add(*f);
+  const RunSummary run = metrics.summary();
+  EXPECT_NEAR(run.total.mean_speed, 12.0, kRounding);
+  EXPECT_EQ(run.total.max_abs_lateral_error, 0.5);
+  EXPECT_TRUE(std::isnan(run.total.min_edge_distance));
+}
+
+TEST(Metrics, TheHashSeesTheLastBitOfAStateAndOfACommand) {
+  const auto hash = [](double x, double steer) {
+    Metrics metrics(1, 0.1);
+    PhysicsSample s = sample(1, 0, 0);
+    s.state.x = x;
+    metrics.add_physics(s);
+    auto f = frame(0.0, 0.0);
+    f->result.command.steer = steer;
+    metrics.add(*f);
+    return metrics.state_hash();
+  };
+  EXPECT_EQ(hash(1.0, 0.1), hash(1.0, 0.1));
+  EXPECT_NE(hash(1.0, 0.1), hash(std::nextafter(1.0, 2.0), 0.1));
+  EXPECT_NE(hash(1.0, 0.1), hash(1.0, std::nextafter(0.1, 1.0)));
+}
+
+TEST(Metrics, AllocatesNothingWhileRunningAndKeepsCountingBeyondItsCapacity) {
+  Metrics metrics(2, 0.1);
+  const auto f = frame(0.0, 0.0);
+  const int before = allocations;
+  for (int lap = 0; lap < 5; ++lap) {
+    metrics.add_physics(sample(1, 0, 0));
+    metrics.add(*f);
+    metrics.lap_completed(1.0);
+  }
+  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(metrics.laps_completed(), 5);
+  EXPECT_EQ(metrics.summary().laps.size(), 2u);
+}
+
+}  // namespace
+}  // namespace chicane::telemetry
