@@ -35,6 +35,7 @@ struct VehicleParams {
   double cornering_front = 5.05;     ///< normalised cornering stiffness [1/rad]
   double cornering_rear = 4.85;      ///< [1/rad]
   double friction = 1.0;             ///< peak lateral force over load
+  double friction_coupling = 0.0;    ///< 1 = friction ellipse (a real tyre), 0 = braking and cornering do not share force
   double load_constant = 10.6;       ///< normal acceleration at rest [m/s²]
   double load_per_speed = 0.1;       ///< its growth with speed (downforce) [1/s]
   double steer_helper = 0.774;       ///< share of each yaw change by which the car turns its velocity along; 0 = a real car
