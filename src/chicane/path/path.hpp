@@ -14,48 +14,98 @@ struct PathPoint {
   Vec2 position = Vec2::Zero();  ///< in W [m]
   double heading = 0.0;          ///< of the tangent [rad], continuous along the path (not wrapped)
   double curvature = 0.0;        ///< [1/m], left positive
-  double curvature_slope = 0.0;  ///< dκ/ds [1/m²]
+  double curvature_slope = 0.0;  ///< dκ/ds [1/m²], jumps at the given points
 };
 
 /// Path coordinates of a point: s along, d to the left.
 struct Projection {
-  double s = 0.0;         ///< arc length of the nearest point [m]; in [0, length) when closed
-  double d = 0.0;         ///< signed distance, left positive [m]
-  double distance = 0.0;  ///< |point − nearest point| [m] (differs from |d| only beyond an open end)
+  double s = 0.0;  ///< arc length of the nearest point [m]; in [0, length) when closed
+  double d = 0.0;  ///< signed distance, left positive [m]
+  double distance =
+      0.0;  ///< |point − nearest point| [m] (differs from |d| beyond an open end or at the window's end)
 };
 
-/// A smooth plane curve by arc length: interpolating C² cubic spline through given points, periodic when closed, with the
-/// parameter corrected so that s is arc length to about 1e-3 relative. Geometry only; knows no car.
+/// A smooth plane curve by arc length: interpolating C² cubic spline through given points, periodic when
+/// closed, natural (no curvature at the ends) when open, with the parameter corrected so that s is arc length
+/// to about 1e-3 relative while the curve turns by less than about 0.7 rad from point to point. Heading and
+/// curvature are those of the curve itself, whatever its parameter. Geometry only; knows no car.
 ///
-/// Memory is reserved once: rebuild() within capacity() allocates nothing, so a controller may renew its path every step.
+/// Memory is reserved once: rebuild() within capacity() allocates nothing, so a controller may renew its path
+/// every step. at() takes O(1), also for unevenly spaced points. Copies keep the capacity. const calls are
+/// safe from many threads.
 class Path {
  public:
+  static constexpr double kMinSpacing = 1e-6;    ///< neighbours closer than this coincide [m]
+  static constexpr double kMaxCoordinate = 1e7;  ///< |x|, |y| of a point [m]
+
+  /// Holds no curve and no memory.
+  Path() = default;
   /// Reserves memory for `capacity` points and holds no curve (length 0).
   static Path with_capacity(int capacity);
-  /// Fails with kInvalidArgument naming the point: fewer than 2 points (3 when closed), non-finite, coincident neighbours.
+  /// Fails with kInvalidArgument naming the point, counted from 0: fewer than 2 points (3 when closed),
+  /// non-finite or beyond kMaxCoordinate, coincident neighbours (when closed also last and first).
   [[nodiscard]] static Result<Path> create(std::span<const Vec2> points, bool closed);
 
-  /// Replaces the curve without allocating. False, and no change, for data that create() would refuse or too many points.
+  /// Replaces the curve without allocating. False, and no change, for data that create() would refuse or too
+  /// many points.
   [[nodiscard]] bool rebuild(std::span<const Vec2> points, bool closed) noexcept;
 
+  [[nodiscard]] int capacity() const noexcept { return static_cast<int>(cells_.size()); }
   [[nodiscard]] bool is_closed() const noexcept { return closed_; }
   [[nodiscard]] double length() const noexcept { return length_; }
   [[nodiscard]] bool is_empty() const noexcept { return length_ <= 0.0; }
-  /// Any s: wrapped when closed, extended by a straight line beyond the ends when open.
+  /// Change of heading over a closed lap [rad]: 2π for a simple counter-clockwise loop, −2π for a clockwise
+  /// one.
+  [[nodiscard]] double turning() const noexcept { return turning_; }
+  /// Any s: wrapped when closed, extended by a straight line beyond the ends when open. The heading goes on
+  /// continuously beyond the first lap: at(s + length()).heading = at(s).heading + turning(). Zero for an
+  /// empty path, NaN for NaN.
   [[nodiscard]] PathPoint at(double s) const noexcept;
-  /// s in [0, length) for a closed path; clamped for an open one.
+  /// s in [0, length) for a closed path; clamped to [0, length] for an open one.
   [[nodiscard]] double wrap(double s) const noexcept;
   /// Signed distance along the path from s0 to s1: shortest way round when closed [m].
   [[nodiscard]] double difference(double s1, double s0) const noexcept;
 
   /// Nearest point of the whole curve. O(n).
   [[nodiscard]] Projection project(const Vec2& point) const noexcept;
-  /// Nearest point within `window` [m] of arc length around s_guess. O(window).
+  /// Nearest point within `window` [m] of arc length before and after s_guess. O(window).
   [[nodiscard]] Projection project(const Vec2& point, double s_guess, double window) const noexcept;
 
  private:
+  /// From one given point to the next: r(t) = a + b t + c t² + e t³ for t in [0, h], s = s0 + t.
+  struct Segment {
+    double s0 = 0.0;
+    double h = 0.0;
+    double heading = 0.0;  ///< at t = 0, unwrapped
+    double bulge = 0.0;    ///< the curve stays within this of its chord [m]
+    Vec2 a = Vec2::Zero();
+    Vec2 b = Vec2::Zero();
+    Vec2 c = Vec2::Zero();
+    Vec2 e = Vec2::Zero();
+  };
+  /// Rows of the tridiagonal system for the second derivatives.
+  struct Row {
+    double factor = 0.0;
+    double corner = 0.0;  ///< solution of the system for the corner entries of a closed path
+    Vec2 second = Vec2::Zero();
+  };
+
+  void fit(std::span<const Vec2> points) noexcept;
+  void solve_natural(std::span<const Vec2> points) noexcept;
+  void solve_periodic(std::span<const Vec2> points) noexcept;
+  void index() noexcept;
+  [[nodiscard]] int segment_at(double s) const noexcept;
+  [[nodiscard]] Projection search(const Vec2& point, double s_low, double s_high) const noexcept;
+  template <class Visit>
+  void for_each_segment(double s_low, double s_high, Visit&& visit) const noexcept;
+
   bool closed_ = false;
+  int count_ = 0;  ///< segments in use
   double length_ = 0.0;
+  double turning_ = 0.0;
+  std::vector<Segment> segments_;
+  std::vector<Row> rows_;
+  std::vector<int> cells_;  ///< segment at the start of each of count_ equal cells of s
 };
 
 }  // namespace chicane::path

@@ -18,18 +18,20 @@ struct TrackPoint {
 
 /// How raw points become a road.
 struct TrackOptions {
-  double spacing = 2.0;          ///< of the resampled knots [m]; [0.5, 10]
-  double smoothing_sigma = 0.1;  ///< expected noise of the points [m]; the smoothed line stays within about this; [0, 1]
-  double kerb_width = 0.0;       ///< drivable kerb outside each edge [m]; touching it is not off-track; [0, 3]
+  double spacing = 2.0;  ///< of the resampled knots [m]; [0.5, 10]
+  double smoothing_sigma =
+      0.1;  ///< expected noise of the points [m]; the smoothed line stays within about this; [0, 1]
+  double kerb_width = 0.0;  ///< drivable kerb outside each edge [m]; touching it is not off-track; [0, 3]
 };
 
 /// A road: a reference line with the distances to its edges, open or closed. Immutable after create().
 class Track {
  public:
-  /// Fails with kInvalidArgument and the index of the point for: fewer than 4 points, non-finite numbers, coincident
-  /// neighbours only, widths <= 0, a line that crosses itself. 100,000 points take less than a second.
-  [[nodiscard]] static Result<Track> create(std::string name, const std::vector<TrackPoint>& points, bool closed,
-                                            const TrackOptions& options = {});
+  /// Fails with kInvalidArgument and the index of the point for: fewer than 4 points, non-finite numbers,
+  /// coincident neighbours only, widths <= 0, a line that crosses itself. 100,000 points take less than a
+  /// second.
+  [[nodiscard]] static Result<Track> create(std::string name, const std::vector<TrackPoint>& points,
+                                            bool closed, const TrackOptions& options = {});
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const Path& centre() const noexcept { return centre_; }
