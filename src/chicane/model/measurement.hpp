@@ -21,7 +21,7 @@ struct Measurement {
   double throttle = 0.0;  ///< pedal that acted during the cycle before, [-1, 1]; the original reports braking as 0
 
   /// Expected time from `time` until the command computed from this measurement acts [s]: the run time's measurement of
-  /// the last answered cycles (transport, artificial latency, turn-around), without the time this step will take.
+  /// the last answered cycles, with all that lies between (computing, artificial latency, transport, turn-around).
   double delay = 0.0;
 
   int waypoint_count = 0;                          ///< [0, kMaxWaypoints]

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/controller/command_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "chicane/base/angle.hpp"
+
+namespace chicane::controller {
+namespace {
+
+constexpr double kMaxStep = 0.01;         // [s] integration step of the estimator
+constexpr double kLongestGap = 1.0;       // [s] after a longer silence the estimate starts anew
+constexpr double kLostPosition = 3.0;     // [m] a measurement further from the prediction starts anew
+constexpr double kPositionGain = 0.8;     // share of the position and heading innovation taken over at once
+constexpr double kYawRateGain = 0.25;     // share of the heading innovation per second taken as yaw-rate error
+
+bool is_finite(const model::Measurement& m) {
+  return std::isfinite(m.x) && std::isfinite(m.y) && std::isfinite(m.psi) && std::isfinite(m.speed);
+}
+
+}  // namespace
+
+void CommandHistory::add(double time, const model::Command& command) noexcept {
+  while (count_ > 0 && entry(count_ - 1).time >= time) --count_;
+  if (count_ == kCapacity) {
+    first_ = (first_ + 1) % kCapacity;
+    --count_;
+  }
+  entries_[static_cast<std::size_t>((first_ + count_) % kCapacity)] = {time, command};
+  ++count_;
+}
+
+model::Command CommandHistory::at(double time) const noexcept {
+  for (int i = count_ - 1; i >= 0; --i) {
+    if (entry(i).time <= time) return entry(i).command;
+  }
+  return {};
+}
+
+double CommandHistory::next_change(double time, double limit) const noexcept {
+  for (int i = 0; i < count_; ++i) {
+    if (entry(i).time > time) return std::min(entry(i).time, limit);
+  }
+  return limit;
+}
+
+void StateEstimator::advance(model::State& state, double& acceleration, double from, double to,
+                             const CommandHistory& sent) const noexcept {
+  const model::VehicleParams& p = model_.vehicle();
+  double now = from;
+  while (now < to - 1e-9) {
+    const double dt = std::min(sent.next_change(now + 1e-9, to) - now, kMaxStep);
+    const model::Command command = sent.at(now + 1e-9);
+    const double reach = p.steer_rate_limit * dt;
+    const double steer = std::clamp(command.steer, state.steer - reach, state.steer + reach);
+    const double asked = longitudinal_acceleration(p, command.throttle, state.vx);
+    const BodyMotion<double> body =
+        model_.advance<double>({state.vx, state.vy, state.r, state.steer, acceleration}, steer, asked, dt);
+    const double psi = state.psi + 0.5 * dt * (state.r + body.r);
+    const double mean_psi = 0.5 * (state.psi + psi);
+    const double vx = 0.5 * (state.vx + body.vx);
+    const double vy = 0.5 * (state.vy + body.vy);
+    state.x += dt * (vx * cos(mean_psi) - vy * sin(mean_psi));
+    state.y += dt * (vx * sin(mean_psi) + vy * cos(mean_psi));
+    state.psi = psi;
+    state.vx = std::max(body.vx, 0.0);
+    state.vy = body.vy;
+    state.r = body.r;
+    state.steer = body.steer;
+    acceleration = body.acceleration;
+    now += dt;
+  }
+}
+
+void StateEstimator::correct(const model::Measurement& now, const CommandHistory& sent) noexcept {
+  if (!is_finite(now)) return;
+  const double elapsed = now.time - time_;
+  if (is_started_ && elapsed > 0.0 && elapsed < kLongestGap) {
+    advance(state_, acceleration_, time_, now.time, sent);
+    const double dx = now.x - state_.x;
+    const double dy = now.y - state_.y;
+    const double dpsi = angle_difference(now.psi, state_.psi);
+    if (dx * dx + dy * dy < kLostPosition * kLostPosition && std::fabs(dpsi) < 0.5) {
+      state_.x += kPositionGain * dx;
+      state_.y += kPositionGain * dy;
+      state_.psi += kPositionGain * dpsi;
+      state_.r += kYawRateGain * dpsi / elapsed;
+      state_.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state_.vy * state_.vy));
+      time_ = now.time;
+      return;
+    }
+  } else if (is_started_ && elapsed <= 0.0 && elapsed > -kLongestGap) {
+    return;  // an old or repeated measurement
+  }
+  const double steer = std::isfinite(now.steer) ? now.steer : 0.0;
+  state_ = {.x = now.x, .y = now.y, .psi = now.psi, .vx = now.speed, .vy = 0.0,
+            .r = now.speed * tan(std::clamp(steer, -0.6, 0.6)) / model_.vehicle().wheelbase(), .steer = steer};
+  acceleration_ = 0.0;
+  time_ = now.time;
+  is_started_ = true;
+}
+
+StateEstimator::Prediction StateEstimator::predict(double time, const CommandHistory& sent) const noexcept {
+  Prediction result{state_, acceleration_};
+  advance(result.state, result.acceleration, time_, std::min(time, time_ + kLongestGap), sent);
+  return result;
+}
+
+}  // namespace chicane::controller

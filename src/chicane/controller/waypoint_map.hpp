@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "chicane/base/types.hpp"
+#include "chicane/model/measurement.hpp"
+
+namespace chicane::controller {
+
+/// The road as a car learns it: the waypoints of all measurements so far in driving order, closed into a loop as soon as the
+/// first one is seen again. Telemetry repeats waypoints exactly, so two closer than kSame are one.
+///
+/// Memory for kCapacity waypoints is reserved at construction; add() allocates nothing. A measurement whose waypoints match
+/// nothing known starts a new map (another scene, or a car that was moved).
+class WaypointMap {
+ public:
+  static constexpr int kCapacity = 4096;
+  static constexpr double kSame = 0.3;  ///< [m]
+
+  WaypointMap();
+  void clear() noexcept;
+  /// Takes in the waypoints of a measurement. True when the map changed.
+  [[nodiscard]] bool add(const model::Measurement& now) noexcept;
+
+  [[nodiscard]] std::span<const Vec2> points() const noexcept { return points_; }
+  [[nodiscard]] bool is_closed() const noexcept { return is_closed_; }
+
+ private:
+  [[nodiscard]] int find(const Vec2& point) const noexcept;
+  bool append(const Vec2& point) noexcept;
+
+  std::vector<Vec2> points_;
+  bool is_closed_ = false;
+  int hint_ = 0;  ///< index where the last measurement's first waypoint was found
+};
+
+}  // namespace chicane::controller
