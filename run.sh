@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# From a clone to a car on the screen: installs what is missing, builds, and runs the program.
+#
+#   ./run.sh                                      drive, with the dashboard at http://localhost:4567/
+#   ./run.sh --laps 1                             options alone mean `drive`
+#   ./run.sh drive --fast --laps 2 --json         any command of `chicane`; stdout carries its results only
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
+source "$root/tools/install_packages.sh"
+source "$root/tools/build.sh"
+
+mapfile -t node < <(node_packages)
+install_packages "${run_packages[@]}" "${node[@]}"
+tests=()
+is_configured "$root" || tests=(CHICANE_BUILD_TESTS=OFF CHICANE_BUILD_EXAMPLES=OFF)
+build_release "$root" chicane_app "${tests[@]}"
+
+case "${1:-}" in
+  -h | --help | --version) ;;
+  '' | -*) set -- drive "$@" ;;
+esac
+exec "$root/build/release/apps/chicane/chicane" "$@"

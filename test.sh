@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and runs the tests.
+#
+#   ./test.sh                 all but the slow ones
+#   ./test.sh --all           all
+#   ./test.sh -L solver       further arguments go to ctest: one module, `-R name`, `--rerun-failed`
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
+source "$root/tools/install_packages.sh"
+source "$root/tools/build.sh"
+
+selection=(-LE slow)
+if [ "${1:-}" = --all ]; then
+  selection=()
+  shift
+fi
+
+mapfile -t others < <(node_packages; browser_packages)
+install_packages "${run_packages[@]}" "${test_packages[@]}" "${others[@]}"
+build_release "$root" all CHICANE_BUILD_TESTS=ON CHICANE_BUILD_EXAMPLES=ON
+say "chicane: ctest ${selection[*]} $*"
+exec ctest --test-dir "$root/build/release" -j "$(nproc)" --output-on-failure --no-tests=error "${selection[@]}" "$@"

@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""Plants one violation after the other in a small tree and sees the checks notice each, and nothing in the clean tree."""
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+import check_layers  # noqa: E402
+import check_sources  # noqa: E402
+
+SPDX = "// SPDX-License-Identifier: MIT\n"
+CLEAN = {
+    "src/chicane/base/math.hpp": SPDX + "#pragma once\n#include <cmath>\n",
+    "src/chicane/base/CMakeLists.txt": "chicane_module(base HEADERS math.hpp)\n",
+    "src/chicane/solver/solve.hpp": SPDX + '#pragma once\n#include <Eigen/Core>\n#include "chicane/base/math.hpp"\n',
+    "src/chicane/solver/solve.cpp": SPDX + '#include "chicane/solver/solve.hpp"\n// It knows no car.\n',
+    "src/chicane/solver/CMakeLists.txt": "chicane_module(solver HEADERS solve.hpp SOURCES solve.cpp DEPENDS base)\n",
+    "apps/chicane/main.cpp": SPDX + '#include "chicane/solver/solve.hpp"\nint main() { std::puts("car"); }\n',
+    "tests/solver/solve_test.cpp": SPDX,
+}
+
+
+class Checks(unittest.TestCase):
+    def violations(self, check, files=None):
+        """What `check` says about the clean tree after changes `files` {path: text appended, or (text,) instead}."""
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder).resolve()
+            tree = dict(CLEAN, **{"tools/layers.txt": (ROOT / "tools/layers.txt").read_text(encoding="utf-8")})
+            for path, text in (files or {}).items():
+                tree[path] = text[0] if isinstance(text, tuple) else tree.get(path, SPDX) + text
+            for path, text in tree.items():
+                (root / path).parent.mkdir(parents=True, exist_ok=True)
+                (root / path).write_text(text, encoding="utf-8")
+            for name in ("examples", "bench"):
+                (root / name).mkdir()
+            return list(check(root))
+
+    def expect(self, check, path, text, reason):
+        found = self.violations(check, files={path: text})
+        self.assertEqual(len(found), 1, found)
+        self.assertIn(reason, found[0])
+        self.assertRegex(found[0], r"^[\w/.]+:\d+: ")
+
+    def test_clean_tree_has_no_violation(self):
+        self.assertEqual(self.violations(check_layers.check), [])
+        self.assertEqual(self.violations(check_sources.check), [])
+
+    def test_layers(self):
+        for path, text, reason in (
+            ("src/chicane/base/math.hpp", '#include "chicane/solver/solve.hpp"\n', "base must not include solver/solve.hpp"),
+            ("src/chicane/solver/solve.cpp", '#include "chicane/net/server.hpp"\n', "solver must not include net/server.hpp"),
+            ("src/chicane/path/path.hpp", '#include "chicane/model/state.hpp"\n', "path must not include model/state.hpp"),
+            ("src/chicane/safety/gate.hpp", '#include "chicane/controller/mpc.hpp"\n', "must not include controller/mpc.hpp"),
+            ("src/chicane/solver/CMakeLists.txt", ("chicane_module(solver DEPENDS base sim)",), "solver must not link sim"),
+            ("src/chicane/solver/CMakeLists.txt", ("chicane_module(solver)",), "does not list base in DEPENDS"),
+            ("src/chicane/solver/solve.cpp", '#include "math.hpp"\n', 'expected "chicane/module/file.hpp"'),
+            ("src/chicane/helpers/misc.hpp", "\n", "helpers is not in tools/layers.txt"),
+            ("tools/layers.txt", ("base:\nsolver: base model\nmodel: base\napps: base solver model\n",), "listed above it"),
+        ):
+            with self.subTest(reason):
+                self.expect(check_layers.check, path, text, reason)
+
+    def test_layers_allow_a_single_header(self):
+        gate = {"src/chicane/safety/gate.hpp": '#include "chicane/controller/plan.hpp"\n'}
+        self.assertEqual(self.violations(check_layers.check, files=gate), [])
+
+    def test_sources(self):
+        source = "src/chicane/solver/solve.cpp"
+        for path, text, reason in (
+            (source, "double a = std::sin(1.0);\n", "got std::sin(: bits differ"),
+            (source, "double a = ::atan2(1.0, 2.0);\n", "bits differ"),
+            (source, "std::normal_distribution<> d;\n", "not the same on every machine"),
+            (source, "void f() { throw 1; }\n", "throws nothing"),
+            (source, 'void f() { std::printf("x"); }\n', "only runtime and apps print"),
+            (source, "auto t = std::chrono::steady_clock::now();\n", "a Deadline"),
+            (source, "std::mutex m;\n", "threads and locks"),
+            (source, "boost::asio::io_context c;\n", "sockets live in net"),
+            (source, "double wheel_angle;\n", "solver knows no car"),
+            (source, "Eigen::VectorXd v;\n", "fixed sizes only"),
+            ("src/chicane/base/math.hpp", "#include <nlohmann/json.hpp>\n", "headers show Eigen"),
+            ("src/chicane/base/math.hpp", (SPDX + "#include <cmath>\n",), "expected #pragma once"),
+            (source, (SPDX + '#include <cmath>\n#include "chicane/solver/solve.hpp"\n',), "expected its own header"),
+            ("tests/solver/solve_test.cpp", ("int x;\n",), "expected // SPDX"),
+            ("tests/solver/solve_test.cpp", "\n" * 600, "expected at most 500"),
+        ):
+            with self.subTest(text[:50]):
+                self.expect(check_sources.check, path, text, reason)
+
+    def test_comments_strings_and_other_names_are_no_violation(self):
+        text = '// std::sin(x), the car\n/* throw */ const char* s = "throw std::mutex"; int scar; char c = \'"\'; // throw\n'
+        self.assertEqual(self.violations(check_sources.check, files={"src/chicane/solver/solve.cpp": text}), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

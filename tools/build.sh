@@ -1,0 +1,42 @@
+# shellcheck shell=bash
+# Configures and builds build/release. Sourced by run.sh and test.sh, after install_packages.sh.
+
+# As many compilers as cores, but no more than memory holds: the largest file takes 1.2 GB.
+build_jobs() {
+  local cores memory
+  cores=$(nproc)
+  memory=$(awk '/^MemAvailable/ { print int($2 / 1200000) }' /proc/meminfo 2>/dev/null)
+  [ "${memory:-0}" -ge 1 ] || memory=1
+  echo $((cores < memory ? cores : memory))
+}
+
+# is_configured ROOT NAME=VALUE...: build/release belongs to this folder and has these options.
+is_configured() {
+  local root=$1 cache=$1/build/release/CMakeCache.txt option
+  shift
+  [ -f "$root/build/release/build.ninja" ] && grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$cache" || return 1
+  for option in "$@"; do
+    grep -qx "${option%%=*}:[A-Z]*=${option#*=}" "$cache" || return 1
+  done
+}
+
+# build_release ROOT TARGET [NAME=VALUE...]: quiet when there is nothing to do; whatever it says goes to stderr.
+build_release() {
+  local root=$1 target=$2 build=$1/build/release fresh=() quiet=()
+  shift 2
+  if [ "$packages_changed" = yes ] || ! is_configured "$root" "$@"; then
+    say "chicane: configuring build/release"
+    mkdir -p "$build"
+    is_configured "$root" || fresh=(--fresh)  # a build folder that was moved here still points to where it came from
+    (cd "$root" && cmake --preset release "${fresh[@]}" "${@/#/-D}") >"$build/configure.log" 2>&1 || {
+      cat "$build/configure.log" >&2
+      return 1
+    }
+  fi
+  if ninja -C "$build" -n "$target" 2>/dev/null | grep -q 'no work to do'; then
+    quiet=(--quiet)
+  else
+    say "chicane: building $target in build/release"
+  fi
+  ninja -C "$build" -j "$(build_jobs)" "${quiet[@]}" "$target" </dev/null >&2
+}

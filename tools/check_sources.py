@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""Checks the rules that a compiler does not know, line by line: who may do what, and how files begin.
+
+    tools/check_sources.py [ROOT]            prints file:line: what is wrong; exit code 1 when anything is
+    tools/check_sources.py --lengths [ROOT]  lists the longest files instead
+"""
+import re
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+ELEMENTARY = r"(?:sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot)"
+
+
+class Rule(NamedTuple):
+    pattern: str
+    where: tuple  # folders or files of src/chicane the rule holds in; "" is all of them
+    except_in: tuple
+    reason: str
+
+
+RULES = (
+    Rule(rf"\bstd::{ELEMENTARY}\s*\(|(?<![\w>])::{ELEMENTARY}\s*\(", ("",), ("base",),
+         "bits differ between machines: use chicane::sin, cos, ... of base/math.hpp"),
+    Rule(r"\bstd::\w+_distribution\b|\bstd::(mt19937\w*|default_random_engine|random_device)\b|(?<!\w)s?rand\(", ("",), (),
+         "not the same on every machine: use base/random.hpp"),
+    Rule(r"\bthrow\b", ("",), (), "the library throws nothing: return Result, or a status in the loop"),
+    Rule(r"\bstd::(cout|cerr|clog)\b|(?<![\w])f?(printf|puts)\s*\(|\bfmt::print\b", ("",), ("base/assert.hpp", "runtime"),
+         "only runtime and apps print"),
+    Rule(r"\b\w*(clock|Clock)::now\(", ("",), ("base/deadline.hpp", "net", "runtime"), "time comes in as a Deadline or a number"),
+    Rule(r"\bstd::(thread|jthread|mutex|shared_mutex|recursive_mutex|atomic\w*|condition_variable\w*|async)\b", ("",),
+         ("base/latest.hpp", "net", "runtime"), "threads and locks live in net and runtime"),
+    Rule(r"\bboost::(asio|beast)\b", ("",), ("net",), "sockets live in net"),
+    Rule(r"(?<![a-z])(car|cars|steer|steering|vehicle|wheel|tire|tyre|road)(?![a-z])", ("solver",), (),
+         "solver knows no car"),
+    Rule(r"\bMatrixXd\b|\bVectorXd\b|\bEigen::Dynamic\b", ("base", "model", "solver", "controller", "safety", "sim"), (),
+         "fixed sizes only: dynamic ones allocate in the loop"),
+    Rule(r"\bconst_cast\b|\breinterpret_cast\b", ("",), ("net", "protocol"), "bytes are handled in net and protocol"),
+)
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
+PUBLIC_THIRD_PARTY = re.compile(r"Eigen/\w+|tl/expected\.hpp")
+LIMITS = {".hpp": 250, ".cpp": 500}
+
+
+def without_comments(text):
+    """The text with comments and string literals blanked, line by line as before."""
+    def blank(match):
+        return re.sub(r"[^\n]", " ", match[0])
+    return re.sub(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', blank, text, flags=re.DOTALL)
+
+
+def applies(rule, path):
+    inside = lambda name: name == "" or path == name or path.startswith(name + "/")
+    return any(map(inside, rule.where)) and not any(map(inside, rule.except_in))
+
+
+def check_library_file(root, source):
+    """Rules for one file of src/chicane."""
+    path = source.relative_to(root / "src/chicane").as_posix()
+    text = source.read_text(encoding="utf-8")
+    code = without_comments(text)
+    for rule in RULES:
+        if not applies(rule, path):
+            continue
+        for match in re.finditer(rule.pattern, code):
+            line = code.count("\n", 0, match.start()) + 1
+            yield f"src/chicane/{path}:{line}: got {match[0].strip()}: {rule.reason}"
+    includes = [(n, m[1]) for n, line in enumerate(text.splitlines(), 1) if (m := INCLUDE.match(line))]
+    if source.suffix == ".hpp":
+        for number, name in includes:
+            is_standard = "." not in name and "/" not in name
+            if not is_standard and not name.startswith("chicane/") and not PUBLIC_THIRD_PARTY.fullmatch(name):
+                yield f"src/chicane/{path}:{number}: got <{name}>: headers show Eigen and tl/expected.hpp only"
+        if "#pragma once" not in text:
+            yield f"src/chicane/{path}:1: expected #pragma once"
+    elif source.with_suffix(".hpp").exists() and includes[:1] != includes[:0]:
+        own = "chicane/" + str(Path(path).with_suffix(".hpp").as_posix())
+        if includes[0][1] != own:
+            yield f"src/chicane/{path}:{includes[0][0]}: got {includes[0][1]} first, expected its own header {own}"
+
+
+def sources(root):
+    for folder in ("src", "apps", "tests", "examples", "bench"):
+        yield from sorted(p for p in (root / folder).rglob("*") if p.suffix in (".hpp", ".cpp"))
+
+
+def check(root):
+    for source in sources(root):
+        path = source.relative_to(root)
+        lines = source.read_text(encoding="utf-8").splitlines()
+        if not lines or lines[0] != "// SPDX-License-Identifier: MIT":
+            yield f"{path}:1: expected // SPDX-License-Identifier: MIT"
+        if len(lines) > 500:
+            yield f"{path}:1: got {len(lines)} lines, expected at most 500: it is two files"
+        if path.parts[0] == "src":
+            yield from check_library_file(root, source)
+
+
+def lengths(root):
+    """Files above the budget for their kind, longest first."""
+    counted = [(len(p.read_text(encoding="utf-8").splitlines()), p) for p in sources(root)]
+    for count, path in sorted(counted, reverse=True):
+        if count > (400 if path.is_relative_to(root / "tests") else LIMITS[path.suffix]):
+            yield f"{path.relative_to(root)}: {count} lines"
+
+
+def main():
+    arguments = [a for a in sys.argv[1:] if a != "--lengths"]
+    root = Path(arguments[0] if arguments else Path(__file__).parent.parent).resolve()
+    if "--lengths" in sys.argv[1:]:
+        print("\n".join(lengths(root)))
+        return 0
+    violations = list(check(root))
+    for violation in violations:
+        print(violation)
+    print(f"{len(violations)} violations of tools/check_sources.py")
+    return 1 if violations else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,61 @@
+# shellcheck shell=bash
+# Installs the Debian packages that are missing. Sourced by run.sh, test.sh and tools/check.sh.
+
+# To build and run the program.
+run_packages=(
+  g++ cmake ninja-build ccache pkg-config
+  libeigen3-dev libexpected-dev libboost-dev nlohmann-json3-dev libyaml-cpp-dev libcli11-dev libfmt-dev libfastcdr-dev
+)
+# To build and run the tests, on top of those.
+test_packages=(libgtest-dev libgmock-dev librapidcheck-dev coinor-libipopt-dev python3)
+# To run tools/check.sh, on top of those.
+check_packages=(clang-format clang-tidy)
+
+packages_changed=no
+say() { printf '%s\n' "$*" >&2; }
+
+# Prints those of the given packages that are not installed.
+missing_packages() {
+  local package
+  for package in "$@"; do
+    dpkg-query -W -f='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || printf '%s\n' "$package"
+  done
+}
+
+# install_packages PACKAGE...: returns 0 when nothing was missing or everything is installed now, 3 when it cannot be.
+install_packages() {
+  local wanted=("$@") missing root=()
+  if ! command -v dpkg-query >/dev/null; then
+    say "chicane: not a Debian system; these have to be there under the names they have here: ${wanted[*]}"
+    return 0
+  fi
+  mapfile -t missing < <(missing_packages "${wanted[@]}")
+  [ ${#missing[@]} -eq 0 ] && return 0
+
+  if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null || { [ ! -t 0 ] && ! sudo -n true 2>/dev/null; }; then
+      say "chicane: some packages are missing, and installing them needs root. Please run:"
+      say "  apt-get install --no-install-recommends ${missing[*]}"
+      return 3
+    fi
+    root=(sudo)
+  fi
+  say "chicane: installing ${missing[*]}"
+  local apt=("${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=600)
+  "${apt[@]}" update </dev/null >&2 || say "chicane: the package lists could not be renewed; going on with the old ones"
+  if ! "${apt[@]}" install --no-install-recommends "${missing[@]}" </dev/null >&2; then
+    say "chicane: the packages above could not be installed"
+    return 3
+  fi
+  packages_changed=yes
+}
+
+# Node and npm from any source will do; Debian's where there is none.
+node_packages() {
+  command -v node >/dev/null && command -v npm >/dev/null || printf '%s\n' nodejs npm
+}
+
+# Any Chromium or Chrome will do for the tests of the dashboard; Debian's where there is none.
+browser_packages() {
+  command -v chromium >/dev/null || command -v google-chrome >/dev/null || printf '%s\n' chromium
+}
