@@ -2,7 +2,8 @@
 add_library(chicane_options INTERFACE)
 target_compile_features(chicane_options INTERFACE cxx_std_20)
 target_compile_options(chicane_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wold-style-cast
+  # no -Wsign-conversion: g++ 12 then demands a cast for every std::array<T, N> with an int N
+  -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion -Wshadow -Wold-style-cast
   -Wnon-virtual-dtor -Woverloaded-virtual -Wdouble-promotion
   -ffp-contract=off      # same bits from gcc and clang, Debug and Release
   -fno-math-errno
