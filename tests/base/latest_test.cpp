@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/base/latest.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <thread>
+
+namespace chicane {
+namespace {
+
+TEST(Latest, IsEmptyAtFirst) {
+  Latest<int> latest;
+  int value = 7;
+  EXPECT_FALSE(latest.take(value));
+  EXPECT_EQ(value, 7);
+}
+
+TEST(Latest, GivesEachValueOnce) {
+  Latest<int> latest;
+  int value = 0;
+  latest.put(1);
+  EXPECT_TRUE(latest.take(value));
+  EXPECT_EQ(value, 1);
+  EXPECT_FALSE(latest.take(value));
+}
+
+TEST(Latest, NewestWins) {
+  Latest<int> latest;
+  for (int i = 1; i <= 5; ++i) latest.put(i);
+  int value = 0;
+  EXPECT_TRUE(latest.take(value));
+  EXPECT_EQ(value, 5);
+  EXPECT_FALSE(latest.take(value));
+  latest.put(6);
+  EXPECT_TRUE(latest.take(value));
+  EXPECT_EQ(value, 6);
+}
+
+TEST(Latest, ReaderSeesWholeValuesInOrderAndTheLastOne) {
+  using Block = std::array<std::uint64_t, 64>;
+  constexpr std::uint64_t kLast = 100000;
+  Latest<Block> latest;
+  std::jthread writer([&latest] {
+    Block block{};
+    for (std::uint64_t i = 1; i <= kLast; ++i) {
+      block.fill(i);
+      latest.put(block);
+    }
+  });
+  Block block{};
+  std::uint64_t seen = 0;
+  while (seen < kLast) {
+    if (!latest.take(block)) {
+      std::this_thread::yield();
+      continue;
+    }
+    ASSERT_GT(block.front(), seen);
+    for (const std::uint64_t word : block) ASSERT_EQ(word, block.front());
+    seen = block.front();
+  }
+  writer.join();
+  EXPECT_FALSE(latest.take(block));
+}
+
+}  // namespace
+}  // namespace chicane
