@@ -43,9 +43,12 @@ struct SoftPenalty {
 /// States x_0..x_N and inputs u_0..u_{N-1} of a horizon of N <= Capacity intervals.
 template <int Nx, int Nu, int Capacity>
 struct Trajectory {
-  int horizon = 0;                                          ///< N
-  std::array<std::array<double, Nx>, Capacity + 1> x{};     ///< x[0..N]
-  std::array<std::array<double, Nu>, Capacity> u{};         ///< u[0..N-1]
+  using State = std::array<double, Nx>;
+  using Input = std::array<double, Nu>;
+
+  int horizon = 0;                      ///< N
+  std::array<State, Capacity + 1> x{};  ///< x[0..N]
+  std::array<Input, Capacity> u{};      ///< u[0..N-1]
 };
 
 /// How the solver behaves. Defaults suit control at 10–100 Hz.

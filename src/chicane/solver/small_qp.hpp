@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace chicane::solver {
+
+/// Where an input stands in the working set.
+enum class Hold : std::int8_t { kLow = -1, kFree = 0, kHigh = 1 };
+
+/// The working-set rule of the primal-dual active set method: an input beyond a bound is held there, a held
+/// one whose cost falls towards the inside (`slope` = dJ/du) is let go. `curvature` scales the tolerance; an
+/// interval without width is always held.
+[[nodiscard]] inline Hold next_hold(Hold hold, double u, double slope, double low, double high,
+                                    double curvature) noexcept {
+  constexpr double kTolerance = 1e-10;
+  if (!(high > low)) return Hold::kLow;
+  if (hold == Hold::kFree) {
+    if (u > high + kTolerance) return Hold::kHigh;
+    return u < low - kTolerance ? Hold::kLow : Hold::kFree;
+  }
+  const double inward =
+      hold == Hold::kLow ? -slope : slope;  // > 0: the cost falls when the input leaves the bound
+  return inward > kTolerance * (1.0 + std::fabs(curvature)) ? Hold::kFree : hold;
+}
+
+/// min ½ uᵀ H u + gᵀ u s.t. low <= u <= high for a handful of inputs: the box problem of one stage.
+template <std::size_t N>
+struct SmallQp {
+  double H[N][N]{};
+  double g[N]{};
+  double low[N]{};
+  double high[N]{};
+  Hold hold[N]{};
+  double u[N]{};
+
+  /// Adds the smallest of a rising series of shifts to the diagonal that makes the free block positive
+  /// definite; returns it.
+  double make_positive() noexcept {
+    double diagonal = 0.0;
+    for (std::size_t i = 0; i < N; ++i) diagonal = std::max(diagonal, std::fabs(H[i][i]));
+    double added = 0.0;
+    for (int attempt = 0; attempt < 40 && !is_positive(); ++attempt) {
+      const double more = added > 0.0 ? 3.0 * added : 1e-8 * (1.0 + diagonal);
+      for (std::size_t i = 0; i < N; ++i) H[i][i] += more;
+      added += more;
+    }
+    return added;
+  }
+
+  /// Finds u and the working set: active-set turns first; if they should cycle, coordinate descent, which
+  /// cannot.
+  void solve() noexcept {
+    for (std::size_t turn = 0; turn < 4 * N; ++turn) {
+      solve_free();
+      bool changed = false;
+      for (std::size_t i = 0; i < N; ++i) {
+        double slope = g[i];
+        for (std::size_t j = 0; j < N; ++j) slope += H[i][j] * u[j];
+        const Hold next = next_hold(hold[i], u[i], slope, low[i], high[i], H[i][i]);
+        changed = changed || next != hold[i];
+        hold[i] = next;
+      }
+      if (!changed) return;
+    }
+    descend();
+  }
+
+ private:
+  [[nodiscard]] bool is_positive() const noexcept {
+    double A[N][N];
+    std::copy(&H[0][0], &H[0][0] + N * N, &A[0][0]);
+    for (std::size_t m = N; m-- > 0;) {  // the order in which the stage eliminates
+      if (hold[m] != Hold::kFree) continue;
+      if (!(A[m][m] > 1e-10 * std::fabs(H[m][m]) + 1e-12)) return false;
+      for (std::size_t i = 0; i < m; ++i) {
+        for (std::size_t j = 0; j < m; ++j) A[i][j] -= A[i][m] * A[m][j] / A[m][m];
+      }
+    }
+    return true;
+  }
+
+  void solve_free() noexcept {
+    double A[N][N];
+    double b[N];
+    for (std::size_t i = 0; i < N; ++i) {
+      if (hold[i] != Hold::kFree) u[i] = hold[i] == Hold::kLow ? low[i] : high[i];
+    }
+    for (std::size_t i = 0; i < N; ++i) {
+      b[i] = -g[i];
+      for (std::size_t j = 0; j < N; ++j) {
+        A[i][j] = H[i][j];
+        if (hold[j] != Hold::kFree) b[i] -= H[i][j] * u[j];
+      }
+    }
+    for (std::size_t m = N; m-- > 0;) {
+      if (hold[m] != Hold::kFree) continue;
+      for (std::size_t i = 0; i < m; ++i) {
+        const double factor = A[i][m] / A[m][m];
+        for (std::size_t j = 0; j < m; ++j) A[i][j] -= factor * A[m][j];
+        b[i] -= factor * b[m];
+      }
+    }
+    for (std::size_t m = 0; m < N; ++m) {
+      if (hold[m] != Hold::kFree) continue;
+      double value = b[m];
+      for (std::size_t j = 0; j < m; ++j) {
+        if (hold[j] == Hold::kFree) value -= A[m][j] * u[j];
+      }
+      u[m] = value / A[m][m];
+    }
+  }
+
+  void descend() noexcept {
+    for (std::size_t i = 0; i < N; ++i) u[i] = std::clamp(0.0, low[i], high[i]);
+    for (int round = 0; round < 50; ++round) {
+      for (std::size_t i = 0; i < N; ++i) {
+        double slope = g[i];
+        for (std::size_t j = 0; j < N; ++j) slope += H[i][j] * u[j];
+        u[i] = std::clamp(u[i] - slope / H[i][i], low[i], high[i]);
+      }
+    }
+    for (std::size_t i = 0; i < N; ++i)
+      hold[i] = u[i] <= low[i] ? Hold::kLow : (u[i] >= high[i] ? Hold::kHigh : Hold::kFree);
+  }
+};
+
+}  // namespace chicane::solver

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "chicane/solver/problem.hpp"
+
+namespace chicane::solver {
+
+/// Moves every input into its bounds; one that is not a number becomes the admissible value nearest to zero.
+template <OcpProblem P, int Capacity>
+void clamp_inputs(const P& problem, Trajectory<P::kNx, P::kNu, Capacity>& trajectory) noexcept {
+  for (int k = 0; k < trajectory.horizon; ++k) {
+    const auto stage = static_cast<std::size_t>(k);
+    const auto low = problem.input_lower(k);
+    const auto high = problem.input_upper(k);
+    for (std::size_t m = 0; m < low.size(); ++m) {
+      double& u = trajectory.u[stage][m];
+      u = std::min(std::max(std::isfinite(u) ? u : 0.0, low[m]), high[m]);
+    }
+  }
+}
+
+/// Simulates the clamped inputs from x0 into trajectory.x. True when every state is finite.
+template <OcpProblem P, int Capacity>
+bool roll_out(const P& problem, const std::array<double, P::kNx>& x0,
+              Trajectory<P::kNx, P::kNu, Capacity>& trajectory) noexcept {
+  clamp_inputs(problem, trajectory);
+  trajectory.x[0] = x0;
+  bool finite = true;
+  for (int k = 0; k < trajectory.horizon; ++k) {
+    const auto stage = static_cast<std::size_t>(k);
+    trajectory.x[stage + 1] = problem.dynamics(k, trajectory.x[stage], trajectory.u[stage]);
+    for (const double value : trajectory.x[stage + 1]) finite = finite && std::isfinite(value);
+  }
+  return finite;
+}
+
+/// The same inputs and states `steps` intervals later (fractions interpolate; zero-order hold); the last ones
+/// are repeated. Used between control cycles: steps = elapsed time / interval. Negative or non-finite `steps`
+/// count as 0.
+template <int Nx, int Nu, int Capacity>
+void shift(Trajectory<Nx, Nu, Capacity>& trajectory, double steps) noexcept {
+  if (trajectory.horizon < 1 || !(steps > 0.0)) return;
+  const double whole = std::floor(std::min(steps, static_cast<double>(trajectory.horizon)));
+  const double part = std::min(steps - whole, 1.0);
+  const int offset = static_cast<int>(whole);
+  const auto blend = [&](auto& values, int last) {
+    for (int k = 0; k <= last; ++k) {
+      const auto from = values[static_cast<std::size_t>(std::min(k + offset, last))];
+      const auto to = values[static_cast<std::size_t>(std::min(k + offset + 1, last))];
+      auto& value = values[static_cast<std::size_t>(k)];
+      for (std::size_t i = 0; i < value.size(); ++i) value[i] = from[i] + part * (to[i] - from[i]);
+    }
+  };
+  blend(trajectory.u, trajectory.horizon - 1);
+  blend(trajectory.x, trajectory.horizon);
+}
+
+}  // namespace chicane::solver
