@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+
+#include "chicane/solver/ocp_solver.hpp"
+#include "support/alloc_guard.hpp"
+#include "support/described_problem.hpp"
+
+namespace {
+
+using namespace chicane;
+
+TEST(AllocationGuard, CountsEveryWayToTheHeap) {
+  const test::AllocationGuard guard;
+  auto number = std::make_unique<double>(1.0);
+  EXPECT_EQ(guard.count(), 1);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  void* volatile raw = std::malloc(3);  // volatile: the compiler may not drop the pair
+  EXPECT_EQ(guard.count(), 2);
+  std::free(raw);
+#endif
+}
+
+TEST(OcpSolver, AllocatesNothingInAHundredSolves) {
+  constexpr int kCapacity = 20;
+  const auto solver = std::make_unique<solver::OcpSolver<test::DescribedProblem, kCapacity>>();
+  const auto trajectory = std::make_unique<test::DescribedTrajectory<kCapacity>>();
+  Random random{1};
+  const test::AllocationGuard guard;
+  for (int i = 0; i < 100; ++i) {
+    const test::DescribedInstance instance = test::random_instance(random, kCapacity);
+    trajectory->horizon = 1 + i % kCapacity;
+    const auto report = solver->solve(instance.problem, instance.start, *trajectory);
+    ASSERT_EQ(report.status, solver::SolveStatus::kOptimal);
+    solver::shift(*trajectory, 1.0);
+  }
+  EXPECT_EQ(guard.count(), 0);
+}
+
+}  // namespace

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/dual.hpp"
+#include "chicane/base/math.hpp"
+#include "chicane/base/random.hpp"
+#include "chicane/solver/problem.hpp"
+#include "chicane/solver/warm_start.hpp"
+
+namespace chicane::test {
+
+/// The optimal control problem of the Udacity MPC project: kinematic bicycle by explicit Euler, cubic path in
+/// the car's frame, weights 200, 200, 0.1, 1, 1, 10, 1. State (x, y, ψ, v, cte, eψ, previous δ, previous a),
+/// input (δ, a).
+struct DescribedProblem {
+  static constexpr int kNx = 8;
+  static constexpr int kNu = 2;
+  static constexpr int kNr = 7;
+  static constexpr int kNe = 3;
+  static constexpr int kNc = 0;
+  static constexpr double kLength = 2.67;
+  static constexpr double kStep = 0.1;
+
+  std::array<double, 4> path{};  ///< cubic, constant term first
+  double speed_reference = 0.0;
+  double steer_limit = degrees_to_radians(25.0);
+  double acceleration_limit = 1.0;
+
+  template <class T>
+  std::array<T, kNx> dynamics(int, const std::array<T, kNx>& s, const std::array<T, kNu>& u) const {
+    const T f = path[0] + s[0] * (path[1] + s[0] * (path[2] + s[0] * path[3]));
+    const T slope = path[1] + s[0] * (2.0 * path[2] + s[0] * (3.0 * path[3]));
+    const T turn = s[3] * u[0] * (kStep / kLength);
+    return {s[0] + s[3] * cos(s[2]) * kStep,
+            s[1] + s[3] * sin(s[2]) * kStep,
+            s[2] + turn,
+            s[3] + u[1] * kStep,
+            f - s[1] + s[3] * sin(s[5]) * kStep,
+            s[2] - atan(slope) + turn,
+            u[0],
+            u[1]};
+  }
+  template <class T>
+  std::array<T, kNr> residual(int k, const std::array<T, kNx>& s, const std::array<T, kNu>& u) const {
+    const double change = k > 0 ? 1.0 : 0.0;
+    return {weight(200.0) * s[4],
+            weight(200.0) * s[5],
+            weight(0.1) * (s[3] - speed_reference),
+            weight(1.0) * u[0],
+            weight(1.0) * u[1],
+            change * weight(10.0) * (u[0] - s[6]),
+            change * weight(1.0) * (u[1] - s[7])};
+  }
+  template <class T>
+  std::array<T, kNe> terminal_residual(const std::array<T, kNx>& s) const {
+    return {weight(200.0) * s[4], weight(200.0) * s[5], weight(0.1) * (s[3] - speed_reference)};
+  }
+  [[nodiscard]] std::array<double, kNu> input_lower(int) const { return {-steer_limit, -acceleration_limit}; }
+  [[nodiscard]] std::array<double, kNu> input_upper(int) const { return {steer_limit, acceleration_limit}; }
+
+  /// w r² = ½ (√(2w) r)².
+  static double weight(double w) { return sqrt(2.0 * w); }
+};
+
+template <int Capacity>
+using DescribedTrajectory = solver::Trajectory<DescribedProblem::kNx, DescribedProblem::kNu, Capacity>;
+
+/// A problem with the state it starts from.
+struct DescribedInstance {
+  DescribedProblem problem;
+  std::array<double, DescribedProblem::kNx> start{};
+
+  void place(double speed) {
+    start = {0.0, 0.0, 0.0, speed, problem.path[0], -atan(problem.path[1]), 0.0, 0.0};
+  }
+};
+
+/// Random paths and speeds; offsets up to 2 m, 22° and a length that fits the horizon.
+inline DescribedInstance random_instance(Random& random, int horizon) {
+  DescribedInstance instance;
+  const double speed = random.uniform(5.0, 25.0);
+  instance.problem.speed_reference = random.uniform(10.0, 25.0);
+  const double length =
+      std::fmax(20.0, std::fmax(speed, instance.problem.speed_reference) * horizon * DescribedProblem::kStep);
+  instance.problem.path = {random.uniform(-2.0, 2.0), random.uniform(-0.4, 0.4),
+                           random.uniform(-0.2, 0.2) / length,
+                           random.uniform(-0.15, 0.15) / (length * length)};
+  instance.place(speed);
+  return instance;
+}
+
+/// Inputs of a critically damped path-following law: the better of the two cold starts.
+template <int Capacity>
+void guess_by_path_law(const DescribedInstance& instance, DescribedTrajectory<Capacity>& trajectory) {
+  const DescribedProblem& p = instance.problem;
+  auto s = instance.start;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(trajectory.horizon); ++k) {
+    const double speed = std::fmax(s[3], 3.0);
+    const double slope = p.path[1] + s[0] * (2.0 * p.path[2] + 3.0 * p.path[3] * s[0]);
+    const double stretch = 1.0 + slope * slope;
+    const double offset =
+        (p.path[0] + s[0] * (p.path[1] + s[0] * (p.path[2] + s[0] * p.path[3])) - s[1]) / sqrt(stretch);
+    const double curvature = (2.0 * p.path[2] + 6.0 * p.path[3] * s[0]) / (stretch * sqrt(stretch));
+    const double rate = 1.2;
+    const double pull = std::fmin(0.3, std::fmax(-0.3, p.kLength * rate * rate / (speed * speed) * offset));
+    const double steer = p.kLength * curvature + pull - 2.0 * rate * p.kLength / speed * (s[2] - atan(slope));
+    trajectory.u[k] = {
+        std::fmin(p.steer_limit, std::fmax(-p.steer_limit, steer)),
+        std::fmin(p.acceleration_limit, std::fmax(-p.acceleration_limit, 0.5 * (p.speed_reference - s[3])))};
+    s = p.dynamics(static_cast<int>(k), s, trajectory.u[k]);
+  }
+}
+
+}  // namespace chicane::test
