@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include "chicane/base/result.hpp"
 
@@ -31,17 +32,17 @@ struct VehicleParams {
   double steer_rate_limit = std::numeric_limits<double>::infinity();  ///< [rad/s]
   double steer_lag = 0.0;            ///< time constant of the steering actuator [s], 0 = instant
 
-  // Tyres: lateral force = load · friction · sat(cornering · slip / friction), load = mass · (load_0 + load_v · v) by axle.
+  // Tyres: lateral force = load · friction · tanh(cornering · slip / friction), load = mass · (load_0 + load_v · v) by axle.
   double cornering_front = 5.05;     ///< normalised cornering stiffness [1/rad]
   double cornering_rear = 4.85;      ///< [1/rad]
   double friction = 1.0;             ///< peak lateral force over load
   double friction_coupling = 0.0;    ///< 1 = friction ellipse (a real tyre), 0 = braking and cornering do not share force
-  double load_constant = 10.6;       ///< normal acceleration at rest [m/s²]
-  double load_per_speed = 0.1;       ///< its growth with speed (downforce) [1/s]
+  double load_constant = 12.22;      ///< normal acceleration at rest [m/s²]
+  double load_per_speed = 0.0923;    ///< its growth with speed (downforce) [1/s]
   double steer_helper = 0.774;       ///< share of each yaw change by which the car turns its velocity along; 0 = a real car
 
   // Longitudinal: a = drive_acceleration · throttle − drag_linear · v − drag_quadratic · v² for throttle >= 0,
-  // and − brake_acceleration · |throttle| − drag for throttle < 0.
+  // and − brake_acceleration · |throttle| − drag for throttle < 0. Stated for v >= 0.
   double drive_acceleration = 5.43;  ///< at full throttle and rest [m/s²]
   double drive_power_per_mass = std::numeric_limits<double>::infinity();  ///< cap of drive acceleration · v [W/kg]
   double drag_constant = 0.0;        ///< rolling resistance [m/s²]
@@ -62,5 +63,13 @@ struct VehicleParams {
 
 /// The throttle in [-brake_throttle_limit, 1] whose acceleration at speed v [m/s] is nearest to `acceleration` [m/s²].
 [[nodiscard]] double throttle_for(const VehicleParams& params, double acceleration, double v) noexcept;
+
+/// What is believed about the shipped plants, fitted to them by `chicane_plant_report` (docs/plants.md). The original
+/// simulator's car: the defaults above.
+[[nodiscard]] VehicleParams udacity_params();
+/// An ordinary car: 1300 kg, about 1.2 g, proportional brakes, 90°/s steering.
+[[nodiscard]] VehicleParams road_car_params();
+/// "udacity" or "road-car"; kNotFound otherwise.
+[[nodiscard]] Result<VehicleParams> vehicle_named(std::string_view name);
 
 }  // namespace chicane::model

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "chicane/base/dual.hpp"
+#include "chicane/base/math.hpp"
+
+namespace chicane::model {
+
+/// Normalised tyre curves: force over load from slip. Odd functions of slip, templates over the scalar, so
+/// that a Dual gives their slope. Equations and sources: docs/model.md, eq. 9–13.
+
+/// tanh: slope 1 at 0, limit ±1, never flat — what the single track saturates with (eq. 9). z = cornering ·
+/// slip / friction.
+template <class T>
+[[nodiscard]] T saturate(const T& z) {
+  return tanh(z);
+}
+
+/// Brush model, parabolic pressure (eq. 10; Pacejka 2012, §3.2): slope 1 at 0, exactly ±1 from |z| = 3 on.
+template <class T>
+[[nodiscard]] T brush(const T& z) {
+  const double size = std::fabs(value_of(z));
+  if (size >= 3.0) return T(value_of(z) < 0.0 ? -1.0 : 1.0);
+  const T magnitude = value_of(z) < 0.0 ? T(-z) : z;
+  return z * (1.0 - magnitude * (1.0 / 3.0) + magnitude * magnitude * (1.0 / 27.0));
+}
+
+/// Magic formula y = D sin(C atan(B x − E (B x − atan(B x)))) (eq. 11; Pacejka 2012, §4.3.1). Slope at 0: B C
+/// D.
+struct MagicFormula {
+  double stiffness = 10.0;  ///< B
+  double shape = 1.5;       ///< C
+  double peak = 1.0;        ///< D
+  double curvature = 0.0;   ///< E, <= 1
+
+  template <class T>
+  [[nodiscard]] T operator()(const T& x) const {
+    const T bx = stiffness * x;
+    return peak * sin(shape * atan(bx - curvature * (bx - atan(bx))));
+  }
+};
+
+/// Friction curve of PhysX wheels as Unity's WheelCollider takes it: from (0, 0) to an extremum to an
+/// asymptote by two cubic Hermite pieces (eq. 12, 13; PhysX 2.8, NxTireFunctionDesc::hermiteEval). Slope at
+/// 0: extremum_value / extremum_slip.
+struct FrictionCurve {
+  double extremum_slip = 0.2;
+  double extremum_value = 1.0;
+  double asymptote_slip = 0.5;
+  double asymptote_value = 0.75;
+
+  template <class T>
+  [[nodiscard]] T operator()(const T& slip) const {
+    const double side = value_of(slip) < 0.0 ? -1.0 : 1.0;
+    const T size = side * slip;
+    if (value_of(size) < extremum_slip) {
+      const T u = size * (1.0 / extremum_slip);
+      return (side * extremum_value) * (u + u * u - u * u * u);
+    }
+    if (value_of(size) < asymptote_slip) {
+      const T u = (size - extremum_slip) * (1.0 / (asymptote_slip - extremum_slip));
+      return side * (extremum_value + (asymptote_value - extremum_value) * (3.0 * u * u - 2.0 * u * u * u));
+    }
+    return T(side * asymptote_value);
+  }
+};
+
+}  // namespace chicane::model

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sim/actuation_delay.hpp"
+
+#include <algorithm>
+
+namespace chicane::sim {
+
+void ActuationDelay::reset(const model::Command& acting) noexcept {
+  first_ = 0;
+  count_ = 0;
+  acting_ = acting;
+}
+
+void ActuationDelay::push(double time, const model::Command& command) noexcept {
+  if (count_ > 0)
+    time = std::max(time, waiting_[static_cast<std::size_t>((first_ + count_ - 1) % kCapacity)].time);
+  if (count_ == kCapacity) {
+    first_ = (first_ + 1) % kCapacity;
+    --count_;
+  }
+  waiting_[static_cast<std::size_t>((first_ + count_) % kCapacity)] = {time, command};
+  ++count_;
+}
+
+const model::Command& ActuationDelay::at(double time) noexcept {
+  // A command due within a nanosecond is due: sums of step lengths round.
+  constexpr double kRounding = 1e-9;
+  while (count_ > 0 && waiting_[static_cast<std::size_t>(first_)].time <= time + kRounding) {
+    acting_ = waiting_[static_cast<std::size_t>(first_)].command;
+    first_ = (first_ + 1) % kCapacity;
+    --count_;
+  }
+  return acting_;
+}
+
+}  // namespace chicane::sim
