@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/foxglove_codec.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace chicane::protocol::foxglove {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr char kMessageData = 1;
+constexpr char kTime = 2;
+constexpr char kServiceResponse = 3;
+constexpr char kServiceRequest = 2;  // from the client
+
+/// What a client wrote, short enough to be repeated to it.
+std::string shown(const Json& value) {
+  std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  if (text.size() > 40) text = text.substr(0, 37) + "...";
+  return text;
+}
+
+tl::unexpected<Error> refuse(std::string_view key, const Json& got, std::string_view expected) {
+  return fail(ErrorCode::kParse, fmt::format("{}: got {}, expected {}", key, shown(got), expected));
+}
+
+const Json& member(const Json& object, const char* key) {
+  static const Json missing;
+  const auto found = object.find(key);
+  return found == object.end() ? missing : *found;
+}
+
+Result<std::uint32_t> to_id(std::string_view key, const Json& value) {
+  constexpr std::uint64_t kLast = std::numeric_limits<std::uint32_t>::max();
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > kLast) {
+    return refuse(key, value, "a whole number from 0 to 4294967295");
+  }
+  return static_cast<std::uint32_t>(value.get<std::uint64_t>());
+}
+
+/// Applies `read` to each element of a list of bounded length.
+template <class T, class Read>
+Result<std::vector<T>> to_list(std::string_view key, const Json& value, Read read) {
+  if (!value.is_array()) return refuse(key, value, "a list");
+  if (value.size() > kMaxEntries) {
+    return fail(ErrorCode::kParse,
+                fmt::format("{}: got {} entries, expected at most {}", key, value.size(), kMaxEntries));
+  }
+  std::vector<T> list;
+  for (const Json& element : value) {
+    Result<T> entry = read(key, element);
+    if (!entry) return fail(entry.error());
+    list.push_back(std::move(*entry));
+  }
+  return list;
+}
+
+Result<std::string> to_text(std::string_view key, const Json& value) {
+  if (!value.is_string()) return refuse(key, value, "a text");
+  return value.get<std::string>();
+}
+
+Result<double> to_number(std::string_view key, const Json& value) {
+  if (!value.is_number() || !std::isfinite(value.get<double>())) return refuse(key, value, "a finite number");
+  return value.get<double>();
+}
+
+Result<Subscription> to_subscription(std::string_view key, const Json& value) {
+  if (!value.is_object()) return refuse(key, value, "objects with id and channelId");
+  const auto id = to_id("subscriptions.id", member(value, "id"));
+  if (!id) return fail(id.error());
+  const auto channel = to_id("subscriptions.channelId", member(value, "channelId"));
+  if (!channel) return fail(channel.error());
+  return Subscription{*id, *channel};
+}
+
+Result<ParameterValue> to_value(std::string_view key, const Json& value) {
+  if (value.is_null()) return ParameterValue{};
+  if (value.is_boolean()) return ParameterValue{value.get<bool>()};
+  if (value.is_string()) return ParameterValue{value.get<std::string>()};
+  if (value.is_array()) {
+    auto numbers = to_list<double>(key, value, to_number);
+    if (!numbers) return fail(numbers.error());
+    return ParameterValue{std::move(*numbers)};
+  }
+  const auto number = to_number(key, value);
+  if (!number) return refuse(key, value, "a finite number, a text, true, false or a list of numbers");
+  return ParameterValue{*number};
+}
+
+Result<Parameter> to_parameter(std::string_view key, const Json& value) {
+  if (!value.is_object()) return refuse(key, value, "objects with name and value");
+  auto name = to_text("parameters.name", member(value, "name"));
+  if (!name) return fail(name.error());
+  auto content = to_value(*name, member(value, "value"));
+  if (!content) return fail(content.error());
+  return Parameter{std::move(*name), std::move(*content)};
+}
+
+std::optional<std::string> request_of(const Json& message) {
+  const Json& id = member(message, "id");
+  return id.is_string() ? std::optional{id.get<std::string>()} : std::nullopt;
+}
+
+template <class Message>
+Result<ClientMessage> with_names(const Json& message) {
+  auto names = to_list<std::string>("parameterNames", member(message, "parameterNames"), to_text);
+  if (!names) return fail(names.error());
+  return Message{std::move(*names)};
+}
+
+Result<ClientMessage> parse_text(std::string_view bytes) {
+  const Json message = Json::parse(bytes, nullptr, false);
+  if (!message.is_object()) return fail(ErrorCode::kParse, "a text message must be one JSON object in UTF-8");
+  const Json& op = member(message, "op");
+  if (op == "subscribe") {
+    auto list = to_list<Subscription>("subscriptions", member(message, "subscriptions"), to_subscription);
+    if (!list) return fail(list.error());
+    return Subscribe{std::move(*list)};
+  }
+  if (op == "unsubscribe") {
+    auto ids = to_list<std::uint32_t>("subscriptionIds", member(message, "subscriptionIds"), to_id);
+    if (!ids) return fail(ids.error());
+    return Unsubscribe{std::move(*ids)};
+  }
+  if (op == "getParameters") {
+    auto names = to_list<std::string>("parameterNames", member(message, "parameterNames"), to_text);
+    if (!names) return fail(names.error());
+    return GetParameters{std::move(*names), request_of(message)};
+  }
+  if (op == "setParameters") {
+    auto parameters = to_list<Parameter>("parameters", member(message, "parameters"), to_parameter);
+    if (!parameters) return fail(parameters.error());
+    return SetParameters{std::move(*parameters), request_of(message)};
+  }
+  if (op == "subscribeParameterUpdates") return with_names<SubscribeParameters>(message);
+  if (op == "unsubscribeParameterUpdates") return with_names<UnsubscribeParameters>(message);
+  return fail(ErrorCode::kParse, fmt::format("op: {} is not offered by this server", shown(op)));
+}
+
+std::uint32_t read_u32(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8U * i);
+  }
+  return value;
+}
+
+template <class T>
+void append(std::string& bytes, T value) {
+  for (std::size_t i = 0; i < sizeof(T); ++i) bytes.push_back(static_cast<char>((value >> (8U * i)) & 0xFFU));
+}
+
+Result<ClientMessage> parse_binary(std::string_view bytes) {
+  constexpr std::size_t kHead = 13;  // opcode, service, call, length of the encoding's name
+  if (bytes.empty() || bytes[0] != kServiceRequest) {
+    return fail(ErrorCode::kParse, "a binary message must be a service call (opcode 2)");
+  }
+  if (bytes.size() < kHead || read_u32(bytes, 9) > bytes.size() - kHead) {
+    return fail(ErrorCode::kParse, fmt::format("service call: {} bytes are too few", bytes.size()));
+  }
+  const std::size_t encoding_size = read_u32(bytes, 9);
+  return CallService{read_u32(bytes, 1), read_u32(bytes, 5), std::string{bytes.substr(kHead, encoding_size)},
+                     std::string{bytes.substr(kHead + encoding_size)}};
+}
+
+std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+Json to_json(const Parameter& parameter) {
+  Json json{{"name", parameter.name}};
+  if (const auto* flag = std::get_if<bool>(&parameter.value)) json["value"] = *flag;
+  if (const auto* text = std::get_if<std::string>(&parameter.value)) json["value"] = *text;
+  // JSON knows one kind of number: the type tells viewers that 3 may become 3.5.
+  if (const auto* number = std::get_if<double>(&parameter.value)) {
+    json["value"] = *number;
+    json["type"] = "float64";
+  }
+  if (const auto* numbers = std::get_if<std::vector<double>>(&parameter.value)) {
+    json["value"] = *numbers;
+    json["type"] = "float64_array";
+  }
+  return json;
+}
+
+}  // namespace
+
+Result<ClientMessage> parse(std::string_view bytes, bool binary) {
+  return binary ? parse_binary(bytes) : parse_text(bytes);
+}
+
+std::string server_info(std::string_view name, std::string_view session, Capabilities can) {
+  Json capabilities = {"time"};
+  if (can.parameters) capabilities.insert(capabilities.end(), {"parameters", "parametersSubscribe"});
+  if (can.services) capabilities.push_back("services");
+  return dump({{"op", "serverInfo"},
+               {"name", name},
+               {"capabilities", capabilities},
+               {"supportedEncodings", {"cdr"}},
+               {"metadata", {{"ROS_DISTRO", "jazzy"}}},
+               {"sessionId", session}});
+}
+
+std::string advertise(std::span<const Channel> channels) {
+  Json list = Json::array();
+  for (const Channel& channel : channels) {
+    list.push_back({{"id", channel.id},
+                    {"topic", channel.topic},
+                    {"encoding", "cdr"},
+                    {"schemaName", channel.type},
+                    {"schema", channel.schema},
+                    {"schemaEncoding", "ros2msg"}});
+  }
+  return dump({{"op", "advertise"}, {"channels", list}});
+}
+
+std::string advertise_services(std::span<const Service> services) {
+  Json list = Json::array();
+  for (const Service& service : services) {
+    const auto side = [&](std::string_view suffix, std::string_view schema) {
+      return Json{{"encoding", "cdr"},
+                  {"schemaName", fmt::format("{}{}", service.type, suffix)},
+                  {"schemaEncoding", "ros2msg"},
+                  {"schema", schema}};
+    };
+    list.push_back({{"id", service.id},
+                    {"name", service.name},
+                    {"type", service.type},
+                    {"requestSchema", service.request_schema},  // what older viewers read
+                    {"responseSchema", service.response_schema},
+                    {"request", side("_Request", service.request_schema)},
+                    {"response", side("_Response", service.response_schema)}});
+  }
+  return dump({{"op", "advertiseServices"}, {"services", list}});
+}
+
+std::string status(StatusLevel level, std::string_view message) {
+  return dump({{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}});
+}
+
+std::string parameter_values(std::span<const Parameter> parameters,
+                             const std::optional<std::string>& request) {
+  Json list = Json::array();
+  for (const Parameter& parameter : parameters) list.push_back(to_json(parameter));
+  Json json{{"op", "parameterValues"}, {"parameters", list}};
+  if (request) json["id"] = *request;
+  return dump(json);
+}
+
+std::string service_failure(const CallService& call, std::string_view message) {
+  return dump({{"op", "serviceCallFailure"},
+               {"serviceId", call.service},
+               {"callId", call.call},
+               {"message", message}});
+}
+
+std::string message_data(std::uint32_t subscription, std::uint64_t time, std::string_view payload) {
+  std::string bytes;
+  bytes.reserve(13 + payload.size());
+  bytes.push_back(kMessageData);
+  append(bytes, subscription);
+  append(bytes, time);
+  return bytes.append(payload);
+}
+
+std::string time_message(std::uint64_t time) {
+  std::string bytes(1, kTime);
+  append(bytes, time);
+  return bytes;
+}
+
+std::string service_response(const CallService& call, std::string_view payload) {
+  std::string bytes(1, kServiceResponse);
+  append(bytes, call.service);
+  append(bytes, call.call);
+  append(bytes, static_cast<std::uint32_t>(call.encoding.size()));
+  return bytes.append(call.encoding).append(payload);
+}
+
+}  // namespace chicane::protocol::foxglove

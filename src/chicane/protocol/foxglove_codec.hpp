@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+
+/// The server's side of the Foxglove WebSocket protocol, version 1 (github.com/foxglove/ws-protocol,
+/// docs/spec.md), as pure functions between structs and bytes. Both of its sub-protocol names mean the same
+/// bytes. Who is subscribed to what is the caller's business (runtime/viewer.hpp).
+namespace chicane::protocol::foxglove {
+
+using ParameterValue = std::variant<std::monostate, bool, double, std::string, std::vector<double>>;
+
+/// A named value that viewers may read and set. monostate: not set.
+struct Parameter {
+  std::string name;  ///< "tracking_mpc.horizon_steps"
+  ParameterValue value;
+};
+
+/// Where the tunables of a run live; implemented by whoever owns the run. Called on the network thread.
+class ParameterStore {
+ public:
+  virtual ~ParameterStore() = default;
+  [[nodiscard]] virtual std::vector<Parameter> list() const = 0;
+  [[nodiscard]] virtual std::optional<Parameter> get(std::string_view name) const = 0;
+  /// Fails with a sentence for the operator ("tracking_mpc.step_length_s: got 3, expected 0.01 to 0.2").
+  [[nodiscard]] virtual Result<void> set(const Parameter& parameter) = 0;
+};
+
+// ---- What clients ask ----
+
+struct Subscription {
+  std::uint32_t id = 0;       ///< chosen by the client
+  std::uint32_t channel = 0;  ///< ChannelInfo::id
+};
+struct Subscribe {
+  std::vector<Subscription> subscriptions;
+};
+struct Unsubscribe {
+  std::vector<std::uint32_t> ids;
+};
+struct GetParameters {
+  std::vector<std::string> names;  ///< empty: all
+  std::optional<std::string> request;
+};
+struct SetParameters {
+  std::vector<Parameter> parameters;
+  std::optional<std::string> request;
+};
+struct SubscribeParameters {
+  std::vector<std::string> names;  ///< empty: all
+};
+struct UnsubscribeParameters {
+  std::vector<std::string> names;  ///< empty: all
+};
+struct CallService {
+  std::uint32_t service = 0;
+  std::uint32_t call = 0;
+  std::string encoding;
+  std::string payload;
+};
+
+using ClientMessage = std::variant<Subscribe, Unsubscribe, GetParameters, SetParameters, SubscribeParameters,
+                                   UnsubscribeParameters, CallService>;
+
+/// Most entries that one message may list.
+inline constexpr std::size_t kMaxEntries = 1024;
+
+/// Reads one message of a client. kParse with a sentence for the client for anything malformed, unknown or
+/// too long; text that is not JSON or not UTF-8, wrong types, numbers outside uint32, lists longer than
+/// kMaxEntries are all refused.
+[[nodiscard]] Result<ClientMessage> parse(std::string_view bytes, bool binary);
+
+// ---- What the server says ----
+
+/// One stream that clients can subscribe to; encoding is "cdr", its schema "ros2msg".
+struct Channel {
+  std::uint32_t id = 0;
+  std::string_view topic;
+  std::string_view type;
+  std::string_view schema;
+};
+
+/// One procedure that clients can call, with ROS 2 request and response in CDR.
+struct Service {
+  std::uint32_t id = 0;
+  std::string_view name;
+  std::string_view type;             ///< "std_srvs/srv/Trigger"
+  std::string_view request_schema;   ///< .msg text, may be empty
+  std::string_view response_schema;  ///< .msg text
+};
+
+enum class StatusLevel { kInfo = 0, kWarning = 1, kError = 2 };
+
+/// What a server can do beside sending messages.
+struct Capabilities {
+  bool parameters = false;
+  bool services = false;
+};
+
+/// `session` changes when a new run begins: viewers then forget what they have drawn.
+[[nodiscard]] std::string server_info(std::string_view name, std::string_view session, Capabilities can);
+[[nodiscard]] std::string advertise(std::span<const Channel> channels);
+[[nodiscard]] std::string advertise_services(std::span<const Service> services);
+[[nodiscard]] std::string status(StatusLevel level, std::string_view message);
+[[nodiscard]] std::string parameter_values(std::span<const Parameter> parameters,
+                                           const std::optional<std::string>& request = {});
+[[nodiscard]] std::string service_failure(const CallService& call, std::string_view message);
+
+/// Binary messages. Times in nanoseconds.
+[[nodiscard]] std::string message_data(std::uint32_t subscription, std::uint64_t time,
+                                       std::string_view payload);
+[[nodiscard]] std::string time_message(std::uint64_t time);
+[[nodiscard]] std::string service_response(const CallService& call, std::string_view payload);
+
+}  // namespace chicane::protocol::foxglove

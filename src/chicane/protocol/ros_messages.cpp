@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/ros_messages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+#include "chicane/base/math.hpp"
+#include "chicane/protocol/ros_schemas.hpp"
+#include "chicane/solver/solution.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+using telemetry::Frame;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// One message under construction: XCDR1 with its header, each primitive aligned to its size counted from the
+/// end of the header (OMG DDSI-RTPS 2.3, chapter 10). Padding is zero, so equal messages have equal bytes.
+class Writer {
+ public:
+  static_assert(std::endian::native == std::endian::little);
+
+  explicit Writer(std::size_t expected_size = 512) { bytes_.reserve(expected_size); }
+
+  template <class... Values>
+  Writer& put(Values... values) {
+    (append(values), ...);
+    return *this;
+  }
+  Writer& text(std::string_view value) {
+    count(value.size() + 1);
+    bytes_.append(value).push_back('\0');
+    return *this;
+  }
+  Writer& count(std::size_t value) { return put(static_cast<std::uint32_t>(value)); }
+  Writer& stamp(double seconds) {
+    const std::uint64_t ns = to_nanoseconds(seconds);
+    return put(static_cast<std::int32_t>(ns / 1'000'000'000U),
+               static_cast<std::uint32_t>(ns % 1'000'000'000U));
+  }
+  Writer& header(double seconds, std::string_view frame_id) { return stamp(seconds).text(frame_id); }
+  Writer& orientation(double yaw) { return put(0.0, 0.0, chicane::sin(0.5 * yaw), chicane::cos(0.5 * yaw)); }
+  Writer& zeros(int number) {
+    for (int i = 0; i < number; ++i) append(0.0);
+    return *this;
+  }
+  [[nodiscard]] std::string bytes() { return std::move(bytes_); }
+
+ private:
+  static constexpr std::size_t kHeader = 4;
+
+  template <class T>
+  void append(T value) {
+    static_assert(std::is_arithmetic_v<T>);
+    while ((bytes_.size() - kHeader) % sizeof(T) != 0) bytes_.push_back('\0');
+    bytes_.append(std::bit_cast<std::array<char, sizeof(T)>>(value).data(), sizeof(T));
+  }
+
+  std::string bytes_{'\0', '\1', '\0', '\0'};
+};
+
+/// What is known of the car's motion: the truth, or what was measured.
+model::State motion(const Frame& frame) {
+  if (frame.has_truth) return frame.truth;
+  const model::Measurement& seen = frame.measurement;
+  return {.x = seen.x,
+          .y = seen.y,
+          .psi = seen.psi,
+          .vx = seen.speed,
+          .vy = kNaN,
+          .r = kNaN,
+          .steer = seen.steer};
+}
+
+double or_zero(double value) { return std::isfinite(value) ? value : 0.0; }
+
+/// The middle of the rear axle, in W.
+model::Pose base_link(const model::State& state, const Run& run) {
+  const double b = run.vehicle.rear_axle;
+  return {state.x - b * chicane::cos(state.psi), state.y - b * chicane::sin(state.psi), state.psi};
+}
+
+std::string encode_frame(const Frame& frame, const Run&) {
+  const model::State now = motion(frame);
+  const model::Measurement& seen = frame.measurement;
+  const controller::StepReport& report = frame.result.report;
+  const model::Command& asked = frame.result.command;
+  return Writer{}
+      .stamp(frame.time)
+      .put(frame.cycle, frame.time, frame.has_truth)
+      .put(now.x, now.y, now.psi, now.vx, now.vy, now.r)
+      .put(frame.has_truth ? chicane::hypot(now.vx, now.vy) : seen.speed)
+      .put(frame.longitudinal_acceleration, frame.lateral_acceleration)
+      .put(seen.x, seen.y, seen.psi, seen.speed)
+      .put(frame.s, frame.lateral_error, frame.heading_error, frame.edge_distance, frame.is_off_track)
+      .put(static_cast<std::uint32_t>(frame.off_track_events), static_cast<std::uint32_t>(frame.lap))
+      .put(frame.lap_time, frame.last_lap_time)
+      .put(asked.steer, frame.applied.steer, asked.throttle, frame.applied.throttle)
+      .put(static_cast<std::uint8_t>(report.rung), static_cast<std::int8_t>(report.solve.status))
+      .put(report.gated, report.has_map)
+      .put(static_cast<std::uint32_t>(report.solve.iterations),
+           static_cast<std::uint32_t>(report.solve.sweeps))
+      .put(report.solve.cost, 1e6 * frame.step_time, report.delay, report.speed_reference, report.sight)
+      .put(report.lateral_error, report.heading_error)
+      .bytes();
+}
+
+std::span<const controller::PlanPoint> points_of(const controller::Plan& plan) {
+  return std::span{plan.points}.first(
+      static_cast<std::size_t>(std::clamp(plan.size, 0, controller::Plan::kCapacity)));
+}
+
+std::string encode_plan(const Frame& frame, const Run&) {
+  const auto points = points_of(frame.result.plan);
+  Writer writer{128 + points.size() * 7 * sizeof(double)};
+  writer.stamp(frame.time);
+  const auto column = [&](auto&& value_of) {
+    writer.count(points.size());
+    for (const controller::PlanPoint& point : points) writer.put(value_of(point));
+  };
+  column([](const auto& point) { return point.time; });
+  column([](const auto& point) { return point.x; });
+  column([](const auto& point) { return point.y; });
+  column([](const auto& point) { return point.psi; });
+  column([](const auto& point) { return point.speed; });
+  column([](const auto& point) { return point.command.steer; });
+  column([](const auto& point) { return point.command.throttle; });
+  return writer.bytes();
+}
+
+std::string encode_run(const Frame&, const Run& run) {
+  const model::VehicleParams& car = run.vehicle;
+  return Writer{}
+      .text(run.track)
+      .put(run.track_length, run.is_closed)
+      .text(run.controller)
+      .text(run.preset)
+      .put(run.latency, run.control_period, run.is_paused)
+      .text(car.name)
+      .put(car.front_axle, car.rear_axle, car.track_width, car.tire_width, car.length, car.width,
+           car.steer_limit)
+      .bytes();
+}
+
+std::string encode_odometry(const Frame& frame, const Run& run) {
+  const model::State now = motion(frame);
+  const model::Pose pose = base_link(now, run);
+  const double r = or_zero(now.r);
+  return Writer{}
+      .header(frame.time, "map")
+      .text("base_link")
+      .put(pose.x, pose.y, 0.0)
+      .orientation(pose.psi)
+      .zeros(36)
+      .put(now.vx, or_zero(now.vy) - r * run.vehicle.rear_axle, 0.0, 0.0, 0.0, r)
+      .zeros(36)
+      .bytes();
+}
+
+void put_pose_stamped(Writer& writer, double time, const model::Pose& pose) {
+  writer.header(time, "map").put(pose.x, pose.y, 0.0).orientation(pose.psi);
+}
+
+constexpr std::size_t kPoseSize = 88;  // upper bound of one PoseStamped in frame "map" [byte]
+
+std::string encode_predicted_path(const Frame& frame, const Run&) {
+  const auto points = points_of(frame.result.plan);
+  Writer writer{64 + kPoseSize * points.size()};
+  writer.header(frame.time, "map").count(points.size());
+  for (const controller::PlanPoint& point : points) {
+    put_pose_stamped(writer, point.time, {point.x, point.y, point.psi});
+  }
+  return writer.bytes();
+}
+
+/// A polyline as nav_msgs/Path, each pose looking at the next point.
+std::string encode_line(double time, std::span<const Vec2> line) {
+  Writer writer{64 + kPoseSize * line.size()};
+  writer.header(time, "map").count(line.size());
+  double heading = 0.0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (i + 1 < line.size()) {
+      const Vec2 ahead = line[i + 1] - line[i];
+      heading = chicane::atan2(ahead.y(), ahead.x());
+    }
+    put_pose_stamped(writer, time, {line[i].x(), line[i].y(), heading});
+  }
+  return writer.bytes();
+}
+
+std::string encode_reference(const Frame& frame, const Run&) {
+  const controller::Plan& plan = frame.result.plan;
+  const int size = std::clamp(plan.reference_size, 0, controller::Plan::kCapacity);
+  return encode_line(frame.time, std::span{plan.reference}.first(static_cast<std::size_t>(size)));
+}
+
+std::string encode_transforms(const Frame& frame, const Run& run) {
+  const model::Pose pose = base_link(motion(frame), run);
+  return Writer{}
+      .count(2)
+      .header(frame.time, "map")
+      .text("odom")
+      .zeros(3)
+      .orientation(0.0)
+      .header(frame.time, "odom")
+      .text("base_link")
+      .put(pose.x, pose.y, 0.0)
+      .orientation(pose.psi)
+      .bytes();
+}
+
+std::string encode_drive(const Frame& frame, const Run& run) {
+  const model::Command& asked = frame.result.command;
+  const double acceleration =
+      model::longitudinal_acceleration(run.vehicle, asked.throttle, frame.measurement.speed);
+  return Writer{}
+      .header(frame.time, "base_link")
+      .put(static_cast<float>(asked.steer), 0.0F, static_cast<float>(frame.result.report.speed_reference),
+           static_cast<float>(acceleration), 0.0F)
+      .bytes();
+}
+
+std::string encode_clock(const Frame& frame, const Run&) { return Writer{}.stamp(frame.time).bytes(); }
+
+struct Diagnosis {
+  std::uint8_t level;  ///< 0 fine, 1 warning, 2 error
+  std::string_view message;
+};
+
+Diagnosis diagnose_controller(const controller::StepReport& report) {
+  switch (report.rung) {
+    case controller::Rung::kShiftedPlan:
+      return {1, "no answer: following the last plan"};
+    case controller::Rung::kHoldAndBrake:
+      return {2, "no answer: wheel held, gentle braking"};
+    case controller::Rung::kBrake:
+      return {2, "no answer: wheel held, full braking"};
+    case controller::Rung::kController:
+      break;
+  }
+  if (report.gated) return {1, "the command gate changed the command"};
+  return {0, "in control"};
+}
+
+std::string encode_diagnostics(const Frame& frame, const Run& run) {
+  const controller::StepReport& report = frame.result.report;
+  Writer writer;
+  const auto status = [&](Diagnosis diagnosis, std::string_view name, std::string_view hardware,
+                          std::initializer_list<std::pair<std::string_view, std::string>> values) {
+    writer.put(diagnosis.level).text(name).text(diagnosis.message).text(hardware).count(values.size());
+    for (const auto& [key, value] : values) writer.text(key).text(value);
+  };
+  writer.header(frame.time, "").count(2);
+  status(diagnose_controller(report), "chicane: controller", run.controller,
+         {{"solve_status", std::string(solver::to_string(report.solve.status))},
+          {"iterations", fmt::format("{}", report.solve.iterations)},
+          {"step_time_us", fmt::format("{:.0f}", 1e6 * frame.step_time)},
+          {"delay_ms", fmt::format("{:.1f}", 1e3 * report.delay)},
+          {"sight_m", fmt::format("{:.0f}", report.sight)}});
+  const Diagnosis road = frame.is_off_track ? Diagnosis{2, "off the road"} : Diagnosis{0, "on the road"};
+  status(road, "chicane: road", run.track,
+         {{"edge_distance_m", fmt::format("{:.2f}", frame.edge_distance)},
+          {"lateral_error_m", fmt::format("{:.2f}", frame.lateral_error)},
+          {"off_track_events", fmt::format("{}", frame.off_track_events)},
+          {"lap", fmt::format("{}", frame.lap)}});
+  return writer.bytes();
+}
+
+std::string encode_left(const Frame&, const Run& run) { return encode_line(0.0, run.road.left); }
+std::string encode_right(const Frame&, const Run& run) { return encode_line(0.0, run.road.right); }
+std::string encode_centre(const Frame&, const Run& run) { return encode_line(0.0, run.road.centre); }
+
+/// "nav_msgs/msg/Odometry" → "nav_msgs/Odometry"
+std::string short_name(std::string_view type) {
+  std::string name{type};
+  if (const auto at = name.find("/msg/"); at != std::string::npos) name.erase(at, 4);
+  return name;
+}
+
+const RosDefinition* find_definition(std::string_view name) {
+  const auto* found = std::find_if(kRosDefinitions.begin(), kRosDefinitions.end(),
+                                   [&](const RosDefinition& definition) { return definition.name == name; });
+  return found == kRosDefinitions.end() ? nullptr : found;
+}
+
+/// Appends the names that a definition refers to, each once, in order of appearance, depth first.
+void collect(const RosDefinition& definition, std::vector<const RosDefinition*>& found) {
+  for (std::size_t begin = 0; begin < definition.text.size();) {
+    const std::size_t end = definition.text.find('\n', begin);
+    const std::string_view line = definition.text.substr(begin, end - begin);
+    const RosDefinition* part = find_definition(line.substr(0, line.find_first_of(" [")));
+    if (part != nullptr && std::find(found.begin(), found.end(), part) == found.end()) {
+      found.push_back(part);
+      collect(*part, found);
+    }
+    begin = end + 1;
+  }
+}
+
+RosTopic topic(std::string_view name, std::string_view type, Cadence cadence,
+               std::string (*encode)(const Frame&, const Run&)) {
+  return {name, type, ros_schema(type), cadence, encode};
+}
+
+}  // namespace
+
+RoadLines road_lines(const path::Track& track, double spacing) {
+  constexpr double kMaxPoints = 20'000.0;
+  const path::Path& centre = track.centre();
+  const double step = std::max(spacing, centre.length() / kMaxPoints);
+  const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(centre.length() / step)));
+  RoadLines lines;
+  for (std::size_t i = 0; i <= count; ++i) {
+    const double s = centre.length() * static_cast<double>(i) / static_cast<double>(count);
+    const path::PathPoint point = centre.at(s);
+    const Vec2 normal{-chicane::sin(point.heading), chicane::cos(point.heading)};
+    lines.centre.push_back(point.position);
+    lines.left.emplace_back(point.position + track.left_width(s) * normal);
+    lines.right.emplace_back(point.position - track.right_width(s) * normal);
+  }
+  return lines;
+}
+
+const std::vector<RosTopic>& ros_topics() {
+  static const std::vector<RosTopic> topics{
+      topic("/chicane/frame", "chicane_msgs/msg/Frame", Cadence::kFrame, encode_frame),
+      topic("/chicane/plan", "chicane_msgs/msg/Plan", Cadence::kFrame, encode_plan),
+      topic("/chicane/run", "chicane_msgs/msg/Run", Cadence::kRun, encode_run),
+      topic("/odom", "nav_msgs/msg/Odometry", Cadence::kFrame, encode_odometry),
+      topic("/plan", "nav_msgs/msg/Path", Cadence::kFrame, encode_predicted_path),
+      topic("/reference", "nav_msgs/msg/Path", Cadence::kFrame, encode_reference),
+      topic("/drive", "ackermann_msgs/msg/AckermannDriveStamped", Cadence::kFrame, encode_drive),
+      topic("/tf", "tf2_msgs/msg/TFMessage", Cadence::kFrame, encode_transforms),
+      topic("/clock", "rosgraph_msgs/msg/Clock", Cadence::kFrame, encode_clock),
+      topic("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", Cadence::kFrame, encode_diagnostics),
+      topic("/track/left", "nav_msgs/msg/Path", Cadence::kRoad, encode_left),
+      topic("/track/right", "nav_msgs/msg/Path", Cadence::kRoad, encode_right),
+      topic("/track/centre", "nav_msgs/msg/Path", Cadence::kRoad, encode_centre),
+  };
+  return topics;
+}
+
+std::string ros_schema(std::string_view type) {
+  const RosDefinition* root = find_definition(short_name(type));
+  if (root == nullptr) return {};
+  std::vector<const RosDefinition*> parts;
+  collect(*root, parts);
+  std::string schema{root->text};
+  for (const RosDefinition* part : parts) {
+    schema += fmt::format("{:=<80}\nMSG: {}\n{}", "", part->name, part->text);
+  }
+  return schema;
+}
+
+std::uint64_t to_nanoseconds(double seconds) noexcept {
+  constexpr double kLast = 2147483647.0;
+  return static_cast<std::uint64_t>(std::llround(1e9 * std::clamp(or_zero(seconds), 0.0, kLast)));
+}
+
+}  // namespace chicane::protocol

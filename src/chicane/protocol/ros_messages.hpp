@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chicane/base/types.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/path/track.hpp"
+#include "chicane/telemetry/frame.hpp"
+
+namespace chicane::protocol {
+
+/// The road as polylines in W [m], for drawing. A closed road repeats its first point. Empty where nobody
+/// told us.
+struct RoadLines {
+  std::vector<Vec2> centre;
+  std::vector<Vec2> left;
+  std::vector<Vec2> right;
+};
+
+/// Samples a track every `spacing` [m]; spacing > 0, raised where a line would get more than 20,000 points.
+[[nodiscard]] RoadLines road_lines(const path::Track& track, double spacing);
+
+/// What is running: everything viewers and logs need that stays the same from frame to frame.
+struct Run {
+  std::string track;
+  double track_length = 0.0;  ///< [m], 0 = unknown
+  bool is_closed = true;
+  std::string controller;
+  std::string preset;
+  double latency = 0.0;         ///< artificial, from command to actuation [s]
+  double control_period = 0.0;  ///< [s]
+  bool is_paused = false;
+  model::VehicleParams vehicle;
+  RoadLines road;
+};
+
+/// When the content of a topic changes.
+enum class Cadence {
+  kFrame,  ///< with each control cycle
+  kRun,    ///< with Run, road excepted
+  kRoad,   ///< with Run::road
+};
+
+/// One stream of messages of a ROS 2 type, encoded as CDR (XCDR1, little endian, with its four-byte header):
+/// the same bytes for a viewer, an MCAP log and a DDS topic. Frames: `map` is W, `odom` equals it,
+/// `base_link` is the middle of the rear axle (docs/viewer.md).
+struct RosTopic {
+  std::string_view name;  ///< "/odom"
+  std::string_view type;  ///< "nav_msgs/msg/Odometry"
+  std::string
+      schema;  ///< definition followed by those it refers to, as MCAP and Foxglove's "ros2msg" want it
+  Cadence cadence = Cadence::kFrame;
+  /// Any frame, also with not-a-number inside; topics of other cadence ignore it. Allocates; does not throw
+  /// (but for memory).
+  std::string (*encode)(const telemetry::Frame& frame, const Run& run) = nullptr;
+};
+
+/// All topics, in a fixed order: the index is a stable channel number.
+[[nodiscard]] const std::vector<RosTopic>& ros_topics();
+
+/// The definition of a type ("nav_msgs/msg/Odometry") with all it refers to; empty for a type not known.
+[[nodiscard]] std::string ros_schema(std::string_view type);
+
+/// Seconds of the run as nanoseconds, clamped to what a ROS 2 time can hold; not-a-number gives 0.
+[[nodiscard]] std::uint64_t to_nanoseconds(double seconds) noexcept;
+
+}  // namespace chicane::protocol

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace chicane::protocol {
+
+/// Definition of one message type in ROS 2's .msg language, with none of the definitions it refers to.
+struct RosDefinition {
+  std::string_view name;  ///< "nav_msgs/Odometry"
+  std::string_view text;
+};
+
+/// Fields of the standard types as in ROS 2 Jazzy (common_interfaces 5.3, rcl_interfaces 2.0, geometry2 0.36,
+/// ackermann_msgs 2.0), comments shortened; web/src/protocol/schemas.test.ts compares them with
+/// @foxglove/rosmsg-msgs-common. Those of chicane_msgs are ours.
+inline constexpr std::array kRosDefinitions{
+    RosDefinition{"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
+    RosDefinition{"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
+    RosDefinition{"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
+    RosDefinition{"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
+    RosDefinition{"geometry_msgs/Quaternion", "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n"},
+    RosDefinition{"geometry_msgs/Pose",
+                  "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},
+    RosDefinition{"geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
+    RosDefinition{"geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"},
+    RosDefinition{"geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"},
+    RosDefinition{"geometry_msgs/TwistWithCovariance", "geometry_msgs/Twist twist\nfloat64[36] covariance\n"},
+    RosDefinition{"geometry_msgs/Transform",
+                  "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"},
+    RosDefinition{"geometry_msgs/TransformStamped",
+                  "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"},
+    RosDefinition{"nav_msgs/Odometry",
+                  "# Pose in header.frame_id, twist in child_frame_id.\n"
+                  "std_msgs/Header header\nstring child_frame_id\n"
+                  "geometry_msgs/PoseWithCovariance pose\ngeometry_msgs/TwistWithCovariance twist\n"},
+    RosDefinition{"nav_msgs/Path", "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n"},
+    RosDefinition{"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
+    RosDefinition{"diagnostic_msgs/KeyValue", "string key\nstring value\n"},
+    RosDefinition{"diagnostic_msgs/DiagnosticStatus",
+                  "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\n"
+                  "byte level\nstring name\nstring message\nstring hardware_id\n"
+                  "diagnostic_msgs/KeyValue[] values\n"},
+    RosDefinition{"diagnostic_msgs/DiagnosticArray",
+                  "std_msgs/Header header\ndiagnostic_msgs/DiagnosticStatus[] status\n"},
+    RosDefinition{"rosgraph_msgs/Clock", "builtin_interfaces/Time clock\n"},
+    RosDefinition{"ackermann_msgs/AckermannDrive",
+                  "float32 steering_angle\nfloat32 steering_angle_velocity\nfloat32 speed\n"
+                  "float32 acceleration\nfloat32 jerk\n"},
+    RosDefinition{"ackermann_msgs/AckermannDriveStamped",
+                  "std_msgs/Header header\nackermann_msgs/AckermannDrive drive\n"},
+    RosDefinition{"chicane_msgs/Frame",
+                  R"(# One control cycle. SI units and radians; left, counter-clockwise and
+# forward are positive. Not-a-number: unknown.
+builtin_interfaces/Time stamp
+uint64 cycle
+float64 time_s                          # of the measurement, from the start of the run
+bool has_truth                          # the motion below is the simulator's truth; else as measured
+
+# Motion of the centre of mass
+float64 x_m
+float64 y_m
+float64 yaw_rad
+float64 vx_mps                          # along the car
+float64 vy_mps                          # to its left
+float64 yaw_rate_radps
+float64 speed_mps
+float64 longitudinal_acceleration_mps2
+float64 lateral_acceleration_mps2
+
+# What the controller was told
+float64 measured_x_m
+float64 measured_y_m
+float64 measured_yaw_rad
+float64 measured_speed_mps
+
+# On the road, judged by the simulator
+float64 s_m                             # along the centre line
+float64 lateral_error_m
+float64 heading_error_rad
+float64 edge_distance_m                 # of the outermost tyre to the edge, negative = off the road
+bool is_off_track
+uint32 off_track_events
+uint32 lap                              # laps completed
+float64 lap_time_s                      # of the running lap
+float64 last_lap_time_s                 # 0 before the first completed lap
+
+# Commands: asked by the controller now, and acting on the car after the delay
+float64 steer_asked_rad
+float64 steer_applied_rad
+float64 throttle_asked                  # [-1, 1], negative brakes
+float64 throttle_applied
+
+# The control step
+uint8 RUNG_CONTROLLER=0                 # the controller's own answer
+uint8 RUNG_SHIFTED_PLAN=1               # the last usable plan, at the time that has come
+uint8 RUNG_HOLD_AND_BRAKE=2             # wheel held, gentle braking
+uint8 RUNG_BRAKE=3                      # wheel held, full useful braking
+uint8 rung
+int8 STATUS_OPTIMAL=0
+int8 STATUS_BUDGET_SPENT=1
+int8 STATUS_STALLED=-1
+int8 STATUS_INFEASIBLE=-2
+int8 STATUS_NOT_FINITE=-3
+int8 solve_status
+bool is_gated                           # the command gate had to change the command
+bool has_map                            # the lap is closed in the controller's memory
+uint32 iterations
+uint32 sweeps
+float64 cost
+float64 step_time_us                    # of the whole control step, wall clock
+float64 delay_s                         # compensated: from measurement to actuation
+float64 speed_reference_mps
+float64 sight_m                         # length of known road ahead
+float64 tracked_lateral_error_m         # from the line the controller follows
+float64 tracked_heading_error_rad
+)"},
+    RosDefinition{"chicane_msgs/Plan",
+                  R"(# What the controller intends: predicted motion of the centre of mass with
+# its commands, all arrays of the same length; element 0 is where the first command acts.
+builtin_interfaces/Time stamp
+float64[] time_s
+float64[] x_m
+float64[] y_m
+float64[] yaw_rad
+float64[] speed_mps
+float64[] steer_rad
+float64[] throttle
+)"},
+    RosDefinition{"chicane_msgs/Run", R"(# What is running: constant until something is chosen anew.
+string track
+float64 track_length_m                  # 0 = unknown
+bool is_closed
+string controller
+string preset
+float64 latency_s                       # artificial, from command to actuation
+float64 control_period_s
+bool is_paused
+
+# The car, as the controller believes it
+string car
+float64 front_axle_m                    # centre of mass to front axle
+float64 rear_axle_m                     # centre of mass to rear axle
+float64 track_width_m                   # between the wheels of an axle
+float64 tire_width_m
+float64 body_length_m
+float64 body_width_m
+float64 steer_limit_rad
+)"},
+};
+
+}  // namespace chicane::protocol

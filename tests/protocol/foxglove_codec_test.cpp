@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/foxglove_codec.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "chicane/base/random.hpp"
+
+namespace chicane::protocol::foxglove {
+namespace {
+
+using testing::HasSubstr;
+using namespace std::string_literals;
+
+template <class Message>
+Message parsed(std::string_view bytes, bool binary = false) {
+  const auto message = parse(bytes, binary);
+  EXPECT_TRUE(message) << (message ? "" : message.error().message);
+  if (!message || !std::holds_alternative<Message>(*message)) {
+    ADD_FAILURE() << "another kind of message: " << bytes;
+    return {};
+  }
+  return std::get<Message>(*message);
+}
+
+std::string refusal(std::string_view bytes, bool binary = false) {
+  const auto message = parse(bytes, binary);
+  EXPECT_FALSE(message) << bytes;
+  return message ? "" : message.error().message;
+}
+
+TEST(FoxgloveCodec, ReadsSubscriptions) {
+  const auto message = parsed<Subscribe>(
+      R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":3},{"id":4294967295,"channelId":1}]})");
+  ASSERT_EQ(message.subscriptions.size(), 2U);
+  EXPECT_EQ(message.subscriptions[0].channel, 3U);
+  EXPECT_EQ(message.subscriptions[1].id, 4294967295U);
+  EXPECT_EQ(parsed<Unsubscribe>(R"({"op":"unsubscribe","subscriptionIds":[7,8]})").ids,
+            (std::vector<std::uint32_t>{7, 8}));
+}
+
+TEST(FoxgloveCodec, ReadsParametersOfEveryType) {
+  const auto message = parsed<SetParameters>(
+      R"({"op":"setParameters","id":"r1","parameters":[{"name":"a","value":3},{"name":"b","value":true},
+          {"name":"c","value":"x"},{"name":"d","value":[1,2.5]},{"name":"e"}]})");
+  EXPECT_EQ(message.request, "r1");
+  ASSERT_EQ(message.parameters.size(), 5U);
+  EXPECT_EQ(message.parameters[0].value, ParameterValue{3.0});
+  EXPECT_EQ(message.parameters[1].value, ParameterValue{true});
+  EXPECT_EQ(message.parameters[2].value, ParameterValue{"x"s});
+  EXPECT_EQ(message.parameters[3].value, (ParameterValue{std::vector{1.0, 2.5}}));
+  EXPECT_EQ(message.parameters[4].value, ParameterValue{});
+  EXPECT_EQ(parsed<GetParameters>(R"({"op":"getParameters","parameterNames":["a"]})").names,
+            std::vector{"a"s});
+  EXPECT_TRUE(
+      parsed<SubscribeParameters>(R"({"op":"subscribeParameterUpdates","parameterNames":[]})").names.empty());
+  EXPECT_EQ(
+      parsed<UnsubscribeParameters>(R"({"op":"unsubscribeParameterUpdates","parameterNames":["b"]})").names,
+      std::vector{"b"s});
+}
+
+TEST(FoxgloveCodec, ReadsServiceCalls) {
+  const auto call = parsed<CallService>("\x02\x05\0\0\0\x01\x02\0\0\x03\0\0\0cdr\0\1\0\0x"s, true);
+  EXPECT_EQ(call.service, 5U);
+  EXPECT_EQ(call.call, 0x201U);
+  EXPECT_EQ(call.encoding, "cdr");
+  EXPECT_EQ(call.payload, "\0\1\0\0x"s);
+}
+
+TEST(FoxgloveCodec, RefusesInWordsWhatIsWrong) {
+  EXPECT_EQ(refusal(R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":3}]})"),
+            "subscriptions.id: got -1, expected a whole number from 0 to 4294967295");
+  EXPECT_EQ(refusal(R"({"op":"subscribe","subscriptions":[{"id":1}]})"),
+            "subscriptions.channelId: got null, expected a whole number from 0 to 4294967295");
+  EXPECT_EQ(refusal(R"({"op":"subscribe","subscriptions":{}})"), "subscriptions: got {}, expected a list");
+  EXPECT_EQ(refusal(R"({"op":"unsubscribe","subscriptionIds":[4294967296]})"),
+            "subscriptionIds: got 4294967296, expected a whole number from 0 to 4294967295");
+  EXPECT_EQ(refusal(R"({"op":"setParameters","parameters":[{"name":"a","value":{"b":1}}]})"),
+            R"(a: got {"b":1}, expected a finite number, a text, true, false or a list of numbers)");
+  EXPECT_EQ(refusal(R"({"op":"setParameters","parameters":[{"value":1}]})"),
+            "parameters.name: got null, expected a text");
+  EXPECT_EQ(refusal(R"({"op":"fetchAsset","uri":"file:///etc/passwd"})"),
+            R"(op: "fetchAsset" is not offered by this server)");
+  EXPECT_EQ(refusal("[]"), "a text message must be one JSON object in UTF-8");
+  EXPECT_THAT(refusal("\x02\0\0\0"s, true), HasSubstr("too few"));
+  EXPECT_THAT(refusal("\x01\0\0\0\0"s, true), HasSubstr("opcode 2"));
+  EXPECT_THAT(refusal("", true), HasSubstr("opcode 2"));
+}
+
+TEST(FoxgloveCodec, RefusesHostileTextWithoutHarm) {
+  for (const std::string& text :
+       {""s, "{"s, "null"s, "\"op\""s, "{\"op\":1}"s, "{\"op\":\"\xff\xfe\"}"s, "{\"op\":\"subscribe\"}"s,
+        "{\"op\":\"setParameters\",\"parameters\":[{\"name\":\"a\",\"value\":1e999}]}"s,
+        "{\"op\":\"setParameters\",\"parameters\":[{\"name\":\"a\",\"value\":[null]}]}"s,
+        std::string(60'000, '['),
+        "{\"op\":\"getParameters\",\"parameterNames\":[" + std::string(2'000, '1') + "]}"}) {
+    refusal(text);
+  }
+  std::string many = R"({"op":"unsubscribe","subscriptionIds":[0)";
+  for (std::size_t i = 0; i < kMaxEntries; ++i) many += ",0";
+  EXPECT_EQ(refusal(many + "]}"), "subscriptionIds: got 1025 entries, expected at most 1024");
+}
+
+TEST(FoxgloveCodec, SurvivesMutilatedMessages) {
+  const std::string text =
+      R"({"op":"setParameters","id":"r1","parameters":[{"name":"a","value":3},{"name":"d","value":[1,2.5]}]})";
+  const std::string call = "\x02\x05\0\0\0\x01\x02\0\0\x03\0\0\0cdr\0\1\0\0x"s;
+  Random random{7};
+  for (int i = 0; i < 20'000; ++i) {
+    std::string bytes = i % 2 == 0 ? text : call;
+    const auto pick = [&](std::size_t n) {
+      return static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
+    };
+    for (std::size_t changes = 1 + pick(4); changes > 0; --changes)
+      bytes[pick(bytes.size())] = static_cast<char>(pick(256));
+    if (i % 3 == 0) bytes.resize(pick(bytes.size()));
+    static_cast<void>(parse(bytes, i % 2 == 1));
+  }
+}
+
+TEST(FoxgloveCodec, DescribesItselfItsChannelsAndServices) {
+  const auto info =
+      nlohmann::json::parse(server_info("chicane", "s1", {.parameters = true, .services = true}));
+  EXPECT_EQ(info["op"], "serverInfo");
+  EXPECT_EQ(info["capabilities"], (nlohmann::json{"time", "parameters", "parametersSubscribe", "services"}));
+  EXPECT_EQ(info["sessionId"], "s1");
+  EXPECT_EQ(nlohmann::json::parse(server_info("chicane", "s1", {}))["capabilities"],
+            (nlohmann::json{"time"}));
+
+  const std::array channels{Channel{1, "/odom", "nav_msgs/msg/Odometry", "text"}};
+  EXPECT_EQ(nlohmann::json::parse(advertise(channels)),
+            nlohmann::json::parse(R"({"op":"advertise","channels":[{"id":1,"topic":"/odom","encoding":"cdr",
+              "schemaName":"nav_msgs/msg/Odometry","schema":"text","schemaEncoding":"ros2msg"}]})"));
+
+  const std::array services{Service{2, "/pause", "std_srvs/srv/SetBool", "bool data", "bool success"}};
+  const auto service = nlohmann::json::parse(advertise_services(services))["services"][0];
+  EXPECT_EQ(service["type"], "std_srvs/srv/SetBool");
+  EXPECT_EQ(service["request"]["schema"], "bool data");
+  EXPECT_EQ(service["response"]["schemaName"], "std_srvs/srv/SetBool_Response");
+}
+
+TEST(FoxgloveCodec, WritesParametersWithTheirTypes) {
+  const std::array parameters{Parameter{"a", 3.0}, Parameter{"b", true}, Parameter{"c", "x"s},
+                              Parameter{"d", std::vector{1.0}}, Parameter{"e", {}}};
+  EXPECT_EQ(nlohmann::json::parse(parameter_values(parameters, "r1")),
+            nlohmann::json::parse(R"({"op":"parameterValues","id":"r1","parameters":[
+              {"name":"a","value":3.0,"type":"float64"},{"name":"b","value":true},{"name":"c","value":"x"},
+              {"name":"d","value":[1.0],"type":"float64_array"},{"name":"e"}]})"));
+  EXPECT_FALSE(nlohmann::json::parse(parameter_values({})).contains("id"));
+}
+
+TEST(FoxgloveCodec, WritesBinaryMessagesByteForByte) {
+  EXPECT_EQ(message_data(0x01020304, 0x1112131415161718ULL, "xy"),
+            "\x01\x04\x03\x02\x01\x18\x17\x16\x15\x14\x13\x12\x11xy"s);
+  EXPECT_EQ(time_message(258), "\x02\x02\x01\0\0\0\0\0\0"s);
+  const CallService call{5, 9, "cdr", ""};
+  EXPECT_EQ(service_response(call, "z"), "\x03\x05\0\0\0\x09\0\0\0\x03\0\0\0cdrz"s);
+  EXPECT_EQ(nlohmann::json::parse(service_failure(call, "no"))["callId"], 9);
+}
+
+TEST(FoxgloveCodec, TextThatIsNotUtf8DoesNotBreakAnAnswer) {
+  EXPECT_THAT(status(StatusLevel::kError, "bad \xff byte"), HasSubstr("\"level\":2"));
+}
+
+}  // namespace
+}  // namespace chicane::protocol::foxglove

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/ros_messages.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "protocol/viewer_samples.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+/// XCDR1, little endian, written from the specification (OMG DDSI-RTPS 2.3, chapter 10; CORBA 3.4 part
+/// 2, 9.3): each primitive is aligned to its size, counted from the end of the four-byte header.
+class CdrReader {
+ public:
+  explicit CdrReader(std::string_view bytes) : bytes_{bytes} {
+    EXPECT_EQ(bytes.substr(0, 4), std::string_view("\0\1\0\0", 4));
+  }
+  template <class T>
+  T get() {
+    at_ += (sizeof(T) - (at_ - 4) % sizeof(T)) % sizeof(T);
+    T value{};
+    if (at_ + sizeof(T) > bytes_.size()) {
+      ADD_FAILURE() << "message ends at " << bytes_.size() << ", field at " << at_;
+      return value;
+    }
+    std::memcpy(&value, bytes_.data() + at_, sizeof(T));
+    at_ += sizeof(T);
+    return value;
+  }
+  std::string text() {
+    const auto size = get<std::uint32_t>();
+    const std::string value{bytes_.substr(at_, size - 1)};
+    EXPECT_EQ(bytes_.at(at_ + size - 1), '\0');
+    at_ += size;
+    return value;
+  }
+  double number() { return get<double>(); }
+  double seconds() {
+    const auto whole = get<std::int32_t>();
+    return whole + 1e-9 * get<std::uint32_t>();
+  }
+  void skip_numbers(int count) {
+    for (int i = 0; i < count; ++i) EXPECT_EQ(number(), 0.0);
+  }
+  [[nodiscard]] bool is_at_end() const { return at_ == bytes_.size(); }
+
+ private:
+  std::string_view bytes_;
+  std::size_t at_ = 4;
+};
+
+const RosTopic& topic(std::string_view name) {
+  const auto& topics = ros_topics();
+  const auto found =
+      std::find_if(topics.begin(), topics.end(), [&](const auto& t) { return t.name == name; });
+  EXPECT_NE(found, topics.end()) << name;
+  return *found;
+}
+
+std::string encode(std::string_view name, const telemetry::Frame& frame = samples::frame(),
+                   const Run& run = samples::run()) {
+  return topic(name).encode(frame, run);
+}
+
+TEST(RosMessages, FrameCarriesEveryFieldInTheOrderOfItsSchema) {
+  const std::string bytes = encode("/chicane/frame");
+  CdrReader reader{bytes};
+  EXPECT_EQ(reader.seconds(), 12.25);
+  EXPECT_EQ(reader.get<std::uint64_t>(), 1234567890123ULL);
+  EXPECT_EQ(reader.number(), 12.25);
+  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
+  for (const double expected : {10.0, -20.0, 0.5, 30.0, -0.4, 0.25, std::sqrt(30.0 * 30.0 + 0.4 * 0.4), -1.25,
+                                7.5, 10.1, -20.2, 0.51, 29.5, 456.5, 0.3, -0.03, 1.875}) {
+    EXPECT_DOUBLE_EQ(reader.number(), expected);
+  }
+  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
+  EXPECT_EQ(reader.get<std::uint32_t>(), 3U);
+  EXPECT_EQ(reader.get<std::uint32_t>(), 2U);
+  for (const double expected : {4.5, 28.125, 0.02, 0.015, 0.75, -0.5})
+    EXPECT_DOUBLE_EQ(reader.number(), expected);
+  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
+  EXPECT_EQ(reader.get<std::int8_t>(), 1);
+  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
+  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
+  EXPECT_EQ(reader.get<std::uint32_t>(), 7U);
+  EXPECT_EQ(reader.get<std::uint32_t>(), 9U);
+  for (const double expected : {123.5, 456.0, 0.118, 33.0, 140.0, 0.31, -0.02})
+    EXPECT_DOUBLE_EQ(reader.number(), expected);
+  EXPECT_TRUE(reader.is_at_end());
+}
+
+TEST(RosMessages, FrameWithoutTruthShowsWhatWasMeasuredAndLeavesTheRestUnknown) {
+  telemetry::Frame frame = samples::frame();
+  frame.has_truth = false;
+  const std::string bytes = encode("/chicane/frame", frame);
+  CdrReader reader{bytes};
+  reader.seconds();
+  reader.get<std::uint64_t>();
+  reader.number();
+  EXPECT_EQ(reader.get<std::uint8_t>(), 0);
+  for (const double expected : {10.1, -20.2, 0.51, 29.5}) EXPECT_DOUBLE_EQ(reader.number(), expected);
+  EXPECT_TRUE(std::isnan(reader.number()));
+  EXPECT_TRUE(std::isnan(reader.number()));
+  EXPECT_DOUBLE_EQ(reader.number(), 29.5);
+}
+
+TEST(RosMessages, OdometryStandsAtTheRearAxleAndMovesWithIt) {
+  const std::string bytes = encode("/odom");
+  CdrReader reader{bytes};
+  EXPECT_EQ(reader.seconds(), 12.25);
+  EXPECT_EQ(reader.text(), "map");
+  EXPECT_EQ(reader.text(), "base_link");
+  EXPECT_NEAR(reader.number(), 10.0 - 2.0 * std::cos(0.5), 1e-12);
+  EXPECT_NEAR(reader.number(), -20.0 - 2.0 * std::sin(0.5), 1e-12);
+  EXPECT_EQ(reader.number(), 0.0);
+  reader.skip_numbers(2);
+  EXPECT_NEAR(reader.number(), std::sin(0.25), 1e-15);
+  EXPECT_NEAR(reader.number(), std::cos(0.25), 1e-15);
+  reader.skip_numbers(36);
+  EXPECT_DOUBLE_EQ(reader.number(), 30.0);
+  EXPECT_DOUBLE_EQ(reader.number(), -0.4 - 0.25 * 2.0);  // v of a point behind: vy − r b
+  reader.skip_numbers(3);
+  EXPECT_DOUBLE_EQ(reader.number(), 0.25);
+  reader.skip_numbers(36);
+  EXPECT_TRUE(reader.is_at_end());
+}
+
+TEST(RosMessages, PlanHasOneColumnForEachQuantity) {
+  const std::string bytes = encode("/chicane/plan");
+  CdrReader reader{bytes};
+  reader.seconds();
+  for (const std::array<double, 3>& column :
+       {std::array{12.375, 12.4375, 12.5}, std::array{11.0, 12.0, 13.0}, std::array{-19.0, -18.5, -18.0},
+        std::array{0.5, 0.625, 0.75}, std::array{31.0, 30.0, 29.0}, std::array{0.01, 0.02, 0.03},
+        std::array{0.5, 0.25, 0.0}}) {
+    ASSERT_EQ(reader.get<std::uint32_t>(), 3U);
+    for (const double expected : column) EXPECT_DOUBLE_EQ(reader.number(), expected);
+  }
+  EXPECT_TRUE(reader.is_at_end());
+}
+
+TEST(RosMessages, PlanOfAnySizeStaysInsideItsArrays) {
+  telemetry::Frame frame = samples::frame();
+  for (const int size : {-5, 0, controller::Plan::kCapacity, 100'000}) {
+    frame.result.plan.size = size;
+    const std::string bytes = encode("/chicane/plan", frame);
+    CdrReader reader{bytes};
+    reader.seconds();
+    EXPECT_EQ(reader.get<std::uint32_t>(),
+              static_cast<std::uint32_t>(std::clamp(size, 0, controller::Plan::kCapacity)));
+  }
+}
+
+TEST(RosMessages, ReferenceLooksAlongTheLine) {
+  const std::string bytes = encode("/reference");
+  CdrReader reader{bytes};
+  reader.seconds();
+  EXPECT_EQ(reader.text(), "map");
+  ASSERT_EQ(reader.get<std::uint32_t>(), 2U);
+  for (const double y : {2.0, 5.0}) {
+    reader.seconds();
+    EXPECT_EQ(reader.text(), "map");
+    EXPECT_EQ(reader.number(), 1.0);
+    EXPECT_EQ(reader.number(), y);
+    reader.skip_numbers(3);
+    EXPECT_NEAR(reader.number(), std::sqrt(0.5), 1e-15);  // yaw 90°
+    EXPECT_NEAR(reader.number(), std::sqrt(0.5), 1e-15);
+  }
+  EXPECT_TRUE(reader.is_at_end());
+}
+
+TEST(RosMessages, DriveIsLeftPositiveAndInSingles) {
+  const std::string bytes = encode("/drive");
+  CdrReader reader{bytes};
+  reader.seconds();
+  EXPECT_EQ(reader.text(), "base_link");
+  EXPECT_EQ(reader.get<float>(), 0.02F);
+  EXPECT_EQ(reader.get<float>(), 0.0F);
+  EXPECT_EQ(reader.get<float>(), 33.0F);
+  // Drive law of VehicleParams: 5.43 · 0.75 − 0.104 · 29.5; single precision.
+  EXPECT_NEAR(static_cast<double>(reader.get<float>()), 5.43 * 0.75 - 0.104 * 29.5, 1e-5);
+  EXPECT_EQ(reader.get<float>(), 0.0F);
+  EXPECT_TRUE(reader.is_at_end());
+}
+
+TEST(RosMessages, DiagnosticsSayInWordsWhoIsInControl) {
+  telemetry::Frame frame = samples::frame();
+  const auto first = [&] {
+    const std::string bytes = encode("/diagnostics", frame);
+    CdrReader reader{bytes};
+    reader.seconds();
+    reader.text();
+    EXPECT_EQ(reader.get<std::uint32_t>(), 2U);
+    const int level = reader.get<std::uint8_t>();
+    EXPECT_EQ(reader.text(), "chicane: controller");
+    return std::pair{level, reader.text()};
+  };
+  EXPECT_EQ(first(), std::pair(1, std::string("no answer: following the last plan")));
+  frame.result.report.rung = controller::Rung::kBrake;
+  EXPECT_EQ(first(), std::pair(2, std::string("no answer: wheel held, full braking")));
+  frame.result.report.rung = controller::Rung::kController;
+  EXPECT_EQ(first(), std::pair(1, std::string("the command gate changed the command")));
+  frame.result.report.gated = false;
+  EXPECT_EQ(first(), std::pair(0, std::string("in control")));
+}
+
+TEST(RosMessages, EveryTopicEncodesAFrameFullOfNotANumber) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  telemetry::Frame frame = samples::frame();
+  frame.time = nan;
+  frame.truth = {nan, nan, nan, nan, nan, nan, nan};
+  frame.measurement.x = frame.measurement.speed = frame.step_time = nan;
+  frame.result.command = {nan, nan};
+  for (auto& point : frame.result.plan.points) point = {nan, nan, nan, nan, nan, {nan, nan}};
+  for (const RosTopic& each : ros_topics())
+    EXPECT_GE(each.encode(frame, samples::run()).size(), 12U) << each.name;
+}
+
+TEST(RosMessages, TimesAreClampedToWhatRosCanHold) {
+  EXPECT_EQ(to_nanoseconds(1.5), 1'500'000'000U);
+  EXPECT_EQ(to_nanoseconds(-1.0), 0U);
+  EXPECT_EQ(to_nanoseconds(std::numeric_limits<double>::quiet_NaN()), 0U);
+  EXPECT_EQ(to_nanoseconds(1e300), 2147483647'000'000'000U);
+}
+
+TEST(RosMessages, SchemasHoldEveryTypeTheyReferToOnce) {
+  for (const RosTopic& each : ros_topics()) {
+    ASSERT_FALSE(each.schema.empty()) << each.name;
+    std::set<std::string> defined;
+    std::istringstream lines{each.schema};
+    std::vector<std::string> used;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with("MSG: ")) {
+        EXPECT_TRUE(defined.insert(line.substr(5)).second) << line;
+      } else if (const auto end = line.find_first_of(" ["); line.find('/') < end) {
+        used.push_back(line.substr(0, end));
+      }
+    }
+    for (const std::string& name : used)
+      EXPECT_TRUE(defined.contains(name)) << each.type << " lacks " << name;
+  }
+  EXPECT_EQ(ros_schema("no_msgs/msg/Such"), "");
+}
+
+/// The same bytes are decoded by web/src/protocol/fixtures.test.ts. CHICANE_WRITE_FIXTURES=1 renews them
+/// after a wanted change: CHICANE_WRITE_FIXTURES=1 build/release/tests/protocol/protocol_test
+/// --gtest_filter='RosMessages.*Fixtures*'
+TEST(RosMessages, BytesEqualTheFixturesTheBrowserReads) {
+  const std::filesystem::path folder =
+      std::filesystem::path(CHICANE_SOURCE_DIR) / "tests/protocol/fixtures/ros";
+  const bool renew = std::getenv("CHICANE_WRITE_FIXTURES") != nullptr;
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const RosTopic& each : ros_topics()) {
+    std::string file{each.name.substr(1)};
+    std::replace(file.begin(), file.end(), '/', '_');
+    file += ".bin";
+    const std::string bytes = encode(each.name);
+    list.push_back({{"topic", each.name}, {"type", each.type}, {"file", file}, {"schema", each.schema}});
+    if (renew) std::ofstream(folder / file, std::ios::binary) << bytes;
+    std::ifstream stream(folder / file, std::ios::binary);
+    const std::string expected{std::istreambuf_iterator<char>(stream), {}};
+    EXPECT_EQ(bytes, expected) << each.name;
+  }
+  if (renew) std::ofstream(folder / "topics.json") << list.dump(1) << '\n';
+  std::ifstream stream(folder / "topics.json");
+  EXPECT_EQ(nlohmann::ordered_json::parse(stream, nullptr, false), list);
+}
+
+TEST(RosMessages, RoadLinesCloseAndKeepTheirWidths) {
+  std::vector<path::TrackPoint> points;
+  for (int i = 0; i < 90; ++i) {
+    const double angle = 2.0 * M_PI * i / 90.0;
+    points.push_back({{50.0 * std::cos(angle), 50.0 * std::sin(angle)}, 3.0, 5.0});
+  }
+  const auto track = path::Track::create("ring", points, true);
+  ASSERT_TRUE(track) << track.error().message;
+  const RoadLines lines = road_lines(*track, 2.0);
+  ASSERT_GE(lines.centre.size(), 157U);  // 2π · 50 m / 2 m
+  ASSERT_EQ(lines.left.size(), lines.centre.size());
+  EXPECT_LT((lines.left.front() - lines.left.back()).norm(), 1e-6);
+  for (std::size_t i = 0; i < lines.centre.size(); ++i) {
+    // Counter-clockwise: left is inside. 0.2 m allows for the smoothing of the centre line.
+    EXPECT_NEAR(lines.left[i].norm(), 47.0, 0.2);
+    EXPECT_NEAR(lines.right[i].norm(), 55.0, 0.2);
+  }
+}
+
+}  // namespace
+}  // namespace chicane::protocol

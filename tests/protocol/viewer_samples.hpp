@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "chicane/protocol/ros_messages.hpp"
+
+namespace chicane::protocol::samples {
+
+/// A frame with a different value in each field, so that no two can be exchanged unnoticed.
+inline telemetry::Frame frame() {
+  telemetry::Frame frame;
+  frame.cycle = 1234567890123ULL;
+  frame.time = 12.25;
+  frame.has_truth = true;
+  frame.truth = {.x = 10.0, .y = -20.0, .psi = 0.5, .vx = 30.0, .vy = -0.4, .r = 0.25, .steer = 0.03};
+  frame.measurement.time = 12.25;
+  frame.measurement.x = 10.1;
+  frame.measurement.y = -20.2;
+  frame.measurement.psi = 0.51;
+  frame.measurement.speed = 29.5;
+  controller::Plan& plan = frame.result.plan;
+  plan.size = 3;
+  for (int i = 0; i < plan.size; ++i) {
+    const double step = i;
+    plan.points[static_cast<std::size_t>(i)] = {.time = 12.375 + 0.0625 * step,
+                                                .x = 11.0 + step,
+                                                .y = -19.0 + 0.5 * step,
+                                                .psi = 0.5 + 0.125 * step,
+                                                .speed = 31.0 - step,
+                                                .command = {0.01 * (step + 1.0), 0.5 - 0.25 * step}};
+  }
+  plan.reference_size = 2;
+  plan.reference[0] = {1.0, 2.0};
+  plan.reference[1] = {1.0, 5.0};
+  controller::StepReport& report = frame.result.report;
+  report.solve.status = solver::SolveStatus::kBudgetSpent;
+  report.solve.iterations = 7;
+  report.solve.sweeps = 9;
+  report.solve.cost = 123.5;
+  report.rung = controller::Rung::kShiftedPlan;
+  report.lateral_error = 0.31;
+  report.heading_error = -0.02;
+  report.speed_reference = 33.0;
+  report.delay = 0.118;
+  report.sight = 140.0;
+  report.has_map = true;
+  report.gated = true;
+  frame.result.command = {0.02, 0.75};
+  frame.applied = {0.015, -0.5};
+  frame.step_time = 0.000456;
+  frame.lateral_acceleration = 7.5;
+  frame.longitudinal_acceleration = -1.25;
+  frame.s = 456.5;
+  frame.lateral_error = 0.3;
+  frame.heading_error = -0.03;
+  frame.edge_distance = 1.875;
+  frame.is_off_track = true;
+  frame.lap = 2;
+  frame.lap_time = 4.5;
+  frame.last_lap_time = 28.125;
+  frame.off_track_events = 3;
+  return frame;
+}
+
+inline Run run() {
+  Run run;
+  run.track = "lakeside";
+  run.track_length = 1350.5;
+  run.controller = "tracking-mpc";
+  run.preset = "default";
+  run.latency = 0.1;
+  run.control_period = 0.04;
+  run.vehicle.rear_axle = 2.0;
+  run.road.left = {{0.0, 2.0}, {4.0, 2.0}, {0.0, 2.0}};
+  run.road.right = {{0.0, -2.0}, {4.0, -2.0}, {0.0, -2.0}};
+  run.road.centre = {{0.0, 0.0}, {4.0, 0.0}, {0.0, 0.0}};
+  return run;
+}
+
+}  // namespace chicane::protocol::samples
