@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,12 +11,26 @@
 
 namespace chicane::net {
 
-/// WebSocket client with time-outs, blocking, for one thread: the simulator's side of the wire. Sends the same upgrade
-/// request as the original (docs/protocol.md): no Origin, no sub-protocol, no extension.
+/// A WebSocket address in parts.
+struct Url {
+  std::string host;  ///< without brackets
+  std::uint16_t port = 80;
+  std::string target = "/";  ///< path and query
+};
+
+/// "ws://host[:port][/path]"; kInvalidArgument in words otherwise.
+[[nodiscard]] Result<Url> parse_url(const std::string& text);
+
+/// WebSocket client with time-outs, blocking, for one thread: the simulator's side of the wire. Sends the
+/// same upgrade request as the original, byte for byte (docs/protocol.md §2): no Origin, no sub-protocol, no
+/// extension. Sends nothing before the server's 101. Answers pings. Frames are masked; a message goes out as
+/// one frame.
 class Client {
  public:
-  /// url: "ws://host:port/path". kIo with the reason when it cannot connect within `timeout`.
-  [[nodiscard]] static Result<std::unique_ptr<Client>> connect(const std::string& url, std::chrono::milliseconds timeout);
+  /// kIo with the reason when there is no connection and upgrade within `timeout`.
+  [[nodiscard]] static Result<std::unique_ptr<Client>> connect(const std::string& url,
+                                                               std::chrono::milliseconds timeout);
+  /// Sends a close frame when the connection stands, and does not wait for the answer.
   virtual ~Client() = default;
 
   [[nodiscard]] virtual Result<void> send_text(const std::string& text) = 0;

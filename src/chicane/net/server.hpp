@@ -21,28 +21,28 @@ using ConnectionId = std::uint64_t;
 
 /// An HTTP upgrade as it arrived; bounded sizes are already checked.
 struct UpgradeRequest {
-  std::string target;  ///< path and query, e.g. "/socket.io/?EIO=4&transport=websocket"
-  std::string peer;    ///< "127.0.0.1:51234"
-  std::string origin;  ///< empty when absent
-  std::string host;
-  std::vector<std::string> subprotocols;  ///< as offered, in order
+  std::string target{};  ///< path and query, e.g. "/socket.io/?EIO=4&transport=websocket"
+  std::string peer{};    ///< "127.0.0.1:51234"
+  std::string origin{};  ///< empty when absent
+  std::string host{};
+  std::vector<std::string> subprotocols{};  ///< as offered, in order
 };
 
 /// What to do with an upgrade. Refused before anybody is asked: a Host that is not ours (see
 /// ServerOptions::allowed_hosts), an Origin that is neither Host nor allowed, a connection too many.
 struct UpgradeAnswer {
   bool accept = false;
-  std::string subprotocol;  ///< one of those offered, or empty
-  int status = 403;         ///< HTTP status when refused
-  std::string reason;       ///< one sentence, sent as the body when refused
-  int endpoint = 0;         ///< caller's own tag, handed back with every event
+  std::string subprotocol{};  ///< one of those offered, or empty
+  int status = 403;           ///< HTTP status when refused
+  std::string reason{};       ///< one sentence, sent as the body when refused
+  int endpoint = 0;           ///< caller's own tag, handed back with every event
 };
 
 /// A file of the dashboard, embedded in the program; no file system at run time.
 struct Asset {
-  std::string_view path;  ///< "/index.html"; "/" serves "/index.html"
-  std::string_view content_type;
-  std::string_view content;  ///< gzip-compressed when `gzip`
+  std::string_view path{};  ///< "/index.html"; "/" serves "/index.html"
+  std::string_view content_type{};
+  std::string_view content{};  ///< gzip-compressed when `gzip`
   bool gzip = false;
 };
 
@@ -61,19 +61,19 @@ struct ServerOptions {
   /// A WebSocket peer that has sent nothing for half of it is pinged; one that stays silent for all of it is
   /// closed. That also ends peers that stopped reading, because they never see the ping.
   std::chrono::milliseconds idle_timeout{10000};
-  std::size_t max_queue = 256;             ///< messages waiting for one connection before it is closed
-  std::vector<std::string> allowed_hosts;  ///< further names without port, e.g. "car.local"
+  std::size_t max_queue = 256;               ///< messages waiting for one connection before it is closed
+  std::vector<std::string> allowed_hosts{};  ///< further names without port, e.g. "car.local"
   std::vector<std::string> allowed_origins{"https://app.foxglove.dev",
                                            "file://"};  ///< hosted and desktop viewers
 };
 
 /// Called on the network thread, one at a time. They must not block. None is called once ~Server has begun.
 struct ServerHandlers {
-  std::function<void(Server&)> on_start;  ///< before the first connection; may be empty
-  std::function<UpgradeAnswer(const UpgradeRequest&)> on_upgrade;
-  std::function<void(ConnectionId, int endpoint)> on_open;
-  std::function<void(ConnectionId, int endpoint, std::string_view bytes, bool binary)> on_message;
-  std::function<void(ConnectionId, int endpoint, std::string_view why)> on_close;
+  std::function<void(Server&)> on_start{};  ///< before the first connection; may be empty
+  std::function<UpgradeAnswer(const UpgradeRequest&)> on_upgrade{};
+  std::function<void(ConnectionId, int endpoint)> on_open{};
+  std::function<void(ConnectionId, int endpoint, std::string_view bytes, bool binary)> on_message{};
+  std::function<void(ConnectionId, int endpoint, std::string_view why)> on_close{};
 };
 
 /// How a message waits for a slow reader.

@@ -1,0 +1,485 @@
+// SPDX-License-Identifier: MIT
+// The only file that includes Boost.Beast.
+#include "chicane/net/server.hpp"
+
+#include <utility>  // before Asio: Boost 1.74 forgets it
+
+#include <boost/asio/dispatch.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/v6_only.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <deque>
+#include <optional>
+#include <thread>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "chicane/base/fnv.hpp"
+#include "chicane/net/access.hpp"
+#include "chicane/net/port_holder.hpp"
+
+namespace chicane::net {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using tcp = asio::ip::tcp;
+using ErrorCodeBoost = boost::system::error_code;
+
+constexpr int kSendBuffer = 32 * 1024;  // a reader that stalls holds this much kernel memory, not megabytes
+constexpr std::chrono::seconds kAnswerTimeout{30};  // for a whole asset on a slow line
+constexpr std::chrono::seconds kLingerTimeout{1};   // so that a refusal is read before the socket goes
+constexpr std::chrono::milliseconds kGoodbye{200};  // for close frames when the server ends
+constexpr const char* kContentSecurityPolicy =
+    "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; "
+    "img-src 'self' data: blob:; worker-src 'self' blob:; connect-src 'self' ws: wss:; object-src 'none'; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+std::string_view view(boost::string_view text) { return {text.data(), text.size()}; }
+boost::string_view view(std::string_view text) { return {text.data(), text.size()}; }
+
+/// An ETag that changes with the content.
+std::string tag_of(std::string_view content) {
+  Fnv hash;
+  hash.add(std::uint64_t{content.size()});
+  for (std::size_t i = 0; i < content.size(); i += sizeof(std::uint64_t)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, content.data() + i, std::min(sizeof(word), content.size() - i));
+    hash.add(word);
+  }
+  return fmt::format("\"{:016x}\"", hash.value());
+}
+
+class WebSocket;
+
+/// What connections need of their server. Everything runs on its one thread; `ticket` counts open sockets.
+struct Core {
+  ServerOptions options;
+  ServerHandlers handlers;
+  std::vector<Asset> assets;
+  std::vector<std::string> tags;  // one ETag for each asset
+  std::shared_ptr<int> ticket = std::make_shared<int>(0);
+  asio::io_context io{1};
+  std::unordered_map<ConnectionId, std::shared_ptr<WebSocket>> connections;
+  ConnectionId next_id = 1;
+  bool is_stopping = false;
+};
+
+struct Outgoing {
+  Bytes bytes;
+  bool binary = false;
+  Delivery delivery = Delivery::kReliable;
+  std::uint32_t topic = 0;
+};
+
+/// One upgraded connection. A read is pending from open to end, and its completion is the one place where it
+/// ends.
+class WebSocket : public std::enable_shared_from_this<WebSocket> {
+ public:
+  WebSocket(Core& core, tcp::socket socket, int endpoint)
+      : core_{core}, ticket_{core.ticket}, stream_{std::move(socket)}, endpoint_{endpoint} {}
+
+  void start(const http::request<http::empty_body>& request, const std::string& subprotocol) {
+    stream_.set_option(
+        websocket::stream_base::timeout{core_.options.handshake_timeout, core_.options.idle_timeout, true});
+    stream_.set_option(websocket::stream_base::decorator([subprotocol](websocket::response_type& answer) {
+      answer.set(http::field::server, "chicane");
+      answer.set(http::field::connection, "Upgrade");
+      if (!subprotocol.empty()) answer.set(http::field::sec_websocket_protocol, subprotocol);
+    }));
+    stream_.read_message_max(core_.options.max_message);
+    stream_.auto_fragment(false);
+    stream_.async_accept(request, [self = shared_from_this()](ErrorCodeBoost ec) {
+      if (!ec) self->open();
+    });
+  }
+
+  void send(Outgoing message) {
+    if (is_closing_) return;
+    if (message.delivery == Delivery::kNewest && replace_waiting(message)) return;
+    if (queue_.size() >= core_.options.max_queue) return abort("does not read what it is sent");
+    queue_.push_back(std::move(message));
+    if (!is_writing_) write();
+  }
+
+  void close(std::uint16_t code, std::string_view reason) {
+    if (is_closing_) return;
+    is_closing_ = true;
+    close_reason_ =
+        websocket::close_reason(static_cast<websocket::close_code>(code), view(reason.substr(0, 120)));
+    if (why_.empty()) why_ = reason;
+    if (!is_writing_) finish_closing();
+  }
+
+ private:
+  void open() {
+    if (core_.is_stopping) return;
+    id_ = core_.next_id++;
+    core_.connections.emplace(id_, shared_from_this());
+    core_.handlers.on_open(id_, endpoint_);
+    read();
+  }
+
+  void read() {
+    stream_.async_read(buffer_, [self = shared_from_this()](ErrorCodeBoost ec, std::size_t) {
+      if (ec) return self->end(ec);
+      if (!self->is_closing_ && !self->core_.is_stopping) {
+        const auto bytes = self->buffer_.data();
+        self->core_.handlers.on_message(self->id_, self->endpoint_,
+                                        {static_cast<const char*>(bytes.data()), bytes.size()},
+                                        self->stream_.got_binary());
+      }
+      self->buffer_.consume(self->buffer_.size());
+      self->read();
+    });
+  }
+
+  bool replace_waiting(Outgoing& message) {
+    const auto first = queue_.begin() + (is_writing_ ? 1 : 0);
+    const auto waiting = std::find_if(first, queue_.end(), [&](const Outgoing& other) {
+      return other.delivery == Delivery::kNewest && other.topic == message.topic;
+    });
+    if (waiting == queue_.end()) return false;
+    *waiting = std::move(message);
+    return true;
+  }
+
+  void write() {
+    is_writing_ = true;
+    stream_.binary(queue_.front().binary);
+    stream_.async_write(asio::buffer(*queue_.front().bytes),
+                        [self = shared_from_this()](ErrorCodeBoost ec, std::size_t) {
+                          self->is_writing_ = false;
+                          self->queue_.pop_front();
+                          if (ec) return self->abort(ec.message());
+                          if (!self->queue_.empty()) return self->write();
+                          if (self->is_closing_) self->finish_closing();
+                        });
+  }
+
+  void finish_closing() {
+    stream_.async_close(close_reason_, [self = shared_from_this()](ErrorCodeBoost) {});
+  }
+
+  /// Ends without a close frame; the pending read completes.
+  void abort(std::string why) {
+    if (why_.empty()) why_ = std::move(why);
+    is_closing_ = true;
+    beast::get_lowest_layer(stream_).close();
+  }
+
+  void end(ErrorCodeBoost ec) {
+    is_closing_ = true;
+    if (why_.empty()) why_ = words(ec);
+    core_.connections.erase(id_);
+    if (!core_.is_stopping) {
+      core_.handlers.on_close(id_, endpoint_, why_);
+    } else if (core_.connections.empty()) {
+      core_.io.stop();
+    }
+  }
+
+  [[nodiscard]] std::string words(ErrorCodeBoost ec) const {
+    if (ec == websocket::error::closed) return fmt::format("closed by the peer ({})", stream_.reason().code);
+    if (ec == websocket::error::message_too_big) {
+      return fmt::format("sent a message of more than {} bytes", core_.options.max_message);
+    }
+    if (ec == beast::error::timeout)
+      return fmt::format("silent for {} ms", core_.options.idle_timeout.count());
+    if (ec == asio::error::bad_descriptor) return "broke a rule and did not hang up when told";
+    if (ec == asio::error::eof) return "connection ended without a close frame";
+    return ec.message();
+  }
+
+  Core& core_;
+  std::shared_ptr<int> ticket_;
+  websocket::stream<beast::tcp_stream, false> stream_;
+  beast::flat_buffer buffer_;
+  int endpoint_;
+  ConnectionId id_ = 0;
+  std::deque<Outgoing> queue_;  // the front one is being written while is_writing_
+  bool is_writing_ = false;
+  bool is_closing_ = false;
+  websocket::close_reason close_reason_;
+  std::string why_;
+};
+
+/// One connection before (or without) an upgrade.
+class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
+ public:
+  HttpConnection(Core& core, tcp::socket socket)
+      : core_{core}, ticket_{core.ticket}, stream_{std::move(socket)} {}
+
+  void start() {
+    if (static_cast<std::size_t>(ticket_.use_count()) - 1 > core_.options.max_connections) {
+      return refuse(http::status::service_unavailable, "too many connections");
+    }
+    ErrorCodeBoost ignored;
+    const auto peer = stream_.socket().remote_endpoint(ignored);
+    peer_ = fmt::format("{}:{}", peer.address().to_string(ignored), peer.port());
+    read();
+  }
+
+ private:
+  void read() {
+    parser_.emplace();
+    parser_->header_limit(static_cast<std::uint32_t>(core_.options.max_header));
+    parser_->body_limit(0);
+    stream_.expires_after(core_.options.handshake_timeout);
+    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](ErrorCodeBoost ec, std::size_t) {
+      if (!ec) return self->answer(self->parser_->get());
+      if (ec == http::error::header_limit || ec == http::error::buffer_overflow) {
+        return self->refuse(http::status::request_header_fields_too_large,
+                            "the request's header is too large");
+      }
+      if (ec == http::error::end_of_stream || ec == http::error::partial_message) return;
+      if (ec.category() == make_error_code(http::error::bad_method).category()) {
+        self->refuse(http::status::bad_request, "not an HTTP request: " + ec.message());
+      }
+    });
+  }
+
+  void answer(const http::request<http::empty_body>& request) {
+    const std::string_view host = view(request[http::field::host]);
+    if (request.count(http::field::host) != 1)
+      return refuse(http::status::bad_request, "one Host header is needed");
+    if (!host_is_allowed(host, core_.options.address, core_.options.allowed_hosts)) {
+      return refuse(http::status::forbidden, fmt::format("host '{}' is not allowed here", host));
+    }
+    if (websocket::is_upgrade(request)) return upgrade(request);
+    if (request.method() != http::verb::get && request.method() != http::verb::head) {
+      return refuse(http::status::method_not_allowed, "only GET and HEAD");
+    }
+    serve_asset(request);
+  }
+
+  void upgrade(const http::request<http::empty_body>& request) {
+    const std::string_view origin = view(request[http::field::origin]);
+    const std::string_view host = view(request[http::field::host]);
+    if (buffer_.size() > 0)
+      return refuse(http::status::bad_request, "bytes sent before the upgrade was answered");
+    if (!origin.empty() && !origin_is_allowed(origin, host, core_.options.allowed_origins)) {
+      return refuse(http::status::forbidden, fmt::format("pages of '{}' may not connect here", origin));
+    }
+    UpgradeRequest asked{.target = std::string(view(request.target())),
+                         .peer = peer_,
+                         .origin = std::string(origin),
+                         .host = std::string(host),
+                         .subprotocols = {}};
+    for (const auto offered : http::token_list(request[http::field::sec_websocket_protocol])) {
+      asked.subprotocols.emplace_back(view(offered));
+    }
+    const UpgradeAnswer answer = core_.handlers.on_upgrade(asked);
+    if (!answer.accept)
+      return refuse(http::int_to_status(static_cast<unsigned>(answer.status)), answer.reason);
+    stream_.expires_never();
+    std::make_shared<WebSocket>(core_, stream_.release_socket(), answer.endpoint)
+        ->start(request, answer.subprotocol);
+  }
+
+  void serve_asset(const http::request<http::empty_body>& request) {
+    const std::string_view target = view(request.target());
+    const std::string_view path = target.substr(0, target.find('?'));
+    const std::string_view wanted = path == "/" ? "/index.html" : path;
+    const auto asset = std::find_if(core_.assets.begin(), core_.assets.end(),
+                                    [&](const Asset& candidate) { return candidate.path == wanted; });
+    const bool is_head = request.method() == http::verb::head;
+    if (asset == core_.assets.end()) {
+      return reply(http::status::not_found, request.keep_alive(), is_head, "text/plain; charset=utf-8",
+                   "no such page\n");
+    }
+    const std::string& tag = core_.tags[static_cast<std::size_t>(asset - core_.assets.begin())];
+    const bool is_known = view(request[http::field::if_none_match]) == tag;
+    const auto status = is_known ? http::status::not_modified : http::status::ok;
+    reply(status, request.keep_alive(), is_head, asset->content_type,
+          is_known ? std::string_view{} : asset->content, asset->gzip, tag);
+  }
+
+  /// Answers in words and ends the connection.
+  void refuse(http::status status, std::string words) {
+    text_ = std::move(words) + "\n";
+    reply(status, false, false, "text/plain; charset=utf-8", text_);
+  }
+
+  /// `content` must live until it is written: an asset, a literal, or text_.
+  void reply(http::status status, bool keep_alive, bool is_head, std::string_view type,
+             std::string_view content, bool gzip = false, const std::string& tag = {}) {
+    using Response = http::response<http::span_body<const char>>;
+    auto response = std::make_shared<Response>(status, 11);
+    response->set(http::field::server, "chicane");
+    response->set(http::field::content_type, view(type));
+    response->set(http::field::cache_control, "no-cache");
+    response->set("Content-Security-Policy", kContentSecurityPolicy);
+    response->set("X-Content-Type-Options", "nosniff");
+    response->set("Referrer-Policy", "no-referrer");
+    response->set("Cross-Origin-Opener-Policy", "same-origin");
+    response->set("Cross-Origin-Resource-Policy", "same-origin");
+    if (gzip) response->set(http::field::content_encoding, "gzip");
+    if (!tag.empty()) response->set(http::field::etag, tag);
+    if (status == http::status::method_not_allowed) response->set(http::field::allow, "GET, HEAD");
+    response->keep_alive(keep_alive);
+    if (status != http::status::not_modified) response->content_length(content.size());
+    if (!is_head) response->body() = {content.data(), content.size()};
+    stream_.expires_after(kAnswerTimeout);
+    http::async_write(stream_, *response,
+                      [self = shared_from_this(), response](ErrorCodeBoost ec, std::size_t) {
+                        if (ec) return;
+                        if (response->keep_alive()) return self->read();
+                        self->linger();
+                      });
+  }
+
+  /// Half-closes and reads on until the peer has done the same, so that the refusal is not lost to a reset.
+  void linger() {
+    ErrorCodeBoost ignored;
+    stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    stream_.expires_after(kLingerTimeout);
+    drain();
+  }
+
+  void drain() {
+    stream_.async_read_some(asio::buffer(rest_), [self = shared_from_this()](ErrorCodeBoost ec, std::size_t) {
+      if (!ec) self->drain();
+    });
+  }
+
+  Core& core_;
+  std::shared_ptr<int> ticket_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_{64 * 1024};
+  std::optional<http::request_parser<http::empty_body>> parser_;
+  std::array<char, 1024> rest_{};
+  std::string peer_;
+  std::string text_;
+};
+
+class BeastServer final : public Server {
+ public:
+  BeastServer(const ServerOptions& options, ServerHandlers handlers, std::vector<Asset> assets) {
+    core_.options = options;
+    core_.handlers = std::move(handlers);
+    core_.assets = std::move(assets);
+    for (const Asset& asset : core_.assets) core_.tags.push_back(tag_of(asset.content));
+  }
+
+  ~BeastServer() override {
+    if (!thread_.joinable()) return;
+    asio::post(core_.io, [this] { say_goodbye(); });
+    thread_.join();
+    core_.connections.clear();
+  }
+
+  Result<void> start() {
+    ErrorCodeBoost ec;
+    const auto address = asio::ip::make_address(core_.options.address, ec);
+    if (ec)
+      return fail(ErrorCode::kInvalidArgument,
+                  fmt::format("address: got '{}', expected a numeric address", core_.options.address));
+    const tcp::endpoint endpoint{address, core_.options.port};
+    acceptor_.open(endpoint.protocol(), ec);
+    if (!ec) acceptor_.set_option(asio::socket_base::reuse_address(true), ec);
+    if (!ec && address == asio::ip::address{asio::ip::address_v6::any()}) {
+      acceptor_.set_option(asio::ip::v6_only(false), ec);
+    }
+    if (!ec) acceptor_.bind(endpoint, ec);
+    if (!ec) acceptor_.listen(asio::socket_base::max_listen_connections, ec);
+    if (ec == asio::error::address_in_use) {
+      const std::string holder = port_holder(core_.options.port);
+      return fail(ErrorCode::kIo, fmt::format("port {} is in use by {}", core_.options.port,
+                                              holder.empty() ? "a connection that is just ending" : holder));
+    }
+    if (ec) {
+      return fail(ErrorCode::kIo, fmt::format("cannot listen on {}:{}: {}", core_.options.address,
+                                              core_.options.port, ec.message()));
+    }
+    port_ = acceptor_.local_endpoint(ec).port();
+    asio::post(core_.io, [this] {
+      if (core_.handlers.on_start) core_.handlers.on_start(*this);
+      accept();
+    });
+    thread_ = std::thread([this] { core_.io.run(); });
+    return {};
+  }
+
+  [[nodiscard]] std::uint16_t port() const noexcept override { return port_; }
+
+  using Server::send;
+  void send(ConnectionId to, Bytes bytes, bool binary, Delivery delivery, std::uint32_t topic) override {
+    asio::dispatch(core_.io,
+                   [this, to, message = Outgoing{std::move(bytes), binary, delivery, topic}]() mutable {
+                     const auto found = core_.connections.find(to);
+                     if (found != core_.connections.end()) found->second->send(std::move(message));
+                   });
+  }
+
+  void close(ConnectionId id, std::uint16_t code, std::string_view reason) override {
+    asio::dispatch(core_.io, [this, id, code, text = std::string(reason)] {
+      const auto found = core_.connections.find(id);
+      if (found != core_.connections.end()) found->second->close(code, text);
+    });
+  }
+
+  void run_after(std::chrono::nanoseconds delay, std::function<void()> task) override {
+    auto checked = [this, task = std::move(task)] {
+      if (!core_.is_stopping) task();
+    };
+    if (delay.count() <= 0) return asio::post(core_.io, std::move(checked));
+    auto timer = std::make_shared<asio::steady_timer>(core_.io, delay);
+    timer->async_wait([timer, checked = std::move(checked)](ErrorCodeBoost ec) {
+      if (!ec) checked();
+    });
+  }
+
+ private:
+  void accept() {
+    acceptor_.async_accept([this](ErrorCodeBoost ec, tcp::socket socket) {
+      if (core_.is_stopping) return;
+      if (ec)
+        return run_after(std::chrono::milliseconds{100},
+                         [this] { accept(); });  // out of descriptors, for example
+      ErrorCodeBoost ignored;
+      socket.set_option(tcp::no_delay(true), ignored);
+      socket.set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
+      std::make_shared<HttpConnection>(core_, std::move(socket))->start();
+      accept();
+    });
+  }
+
+  void say_goodbye() {
+    core_.is_stopping = true;
+    ErrorCodeBoost ignored;
+    acceptor_.close(ignored);
+    if (core_.connections.empty()) return core_.io.stop();
+    for (const auto& [id, connection] : core_.connections) connection->close(1001, "the program ends");
+    auto timer = std::make_shared<asio::steady_timer>(core_.io, kGoodbye);
+    timer->async_wait([this, timer](ErrorCodeBoost) { core_.io.stop(); });
+  }
+
+  Core core_;
+  tcp::acceptor acceptor_{core_.io};
+  std::uint16_t port_ = 0;
+  std::thread thread_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Server>> Server::create(const ServerOptions& options, ServerHandlers handlers,
+                                               std::vector<Asset> assets) {
+  auto server = std::make_unique<BeastServer>(options, std::move(handlers), std::move(assets));
+  if (auto started = server->start(); !started) return fail(started.error());
+  return server;
+}
+
+}  // namespace chicane::net

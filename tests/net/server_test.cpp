@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/net/server.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <future>
+#include <mutex>
+
+#include "net/raw_socket.hpp"
+
+namespace chicane::net {
+namespace {
+
+using test::RawSocket;
+using test::unity_handshake;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+using namespace std::chrono_literals;
+
+/// A server that remembers what happened, for a test thread that waits for it.
+class Recorder {
+ public:
+  explicit Recorder(ServerOptions options = {}, std::vector<Asset> assets = {}) {
+    options.port = 0;
+    ServerHandlers handlers{
+        .on_start = {},
+        .on_upgrade =
+            [this](const UpgradeRequest& request) {
+              const std::lock_guard lock(mutex_);
+              upgrade_ = request;
+              return answer_;
+            },
+        .on_open = [this](ConnectionId id, int) { note([&] { opened_.push_back(id); }); },
+        .on_message = [this](ConnectionId, int, std::string_view bytes,
+                             bool) { note([&] { messages_.emplace_back(bytes); }); },
+        .on_close = [this](ConnectionId, int,
+                           std::string_view why) { note([&] { closed_.emplace_back(why); }); }};
+    auto created = Server::create(options, std::move(handlers), std::move(assets));
+    if (created) server_ = std::move(*created);
+  }
+  ~Recorder() { server_.reset(); }
+
+  [[nodiscard]] Server& server() { return *server_; }
+  [[nodiscard]] std::uint16_t port() const { return server_->port(); }
+  void answer(UpgradeAnswer answer) {
+    const std::lock_guard lock(mutex_);
+    answer_ = std::move(answer);
+  }
+  UpgradeRequest upgrade() {
+    const std::lock_guard lock(mutex_);
+    return upgrade_;
+  }
+  std::vector<ConnectionId> opened(std::size_t count) { return wait(opened_, count); }
+  std::vector<std::string> messages(std::size_t count) { return wait(messages_, count); }
+  std::vector<std::string> closed(std::size_t count) { return wait(closed_, count); }
+
+ private:
+  template <class Change>
+  void note(Change change) {
+    const std::lock_guard lock(mutex_);
+    change();
+    changed_.notify_all();
+  }
+  template <class T>
+  std::vector<T> wait(const std::vector<T>& list, std::size_t count) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, 10s, [&] { return list.size() >= count; });
+    return list;
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  UpgradeAnswer answer_{.accept = true};
+  UpgradeRequest upgrade_;
+  std::vector<ConnectionId> opened_;
+  std::vector<std::string> messages_;
+  std::vector<std::string> closed_;
+  std::unique_ptr<Server> server_;
+};
+
+std::string get(std::uint16_t port, const std::string& target, const std::string& extra = {},
+                const std::string& method = "GET") {
+  RawSocket socket(port);
+  socket.send(method + " " + target + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" + extra +
+              "\r\n");
+  return socket.rest();
+}
+
+RawSocket upgraded(std::uint16_t port, int receive_buffer = 0) {
+  RawSocket socket(port, receive_buffer);
+  socket.send(unity_handshake(port));
+  EXPECT_THAT(socket.until("\r\n\r\n"), StartsWith("HTTP/1.1 101"));
+  return socket;
+}
+
+TEST(Server, AnswersTheOriginalUpgradeRequestWithoutAnyExtra) {
+  Recorder recorder;
+  RawSocket socket(recorder.port());
+  socket.send(unity_handshake(recorder.port()));
+  const std::string head = socket.until("\r\n\r\n");
+  EXPECT_THAT(head, StartsWith("HTTP/1.1 101 Switching Protocols\r\n"));
+  EXPECT_THAT(head, HasSubstr("\r\nUpgrade: websocket\r\n"));
+  EXPECT_THAT(head, HasSubstr("\r\nConnection: Upgrade\r\n"));
+  EXPECT_THAT(head,
+              HasSubstr("\r\nSec-WebSocket-Accept: s3pPLMBiTxaQ9kYGzzhZRbK+xOo=\r\n"));  // RFC 6455 §1.3
+  EXPECT_THAT(head, Not(HasSubstr("Sec-WebSocket-Protocol")));
+  EXPECT_THAT(head, Not(HasSubstr("Sec-WebSocket-Extensions")));
+  EXPECT_EQ(recorder.upgrade().target, "/socket.io/?EIO=4&transport=websocket");
+  EXPECT_EQ(recorder.upgrade().origin, "");
+}
+
+TEST(Server, NeverNegotiatesCompressionAndReturnsTheChosenSubprotocol) {
+  Recorder recorder;
+  recorder.answer({.accept = true, .subprotocol = "b"});
+  RawSocket socket(recorder.port());
+  std::string request = unity_handshake(recorder.port());
+  request.insert(request.size() - 2,
+                 "Sec-WebSocket-Extensions: permessage-deflate\r\nSec-WebSocket-Protocol: a, b\r\n");
+  socket.send(request);
+  const std::string head = socket.until("\r\n\r\n");
+  EXPECT_THAT(head, HasSubstr("Sec-WebSocket-Protocol: b\r\n"));
+  EXPECT_THAT(head, Not(HasSubstr("Extensions")));
+  EXPECT_THAT(recorder.upgrade().subprotocols, testing::ElementsAre("a", "b"));
+}
+
+TEST(Server, CarriesMessagesBothWaysInOrder) {
+  Recorder recorder;
+  RawSocket socket = upgraded(recorder.port());
+  const ConnectionId id = recorder.opened(1).at(0);
+  socket.send(RawSocket::masked("one") + RawSocket::masked("two"));
+  EXPECT_THAT(recorder.messages(2), testing::ElementsAre("one", "two"));
+  recorder.server().send(id, std::string("first"), false);
+  recorder.server().send(id, std::string("\x00\x01", 2), true);
+  const auto first = socket.frame();
+  const auto second = socket.frame();
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->opcode, 1);
+  EXPECT_EQ(first->payload, "first");
+  EXPECT_EQ(second->opcode, 2);
+  EXPECT_EQ(second->payload, std::string("\x00\x01", 2));
+}
+
+TEST(Server, ClosesWithCodeAndReasonAfterWhatWaits) {
+  Recorder recorder;
+  RawSocket socket = upgraded(recorder.port());
+  const ConnectionId id = recorder.opened(1).at(0);
+  recorder.server().send(id, std::string("last words"), false);
+  recorder.server().close(id, 1013, "come back later");
+  EXPECT_EQ(socket.frame()->payload, "last words");
+  const auto frame = socket.frame();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->opcode, 8);
+  EXPECT_EQ(frame->payload, std::string("\x03\xf5") + "come back later");
+  socket.send(RawSocket::masked("\x03\xf5", 8));
+  socket.close();
+  EXPECT_THAT(recorder.closed(1), testing::ElementsAre("come back later"));
+}
+
+TEST(Server, RefusesAnUpgradeInWords) {
+  Recorder recorder;
+  recorder.answer({.accept = false, .status = 503, .reason = "another simulator is connected"});
+  RawSocket socket(recorder.port());
+  socket.send(unity_handshake(recorder.port()));
+  const std::string answer = socket.rest();
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 503"));
+  EXPECT_THAT(answer, HasSubstr("another simulator is connected"));
+}
+
+TEST(Server, RefusesStrangersBeforeAnybodyIsAsked) {
+  Recorder recorder;
+  for (const auto& [host, origin] : std::vector<std::pair<std::string, std::string>>{
+           {"evil.example", ""}, {"localhost", "http://evil.example"}, {"localhost", "null"}}) {
+    RawSocket socket(recorder.port());
+    socket.send("GET / HTTP/1.1\r\nHost: " + host + "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n" +
+                (origin.empty() ? "" : "Origin: " + origin + "\r\n") +
+                "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n");
+    EXPECT_THAT(socket.rest(), StartsWith("HTTP/1.1 403")) << host << " " << origin;
+  }
+  EXPECT_EQ(recorder.upgrade().target, "");
+}
+
+TEST(Server, ServesAssetsWithTheirHeadersAndNothingElse) {
+  Recorder recorder(
+      {}, {{.path = "/index.html", .content_type = "text/html", .content = "<h1>hello</h1>"},
+           {.path = "/app.js", .content_type = "text/javascript", .content = "\x1f\x8b..", .gzip = true}});
+  const std::string page = get(recorder.port(), "/?view=map");
+  EXPECT_THAT(page, StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(page, HasSubstr("Content-Security-Policy: default-src 'self'"));
+  EXPECT_THAT(page, HasSubstr("X-Content-Type-Options: nosniff"));
+  EXPECT_THAT(page, HasSubstr("\r\n\r\n<h1>hello</h1>"));
+  EXPECT_THAT(get(recorder.port(), "/app.js"), HasSubstr("Content-Encoding: gzip"));
+  EXPECT_THAT(get(recorder.port(), "/../etc/passwd"), StartsWith("HTTP/1.1 404"));
+  EXPECT_THAT(get(recorder.port(), "/favicon.ico"), StartsWith("HTTP/1.1 404"));
+  EXPECT_THAT(get(recorder.port(), "/", {}, "DELETE"), StartsWith("HTTP/1.1 405"));
+  const std::string head = get(recorder.port(), "/", {}, "HEAD");
+  EXPECT_THAT(head, HasSubstr("Content-Length: 14\r\n"));
+  EXPECT_THAT(head, Not(HasSubstr("hello")));
+}
+
+TEST(Server, DoesNotSendAnAssetTwice) {
+  Recorder recorder({}, {{.path = "/index.html", .content_type = "text/html", .content = "<h1>hello</h1>"}});
+  const std::string page = get(recorder.port(), "/");
+  const std::size_t start = page.find("ETag: ") + 6;
+  const std::string tag = page.substr(start, page.find("\r\n", start) - start);
+  EXPECT_THAT(get(recorder.port(), "/", "If-None-Match: " + tag + "\r\n"), StartsWith("HTTP/1.1 304"));
+}
+
+TEST(Server, AnswersBrokenRequestsWithoutHarm) {
+  Recorder recorder({.handshake_timeout = 200ms});
+  const auto reply = [&](const std::string& bytes) {
+    RawSocket socket(recorder.port());
+    socket.send(bytes);
+    return socket.rest();
+  };
+  const std::string start = "GET / HTTP/1.1\r\nHost: localhost\r\n";
+  EXPECT_THAT(reply("nonsense\r\n\r\n"), StartsWith("HTTP/1.1 400"));
+  EXPECT_THAT(reply("GET / HTTP/1.1\r\n\r\n"), StartsWith("HTTP/1.1 400"));
+  EXPECT_THAT(reply(start + "Host: localhost\r\n\r\n"), StartsWith("HTTP/1.1 400"));
+  EXPECT_THAT(reply(start + "Filler: " + std::string(9000, 'x') + "\r\n\r\n"), StartsWith("HTTP/1.1 431"));
+  EXPECT_THAT(reply(start + "Content-Length: 5\r\n\r\nhello"), StartsWith("HTTP/1.1 4"));
+  EXPECT_THAT(reply(unity_handshake(recorder.port()) + "early"), StartsWith("HTTP/1.1 400"));
+  EXPECT_EQ(reply("GET / HT"), "");  // a drip: closed when its time is up
+  std::string old = unity_handshake(recorder.port());
+  old.replace(old.find("Version: 13"), 11, "Version: 12");
+  EXPECT_THAT(reply(old), StartsWith("HTTP/1.1 426"));
+  RawSocket still_there = upgraded(recorder.port());
+}
+
+TEST(Server, ClosesWith1009WhenAMessageIsTooLarge) {
+  Recorder recorder({.max_message = 1000});
+  RawSocket socket = upgraded(recorder.port());
+  socket.send(RawSocket::masked(std::string(1001, 'x')));
+  const auto frame = socket.frame();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->opcode, 8);
+  EXPECT_EQ(frame->payload.substr(0, 2), "\x03\xf1");
+  socket.close();
+  EXPECT_THAT(recorder.closed(1).at(0), HasSubstr("more than 1000 bytes"));
+}
+
+TEST(Server, Refuses503WhenThereAreTooManyConnections) {
+  Recorder recorder({.max_connections = 2});
+  const RawSocket first = upgraded(recorder.port());
+  const RawSocket second = upgraded(recorder.port());
+  RawSocket third(recorder.port());
+  EXPECT_THAT(third.rest(), StartsWith("HTTP/1.1 503"));
+}
+
+TEST(Server, NewestWinsForASlowReaderAndNobodyWaits) {
+  Recorder recorder({.idle_timeout = 60s});
+  RawSocket slow = upgraded(recorder.port(), 4096);
+  const ConnectionId id = recorder.opened(1).at(0);
+  const std::string filler(20'000, '.');
+  constexpr int kFrames = 2000;  // 40 MB, far more than any socket buffer
+  for (int i = 0; i < kFrames; ++i) {
+    recorder.server().send(id, std::to_string(i) + filler, false, Delivery::kNewest, 7);
+  }
+  recorder.server().send(id, std::string("end"), false);
+  int received = 0;
+  std::string last;
+  for (auto frame = slow.frame(); frame; frame = slow.frame()) {
+    if (frame->payload == "end") break;
+    last = frame->payload.substr(0, frame->payload.find('.'));
+    ++received;
+  }
+  EXPECT_EQ(last, std::to_string(kFrames - 1));
+  EXPECT_LT(received, kFrames / 2);
+}
+
+TEST(Server, EndsAReliableConnectionThatDoesNotRead) {
+  Recorder recorder({.idle_timeout = 60s, .max_queue = 8});
+  const RawSocket stuck = upgraded(recorder.port(), 4096);
+  const ConnectionId id = recorder.opened(1).at(0);
+  for (int i = 0; i < 500; ++i) recorder.server().send(id, std::string(20'000, 'x'), false);
+  EXPECT_THAT(recorder.closed(1), testing::ElementsAre("does not read what it is sent"));
+}
+
+TEST(Server, PingsASilentPeerAndEndsOneThatDoesNotAnswer) {
+  Recorder recorder({.idle_timeout = 200ms});
+  RawSocket silent = upgraded(recorder.port());
+  EXPECT_EQ(silent.frame()->opcode, 9);
+  EXPECT_THAT(recorder.closed(1), testing::ElementsAre("silent for 200 ms"));
+}
+
+TEST(Server, NoticesACloseAndAPlainEnd) {
+  Recorder recorder;
+  RawSocket polite = upgraded(recorder.port());
+  polite.send(RawSocket::masked(std::string("\x03\xe8", 2), 8));
+  EXPECT_EQ(polite.frame()->opcode, 8);
+  polite.close();
+  EXPECT_THAT(recorder.closed(1).at(0), HasSubstr("closed by the peer (1000)"));
+  upgraded(recorder.port()).close();
+  EXPECT_THAT(recorder.closed(2).at(1), HasSubstr("without a close frame"));
+}
+
+TEST(Server, NamesTheHolderOfABusyPort) {
+  Recorder recorder;
+  const auto second = Server::create({.port = recorder.port()}, {}, {});
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().code, ErrorCode::kIo);
+  EXPECT_THAT(second.error().message,
+              HasSubstr("port " + std::to_string(recorder.port()) + " is in use by "));
+  EXPECT_THAT(second.error().message, HasSubstr("pid " + std::to_string(::getpid())));
+}
+
+TEST(Server, SaysGoodbyeWhenItEnds) {
+  auto recorder = std::make_unique<Recorder>();
+  RawSocket socket = upgraded(recorder->port());
+  static_cast<void>(recorder->opened(1));
+  recorder.reset();
+  const auto frame = socket.frame();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->opcode, 8);
+  EXPECT_EQ(frame->payload.substr(0, 2), "\x03\xe9");  // 1001 going away
+}
+
+TEST(Server, RunsTasksInOrderOfTheirTimeAndServesMeanwhile) {
+  Recorder recorder({}, {{.path = "/index.html", .content_type = "text/html", .content = "here"}});
+  std::promise<std::string> order;
+  std::string seen;
+  recorder.server().run_after(300ms, [&] {
+    seen += "late";
+    order.set_value(seen);
+  });
+  recorder.server().run_after(0ms, [&] { seen += "soon "; });
+  EXPECT_THAT(get(recorder.port(), "/"), HasSubstr("here"));
+  EXPECT_EQ(order.get_future().get(), "soon late");
+}
+
+}  // namespace
+}  // namespace chicane::net
