@@ -227,6 +227,21 @@ TEST(RosMessages, EveryTopicEncodesAFrameFullOfNotANumber) {
     EXPECT_GE(each.encode(frame, samples::run()).size(), 12U) << each.name;
 }
 
+TEST(RosMessages, ServicesAskABooleanAndAnswerASentence) {
+  using namespace std::string_literals;
+  EXPECT_EQ(decode_set_bool("\0\1\0\0\1"s), true);
+  EXPECT_EQ(decode_set_bool("\0\0\0\0\0"s), false);
+  EXPECT_EQ(decode_set_bool("\0\1\0\0\1\0\0\0"s), true);
+  EXPECT_EQ(decode_set_bool("\0\1\0\0"s), std::nullopt);
+  EXPECT_EQ(decode_set_bool("\0\1\0\0\2"s), std::nullopt);
+  EXPECT_EQ(decode_set_bool(""), std::nullopt);
+  const std::string answer = encode_service_response(true, "paused");
+  CdrReader reader{answer};
+  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
+  EXPECT_EQ(reader.text(), "paused");
+  EXPECT_TRUE(reader.is_at_end());
+}
+
 TEST(RosMessages, TimesAreClampedToWhatRosCanHold) {
   EXPECT_EQ(to_nanoseconds(1.5), 1'500'000'000U);
   EXPECT_EQ(to_nanoseconds(-1.0), 0U);

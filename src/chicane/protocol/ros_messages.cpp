@@ -362,6 +362,23 @@ std::string ros_schema(std::string_view type) {
   return schema;
 }
 
+std::string_view service_request_schema(std::string_view type) {
+  return type == "std_srvs/srv/SetBool" ? "bool data\n" : "";
+}
+
+std::string_view service_response_schema() { return "bool success\nstring message\n"; }
+
+std::optional<bool> decode_set_bool(std::string_view request) {
+  // Header (any of the two byte orders, a single byte has none) and one boolean; peers may pad the end.
+  if (request.size() < 5 || request[0] != '\0' || static_cast<unsigned char>(request[4]) > 1)
+    return std::nullopt;
+  return request[4] == '\1';
+}
+
+std::string encode_service_response(bool success, std::string_view message) {
+  return Writer{}.put(success).text(message).bytes();
+}
+
 std::uint64_t to_nanoseconds(double seconds) noexcept {
   constexpr double kLast = 2147483647.0;
   return static_cast<std::uint64_t>(std::llround(1e9 * std::clamp(or_zero(seconds), 0.0, kLast)));

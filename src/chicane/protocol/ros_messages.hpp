@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,6 +65,14 @@ struct RosTopic {
 
 /// The definition of a type ("nav_msgs/msg/Odometry") with all it refers to; empty for a type not known.
 [[nodiscard]] std::string ros_schema(std::string_view type);
+
+/// Services with standard ROS 2 types: std_srvs/srv/Trigger asks nothing, std_srvs/srv/SetBool one boolean;
+/// both answer with success and a sentence.
+[[nodiscard]] std::string_view service_request_schema(std::string_view type);
+[[nodiscard]] std::string_view service_response_schema();
+/// The boolean of a SetBool request; none when the bytes are not one.
+[[nodiscard]] std::optional<bool> decode_set_bool(std::string_view request);
+[[nodiscard]] std::string encode_service_response(bool success, std::string_view message);
 
 /// Seconds of the run as nanoseconds, clamped to what a ROS 2 time can hold; not-a-number gives 0.
 [[nodiscard]] std::uint64_t to_nanoseconds(double seconds) noexcept;
