@@ -68,6 +68,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/chicaneConfig.cmake ${CMAKE_CURRENT_BI
 # The prefix in the .pc file is relative to the file, so that an installation can be moved.
 set(pc_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 file(RELATIVE_PATH pc_to_prefix /prefix/${pc_dir} /prefix)
+string(REGEX REPLACE "/$" "" pc_to_prefix "${pc_to_prefix}")
 configure_file(cmake/chicane.pc.in chicane.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/chicane.pc DESTINATION ${pc_dir})
 

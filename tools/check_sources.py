@@ -22,7 +22,7 @@ class Rule(NamedTuple):
 RULES = (
     Rule(rf"\bstd::{ELEMENTARY}\s*\(|(?<![\w>])::{ELEMENTARY}\s*\(", ("",), ("base",),
          "bits differ between machines: use chicane::sin, cos, ... of base/math.hpp"),
-    Rule(r"\bstd::\w+_distribution\b|\bstd::(mt19937\w*|default_random_engine|random_device)\b|(?<!\w)s?rand\(", ("",), (),
+    Rule(r"\bstd::\w+_distribution\b|\bstd::(mt19937\w*|default_random_engine|random_device)\b|(?<!\w)s?rand\(", ("",), ("net",),
          "not the same on every machine: use base/random.hpp"),
     Rule(r"\bthrow\b", ("",), (), "the library throws nothing: return Result, or a status in the loop"),
     Rule(r"\bstd::(cout|cerr|clog)\b|(?<![\w])f?(printf|puts)\s*\(|\bfmt::print\b", ("",), ("base/assert.hpp", "runtime"),

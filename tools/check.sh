@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Everything that has to hold before a change is taken. Each part also runs alone: tools/check.sh tidy
+#
+#   format   clang-format has nothing to change
+#   layers   arrows between modules, rules of tools/check_sources.py
+#   tidy     clang-tidy: names, function lengths, bug patterns
+#   release  ./test.sh --all: every test, with the dashboard's, the installed package's and the documents'
+#   dev      Debug with assertions, public headers compile alone
+#   clang    the other compiler (where it is installed)
+#   asan     address and undefined behaviour sanitizers
+#   tsan     thread sanitizer
+set -uo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source tools/install_packages.sh
+
+check_format() { tools/check_format.sh; }
+check_layers() { tools/check_layers.py && tools/check_sources.py; }
+check_tidy() {
+  cmake --preset release >/dev/null &&
+    find src apps -name '*.cpp' -print0 | xargs -0 -n 1 -P "$(nproc)" clang-tidy --quiet -p build/release
+}
+check_release() { ./test.sh --all; }
+check_preset() { cmake --workflow --preset "$1"; }
+check_dev() { check_preset dev; }
+check_clang() { command -v clang++ >/dev/null || { say "clang++ is not installed: not checked"; return 0; }; check_preset clang; }
+check_asan() { check_preset asan; }
+check_tsan() { check_preset tsan; }
+
+parts=("$@")
+[ $# -gt 0 ] || parts=(format layers tidy release dev clang asan tsan)
+mapfile -t others < <(node_packages; browser_packages)
+install_packages "${run_packages[@]}" "${test_packages[@]}" "${check_packages[@]}" "${others[@]}" || exit 3
+failed=()
+for part in "${parts[@]}"; do
+  say "== $part"
+  "check_$part" || failed+=("$part")
+done
+[ ${#failed[@]} -eq 0 ] || { say "failed: ${failed[*]}"; exit 1; }
+say "passed: ${parts[*]}"
