@@ -8,7 +8,7 @@
 
 #include "chicane/base/assert.hpp"
 #include "chicane/base/deadline.hpp"
-#include "chicane/base/dual.hpp"
+#include "chicane/solver/linearisation.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/riccati.hpp"
 #include "chicane/solver/solution.hpp"
@@ -19,9 +19,10 @@ namespace chicane::solver {
 /// Sequential quadratic programming by direct multiple shooting for any OcpProblem (docs/solver.md).
 ///
 /// One turn: linearise every stage with dual numbers, measure optimality with the exact adjoint, solve the
-/// stage-structured quadratic program by an active set over Riccati sweeps, step. Steps are full; when they
-/// stop improving, the solver goes back to its best iterate and descends by nonlinear roll-outs with line
-/// search and Levenberg shift until full steps work.
+/// stage-structured quadratic program by an active set over Riccati sweeps, step. Soft constraints enter by a
+/// primal-dual interior point whose slacks are eliminated stage by stage. Steps are full; when they stop
+/// improving, the solver goes back to its best iterate and descends by nonlinear roll-outs with line search
+/// and Levenberg shift until full steps work again.
 ///
 /// One plain object holding its workspace; no allocation, lock, exception, and no clock but the deadline's.
 /// Nothing is remembered from solve to solve: the trajectory is the warm start, so a failure cannot poison
@@ -29,63 +30,60 @@ namespace chicane::solver {
 template <OcpProblem P, int Capacity>
 class OcpSolver {
  public:
-  static constexpr std::size_t kNx = P::kNx;
-  static constexpr std::size_t kNu = P::kNu;
-  using State = std::array<double, kNx>;
+  using State = std::array<double, P::kNx>;
   using Trajectory = solver::Trajectory<P::kNx, P::kNu, Capacity>;
 
   explicit OcpSolver(const SolverOptions& options = {}) noexcept : options_{options} {}
 
   /// Solves from x0. In: trajectory.horizon in [1, Capacity] and the inputs of the warm start (any values;
   /// states are recomputed). Out: the solution, or the best iterate; its inputs are finite and inside their
-  /// bounds whatever the status.
+  /// bounds whatever the status. Data that are not finite, or bounds that cross, end with kNotFinite. The
+  /// deadline is asked before every sweep.
   SolveReport solve(const P& problem, const State& x0, Trajectory& trajectory,
                     Deadline deadline = Deadline::never()) noexcept {
     CHICANE_ASSERT(trajectory.horizon >= 1 && trajectory.horizon <= Capacity);
     SolveReport report;
     if (!start(problem, x0, trajectory)) return give_up(problem, x0, trajectory, report);
     for (;; ++report.iterations) {
-      linearise(problem, trajectory, report);
-      measure(trajectory, report);
+      look(problem, trajectory, report);
       if (!is_finite(report) && !has_best_) return give_up(problem, x0, trajectory, report);
       if (has_converged(report)) return finish(SolveStatus::kOptimal, problem, trajectory, report);
       const bool budget_spent = report.iterations >= options_.max_iterations || deadline.spent();
-      if (keep_best(trajectory, report)) {
-        if (report.iterations == 0) guess_working_set(trajectory);
-      } else if (!budget_spent && has_lost_its_way(report)) {
-        if (!full_steps_) shift_ = std::max(10.0 * shift_, 1.0);
-        trajectory = best_;
-        full_steps_ = false;
-        if (!roll_out(problem, x0, trajectory)) break;
+      if (!keep_best(trajectory, report) && !budget_spent && has_lost_its_way(report)) {
+        if (!go_back(problem, trajectory)) break;
         continue;
       }
       if (budget_spent) break;
-      if (!(full_steps_ ? full_step(trajectory, deadline, report) : descend(problem, trajectory, report)))
+      if (!(full_steps_ ? full_step(problem, trajectory, deadline, report)
+                        : descend(problem, trajectory, report)))
         break;
     }
     return finish(SolveStatus::kBudgetSpent, problem, trajectory, report);
   }
 
  private:
-  static constexpr std::size_t kCapacity = Capacity;
-  static constexpr std::size_t kNz = kNx + kNu;
+  static constexpr std::size_t kNx = P::kNx;
+  static constexpr std::size_t kNu = P::kNu;
+  static constexpr std::size_t kNc = P::kNc;
   static constexpr std::size_t kOne = kNx;
   static constexpr std::size_t kHead = kNx + 1;
   static constexpr int kMaxWorkingSetTurns = 12;
   static constexpr int kPatience = 3;  ///< turns without improvement before full steps are given up
   static constexpr double kDefectShare =
-      1e-3;  ///< defects are amplified by the Hessian: a tighter tolerance for them
-  using Number = Dual<static_cast<int>(kNz)>;
+      1e-3;  ///< the Hessian amplifies defects: a tighter tolerance for them
+  static constexpr double kCurvaturePays =
+      6.0;  ///< expected further turns above which exact curvature is worth its cost
 
+  static SoftPenalty price_of([[maybe_unused]] const P& problem, [[maybe_unused]] std::size_t c) noexcept {
+    if constexpr (kNc > 0) return problem.soft_penalty(static_cast<int>(c));
+    return {};
+  }
   static std::size_t size_of(const Trajectory& t) noexcept { return static_cast<std::size_t>(t.horizon); }
-  /// Position of variable `i` of (x, u) in z = (x, 1, u).
-  static constexpr std::size_t in_z(std::size_t i) noexcept { return i < kNx ? i : i + 1; }
 
   bool start(const P& problem, const State& x0, Trajectory& trajectory) noexcept {
     full_steps_ = true;
-    has_best_ = false;
-    idle_turns_ = 0;
-    smooth_descents_ = 0;
+    has_best_ = has_curvature_ = false;
+    idle_turns_ = smooth_descents_ = 0;
     needed_descents_ = 2;
     shift_ = 0.0;
     for (const double value : x0) {
@@ -103,97 +101,154 @@ class OcpSolver {
     return roll_out(problem, x0, trajectory);
   }
 
-  // ---- what is known about the iterate
-  // -------------------------------------------------------------------------------
-
-  /// One derivative pass over the stages: dynamics, defects, Gauss–Newton cost (eq. 4–7).
-  void linearise(const P& problem, const Trajectory& t, SolveReport& report) noexcept {
-    report.cost = 0.0;
-    report.defect = 0.0;
-    const std::size_t horizon = size_of(t);
-    for (std::size_t k = 0; k < horizon; ++k) {
-      auto& stage = lq_.stage[k];
-      const int number = static_cast<int>(k);
-      std::array<Number, kNx> x;
-      std::array<Number, kNu> u;
-      for (std::size_t i = 0; i < kNx; ++i) x[i] = Number::variable(t.x[k][i], static_cast<int>(i));
-      for (std::size_t m = 0; m < kNu; ++m) u[m] = Number::variable(t.u[k][m], static_cast<int>(kNx + m));
-      const std::array<Number, kNx> next = problem.dynamics(number, x, u);
-      for (std::size_t i = 0; i < kNx; ++i) {
-        for (std::size_t j = 0; j < kNz; ++j) stage.F[i][in_z(j)] = next[i].d[j];
-        const double defect = next[i].v - t.x[k + 1][i];
-        stage.F[i][kOne] = defect;
-        report.defect = worse(report.defect, std::fabs(defect));
-      }
-      add_squares(problem.residual(number, x, u), stage.L, gradient_[k], report.cost);
-      const auto low = problem.input_lower(number);
-      const auto high = problem.input_upper(number);
-      for (std::size_t m = 0; m < kNu; ++m) {
-        stage.low[m] = low[m] - t.u[k][m];
-        stage.high[m] = high[m] - t.u[k][m];
-      }
-    }
-    using TerminalNumber = Dual<static_cast<int>(kNx)>;
-    std::array<TerminalNumber, kNx> x;
-    for (std::size_t i = 0; i < kNx; ++i)
-      x[i] = TerminalNumber::variable(t.x[horizon][i], static_cast<int>(i));
-    add_squares(problem.terminal_residual(x), lq_.terminal, terminal_gradient_, report.cost);
+  /// Linearises the iterate and measures it.
+  void look(const P& problem, const Trajectory& t, SolveReport& report) noexcept {
+    now_.evaluate(problem, t, lq_, report);
+    if constexpr (kNc > 0) look_at_soft(problem, t, report);
+    now_.measure(t, lq_, report);
+    if (report.iterations == 0) guess_working_set(t);
+    now_.add_soft(problem, size_of(t), mu_, lq_);
+    if (full_steps_ && options_.second_order) weigh_curvature(problem, t, report);
   }
-
-  /// ½‖r‖² with its gradient and Gauss–Newton Hessian in z coordinates; most entries of a residual's row are
-  /// zero.
-  template <class Residual, std::size_t Rows, std::size_t Width, std::size_t Size>
-  static void add_squares(const Residual& residual, double (&L)[Rows][Width], double (&gradient)[Size],
-                          double& cost) noexcept {
-    std::fill(&L[0][0], &L[0][0] + Rows * Width, 0.0);
-    std::fill(gradient, gradient + Size, 0.0);
-    for (const auto& r : residual) {
-      cost += 0.5 * r.v * r.v;
-      for (std::size_t i = 0; i < Size; ++i) {
-        if (r.d[i] == 0.0) continue;
-        gradient[i] += r.v * r.d[i];
-        for (std::size_t j = 0; j < Size; ++j) L[in_z(i)][in_z(j)] += r.d[i] * r.d[j];
-      }
-    }
-    for (std::size_t i = 0; i < Size; ++i) L[in_z(i)][kOne] = L[kOne][in_z(i)] = gradient[i];
-  }
-
-  /// Exact adjoint λ and slopes dJ/du of the nonlinear problem; the projected slope is the optimality measure
-  /// (eq. 12).
-  void measure(const Trajectory& t, SolveReport& report) noexcept {
-    report.stationarity = 0.0;
-    std::array<double, kNx> lambda;
-    std::copy(terminal_gradient_, terminal_gradient_ + kNx, lambda.begin());
-    for (std::size_t k = size_of(t); k-- > 0;) {
-      const auto& stage = lq_.stage[k];
-      adjoint_[k] = lambda;
-      std::array<double, kNx> previous;
-      std::copy(gradient_[k], gradient_[k] + kNx, previous.begin());
-      for (std::size_t m = 0; m < kNu; ++m) slope_[k][m] = gradient_[k][kNx + m];
-      for (std::size_t i = 0; i < kNx; ++i) {
-        for (std::size_t j = 0; j < kNx; ++j) previous[j] += stage.F[i][j] * lambda[i];
-        for (std::size_t m = 0; m < kNu; ++m) slope_[k][m] += stage.F[i][kHead + m] * lambda[i];
-      }
-      for (std::size_t m = 0; m < kNu; ++m) {
-        const double projected = std::min(std::max(-slope_[k][m], stage.low[m]), stage.high[m]);
-        report.stationarity =
-            worse(report.stationarity, std::isnan(slope_[k][m]) ? slope_[k][m] : std::fabs(projected));
-      }
-      lambda = previous;
-    }
-  }
-
-  /// The larger one; not-a-number wins.
-  static double worse(double a, double b) noexcept { return b <= a ? a : (std::isnan(a) ? a : b); }
 
   static bool is_finite(const SolveReport& report) noexcept {
     return std::isfinite(report.cost) && std::isfinite(report.defect) && std::isfinite(report.stationarity);
   }
   [[nodiscard]] bool has_converged(const SolveReport& report) const noexcept {
-    return report.stationarity <= options_.tolerance && report.defect <= kDefectShare * options_.tolerance;
+    const bool soft_done = kNc == 0 || (mu_ <= final_mu() && report.complementarity <= options_.tolerance);
+    return report.stationarity <= options_.tolerance && report.defect <= kDefectShare * options_.tolerance &&
+           soft_done;
   }
   static double residual(const SolveReport& report) noexcept {
-    return std::max(report.stationarity, report.defect);
+    return std::max({report.stationarity, report.defect, report.complementarity});
+  }
+
+  // ---- soft constraints
+  // ----------------------------------------------------------------------------------------------
+
+  [[nodiscard]] double final_mu() const noexcept { return options_.tolerance; }
+
+  /// Slacks start on the central path, and return to it while the cost descends, where the barrier's own cost
+  /// is the merit.
+  void look_at_soft(const P& problem, const Trajectory& t, SolveReport& report) noexcept {
+    if (report.iterations == 0) mu_ = start_mu(problem);
+    report.complementarity = 0.0;
+    merit_ = report.cost;
+    for (std::size_t k = 0; k < size_of(t); ++k) {
+      for (std::size_t c = 0; c < kNc; ++c) {
+        SoftConstraint& soft = now_.soft[k][c];
+        const SoftPenalty price = price_of(problem, c);
+        if (report.iterations == 0 || !full_steps_) soft.centre(price, mu_);
+        if (!full_steps_) merit_ += soft.barrier(price, mu_) - soft.penalty(price);
+        report.complementarity = std::max(report.complementarity, soft.residual(price, mu_));
+      }
+    }
+  }
+
+  static double start_mu(const P& problem) noexcept {
+    double price = 0.0;
+    for (std::size_t c = 0; c < kNc; ++c) {
+      const SoftPenalty penalty = price_of(problem, c);
+      price = std::max({price, penalty.linear, 0.1 * penalty.quadratic});
+    }
+    return 0.2 * price;
+  }
+
+  /// Moves slacks and multipliers along their Newton steps, never beyond 0.995 of the way to zero; returns
+  /// the step length that the primal ones allow, and lowers the barrier the faster the longer it was.
+  double step_soft(const P& problem, std::size_t horizon) noexcept {
+    constexpr double kFraction = 0.995;
+    double primal = 1.0;
+    double dual = 1.0;
+    const auto each = [&](const auto& visit) {
+      for (std::size_t k = 0; k < horizon; ++k) {
+        for (std::size_t c = 0; c < kNc; ++c) {
+          SoftConstraint& soft = now_.soft[k][c];
+          visit(soft, soft.step(price_of(problem, c), mu_, now_.soft_change(k, c, lq_)));
+        }
+      }
+    };
+    const auto limit = [](double length, double value, double change) {
+      return change < 0.0 ? std::min(length, -kFraction * value / change) : length;
+    };
+    each([&](const SoftConstraint& soft, const SoftConstraint& step) {
+      primal = limit(limit(primal, soft.s, step.s), soft.t, step.t);
+      dual = limit(limit(dual, soft.z, step.z), soft.n, step.n);
+    });
+    each([&](SoftConstraint& soft, const SoftConstraint& step) {
+      soft.s += primal * step.s;
+      soft.t += primal * step.t;
+      soft.z += dual * step.z;
+      soft.n += dual * step.n;
+    });
+    lower_barrier(primal);
+    return primal;
+  }
+
+  void lower_barrier(double length) noexcept {
+    const double next = length > 0.9 ? std::min(0.1, std::sqrt(mu_)) : (length > 0.5 ? 0.2 : 0.6);
+    mu_ = std::max(final_mu(), next * mu_);
+  }
+
+  // ---- second order
+  // --------------------------------------------------------------------------------------------------
+
+  /// Gauss–Newton converges linearly; when its rate promises many more turns, the missing second derivatives
+  /// are evaluated once and kept: the rest of the way is short.
+  void weigh_curvature(const P& problem, const Trajectory& t, const SolveReport& report) noexcept {
+    const double before = last_residual_;
+    const double after = last_residual_ = residual(report);
+    if (report.iterations > 1 && after < before && after < 1e-1) {
+      const double turns = std::log(after / options_.tolerance) / std::log(before / after);
+      if (turns > kCurvaturePays) {
+        now_.evaluate_curvature(problem, t);
+        has_curvature_ = true;
+      }
+    }
+    if (has_curvature_) now_.add_curvature(size_of(t), 1.0, lq_);
+  }
+
+  // ---- full steps
+  // ----------------------------------------------------------------------------------------------------
+
+  /// First guess of the working set: inputs at a bound whose cost falls beyond it.
+  void guess_working_set(const Trajectory& t) noexcept {
+    for (std::size_t k = 0; k < size_of(t); ++k) {
+      auto& stage = lq_.stage[k];
+      for (std::size_t m = 0; m < kNu; ++m) {
+        stage.hold[m] = Hold::kFree;
+        if (stage.low[m] >= 0.0 && now_.slope[k][m] > 0.0) stage.hold[m] = Hold::kLow;
+        if (stage.high[m] <= 0.0 && now_.slope[k][m] < 0.0) stage.hold[m] = Hold::kHigh;
+      }
+    }
+  }
+
+  /// Solves the quadratic program and takes its whole step. False when the deadline came first.
+  bool full_step(const P& problem, Trajectory& t, const Deadline& deadline, SolveReport& report) noexcept {
+    for (int turn = 0;; ++turn) {
+      ++report.sweeps;
+      const double extra = lq_.backward(size_of(t), 0.0, false);
+      if (extra > 0.0 && has_curvature_) {  // indefinite: Gauss–Newton is not
+        now_.add_curvature(size_of(t), -1.0, lq_);
+        has_curvature_ = false;
+        continue;
+      }
+      if (!lq_.forward(size_of(t), false)) break;
+      if (deadline.spent()) return false;
+      if (turn >= kMaxWorkingSetTurns) {
+        lq_.forward(size_of(t), true);
+        break;
+      }
+    }
+    const double length = kNc > 0 ? step_soft(problem, size_of(t)) : 1.0;
+    for (std::size_t k = 0; k < size_of(t); ++k) {
+      const auto& stage = lq_.stage[k];
+      for (std::size_t i = 0; i < kNx; ++i) t.x[k + 1][i] += length * lq_.dx[k + 1][i];
+      for (std::size_t m = 0; m < kNu; ++m) {
+        t.u[k][m] += length * std::min(std::max(lq_.du[k][m], stage.low[m]), stage.high[m]);
+      }
+    }
+    return true;
   }
 
   // ---- globalisation
@@ -211,46 +266,19 @@ class OcpSolver {
     return true;
   }
 
-  /// Full steps have not improved for a while, or left the finite numbers.
+  /// Steps have not improved for a while, or left the finite numbers.
   bool has_lost_its_way(const SolveReport& report) noexcept {
-    if (!full_steps_) return !is_finite(report);
-    if (is_finite(report) && ++idle_turns_ < kPatience) return false;
-    idle_turns_ = 0;
-    return true;
+    return !is_finite(report) || (full_steps_ && ++idle_turns_ >= kPatience);
   }
 
-  /// First guess of the working set: inputs at a bound whose cost falls beyond it.
-  void guess_working_set(const Trajectory& t) noexcept {
-    for (std::size_t k = 0; k < size_of(t); ++k) {
-      auto& stage = lq_.stage[k];
-      for (std::size_t m = 0; m < kNu; ++m) {
-        stage.hold[m] = Hold::kFree;
-        if (stage.low[m] >= 0.0 && slope_[k][m] > 0.0) stage.hold[m] = Hold::kLow;
-        if (stage.high[m] <= 0.0 && slope_[k][m] < 0.0) stage.hold[m] = Hold::kHigh;
-      }
-    }
-  }
-
-  /// Solves the quadratic program and takes its whole step. False when the deadline came first.
-  bool full_step(Trajectory& t, const Deadline& deadline, SolveReport& report) noexcept {
-    for (int turn = 0;; ++turn) {
-      ++report.sweeps;
-      lq_.backward(size_of(t), 0.0, false);
-      if (!lq_.forward(size_of(t), false)) break;
-      if (deadline.spent()) return false;
-      if (turn == kMaxWorkingSetTurns) {
-        lq_.forward(size_of(t), true);
-        break;
-      }
-    }
-    for (std::size_t k = 0; k < size_of(t); ++k) {
-      const auto& stage = lq_.stage[k];
-      for (std::size_t i = 0; i < kNx; ++i) t.x[k + 1][i] += lq_.dx[k + 1][i];
-      for (std::size_t m = 0; m < kNu; ++m) {
-        t.u[k][m] += std::min(std::max(lq_.du[k][m], stage.low[m]), stage.high[m]);
-      }
-    }
-    return true;
+  /// Back to the best iterate, to descend from there. False when its inputs cannot be simulated.
+  bool go_back(const P& problem, Trajectory& trajectory) noexcept {
+    if (!full_steps_) shift_ = std::max(10.0 * shift_, 1.0);
+    full_steps_ = has_curvature_ = false;
+    idle_turns_ = smooth_descents_ = 0;
+    const State x0 = trajectory.x[0];
+    trajectory = best_;
+    return roll_out(problem, x0, trajectory);
   }
 
   /// One descent step: control-limited dynamic programming with line search on the true cost; the iterate
@@ -258,20 +286,21 @@ class OcpSolver {
   bool descend(const P& problem, Trajectory& t, SolveReport& report) noexcept {
     constexpr int kAttempts = 12;
     constexpr int kHalvings = 6;
+    const double merit = kNc > 0 ? merit_ : report.cost;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       ++report.sweeps;
       lq_.backward(size_of(t), shift_, true);
       double scale = 0.0;
       const double expected = expected_change(size_of(t), scale);
+      if (!(expected < 0.0)) return false;
       double length = 1.0;
-      for (int trial = 0; trial < kHalvings && expected < 0.0; ++trial, length *= 0.5) {
-        const double allowed = report.cost + 1e-4 * length * expected + 1e-13 * std::fabs(report.cost);
+      for (int trial = 0; trial < kHalvings; ++trial, length *= 0.5) {
+        const double allowed = merit + 1e-4 * length * expected + 1e-13 * std::fabs(merit);
         if (!(try_step(problem, t, length) <= allowed)) continue;
         t = candidate_;
         accept(length, scale);
         return true;
       }
-      if (!(expected < 0.0)) return false;
       smooth_descents_ = 0;
       shift_ = std::max(10.0 * shift_, 1e-3 * scale);
     }
@@ -281,9 +310,11 @@ class OcpSolver {
   void accept(double length, double scale) noexcept {
     smooth_descents_ = length >= 1.0 && shift_ == 0.0 ? smooth_descents_ + 1 : 0;
     if (length >= 1.0) shift_ = shift_ > 1e-6 * scale ? 0.1 * shift_ : 0.0;
+    if (kNc > 0 && length >= 1.0) mu_ = std::max(final_mu(), 0.2 * mu_);
     if (smooth_descents_ < needed_descents_) return;
     full_steps_ = true;
-    idle_turns_ = smooth_descents_ = 0;
+    has_best_ = false;
+    smooth_descents_ = 0;
     needed_descents_ *= 2;
   }
 
@@ -304,31 +335,44 @@ class OcpSolver {
     return change;
   }
 
-  /// Rolls the gains out through the true dynamics into candidate_ and returns its cost.
+  /// Rolls the gains out through the true dynamics into candidate_ and returns its merit.
   double try_step(const P& problem, const Trajectory& t, double length) noexcept {
     candidate_.horizon = t.horizon;
     candidate_.x[0] = t.x[0];
-    double cost = 0.0;
-    const std::size_t horizon = size_of(t);
-    for (std::size_t k = 0; k < horizon; ++k) {
+    double merit = 0.0;
+    for (std::size_t k = 0; k < size_of(t); ++k) {
       const auto& stage = lq_.stage[k];
+      const int number = static_cast<int>(k);
+      const State& x = candidate_.x[k];
       for (std::size_t m = 0; m < kNu; ++m) {
         double du = length * stage.gain[m][kOne];
-        for (std::size_t i = 0; i < kNx; ++i) du += stage.gain[m][i] * (candidate_.x[k][i] - t.x[k][i]);
+        for (std::size_t i = 0; i < kNx; ++i) du += stage.gain[m][i] * (x[i] - t.x[k][i]);
         candidate_.u[k][m] = t.u[k][m] + std::min(std::max(du, stage.low[m]), stage.high[m]);
       }
-      for (const double r : problem.residual(static_cast<int>(k), candidate_.x[k], candidate_.u[k]))
-        cost += 0.5 * r * r;
-      candidate_.x[k + 1] = problem.dynamics(static_cast<int>(k), candidate_.x[k], candidate_.u[k]);
+      for (const double r : problem.residual(number, x, candidate_.u[k])) merit += 0.5 * r * r;
+      if constexpr (kNc > 0) merit += soft_merit(problem, problem.constraint(number, x, candidate_.u[k]));
+      candidate_.x[k + 1] = problem.dynamics(number, x, candidate_.u[k]);
     }
-    for (const double r : problem.terminal_residual(candidate_.x[horizon])) cost += 0.5 * r * r;
-    return cost;
+    for (const double r : problem.terminal_residual(candidate_.x[size_of(t)])) merit += 0.5 * r * r;
+    return merit;
+  }
+
+  double soft_merit(const P& problem, const std::array<double, kNc>& values) const noexcept {
+    double merit = 0.0;
+    for (std::size_t c = 0; c < kNc; ++c) {
+      const SoftPenalty price = price_of(problem, c);
+      SoftConstraint soft;
+      soft.value = values[c];
+      soft.centre(price, mu_);
+      merit += soft.barrier(price, mu_);
+    }
+    return merit;
   }
 
   // ---- endings
   // -------------------------------------------------------------------------------------------------------
 
-  /// Hands out the best iterate; the status follows from its residuals unless it is optimal.
+  /// Hands out the best iterate; unless it is optimal, its residuals decide the status.
   SolveReport finish(SolveStatus status, const P& problem, Trajectory& trajectory,
                      const SolveReport& report) noexcept {
     SolveReport result = report;
@@ -340,9 +384,20 @@ class OcpSolver {
       status =
           residual(result) <= options_.loose_tolerance ? SolveStatus::kBudgetSpent : SolveStatus::kStalled;
     }
-    clamp_inputs(problem, trajectory);  // u + (bound - u) may miss the bound by one rounding
+    if (status == SolveStatus::kOptimal && violates_a_cap(problem, size_of(trajectory)))
+      status = SolveStatus::kInfeasible;
+    clamp_inputs(problem, trajectory);  // u + (bound − u) may miss the bound by one rounding
     result.status = status;
     return result;
+  }
+
+  [[nodiscard]] bool violates_a_cap(const P& problem, std::size_t horizon) const noexcept {
+    for (std::size_t k = 0; k < horizon; ++k) {
+      for (std::size_t c = 0; c < kNc; ++c) {
+        if (now_.soft[k][c].value > price_of(problem, c).cap) return true;
+      }
+    }
+    return false;
   }
 
   /// The data are not finite: leaves admissible inputs and finite states behind.
@@ -358,20 +413,21 @@ class OcpSolver {
   }
 
   SolverOptions options_;
-  Riccati<kNx, kNu, kCapacity> lq_;
-  double gradient_[kCapacity][kNz]{};  ///< of the stage costs
-  double terminal_gradient_[kNx]{};
-  std::array<State, kCapacity> adjoint_{};  ///< adjoint_[k]: price of x_{k+1}
-  double slope_[kCapacity][kNu]{};          ///< dJ/du
+  Linearisation<P, Capacity> now_;  ///< of the present iterate
+  Riccati<kNx, kNu, Capacity> lq_;  ///< its quadratic program
   Trajectory best_{};
   Trajectory candidate_{};
   SolveReport best_report_{};
   bool has_best_ = false;
   bool full_steps_ = true;
+  bool has_curvature_ = false;
   int idle_turns_ = 0;
   int smooth_descents_ = 0;
   int needed_descents_ = 2;
-  double shift_ = 0.0;
+  double shift_ = 0.0;  ///< Levenberg shift on the input blocks
+  double mu_ = 0.0;     ///< barrier of the soft constraints
+  double merit_ = 0.0;
+  double last_residual_ = 0.0;
 };
 
 }  // namespace chicane::solver

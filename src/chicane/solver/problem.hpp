@@ -6,25 +6,27 @@
 
 namespace chicane::solver {
 
-/// A discrete-time optimal control problem, given as a type P with functions over any scalar T (double, or a Dual):
+/// A discrete-time optimal control problem, given as a type P with functions over any scalar T (double, or a
+/// Dual):
 ///
 ///     min Σ_{k<N} ½‖r_k(x_k, u_k)‖² + ½‖r_N(x_N)‖² + Σ soft penalty(c_k(x_k, u_k))
 ///     s.t. x_0 given, x_{k+1} = f_k(x_k, u_k), lower_k <= u_k <= upper_k
 ///
-/// P has the sizes kNx, kNu, kNr (stage residuals), kNe (terminal residuals), kNc (soft constraints c <= 0; may be 0; the
-/// constraint of stage k is on (x_k, u_k), k < N) and
+/// P has the sizes kNx, kNu, kNr (stage residuals), kNe (terminal residuals), kNc (soft constraints c <= 0;
+/// may be 0; the constraint of stage k is on (x_k, u_k), k < N) and
 ///
-///     template <class T> std::array<T, kNx> dynamics(int k, const std::array<T, kNx>& x, const std::array<T, kNu>& u) const;
-///     template <class T> std::array<T, kNr> residual(int k, const std::array<T, kNx>& x, const std::array<T, kNu>& u) const;
-///     template <class T> std::array<T, kNe> terminal_residual(const std::array<T, kNx>& x) const;
-///     template <class T> std::array<T, kNc> constraint(int k, const std::array<T, kNx>& x, const std::array<T, kNu>& u) const;
-///     std::array<double, kNu> input_lower(int k) const;   // may be -infinity
-///     std::array<double, kNu> input_upper(int k) const;
-///     SoftPenalty soft_penalty(int constraint) const;     // only when kNc > 0
+///     template <class T> std::array<T, kNx> dynamics(int k, const std::array<T, kNx>& x, const std::array<T,
+///     kNu>& u) const; template <class T> std::array<T, kNr> residual(int k, const std::array<T, kNx>& x,
+///     const std::array<T, kNu>& u) const; template <class T> std::array<T, kNe> terminal_residual(const
+///     std::array<T, kNx>& x) const; template <class T> std::array<T, kNc> constraint(int k, const
+///     std::array<T, kNx>& x, const std::array<T, kNu>& u) const; std::array<double, kNu> input_lower(int k)
+///     const;   // may be -infinity std::array<double, kNu> input_upper(int k) const; SoftPenalty
+///     soft_penalty(int constraint) const;     // only when kNc > 0
 ///
 /// Costs on input changes: make the previous input part of the state.
 template <class P>
-concept OcpProblem = requires(const P& p, const std::array<double, P::kNx>& x, const std::array<double, P::kNu>& u) {
+concept OcpProblem = requires(const P& p, const std::array<double, P::kNx>& x,
+                              const std::array<double, P::kNu>& u) {
   { p.dynamics(0, x, u) } -> std::same_as<std::array<double, P::kNx>>;
   { p.residual(0, x, u) } -> std::same_as<std::array<double, P::kNr>>;
   { p.terminal_residual(x) } -> std::same_as<std::array<double, P::kNe>>;

@@ -18,11 +18,16 @@ enum class SolveStatus : std::int8_t {
 [[nodiscard]] constexpr bool usable(SolveStatus status) noexcept { return static_cast<int>(status) >= 0; }
 [[nodiscard]] constexpr std::string_view to_string(SolveStatus status) noexcept {
   switch (status) {
-    case SolveStatus::kOptimal: return "optimal";
-    case SolveStatus::kBudgetSpent: return "budget_spent";
-    case SolveStatus::kStalled: return "stalled";
-    case SolveStatus::kInfeasible: return "infeasible";
-    case SolveStatus::kNotFinite: return "not_finite";
+    case SolveStatus::kOptimal:
+      return "optimal";
+    case SolveStatus::kBudgetSpent:
+      return "budget_spent";
+    case SolveStatus::kStalled:
+      return "stalled";
+    case SolveStatus::kInfeasible:
+      return "infeasible";
+    case SolveStatus::kNotFinite:
+      return "not_finite";
   }
   return "unknown";
 }
