@@ -9,11 +9,11 @@
 namespace chicane::controller {
 namespace {
 
-constexpr double kMaxStep = 0.01;         // [s] integration step of the estimator
-constexpr double kLongestGap = 1.0;       // [s] after a longer silence the estimate starts anew
-constexpr double kLostPosition = 3.0;     // [m] a measurement further from the prediction starts anew
-constexpr double kPositionGain = 0.8;     // share of the position and heading innovation taken over at once
-constexpr double kYawRateGain = 0.25;     // share of the heading innovation per second taken as yaw-rate error
+constexpr double kMaxStep = 0.01;      // [s] integration step of the estimator
+constexpr double kLongestGap = 1.0;    // [s] after a longer silence the estimate starts anew
+constexpr double kLostPosition = 3.0;  // [m] a measurement further from the prediction starts anew
+constexpr double kPositionGain = 0.8;  // share of the position and heading innovation taken over at once
+constexpr double kYawRateGain = 0.25;  // share of the heading innovation per second taken as yaw-rate error
 
 bool is_finite(const model::Measurement& m) {
   return std::isfinite(m.x) && std::isfinite(m.y) && std::isfinite(m.psi) && std::isfinite(m.speed);
@@ -94,8 +94,13 @@ void StateEstimator::correct(const model::Measurement& now, const CommandHistory
     return;  // an old or repeated measurement
   }
   const double steer = std::isfinite(now.steer) ? now.steer : 0.0;
-  state_ = {.x = now.x, .y = now.y, .psi = now.psi, .vx = now.speed, .vy = 0.0,
-            .r = now.speed * tan(std::clamp(steer, -0.6, 0.6)) / model_.vehicle().wheelbase(), .steer = steer};
+  state_ = {.x = now.x,
+            .y = now.y,
+            .psi = now.psi,
+            .vx = now.speed,
+            .vy = 0.0,
+            .r = now.speed * tan(std::clamp(steer, -0.6, 0.6)) / model_.vehicle().wheelbase(),
+            .steer = steer};
   acceleration_ = 0.0;
   time_ = now.time;
   is_started_ = true;

@@ -9,7 +9,8 @@
 
 namespace chicane::controller {
 
-/// The commands this controller has sent, with the time from which each acts. Fixed memory; the oldest is forgotten.
+/// The commands this controller has sent, with the time from which each acts. Fixed memory; the oldest is
+/// forgotten.
 class CommandHistory {
  public:
   void clear() noexcept { count_ = 0; }
@@ -34,8 +35,9 @@ class CommandHistory {
   }
 };
 
-/// Where the car is, and where it will be when the next command acts: the prediction model driven by the commands that are
-/// really in flight, corrected by each measurement. Yaw rate and sideslip, which telemetry does not hold, come from here.
+/// Where the car is, and where it will be when the next command acts: the prediction model driven by the
+/// commands that are really in flight, corrected by each measurement. Yaw rate and sideslip, which telemetry
+/// does not hold, come from here.
 class StateEstimator {
  public:
   explicit StateEstimator(const PredictionModel& model) noexcept : model_{model} {}
@@ -46,7 +48,8 @@ class StateEstimator {
   [[nodiscard]] const model::State& state() const noexcept { return state_; }
   [[nodiscard]] double acceleration() const noexcept { return acceleration_; }
 
-  /// The state at `time` >= the last measurement's [s], commands in flight replayed for exactly the fractions they act.
+  /// The state at `time` >= the last measurement's [s], commands in flight replayed for exactly the fractions
+  /// they act.
   struct Prediction {
     model::State state;
     double acceleration = 0.0;  ///< net longitudinal acceleration then [m/s²]
@@ -54,7 +57,8 @@ class StateEstimator {
   [[nodiscard]] Prediction predict(double time, const CommandHistory& sent) const noexcept;
 
  private:
-  void advance(model::State& state, double& acceleration, double from, double to, const CommandHistory& sent) const noexcept;
+  void advance(model::State& state, double& acceleration, double from, double to,
+               const CommandHistory& sent) const noexcept;
 
   PredictionModel model_;
   bool is_started_ = false;

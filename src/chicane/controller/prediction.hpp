@@ -17,16 +17,16 @@ struct BodyMotion {
   T acceleration{};  ///< net longitudinal acceleration, drag included, cornering resistance not [m/s²]
 };
 
-/// The car a tracking controller believes in: a single track with saturating tyres, steering and drive lag, and the share
-/// h by which some cars turn their velocity along with the body (docs/tracking.md, eq. 1–9).
+/// The car a tracking controller believes in: a single track with saturating tyres, steering and drive lag,
+/// and the share h by which some cars turn their velocity along with the body (docs/tracking.md, eq. 1–9).
 ///
 ///     v_y' = k_f α_f + k_r α_r − (1 − h) r v_x          α_f = δ − (v_y + a r)/v_x
 ///     r'   = (m / I)(a k_f α_f − b k_r α_r)             α_r =   − (v_y − b r)/v_x
 ///     v_x' = a_x + (1 − h) r v_y − k_f α_f δ
 ///
-/// k are secant stiffnesses per mass, F/(m α), of a saturating tyre. One step is linearly implicit in (v_y, r): tyres that are
-/// stiff at low speed cannot make it unstable, and v_x → 0 tends to the kinematic bicycle, so one model serves every
-/// speed from standstill on.
+/// k are secant stiffnesses per mass, F/(m α), of a saturating tyre. One step is linearly implicit in (v_y,
+/// r): tyres that are stiff at low speed cannot make it unstable, and v_x → 0 tends to the kinematic bicycle,
+/// so one model serves every speed from standstill on.
 ///
 /// T is double or a Dual. No allocation, no failure for finite input, any dt > 0. Error O(dt²) per step.
 class PredictionModel {
@@ -35,8 +35,8 @@ class PredictionModel {
 
   /// Motion after dt [s] with the given road-wheel angle and net acceleration asked for all along.
   template <class T>
-  [[nodiscard]] BodyMotion<T> advance(const BodyMotion<T>& from, const T& steer_asked, const T& acceleration_asked,
-                                      double dt) const noexcept {
+  [[nodiscard]] BodyMotion<T> advance(const BodyMotion<T>& from, const T& steer_asked,
+                                      const T& acceleration_asked, double dt) const noexcept {
     const model::VehicleParams& p = vehicle_;
     BodyMotion<T> to;
     const T steer = lag(from.steer, steer_asked, p.steer_lag, dt, to.steer);
@@ -69,8 +69,8 @@ class PredictionModel {
     return to;
   }
 
-  /// Normalised lateral tyre use, front and rear: cornering · slip / friction. 1 is where the linear tyre would reach its
-  /// peak; larger means sliding.
+  /// Normalised lateral tyre use, front and rear: cornering · slip / friction. 1 is where the linear tyre
+  /// would reach its peak; larger means sliding.
   template <class T>
   [[nodiscard]] std::array<T, 2> tire_use(const BodyMotion<T>& motion) const noexcept {
     const Tires<T> tires = tire_state(motion, motion.steer);
@@ -78,11 +78,14 @@ class PredictionModel {
   }
 
   /// Normal acceleration carried by the tyres at speed v [m/s²].
-  [[nodiscard]] double load(double v) const noexcept { return vehicle_.load_constant + vehicle_.load_per_speed * v; }
+  [[nodiscard]] double load(double v) const noexcept {
+    return vehicle_.load_constant + vehicle_.load_per_speed * v;
+  }
   [[nodiscard]] const model::VehicleParams& vehicle() const noexcept { return vehicle_; }
 
  private:
-  static constexpr double kSpeedFloor = 1.0;  ///< [m/s] slip angles are computed with at least about this speed
+  static constexpr double kSpeedFloor =
+      1.0;  ///< [m/s] slip angles are computed with at least about this speed
 
   template <class T>
   struct Tires {

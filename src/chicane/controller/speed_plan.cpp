@@ -9,8 +9,8 @@
 namespace chicane::controller {
 namespace {
 
-constexpr double kSpacing = 1.5;       // [m] wanted between samples
-constexpr double kLowestSpeed = 2.0;   // [m/s] the plan never asks to stop
+constexpr double kSpacing = 1.5;      // [m] wanted between samples
+constexpr double kLowestSpeed = 2.0;  // [m/s] the plan never asks to stop
 
 /// Largest v with v² demand <= share · friction · (load_0 + load_v v).
 double speed_for(double demand, const model::VehicleParams& p, double share) {
@@ -28,7 +28,8 @@ double demand_of(double curvature, double slope, const model::VehicleParams& p) 
   return std::max(front, rear);
 }
 
-/// Share of the longitudinal force left beside the lateral use of the friction ellipse (1 for uncoupled tyres).
+/// Share of the longitudinal force left beside the lateral use of the friction ellipse (1 for uncoupled
+/// tyres).
 double longitudinal_share(double v, double demand, const model::VehicleParams& p, double grip) {
   const double use = v * v * demand / (grip * p.friction * (p.load_constant + p.load_per_speed * v));
   return std::sqrt(std::max(0.0, 1.0 - p.friction_coupling * std::min(1.0, use * use)));
@@ -56,7 +57,8 @@ void SpeedPlan::rebuild(const path::Path& path, const model::VehicleParams& vehi
     speed[i] = std::max(speed[i], kLowestSpeed);
   }
   if (!is_closed_) {
-    const double end = speed_for((1.0 - vehicle.steer_helper) * options.end_curvature, vehicle, options.grip_share);
+    const double end =
+        speed_for((1.0 - vehicle.steer_helper) * options.end_curvature, vehicle, options.grip_share);
     speed[count_ - 1] = std::min(speed[count_ - 1], std::max(end, kLowestSpeed));
   }
 
@@ -70,7 +72,8 @@ void SpeedPlan::rebuild(const path::Path& path, const model::VehicleParams& vehi
     const double drag = longitudinal_acceleration(vehicle, 0.0, v);
     const double drive = longitudinal_acceleration(vehicle, 1.0, v) - drag;
     const double a = options.drive_share * share * drive + drag;
-    speed[to] = std::min(speed[to], std::sqrt(std::max(kLowestSpeed * kLowestSpeed, v * v + 2.0 * a * spacing_)));
+    speed[to] =
+        std::min(speed[to], std::sqrt(std::max(kLowestSpeed * kLowestSpeed, v * v + 2.0 * a * spacing_)));
   }
   for (int i = steps; i > 0; --i) {
     const int from = i % count_;

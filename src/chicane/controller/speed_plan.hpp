@@ -17,11 +17,13 @@ struct SpeedPlanOptions {
   double end_curvature = 0.05;  ///< assumed behind the end of an open path [1/m]: sight limits the speed
 };
 
-/// Fastest speed along a path within the believed grip: a limit for each place from curvature and its slope, then a forward
-/// pass for the drive and a backward pass for the brakes (docs/tracking.md, eq. 10–14). A point mass cannot do better; a
-/// car whose yaw lags must not either, hence the curvature slope: turning the body takes tyre force, too,
+/// Fastest speed along a path within the believed grip: a limit for each place from curvature and its slope,
+/// then a forward pass for the drive and a backward pass for the brakes (docs/tracking.md, eq. 10–14). A
+/// point mass cannot do better; a car whose yaw lags must not either, hence the curvature slope: turning the
+/// body takes tyre force, too,
 ///
-///     v² |(1 − h) κ + i κ'| <= grip · friction · load(v),   i = I/(m b) at the front axle, −I/(m a) at the rear.
+///     v² |(1 − h) κ + i κ'| <= grip · friction · load(v),   i = I/(m b) at the front axle, −I/(m a) at the
+///     rear.
 ///
 /// Memory is reserved at construction; rebuild() allocates nothing and costs about 0.2 µs per sample.
 class SpeedPlan {
@@ -30,7 +32,8 @@ class SpeedPlan {
   SpeedPlan();
 
   /// Plans anew for the whole of `path`. An empty path clears the plan.
-  void rebuild(const path::Path& path, const model::VehicleParams& vehicle, const SpeedPlanOptions& options) noexcept;
+  void rebuild(const path::Path& path, const model::VehicleParams& vehicle,
+               const SpeedPlanOptions& options) noexcept;
 
   struct Sample {
     double speed = 0.0;  ///< [m/s]

@@ -8,11 +8,13 @@
 
 namespace chicane::controller {
 
-/// The optimal control problem of the default controller (docs/tracking.md, eq. 15–24): the prediction model in coordinates
-/// along a reference line, squares of what should be small, one-sided squares of what must not be exceeded.
+/// The optimal control problem of the default controller (docs/tracking.md, eq. 15–24): the prediction model
+/// in coordinates along a reference line, squares of what should be small, one-sided squares of what must not
+/// be exceeded.
 ///
-/// State x = (s, d, e, v_x, v_y, r, δ, a): arc length from the start [m], offset to the left [m], heading error [rad], body
-/// velocity [m/s], yaw rate [rad/s], road-wheel angle [rad], net acceleration [m/s²]. Input u = (δ, a) as asked.
+/// State x = (s, d, e, v_x, v_y, r, δ, a): arc length from the start [m], offset to the left [m], heading
+/// error [rad], body velocity [m/s], yaw rate [rad/s], road-wheel angle [rad], net acceleration [m/s²]. Input
+/// u = (δ, a) as asked.
 struct TrackingProblem {
   static constexpr int kNx = 8;
   static constexpr int kNu = 2;
@@ -25,14 +27,14 @@ struct TrackingProblem {
 
   /// What the road asks at one stage, linear in arc length around `s`.
   struct Stage {
-    double s = 0.0;                ///< where it was taken [m from the start]
-    double curvature = 0.0;        ///< [1/m]
-    double curvature_slope = 0.0;  ///< [1/m²]
-    double speed = 0.0;            ///< wanted [m/s]
-    double speed_slope = 0.0;      ///< [1/s]
-    double left = 0.0;             ///< room for the centre of mass to the left of the line [m]
-    double right = 0.0;            ///< to the right [m]
-    double acceleration_min = 0.0; ///< [m/s²]
+    double s = 0.0;                 ///< where it was taken [m from the start]
+    double curvature = 0.0;         ///< [1/m]
+    double curvature_slope = 0.0;   ///< [1/m²]
+    double speed = 0.0;             ///< wanted [m/s]
+    double speed_slope = 0.0;       ///< [1/s]
+    double left = 0.0;              ///< room for the centre of mass to the left of the line [m]
+    double right = 0.0;             ///< to the right [m]
+    double acceleration_min = 0.0;  ///< [m/s²]
     double acceleration_max = 0.0;
   };
 
@@ -42,7 +44,7 @@ struct TrackingProblem {
   };
 
   const PredictionModel* model = nullptr;
-  double dt = 0.05;       ///< [s]
+  double dt = 0.05;  ///< [s]
   int horizon = 0;
   RootWeights weight{};
   std::array<Stage, kCapacity + 1> stages{};
@@ -59,7 +61,8 @@ struct TrackingProblem {
   }
 
   template <class T>
-  [[nodiscard]] std::array<T, kNx> dynamics(int k, const std::array<T, kNx>& x, const std::array<T, kNu>& u) const noexcept {
+  [[nodiscard]] std::array<T, kNx> dynamics(int k, const std::array<T, kNx>& x,
+                                            const std::array<T, kNu>& u) const noexcept {
     const BodyMotion<T> to = model->advance(body(x), u[0], u[1], dt);
     // Means over the interval carry the car along the line: second order in dt.
     const T vx = 0.5 * (x[kVx] + to.vx);
@@ -71,11 +74,19 @@ struct TrackingProblem {
     const T c = cos(half);
     const T sn = sin(half);
     const T ds = dt * (vx * c - vy * sn) * scale;
-    return {x[kS] + ds, x[kD] + dt * (vx * sn + vy * c), x[kE] + yaw - kappa * ds, to.vx, to.vy, to.r, to.steer, to.acceleration};
+    return {x[kS] + ds,
+            x[kD] + dt * (vx * sn + vy * c),
+            x[kE] + yaw - kappa * ds,
+            to.vx,
+            to.vy,
+            to.r,
+            to.steer,
+            to.acceleration};
   }
 
   template <class T>
-  [[nodiscard]] std::array<T, kNr> residual(int k, const std::array<T, kNx>& x, const std::array<T, kNu>& u) const noexcept {
+  [[nodiscard]] std::array<T, kNr> residual(int k, const std::array<T, kNx>& x,
+                                            const std::array<T, kNu>& u) const noexcept {
     const Stage& stage = stages[static_cast<std::size_t>(k)];
     const T rate = (u[0] - x[kSteer]) * (1.0 / dt);
     const std::array<T, 2> use = model->tire_use(body(x));
@@ -100,14 +111,16 @@ struct TrackingProblem {
   template <class T>
   [[nodiscard]] std::array<T, kNe> terminal_residual(const std::array<T, kNx>& x) const noexcept {
     const Stage& stage = stages[static_cast<std::size_t>(horizon)];
-    constexpr double kEndFactor = 3.0;  // the end stands for what follows: the square root of about ten stages
+    constexpr double kEndFactor =
+        3.0;  // the end stands for what follows: the square root of about ten stages
     return {kEndFactor * weight.lateral * x[kD], kEndFactor * weight.heading * x[kE],
             kEndFactor * weight.speed * (x[kVx] - (stage.speed + stage.speed_slope * (x[kS] - stage.s))),
             kEndFactor * weight.heading * 0.3 * (x[kR] - stage.curvature * x[kVx])};
   }
 
   template <class T>
-  [[nodiscard]] std::array<T, kNc> constraint(int, const std::array<T, kNx>&, const std::array<T, kNu>&) const noexcept {
+  [[nodiscard]] std::array<T, kNc> constraint(int, const std::array<T, kNx>&,
+                                              const std::array<T, kNu>&) const noexcept {
     return {};
   }
 

@@ -9,11 +9,12 @@
 
 namespace chicane::controller {
 
-/// The road as a car learns it: the waypoints of all measurements so far in driving order, closed into a loop as soon as the
-/// first one is seen again. Telemetry repeats waypoints exactly, so two closer than kSame are one.
+/// The road as a car learns it: the waypoints of all measurements so far in driving order, closed into a loop
+/// as soon as the first one is seen again. Telemetry repeats waypoints exactly, so two closer than kSame are
+/// one.
 ///
-/// Memory for kCapacity waypoints is reserved at construction; add() allocates nothing. A measurement whose waypoints match
-/// nothing known starts a new map (another scene, or a car that was moved).
+/// Memory for kCapacity waypoints is reserved at construction; add() allocates nothing. A measurement whose
+/// waypoints match nothing known starts a new map (another scene, or a car that was moved).
 class WaypointMap {
  public:
   static constexpr int kCapacity = 4096;

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/controller/tracking_mpc.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/controller/command_history.hpp"
+#include "chicane/controller/fallback.hpp"
+#include "chicane/controller/prediction.hpp"
+#include "chicane/controller/road.hpp"
+#include "chicane/controller/tracking_problem.hpp"
+#include "chicane/solver/ocp_solver.hpp"
+
+namespace chicane::controller {
+namespace {
+
+using Problem = TrackingProblem;
+using Solver = solver::OcpSolver<Problem, Problem::kCapacity>;
+using Horizon = solver::Trajectory<Problem::kNx, Problem::kNu, Problem::kCapacity>;
+using StageState = std::array<double, Problem::kNx>;
+using StageInput = std::array<double, Problem::kNu>;
+
+constexpr double kFarFromLine = 15.0;       // [m] further away the car is lost
+constexpr double kProjectionWindow = 30.0;  // [m] searched around the last place
+
+class TrackingMpc final : public Controller {
+ public:
+  TrackingMpc(const TrackingMpcOptions& options, const model::VehicleParams& vehicle)
+      : options_{options},
+        model_{vehicle},
+        road_{{.half_width = options.assumed_half_width,
+               .smoothing_width = options.smoothing_width,
+               .remember_waypoints = options.remember_waypoints,
+               .speed = {.speed_limit = options.speed_limit,
+                         .grip_share = options.grip_share,
+                         .brake_share = options.brake_share}},
+              vehicle},
+        estimator_{model_},
+        fallback_{vehicle},
+        solver_{{.tolerance = 1e-4, .loose_tolerance = 10.0, .max_iterations = 12, .second_order = false}} {
+    problem_.model = &model_;
+    problem_.dt = options.step_length;
+    problem_.horizon = options.horizon_steps;
+    problem_.weight = {.lateral = std::sqrt(options.weight_lateral),
+                       .heading = std::sqrt(options.weight_heading),
+                       .speed = std::sqrt(options.weight_speed),
+                       .steer_rate = std::sqrt(options.weight_steer_rate),
+                       .jerk = std::sqrt(options.weight_jerk),
+                       .edge = std::sqrt(options.weight_edge),
+                       .slip = std::sqrt(options.weight_slip),
+                       .excess_steer_rate = 10.0,
+                       .friction = std::sqrt(options.weight_slip)};
+  }
+
+  [[nodiscard]] const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept override {
+    const double act_time = now.time + (options_.compensate_delay ? now.delay : 0.0);
+    road_.add(now);
+    estimator_.correct(now, sent_);
+    const StateEstimator::Prediction start = estimator_.predict(act_time, sent_);
+    if (!place_on_line(now, start)) return fall_back(now, act_time);
+    warm_start(act_time);
+    const solver::SolveReport report = solver_.solve(problem_, x0_, horizon_, deadline);
+    result_.report.solve = report;
+    if (!usable(report.status)) return fall_back(now, act_time);
+    return accept(now, start, act_time);
+  }
+
+  void reset() noexcept override {
+    road_.reset();
+    estimator_.reset();
+    fallback_.reset();
+    sent_.clear();
+    has_horizon_ = false;
+    has_place_ = false;
+  }
+
+  [[nodiscard]] std::string_view name() const noexcept override { return "tracking-mpc"; }
+
+ private:
+  /// The predicted start in coordinates along the line. False when the car or the road is lost.
+  bool place_on_line(const model::Measurement& now, const StateEstimator::Prediction& start) noexcept {
+    StepReport& report = result_.report;
+    report = {};
+    report.delay = now.delay;
+    const path::Path& line = road_.line();
+    if (line.is_empty() || !std::isfinite(start.state.x + start.state.y + start.state.psi + start.state.vx))
+      return false;
+    const Vec2 position{start.state.x, start.state.y};
+    if (revision_ != road_.revision()) has_place_ = false;
+    path::Projection place =
+        has_place_ ? line.project(position, s_, kProjectionWindow) : line.project(position);
+    if (has_place_ && place.distance > 0.5 * kFarFromLine) place = line.project(position);
+    if (!(place.distance < kFarFromLine)) return false;
+    const path::PathPoint at = line.at(place.s);
+    const double heading_error = angle_difference(start.state.psi, at.heading);
+    if (std::fabs(heading_error) > 0.5 * kPi) return false;
+    progress_ = has_place_ ? line.difference(place.s, s_) : 0.0;
+    s_ = place.s;
+    has_place_ = true;
+    revision_ = road_.revision();
+    x0_ = {0.0,           place.d,           heading_error,     start.state.vx, start.state.vy,
+           start.state.r, start.state.steer, start.acceleration};
+
+    const path::Projection measured = line.project({now.x, now.y}, s_, kProjectionWindow);
+    report.lateral_error = measured.d;
+    report.heading_error = angle_difference(now.psi, line.at(measured.s).heading);
+    report.speed_reference = road_.speed(s_).speed;
+    report.sight = line.is_closed() ? line.length() : line.length() - s_;
+    report.has_map = line.is_closed();
+    return true;
+  }
+
+  /// The last answer, moved on by the time that has passed; a path-following law where there is none. Samples
+  /// the road for each stage on the way.
+  void warm_start(double act_time) noexcept {
+    const int n = options_.horizon_steps;
+    const double shift = (act_time - act_time_) / problem_.dt;
+    const bool can_shift = has_horizon_ && shift >= 0.0 && shift < 0.5 * n;
+    if (can_shift) {
+      old_ = horizon_;
+    }
+    horizon_.horizon = n;
+    horizon_.x[0] = x0_;
+    for (int k = 0; k < n; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      sample_stage(k, horizon_.x[i]);
+      if (can_shift) {
+        const double where = std::min(k + shift, n - 1.0);
+        const auto j = static_cast<std::size_t>(where);
+        const std::size_t next = std::min<std::size_t>(j + 1, static_cast<std::size_t>(n - 1));
+        const double share = where - static_cast<double>(j);
+        for (std::size_t q = 0; q < Problem::kNu; ++q) {
+          horizon_.u[i][q] = old_.u[j][q] + share * (old_.u[next][q] - old_.u[j][q]);
+        }
+      } else {
+        horizon_.u[i] = follow_line(k, horizon_.x[i]);
+      }
+      const StageInput low = problem_.input_lower(k);
+      const StageInput high = problem_.input_upper(k);
+      for (std::size_t q = 0; q < Problem::kNu; ++q)
+        horizon_.u[i][q] = std::clamp(horizon_.u[i][q], low[q], high[q]);
+      horizon_.x[i + 1] = problem_.dynamics(k, horizon_.x[i], horizon_.u[i]);
+      keep_sane(horizon_.x[i + 1]);
+    }
+    sample_stage(n, horizon_.x[static_cast<std::size_t>(n)]);
+    act_time_ = act_time;
+  }
+
+  /// A guess far from the road is no place to linearise: pull it back.
+  static void keep_sane(StageState& x) noexcept {
+    x[Problem::kD] = std::clamp(x[Problem::kD], -5.0, 5.0);
+    x[Problem::kE] = std::clamp(x[Problem::kE], -0.6, 0.6);
+    x[Problem::kVx] = std::max(x[Problem::kVx], 0.0);
+  }
+
+  [[nodiscard]] StageInput follow_line(int k, const StageState& x) const noexcept {
+    const model::VehicleParams& car = model_.vehicle();
+    const Problem::Stage& stage = problem_.stages[static_cast<std::size_t>(k)];
+    const double v = std::max(x[Problem::kVx], 1.0);
+    const double steer =
+        car.wheelbase() * (stage.curvature - x[Problem::kD] / (v * v) - 1.4 * x[Problem::kE] / v);
+    return {steer, stage.speed - x[Problem::kVx]};
+  }
+
+  void sample_stage(int k, const StageState& x) noexcept {
+    const path::Path& line = road_.line();
+    const double s = x[Problem::kS];
+    const path::PathPoint at = line.at(s_ + s);
+    const SpeedPlan::Sample speed = road_.speed(s_ + s);
+    const Road::Room room = road_.room(s_ + s);
+    const model::VehicleParams& car = model_.vehicle();
+    const double v = std::max(x[Problem::kVx], 0.0);
+    problem_.stages[static_cast<std::size_t>(k)] = {
+        .s = s,
+        .curvature = at.curvature,
+        .curvature_slope = at.curvature_slope,
+        .speed = speed.speed,
+        .speed_slope = speed.slope,
+        .left = room.left,
+        .right = room.right,
+        .acceleration_min = longitudinal_acceleration(car, -car.brake_throttle_limit, v),
+        .acceleration_max = longitudinal_acceleration(car, 1.0, v)};
+  }
+
+  const StepResult& accept(const model::Measurement& now, const StateEstimator::Prediction& start,
+                           double act_time) noexcept {
+    has_horizon_ = true;
+    fill_plan(act_time);
+    model::Command& command = result_.command;
+    command.steer = horizon_.u[0][0];
+    command.throttle = throttle_for(model_.vehicle(), horizon_.u[0][1], start.state.vx);
+    fallback_.accept(result_.plan);
+    sent_.add(act_time_of(now), command);
+    return result_;
+  }
+
+  const StepResult& fall_back(const model::Measurement& now, double act_time) noexcept {
+    has_horizon_ = false;
+    const Fallback::Answer answer = fallback_.command(act_time, now);
+    result_.command = answer.command;
+    result_.report.rung = answer.rung;
+    result_.plan.size = 0;
+    result_.plan.reference_size = 0;
+    if (std::isfinite(act_time)) sent_.add(act_time_of(now), result_.command);
+    return result_;
+  }
+
+  static double act_time_of(const model::Measurement& now) noexcept { return now.time + now.delay; }
+
+  void fill_plan(double act_time) noexcept {
+    const path::Path& line = road_.line();
+    Plan& plan = result_.plan;
+    const int n = options_.horizon_steps;
+    plan.size = n + 1;
+    plan.reference_size = n + 1;
+    for (int k = 0; k <= n; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      const StageState& x = horizon_.x[i];
+      const StageInput& u = horizon_.u[static_cast<std::size_t>(std::min(k, n - 1))];
+      const path::PathPoint at = line.at(s_ + x[Problem::kS]);
+      const double c = cos(at.heading);
+      const double sn = sin(at.heading);
+      plan.reference[i] = at.position;
+      plan.points[i] = {.time = act_time + k * problem_.dt,
+                        .x = at.position.x() - x[Problem::kD] * sn,
+                        .y = at.position.y() + x[Problem::kD] * c,
+                        .psi = at.heading + x[Problem::kE],
+                        .speed = x[Problem::kVx],
+                        .command = {u[0], throttle_for(model_.vehicle(), u[1], x[Problem::kVx])}};
+    }
+  }
+
+  TrackingMpcOptions options_;
+  PredictionModel model_;
+  Road road_;
+  StateEstimator estimator_;
+  CommandHistory sent_;
+  Fallback fallback_;
+  Problem problem_;
+  Solver solver_;
+  Horizon horizon_;  ///< the last answer, then the guess, then the new answer
+  Horizon old_;
+  StageState x0_{};
+  StepResult result_;
+  double s_ = 0.0;         ///< arc length on the line where the command acts
+  double progress_ = 0.0;  ///< since the step before
+  double act_time_ = 0.0;
+  unsigned revision_ = 0;
+  bool has_place_ = false;
+  bool has_horizon_ = false;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Controller>> make_tracking_mpc(const TrackingMpcOptions& options,
+                                                      const model::VehicleParams& vehicle) {
+  if (auto valid = validate(vehicle); !valid) return fail(valid.error());
+  if (options.horizon_steps < 5 || options.horizon_steps > Problem::kCapacity) {
+    return fail(ErrorCode::kInvalidArgument, "tracking_mpc.horizon_steps: got " +
+                                                 std::to_string(options.horizon_steps) + ", expected 5 to " +
+                                                 std::to_string(Problem::kCapacity));
+  }
+  return std::unique_ptr<Controller>(std::make_unique<TrackingMpc>(options, vehicle));
+}
+
+}  // namespace chicane::controller
