@@ -23,15 +23,6 @@ tl::unexpected<Error> unexpected(const Parameter& parameter, std::string_view go
               fmt::format("{}: got {}, expected {}", parameter.key, got, expectation(parameter)));
 }
 
-/// At most this much of a stranger's text goes into a message, without control characters.
-std::string quoted(std::string_view text) {
-  constexpr std::size_t kMost = 60;
-  std::string shown(text.substr(0, kMost));
-  std::replace_if(
-      shown.begin(), shown.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, '?');
-  return shown.empty() ? "nothing" : text.size() > kMost ? shown + "…" : shown;
-}
-
 /// The shortest text that reads back as `value`.
 std::string number_text(double value) { return fmt::format("{}", value); }
 
@@ -76,6 +67,14 @@ const Parameter* find(std::string_view key) {
   return row == list().end() ? nullptr : &*row;
 }
 
+std::string quoted(std::string_view text) {
+  constexpr std::size_t kMost = 60;
+  std::string shown(text.substr(0, kMost));
+  std::replace_if(
+      shown.begin(), shown.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, '?');
+  return shown.empty() ? "nothing" : text.size() > kMost ? shown + "…" : shown;
+}
+
 std::string_view nearest(std::string_view word, std::span<const std::string_view> known) {
   std::string_view best;
   if (word.size() > 100) return best;
@@ -96,11 +95,16 @@ std::string suggestion(std::string_view key) {
   std::vector<std::string_view> keys;
   for (const Parameter& parameter : list()) keys.push_back(parameter.key);
   std::string_view best = nearest(key, keys);
-  for (const Parameter& parameter : list()) {  // the right name without its group
-    if (!best.empty()) break;
-    if (parameter.key.ends_with(fmt::format(".{}", key))) best = parameter.key;
+  const std::string_view name =
+      key.substr(key.rfind('.') + 1);  // the right name in the wrong group, or without one
+  for (const std::string_view known : keys) {
+    if (best.empty() && known.ends_with(fmt::format(".{}", name))) best = known;
   }
   return best.empty() ? "" : fmt::format(" (did you mean {}?)", best);
+}
+
+std::string unknown_key(std::string_view key) {
+  return fmt::format("got an unknown key, expected one of `chicane list parameters`{}", suggestion(key));
 }
 
 std::string expectation(const Parameter& parameter) {
@@ -221,9 +225,7 @@ std::string get_text(const Scenario& scenario, const Parameter& parameter) {
 Result<void> set_text(Scenario& scenario, std::string_view key, std::string_view text) {
   const Parameter* parameter = find(key);
   if (parameter == nullptr) {
-    return fail(ErrorCode::kNotFound,
-                fmt::format("{}: got an unknown key{}, expected one of `chicane list parameters`",
-                            quoted(key), suggestion(key)));
+    return fail(ErrorCode::kNotFound, fmt::format("{}: {}", quoted(key), unknown_key(key)));
   }
   const Result<Value> value = parse(*parameter, text);
   return value ? set(scenario, *parameter, *value) : fail(value.error());

@@ -54,6 +54,10 @@ struct Parameter {
 [[nodiscard]] std::string_view nearest(std::string_view word, std::span<const std::string_view> known);
 /// For messages: " (did you mean cubic_mpc.horizon_steps?)", or empty when nothing is similar.
 [[nodiscard]] std::string suggestion(std::string_view key);
+/// For messages: "got an unknown key, expected ...", with the suggestion.
+[[nodiscard]] std::string unknown_key(std::string_view key);
+/// For messages: the first 60 bytes of a stranger's text without control characters; "nothing" when empty.
+[[nodiscard]] std::string quoted(std::string_view text);
 /// For messages: "an integer in [2, 200]", "a number in [0, 500] ms", "one of pid, stanley", "true or false".
 [[nodiscard]] std::string expectation(const Parameter& parameter);
 

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/library.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+
+#include "chicane/protocol/yaml_codec.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kMostBytes = 64U << 20U;
+constexpr std::size_t kMostPresets = 8;  // presets that build on presets
+
+struct ShelfNames {
+  std::string_view singular, folder, extension;
+};
+ShelfNames names(Shelf shelf) {
+  switch (shelf) {
+    case Shelf::kPreset:
+      return {"preset", "presets", ".yaml"};
+    case Shelf::kCar:
+      return {"car", "cars", ".yaml"};
+    case Shelf::kTrack:
+      return {"track", "tracks", ".csv"};
+    case Shelf::kScenario:
+      break;
+  }
+  return {"scenario", "scenarios", ".yaml"};
+}
+
+std::vector<fs::path> folders(Shelf shelf) {
+  std::vector<fs::path> roots{"."};
+  if (const char* data = std::getenv("CHICANE_DATA_DIR"); data != nullptr && *data != '\0')
+    roots.emplace_back(data);
+  roots.emplace_back(CHICANE_SOURCE_DATA_DIR);
+  roots.emplace_back(CHICANE_INSTALL_DATA_DIR);
+  for (fs::path& root : roots) root /= names(shelf).folder;
+  return roots;
+}
+
+/// The first comment line that speaks to people: no licence, no CSV header.
+std::string first_comment(const fs::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  for (int i = 0; i < 5 && std::getline(stream, line); ++i) {
+    if (!line.starts_with("#") || line.find("SPDX") != std::string::npos ||
+        line.find("x_m") != std::string::npos)
+      continue;
+    const std::size_t begin = line.find_first_not_of("# \t");
+    const std::size_t end = line.find_last_not_of(" \t\r");
+    if (begin != std::string::npos) return line.substr(begin, std::min<std::size_t>(end - begin + 1, 200));
+  }
+  return "";
+}
+
+bool is_path(std::string_view name) {
+  return name.find('/') != std::string_view::npos || !fs::path(name).extension().empty();
+}
+
+Result<Document> read_document(Shelf shelf, const std::string& name_or_file) {
+  const Result<std::string> file = locate(shelf, name_or_file);
+  if (!file) return fail(file.error());
+  const Result<std::string> text = read_file(*file);
+  return text ? parse_document(*text, *file) : fail(text.error());
+}
+
+/// The value `key` has in the last layer that sets it.
+std::optional<std::string> last_text(const std::vector<Document>& layers, std::string_view key) {
+  std::optional<std::string> found;
+  for (const Document& layer : layers) {
+    for (const Assignment& assignment : layer.assignments) {
+      if (assignment.parameter->key == key) found = std::get<std::string>(assignment.value);
+    }
+  }
+  return found;
+}
+
+/// Collects the faults of independent steps, so that a user sees all of them at once.
+class Faults {
+ public:
+  void add(const Error& error) {
+    if (message_.empty()) code_ = error.code;
+    message_ += (message_.empty() ? "" : "\n") + error.message;
+  }
+  [[nodiscard]] bool empty() const { return message_.empty(); }
+  [[nodiscard]] tl::unexpected<Error> failure() const { return fail(code_, message_); }
+
+ private:
+  ErrorCode code_ = ErrorCode::kInvalidArgument;
+  std::string message_;
+};
+
+Document parse_settings(const Request& request, Faults& faults) {
+  Document document;
+  for (const auto& [key, text] : request.settings) {
+    const Parameter* parameter = find(key);
+    scenario::Scenario scratch;
+    if (const Result<void> checked = set_text(scratch, key, text); !checked) {
+      faults.add(checked.error());
+    } else if (key == "preset") {
+      document.preset = text;
+    } else {
+      document.assignments.push_back({parameter, get(scratch, *parameter), 0});
+    }
+  }
+  return document;
+}
+
+/// A file named in a scenario file may be meant relative to it.
+void resolve_names(Document& document) {
+  const fs::path folder = fs::path(document.file).parent_path();
+  const auto resolve = [&](std::string& name) {
+    std::error_code ignored;
+    if (is_path(name) && !fs::exists(name, ignored) && fs::exists(folder / name, ignored))
+      name = (folder / name).string();
+  };
+  if (document.preset) resolve(*document.preset);
+  for (Assignment& assignment : document.assignments) {
+    const std::string_view key = assignment.parameter->key;
+    if (key == "car" || key == "track") resolve(std::get<std::string>(assignment.value));
+  }
+}
+
+/// `name` and the presets it builds on, the deepest first.
+std::vector<Document> read_presets(const std::string& name, Faults& faults) {
+  std::vector<Document> presets;
+  std::optional<std::string> next = name;
+  while (next) {
+    if (presets.size() == kMostPresets) {
+      faults.add(
+          {ErrorCode::kInvalidArgument,
+           fmt::format("{}: preset: got more than {} presets that build on each other, expected an end",
+                       presets.front().file, kMostPresets)});
+      return {};
+    }
+    Result<Document> preset = read_document(Shelf::kPreset, *next);
+    if (!preset) {
+      faults.add(preset.error());
+      return {};
+    }
+    resolve_names(*preset);
+    next = preset->preset;
+    presets.insert(presets.begin(), std::move(*preset));
+  }
+  return presets;
+}
+
+std::optional<Document> read_car(const std::string& name, Faults& faults) {
+  Result<Document> car = read_document(Shelf::kCar, name);
+  if (!car) {
+    faults.add(car.error());
+    return std::nullopt;
+  }
+  for (const Assignment& assignment : car->assignments) {
+    const std::string_view key = assignment.parameter->key;
+    if (key == "plant" || key.starts_with("vehicle.")) continue;
+    faults.add(
+        {ErrorCode::kParse,
+         fmt::format("{}:{}: {}: got a setting of a run, expected only plant and vehicle in a car file",
+                     car->file, assignment.line, key)});
+  }
+  return std::move(*car);
+}
+
+}  // namespace
+
+std::vector<Entry> entries(Shelf shelf) {
+  std::map<std::string, Entry> found;
+  for (const fs::path& folder : folders(shelf)) {
+    std::error_code error;
+    for (fs::directory_iterator item(folder, error), end; !error && item != end; item.increment(error)) {
+      if (item->path().extension() != names(shelf).extension) continue;
+      const std::string name = item->path().stem().string();
+      if (!found.contains(name)) found[name] = {name, item->path().string(), first_comment(item->path())};
+    }
+  }
+  std::vector<Entry> result;
+  for (auto& [name, entry] : found) result.push_back(std::move(entry));
+  return result;
+}
+
+Result<std::string> locate(Shelf shelf, std::string_view name_or_file) {
+  const auto [singular, folder, extension] = names(shelf);
+  std::error_code ignored;
+  if (is_path(name_or_file)) {
+    if (fs::is_regular_file(fs::path(name_or_file), ignored)) return std::string(name_or_file);
+    return fail(ErrorCode::kNotFound,
+                fmt::format("{}: got {}, expected a file that exists", singular, quoted(name_or_file)));
+  }
+  for (const fs::path& place : folders(shelf)) {
+    const fs::path file = place / fmt::format("{}{}", name_or_file, extension);
+    if (fs::is_regular_file(file, ignored)) return file.lexically_normal().string();
+  }
+  const std::vector<Entry> known = entries(shelf);
+  std::vector<std::string_view> known_names;
+  for (const Entry& entry : known) known_names.push_back(entry.name);
+  const std::string_view best = nearest(name_or_file, known_names);
+  return fail(ErrorCode::kNotFound,
+              fmt::format("{}: got \"{}\", expected a file or one of {}{}", singular, quoted(name_or_file),
+                          fmt::join(known_names, ", "),
+                          best.empty() ? "" : fmt::format(" (did you mean {}?)", best)));
+}
+
+Result<std::string> read_file(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error))
+    return fail(ErrorCode::kNotFound, fmt::format("{}: file: got none, expected a file", path));
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (!error && size > kMostBytes) {
+    return fail(ErrorCode::kParse,
+                fmt::format("{}: file: got {} bytes, expected at most {}", path, size, kMostBytes));
+  }
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  std::string text(error ? 0 : static_cast<std::size_t>(size), '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!stream)
+    return fail(ErrorCode::kIo,
+                fmt::format("{}: file: {}", path, errno != 0 ? std::strerror(errno) : "cannot be read"));
+  return text;
+}
+
+Result<scenario::Scenario> compose(const Request& request) {
+  Faults faults;
+  std::vector<Document> layers;
+  Document settings = parse_settings(request, faults);
+  std::optional<std::string> preset = settings.preset;
+  if (!request.scenario_file.empty()) {
+    Result<Document> file = read_document(Shelf::kScenario, request.scenario_file);
+    if (!file) {
+      faults.add(file.error());
+    } else {
+      resolve_names(*file);
+      if (!preset) preset = file->preset;
+      layers.push_back(std::move(*file));
+    }
+  }
+  layers.push_back(std::move(settings));
+
+  const scenario::Scenario defaults;
+  std::vector<Document> presets = read_presets(preset.value_or(defaults.preset), faults);
+  layers.insert(layers.begin(), std::make_move_iterator(presets.begin()),
+                std::make_move_iterator(presets.end()));
+  std::optional<Document> car = read_car(last_text(layers, "car").value_or(defaults.car), faults);
+  if (car) layers.insert(layers.begin(), std::move(*car));
+  if (const Result<std::string> track =
+          locate(Shelf::kTrack, last_text(layers, "track").value_or(defaults.track));
+      !track) {
+    faults.add(track.error());
+  }
+
+  scenario::Scenario scenario;
+  scenario.preset = preset.value_or(defaults.preset);
+  if (const Result<void> applied = apply_layers(layers, scenario); !applied) faults.add(applied.error());
+  if (!faults.empty()) return faults.failure();
+  return scenario;
+}
+
+}  // namespace chicane::protocol

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/scenario/scenario.hpp"
+
+/// The files that ship: presets, cars, tracks and scenarios, found by name. Looked for in ./presets (cars,
+/// tracks, scenarios), in $CHICANE_DATA_DIR/presets, in the source tree this was built from, and where `cmake
+/// --install` puts them; the first hit wins.
+namespace chicane::protocol {
+
+enum class Shelf { kPreset, kCar, kTrack, kScenario };
+
+struct Entry {
+  std::string name;  ///< file name without its extension
+  std::string file;
+  std::string description;  ///< the first comment line of the file
+};
+
+/// All entries of a shelf by name, each name once.
+[[nodiscard]] std::vector<Entry> entries(Shelf shelf);
+
+/// The file behind a name, or behind a path when `name_or_file` has a slash or an extension.
+/// kNotFound: `preset: got "dfault", expected one of default, ... (did you mean default?)`.
+[[nodiscard]] Result<std::string> locate(Shelf shelf, std::string_view name_or_file);
+
+/// The bytes of a file of at most 64 MiB. kNotFound when there is none, kIo with the system's reason when it
+/// cannot be read.
+[[nodiscard]] Result<std::string> read_file(const std::string& path);
+
+/// What a user asks for: a scenario file (empty: none) and settings by schema key, in the order given.
+struct Request {
+  std::string scenario_file;
+  std::vector<std::pair<std::string, std::string>> settings;
+};
+
+/// The experiment asked for. Later layers win: defaults, car file, preset (with the presets it builds on),
+/// scenario file, settings. The names `preset`, `car` and `track` may be files, relative to the working
+/// directory or to the scenario file. All faults at once, each with its file and line.
+[[nodiscard]] Result<scenario::Scenario> compose(const Request& request);
+
+}  // namespace chicane::protocol

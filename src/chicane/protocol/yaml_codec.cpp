@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/yaml_codec.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/depthguard.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+
+namespace chicane::protocol {
+namespace {
+
+constexpr std::size_t kMostBytes = 256 * 1024;
+constexpr int kMostNodes = 10000;  // counted with aliases followed
+constexpr int kMostDepth = 8;
+constexpr std::size_t kMostFaults = 50;
+
+std::string place(const std::string& file, int line) {
+  if (file.empty()) return "";
+  return line > 0 ? fmt::format("{}:{}: ", file, line) : fmt::format("{}: ", file);
+}
+
+/// Length of the UTF-8 sequence at the beginning of `text`; 0 when it is none (RFC 3629: no overlong forms,
+/// no surrogates).
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) -> std::uint32_t {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+  };
+  const auto continues = [&](std::size_t i) { return (byte(i) & 0xc0U) == 0x80U; };
+  if (byte(0) < 0x80U) return 1;
+  if (byte(0) >= 0xc2U && byte(0) < 0xe0U) return continues(1) ? 2 : 0;
+  const std::uint32_t first_two = byte(0) << 8U | byte(1);
+  if ((byte(0) & 0xf0U) == 0xe0U) {
+    const bool is_allowed = first_two >= 0xe0a0U && (first_two < 0xeda0U || first_two > 0xedbfU);
+    return is_allowed && continues(1) && continues(2) ? 3 : 0;
+  }
+  const bool is_allowed = first_two >= 0xf090U && first_two <= 0xf48fU;
+  return is_allowed && continues(1) && continues(2) && continues(3) ? 4 : 0;
+}
+
+/// What must hold for the bytes before a YAML parser sees them.
+Result<void> check_bytes(std::string_view text, const std::string& file) {
+  if (text.size() > kMostBytes) {
+    return fail(ErrorCode::kParse,
+                fmt::format("{}: file: got {} bytes, expected at most {}", file, text.size(), kMostBytes));
+  }
+  int line = 1;
+  bool in_indentation = true;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = utf8_length(text.substr(i));
+    const auto fault = [&](std::string_view got, std::string_view expected) {
+      return fail(ErrorCode::kParse,
+                  fmt::format("{}:{}: text: got {}, expected {}", file, line, got, expected));
+    };
+    if (length == 0) return fault(fmt::format("byte 0x{:02x}", static_cast<unsigned char>(text[i])), "UTF-8");
+    const char c = text[i];
+    if (c == '\t' && in_indentation) return fault("a tab in the indentation", "spaces");
+    if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t') {
+      return fault(fmt::format("control character 0x{:02x}", static_cast<unsigned char>(c)), "text");
+    }
+    if (c == '\n') ++line;
+    in_indentation = c == '\n' || (in_indentation && c == ' ');
+    i += length;
+  }
+  return {};
+}
+
+/// Walks the nodes of one file and collects settings and faults.
+class Reader {
+ public:
+  explicit Reader(const std::string& file) { document_.file = file; }
+
+  void read(const YAML::Node& root) {
+    if (!root.IsMap()) {
+      fault(1, "file",
+            fmt::format("got {}, expected a map of settings", root.IsNull() ? "an empty file" : shown(root)));
+      return;
+    }
+    read_map(root, "", 0);
+  }
+
+  [[nodiscard]] Result<Document> result() && {
+    if (faults_.empty()) return std::move(document_);
+    if (faults_.size() > kMostFaults) {
+      faults_[kMostFaults] = fmt::format("{}: and {} more", document_.file, faults_.size() - kMostFaults);
+      faults_.resize(kMostFaults + 1);
+    }
+    return fail(ErrorCode::kParse, fmt::format("{}", fmt::join(faults_, "\n")));
+  }
+
+ private:
+  void fault(int line, std::string_view key, std::string_view what) {
+    faults_.push_back(fmt::format("{}{}: {}", place(document_.file, line), key, what));
+  }
+
+  static std::string shown(const YAML::Node& node) {
+    if (node.IsMap()) return "a map";
+    if (node.IsSequence()) return "a list";
+    if (!node.IsScalar()) return "nothing";
+    return node.Tag() == "!" ? fmt::format("\"{}\" in quotes", quoted(node.Scalar())) : quoted(node.Scalar());
+  }
+
+  void read_map(const YAML::Node& map, const std::string& prefix, int depth) {
+    for (const auto& entry : map) {
+      if (++nodes_ == kMostNodes)
+        fault(0, "file", fmt::format("got more than {} settings, expected fewer", kMostNodes));
+      if (nodes_ >= kMostNodes) return;
+      const int line = entry.first.Mark().line + 1;
+      if (!entry.first.IsScalar()) {
+        fault(line, prefix.empty() ? "key" : prefix,
+              fmt::format("got {} as a key, expected a name", shown(entry.first)));
+        continue;
+      }
+      const std::string& name = entry.first.Scalar();
+      const bool is_ros_wrapper =
+          prefix.empty() && entry.second.IsMap() && (name == "ros__parameters" || name.starts_with("/"));
+      if (is_ros_wrapper && depth < kMostDepth) {
+        read_map(entry.second, "", depth + 1);
+      } else {
+        read_entry(prefix.empty() ? name : fmt::format("{}.{}", prefix, name), entry.second, line, depth);
+      }
+    }
+  }
+
+  void read_entry(const std::string& key, const YAML::Node& node, int line, int depth) {
+    const auto [first, is_new] = lines_.emplace(key, line);
+    if (!is_new && !node.IsMap()) {
+      fault(line, quoted(key),
+            fmt::format("got it a second time, expected it once (first on line {})", first->second));
+      return;
+    }
+    if (key == "preset") {
+      read_preset(node, line);
+    } else if (const Parameter* parameter = find(key); parameter != nullptr) {
+      read_value(*parameter, node, line);
+    } else if (!is_group(key)) {
+      fault(line, quoted(key), unknown_key(key));
+    } else if (!node.IsMap()) {
+      fault(line, quoted(key), fmt::format("got {}, expected a map of settings", shown(node)));
+    } else if (depth < kMostDepth) {
+      read_map(node, key, depth + 1);
+    }
+  }
+
+  static bool is_group(const std::string& key) {
+    const std::string start = key + ".";
+    return std::any_of(list().begin(), list().end(),
+                       [&](const Parameter& p) { return p.key.starts_with(start); });
+  }
+
+  void read_preset(const YAML::Node& node, int line) {
+    if (node.IsScalar() && !node.Scalar().empty()) {
+      document_.preset = node.Scalar();
+    } else {
+      fault(line, "preset", fmt::format("got {}, expected the name of a preset", shown(node)));
+    }
+  }
+
+  void read_value(const Parameter& parameter, const YAML::Node& node, int line) {
+    const bool is_text = parameter.kind() == Kind::kText || parameter.kind() == Kind::kChoice;
+    const bool is_plain = node.IsScalar() && (node.Tag() == "?" || (is_text && node.Tag() == "!"));
+    if (!is_plain) {
+      const bool has_tag = node.IsScalar() && node.Tag() != "!" && node.Tag() != "?";
+      fault(line, parameter.key,
+            fmt::format("got {}, expected {}",
+                        has_tag ? fmt::format("the tag {}", quoted(node.Tag())) : shown(node),
+                        expectation(parameter)));
+      return;
+    }
+    const Result<Value> value = parse(parameter, node.Scalar());
+    if (!value) {
+      faults_.push_back(place(document_.file, line) + value.error().message);
+      return;
+    }
+    document_.assignments.push_back({&parameter, *value, line});
+  }
+
+  Document document_;
+  std::vector<std::string> faults_;
+  std::map<std::string, int> lines_;  // where each key was first seen
+  int nodes_ = 0;
+};
+
+std::string yaml_text(const Parameter& parameter, const scenario::Scenario& scenario) {
+  const std::string text = get_text(scenario, parameter);
+  if (parameter.kind() != Kind::kText) return text == "inf" ? ".inf" : text;
+  std::string escaped;
+  for (const char c : text) {
+    const bool is_control = static_cast<unsigned char>(c) < 0x20;
+    if (c == '"' || c == '\\') escaped += '\\';
+    escaped += is_control ? fmt::format("\\x{:02x}", static_cast<unsigned char>(c)) : std::string(1, c);
+  }
+  return fmt::format("\"{}\"", escaped);
+}
+
+}  // namespace
+
+Result<Document> parse_document(std::string_view text, const std::string& file) {
+  if (const Result<void> checked = check_bytes(text, file); !checked) return fail(checked.error());
+  try {
+    const std::vector<YAML::Node> roots = YAML::LoadAll(std::string(text));
+    if (roots.size() > 1) {
+      return fail(ErrorCode::kParse, fmt::format("{}:{}: file: got {} documents, expected one", file,
+                                                 roots[1].Mark().line + 1, roots.size()));
+    }
+    Reader reader(file);
+    reader.read(roots.empty() ? YAML::Node() : roots.front());
+    return std::move(reader).result();
+  } catch (const YAML::DeepRecursion& e) {
+    return fail(ErrorCode::kParse,
+                fmt::format("{}:{}: text: got very deep nesting, expected at most {} levels", file,
+                            e.mark.line + 1, kMostDepth));
+  } catch (const YAML::Exception& e) {
+    return fail(ErrorCode::kParse,
+                fmt::format("{}:{}: text: got {}, expected valid YAML", file, e.mark.line + 1, e.msg));
+  }
+}
+
+Result<void> apply_layers(std::span<const Document> layers, scenario::Scenario& scenario) {
+  scenario::Scenario changed = scenario;
+  std::map<std::string_view, std::string> places;
+  std::vector<std::string> faults;
+  for (const Document& layer : layers) {
+    for (const Assignment& assignment : layer.assignments) {
+      const std::string where = place(layer.file, assignment.line);
+      const Result<void> done = set(changed, *assignment.parameter, assignment.value);
+      if (!done) faults.push_back(where + done.error().message);
+      places[assignment.parameter->key] = where;
+    }
+  }
+  for (const Contradiction& contradiction : contradictions(changed)) {
+    std::string where = places[contradiction.key];
+    if (where.empty()) where = layers.empty() ? "" : place(layers.back().file, 0);
+    faults.push_back(fmt::format("{}{}: {}", where, contradiction.key, contradiction.message));
+  }
+  if (!faults.empty()) return fail(ErrorCode::kInvalidArgument, fmt::format("{}", fmt::join(faults, "\n")));
+  scenario = std::move(changed);
+  return {};
+}
+
+std::string write_document(const scenario::Scenario& scenario, std::string_view description) {
+  const scenario::Scenario defaults;
+  std::string text = fmt::format("# {}\n", description);
+  std::replace_if(
+      text.begin(), std::prev(text.end()), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  std::string_view group;
+  for (const Parameter& parameter : list()) {
+    if (parameter.key == "preset" || get(scenario, parameter) == get(defaults, parameter)) continue;
+    const std::size_t dot = parameter.key.find('.');
+    const bool is_grouped = dot != std::string_view::npos;
+    const std::string_view own_group = is_grouped ? parameter.key.substr(0, dot) : "";
+    if (is_grouped && own_group != group) text += fmt::format("{}:\n", own_group);
+    group = own_group;
+    const std::string_view name = is_grouped ? parameter.key.substr(dot + 1) : parameter.key;
+    text += fmt::format("{}{}: {}\n", is_grouped ? "  " : "", name, yaml_text(parameter, scenario));
+  }
+  return text;
+}
+
+}  // namespace chicane::protocol
