@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "sim/plant_experiment.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace chicane::sim::experiment {
+
+namespace {
+
+Sample sample(const Plant& plant, double time) {
+  const model::State& s = plant.state();
+  const PlantOutput& o = plant.output();
+  return {.time = time, .speed = o.speed, .ax = o.ax, .ay = o.ay, .x = s.x, .y = s.y, .r = s.r, .vy = s.vy};
+}
+
+int steps(const Plant& plant, double duration) {
+  return static_cast<int>(duration / plant.step_length() + 0.5);
+}
+
+}  // namespace
+
+Line fit_line(const std::vector<std::pair<double, double>>& points) {
+  double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
+  for (const auto& [x, y] : points) {
+    n += 1.0;
+    sx += x;
+    sy += y;
+    sxx += x * x;
+    sxy += x * y;
+  }
+  Line line;
+  line.slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
+  line.offset = (sy - line.slope * sx) / n;
+  double squares = 0.0;
+  for (const auto& [x, y] : points) squares += std::pow(y - line.offset - line.slope * x, 2);
+  line.rms = std::sqrt(squares / n);
+  return line;
+}
+
+std::vector<Sample> drive_straight(Plant& plant, double throttle, double duration) {
+  std::vector<Sample> run{sample(plant, 0.0)};
+  for (int i = 1; i <= steps(plant, duration); ++i) {
+    plant.advance({.steer = 0.0, .throttle = throttle});
+    run.push_back(sample(plant, i * plant.step_length()));
+  }
+  return run;
+}
+
+std::vector<std::pair<double, double>> accelerations(const std::vector<Sample>& run, double skip) {
+  std::vector<std::pair<double, double>> points;
+  const auto window = static_cast<std::size_t>(0.2 / (run[1].time - run[0].time) + 0.5);
+  for (std::size_t i = 0; i + window < run.size(); i += window) {
+    const Sample& a = run[i];
+    const Sample& b = run[i + window];
+    if (a.time >= skip)
+      points.emplace_back(0.5 * (a.speed + b.speed), (b.speed - a.speed) / (b.time - a.time));
+  }
+  return points;
+}
+
+double time_to(const std::vector<Sample>& run, double speed) {
+  for (std::size_t i = 1; i < run.size(); ++i) {
+    if (run[i].speed >= speed) {
+      const double share = (speed - run[i - 1].speed) / (run[i].speed - run[i - 1].speed);
+      return run[i - 1].time + share * (run[i].time - run[i - 1].time);
+    }
+  }
+  return -1.0;
+}
+
+double braking_at(Plant& plant, double throttle, double speed, double margin) {
+  plant.reset({}, speed + margin);
+  const std::vector<Sample> run = drive_straight(plant, throttle, 12.0);
+  std::vector<std::pair<double, double>> points;
+  for (const Sample& s : run) {
+    if (std::fabs(s.speed - speed) <= 0.75) points.emplace_back(s.time, s.speed);
+  }
+  return points.size() < 3 ? 0.0 : fit_line(points).slope;
+}
+
+double SpeedHold::throttle(const Plant& plant) {
+  const double error = speed_ - plant.output().speed;
+  sum_ = std::clamp(sum_ + 0.5 * error * plant.step_length(), 0.0, 1.0);
+  return std::clamp(0.5 * error + sum_, 0.0, 1.0);
+}
+
+Circle steady_circle(Plant& plant, double steer, double speed, double settle) {
+  plant.reset({}, speed);
+  SpeedHold hold{speed};
+  for (int i = 0; i < steps(plant, settle); ++i)
+    plant.advance({.steer = steer, .throttle = hold.throttle(plant)});
+  // Means over 2 s, beyond the ripple of one step.
+  const int count = steps(plant, 2.0);
+  Circle circle;
+  for (int i = 0; i < count; ++i) {
+    plant.advance({.steer = steer, .throttle = hold.throttle(plant)});
+    circle.yaw_rate += plant.state().r / count;
+    circle.speed += plant.output().speed / count;
+    circle.lateral_acceleration += plant.output().ay / count;
+    circle.sideslip += std::atan2(plant.state().vy, plant.state().vx) / count;
+  }
+  circle.curvature = circle.yaw_rate / circle.speed;
+  circle.path_radius = 1.0 / circle.curvature;
+  return circle;
+}
+
+std::pair<std::complex<double>, std::complex<double>> yaw_modes(Plant& plant, double speed) {
+  plant.reset({}, speed);
+  SpeedHold hold{speed};
+  for (int i = 0; i < steps(plant, 3.0); ++i) plant.advance({.steer = 0.0, .throttle = hold.throttle(plant)});
+  for (int i = 0; i < steps(plant, 0.06); ++i)
+    plant.advance({.steer = 1e-3, .throttle = hold.throttle(plant)});
+  for (int i = 0; i < steps(plant, 0.3); ++i) plant.advance({.steer = 0.0, .throttle = hold.throttle(plant)});
+  const int stride = steps(plant, 0.04);
+  // Lateral velocity shows both modes; the yaw rate of a car with a C_f = b C_r has only one.
+  std::vector<double> w;
+  for (int i = 0; i < steps(plant, 1.2); ++i) {
+    if (i % stride == 0) w.push_back(plant.state().vy);
+    plant.advance({.steer = 0.0, .throttle = hold.throttle(plant)});
+  }
+  double a11 = 0.0, a12 = 0.0, a22 = 0.0, b1 = 0.0, b2 = 0.0;
+  for (std::size_t k = 0; k + 2 < w.size(); ++k) {
+    a11 += w[k + 1] * w[k + 1];
+    a12 += w[k + 1] * w[k];
+    a22 += w[k] * w[k];
+    b1 += w[k + 1] * w[k + 2];
+    b2 += w[k] * w[k + 2];
+  }
+  const double det = a11 * a22 - a12 * a12;
+  const double p = (b1 * a22 - b2 * a12) / det;
+  const double q = (a11 * b2 - a12 * b1) / det;
+  const std::complex<double> root = std::sqrt(std::complex<double>(p * p / 4.0 + q, 0.0));
+  const double dt = stride * plant.step_length();
+  return {std::log(p / 2.0 + root) / dt, std::log(p / 2.0 - root) / dt};
+}
+
+std::pair<double, double> yaw_rise(Plant& plant, double speed, double steer) {
+  const double steady = steady_circle(plant, steer, speed).yaw_rate;
+  plant.reset({}, speed);
+  SpeedHold hold{speed};
+  for (int i = 0; i < steps(plant, 3.0); ++i) plant.advance({.steer = 0.0, .throttle = hold.throttle(plant)});
+  std::pair<double, double> times{-1.0, -1.0};
+  for (int i = 1; i <= steps(plant, 5.0); ++i) {
+    plant.advance({.steer = steer, .throttle = hold.throttle(plant)});
+    const double share = plant.state().r / steady;
+    if (times.first < 0.0 && share >= 0.5) times.first = i * plant.step_length();
+    if (times.second < 0.0 && share >= 0.9) times.second = i * plant.step_length();
+  }
+  return times;
+}
+
+}  // namespace chicane::sim::experiment
