@@ -55,6 +55,7 @@ Result<void> validate(const VehicleParams& p) {
       Field{"kinematic_length", p.kinematic_length, Sign::kPositive},
       Field{"mass", p.mass, Sign::kPositive},
       Field{"yaw_inertia", p.yaw_inertia, Sign::kPositive},
+      Field{"height", p.height, Sign::kNotNegative},
       Field{"steer_limit", p.steer_limit, Sign::kPositive},
       Field{"steer_rate_limit", p.steer_rate_limit, Sign::kPositive, true},
       Field{"steer_lag", p.steer_lag, Sign::kNotNegative},
@@ -113,6 +114,7 @@ VehicleParams road_car_params() {
   p.kinematic_length = 2.70;
   p.mass = 1300.0;
   p.yaw_inertia = 2000.0;
+  p.height = 0.5;
   p.steer_rate_limit = 1.5707963267948966;
   p.steer_lag = 0.05;
   p.cornering_front = 16.2;

@@ -26,6 +26,7 @@ struct VehicleParams {
   // Mass.
   double mass = 1000.0;              ///< [kg]
   double yaw_inertia = 1600.0;       ///< [kg m²]
+  double height = 0.0;               ///< of the centre of mass above the road: load transfer along the car [m]
 
   // Steering.
   double steer_limit = 0.4363323129985824;  ///< 25° [rad]

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/model/tire.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "chicane/base/angle.hpp"
+
+namespace chicane::model {
+namespace {
+
+constexpr double kRounding = 1e-12;  // of a handful of operations near 1
+
+TEST(FrictionCurve, PassesThroughItsTwoPointsAndStaysAtTheAsymptote) {
+  const FrictionCurve curve{0.4, 1.0, 0.8, 0.5};
+  EXPECT_NEAR(curve(0.4), 1.0, kRounding);
+  EXPECT_NEAR(curve(0.8), 0.5, kRounding);
+  EXPECT_NEAR(curve(7.0), 0.5, kRounding);
+  EXPECT_NEAR(curve(-0.4), -1.0, kRounding);
+  EXPECT_EQ(curve(0.0), 0.0);
+}
+
+TEST(FrictionCurve, StartsWithTheSlopeOfItsExtremumAndIsFlatThere) {
+  const FrictionCurve curve{0.2, 1.0, 0.5, 0.75};
+  EXPECT_NEAR(curve(Dual<1>::variable(0.0, 0)).d[0], 5.0, kRounding);
+  EXPECT_NEAR(curve(Dual<1>::variable(0.2 - 1e-9, 0)).d[0], 0.0,
+              1e-7);  // slope changes by 20 per unit of slip
+  EXPECT_NEAR(curve(Dual<1>::variable(0.2 + 1e-9, 0)).d[0], 0.0, 1e-7);
+  EXPECT_NEAR(curve(Dual<1>::variable(0.5 - 1e-9, 0)).d[0], 0.0, 1e-7);
+}
+
+TEST(FrictionCurve, NeverExceedsItsExtremum) {
+  const FrictionCurve curve{0.2, 1.0, 0.5, 0.75};
+  for (double slip = -1.0; slip <= 1.0; slip += 1e-3)
+    EXPECT_LE(std::fabs(curve(slip)), 1.0 + kRounding) << slip;
+}
+
+TEST(MagicFormula, HasSlopeBcdAtZeroAndPeakD) {
+  const MagicFormula tire{.stiffness = 10.0, .shape = 1.5, .peak = 1.2};
+  EXPECT_NEAR(tire(Dual<1>::variable(0.0, 0)).d[0], 18.0, kRounding);
+  EXPECT_NEAR(tire(std::tan(kPi / 3.0) / 10.0), 1.2, kRounding);  // sin = 1 where C atan(B x) = π/2
+  EXPECT_LT(tire(1.0), 1.2);
+}
+
+TEST(Brush, IsExactlyOneFromThreeOn) {
+  EXPECT_EQ(brush(3.0), 1.0);
+  EXPECT_EQ(brush(-5.0), -1.0);
+  EXPECT_NEAR(brush(2.9999), 1.0, 1e-11);  // third order contact: (1e-4)³ / 27
+  EXPECT_NEAR(brush(Dual<1>::variable(0.0, 0)).d[0], 1.0, kRounding);
+}
+
+TEST(TireCurves, AreOddAndDualsGiveTheirSlope) {
+  const FrictionCurve curve;
+  const MagicFormula magic{.stiffness = 9.0, .shape = 1.4, .peak = 1.1, .curvature = -0.5};
+  const auto check = [](const auto& f) {
+    constexpr double kStep = 1e-6;
+    for (double x : {-2.0, -0.7, -0.31, -0.05, 0.013, 0.12, 0.33, 0.49, 1.3}) {
+      EXPECT_NEAR(f(-x), -f(x), kRounding) << x;
+      const double difference = (f(x + kStep) - f(x - kStep)) / (2.0 * kStep);
+      EXPECT_NEAR(f(Dual<1>::variable(x, 0)).d[0], difference, 1e-7) << x;  // kStep² · third derivative
+    }
+  };
+  check([&](const auto& x) { return curve(x); });
+  check([&](const auto& x) { return magic(x); });
+  check([](const auto& x) { return brush(x); });
+  check([](const auto& x) { return saturate(x); });
+}
+
+}  // namespace
+}  // namespace chicane::model

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/model/vehicle.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "chicane/base/random.hpp"
+#include "chicane/model/actuator.hpp"
+
+namespace chicane::model {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Vehicle, ShippedCarsAreValidAndNamed) {
+  for (const char* name : {"udacity", "road-car"}) {
+    const Result<VehicleParams> car = vehicle_named(name);
+    ASSERT_TRUE(car) << car.error().message;
+    EXPECT_EQ(car->name, name);
+    EXPECT_TRUE(validate(*car));
+  }
+}
+
+TEST(Vehicle, RefusesAnUnknownNameAndSaysWhichThereAre) {
+  const Result<VehicleParams> car = vehicle_named("tank");
+  ASSERT_FALSE(car);
+  EXPECT_EQ(car.error().code, ErrorCode::kNotFound);
+  EXPECT_THAT(car.error().message, HasSubstr("tank"));
+  EXPECT_THAT(car.error().message, HasSubstr("road-car"));
+}
+
+TEST(Vehicle, RefusesEachUnphysicalFieldByName) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto expect_refused = [](const char* field, const std::function<void(VehicleParams&)>& change) {
+    VehicleParams car;
+    change(car);
+    const Result<void> result = validate(car);
+    ASSERT_FALSE(result) << field;
+    EXPECT_EQ(result.error().code, ErrorCode::kInvalidArgument);
+    EXPECT_THAT(result.error().message, HasSubstr(field));
+  };
+  expect_refused("mass", [](VehicleParams& p) { p.mass = 0.0; });
+  expect_refused("yaw_inertia", [](VehicleParams& p) { p.yaw_inertia = -1.0; });
+  expect_refused("kinematic_length", [&](VehicleParams& p) { p.kinematic_length = nan; });
+  expect_refused("front_axle",
+                 [](VehicleParams& p) { p.front_axle = std::numeric_limits<double>::infinity(); });
+  expect_refused("steer_limit", [](VehicleParams& p) { p.steer_limit = 1.6; });
+  expect_refused("steer_helper", [](VehicleParams& p) { p.steer_helper = 1.0; });
+  expect_refused("steer_lag", [](VehicleParams& p) { p.steer_lag = -0.1; });
+  expect_refused("brake_throttle_limit", [](VehicleParams& p) { p.brake_throttle_limit = 1.5; });
+  expect_refused("drive_power_per_mass", [](VehicleParams& p) { p.drive_power_per_mass = 0.0; });
+}
+
+TEST(LongitudinalLaw, IsTheDocumentedOne) {
+  VehicleParams car = udacity_params();
+  EXPECT_NEAR(longitudinal_acceleration(car, 1.0, 20.0), car.drive_acceleration - car.drag_linear * 20.0,
+              1e-12);
+  EXPECT_NEAR(longitudinal_acceleration(car, -0.02, 0.0), -0.02 * car.brake_acceleration, 1e-12);
+  EXPECT_EQ(longitudinal_acceleration(car, 7.0, 5.0), longitudinal_acceleration(car, 1.0, 5.0));
+  car.drive_power_per_mass = 40.0;
+  EXPECT_NEAR(longitudinal_acceleration(car, 1.0, 20.0), 2.0 - car.drag_linear * 20.0, 1e-12);
+}
+
+TEST(LongitudinalLaw, ThrottleForIsItsInverse) {
+  Random random{7};
+  for (const VehicleParams& car : {udacity_params(), road_car_params()}) {
+    for (int i = 0; i < 2000; ++i) {
+      const double v = random.uniform(0.0, 60.0);
+      const double throttle = random.uniform(-car.brake_throttle_limit, 1.0);
+      const double acceleration = longitudinal_acceleration(car, throttle, v);
+      const double back = throttle_for(car, acceleration, v);
+      // Above the power cap many throttles give the same acceleration: that it does, is what counts. 1e-12 is
+      // rounding.
+      EXPECT_NEAR(longitudinal_acceleration(car, back, v), acceleration, 1e-12) << car.name << " v " << v;
+      if (std::isinf(car.drive_power_per_mass)) {
+        EXPECT_NEAR(back, throttle, 1e-12);
+      }
+    }
+  }
+}
+
+TEST(LongitudinalLaw, ThrottleForClampsToTheUsefulRange) {
+  const VehicleParams car = udacity_params();
+  EXPECT_EQ(throttle_for(car, 100.0, 10.0), 1.0);
+  EXPECT_EQ(throttle_for(car, -100.0, 10.0), -car.brake_throttle_limit);
+  EXPECT_EQ(throttle_for(car, std::numeric_limits<double>::quiet_NaN(), 10.0), 0.0);
+}
+
+TEST(Actuator, LagsExactlyAndKeepsRangeAndRate) {
+  const Actuator lagging{.low = -1.0, .high = 1.0, .lag = 0.1};
+  double value = 0.0;
+  for (int i = 0; i < 100; ++i) value = lagging.next(value, 0.5, 0.001);
+  EXPECT_NEAR(value, 0.5 * (1.0 - std::exp(-1.0)), 1e-12);  // composition of exact steps
+  EXPECT_EQ(Actuator{}.next(0.0, 9.0, 0.001), 1.0);
+  const Actuator slow{.low = -1.0, .high = 1.0, .lag = 0.0, .rate = 2.0};
+  EXPECT_NEAR(slow.next(0.0, 1.0, 0.1), 0.2, 1e-15);
+  EXPECT_NEAR(slow.next(0.0, -1.0, 0.1), -0.2, 1e-15);
+}
+
+}  // namespace
+}  // namespace chicane::model
