@@ -11,45 +11,61 @@ namespace chicane::path {
 
 /// One cross-section of a road as files give it.
 struct TrackPoint {
-  Vec2 position = Vec2::Zero();  ///< centre-line point in W [m]
+  Vec2 position = Vec2::Zero();  ///< point of the reference line in W [m]
   double left = 0.0;             ///< distance to the left edge of the drivable surface [m], > 0
   double right = 0.0;            ///< distance to the right edge [m], > 0
 };
 
 /// How raw points become a road.
 struct TrackOptions {
-  double spacing = 2.0;  ///< of the resampled knots [m]; [0.5, 10]
+  double spacing = 2.0;  ///< of the resampled knots [m]; [0.05, 10]; made smaller where the points demand it
   double smoothing_sigma =
       0.1;  ///< expected noise of the points [m]; the smoothed line stays within about this; [0, 1]
   double kerb_width = 0.0;  ///< drivable kerb outside each edge [m]; touching it is not off-track; [0, 3]
+  double start_s = 0.0;     ///< where a car waits for the start, along the line [m]; wrapped when closed
+  double start_d = 0.0;     ///< and beside it, left positive [m]; within the road
 };
 
 /// A road: a reference line with the distances to its edges, open or closed. Immutable after create().
+///
+/// The line is resampled and smoothed without shifting the road (docs/tracks.md): where it leaves a raw point
+/// by d, the widths take d up, so the edges stay where the points put them. s = 0 is at the first raw point.
 class Track {
  public:
-  /// Fails with kInvalidArgument and the index of the point for: fewer than 4 points, non-finite numbers,
-  /// coincident neighbours only, widths <= 0, a line that crosses itself. 100,000 points take less than a
-  /// second.
+  /// Fails with kInvalidArgument and the index of the point, counted from 0, for: fewer than 4 different
+  /// points, non-finite numbers, widths <= 0 or > 1 km, a line that crosses itself; also for options out of
+  /// range. 100,000 points take less than a second.
   [[nodiscard]] static Result<Track> create(std::string name, const std::vector<TrackPoint>& points,
                                             bool closed, const TrackOptions& options = {});
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const Path& centre() const noexcept { return centre_; }
-  /// Distance from the line to the edge at arc length s [m] (any s; wrapped when closed).
-  [[nodiscard]] double left_width(double s) const noexcept;
-  [[nodiscard]] double right_width(double s) const noexcept;
+  [[nodiscard]] double length() const noexcept { return centre_.length(); }
+  /// Distance from the line to the edge at arc length s [m] (any s; wrapped when closed, clamped when open).
+  [[nodiscard]] double left_width(double s) const noexcept { return width_at(left_, s); }
+  [[nodiscard]] double right_width(double s) const noexcept { return width_at(right_, s); }
   [[nodiscard]] double kerb_width() const noexcept { return kerb_width_; }
+  /// Distance to the nearer edge of the road at the projection's s [m]: positive on the road, negative beyond
+  /// the edge.
+  [[nodiscard]] double edge_distance(const Projection& foot) const noexcept;
   /// The waypoints as given (before smoothing), which telemetry sends six of.
   [[nodiscard]] const std::vector<TrackPoint>& raw_points() const noexcept { return raw_points_; }
+  /// Where a car waits for the start, heading along the line.
+  [[nodiscard]] double start_s() const noexcept { return start_s_; }
+  [[nodiscard]] double start_d() const noexcept { return start_d_; }
 
  private:
   Track(std::string name, Path centre) : name_{std::move(name)}, centre_{std::move(centre)} {}
+  void set_widths(const std::vector<TrackPoint>& points, const std::vector<double>& guesses);
+  [[nodiscard]] double width_at(const std::vector<double>& table, double s) const noexcept;
 
   std::string name_;
   Path centre_;
   double kerb_width_ = 0.0;
+  double start_s_ = 0.0;
+  double start_d_ = 0.0;
   double width_spacing_ = 1.0;
-  std::vector<double> left_;
+  std::vector<double> left_;  // at s = k · width_spacing_, k = 0 … the last at s = length
   std::vector<double> right_;
   std::vector<TrackPoint> raw_points_;
 };

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/path/crossing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace chicane::path {
+namespace {
+
+constexpr std::size_t kMaxPiecesPerCell = 300;
+
+double side(const Vec2& a, const Vec2& b, const Vec2& p) noexcept {
+  return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
+}
+
+bool touches(const Vec2& a0, const Vec2& a1, const Vec2& b0, const Vec2& b1) noexcept {
+  const Eigen::Array2d a_low = a0.array().min(a1.array());
+  const Eigen::Array2d a_high = a0.array().max(a1.array());
+  if ((b0.array().max(b1.array()) < a_low).any() || (b0.array().min(b1.array()) > a_high).any()) return false;
+  return side(a0, a1, b0) * side(a0, a1, b1) <= 0.0 && side(b0, b1, a0) * side(b0, b1, a1) <= 0.0;
+}
+
+struct Entry {
+  std::uint64_t cell = 0;
+  std::size_t piece = 0;
+};
+
+}  // namespace
+
+std::optional<Crossing> find_crossing(std::span<const Vec2> points, bool closed) {
+  const std::size_t n = points.size();
+  const std::size_t pieces = closed ? n : n - 1;
+  const auto end_of = [&](std::size_t i) -> const Vec2& { return points[i + 1 == n ? 0 : i + 1]; };
+
+  Vec2 low = points[0];
+  double width = 0.0;
+  for (std::size_t i = 0; i < pieces; ++i) {
+    low = low.cwiseMin(points[i]).cwiseMin(end_of(i));
+    width = std::max(width, (end_of(i) - points[i]).norm());
+  }
+  if (!(width > 0.0)) return std::nullopt;
+  std::vector<Entry> entries;
+  entries.reserve(2 * pieces);
+  for (std::size_t i = 0; i < pieces; ++i) {
+    const Vec2 from = (points[i].cwiseMin(end_of(i)) - low) / width;
+    const Vec2 to = (points[i].cwiseMax(end_of(i)) - low) / width;
+    for (auto x = static_cast<std::uint64_t>(from.x()); x <= static_cast<std::uint64_t>(to.x()); ++x) {
+      for (auto y = static_cast<std::uint64_t>(from.y()); y <= static_cast<std::uint64_t>(to.y()); ++y) {
+        entries.push_back({(x << 32U) + y, i});
+      }
+    }
+  }
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.cell != b.cell ? a.cell < b.cell : a.piece < b.piece;
+  });
+
+  std::optional<Crossing> found;
+  const auto note = [&](std::size_t first, std::size_t second) {
+    if (!found || second < found->second) found = Crossing{first, second};
+  };
+  for (std::size_t start = 0, stop = 0; start < entries.size(); start = stop) {
+    while (stop < entries.size() && entries[stop].cell == entries[start].cell) ++stop;
+    if (stop - start > kMaxPiecesPerCell)
+      note(entries[start].piece, entries[start + kMaxPiecesPerCell].piece);
+    const std::size_t last = std::min(stop, start + kMaxPiecesPerCell);
+    for (std::size_t i = start; i < last; ++i) {
+      for (std::size_t j = i + 1; j < last; ++j) {
+        const std::size_t a = entries[i].piece;
+        const std::size_t b = entries[j].piece;
+        const bool are_neighbours = b - a <= 1 || (closed && a == 0 && b + 1 == n);
+        if (!are_neighbours && touches(points[a], end_of(a), points[b], end_of(b))) note(a, b);
+      }
+    }
+  }
+  return found;
+}
+
+}  // namespace chicane::path
