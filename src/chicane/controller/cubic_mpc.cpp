@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/controller/cubic_mpc.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
+#include "chicane/controller/cubic_problem.hpp"
+#include "chicane/controller/fallback.hpp"
+#include "chicane/controller/local_fit.hpp"
+#include "chicane/controller/option_range.hpp"
+#include "chicane/controller/roll_forward.hpp"
+#include "chicane/solver/ocp_solver.hpp"
+
+namespace chicane::controller {
+namespace {
+
+constexpr int kMaxSteps = 200;
+constexpr int kReferencePoints = 32;
+constexpr double kUnlimited = 1e9;
+
+using Solver = solver::OcpSolver<CubicProblem, kMaxSteps>;
+
+class CubicMpc final : public Controller {
+ public:
+  CubicMpc(const CubicMpcOptions& options, const model::VehicleParams& vehicle)
+      : uses_polar_{options.polar_waypoints},
+        steer_sign_{options.steering_right_positive ? -1.0 : 1.0},
+        stages_{options.horizon_steps - 1},
+        roll_forward_{options.latency_handling, options.latency, vehicle.kinematic_length},
+        problem_{options, vehicle},
+        fallback_{vehicle} {
+    reset();
+  }
+
+  [[nodiscard]] const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept override {
+    result_.report = {};
+    if (!is_finite(now)) return fall_back(now);
+    start_ = roll_forward_.predict(now);  // where the car is when the command acts
+    start_time_ = now.time + roll_forward_.compensated();
+    if (!see_line(now)) return fall_back(now);  // the waypoints from there, as a cubic
+    shift_warm_start();                         // the last answer, moved on by the time since
+    result_.report.solve = solver_.solve(problem_, initial_state(now), answer_, deadline);
+    if (!usable(result_.report.solve.status)) return fall_back(now);
+    return accept();
+  }
+
+  void reset() noexcept override {
+    roll_forward_.reset();
+    fallback_.reset();
+    forget_warm_start();
+    result_ = {};
+  }
+
+  [[nodiscard]] std::string_view name() const noexcept override { return "cubic-mpc"; }
+
+ private:
+  static bool is_finite(const model::Measurement& now) noexcept {
+    return std::isfinite(now.time) && std::isfinite(now.x) && std::isfinite(now.y) &&
+           std::isfinite(now.psi) && std::isfinite(now.speed) && std::isfinite(now.steer) &&
+           std::isfinite(now.throttle);
+  }
+
+  /// Fits the line in the frame of start_, and reports where the measured position lies beside it.
+  bool see_line(const model::Measurement& now) noexcept {
+    const LocalPoints local =
+        uses_polar_ ? to_car_frame_polar(now, start_.pose) : to_car_frame(now, start_.pose);
+    if (!fit_cubic(local.view(), problem_.line)) return false;
+    const Vec2 seen = to_start_frame(now.x, now.y);
+    const double slope = problem_.line.slope(seen.x());
+    StepReport& report = result_.report;
+    report.lateral_error = (seen.y() - problem_.line.at(seen.x())) / hypot(1.0, slope);
+    report.heading_error = angle_difference(now.psi, start_.pose.psi + atan(slope));
+    report.speed_reference = problem_.speed_reference;
+    report.delay = start_time_ - now.time;
+    for (const Vec2& point : local.view()) report.sight = std::max(report.sight, point.x());
+    return true;
+  }
+
+  /// In its own frame the car stands at the origin; equations 8 and 9 give the errors there.
+  [[nodiscard]] Solver::State initial_state(const model::Measurement& now) const noexcept {
+    return {0.0,
+            0.0,
+            0.0,
+            start_.speed,
+            problem_.line.at(0.0),
+            -atan(problem_.line.slope(0.0)),
+            steer_sign_ * now.steer,
+            now.throttle};
+  }
+
+  void shift_warm_start() noexcept {
+    if (has_answer_) solver::shift(answer_, (start_time_ - answer_time_) / problem_.dt);
+  }
+
+  void forget_warm_start() noexcept {
+    has_answer_ = false;
+    answer_.horizon = stages_;
+    answer_.u.fill({});
+  }
+
+  const StepResult& accept() noexcept {
+    has_answer_ = true;
+    answer_time_ = start_time_;
+    write_plan();
+    fallback_.accept(result_.plan);
+    result_.command = result_.plan.points[0].command;
+    return result_;
+  }
+
+  const StepResult& fall_back(const model::Measurement& now) noexcept {
+    forget_warm_start();
+    const Fallback::Answer answer = fallback_.command(now.time + roll_forward_.compensated(), now);
+    result_.command = answer.command;
+    result_.report.rung = answer.rung;
+    result_.plan.size = 0;
+    result_.plan.reference_size = 0;
+    return result_;
+  }
+
+  /// The answer in W. Inside the model an input acts one stage late: it stands beside the state that it
+  /// meets.
+  void write_plan() noexcept {
+    Plan& plan = result_.plan;
+    const int late = problem_.acts_late ? 1 : 0;
+    plan.size = stages_ + 1 - late;
+    for (int j = 0; j < plan.size; ++j) {
+      const auto& x = answer_.x[static_cast<std::size_t>(j + late)];
+      const auto& u = answer_.u[static_cast<std::size_t>(std::min(j, stages_ - 1))];
+      const Vec2 position = to_world(x[CubicProblem::kX], x[CubicProblem::kY]);
+      plan.points[static_cast<std::size_t>(j)] = {.time = start_time_ + (j + late) * problem_.dt,
+                                                  .x = position.x(),
+                                                  .y = position.y(),
+                                                  .psi = start_.pose.psi + x[CubicProblem::kPsi],
+                                                  .speed = x[CubicProblem::kV],
+                                                  .command = {steer_sign_ * u[0], u[1]}};
+    }
+    plan.reference_size = kReferencePoints;
+    for (int i = 0; i < kReferencePoints; ++i) {
+      const double x = result_.report.sight * i / (kReferencePoints - 1);
+      plan.reference[static_cast<std::size_t>(i)] = to_world(x, problem_.line.at(x));
+    }
+  }
+
+  [[nodiscard]] Vec2 to_start_frame(double x, double y) const noexcept {
+    const double cosine = cos(start_.pose.psi);
+    const double sine = sin(start_.pose.psi);
+    const double dx = x - start_.pose.x;
+    const double dy = y - start_.pose.y;
+    return {cosine * dx + sine * dy, cosine * dy - sine * dx};
+  }
+
+  [[nodiscard]] Vec2 to_world(double x, double y) const noexcept {
+    const double cosine = cos(start_.pose.psi);
+    const double sine = sin(start_.pose.psi);
+    return {start_.pose.x + cosine * x - sine * y, start_.pose.y + sine * x + cosine * y};
+  }
+
+  bool uses_polar_;
+  double steer_sign_;  ///< from the model's own steering sign to ours, and back
+  int stages_;         ///< intervals: one less than states
+  RollForward roll_forward_;
+  CubicProblem problem_;
+  Solver solver_;
+  Fallback fallback_;
+  Motion start_;               ///< of the horizon
+  double start_time_ = 0.0;    ///< [s]
+  double sight_ = 0.0;         ///< x of the farthest waypoint in the frame of start_ [m]
+  Solver::Trajectory answer_;  ///< of the last usable solve, in the frame of its start
+  double answer_time_ = 0.0;   ///< when it started [s]
+  bool has_answer_ = false;
+  StepResult result_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Controller>> make_cubic_mpc(const CubicMpcOptions& options,
+                                                   const model::VehicleParams& vehicle) {
+  if (const auto valid = model::validate(vehicle); !valid) return fail(valid.error());
+  const auto valid =
+      check_ranges({{"cubic_mpc.horizon_steps", static_cast<double>(options.horizon_steps), 2.0, kMaxSteps},
+                    {"cubic_mpc.step_length", options.step_length, 0.005, 0.5},
+                    {"cubic_mpc.speed_reference", options.speed_reference, 0.0, 90.0},
+                    {"cubic_mpc.latency", options.latency, 0.0, 0.5},
+                    {"cubic_mpc.weight_lateral", options.weight_lateral, 0.0, kUnlimited},
+                    {"cubic_mpc.weight_heading", options.weight_heading, 0.0, kUnlimited},
+                    {"cubic_mpc.weight_speed", options.weight_speed, 0.0, kUnlimited},
+                    {"cubic_mpc.weight_steer", options.weight_steer, 0.0, kUnlimited},
+                    {"cubic_mpc.weight_throttle", options.weight_throttle, 0.0, kUnlimited},
+                    {"cubic_mpc.weight_steer_change", options.weight_steer_change, 0.0, kUnlimited},
+                    {"cubic_mpc.weight_throttle_change", options.weight_throttle_change, 0.0, kUnlimited},
+                    {"cubic_mpc.weight_speed_steer", options.weight_speed_steer, 0.0, kUnlimited}});
+  if (!valid) return fail(valid.error());
+  return std::make_unique<CubicMpc>(options, vehicle);
+}
+
+}  // namespace chicane::controller

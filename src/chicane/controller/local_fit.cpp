@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/controller/local_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "chicane/base/assert.hpp"
+#include "chicane/base/math.hpp"
+
+namespace chicane::controller {
+namespace {
+
+constexpr std::size_t kRows = model::Measurement::kMaxWaypoints;
+constexpr std::size_t kColumns = 4;
+
+/// A column that keeps less than this share of its length after the columns before it tells nothing new.
+constexpr double kRankTolerance = 1e-9;
+
+template <class Convert>
+LocalPoints convert(const model::Measurement& now, const model::Pose& car, const Convert& to_local) noexcept {
+  LocalPoints local;
+  const int count = std::clamp(now.waypoint_count, 0, model::Measurement::kMaxWaypoints);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    const Vec2 point = to_local(now.waypoints[i].x() - car.x, now.waypoints[i].y() - car.y);
+    if (std::isfinite(point.x()) && std::isfinite(point.y()))
+      local.points[static_cast<std::size_t>(local.count++)] = point;
+  }
+  return local;
+}
+
+/// The powers 1, t, t², t³ of the points' x (columns) with their y, turned row by row into R c = Qᵀ y.
+class LeastSquares {
+ public:
+  void add(double t, double y) noexcept {
+    double power = 1.0;
+    for (auto& column : columns_) {
+      column[rows_] = power;
+      power *= t;
+    }
+    y_[rows_++] = y;
+  }
+
+  std::array<double, kColumns> solve() noexcept {
+    std::array<bool, kColumns> is_used{};
+    std::array<double, kColumns> diagonal{};
+    std::array<std::size_t, kColumns> pivot_row{};
+    std::size_t row = 0;
+    for (std::size_t j = 0; j < kColumns && row < rows_; ++j) {
+      const double rest = norm(columns_[j], row);
+      if (rest <= kRankTolerance * norm(columns_[j], 0)) continue;
+      pivot_row[j] = row;
+      diagonal[j] = reflect(j, row, rest);
+      is_used[j] = true;
+      ++row;
+    }
+    std::array<double, kColumns> c{};
+    for (std::size_t j = kColumns; j-- > 0;) {
+      if (!is_used[j]) continue;
+      double sum = y_[pivot_row[j]];
+      for (std::size_t k = j + 1; k < kColumns; ++k) sum -= columns_[k][pivot_row[j]] * c[k];
+      c[j] = sum / diagonal[j];
+    }
+    return c;
+  }
+
+ private:
+  using Column = std::array<double, kRows>;
+
+  double norm(const Column& column, std::size_t from) const noexcept {
+    double sum = 0.0;
+    for (std::size_t i = from; i < rows_; ++i) sum += column[i] * column[i];
+    return std::sqrt(sum);
+  }
+
+  /// Householder reflection that maps column j's rows from `row` on to (diagonal, 0, ...); applied to all
+  /// that follows.
+  double reflect(std::size_t j, std::size_t row, double length) noexcept {
+    const double diagonal = columns_[j][row] > 0.0 ? -length : length;
+    Column normal = columns_[j];
+    normal[row] -= diagonal;
+    const double scale = 2.0 / (norm(normal, row) * norm(normal, row));
+    const auto apply = [&](Column& column) {
+      double dot = 0.0;
+      for (std::size_t i = row; i < rows_; ++i) dot += normal[i] * column[i];
+      for (std::size_t i = row; i < rows_; ++i) column[i] -= scale * dot * normal[i];
+    };
+    for (std::size_t k = j + 1; k < kColumns; ++k) apply(columns_[k]);
+    apply(y_);
+    return diagonal;
+  }
+
+  std::array<Column, kColumns> columns_{};
+  Column y_{};
+  std::size_t rows_ = 0;
+};
+
+}  // namespace
+
+LocalPoints to_car_frame(const model::Measurement& now, const model::Pose& car) noexcept {
+  const double cosine = cos(car.psi);
+  const double sine = sin(car.psi);
+  return convert(now, car, [=](double dx, double dy) {
+    return Vec2{cosine * dx + sine * dy, cosine * dy - sine * dx};
+  });
+}
+
+LocalPoints to_car_frame_polar(const model::Measurement& now, const model::Pose& car) noexcept {
+  return convert(now, car, [&](double dx, double dy) {
+    const double radius = hypot(dx, dy);
+    const double angle = atan2(dy, dx) - car.psi;
+    return Vec2{radius * cos(angle), radius * sin(angle)};
+  });
+}
+
+bool fit_cubic(std::span<const Vec2> points, Cubic& fit) noexcept {
+  CHICANE_ASSERT(points.size() <= kRows);
+  if (points.size() < 2) return false;
+  double low = points[0].x();
+  double high = low;
+  for (const Vec2& point : points) {
+    low = std::min(low, point.x());
+    high = std::max(high, point.x());
+  }
+  if (!(high - low > 1e-3)) return false;
+
+  // Powers of t = x / scale in [-1, 1]: those of x itself differ by a factor of a million.
+  const double scale = std::max(std::fabs(low), std::fabs(high));
+  LeastSquares system;
+  for (const Vec2& point : points) system.add(point.x() / scale, point.y());
+  fit.c = system.solve();
+  double unit = 1.0;
+  for (double& coefficient : fit.c) {
+    coefficient /= unit;
+    unit *= scale;
+  }
+  return true;
+}
+
+}  // namespace chicane::controller

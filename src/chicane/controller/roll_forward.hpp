@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "chicane/controller/cubic_mpc.hpp"
+#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
+
+namespace chicane::controller {
+
+/// Where the described model believes the car to be.
+struct Motion {
+  model::Pose pose;
+  double speed = 0.0;  ///< along the yaw [m/s]
+};
+
+/// x and y alone move on (docs/problem.md, equation 14).
+[[nodiscard]] Motion roll_position(const Motion& from, double latency) noexcept;
+
+/// One Euler step of the kinematic model over the latency (equation 15): ψ += v δ L / L_f, v += a L, with
+/// `acting` as δ and, throttle taken for acceleration in m/s², as a.
+[[nodiscard]] Motion roll_kinematic(const Motion& from, const model::Command& acting, double latency,
+                                    double kinematic_length) noexcept;
+
+/// The form that goes with the measured latency (equation 16): ψ += v tan δ L / L_f + a tan δ L² / (2 L_f).
+[[nodiscard]] Motion roll_accelerating(const Motion& from, const model::Command& acting, double latency,
+                                       double kinematic_length) noexcept;
+
+/// Chooses among them, and keeps the measured latency. Latency lies in [0, 0.5] s whatever is measured.
+class RollForward {
+ public:
+  RollForward(LatencyHandling handling, double latency, double kinematic_length) noexcept
+      : handling_{handling},
+        first_latency_{latency},
+        latency_{latency},
+        kinematic_length_{kinematic_length} {}
+
+  /// The measured motion at the time the command acts, by the described means. Pre: finite pose, speed and
+  /// commands.
+  [[nodiscard]] Motion predict(const model::Measurement& now) noexcept;
+  /// What the last predict() compensated [s]; 0 when nothing is rolled forward.
+  [[nodiscard]] double compensated() const noexcept;
+  void reset() noexcept { latency_ = first_latency_; }
+
+ private:
+  LatencyHandling handling_;
+  double first_latency_;
+  double latency_;
+  double kinematic_length_;
+};
+
+}  // namespace chicane::controller

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/controller/baselines.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "chicane/base/angle.hpp"
+#include "controller/sample_road.hpp"
+
+namespace chicane::controller {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+const model::VehicleParams kCar;
+
+std::vector<std::unique_ptr<Controller>> all_baselines() {
+  std::vector<std::unique_ptr<Controller>> all;
+  all.push_back(std::move(*make_pid({}, kCar)));
+  all.push_back(std::move(*make_pure_pursuit({}, kCar)));
+  all.push_back(std::move(*make_stanley({}, kCar)));
+  return all;
+}
+
+/// A straight road along W's x axis.
+model::Measurement on_a_straight(double y, double psi, double speed) {
+  model::Measurement now;
+  now.time = 1.0;
+  now.y = y;
+  now.psi = psi;
+  now.speed = speed;
+  now.waypoint_count = 6;
+  for (int i = 0; i < 6; ++i) now.waypoints[static_cast<std::size_t>(i)] = {-5.0 + 12.0 * i, 0.0};
+  return now;
+}
+
+TEST(Baselines, HoldTheWheelStraightOnTheLine) {
+  for (const auto& controller : all_baselines()) {
+    const StepResult& result = controller->step(on_a_straight(0.0, 0.0, 10.0), Deadline::never());
+    EXPECT_NEAR(result.command.steer, 0.0, 1e-9) << controller->name();
+    EXPECT_EQ(result.report.rung, Rung::kController);
+  }
+}
+
+TEST(Baselines, SteerTowardsTheLineFromBothSidesAndBothHeadings) {
+  for (const auto& controller : all_baselines()) {
+    EXPECT_LT(controller->step(on_a_straight(1.0, 0.0, 10.0), Deadline::never()).command.steer, -0.01);
+    EXPECT_GT(controller->step(on_a_straight(-1.0, 0.0, 10.0), Deadline::never()).command.steer, 0.01);
+    EXPECT_LT(controller->step(on_a_straight(0.0, 0.2, 10.0), Deadline::never()).command.steer, -0.01);
+    EXPECT_GT(controller->step(on_a_straight(0.0, -0.2, 10.0), Deadline::never()).command.steer, 0.01);
+  }
+}
+
+TEST(Baselines, MirrorWithTheWorldAndDoNotCareWhereTheyDrive) {
+  auto here = all_baselines();
+  auto mirror = all_baselines();
+  auto there = all_baselines();
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    const model::Command a = here[i]->step(on_a_left_bend(), Deadline::never()).command;
+    const model::Command b = mirror[i]->step(mirrored(on_a_left_bend()), Deadline::never()).command;
+    const model::Command c = there[i]->step(on_a_left_bend(-321.0, 99.0, 2.5), Deadline::never()).command;
+    EXPECT_NEAR(a.steer, -b.steer, 1e-9);
+    EXPECT_NEAR(a.steer, c.steer, 1e-6);  // projection onto the spline stops at about 1e-8 m
+    EXPECT_NEAR(a.throttle, c.throttle, 1e-6);
+  }
+}
+
+TEST(Baselines, SpeedUpBelowTheReferenceAndBrakeUsefullyAboveIt) {
+  for (const auto& controller : all_baselines()) {
+    EXPECT_GT(controller->step(on_a_straight(0.0, 0.0, 0.0), Deadline::never()).command.throttle, 0.5);
+    const double braking =
+        controller->step(on_a_straight(0.0, 0.0, 40.0), Deadline::never()).command.throttle;
+    EXPECT_LT(braking, 0.0);
+    EXPECT_GE(braking, -kCar.brake_throttle_limit);
+  }
+}
+
+TEST(Baselines, SlowDownForACurve) {
+  PidOptions options;
+  options.speed.speed_reference = 30.0;
+  options.speed.lateral_acceleration_limit = 2.0;
+  const auto controller = std::move(*make_pid(options, kCar));
+  const StepResult& result = controller->step(on_a_left_bend(), Deadline::never());
+  // sqrt(2 m/s² · 80 m) = 12.6 m/s; the ends of the spline are straighter, so a little is allowed on top.
+  EXPECT_NEAR(result.report.speed_reference, std::sqrt(2.0 * 80.0), 1.5);
+}
+
+TEST(Baselines, StandStillWithoutTurningTheWheelToItsStop) {
+  for (const auto& controller : all_baselines()) {
+    const StepResult& result = controller->step(on_a_straight(0.5, 0.0, 0.0), Deadline::never());
+    EXPECT_LT(std::fabs(result.command.steer), kCar.steer_limit) << controller->name();
+  }
+}
+
+TEST(Baselines, KeepThePidIntegralBoundedWhileTheWheelIsAtItsStop) {
+  PidOptions options;
+  options.integral_gain = 0.5;
+  const auto controller = std::move(*make_pid(options, kCar));
+  model::Measurement now = on_a_straight(6.0, 0.0, 5.0);
+  for (int i = 0; i < 600; ++i, now.time += 0.05) (void)controller->step(now, Deadline::never());
+  EXPECT_EQ(controller->step(now, Deadline::never()).command.steer, -kCar.steer_limit);
+  // Back on the line the wheel comes off the stop at once: 30 s of error have not been piled up.
+  now.y = -1.0;
+  int steps = 0;
+  while (controller->step(now, Deadline::never()).command.steer < 0.0 && steps < 100) {
+    now.time += 0.05;
+    ++steps;
+  }
+  EXPECT_LT(steps, 40);
+}
+
+TEST(Baselines, AnswerAlsoWithoutAUsableMeasurement) {
+  for (const auto& controller : all_baselines()) {
+    std::vector<model::Measurement> hostile(7, on_a_left_bend());
+    hostile[0].x = kNaN;
+    hostile[1].psi = std::numeric_limits<double>::infinity();
+    hostile[2].speed = kNaN;
+    hostile[3].time = kNaN;
+    hostile[4].waypoint_count = 0;
+    hostile[5].waypoint_count = 1;
+    for (Vec2& point : hostile[6].waypoints) point = {1.0, 1.0};
+    for (const auto& now : hostile) {
+      const StepResult& result = controller->step(now, Deadline::never());
+      ASSERT_TRUE(std::isfinite(result.command.steer) && std::isfinite(result.command.throttle));
+      ASSERT_LE(std::fabs(result.command.steer), kCar.steer_limit);
+      ASSERT_LE(std::fabs(result.command.throttle), 1.0);
+      EXPECT_NE(result.report.rung, Rung::kController);
+    }
+  }
+}
+
+TEST(Baselines, RefuseOptionsOutOfRangeByName) {
+  PidOptions pid;
+  pid.integral_gain = -1.0;
+  EXPECT_EQ(make_pid(pid, kCar).error().message, "pid.integral_gain: got -1, expected 0 to 10");
+  PurePursuitOptions pursuit;
+  pursuit.lookahead_min = 0.0;
+  EXPECT_NE(make_pure_pursuit(pursuit, kCar).error().message.find("pure_pursuit.lookahead_min"),
+            std::string::npos);
+  StanleyOptions stanley;
+  stanley.speed.speed_gain = kNaN;
+  EXPECT_NE(make_stanley(stanley, kCar).error().message.find("speed_gain"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace chicane::controller

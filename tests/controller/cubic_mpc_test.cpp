@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/controller/cubic_mpc.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "chicane/base/angle.hpp"
+#include "controller/sample_road.hpp"
+
+namespace chicane::controller {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+const model::VehicleParams kCar;
+
+std::unique_ptr<Controller> make(const CubicMpcOptions& options) {
+  auto controller = make_cubic_mpc(options, kCar);
+  EXPECT_TRUE(controller.has_value()) << controller.error().message;
+  return std::move(*controller);
+}
+
+/// The handlings of latency, both steering signs and both ways to the car's frame, in all combinations.
+std::vector<CubicMpcOptions> all_variants() {
+  std::vector<CubicMpcOptions> variants;
+  for (const auto handling :
+       {LatencyHandling::kNone, LatencyHandling::kRollForward, LatencyHandling::kMeasured,
+        LatencyHandling::kPositionOnly, LatencyHandling::kInsideModel}) {
+    for (const bool sign : {false, true}) {
+      for (const bool polar : {false, true}) {
+        CubicMpcOptions options;
+        options.latency_handling = handling;
+        options.steering_right_positive = sign;
+        options.polar_waypoints = polar;
+        options.weight_speed_steer = 0.5;
+        variants.push_back(options);
+      }
+    }
+  }
+  return variants;
+}
+
+void expect_bounded(const StepResult& result) {
+  ASSERT_TRUE(std::isfinite(result.command.steer) && std::isfinite(result.command.throttle));
+  ASSERT_LE(std::fabs(result.command.steer), kCar.steer_limit);
+  ASSERT_LE(std::fabs(result.command.throttle), 1.0);
+}
+
+TEST(CubicMpc, SolvesEveryVariantAndSteersBackToTheLine) {
+  for (const auto& options : all_variants()) {
+    const auto controller = make(options);
+    const StepResult& result = controller->step(on_a_left_bend(), Deadline::never());
+    EXPECT_EQ(result.report.solve.status, solver::SolveStatus::kOptimal);
+    EXPECT_EQ(result.report.rung, Rung::kController);
+    expect_bounded(result);
+    EXPECT_LT(result.command.steer,
+              0.06);  // 80 m ask for 0.033 rad; half a metre left of the line, less than that
+    EXPECT_NEAR(result.report.lateral_error, 0.5, 0.06);  // least squares miss 60 m of the circle by 4.5 cm
+    EXPECT_NEAR(result.report.heading_error, 0.0, 0.01);
+  }
+}
+
+TEST(CubicMpc, MirrorsWithTheWorld) {
+  for (const auto& options : all_variants()) {
+    const model::Command left = make(options)->step(on_a_left_bend(), Deadline::never()).command;
+    const model::Command right = make(options)->step(mirrored(on_a_left_bend()), Deadline::never()).command;
+    EXPECT_NEAR(left.steer, -right.steer, 1e-6);  // the solver's tolerance
+    EXPECT_NEAR(left.throttle, right.throttle, 1e-6);
+  }
+}
+
+TEST(CubicMpc, DoesNotCareWhereInTheWorldItDrives) {
+  for (const auto& options : all_variants()) {
+    const model::Command here = make(options)->step(on_a_left_bend(), Deadline::never()).command;
+    const model::Command there =
+        make(options)->step(on_a_left_bend(-321.0, 99.0, 2.5), Deadline::never()).command;
+    EXPECT_NEAR(here.steer, there.steer, 1e-6);
+    EXPECT_NEAR(here.throttle, there.throttle, 1e-6);
+  }
+}
+
+TEST(CubicMpc, HasTheSameAnswerWithBothSteeringSigns) {
+  CubicMpcOptions options;
+  const model::Command ours = make(options)->step(on_a_left_bend(), Deadline::never()).command;
+  options.steering_right_positive = true;
+  const model::Command simulators = make(options)->step(on_a_left_bend(), Deadline::never()).command;
+  EXPECT_NEAR(ours.steer, simulators.steer, 1e-6);
+  EXPECT_NEAR(ours.throttle, simulators.throttle, 1e-6);
+}
+
+TEST(CubicMpc, PlansInTheWorldFromWhereTheCommandActs) {
+  CubicMpcOptions options;
+  options.latency_handling = LatencyHandling::kPositionOnly;
+  const model::Measurement now = on_a_left_bend(10.0, 20.0, 0.5 * kPi);
+  const auto controller = make(options);
+  const Plan& plan = controller->step(now, Deadline::never()).plan;
+  ASSERT_EQ(plan.size, options.horizon_steps);
+  EXPECT_NEAR(plan.points[0].time, now.time + 0.1, 1e-12);
+  EXPECT_NEAR(plan.points[0].x, 10.0, 1e-9);
+  EXPECT_NEAR(plan.points[0].y, 20.0 + 1.5, 1e-9);
+  EXPECT_NEAR(plan.points[1].time - plan.points[0].time, options.step_length, 1e-12);
+  EXPECT_GT(plan.points[9].y, 30.0);
+  EXPECT_LT(plan.points[9].x, 10.0);  // the road bends left
+  ASSERT_GT(plan.reference_size, 2);
+  EXPECT_NEAR(plan.reference[0].x(), 10.5, 0.08);  // the line is half a metre to the right
+}
+
+TEST(CubicMpc, PutsALateInputBesideTheStateItMeets) {
+  CubicMpcOptions options;
+  options.latency_handling = LatencyHandling::kInsideModel;
+  const model::Measurement now = on_a_left_bend();
+  const auto controller = make(options);
+  const StepResult& result = controller->step(now, Deadline::never());
+  EXPECT_EQ(result.plan.size, options.horizon_steps - 1);
+  EXPECT_NEAR(result.plan.points[0].time, now.time + options.step_length, 1e-12);
+  EXPECT_EQ(result.plan.points[0].command.steer, result.command.steer);
+  // The first stage is driven by the wheel as measured, equation (13).
+  EXPECT_NEAR(result.plan.points[0].psi, now.speed * now.steer / kCar.kinematic_length * options.step_length,
+              1e-9);
+}
+
+TEST(CubicMpc, SlowsForTurnsWhenSpeedTimesSteeringCosts) {
+  CubicMpcOptions options;
+  options.speed_reference = 15.0;
+  const double without = make(options)->step(on_a_left_bend(), Deadline::never()).command.throttle;
+  options.weight_speed_steer = 50.0;
+  EXPECT_LT(make(options)->step(on_a_left_bend(), Deadline::never()).command.throttle, without);
+}
+
+TEST(CubicMpc, AnswersAlsoWithoutAUsableMeasurement) {
+  for (const auto& options : all_variants()) {
+    const auto controller = make(options);
+    std::vector<model::Measurement> hostile(9, on_a_left_bend());
+    hostile[0].x = kNaN;
+    hostile[1].psi = kNaN;
+    hostile[2].speed = std::numeric_limits<double>::infinity();
+    hostile[3].time = kNaN;
+    hostile[4].waypoint_count = 0;
+    hostile[5].waypoint_count = -3;
+    hostile[6].steer = kNaN;
+    hostile[7].speed = 1e300;
+    for (Vec2& point : hostile[8].waypoints) point = {kNaN, kNaN};
+    for (const auto& now : hostile) {
+      const StepResult& result = controller->step(now, Deadline::never());
+      expect_bounded(result);
+      EXPECT_NE(result.report.rung, Rung::kController);
+      EXPECT_FALSE(usable(result.report.solve.status));
+    }
+  }
+}
+
+TEST(CubicMpc, UsesTheLastPlanOnceTheLineIsLostAndRecoversWithIt) {
+  const auto controller = make(CubicMpcOptions{});
+  model::Measurement now = on_a_left_bend();
+  ASSERT_EQ(controller->step(now, Deadline::never()).report.rung, Rung::kController);
+  const double second = controller->step(now, Deadline::never()).plan.points[1].command.steer;
+  now.waypoint_count = 0;
+  now.time += 0.1;
+  const StepResult& lost = controller->step(now, Deadline::never());
+  EXPECT_EQ(lost.report.rung, Rung::kShiftedPlan);
+  EXPECT_DOUBLE_EQ(lost.command.steer, second);
+  now.time += 0.6;
+  EXPECT_EQ(controller->step(now, Deadline::never()).report.rung, Rung::kHoldAndBrake);
+  now.time += 2.0;
+  EXPECT_EQ(controller->step(now, Deadline::never()).report.rung, Rung::kBrake);
+  now.waypoint_count = 6;
+  EXPECT_EQ(controller->step(now, Deadline::never()).report.rung, Rung::kController);
+}
+
+TEST(CubicMpc, FallsBackWhenTheTimeIsSpentBeforeAnAnswer) {
+  CubicMpcOptions options;
+  options.horizon_steps = 40;
+  const auto controller = make(options);
+  const StepResult& result = controller->step(on_a_left_bend(), Deadline::after(std::chrono::nanoseconds{0}));
+  expect_bounded(result);
+  EXPECT_EQ(usable(result.report.solve.status), result.report.rung == Rung::kController);
+}
+
+TEST(CubicMpc, TakesTheLongestHorizon) {
+  CubicMpcOptions options;
+  options.horizon_steps = 200;
+  options.step_length = 0.02;
+  const auto controller = make(options);
+  const StepResult& result = controller->step(on_a_left_bend(), Deadline::never());
+  expect_bounded(result);
+  EXPECT_EQ(result.report.rung, Rung::kController);
+  EXPECT_EQ(result.plan.size, 200);
+}
+
+TEST(CubicMpc, ForgetsOnReset) {
+  const auto controller = make(CubicMpcOptions{});
+  const model::Command first = controller->step(on_a_left_bend(), Deadline::never()).command;
+  (void)controller->step(on_a_left_bend(5.0, 1.0, 0.1), Deadline::never());
+  controller->reset();
+  const model::Command again = controller->step(on_a_left_bend(), Deadline::never()).command;
+  EXPECT_EQ(first.steer, again.steer);  // bit for bit: nothing remembered
+  EXPECT_EQ(first.throttle, again.throttle);
+}
+
+TEST(CubicMpc, RefusesOptionsOutOfRangeByName) {
+  const auto refused = [](auto change, const char* name) {
+    CubicMpcOptions options;
+    change(options);
+    const auto controller = make_cubic_mpc(options, kCar);
+    ASSERT_FALSE(controller.has_value()) << name;
+    EXPECT_NE(controller.error().message.find(name), std::string::npos) << controller.error().message;
+  };
+  refused([](auto& o) { o.horizon_steps = 1; }, "horizon_steps");
+  refused([](auto& o) { o.horizon_steps = 201; }, "horizon_steps");
+  refused([](auto& o) { o.step_length = 0.0; }, "step_length");
+  refused([](auto& o) { o.speed_reference = kNaN; }, "speed_reference");
+  refused([](auto& o) { o.latency = 0.6; }, "latency");
+  refused([](auto& o) { o.weight_steer_change = -1.0; }, "weight_steer_change");
+}
+
+}  // namespace
+}  // namespace chicane::controller
