@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/udacity_codec.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <tl/expected.hpp>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/assert.hpp"
+#include "chicane/base/math.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kSteerUnit =
+    degrees_to_radians(25.0);                 // wheel angle at ±1 (CarController.cs, m_MaximumSteerAngle)
+constexpr double kMilesPerHour = 2.23693629;  // CarController.cs, CurrentSpeed
+constexpr std::size_t kMaxReplyPoints = 1000;
+constexpr std::size_t kMaxWords = 80;  // of a stranger's text in our messages [byte]
+
+/// What is allowed for a number of the telemetry, on the wire. Wide enough for any world, narrow enough for
+/// arithmetic.
+struct Range {
+  double low;
+  double high;
+};
+constexpr Range kPosition{-1e6, 1e6};  // [m]
+constexpr Range kAngle{-1e3, 1e3};     // [rad]
+constexpr Range kSpeed{0.0, 1e3};      // [mph]
+constexpr Range kSteer{-1.6, 1.6};     // [rad]
+constexpr Range kThrottle{-1.0, 1.0};
+
+/// What somebody sent, for a message to a person: short, printable, valid UTF-8.
+std::string shown(const Json& value) {
+  if (value.is_array()) return fmt::format("an array of {}", value.size());
+  if (value.is_object()) return "an object";
+  std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  if (text.size() > kMaxWords) text = text.substr(0, kMaxWords) + "…";
+  return text;
+}
+
+UdacityBroken unexpected(std::string_view field, const Json& value, std::string_view expected) {
+  return {fmt::format("{}: got {}, expected {}", field, shown(value), expected)};
+}
+
+/// A machine with a decimal comma prints `"x":-40,62`: a number after a key, then a comma and a digit.
+bool has_decimal_comma(std::string_view text) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  for (std::size_t i = text.find("\":"); i != std::string_view::npos; i = text.find("\":", i + 1)) {
+    std::size_t k = i + 2;
+    if (k < text.size() && text[k] == '-') ++k;
+    const std::size_t first = k;
+    while (k < text.size() && is_digit(text[k])) ++k;
+    if (k > first && k + 1 < text.size() && text[k] == ',' && is_digit(text[k + 1])) return true;
+  }
+  return false;
+}
+
+struct Event {
+  std::string name;
+  Json payload;
+};
+
+/// `["name",payload]`, after the packet digits and an optional acknowledgement number.
+tl::expected<Event, UdacityBroken> parse_event(std::string_view text) {
+  const std::size_t start = text.find_first_not_of("0123456789");
+  if (start == std::string_view::npos || text[start] != '[')
+    return tl::unexpected(UdacityBroken{"the event is no array"});
+  Json array;
+  try {
+    array = Json::parse(text.begin() + static_cast<std::ptrdiff_t>(start), text.end());
+  } catch (const Json::parse_error& error) {
+    if (has_decimal_comma(text)) {
+      return tl::unexpected(
+          UdacityBroken{"decimal comma: the simulator runs with a comma locale; start it with LC_NUMERIC=C"});
+    }
+    return tl::unexpected(UdacityBroken{fmt::format("not JSON at byte {}", error.byte + start)});
+  } catch (const Json::exception&) {
+    return tl::unexpected(UdacityBroken{"a number is too large for JSON"});
+  }
+  if (array.empty() || array.size() > 2 || !array[0].is_string()) {
+    return tl::unexpected(UdacityBroken{"the event is not an array of a name and one value"});
+  }
+  Event event{array[0].get<std::string>(), array.size() == 2 ? std::move(array[1]) : Json{}};
+  return event;
+}
+
+/// Everything that is not an event; nullopt for an event.
+std::optional<std::variant<UdacityPacket, UdacityBroken>> parse_packet(std::string_view text) {
+  if (text.size() > kMaxUdacityMessage) {
+    return UdacityBroken{fmt::format("{} bytes, expected at most {}", text.size(), kMaxUdacityMessage)};
+  }
+  if (text.empty()) return UdacityBroken{"an empty message"};
+  if (text.starts_with("42")) return std::nullopt;
+  if (text.starts_with("40")) return UdacityPacket::kConnect;
+  if (text.starts_with("41")) return UdacityPacket::kDisconnect;
+  switch (text[0]) {
+    case '0':
+      return UdacityPacket::kOpen;
+    case '1':
+      return UdacityPacket::kClose;
+    case '2':
+      return UdacityPacket::kPing;
+    case '3':
+      return UdacityPacket::kPong;
+    default:
+      break;
+  }
+  if (text[0] >= '4' && text[0] <= '9') return UdacityPacket::kIgnored;
+  return UdacityBroken{"the message does not begin with a digit"};
+}
+
+/// Names the scene of the simulator collection that sends such keys (templates of udacity/CarND-*).
+std::optional<UdacityForeign> foreign_scene(const Json& data) {
+  struct Scene {
+    const char* key;
+    const char* name;
+  };
+  constexpr std::array kScenes{
+      Scene{"sensor_fusion", "Path Planning"},
+      Scene{"sensor_measurement", "Kalman Filters"},
+      Scene{"sense_observations_x", "Kidnapped Vehicle"},
+      Scene{"cte", "PID Controller"},
+      Scene{"velocity", "System Integration"},
+      Scene{"image", "Behavioral Cloning"},
+  };
+  if (data.contains("ptsx") || data.contains("psi")) return std::nullopt;
+  for (const Scene& scene : kScenes) {
+    if (data.contains(scene.key)) {
+      return UdacityForeign{fmt::format(
+          "the telemetry of the scene '{}'; choose 'MPC Controller' in the simulator", scene.name)};
+    }
+  }
+  return std::nullopt;
+}
+
+/// Reads numbers out of an object and remembers the first that is not as it should be.
+class FieldReader {
+ public:
+  explicit FieldReader(const Json& data) : data_{data} {}
+
+  double number(const char* key, const Range& range) {
+    const Json* value = find(key);
+    return value == nullptr ? 0.0 : checked(key, *value, range);
+  }
+
+  /// The numbers of an array of at most `capacity`.
+  std::vector<double> numbers(const char* key, std::size_t capacity, const Range& range) {
+    const Json* value = find(key);
+    if (value == nullptr) return {};
+    if (!value->is_array() || value->size() > capacity) {
+      refuse(unexpected(key, *value, fmt::format("an array of at most {} numbers", capacity)));
+      return {};
+    }
+    std::vector<double> result;
+    result.reserve(value->size());
+    for (const Json& element : *value) {
+      result.push_back(checked(fmt::format("{}[{}]", key, result.size()), element, range));
+    }
+    return result;
+  }
+
+  void refuse(UdacityBroken broken) {
+    if (!broken_) broken_ = std::move(broken);
+  }
+  [[nodiscard]] const std::optional<UdacityBroken>& broken() const { return broken_; }
+
+ private:
+  const Json* find(const char* key) {
+    const auto found = data_.find(key);
+    if (found != data_.end()) return &*found;
+    refuse({fmt::format("{}: missing", key)});
+    return nullptr;
+  }
+
+  double checked(std::string_view key, const Json& value, const Range& range) {
+    if (!value.is_number()) {
+      refuse(unexpected(key, value, "a number"));
+      return 0.0;
+    }
+    const double number = value.get<double>();
+    if (number >= range.low && number <= range.high) return number;
+    refuse(unexpected(key, value, fmt::format("a number in [{}, {}]", range.low, range.high)));
+    return 0.0;
+  }
+
+  const Json& data_;
+  std::optional<UdacityBroken> broken_;
+};
+
+UdacityTelemetry read_measurement(const Json& data) {
+  FieldReader fields(data);
+  const std::vector<double> xs = fields.numbers("ptsx", model::Measurement::kMaxWaypoints, kPosition);
+  const std::vector<double> ys = fields.numbers("ptsy", model::Measurement::kMaxWaypoints, kPosition);
+  model::Measurement measurement;
+  measurement.psi = fields.number("psi", kAngle);
+  measurement.x = fields.number("x", kPosition);
+  measurement.y = fields.number("y", kPosition);
+  measurement.steer = 0.0 - fields.number("steering_angle", kSteer);
+  measurement.throttle = fields.number("throttle", kThrottle);
+  measurement.speed = mph_to_mps(fields.number("speed", kSpeed));
+  if (xs.size() != ys.size())
+    fields.refuse({fmt::format("ptsx has {} points, ptsy {}", xs.size(), ys.size())});
+  if (fields.broken()) return *fields.broken();
+  measurement.waypoint_count = static_cast<int>(xs.size());
+  for (std::size_t i = 0; i < xs.size(); ++i) measurement.waypoints[i] = Vec2{xs[i], ys[i]};
+  return measurement;
+}
+
+/// `[x0,x1,…]` and `[y0,y1,…]` of a line, seen from `pose`.
+struct LineText {
+  std::string x = "[";
+  std::string y = "[";
+};
+
+template <class PointAt>
+LineText encode_line(int size, const model::Pose& pose, PointAt point_at) {
+  LineText line;
+  const double c = cos(pose.psi);
+  const double s = sin(pose.psi);
+  const int stride = std::max(1, (size + kMaxUdacityLine - 1) / kMaxUdacityLine);
+  for (int i = 0; i < size; i += stride) {
+    const Vec2 point = point_at(static_cast<std::size_t>(i));
+    const double dx = point.x() - pose.x;
+    const double dy = point.y() - pose.y;
+    const double x = c * dx + s * dy;
+    const double y = c * dy - s * dx;
+    if (!(std::abs(x) <= kPosition.high && std::abs(y) <= kPosition.high)) break;
+    const char* separator = i == 0 ? "" : ",";
+    line.x += fmt::format("{}{:.3f}", separator, x);
+    line.y += fmt::format("{}{:.3f}", separator, y);
+  }
+  line.x += ']';
+  line.y += ']';
+  return line;
+}
+
+/// Finite and inside [-1, 1], and never "-0".
+double normalised(double value) {
+  CHICANE_ASSERT(std::isfinite(value));
+  return std::isfinite(value) ? std::clamp(value, -1.0, 1.0) + 0.0 : 0.0;
+}
+
+/// A line of the reply. The original reads *_y at every index of *_x; what *_y has more is ignored.
+std::vector<Vec2> read_line(FieldReader& fields, const char* x_key, const char* y_key) {
+  constexpr Range kAnything{-1e300, 1e300};
+  const std::vector<double> xs = fields.numbers(x_key, kMaxReplyPoints, kAnything);
+  const std::vector<double> ys = fields.numbers(y_key, kMaxReplyPoints, kAnything);
+  std::vector<Vec2> line;
+  if (ys.size() < xs.size()) {
+    fields.refuse({fmt::format("{} has {} points, {} only {}", x_key, xs.size(), y_key, ys.size())});
+    return line;
+  }
+  line.reserve(xs.size());
+  for (std::size_t i = 0; i < xs.size(); ++i) line.emplace_back(xs[i], ys[i]);
+  return line;
+}
+
+/// In [0, 2π), as the original sends angles.
+double full_turn(double angle) {
+  const double wrapped = wrap_angle(angle);
+  return wrapped < 0.0 ? wrapped + kTwoPi : wrapped;
+}
+
+/// As C# prints a float: at most 7 significant digits.
+std::string as_float(double value) { return fmt::format("{:.7G}", static_cast<float>(value + 0.0)); }
+
+}  // namespace
+
+UdacityTelemetry parse_telemetry(std::string_view text) {
+  if (auto packet = parse_packet(text)) {
+    return std::visit([](auto& alternative) -> UdacityTelemetry { return std::move(alternative); }, *packet);
+  }
+  const auto event = parse_event(text);
+  if (!event) return event.error();
+  if (event->name != "telemetry") return UdacityForeign{fmt::format("the event {}", shown(event->name))};
+  if (event->payload.is_null()) return UdacityManual{};
+  if (!event->payload.is_object()) return unexpected("telemetry", event->payload, "an object or null");
+  if (auto foreign = foreign_scene(event->payload)) return *foreign;
+  return read_measurement(event->payload);
+}
+
+std::string encode_steer(const model::Command& command, const controller::Plan& plan,
+                         const model::Pose& pose) {
+  const LineText mpc = encode_line(plan.size, pose, [&](std::size_t i) {
+    return Vec2{plan.points[i].x, plan.points[i].y};
+  });
+  const LineText next =
+      encode_line(plan.reference_size, pose, [&](std::size_t i) { return plan.reference[i]; });
+  return fmt::format(
+      R"(42["steer",{{"mpc_x":{},"mpc_y":{},"next_x":{},"next_y":{},"steering_angle":{},"throttle":{}}}])",
+      mpc.x, mpc.y, next.x, next.y, normalised(-command.steer / kSteerUnit), normalised(command.throttle));
+}
+
+std::string encode_manual() { return R"(42["manual",{}])"; }
+
+UdacityReply parse_reply(std::string_view text) {
+  if (auto packet = parse_packet(text)) {
+    return std::visit([](auto& alternative) -> UdacityReply { return std::move(alternative); }, *packet);
+  }
+  const auto event = parse_event(text);
+  if (!event) return event.error();
+  if (event->name == "manual") return UdacityManual{};
+  if (event->name != "steer")
+    return UdacityBroken{fmt::format("event: got {}, expected \"steer\"", shown(event->name))};
+  if (!event->payload.is_object()) return unexpected("steer", event->payload, "an object");
+  constexpr Range kAnything{-1e300, 1e300};
+  FieldReader fields(event->payload);
+  UdacitySteer steer;
+  steer.command.steer = 0.0 - std::clamp(fields.number("steering_angle", kAnything), -1.0, 1.0) * kSteerUnit;
+  steer.command.throttle = std::clamp(fields.number("throttle", kAnything), -1.0, 1.0);
+  steer.reference = read_line(fields, "next_x", "next_y");
+  steer.plan = read_line(fields, "mpc_x", "mpc_y");
+  if (fields.broken()) return *fields.broken();
+  return steer;
+}
+
+std::string encode_telemetry(const model::Measurement& measurement) {
+  std::string xs;
+  std::string ys;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(measurement.waypoint_count); ++i) {
+    const char* separator = i == 0 ? "" : ",";
+    xs += separator + as_float(measurement.waypoints[i].x());
+    ys += separator + as_float(measurement.waypoints[i].y());
+  }
+  return fmt::format(R"(42["telemetry",{{"ptsx":[{}],"ptsy":[{}],"psi_unity":{},"psi":{},"x":{},"y":{},)"
+                     R"("steering_angle":{},"throttle":{},"speed":{}}}])",
+                     xs, ys, as_float(full_turn(0.5 * kPi - measurement.psi)),
+                     as_float(full_turn(measurement.psi)), as_float(measurement.x), as_float(measurement.y),
+                     as_float(0.0 - measurement.steer), as_float(std::clamp(measurement.throttle, 0.0, 1.0)),
+                     as_float(measurement.speed * kMilesPerHour));
+}
+
+std::string encode_manual_telemetry() { return R"(42["telemetry",null])"; }
+
+}  // namespace chicane::protocol

@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/udacity_codec.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "chicane/base/angle.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+using testing::HasSubstr;
+
+/// From a published log of the original (udacity/CarND-MPC-Project issue 45).
+constexpr const char* kRealTelemetry =
+    R"(42["telemetry",{"ptsx":[-32.16173,-43.49173,-61.09,-78.29172,-93.05002,-107.7717],)"
+    R"("ptsy":[113.361,105.941,92.88499,78.73102,65.34102,50.57938],"psi_unity":4.120315,"psi":3.733667,)"
+    R"("x":-40.62008,"y":108.7301,"steering_angle":0,"throttle":0,"speed":2.995219E-06}])";
+
+constexpr double kFullLock = degrees_to_radians(25.0);
+
+std::string with(const std::string& from, const std::string& to) {
+  std::string text = kRealTelemetry;
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+std::string without(const std::string& key) {
+  nlohmann::json event = nlohmann::json::parse(std::string(kRealTelemetry).substr(2));
+  event[1].erase(key);
+  return "42" + event.dump();
+}
+
+std::string repeat(const std::string& text, int count) {
+  std::string result;
+  for (int i = 0; i < count; ++i) result += text;
+  return result;
+}
+
+TEST(UdacityTelemetry, ReadsARealMessage) {
+  const auto message = parse_telemetry(kRealTelemetry);
+  const auto* measurement = std::get_if<model::Measurement>(&message);
+  ASSERT_NE(measurement, nullptr);
+  EXPECT_DOUBLE_EQ(measurement->x, -40.62008);
+  EXPECT_DOUBLE_EQ(measurement->y, 108.7301);
+  EXPECT_DOUBLE_EQ(measurement->psi, 3.733667);
+  EXPECT_DOUBLE_EQ(measurement->speed, 2.995219e-06 * 0.44704);
+  EXPECT_EQ(measurement->waypoint_count, 6);
+  EXPECT_DOUBLE_EQ(measurement->waypoints[5].x(), -107.7717);
+  EXPECT_DOUBLE_EQ(measurement->waypoints[5].y(), 50.57938);
+}
+
+TEST(UdacityTelemetry, WritesARealMessageByteForByte) {
+  model::Measurement measurement = std::get<model::Measurement>(parse_telemetry(kRealTelemetry));
+  // The message's two yaws were rounded separately from one angle: 3.7336667 rounds to both.
+  measurement.psi = 3.7336667;
+  EXPECT_EQ(encode_telemetry(measurement), kRealTelemetry);
+}
+
+TEST(UdacityTelemetry, SteeringIsPositiveToTheRightAndSpeedInMilesPerHour) {
+  const auto message = parse_telemetry(with(R"("steering_angle":0,"throttle":0,"speed":2.995219E-06)",
+                                            R"("steering_angle":0.25,"throttle":1,"speed":100)"));
+  const auto& measurement = std::get<model::Measurement>(message);
+  EXPECT_DOUBLE_EQ(measurement.steer, -0.25);
+  EXPECT_DOUBLE_EQ(measurement.throttle, 1.0);
+  EXPECT_DOUBLE_EQ(measurement.speed, 44.704);
+}
+
+TEST(UdacityTelemetry, OwnMessagesComeBackAsTheyWere) {
+  model::Measurement sent;
+  sent.x = -123.4567;
+  sent.y = 1e-5;
+  sent.psi = -0.5;
+  sent.speed = 44.7;
+  sent.steer = 0.1;
+  sent.throttle = -1.0;
+  sent.waypoint_count = 2;
+  sent.waypoints[1] = Vec2{1.0, -2.0};
+  const auto message = parse_telemetry(encode_telemetry(sent));
+  const auto& received = std::get<model::Measurement>(message);
+  constexpr double kSevenDigits = 5e-5;  // of numbers below 1000
+  EXPECT_NEAR(received.x, sent.x, kSevenDigits);
+  EXPECT_NEAR(received.y, sent.y, 1e-11);
+  EXPECT_NEAR(received.psi, sent.psi + kTwoPi, 1e-6);  // the wire has [0, 2π)
+  EXPECT_NEAR(received.speed, sent.speed, kSevenDigits);
+  EXPECT_NEAR(received.steer, sent.steer, 1e-7);
+  EXPECT_EQ(received.throttle, 0.0);  // the original reports braking as 0
+  EXPECT_EQ(received.waypoint_count, 2);
+  EXPECT_EQ(received.waypoints[1], sent.waypoints[1]);
+}
+
+TEST(UdacityTelemetry, NullMeansAPersonDrives) {
+  EXPECT_TRUE(std::holds_alternative<UdacityManual>(parse_telemetry(R"(42["telemetry",null])")));
+  EXPECT_EQ(encode_manual_telemetry(), R"(42["telemetry",null])");
+  EXPECT_EQ(encode_manual(), R"(42["manual",{}])");
+}
+
+TEST(UdacityTelemetry, PacketsAreToldApart) {
+  const auto packet = [](const char* text) { return std::get<UdacityPacket>(parse_telemetry(text)); };
+  EXPECT_EQ(packet("0{\"sid\":1}"), UdacityPacket::kOpen);
+  EXPECT_EQ(packet("1"), UdacityPacket::kClose);
+  EXPECT_EQ(packet("2"), UdacityPacket::kPing);
+  EXPECT_EQ(packet("2probe"), UdacityPacket::kPing);
+  EXPECT_EQ(packet("3"), UdacityPacket::kPong);
+  EXPECT_EQ(packet("40"), UdacityPacket::kConnect);
+  EXPECT_EQ(packet("40{}"), UdacityPacket::kConnect);
+  EXPECT_EQ(packet("41"), UdacityPacket::kDisconnect);
+  EXPECT_EQ(packet("5"), UdacityPacket::kIgnored);
+  EXPECT_EQ(packet("43[]"), UdacityPacket::kIgnored);
+}
+
+TEST(UdacityTelemetry, StockClientsMayAskForAnAcknowledgement) {
+  std::string text = kRealTelemetry;
+  text.insert(2, "17");
+  EXPECT_TRUE(std::holds_alternative<model::Measurement>(parse_telemetry(text)));
+}
+
+TEST(UdacityTelemetry, OtherScenesAreNamed) {
+  const auto what = [](const std::string& data) {
+    const auto message = parse_telemetry("42[\"telemetry\"," + data + "]");
+    const auto* foreign = std::get_if<UdacityForeign>(&message);
+    return foreign == nullptr ? "" : foreign->what;
+  };
+  EXPECT_THAT(what(R"({"cte":"0.76","speed":"0.4","steering_angle":"0","image":"x"})"),
+              HasSubstr("PID Controller"));
+  EXPECT_THAT(what(R"({"steering_angle":"0,0","throttle":"0","speed":"0","image":"x"})"),
+              HasSubstr("Behavioral Cloning"));
+  EXPECT_THAT(what(R"({"x":1,"y":2,"s":3,"d":4,"yaw":5,"speed":6,"sensor_fusion":[]})"),
+              HasSubstr("Path Planning"));
+  EXPECT_THAT(what(R"({"sensor_measurement":"L 1 2"})"), HasSubstr("Kalman Filters"));
+  EXPECT_THAT(what(R"({"sense_x":"1","sense_observations_x":"1 2"})"), HasSubstr("Kidnapped Vehicle"));
+  EXPECT_THAT(what(R"({"x":1,"y":2,"z":3,"yaw":4,"velocity":5})"), HasSubstr("System Integration"));
+  const auto event = parse_telemetry(R"(42["hello",{}])");
+  EXPECT_THAT(std::get<UdacityForeign>(event).what, HasSubstr("the event \"hello\""));
+}
+
+TEST(UdacityTelemetry, FewWaypointsAreTheControllersBusiness) {
+  for (const auto& [points, count] : {std::pair{"[]", 0}, {"[1]", 1}, {"[1,1]", 2}}) {
+    const auto message =
+        parse_telemetry(R"(42["telemetry",{"ptsx":)" + std::string(points) + R"(,"ptsy":)" + points +
+                        R"(,"psi":0,"x":0,"y":0,"steering_angle":0,"throttle":0,"speed":0}])");
+    ASSERT_TRUE(std::holds_alternative<model::Measurement>(message)) << points;
+    EXPECT_EQ(std::get<model::Measurement>(message).waypoint_count, count);
+  }
+}
+
+struct Hostile {
+  std::string text;
+  std::string words;  ///< that the reason must contain
+};
+
+std::vector<Hostile> hostile_messages() {
+  std::vector<Hostile> list{
+      // Framing.
+      {"", "empty"},
+      {" ", "digit"},
+      {"hello", "digit"},
+      {"{}", "digit"},
+      {std::string("\0\0\0", 3), "digit"},
+      {"\xff\xfe\xfd", "digit"},
+      {"42", "no array"},
+      {"42{}", "no array"},
+      {"42/namespace,[]", "no array"},
+      {"42null", "no array"},
+      {"42[", "not JSON at byte"},
+      {"42[]", "name"},
+      {"42[null]", "name"},
+      {"42[1,2]", "name"},
+      {"42[\"telemetry\",{},{}]", "name"},
+      {"42[\"telemetry\",{}]]", "not JSON"},
+      {"42[\"telemetry\"", "not JSON"},
+      {"42[\"telemetry\",{\"x\":1", "not JSON"},
+      {"42[\"telemetry\",{'x':1}]", "not JSON"},
+      {"42[\"telemetry\",{\"x\":+1}]", "not JSON"},
+      {"42[\"telemetry\",{\"x\":.5}]", "not JSON"},
+      {"42[\"telemetry\",{\"x\":0x10}]", "not JSON"},
+      {"42[\"telemetry\",{\"x\":NaN}]", "not JSON"},
+      {"42[\"telemetry\",{\"x\":-Infinity}]", "not JSON"},
+      {"42[\"tele\xffmetry\",{}]", "not JSON"},
+      {"42[\"telemetry\",{\"x\":\"\xc3\x28\"}]", "not JSON"},
+      {"42[\"telemetry\",{\"x\":\"\\ud800\"}]", "not JSON"},
+      {"42" + repeat("[", 10'000), "not JSON"},
+      {"42[\"telemetry\"," + repeat("[", 10'000) + repeat("]", 10'000) + "]", "an object or null"},
+      {"42[\"telemetry\"," + repeat("{\"x\":", 10'000) + "1" + repeat("}", 10'000) + "]", "missing"},
+      {"42[\"telemetry\",\"" + repeat("x", 70'000) + "\"]", "at most 65536"},
+      {repeat("4", 70'000), "at most 65536"},
+      {"42" + repeat("9", 60'000), "no array"},
+      // The payload.
+      {R"(42["telemetry"])", ""},
+      {R"(42["telemetry",{}])", "ptsx: missing"},
+      {R"(42["telemetry",[]])", "got an array of 0, expected an object or null"},
+      {R"(42["telemetry",7])", "got 7"},
+      {R"(42["telemetry",true])", "got true"},
+      {R"(42["telemetry","null"])", "got \"null\""},
+      {without("ptsx"), "ptsx: missing"},
+      {without("ptsy"), "ptsy: missing"},
+      {without("psi"), "psi: missing"},
+      {without("x"), "x: missing"},
+      {without("y"), "y: missing"},
+      {without("speed"), "speed: missing"},
+      {without("throttle"), "throttle: missing"},
+      {without("steering_angle"), "steering_angle: missing"},
+      // One field.
+      {with("\"x\":-40.62008", "\"x\":\"-40.62008\""), "x: got \"-40.62008\", expected a number"},
+      {with("\"x\":-40.62008", "\"x\":\"NaN\""), "x: got \"NaN\""},
+      {with("\"y\":108.7301", "\"y\":\"INFINITY\""), "y: got \"INFINITY\""},
+      {with("\"x\":-40.62008", "\"x\":null"), "x: got null"},
+      {with("\"x\":-40.62008", "\"x\":[1]"), "x: got an array of 1"},
+      {with("\"x\":-40.62008", "\"x\":{}"), "x: got an object"},
+      {with("\"x\":-40.62008", "\"x\":1e999"), "too large"},
+      {with("\"x\":-40.62008", "\"x\":-1e999"), "too large"},
+      {with("\"x\":-40.62008", "\"x\":1e308"), "x: got 1e+308, expected a number in"},
+      {with("\"x\":-40.62008", "\"x\":99999999999999999999999999"), "x: got"},
+      {with("\"x\":-40.62008", "\"x\":\"" + repeat("<script>", 1000) + "\""), "x: got \"<script>"},
+      {with("\"psi\":3.733667", "\"psi\":1e9"), "psi: got"},
+      {with("\"speed\":2.995219E-06", "\"speed\":-1"), "speed: got -1, expected a number in [0, 1000]"},
+      {with("\"speed\":2.995219E-06", "\"speed\":1e6"), "speed: got"},
+      {with("\"throttle\":0", "\"throttle\":2"), "throttle: got 2"},
+      {with("\"throttle\":0", "\"throttle\":true"), "throttle: got true"},
+      {with("\"steering_angle\":0", "\"steering_angle\":25"), "steering_angle: got 25"},
+      // Waypoints.
+      {with("[-32.16173,", "["), "ptsx has 5 points, ptsy 6"},
+      {with("[113.361,", "[113.361,1,"), "ptsx has 6 points, ptsy 7"},
+      {with("[-32.16173,", "[\"-32.16173\","), "ptsx[0]: got \"-32.16173\""},
+      {with("-107.7717]", "null]"), "ptsx[5]: got null"},
+      {with("-107.7717]", "1e300]"), "ptsx[5]: got 1e+300"},
+      {with("[-32.16173,", "[[1],"), "ptsx[0]: got an array of 1"},
+      {with("[-32.16173,", "[" + repeat("1,", 30)), "at most 32"},
+      {with("[-32.16173,", "[" + repeat("1,", 30'000)), "at most 32"},
+      {with("\"ptsx\":[", "\"ptsx\":5,\"was\":["), "ptsx: got 5"},
+      {with("\"ptsx\":[", "\"ptsx\":{},\"was\":["), "ptsx: got an object"},
+      {with("\"speed\":2.995219E-06", "\"speed\":0,\"speed\":\"twice\""), "speed: got \"twice\""},
+      // Decimal commas.
+      {with("-40.62008", "-40,62008"), "decimal comma"},
+      {with("\"psi\":3.733667", "\"psi\":3,733667"), "LC_NUMERIC=C"},
+      {with("\"speed\":2.995219E-06", "\"speed\":2,995219E-06"), "decimal comma"},
+  };
+  return list;
+}
+
+TEST(UdacityTelemetry, HostileMessagesAreRefusedInWordsThatNameTheField) {
+  const std::vector<Hostile> list = hostile_messages();
+  EXPECT_GE(list.size(), 60U);
+  for (const Hostile& hostile : list) {
+    const auto message = parse_telemetry(hostile.text);
+    const std::string shown = hostile.text.substr(0, 120);
+    if (hostile.words.empty()) {
+      EXPECT_TRUE(std::holds_alternative<UdacityManual>(message)) << shown;
+      continue;
+    }
+    const auto* broken = std::get_if<UdacityBroken>(&message);
+    ASSERT_NE(broken, nullptr) << shown;
+    EXPECT_THAT(broken->reason, HasSubstr(hostile.words)) << shown;
+    EXPECT_LT(broken->reason.size(), 250U) << shown;
+  }
+}
+
+TEST(UdacityTelemetry, NoPrefixOfARealMessageIsTakenForAMeasurement) {
+  const std::string text = kRealTelemetry;
+  for (std::size_t size = 0; size < text.size(); ++size) {
+    EXPECT_FALSE(std::holds_alternative<model::Measurement>(parse_telemetry(text.substr(0, size)))) << size;
+  }
+}
+
+TEST(UdacityTelemetry, AnyOneChangedByteIsSafe) {
+  const std::string text = kRealTelemetry;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    for (const char byte : {'\0', '"', ',', '9', '-', 'e', '[', '}', '\xff'}) {
+      std::string changed = text;
+      changed[i] = byte;
+      const auto message = parse_telemetry(changed);
+      const auto* measurement = std::get_if<model::Measurement>(&message);
+      if (measurement == nullptr) continue;
+      const bool is_sane = std::abs(measurement->x) <= 1e6 && std::abs(measurement->psi) <= 1e3 &&
+                           measurement->speed >= 0.0 && measurement->speed < 500.0;
+      EXPECT_TRUE(is_sane) << changed;
+    }
+  }
+}
+
+TEST(UdacityCodec, DoesNotDependOnTheLocale) {
+  const std::string before = std::setlocale(LC_ALL, nullptr);
+  if (std::setlocale(LC_ALL, "de_DE.UTF-8") == nullptr)
+    GTEST_SKIP() << "the locale de_DE.UTF-8 is not installed";
+  const auto message = parse_telemetry(kRealTelemetry);
+  const auto& measurement = std::get<model::Measurement>(message);
+  EXPECT_DOUBLE_EQ(measurement.x, -40.62008);
+  EXPECT_THAT(encode_telemetry(measurement), HasSubstr("\"x\":-40.62008"));
+  EXPECT_THAT(encode_steer({.steer = -0.1, .throttle = 0.5}, {}, {}), HasSubstr("\"throttle\":0.5"));
+  std::setlocale(LC_ALL, before.c_str());
+}
+
+controller::Plan straight_plan(int size) {
+  controller::Plan plan;
+  plan.size = size;
+  plan.reference_size = size;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) {
+    plan.points[i].x = 10.0;
+    plan.points[i].y = 20.0 + static_cast<double>(i);
+    plan.reference[i] = Vec2{9.0, 20.0 + static_cast<double>(i)};
+  }
+  return plan;
+}
+
+TEST(UdacitySteerReply, HasAllSixFieldsInTheOrderEveryControllerSends) {
+  EXPECT_EQ(encode_steer({}, {}, {}),
+            R"(42["steer",{"mpc_x":[],"mpc_y":[],"next_x":[],"next_y":[],"steering_angle":0,"throttle":0}])");
+}
+
+TEST(UdacitySteerReply, SteeringLeftIsNegativeAndAShareOf25Degrees) {
+  const auto field = [](const model::Command& command, const char* key) {
+    return nlohmann::json::parse(encode_steer(command, {}, {}).substr(2))[1][key].get<double>();
+  };
+  EXPECT_DOUBLE_EQ(field({.steer = kFullLock}, "steering_angle"), -1.0);
+  EXPECT_DOUBLE_EQ(field({.steer = -0.5 * kFullLock}, "steering_angle"), 0.5);
+  EXPECT_DOUBLE_EQ(field({.steer = 3.0}, "steering_angle"), -1.0);
+  EXPECT_DOUBLE_EQ(field({.throttle = -0.25}, "throttle"), -0.25);
+  EXPECT_DOUBLE_EQ(field({.throttle = 7.0}, "throttle"), 1.0);
+}
+
+TEST(UdacitySteerReply, LinesAreSeenFromTheCarAtReceipt) {
+  const controller::Plan plan = straight_plan(3);
+  const std::string text = encode_steer({}, plan, {.x = 10.0, .y = 18.0, .psi = 0.5 * kPi});  // facing north
+  EXPECT_THAT(text, HasSubstr(R"("mpc_x":[2.000,3.000,4.000],"mpc_y":[)"));
+  EXPECT_THAT(text, HasSubstr(R"("next_y":[1.000,1.000,1.000])"));  // one metre to the left
+}
+
+TEST(UdacitySteerReply, LongLinesAreThinnedAndNonFinitePointsNeverSent) {
+  controller::Plan plan = straight_plan(controller::Plan::kCapacity);
+  const auto reply = parse_reply(encode_steer({}, plan, {}));
+  EXPECT_LE(std::get<UdacitySteer>(reply).plan.size(), static_cast<std::size_t>(kMaxUdacityLine));
+  EXPECT_GE(std::get<UdacitySteer>(reply).plan.size(), static_cast<std::size_t>(kMaxUdacityLine) / 2);
+  plan = straight_plan(5);
+  plan.points[2].x = std::numeric_limits<double>::quiet_NaN();
+  plan.reference[0].y() = std::numeric_limits<double>::infinity();
+  const auto cut = parse_reply(encode_steer({}, plan, {}));
+  EXPECT_EQ(std::get<UdacitySteer>(cut).plan.size(), 2U);
+  EXPECT_TRUE(std::get<UdacitySteer>(cut).reference.empty());
+}
+
+TEST(UdacityReplyFromController, IsReadAsTheSimulatorDoes) {
+  const auto reply = parse_reply(
+      R"(42["steer",{"steering_angle":-0.5,"throttle":7,"next_x":[1],"next_y":[2,3],"mpc_x":[],"mpc_y":[],"more":"?"}])");
+  const auto* steer = std::get_if<UdacitySteer>(&reply);
+  ASSERT_NE(steer, nullptr);
+  EXPECT_DOUBLE_EQ(steer->command.steer, 0.5 * kFullLock);
+  EXPECT_DOUBLE_EQ(steer->command.throttle, 1.0);
+  EXPECT_EQ(steer->reference.size(), 1U);
+  EXPECT_TRUE(std::holds_alternative<UdacityManual>(parse_reply(R"(42["manual",{}])")));
+  EXPECT_EQ(std::get<UdacityPacket>(parse_reply("0{\"sid\":\"x\"}")), UdacityPacket::kOpen);
+}
+
+TEST(UdacityReplyFromController, WhatStallsTheOriginalIsSaidInWords) {
+  const std::string rest = R"("next_x":[],"next_y":[],"mpc_x":[],"mpc_y":[])";
+  const std::vector<std::pair<std::string, std::string>> list{
+      {R"(42["steer",{"throttle":0,)" + rest + "}]", "steering_angle: missing"},
+      {R"(42["steer",{"steering_angle":0,)" + rest + "}]", "throttle: missing"},
+      {R"(42["steer",{"steering_angle":null,"throttle":0,)" + rest + "}]", "steering_angle: got null"},
+      {R"(42["steer",{"steering_angle":"0.1","throttle":0,)" + rest + "}]", "steering_angle: got \"0.1\""},
+      {R"(42["steer",{"steering_angle":0,"throttle":0}])", "next_x: missing"},
+      {R"(42["steer",{"steering_angle":0,"throttle":0,"next_x":[1,2],"next_y":[1],"mpc_x":[],"mpc_y":[]}])",
+       "next_x has 2 points, next_y only 1"},
+      {R"(42["steer",{"steering_angle":0,"throttle":0,"next_x":[],"next_y":[],"mpc_x":[null],"mpc_y":[1]}])",
+       "mpc_x[0]: got null"},
+      {R"(42["steer"])", "steer: got null, expected an object"},
+      {R"(42["steer",{},1])", "name and one value"},
+      {R"(42["Steer",{}])", "got \"Steer\", expected \"steer\""},
+      {"steer", "does not begin with a digit"},
+      {"42[\"steer\",{\"throttle\":nan}]", "not JSON at byte 2"},
+  };
+  for (const auto& [text, words] : list) {
+    const auto reply = parse_reply(text);
+    const auto* broken = std::get_if<UdacityBroken>(&reply);
+    ASSERT_NE(broken, nullptr) << text;
+    EXPECT_THAT(broken->reason, HasSubstr(words)) << text;
+  }
+}
+
+}  // namespace
+}  // namespace chicane::protocol
