@@ -43,7 +43,7 @@ struct RoadCarParams {
   double drive_power = 200.0e3;     ///< [W]
   double drive_share_front = 0.40;  ///< all-wheel drive, open differentials
   double brake_force = 12350.0;     ///< at throttle −1 [N]
-  double brake_share_front = 0.62;  ///< bias
+  double brake_share_front = 0.72;  ///< bias; the front locks first up to 0.9 g, as UN R13-H asks of road cars
   double abs_slip_start = 0.10;     ///< anti-lock: brake torque falls from here ...
   double abs_slip_end = 0.18;       ///< ... to nothing here
   double abs_speed = 1.5;           ///< no anti-lock below [m/s]
