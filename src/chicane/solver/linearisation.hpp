@@ -31,6 +31,7 @@ class Linearisation {
   using Soft = std::array<SoftConstraint, kNc>;
 
   std::array<Soft, Capacity> soft{};  ///< values and slacks of the soft constraints
+  double relative_defect = 0.0;       ///< largest defect as a share of 1 + |x|
   double slope[Capacity][kNu]{};      ///< dJ/du along the dynamics, from the exact adjoint
 
   /// Position of variable `i` of (x, u) in z = (x, 1, u).
@@ -38,7 +39,7 @@ class Linearisation {
 
   /// Values and first derivatives of every stage. Sets cost, defect and violation of the report.
   void evaluate(const P& problem, const Trajectory& t, Lq& lq, SolveReport& report) noexcept {
-    report.cost = report.defect = report.violation = 0.0;
+    report.cost = report.defect = report.violation = relative_defect = 0.0;
     report.worst_stage = report.worst_constraint = -1;
     const auto horizon = static_cast<std::size_t>(t.horizon);
     for (std::size_t k = 0; k < horizon; ++k) evaluate_stage(problem, t, k, lq.stage[k], report);
@@ -162,7 +163,9 @@ class Linearisation {
     for (std::size_t i = 0; i < kNx; ++i) {
       for (std::size_t j = 0; j < kNz; ++j) stage.F[i][in_z(j)] = next[i].d[j];
       stage.F[i][kOne] = next[i].v - t.x[k + 1][i];
-      report.defect = worse(report.defect, std::fabs(stage.F[i][kOne]));
+      const double defect = std::fabs(stage.F[i][kOne]);
+      report.defect = worse(report.defect, defect);
+      relative_defect = worse(relative_defect, defect / (1.0 + std::fabs(next[i].v)));
     }
     add_squares(problem.residual(number, x, u), stage.L, gradient_[k], report.cost);
     if constexpr (kNc > 0) {

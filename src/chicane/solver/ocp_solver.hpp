@@ -47,10 +47,14 @@ class OcpSolver {
     for (;; ++report.iterations) {
       look(problem, trajectory, report);
       if (!is_finite(report) && !has_best_) return give_up(problem, x0, trajectory, report);
+      if (is_growing(trajectory) && residual(report) <= kGoodEnoughToGrow) {
+        if (!grow(problem, trajectory)) break;
+        continue;
+      }
       if (has_converged(report)) return finish(SolveStatus::kOptimal, problem, trajectory, report);
       const bool budget_spent = report.iterations >= options_.max_iterations || deadline.spent();
       if (!keep_best(trajectory, report) && !budget_spent && has_lost_its_way(report)) {
-        if (!go_back(problem, trajectory)) break;
+        if (!(may_grow(trajectory) ? start_short(problem, trajectory) : go_back(problem, trajectory))) break;
         continue;
       }
       if (budget_spent) break;
@@ -68,7 +72,9 @@ class OcpSolver {
   static constexpr std::size_t kOne = kNx;
   static constexpr std::size_t kHead = kNx + 1;
   static constexpr int kMaxWorkingSetTurns = 12;
-  static constexpr int kPatience = 3;  ///< turns without improvement before full steps are given up
+  static constexpr int kPatience = 3;      ///< turns without improvement before full steps are given up
+  static constexpr int kFirstHorizon = 5;  ///< of the growing horizons
+  static constexpr double kGoodEnoughToGrow = 1e-1;
   static constexpr double kDefectShare =
       1e-3;  ///< the Hessian amplifies defects: a tighter tolerance for them
   static constexpr double kCurvaturePays =
@@ -81,10 +87,12 @@ class OcpSolver {
   static std::size_t size_of(const Trajectory& t) noexcept { return static_cast<std::size_t>(t.horizon); }
 
   bool start(const P& problem, const State& x0, Trajectory& trajectory) noexcept {
-    full_steps_ = true;
-    has_best_ = has_curvature_ = false;
+    full_steps_ = is_fresh_ = true;
+    has_best_ = has_curvature_ = has_grown_ = false;
     idle_turns_ = smooth_descents_ = 0;
     needed_descents_ = 2;
+    target_ = trajectory.horizon;
+    mu_ = start_mu(problem);
     shift_ = 0.0;
     for (const double value : x0) {
       if (!std::isfinite(value)) return false;
@@ -106,7 +114,8 @@ class OcpSolver {
     now_.evaluate(problem, t, lq_, report);
     if constexpr (kNc > 0) look_at_soft(problem, t, report);
     now_.measure(t, lq_, report);
-    if (report.iterations == 0) guess_working_set(t);
+    if (is_fresh_) guess_working_set(t);
+    is_fresh_ = false;
     now_.add_soft(problem, size_of(t), mu_, lq_);
     if (full_steps_ && options_.second_order) weigh_curvature(problem, t, report);
   }
@@ -131,14 +140,13 @@ class OcpSolver {
   /// Slacks start on the central path, and return to it while the cost descends, where the barrier's own cost
   /// is the merit.
   void look_at_soft(const P& problem, const Trajectory& t, SolveReport& report) noexcept {
-    if (report.iterations == 0) mu_ = start_mu(problem);
     report.complementarity = 0.0;
     merit_ = report.cost;
     for (std::size_t k = 0; k < size_of(t); ++k) {
       for (std::size_t c = 0; c < kNc; ++c) {
         SoftConstraint& soft = now_.soft[k][c];
         const SoftPenalty price = price_of(problem, c);
-        if (report.iterations == 0 || !full_steps_) soft.centre(price, mu_);
+        if (is_fresh_ || !full_steps_) soft.centre(price, mu_);
         if (!full_steps_) merit_ += soft.barrier(price, mu_) - soft.penalty(price);
         report.complementarity = std::max(report.complementarity, soft.residual(price, mu_));
       }
@@ -281,6 +289,34 @@ class OcpSolver {
     return roll_out(problem, x0, trajectory);
   }
 
+  /// The second rung: solve a short horizon first and let it grow. Short problems are easy, and each is a
+  /// good start for the next one.
+  [[nodiscard]] bool is_growing(const Trajectory& t) const noexcept { return t.horizon < target_; }
+  [[nodiscard]] bool may_grow(const Trajectory& t) const noexcept {
+    return !has_grown_ && t.horizon > kFirstHorizon;
+  }
+  bool start_short(const P& problem, Trajectory& t) noexcept {
+    const State x0 = t.x[0];
+    t = best_;
+    t.horizon = kFirstHorizon;
+    has_grown_ = true;
+    return restart(problem, x0, t);
+  }
+  bool grow(const P& problem, Trajectory& t) noexcept {
+    const std::size_t known = size_of(t);
+    t.horizon = std::min(target_, t.horizon + (t.horizon + 1) / 2);
+    for (std::size_t k = known; k < size_of(t); ++k) t.u[k] = t.u[known - 1];
+    const State x0 = t.x[0];
+    return restart(problem, x0, t);
+  }
+  bool restart(const P& problem, const State& x0, Trajectory& t) noexcept {
+    full_steps_ = is_fresh_ = true;
+    has_best_ = has_curvature_ = false;
+    idle_turns_ = 0;
+    needed_descents_ = 2;
+    return roll_out(problem, x0, t);
+  }
+
   /// One descent step: control-limited dynamic programming with line search on the true cost; the iterate
   /// stays a roll-out. False when no step length and no shift lowers the cost any more.
   bool descend(const P& problem, Trajectory& t, SolveReport& report) noexcept {
@@ -377,8 +413,12 @@ class OcpSolver {
                      const SolveReport& report) noexcept {
     SolveReport result = report;
     if (status != SolveStatus::kOptimal) {
-      trajectory = best_;
+      if (has_best_) trajectory = best_;
       result = best_report_;
+      while (is_growing(trajectory)) {
+        grow(problem, trajectory);
+        if (!is_growing(trajectory)) look(problem, trajectory, result);
+      }
       result.iterations = report.iterations;
       result.sweeps = report.sweeps;
       status =
@@ -421,6 +461,9 @@ class OcpSolver {
   bool has_best_ = false;
   bool full_steps_ = true;
   bool has_curvature_ = false;
+  bool has_grown_ = false;
+  bool is_fresh_ = true;  ///< slacks and working set are to be guessed anew
+  int target_ = 0;        ///< horizon asked for
   int idle_turns_ = 0;
   int smooth_descents_ = 0;
   int needed_descents_ = 2;

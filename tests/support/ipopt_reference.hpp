@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <IpIpoptApplication.hpp>
+#include <IpTNLP.hpp>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "chicane/base/dual.hpp"
+#include "chicane/solver/problem.hpp"
+
+namespace chicane::test {
+
+/// Any OcpProblem as a sparse nonlinear program for Ipopt (Wächter, Biegler 2006): states and inputs as
+/// variables, dynamics as equations, soft constraints with explicit slacks, exact first and second
+/// derivatives by dual numbers. Variables: u_0, x_1, u_1, …, x_N, then the slacks.
+template <solver::OcpProblem P>
+class IpoptProblem : public Ipopt::TNLP {
+ public:
+  using Index = Ipopt::Index;
+  using Number = Ipopt::Number;
+  static constexpr int kNx = P::kNx;
+  static constexpr int kNu = P::kNu;
+  static constexpr int kNc = P::kNc;
+  static constexpr int kNz = kNx + kNu;
+
+  const P* problem = nullptr;
+  std::array<double, kNx> x0{};
+  int horizon = 0;
+  std::vector<double> start;  ///< of all variables
+  std::vector<double> solution;
+  double cost = 0.0;
+
+  static int at_u(int k) { return k * kNz; }
+  static int at_x(int k) { return (k - 1) * kNz + kNu; }
+  [[nodiscard]] int at_s(int k) const { return horizon * kNz + k * kNc; }
+
+  bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
+    n = horizon * (kNz + kNc);
+    m = horizon * (kNx + kNc);
+    jacobian = visit_jacobian(nullptr, [](int, int, double) {});
+    hessian = visit_hessian(nullptr, 0.0, nullptr, [](int, int, double) {});
+    style = C_STYLE;
+    return true;
+  }
+  bool get_bounds_info(Index, Number* low, Number* high, Index, Number* g_low, Number* g_high) override {
+    for (int k = 0; k < horizon; ++k) {
+      for (int m = 0; m < kNu; ++m) {
+        low[at_u(k) + m] = std::fmax(problem->input_lower(k)[static_cast<std::size_t>(m)], -2e19);
+        high[at_u(k) + m] = std::fmin(problem->input_upper(k)[static_cast<std::size_t>(m)], 2e19);
+      }
+      for (int i = 0; i < kNx; ++i) {
+        low[at_x(k + 1) + i] = -2e19;
+        high[at_x(k + 1) + i] = 2e19;
+        g_low[k * kNx + i] = g_high[k * kNx + i] = 0.0;
+      }
+      for (int c = 0; c < kNc; ++c) {
+        low[at_s(k) + c] = 0.0;
+        high[at_s(k) + c] = 2e19;
+        g_low[horizon * kNx + k * kNc + c] = -2e19;
+        g_high[horizon * kNx + k * kNc + c] = 0.0;
+      }
+    }
+    return true;
+  }
+  bool get_starting_point(Index n, bool, Number* w, bool, Number*, Number*, Index, bool, Number*) override {
+    for (int i = 0; i < n; ++i) w[i] = start[static_cast<std::size_t>(i)];
+    return true;
+  }
+  bool eval_f(Index, const Number* w, bool, Number& value) override {
+    value = 0.0;
+    for (int k = 0; k < horizon; ++k) {
+      for (const double r : problem->residual(k, state<double>(w, k), input<double>(w, k)))
+        value += 0.5 * r * r;
+      if constexpr (kNc > 0) {
+        for (int c = 0; c < kNc; ++c) {
+          const double s = w[at_s(k) + c];
+          value += s * (problem->soft_penalty(c).linear + 0.5 * problem->soft_penalty(c).quadratic * s);
+        }
+      }
+    }
+    for (const double r : problem->terminal_residual(state<double>(w, horizon))) value += 0.5 * r * r;
+    return true;
+  }
+  bool eval_grad_f(Index n, const Number* w, bool, Number* gradient) override {
+    using D = Dual<kNz>;
+    for (int i = 0; i < n; ++i) gradient[i] = 0.0;
+    for (int k = 0; k < horizon; ++k) {
+      for (const D& r : problem->residual(k, state<D>(w, k), input<D>(w, k))) {
+        for (int v = 0; v < kNz; ++v) {
+          if (const int at = position(k, v); at >= 0) gradient[at] += r.v * r.d[static_cast<std::size_t>(v)];
+        }
+      }
+      if constexpr (kNc > 0) {
+        for (int c = 0; c < kNc; ++c) {
+          const auto price = problem->soft_penalty(c);
+          gradient[at_s(k) + c] = price.linear + price.quadratic * w[at_s(k) + c];
+        }
+      }
+    }
+    for (const D& r : problem->terminal_residual(state<D>(w, horizon))) {
+      for (int i = 0; i < kNx; ++i) gradient[at_x(horizon) + i] += r.v * r.d[static_cast<std::size_t>(i)];
+    }
+    return true;
+  }
+  bool eval_g(Index, const Number* w, bool, Index, Number* g) override {
+    for (int k = 0; k < horizon; ++k) {
+      const auto x = state<double>(w, k);
+      const auto u = input<double>(w, k);
+      const auto next = problem->dynamics(k, x, u);
+      for (int i = 0; i < kNx; ++i) g[k * kNx + i] = next[static_cast<std::size_t>(i)] - w[at_x(k + 1) + i];
+      if constexpr (kNc > 0) {
+        const auto values = problem->constraint(k, x, u);
+        for (int c = 0; c < kNc; ++c) {
+          g[horizon * kNx + k * kNc + c] = values[static_cast<std::size_t>(c)] - w[at_s(k) + c];
+        }
+      }
+    }
+    return true;
+  }
+  bool eval_jac_g(Index, const Number* w, bool, Index, Index, Index* rows, Index* columns,
+                  Number* values) override {
+    int entry = 0;
+    visit_jacobian(w, [&](int row, int column, double value) {
+      if (values != nullptr) {
+        values[entry] = value;
+      } else {
+        rows[entry] = row;
+        columns[entry] = column;
+      }
+      ++entry;
+    });
+    return true;
+  }
+  bool eval_h(Index, const Number* w, bool, Number factor, Index, const Number* multipliers, bool, Index,
+              Index* rows, Index* columns, Number* values) override {
+    int entry = 0;
+    visit_hessian(w, factor, multipliers, [&](int row, int column, double value) {
+      if (values != nullptr) {
+        values[entry] = value;
+      } else {
+        rows[entry] = row;
+        columns[entry] = column;
+      }
+      ++entry;
+    });
+    return true;
+  }
+  void finalize_solution(Ipopt::SolverReturn, Index n, const Number* w, const Number*, const Number*, Index,
+                         const Number*, const Number*, Number value, const Ipopt::IpoptData*,
+                         Ipopt::IpoptCalculatedQuantities*) override {
+    solution.assign(w, w + n);
+    cost = value;
+  }
+
+ private:
+  /// Where variable v of (x_k, u_k) stands among the unknowns; −1 for the given x_0.
+  static int position(int k, int v) { return v >= kNx ? at_u(k) + v - kNx : (k > 0 ? at_x(k) + v : -1); }
+
+  template <class T>
+  static T seed(double value, int index) {
+    if constexpr (std::is_same_v<T, double>) {
+      return value;
+    } else if constexpr (std::is_same_v<decltype(T::v), double>) {
+      return T::variable(value, index);
+    } else {
+      return T::variable(decltype(T::v)::variable(value, index), index);
+    }
+  }
+  template <class T>
+  std::array<T, kNx> state(const Number* w, int k) const {
+    std::array<T, kNx> x;
+    for (int i = 0; i < kNx; ++i) {
+      const double value = w == nullptr ? 0.0 : (k == 0 ? x0[static_cast<std::size_t>(i)] : w[at_x(k) + i]);
+      x[static_cast<std::size_t>(i)] = seed<T>(value, i);
+    }
+    return x;
+  }
+  template <class T>
+  static std::array<T, kNu> input(const Number* w, int k) {
+    std::array<T, kNu> u;
+    for (int m = 0; m < kNu; ++m)
+      u[static_cast<std::size_t>(m)] = seed<T>(w == nullptr ? 0.0 : w[at_u(k) + m], kNx + m);
+    return u;
+  }
+
+  template <class Put>
+  int visit_jacobian(const Number* w, const Put& put) {
+    using D = Dual<kNz>;
+    int count = 0;
+    const auto row = [&](int r, int k, const D& value) {
+      for (int v = 0; v < kNz; ++v) {
+        if (const int at = position(k, v); at >= 0) {
+          put(r, at, value.d[static_cast<std::size_t>(v)]);
+          ++count;
+        }
+      }
+    };
+    for (int k = 0; k < horizon; ++k) {
+      const auto x = state<D>(w, k);
+      const auto u = input<D>(w, k);
+      const auto next = problem->dynamics(k, x, u);
+      for (int i = 0; i < kNx; ++i) {
+        row(k * kNx + i, k, next[static_cast<std::size_t>(i)]);
+        put(k * kNx + i, at_x(k + 1) + i, -1.0);
+        ++count;
+      }
+      if constexpr (kNc > 0) {
+        const auto values = problem->constraint(k, x, u);
+        for (int c = 0; c < kNc; ++c) {
+          row(horizon * kNx + k * kNc + c, k, values[static_cast<std::size_t>(c)]);
+          put(horizon * kNx + k * kNc + c, at_s(k) + c, -1.0);
+          ++count;
+        }
+      }
+    }
+    return count;
+  }
+
+  template <class Put>
+  int visit_hessian(const Number* w, double factor, const Number* multipliers, const Put& put) {
+    using D = Dual<kNz, Dual<kNz>>;
+    int count = 0;
+    for (int k = 0; k <= horizon; ++k) {
+      D lagrangian(0.0);
+      const auto x = state<D>(w, k);
+      const auto price = [&](int row) { return multipliers == nullptr ? 0.0 : multipliers[row]; };
+      if (k < horizon) {
+        const auto u = input<D>(w, k);
+        for (const D& r : problem->residual(k, x, u)) lagrangian += (0.5 * factor) * r * r;
+        const auto next = problem->dynamics(k, x, u);
+        for (int i = 0; i < kNx; ++i) lagrangian += price(k * kNx + i) * next[static_cast<std::size_t>(i)];
+        if constexpr (kNc > 0) {
+          const auto values = problem->constraint(k, x, u);
+          for (int c = 0; c < kNc; ++c) {
+            lagrangian += price(horizon * kNx + k * kNc + c) * values[static_cast<std::size_t>(c)];
+            put(at_s(k) + c, at_s(k) + c, factor * problem->soft_penalty(c).quadratic);
+            ++count;
+          }
+        }
+      } else {
+        for (const D& r : problem->terminal_residual(x)) lagrangian += (0.5 * factor) * r * r;
+      }
+      for (int a = 0; a < (k < horizon ? kNz : kNx); ++a) {
+        for (int b = 0; b <= a; ++b) {
+          if (position(k, a) < 0 || position(k, b) < 0) continue;
+          put(position(k, a), position(k, b),
+              lagrangian.d[static_cast<std::size_t>(a)].d[static_cast<std::size_t>(b)]);
+          ++count;
+        }
+      }
+    }
+    return count;
+  }
+};
+
+/// The trajectory's inputs and states are the start; on success they are the optimum and its cost is
+/// returned, else NaN.
+template <solver::OcpProblem P, int Capacity>
+double solve_with_ipopt(const P& problem, const std::array<double, P::kNx>& x0,
+                        solver::Trajectory<P::kNx, P::kNu, Capacity>& t) {
+  using Nlp = IpoptProblem<P>;
+  const Ipopt::SmartPtr<Nlp> nlp = new Nlp;
+  nlp->problem = &problem;
+  nlp->x0 = x0;
+  nlp->horizon = t.horizon;
+  nlp->start.assign(static_cast<std::size_t>(t.horizon * (Nlp::kNz + Nlp::kNc)), 1e-2);
+  for (int k = 0; k < t.horizon; ++k) {
+    const auto stage = static_cast<std::size_t>(k);
+    for (std::size_t m = 0; m < t.u[stage].size(); ++m)
+      nlp->start[static_cast<std::size_t>(Nlp::at_u(k)) + m] = t.u[stage][m];
+    for (std::size_t i = 0; i < x0.size(); ++i)
+      nlp->start[static_cast<std::size_t>(Nlp::at_x(k + 1)) + i] = t.x[stage + 1][i];
+  }
+  const Ipopt::SmartPtr<Ipopt::IpoptApplication> app = IpoptApplicationFactory();
+  app->Options()->SetIntegerValue("print_level", 0);
+  app->Options()->SetStringValue("sb", "yes");
+  app->Options()->SetNumericValue("tol", 1e-9);
+  app->Options()->SetNumericValue("bound_relax_factor", 0.0);
+  app->Options()->SetIntegerValue("max_iter", 500);
+  if (app->Initialize() != Ipopt::Solve_Succeeded) return std::nan("");
+  const auto status = app->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(Ipopt::GetRawPtr(nlp)));
+  if (status != Ipopt::Solve_Succeeded && status != Ipopt::Solved_To_Acceptable_Level) return std::nan("");
+  for (int k = 0; k < t.horizon; ++k) {
+    const auto stage = static_cast<std::size_t>(k);
+    for (std::size_t m = 0; m < t.u[stage].size(); ++m)
+      t.u[stage][m] = nlp->solution[static_cast<std::size_t>(Nlp::at_u(k)) + m];
+    for (std::size_t i = 0; i < x0.size(); ++i)
+      t.x[stage + 1][i] = nlp->solution[static_cast<std::size_t>(Nlp::at_x(k + 1)) + i];
+  }
+  return nlp->cost;
+}
+
+}  // namespace chicane::test
