@@ -24,7 +24,8 @@ constexpr double kBackOnTrackTime = 0.2;  // ... once held so long [s]
 
 World::World(Plant& plant, const path::Track& track) noexcept : plant_{plant}, track_{track} {
   steps_per_judgement_ = std::max(1, static_cast<int>(kJudgementPeriod / plant.step_length() + 0.5));
-  place(0.0);
+  lap_length_ = track.length() - (track.centre().is_closed() ? 0.0 : track.start_s());
+  place(track.start_s(), track.start_d());
 }
 
 void World::place(double s, double offset, double speed) noexcept {
@@ -41,15 +42,14 @@ void World::reset(const model::Pose& pose, double speed) noexcept {
   covered_ = lap_start_ = sector_start_ = off_track_at_lap_start_ = back_on_track_ = 0.0;
   lost_for_ = 0;
   state_ = {};
+  // A start on the line is timed from standstill; any other first drives to the line.
+  constexpr double kOnTheLine = 1.0;  // [m]
   const path::Path& line = track_.centre();
   state_.s = line.project({pose.x, pose.y}).s;
-  // A start on the line (to a metre) is timed from standstill; any other first drives to the line.
-  constexpr double kOnTheLine = 1.0;
-  const double s = line.difference(state_.s, 0.0);
-  const bool is_on_line = !line.is_closed() || std::fabs(s) <= kOnTheLine;
-  state_.is_timed = is_on_line;
-  state_.progress = is_on_line ? s : state_.s - line.length();
-  next_line_ = is_on_line ? line.length() : 0.0;
+  state_.progress = line.difference(state_.s, track_.start_s());
+  state_.is_timed = std::fabs(state_.progress) <= kOnTheLine;
+  if (line.is_closed() && state_.progress > kOnTheLine) state_.progress -= lap_length_;
+  next_line_ = state_.is_timed || !line.is_closed() ? lap_length_ : 0.0;
   locate(0.0);
   state_.min_edge_distance = std::numeric_limits<double>::infinity();
   measure_edges(0.0);
@@ -92,7 +92,7 @@ void World::locate(double elapsed) noexcept {
     const Vec2 tangent{cos(foot.heading), sin(foot.heading)};
     const double beyond = (position - foot.position).dot(tangent);
     const bool is_end = nearest.s <= 0.0 || nearest.s >= line.length();
-    advanced = nearest.s + (is_end ? beyond : 0.0) - state_.progress;
+    advanced = nearest.s + (is_end ? beyond : 0.0) - track_.start_s() - state_.progress;
   }
   if (!has_jumped) covered_ += std::clamp(advanced, -reachable, reachable);
   state_.progress += advanced;
@@ -109,7 +109,7 @@ void World::measure_edges(double elapsed) noexcept {
   for (const Vec2& patch : plant_.contact_points()) {
     const Vec2 point{car.x + c * patch.x() - s * patch.y(), car.y + s * patch.x() + c * patch.y()};
     const path::Projection at = track_.centre().project(point, state_.s, kSearch);
-    edge = std::min({edge, track_.left_width(at.s) - at.d, track_.right_width(at.s) + at.d});
+    edge = std::min(edge, track_.edge_distance(at));
   }
   state_.edge_distance = edge + track_.kerb_width();
   state_.min_edge_distance = std::min(state_.min_edge_distance, state_.edge_distance);
@@ -129,7 +129,7 @@ void World::time_laps(double progress_before, double elapsed) noexcept {
     const double share = moved > 0.0 ? std::clamp((mark - progress_before) / moved, 0.0, 1.0) : 1.0;
     return state_.time - elapsed * (1.0 - share);
   };
-  const double third = track_.centre().length() / WorldState::kSectors;
+  const double third = lap_length_ / WorldState::kSectors;
   while (!state_.is_finished) {
     const bool is_last = !state_.is_timed || state_.sector == WorldState::kSectors - 1;
     const double mark = next_line_ - (is_last ? 0.0 : (WorldState::kSectors - 1 - state_.sector) * third);
@@ -146,7 +146,7 @@ void World::time_laps(double progress_before, double elapsed) noexcept {
 }
 
 void World::cross_line(double crossing_time) noexcept {
-  if (state_.is_timed && covered_ < kCoveredShare * track_.centre().length()) {
+  if (state_.is_timed && covered_ < kCoveredShare * lap_length_) {
     ++state_.void_laps;
   } else if (state_.is_timed) {
     ++state_.lap;
@@ -158,7 +158,7 @@ void World::cross_line(double crossing_time) noexcept {
     state_.last_lap_was_clean = state_.off_track_time == off_track_at_lap_start_;
   }
   state_.is_finished = !track_.centre().is_closed();
-  next_line_ += track_.centre().length();
+  next_line_ += lap_length_;
   start_lap(crossing_time);
 }
 

@@ -38,7 +38,7 @@ struct WorldState {
   bool last_lap_was_clean = false;  ///< no off-track moment during the last completed lap
   int void_laps = 0;                ///< rounds that left out more than 5 % of the line: not counted
 
-  int sector = 0;                                    ///< [0, kSectors): thirds of the line
+  int sector = 0;                                    ///< [0, kSectors): thirds of the lap
   std::array<double, kSectors> sector_times{};       ///< of the running lap, 0 = not finished yet [s]
   std::array<double, kSectors> last_sector_times{};  ///< of the last completed lap [s]
 };
@@ -46,19 +46,20 @@ struct WorldState {
 /// A car on a track: advances the plant and judges where it is, by the plant's own contact patches and the
 /// track's edges.
 ///
-/// The drivable surface reaches to the edge plus the kerb: a patch is off when its outer edge is beyond. A
-/// lap counts when the start line (s = 0) is crossed forward for the first time after driving at least 95 %
-/// of the line: crossing it back and forth counts once, and a short cut counts as void. Allocates nothing,
-/// cannot fail. One thread.
+/// The drivable surface reaches to the edge plus the kerb: a patch is off when its outer edge is beyond. The
+/// start line lies across the road at Track::start_s(). A lap counts when it is crossed forward for the first
+/// time after driving at least 95 % of the line: crossing back and forth counts once, a short cut makes the
+/// round void. Allocates nothing, cannot fail. One thread.
 class World {
  public:
-  /// Both must outlive the world. The car stands at s = 0.
+  /// Both must outlive the world. The car stands at the track's start.
   World(Plant& plant, const path::Track& track) noexcept;
 
-  /// A new run: the car on the line at arc length s, `offset` to its left [m], along the line, rolling at
-  /// `speed`.
-  void place(double s, double offset = 0.0, double speed = 0.0) noexcept;
-  /// A new run from any pose.
+  /// A new run: the car at arc length s, `offset` to the left of the line [m], heading along it, rolling at
+  /// `speed` [m/s].
+  void place(double s, double offset, double speed = 0.0) noexcept;
+  /// A new run from any pose. Within 1 m of the start line the first lap is timed from now on, otherwise from
+  /// the first crossing.
   void reset(const model::Pose& pose, double speed) noexcept;
 
   /// One physics step of the plant with the command that acts.
@@ -67,7 +68,7 @@ class World {
   [[nodiscard]] const WorldState& state() const noexcept { return state_; }
   [[nodiscard]] const Plant& plant() const noexcept { return plant_; }
   [[nodiscard]] const path::Track& track() const noexcept { return track_; }
-  /// Since reset(), in steps: exact, and `time()` is their product with the step length [s].
+  /// Since reset() [s].
   [[nodiscard]] double time() const noexcept {
     return static_cast<double>(step_count_) * plant_.step_length();
   }
@@ -85,7 +86,8 @@ class World {
   long long step_count_ = 0;
   int steps_per_judgement_ = 1;
   double covered_ = 0.0;       ///< of the line since the lap began, without jumps [m]
-  double next_line_ = 0.0;     ///< progress of the next start line [m]
+  double lap_length_ = 0.0;    ///< from the start line to itself, or to the end of an open track [m]
+  double next_line_ = 0.0;     ///< progress at the next crossing of the line [m]
   double lap_start_ = 0.0;     ///< [s]
   double sector_start_ = 0.0;  ///< [s]
   double off_track_at_lap_start_ = 0.0;

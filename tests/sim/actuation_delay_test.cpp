@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sim/actuation_delay.hpp"
+
+#include <gtest/gtest.h>
+
+namespace chicane::sim {
+namespace {
+
+model::Command command(double throttle) { return {.steer = -throttle, .throttle = throttle}; }
+
+TEST(ActuationDelay, HoldsTheFirstCommandUntilTheNextIsDue) {
+  ActuationDelay delay;
+  delay.reset(command(0.1));
+  delay.push(0.25, command(0.2));
+  EXPECT_EQ(delay.at(0.0).throttle, 0.1);
+  EXPECT_EQ(delay.at(0.2499).throttle, 0.1);
+  EXPECT_EQ(delay.at(0.25).throttle, 0.2);
+  EXPECT_EQ(delay.at(9.0).throttle, 0.2);
+}
+
+TEST(ActuationDelay, ActsAtTheFirstStepThatBeginsNotBeforeTheCommandIsDue) {
+  // A delay of 37 ms on a plant with 20 ms steps: sent at 0.1 s, due at 0.137, acts from the step at 0.14 s
+  // on.
+  ActuationDelay delay;
+  delay.reset(command(0.0));
+  delay.push(0.1 + 0.037, command(1.0));
+  int acting = -1;
+  for (int step = 0; step < 20; ++step) {
+    if (delay.at(step * 0.02).throttle == 1.0 && acting < 0) acting = step;
+  }
+  EXPECT_EQ(acting, 7);
+}
+
+TEST(ActuationDelay, TakesSumsOfStepsAsDueInSpiteOfRounding) {
+  ActuationDelay delay;
+  delay.reset(command(0.0));
+  delay.push(0.1 + 0.2, command(1.0));  // 0.30000000000000004
+  EXPECT_EQ(delay.at(0.3).throttle, 1.0);
+}
+
+TEST(ActuationDelay, ShowsOnlyTheNewestOfThoseDue) {
+  ActuationDelay delay;
+  delay.reset(command(0.0));
+  delay.push(0.10, command(0.1));
+  delay.push(0.11, command(0.2));
+  delay.push(0.30, command(0.3));
+  EXPECT_EQ(delay.at(0.2).throttle, 0.2);
+  EXPECT_EQ(delay.at(0.3).throttle, 0.3);
+}
+
+TEST(ActuationDelay, KeepsTheOrderOfSendingWhenTimesDecrease) {
+  ActuationDelay delay;
+  delay.reset(command(0.0));
+  delay.push(0.3, command(0.1));
+  delay.push(0.2, command(0.2));  // a faster answer cannot overtake
+  EXPECT_EQ(delay.at(0.25).throttle, 0.0);
+  EXPECT_EQ(delay.at(0.3).throttle, 0.2);
+}
+
+TEST(ActuationDelay, DropsTheOldestWaitingWhenFull) {
+  ActuationDelay delay;
+  delay.reset(command(0.0));
+  for (int i = 1; i <= 200; ++i) delay.push(i, command(i / 1000.0));
+  EXPECT_EQ(delay.at(72.0).throttle, 0.0);  // 1 … 72 were dropped
+  EXPECT_EQ(delay.at(73.0).throttle, 0.073);
+  EXPECT_EQ(delay.at(200.0).throttle, 0.2);
+}
+
+}  // namespace
+}  // namespace chicane::sim

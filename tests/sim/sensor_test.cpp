@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sim/sensor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "chicane/sim/plant_factory.hpp"
+
+namespace chicane::sim {
+namespace {
+
+std::unique_ptr<Plant> moving_plant() {
+  auto plant = make_plant("road-car").value();
+  plant->reset({.x = 12.3456, .y = -7.891, .psi = 0.777}, 20.0);
+  plant->advance({.steer = 0.1, .throttle = 0.5});
+  return plant;
+}
+
+TEST(Sensor, IsPerfectByDefault) {
+  const auto plant = moving_plant();
+  const model::Measurement seen = Sensor{{}, 1}.sample(3.5, *plant);
+  EXPECT_EQ(seen.time, 3.5);
+  EXPECT_EQ(seen.x, plant->state().x);
+  EXPECT_EQ(seen.y, plant->state().y);
+  EXPECT_EQ(seen.psi, plant->state().psi);
+  EXPECT_EQ(seen.speed, plant->output().speed);
+  EXPECT_EQ(seen.steer, plant->state().steer);
+  EXPECT_EQ(seen.throttle, 0.5);
+}
+
+TEST(Sensor, SameSeedSameNoiseOtherSeedOtherNoise) {
+  const auto plant = moving_plant();
+  const SensorOptions options{.position_noise = 0.1, .heading_noise = 0.01, .speed_noise = 0.2};
+  Sensor a{options, 42};
+  Sensor b{options, 42};
+  Sensor c{options, 43};
+  for (int i = 0; i < 10; ++i) {
+    const model::Measurement first = a.sample(i, *plant);
+    const model::Measurement second = b.sample(i, *plant);
+    EXPECT_EQ(first.x, second.x);
+    EXPECT_EQ(first.speed, second.speed);
+    EXPECT_NE(first.x, c.sample(i, *plant).x);
+  }
+}
+
+TEST(Sensor, NoiseHasTheStatedDeviation) {
+  const auto plant = moving_plant();
+  Sensor sensor{{.position_noise = 0.5, .heading_noise = 0.02}, 7};
+  double sum = 0.0, squares_x = 0.0, squares_psi = 0.0;
+  const int count = 20000;
+  for (int i = 0; i < count; ++i) {
+    const model::Measurement seen = sensor.sample(0.0, *plant);
+    sum += (seen.x - plant->state().x) / count;
+    squares_x += std::pow(seen.x - plant->state().x, 2) / count;
+    squares_psi += std::pow(seen.psi - plant->state().psi, 2) / count;
+  }
+  // Four standard errors: 0.5 / √n for the mean, σ / √(2 n) for the deviations.
+  EXPECT_NEAR(sum, 0.0, 4.0 * 0.5 / std::sqrt(count));
+  EXPECT_NEAR(std::sqrt(squares_x), 0.5, 4.0 * 0.5 / std::sqrt(2.0 * count));
+  EXPECT_NEAR(std::sqrt(squares_psi), 0.02, 4.0 * 0.02 / std::sqrt(2.0 * count));
+}
+
+TEST(Sensor, OneNoiseDoesNotShiftAnother) {
+  const auto plant = moving_plant();
+  Sensor only_speed{{.speed_noise = 0.2}, 5};
+  Sensor both{{.position_noise = 0.1, .speed_noise = 0.2}, 5};
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(only_speed.sample(0, *plant).speed, both.sample(0, *plant).speed);
+}
+
+TEST(Sensor, RoundsToItsQuanta) {
+  const auto plant = moving_plant();
+  const SensorOptions options{.position_quantum = 0.25, .heading_quantum = 0.125, .speed_quantum = 0.5};
+  const model::Measurement seen = Sensor{options, 1}.sample(0.0, *plant);
+  EXPECT_EQ(std::fmod(seen.x, 0.25), 0.0);
+  EXPECT_NEAR(seen.x, plant->state().x, 0.125);
+  EXPECT_EQ(std::fmod(seen.psi, 0.125), 0.0);
+  EXPECT_EQ(std::fmod(seen.speed, 0.5), 0.0);
+}
+
+TEST(Sensor, SpeedIsNeverNegative) {
+  const auto plant = make_plant("road-car").value();
+  Sensor sensor{{.speed_noise = 1.0}, 3};
+  for (int i = 0; i < 100; ++i) EXPECT_GE(sensor.sample(0.0, *plant).speed, 0.0);
+}
+
+}  // namespace
+}  // namespace chicane::sim

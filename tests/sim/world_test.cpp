@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sim/world.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/sim/plant_factory.hpp"
+
+namespace chicane::sim {
+namespace {
+
+constexpr double kRadius = 60.0;
+
+/// A car on strings: goes where it is put. Patches at (±1.5, ±1) m.
+class Puppet final : public Plant {
+ public:
+  explicit Puppet(double step_length = 0.02) : step_length_{step_length} {}
+  [[nodiscard]] double step_length() const noexcept override { return step_length_; }
+  void reset(const model::Pose& pose, double speed) noexcept override {
+    put(pose);
+    output_.speed = speed;
+  }
+  void advance(const model::Command&) noexcept override {
+    const Vec2 before{state_.x, state_.y};
+    put(next_);
+    output_.speed = (Vec2{state_.x, state_.y} - before).norm() / step_length_;
+  }
+  [[nodiscard]] const model::State& state() const noexcept override { return state_; }
+  [[nodiscard]] const PlantOutput& output() const noexcept override { return output_; }
+  [[nodiscard]] std::array<Vec2, 4> contact_points() const noexcept override {
+    return {Vec2{1.5, 1.0}, Vec2{1.5, -1.0}, Vec2{-1.5, 1.0}, Vec2{-1.5, -1.0}};
+  }
+  void go(const model::Pose& pose) { next_ = pose; }
+
+ private:
+  void put(const model::Pose& pose) noexcept {
+    state_.x = pose.x;
+    state_.y = pose.y;
+    state_.psi = pose.psi;
+  }
+  double step_length_;
+  model::State state_;
+  PlantOutput output_;
+  model::Pose next_;
+};
+
+/// Circle about the origin, counter-clockwise, s = 0 at (kRadius, 0), 5 m to the left edge and 4 m to the
+/// right.
+path::Track circle(double kerb = 0.0) {
+  std::vector<path::TrackPoint> points;
+  const int count = 120;
+  for (int i = 0; i < count; ++i) {
+    const double angle = kTwoPi * i / count;
+    points.push_back({Vec2{kRadius * std::cos(angle), kRadius * std::sin(angle)}, 5.0, 4.0});
+  }
+  return path::Track::create("circle", points, true,
+                             {.spacing = 2.0, .smoothing_sigma = 0.0, .kerb_width = kerb})
+      .value();
+}
+
+/// Straight of 300 m along x, open.
+path::Track straight() {
+  std::vector<path::TrackPoint> points;
+  for (int i = 0; i <= 30; ++i) points.push_back({Vec2{10.0 * i, 0.0}, 5.0, 4.0});
+  return path::Track::create("straight", points, false, {.spacing = 2.0, .smoothing_sigma = 0.0}).value();
+}
+
+/// On the circle at `angle` from the start, `left` of the line.
+model::Pose on_circle(double angle, double left = 0.0) {
+  const double r = kRadius - left;
+  return {.x = r * std::cos(angle), .y = r * std::sin(angle), .psi = angle + kPi / 2.0};
+}
+
+struct Drive {
+  explicit Drive(const path::Track& on, double step_length = 0.02) : puppet{step_length}, world{puppet, on} {}
+  void to(double angle, double left = 0.0) {
+    puppet.go(on_circle(angle, left));
+    world.advance({});
+  }
+  /// From angle to angle with constant speed in `steps` steps.
+  void sweep(double from, double until, int steps, double left = 0.0) {
+    for (int i = 1; i <= steps; ++i) to(from + (until - from) * i / steps, left);
+  }
+  const WorldState& state() const { return world.state(); }
+  Puppet puppet;
+  World world;
+};
+
+TEST(World, KnowsWhereTheCarIs) {
+  const path::Track track = circle();
+  Drive drive{track};
+  drive.sweep(0.0, 1.0, 50, 1.5);
+  // The spline through 120 points of a circle errs by 1e-5 of the radius at most; s by 1e-3 relative as Path
+  // says.
+  EXPECT_NEAR(drive.state().s, kRadius, 0.06);
+  EXPECT_NEAR(drive.state().lateral_error, 1.5, 1e-3);
+  EXPECT_NEAR(drive.state().heading_error, 0.0, 1e-3);
+  EXPECT_NEAR(drive.state().progress, kRadius, 0.06);
+  EXPECT_NEAR(drive.state().time, 1.0, 1e-12);
+}
+
+TEST(World, TimesALapToAFractionOfAStep) {
+  const path::Track track = circle();
+  Drive drive{track};
+  // 0.4 rad/s: a lap takes 2π / 0.4 = 15.70796 s, not a multiple of 0.02 s.
+  for (int i = 1; i <= 2000; ++i) drive.to(0.4 * 0.02 * i);
+  const double lap_time = kTwoPi / 0.4;
+  EXPECT_EQ(drive.state().lap, 2);
+  EXPECT_NEAR(drive.state().last_lap_time, lap_time,
+              1e-5);  // rounding and the symmetry of the spline; one step is 0.02
+  EXPECT_NEAR(drive.state().best_lap_time, lap_time, 1e-5);
+  EXPECT_TRUE(drive.state().last_lap_was_clean);
+  EXPECT_NEAR(drive.state().lap_time, 40.0 - 2.0 * lap_time, 1e-4);
+}
+
+TEST(World, SectorTimesAddUpToTheLap) {
+  const path::Track track = circle();
+  Drive drive{track};
+  for (int i = 1; i <= 1000; ++i) drive.to(0.4 * 0.02 * i);
+  ASSERT_EQ(drive.state().lap, 1);
+  double sum = 0.0;
+  for (const double time : drive.state().last_sector_times) {
+    EXPECT_NEAR(time, kTwoPi / 0.4 / 3.0, 1e-4);
+    sum += time;
+  }
+  EXPECT_NEAR(sum, drive.state().last_lap_time, 1e-12);
+}
+
+TEST(World, CountsALapOnceWhenTheLineIsCrossedBackAndForth) {
+  const path::Track track = circle();
+  Drive drive{track};
+  drive.sweep(0.0, kTwoPi + 0.02, 400);
+  EXPECT_EQ(drive.state().lap, 1);
+  for (int i = 0; i < 5; ++i) {
+    drive.sweep(kTwoPi + 0.02, kTwoPi - 0.05, 10);
+    drive.sweep(kTwoPi - 0.05, kTwoPi + 0.02, 10);
+  }
+  EXPECT_EQ(drive.state().lap, 1);
+  drive.sweep(kTwoPi + 0.02, 2.0 * kTwoPi + 0.02, 400);
+  EXPECT_EQ(drive.state().lap, 2);
+}
+
+TEST(World, DoesNotCountALapDrivenBackwards) {
+  const path::Track track = circle();
+  Drive drive{track};
+  drive.sweep(0.0, -1.5 * kTwoPi, 600);
+  EXPECT_EQ(drive.state().lap, 0);
+  EXPECT_LT(drive.state().progress, -1.4 * kTwoPi * kRadius);
+}
+
+TEST(World, VoidsARoundThatCutsAcross) {
+  const path::Track track = circle();
+  Drive drive{track};
+  drive.sweep(0.0, 1.0, 60);
+  // Straight across the infield, from one side of the circle to the other.
+  const model::Pose a = on_circle(1.0);
+  const model::Pose b = on_circle(4.0);
+  for (int i = 1; i <= 100; ++i) {
+    drive.puppet.go({a.x + (b.x - a.x) * i / 100, a.y + (b.y - a.y) * i / 100, a.psi});
+    drive.world.advance({});
+  }
+  drive.sweep(4.0, kTwoPi + 0.1, 100);
+  EXPECT_EQ(drive.state().lap, 0);
+  EXPECT_EQ(drive.state().void_laps, 1);
+  EXPECT_GE(drive.state().off_track_events, 1);
+  drive.sweep(0.1, kTwoPi + 0.1, 400);
+  EXPECT_EQ(drive.state().lap, 1);
+  EXPECT_TRUE(drive.state().last_lap_was_clean);
+}
+
+TEST(World, FirstDrivesToTheLineWhenItStartsElsewhere) {
+  const path::Track track = circle();
+  Drive drive{track};
+  drive.world.reset(on_circle(1.0), 0.0);
+  EXPECT_FALSE(drive.state().is_timed);
+  drive.sweep(1.0, kTwoPi + 0.01, 300);
+  EXPECT_TRUE(drive.state().is_timed);
+  EXPECT_EQ(drive.state().lap, 0);
+  drive.sweep(kTwoPi + 0.01, 2.0 * kTwoPi + 0.01, 400);
+  EXPECT_EQ(drive.state().lap, 1);
+}
+
+TEST(World, MeasuresTheEdgeFromTheOutermostPatch) {
+  const path::Track track = circle();
+  Drive drive{track};
+  drive.sweep(0.0, 0.5, 20);
+  // The right rear and front patches lie 1 m right and 1.5 m along: √((60 + 1)² + 1.5²) − 60 = 1.01844 m off
+  // the line.
+  EXPECT_NEAR(drive.state().edge_distance, 4.0 - (std::hypot(61.0, 1.5) - 60.0), 1e-3);
+  drive.sweep(0.5, 1.0, 20, 3.9);
+  // Left patches 1 m left: 60 − √((60 − 4.9)² + 1.5²) from the line.
+  EXPECT_NEAR(drive.state().edge_distance, 5.0 - (60.0 - std::hypot(55.1, 1.5)), 1e-3);
+  EXPECT_FALSE(drive.state().is_off_track);
+}
+
+TEST(World, CountsAnOffTrackEventOnceUntilTheCarIsBackForAWhile) {
+  const path::Track track = circle();
+  Drive drive{track};
+  drive.sweep(0.0, 0.2, 10, 0.0);
+  drive.sweep(0.2, 0.4, 10, 4.2);  // left patches 0.2 m beyond the edge
+  EXPECT_TRUE(drive.state().is_off_track);
+  EXPECT_EQ(drive.state().off_track_events, 1);
+  EXPECT_LT(drive.state().edge_distance, 0.0);
+  drive.sweep(0.4, 0.45, 3, 3.0);  // back for 0.06 s only
+  EXPECT_TRUE(drive.state().is_off_track);
+  drive.sweep(0.45, 0.6, 5, 4.2);
+  EXPECT_EQ(drive.state().off_track_events, 1);
+  drive.sweep(0.6, 0.9, 15, 3.0);  // back for 0.3 s
+  EXPECT_FALSE(drive.state().is_off_track);
+  drive.sweep(0.9, 1.0, 5, -3.2);  // now beyond the right edge
+  EXPECT_EQ(drive.state().off_track_events, 2);
+  EXPECT_NEAR(drive.state().off_track_time, 0.02 * 20, 1e-9);
+  EXPECT_NEAR(drive.state().min_edge_distance, 4.0 - (std::hypot(60.0 + 3.2 + 1.0, 1.5) - 60.0), 1e-3);
+}
+
+TEST(World, KerbIsDrivable) {
+  const path::Track track = circle(0.5);
+  Drive drive{track};
+  drive.sweep(0.0, 0.4, 20, 4.2);
+  EXPECT_FALSE(drive.state().is_off_track);
+  drive.sweep(0.4, 0.6, 10, 4.6);
+  EXPECT_TRUE(drive.state().is_off_track);
+}
+
+TEST(World, AnOpenTrackEndsWithOneLap) {
+  const path::Track track = straight();
+  Puppet puppet;
+  World world{puppet, track};
+  for (int i = 1; i <= 1100; ++i) {
+    puppet.go({.x = 0.3 * i, .y = 0.1, .psi = 0.0});
+    world.advance({});
+  }
+  EXPECT_TRUE(world.state().is_finished);
+  EXPECT_EQ(world.state().lap, 1);
+  EXPECT_NEAR(world.state().last_lap_time, 300.0 / 15.0, 1e-6);  // at 15 m/s
+}
+
+TEST(World, JudgesAPlantOfOneMillisecondEveryFiveSteps) {
+  const path::Track track = circle();
+  Drive drive{track, 0.001};
+  for (int i = 1; i <= 16000; ++i) drive.to(0.4 * 0.001 * i);
+  EXPECT_EQ(drive.state().lap, 1);
+  EXPECT_NEAR(drive.state().last_lap_time, kTwoPi / 0.4, 1e-5);
+  EXPECT_NEAR(drive.state().time, 16.0, 1e-9);
+}
+
+TEST(World, RealCarsStandAtTheStart) {
+  const path::Track track = circle();
+  for (const char* name : {"udacity", "road-car"}) {
+    const auto plant = make_plant(name).value();
+    World world{*plant, track};
+    for (int i = 0; i < 100; ++i) world.advance({});
+    EXPECT_NEAR(plant->state().x, kRadius, 1e-6) << name;
+    EXPECT_NEAR(world.state().progress, 0.0, 1e-3) << name;
+    EXPECT_EQ(world.state().off_track_events, 0) << name;
+  }
+}
+
+TEST(SelectWaypoints, ShowsOneBehindAndTheOthersAhead) {
+  const path::Track track = circle();
+  model::Measurement seen;
+  const double step = kTwoPi / 120.0;
+  EXPECT_EQ(select_waypoints(track, on_circle(10.3 * step), 6, seen), 6);
+  // Nearest is number 10, behind the car: next is 11, shown are 10 … 15.
+  EXPECT_NEAR(std::atan2(seen.waypoints[0].y(), seen.waypoints[0].x()), 10.0 * step, 1e-9);
+  EXPECT_NEAR(std::atan2(seen.waypoints[5].y(), seen.waypoints[5].x()), 15.0 * step, 1e-9);
+  // Nearest is number 11, ahead: again next is 11.
+  EXPECT_EQ(select_waypoints(track, on_circle(10.7 * step), 6, seen), 6);
+  EXPECT_NEAR(std::atan2(seen.waypoints[0].y(), seen.waypoints[0].x()), 10.0 * step, 1e-9);
+}
+
+TEST(SelectWaypoints, GoesAroundTheEndOfAClosedTrack) {
+  const path::Track track = circle();
+  model::Measurement seen;
+  const double step = kTwoPi / 120.0;
+  EXPECT_EQ(select_waypoints(track, on_circle(118.4 * step), 6, seen), 6);
+  EXPECT_NEAR(seen.waypoints[0].x(), kRadius * std::cos(118.0 * step), 1e-9);
+  EXPECT_NEAR(seen.waypoints[2].x(), kRadius, 1e-9);
+  EXPECT_EQ(select_waypoints(track, on_circle(119.9 * step), 6, seen),
+            6);  // nearest is 0, ahead: shown from 119 on
+  EXPECT_NEAR(seen.waypoints[0].x(), kRadius * std::cos(119.0 * step), 1e-9);
+}
+
+TEST(SelectWaypoints, StopsAtTheEndOfAnOpenTrackAndKeepsItsBounds) {
+  const path::Track track = straight();
+  model::Measurement seen;
+  EXPECT_EQ(select_waypoints(track, {.x = 285.0, .y = 0.0, .psi = 0.0}, 6, seen), 3);  // 280, 290, 300
+  EXPECT_EQ(select_waypoints(track, {.x = 1000.0, .y = 0.0, .psi = 0.0}, 6, seen), 1);
+  EXPECT_EQ(select_waypoints(track, {.x = -50.0, .y = 0.0, .psi = 0.0}, 6, seen), 6);
+  EXPECT_EQ(seen.waypoints[0].x(), 0.0);
+  EXPECT_EQ(select_waypoints(track, {}, 1000, seen), 31);
+  EXPECT_EQ(select_waypoints(circle(), {}, 1000, seen), model::Measurement::kMaxWaypoints);
+  EXPECT_EQ(select_waypoints(track, {}, -1, seen), 0);
+}
+
+}  // namespace
+}  // namespace chicane::sim
