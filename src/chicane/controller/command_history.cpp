@@ -13,6 +13,7 @@ constexpr double kMaxStep = 0.01;      // [s] integration step of the estimator
 constexpr double kLongestGap = 1.0;    // [s] after a longer silence the estimate starts anew
 constexpr double kLostPosition = 3.0;  // [m] a measurement further from the prediction starts anew
 constexpr double kPositionGain = 0.8;  // share of the position and heading innovation taken over at once
+constexpr double kSlideGain = 0.2;         // share of the sideways innovation per second taken as sideslip error
 constexpr double kYawRateGain = 0.25;  // share of the heading innovation per second taken as yaw-rate error
 
 bool is_finite(const model::Measurement& m) {
@@ -86,6 +87,7 @@ void StateEstimator::correct(const model::Measurement& now, const CommandHistory
       state_.y += kPositionGain * dy;
       state_.psi += kPositionGain * dpsi;
       state_.r += kYawRateGain * dpsi / elapsed;
+      state_.vy += kSlideGain * (dy * cos(state_.psi) - dx * sin(state_.psi)) / elapsed;
       state_.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state_.vy * state_.vy));
       time_ = now.time;
       return;

@@ -28,6 +28,7 @@ struct StepReport {
   double speed_reference = 0.0;    ///< wanted at the point where the command acts [m/s]
   double delay = 0.0;              ///< compensated: from measurement to actuation [s]
   double sight = 0.0;              ///< length of known road ahead [m]
+  double solve_time = 0.0;         ///< of the optimisation alone [s], as the deadline's clock saw it; 0 without one
   bool has_map = false;            ///< the lap is closed in memory
   bool gated = false;              ///< the command gate had to change the command
 };

@@ -84,6 +84,7 @@ class PredictionModel {
   [[nodiscard]] const model::VehicleParams& vehicle() const noexcept { return vehicle_; }
 
  private:
+  static constexpr double kGravity = 9.81;    ///< [m/s²]
   static constexpr double kSpeedFloor =
       1.0;  ///< [m/s] slip angles are computed with at least about this speed
 
@@ -107,15 +108,28 @@ class PredictionModel {
   template <class T>
   [[nodiscard]] Tires<T> tire_state(const BodyMotion<T>& m, const T& steer) const noexcept {
     const model::VehicleParams& p = vehicle_;
-    const double wheelbase = p.wheelbase();
+    const double per_wheelbase = 1.0 / p.wheelbase();
     Tires<T> t;
     t.speed = sqrt(m.vx * m.vx + kSpeedFloor * kSpeedFloor);
     const T load_now = p.load_constant + p.load_per_speed * t.speed;
-    t.use_front = (p.cornering_front / p.friction) * (steer - (m.vy + p.front_axle * m.r) / t.speed);
-    t.use_rear = (-p.cornering_rear / p.friction) * ((m.vy - p.rear_axle * m.r) / t.speed);
-    t.stiffness_front = (p.cornering_front * p.rear_axle / wheelbase) * load_now * saturation(t.use_front);
-    t.stiffness_rear = (p.cornering_rear * p.front_axle / wheelbase) * load_now * saturation(t.use_rear);
+    const T transfer = (p.height / kGravity) * m.acceleration;
+    const T share_front = 1.0 - (1.0 / p.rear_axle) * transfer;  // of its load at rest
+    const T share_rear = 1.0 + (1.0 / p.front_axle) * transfer;
+    const T along = m.acceleration / (p.friction * load_now);
+    const T peak = p.friction * sqrt(1.0 - p.friction_coupling * limited_square(along));
+    t.use_front = p.cornering_front / (peak * share_front) * (steer - (m.vy + p.front_axle * m.r) / t.speed);
+    t.use_rear = -p.cornering_rear / (peak * share_rear) * ((m.vy - p.rear_axle * m.r) / t.speed);
+    // Load moves the peak, not the slope: cornering stiffness grows far less than in proportion to load.
+    t.stiffness_front = (p.cornering_front * p.rear_axle * per_wheelbase) * load_now * saturation(t.use_front);
+    t.stiffness_rear = (p.cornering_rear * p.front_axle * per_wheelbase) * load_now * saturation(t.use_rear);
     return t;
+  }
+
+  /// x², never above 0.8: even a locked car keeps some sideways force.
+  template <class T>
+  static T limited_square(const T& x) noexcept {
+    const T square = x * x;
+    return value_of(square) < 0.8 ? square : T(0.8);
   }
 
   /// Secant of the tyre curve over its initial slope: (1 + z⁴)^(−1/4); force tends to the peak, never falls.

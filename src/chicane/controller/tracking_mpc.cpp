@@ -60,7 +60,9 @@ class TrackingMpc final : public Controller {
     const StateEstimator::Prediction start = estimator_.predict(act_time, sent_);
     if (!place_on_line(now, start)) return fall_back(now, act_time);
     warm_start(act_time);
+    const double started = deadline.elapsed();
     const solver::SolveReport report = solver_.solve(problem_, x0_, horizon_, deadline);
+    result_.report.solve_time = deadline.elapsed() - started;
     result_.report.solve = report;
     if (!usable(report.status)) return fall_back(now, act_time);
     return accept(now, start, act_time);
