@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <clocale>
 #include <cmath>
 #include <limits>
@@ -21,6 +22,34 @@ std::string error_of(std::string_view key, std::string_view text) {
   Scenario scenario;
   const Result<void> result = set_text(scenario, key, text);
   return result ? "" : result.error().message;
+}
+
+/// Converts to anything, to count the fields of an aggregate.
+struct Any {
+  template <class T>
+  operator T() const;  // NOLINT: implicit on purpose
+};
+template <class Aggregate, class... Fields>
+consteval long field_count() {
+  if constexpr (requires { Aggregate{Fields{}..., Any{}}; }) return field_count<Aggregate, Fields..., Any>();
+  return sizeof...(Fields);
+}
+long row_count(std::string_view group) {
+  return std::count_if(list().begin(), list().end(),
+                       [&](const Parameter& p) { return p.key.starts_with(group); });
+}
+
+TEST(Schema, EveryFieldOfEveryOptionsStructHasARow) {
+  constexpr long kSpeedHold =
+      field_count<controller::SpeedHoldOptions>() - 1;  // nested: its fields instead of itself
+  EXPECT_EQ(row_count("tracking_mpc."), field_count<controller::TrackingMpcOptions>());
+  EXPECT_EQ(row_count("cubic_mpc."), field_count<controller::CubicMpcOptions>());
+  EXPECT_EQ(row_count("pid."), field_count<controller::PidOptions>() + kSpeedHold);
+  EXPECT_EQ(row_count("pure_pursuit."), field_count<controller::PurePursuitOptions>() + kSpeedHold);
+  EXPECT_EQ(row_count("stanley."), field_count<controller::StanleyOptions>() + kSpeedHold);
+  EXPECT_EQ(row_count("vehicle."), field_count<model::VehicleParams>());
+  EXPECT_EQ(row_count("plant_options."), field_count<scenario::PlantOptions>());
+  EXPECT_EQ(row_count("sensor."), field_count<sim::SensorOptions>());
 }
 
 TEST(Schema, KeysAreUniqueAndEndWithTheirUnit) {

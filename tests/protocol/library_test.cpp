@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/library.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "chicane/model/vehicle.hpp"
+#include "chicane/protocol/schema.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+using scenario::Scenario;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+/// A folder of its own for each test, gone afterwards.
+class Library : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) /
+              (std::string("chicane_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(folder_ / "presets");
+    fs::create_directories(folder_ / "tracks");
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  fs::path folder_;
+};
+
+std::string error_of(const Request& request) {
+  const Result<Scenario> scenario = compose(request);
+  return scenario ? "" : scenario.error().message;
+}
+
+/// Every tunable that differs, as "key: a, b".
+std::vector<std::string> differences(const Scenario& a, const Scenario& b, std::string_view group) {
+  std::vector<std::string> found;
+  for (const Parameter& p : list()) {
+    if (!p.key.starts_with(group)) continue;
+    const Value x = get(a, p);
+    const Value y = get(b, p);
+    const auto* u = std::get_if<double>(&x);
+    const auto* v = std::get_if<double>(&y);
+    // Units are converted on reading: two roundings.
+    const bool is_same =
+        u != nullptr && v != nullptr ? (*u == *v || std::fabs(*u - *v) <= 1e-14 * std::fabs(*u)) : x == y;
+    if (!is_same) found.push_back(std::string(p.key) + ": " + get_text(a, p) + ", " + get_text(b, p));
+  }
+  return found;
+}
+
+TEST_F(Library, EveryShippedPresetLoadsAndSaysWhatItIs) {
+  std::vector<std::string> names;
+  for (const Entry& entry : entries(Shelf::kPreset)) {
+    names.push_back(entry.name);
+    EXPECT_GT(entry.description.size(), 20u) << entry.name;
+    const Result<Scenario> scenario = compose({"", {{"preset", entry.name}}});
+    ASSERT_TRUE(scenario) << scenario.error().message;
+    EXPECT_EQ(scenario->preset, entry.name);
+  }
+  for (const char* promised :
+       {"default", "delay-in-model", "fast-short-step", "measured-latency", "pid", "sixty-mph", "weighted"}) {
+    EXPECT_THAT(names, ::testing::Contains(promised));
+  }
+}
+
+TEST_F(Library, EveryShippedScenarioLoads) {
+  EXPECT_FALSE(entries(Shelf::kScenario).empty());
+  for (const Entry& entry : entries(Shelf::kScenario)) {
+    const Result<Scenario> scenario = compose({entry.name, {}});
+    EXPECT_TRUE(scenario) << scenario.error().message;
+  }
+}
+
+TEST_F(Library, PresetDefaultSaysWhatTheCodeSays) {
+  const Result<Scenario> scenario = compose({"", {{"preset", "default"}}});
+  ASSERT_TRUE(scenario) << scenario.error().message;
+  EXPECT_THAT(differences(*scenario, Scenario{}, ""), ::testing::IsEmpty());
+}
+
+TEST_F(Library, CarFilesSayWhatTheCodeSays) {
+  for (const char* name : {"udacity", "road-car"}) {
+    const Result<Scenario> scenario = compose({"", {{"car", name}}});
+    ASSERT_TRUE(scenario) << scenario.error().message;
+    EXPECT_EQ(scenario->plant, name);
+    Scenario expected;
+    expected.vehicle = *model::vehicle_named(name);
+    EXPECT_THAT(differences(*scenario, expected, "vehicle."), ::testing::IsEmpty());
+  }
+}
+
+TEST_F(Library, LaterLayersWin) {
+  const std::string file = write("run.yaml", "preset: sixty-mph\nlaps: 5\ncubic_mpc.horizon_steps: 9\n");
+  Result<Scenario> scenario = compose({file, {{"cubic_mpc.horizon_steps", "11"}, {"seed", "4"}}});
+  ASSERT_TRUE(scenario) << scenario.error().message;
+  EXPECT_EQ(scenario->preset, "sixty-mph");
+  EXPECT_EQ(scenario->controller, "cubic-mpc");
+  EXPECT_EQ(scenario->laps, 5);
+  EXPECT_EQ(scenario->seed, 4u);
+  EXPECT_EQ(scenario->cubic_mpc.horizon_steps, 11);
+  EXPECT_NEAR(scenario->cubic_mpc.speed_reference, 26.8224, 1e-12);
+  scenario = compose({file, {{"preset", "weighted"}}});
+  ASSERT_TRUE(scenario) << scenario.error().message;
+  EXPECT_EQ(scenario->preset, "weighted");
+  EXPECT_EQ(scenario->cubic_mpc.horizon_steps, 9);
+}
+
+TEST_F(Library, APresetMayBuildOnAnother) {
+  const std::string file = write("mine.yaml", "preset: sixty-mph\ncubic_mpc.horizon_steps: 8\n");
+  const Result<Scenario> scenario = compose({"", {{"preset", file}}});
+  ASSERT_TRUE(scenario) << scenario.error().message;
+  EXPECT_EQ(scenario->cubic_mpc.horizon_steps, 8);
+  EXPECT_EQ(scenario->cubic_mpc.latency_handling, controller::LatencyHandling::kPositionOnly);
+}
+
+TEST_F(Library, PresetsThatBuildOnThemselvesEnd) {
+  const std::string file = write("loop.yaml", "preset: " + (folder_ / "loop.yaml").string() + "\n");
+  EXPECT_THAT(error_of({"", {{"preset", file}}}), HasSubstr("more than 8 presets"));
+}
+
+TEST_F(Library, NamesWhatIsKnownWhenANameIsNot) {
+  EXPECT_THAT(error_of({"", {{"preset", "sixty_mph"}}}),
+              HasSubstr("preset: got \"sixty_mph\", expected a file or one of"));
+  EXPECT_THAT(error_of({"", {{"preset", "sixty_mph"}}}), HasSubstr("(did you mean sixty-mph?)"));
+  EXPECT_THAT(error_of({"", {{"car", "rode-car"}}}), HasSubstr("(did you mean road-car?)"));
+  EXPECT_THAT(error_of({"", {{"track", "nowhere"}}}), HasSubstr("track: got \"nowhere\""));
+  EXPECT_THAT(error_of({"", {{"track", "no/such.csv"}}}),
+              HasSubstr("track: got no/such.csv, expected a file that exists"));
+}
+
+TEST_F(Library, TellsAllFaultsOfAllLayersAtOnce) {
+  const std::string file = write("run.yaml", "laps: 0\nlatency_ms: slow\n");
+  const std::string message = error_of({file, {{"preset", "nobody"}, {"seed", "-1"}, {"latenzy_ms", "1"}}});
+  EXPECT_THAT(message, HasSubstr("run.yaml:1: laps: got 0, expected an integer in [1, 10000]"));
+  EXPECT_THAT(message, HasSubstr("run.yaml:2: latency_ms: got slow"));
+  EXPECT_THAT(message, HasSubstr("preset: got \"nobody\""));
+  EXPECT_THAT(message, HasSubstr("seed: got -1"));
+  EXPECT_THAT(message, HasSubstr("latenzy_ms: got an unknown key"));
+}
+
+TEST_F(Library, ACarFileHoldsOnlyACar) {
+  const std::string file = write("car.yaml", "plant: udacity\nlaps: 3\n");
+  EXPECT_THAT(error_of({"", {{"car", file}}}),
+              HasSubstr("car.yaml:2: laps: got a setting of a run, expected only plant and vehicle"));
+}
+
+TEST_F(Library, FilesNamedInAScenarioAreFoundBesideIt) {
+  write("tracks/mine.csv", "# a track\n");
+  const std::string file = write("run.yaml", "track: tracks/mine.csv\n");
+  const Result<Scenario> scenario = compose({file, {}});
+  ASSERT_TRUE(scenario) << scenario.error().message;
+  EXPECT_EQ(scenario->track, (folder_ / "tracks/mine.csv").string());
+}
+
+TEST_F(Library, FindsFilesInTheFolderTheEnvironmentNames) {
+  write("presets/from-elsewhere.yaml", "# Mine\ncontroller: pid\n");
+  ::setenv("CHICANE_DATA_DIR", folder_.c_str(), 1);
+  const Result<std::string> found = locate(Shelf::kPreset, "from-elsewhere");
+  ::unsetenv("CHICANE_DATA_DIR");
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(*found, (folder_ / "presets/from-elsewhere.yaml").string());
+  EXPECT_FALSE(locate(Shelf::kPreset, "from-elsewhere"));
+}
+
+TEST_F(Library, AFolderIsNotAFile) {
+  EXPECT_EQ(read_file(folder_.string()).error().code, ErrorCode::kNotFound);
+  EXPECT_FALSE(compose({(folder_ / "presets").string(), {}}));
+}
+
+}  // namespace
+}  // namespace chicane::protocol

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/yaml_codec.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "chicane/base/random.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+using scenario::Scenario;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+const fs::path kBroken = fs::path(CHICANE_SOURCE_DIR) / "tests/protocol/fixtures/broken";
+
+std::string read(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+Result<Scenario> load(std::string_view text, const std::string& file) {
+  const Result<Document> document = parse_document(text, file);
+  if (!document) return fail(document.error());
+  Scenario scenario;
+  if (const Result<void> applied = apply_layers({&*document, 1}, scenario); !applied)
+    return fail(applied.error());
+  return scenario;
+}
+
+std::string error_of(std::string_view text) {
+  const Result<Scenario> scenario = load(text, "f");
+  return scenario ? "" : scenario.error().message;
+}
+
+struct Broken {
+  const char* name;
+  std::vector<const char*> expected;  // parts of the message, the file's name stands before each
+};
+
+// clang-format off
+const Broken kFiles[] = {
+    {"alias_bomb", {R"(1: a: got an unknown key)"}},
+    {"bad_indentation", {R"(3: text: got illegal map value, expected valid YAML)"}},
+    {"colon_missing", {R"(2: text: got illegal map value, expected valid YAML)"}},
+    {"decimal_comma", {R"(2: cubic_mpc.step_length_s: got 0,1, expected a number in [0.005, 0.5] s)"}},
+    {"deep_nesting", {R"(text: got very deep nesting, expected at most 8 levels)"}},
+    {"delay_is_not_one_step", {R"(4: cubic_mpc.latency_ms: got 100 ms, expected cubic_mpc.step_length_s (0.05 s))"}},
+    {"duplicate", {R"(3: latency_ms: got it a second time, expected it once (first on line 1))"}},
+    {"duplicate_dotted", {R"(3: cubic_mpc.horizon_steps: got it a second time, expected it once (first on line 1))"}},
+    {"empty", {R"(1: file: got an empty file, expected a map of settings)"}},
+    {"empty_text", {R"(1: track: got nothing, expected text)"}},
+    {"fraction_for_integer", {R"(2: cubic_mpc.horizon_steps: got 10.5, expected an integer in [2, 200])"}},
+    {"hexadecimal", {R"(1: laps: got 0x10, expected an integer in [1, 10000])"}},
+    {"infinite", {R"(2: cubic_mpc.weight_lateral: got .inf, expected a number in [0, 1000000] 1/m²)"}},
+    {"list_at_top", {R"(1: file: got a list, expected a map of settings)"}},
+    {"list_for_group", {R"(1: vehicle: got a list, expected a map of settings)"}},
+    {"list_for_number", {R"(1: latency_ms: got a list, expected a number in [0, 500] ms)"}},
+    {"map_as_key", {R"(1: key: got a map as a key, expected a name)"}},
+    {"map_for_number", {R"(1: latency_ms: got a map, expected a number in [0, 500] ms)"}},
+    {"merge_key", {R"(4: vehicle.<<: got an unknown key)"}},
+    {"negative_seed", {R"(1: seed: got -1, expected an integer in [0, 9007199254740992])"}},
+    {"not_a_number", {R"(1: latency_ms: got .nan, expected a number in [0, 500] ms)"}},
+    {"not_utf8", {R"(1: text: got byte 0xe9, expected UTF-8)"}},
+    {"nothing", {R"(2: latency_ms: got nothing, expected a number in [0, 500] ms)"}},
+    {"nul_byte", {R"(2: text: got control character 0x00, expected text)"}},
+    {"number_for_group", {R"(1: cubic_mpc: got 10, expected a map of settings)"}},
+    {"number_for_switch", {R"(2: cubic_mpc.polar_waypoints: got 1, expected true or false)"}},
+    {"number_in_quotes", {R"(1: laps: got "3" in quotes, expected an integer in [1, 10000])"}},
+    {"number_with_unit", {R"(1: latency_ms: got 100 ms, expected a number in [0, 500] ms)"}},
+    {"only_comments", {R"(1: file: got an empty file, expected a map of settings)"}},
+    {"overflow", {R"(1: seed: got 1e400, expected an integer in [0, 9007199254740992])"}},
+    {"overlong_utf8", {R"(2: text: got byte 0xc0, expected UTF-8)"}},
+    {"preset_is_a_list", {R"(1: preset: got a list, expected the name of a preset)"}},
+    {"preset_is_empty", {R"(1: preset: got nothing, expected the name of a preset)"}},
+    {"scalar_at_top", {R"(1: file: got latency_ms, expected a map of settings)"}},
+    {"several_faults", {R"(1: latency_ms: got 900)", R"(2: laps: got 0)", R"(4: vehicle.mass_kg: got heavy)", R"(5: vehicle.colour: got an unknown key)"}},
+    {"tab", {R"(2: text: got a tab in the indentation, expected spaces)"}},
+    {"tag", {R"(1: laps: got the tag tag:yaml.org,2002:python/object:os.system, expected an integer in [1, 10000])"}},
+    {"text_for_number", {R"(1: latency_ms: got slow, expected a number in [0, 500] ms)"}},
+    {"too_high", {R"(1: latency_ms: got 900, expected a number in [0, 500] ms)"}},
+    {"too_low", {R"(2: vehicle.mass_kg: got -900, expected a number in [0.1, 100000] kg)"}},
+    {"two_documents", {R"(3: file: got 2 documents, expected one)"}},
+    {"unclosed_bracket", {R"(expected valid YAML)"}},
+    {"unclosed_quote", {R"(text: got illegal EOF in scalar, expected valid YAML)"}},
+    {"unit_forgotten", {R"(2: latency: got an unknown key, expected one of `chicane list parameters` (did you mean latency_ms?))"}},
+    {"unknown_alias", {R"(1: text: got the referenced anchor is not defined, expected valid YAML)"}},
+    {"unknown_choice", {R"(1: controller: got mpc, expected one of tracking-mpc, cubic-mpc, pid, pure-pursuit, stanley)"}},
+    {"unknown_group", {R"(1: cubic_mcp: got an unknown key, expected one of)"}},
+    {"unknown_key", {R"(2: latenzy_ms: got an unknown key, expected one of `chicane list parameters` (did you mean latency_ms?))"}},
+    {"unknown_key_in_group", {R"(2: cubic_mpc.horizon_step: got an unknown key, expected one of `chicane list parameters` (did you mean cubic_mpc.horizon_steps?))"}},
+    {"unknown_latency_handling", {R"(2: cubic_mpc.latency_handling: got magic, expected one of none, roll-forward, measured, position-only, inside-model)"}},
+    {"utf16", {R"(1: text: got byte 0xff, expected UTF-8)"}},
+    {"wrong_group", {R"((did you mean vehicle.mass_kg?))"}},
+    {"yes_for_switch", {R"(1: tracking_mpc.compensate_delay: got yes, expected true or false)"}},
+};
+// clang-format on
+
+TEST(YamlCodec, EveryBrokenFileIsRefusedWithFileLineAndKey) {
+  for (const Broken& broken : kFiles) {
+    const fs::path file = kBroken / (std::string(broken.name) + ".yaml");
+    ASSERT_TRUE(fs::exists(file)) << file;
+    const Result<Scenario> scenario = load(read(file), "broken.yaml");
+    ASSERT_FALSE(scenario) << broken.name;
+    EXPECT_THAT(scenario.error().message, ::testing::StartsWith("broken.yaml:")) << broken.name;
+    for (const char* expected : broken.expected)
+      EXPECT_THAT(scenario.error().message, HasSubstr(expected)) << broken.name;
+  }
+}
+
+TEST(YamlCodec, EveryBrokenFileHasAnExpectation) {
+  for (const auto& item : fs::directory_iterator(kBroken)) {
+    if (item.path().extension() != ".yaml") continue;
+    const auto row = std::find_if(std::begin(kFiles), std::end(kFiles),
+                                  [&](const Broken& b) { return item.path().stem() == b.name; });
+    EXPECT_NE(row, std::end(kFiles)) << item.path();
+  }
+}
+
+TEST(YamlCodec, ReadsNestedDottedRosAndJson) {
+  for (const char* text : {"cubic_mpc:\n  horizon_steps: 20\n", "cubic_mpc.horizon_steps: 20\n",
+                           "/**:\n  ros__parameters:\n    cubic_mpc:\n      horizon_steps: 20\n",
+                           "/**:\n  ros__parameters:\n    cubic_mpc.horizon_steps: 20\n",
+                           "{\"cubic_mpc\": {\"horizon_steps\": 20}}",
+                           "\xef\xbb\xbf"
+                           "cubic_mpc:\r\n  horizon_steps: 20\r\n"}) {
+    const Result<Scenario> scenario = load(text, "f");
+    ASSERT_TRUE(scenario) << scenario.error().message;
+    EXPECT_EQ(scenario->cubic_mpc.horizon_steps, 20) << text;
+  }
+}
+
+TEST(YamlCodec, NothingIsAppliedWhenAnythingIsWrong) {
+  Document document;
+  document.file = "f";
+  document.assignments.push_back({find("laps"), 7.0, 1});
+  document.assignments.push_back({find("latency_ms"), 900.0, 2});
+  Scenario scenario;
+  const Result<void> applied = apply_layers({&document, 1}, scenario);
+  ASSERT_FALSE(applied);
+  EXPECT_THAT(applied.error().message, HasSubstr("f:2: latency_ms"));
+  EXPECT_EQ(scenario.laps, Scenario{}.laps);
+}
+
+TEST(YamlCodec, AFileThatIsTooLargeIsRefusedUnread) {
+  EXPECT_THAT(error_of(std::string(1000000, '#')),
+              HasSubstr("f: file: got 1000000 bytes, expected at most 262144"));
+}
+
+TEST(YamlCodec, AHundredThousandFaultsGiveAShortAnswer) {
+  std::string text;
+  for (int i = 0; i < 20000; ++i) text.append("k").append(std::to_string(i)).append(": 1\n");
+  const std::string message = error_of(text);
+  EXPECT_THAT(message, HasSubstr("more"));
+  EXPECT_LT(message.size(), 20000u);
+}
+
+TEST(YamlCodec, WhatItWritesItReadsBack) {
+  Random random(3);
+  for (int round = 0; round < 50; ++round) {
+    Scenario scenario;
+    for (const Parameter& parameter : list()) {
+      if (random.uniform() < 0.5 || parameter.key == "preset" || parameter.key == "controller") continue;
+      if (parameter.kind() == Kind::kNumber || parameter.kind() == Kind::kInteger) {
+        const double value = random.uniform(parameter.minimum, parameter.maximum);
+        ASSERT_TRUE(set(scenario, parameter, parameter.kind() == Kind::kInteger ? std::floor(value) : value));
+      } else if (parameter.kind() == Kind::kText) {
+        ASSERT_TRUE(set(scenario, parameter, std::string("a \"b\\ #: ö\n\tc")));
+      } else if (parameter.kind() == Kind::kBool) {
+        ASSERT_TRUE(set(scenario, parameter, random.uniform() < 0.5));
+      } else {
+        ASSERT_TRUE(set(scenario, parameter, std::string(parameter.choices.back())));
+      }
+    }
+    const std::string text = write_document(scenario, "written by a test,\nin two lines");
+    const Result<Scenario> read_back = load(text, "f");
+    ASSERT_TRUE(read_back) << read_back.error().message << "\n" << text;
+    for (const Parameter& parameter : list()) {
+      EXPECT_EQ(get_text(scenario, parameter), get_text(*read_back, parameter)) << parameter.key;
+    }
+  }
+}
+
+TEST(YamlCodec, WritesOnlyWhatDiffers) {
+  Scenario scenario;
+  scenario.laps = 9;
+  scenario.vehicle.mass = 1234.0;
+  EXPECT_EQ(write_document(scenario, "Mine"), "# Mine\nlaps: 9\nvehicle:\n  mass_kg: 1234\n");
+  EXPECT_EQ(write_document({}, "Nothing"), "# Nothing\n");
+}
+
+TEST(YamlCodec, AnyBytesGetAnAnswer) {
+  Random random(17);
+  const std::string seed = read(fs::path(CHICANE_SOURCE_DIR) / "presets/weighted.yaml");
+  ASSERT_FALSE(seed.empty());
+  for (int i = 0; i < 3000; ++i) {
+    std::string text = seed;
+    for (int change = 0; change < 3; ++change) {
+      const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(text.size()));
+      switch (static_cast<int>(random.uniform(0.0, 4.0))) {
+        case 0:
+          text[at] = static_cast<char>(random.bits());
+          break;
+        case 1:
+          text.erase(at, static_cast<std::size_t>(random.uniform(1.0, 40.0)));
+          break;
+        case 2:
+          text.insert(at, "[{:&*!?\"'-");
+          break;
+        default:
+          text.insert(at, text.substr(at / 2, 30));
+          break;
+      }
+      if (text.empty()) text.assign(1, 'x');
+    }
+    static_cast<void>(load(text, "f"));  // must neither crash nor throw
+  }
+}
+
+}  // namespace
+}  // namespace chicane::protocol
