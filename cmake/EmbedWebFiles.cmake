@@ -1,0 +1,115 @@
+# Run by EmbedWeb.cmake while building: web/ → ${BUILD}/web_assets.cpp. Arguments: SOURCE, BUILD, MISSING, NODE, NPM.
+
+# Installs the packages of the lock file unless they are there; several builds may come here at once.
+function(install_packages)
+  file(SHA256 ${SOURCE}/package-lock.json wanted)
+  set(stamp ${SOURCE}/node_modules/.installed-lock)
+  file(LOCK ${SOURCE}/.npm-ci.lock GUARD FUNCTION TIMEOUT 600)
+  set(installed "")
+  if(EXISTS ${stamp})
+    file(READ ${stamp} installed)
+  endif()
+  if(installed STREQUAL wanted)
+    return()
+  endif()
+  execute_process(COMMAND ${NPM} ci --no-audit --no-fund --loglevel=error WORKING_DIRECTORY ${SOURCE}
+                  RESULT_VARIABLE failed OUTPUT_QUIET)
+  if(failed)
+    set(MISSING "`npm ci` failed when this program was built (is the npm registry reachable?)" PARENT_SCOPE)
+  else()
+    file(WRITE ${stamp} ${wanted})
+  endif()
+endfunction()
+
+function(build_pages)
+  execute_process(COMMAND ${NODE} node_modules/vite/bin/vite.js build --outDir ${BUILD}/dist --emptyOutDir --logLevel warn
+                  WORKING_DIRECTORY ${SOURCE} RESULT_VARIABLE failed)
+  if(failed)
+    message(FATAL_ERROR "Vite could not build the dashboard in ${SOURCE}")
+  endif()
+endfunction()
+
+function(write_plain_page)
+  file(REMOVE_RECURSE ${BUILD}/dist)
+  file(WRITE ${BUILD}/dist/index.html "<!doctype html>
+<html lang=\"en\">
+<meta charset=\"utf-8\">
+<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">
+<title>chicane</title>
+<link rel=\"icon\" href=\"data:,\">
+<style>body{font:16px/1.5 system-ui,sans-serif;max-width:40em;margin:4em auto;padding:0 1em;color-scheme:light dark}</style>
+<main>
+<h1>chicane is running, without its dashboard</h1>
+<p>The dashboard is not part of this program: ${MISSING}.</p>
+<p>Install Node.js 18.18 or newer with npm and build again. Meanwhile Foxglove and Lichtblick can connect to this
+address with the Foxglove WebSocket protocol.</p>
+</main>
+</html>
+")
+endfunction()
+
+function(content_type file result)
+  get_filename_component(extension ${file} LAST_EXT)
+  set(.html "text/html; charset=utf-8")
+  set(.js "text/javascript; charset=utf-8")
+  set(.css "text/css; charset=utf-8")
+  set(.svg "image/svg+xml")
+  set(.png "image/png")
+  set(.json "application/json")
+  if(NOT DEFINED ${extension})
+    message(FATAL_ERROR "${file}: no content type for *${extension}; add it to EmbedWebFiles.cmake")
+  endif()
+  set(${result} "${${extension}}" PARENT_SCOPE)
+endfunction()
+
+function(write_source)
+  file(GLOB_RECURSE files RELATIVE ${BUILD}/dist ${BUILD}/dist/*)
+  set(arrays "")
+  set(table "")
+  set(index 0)
+  foreach(file ${files})
+    content_type(${file} type)
+    file(ARCHIVE_CREATE OUTPUT ${BUILD}/file.gz PATHS ${BUILD}/dist/${file} FORMAT raw COMPRESSION GZip
+         COMPRESSION_LEVEL 9)
+    file(READ ${BUILD}/file.gz hex HEX)
+    string(REGEX REPLACE "(..)" "0x\\1," bytes "${hex}")
+    string(REGEX REPLACE "(........................................................................)" "\\1\n    " bytes
+           "${bytes}")
+    string(APPEND arrays "constexpr unsigned char kFile${index}[] = {\n    ${bytes}};\n")
+    string(APPEND table "      {\"/${file}\", \"${type}\", view(kFile${index}), true},\n")
+    math(EXPR index "${index} + 1")
+  endforeach()
+  file(REMOVE ${BUILD}/file.gz)
+  file(WRITE ${BUILD}/web_assets.cpp "// Generated from web/ by cmake/EmbedWebFiles.cmake: do not edit.
+#include \"chicane/runtime/assets.hpp\"
+
+namespace chicane::runtime {
+namespace {
+
+${arrays}
+template <std::size_t N>
+std::string_view view(const unsigned char (&bytes)[N]) {
+  return {reinterpret_cast<const char*>(bytes), N};
+}
+
+}  // namespace
+
+std::vector<net::Asset> embedded_assets() {
+  return {
+${table}  };
+}
+
+}  // namespace chicane::runtime
+")
+endfunction()
+
+if(NOT MISSING)
+  install_packages()
+endif()
+if(MISSING)
+  message(WARNING "No dashboard: ${MISSING}. To try again, remove ${BUILD}/web_assets.cpp and build.")
+  write_plain_page()
+else()
+  build_pages()
+endif()
+write_source()

@@ -1,0 +1,21 @@
+import { extent, niceCeil } from '../lib/math';
+
+/** From 0 to a round number above all values, at least `least`: an axis that seldom changes. */
+export function rangeFromZero(values: readonly ArrayLike<number>[], least: number): [number, number] {
+  const high = Math.max(least, ...values.map((column) => extent(column)?.[1] ?? 0));
+  return [0, niceCeil(high)];
+}
+
+/** Symmetric about 0, to a round number beyond all values, at least `least`. */
+export function rangeAboutZero(values: readonly ArrayLike<number>[], least: number): [number, number] {
+  const reach = values.map((column) => {
+    const [low, high] = extent(column) ?? [0, 0];
+    return Math.max(-low, high);
+  });
+  const end = niceCeil(Math.max(least, ...reach));
+  return [-end, end];
+}
+
+/** The last `seconds` up to `now`, in whole steps back from now: grid lines that stand still while time runs. */
+export const secondsBack = (now: number, seconds: number, step: number): number[] =>
+  Array.from({ length: Math.floor(seconds / step) + 1 }, (_, i) => now - seconds + i * step);

@@ -1,0 +1,43 @@
+import { describe, expect, it } from 'vitest';
+import { above, behind, fitting, project, scaleBar, zoomed } from './camera';
+
+describe('camera', () => {
+  it('shows north up and east right', () => {
+    const camera = above({ x: 100, y: 50 }, 800, 600, 60);
+    expect(project(camera, { x: 100, y: 50 })).toEqual({ x: 400, y: 300 });
+    const east = project(camera, { x: 110, y: 50 });
+    expect(east.x).toBeCloseTo(500, 9);
+    expect(east.y).toBeCloseTo(300, 9);
+    expect(project(camera, { x: 100, y: 60 }).y).toBeCloseTo(200, 9);
+  });
+
+  it.each([0, 1, -2.5, Math.PI])('looks up the screen behind a car heading %f', (heading) => {
+    const camera = behind({ x: 5, y: -7 }, heading, 800, 600, 60);
+    const ahead = project(camera, { x: 5 + 10 * Math.cos(heading), y: -7 + 10 * Math.sin(heading) });
+    expect(ahead.x).toBeCloseTo(400, 6);
+    expect(ahead.y).toBeCloseTo(432 - 100, 6);
+    const left = project(camera, { x: 5 - 10 * Math.sin(heading), y: -7 + 10 * Math.cos(heading) });
+    expect(left.x).toBeCloseTo(300, 6);
+    expect(left.y).toBeCloseTo(432, 6);
+  });
+
+  it('fits a box with its margin', () => {
+    const camera = fitting({ minX: -100, minY: 0, maxX: 300, maxY: 100 }, 1000, 500, 20);
+    expect(project(camera, { x: -100, y: 0 }).x).toBeCloseTo(20, 9);
+    expect(project(camera, { x: 300, y: 100 }).x).toBeCloseTo(980, 9);
+    expect(fitting({ minX: 1, minY: 1, maxX: 1, maxY: 1 }, 100, 100, 60).scale).toBeGreaterThan(0);
+  });
+
+  it('picks a round scale bar', () => {
+    expect(scaleBar(10, 120)).toEqual({ metres: 10, pixels: 100 });
+    expect(scaleBar(1, 120)).toEqual({ metres: 100, pixels: 100 });
+    expect(scaleBar(7, 120).metres).toBe(10);
+    expect(scaleBar(100, 120).metres).toBe(1);
+  });
+
+  it('keeps the zoom in bounds', () => {
+    expect(zoomed(60, 1.25)).toBe(75);
+    expect(zoomed(16, 0.5)).toBe(15);
+    expect(zoomed(1999, 2)).toBe(2000);
+  });
+});

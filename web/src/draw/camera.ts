@@ -1,0 +1,63 @@
+import { clamp, type Box, type Point } from '../lib/math';
+
+/** World to screen: x right, y up in W; pixels right and down on the screen. CSS pixels. */
+export interface Camera {
+  readonly centre: Point; // in W [m]
+  readonly at: Point; // where the centre appears [px]
+  readonly scale: number; // [px/m]
+  readonly rotation: number; // of the world, counter-clockwise [rad]
+}
+
+/** The six numbers of CanvasRenderingContext2D.setTransform, for `ratio` device pixels to a CSS pixel. */
+export function transformOf(camera: Camera, ratio: number): [number, number, number, number, number, number] {
+  const k = camera.scale * ratio;
+  const [cos, sin] = [Math.cos(camera.rotation) * k, Math.sin(camera.rotation) * k];
+  const { x, y } = camera.centre;
+  // Screen y points down: a counter-clockwise turn of the world, then a mirror.
+  return [cos, -sin, -sin, -cos, camera.at.x * ratio - cos * x + sin * y, camera.at.y * ratio + sin * x + cos * y];
+}
+
+/** Where a point of the world appears [px]. */
+export function project(camera: Camera, point: Point): Point {
+  const [a, b, c, d, e, f] = transformOf(camera, 1);
+  return { x: a * point.x + c * point.y + e, y: b * point.x + d * point.y + f };
+}
+
+/** The whole box in view with `margin` [px] around it. */
+export function fitting(box: Box, width: number, height: number, margin: number): Camera {
+  const spanX = Math.max(box.maxX - box.minX, 1);
+  const spanY = Math.max(box.maxY - box.minY, 1);
+  const scale = Math.min(Math.max(width - 2 * margin, 1) / spanX, Math.max(height - 2 * margin, 1) / spanY);
+  return {
+    centre: { x: (box.minX + box.maxX) / 2, y: (box.minY + box.maxY) / 2 },
+    at: { x: width / 2, y: height / 2 },
+    scale,
+    rotation: 0,
+  };
+}
+
+/** The car below the middle, looking up the screen; `heading` is a smoothed yaw. */
+export function behind(car: Point, heading: number, width: number, height: number, metresAcross: number): Camera {
+  return {
+    centre: car,
+    at: { x: width / 2, y: height * 0.72 },
+    scale: Math.min(width, height) / metresAcross,
+    rotation: Math.PI / 2 - heading,
+  };
+}
+
+/** The car in the middle, north up. */
+export function above(car: Point, width: number, height: number, metresAcross: number): Camera {
+  return { centre: car, at: { x: width / 2, y: height / 2 }, scale: Math.min(width, height) / metresAcross, rotation: 0 };
+}
+
+/** A length of 1, 2 or 5 · 10ⁿ metres that is at most `limit` pixels long. */
+export function scaleBar(scale: number, limit: number): { metres: number; pixels: number } {
+  const longest = limit / scale;
+  const power = 10 ** Math.floor(Math.log10(longest));
+  const metres = [5, 2, 1].map((factor) => factor * power).find((length) => length <= longest * (1 + 1e-9)) ?? power;
+  return { metres, pixels: metres * scale };
+}
+
+/** One turn of the wheel or press of a key; the view spans 15 m to 2 km. */
+export const zoomed = (metresAcross: number, factor: number): number => clamp(metresAcross * factor, 15, 2000);

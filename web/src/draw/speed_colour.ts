@@ -1,0 +1,28 @@
+import { clamp, mix } from '../lib/math';
+import { MPH } from '../lib/format';
+
+/** Slow to fast; equal steps look equally far apart and differ in lightness too, for colour-blind eyes. */
+const STOPS: readonly (readonly [number, number, number])[] = [
+  [72, 92, 220],
+  [35, 150, 214],
+  [38, 188, 150],
+  [176, 208, 66],
+  [252, 190, 56],
+  [255, 112, 77],
+];
+
+/** Colour for a share of the top speed in [0, 1]. */
+export function speedColour(share: number): string {
+  const at = clamp(Number.isFinite(share) ? share : 0, 0, 1) * (STOPS.length - 1);
+  const i = Math.min(Math.floor(at), STOPS.length - 2);
+  const [from, to] = [STOPS[i], STOPS[i + 1]];
+  if (!from || !to) return 'rgb(0 0 0)';
+  const channel = (k: 0 | 1 | 2): number => Math.round(mix(from[k], to[k], at - i));
+  return `rgb(${channel(0)} ${channel(1)} ${channel(2)})`;
+}
+
+/** The upper end of the colour scale: a multiple of 20 mph [m/s]. */
+export const topOfScale = (topSpeed: number): number => (Math.ceil(Math.max(20, topSpeed * MPH) / 20 - 1e-9) * 20) / MPH;
+
+/** The scale as a CSS gradient, for the legend. */
+export const speedGradient = (): string => `linear-gradient(to right, ${STOPS.map((c) => `rgb(${c.join(' ')})`).join(', ')})`;

@@ -1,0 +1,58 @@
+/** The colours of style.css that canvases need. */
+export interface Theme {
+  readonly ground: string;
+  readonly road: string;
+  readonly edge: string;
+  readonly centreLine: string;
+  readonly reference: string;
+  readonly trace: string;
+  readonly carBody: string;
+  readonly carGlass: string;
+  readonly carEdge: string;
+  readonly wheel: string;
+  readonly brake: string;
+  readonly text: string;
+  readonly faint: string;
+  readonly grid: string;
+  readonly panel: string;
+  readonly series: readonly [string, string];
+}
+
+function read(): Theme {
+  const style = getComputedStyle(document.documentElement);
+  const colour = (name: string): string => style.getPropertyValue(`--${name}`).trim();
+  return {
+    ground: colour('ground'),
+    road: colour('road'),
+    edge: colour('road-edge'),
+    centreLine: colour('centre-line'),
+    reference: colour('reference'),
+    trace: colour('trace'),
+    carBody: colour('car-body'),
+    carGlass: colour('car-glass'),
+    carEdge: colour('car-edge'),
+    wheel: colour('wheel'),
+    brake: colour('bad'),
+    text: colour('text'),
+    faint: colour('text-faint'),
+    grid: colour('grid'),
+    panel: colour('panel'),
+    series: [colour('series-1'), colour('series-2')],
+  };
+}
+
+let current: Theme | null = null;
+const listeners = new Set<() => void>();
+
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+  current = null;
+  for (const listener of listeners) listener();
+});
+
+export const theme = (): Theme => (current ??= read());
+
+/** Calls back when the reader changes between light and dark. */
+export function onThemeChange(listener: () => void): () => void {
+  listeners.add(listener);
+  return () => void listeners.delete(listener);
+}

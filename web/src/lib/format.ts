@@ -1,0 +1,36 @@
+/** What stands where a number is not known. */
+export const UNKNOWN = '–';
+
+/** mph in one m/s: 3600 s/h over 1609.344 m/mile. */
+export const MPH = 3600 / 1609.344;
+
+/** A number with fixed decimals, a true minus sign and no "−0.0". */
+export function fixed(value: number, decimals: number): string {
+  if (!Number.isFinite(value)) return UNKNOWN;
+  const text = Math.abs(value).toFixed(decimals);
+  return value < 0 && Number(text) !== 0 ? `−${text}` : text;
+}
+
+/** 83.4567 s → "1:23.46". Cut, not rounded, as lap clocks do. */
+export function lapTime(seconds: number): string {
+  if (!Number.isFinite(seconds) || seconds < 0) return UNKNOWN;
+  const hundredths = Math.floor(seconds * 100 + 1e-6);
+  const [minutes, rest] = [Math.floor(hundredths / 6000), hundredths % 6000];
+  return `${minutes}:${(rest / 100).toFixed(2).padStart(5, '0')}`;
+}
+
+/** A signed offset in words: positive is left. */
+export function side(metres: number): string {
+  if (!Number.isFinite(metres) || Math.abs(metres) < 0.005) return '';
+  return metres > 0 ? 'left' : 'right';
+}
+
+/** Microseconds in the unit that keeps the number short. */
+export function duration(microseconds: number): { value: string; unit: string } {
+  if (!Number.isFinite(microseconds)) return { value: UNKNOWN, unit: 'ms' };
+  if (microseconds < 1000) return { value: fixed(microseconds, 0), unit: 'µs' };
+  return { value: fixed(microseconds / 1000, microseconds < 10_000 ? 2 : 1), unit: 'ms' };
+}
+
+/** "1 lap", "2 laps" */
+export const plural = (count: number, noun: string): string => `${count} ${noun}${count === 1 ? '' : 's'}`;

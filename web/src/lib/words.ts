@@ -1,0 +1,55 @@
+import type { Frame } from '../protocol/topics';
+
+export type Mood = 'good' | 'warning' | 'bad';
+
+export interface Sentence {
+  readonly mood: Mood;
+  readonly text: string;
+}
+
+/** Who chose the command, by controller::Rung. */
+export function rungInWords(rung: number): Sentence {
+  switch (rung) {
+    case 0:
+      return { mood: 'good', text: 'The controller drives' };
+    case 1:
+      return { mood: 'warning', text: 'No new answer: following the last plan' };
+    case 2:
+      return { mood: 'bad', text: 'No answer: wheel held, gentle braking' };
+    case 3:
+      return { mood: 'bad', text: 'No answer: wheel held, full braking' };
+    default:
+      return { mood: 'bad', text: `Unknown rung ${rung}` };
+  }
+}
+
+/** How the solve ended, by solver::SolveStatus. */
+export function statusInWords(status: number): Sentence {
+  switch (status) {
+    case 0:
+      return { mood: 'good', text: 'Optimal' };
+    case 1:
+      return { mood: 'warning', text: 'Good enough when time was up' };
+    case -1:
+      return { mood: 'bad', text: 'Stalled before an answer' };
+    case -2:
+      return { mood: 'bad', text: 'No way inside the limits' };
+    case -3:
+      return { mood: 'bad', text: 'Not a number in the problem' };
+    default:
+      return { mood: 'bad', text: `Unknown status ${status}` };
+  }
+}
+
+export const gateInWords = (isGated: boolean): Sentence =>
+  isGated ? { mood: 'warning', text: 'Had to change the command' } : { mood: 'good', text: 'Passed the command unchanged' };
+
+/** Where the car is on the road. An external simulator without a judge leaves the distance unknown. */
+export function roadInWords(frame: Pick<Frame, 'is_off_track' | 'edge_distance_m' | 'off_track_events'>): Sentence {
+  if (frame.is_off_track) return { mood: 'bad', text: 'Off the road' };
+  const events = frame.off_track_events;
+  if (events > 0) return { mood: 'warning', text: `On the road, was off it ${events === 1 ? 'once' : `${events} times`}` };
+  return { mood: 'good', text: 'On the road, never off it' };
+}
+
+export const mapInWords = (hasMap: boolean): string => (hasMap ? 'Remembers the whole lap' : 'Sees only what is ahead');

@@ -1,0 +1,113 @@
+import { readFileSync } from 'node:fs';
+import type { IWebSocket } from '@foxglove/ws-protocol';
+import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
+import { Connection, retryDelay, type ConnectionEvents } from './connection';
+
+const folder = new URL('../../../tests/protocol/fixtures/ros/', import.meta.url);
+const topics = JSON.parse(readFileSync(new URL('topics.json', folder), 'utf8')) as { topic: string; type: string; schema: string }[];
+
+/** A server on the other end of no network. */
+class FakeSocket implements IWebSocket {
+  binaryType = '';
+  protocol = 'foxglove.sdk.v1';
+  onerror: IWebSocket['onerror'];
+  onopen: IWebSocket['onopen'];
+  onclose: IWebSocket['onclose'];
+  onmessage: IWebSocket['onmessage'];
+  readonly sent: (string | ArrayBuffer | ArrayBufferView)[] = [];
+  close(): void {
+    this.onclose?.({});
+  }
+  send(data: string | ArrayBuffer | ArrayBufferView): void {
+    this.sent.push(data);
+  }
+  say(message: object): void {
+    this.onmessage?.({ data: JSON.stringify(message) });
+  }
+  sayBytes(bytes: Uint8Array): void {
+    this.onmessage?.({ data: bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength) });
+  }
+  introduce(): void {
+    this.say({ op: 'serverInfo', name: 'chicane', capabilities: [] });
+    this.say({
+      op: 'advertise',
+      channels: topics.map(({ topic, type, schema }, id) => ({ id, topic, encoding: 'cdr', schemaName: type, schema })),
+    });
+    this.say({
+      op: 'advertiseServices',
+      services: ['/pause', '/step'].map((name, id) => ({ id, name, type: 'x', responseSchema: 'bool success\nstring message\n' })),
+    });
+  }
+}
+
+function start() {
+  const sockets: FakeSocket[] = [];
+  const events = { open: vi.fn(), lost: vi.fn(), message: vi.fn(), services: vi.fn(), notice: vi.fn() };
+  const connection = new Connection(() => {
+    const socket = new FakeSocket();
+    sockets.push(socket);
+    return socket;
+  }, events as ConnectionEvents);
+  return { sockets, events, connection, last: () => sockets.at(-1) as FakeSocket };
+}
+
+beforeEach(() => void vi.useFakeTimers());
+afterEach(() => void vi.useRealTimers());
+
+describe('connection', () => {
+  it('subscribes to the topics it knows and hands decoded messages on', () => {
+    const { events, last } = start();
+    last().introduce();
+    expect(events.open).toHaveBeenCalledTimes(1);
+    const subscribed = last().sent.map((text) => (JSON.parse(text as string) as { subscriptions: { id: number; channelId: number }[] }).subscriptions[0]);
+    expect(subscribed.map((s) => topics[s?.channelId ?? -1]?.topic).sort()).toEqual(
+      ['/chicane/frame', '/chicane/plan', '/chicane/run', '/reference', '/track/centre', '/track/left', '/track/right'],
+    );
+    const run = readFileSync(new URL('chicane_run.bin', folder));
+    const channel = topics.findIndex(({ topic }) => topic === '/chicane/run');
+    const id = subscribed.find((s) => s?.channelId === channel)?.id ?? -1;
+    last().sayBytes(new Uint8Array([1, id, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, ...run]));
+    expect(events.message).toHaveBeenCalledWith('/chicane/run', expect.objectContaining({ track: 'lakeside' }));
+  });
+
+  it('connects again, ever more slowly, and quickly again after a success', () => {
+    const { sockets, events, last } = start();
+    last().close();
+    expect(events.lost).toHaveBeenLastCalledWith(1, 250);
+    vi.advanceTimersByTime(249);
+    expect(sockets).toHaveLength(1);
+    vi.advanceTimersByTime(1);
+    expect(sockets).toHaveLength(2);
+    last().close();
+    expect(events.lost).toHaveBeenLastCalledWith(2, 500);
+    vi.advanceTimersByTime(500);
+    last().introduce();
+    last().close();
+    expect(events.lost).toHaveBeenLastCalledWith(1, 250);
+    expect([1, 2, 3, 4, 5, 50].map(retryDelay)).toEqual([250, 500, 1000, 2000, 2000, 2000]);
+  });
+
+  it('does not connect again once closed', () => {
+    const { sockets, connection } = start();
+    connection.close();
+    vi.advanceTimersByTime(60_000);
+    expect(sockets).toHaveLength(1);
+  });
+
+  it('calls services and tells how they ended', async () => {
+    const { connection, last } = start();
+    expect(await connection.call('/reset')).toMatch(/not offered/);
+    last().introduce();
+    const done = connection.call('/pause', true);
+    const bytes = last().sent.at(-1) as Uint8Array;
+    expect([...bytes]).toEqual([2, 0, 0, 0, 0, 1, 0, 0, 0, 3, 0, 0, 0, 99, 100, 114, 0, 1, 0, 0, 1]);
+    last().sayBytes(new Uint8Array([3, 0, 0, 0, 0, 1, 0, 0, 0, 3, 0, 0, 0, 99, 100, 114, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0]));
+    expect(await done).toBeNull();
+    const refused = connection.call('/step');
+    last().say({ op: 'serviceCallFailure', serviceId: 1, callId: 2, message: 'the run is over' });
+    expect(await refused).toBe('the run is over');
+    const pending = connection.call('/step');
+    last().close();
+    expect(await pending).toBe('the connection was lost');
+  });
+});

@@ -1,0 +1,14 @@
+import { parse } from '@foxglove/rosmsg';
+import { MessageReader } from '@foxglove/rosmsg2-serialization';
+
+/** Reads CDR messages of the type that a ROS 2 schema text describes. */
+export function decoder(schema: string): (bytes: ArrayBufferView) => unknown {
+  const reader = new MessageReader(parse(schema, { ros2: true }));
+  return (bytes) => reader.readMessage(bytes);
+}
+
+/** One boolean as std_srvs/srv/SetBool wants it: XCDR1 header, little endian, and the byte. */
+export const encodeBool = (value: boolean): Uint8Array => new Uint8Array([0, 1, 0, 0, value ? 1 : 0]);
+
+/** std_srvs/srv/Trigger asks nothing. */
+export const encodeNothing = (): Uint8Array => new Uint8Array([0, 1, 0, 0]);

@@ -1,0 +1,114 @@
+// Types of the messages this page reads; their one definition is the schema text that the server advertises
+// (src/chicane/protocol/ros_schemas.hpp), checked against these names in fixtures.test.ts.
+
+export interface Stamp {
+  sec: number;
+  nsec: number;
+}
+
+/** chicane_msgs/msg/Frame. SI units and radians, left positive, not-a-number for unknown. */
+export interface Frame {
+  stamp: Stamp;
+  cycle: bigint;
+  time_s: number;
+  has_truth: boolean;
+  x_m: number;
+  y_m: number;
+  yaw_rad: number;
+  vx_mps: number;
+  vy_mps: number;
+  yaw_rate_radps: number;
+  speed_mps: number;
+  longitudinal_acceleration_mps2: number;
+  lateral_acceleration_mps2: number;
+  measured_x_m: number;
+  measured_y_m: number;
+  measured_yaw_rad: number;
+  measured_speed_mps: number;
+  s_m: number;
+  lateral_error_m: number;
+  heading_error_rad: number;
+  edge_distance_m: number;
+  is_off_track: boolean;
+  off_track_events: number;
+  lap: number;
+  lap_time_s: number;
+  last_lap_time_s: number;
+  steer_asked_rad: number;
+  steer_applied_rad: number;
+  throttle_asked: number;
+  throttle_applied: number;
+  rung: number;
+  solve_status: number;
+  is_gated: boolean;
+  has_map: boolean;
+  iterations: number;
+  sweeps: number;
+  cost: number;
+  step_time_us: number;
+  delay_s: number;
+  speed_reference_mps: number;
+  sight_m: number;
+  tracked_lateral_error_m: number;
+  tracked_heading_error_rad: number;
+}
+
+/** chicane_msgs/msg/Plan: columns of equal length. */
+export interface Plan {
+  stamp: Stamp;
+  time_s: Float64Array;
+  x_m: Float64Array;
+  y_m: Float64Array;
+  yaw_rad: Float64Array;
+  speed_mps: Float64Array;
+  steer_rad: Float64Array;
+  throttle: Float64Array;
+}
+
+/** chicane_msgs/msg/Run */
+export interface Run {
+  track: string;
+  track_length_m: number;
+  is_closed: boolean;
+  controller: string;
+  preset: string;
+  latency_s: number;
+  control_period_s: number;
+  is_paused: boolean;
+  car: string;
+  front_axle_m: number;
+  rear_axle_m: number;
+  track_width_m: number;
+  tire_width_m: number;
+  body_length_m: number;
+  body_width_m: number;
+  steer_limit_rad: number;
+}
+
+/** The part of nav_msgs/msg/Path this page draws. */
+export interface Path {
+  poses: { pose: { position: { x: number; y: number } } }[];
+}
+
+/** The topics this page subscribes to, and what they carry. */
+export interface Topics {
+  '/chicane/frame': Frame;
+  '/chicane/plan': Plan;
+  '/chicane/run': Run;
+  '/reference': Path;
+  '/track/left': Path;
+  '/track/right': Path;
+  '/track/centre': Path;
+}
+
+export type TopicName = keyof Topics;
+
+export const TOPIC_NAMES: readonly TopicName[] = [
+  '/chicane/frame',
+  '/chicane/plan',
+  '/chicane/run',
+  '/reference',
+  '/track/left',
+  '/track/right',
+  '/track/centre',
+];

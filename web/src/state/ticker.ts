@@ -1,0 +1,27 @@
+type Task = (now: number) => void;
+
+const tasks = new Set<Task>();
+let isRunning = false;
+
+function turn(now: number): void {
+  for (const task of tasks) task(now);
+  if (tasks.size > 0) requestAnimationFrame(turn);
+  else isRunning = false;
+}
+
+/** Calls `task` before each repaint, at most once in `interval` [ms]. Hidden pages do not repaint. Returns its end. */
+export function everyFrame(task: Task, interval = 0): () => void {
+  let last = -Infinity;
+  const paced: Task = (now) => {
+    // Half a repaint of tolerance: 50 ms of a 60 Hz screen are three repaints, not four.
+    if (now - last < interval - 8) return;
+    last = now;
+    task(now);
+  };
+  tasks.add(paced);
+  if (!isRunning) {
+    isRunning = true;
+    requestAnimationFrame(turn);
+  }
+  return () => void tasks.delete(paced);
+}

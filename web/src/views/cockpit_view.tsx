@@ -1,0 +1,126 @@
+import { duration, fixed, lapTime, MPH, side, UNKNOWN } from '../lib/format';
+import { clamp, degrees } from '../lib/math';
+import { bestLap, run, shown } from '../state/app_state';
+
+function Speed() {
+  const frame = shown.value;
+  const speed = frame?.speed_mps ?? NaN;
+  const wanted = frame?.speed_reference_mps ?? NaN;
+  return (
+    <div class="speed">
+      <p class="big">
+        <span class="value" data-testid="speed">
+          {fixed(speed * MPH, 0)}
+        </span>
+        <span class="unit">mph</span>
+      </p>
+      <p class="beside">
+        <span>
+          <b>{fixed(speed, 1)}</b> m/s
+        </span>
+        <span>
+          wanted <b>{fixed(wanted * MPH, 0)}</b> mph
+        </span>
+      </p>
+    </div>
+  );
+}
+
+function Lap() {
+  const frame = shown.value;
+  return (
+    <div class="lap">
+      <p class="label">
+        Lap <b data-testid="lap">{frame ? frame.lap + 1 : UNKNOWN}</b>
+      </p>
+      <p class="clock value" data-testid="lap-time">
+        {lapTime(frame?.lap_time_s ?? NaN)}
+      </p>
+      <p class="beside">
+        <span>
+          last <b>{frame && frame.last_lap_time_s > 0 ? lapTime(frame.last_lap_time_s) : UNKNOWN}</b>
+        </span>
+        <span>
+          best <b>{lapTime(bestLap.value)}</b>
+        </span>
+      </p>
+    </div>
+  );
+}
+
+function Reading({ label, value, unit, note = '', id }: { label: string; value: string; unit: string; note?: string; id: string }) {
+  return (
+    <div class="number">
+      <p class="label">{label}</p>
+      <p>
+        <span class="value" data-testid={id}>
+          {value}
+        </span>
+        <span class="unit">{unit}</span>
+        <span class="note">{note}</span>
+      </p>
+    </div>
+  );
+}
+
+/** A bar that grows from its middle: steering to its side, the pedal to the right for drive and to the left for brake. */
+function Bar({ label, share, marker, text }: { label: string; share: number; marker?: number; text: string }) {
+  const at = (value: number): number => 50 + 50 * clamp(Number.isFinite(value) ? value : 0, -1, 1);
+  const [from, to] = [Math.min(50, at(share)), Math.max(50, at(share))];
+  return (
+    <div class="bar-row">
+      <span class="label">{label}</span>
+      <div class="bar" aria-hidden="true">
+        <span class={share < 0 ? 'fill negative' : 'fill'} style={{ left: `${from}%`, width: `${to - from}%` }} />
+        {marker !== undefined && <span class="marker" style={{ left: `${at(marker)}%` }} />}
+      </div>
+      <span class="bar-text">{text}</span>
+    </div>
+  );
+}
+
+function pedalInWords(throttle: number): string {
+  if (!Number.isFinite(throttle)) return UNKNOWN;
+  const percent = `${fixed(Math.abs(throttle) * 100, 0)} %`;
+  return throttle < 0 ? `brake ${percent}` : `drive ${percent}`;
+}
+
+function Controls() {
+  const frame = shown.value;
+  const limit = run.value?.steer_limit_rad ?? NaN;
+  const steer = frame?.steer_applied_rad ?? NaN;
+  const name = side(degrees(steer) / 10);
+  return (
+    <div class="bars">
+      {/* Left is positive in the data and on the left on the screen. */}
+      <Bar
+        label="Wheels"
+        share={-steer / limit}
+        marker={-(frame?.steer_asked_rad ?? NaN) / limit}
+        text={`${fixed(Math.abs(degrees(steer)), 1)}° ${name}`}
+      />
+      <Bar label="Pedal" share={frame?.throttle_applied ?? NaN} marker={frame?.throttle_asked ?? NaN} text={pedalInWords(frame?.throttle_applied ?? NaN)} />
+    </div>
+  );
+}
+
+export function CockpitView() {
+  const frame = shown.value;
+  const error = frame?.lateral_error_m ?? NaN;
+  const step = duration(frame?.step_time_us ?? NaN);
+  return (
+    <section class="panel cockpit" aria-label="Numbers">
+      <div class="head-row">
+        <Speed />
+        <Lap />
+      </div>
+      <Controls />
+      <div class="numbers">
+        <Reading id="lateral-error" label="Lateral error" value={fixed(Math.abs(error), 2)} unit="m" note={side(error)} />
+        <Reading id="edge-distance" label="To the road's edge" value={fixed(frame?.edge_distance_m ?? NaN, 2)} unit="m" />
+        <Reading id="step-time" label="Control step" value={step.value} unit={step.unit} />
+        <Reading id="delay" label="Delay foreseen" value={fixed((frame?.delay_s ?? NaN) * 1000, 0)} unit="ms" />
+      </div>
+    </section>
+  );
+}

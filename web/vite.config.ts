@@ -1,0 +1,15 @@
+import { defineConfig } from 'vitest/config';
+
+// The dashboard's files are embedded in the program, so few and small ones are better than many.
+export default defineConfig({
+  base: './',
+  esbuild: { jsx: 'automatic', jsxImportSource: 'preact' },
+  build: { target: 'es2022', assetsInlineLimit: 0, reportCompressedSize: false, modulePreload: false },
+  server: {
+    // `npm run dev` beside `chicane drive`: the page is Vite's, the data the program's.
+    proxy: {
+      '/viewer': { target: 'ws://127.0.0.1:4567', ws: true, changeOrigin: true, headers: { origin: 'http://127.0.0.1:4567' } },
+    },
+  },
+  test: { include: ['src/**/*.test.ts'] },
+});
