@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/json_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "chicane/base/angle.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using telemetry::LapSummary;
+using telemetry::RunSummary;
+using telemetry::TimeSummary;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json to_object(const LapSummary& lap) {
+  return {{"lap_time_s", number(lap.lap_time)},
+          {"mean_speed_mps", number(lap.mean_speed)},
+          {"top_speed_mps", number(lap.top_speed)},
+          {"top_speed_mph", number(mps_to_mph(lap.top_speed))},
+          {"rms_lateral_error_m", number(lap.rms_lateral_error)},
+          {"max_abs_lateral_error_m", number(lap.max_abs_lateral_error)},
+          {"min_edge_distance_m", number(lap.min_edge_distance)},
+          {"max_lateral_acceleration_mps2", number(lap.max_lateral_acceleration)},
+          {"steering_rate_rms_radps", number(lap.steering_rate_rms)},
+          {"gap_to_limit_percent", lap.gap_to_limit ? number(100.0 * *lap.gap_to_limit) : Json(nullptr)}};
+}
+
+Json to_object(const TimeSummary& time) {
+  return {
+      {"p50", 1e6 * time.p50}, {"p99", 1e6 * time.p99}, {"p999", 1e6 * time.p999}, {"max", 1e6 * time.max}};
+}
+
+std::string row(std::string_view name, const LapSummary& lap) {
+  const std::string edge =
+      std::isfinite(lap.min_edge_distance) ? fmt::format("{:.2f}", lap.min_edge_distance) : "-";
+  return fmt::format("{:>6} {:>9.3f} {:>9.1f} {:>9.1f} {:>9.2f} {:>9.2f} {:>9} {:>9.1f}\n", name,
+                     lap.lap_time, mps_to_mph(lap.mean_speed), mps_to_mph(lap.top_speed),
+                     lap.rms_lateral_error, lap.max_abs_lateral_error, edge, lap.max_lateral_acceleration);
+}
+
+std::string times(const TimeSummary& time) {
+  return fmt::format("{:.1f} / {:.1f} / {:.1f} / {:.1f}", 1e6 * time.p50, 1e6 * time.p99, 1e6 * time.p999,
+                     1e6 * time.max);
+}
+
+}  // namespace
+
+std::string to_json(const RunSummary& run) {
+  Json laps = Json::array();
+  for (const LapSummary& lap : run.laps) laps.push_back(to_object(lap));
+  const Json report{
+      {"track", run.track},
+      {"car", run.car},
+      {"controller", run.controller},
+      {"preset", run.preset},
+      {"seed", run.seed},
+      {"latency_ms", number(1e3 * run.latency)},
+      {"completed", run.completed},
+      {"end_reason", run.end_reason},
+      {"laps_completed", run.laps_completed},
+      {"off_track_events", run.off_track_events},
+      {"out_of_track_time_s", number(run.out_of_track_time)},
+      {"laps", laps},
+      {"total", to_object(run.total)},
+      {"step_time_us", to_object(run.step_time)},
+      {"solve_time_us", to_object(run.solve_time)},
+      {"solver", {{"mean_iterations", number(run.mean_iterations)}, {"not_usable", run.not_usable}}},
+      {"cycles", run.cycles},
+      {"fallbacks", run.fallbacks},
+      {"gate_interventions", run.gate_interventions},
+      {"deadline_misses", run.deadline_misses},
+      {"duration_s", number(run.duration)},
+      {"wall_time_s", number(run.wall_time)},
+      {"state_hash", fmt::format("{:016x}", run.state_hash)}};
+  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string to_table(const RunSummary& run) {
+  std::string text = fmt::format("{} on {}, {} ({}), {:g} ms latency, seed {}\n", run.car, run.track,
+                                 run.preset, run.controller, 1e3 * run.latency, run.seed);
+  text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "lap", "time", "mean", "top",
+                      "error rms", "error max", "to edge", "lateral");
+  text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "", "s", "mph", "mph", "m", "m",
+                      "m", "m/s²");
+  int lap = 0;
+  for (const LapSummary& summary : run.laps) text += row(fmt::format("{}", ++lap), summary);
+  text += row("all", run.total);
+  text +=
+      fmt::format("\noff track          {} times, {:.2f} s\n", run.off_track_events, run.out_of_track_time);
+  text += fmt::format("control step       {} µs (p50 / p99 / p99.9 / max), {} steps, {} late\n",
+                      times(run.step_time), run.cycles, run.deadline_misses);
+  text += fmt::format("optimisation       {} µs, {:.1f} iterations, {} without an answer\n",
+                      times(run.solve_time), run.mean_iterations, run.not_usable);
+  text += fmt::format("safety             {} fallbacks, {} commands changed by the gate\n", run.fallbacks,
+                      run.gate_interventions);
+  if (run.wall_time > 0.0) {
+    text += fmt::format("simulated          {:.1f} s in {:.2f} s ({:.0f} times real time)\n", run.duration,
+                        run.wall_time, run.duration / run.wall_time);
+  }
+  const std::string outcome =
+      kept_its_promises(run) ? "completed, all tyres on the road"
+      : run.completed        ? "completed, but left the road"
+                      : fmt::format("not completed: {}", run.end_reason.empty() ? "stopped" : run.end_reason);
+  return text + fmt::format("{} of {} laps, {}\n", run.laps_completed, run.laps_wanted, outcome);
+}
+
+}  // namespace chicane::protocol

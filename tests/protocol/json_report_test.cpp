@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/json_report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace chicane::protocol {
+namespace {
+
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+telemetry::RunSummary example() {
+  telemetry::RunSummary run;
+  run.track = "lakeside";
+  run.car = "udacity";
+  run.controller = "tracking-mpc";
+  run.preset = "default";
+  run.seed = 3;
+  run.latency = 0.1;
+  run.laps_wanted = 1;
+  run.laps_completed = 1;
+  run.completed = true;
+  telemetry::LapSummary lap;
+  lap.lap_time = 28.5;
+  lap.mean_speed = 40.0;
+  lap.top_speed = 44.704;
+  lap.min_edge_distance = 0.75;
+  run.laps = {lap};
+  run.total = lap;
+  run.step_time.p50 = 25e-6;
+  run.state_hash = 0xabcULL;
+  return run;
+}
+
+TEST(JsonReport, HasEveryKeyThatIsPromised) {
+  const Json report = Json::parse(to_json(example()));
+  for (const char* key :
+       {"track", "car", "controller", "preset", "seed", "latency_ms", "completed", "laps_completed",
+        "off_track_events", "out_of_track_time_s", "laps", "step_time_us", "solve_time_us", "solver",
+        "fallbacks", "gate_interventions", "deadline_misses", "state_hash"}) {
+    EXPECT_TRUE(report.contains(key)) << key;
+  }
+  for (const char* key :
+       {"lap_time_s", "mean_speed_mps", "top_speed_mps", "top_speed_mph", "rms_lateral_error_m",
+        "max_abs_lateral_error_m", "min_edge_distance_m", "max_lateral_acceleration_mps2",
+        "steering_rate_rms_radps", "gap_to_limit_percent"}) {
+    EXPECT_TRUE(report["laps"][0].contains(key)) << key;
+  }
+  for (const char* key : {"p50", "p99", "p999", "max"}) {
+    EXPECT_TRUE(report["step_time_us"].contains(key)) << key;
+    EXPECT_TRUE(report["solve_time_us"].contains(key)) << key;
+  }
+  EXPECT_TRUE(report["solver"].contains("mean_iterations"));
+  EXPECT_TRUE(report["solver"].contains("not_usable"));
+}
+
+TEST(JsonReport, ConvertsUnits) {
+  const Json report = Json::parse(to_json(example()));
+  EXPECT_EQ(report["latency_ms"], 100.0);
+  EXPECT_NEAR(report["laps"][0]["top_speed_mph"].get<double>(), 100.0, 1e-9);
+  EXPECT_NEAR(report["step_time_us"]["p50"].get<double>(), 25.0, 1e-9);
+  EXPECT_EQ(report["state_hash"], "0000000000000abc");
+  EXPECT_EQ(report["seed"], 3);
+}
+
+TEST(JsonReport, WhatWasNotMeasuredIsNull) {
+  telemetry::RunSummary run = example();
+  run.laps[0].min_edge_distance = std::numeric_limits<double>::quiet_NaN();
+  const Json report = Json::parse(to_json(run));
+  EXPECT_TRUE(report["laps"][0]["min_edge_distance_m"].is_null());
+  EXPECT_TRUE(report["laps"][0]["gap_to_limit_percent"].is_null());
+}
+
+TEST(JsonReport, NamesThatAreNotUtf8StillGiveJson) {
+  telemetry::RunSummary run = example();
+  run.track = "caf\xe9.csv";
+  EXPECT_TRUE(Json::accept(to_json(run)));
+}
+
+TEST(JsonReport, TheTableSaysHowItEnded) {
+  telemetry::RunSummary run = example();
+  EXPECT_THAT(to_table(run), HasSubstr("1 of 1 laps, completed, all tyres on the road"));
+  EXPECT_THAT(to_table(run), HasSubstr("28.500"));
+  run.off_track_events = 2;
+  EXPECT_THAT(to_table(run), HasSubstr("completed, but left the road"));
+  run.completed = false;
+  run.end_reason = "time limit of 600 s reached";
+  EXPECT_THAT(to_table(run), HasSubstr("not completed: time limit of 600 s reached"));
+}
+
+}  // namespace
+}  // namespace chicane::protocol
