@@ -73,7 +73,9 @@ class OcpSolver {
   static constexpr std::size_t kHead = kNx + 1;
   static constexpr int kMaxWorkingSetTurns = 12;
   static constexpr int kPatience = 3;      ///< turns without improvement before full steps are given up
+  static constexpr double kProgress = 0.9;      ///< what counts as an improvement
   static constexpr int kFirstHorizon = 5;  ///< of the growing horizons
+  static constexpr int kMaxGrowth = 16;
   static constexpr double kGoodEnoughToGrow = 1e-1;
   static constexpr double kDefectShare =
       1e-3;  ///< the Hessian amplifies defects: a tighter tolerance for them
@@ -117,7 +119,7 @@ class OcpSolver {
     if (is_fresh_) guess_working_set(t);
     is_fresh_ = false;
     now_.add_soft(problem, size_of(t), mu_, lq_);
-    if (full_steps_ && options_.second_order) weigh_curvature(problem, t, report);
+    if (options_.second_order) weigh_curvature(problem, t, report);
   }
 
   static bool is_finite(const SolveReport& report) noexcept {
@@ -206,12 +208,13 @@ class OcpSolver {
   void weigh_curvature(const P& problem, const Trajectory& t, const SolveReport& report) noexcept {
     const double before = last_residual_;
     const double after = last_residual_ = residual(report);
-    if (report.iterations > 1 && after < before && after < 1e-1) {
-      const double turns = std::log(after / options_.tolerance) / std::log(before / after);
-      if (turns > kCurvaturePays) {
-        now_.evaluate_curvature(problem, t);
-        has_curvature_ = true;
-      }
+    bool pays = !full_steps_ && descents_ > kPatience;
+    if (full_steps_ && report.iterations > 1 && after < before && after < 1e-1) {
+      pays = std::log(after / options_.tolerance) > kCurvaturePays * std::log(before / after);
+    }
+    if (pays) {
+      now_.evaluate_curvature(problem, t);
+      has_curvature_ = true;
     }
     if (has_curvature_) now_.add_curvature(size_of(t), 1.0, lq_);
   }
@@ -266,7 +269,8 @@ class OcpSolver {
   /// the cost descends.
   bool keep_best(const Trajectory& trajectory, const SolveReport& report) noexcept {
     if (!is_finite(report)) return false;
-    if (full_steps_ && has_best_ && residual(report) >= residual(best_report_)) return false;
+    const bool barrier_falls = kNc > 0 && mu_ > final_mu();
+    if (full_steps_ && has_best_ && !barrier_falls && residual(report) > kProgress * residual(best_report_)) return false;
     best_ = trajectory;
     best_report_ = report;
     has_best_ = true;
@@ -283,7 +287,7 @@ class OcpSolver {
   bool go_back(const P& problem, Trajectory& trajectory) noexcept {
     if (!full_steps_) shift_ = std::max(10.0 * shift_, 1.0);
     full_steps_ = has_curvature_ = false;
-    idle_turns_ = smooth_descents_ = 0;
+    idle_turns_ = smooth_descents_ = descents_ = 0;
     const State x0 = trajectory.x[0];
     trajectory = best_;
     return roll_out(problem, x0, trajectory);
@@ -304,7 +308,7 @@ class OcpSolver {
   }
   bool grow(const P& problem, Trajectory& t) noexcept {
     const std::size_t known = size_of(t);
-    t.horizon = std::min(target_, t.horizon + (t.horizon + 1) / 2);
+    t.horizon = std::min(target_, t.horizon + std::min((t.horizon + 1) / 2, kMaxGrowth));
     for (std::size_t k = known; k < size_of(t); ++k) t.u[k] = t.u[known - 1];
     const State x0 = t.x[0];
     return restart(problem, x0, t);
@@ -344,6 +348,7 @@ class OcpSolver {
   }
 
   void accept(double length, double scale) noexcept {
+    ++descents_;
     smooth_descents_ = length >= 1.0 && shift_ == 0.0 ? smooth_descents_ + 1 : 0;
     if (length >= 1.0) shift_ = shift_ > 1e-6 * scale ? 0.1 * shift_ : 0.0;
     if (kNc > 0 && length >= 1.0) mu_ = std::max(final_mu(), 0.2 * mu_);
@@ -466,6 +471,7 @@ class OcpSolver {
   int target_ = 0;        ///< horizon asked for
   int idle_turns_ = 0;
   int smooth_descents_ = 0;
+  int descents_ = 0;
   int needed_descents_ = 2;
   double shift_ = 0.0;  ///< Levenberg shift on the input blocks
   double mu_ = 0.0;     ///< barrier of the soft constraints
