@@ -88,8 +88,8 @@ struct Outgoing {
 /// ends.
 class WebSocket : public std::enable_shared_from_this<WebSocket> {
  public:
-  WebSocket(Core& core, tcp::socket socket, int endpoint)
-      : core_{core}, ticket_{core.ticket}, stream_{std::move(socket)}, endpoint_{endpoint} {}
+  WebSocket(Core& core, tcp::socket socket, int endpoint, ConnectionId id)
+      : core_{core}, ticket_{core.ticket}, stream_{std::move(socket)}, endpoint_{endpoint}, id_{id} {}
 
   void start(const http::request<http::empty_body>& request, const std::string& subprotocol) {
     stream_.set_option(
@@ -126,7 +126,6 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
  private:
   void open() {
     if (core_.is_stopping) return;
-    id_ = core_.next_id++;
     core_.connections.emplace(id_, shared_from_this());
     core_.handlers.on_open(id_, endpoint_);
     read();
@@ -208,7 +207,7 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
   websocket::stream<beast::tcp_stream, false> stream_;
   beast::flat_buffer buffer_;
   int endpoint_;
-  ConnectionId id_ = 0;
+  ConnectionId id_;
   std::deque<Outgoing> queue_;  // the front one is being written while is_writing_
   bool is_writing_ = false;
   bool is_closing_ = false;
@@ -273,7 +272,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     if (!origin.empty() && !origin_is_allowed(origin, host, core_.options.allowed_origins)) {
       return refuse(http::status::forbidden, fmt::format("pages of '{}' may not connect here", origin));
     }
-    UpgradeRequest asked{.target = std::string(view(request.target())),
+    UpgradeRequest asked{.id = core_.next_id++,
+                         .target = std::string(view(request.target())),
                          .peer = peer_,
                          .origin = std::string(origin),
                          .host = std::string(host),
@@ -285,7 +285,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     if (!answer.accept)
       return refuse(http::int_to_status(static_cast<unsigned>(answer.status)), answer.reason);
     stream_.expires_never();
-    std::make_shared<WebSocket>(core_, stream_.release_socket(), answer.endpoint)
+    std::make_shared<WebSocket>(core_, stream_.release_socket(), answer.endpoint, asked.id)
         ->start(request, answer.subprotocol);
   }
 

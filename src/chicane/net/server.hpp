@@ -21,6 +21,7 @@ using ConnectionId = std::uint64_t;
 
 /// An HTTP upgrade as it arrived; bounded sizes are already checked.
 struct UpgradeRequest {
+  ConnectionId id = 0;   ///< what the connection will be called if it is accepted
   std::string target{};  ///< path and query, e.g. "/socket.io/?EIO=4&transport=websocket"
   std::string peer{};    ///< "127.0.0.1:51234"
   std::string origin{};  ///< empty when absent

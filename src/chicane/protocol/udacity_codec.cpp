@@ -42,8 +42,8 @@ std::string shown(const Json& value) {
   if (value.is_array()) return fmt::format("an array of {}", value.size());
   if (value.is_object()) return "an object";
   std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
-  if (text.size() > kMaxWords) text = text.substr(0, kMaxWords) + "…";
-  return text;
+  if (text.size() <= kMaxWords) return text;
+  return fmt::format("{}…", std::string_view(text).substr(0, kMaxWords));
 }
 
 UdacityBroken unexpected(std::string_view field, const Json& value, std::string_view expected) {
@@ -327,8 +327,8 @@ std::string encode_telemetry(const model::Measurement& measurement) {
   std::string ys;
   for (std::size_t i = 0; i < static_cast<std::size_t>(measurement.waypoint_count); ++i) {
     const char* separator = i == 0 ? "" : ",";
-    xs += separator + as_float(measurement.waypoints[i].x());
-    ys += separator + as_float(measurement.waypoints[i].y());
+    xs += fmt::format("{}{}", separator, as_float(measurement.waypoints[i].x()));
+    ys += fmt::format("{}{}", separator, as_float(measurement.waypoints[i].y()));
   }
   return fmt::format(R"(42["telemetry",{{"ptsx":[{}],"ptsy":[{}],"psi_unity":{},"psi":{},"x":{},"y":{},)"
                      R"("steering_angle":{},"throttle":{},"speed":{}}}])",
