@@ -5,6 +5,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "chicane/base/random.hpp"
+#include "chicane/model/actuator.hpp"
+#include "chicane/model/single_track.hpp"
+
 namespace chicane::sim::experiment {
 
 namespace {
@@ -149,6 +153,47 @@ std::pair<double, double> yaw_rise(Plant& plant, double speed, double steer) {
     if (times.second < 0.0 && share >= 0.9) times.second = i * plant.step_length();
   }
   return times;
+}
+
+Peak peak_cornering(Plant& plant, double speed) {
+  plant.reset({}, speed);
+  SpeedHold hold{speed};
+  Peak peak;
+  double smooth = 0.0;
+  for (int i = 0; i < steps(plant, 20.0); ++i) {
+    const double steer = std::min(0.02 * i * plant.step_length(), 0.4363);
+    plant.advance({.steer = steer, .throttle = hold.throttle(plant)});
+    smooth += (plant.output().ay - smooth) * plant.step_length() / 0.1;
+    if (smooth > peak.lateral_acceleration) peak = {smooth, steer};
+    if (plant.output().speed < 0.8 * speed) break;
+  }
+  return peak;
+}
+
+Mismatch compare(Plant& plant, const model::VehicleParams& params, double speed, double lateral) {
+  plant.reset({}, speed);
+  SpeedHold hold{speed};
+  Random random{17};
+  const model::SingleTrack model{params};
+  const model::Actuator actuator{
+      .low = -0.4363, .high = 0.4363, .lag = params.steer_lag, .rate = params.steer_rate_limit};
+  const double amplitude = std::min(lateral * params.wheelbase() / (speed * speed), 0.43);
+  model::BodyMotion<double> motion{speed, 0.0, 0.0};
+  double wish = 0.0, steer = 0.0;
+  double r_error = 0.0, r_size = 0.0, v_error = 0.0, v_size = 0.0;
+  const double dt = plant.step_length();
+  for (int i = 0; i < steps(plant, 60.0); ++i) {
+    if (i % steps(plant, 0.5) == 0) wish = random.uniform(-amplitude, amplitude);
+    plant.advance({.steer = wish, .throttle = hold.throttle(plant)});
+    steer = actuator.next(steer, wish, dt);
+    motion = model::advance(model, motion, steer, 0.0, dt);
+    motion.vx = plant.state().vx;
+    r_error += std::pow(motion.r - plant.state().r, 2);
+    r_size += std::pow(plant.state().r, 2);
+    v_error += std::pow(motion.vy - plant.state().vy, 2);
+    v_size += std::pow(plant.state().vy, 2);
+  }
+  return {std::sqrt(r_error / r_size), std::sqrt(v_error / v_size)};
 }
 
 }  // namespace chicane::sim::experiment

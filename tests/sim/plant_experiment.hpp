@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "chicane/model/vehicle.hpp"
 #include "chicane/sim/plant.hpp"
 
 /// Test drives: what one would measure on a proving ground, for the tests of the plants and for
@@ -33,7 +34,7 @@ struct Line {
 
 /// The plant as it stands, driven straight with a constant throttle for `duration` [s]; one sample for each
 /// step.
-[[nodiscard]] std::vector<Sample> drive_straight(Plant& plant, double throttle, double duration);
+std::vector<Sample> drive_straight(Plant& plant, double throttle, double duration);
 
 /// Accelerations from standstill in windows of 0.2 s: (mean speed, mean acceleration), after the first `skip`
 /// seconds.
@@ -63,6 +64,24 @@ struct Circle {
 
 /// Yaw rate over steady yaw rate after a step of the wheel at a held speed: times [s] to 50 and 90 %.
 [[nodiscard]] std::pair<double, double> yaw_rise(Plant& plant, double speed, double steer);
+
+/// Largest lateral acceleration while the wheel turns in slowly (0.02 rad/s) at a held speed, and the
+/// steering angle there.
+struct Peak {
+  double lateral_acceleration = 0.0;
+  double steer = 0.0;
+};
+[[nodiscard]] Peak peak_cornering(Plant& plant, double speed);
+
+/// How far a single track with `params` is from the plant, for random steps of the wheel at a held speed, up
+/// to a lateral acceleration of about `lateral` [m/s²]: rms of the error over rms of the plant's value, for
+/// yaw rate and lateral velocity.
+struct Mismatch {
+  double yaw_rate = 0.0;
+  double lateral_velocity = 0.0;
+};
+[[nodiscard]] Mismatch compare(Plant& plant, const model::VehicleParams& params, double speed,
+                               double lateral);
 
 /// Throttle that holds the speed of this plant: a proportional-integral controller.
 class SpeedHold {

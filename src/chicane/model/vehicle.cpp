@@ -62,6 +62,7 @@ Result<void> validate(const VehicleParams& p) {
       Field{"cornering_front", p.cornering_front, Sign::kPositive},
       Field{"cornering_rear", p.cornering_rear, Sign::kPositive},
       Field{"friction", p.friction, Sign::kPositive},
+      Field{"friction_coupling", p.friction_coupling, Sign::kNotNegative},
       Field{"load_constant", p.load_constant, Sign::kPositive},
       Field{"load_per_speed", p.load_per_speed, Sign::kNotNegative},
       Field{"steer_helper", p.steer_helper, Sign::kNotNegative},
@@ -82,6 +83,9 @@ Result<void> validate(const VehicleParams& p) {
   if (p.steer_helper >= 1.0) return fail(ErrorCode::kInvalidArgument, "vehicle.steer_helper: expected < 1");
   if (p.brake_throttle_limit > 1.0) {
     return fail(ErrorCode::kInvalidArgument, "vehicle.brake_throttle_limit: expected <= 1");
+  }
+  if (p.friction_coupling > 1.0) {
+    return fail(ErrorCode::kInvalidArgument, "vehicle.friction_coupling: expected <= 1");
   }
   return {};
 }
@@ -117,18 +121,19 @@ VehicleParams road_car_params() {
   p.height = 0.5;
   p.steer_rate_limit = 1.5707963267948966;
   p.steer_lag = 0.05;
-  p.cornering_front = 16.2;
+  p.cornering_front = 16.0;
   p.cornering_rear = 18.0;
-  p.friction = 1.15;
+  p.friction = 1.07;
+  p.friction_coupling = 1.0;
   p.load_constant = 9.81;
   p.load_per_speed = 0.0;
   p.steer_helper = 0.0;
-  p.drive_acceleration = 5.4;
-  p.drive_power_per_mass = 154.0;
-  p.drag_constant = 0.128;
+  p.drive_acceleration = 5.35;
+  p.drive_power_per_mass = 148.0;
+  p.drag_constant = 0.123;
   p.drag_linear = 0.0;
-  p.drag_quadratic = 3.0e-4;
-  p.brake_acceleration = 9.5;
+  p.drag_quadratic = 2.9e-4;
+  p.brake_acceleration = 9.14;
   p.brake_throttle_limit = 1.0;
   p.drive_lag = 0.1;
   return p;

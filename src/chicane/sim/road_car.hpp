@@ -35,18 +35,19 @@ struct RoadCarParams {
   double shape = 1.5;               ///< magic formula C
   double curvature = 0.0;           ///< magic formula E
   double relaxation_along = 0.15;   ///< relaxation length of forward slip [m]
-  double relaxation_across = 0.40;  ///< of lateral slip [m]
+  double relaxation_across = 0.30;  ///< of lateral slip [m]
   double creep_speed = 3.0;         ///< slip damping fades out up to this speed [m/s]
-  double creep_damping = 0.02;      ///< slip per m/s of slip speed, at standstill [s/m]
+  double creep_damping = 0.12;      ///< slip per m/s of slip speed, at standstill [s/m]
 
-  double drive_force = 7020.0;      ///< at full throttle [N]
+  double drive_force = 7300.0;      ///< at full throttle [N]
   double drive_power = 200.0e3;     ///< [W]
   double drive_share_front = 0.40;  ///< all-wheel drive, open differentials
   double brake_force = 12350.0;     ///< at throttle −1 [N]
-  double brake_share_front = 0.72;  ///< bias; the front locks first up to 0.9 g, as UN R13-H asks of road cars
-  double abs_slip_start = 0.10;     ///< anti-lock: brake torque falls from here ...
-  double abs_slip_end = 0.18;       ///< ... to nothing here
-  double abs_speed = 1.5;           ///< no anti-lock below [m/s]
+  double brake_share_front =
+      0.72;                      ///< bias; the front locks first up to 0.9 g, as UN R13-H asks of road cars
+  double abs_slip_start = 0.10;  ///< anti-lock: brake torque falls from here ...
+  double abs_slip_end = 0.18;    ///< ... to nothing here
+  double abs_speed = 1.5;        ///< no anti-lock below [m/s]
 
   model::Actuator steer{.low = -0.4363323129985824,
                         .high = 0.4363323129985824,
