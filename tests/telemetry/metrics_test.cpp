@@ -81,14 +81,19 @@ TEST(Metrics, ANewLapStartsFromZeroAndTheTotalGoesOn) {
 
 TEST(Metrics, CountsEachExcursionOnceAndItsWholeTime) {
   Metrics metrics(3, 0.1);
-  for (const bool off : {false, true, true, false, true, false}) metrics.add_physics(sample(1, 0, 0, off));
+  for (const bool off : {false, true, true, false, true, false}) {
+    metrics.add_physics(sample(1, 0, off ? -0.1 : 0.1, off));
+  }
+  metrics.add_physics(sample(1, 0, 0.01, true));  // back on the road, not yet judged so
   const RunSummary run = metrics.summary();
-  EXPECT_EQ(run.off_track_events, 2);
+  EXPECT_EQ(run.off_track_events, 3);
   EXPECT_NEAR(run.out_of_track_time, 1.5, kRounding);
 }
 
 TEST(Metrics, PromisesNeedAllLapsAndAllTyresOnTheRoad) {
   RunSummary run;
+  EXPECT_TRUE(kept_its_promises(run));  // until stopped
+  run.laps_wanted = 2;
   EXPECT_FALSE(kept_its_promises(run));
   run.completed = true;
   EXPECT_TRUE(kept_its_promises(run));

@@ -103,6 +103,7 @@ std::string to_table(const RunSummary& run) {
     text += fmt::format("simulated          {:.1f} s in {:.2f} s ({:.0f} times real time)\n", run.duration,
                         run.wall_time, run.duration / run.wall_time);
   }
+  if (run.laps_wanted == 0) return text + fmt::format("{} laps until stopped\n", run.laps_completed);
   const std::string outcome =
       kept_its_promises(run) ? "completed, all tyres on the road"
       : run.completed        ? "completed, but left the road"

@@ -27,7 +27,7 @@ struct Scenario {
   std::string plant = "udacity";         ///< "udacity" or "road-car"; set by the car
   std::string controller = "tracking-mpc";  ///< tracking-mpc | cubic-mpc | pid | pure-pursuit | stanley
 
-  int laps = 3;                          ///< [1, 10000]; the first is from standstill
+  int laps = 3;                          ///< [0, 10000]; the first is from standstill; 0 = until stopped
   std::uint64_t seed = 1;
   double latency = 0.1;                  ///< actuation delay of the plant [s]; [0, 0.5]
   double control_period = 0.04;          ///< between measurements [s]; [0.005, 1]

@@ -26,7 +26,8 @@ void add_to(Fnv& hash, const model::State& state) noexcept {
 }  // namespace
 
 void Metrics::Stretch::add(double dt, double speed, double error) noexcept {
-  if (!std::isfinite(speed) || !std::isfinite(error)) return;  // what a broken client told is not a measurement
+  if (!std::isfinite(speed) || !std::isfinite(error))
+    return;  // what a broken client told is not a measurement
   time += dt;
   speed_time += speed * dt;
   error_squared_time += error * error * dt;
@@ -65,10 +66,8 @@ void Metrics::add_physics(const PhysicsSample& sample) noexcept {
     stretch->max_lateral_acceleration =
         std::max(stretch->max_lateral_acceleration, std::fabs(sample.lateral_acceleration));
   }
-  if (sample.is_off_track) {
-    out_of_track_time_ += sample.step;
-    if (!is_off_track_) ++off_track_events_;
-  }
+  if (sample.edge_distance < 0.0) out_of_track_time_ += sample.step;
+  if (sample.is_off_track && !is_off_track_) ++off_track_events_;
   is_off_track_ = sample.is_off_track;
 }
 

@@ -75,9 +75,10 @@ struct RunSummary {
       0;  ///< of every plant state and command: same scenario and seed, same number, everywhere
 };
 
-/// True when the run did all it promised: every wanted lap, no tyre off the road.
+/// True when the run did all it promised: every wanted lap, no tyre off the road. A run until stopped wants
+/// no number of laps.
 [[nodiscard]] inline bool kept_its_promises(const RunSummary& run) noexcept {
-  return run.completed && run.off_track_events == 0;
+  return (run.completed || run.laps_wanted == 0) && run.off_track_events == 0;
 }
 
 /// Counts and measures a run while it happens. No allocation after construction; one thread.
