@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <memory>
 #include <vector>
 
+#include "chicane/controller/line_smoother.hpp"
 #include "chicane/controller/speed_plan.hpp"
 #include "chicane/controller/waypoint_map.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/path/path.hpp"
-#include "chicane/solver/ocp_solver.hpp"
 
 namespace chicane::controller {
 
@@ -27,7 +26,6 @@ struct RoadOptions {
 class Road {
  public:
   Road(const RoadOptions& options, const model::VehicleParams& vehicle);
-  ~Road();
   void reset() noexcept;
 
   /// Takes in the waypoints of a measurement; when they tell something new, line and speeds are planned anew.
@@ -49,7 +47,6 @@ class Road {
   [[nodiscard]] unsigned revision() const noexcept { return revision_; }
 
  private:
-  struct Smoother;
   void rebuild() noexcept;
   bool smooth() noexcept;
 
@@ -61,10 +58,9 @@ class Road {
   SpeedPlan speed_plan_;
   std::vector<Vec2> knots_;
   std::vector<double> offset_;  ///< of the line from the raw path, by knot [m]
-  double knot_spacing_ = 1.0;
   int knot_count_ = 0;
   unsigned revision_ = 0;
-  std::unique_ptr<Smoother> smoother_;
+  LineSmoother smoother_;
 };
 
 }  // namespace chicane::controller
