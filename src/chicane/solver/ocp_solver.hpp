@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "chicane/base/assert.hpp"
 #include "chicane/base/deadline.hpp"
@@ -71,10 +72,9 @@ class OcpSolver {
   static constexpr std::size_t kNc = P::kNc;
   static constexpr std::size_t kOne = kNx;
   static constexpr std::size_t kHead = kNx + 1;
-  static constexpr int kMaxWorkingSetTurns = 12;
-  static constexpr int kPatience = 3;      ///< turns without improvement before full steps are given up
-  static constexpr double kProgress = 0.9;      ///< what counts as an improvement
-  static constexpr int kFirstHorizon = 5;  ///< of the growing horizons
+  static constexpr int kPatience = 3;       ///< turns without improvement before full steps are given up
+  static constexpr double kProgress = 0.9;  ///< what counts as an improvement
+  static constexpr int kFirstHorizon = 5;   ///< of the growing horizons
   static constexpr int kMaxGrowth = 16;
   static constexpr double kGoodEnoughToGrow = 1e-1;
   static constexpr double kDefectShare =
@@ -234,23 +234,34 @@ class OcpSolver {
     }
   }
 
-  /// Solves the quadratic program and takes its whole step. False when the deadline came first.
-  bool full_step(const P& problem, Trajectory& t, const Deadline& deadline, SolveReport& report) noexcept {
-    for (int turn = 0;; ++turn) {
+  /// Solves the quadratic program: working-set turns, all corrections at once as long as that lowers their
+  /// number. False when the deadline came first.
+  bool solve_qp(std::size_t horizon, const Deadline& deadline, SolveReport& report) noexcept {
+    using Repair = typename decltype(lq_)::Repair;
+    constexpr int kMaxSweeps = 20;
+    int fewest = std::numeric_limits<int>::max();
+    int chances = kPatience;
+    for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
       ++report.sweeps;
-      const double extra = lq_.backward(size_of(t), 0.0, false);
+      const double extra = lq_.backward(horizon, 0.0, false);
       if (extra > 0.0 && has_curvature_) {  // indefinite: Gauss–Newton is not
-        now_.add_curvature(size_of(t), -1.0, lq_);
+        now_.add_curvature(horizon, -1.0, lq_);
         has_curvature_ = false;
         continue;
       }
-      if (!lq_.forward(size_of(t), false)) break;
+      const int contradictions = lq_.forward(horizon, chances > 0 ? Repair::kAll : Repair::kLast);
+      if (contradictions == 0) return true;
       if (deadline.spent()) return false;
-      if (turn >= kMaxWorkingSetTurns) {
-        lq_.forward(size_of(t), true);
-        break;
-      }
+      chances = contradictions < fewest ? kPatience : chances - 1;
+      fewest = std::min(fewest, contradictions);
     }
+    lq_.forward(horizon, Repair::kClip);
+    return true;
+  }
+
+  /// Takes the whole step of the quadratic program. False when the deadline came first.
+  bool full_step(const P& problem, Trajectory& t, const Deadline& deadline, SolveReport& report) noexcept {
+    if (!solve_qp(size_of(t), deadline, report)) return false;
     const double length = kNc > 0 ? step_soft(problem, size_of(t)) : 1.0;
     for (std::size_t k = 0; k < size_of(t); ++k) {
       const auto& stage = lq_.stage[k];
@@ -270,7 +281,8 @@ class OcpSolver {
   bool keep_best(const Trajectory& trajectory, const SolveReport& report) noexcept {
     if (!is_finite(report)) return false;
     const bool barrier_falls = kNc > 0 && mu_ > final_mu();
-    if (full_steps_ && has_best_ && !barrier_falls && residual(report) > kProgress * residual(best_report_)) return false;
+    if (full_steps_ && has_best_ && !barrier_falls && residual(report) > kProgress * residual(best_report_))
+      return false;
     best_ = trajectory;
     best_report_ = report;
     has_best_ = true;

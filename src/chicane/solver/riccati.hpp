@@ -56,10 +56,15 @@ class Riccati {
     return largest;
   }
 
-  /// Computes dx and du; true when the working set was changed. With `clip` the inputs are cut to their
-  /// bounds instead.
-  bool forward(std::size_t horizon, bool clip) noexcept {
-    bool changed = false;
+  /// What the forward sweep does with inputs that contradict the working set.
+  enum class Repair { kAll, kLast, kClip };
+
+  /// Computes dx and du, and corrects the working set: all contradicting inputs at once, only the last one,
+  /// or none while du is cut to its bounds. Returns how many inputs contradicted it.
+  int forward(std::size_t horizon, Repair repair) noexcept {
+    int contradictions = 0;
+    Hold* last = nullptr;
+    Hold last_hold = Hold::kFree;
     std::fill(dx[0], dx[0] + Nx, 0.0);
     for (std::size_t k = 0; k < horizon; ++k) {
       Stage& s = stage[k];
@@ -68,19 +73,23 @@ class Riccati {
       z[Stage::kOne] = 1.0;
       for (std::size_t m = 0; m < Nu; ++m) {
         double u = dot(s.gain[m], z, Stage::kHead);
-        if (clip) u = std::clamp(u, s.low[m], s.high[m]);
+        if (repair == Repair::kClip) u = std::min(std::max(u, s.low[m]), s.high[m]);
         z[Stage::kHead + m] = du[k][m] = u;
       }
-      for (std::size_t m = 0; m < Nu && !clip; ++m) {
+      for (std::size_t m = 0; m < Nu; ++m) {
         const double slope = dot(s.gradient[m], z, Stage::kSize);
         const Hold next =
             next_hold(s.hold[m], du[k][m], slope, s.low[m], s.high[m], s.gradient[m][Stage::kHead + m]);
-        changed = changed || next != s.hold[m];
-        s.hold[m] = next;
+        if (next == s.hold[m]) continue;
+        ++contradictions;
+        if (repair == Repair::kAll) s.hold[m] = next;
+        last = &s.hold[m];
+        last_hold = next;
       }
       for (std::size_t i = 0; i < Nx; ++i) dx[k + 1][i] = dot(s.F[i], z, Stage::kSize);
     }
-    return changed;
+    if (repair == Repair::kLast && last != nullptr) *last = last_hold;
+    return contradictions;
   }
 
  private:
