@@ -129,6 +129,24 @@ TEST(CubicMpc, SlowsForTurnsWhenSpeedTimesSteeringCosts) {
   EXPECT_LT(make(options)->step(on_a_left_bend(), Deadline::never()).command.throttle, without);
 }
 
+TEST(CubicMpc, SeesFartherAndSteersLessWithTheSpeedInMilesPerHour) {
+  CubicMpcOptions options;
+  options.speed_reference = 15.0;
+  const auto metres = make(options);
+  options.speed_in_mph = true;
+  const auto miles = make(options);
+  model::Measurement now = on_a_left_bend();
+  now.psi = -0.1;  // heading off the road to the right: both steer back
+  const StepResult& a = metres->step(now, Deadline::never());
+  const StepResult& b = miles->step(now, Deadline::never());
+  EXPECT_GT(b.command.steer, 0.0);
+  EXPECT_LT(b.command.steer, a.command.steer);
+  EXPECT_NEAR(b.plan.points[0].speed, a.plan.points[0].speed, 1e-9);  // reported in m/s all the same
+  EXPECT_EQ(b.report.speed_reference, 15.0);
+  const auto reach = [](const Plan& plan) { return plan.points[1].x - plan.points[0].x; };
+  EXPECT_NEAR(reach(b.plan) / reach(a.plan), 2.2369, 1e-3);
+}
+
 TEST(CubicMpc, AnswersAlsoWithoutAUsableMeasurement) {
   for (const auto& options : all_variants()) {
     const auto controller = make(options);

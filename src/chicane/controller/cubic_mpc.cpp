@@ -72,7 +72,7 @@ class CubicMpc final : public Controller {
     StepReport& report = result_.report;
     report.lateral_error = (seen.y() - problem_.line.at(seen.x())) / hypot(1.0, slope);
     report.heading_error = angle_difference(now.psi, start_.pose.psi + atan(slope));
-    report.speed_reference = problem_.speed_reference;
+    report.speed_reference = problem_.speed_reference / problem_.speed_unit;
     report.delay = start_time_ - now.time;
     for (const Vec2& point : local.view()) report.sight = std::max(report.sight, point.x());
     return true;
@@ -83,7 +83,7 @@ class CubicMpc final : public Controller {
     return {0.0,
             0.0,
             0.0,
-            start_.speed,
+            start_.speed * problem_.speed_unit,
             problem_.line.at(0.0),
             -atan(problem_.line.slope(0.0)),
             steer_sign_ * now.steer,
@@ -133,7 +133,7 @@ class CubicMpc final : public Controller {
                                                   .x = position.x(),
                                                   .y = position.y(),
                                                   .psi = start_.pose.psi + x[CubicProblem::kPsi],
-                                                  .speed = x[CubicProblem::kV],
+                                                  .speed = x[CubicProblem::kV] / problem_.speed_unit,
                                                   .command = {steer_sign_ * u[0], u[1]}};
     }
     plan.reference_size = kReferencePoints;

@@ -11,34 +11,39 @@ namespace chicane::controller {
 
 /// How the described controller treats the time between measurement and actuation.
 enum class LatencyHandling {
-  kNone,            ///< not at all
-  kRollForward,     ///< whole kinematic state rolled forward by `latency`
-  kMeasured,        ///< the same by the measured loop time, averaged with the value before
-  kPositionOnly,    ///< only x and y rolled forward by `latency`
-  kInsideModel,     ///< each stage driven by the inputs of the stage before (dt = the delay)
+  kNone,          ///< not at all
+  kRollForward,   ///< whole kinematic state rolled forward by `latency`
+  kMeasured,      ///< the same by the measured loop time, averaged with the value before
+  kPositionOnly,  ///< only x and y rolled forward by `latency`
+  kInsideModel,   ///< each stage driven by the inputs of the stage before (dt = the delay)
 };
 
 /// The nonlinear MPC of the five write-ups: kinematic bicycle, cubic in the car's frame, weighted squares.
-/// Weights multiply squares of SI quantities; throttle stands for acceleration, as described.
+/// Weights multiply squares of SI quantities (v in mph where the model has it so); throttle stands for
+/// acceleration.
 struct CubicMpcOptions {
-  int horizon_steps = 10;            ///< N; time grows linearly; [2, 200]
-  double step_length = 0.1;          ///< dt [s]; [0.005, 0.5]
-  double speed_reference = 17.9;     ///< [m/s]; [0, 90]
+  int horizon_steps = 10;         ///< N; time grows linearly; [2, 200]
+  double step_length = 0.1;       ///< dt [s]; [0.005, 0.5]
+  double speed_reference = 17.9;  ///< [m/s]; [0, 90]
   LatencyHandling latency_handling = LatencyHandling::kRollForward;
-  double latency = 0.1;              ///< compensated when not measured [s]; [0, 0.5]
-  bool polar_waypoints = false;      ///< waypoints to the car's frame by radius and angle instead of a rotation
+  double latency = 0.1;          ///< compensated when not measured [s]; [0, 0.5]
+  bool polar_waypoints = false;  ///< waypoints to the car's frame by radius and angle instead of a rotation
   bool steering_right_positive = false;  ///< model written with the simulator's sign: ψ⁺ = ψ − v δ dt / L_f
-  double weight_lateral = 200.0;     ///< on cte² [1/m²]
-  double weight_heading = 200.0;     ///< on eψ² [1/rad²]
-  double weight_speed = 0.1;         ///< on (v − v_ref)² [s²/m²]
-  double weight_steer = 1.0;         ///< on δ² [1/rad²]
-  double weight_throttle = 1.0;      ///< on a²
-  double weight_steer_change = 10.0; ///< on (δ_{k+1} − δ_k)² [1/rad²]
+  /// The model takes telemetry's miles per hour for metres per second: it sees 2.24 times as far, and steers
+  /// that much less. The delay is still rolled forward in m/s.
+  bool speed_in_mph = false;
+  double weight_lateral = 200.0;        ///< on cte² [1/m²]
+  double weight_heading = 200.0;        ///< on eψ² [1/rad²]
+  double weight_speed = 0.1;            ///< on (v − v_ref)² [s²/m²]
+  double weight_steer = 1.0;            ///< on δ² [1/rad²]
+  double weight_throttle = 1.0;         ///< on a²
+  double weight_steer_change = 10.0;    ///< on (δ_{k+1} − δ_k)² [1/rad²]
   double weight_throttle_change = 1.0;  ///< on (a_{k+1} − a_k)²
-  double weight_speed_steer = 0.0;   ///< on (v δ)² [s²/(m² rad²)]
+  double weight_speed_steer = 0.0;      ///< on (v δ)² [s²/(m² rad²)]
 };
 
-/// Builds it. Pre of use: waypoints in every measurement (it keeps no map). kInvalidArgument names an option out of range.
+/// Builds it. Pre of use: waypoints in every measurement (it keeps no map). kInvalidArgument names an option
+/// out of range.
 [[nodiscard]] Result<std::unique_ptr<Controller>> make_cubic_mpc(const CubicMpcOptions& options,
                                                                  const model::VehicleParams& vehicle);
 

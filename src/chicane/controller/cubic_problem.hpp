@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/controller/cubic_mpc.hpp"
 #include "chicane/controller/local_fit.hpp"
@@ -14,9 +15,9 @@ namespace chicane::controller {
 /// The optimal control problem of the five write-ups (docs/problem.md, equations 1 to 12), in the car's
 /// frame:
 ///
-///     state  x, y [m], ψ [rad], v [m/s], cte [m], eψ [rad], and the inputs of the stage before, δ⁻ [rad], a⁻
-///     input  δ [rad], |δ| <= steer_limit, in the model's own sign; a in [-1, 1], throttle taken for
-///     acceleration [m/s²]
+///     state  x, y [m], ψ [rad], v [m/s, or mph with speed_in_mph], cte [m], eψ [rad], and the inputs of the
+///     stage before, δ⁻ [rad], a⁻ input  δ [rad], |δ| <= steer_limit, in the model's own sign; a in [-1, 1],
+///     throttle taken for acceleration [m/s²]
 ///
 /// A solver::OcpProblem: residuals carry √(2 weight), so that the solver's ½‖r‖² is the described weighted
 /// sum of squares.
@@ -37,7 +38,8 @@ struct CubicProblem {
       : dt{options.step_length},
         turn_per_metre{(options.steering_right_positive ? -1.0 : 1.0) / vehicle.kinematic_length},
         steer_limit{vehicle.steer_limit},
-        speed_reference{options.speed_reference},
+        speed_unit{options.speed_in_mph ? mps_to_mph(1.0) : 1.0},
+        speed_reference{options.speed_reference * speed_unit},
         acts_late{options.latency_handling == LatencyHandling::kInsideModel},
         root{weight_root(options.weight_lateral),         weight_root(options.weight_heading),
              weight_root(options.weight_speed),           weight_root(options.weight_steer),
@@ -85,7 +87,8 @@ struct CubicProblem {
   double dt;              ///< [s]
   double turn_per_metre;  ///< ±1 / L_f: + for steering positive left, − for the simulator's own sign [1/m]
   double steer_limit;     ///< [rad]
-  double speed_reference;        ///< [m/s]
+  double speed_unit;      ///< the model's v for 1 m/s
+  double speed_reference;        ///< as the model's v
   bool acts_late;                ///< the inputs of a stage act in the next one
   std::array<double, kNr> root;  ///< √(2 weight) of: cte, eψ, v, δ, a, Δδ, Δa, v δ
   Cubic line;                    ///< reference, renewed in every step
