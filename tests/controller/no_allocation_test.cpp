@@ -45,7 +45,6 @@ TEST(Controllers, AllocateNothingInAStep) {
       now.waypoint_count = 6;
       now.x = 0.01 * i;
     }
-    controller->reset();
     EXPECT_EQ(guard.count(), 0) << controller->name();
   }
 }
