@@ -137,9 +137,9 @@ TEST_F(Library, NamesWhatIsKnownWhenANameIsNot) {
 }
 
 TEST_F(Library, TellsAllFaultsOfAllLayersAtOnce) {
-  const std::string file = write("run.yaml", "laps: 0\nlatency_ms: slow\n");
+  const std::string file = write("run.yaml", "laps: -1\nlatency_ms: slow\n");
   const std::string message = error_of({file, {{"preset", "nobody"}, {"seed", "-1"}, {"latenzy_ms", "1"}}});
-  EXPECT_THAT(message, HasSubstr("run.yaml:1: laps: got 0, expected an integer in [1, 10000]"));
+  EXPECT_THAT(message, HasSubstr("run.yaml:1: laps: got -1, expected an integer in [0, 10000]"));
   EXPECT_THAT(message, HasSubstr("run.yaml:2: latency_ms: got slow"));
   EXPECT_THAT(message, HasSubstr("preset: got \"nobody\""));
   EXPECT_THAT(message, HasSubstr("seed: got -1"));

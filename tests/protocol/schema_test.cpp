@@ -142,7 +142,7 @@ TEST(Schema, RefusesWhatIsOutOfRangeWithRangeAndUnit) {
   EXPECT_EQ(error_of("latency_ms", "900"), "latency_ms: got 900, expected a number in [0, 500] ms");
   EXPECT_EQ(error_of("cubic_mpc.horizon_steps", "1"),
             "cubic_mpc.horizon_steps: got 1, expected an integer in [2, 200]");
-  EXPECT_EQ(error_of("laps", "2.5"), "laps: got 2.5, expected an integer in [1, 10000]");
+  EXPECT_EQ(error_of("laps", "2.5"), "laps: got 2.5, expected an integer in [0, 10000]");
   EXPECT_EQ(error_of("vehicle.steer_rate_limit_degps", "-inf"),
             "vehicle.steer_rate_limit_degps: got -inf, expected a number in [1, 10000] deg/s or inf");
   EXPECT_EQ(error_of("latency_ms", "nan"), "latency_ms: got nan, expected a number in [0, 500] ms");
