@@ -39,6 +39,7 @@ constexpr Range kThrottle{-1.0, 1.0};
 
 /// What somebody sent, for a message to a person: short, printable, valid UTF-8.
 std::string shown(const Json& value) {
+  if (value.is_discarded()) return "nothing";
   if (value.is_array()) return fmt::format("an array of {}", value.size());
   if (value.is_object()) return "an object";
   std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
@@ -65,7 +66,7 @@ bool has_decimal_comma(std::string_view text) {
 
 struct Event {
   std::string name;
-  Json payload;
+  Json payload;  // discarded when there is none
 };
 
 /// `["name",payload]`, after the packet digits and an optional acknowledgement number.
@@ -88,16 +89,18 @@ tl::expected<Event, UdacityBroken> parse_event(std::string_view text) {
   if (array.empty() || array.size() > 2 || !array[0].is_string()) {
     return tl::unexpected(UdacityBroken{"the event is not an array of a name and one value"});
   }
-  Event event{array[0].get<std::string>(), array.size() == 2 ? std::move(array[1]) : Json{}};
+  Event event{array[0].get<std::string>(),
+              array.size() == 2 ? std::move(array[1]) : Json(Json::value_t::discarded)};
   return event;
 }
 
 /// Everything that is not an event; nullopt for an event.
 std::optional<std::variant<UdacityPacket, UdacityBroken>> parse_packet(std::string_view text) {
   if (text.size() > kMaxUdacityMessage) {
-    return UdacityBroken{fmt::format("{} bytes, expected at most {}", text.size(), kMaxUdacityMessage)};
+    return UdacityBroken{fmt::format("{} bytes, expected at most {}", text.size(), kMaxUdacityMessage),
+                         false};
   }
-  if (text.empty()) return UdacityBroken{"an empty message"};
+  if (text.empty()) return UdacityBroken{"an empty message", false};
   if (text.starts_with("42")) return std::nullopt;
   if (text.starts_with("40")) return UdacityPacket::kConnect;
   if (text.starts_with("41")) return UdacityPacket::kDisconnect;
@@ -114,7 +117,7 @@ std::optional<std::variant<UdacityPacket, UdacityBroken>> parse_packet(std::stri
       break;
   }
   if (text[0] >= '4' && text[0] <= '9') return UdacityPacket::kIgnored;
-  return UdacityBroken{"the message does not begin with a digit"};
+  return UdacityBroken{"the message does not begin with a digit", false};
 }
 
 /// Names the scene of the simulator collection that sends such keys (templates of udacity/CarND-*).
@@ -134,8 +137,9 @@ std::optional<UdacityForeign> foreign_scene(const Json& data) {
   if (data.contains("ptsx") || data.contains("psi")) return std::nullopt;
   for (const Scene& scene : kScenes) {
     if (data.contains(scene.key)) {
-      return UdacityForeign{fmt::format(
-          "the telemetry of the scene '{}'; choose 'MPC Controller' in the simulator", scene.name)};
+      return UdacityForeign{
+          true, fmt::format("the telemetry of the scene '{}'; choose 'MPC Controller' in the simulator",
+                            scene.name)};
     }
   }
   return std::nullopt;
@@ -280,8 +284,10 @@ UdacityTelemetry parse_telemetry(std::string_view text) {
   }
   const auto event = parse_event(text);
   if (!event) return event.error();
-  if (event->name != "telemetry") return UdacityForeign{fmt::format("the event {}", shown(event->name))};
+  if (event->name != "telemetry")
+    return UdacityForeign{false, fmt::format("the event {}", shown(event->name))};
   if (event->payload.is_null()) return UdacityManual{};
+  if (event->payload.is_discarded()) return UdacityBroken{"telemetry: without data"};
   if (!event->payload.is_object()) return unexpected("telemetry", event->payload, "an object or null");
   if (auto foreign = foreign_scene(event->payload)) return *foreign;
   return read_measurement(event->payload);

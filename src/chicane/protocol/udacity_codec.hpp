@@ -38,12 +38,14 @@ enum class UdacityPacket : signed char {
 
 /// A message of another scene of the simulator, or of another program.
 struct UdacityForeign {
-  std::string what;  ///< e.g. "the telemetry of the scene 'PID Controller'"
+  bool is_telemetry = true;  ///< false: some other event, whose sender expects nothing of us
+  std::string what{};        ///< e.g. "the telemetry of the scene 'PID Controller'"
 };
 
 /// A message that cannot be used, in words that name the field: "x: got \"NaN\", expected a number".
 struct UdacityBroken {
-  std::string reason;
+  std::string reason{};
+  bool is_event = true;  ///< false: not even an event (`42…`), so nobody waits for an answer
 };
 
 /// From the simulator. The measurement lacks `time` and `delay`, which the receiver knows. Waypoints may be 0

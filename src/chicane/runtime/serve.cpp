@@ -22,7 +22,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr std::size_t kMaxUnanswered = 16;   // a client in lock-step has one
+constexpr int kMaxUnanswered = 16;           // a client in lock-step has one
+constexpr std::size_t kMaxAccepted = 16;     // upgrades that have not completed
 constexpr double kTypicalTurnAround = 0.02;  // of the original simulator [s]
 constexpr milliseconds kWatchPeriod{250};
 constexpr std::chrono::seconds kPingInterval{25};  // Engine.IO's default
@@ -94,15 +95,12 @@ class UdacityEndpoint::Control {
     if (thread_.joinable()) thread_.join();
   }
 
-  /// False when too many wait already.
-  bool push(const Request& request) {
+  void push(const Request& request) {
     {
       const std::lock_guard lock(mutex_);
-      if (waiting_.size() >= kMaxUnanswered) return false;
       waiting_.push_back(request);
     }
     changed_.notify_one();
-    return true;
   }
 
   [[nodiscard]] std::uint64_t answers() const { return answers_.load(); }
@@ -263,7 +261,7 @@ net::UpgradeAnswer UdacityEndpoint::on_upgrade(const net::UpgradeRequest& reques
   }
   Session session{.id = request.id, .name = request.peer};
   session.is_version_3 = request.target.find("EIO=3") != std::string::npos;
-  if (accepted_.size() >= kMaxUnanswered) accepted_.erase(accepted_.begin());
+  if (accepted_.size() >= kMaxAccepted) accepted_.erase(accepted_.begin());
   accepted_[request.id] = session;
   return {.accept = true};
 }
@@ -303,33 +301,41 @@ void UdacityEndpoint::on_close(net::ConnectionId id, std::string_view why) {
 void UdacityEndpoint::hear_telemetry(std::string_view bytes) {
   Request request{.from = session_.id, .received = session_.last_word};
   const protocol::UdacityTelemetry message = protocol::parse_telemetry(bytes);
-  if (const auto* packet = std::get_if<protocol::UdacityPacket>(&message))
-    return hear_packet(static_cast<int>(*packet));
+  if (const auto* packet = std::get_if<protocol::UdacityPacket>(&message)) return hear_packet(*packet);
   if (const auto* measurement = std::get_if<model::Measurement>(&message)) {
     request.measurement = *measurement;
   } else if (std::holds_alternative<protocol::UdacityManual>(message)) {
     request.kind = Request::Kind::kManual;
   } else {
-    request.kind = Request::Kind::kUnusable;
     ++unusable_;
-    const auto* foreign = std::get_if<protocol::UdacityForeign>(&message);
-    const auto* broken = std::get_if<protocol::UdacityBroken>(&message);
-    log_at_most_once_a_second(foreign != nullptr
-                                  ? fmt::format("this is {}; braking", foreign->what)
-                                  : fmt::format("broken telemetry: {}; braking", broken->reason));
+    if (!complain_about(message)) return;
+    request.kind = Request::Kind::kUnusable;
   }
   if (session_.is_reported_silent) log(fmt::format("telemetry from {} again", session_.name));
   session_.has_told = true;
   session_.is_reported_silent = false;
-  if (!control_->push(request)) {
+  if (++session_.unanswered > kMaxUnanswered) {
     return server_->close(session_.id, 1008, fmt::format("more than {} unanswered messages", kMaxUnanswered));
   }
-  ++session_.unanswered;
+  control_->push(request);
 }
 
-void UdacityEndpoint::hear_packet(int packet) {
+/// Says what is wrong with a message; true when its sender waits for an answer.
+bool UdacityEndpoint::complain_about(const protocol::UdacityTelemetry& message) {
+  if (const auto* foreign = std::get_if<protocol::UdacityForeign>(&message)) {
+    log_at_most_once_a_second(
+        fmt::format("this is {}{}", foreign->what, foreign->is_telemetry ? "; braking" : ""));
+    return foreign->is_telemetry;
+  }
+  const auto& broken = std::get<protocol::UdacityBroken>(message);
+  log_at_most_once_a_second(broken.is_event ? fmt::format("broken telemetry: {}; braking", broken.reason)
+                                            : fmt::format("ignored a message: {}", broken.reason));
+  return broken.is_event;
+}
+
+void UdacityEndpoint::hear_packet(protocol::UdacityPacket packet) {
   if (!session_.is_stock) return;  // the original pings once and would, if answered, ping on
-  switch (static_cast<protocol::UdacityPacket>(packet)) {
+  switch (packet) {
     case protocol::UdacityPacket::kPing:
       return send(session_.id, "3");
     case protocol::UdacityPacket::kConnect:

@@ -16,6 +16,7 @@
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/net/server.hpp"
+#include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/runtime/endpoint.hpp"
 #include "chicane/telemetry/frame.hpp"
 
@@ -97,7 +98,8 @@ class UdacityEndpoint final : public Endpoint {
   void log(const std::string& line) const;
   void log_at_most_once_a_second(const std::string& line);
   void hear_telemetry(std::string_view bytes);
-  void hear_packet(int packet);
+  void hear_packet(protocol::UdacityPacket packet);
+  [[nodiscard]] bool complain_about(const protocol::UdacityTelemetry& message);
   void send(net::ConnectionId id, std::string text);
   void send_open_packet(net::ConnectionId id);
   void ping(net::ConnectionId id);

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace chicane::test {
+
+/// From a published log of the original (udacity/CarND-MPC-Project issue 45).
+inline constexpr const char* kRealTelemetry =
+    R"(42["telemetry",{"ptsx":[-32.16173,-43.49173,-61.09,-78.29172,-93.05002,-107.7717],)"
+    R"("ptsy":[113.361,105.941,92.88499,78.73102,65.34102,50.57938],"psi_unity":4.120315,"psi":3.733667,)"
+    R"("x":-40.62008,"y":108.7301,"steering_angle":0,"throttle":0,"speed":2.995219E-06}])";
+
+inline std::string with(const std::string& from, const std::string& to) {
+  std::string text = kRealTelemetry;
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+inline std::string without(const std::string& key) {
+  nlohmann::json event = nlohmann::json::parse(std::string(kRealTelemetry).substr(2));
+  event[1].erase(key);
+  return "42" + event.dump();
+}
+
+inline std::string repeat(const std::string& text, int count) {
+  std::string result;
+  for (int i = 0; i < count; ++i) result += text;
+  return result;
+}
+
+/// Telemetry that must not be believed.
+struct Hostile {
+  std::string text;
+  std::string words;  ///< that the reason must contain
+};
+
+inline std::vector<Hostile> hostile_messages() {
+  std::vector<Hostile> list{
+      // Framing.
+      {"", "empty"},
+      {" ", "digit"},
+      {"hello", "digit"},
+      {"{}", "digit"},
+      {std::string("\0\0\0", 3), "digit"},
+      {"\xff\xfe\xfd", "digit"},
+      {"42", "no array"},
+      {"42{}", "no array"},
+      {"42/namespace,[]", "no array"},
+      {"42null", "no array"},
+      {"42[", "not JSON at byte"},
+      {"42[]", "name"},
+      {"42[null]", "name"},
+      {"42[1,2]", "name"},
+      {"42[\"telemetry\",{},{}]", "name"},
+      {"42[\"telemetry\",{}]]", "not JSON"},
+      {"42[\"telemetry\"", "not JSON"},
+      {"42[\"telemetry\",{\"x\":1", "not JSON"},
+      {"42[\"telemetry\",{'x':1}]", "not JSON"},
+      {"42[\"telemetry\",{\"x\":+1}]", "not JSON"},
+      {"42[\"telemetry\",{\"x\":.5}]", "not JSON"},
+      {"42[\"telemetry\",{\"x\":0x10}]", "not JSON"},
+      {"42[\"telemetry\",{\"x\":NaN}]", "not JSON"},
+      {"42[\"telemetry\",{\"x\":-Infinity}]", "not JSON"},
+      {"42[\"tele\xffmetry\",{}]", "not JSON"},
+      {"42[\"telemetry\",{\"x\":\"\xc3\x28\"}]", "not JSON"},
+      {"42[\"telemetry\",{\"x\":\"\\ud800\"}]", "not JSON"},
+      {"42" + repeat("[", 10'000), "not JSON"},
+      {"42[\"telemetry\"," + repeat("[", 10'000) + repeat("]", 10'000) + "]", "an object or null"},
+      {"42[\"telemetry\"," + repeat("{\"x\":", 10'000) + "1" + repeat("}", 10'000) + "]", "missing"},
+      {"42[\"telemetry\",\"" + repeat("x", 70'000) + "\"]", "at most 65536"},
+      {repeat("4", 70'000), "at most 65536"},
+      {"42" + repeat("9", 60'000), "no array"},
+      // The payload.
+      {R"(42["telemetry"])", "telemetry: without data"},
+      {R"(42["telemetry",{}])", "ptsx: missing"},
+      {R"(42["telemetry",[]])", "got an array of 0, expected an object or null"},
+      {R"(42["telemetry",7])", "got 7"},
+      {R"(42["telemetry",true])", "got true"},
+      {R"(42["telemetry","null"])", "got \"null\""},
+      {without("ptsx"), "ptsx: missing"},
+      {without("ptsy"), "ptsy: missing"},
+      {without("psi"), "psi: missing"},
+      {without("x"), "x: missing"},
+      {without("y"), "y: missing"},
+      {without("speed"), "speed: missing"},
+      {without("throttle"), "throttle: missing"},
+      {without("steering_angle"), "steering_angle: missing"},
+      // One field.
+      {with("\"x\":-40.62008", "\"x\":\"-40.62008\""), "x: got \"-40.62008\", expected a number"},
+      {with("\"x\":-40.62008", "\"x\":\"NaN\""), "x: got \"NaN\""},
+      {with("\"y\":108.7301", "\"y\":\"INFINITY\""), "y: got \"INFINITY\""},
+      {with("\"x\":-40.62008", "\"x\":null"), "x: got null"},
+      {with("\"x\":-40.62008", "\"x\":[1]"), "x: got an array of 1"},
+      {with("\"x\":-40.62008", "\"x\":{}"), "x: got an object"},
+      {with("\"x\":-40.62008", "\"x\":1e999"), "too large"},
+      {with("\"x\":-40.62008", "\"x\":-1e999"), "too large"},
+      {with("\"x\":-40.62008", "\"x\":1e308"), "x: got 1e+308, expected a number in"},
+      {with("\"x\":-40.62008", "\"x\":99999999999999999999999999"), "x: got"},
+      {with("\"x\":-40.62008", "\"x\":\"" + repeat("<script>", 1000) + "\""), "x: got \"<script>"},
+      {with("\"psi\":3.733667", "\"psi\":1e9"), "psi: got"},
+      {with("\"speed\":2.995219E-06", "\"speed\":-1"), "speed: got -1, expected a number in [0, 1000]"},
+      {with("\"speed\":2.995219E-06", "\"speed\":1e6"), "speed: got"},
+      {with("\"throttle\":0", "\"throttle\":2"), "throttle: got 2"},
+      {with("\"throttle\":0", "\"throttle\":true"), "throttle: got true"},
+      {with("\"steering_angle\":0", "\"steering_angle\":25"), "steering_angle: got 25"},
+      // Waypoints.
+      {with("[-32.16173,", "["), "ptsx has 5 points, ptsy 6"},
+      {with("[113.361,", "[113.361,1,"), "ptsx has 6 points, ptsy 7"},
+      {with("[-32.16173,", "[\"-32.16173\","), "ptsx[0]: got \"-32.16173\""},
+      {with("-107.7717]", "null]"), "ptsx[5]: got null"},
+      {with("-107.7717]", "1e300]"), "ptsx[5]: got 1e+300"},
+      {with("[-32.16173,", "[[1],"), "ptsx[0]: got an array of 1"},
+      {with("[-32.16173,", "[" + repeat("1,", 30)), "at most 32"},
+      {with("[-32.16173,", "[" + repeat("1,", 30'000)), "at most 32"},
+      {with("\"ptsx\":[", "\"ptsx\":5,\"was\":["), "ptsx: got 5"},
+      {with("\"ptsx\":[", "\"ptsx\":{},\"was\":["), "ptsx: got an object"},
+      {with("\"speed\":2.995219E-06", "\"speed\":0,\"speed\":\"twice\""), "speed: got \"twice\""},
+      // Decimal commas.
+      {with("-40.62008", "-40,62008"), "decimal comma"},
+      {with("\"psi\":3.733667", "\"psi\":3,733667"), "LC_NUMERIC=C"},
+      {with("\"speed\":2.995219E-06", "\"speed\":2,995219E-06"), "decimal comma"},
+  };
+  return list;
+}
+
+}  // namespace chicane::test
