@@ -309,7 +309,7 @@ class OcpSolver {
   /// good start for the next one.
   [[nodiscard]] bool is_growing(const Trajectory& t) const noexcept { return t.horizon < target_; }
   [[nodiscard]] bool may_grow(const Trajectory& t) const noexcept {
-    return !has_grown_ && t.horizon > kFirstHorizon;
+    return options_.may_start_short && !has_grown_ && t.horizon > kFirstHorizon;
   }
   bool start_short(const P& problem, Trajectory& t) noexcept {
     const State x0 = t.x[0];
