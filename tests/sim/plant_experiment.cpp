@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include "chicane/base/random.hpp"
-#include "chicane/model/actuator.hpp"
 #include "chicane/model/single_track.hpp"
 
 namespace chicane::sim::experiment {
@@ -21,6 +20,43 @@ Sample sample(const Plant& plant, double time) {
 
 int steps(const Plant& plant, double duration) {
   return static_cast<int>(duration / plant.step_length() + 0.5);
+}
+
+/// A drive at a held speed with random steps of the wheel, for identification.
+struct Log {
+  double dt = 0.0;
+  std::vector<model::State> states;
+};
+
+Log record(Plant& plant, const model::VehicleParams& params, double speed, double lateral) {
+  plant.reset({}, speed);
+  SpeedHold hold{speed};
+  Random random{17};
+  const double amplitude = std::min(lateral * params.wheelbase() / (speed * speed), params.steer_limit);
+  Log log{.dt = plant.step_length(), .states = {}};
+  double wish = 0.0;
+  for (int i = 0; i < steps(plant, 20.0); ++i) {
+    if (i % steps(plant, 0.5) == 0) wish = random.uniform(-amplitude, amplitude);
+    plant.advance({.steer = wish, .throttle = hold.throttle(plant)});
+    log.states.push_back(plant.state());
+  }
+  return log;
+}
+
+/// The single track with the log's steering angle and speed against the log.
+Mismatch compare_with(const Log& log, const model::VehicleParams& params) {
+  const model::SingleTrack model{params};
+  model::BodyMotion<double> motion{log.states.front().vx, 0.0, 0.0};
+  double r_error = 0.0, r_size = 0.0, v_error = 0.0, v_size = 0.0;
+  for (const model::State& truth : log.states) {
+    motion = model::advance(model, motion, truth.steer, 0.0, log.dt);
+    motion.vx = truth.vx;
+    r_error += std::pow(motion.r - truth.r, 2);
+    r_size += std::pow(truth.r, 2);
+    v_error += std::pow(motion.vy - truth.vy, 2);
+    v_size += std::pow(truth.vy, 2);
+  }
+  return {std::sqrt(r_error / r_size), std::sqrt(v_error / v_size)};
 }
 
 }  // namespace
@@ -74,12 +110,13 @@ double time_to(const std::vector<Sample>& run, double speed) {
   return -1.0;
 }
 
-double braking_at(Plant& plant, double throttle, double speed, double margin) {
-  plant.reset({}, speed + margin);
-  const std::vector<Sample> run = drive_straight(plant, throttle, 12.0);
+double braking_at(Plant& plant, double throttle, double speed) {
+  // A hard brake needs room to build up, a gentle one should not take minutes.
+  plant.reset({}, speed + (throttle < -0.035 ? 5.0 : 1.5));
   std::vector<std::pair<double, double>> points;
-  for (const Sample& s : run) {
-    if (std::fabs(s.speed - speed) <= 0.75) points.emplace_back(s.time, s.speed);
+  for (const Sample& s : drive_straight(plant, throttle, 15.0)) {
+    if (s.speed < speed - 0.75) break;
+    if (s.speed <= speed + 0.75) points.emplace_back(s.time, s.speed);
   }
   return points.size() < 3 ? 0.0 : fit_line(points).slope;
 }
@@ -171,29 +208,44 @@ Peak peak_cornering(Plant& plant, double speed) {
 }
 
 Mismatch compare(Plant& plant, const model::VehicleParams& params, double speed, double lateral) {
-  plant.reset({}, speed);
-  SpeedHold hold{speed};
-  Random random{17};
-  const model::SingleTrack model{params};
-  const model::Actuator actuator{
-      .low = -0.4363, .high = 0.4363, .lag = params.steer_lag, .rate = params.steer_rate_limit};
-  const double amplitude = std::min(lateral * params.wheelbase() / (speed * speed), 0.43);
-  model::BodyMotion<double> motion{speed, 0.0, 0.0};
-  double wish = 0.0, steer = 0.0;
-  double r_error = 0.0, r_size = 0.0, v_error = 0.0, v_size = 0.0;
-  const double dt = plant.step_length();
-  for (int i = 0; i < steps(plant, 60.0); ++i) {
-    if (i % steps(plant, 0.5) == 0) wish = random.uniform(-amplitude, amplitude);
-    plant.advance({.steer = wish, .throttle = hold.throttle(plant)});
-    steer = actuator.next(steer, wish, dt);
-    motion = model::advance(model, motion, steer, 0.0, dt);
-    motion.vx = plant.state().vx;
-    r_error += std::pow(motion.r - plant.state().r, 2);
-    r_size += std::pow(plant.state().r, 2);
-    v_error += std::pow(motion.vy - plant.state().vy, 2);
-    v_size += std::pow(plant.state().vy, 2);
+  return compare_with(record(plant, params, speed, lateral), params);
+}
+
+Identified identify_single_track(Plant& plant, const model::VehicleParams& params) {
+  std::vector<Log> logs;
+  for (const double speed : {20.0, 30.0, 45.0}) logs.push_back(record(plant, params, speed, 5.0));
+  model::VehicleParams trial = params;
+  trial.friction = 10.0;  // far from saturation: linear
+  Identified best;
+  double least = 1e9;
+  for (double front = 4.5; front < 6.0; front += 0.05) {
+    for (double rear = 4.5; rear < 6.0; rear += 0.05) {
+      trial.cornering_front = front;
+      trial.cornering_rear = rear;
+      double sum = 0.0;
+      for (const Log& log : logs) sum += std::pow(compare_with(log, trial).yaw_rate, 2);
+      if (sum >= least) continue;
+      least = sum;
+      best = {front, rear};
+    }
   }
-  return {std::sqrt(r_error / r_size), std::sqrt(v_error / v_size)};
+  return best;
+}
+
+std::pair<std::complex<double>, std::complex<double>> linear_modes(const model::VehicleParams& p,
+                                                                   double speed) {
+  const double load = p.mass * (p.load_constant + p.load_per_speed * speed) / p.wheelbase();
+  const double front = p.cornering_front * load * p.rear_axle;
+  const double rear = p.cornering_rear * load * p.front_axle;
+  const double a11 = -(front + rear) / (p.mass * speed);
+  const double moment = p.front_axle * front - p.rear_axle * rear;
+  const double a12 = -moment / (p.mass * speed * speed) - (1.0 - p.steer_helper);
+  const double a21 = -moment / p.yaw_inertia;
+  const double a22 =
+      -(p.front_axle * p.front_axle * front + p.rear_axle * p.rear_axle * rear) / (p.yaw_inertia * speed);
+  const double half = 0.5 * (a11 + a22);
+  const std::complex<double> root = std::sqrt(std::complex<double>(half * half - a11 * a22 + a12 * a21, 0.0));
+  return {half + root, half - root};
 }
 
 }  // namespace chicane::sim::experiment

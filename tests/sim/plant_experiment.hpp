@@ -44,8 +44,8 @@ std::vector<Sample> drive_straight(Plant& plant, double throttle, double duratio
 /// First time at which the speed reaches `speed` [s]; −1 if never. Between samples: interpolated.
 [[nodiscard]] double time_to(const std::vector<Sample>& run, double speed);
 
-/// Deceleration at `speed` with `throttle` < 0 applied from speed + margin on: mean over ±0.25 m/s [m/s²].
-[[nodiscard]] double braking_at(Plant& plant, double throttle, double speed, double margin = 5.0);
+/// Acceleration while braking straight with a constant `throttle` < 0: mean over `speed` ± 0.75 m/s [m/s²].
+[[nodiscard]] double braking_at(Plant& plant, double throttle, double speed);
 
 /// Curvature r / v after settling with `steer` at a held `speed` [1/m], and the yaw rate [rad/s].
 struct Circle {
@@ -82,6 +82,17 @@ struct Mismatch {
 };
 [[nodiscard]] Mismatch compare(Plant& plant, const model::VehicleParams& params, double speed,
                                double lateral);
+
+/// What one would identify from a log of this plant, as was done with logs of the original: the normalised
+/// cornering stiffnesses of a linear single track (docs/model.md, eq. 7) that reproduce the yaw rate best
+/// while the wheel moves in random steps at 20, 30 and 45 m/s, and the yaw modes such a model has.
+struct Identified {
+  double cornering_front = 0.0;
+  double cornering_rear = 0.0;
+};
+[[nodiscard]] Identified identify_single_track(Plant& plant, const model::VehicleParams& params);
+[[nodiscard]] std::pair<std::complex<double>, std::complex<double>> linear_modes(
+    const model::VehicleParams& params, double speed);
 
 /// Throttle that holds the speed of this plant: a proportional-integral controller.
 class SpeedHold {

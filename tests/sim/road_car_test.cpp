@@ -34,7 +34,7 @@ TEST(RoadCar, BrakesInProportionWithoutLocking) {
   const double half = experiment::braking_at(car, -0.5, 20.0);
   EXPECT_LT(full, -8.5);
   EXPECT_GT(full, -10.5);
-  const double drag = experiment::braking_at(car, 0.0, 20.0, 1.0);
+  const double drag = experiment::braking_at(car, 0.0, 20.0);
   EXPECT_NEAR(half - drag, 0.5 * (full - drag), 0.15);
 }
 
