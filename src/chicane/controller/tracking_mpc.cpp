@@ -22,6 +22,7 @@ using StageState = std::array<double, Problem::kNx>;
 using StageInput = std::array<double, Problem::kNu>;
 
 constexpr double kFarFromLine = 15.0;       // [m] further away the car is lost
+constexpr double kSpeedAhead = 4.0;         // [m/s] wanted at most beyond what the last answer reaches
 constexpr double kProjectionWindow = 30.0;  // [m] searched around the last place
 
 class TrackingMpc final : public Controller {
@@ -38,7 +39,11 @@ class TrackingMpc final : public Controller {
               vehicle},
         estimator_{model_},
         fallback_{vehicle},
-        solver_{{.tolerance = 1e-4, .loose_tolerance = 10.0, .max_iterations = 12, .second_order = false}} {
+        solver_{{.tolerance = 1e-3,
+                 .loose_tolerance = 1e3,
+                 .max_iterations = 8,
+                 .may_start_short = false,
+                 .second_order = false}} {
     problem_.model = &model_;
     problem_.dt = options.step_length;
     problem_.horizon = options.horizon_steps;
@@ -173,12 +178,14 @@ class TrackingMpc final : public Controller {
     const Road::Room room = road_.room(s_ + s);
     const model::VehicleParams& car = model_.vehicle();
     const double v = std::max(x[Problem::kVx], 0.0);
+    // Asking for far more than the car can do would only drown the other prices (and Gauss–Newton with them).
+    const bool is_reachable = speed.speed < v + kSpeedAhead;
     problem_.stages[static_cast<std::size_t>(k)] = {
         .s = s,
         .curvature = at.curvature,
         .curvature_slope = at.curvature_slope,
-        .speed = speed.speed,
-        .speed_slope = speed.slope,
+        .speed = is_reachable ? speed.speed : v + kSpeedAhead,
+        .speed_slope = is_reachable ? speed.slope : 0.0,
         .left = room.left,
         .right = room.right,
         .acceleration_min = longitudinal_acceleration(car, -car.brake_throttle_limit, v),

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/runtime/closed_loop.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "chicane/runtime/make.hpp"
+
+namespace chicane::runtime {
+namespace {
+
+constexpr double kLostDistance = 25.0;  // [m] off the line ...
+constexpr double kLostTime = 3.0;       // [s] ... for this long: the run is over
+constexpr double kTimePerLap = 600.0;   // [s] when no limit was given
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+ClosedLoop::ClosedLoop(const scenario::Scenario& scenario, path::Track track, path::Track waypoints,
+                       std::unique_ptr<sim::Plant> plant, std::unique_ptr<controller::Controller> controller)
+    : scenario_{scenario},
+      track_{std::move(track)},
+      waypoints_{std::move(waypoints)},
+      plant_{std::move(plant)},
+      controller_{std::move(controller)},
+      world_{*plant_, track_},
+      sensor_{scenario.sensor, scenario.seed},
+      gate_{scenario.vehicle},
+      metrics_{std::max(scenario.laps, 1), scenario.control_period} {
+  restart();
+}
+
+Result<std::unique_ptr<ClosedLoop>> ClosedLoop::create(const scenario::Scenario& scenario) {
+  Result<path::Track> track = make_track(scenario);
+  if (!track) return fail(track.error());
+  Result<path::Track> waypoints = make_waypoints(*track);
+  if (!waypoints) return fail(waypoints.error());
+  Result<std::unique_ptr<sim::Plant>> plant = make_plant(scenario);
+  if (!plant) return fail(plant.error());
+  Result<std::unique_ptr<controller::Controller>> controller = make_controller(scenario);
+  if (!controller) return fail(controller.error());
+  return std::unique_ptr<ClosedLoop>(new ClosedLoop(scenario, std::move(*track), std::move(*waypoints),
+                                                    std::move(*plant), std::move(*controller)));
+}
+
+void ClosedLoop::restart() noexcept {
+  world_.place(track_.start_s(), track_.start_d());
+  controller_->reset();
+  gate_.reset();
+  in_flight_.reset({});
+  sensor_ = sim::Sensor(scenario_.sensor, scenario_.seed);
+  next_control_ = 0.0;
+  off_for_ = 0.0;
+  over_ = false;
+  end_reason_.clear();
+}
+
+bool ClosedLoop::advance(double budget) noexcept {
+  const bool is_due = time() >= next_control_ - 1e-9;
+  if (is_due) control(budget);
+  world_.advance(in_flight_.at(time() + 1e-9));
+  judge();
+  return is_due;
+}
+
+void ClosedLoop::control(double budget) noexcept {
+  model::Measurement now = sensor_.sample(time(), *plant_);
+  sim::select_waypoints(waypoints_, {now.x, now.y, now.psi}, scenario_.waypoints_sent, now);
+  now.delay = scenario_.latency + step_time_;
+
+  const auto start = std::chrono::steady_clock::now();
+  const Deadline deadline =
+      budget > 0.0 ? Deadline::after(std::chrono::nanoseconds(static_cast<long long>(budget * 1e9)))
+                   : Deadline::stopwatch();
+  const controller::StepResult& answer = controller_->step(now, deadline);
+  const safety::GateResult gated = gate_.pass(answer.command, cycle_ == 0 ? 0.0 : scenario_.control_period);
+  const double taken = seconds_since(start);
+  if (budget > 0.0) step_time_ += 0.1 * (std::min(taken, budget) - step_time_);
+
+  frame_.result = answer;
+  frame_.result.command = gated.command;
+  frame_.result.report.gated = gated.reason != safety::GateReason::kNone;
+  fill_frame(now, taken);
+  in_flight_.push(now.time + now.delay, gated.command);
+  metrics_.add(frame_);
+  next_control_ += scenario_.control_period;
+  ++cycle_;
+}
+
+void ClosedLoop::fill_frame(const model::Measurement& now, double step_time) noexcept {
+  const sim::WorldState& world = world_.state();
+  frame_.cycle = cycle_;
+  frame_.time = now.time;
+  frame_.truth = plant_->state();
+  frame_.has_truth = true;
+  frame_.measurement = now;
+  frame_.applied = in_flight_.at(time() + 1e-9);
+  frame_.step_time = step_time;
+  frame_.solve_time = frame_.result.report.solve_time;
+  frame_.lateral_acceleration = plant_->output().ay;
+  frame_.longitudinal_acceleration = plant_->output().ax;
+  frame_.s = world.s;
+  frame_.lateral_error = world.lateral_error;
+  frame_.heading_error = world.heading_error;
+  frame_.edge_distance = world.edge_distance;
+  frame_.is_off_track = world.is_off_track;
+  frame_.lap = world.lap;
+  frame_.lap_time = world.lap_time;
+  frame_.last_lap_time = world.last_lap_time;
+  frame_.off_track_events = world.off_track_events;
+}
+
+void ClosedLoop::judge() noexcept {
+  const sim::WorldState& world = world_.state();
+  metrics_.add_physics({.step = plant_->step_length(),
+                        .state = plant_->state(),
+                        .lateral_acceleration = plant_->output().ay,
+                        .lateral_error = world.lateral_error,
+                        .edge_distance = world.edge_distance,
+                        .is_off_track = world.is_off_track});
+  if (world.lap > metrics_.laps_completed()) metrics_.lap_completed(world.last_lap_time);
+
+  off_for_ = std::fabs(world.lateral_error) > kLostDistance ? off_for_ + plant_->step_length() : 0.0;
+  const double limit =
+      scenario_.time_limit > 0.0 ? scenario_.time_limit : kTimePerLap * std::max(scenario_.laps, 1);
+  if (scenario_.laps > 0 && (world.lap >= scenario_.laps || world.is_finished)) {
+    over_ = true;
+  } else if (off_for_ > kLostTime) {
+    over_ = true;
+    end_reason_ = "the car left the road and did not come back";
+  } else if (world_.time() >= limit) {
+    over_ = true;
+    end_reason_ = "time limit reached";
+  }
+}
+
+telemetry::RunSummary ClosedLoop::summary() const {
+  telemetry::RunSummary run = metrics_.summary();
+  run.track = track_.name();
+  run.car = scenario_.car;
+  run.controller = scenario_.controller;
+  run.preset = scenario_.preset;
+  run.seed = scenario_.seed;
+  run.latency = scenario_.latency;
+  run.laps_wanted = scenario_.laps;
+  run.duration = world_.time();
+  run.completed = scenario_.laps > 0 && run.laps_completed >= scenario_.laps;
+  run.end_reason = run.completed || !end_reason_.empty() ? end_reason_ : "stopped";
+  return run;
+}
+
+telemetry::RunSummary run_closed_loop(ClosedLoop& loop,
+                                      const std::function<void(const telemetry::Frame&)>& on_frame,
+                                      const std::function<bool()>& stop) {
+  const auto start = std::chrono::steady_clock::now();
+  while (!loop.is_over()) {
+    if (!loop.advance()) continue;
+    if (on_frame) on_frame(loop.frame());
+    if (stop && stop()) break;
+  }
+  telemetry::RunSummary run = loop.summary();
+  run.wall_time = seconds_since(start);
+  return run;
+}
+
+}  // namespace chicane::runtime

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "chicane/base/result.hpp"
+#include "chicane/controller/controller.hpp"
+#include "chicane/path/track.hpp"
+#include "chicane/safety/command_gate.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/sim/actuation_delay.hpp"
+#include "chicane/sim/plant.hpp"
+#include "chicane/sim/sensor.hpp"
+#include "chicane/sim/world.hpp"
+#include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/metrics.hpp"
+
+namespace chicane::runtime {
+
+/// One experiment: controller against plant, in virtual time. The same object is run flat out
+/// (run_closed_loop) and paced by the clock (realtime_loop.hpp); given the same scenario it does the same,
+/// bit for bit, as long as no deadline is spent.
+///
+/// Time advances by physics steps. Every control period the plant is measured, the controller asked, its
+/// command gated and sent to act `latency` later. advance() allocates nothing. One thread.
+class ClosedLoop {
+ public:
+  /// Builds track, plant and controller. Fails as make.hpp does.
+  [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(const scenario::Scenario& scenario);
+
+  /// One physics step, preceded by a control step when one is due. True when there was a control step:
+  /// frame() is new. `budget` [s] bounds the control step; 0 = no bound.
+  bool advance(double budget = 0.0) noexcept;
+  /// All laps driven, the car lost, or time up.
+  [[nodiscard]] bool is_over() const noexcept { return over_; }
+  /// Stands the car at the start; the controller forgets everything.
+  void restart() noexcept;
+
+  [[nodiscard]] double time() const noexcept { return world_.time(); }
+  [[nodiscard]] const telemetry::Frame& frame() const noexcept { return frame_; }
+  [[nodiscard]] const path::Track& track() const noexcept { return track_; }
+  [[nodiscard]] const sim::WorldState& world() const noexcept { return world_.state(); }
+  [[nodiscard]] const scenario::Scenario& scenario() const noexcept { return scenario_; }
+  [[nodiscard]] telemetry::RunSummary summary() const;
+
+ private:
+  ClosedLoop(const scenario::Scenario& scenario, path::Track track, path::Track waypoints,
+             std::unique_ptr<sim::Plant> plant, std::unique_ptr<controller::Controller> controller);
+  void control(double budget) noexcept;
+  void fill_frame(const model::Measurement& now, double step_time) noexcept;
+  void judge() noexcept;
+
+  scenario::Scenario scenario_;
+  path::Track track_;
+  path::Track waypoints_;
+  std::unique_ptr<sim::Plant> plant_;
+  std::unique_ptr<controller::Controller> controller_;
+  sim::World world_;
+  sim::Sensor sensor_;
+  sim::ActuationDelay in_flight_;
+  safety::CommandGate gate_;
+  telemetry::Metrics metrics_;
+  telemetry::Frame frame_;
+  std::uint64_t cycle_ = 0;
+  double next_control_ = 0.0;
+  double step_time_ = 0.0;  ///< of the control step, smoothed; 0 in virtual time [s]
+  double off_for_ = 0.0;    ///< far from the road for this long [s]
+  bool over_ = false;
+  std::string end_reason_;
+};
+
+/// Runs to the end as fast as the machine can. `on_frame` sees every control cycle; `stop` is asked once per
+/// cycle and ends the run with what there is.
+[[nodiscard]] telemetry::RunSummary run_closed_loop(
+    ClosedLoop& loop, const std::function<void(const telemetry::Frame&)>& on_frame = {},
+    const std::function<bool()>& stop = {});
+
+}  // namespace chicane::runtime
