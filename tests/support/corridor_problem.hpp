@@ -8,8 +8,8 @@
 
 namespace chicane::test {
 
-/// The described problem with a soft corridor low_k <= cte_k <= high_k (linear price 500, quadratic 100): half-width 1.2 m with a
-/// window that forces the car at least 0.6 m to one side.
+/// The described problem with a soft corridor low_k <= cte_k <= high_k (linear price 500, quadratic 100):
+/// half-width 1.2 m with a window that forces the car at least 0.6 m to one side.
 struct CorridorProblem : DescribedProblem {
   static constexpr int kNc = 2;
 
