@@ -48,16 +48,25 @@ Result<std::unique_ptr<ClosedLoop>> ClosedLoop::create(const scenario::Scenario&
                                                     std::move(*plant), std::move(*controller)));
 }
 
-void ClosedLoop::restart() noexcept {
+void ClosedLoop::restart() {
   world_.place(track_.start_s(), track_.start_d());
   controller_->reset();
   gate_.reset();
   in_flight_.reset({});
   sensor_ = sim::Sensor(scenario_.sensor, scenario_.seed);
+  metrics_ = telemetry::Metrics(std::max(scenario_.laps, 1), scenario_.control_period);
   next_control_ = 0.0;
+  step_time_ = 0.0;
+  cycle_ = 0;
   off_for_ = 0.0;
   over_ = false;
   end_reason_.clear();
+}
+
+void ClosedLoop::drive_on() {
+  is_endless_ = true;
+  over_ = false;
+  if (off_for_ > kLostTime) restart();
 }
 
 bool ClosedLoop::advance(double budget) noexcept {
@@ -128,12 +137,12 @@ void ClosedLoop::judge() noexcept {
   off_for_ = std::fabs(world.lateral_error) > kLostDistance ? off_for_ + plant_->step_length() : 0.0;
   const double limit =
       scenario_.time_limit > 0.0 ? scenario_.time_limit : kTimePerLap * std::max(scenario_.laps, 1);
-  if (scenario_.laps > 0 && (world.lap >= scenario_.laps || world.is_finished)) {
+  if (!is_endless_ && scenario_.laps > 0 && (world.lap >= scenario_.laps || world.is_finished)) {
     over_ = true;
   } else if (off_for_ > kLostTime) {
     over_ = true;
     end_reason_ = "the car left the road and did not come back";
-  } else if (world_.time() >= limit) {
+  } else if (!is_endless_ && world_.time() >= limit) {
     over_ = true;
     end_reason_ = "time limit reached";
   }

@@ -36,8 +36,11 @@ class ClosedLoop {
   bool advance(double budget = 0.0) noexcept;
   /// All laps driven, the car lost, or time up.
   [[nodiscard]] bool is_over() const noexcept { return over_; }
-  /// Stands the car at the start; the controller forgets everything.
-  void restart() noexcept;
+  /// More laps than were asked for: is_over() only when the car is lost. Their laps are counted and
+  /// remembered like the others.
+  void drive_on();
+  /// Stands the car at the start; the controller forgets everything, the count begins anew. Allocates.
+  void restart();
 
   [[nodiscard]] double time() const noexcept { return world_.time(); }
   [[nodiscard]] const telemetry::Frame& frame() const noexcept { return frame_; }
@@ -68,6 +71,7 @@ class ClosedLoop {
   double next_control_ = 0.0;
   double step_time_ = 0.0;  ///< of the control step, smoothed; 0 in virtual time [s]
   double off_for_ = 0.0;    ///< far from the road for this long [s]
+  bool is_endless_ = false;
   bool over_ = false;
   std::string end_reason_;
 };
