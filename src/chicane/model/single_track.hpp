@@ -21,23 +21,22 @@ struct BodyMotion {
 /// transfer, no coupling of longitudinal to lateral force.
 ///
 /// Frames    W world, B body at the centre of mass (docs/notation.md).
-/// Input     road-wheel angle δ, left positive [rad]; a = net longitudinal acceleration of drive, brake and
-/// drag [m/s²]
-///           (model::longitudinal_acceleration).
+/// Input     road-wheel angle δ, left positive [rad]; net longitudinal acceleration a of drive, brake and
+///           drag [m/s²], from model::longitudinal_acceleration().
 ///
-/// Equations (docs/model.md, eq. 2–8; Rajamani 2012, §2.3, with the steer helper's share h and slip
-/// regularised at v₀):
+/// Equations (docs/model.md, eq. 2–6; Rajamani 2012, §2.3, with the steer helper's share h):
 ///
-///     vx' = a − F_f sin δ / m + (1 − h) r vy        F_i = m_i(v) μ tanh(C_i α_i / μ)
-///     vy' = (F_f cos δ + F_r) / m − (1 − h) r vx    α_f = −(−vx sin δ + (vy + a r) cos δ) / √(vx² + v₀²)
-///     r'  = (a F_f cos δ − b F_r) / I               α_r = −(vy − b r) / √(vx² + v₀²)
+///     vx' = a − f_f sin δ + (1 − h) r vy          f_i = g_i(v) μ tanh(C_i α_i / μ)
+///     vy' = f_f cos δ + f_r − (1 − h) r vx        α_f = (vx sin δ − (vy + l_f r) cos δ) / √(vx² + v₀²)
+///     r'  = (m / I) (l_f f_f cos δ − l_r f_r)     α_r = (l_r r − vy) / √(vx² + v₀²)
 ///
-/// Valid     at any speed, standstill and reverse included: as v → 0 slip speed, not slip angle, makes the
-/// force, and the car tends to
-///           the kinematic bicycle of wheelbase a + b within about v₀ / (C g). Smooth everywhere. Slips up to
+///           f force over mass of an axle, g the load on it over mass [m/s²].
+///
+/// Valid     at any speed, standstill and reverse included: as v → 0 the car tends to the kinematic bicycle
+///           of wheelbase l_f + l_r with a time constant of about v₀ / (C g). Smooth everywhere. Slips up to
 ///           the tyre's peak; beyond, forces saturate and never fall.
-/// Costs     three elementary functions (sin, cos, 2 tanh, sqrt); no allocation; const and safe to share.
-/// Template over the scalar: call it with Dual<N> for Jacobians.
+/// Costs     one sin, cos and sqrt, two tanh; no allocation; const and safe to share. Template over the
+///           scalar: call it with Dual<N> for Jacobians.
 struct SingleTrack {
   static constexpr double kSlipSpeed = 3.0;  ///< v₀ [m/s]: lateral stiffness is that of at least this speed
 

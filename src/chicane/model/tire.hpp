@@ -12,8 +12,8 @@ namespace chicane::model {
 /// Normalised tyre curves: force over load from slip. Odd functions of slip, templates over the scalar, so
 /// that a Dual gives their slope. Equations and sources: docs/model.md, eq. 9–13.
 
-/// tanh: slope 1 at 0, limit ±1, never flat — what the single track saturates with (eq. 9). z = cornering ·
-/// slip / friction.
+/// tanh: slope 1 at 0, limit ±1, never flat; what the single track saturates with (eq. 9).
+/// z = cornering · slip / friction.
 template <class T>
 [[nodiscard]] T saturate(const T& z) {
   return tanh(z);
@@ -28,8 +28,8 @@ template <class T>
   return z * (1.0 - magnitude * (1.0 / 3.0) + magnitude * magnitude * (1.0 / 27.0));
 }
 
-/// Magic formula y = D sin(C atan(B x − E (B x − atan(B x)))) (eq. 11; Pacejka 2012, §4.3.1). Slope at 0: B C
-/// D.
+/// Magic formula y = D sin(C atan(B x − E (B x − atan(B x)))), slope B C D at 0 (eq. 11; Pacejka 2012,
+/// §4.3.1).
 struct MagicFormula {
   double stiffness = 10.0;  ///< B
   double shape = 1.5;       ///< C
