@@ -1,7 +1,45 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
+#include <exception>
+#include <variant>
 
-int main() {
-  std::puts("chicane");
-  return 0;
+#include "commands.hpp"
+
+namespace chicane::apps {
+namespace {
+
+constexpr Command kCommands[] = {
+    {"drive", "Controller and simulator in one process, with a dashboard", drive},
+    {"serve", "Controller for an external simulator, as the original program was", serve},
+    {"check", "Validate scenarios, presets, cars and tracks, and explain what is wrong", check},
+    {"list", "Presets, tracks, cars, scenarios, controllers and parameters", list},
+};
+
+}  // namespace
+
+std::span<const Command> commands() { return kCommands; }
+
+ExitCode report(const Error& error) {
+  std::fprintf(stderr, "%s\n", error.message.c_str());
+  return error.code == ErrorCode::kIo ? kEnvironment : kUsage;
+}
+
+}  // namespace chicane::apps
+
+int main(int count, char** words) {
+  using namespace chicane::apps;
+  try {
+    const std::variant<Options, Done> parsed = parse_command_line(count, words);
+    if (const Done* done = std::get_if<Done>(&parsed)) return done->code;
+    const Options& options = std::get<Options>(parsed);
+    for (const Command& command : commands()) {
+      if (command.name == options.command) return command.run(options);
+    }
+    return kUsage;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "chicane: %s\n", e.what());
+  } catch (...) {
+    std::fprintf(stderr, "chicane: unknown error\n");
+  }
+  return kEnvironment;
 }

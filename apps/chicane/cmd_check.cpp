@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "chicane/path/track.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/protocol/track_codec.hpp"
+#include "chicane/protocol/yaml_codec.hpp"
+#include "commands.hpp"
+
+namespace chicane::apps {
+namespace {
+
+Result<std::string> check_track(const std::string& file) {
+  const Result<path::Track> track = protocol::read_track(file);
+  if (!track) return fail(track.error());
+  const double length = track->centre().length();
+  double narrowest = 1e9;
+  double sharpest = 1e-9;
+  for (double s = 0.0; s < length; s += 1.0) {
+    narrowest = std::min(narrowest, track->left_width(s) + track->right_width(s));
+    sharpest = std::max(sharpest, std::abs(track->centre().at(s).curvature));
+  }
+  return fmt::format("{} track, {:.1f} m long, at least {:.1f} m wide, tightest radius {:.1f} m",
+                     track->centre().is_closed() ? "closed" : "open", length, narrowest, 1.0 / sharpest);
+}
+
+/// A file that only describes a car is one; every other is what a run can start from.
+Result<std::string> check_settings(const std::string& file) {
+  const Result<std::string> text = protocol::read_file(file);
+  if (!text) return fail(text.error());
+  const Result<protocol::Document> document = protocol::parse_document(*text, file);
+  if (!document) return fail(document.error());
+  const auto& settings = document->assignments;
+  const bool is_car =
+      !settings.empty() && !document->preset &&
+      std::all_of(settings.begin(), settings.end(), [](const protocol::Assignment& setting) {
+        return setting.parameter->key == "plant" || setting.parameter->key.starts_with("vehicle.");
+      });
+  const Result<scenario::Scenario> scenario =
+      is_car ? protocol::compose({"", {{"car", file}}}) : protocol::compose({file, {}});
+  if (!scenario) return fail(scenario.error());
+  return fmt::format("{}, {} settings", is_car ? "car" : "preset or scenario", settings.size());
+}
+
+}  // namespace
+
+ExitCode check(const Options& options) {
+  ExitCode worst = kSuccess;
+  for (const std::string& file : options.files) {
+    const Result<std::string> found = file.ends_with(".csv") ? check_track(file) : check_settings(file);
+    if (found) {
+      fmt::print("{}: ok, {}\n", file, *found);
+    } else {
+      worst = std::max(worst, report(found.error()));
+    }
+  }
+  return worst;
+}
+
+}  // namespace chicane::apps

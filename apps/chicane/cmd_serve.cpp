@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+
+#include "chicane/runtime/assets.hpp"
+#include "chicane/runtime/make.hpp"
+#include "chicane/runtime/serve.hpp"
+#include "chicane/runtime/viewer.hpp"
+#include "commands.hpp"
+#include "experiment.hpp"
+#include "interrupt.hpp"
+#include "progress.hpp"
+
+namespace chicane::apps {
+namespace {
+
+Result<runtime::ServeSummary> run(const Options& options, const std::atomic<bool>& stop) {
+  const Result<scenario::Scenario> scenario = experiment(options);
+  if (!scenario) return fail(scenario.error());
+  const Result<std::unique_ptr<controller::Controller>> controller = runtime::make_controller(*scenario);
+  if (!controller) return fail(controller.error());
+
+  runtime::ServeOptions serving;
+  serving.server.address = options.address;
+  serving.server.port = options.port;
+  serving.vehicle = scenario->vehicle;
+  serving.latency =
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(scenario->latency));
+  runtime::ViewerOptions viewing;
+  viewing.run.controller = scenario->controller;
+  viewing.run.preset = scenario->preset;
+  viewing.run.latency = scenario->latency;
+  viewing.run.control_period = scenario->control_period;
+  viewing.run.vehicle = scenario->vehicle;
+  runtime::ViewerEndpoint viewer(std::move(viewing));
+  Progress progress;
+  runtime::ServeHooks hooks;
+  hooks.on_frame = [&](const telemetry::Frame& frame) {
+    viewer.publish(frame);
+    progress.show(frame);
+  };
+  hooks.log = [](std::string_view line) { fmt::print(stderr, "{}\n", line); };
+  fmt::print(stderr,
+             "{} ({}) waits for a simulator on port {}; dashboard at http://localhost:{}/; Ctrl-C ends\n",
+             scenario->preset, scenario->controller, options.port, options.port);
+  return runtime::serve(serving, **controller, std::move(hooks), &viewer, runtime::embedded_assets(), stop);
+}
+
+}  // namespace
+
+ExitCode serve(const Options& options) {
+  const Result<runtime::ServeSummary> summary = run(options, catch_interrupts());
+  if (!summary) return report(summary.error());
+  fmt::print("{} answers to {} simulators; {} unusable messages, {} commands changed by the gate\n",
+             summary->answers, summary->connections, summary->unusable, summary->interventions);
+  return kSuccess;
+}
+
+}  // namespace chicane::apps

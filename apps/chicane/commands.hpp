@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "chicane/base/result.hpp"
+#include "options.hpp"
+
+namespace chicane::apps {
+
+struct Command {
+  std::string_view name;
+  std::string_view summary;
+  ExitCode (*run)(const Options&) = nullptr;
+};
+
+/// All commands, in the order of the help (main.cpp).
+[[nodiscard]] std::span<const Command> commands();
+
+[[nodiscard]] ExitCode drive(const Options& options);
+[[nodiscard]] ExitCode serve(const Options& options);
+[[nodiscard]] ExitCode simulate(const Options& options);
+[[nodiscard]] ExitCode check(const Options& options);
+[[nodiscard]] ExitCode list(const Options& options);
+
+/// Says the error on stderr; which exit code it is.
+[[nodiscard]] ExitCode report(const Error& error);
+
+}  // namespace chicane::apps

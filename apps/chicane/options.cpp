@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/protocol/schema.hpp"
+#include "commands.hpp"
+
+namespace chicane::apps {
+namespace {
+
+/// One option that is another name for a setting of the schema.
+void add_setting(CLI::App& command, Options& options, const std::string& name, const std::string& key,
+                 const std::string& type, const std::string& help) {
+  command
+      .add_option_function<std::string>(
+          name, [&options, key](const std::string& text) { options.settings.emplace_back(key, text); }, help)
+      ->type_name(type);
+}
+
+void add_speed(CLI::App& command, Options& options) {
+  command.add_option("--speed-mps", options.speed_mps, "Speed reference of the controller [m/s]")
+      ->type_name("X");
+  command
+      .add_option_function<double>(
+          "--speed-mph", [&options](double mph) { options.speed_mps = fmt::format("{}", mph_to_mps(mph)); },
+          "Speed reference of the controller [mph]")
+      ->type_name("X")
+      ->excludes("--speed-mps");
+}
+
+/// --set comes after all named options: the last one wins.
+void add_set(CLI::App& command, Options& options) {
+  const auto take = [&options](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+      const std::size_t equals = text.find('=');
+      if (equals == std::string::npos || equals == 0) {
+        throw CLI::ValidationError("--set",
+                                   fmt::format("got {}, expected key=value", protocol::quoted(text)));
+      }
+      options.settings.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+    }
+  };
+  command
+      .add_option_function<std::vector<std::string>>("--set", take,
+                                                     "Any of `chicane list parameters`; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+void add_controller(CLI::App& command, Options& options) {
+  add_setting(command, options, "--preset", "preset", "NAME",
+              "Controller and its settings (chicane list presets)");
+  add_setting(command, options, "--controller", "controller", "NAME",
+              "Another controller (chicane list controllers)");
+  add_setting(command, options, "--car", "car", "NAME|FILE",
+              "Car, simulated and believed (chicane list cars)");
+  add_speed(command, options);
+}
+
+void add_world(CLI::App& command, Options& options) {
+  add_setting(command, options, "--track", "track", "NAME|FILE", "Track (chicane list tracks)");
+  command
+      .add_option_function<std::string>(
+          "--laps",
+          [&options](const std::string& text) {
+            options.has_laps = true;
+            options.settings.emplace_back("laps", text);
+          },
+          "Laps to drive; 0 drives until stopped")
+      ->type_name("N");
+  add_setting(command, options, "--seed", "seed", "N", "Of everything random");
+}
+
+void add_port(CLI::App& command, Options& options) {
+  command.add_option("--port", options.port, "Port of dashboard and simulator socket; 0 takes any free one")
+      ->type_name("P")
+      ->capture_default_str();
+  command.add_option("--address", options.address, "Address to listen on; 0.0.0.0 lets other machines in")
+      ->type_name("A")
+      ->capture_default_str();
+}
+
+void add_drive(CLI::App& command, Options& options) {
+  command
+      .add_option("scenario", options.scenario_file, "Scenario by name or file; other options win over it")
+      ->type_name("SCENARIO");
+  add_controller(command, options);
+  add_world(command, options);
+  add_setting(command, options, "--latency-ms", "latency_ms", "X",
+              "Actuation delay of the simulated car [ms], default 100");
+  command.add_flag("--fast", options.is_fast, "As fast as possible, deterministic, without sockets");
+  add_port(command, options);
+  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  add_set(command, options);
+  command.footer("Example: chicane drive --preset sixty-mph --track lakeside --laps 2 --fast");
+}
+
+void add_serve(CLI::App& command, Options& options) {
+  add_controller(command, options);
+  add_setting(command, options, "--latency-ms", "latency_ms", "X",
+              "Sleep before each answer [ms], default 100 as the original");
+  add_port(command, options);
+  add_set(command, options);
+  command.footer("Example: chicane serve --preset weighted --port 4567");
+}
+
+void add_simulate(CLI::App& command, Options& options) {
+  command.add_option("--connect", options.connect, "The controller's address")
+      ->type_name("URL")
+      ->capture_default_str();
+  command
+      .add_option("--server", options.server,
+                  "Start the controller with this command, and again when it dies")
+      ->type_name("CMD");
+  add_setting(command, options, "--car", "car", "NAME|FILE", "Simulated car (chicane list cars)");
+  add_world(command, options);
+  add_setting(command, options, "--latency-ms", "latency_ms", "X",
+              "Actuation delay on top of the controller's own [ms], default 0");
+  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  add_set(command, options);
+  command.footer("Example: chicane simulate --connect ws://127.0.0.1:4567 --track lakeside --laps 2");
+}
+
+void add_check(CLI::App& command, Options& options) {
+  command.add_option("files", options.files, "Presets, scenarios, cars (.yaml) and tracks (.csv)")
+      ->type_name("FILE")
+      ->required();
+  command.footer("Example: chicane check presets/weighted.yaml tracks/lakeside.csv");
+}
+
+void add_list(CLI::App& command, Options& options) {
+  command
+      .add_option("what", options.shelf,
+                  "presets, tracks, cars, scenarios, controllers or parameters; all when left out")
+      ->type_name("WHAT")
+      ->check(CLI::IsMember({"presets", "tracks", "cars", "scenarios", "controllers", "parameters"}));
+  command.add_flag("--markdown", options.is_markdown, "parameters: as the page docs/configuration.md");
+  command.footer("Example: chicane list presets");
+}
+
+/// What was meant by the first word that nobody understood.
+std::string correction(const CLI::App& app, const std::vector<std::string>& unknown) {
+  if (unknown.empty()) return "";
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name());
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  const std::string word = unknown.front().substr(0, unknown.front().find('='));
+  const std::string_view best = protocol::nearest(word, views);
+  return best.empty() ? "" : fmt::format(" (did you mean {}?)", best);
+}
+
+Done explain(const CLI::App& app, const CLI::ParseError& error) {
+  const auto chosen = app.get_subcommands();
+  const CLI::App& at = chosen.empty() ? app : *chosen.front();
+  if (error.get_exit_code() == 0) {  // help or version
+    fmt::print("{}", error.get_name() == "CallForVersion" ? std::string(error.what()) + "\n" : app.help());
+    return {kSuccess};
+  }
+  const std::string name = chosen.empty() ? "chicane" : fmt::format("chicane {}", at.get_name());
+  fmt::print(stderr, "{}: {}{}\nSee `{} --help`.\n", name, error.what(), correction(at, at.remaining()),
+             name);
+  return {kUsage};
+}
+
+/// The first word must be a command; empty when it is, or an option.
+std::string command_fault(int count, const char* const* words) {
+  if (count < 2) return "chicane: got no command";
+  const std::string_view word = words[1];
+  std::vector<std::string_view> names;
+  for (const Command& command : commands()) names.push_back(command.name);
+  if (word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end()) return "";
+  const std::string_view best = protocol::nearest(word, names);
+  return fmt::format("chicane: got the unknown command {}, expected one of {}{}", protocol::quoted(word),
+                     fmt::join(names, ", "), best.empty() ? "" : fmt::format(" (did you mean {}?)", best));
+}
+
+}  // namespace
+
+std::variant<Options, Done> parse_command_line(int count, const char* const* words) {
+  Options options;
+  CLI::App app("Drives a car round a track by model predictive control.", "chicane");
+  app.set_version_flag("--version", "chicane " CHICANE_VERSION);
+  app.require_subcommand(1);
+  app.footer("Example: chicane drive");
+  for (const Command& command : commands()) {
+    CLI::App* const sub = app.add_subcommand(std::string(command.name), std::string(command.summary));
+    if (command.name == "drive") add_drive(*sub, options);
+    if (command.name == "serve") add_serve(*sub, options);
+    if (command.name == "simulate") add_simulate(*sub, options);
+    if (command.name == "check") add_check(*sub, options);
+    if (command.name == "list") add_list(*sub, options);
+  }
+  if (const std::string fault = command_fault(count, words); !fault.empty()) {
+    fmt::print(stderr, "{}\nSee `chicane --help`.\n", fault);
+    return Done{kUsage};
+  }
+  try {
+    app.parse(count, words);
+  } catch (const CLI::ParseError& error) {
+    return explain(app, error);
+  }
+  options.command = app.get_subcommands().front()->get_name();
+  return options;
+}
+
+}  // namespace chicane::apps

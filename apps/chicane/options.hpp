@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+/// The command line as plain data, so that no command knows how it is parsed.
+namespace chicane::apps {
+
+/// What a process tells its caller. A contract: scripts depend on it.
+enum ExitCode : int {
+  kSuccess = 0,
+  kBrokenPromise = 1,  ///< the run left the road, or did not do all its laps
+  kUsage = 2,          ///< wrong usage or a bad input file
+  kEnvironment = 3,    ///< port in use, no permission
+};
+
+struct Options {
+  std::string command;
+
+  std::string scenario_file;  ///< empty: none
+  std::vector<std::pair<std::string, std::string>>
+      settings;           ///< schema key and text, in the order of precedence
+  std::string speed_mps;  ///< reference of whichever controller drives; empty: its own
+  bool has_laps = false;
+
+  bool is_fast = false;  ///< as fast as possible, no sockets
+  bool is_json = false;
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 4567;
+
+  std::string connect =
+      "ws://127.0.0.1:4567/socket.io/?EIO=4&transport=websocket";  ///< simulate: the controller
+  std::string server;                                              ///< simulate: command that starts it
+
+  std::vector<std::string> files;  ///< check
+  std::string shelf;               ///< list; empty: an overview
+  bool is_markdown = false;        ///< list parameters
+};
+
+/// Nothing is left to do: text was printed.
+struct Done {
+  ExitCode code = kSuccess;
+};
+
+/// Prints help to stdout, mistakes to stderr.
+[[nodiscard]] std::variant<Options, Done> parse_command_line(int count, const char* const* words);
+
+}  // namespace chicane::apps

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include "progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <string>
+
+#include "chicane/base/angle.hpp"
+
+namespace chicane::apps {
+namespace {
+
+constexpr std::chrono::milliseconds kTerminalPeriod{100};
+constexpr double kLinePeriod = 10.0;  // [s] of the run
+
+std::string line(const telemetry::Frame& frame) {
+  const double speed = frame.measurement.speed;
+  const double error = frame.has_truth ? frame.lateral_error : frame.result.report.lateral_error;
+  const std::string place =
+      frame.has_truth ? fmt::format("lap {:<3} {:6.0f} m ", frame.lap + 1, frame.s) : "";
+  const std::string off = frame.is_off_track ? "  OFF TRACK" : "";
+  return fmt::format("{:7.1f} s  {}{:6.1f} mph  error {:+6.2f} m  solve {:6.0f} µs{}", frame.time, place,
+                     mps_to_mph(speed), error, 1e6 * frame.solve_time, off);
+}
+
+}  // namespace
+
+Progress::Progress() : is_terminal_{isatty(STDERR_FILENO) == 1} {}
+
+Progress::~Progress() {
+  if (has_line_) fmt::print(stderr, "\n");
+}
+
+void Progress::show(const telemetry::Frame& frame) {
+  if (is_terminal_) {
+    const Clock::time_point now = Clock::now();
+    if (now < next_) return;
+    next_ = now + kTerminalPeriod;
+    has_line_ = true;
+    fmt::print(stderr, "\r{}\x1b[K", line(frame));  // and clear what is left of the line before
+    std::fflush(stderr);
+  } else if (frame.time >= next_run_time_) {
+    next_run_time_ = frame.time + kLinePeriod;
+    fmt::print(stderr, "{}\n", line(frame));
+  }
+}
+
+}  // namespace chicane::apps

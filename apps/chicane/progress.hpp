@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <chrono>
+
+#include "chicane/telemetry/frame.hpp"
+
+namespace chicane::apps {
+
+/// Tells on stderr how a run goes: on a terminal one line that renews itself ten times a second, otherwise a
+/// line every ten seconds of the run.
+class Progress {
+ public:
+  Progress();
+  /// Leaves the cursor at the beginning of a line.
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void show(const telemetry::Frame& frame);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool is_terminal_;
+  bool has_line_ = false;
+  Clock::time_point next_{};
+  double next_run_time_ = 10.0;
+};
+
+}  // namespace chicane::apps

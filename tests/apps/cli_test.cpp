@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// The program as a user meets it: words in, text and exit codes out.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+namespace chicane {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+std::string read(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+/// Runs the program in the root of the source tree.
+Outcome chicane_program(const std::string& arguments) {
+  const fs::path errors =
+      fs::path(::testing::TempDir()) /
+      (std::string("chicane_cli_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  const std::string command = std::string("cd '" CHICANE_SOURCE_DIR "' && '" CHICANE_PROGRAM "' ") +
+                              arguments + " 2> '" + errors.string() + "'";
+  Outcome outcome;
+  FILE* pipe = ::popen(command.c_str(), "r");
+  if (pipe == nullptr) return outcome;
+  std::array<char, 4096> buffer{};
+  for (std::size_t count = 0; (count = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+    outcome.out.append(buffer.data(), count);
+  }
+  const int status = ::pclose(pipe);
+  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  outcome.err = read(errors);
+  fs::remove(errors);
+  return outcome;
+}
+
+TEST(Cli, HelpNamesEveryCommandAndGivesAnExample) {
+  const Outcome help = chicane_program("--help");
+  EXPECT_EQ(help.code, 0);
+  EXPECT_THAT(help.err, IsEmpty());
+  for (const char* command : {"drive", "serve", "check", "list"}) {
+    EXPECT_THAT(help.out, HasSubstr(command));
+    const Outcome detail = chicane_program(std::string(command) + " --help");
+    EXPECT_EQ(detail.code, 0) << command;
+    EXPECT_THAT(detail.out, HasSubstr(std::string("Example: chicane ") + command));
+  }
+}
+
+TEST(Cli, SaysItsVersion) {
+  const Outcome version = chicane_program("--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_THAT(version.out, ::testing::StartsWith("chicane "));
+}
+
+TEST(Cli, WrongUsageIsExplainedWithExitCodeTwo) {
+  struct Case {
+    const char *arguments, *expected;
+  };
+  const Case cases[] = {
+      {"", "got no command"},
+      {"drvie", "(did you mean drive?)"},
+      {"drive --pressets x", "(did you mean --preset?)"},
+      {"drive --laps", "--laps"},
+      {"drive --fast --laps many", "laps: got many, expected an integer in [0, 10000]"},
+      {"drive --fast --latency-ms 900", "latency_ms: got 900, expected a number in [0, 500] ms"},
+      {"drive --fast --preset sixty_mph", "(did you mean sixty-mph?)"},
+      {"drive --fast --track nowhere", "track: got \"nowhere\", expected a file or one of"},
+      {"drive --fast --controller mpc", "controller: got mpc, expected one of tracking-mpc"},
+      {"drive --fast --set laps", "got laps, expected key=value"},
+      {"drive --fast --set latenzy_ms=3", "(did you mean latency_ms?)"},
+      {"drive --fast --speed-mps 999", "speed_limit_mps: got 999"},
+      {"drive --fast no/such.yaml", "expected a file that exists"},
+      {"list flavours", "flavours"},
+      {"check", "files is required"},
+  };
+  for (const Case& one : cases) {
+    const Outcome outcome = chicane_program(one.arguments);
+    EXPECT_EQ(outcome.code, 2) << one.arguments << "\n" << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(one.expected)) << one.arguments;
+    EXPECT_THAT(outcome.out, IsEmpty()) << one.arguments;
+  }
+}
+
+TEST(Cli, ARunPrintsOneJsonObjectOnStdoutAndNothingElse) {
+  const Outcome outcome = chicane_program("drive --fast --json --laps 1 --seed 3 --set latency_ms=80");
+  const Json report = Json::parse(outcome.out, nullptr, false);
+  ASSERT_FALSE(report.is_discarded()) << outcome.out << outcome.err;
+  EXPECT_EQ(report["seed"], 3);
+  EXPECT_EQ(report["latency_ms"], 80.0);
+  EXPECT_EQ(report["track"], "lakeside");
+  EXPECT_EQ(report["car"], "udacity");
+  EXPECT_EQ(report["preset"], "default");
+  const bool kept = report["completed"].get<bool>() && report["off_track_events"] == 0;
+  EXPECT_EQ(outcome.code, kept ? 0 : 1);
+}
+
+TEST(Cli, ARunThatCannotFinishIsABrokenPromise) {
+  const Outcome outcome = chicane_program("drive --fast --json --laps 1 --set time_limit_s=2");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(Json::parse(outcome.out)["completed"], false);
+}
+
+TEST(Cli, TheSameSeedGivesTheSameRun) {
+  const std::string arguments =
+      "drive --fast --json --laps 1 --set time_limit_s=8 --set sensor.position_noise_m=0.05 --seed ";
+  const auto hash = [&](const char* seed) {
+    return Json::parse(chicane_program(arguments + seed).out)["state_hash"];
+  };
+  EXPECT_EQ(hash("5"), hash("5"));
+  EXPECT_NE(hash("5"), hash("6"));
+}
+
+TEST(Cli, CheckAcceptsWhatShips) {
+  const Outcome outcome = chicane_program("check presets/*.yaml cars/*.yaml scenarios/*.yaml tracks/*.csv");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("cars/road-car.yaml: ok, car"));
+  EXPECT_THAT(outcome.out, HasSubstr("tracks/lakeside.csv: ok, closed track"));
+}
+
+TEST(Cli, CheckExplainsEveryFaultWithFileAndLine) {
+  const Outcome outcome =
+      chicane_program("check tests/protocol/fixtures/broken/several_faults.yaml presets/pid.yaml");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(
+      outcome.err,
+      HasSubstr("broken/several_faults.yaml:1: latency_ms: got 900, expected a number in [0, 500] ms"));
+  EXPECT_THAT(outcome.err, HasSubstr("broken/several_faults.yaml:5: vehicle.colour: got an unknown key"));
+  EXPECT_THAT(outcome.out, HasSubstr("presets/pid.yaml: ok"));
+}
+
+TEST(Cli, ListKnowsWhatShips) {
+  EXPECT_THAT(chicane_program("list presets").out, HasSubstr("measured-latency"));
+  EXPECT_THAT(chicane_program("list tracks").out, HasSubstr("lakeside"));
+  EXPECT_THAT(chicane_program("list cars").out, HasSubstr("road-car"));
+  EXPECT_THAT(chicane_program("list controllers").out, HasSubstr("stanley"));
+  EXPECT_THAT(chicane_program("list parameters").out, HasSubstr("cubic_mpc.horizon_steps"));
+}
+
+TEST(Cli, TheReferencePageIsInStepWithTheProgram) {
+  EXPECT_EQ(chicane_program("list parameters --markdown").out,
+            read(fs::path(CHICANE_SOURCE_DIR) / "docs/configuration.md"))
+      << "run: chicane list parameters --markdown > docs/configuration.md";
+}
+
+TEST(Cli, NoCommandIsAdvertisedThatDoesNotExist) {
+  const std::string help = chicane_program("--help").out;
+  for (const char* later : {"limit", "bench", "replay", "report"}) {
+    EXPECT_THAT(help, Not(HasSubstr(std::string("\n  ") + later))) << later;
+    EXPECT_EQ(chicane_program(later).code, 2);
+  }
+}
+
+}  // namespace
+}  // namespace chicane
