@@ -73,11 +73,11 @@ class UdacityEndpoint::Control {
  public:
   using Answer = std::function<void(const Request&, std::string text, std::chrono::nanoseconds after)>;
 
-  Control(const ServeOptions& options, controller::Controller& controller, const ServeHooks& hooks,
-          Answer answer)
+  Control(const ServeOptions& options, controller::Controller& controller,
+          const std::function<void(const telemetry::Frame&)>& on_frame, Answer answer)
       : options_{options},
         controller_{controller},
-        on_frame_{hooks.on_frame},
+        on_frame_{on_frame},
         answer_{std::move(answer)},
         gate_{options.vehicle},
         delay_{seconds(options.latency) + kTypicalTurnAround},
@@ -168,6 +168,7 @@ class UdacityEndpoint::Control {
     answer_(request, protocol::encode_steer(frame_.result.command, frame_.result.plan, pose_at_receipt()),
             options_.latency);
     ++answers_;
+    frame_.solve_time = frame_.result.report.solve_time;
     frame_.lateral_error = frame_.result.report.lateral_error;
     frame_.heading_error = frame_.result.report.heading_error;
     if (on_frame_) on_frame_(frame_);
@@ -192,7 +193,7 @@ class UdacityEndpoint::Control {
   }
 
   [[nodiscard]] Deadline deadline() const {
-    return options_.step_budget.count() > 0 ? Deadline::after(options_.step_budget) : Deadline::never();
+    return options_.step_budget.count() > 0 ? Deadline::after(options_.step_budget) : Deadline::stopwatch();
   }
 
   const ServeOptions& options_;
@@ -221,7 +222,7 @@ class UdacityEndpoint::Control {
 
 UdacityEndpoint::UdacityEndpoint(const ServeOptions& options, controller::Controller& controller,
                                  ServeHooks hooks)
-    : options_{options}, hooks_{std::move(hooks)} {
+    : options_{options}, on_frame_{std::move(hooks.on_frame)}, log_{std::move(hooks.log)} {
   const auto answer = [this](const Request& request, std::string text, std::chrono::nanoseconds after) {
     server_->run_after(after, [this, id = request.from, text = std::move(text)]() mutable {
       if (id != session_.id) return;  // another simulator drives now
@@ -229,7 +230,7 @@ UdacityEndpoint::UdacityEndpoint(const ServeOptions& options, controller::Contro
       send(id, std::move(text));
     });
   };
-  control_ = std::make_unique<Control>(options_, controller, hooks_, answer);
+  control_ = std::make_unique<Control>(options_, controller, on_frame_, answer);
 }
 
 UdacityEndpoint::~UdacityEndpoint() = default;
@@ -256,7 +257,7 @@ net::UpgradeAnswer UdacityEndpoint::on_upgrade(const net::UpgradeRequest& reques
     ++refusals_;
     const std::string why =
         fmt::format("another simulator ({}) is being driven; end it first", session_.name);
-    log_at_most_once_a_second(fmt::format("refused {}: {}", request.peer, why));
+    log_.complain(fmt::format("refused {}: {}", request.peer, why));
     return {.accept = false, .status = 503, .reason = why};
   }
   Session session{.id = request.id, .name = request.peer};
@@ -272,13 +273,13 @@ void UdacityEndpoint::on_open(net::ConnectionId id) {
     return server_->close(id, 1013, "another simulator is being driven");
   }
   if (session_.id != 0) {
-    log(fmt::format("{} has gone quiet: {} takes over", session_.name, accepted.mapped().name));
+    log_.say(fmt::format("{} has gone quiet: {} takes over", session_.name, accepted.mapped().name));
     server_->close(session_.id, 1000, "another simulator took over");
   }
   session_ = accepted.mapped();
   session_.last_word = Clock::now();
   ++connections_;
-  log(fmt::format("simulator connected from {}", session_.name));
+  log_.say(fmt::format("simulator connected from {}", session_.name));
   server_->run_after(options_.open_after, [this, id] {
     if (session_.id == id && !session_.has_spoken) send_open_packet(id);
   });
@@ -294,7 +295,7 @@ void UdacityEndpoint::on_message(net::ConnectionId id, std::string_view bytes, b
 void UdacityEndpoint::on_close(net::ConnectionId id, std::string_view why) {
   accepted_.erase(id);
   if (id != session_.id) return;
-  log(fmt::format("simulator {} is gone: {}", session_.name, why));
+  log_.say(fmt::format("simulator {} is gone: {}", session_.name, why));
   session_ = {};
 }
 
@@ -311,7 +312,7 @@ void UdacityEndpoint::hear_telemetry(std::string_view bytes) {
     if (!complain_about(message)) return;
     request.kind = Request::Kind::kUnusable;
   }
-  if (session_.is_reported_silent) log(fmt::format("telemetry from {} again", session_.name));
+  if (session_.is_reported_silent) log_.say(fmt::format("telemetry from {} again", session_.name));
   session_.has_told = true;
   session_.is_reported_silent = false;
   if (++session_.unanswered > kMaxUnanswered) {
@@ -323,13 +324,12 @@ void UdacityEndpoint::hear_telemetry(std::string_view bytes) {
 /// Says what is wrong with a message; true when its sender waits for an answer.
 bool UdacityEndpoint::complain_about(const protocol::UdacityTelemetry& message) {
   if (const auto* foreign = std::get_if<protocol::UdacityForeign>(&message)) {
-    log_at_most_once_a_second(
-        fmt::format("this is {}{}", foreign->what, foreign->is_telemetry ? "; braking" : ""));
+    log_.complain(fmt::format("this is {}{}", foreign->what, foreign->is_telemetry ? "; braking" : ""));
     return foreign->is_telemetry;
   }
   const auto& broken = std::get<protocol::UdacityBroken>(message);
-  log_at_most_once_a_second(broken.is_event ? fmt::format("broken telemetry: {}; braking", broken.reason)
-                                            : fmt::format("ignored a message: {}", broken.reason));
+  log_.complain(broken.is_event ? fmt::format("broken telemetry: {}; braking", broken.reason)
+                                : fmt::format("ignored a message: {}", broken.reason));
   return broken.is_event;
 }
 
@@ -368,30 +368,15 @@ void UdacityEndpoint::watch() {
   const bool is_waiting = session_.id != 0 && session_.unanswered == 0 && !session_.is_reported_silent;
   if (!is_waiting || Clock::now() - session_.last_word < options_.silent_after) return;
   session_.is_reported_silent = true;
-  log(session_.has_told
-          ? fmt::format("no telemetry from {} for {:.0f} s: is it paused, or in its menu?", session_.name,
-                        seconds(options_.silent_after))
-          : fmt::format("{} is connected but sends no telemetry: leave the scene and enter it again",
-                        session_.name));
+  log_.say(session_.has_told
+               ? fmt::format("no telemetry from {} for {:.0f} s: is it paused, or in its menu?",
+                             session_.name, seconds(options_.silent_after))
+               : fmt::format("{} is connected but sends no telemetry: leave the scene and enter it again",
+                             session_.name));
 }
 
 bool UdacityEndpoint::is_quiet() const {
   return session_.unanswered == 0 && Clock::now() - session_.last_word >= options_.quiet_after;
-}
-
-void UdacityEndpoint::log(const std::string& line) const {
-  if (hooks_.log) hooks_.log(line);
-}
-
-void UdacityEndpoint::log_at_most_once_a_second(const std::string& line) {
-  const Clock::time_point now = Clock::now();
-  if (now - last_complaint_ < std::chrono::seconds{1}) {
-    ++complaints_held_back_;
-    return;
-  }
-  last_complaint_ = now;
-  const int more = std::exchange(complaints_held_back_, 0);
-  log(more > 0 ? fmt::format("{} ({} similar before)", line, more) : line);
 }
 
 Result<ServeSummary> serve(const ServeOptions& options, controller::Controller& controller, ServeHooks hooks,

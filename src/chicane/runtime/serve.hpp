@@ -18,6 +18,7 @@
 #include "chicane/net/server.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/runtime/endpoint.hpp"
+#include "chicane/runtime/sparse_log.hpp"
 #include "chicane/telemetry/frame.hpp"
 
 namespace chicane::runtime {
@@ -95,8 +96,6 @@ class UdacityEndpoint final : public Endpoint {
     Clock::time_point last_word{};  ///< heard or said
   };
 
-  void log(const std::string& line) const;
-  void log_at_most_once_a_second(const std::string& line);
   void hear_telemetry(std::string_view bytes);
   void hear_packet(protocol::UdacityPacket packet);
   [[nodiscard]] bool complain_about(const protocol::UdacityTelemetry& message);
@@ -107,12 +106,11 @@ class UdacityEndpoint final : public Endpoint {
   [[nodiscard]] bool is_quiet() const;
 
   ServeOptions options_;
-  ServeHooks hooks_;
+  std::function<void(const telemetry::Frame&)> on_frame_;
+  SparseLog log_;
   net::Server* server_ = nullptr;
   Session session_;
   std::map<net::ConnectionId, Session> accepted_;  ///< between on_upgrade and on_open
-  Clock::time_point last_complaint_{};
-  int complaints_held_back_ = 0;
   std::atomic<std::uint64_t> connections_{0};
   std::atomic<std::uint64_t> refusals_{0};
   std::atomic<std::uint64_t> unusable_{0};
