@@ -235,8 +235,8 @@ Result<SmoothLine> smooth_line(std::span<const Vec2> points, bool closed, double
     line.smoothing_length = smoothing;
     const bool is_close = line.rms_deviation <= sigma + 0.002 && line.max_deviation <= 4.0 * sigma + 0.01;
     if (is_close || smoothing <= kMinSmoothingLength) return line;
-    smoothing = std::max(0.8 * smoothing, kMinSmoothingLength);
-    spacing = std::min(spacing, 2.0 * smoothing);
+    smoothing = std::max(0.7 * smoothing, kMinSmoothingLength);
+    spacing = std::min(spacing, std::max(2.0 * smoothing, 0.25 * mean_gap));
   }
 }
 

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/track_codec.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cmath>
+#include <filesystem>
+
+#include "chicane/base/angle.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const std::string kSource = CHICANE_SOURCE_DIR;
+
+/// A ring of R 60 m as CSV rows with a separator, `format` giving the columns of one point.
+std::string ring(const std::string& header, const std::string& separator, const std::string& tail = "",
+                 const std::string& end = "\n") {
+  std::string text = header;
+  for (int i = 0; i < 40; ++i) {
+    const double angle = 2.0 * kPi * i / 40.0;
+    text += std::to_string(60.0 * std::cos(angle)) + separator + std::to_string(60.0 * std::sin(angle)) +
+            tail + end;
+  }
+  return text;
+}
+
+TEST(TrackCodec, ReadsWaypointsAndSaysTheWidthItAssumes) {
+  const TrackFile file = parse_track(ring("x,y\n", ","), "ring.csv").value();
+  EXPECT_EQ(file.points.size(), 40U);
+  EXPECT_TRUE(file.is_closed);
+  EXPECT_EQ(file.points[3].left, 4.5);
+  EXPECT_THAT(file.warnings,
+              ElementsAre("ring.csv:1: width: not in the file, 4.5 m left and 4.5 m right assumed"));
+  const TrackFile wide =
+      parse_track(ring("x,y\n", ","), "ring.csv", {.default_left = 6.0, .default_right = 3.0}).value();
+  EXPECT_EQ(wide.points[3].left, 6.0);
+  EXPECT_EQ(wide.points[3].right, 3.0);
+}
+
+TEST(TrackCodec, ReadsTumCentreLinesWithTheRightWidthFirst) {
+  const TrackFile file =
+      parse_track(ring("# x_m,y_m,w_tr_right_m,w_tr_left_m\n", ",", ",4.4,4.8"), "ring.csv").value();
+  EXPECT_EQ(file.points[0].right, 4.4);
+  EXPECT_EQ(file.points[0].left, 4.8);
+  EXPECT_EQ(file.lines[0], 2);
+  EXPECT_THAT(file.warnings, IsEmpty());
+}
+
+TEST(TrackCodec, MatchesNamesNotPositions) {
+  const TrackFile file =
+      parse_track("w_tr_left_m,y_m,note,x_m,w_tr_right_m\n4.8,1,here,0,4.4\n4.8,2,there,9,4.4\n", "a.csv")
+          .value();
+  EXPECT_EQ(file.points[1].position, (Vec2{9.0, 2.0}));
+  EXPECT_EQ(file.points[1].left, 4.8);
+  EXPECT_THAT(file.warnings, ::testing::Contains("a.csv:1: note: unknown column, ignored"));
+}
+
+TEST(TrackCodec, ReadsTumRaceLinesAndRecomputesTheirHeading) {
+  std::string text =
+      "# 7daf4d34-e3c1-4827-9777-a6793ffc3440\n# 603fd3987364b09f\n# s_m; x_m; y_m; psi_rad; kappa_radpm; "
+      "vx_mps; ax_mps2\n";
+  for (int i = 0; i <= 40; ++i) {  // the last row repeats the first place
+    const double angle = 2.0 * kPi * i / 40.0;
+    // TUM: psi is 0 along +y; heading along the ring is angle + π/2, so psi = angle.
+    text += std::to_string(60.0 * angle) + "; " + std::to_string(60.0 * std::cos(angle)) + "; " +
+            std::to_string(60.0 * std::sin(angle)) + "; " + std::to_string(angle) + "; 0.0166; 20.0; 0.0\n";
+  }
+  const TrackFile file = parse_track(text, "race.csv").value();
+  EXPECT_EQ(file.points.size(), 40U) << "without the closing copy";
+  EXPECT_TRUE(file.is_closed);
+  EXPECT_THAT(
+      file.warnings,
+      ElementsAre("race.csv:3: width: not in the file, 4.5 m left and 4.5 m right assumed",
+                  "race.csv:4: psi_rad: counts from +y (as TUM files do), recomputed from the points"));
+  EXPECT_NEAR(make_track(file)->centre().at(0.0).heading, kPi / 2.0, 0.01);
+}
+
+TEST(TrackCodec, ReadsRaceLinesWithWidthsMixedHeadersAndCommas) {
+  const std::string header =
+      "# s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2, w_tr_right_m, w_tr_left_m\n";
+  std::string text = header;
+  for (int i = 0; i < 40; ++i) {
+    const double angle = 2.0 * kPi * i / 40.0;
+    text += "0," + std::to_string(60.0 * std::cos(angle)) + "," + std::to_string(60.0 * std::sin(angle)) +
+            "," + std::to_string(angle + kPi / 2.0) + ",0,0,0,1.5,2.5\n";
+  }
+  const TrackFile file = parse_track(text, "race.csv").value();
+  EXPECT_EQ(file.points[7].right, 1.5);
+  EXPECT_EQ(file.points[7].left, 2.5);
+  EXPECT_THAT(file.warnings, IsEmpty()) << "this psi counts from +x";
+}
+
+TEST(TrackCodec, ForgivesLineEndsMarksBlanksAndSeparators) {
+  const std::vector<path::TrackPoint> expected = parse_track(ring("x,y\n", ","), "a").value().points;
+  for (const std::string& text :
+       {ring("x,y\r\n", ",", "", "\r\n"), ring("x,y\r", ",", "", "\r"), ring("\xef\xbb\xbfx,y\n", ","),
+        ring("X;Y\n\n", " ; ", "", "\n\n  \n"), ring("x\ty\n", "\t"), ring("x y\n", "   "),
+        ring("\"x\",\"y\"\n", ","), ring("x,y\n", ",", ","), ring("", ","), ring("# x, y\n", ",")}) {
+    const Result<TrackFile> file = parse_track(text, "a");
+    ASSERT_TRUE(file) << file.error().message;
+    ASSERT_EQ(file->points.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_EQ(file->points[i].position, expected[i].position);
+    }
+  }
+}
+
+TEST(TrackCodec, ReadsDecimalPointsInALocaleOfCommas) {
+  const char* set = std::setlocale(LC_ALL, "de_DE.UTF-8");
+  const TrackFile file = parse_track(ring("x,y\n", ","), "a").value();
+  std::setlocale(LC_ALL, "C");
+  EXPECT_EQ(file.points[0].position.x(), 60.0);
+  if (set == nullptr) GTEST_SKIP() << "locale de_DE.UTF-8 is not installed: checked in the C locale only";
+}
+
+TEST(TrackCodec, TellsOpenFromClosedAndCanBeForced) {
+  const std::string straight = "x,y\n0,0\n10,0\n20,1\n30,2\n40,2\n";
+  const TrackFile open = parse_track(straight, "a.csv").value();
+  EXPECT_FALSE(open.is_closed);
+  EXPECT_THAT(open.warnings,
+              ::testing::Contains(
+                  HasSubstr("a.csv:6: row: 40.0 m from the last point to the first: read as an open road")));
+  EXPECT_TRUE(parse_track(straight, "a.csv", {.is_closed = true})->is_closed);
+  EXPECT_FALSE(parse_track(ring("x,y\n", ","), "a.csv", {.is_closed = false})->is_closed);
+  EXPECT_FALSE(parse_track(ring("# closed=false\nx,y\n", ","), "a.csv")->is_closed);
+  EXPECT_TRUE(parse_track(ring("# closed=false\nx,y\n", ","), "a.csv", {.is_closed = true})->is_closed)
+      << "the caller wins";
+}
+
+TEST(TrackCodec, TakesTheStartAndOptionsFromComments) {
+  const TrackFile file =
+      parse_track(ring("# a ring\n# start_s_m=258.5, start_d_m=-0.76, kerb_width_m=0.5\nx,y\n", ","), "a.csv")
+          .value();
+  const path::Track track = make_track(file).value();
+  EXPECT_EQ(track.start_s(), 258.5);
+  EXPECT_EQ(track.start_d(), -0.76);
+  EXPECT_EQ(track.kerb_width(), 0.5);
+  EXPECT_EQ(track.name(), "a");
+}
+
+TEST(TrackCodec, WritesWhatItReadsBackBitForBit) {
+  TrackFile file = parse_track(ring("# start_s_m=12.25\nx,y\n", ","), "a.csv").value();
+  file.points[3].left = 1.0 / 3.0;
+  const TrackFile back = parse_track(write_track(file, "a ring\nof two lines"), "b.csv").value();
+  ASSERT_EQ(back.points.size(), file.points.size());
+  for (std::size_t i = 0; i < file.points.size(); ++i) {
+    EXPECT_EQ(back.points[i].position, file.points[i].position);
+    EXPECT_EQ(back.points[i].left, file.points[i].left);
+    EXPECT_EQ(back.points[i].right, file.points[i].right);
+  }
+  EXPECT_EQ(back.options.start_s, 12.25);
+  EXPECT_EQ(back.is_closed, file.is_closed);
+  EXPECT_THAT(back.warnings, IsEmpty());
+}
+
+TEST(TrackCodec, RefusesTooMuch) {
+  EXPECT_THAT(parse_track(std::string(kMaxTrackBytes + 1, ' '), "a.csv").error().message,
+              HasSubstr("a.csv: file: got 67108865 bytes, expected at most 64 MiB"));
+  std::string text = "x,y\n";
+  for (std::size_t i = 0; i <= kMaxTrackPoints; ++i) text += i % 2 == 0 ? "1,2\n" : "3,4\n";
+  EXPECT_EQ(parse_track(text, "a.csv").error().message,
+            "a.csv:1000002: row: got another point, expected at most 1000000");
+  EXPECT_EQ(parse_track("x,y\n1,2\n", "a.csv", {.default_left = -1.0}).error().code,
+            ErrorCode::kInvalidArgument);
+}
+
+TEST(TrackCodec, NamesAMissingFile) {
+  const Result<path::Track> track = read_track("no/such/track.csv");
+  ASSERT_FALSE(track);
+  EXPECT_EQ(track.error().code, ErrorCode::kNotFound);
+}
+
+struct Broken {
+  const char* file;
+  const char* message;  ///< how it begins after the file's name
+};
+
+class BrokenTrack : public ::testing::TestWithParam<Broken> {};
+
+TEST_P(BrokenTrack, IsRefusedWithFileAndLine) {
+  const std::string file = kSource + "/tests/protocol/fixtures/tracks/" + GetParam().file;
+  const Result<path::Track> track = read_track(file);
+  ASSERT_FALSE(track);
+  EXPECT_EQ(track.error().code, ErrorCode::kParse);
+  EXPECT_THAT(track.error().message, ::testing::StartsWith(file + GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Fixtures, BrokenTrack,
+    ::testing::Values(
+        Broken{"empty.csv", ": file: got no points, expected lines of numbers"},
+        Broken{"header_only.csv", ": file: got no points, expected lines of numbers"},
+        Broken{"three_points.csv", ": points: got 3 with 3 different, expected at least 4 different ones"},
+        Broken{"word_for_a_number.csv", ":6: x_m: got abc, expected a finite number with a decimal point"},
+        Broken{"nan.csv", ":7: x_m: got nan, expected a finite number"},
+        Broken{"infinity.csv", ":8: y_m: got inf, expected a finite number"},
+        Broken{"overflow.csv", ":9: x_m: got 1e999, expected a finite number"},
+        Broken{"negative_width.csv", ":10: w_tr_left_m: got -4.8, expected a width > 0 and <= 1000 m"},
+        Broken{"zero_width.csv", ":4: w_tr_right_m: got 0, expected a width > 0"},
+        Broken{"width_in_millimetres.csv", ":5: w_tr_right_m: got 4400, expected a width > 0 and <= 1000 m"},
+        Broken{"missing_column.csv", ":11: row: got 3 columns, expected 4"},
+        Broken{"extra_column.csv", ":12: row: got 5 columns, expected 4"},
+        Broken{"empty_field.csv", ":13: x_m: got nothing, expected a finite number"},
+        Broken{"decimal_commas.csv", ":3: x_m: got 57,956, expected a finite number with a decimal point"},
+        Broken{"no_y_column.csv",
+               ":1: header: got x_m,z_m,w_tr_right_m,w_tr_left_m, expected columns x and y"},
+        Broken{"column_twice.csv", ":1: x_m: got a second such column, expected one"},
+        Broken{"one_width.csv", ":1: header: got only a right width, expected both"},
+        Broken{"three_columns_no_header.csv",
+               ":1: header: got none for 3 columns, expected a line that names them"},
+        Broken{"one_place.csv", ": points: got"},
+        Broken{"figure_of_eight.csv", ":61: points[59]: got a line that crosses itself near"},
+        Broken{"wrong_order.csv", ":"},
+        Broken{"start_in_words.csv", ":1: start_s_m: got soon, expected a number"},
+        Broken{"closed_yes.csv", ":1: closed: got yes, expected true or false"},
+        Broken{"start_off_the_road.csv", ": start_d: got 7.5, expected a place on the road"},
+        Broken{"far_away.csv", ":14: x_m: got 1e8, expected a coordinate within 1e7 m"},
+        Broken{"other_separator.csv", ":15: row: got 1 columns, expected 4"},
+        Broken{"utf16.csv", ": file: got UTF-16, expected UTF-8"},
+        Broken{"picture.csv", ":1: header: got ?PNG, expected columns x and y"},
+        Broken{"json.csv", ":1: header: got {\"x\": [1, 2, 3]"},
+        Broken{"hexadecimal.csv", ":16: x_m: got 0x1F, expected a finite number"},
+        Broken{"units_in_values.csv", ":17: x_m: got "},
+        Broken{"degrees.csv", ":1: header: got lat,lon, expected columns x and y"},
+        Broken{"endless_line.csv", ":2: line: got 70000 bytes, expected at most 65536"},
+        Broken{"wide_kerb.csv", ": kerb_width: got 9, expected a number in [0, 3]"}),
+    [](const auto& each) {
+      const std::string file = each.param.file;
+      return file.substr(0, file.find('.'));
+    });
+
+TEST(TrackCodec, EveryBrokenFixtureIsListed) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kSource + "/tests/protocol/fixtures/tracks")) {
+    count += entry.path().extension() == ".csv" ? 1U : 0U;
+  }
+  EXPECT_EQ(count, 34U);
+}
+
+// --- the shipped tracks, and the public ones in ../shared/tracks when it is there
+// ----------------------------------------
+
+struct Known {
+  const char* file;
+  double length;       ///< of the closed polygon [m]
+  double width_least;  ///< right plus left [m]
+  double width_most;
+  double radius_least;  ///< of the road the reader makes [m]: its own number, kept to notice a change
+};
+
+void expect_road(const std::string& file, const Known& known) {
+  std::vector<std::string> warnings;
+  const Result<path::Track> track = read_track(file, {}, &warnings);
+  ASSERT_TRUE(track) << track.error().message;
+  EXPECT_TRUE(track->centre().is_closed());
+  EXPECT_NEAR(track->length(), known.length, 0.002 * known.length)
+      << "a smooth line is a little longer or shorter than the polygon";
+  double radius = 1e9;
+  double least = 1e9;
+  double most = 0.0;
+  for (double s = 0.0; s < track->length(); s += 0.5) {
+    radius = std::min(radius, 1.0 / std::fabs(track->centre().at(s).curvature));
+    const double width = track->left_width(s) + track->right_width(s);
+    least = std::min(least, width);
+    most = std::max(most, width);
+  }
+  EXPECT_NEAR(least, known.width_least, 0.1);
+  EXPECT_NEAR(most, known.width_most, 0.15);
+  EXPECT_NEAR(radius, known.radius_least, 0.05 * known.radius_least);
+  double sum = 0.0;
+  for (const path::TrackPoint& point : track->raw_points()) {
+    const path::Projection foot = track->centre().project(point.position);
+    EXPECT_LT(foot.distance, 0.42) << "4 sigma + 1 cm";
+    sum += foot.d * foot.d;
+    EXPECT_NEAR(track->left_width(foot.s), point.left + foot.d, 0.15) << "the left edge stays";
+    EXPECT_NEAR(track->right_width(foot.s), point.right - foot.d, 0.15) << "the right edge stays";
+  }
+  EXPECT_LT(std::sqrt(sum / static_cast<double>(track->raw_points().size())), 0.1) << "sigma";
+}
+
+class PublicTrack : public ::testing::TestWithParam<Known> {};
+
+TEST_P(PublicTrack, BecomesASaneRoad) {
+  const std::string file = kSource + "/../shared/tracks/" + GetParam().file;
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  expect_road(file, GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Shared, PublicTrack,
+                         ::testing::Values(Known{"udacity/lake_scene.csv", 1137.5, 8.1, 9.7, 20.6},
+                                           Known{"udacity/lake_track_waypoints.csv", 1137.0, 9.0, 9.0, 20.7},
+                                           Known{"tum/IMS.csv", 4022.3, 15.3, 15.3, 185.0},
+                                           Known{"tum/Monza.csv", 5790.2, 7.52, 12.42, 9.8},
+                                           Known{"tum/Norisring.csv", 2295.8, 10.3, 20.97, 10.0},
+                                           Known{"tum/Nuerburgring.csv", 5144.1, 7.62, 21.35, 14.2},
+                                           Known{"tum/Silverstone.csv", 5886.8, 11.27, 17.84, 12.8},
+                                           Known{"tum/Spa.csv", 7000.1, 7.87, 16.42, 10.0},
+                                           Known{"tum/berlin_2018.csv", 2326.9, 6.89, 23.3, 8.0}),
+                         [](const auto& each) {
+                           return std::filesystem::path{each.param.file}.stem().string();
+                         });
+
+class ShippedTrack : public ::testing::TestWithParam<Known> {};
+
+TEST_P(ShippedTrack, IsWhatItsPageSays) { expect_road(kSource + "/tracks/" + GetParam().file, GetParam()); }
+
+INSTANTIATE_TEST_SUITE_P(Tracks, ShippedTrack,
+                         ::testing::Values(Known{"lakeside.csv", 1138.0, 8.05, 9.6, 18.7},
+                                           Known{"oval.csv", 642.7, 10.0, 10.0, 45.0},
+                                           Known{"hairpins.csv", 926.9, 9.0, 9.0, 8.0},
+                                           Known{"speedway.csv", 3348.4, 12.0, 12.0, 90.0}),
+                         [](const auto& each) {
+                           return std::filesystem::path{each.param.file}.stem().string();
+                         });
+
+TEST(ShippedTrack, LakesideHasTheSightOfTheOriginal) {
+  const path::Track track = read_track(kSource + "/tracks/lakeside.csv").value();
+  const std::vector<path::TrackPoint>& points = track.raw_points();
+  ASSERT_EQ(points.size(), 80U);
+  double shortest = 1e9;
+  std::vector<double> gaps;
+  for (std::size_t i = 0; i < 80; ++i) {
+    double sight = 0.0;
+    for (std::size_t k = 0; k < 4; ++k)
+      sight += (points[(i + k + 1) % 80].position - points[(i + k) % 80].position).norm();
+    shortest = std::min(shortest, sight);
+    gaps.push_back((points[(i + 1) % 80].position - points[i].position).norm());
+  }
+  std::sort(gaps.begin(), gaps.end());
+  EXPECT_NEAR(shortest, 26.7, 0.2);
+  EXPECT_NEAR(gaps.front(), 4.9, 0.1);
+  EXPECT_NEAR(gaps[40], 12.0, 0.5);
+  EXPECT_NEAR(gaps.back(), 34.0, 0.6);
+  EXPECT_EQ(track.start_s(), 258.0);
+  EXPECT_EQ(track.start_d(), -0.76);
+  EXPECT_LT(std::fabs(track.centre().at(258.0).curvature), 0.006) << "a comfortable stretch";
+
+  // The spline through the waypoints, as placed, peaks in the only right-hander.
+  std::vector<Vec2> raw;
+  for (const path::TrackPoint& point : points) raw.push_back(point.position);
+  const path::Path spline = path::Path::create(raw, true).value();
+  double sharpest_left = 0.0;
+  double sharpest_right = 0.0;
+  for (double s = 0.0; s < spline.length(); s += 0.5) {
+    sharpest_left = std::max(sharpest_left, spline.at(s).curvature);
+    sharpest_right = std::min(sharpest_right, spline.at(s).curvature);
+  }
+  EXPECT_NEAR(sharpest_right, -0.07, 0.005);
+  EXPECT_LT(sharpest_left, 0.055);
+}
+
+}  // namespace
+}  // namespace chicane::protocol
