@@ -77,8 +77,7 @@ class OcpSolver {
   static constexpr int kFirstHorizon = 5;   ///< of the growing horizons
   static constexpr int kMaxGrowth = 16;
   static constexpr double kGoodEnoughToGrow = 1e-1;
-  static constexpr double kDefectShare =
-      1e-3;  ///< the Hessian amplifies defects: a tighter tolerance for them
+  static constexpr double kDefectShare = 1e-7;  ///< of the tolerance: Hessians amplify defects
   static constexpr double kCurvaturePays =
       6.0;  ///< expected further turns above which exact curvature is worth its cost
 
@@ -127,8 +126,8 @@ class OcpSolver {
   }
   [[nodiscard]] bool has_converged(const SolveReport& report) const noexcept {
     const bool soft_done = kNc == 0 || (mu_ <= final_mu() && report.complementarity <= options_.tolerance);
-    return report.stationarity <= options_.tolerance && report.defect <= kDefectShare * options_.tolerance &&
-           soft_done;
+    return report.stationarity <= options_.tolerance &&
+           now_.relative_defect <= kDefectShare * options_.tolerance && soft_done;
   }
   static double residual(const SolveReport& report) noexcept {
     return std::max({report.stationarity, report.defect, report.complementarity});

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "chicane/solver/ocp_solver.hpp"
+#include "support/described_problem.hpp"
+#include "support/optimality.hpp"
+
+namespace chicane {
+namespace {
+
+using test::DescribedProblem;
+
+constexpr int kCapacity = 200;
+const std::string kFolder = std::string(CHICANE_SOURCE_DIR) + "/../shared/reference_nlp/";
+
+/// Rows of numbers of a comma-separated file without its heading; empty when there is no such file.
+std::vector<std::vector<double>> read_table(const std::string& file) {
+  std::vector<std::vector<double>> table;
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  while (std::getline(stream, line)) {
+    std::istringstream cells(line);
+    std::string cell;
+    auto& row = table.emplace_back();
+    while (std::getline(cells, cell, ',')) row.push_back(std::stod(cell));
+  }
+  return table;
+}
+
+struct GoldenSet {
+  const char* lap;
+  int nodes;  ///< states of the reference problem: one more than intervals
+};
+
+struct Golden : testing::TestWithParam<GoldenSet> {};
+
+/// Control cycles of closed loops on the original's lake with optima by Ipopt (tolerance 1e-10, exact
+/// derivatives).
+TEST_P(Golden, OptimaAndFirstInputsAgree) {
+  const std::string lap = GetParam().lap;
+  const std::string nodes = std::to_string(GetParam().nodes);
+  const auto cycles = read_table(kFolder + "lap_" + lap + ".csv");
+  const auto optima = read_table(kFolder + "golden_" + lap + "_N" + nodes + ".csv");
+  if (cycles.empty() || optima.empty()) GTEST_SKIP() << "no reference problems in " << kFolder;
+  const auto ocp = std::make_unique<solver::OcpSolver<DescribedProblem, kCapacity>>();
+  const auto trajectory = std::make_unique<test::DescribedTrajectory<kCapacity>>();
+  for (std::size_t i = 0; i < optima.size(); ++i) {
+    if (optima[i][1] != 1.0) continue;
+    const auto& row = cycles[static_cast<std::size_t>(optima[i][0])];
+    DescribedProblem problem;
+    problem.path = {row[6], row[7], row[8], row[9]};
+    problem.speed_reference = row[10];
+    const std::array<double, 8> start{row[0], row[1], row[2], row[3], row[4], row[5], 0.0, 0.0};
+    *trajectory = {};
+    trajectory->horizon = GetParam().nodes - 1;
+    const auto report = ocp->solve(problem, start, *trajectory);
+    ASSERT_EQ(report.status, solver::SolveStatus::kOptimal) << "cycle " << i;
+    ASSERT_NEAR(report.cost, optima[i][2], 1e-6 * optima[i][2]) << "cycle " << i;
+    // Ipopt relaxes bounds by 1e-8 and stops at 1e-10 of a scaled objective.
+    ASSERT_NEAR(trajectory->u[0][0], optima[i][3], 1e-5) << "cycle " << i;
+    ASSERT_NEAR(trajectory->u[0][1], optima[i][4], 1e-5) << "cycle " << i;
+  }
+}
+
+std::string name_of(const testing::TestParamInfo<GoldenSet>& info) {
+  return "Lap" + std::string(info.param.lap) + "N" + std::to_string(info.param.nodes);
+}
+constexpr GoldenSet kSets[] = {{"30mps", 7},  {"30mps", 10}, {"30mps", 20}, {"30mps", 25},
+                               {"30mps", 50}, {"16mps", 50}, {"8mps", 100}, {"4mps", 200}};
+INSTANTIATE_TEST_SUITE_P(OcpSolver, Golden, testing::ValuesIn(kSets), name_of);
+
+}  // namespace
+}  // namespace chicane

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "chicane/solver/ocp_solver.hpp"
+#include "support/corridor_problem.hpp"
+#include "support/described_problem.hpp"
+#include "support/optimality.hpp"
+
+#ifdef CHICANE_HAVE_IPOPT
+#include "support/ipopt_reference.hpp"
+#endif
+
+namespace chicane {
+namespace {
+
+using solver::SolveStatus;
+using test::DescribedProblem;
+
+constexpr int kCapacity = 50;
+
+/// Where a solve starts from: inputs of zero, those of a path-following law, or the optimum of a slightly
+/// different problem.
+enum class Start { kCold, kPathLaw, kWarm };
+
+struct Family {
+  Start start;
+  int horizon;
+  int count;
+};
+
+std::string name_of(const testing::TestParamInfo<Family>& info) {
+  const char* start[] = {"Cold", "PathLaw", "Warm"};
+  return std::string(start[static_cast<int>(info.param.start)]) + "N" + std::to_string(info.param.horizon);
+}
+
+template <class Problem>
+void choose_start(Start start, const test::DescribedInstance& plain, const Problem& problem,
+                  solver::OcpSolver<Problem, kCapacity>& ocp,
+                  test::DescribedTrajectory<kCapacity>& trajectory) {
+  const int horizon = trajectory.horizon;
+  trajectory = {};
+  trajectory.horizon = horizon;
+  if (start != Start::kCold) test::guess_by_path_law(plain, trajectory);
+  if (start == Start::kWarm) {  // the previous cycle: half a step earlier, another speed wanted
+    Problem before = problem;
+    before.speed_reference -= 0.5;
+    auto x0 = plain.start;
+    x0[1] -= 0.05;
+    x0[4] += 0.05;
+    ocp.solve(before, x0, trajectory);
+    solver::shift(trajectory, 0.5);
+  }
+  solver::roll_out(problem, plain.start, trajectory);
+}
+
+#ifdef CHICANE_HAVE_IPOPT
+
+struct AgainstIpopt : testing::TestWithParam<Family> {};
+
+TEST_P(AgainstIpopt, AgreesOnTheOptimumOfTheDescribedProblem) {
+  const auto ocp = std::make_unique<solver::OcpSolver<DescribedProblem, kCapacity>>();
+  Random random{1000 + static_cast<std::uint64_t>(GetParam().horizon)};
+  for (int i = 0; i < GetParam().count; ++i) {
+    const auto instance = test::random_instance(random, GetParam().horizon);
+    test::DescribedTrajectory<kCapacity> own;
+    own.horizon = GetParam().horizon;
+    choose_start(GetParam().start, instance, instance.problem, *ocp, own);
+    auto reference = own;
+    const auto report = ocp->solve(instance.problem, instance.start, own);
+    ASSERT_EQ(report.status, SolveStatus::kOptimal) << i;
+    const double cost = test::solve_with_ipopt(instance.problem, instance.start, reference);
+    ASSERT_NEAR(report.cost, cost, 1e-6 * cost) << i;
+    ASSERT_TRUE(test::inputs_are_inside(instance.problem, own)) << i;
+    // Simulated anew, with derivatives that share no code with the solver's. Its own measure is 1e-6 at most;
+    // at 50 stages the accepted defects (1e-13 of the state) times Hessians near 1e5 may add as much again.
+    ASSERT_LE(test::projected_gradient(instance.problem, instance.start, own),
+              own.horizon < 50 ? 1.1e-6 : 1e-5)
+        << i;
+  }
+}
+
+TEST_P(AgainstIpopt, AgreesOnTheOptimumWithASoftCorridor) {
+  using test::CorridorProblem;
+  if (GetParam().horizon < 2) GTEST_SKIP() << "one stage: the corridor is on the given state only";
+  const auto ocp = std::make_unique<solver::OcpSolver<CorridorProblem, kCapacity>>();
+  Random random{2000 + static_cast<std::uint64_t>(GetParam().horizon)};
+  for (int i = 0; i < GetParam().count; ++i) {
+    const auto instance = test::random_corridor(random, GetParam().horizon);
+    const test::DescribedInstance plain{.problem = instance.problem, .start = instance.start};
+    test::DescribedTrajectory<kCapacity> own;
+    own.horizon = GetParam().horizon;
+    choose_start(GetParam().start, plain, instance.problem, *ocp, own);
+    auto reference = own;
+    const auto report = ocp->solve(instance.problem, instance.start, own);
+    ASSERT_EQ(report.status, SolveStatus::kOptimal) << i;
+    const double cost = test::solve_with_ipopt(instance.problem, instance.start, reference);
+    ASSERT_NEAR(report.cost, cost, 1e-6 * cost) << i;
+    ASSERT_LE(report.complementarity, 1e-6) << i;
+    ASSERT_TRUE(test::inputs_are_inside(instance.problem, own)) << i;
+  }
+}
+
+constexpr Family kFamilies[] = {
+    {Start::kCold, 1, 20},    {Start::kCold, 2, 30},     {Start::kCold, 7, 40},     {Start::kCold, 10, 40},
+    {Start::kCold, 20, 40},   {Start::kCold, 50, 20},    {Start::kPathLaw, 1, 20},  {Start::kPathLaw, 2, 30},
+    {Start::kPathLaw, 7, 40}, {Start::kPathLaw, 10, 40}, {Start::kPathLaw, 20, 40}, {Start::kPathLaw, 50, 20},
+    {Start::kWarm, 1, 20},    {Start::kWarm, 2, 30},     {Start::kWarm, 7, 40},     {Start::kWarm, 10, 40},
+    {Start::kWarm, 20, 40},   {Start::kWarm, 50, 20}};
+INSTANTIATE_TEST_SUITE_P(OcpSolver, AgainstIpopt, testing::ValuesIn(kFamilies), name_of);
+
+#else
+
+TEST(AgainstIpopt, IsSkipped) { GTEST_SKIP() << "built without Ipopt (Debian: coinor-libipopt-dev)"; }
+
+#endif
+
+}  // namespace
+}  // namespace chicane
