@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <boost/uuid/detail/sha1.hpp>
 #include <functional>
 #include <thread>
 
@@ -54,6 +55,26 @@ class FakeServer {
 };
 
 /// that.
+/// What RFC 6455 §4.2.2 asks a server to answer.
+std::string accept_of(const std::string& key) {
+  boost::uuids::detail::sha1 hash;
+  const std::string text = key + "258EAFA5-E914-47DA-95CA-C5AB0DC85B11";
+  hash.process_bytes(text.data(), text.size());
+  unsigned int words[5];
+  hash.get_digest(words);
+  std::string bits;
+  for (const unsigned int word : words) {
+    for (int i = 31; i >= 0; --i) bits += (word >> i) & 1U ? '1' : '0';
+  }
+  bits += "00";  // 162 bits are 27 digits, and one '=' fills up
+  std::string result;
+  for (std::size_t i = 0; i < bits.size(); i += 6) {
+    constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    result += kDigits[std::stoul(bits.substr(i, 6), nullptr, 2)];
+  }
+  return result + "=";
+}
+
 std::string key_of(const std::string& request) {
   const std::size_t start = request.find("Sec-WebSocket-Key: ") + 19;
   return request.substr(start, request.find("\r\n", start) - start);
@@ -87,6 +108,39 @@ TEST(Client, RefusesAWrongAcceptKeyAndASilentServer) {
   EXPECT_THAT(Client::connect(wrong.url(), 5s).error().message, HasSubstr("Sec-WebSocket-Accept is wrong"));
   const FakeServer silent([](RawSocket& socket) { socket.rest(); });
   EXPECT_THAT(Client::connect(silent.url(), 50ms).error().message, HasSubstr("does not answer the upgrade"));
+}
+
+TEST(Client, TalksToTheServerOfTheOriginalControllers) {
+  // As uNetworking/uWebSockets e94b6e1 answers (HTTPSocket.cpp). It throws away bytes that come before its
+  // answer.
+  std::string early;
+  std::string first;
+  const FakeServer server([&](RawSocket& socket) {
+    const std::string request = socket.until("\r\n\r\n");
+    early = socket.until("anything", 50ms);
+    socket.send(
+        "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: "
+        "Upgrade\r\nSec-WebSocket-Accept: " +
+        accept_of(key_of(request)) +
+        "\r\nSec-WebSocket-Version: 13\r\nWebSocket-Server: uWebSockets\r\n\r\n");
+    first = socket.until("\xff", 200ms);
+    socket.send(
+        "\x81\x05"
+        "42[]\n"
+        "\x81\x01"
+        "x");  // two frames in one segment
+    socket.rest();
+  });
+  auto client = Client::connect(server.url(), 5s);
+  ASSERT_TRUE(client) << client.error().message;
+  ASSERT_TRUE((*client)->send_text("2"));
+  EXPECT_EQ((*client)->receive(5s).value().value(), "42[]\n");
+  EXPECT_EQ((*client)->receive(5s).value().value(), "x");
+  EXPECT_EQ(early, "");
+  ASSERT_EQ(first.size(), 7U);
+  EXPECT_EQ(first.substr(0, 2), "\x81\x81");  // a masked text frame of one byte
+  EXPECT_EQ(static_cast<char>(first[6] ^ first[2]), '2');
+  client->reset();
 }
 
 TEST(Client, SaysWhyItCannotConnect) {
