@@ -26,6 +26,7 @@ else()
     endif()
   endif()
 endif()
+set(CHICANE_WEB_MISSING "${web_missing}" CACHE INTERNAL "why the program has no dashboard; empty when it has one")
 if(web_missing)
   message(STATUS "No dashboard: ${web_missing}")
 endif()
@@ -35,7 +36,7 @@ add_custom_command(
   OUTPUT ${web_build}/web_assets.cpp
   COMMAND ${CMAKE_COMMAND} -DSOURCE=${web_source} -DBUILD=${web_build} "-DMISSING=${web_missing}" -DNODE=${CHICANE_NODE}
           -DNPM=${CHICANE_NPM} -P ${CMAKE_CURRENT_LIST_DIR}/EmbedWebFiles.cmake
-  DEPENDS ${CMAKE_CURRENT_LIST_DIR}/EmbedWebFiles.cmake ${web_files} ${web_source}/index.html ${web_source}/style.css
+  DEPENDS ${CMAKE_CURRENT_LIST_DIR}/EmbedWebFiles.cmake ${CMAKE_CURRENT_LIST_DIR}/NpmCi.cmake ${web_files} ${web_source}/index.html ${web_source}/style.css
           ${web_source}/package.json ${web_source}/package-lock.json ${web_source}/vite.config.ts
           ${web_source}/tsconfig.json
   COMMENT "Building and embedding the dashboard"

@@ -1,25 +1,6 @@
 # Run by EmbedWeb.cmake while building: web/ → ${BUILD}/web_assets.cpp. Arguments: SOURCE, BUILD, MISSING, NODE, NPM.
 
-# Installs the packages of the lock file unless they are there; several builds may come here at once.
-function(install_packages)
-  file(SHA256 ${SOURCE}/package-lock.json wanted)
-  set(stamp ${SOURCE}/node_modules/.installed-lock)
-  file(LOCK ${SOURCE}/.npm-ci.lock GUARD FUNCTION TIMEOUT 600)
-  set(installed "")
-  if(EXISTS ${stamp})
-    file(READ ${stamp} installed)
-  endif()
-  if(installed STREQUAL wanted)
-    return()
-  endif()
-  execute_process(COMMAND ${NPM} ci --no-audit --no-fund --loglevel=error WORKING_DIRECTORY ${SOURCE}
-                  RESULT_VARIABLE failed OUTPUT_QUIET)
-  if(failed)
-    set(MISSING "`npm ci` failed when this program was built (is the npm registry reachable?)" PARENT_SCOPE)
-  else()
-    file(WRITE ${stamp} ${wanted})
-  endif()
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/NpmCi.cmake)
 
 function(build_pages)
   execute_process(COMMAND ${NODE} node_modules/vite/bin/vite.js build --outDir ${BUILD}/dist --emptyOutDir --logLevel warn
@@ -104,7 +85,10 @@ ${table}  };
 endfunction()
 
 if(NOT MISSING)
-  install_packages()
+  npm_ci(${SOURCE} ${NPM} failed)
+  if(failed)
+    set(MISSING "`npm ci` failed when this program was built (is the npm registry reachable?)")
+  endif()
 endif()
 if(MISSING)
   message(WARNING "No dashboard: ${MISSING}. To try again, remove ${BUILD}/web_assets.cpp and build.")

@@ -1,9 +1,11 @@
 import { extent, niceCeil } from '../lib/math';
 
+const HEADROOM = 1.06; // lines do not touch the frame
+
 /** From 0 to a round number above all values, at least `least`: an axis that seldom changes. */
 export function rangeFromZero(values: readonly ArrayLike<number>[], least: number): [number, number] {
-  const high = Math.max(least, ...values.map((column) => extent(column)?.[1] ?? 0));
-  return [0, niceCeil(high)];
+  const high = Math.max(0, ...values.map((column) => extent(column)?.[1] ?? 0));
+  return [0, niceCeil(Math.max(least, HEADROOM * high))];
 }
 
 /** Symmetric about 0, to a round number beyond all values, at least `least`. */
@@ -12,7 +14,7 @@ export function rangeAboutZero(values: readonly ArrayLike<number>[], least: numb
     const [low, high] = extent(column) ?? [0, 0];
     return Math.max(-low, high);
   });
-  const end = niceCeil(Math.max(least, ...reach));
+  const end = niceCeil(Math.max(least, HEADROOM * Math.max(0, ...reach)));
   return [-end, end];
 }
 

@@ -96,8 +96,15 @@ function drawCar(ctx: Context, car: NonNullable<Scene['car']>, colours: Theme, p
   ctx.save();
   ctx.translate(car.x, car.y);
   ctx.rotate(car.yaw);
-  // From far away a car of true size is a speck: never shorter than 16 px.
-  const grown = Math.max(1, (16 * px) / length);
+  // From far away a car of true size is a speck: never shorter than 18 px, and then with a ring around it.
+  const grown = Math.max(1, (18 * px) / length);
+  if (grown > 1) {
+    ctx.beginPath();
+    ctx.arc(0, 0, 15 * px, 0, 2 * Math.PI);
+    ctx.strokeStyle = colours.accent;
+    ctx.lineWidth = 3 * px;
+    ctx.stroke();
+  }
   ctx.scale(grown, grown);
   drawWheels(ctx, shape, colours.wheel);
 
@@ -152,7 +159,7 @@ export function drawInset(ctx: Context, road: RoadShape, car: Point | null, came
   if (!car) return;
   ctx.beginPath();
   ctx.arc(car.x, car.y, 5 * px, 0, 2 * Math.PI);
-  ctx.fillStyle = colours.carBody;
+  ctx.fillStyle = colours.accent;
   ctx.fill();
   ctx.strokeStyle = colours.panel;
   ctx.lineWidth = 2 * px;

@@ -15,6 +15,8 @@ export interface Theme {
   readonly faint: string;
   readonly grid: string;
   readonly panel: string;
+  readonly accent: string;
+  readonly font: string;
   readonly series: readonly [string, string];
 }
 
@@ -37,6 +39,8 @@ function read(): Theme {
     faint: colour('text-faint'),
     grid: colour('grid'),
     panel: colour('panel'),
+    accent: colour('accent'),
+    font: style.fontFamily,
     series: [colour('series-1'), colour('series-2')],
   };
 }

@@ -17,10 +17,11 @@ describe('math', () => {
   });
 
   it('finds the next nice number', () => {
-    expect(niceCeil(0.03)).toBeCloseTo(0.05, 12);
+    expect(niceCeil(0.028)).toBeCloseTo(0.03, 12);
     expect(niceCeil(1)).toBe(1);
-    expect(niceCeil(1.01)).toBe(2);
-    expect(niceCeil(73)).toBe(100);
+    expect(niceCeil(1.01)).toBe(1.5);
+    expect(niceCeil(73)).toBe(80);
+    expect(niceCeil(81)).toBe(100);
     expect(niceCeil(0.2)).toBeCloseTo(0.2, 12);
   });
 

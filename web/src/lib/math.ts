@@ -36,10 +36,10 @@ export function boundsOf(points: Iterable<Point>): Box | null {
   return minX <= maxX ? { minX, minY, maxX, maxY } : null;
 }
 
-/** The next number of the series 1, 2, 5, 10, 20, 50 … that is not below `value`; value > 0. */
+/** The next number of the series 1, 1.5, 2, 3, 4, 5, 6, 8, 10, 15 … that is not below `value`; value > 0. */
 export function niceCeil(value: number): number {
   const power = 10 ** Math.floor(Math.log10(value));
-  const step = [1, 2, 5, 10].find((factor) => factor * power >= value * (1 - 1e-12)) ?? 10;
+  const step = [1, 1.5, 2, 3, 4, 5, 6, 8, 10].find((factor) => factor * power >= value * (1 - 1e-12)) ?? 10;
   return step * power;
 }
 

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { gateInWords, roadInWords, rungInWords, statusInWords } from './words';
+import { gateInWords, roadInWords, rungInWords, sightInWords, statusInWords } from './words';
 
 describe('words', () => {
   it('gets graver with each rung', () => {
@@ -14,6 +14,12 @@ describe('words', () => {
   it('tells of the gate', () => {
     expect(gateInWords(false).mood).toBe('good');
     expect(gateInWords(true).mood).toBe('warning');
+  });
+
+  it('tells what road is known', () => {
+    expect(sightInWords(false, 139.6).text).toBe('Sees 140 m ahead');
+    expect(sightInWords(true, 300).text).toBe('Knows the lap, uses 300 m');
+    expect(sightInWords(false, NaN).text).toBe('Sees no road ahead');
   });
 
   it('tells of the road', () => {

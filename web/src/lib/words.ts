@@ -52,4 +52,8 @@ export function roadInWords(frame: Pick<Frame, 'is_off_track' | 'edge_distance_m
   return { mood: 'good', text: 'On the road, never off it' };
 }
 
-export const mapInWords = (hasMap: boolean): string => (hasMap ? 'Remembers the whole lap' : 'Sees only what is ahead');
+/** How much road the controller knows: from its memory, or only what it is told. */
+export function sightInWords(hasMap: boolean, metres: number): Sentence {
+  const sight = metres > 0 ? `${Math.round(metres)} m` : 'no road';
+  return { mood: 'good', text: hasMap ? `Knows the lap, uses ${sight}` : `Sees ${sight} ahead` };
+}

@@ -1,5 +1,5 @@
-import { fixed, plural, UNKNOWN } from '../lib/format';
-import { gateInWords, mapInWords, roadInWords, rungInWords, statusInWords, type Sentence } from '../lib/words';
+import { plural, UNKNOWN } from '../lib/format';
+import { gateInWords, roadInWords, rungInWords, sightInWords, statusInWords, type Sentence } from '../lib/words';
 import { run, shown } from '../state/app_state';
 
 function Row({ label, sentence, id }: { label: string; sentence: Sentence | null; id: string }) {
@@ -19,7 +19,6 @@ export function ControllerView() {
   const frame = shown.value;
   const solve = frame ? statusInWords(frame.solve_status) : null;
   const turns = frame && frame.iterations > 0 ? `, ${plural(frame.iterations, 'iteration')}` : '';
-  const sight = frame && frame.sight_m > 0 ? `, ${fixed(frame.sight_m, 0)} m ahead` : '';
   return (
     <section class="panel controller" aria-label="Controller">
       <h2>{run.value?.controller ?? 'Controller'}</h2>
@@ -28,7 +27,7 @@ export function ControllerView() {
         <Row id="status" label="Answer" sentence={solve ? { ...solve, text: solve.text + turns } : null} />
         <Row id="gate" label="Gate" sentence={frame ? gateInWords(frame.is_gated) : null} />
         <Row id="road" label="Road" sentence={frame ? roadInWords(frame) : null} />
-        <Row id="sight" label="Sight" sentence={frame ? { mood: 'good', text: mapInWords(frame.has_map) + sight } : null} />
+        <Row id="sight" label="Sight" sentence={frame ? sightInWords(frame.has_map, frame.sight_m) : null} />
       </dl>
     </section>
   );

@@ -33,15 +33,15 @@ const PLOTS: readonly PlotSpec[] = [
     range: (columns) => rangeFromZero(columns, 20),
   },
   {
-    title: 'Lateral error, left positive',
-    unit: 'm',
+    title: 'Lateral error',
+    unit: 'm, + left',
     decimals: 2,
     series: [{ column: Column.lateralError, label: 'car' }],
     range: (columns) => rangeAboutZero(columns, 0.5),
   },
   {
-    title: 'Steering, left positive',
-    unit: '°',
+    title: 'Steering',
+    unit: '°, + left',
     decimals: 1,
     series: [
       { column: Column.steerApplied, label: 'applied' },
@@ -59,13 +59,13 @@ const PLOTS: readonly PlotSpec[] = [
 ];
 
 function optionsOf(spec: PlotSpec, colours: Theme): uPlot.Options {
-  const axis = { stroke: colours.faint, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, font: '11px system-ui, sans-serif' };
+  const axis = { stroke: colours.faint, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, font: `11px ${colours.font}` };
   return {
     width: 300,
     height: 120,
     legend: { show: false },
     cursor: { sync: { key: 'plots' }, drag: { x: false, y: false }, points: { size: 7 } },
-    padding: [8, 8, 0, 0],
+    padding: [8, 18, 0, 0],
     scales: { x: { time: false, range: (_plot, _low, high) => [high - WINDOW_S, high] }, y: { range: () => spec.range(columnsOf(spec)) } },
     axes: [
       {

@@ -77,7 +77,8 @@ class Painter {
   #inset(car: Point | null, width: number, ratio: number): void {
     const side = Math.min(170, width * 0.3);
     const fit = fitting(this.#roadBox as Box, side, side, 8);
-    const camera: Camera = { ...fit, at: { x: width - 8 - side / 2, y: 8 + side / 2 } };
+    const top = width < 560 ? 48 : 8; // below the buttons where both do not fit side by side
+    const camera: Camera = { ...fit, at: { x: width - 8 - side / 2, y: top + side / 2 } };
     drawInset(this.#context as CanvasRenderingContext2D, this.#road as RoadShape, car, camera, theme(), ratio);
   }
 
@@ -109,7 +110,7 @@ class Painter {
     const box = this.#roadBox;
     if (view.value === 'whole' || !car) {
       const all = box ?? boundsOf(car ? [car, ...live.reference] : [{ x: 0, y: 0 }, { x: 100, y: 60 }]);
-      return fitting(all as Box, width, height, 28);
+      return fitting(all as Box, width, height, 52);
     }
     if (view.value === 'above') return above(car, width, height, metresAcross.value);
     // A quarter of a second of smoothing: corners turn the world, wheel movements do not.

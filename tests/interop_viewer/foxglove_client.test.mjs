@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+// The reference client of the Foxglove WebSocket protocol against our server: what Foxglove and Lichtblick do.
+import assert from 'node:assert/strict';
+import { after, before, describe, it } from 'node:test';
+import rosmsg from '@foxglove/rosmsg';
+import cdr from '@foxglove/rosmsg2-serialization';
+import foxglove from '@foxglove/ws-protocol';
+import WebSocket from 'ws';
+import { startDemo } from './viewer_demo.mjs';
+
+const { FoxgloveClient } = foxglove; // these packages are CommonJS
+const { MessageReader } = cdr;
+const { parse } = rosmsg;
+
+let demo;
+before(async () => {
+  demo = await startDemo();
+});
+after(async () => {
+  assert.equal(await demo.stop(), 0);
+});
+
+/** A connected client that remembers what it was told. */
+async function connect(subprotocol) {
+  const socket = new WebSocket(demo.url.replace('http', 'ws'), [subprotocol]);
+  const client = new FoxgloveClient({ ws: socket });
+  const seen = { info: null, channels: new Map(), services: new Map(), problems: [] };
+  const next = (event, accept = () => true) =>
+    new Promise((resolve, reject) => {
+      const timer = setTimeout(() => reject(new Error(`no ${event} within 5 s`)), 5000);
+      const listener = (message) => {
+        if (!accept(message)) return;
+        clearTimeout(timer);
+        client.off(event, listener);
+        resolve(message);
+      };
+      client.on(event, listener);
+    });
+  client.on('serverInfo', (info) => (seen.info = info));
+  client.on('advertise', (channels) => channels.forEach((channel) => seen.channels.set(channel.topic, channel)));
+  client.on('advertiseServices', (services) => services.forEach((service) => seen.services.set(service.name, service)));
+  client.on('status', (status) => seen.problems.push(status.message));
+  client.on('error', (error) => seen.problems.push(String(error)));
+  await next('advertiseServices');
+  return { client, socket, seen, next };
+}
+
+const decode = (schema, bytes) => new MessageReader(parse(schema, { ros2: true })).readMessage(bytes);
+
+for (const subprotocol of ['foxglove.websocket.v1', 'foxglove.sdk.v1']) {
+  describe(subprotocol, () => {
+    let connection;
+    before(async () => {
+      connection = await connect(subprotocol);
+    });
+    after(() => connection.client.close());
+
+    it('is accepted, and the server introduces itself', () => {
+      const { socket, seen } = connection;
+      assert.equal(socket.protocol, subprotocol);
+      assert.equal(seen.info.name, 'chicane');
+      assert.deepEqual(seen.info.capabilities, ['time', 'parameters', 'parametersSubscribe', 'services']);
+    });
+
+    it('sends every advertised topic, each decodable by its own schema', async () => {
+      const { client, seen, next } = connection;
+      assert.equal(seen.channels.size, 13);
+      for (const channel of seen.channels.values()) {
+        assert.equal(channel.encoding, 'cdr');
+        assert.equal(channel.schemaEncoding, 'ros2msg');
+        const id = client.subscribe(channel.id);
+        const { data } = await next('message', ({ subscriptionId }) => subscriptionId === id);
+        const message = decode(channel.schema, data);
+        assert.ok(Object.keys(message).length > 0, channel.topic);
+        if (channel.topic === '/track/left') assert.ok(message.poses.length > 300);
+        if (channel.topic === '/odom') assert.equal(message.child_frame_id, 'base_link');
+        client.unsubscribe(id);
+      }
+      assert.deepEqual(seen.problems, []);
+    });
+
+    it('sends frames that move on, with the time of the run', async () => {
+      const { client, seen, next } = connection;
+      const channel = seen.channels.get('/chicane/frame');
+      const id = client.subscribe(channel.id);
+      const times = [];
+      await next('message', ({ subscriptionId, timestamp, data }) => {
+        if (subscriptionId !== id) return false;
+        const frame = decode(channel.schema, data);
+        assert.equal(timestamp, BigInt(frame.stamp.sec) * 1_000_000_000n + BigInt(frame.stamp.nsec));
+        times.push(frame.time_s);
+        return times.length === 21;
+      });
+      times.shift(); // the frame before a reset may still be the newest
+      for (let i = 1; i < times.length; ++i) assert.ok(times[i] > times[i - 1], `${times}`);
+      const { timestamp } = await next('time');
+      assert.ok(timestamp > 0n);
+      client.unsubscribe(id);
+    });
+
+    it('lists, sets and refuses parameters, and tells who asked to be told', async () => {
+      const { client, next } = connection;
+      client.getParameters([], 'all');
+      const { parameters } = await next('parameterValues', ({ id }) => id === 'all');
+      assert.deepEqual(parameters.map(({ name }) => name), ['demo.gain', 'demo.name']);
+      client.subscribeParameterUpdates(['demo.gain']);
+      client.setParameters([{ name: 'demo.gain', value: 3 }], 'set');
+      const answer = await next('parameterValues', ({ id }) => id === 'set');
+      assert.deepEqual(answer.parameters, [{ name: 'demo.gain', type: 'float64', value: 3 }]);
+      const refused = next('status');
+      client.setParameters([{ name: 'demo.gain', value: 99 }], 'again');
+      const update = await next('parameterValues', ({ id }) => id === 'again');
+      assert.equal(update.parameters[0].value, 3);
+      assert.deepEqual(await refused, { op: 'status', level: 2, message: 'demo.gain: expected a number from 0 to 10' });
+    });
+
+    it('calls services, and tells all viewers of a pause', async () => {
+      const { client, seen, next } = connection;
+      const call = async (name, data) => {
+        const service = seen.services.get(name);
+        client.sendServiceCallRequest({ serviceId: service.id, callId: 77, encoding: 'cdr', data: new Uint8Array([0, 1, 0, 0, ...data]) });
+        const response = await next('serviceCallResponse', ({ callId }) => callId === 77);
+        return decode(service.response.schema, response.data);
+      };
+      const runChannel = seen.channels.get('/chicane/run');
+      const id = client.subscribe(runChannel.id);
+      const paused = next('message', ({ subscriptionId, data }) => subscriptionId === id && decode(runChannel.schema, data).is_paused);
+      assert.deepEqual(await call('/step', []), { success: false, message: '/step: pause first' });
+      assert.deepEqual(await call('/pause', [1]), { success: true, message: 'paused' });
+      await paused;
+      assert.deepEqual(await call('/step', []), { success: true, message: 'one step' });
+      assert.deepEqual(await call('/reset', []), { success: true, message: 'reset' });
+      assert.deepEqual(await call('/pause', [0]), { success: true, message: 'running' });
+      client.sendServiceCallRequest({ serviceId: 0, callId: 78, encoding: 'json', data: new Uint8Array() });
+      const failure = await next('serviceCallFailure', ({ callId }) => callId === 78);
+      assert.match(failure.message, /cdr/);
+      client.unsubscribe(id);
+    });
+
+    it('answers nonsense in words and goes on', async () => {
+      const { client, socket, next } = connection;
+      for (const nonsense of ['{', '{"op":"fly"}', '{"op":"subscribe","subscriptions":[{"id":1,"channelId":999}]}', Buffer.from([9])]) {
+        const status = next('status');
+        socket.send(nonsense);
+        assert.equal((await status).level, 2);
+      }
+      client.getParameters(['demo.name'], 'still here');
+      const { parameters } = await next('parameterValues', ({ id }) => id === 'still here');
+      assert.equal(parameters[0].value, 'demo');
+    });
+  });
+}
+
+it('refuses a client that offers neither sub-protocol, in words', async () => {
+  const socket = new WebSocket(demo.url.replace('http', 'ws'));
+  const status = await new Promise((resolve) => {
+    socket.on('unexpected-response', (_request, response) => resolve(response.statusCode));
+    socket.on('open', () => resolve('open'));
+    socket.on('error', () => undefined);
+  });
+  assert.equal(status, 404);
+});
+
+it('a viewer that never reads does not stop the others', async () => {
+  const lazy = await connect('foxglove.sdk.v1');
+  for (const channel of lazy.seen.channels.values()) lazy.client.subscribe(channel.id);
+  lazy.socket.pause();
+  const eager = await connect('foxglove.sdk.v1');
+  const id = eager.client.subscribe(eager.seen.channels.get('/chicane/frame').id);
+  let count = 0;
+  await eager.next('message', ({ subscriptionId }) => subscriptionId === id && ++count === 30);
+  lazy.socket.terminate();
+  eager.client.close();
+});
