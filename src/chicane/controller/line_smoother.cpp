@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kSpacing = 3.0;      // [m] wanted between knots
 constexpr int kPasses = 10;           // over the prices
-constexpr double kLeastPrice = 1e-4;  // √w where there is room [1/m²]
-constexpr double kFirstPrice = 1e-3;  // √w of the first pass
+constexpr double kLeastPrice = 1e-3;  // √w where there is room [1/m²]
+constexpr double kFirstPrice = 2e-3;  // √w of the first pass
 
 }  // namespace
 
@@ -28,6 +28,7 @@ int LineSmoother::knots_for(double length, bool closed) noexcept {
 bool LineSmoother::smooth(const path::Path& line, double spacing, int count) noexcept {
   is_valid_ = false;
   if (!(width_ > 0.0)) return false;
+  count_ = count;
   extra_ = line.is_closed() ? static_cast<int>(kOverlap / spacing) : 0;
   const int total = std::min(count + 2 * extra_, kMaxKnots);
   Problem& problem = workspace_->problem;
@@ -50,8 +51,10 @@ bool LineSmoother::smooth(const path::Path& line, double spacing, int count) noe
       problem.root_price[i] = std::max(kLeastPrice, problem.root_price[i] * std::clamp(ratio, 0.4, 2.5));
     }
     for (int k = 0; k < extra_; ++k) {
-      problem.root_price[static_cast<std::size_t>(k)] = problem.root_price[static_cast<std::size_t>(k + count)];
-      problem.root_price[static_cast<std::size_t>(total - k)] = problem.root_price[static_cast<std::size_t>(total - k - count)];
+      problem.root_price[static_cast<std::size_t>(k)] =
+          problem.root_price[static_cast<std::size_t>(k + count)];
+      problem.root_price[static_cast<std::size_t>(total - k)] =
+          problem.root_price[static_cast<std::size_t>(total - k - count)];
     }
   }
   is_valid_ = true;
@@ -59,7 +62,15 @@ bool LineSmoother::smooth(const path::Path& line, double spacing, int count) noe
 }
 
 double LineSmoother::offset(int k) const noexcept {
-  return is_valid_ ? workspace_->trajectory.x[static_cast<std::size_t>(k + extra_)][0] : 0.0;
+  if (!is_valid_) return 0.0;
+  const auto& x = workspace_->trajectory.x;
+  const double n = x[static_cast<std::size_t>(k + extra_)][0];
+  if (k >= extra_) return n;
+  // Behind the seam the line has been computed twice, once as the continuation of its own end: fade from one
+  // to the other.
+  const double share = static_cast<double>(k) / extra_;
+  const double continued = x[static_cast<std::size_t>(k + extra_ + count_)][0];
+  return share * n + (1.0 - share) * continued;
 }
 
 }  // namespace chicane::controller

@@ -90,7 +90,8 @@ class LineSmoother {
   };
 
   double width_;
-  int extra_ = 0;
+  int extra_ = 0;  ///< knots of the overlap on each side
+  int count_ = 0;
   bool is_valid_ = false;
   std::unique_ptr<Workspace> workspace_;
 };

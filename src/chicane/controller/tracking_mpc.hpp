@@ -15,8 +15,8 @@ struct TrackingMpcOptions {
   int horizon_steps = 40;     ///< N; [5, 100]
   double step_length = 0.05;  ///< dt [s]; [0.01, 0.2]
   double speed_limit = 60.0;  ///< never planned above [m/s]; [1, 100]
-  double grip_share = 0.95;   ///< of the believed tyre force used by the speed plan; (0, 1]
-  double brake_share = 0.9;   ///< of the believed braking used by the speed plan; (0, 1]
+  double grip_share = 0.8;    ///< of the believed tyre force used by the speed plan; (0, 1]
+  double brake_share = 0.6;   ///< of the believed braking used by the speed plan; (0, 1]
   double assumed_half_width =
       3.0;  ///< road each side of the waypoint line the centre of mass may use [m]; [0.2, 20]
   double smoothing_width = 1.0;  ///< the reference line may leave the waypoint line by this much [m]; [0, 10]
