@@ -320,6 +320,16 @@ TEST(Serve, ASimulatorThatWaitsForItsAnswerIsNotQuiet) {
   EXPECT_THAT(second.rest(), StartsWith("HTTP/1.1 503"));
 }
 
+TEST(Serve, AGoodbyeMakesRoomBeforeTheConnectionEnds) {
+  Served served;
+  RawSocket first = served.connect();
+  first.send(RawSocket::masked("41") + RawSocket::masked(R"(42["telemetry",null])"));
+  EXPECT_EQ(first.frame()->payload, R"(42["manual",{}])");  // so the goodbye has been heard
+  RawSocket second = served.connect();
+  second.send(RawSocket::masked(kRealTelemetry));
+  steer_of(second.frame());
+}
+
 TEST(Serve, AfterADisconnectionTheNextSimulatorIsServedAfresh) {
   Served served;
   {

@@ -273,7 +273,7 @@ void UdacityEndpoint::on_open(net::ConnectionId id) {
     return server_->close(id, 1013, "another simulator is being driven");
   }
   if (session_.id != 0) {
-    log_.say(fmt::format("{} has gone quiet: {} takes over", session_.name, accepted.mapped().name));
+    log_.say(fmt::format("{} has gone quiet, {} takes over", session_.name, accepted.mapped().name));
     server_->close(session_.id, 1000, "another simulator took over");
   }
   session_ = accepted.mapped();
@@ -334,11 +334,13 @@ bool UdacityEndpoint::complain_about(const protocol::UdacityTelemetry& message) 
 }
 
 void UdacityEndpoint::hear_packet(protocol::UdacityPacket packet) {
+  using enum protocol::UdacityPacket;
+  session_.has_left |= packet == kDisconnect || packet == kClose;
   if (!session_.is_stock) return;  // the original pings once and would, if answered, ping on
   switch (packet) {
-    case protocol::UdacityPacket::kPing:
+    case kPing:
       return send(session_.id, "3");
-    case protocol::UdacityPacket::kConnect:
+    case kConnect:
       return send(session_.id, R"(40{"sid":"chicane"})");
     default:
       return;
@@ -365,7 +367,8 @@ void UdacityEndpoint::ping(net::ConnectionId id) {
 
 void UdacityEndpoint::watch() {
   server_->run_after(kWatchPeriod, [this] { watch(); });
-  const bool is_waiting = session_.id != 0 && session_.unanswered == 0 && !session_.is_reported_silent;
+  const bool is_waiting =
+      session_.id != 0 && !session_.has_left && session_.unanswered == 0 && !session_.is_reported_silent;
   if (!is_waiting || Clock::now() - session_.last_word < options_.silent_after) return;
   session_.is_reported_silent = true;
   log_.say(session_.has_told
@@ -376,7 +379,8 @@ void UdacityEndpoint::watch() {
 }
 
 bool UdacityEndpoint::is_quiet() const {
-  return session_.unanswered == 0 && Clock::now() - session_.last_word >= options_.quiet_after;
+  return session_.has_left ||
+         (session_.unanswered == 0 && Clock::now() - session_.last_word >= options_.quiet_after);
 }
 
 Result<ServeSummary> serve(const ServeOptions& options, controller::Controller& controller, ServeHooks hooks,

@@ -90,6 +90,7 @@ class UdacityEndpoint final : public Endpoint {
     bool is_stock = false;      ///< got our open packet: an Engine.IO client that expects pings and pongs
     bool is_version_3 = false;  ///< EIO=3: the server connects the namespace, the client pings
     bool has_spoken = false;
+    bool has_left = false;  ///< said goodbye, though the connection still stands
     bool has_told = false;  ///< telemetry has come
     bool is_reported_silent = false;
     int unanswered = 0;             ///< telemetry that waits for its answer
