@@ -166,7 +166,6 @@ class CubicMpc final : public Controller {
   Fallback fallback_;
   Motion start_;               ///< of the horizon
   double start_time_ = 0.0;    ///< [s]
-  double sight_ = 0.0;         ///< x of the farthest waypoint in the frame of start_ [m]
   Solver::Trajectory answer_;  ///< of the last usable solve, in the frame of its start
   double answer_time_ = 0.0;   ///< when it started [s]
   bool has_answer_ = false;

@@ -225,7 +225,7 @@ void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::SetParameters&
   for (const auto& [other, client] : clients_) {
     std::vector<foxglove::Parameter> wanted;
     std::copy_if(values.begin(), values.end(), std::back_inserter(wanted),
-                 [&](const foxglove::Parameter& value) {
+                 [&, &client = client](const foxglove::Parameter& value) {
                    return client.wants_all_parameters || client.wanted_parameters.contains(value.name);
                  });
     if (!wanted.empty()) send_text(other, foxglove::parameter_values(wanted));
