@@ -17,7 +17,9 @@
 namespace chicane::apps {
 namespace {
 
-Result<runtime::ServeSummary> run(const Options& options, const std::atomic<bool>& stop) {
+Result<runtime::ServeSummary> run(const Options& options) {
+  static std::atomic<bool> stop{false};  // as long as signals may come
+  catch_interrupts(stop);
   const Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
   const Result<std::unique_ptr<controller::Controller>> controller = runtime::make_controller(*scenario);
@@ -42,7 +44,7 @@ Result<runtime::ServeSummary> run(const Options& options, const std::atomic<bool
     viewer.publish(frame);
     progress.show(frame);
   };
-  hooks.log = [](std::string_view line) { fmt::print(stderr, "{}\n", line); };
+  hooks.log = [&](std::string_view line) { progress.say(line); };
   fmt::print(stderr,
              "{} ({}) waits for a simulator on port {}; dashboard at http://localhost:{}/; Ctrl-C ends\n",
              scenario->preset, scenario->controller, options.port, options.port);
@@ -52,7 +54,7 @@ Result<runtime::ServeSummary> run(const Options& options, const std::atomic<bool
 }  // namespace
 
 ExitCode serve(const Options& options) {
-  const Result<runtime::ServeSummary> summary = run(options, catch_interrupts());
+  const Result<runtime::ServeSummary> summary = run(options);
   if (!summary) return report(summary.error());
   fmt::print("{} answers to {} simulators; {} unusable messages, {} commands changed by the gate\n",
              summary->answers, summary->connections, summary->unusable, summary->interventions);

@@ -6,20 +6,20 @@
 namespace chicane::apps {
 namespace {
 
-std::atomic<bool> is_interrupted{false};  // the one global: a signal handler can reach nothing else
-static_assert(std::atomic<bool>::is_always_lock_free);
+std::atomic<std::atomic<bool>*> wanted{nullptr};  // the one global: a signal handler can reach nothing else
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::atomic<bool>*>::is_always_lock_free);
 
 void interrupt(int signal) {
-  is_interrupted = true;
+  if (std::atomic<bool>* flag = wanted.load()) *flag = true;
   std::signal(signal, SIG_DFL);
 }
 
 }  // namespace
 
-const std::atomic<bool>& catch_interrupts() {
+void catch_interrupts(std::atomic<bool>& flag) {
+  wanted = &flag;
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
-  return is_interrupted;
 }
 
 }  // namespace chicane::apps

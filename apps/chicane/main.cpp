@@ -11,6 +11,7 @@ namespace {
 constexpr Command kCommands[] = {
     {"drive", "Controller and simulator in one process, with a dashboard", drive},
     {"serve", "Controller for an external simulator, as the original program was", serve},
+    {"simulate", "Simulator for an external controller, as the original game was", simulate},
     {"check", "Validate scenarios, presets, cars and tracks, and explain what is wrong", check},
     {"list", "Presets, tracks, cars, scenarios, controllers and parameters", list},
 };

@@ -66,15 +66,7 @@ void add_controller(CLI::App& command, Options& options) {
 
 void add_world(CLI::App& command, Options& options) {
   add_setting(command, options, "--track", "track", "NAME|FILE", "Track (chicane list tracks)");
-  command
-      .add_option_function<std::string>(
-          "--laps",
-          [&options](const std::string& text) {
-            options.has_laps = true;
-            options.settings.emplace_back("laps", text);
-          },
-          "Laps to drive; 0 drives until stopped")
-      ->type_name("N");
+  add_setting(command, options, "--laps", "laps", "N", "Laps to drive; 0 drives until stopped");
   add_setting(command, options, "--seed", "seed", "N", "Of everything random");
 }
 
@@ -121,8 +113,6 @@ void add_simulate(CLI::App& command, Options& options) {
       ->type_name("CMD");
   add_setting(command, options, "--car", "car", "NAME|FILE", "Simulated car (chicane list cars)");
   add_world(command, options);
-  add_setting(command, options, "--latency-ms", "latency_ms", "X",
-              "Actuation delay on top of the controller's own [ms], default 0");
   command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
   add_set(command, options);
   command.footer("Example: chicane simulate --connect ws://127.0.0.1:4567 --track lakeside --laps 2");

@@ -25,7 +25,6 @@ struct Options {
   std::vector<std::pair<std::string, std::string>>
       settings;           ///< schema key and text, in the order of precedence
   std::string speed_mps;  ///< reference of whichever controller drives; empty: its own
-  bool has_laps = false;
 
   bool is_fast = false;  ///< as fast as possible, no sockets
   bool is_json = false;

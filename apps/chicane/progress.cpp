@@ -20,8 +20,10 @@ std::string line(const telemetry::Frame& frame) {
   const std::string place =
       frame.has_truth ? fmt::format("lap {:<3} {:6.0f} m ", frame.lap + 1, frame.s) : "";
   const std::string off = frame.is_off_track ? "  OFF TRACK" : "";
-  return fmt::format("{:7.1f} s  {}{:6.1f} mph  error {:+6.2f} m  solve {:6.0f} µs{}", frame.time, place,
-                     mps_to_mph(speed), error, 1e6 * frame.solve_time, off);
+  const std::string solve =
+      frame.solve_time > 0.0 ? fmt::format("  solve {:5.0f} µs", 1e6 * frame.solve_time) : "";
+  return fmt::format("{:7.1f} s  {}{:6.1f} mph  error {:+6.2f} m{}{}", frame.time, place, mps_to_mph(speed),
+                     error, solve, off);
 }
 
 }  // namespace
@@ -44,6 +46,10 @@ void Progress::show(const telemetry::Frame& frame) {
     next_run_time_ = frame.time + kLinePeriod;
     fmt::print(stderr, "{}\n", line(frame));
   }
+}
+
+void Progress::say(std::string_view line) {
+  fmt::print(stderr, "{}{}\n", has_line_.exchange(false) ? "\n" : "", line);
 }
 
 }  // namespace chicane::apps

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <string_view>
 
 #include "chicane/telemetry/frame.hpp"
 
@@ -18,11 +20,13 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void show(const telemetry::Frame& frame);
+  /// A line of its own. Any thread.
+  void say(std::string_view line);
 
  private:
   using Clock = std::chrono::steady_clock;
   bool is_terminal_;
-  bool has_line_ = false;
+  std::atomic<bool> has_line_{false};  ///< the cursor stands behind a line that will renew itself
   Clock::time_point next_{};
   double next_run_time_ = 10.0;
 };

@@ -57,7 +57,7 @@ TEST(Cli, HelpNamesEveryCommandAndGivesAnExample) {
   const Outcome help = chicane_program("--help");
   EXPECT_EQ(help.code, 0);
   EXPECT_THAT(help.err, IsEmpty());
-  for (const char* command : {"drive", "serve", "check", "list"}) {
+  for (const char* command : {"drive", "serve", "simulate", "check", "list"}) {
     EXPECT_THAT(help.out, HasSubstr(command));
     const Outcome detail = chicane_program(std::string(command) + " --help");
     EXPECT_EQ(detail.code, 0) << command;
