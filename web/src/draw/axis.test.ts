@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { rangeAboutZero, rangeFromZero, secondsBack } from './axis';
+import { firstSince, rangeAboutZero, rangeFromZero, secondsBack } from './axis';
 
 describe('axes', () => {
   it('start at zero and end at a round number', () => {
@@ -12,6 +12,14 @@ describe('axes', () => {
     expect(rangeAboutZero([[-0.7, 0.1]], 0.5)).toEqual([-0.8, 0.8]);
     expect(rangeAboutZero([[0.1]], 0.5)).toEqual([-0.5, 0.5]);
     expect(rangeAboutZero([[], [NaN]], 2)).toEqual([-2, 2]);
+  });
+
+  it('begin with the first visible row', () => {
+    expect(firstSince([1, 2, 3, 4], 2.5)).toBe(2);
+    expect(firstSince([1, 2, 3, 4], 2)).toBe(1);
+    expect(firstSince([1, 2], 9)).toBe(2);
+    expect(firstSince([1, 2], 0)).toBe(0);
+    expect(firstSince([], 0)).toBe(0);
   });
 
   it('count seconds back from now', () => {

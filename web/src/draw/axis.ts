@@ -18,6 +18,17 @@ export function rangeAboutZero(values: readonly ArrayLike<number>[], least: numb
   return [-end, end];
 }
 
+/** Index of the first of these rising times that is not before `since`. */
+export function firstSince(times: ArrayLike<number>, since: number): number {
+  let [low, high] = [0, times.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if ((times[middle] ?? NaN) < since) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
 /** The last `seconds` up to `now`, in whole steps back from now: grid lines that stand still while time runs. */
 export const secondsBack = (now: number, seconds: number, step: number): number[] =>
   Array.from({ length: Math.floor(seconds / step) + 1 }, (_, i) => now - seconds + i * step);

@@ -1,7 +1,7 @@
 import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
-import { rangeAboutZero, rangeFromZero, secondsBack } from '../draw/axis';
+import { firstSince, rangeAboutZero, rangeFromZero, secondsBack } from '../draw/axis';
 import { onThemeChange, theme, type Theme } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { Column, live, shown, WINDOW_S } from '../state/app_state';
@@ -66,7 +66,7 @@ function optionsOf(spec: PlotSpec, colours: Theme): uPlot.Options {
     legend: { show: false },
     cursor: { sync: { key: 'plots' }, drag: { x: false, y: false }, points: { size: 7 } },
     padding: [8, 18, 0, 0],
-    scales: { x: { time: false, range: (_plot, _low, high) => [high - WINDOW_S, high] }, y: { range: () => spec.range(columnsOf(spec)) } },
+    scales: { x: { time: false, range: (_plot, _low, high) => [high - WINDOW_S, high] }, y: { range: () => spec.range(dataOf(spec).slice(1)) } },
     axes: [
       {
         ...axis,
@@ -89,17 +89,19 @@ function optionsOf(spec: PlotSpec, colours: Theme): uPlot.Options {
   };
 }
 
-const columnsOf = (spec: PlotSpec): Float64Array[] => spec.series.map(({ column }) => live.plots.column(column));
-
-const dataOf = (spec: PlotSpec): uPlot.AlignedData =>
-  [live.plots.column(Column.time), ...columnsOf(spec)] as unknown as uPlot.AlignedData;
+/** Time and the columns of a plot, as far back as the plot reaches. */
+function dataOf(spec: PlotSpec): Float64Array[] {
+  const times = live.plots.column(Column.time);
+  const first = firstSince(times, (times.at(-1) ?? 0) - WINDOW_S);
+  return [Column.time, ...spec.series.map(({ column }) => column)].map((column) => live.plots.column(column).subarray(first));
+}
 
 function Plot({ spec }: { spec: PlotSpec }) {
   const host = useRef<HTMLDivElement>(null);
   useEffect(() => {
     const element = host.current;
     if (!element) return undefined;
-    const create = (): uPlot => new uPlot(optionsOf(spec, theme()), dataOf(spec), element);
+    const create = (): uPlot => new uPlot(optionsOf(spec, theme()), dataOf(spec) as unknown as uPlot.AlignedData, element);
     let plot = create();
     let drawn = NaN;
     const fit = (): void => plot.setSize({ width: element.clientWidth, height: element.clientHeight });
@@ -109,7 +111,7 @@ function Plot({ spec }: { spec: PlotSpec }) {
       const newest = live.plots.newest(Column.time);
       if (Object.is(newest, drawn)) return;
       drawn = newest;
-      plot.setData(dataOf(spec));
+      plot.setData(dataOf(spec) as unknown as uPlot.AlignedData);
     }, 50);
     const unwatch = onThemeChange(() => {
       plot.destroy();

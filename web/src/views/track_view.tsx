@@ -19,7 +19,7 @@ const VIEWS: readonly { view: View; label: string; title: string }[] = [
 ];
 
 export const view = signal<View>('behind');
-const metresAcross = signal(70);
+const metresAcross = signal(100);
 const bar = signal({ metres: 10, pixels: 80 });
 const scaleTop = signal(20 / MPH);
 
