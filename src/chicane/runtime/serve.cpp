@@ -385,10 +385,12 @@ bool UdacityEndpoint::is_quiet() const {
 
 Result<ServeSummary> serve(const ServeOptions& options, controller::Controller& controller, ServeHooks hooks,
                            Endpoint* viewer, std::vector<net::Asset> assets, const std::atomic<bool>& stop) {
+  const auto announce = hooks.on_listening;
   UdacityEndpoint simulator(options, controller, std::move(hooks));
   Router router(&simulator, viewer);
   auto server = net::Server::create(options.server, router.handlers(), std::move(assets));
   if (!server) return fail(server.error());
+  if (announce) announce((*server)->port());
   while (!stop) std::this_thread::sleep_for(milliseconds{20});
   simulator.stop();
   server->reset();

@@ -41,6 +41,7 @@ struct ServeOptions {
 struct ServeHooks {
   std::function<void(const telemetry::Frame&)> on_frame{};  ///< after each answer, on the control thread
   std::function<void(std::string_view)> log{};  ///< one line about the connection, on the network thread
+  std::function<void(std::uint16_t port)> on_listening{};  ///< once, when the port is ours
 };
 
 /// What has been served so far.
