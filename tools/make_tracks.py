@@ -18,7 +18,7 @@ import random
 import sys
 
 TRACKS = pathlib.Path(__file__).resolve().parent.parent / "tracks"
-STEP = 0.05  # of the integration along the line [m]
+STEP = 0.1  # of the integration along the line [m]
 
 
 class Profile:
@@ -177,7 +177,7 @@ def speedway_profile():
 
 
 def even_points(profile, spacing, left, right):
-    """Centre line and widths every `spacing` metres."""
+    """Centre line and widths about every `spacing` metres: wide enough that six points show the road ahead."""
     rows = profile.integrate()
     count = round(profile.length() / spacing)
     return [(*rows[round(i * (len(rows) - 1) / count)][1:4], left, right) for i in range(count)]
@@ -271,11 +271,11 @@ def make_all():
              "Few, uneven waypoints beside the middle of the road, as a person places them."],
             {"start_s_m": 258.0, "start_d_m": -0.76}, lakeside_points(lakeside, SEED)),
         "oval": text_of(["oval: two straights, two turns of R 45 m, 10 m wide, counter-clockwise"], exact,
-                        even_points(oval, 5.0, 5.0, 5.0)),
+                        even_points(oval, 12.0, 5.0, 5.0)),
         "hairpins": text_of(["hairpins: a ladder of U-turns of R 15, 12, 10 and 8 m, 9 m wide, counter-clockwise"], exact,
-                            even_points(hairpins, 3.0, 4.5, 4.5)),
+                            even_points(hairpins, 5.0, 4.5, 4.5)),
         "speedway": text_of(["speedway: sweeping corners of R 90 to 200 m between long straights, 12 m wide, counter-clockwise"],
-                            exact, even_points(speedway, 5.0, 6.0, 6.0)),
+                            exact, even_points(speedway, 20.0, 6.0, 6.0)),
     }
 
 

@@ -9,6 +9,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/random.hpp"
+#include "support/alloc_guard.hpp"
 
 namespace chicane::path {
 namespace {
@@ -229,6 +230,20 @@ TEST(Path, RebuildWithinCapacityEqualsCreateAndRefusesTheRest) {
   EXPECT_FALSE(path.rebuild(circle(50.0, 201), true)) << "more than the capacity";
   EXPECT_FALSE(path.rebuild(std::vector<Vec2>{{0, 0}, {0, 0}, {1, 1}}, true));
   EXPECT_EQ(path.length(), fresh.length()) << "refused data change nothing";
+}
+
+TEST(Path, RunsWithoutAllocating) {
+  const std::vector<Vec2> points = wavy_loop(2);
+  Path path = Path::with_capacity(400);
+  const test::AllocationGuard guard;
+  ASSERT_TRUE(path.rebuild(points, true));
+  ASSERT_TRUE(path.rebuild(points, false));
+  double sum = 0.0;
+  for (double s = 0.0; s < path.length(); s += 1.0)
+    sum += path.at(s).curvature + path.project(points[7], s, 30.0).d;
+  sum += path.project(points[7]).d;
+  EXPECT_EQ(guard.count(), 0);
+  EXPECT_TRUE(std::isfinite(sum));
 }
 
 TEST(Path, RefusesWhatIsNoCurveAndNamesThePoint) {

@@ -197,8 +197,12 @@ TEST(Track, RefusesBadPointsAndNamesThem) {
   EXPECT_EQ(refusal({}, true), "points: got 0 with 0 different, expected at least 4 different ones");
   EXPECT_EQ(refusal(std::vector<TrackPoint>(50, {{1, 1}, 5, 5}), true),
             "points: got 50 with 1 different, expected at least 4 different ones");
-  const std::vector<TrackPoint> far{{{0, 0}, 5, 5}, {{9e6, 0}, 5, 5}, {{9e6, 9e6}, 5, 5}, {{0, 9e6}, 5, 5}};
-  EXPECT_NE(refusal(far, true).find("expected at most"), std::string::npos) << "36,000 km are no road";
+  points = loop_points(100, 0.0);
+  points[5].position.x() = 2e4;
+  EXPECT_TRUE(refusal(points, true).starts_with("points[5]: got (20000, ")) << refusal(points, true);
+  EXPECT_TRUE(refusal(points, true).ends_with("expected a point within 10 km of the one before"));
+  const std::vector<TrackPoint> tiny{{{0, 0}, 5, 5}, {{0.1, 0}, 5, 5}, {{0.1, 0.1}, 5, 5}, {{0, 0.1}, 5, 5}};
+  EXPECT_EQ(refusal(tiny, true), "points: got a line of 0.4 m, expected 1 to 4e+05 m");
 }
 
 TEST(Track, RefusesOptionsOutOfRange) {

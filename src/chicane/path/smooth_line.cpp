@@ -16,10 +16,12 @@ constexpr double kCurvatureNoise = 0.003;  // accepted standard deviation of cur
 constexpr double kMinSmoothingLength =
     0.05;                            // keeps the system regular where there are more knots than points [m]
 constexpr int kParameterPasses = 3;  // chord length, then twice the arc length of the line found
-constexpr int kOverlapPoints = 30;  // a closed line is unrolled by at least this many points at both ends ...
+constexpr int kOverlapPoints = 16;  // a closed line is unrolled by at least this many points at both ends ...
 constexpr double kOverlapLengths =
     30.0;  // ... and this many smoothing lengths: what is beyond has no influence
-constexpr std::size_t kMaxKnots = 1'000'000;
+constexpr std::size_t kMaxKnots = 200'000;
+constexpr double kMinLength = 1.0;          // of a line [m]
+constexpr double kMaxShareOfLength = 0.02;  // of ℓ in the length of a short line
 
 /// Uniform cubic B-spline with values and derivatives, unit knot distance: coefficient i has its peak at i
 /// − 1.
@@ -183,6 +185,15 @@ std::size_t interval_count(double length, double spacing) noexcept {
   return static_cast<std::size_t>(std::clamp(std::round(length / spacing), 8.0, 1e9));
 }
 
+double median_of_gaps(std::span<const Vec2> points) {
+  std::vector<double> gaps;
+  gaps.reserve(points.size());
+  for (std::size_t i = 1; i < points.size(); ++i) gaps.push_back((points[i] - points[i - 1]).norm());
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  return *middle;
+}
+
 SmoothLine finish(Fit&& fit, std::span<const Vec2> points, bool closed) {
   SmoothLine line;
   double sum = 0.0;
@@ -214,16 +225,18 @@ SmoothLine finish(Fit&& fit, std::span<const Vec2> points, bool closed) {
 Result<SmoothLine> smooth_line(std::span<const Vec2> points, bool closed, double spacing, double sigma) {
   const Fit raw = initial_fit(points, closed);
   const double mean_gap = raw.length / static_cast<double>(points.size());
+  const double median_gap = median_of_gaps(points);
   // Equation (2): white noise σ every Δ metres leaves a curvature noise of sqrt(0.0556 σ² Δ / ℓ⁵).
   const double demanded =
       sigma > 0.0 ? exp(0.2 * log(0.0556 * sigma * sigma * mean_gap / (kCurvatureNoise * kCurvatureNoise)))
                   : 0.0;
-  double smoothing = std::max(demanded, kMinSmoothingLength);
+  double smoothing = std::max(std::min(demanded, kMaxShareOfLength * raw.length), kMinSmoothingLength);
   while (true) {
-    if (raw.length / spacing > static_cast<double>(kMaxKnots)) {
-      return fail(ErrorCode::kInvalidArgument,
-                  "points: got a line of " + number_text(raw.length) + " m, expected at most " +
-                      number_text(spacing * static_cast<double>(kMaxKnots)) + " m in metres");
+    if (!(raw.length >= kMinLength && raw.length <= spacing * static_cast<double>(kMaxKnots))) {
+      return fail(ErrorCode::kInvalidArgument, "points: got a line of " + number_text(raw.length) +
+                                                   " m, expected " + number_text(kMinLength) + " to " +
+                                                   number_text(spacing * static_cast<double>(kMaxKnots)) +
+                                                   " m");
     }
     Fit fit = raw;
     for (int pass = 0; pass < kParameterPasses; ++pass) {
@@ -235,8 +248,8 @@ Result<SmoothLine> smooth_line(std::span<const Vec2> points, bool closed, double
     line.smoothing_length = smoothing;
     const bool is_close = line.rms_deviation <= sigma + 0.002 && line.max_deviation <= 4.0 * sigma + 0.01;
     if (is_close || smoothing <= kMinSmoothingLength) return line;
-    smoothing = std::max(0.7 * smoothing, kMinSmoothingLength);
-    spacing = std::min(spacing, std::max(2.0 * smoothing, 0.25 * mean_gap));
+    smoothing = std::max(0.5 * smoothing, kMinSmoothingLength);
+    spacing = std::min(spacing, std::max(2.0 * smoothing, 0.25 * median_gap));
   }
 }
 

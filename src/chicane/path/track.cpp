@@ -12,7 +12,8 @@
 namespace chicane::path {
 namespace {
 
-constexpr double kMaxWidth = 1000.0;
+constexpr double kMaxWidth = 1000.0;  // [m]
+constexpr double kMaxGap = 10'000.0;  // from point to point [m]
 
 Error invalid(const std::string& where, const std::string& got, const std::string& expected) {
   return {ErrorCode::kInvalidArgument, where + ": got " + got + ", expected " + expected};
@@ -46,7 +47,10 @@ std::optional<Error> check_points(const std::vector<TrackPoint>& points) {
     constexpr const char* kWidth = "a width > 0 and <= 1000 m";
     if (!is_width(point.left)) return invalid(point_name(i) + ".left", number_text(point.left), kWidth);
     if (!is_width(point.right)) return invalid(point_name(i) + ".right", number_text(point.right), kWidth);
-    if (i == 0 || (point.position - points[i - 1].position).norm() >= Path::kMinSpacing) ++different;
+    const double gap = i == 0 ? Path::kMinSpacing : (point.position - points[i - 1].position).norm();
+    if (gap > kMaxGap)
+      return invalid(point_name(i), point_text(point.position), "a point within 10 km of the one before");
+    if (gap >= Path::kMinSpacing) ++different;
   }
   if (different < 4) {
     return invalid("points",
@@ -85,9 +89,9 @@ Result<Track> Track::create(std::string name, const std::vector<TrackPoint>& poi
 
   Result<SmoothLine> line = smooth_line(positions, closed, options.spacing, options.smoothing_sigma);
   if (!line) return fail(line.error());
-  if (std::optional<Error> error = check_crossing(*line, points, closed)) return fail(std::move(*error));
   Result<Path> centre = Path::create(line->knots, closed);
-  if (!centre) return fail(centre.error());
+  if (!centre) return fail(invalid("points", "a line that stands still or folds back", "a road"));
+  if (std::optional<Error> error = check_crossing(*line, points, closed)) return fail(std::move(*error));
 
   Track track{std::move(name), std::move(*centre)};
   for (double& s : line->parameter) s *= track.length() / line->length;

@@ -33,8 +33,8 @@ struct TrackOptions {
 class Track {
  public:
   /// Fails with kInvalidArgument and the index of the point, counted from 0, for: fewer than 4 different
-  /// points, non-finite numbers, widths <= 0 or > 1 km, a line that crosses itself; also for options out of
-  /// range. 100,000 points take less than a second.
+  /// points, non-finite numbers, widths <= 0 or > 1 km, gaps > 10 km, a line that crosses itself; also for
+  /// options out of range. 100,000 points take less than a second.
   [[nodiscard]] static Result<Track> create(std::string name, const std::vector<TrackPoint>& points,
                                             bool closed, const TrackOptions& options = {});
 
