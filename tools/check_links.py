@@ -37,7 +37,9 @@ def missing(root, page):
             path = code["path"]
             if path.startswith((".", *GENERATED)) or "NAME" in path:
                 continue
-            if not any((base / path).exists() for base in (root, root / "src/chicane", root / "docs", root / "web", page.parent)):
+            bases = [base for base in (root, root / "src/chicane", root / "docs", root / "web", page.parent)
+                     if (base / path.split("/")[0]).is_dir()]  # a path into a folder of ours
+            if bases and not any((base / path).exists() for base in bases):
                 yield f"{where}: `{path}` does not exist"
 
 
