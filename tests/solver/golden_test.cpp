@@ -49,7 +49,9 @@ TEST_P(Golden, OptimaAndFirstInputsAgree) {
   const auto cycles = read_table(kFolder + "lap_" + lap + ".csv");
   const auto optima = read_table(kFolder + "golden_" + lap + "_N" + nodes + ".csv");
   if (cycles.empty() || optima.empty()) GTEST_SKIP() << "no reference problems in " << kFolder;
-  const auto ocp = std::make_unique<solver::OcpSolver<DescribedProblem, kCapacity>>();
+  using Solver = solver::OcpSolver<DescribedProblem, kCapacity>;
+  const auto ocp = std::make_unique<Solver>(solver::SolverOptions{.max_iterations = 100});
+  int better = 0;
   const auto trajectory = std::make_unique<test::DescribedTrajectory<kCapacity>>();
   for (std::size_t i = 0; i < optima.size(); ++i) {
     if (optima[i][1] != 1.0) continue;
@@ -57,16 +59,23 @@ TEST_P(Golden, OptimaAndFirstInputsAgree) {
     DescribedProblem problem;
     problem.path = {row[6], row[7], row[8], row[9]};
     problem.speed_reference = row[10];
-    const std::array<double, 8> start{row[0], row[1], row[2], row[3], row[4], row[5], 0.0, 0.0};
+    const test::DescribedInstance instance{
+        .problem = problem, .start = {row[0], row[1], row[2], row[3], row[4], row[5], 0.0, 0.0}};
     *trajectory = {};
     trajectory->horizon = GetParam().nodes - 1;
-    const auto report = ocp->solve(problem, start, *trajectory);
+    test::guess_by_path_law(instance, *trajectory);
+    const auto report = ocp->solve(problem, instance.start, *trajectory);
     ASSERT_EQ(report.status, solver::SolveStatus::kOptimal) << "cycle " << i;
+    if (report.cost < (1.0 - 1e-6) * optima[i][2]) {
+      ++better;
+      continue;
+    }
     ASSERT_NEAR(report.cost, optima[i][2], 1e-6 * optima[i][2]) << "cycle " << i;
     // Ipopt relaxes bounds by 1e-8 and stops at 1e-10 of a scaled objective.
     ASSERT_NEAR(trajectory->u[0][0], optima[i][3], 1e-5) << "cycle " << i;
     ASSERT_NEAR(trajectory->u[0][1], optima[i][4], 1e-5) << "cycle " << i;
   }
+  EXPECT_LE(better, 2) << "a few cycles far off the road have several local optima, most have one";
 }
 
 std::string name_of(const testing::TestParamInfo<GoldenSet>& info) {

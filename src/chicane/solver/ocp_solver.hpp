@@ -11,6 +11,7 @@
 #include "chicane/base/deadline.hpp"
 #include "chicane/solver/linearisation.hpp"
 #include "chicane/solver/problem.hpp"
+#include "chicane/solver/progress.hpp"
 #include "chicane/solver/riccati.hpp"
 #include "chicane/solver/solution.hpp"
 #include "chicane/solver/warm_start.hpp"
@@ -72,9 +73,9 @@ class OcpSolver {
   static constexpr std::size_t kNc = P::kNc;
   static constexpr std::size_t kOne = kNx;
   static constexpr std::size_t kHead = kNx + 1;
-  static constexpr int kPatience = 3;       ///< turns without improvement before full steps are given up
-  static constexpr double kProgress = 0.9;  ///< what counts as an improvement
-  static constexpr int kFirstHorizon = 5;   ///< of the growing horizons
+  static constexpr int kPatience =
+      3;  ///< turns without improvement before curvature is used while descending
+  static constexpr int kFirstHorizon = 5;  ///< of the growing horizons
   static constexpr int kMaxGrowth = 16;
   static constexpr double kGoodEnoughToGrow = 1e-1;
   static constexpr double kDefectShare = 1e-7;  ///< of the tolerance: Hessians amplify defects
@@ -90,7 +91,8 @@ class OcpSolver {
   bool start(const P& problem, const State& x0, Trajectory& trajectory) noexcept {
     full_steps_ = is_fresh_ = true;
     has_best_ = has_curvature_ = has_grown_ = false;
-    idle_turns_ = smooth_descents_ = 0;
+    smooth_descents_ = 0;
+    progress_.restart();
     needed_descents_ = 2;
     target_ = trajectory.horizon;
     mu_ = start_mu(problem);
@@ -134,7 +136,6 @@ class OcpSolver {
   }
 
   // ---- soft constraints
-  // ----------------------------------------------------------------------------------------------
 
   [[nodiscard]] double final_mu() const noexcept { return options_.tolerance; }
 
@@ -200,17 +201,13 @@ class OcpSolver {
   }
 
   // ---- second order
-  // --------------------------------------------------------------------------------------------------
 
   /// Gauss–Newton converges linearly; when its rate promises many more turns, the missing second derivatives
   /// are evaluated once and kept: the rest of the way is short.
   void weigh_curvature(const P& problem, const Trajectory& t, const SolveReport& report) noexcept {
-    const double before = last_residual_;
-    const double after = last_residual_ = residual(report);
-    bool pays = !full_steps_ && descents_ > kPatience;
-    if (full_steps_ && report.iterations > 1 && after < before && after < 1e-1) {
-      pays = std::log(after / options_.tolerance) > kCurvaturePays * std::log(before / after);
-    }
+    const bool pays = full_steps_
+                          ? progress_.turns_left(residual(report), options_.tolerance) > kCurvaturePays
+                          : descents_ > kPatience;
     if (pays) {
       now_.evaluate_curvature(problem, t);
       has_curvature_ = true;
@@ -219,7 +216,6 @@ class OcpSolver {
   }
 
   // ---- full steps
-  // ----------------------------------------------------------------------------------------------------
 
   /// First guess of the working set: inputs at a bound whose cost falls beyond it.
   void guess_working_set(const Trajectory& t) noexcept {
@@ -262,43 +258,44 @@ class OcpSolver {
   bool full_step(const P& problem, Trajectory& t, const Deadline& deadline, SolveReport& report) noexcept {
     if (!solve_qp(size_of(t), deadline, report)) return false;
     const double length = kNc > 0 ? step_soft(problem, size_of(t)) : 1.0;
+    double longest = 0.0;
     for (std::size_t k = 0; k < size_of(t); ++k) {
       const auto& stage = lq_.stage[k];
       for (std::size_t i = 0; i < kNx; ++i) t.x[k + 1][i] += length * lq_.dx[k + 1][i];
       for (std::size_t m = 0; m < kNu; ++m) {
-        t.u[k][m] += length * std::min(std::max(lq_.du[k][m], stage.low[m]), stage.high[m]);
+        const double du = length * std::min(std::max(lq_.du[k][m], stage.low[m]), stage.high[m]);
+        t.u[k][m] += du;
+        longest = std::max(longest, std::fabs(du));
       }
     }
+    progress_.note(longest, kNc > 0 && mu_ > final_mu());
     return true;
   }
 
   // ---- globalisation
-  // -------------------------------------------------------------------------------------------------
 
   /// True when this is the best iterate so far: by its residuals while steps are full, the latest one while
   /// the cost descends.
   bool keep_best(const Trajectory& trajectory, const SolveReport& report) noexcept {
     if (!is_finite(report)) return false;
-    const bool barrier_falls = kNc > 0 && mu_ > final_mu();
-    if (full_steps_ && has_best_ && !barrier_falls && residual(report) > kProgress * residual(best_report_))
+    if (full_steps_ && has_best_ && !progress_.is_good() && residual(report) >= residual(best_report_))
       return false;
     best_ = trajectory;
     best_report_ = report;
     has_best_ = true;
-    idle_turns_ = 0;
     return true;
   }
 
   /// Steps have not improved for a while, or left the finite numbers.
   bool has_lost_its_way(const SolveReport& report) noexcept {
-    return !is_finite(report) || (full_steps_ && ++idle_turns_ >= kPatience);
+    return !is_finite(report) || (full_steps_ && progress_.is_lost());
   }
 
   /// Back to the best iterate, to descend from there. False when its inputs cannot be simulated.
   bool go_back(const P& problem, Trajectory& trajectory) noexcept {
     if (!full_steps_) shift_ = std::max(10.0 * shift_, 1.0);
     full_steps_ = has_curvature_ = false;
-    idle_turns_ = smooth_descents_ = descents_ = 0;
+    smooth_descents_ = descents_ = 0;
     const State x0 = trajectory.x[0];
     trajectory = best_;
     return roll_out(problem, x0, trajectory);
@@ -327,7 +324,7 @@ class OcpSolver {
   bool restart(const P& problem, const State& x0, Trajectory& t) noexcept {
     full_steps_ = is_fresh_ = true;
     has_best_ = has_curvature_ = false;
-    idle_turns_ = 0;
+    progress_.restart();
     needed_descents_ = 2;
     return roll_out(problem, x0, t);
   }
@@ -367,6 +364,7 @@ class OcpSolver {
     full_steps_ = true;
     has_best_ = false;
     smooth_descents_ = 0;
+    progress_.restart();
     needed_descents_ *= 2;
   }
 
@@ -422,7 +420,6 @@ class OcpSolver {
   }
 
   // ---- endings
-  // -------------------------------------------------------------------------------------------------------
 
   /// Hands out the best iterate; unless it is optimal, its residuals decide the status.
   SolveReport finish(SolveStatus status, const P& problem, Trajectory& trajectory,
@@ -480,14 +477,13 @@ class OcpSolver {
   bool has_grown_ = false;
   bool is_fresh_ = true;  ///< slacks and working set are to be guessed anew
   int target_ = 0;        ///< horizon asked for
-  int idle_turns_ = 0;
+  Progress progress_;
   int smooth_descents_ = 0;
   int descents_ = 0;
   int needed_descents_ = 2;
   double shift_ = 0.0;  ///< Levenberg shift on the input blocks
   double mu_ = 0.0;     ///< barrier of the soft constraints
   double merit_ = 0.0;
-  double last_residual_ = 0.0;
 };
 
 }  // namespace chicane::solver
