@@ -24,9 +24,9 @@ struct TrackingMpcOptions {
   double weight_heading = 5.0;   ///< on the heading error² [1/rad²]
   double weight_speed = 0.5;     ///< on (v − v_ref)² [s²/m²]
   double weight_steer_rate = 10.0;  ///< on (steering rate)² [s²/rad²]
-  double weight_jerk = 0.05;        ///< on (change of acceleration per second)² [s⁶/m²]
+  double weight_jerk = 0.02;        ///< on (change of acceleration per second)² [s⁶/m²]
   double weight_edge = 200.0;       ///< price of leaving assumed_half_width, per m² [1/m²]
-  double weight_slip = 20.0;        ///< price of slip beyond the useful, normalised²
+  double weight_slip = 100.0;       ///< price of slip beyond the useful, normalised²
   bool compensate_delay = true;     ///< replay commands in flight; off only to show what happens
   bool remember_waypoints = true;   ///< close the waypoints seen into a map
 };
