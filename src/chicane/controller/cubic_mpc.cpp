@@ -17,6 +17,8 @@ namespace chicane::controller {
 namespace {
 
 constexpr int kMaxSteps = 200;
+constexpr int kMaxIterations =
+    100;  ///< one solve in thousands needs more than 40: a cubic far beyond the waypoints
 constexpr int kReferencePoints = 32;
 constexpr double kUnlimited = 1e9;
 
@@ -41,7 +43,7 @@ class CubicMpc final : public Controller {
     start_time_ = now.time + roll_forward_.compensated();
     if (!see_line(now)) return fall_back(now);  // the waypoints from there, as a cubic
     shift_warm_start();                         // the last answer, moved on by the time since
-    result_.report.solve = solver_.solve(problem_, initial_state(now), answer_, deadline);
+    solve(now, deadline);
     if (!usable(result_.report.solve.status)) return fall_back(now);
     return accept();
   }
@@ -88,6 +90,12 @@ class CubicMpc final : public Controller {
             -atan(problem_.line.slope(0.0)),
             steer_sign_ * now.steer,
             now.throttle};
+  }
+
+  void solve(const model::Measurement& now, const Deadline& deadline) noexcept {
+    const double started = deadline.elapsed();
+    result_.report.solve = solver_.solve(problem_, initial_state(now), answer_, deadline);
+    result_.report.solve_time = deadline.elapsed() - started;
   }
 
   void shift_warm_start() noexcept {
@@ -162,7 +170,7 @@ class CubicMpc final : public Controller {
   int stages_;         ///< intervals: one less than states
   RollForward roll_forward_;
   CubicProblem problem_;
-  Solver solver_;
+  Solver solver_{solver::SolverOptions{.max_iterations = kMaxIterations}};
   Fallback fallback_;
   Motion start_;               ///< of the horizon
   double start_time_ = 0.0;    ///< [s]
