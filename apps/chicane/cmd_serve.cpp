@@ -45,9 +45,11 @@ Result<runtime::ServeSummary> run(const Options& options) {
     progress.show(frame);
   };
   hooks.log = [&](std::string_view line) { progress.say(line); };
-  fmt::print(stderr,
-             "{} ({}) waits for a simulator on port {}; dashboard at http://localhost:{}/; Ctrl-C ends\n",
-             scenario->preset, scenario->controller, options.port, options.port);
+  hooks.on_listening = [&](std::uint16_t port) {
+    progress.say(fmt::format(
+        "{} ({}) waits for a simulator on port {}; dashboard at http://localhost:{}/; Ctrl-C ends",
+        scenario->preset, scenario->controller, port, port));
+  };
   return runtime::serve(serving, **controller, std::move(hooks), &viewer, runtime::embedded_assets(), stop);
 }
 

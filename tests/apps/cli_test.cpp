@@ -2,7 +2,10 @@
 // The program as a user meets it: words in, text and exit codes out.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
@@ -156,9 +159,35 @@ TEST(Cli, ListKnowsWhatShips) {
 }
 
 TEST(Cli, TheReferencePageIsInStepWithTheProgram) {
-  EXPECT_EQ(chicane_program("list parameters --markdown").out,
-            read(fs::path(CHICANE_SOURCE_DIR) / "docs/configuration.md"))
+  const std::string page = read(fs::path(CHICANE_SOURCE_DIR) / "docs/configuration.md");
+  EXPECT_TRUE(chicane_program("list parameters --markdown").out == page)
       << "run: chicane list parameters --markdown > docs/configuration.md";
+}
+
+TEST(Cli, APortThatIsTakenIsTheEnvironmentsFault) {
+  const int taken = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  ASSERT_EQ(::bind(taken, reinterpret_cast<sockaddr*>(&address), size), 0);
+  ASSERT_EQ(::listen(taken, 1), 0);
+  ASSERT_EQ(::getsockname(taken, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  const std::string port = std::to_string(ntohs(address.sin_port));
+  for (const char* command : {"serve --port ", "drive --laps 1 --port "}) {
+    const Outcome outcome = chicane_program(command + port);
+    EXPECT_EQ(outcome.code, 3) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(port));
+  }
+  ::close(taken);
+}
+
+TEST(Cli, CtrlCEndsARunWithTheResultsSoFar) {
+  const Outcome outcome = chicane_program("drive --port 0 --laps 9 --json & sleep 1; kill -INT $!; wait $!");
+  const Json report = Json::parse(outcome.out, nullptr, false);
+  ASSERT_FALSE(report.is_discarded()) << outcome.out << outcome.err;
+  EXPECT_EQ(report["completed"], false);
+  EXPECT_EQ(outcome.code, 1);
 }
 
 TEST(Cli, NoCommandIsAdvertisedThatDoesNotExist) {
