@@ -292,8 +292,12 @@ TEST(Server, NoticesACloseAndAPlainEnd) {
   EXPECT_EQ(polite.frame()->opcode, 8);
   polite.close();
   EXPECT_THAT(recorder.closed(1).at(0), HasSubstr("closed by the peer (1000)"));
+  RawSocket hasty = upgraded(recorder.port());
+  hasty.send(RawSocket::masked(std::string("\x03\xe8", 2), 8));
+  hasty.close();
+  EXPECT_THAT(recorder.closed(2).at(1), HasSubstr("closed by the peer (1000)"));
   upgraded(recorder.port()).close();
-  EXPECT_THAT(recorder.closed(2).at(1), HasSubstr("without a close frame"));
+  EXPECT_THAT(recorder.closed(3).at(2), HasSubstr("without a close frame"));
 }
 
 TEST(Server, NamesTheHolderOfABusyPort) {

@@ -101,6 +101,9 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
     }));
     stream_.read_message_max(core_.options.max_message);
     stream_.auto_fragment(false);
+    stream_.control_callback([this](websocket::frame_type kind, boost::string_view) {
+      has_peer_closed_ |= kind == websocket::frame_type::close;
+    });
     stream_.async_accept(request, [self = shared_from_this()](ErrorCodeBoost ec) {
       if (!ec) self->open();
     });
@@ -191,7 +194,8 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
   }
 
   [[nodiscard]] std::string words(ErrorCodeBoost ec) const {
-    if (ec == websocket::error::closed) return fmt::format("closed by the peer ({})", stream_.reason().code);
+    if (has_peer_closed_ || ec == websocket::error::closed)
+      return fmt::format("closed by the peer ({})", stream_.reason().code);
     if (ec == websocket::error::message_too_big) {
       return fmt::format("sent a message of more than {} bytes", core_.options.max_message);
     }
@@ -211,6 +215,7 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
   std::deque<Outgoing> queue_;  // the front one is being written while is_writing_
   bool is_writing_ = false;
   bool is_closing_ = false;
+  bool has_peer_closed_ = false;
   websocket::close_reason close_reason_;
   std::string why_;
 };
