@@ -196,8 +196,8 @@ class OcpSolver {
   }
 
   void lower_barrier(double length) noexcept {
-    const double next = length > 0.9 ? std::min(0.1, std::sqrt(mu_)) : (length > 0.5 ? 0.2 : 0.6);
-    mu_ = std::max(final_mu(), next * mu_);
+    const double share = length > 0.9 ? std::min(0.1, std::sqrt(mu_)) : (length > 0.5 ? 0.2 : 0.6);
+    mu_ = std::max(final_mu(), share * mu_);
   }
 
   // ---- second order
@@ -250,6 +250,7 @@ class OcpSolver {
       chances = contradictions < fewest ? kPatience : chances - 1;
       fewest = std::min(fewest, contradictions);
     }
+    lq_.backward(horizon, 0.0, true);
     lq_.forward(horizon, Repair::kClip);
     return true;
   }
