@@ -26,9 +26,10 @@ struct Projection {
 };
 
 /// A smooth plane curve by arc length: interpolating C² cubic spline through given points, periodic when
-/// closed, natural (no curvature at the ends) when open, with the parameter corrected so that s is arc length
-/// to about 1e-3 relative while the curve turns by less than about 0.7 rad from point to point. Heading and
-/// curvature are those of the curve itself, whatever its parameter. Geometry only; knows no car.
+/// closed, natural (no curvature at the ends) when open. s is arc length exactly at the points; between them
+/// |dr/ds| is within 1e-3 of 1 where the curve turns by less than 0.35 rad from point to point, within 1e-2
+/// below 0.6 rad. Heading and curvature are those of the curve itself, whatever its parameter. Geometry only;
+/// knows no car.
 ///
 /// Memory is reserved once: rebuild() within capacity() allocates nothing, so a controller may renew its path
 /// every step. at() takes O(1), also for unevenly spaced points. Copies keep the capacity. const calls are

@@ -126,8 +126,8 @@ void Track::set_widths(const std::vector<TrackPoint>& points, const std::vector<
     const Projection foot = centre_.project(points[i].position, guesses[i], 5.0);
     samples.push_back({foot.s, foot.d + points[i].left, points[i].right - foot.d});
   }
-  std::stable_sort(samples.begin(), samples.end(),
-                   [](const Sample& a, const Sample& b) { return a.s < b.s; });
+  std::sort(samples.begin(), samples.end(),
+            [](const Sample& a, const Sample& b) { return a.s != b.s ? a.s < b.s : a.left < b.left; });
   Sample before = centre_.is_closed() ? samples.back() : samples.front();
   Sample after = centre_.is_closed() ? samples.front() : samples.back();
   before.s = centre_.is_closed() ? before.s - length() : -1.0;
