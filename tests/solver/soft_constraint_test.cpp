@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/solver/soft_constraint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "chicane/solver/ocp_solver.hpp"
+#include "support/corridor_problem.hpp"
+#include "support/optimality.hpp"
+
+namespace chicane {
+namespace {
+
+using solver::SoftConstraint;
+using solver::SoftPenalty;
+using solver::SolveStatus;
+using test::CorridorProblem;
+
+/// Powers of ten between two exponents.
+double decade(Random& random, double low, double high) { return std::pow(10.0, random.uniform(low, high)); }
+
+TEST(SoftConstraint, CentreSolvesTheCentralPathForAnyPriceAndValue) {
+  Random random{41};
+  for (int i = 0; i < 5000; ++i) {
+    const SoftPenalty price{.linear = i % 10 == 0 ? 0.0 : decade(random, -2.0, 5.0),
+                            .quadratic = decade(random, -2.0, 5.0)};
+    const double mu = decade(random, -8.0, 3.0);
+    SoftConstraint c;
+    c.value = (i % 2 == 0 ? 1.0 : -1.0) * decade(random, -6.0, 3.0);
+    c.centre(price, mu);
+    ASSERT_GT(c.s, 0.0);
+    ASSERT_GT(c.t, 0.0);
+    ASSERT_NEAR(c.s - c.t, c.value, 1e-12 * (c.s + c.t));
+    const double pull = price.linear + price.quadratic * c.s;
+    ASSERT_NEAR(c.n + c.z, pull, 1e-6 * pull) << "value " << c.value << ", mu " << mu;
+  }
+}
+
+TEST(SoftConstraint, ModelPredictsTheMultiplierAfterTheStep) {
+  Random random{42};
+  const SoftPenalty price{.linear = 500.0, .quadratic = 100.0};
+  for (int i = 0; i < 1000; ++i) {
+    SoftConstraint c;
+    c.value = random.uniform(-2.0, 2.0);
+    c.s = decade(random, -3.0, 1.0);
+    c.t = decade(random, -3.0, 1.0);
+    c.n = decade(random, -1.0, 3.0);
+    c.z = decade(random, -1.0, 3.0);
+    const double change = random.uniform(-0.5, 0.5);
+    const SoftConstraint step = c.step(price, 0.1, change);
+    const SoftConstraint::Model model = c.model(price, 0.1);
+    const double predicted = model.slope + model.curvature * change;
+    ASSERT_NEAR(c.z + step.z, predicted, 1e-9 * (std::fabs(predicted) + model.curvature + c.z)) << i;
+    ASSERT_GE(model.curvature, 0.0);
+  }
+}
+
+TEST(SoftConstraint, SmoothedPenaltyTendsToTheExactOne) {
+  const SoftPenalty price{.linear = 500.0, .quadratic = 100.0};
+  for (const double value : {-1.0, -1e-3, 1e-3, 1.0}) {
+    SoftConstraint c;
+    c.value = value;
+    c.centre(price, 1e-9);
+    EXPECT_NEAR(c.barrier(price, 1e-9), c.penalty(price), 1e-6);
+  }
+}
+
+struct SoftOcp : testing::Test {
+  static constexpr int kCapacity = 20;
+  using Solver = solver::OcpSolver<CorridorProblem, kCapacity>;
+  std::unique_ptr<Solver> ocp = std::make_unique<Solver>();
+  test::DescribedTrajectory<kCapacity> trajectory;
+  CorridorProblem problem;
+  std::array<double, 8> start{};
+
+  SoftOcp() {
+    trajectory.horizon = kCapacity;
+    problem.path = {0.3, 0.05, 0.0, 0.0};
+    problem.speed_reference = 12.0;
+    test::DescribedInstance plain{.problem = problem};
+    plain.place(12.0);
+    start = plain.start;
+  }
+  solver::SolveReport solve() { return ocp->solve(problem, start, trajectory); }
+};
+
+TEST_F(SoftOcp, ACorridorThatIsWideEnoughChangesNothing) {
+  problem.half_width = 50.0;
+  problem.window_end = 0;
+  ASSERT_EQ(solve().status, SolveStatus::kOptimal);
+  EXPECT_LE(test::projected_gradient<test::DescribedProblem>(problem, start, trajectory), 1e-5);
+}
+
+TEST_F(SoftOcp, AWindowIsPassedWithoutViolationWhenThatIsPossible) {
+  problem.window_begin = 12;
+  problem.window_end = 16;
+  const auto report = solve();
+  ASSERT_EQ(report.status, SolveStatus::kOptimal);
+  EXPECT_LT(report.violation, 1e-5);  // the linear price exceeds the multiplier: an exact penalty
+  for (int k = 12; k < 16; ++k) EXPECT_GT(trajectory.x[k][4], problem.keep_out - 1e-5);
+}
+
+TEST_F(SoftOcp, ReportsTheWorstStageAndConstraintWhenACapIsExceeded) {
+  problem.window_begin = 2;  // 0.2 s to move 0.3 m aside and farther: too soon
+  problem.window_end = 6;
+  problem.keep_out = 1.0;
+  problem.price.cap = 0.1;
+  const auto report = solve();
+  EXPECT_EQ(report.status, SolveStatus::kInfeasible);
+  EXPECT_GT(report.violation, 0.1);
+  ASSERT_EQ(report.worst_constraint, 1);  // too low
+  ASSERT_GE(report.worst_stage, 2);
+  ASSERT_LT(report.worst_stage, 6);
+  EXPECT_NEAR(1.0 - trajectory.x[report.worst_stage][4], report.violation, 1e-12);
+  problem.price.cap = 10.0;
+  EXPECT_EQ(solve().status, SolveStatus::kOptimal);
+}
+
+TEST_F(SoftOcp, AHigherPriceLeavesLessToPay) {
+  problem.window_begin = 2;
+  problem.window_end = 6;
+  problem.keep_out = 1.0;
+  double last = 1e9;
+  for (const double scale : {1.0, 30.0, 1000.0, 30000.0}) {
+    problem.price = {.linear = scale, .quadratic = scale};
+    ASSERT_EQ(solve().status, SolveStatus::kOptimal) << scale;
+    double penalty = 0.0;  // at unit price
+    for (int k = 0; k < kCapacity; ++k) {
+      for (const double value : problem.constraint(k, trajectory.x[k], trajectory.u[k])) {
+        if (value > 0.0) penalty += value + 0.5 * value * value;
+      }
+    }
+    EXPECT_LE(penalty, last + 1e-6);
+    last = penalty;
+  }
+}
+
+TEST_F(SoftOcp, APurelyQuadraticPriceWorks) {
+  problem.window_begin = 8;
+  problem.window_end = 12;
+  problem.price = {.linear = 0.0, .quadratic = 1000.0};
+  EXPECT_EQ(solve().status, SolveStatus::kOptimal);
+}
+
+TEST_F(SoftOcp, AConstraintThatIsNotANumberIsRefused) {
+  problem.half_width = std::nan("");
+  EXPECT_EQ(solve().status, SolveStatus::kNotFinite);
+  problem.half_width = 1.2;
+  EXPECT_EQ(solve().status, SolveStatus::kOptimal);
+}
+
+}  // namespace
+}  // namespace chicane
