@@ -110,9 +110,16 @@ TEST(RosMessages, FrameWithoutTruthShowsWhatWasMeasuredAndLeavesTheRestUnknown) 
   reader.number();
   EXPECT_EQ(reader.get<std::uint8_t>(), 0);
   for (const double expected : {10.1, -20.2, 0.51, 29.5}) EXPECT_DOUBLE_EQ(reader.number(), expected);
-  EXPECT_TRUE(std::isnan(reader.number()));
-  EXPECT_TRUE(std::isnan(reader.number()));
+  EXPECT_TRUE(std::isnan(reader.number()));  // vy
+  EXPECT_TRUE(std::isnan(reader.number()));  // yaw rate
   EXPECT_DOUBLE_EQ(reader.number(), 29.5);
+  EXPECT_TRUE(std::isnan(reader.number()));  // accelerations
+  EXPECT_TRUE(std::isnan(reader.number()));
+  for (const double expected : {10.1, -20.2, 0.51, 29.5}) EXPECT_DOUBLE_EQ(reader.number(), expected);
+  EXPECT_TRUE(std::isnan(reader.number()));  // s
+  EXPECT_DOUBLE_EQ(reader.number(), 0.3);
+  EXPECT_DOUBLE_EQ(reader.number(), -0.03);
+  EXPECT_TRUE(std::isnan(reader.number()));  // to the edge
 }
 
 TEST(RosMessages, OdometryStandsAtTheRearAxleAndMovesWithIt) {

@@ -95,16 +95,18 @@ std::string encode_frame(const Frame& frame, const Run&) {
   const model::Measurement& seen = frame.measurement;
   const controller::StepReport& report = frame.result.report;
   const model::Command& asked = frame.result.command;
+  // What only a judge of the road knows: an external simulator tells none of it.
+  const auto judged = [&](double value) { return frame.has_truth ? value : kNaN; };
   return Writer{}
       .stamp(frame.time)
       .put(frame.cycle, frame.time, frame.has_truth)
       .put(now.x, now.y, now.psi, now.vx, now.vy, now.r)
       .put(frame.has_truth ? chicane::hypot(now.vx, now.vy) : seen.speed)
-      .put(frame.longitudinal_acceleration, frame.lateral_acceleration)
+      .put(judged(frame.longitudinal_acceleration), judged(frame.lateral_acceleration))
       .put(seen.x, seen.y, seen.psi, seen.speed)
-      .put(frame.s, frame.lateral_error, frame.heading_error, frame.edge_distance, frame.is_off_track)
-      .put(static_cast<std::uint32_t>(frame.off_track_events), static_cast<std::uint32_t>(frame.lap))
-      .put(frame.lap_time, frame.last_lap_time)
+      .put(judged(frame.s), frame.lateral_error, frame.heading_error, judged(frame.edge_distance))
+      .put(frame.is_off_track, static_cast<std::uint32_t>(frame.off_track_events))
+      .put(static_cast<std::uint32_t>(frame.lap), judged(frame.lap_time), frame.last_lap_time)
       .put(asked.steer, frame.applied.steer, asked.throttle, frame.applied.throttle)
       .put(static_cast<std::uint8_t>(report.rung), static_cast<std::int8_t>(report.solve.status))
       .put(report.gated, report.has_map)
@@ -233,7 +235,7 @@ std::string encode_drive(const Frame& frame, const Run& run) {
 std::string encode_clock(const Frame& frame, const Run&) { return Writer{}.stamp(frame.time).bytes(); }
 
 struct Diagnosis {
-  std::uint8_t level;  ///< 0 fine, 1 warning, 2 error
+  std::uint8_t level;  ///< 0 fine, 1 warning, 2 error, 3 unknown
   std::string_view message;
 };
 
@@ -252,6 +254,11 @@ Diagnosis diagnose_controller(const controller::StepReport& report) {
   return {0, "in control"};
 }
 
+Diagnosis diagnose_road(const Frame& frame) {
+  if (!frame.has_truth) return {3, "nobody judges: external simulator"};
+  return frame.is_off_track ? Diagnosis{2, "off the road"} : Diagnosis{0, "on the road"};
+}
+
 std::string encode_diagnostics(const Frame& frame, const Run& run) {
   const controller::StepReport& report = frame.result.report;
   Writer writer;
@@ -267,7 +274,7 @@ std::string encode_diagnostics(const Frame& frame, const Run& run) {
           {"step_time_us", fmt::format("{:.0f}", 1e6 * frame.step_time)},
           {"delay_ms", fmt::format("{:.1f}", 1e3 * report.delay)},
           {"sight_m", fmt::format("{:.0f}", report.sight)}});
-  const Diagnosis road = frame.is_off_track ? Diagnosis{2, "off the road"} : Diagnosis{0, "on the road"};
+  const Diagnosis road = diagnose_road(frame);
   status(road, "chicane: road", run.track,
          {{"edge_distance_m", fmt::format("{:.2f}", frame.edge_distance)},
           {"lateral_error_m", fmt::format("{:.2f}", frame.lateral_error)},

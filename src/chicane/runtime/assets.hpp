@@ -7,8 +7,8 @@
 
 namespace chicane::runtime {
 
-/// The files of the dashboard, gzip-compressed inside the program (target chicane_web_assets, cmake/EmbedWeb.cmake). A
-/// program built without Node holds one plain page that says so.
+/// The files of the dashboard, gzip-compressed inside the program (target chicane_web_assets,
+/// cmake/EmbedWeb.cmake). A program built without Node holds one plain page that says so.
 [[nodiscard]] std::vector<net::Asset> embedded_assets();
 
 }  // namespace chicane::runtime

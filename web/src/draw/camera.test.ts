@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { above, behind, fitting, project, scaleBar, zoomed } from './camera';
+import { above, behind, fitting, groundGrid, project, scaleBar, zoomed } from './camera';
 
 describe('camera', () => {
   it('shows north up and east right', () => {
@@ -26,6 +26,25 @@ describe('camera', () => {
     expect(project(camera, { x: -100, y: 0 }).x).toBeCloseTo(20, 9);
     expect(project(camera, { x: 300, y: 100 }).x).toBeCloseTo(980, 9);
     expect(fitting({ minX: 1, minY: 1, maxX: 1, maxY: 1 }, 100, 100, 60).scale).toBeGreaterThan(0);
+  });
+
+  it('covers any view with a grid that is not too dense', () => {
+    for (const heading of [0, 0.7, 2, -3]) {
+      const camera = behind({ x: 1234, y: -567 }, heading, 800, 600, 100);
+      const { spacing, from, to } = groundGrid(camera, 800, 600);
+      expect(spacing * camera.scale).toBeGreaterThanOrEqual(40);
+      expect(Math.abs(from.x % spacing)).toBe(0);
+      const corners = [[from.x, from.y], [to.x, from.y], [to.x, to.y], [from.x, to.y]].map(([x = 0, y = 0]) => project(camera, { x, y }));
+      // Each corner of the screen lies on the same side of all four edges of the grid.
+      for (const [px, py] of [[0, 0], [800, 0], [800, 600], [0, 600]] as const) {
+        const sides = corners.map((a, i) => {
+          const b = corners[(i + 1) % 4] ?? a;
+          return Math.sign((b.x - a.x) * (py - a.y) - (b.y - a.y) * (px - a.x));
+        });
+        expect(new Set(sides).size).toBe(1);
+      }
+    }
+    expect(groundGrid(above({ x: 0, y: 0 }, 800, 600, 2000), 800, 600).spacing).toBe(160);
   });
 
   it('picks a round scale bar', () => {

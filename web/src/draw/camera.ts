@@ -51,6 +51,16 @@ export function above(car: Point, width: number, height: number, metresAcross: n
   return { centre: car, at: { x: width / 2, y: height / 2 }, scale: Math.min(width, height) / metresAcross, rotation: 0 };
 }
 
+/** Lines of a square grid that cover the view: 40 px apart or more, at multiples of 5, 10, 20, 40 … metres. */
+export function groundGrid(camera: Camera, width: number, height: number): { spacing: number; from: Point; to: Point } {
+  const spacing = 5 * 2 ** Math.max(0, Math.ceil(Math.log2(40 / camera.scale / 5)));
+  // However the view is turned, it lies within this distance of the point that the camera looks at.
+  const reach = Math.hypot(Math.max(camera.at.x, width - camera.at.x), Math.max(camera.at.y, height - camera.at.y)) / camera.scale;
+  const { x, y } = camera.centre;
+  const snap = (value: number): number => Math.floor(value / spacing) * spacing;
+  return { spacing, from: { x: snap(x - reach), y: snap(y - reach) }, to: { x: snap(x + reach) + spacing, y: snap(y + reach) + spacing } };
+}
+
 /** A length of 1, 2 or 5 · 10ⁿ metres that is at most `limit` pixels long. */
 export function scaleBar(scale: number, limit: number): { metres: number; pixels: number } {
   const longest = limit / scale;

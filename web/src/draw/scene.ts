@@ -1,7 +1,7 @@
 import type { Point } from '../lib/math';
 import type { Plan } from '../protocol/topics';
 import type { Road } from '../state/app_state';
-import { transformOf, type Camera } from './camera';
+import { groundGrid, transformOf, type Camera } from './camera';
 import type { CarShape } from './car';
 import { speedColour } from './speed_colour';
 import type { Theme } from './theme';
@@ -44,6 +44,21 @@ function stroke(ctx: Context, path: Path2D, colour: string, width: number): void
   ctx.strokeStyle = colour;
   ctx.lineWidth = width;
   ctx.stroke(path);
+}
+
+/** A square grid on the ground, so that speed is seen where there is no road either. */
+function drawGround(ctx: Context, camera: Camera, colour: string, ratio: number): void {
+  const { spacing, from, to } = groundGrid(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
+  const lines = new Path2D();
+  for (let x = from.x; x <= to.x; x += spacing) {
+    lines.moveTo(x, from.y);
+    lines.lineTo(x, to.y);
+  }
+  for (let y = from.y; y <= to.y; y += spacing) {
+    lines.moveTo(from.x, y);
+    lines.lineTo(to.x, y);
+  }
+  stroke(ctx, lines, colour, 1 / camera.scale);
 }
 
 function drawRoad(ctx: Context, road: RoadShape, colours: Theme, px: number): void {
@@ -142,9 +157,10 @@ export function drawScene(ctx: Context, scene: Scene, camera: Camera, colours: T
   ctx.lineJoin = 'round';
   const px = 1 / camera.scale; // one CSS pixel in metres
 
+  drawGround(ctx, camera, colours.groundLine, ratio);
   if (scene.road) drawRoad(ctx, scene.road, colours, px);
   drawTrace(ctx, scene.traceX, scene.traceY, colours.trace, Math.max(0.2, 2 * px));
-  stroke(ctx, trail(scene.reference), colours.reference, Math.max(0.12, 1.5 * px));
+  stroke(ctx, trail(scene.reference), scene.road ? colours.reference : colours.faint, Math.max(0.12, 1.5 * px));
   if (scene.plan) drawPlan(ctx, scene.plan, scene.speedScale, Math.max(0.45, 4 * px));
   if (scene.car) drawCar(ctx, scene.car, colours, px);
 }

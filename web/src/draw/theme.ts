@@ -1,6 +1,7 @@
 /** The colours of style.css that canvases need. */
 export interface Theme {
   readonly ground: string;
+  readonly groundLine: string;
   readonly road: string;
   readonly edge: string;
   readonly centreLine: string;
@@ -25,6 +26,7 @@ function read(): Theme {
   const colour = (name: string): string => style.getPropertyValue(`--${name}`).trim();
   return {
     ground: colour('ground'),
+    groundLine: colour('ground-line'),
     road: colour('road'),
     edge: colour('road-edge'),
     centreLine: colour('centre-line'),

@@ -28,5 +28,6 @@ describe('words', () => {
     expect(roadInWords({ ...frame, off_track_events: 1 }).text).toContain('once');
     expect(roadInWords({ ...frame, off_track_events: 2 }).text).toContain('2 times');
     expect(roadInWords({ ...frame, is_off_track: true }).mood).toBe('bad');
+    expect(roadInWords({ ...frame, edge_distance_m: NaN }).mood).toBe('unknown');
   });
 });

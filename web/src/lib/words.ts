@@ -1,6 +1,6 @@
 import type { Frame } from '../protocol/topics';
 
-export type Mood = 'good' | 'warning' | 'bad';
+export type Mood = 'good' | 'warning' | 'bad' | 'unknown';
 
 export interface Sentence {
   readonly mood: Mood;
@@ -44,8 +44,9 @@ export function statusInWords(status: number): Sentence {
 export const gateInWords = (isGated: boolean): Sentence =>
   isGated ? { mood: 'warning', text: 'Had to change the command' } : { mood: 'good', text: 'Passed the command unchanged' };
 
-/** Where the car is on the road. An external simulator without a judge leaves the distance unknown. */
+/** Where the car is on the road. With an external simulator nobody judges, and the distance is unknown. */
 export function roadInWords(frame: Pick<Frame, 'is_off_track' | 'edge_distance_m' | 'off_track_events'>): Sentence {
+  if (Number.isNaN(frame.edge_distance_m)) return { mood: 'unknown', text: 'Nobody judges: external simulator' };
   if (frame.is_off_track) return { mood: 'bad', text: 'Off the road' };
   const events = frame.off_track_events;
   if (events > 0) return { mood: 'warning', text: `On the road, was off it ${events === 1 ? 'once' : `${events} times`}` };

@@ -31,7 +31,7 @@ function Lap() {
   return (
     <div class="lap">
       <p class="label">
-        Lap <b data-testid="lap">{frame ? frame.lap + 1 : UNKNOWN}</b>
+        Lap <b data-testid="lap">{frame && Number.isFinite(frame.lap_time_s) ? frame.lap + 1 : UNKNOWN}</b>
       </p>
       <p class="clock value" data-testid="lap-time">
         {lapTime(frame?.lap_time_s ?? NaN)}
