@@ -72,6 +72,6 @@ string(REGEX REPLACE "/$" "" pc_to_prefix "${pc_to_prefix}")
 configure_file(cmake/chicane.pc.in chicane.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/chicane.pc DESTINATION ${pc_dir})
 
-# What the program can be told by name.
-install(DIRECTORY presets cars tracks scenarios DESTINATION ${CMAKE_INSTALL_DATADIR}/chicane)
+# What the program can be told by name, and views for others' viewers.
+install(DIRECTORY presets cars tracks scenarios layouts DESTINATION ${CMAKE_INSTALL_DATADIR}/chicane)
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

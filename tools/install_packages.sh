@@ -24,7 +24,7 @@ missing_packages() {
 
 # install_packages PACKAGE...: returns 0 when nothing was missing or everything is installed now, 3 when it cannot be.
 install_packages() {
-  local wanted=("$@") missing root=()
+  local wanted=("$@") missing as_root=()
   if ! command -v dpkg-query >/dev/null; then
     say "chicane: not a Debian system; these have to be there under the names they have here: ${wanted[*]}"
     return 0
@@ -38,10 +38,10 @@ install_packages() {
       say "  apt-get install --no-install-recommends ${missing[*]}"
       return 3
     fi
-    root=(sudo)
+    as_root=(sudo)
   fi
   say "chicane: installing ${missing[*]}"
-  local apt=("${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=600)
+  local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=600)
   "${apt[@]}" update </dev/null >&2 || say "chicane: the package lists could not be renewed; going on with the old ones"
   if ! "${apt[@]}" install --no-install-recommends "${missing[@]}" </dev/null >&2; then
     say "chicane: the packages above could not be installed"
