@@ -154,11 +154,11 @@ TEST(YamlCodec, AFileThatIsTooLargeIsRefusedUnread) {
               HasSubstr("f: file: got 1000000 bytes, expected at most 262144"));
 }
 
-TEST(YamlCodec, AHundredThousandFaultsGiveAShortAnswer) {
+TEST(YamlCodec, ThousandsOfFaultsGiveAShortAnswer) {
   std::string text;
   for (int i = 0; i < 20000; ++i) text.append("k").append(std::to_string(i)).append(": 1\n");
   const std::string message = error_of(text);
-  EXPECT_THAT(message, HasSubstr("more"));
+  EXPECT_THAT(message, ::testing::EndsWith("f: and perhaps more"));
   EXPECT_LT(message.size(), 20000u);
 }
 

@@ -83,10 +83,7 @@ class Reader {
 
   [[nodiscard]] Result<Document> result() && {
     if (faults_.empty()) return std::move(document_);
-    if (faults_.size() > kMostFaults) {
-      faults_[kMostFaults] = fmt::format("{}: and {} more", document_.file, faults_.size() - kMostFaults);
-      faults_.resize(kMostFaults + 1);
-    }
+    if (faults_.size() >= kMostFaults) faults_.push_back(fmt::format("{}: and perhaps more", document_.file));
     return fail(ErrorCode::kParse, fmt::format("{}", fmt::join(faults_, "\n")));
   }
 
@@ -106,7 +103,7 @@ class Reader {
     for (const auto& entry : map) {
       if (++nodes_ == kMostNodes)
         fault(0, "file", fmt::format("got more than {} settings, expected fewer", kMostNodes));
-      if (nodes_ >= kMostNodes) return;
+      if (nodes_ >= kMostNodes || faults_.size() >= kMostFaults) return;
       const int line = entry.first.Mark().line + 1;
       if (!entry.first.IsScalar()) {
         fault(line, prefix.empty() ? "key" : prefix,
