@@ -60,7 +60,9 @@ class PredictionModel {
     const T a22 = 1.0 + (dt * mass_over_inertia) * damping;
     const T b1 = from.vy + dt * kf * steer;
     const T b2 = from.r + (dt * mass_over_inertia * a) * kf * steer;
-    const T inverse_det = 1.0 / (a11 * a22 - a12 * a21);
+    const T det = a11 * a22 - a12 * a21;
+    // A car about to spin has no implicit step for large dt: let it grow fivefold, not without bound.
+    const T inverse_det = 1.0 / (value_of(det) > kLeastDeterminant ? det : T(kLeastDeterminant));
     to.vy = (b1 * a22 - a12 * b2) * inverse_det;
     to.r = (a11 * b2 - a21 * b1) * inverse_det;
 
@@ -84,7 +86,8 @@ class PredictionModel {
   [[nodiscard]] const model::VehicleParams& vehicle() const noexcept { return vehicle_; }
 
  private:
-  static constexpr double kGravity = 9.81;    ///< [m/s²]
+  static constexpr double kGravity = 9.81;  ///< [m/s²]
+  static constexpr double kLeastDeterminant = 0.2;
   static constexpr double kSpeedFloor =
       1.0;  ///< [m/s] slip angles are computed with at least about this speed
 
@@ -120,7 +123,8 @@ class PredictionModel {
     t.use_front = p.cornering_front / (peak * share_front) * (steer - (m.vy + p.front_axle * m.r) / t.speed);
     t.use_rear = -p.cornering_rear / (peak * share_rear) * ((m.vy - p.rear_axle * m.r) / t.speed);
     // Load moves the peak, not the slope: cornering stiffness grows far less than in proportion to load.
-    t.stiffness_front = (p.cornering_front * p.rear_axle * per_wheelbase) * load_now * saturation(t.use_front);
+    t.stiffness_front =
+        (p.cornering_front * p.rear_axle * per_wheelbase) * load_now * saturation(t.use_front);
     t.stiffness_rear = (p.cornering_rear * p.front_axle * per_wheelbase) * load_now * saturation(t.use_rear);
     return t;
   }

@@ -18,7 +18,7 @@ struct RoadOptions {
   double smoothing_width =
       1.5;  ///< the reference line may leave the waypoint line by this much [m]; 0 = none
   bool remember_waypoints = true;  ///< false: only what the last measurement shows
-  SpeedPlanOptions speed;
+  SpeedPlanOptions speed{};
 };
 
 /// What a controller knows of the road: waypoints remembered, a smooth reference line through them, the speed

@@ -10,6 +10,7 @@ namespace chicane::controller {
 namespace {
 
 constexpr double kSpacing = 1.5;      // [m] wanted between samples
+constexpr double kSlopeReach = 3.0;   // [m] each way: shorter changes of curvature than a car are not felt
 constexpr double kLowestSpeed = 2.0;  // [m/s] the plan never asks to stop
 
 /// Largest v with v² demand <= share · friction · (load_0 + load_v v).
@@ -51,8 +52,10 @@ void SpeedPlan::rebuild(const path::Path& path, const model::VehicleParams& vehi
   double* const demand = speed_.data() + kCapacity;
 
   for (int i = 0; i < count_; ++i) {
-    const path::PathPoint point = path.at(i * spacing_);
-    demand[i] = demand_of(point.curvature, point.curvature_slope, vehicle);
+    const double s = i * spacing_;
+    const double slope =
+        (path.at(s + kSlopeReach).curvature - path.at(s - kSlopeReach).curvature) / (2.0 * kSlopeReach);
+    demand[i] = demand_of(path.at(s).curvature, slope, vehicle);
     speed[i] = std::min(options.speed_limit, speed_for(demand[i], vehicle, options.grip_share));
     speed[i] = std::max(speed[i], kLowestSpeed);
   }

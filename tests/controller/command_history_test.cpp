@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/controller/command_history.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "chicane/base/math.hpp"
+
+namespace chicane::controller {
+namespace {
+
+TEST(CommandHistory, HoldsEachCommandUntilTheNextActs) {
+  CommandHistory sent;
+  EXPECT_EQ(sent.at(1.0).steer, 0.0);
+  sent.add(1.0, {.steer = 0.1, .throttle = 0.2});
+  sent.add(1.5, {.steer = 0.3, .throttle = 0.4});
+  EXPECT_EQ(sent.at(0.99).steer, 0.0);
+  EXPECT_EQ(sent.at(1.0).steer, 0.1);
+  EXPECT_EQ(sent.at(1.49).steer, 0.1);
+  EXPECT_EQ(sent.at(9.0).steer, 0.3);
+  EXPECT_EQ(sent.next_change(1.0, 2.0), 1.5);
+  EXPECT_EQ(sent.next_change(1.5, 2.0), 2.0);
+}
+
+TEST(CommandHistory, ALaterCommandReplacesThoseThatWouldActAfterIt) {
+  CommandHistory sent;
+  sent.add(1.0, {.steer = 0.1});
+  sent.add(2.0, {.steer = 0.2});
+  sent.add(1.5, {.steer = 0.3});  // the delay got shorter
+  EXPECT_EQ(sent.at(3.0).steer, 0.3);
+  EXPECT_EQ(sent.at(1.2).steer, 0.1);
+}
+
+TEST(CommandHistory, ForgetsTheOldestWhenFull) {
+  CommandHistory sent;
+  for (int i = 0; i < 500; ++i) sent.add(0.1 * i, {.steer = 0.001 * i});
+  EXPECT_DOUBLE_EQ(sent.at(49.95).steer, 0.499);
+  EXPECT_EQ(sent.at(0.0).steer, 0.0);
+}
+
+class Estimating : public ::testing::Test {
+ protected:
+  const PredictionModel model{model::udacity_params()};
+  CommandHistory sent;
+  StateEstimator estimator{model};
+};
+
+TEST_F(Estimating, ReplaysACommandForExactlyTheFractionItActs) {
+  // At rest, full throttle from 37 ms on: after 100 ms the car has accelerated for 63 ms.
+  estimator.correct({.time = 0.0}, sent);
+  sent.add(0.037, {.steer = 0.0, .throttle = 1.0});
+  const StateEstimator::Prediction prediction = estimator.predict(0.1, sent);
+  EXPECT_NEAR(prediction.state.vx, 0.063 * model.vehicle().drive_acceleration, 0.01);
+}
+
+TEST_F(Estimating, FindsYawRateAndSideslipThatTelemetryDoesNotHold) {
+  // Truth from the same model: the estimator sees position, heading and speed only.
+  sent.add(-1.0, {.steer = 0.05, .throttle = 0.3});
+  StateEstimator truth(model);
+  truth.correct({.time = 0.0, .speed = 25.0}, sent);
+  for (int i = 1; i <= 60; ++i) {
+    const double time = 0.04 * i;
+    const model::State s = truth.predict(time, sent).state;
+    truth.correct({.time = time, .x = s.x, .y = s.y, .psi = s.psi, .speed = hypot(s.vx, s.vy)}, sent);
+    estimator.correct({.time = time, .x = s.x, .y = s.y, .psi = s.psi, .speed = hypot(s.vx, s.vy)}, sent);
+  }
+  EXPECT_NEAR(estimator.state().r, truth.state().r, 0.01);
+  EXPECT_NEAR(estimator.state().vy, truth.state().vy, 0.05);
+  EXPECT_GT(truth.state().r, 0.2);
+}
+
+TEST_F(Estimating, StartsAnewAfterAJump) {
+  estimator.correct({.time = 0.0, .x = 0.0, .speed = 10.0}, sent);
+  estimator.correct({.time = 0.05, .x = 80.0, .speed = 3.0}, sent);
+  EXPECT_EQ(estimator.state().x, 80.0);
+  EXPECT_EQ(estimator.state().vx, 3.0);
+}
+
+TEST_F(Estimating, IgnoresWhatIsNotANumberOrOutOfOrder) {
+  estimator.correct({.time = 0.0, .speed = 10.0}, sent);
+  const model::State before = estimator.state();
+  estimator.correct({.time = 0.05, .x = std::numeric_limits<double>::quiet_NaN(), .speed = 10.0}, sent);
+  estimator.correct({.time = -0.05, .x = 5.0, .speed = 10.0}, sent);
+  EXPECT_EQ(estimator.state().x, before.x);
+  EXPECT_TRUE(std::isfinite(estimator.predict(0.2, sent).state.x));
+}
+
+}  // namespace
+}  // namespace chicane::controller
