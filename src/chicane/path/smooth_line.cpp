@@ -79,27 +79,25 @@ struct Unrolled {
 
 Unrolled unroll(const std::vector<double>& parameter, double length, bool closed, double spacing,
                 double smoothing) {
-  const std::size_t n = parameter.size();
-  Unrolled rolled;
-  const auto push = [&](std::size_t i, double lap) {
-    rolled.s.push_back(parameter[i] + lap * length);
-    rolled.point.push_back(i);
+  // Point k of all laps, also before the first: index k modulo n, lap k / n rounded down.
+  const auto n = static_cast<std::ptrdiff_t>(parameter.size());
+  const auto lap_of = [n](std::ptrdiff_t k) { return k >= 0 ? k / n : -((n - 1 - k) / n); };
+  const auto index_of = [&](std::ptrdiff_t k) { return static_cast<std::size_t>(k - lap_of(k) * n); };
+  const auto s_of = [&](std::ptrdiff_t k) {
+    const std::ptrdiff_t lap = lap_of(k);
+    return parameter[index_of(k)] + length * static_cast<double>(lap);
   };
+  std::ptrdiff_t first = 0;
+  std::ptrdiff_t last = n - 1;
   if (closed) {
-    const auto is_enough = [&](std::size_t taken, double reach) {
-      return taken >= kOverlapPoints && reach >= kOverlapLengths * smoothing;
-    };
-    std::size_t before = 0;
-    const auto before_s = [&](std::size_t k) {
-      return parameter[(n - k % n) % n] - length * static_cast<double>((k + n - 1) / n);
-    };
-    while (!is_enough(before, -before_s(before))) ++before;
-    for (std::size_t k = before; k > 0; --k) push((n - k % n) % n, -static_cast<double>((k + n - 1) / n));
-    for (std::size_t i = 0; i < n; ++i) push(i, 0.0);
-    for (std::size_t k = 0; !is_enough(k, rolled.s.back() - length); ++k)
-      push(k % n, static_cast<double>(k / n + 1));
-  } else {
-    for (std::size_t i = 0; i < n; ++i) push(i, 0.0);
+    const double reach = kOverlapLengths * smoothing;
+    while (first > -kOverlapPoints || s_of(first) > -reach) --first;
+    while (last < n - 1 + kOverlapPoints || s_of(last) < length + reach) ++last;
+  }
+  Unrolled rolled;
+  for (std::ptrdiff_t k = first; k <= last; ++k) {
+    rolled.s.push_back(s_of(k));
+    rolled.point.push_back(index_of(k));
   }
   rolled.lead =
       static_cast<std::size_t>(std::ceil(-std::min(rolled.s.front(), 0.0) / spacing)) + (closed ? 1U : 0U);
