@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/runtime/closed_loop.hpp"
+
+namespace chicane::runtime {
+
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+/// What `chicane drive --fast` reports for these settings, by schema key.
+inline telemetry::RunSummary drive(const Settings& settings) {
+  const auto scenario = protocol::compose({.scenario_file = "", .settings = settings});
+  if (!scenario) {
+    ADD_FAILURE() << scenario.error().message;
+    return {};
+  }
+  auto loop = ClosedLoop::create(*scenario);
+  if (!loop) {
+    ADD_FAILURE() << loop.error().message;
+    return {};
+  }
+  return run_closed_loop(**loop);
+}
+
+inline double top_mph(const telemetry::RunSummary& run) { return mps_to_mph(run.total.top_speed); }
+
+}  // namespace chicane::runtime

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "closed_loop/drive.hpp"
+
+namespace chicane::runtime {
+namespace {
+
+/// What a write-up claims for its preset.
+struct Claim {
+  const char* preset;
+  double low_mph;  ///< the top speed lies between these two
+  double high_mph;
+};
+
+/// docs/problem.md, table 2: 30 to 40; about 50; 50 to 60; none given; as fast as stays stable.
+constexpr Claim kClaims[] = {{"measured-latency", 38.0, 42.0}, {"fast-short-step", 48.0, 53.0},
+                             {"sixty-mph", 57.0, 62.0},        {"weighted", 45.0, 53.0},
+                             {"delay-in-model", 80.0, 92.0},   {"pid", 28.0, 31.0},
+                             {"pure-pursuit", 28.0, 31.0},     {"stanley", 28.0, 31.0}};
+
+const std::string kOriginalLake =
+    std::string{CHICANE_SOURCE_DIR} + "/../shared/tracks/udacity/lake_scene.csv";
+
+void expect_clean_laps(const telemetry::RunSummary& run) {
+  EXPECT_TRUE(run.completed) << run.preset << " on " << run.track << ": " << run.end_reason;
+  EXPECT_EQ(run.off_track_events, 0) << run.preset << " on " << run.track;
+  EXPECT_EQ(run.fallbacks, 0U) << run.preset << " on " << run.track;
+}
+
+TEST(Presets, LapTheLakesideCleanlyAtTheSpeedTheyClaim) {
+  for (const Claim& claim : kClaims) {
+    const auto run =
+        drive({{"preset", claim.preset}, {"track", "lakeside"}, {"laps", "3"}, {"latency_ms", "100"}});
+    expect_clean_laps(run);
+    EXPECT_GE(top_mph(run), claim.low_mph) << claim.preset;
+    EXPECT_LE(top_mph(run), claim.high_mph) << claim.preset;
+  }
+}
+
+TEST(Presets, LapTheOriginalLakeCleanlyAtTheSpeedTheyClaim) {
+  if (!std::filesystem::exists(kOriginalLake)) GTEST_SKIP() << "no " << kOriginalLake;
+  for (const Claim& claim : kClaims) {
+    const auto run =
+        drive({{"preset", claim.preset}, {"track", kOriginalLake}, {"laps", "3"}, {"latency_ms", "100"}});
+    expect_clean_laps(run);
+    EXPECT_GE(top_mph(run), claim.low_mph) << claim.preset;
+    EXPECT_LE(top_mph(run), claim.high_mph) << claim.preset;
+  }
+}
+
+TEST(Presets, StayOnTheRoadWhenTheAnswerIsLateOrSlow) {
+  // Answers of the original take 110 to 160 ms, by machine (docs/protocol.md): the presets are not tuned to
+  // one of them.
+  for (const char* preset :
+       {"measured-latency", "fast-short-step", "sixty-mph", "weighted", "delay-in-model"}) {
+    for (const auto& [latency, period] :
+         {std::pair{"100", "100"}, {"110", "130"}, {"120", "140"}, {"100", "150"}}) {
+      const auto run = drive({{"preset", preset},
+                              {"track", "lakeside"},
+                              {"laps", "2"},
+                              {"latency_ms", latency},
+                              {"control_period_ms", period}});
+      EXPECT_TRUE(run.completed) << preset << ' ' << latency << ' ' << period;
+      EXPECT_EQ(run.off_track_events, 0) << preset << ' ' << latency << ' ' << period;
+    }
+  }
+}
+
+TEST(Presets, MeasuredLatencyWorksToFifty) {
+  const auto run = drive({{"preset", "measured-latency"},
+                          {"track", "lakeside"},
+                          {"laps", "2"},
+                          {"cubic_mpc.speed_reference_mps", "22.352"}});
+  expect_clean_laps(run);
+  EXPECT_GE(top_mph(run), 49.0);
+}
+
+TEST(Presets, FastShortStepTakesItsSpeedFromTheWeightOnAcceleration) {
+  const auto slow = drive({{"preset", "fast-short-step"}, {"track", "lakeside"}, {"laps", "2"}});
+  const auto fast = drive({{"preset", "fast-short-step"},
+                           {"track", "lakeside"},
+                           {"laps", "2"},
+                           {"cubic_mpc.weight_throttle", "48"}});
+  expect_clean_laps(fast);
+  EXPECT_LT(slow.total.rms_lateral_error, 0.5);  // "in the centre of the lane"
+  EXPECT_GT(top_mph(fast), top_mph(slow) + 15.0);
+}
+
+TEST(Presets, WeightedSlowsInCurvesAndDelayInModelForThem) {
+  const auto weighted = drive({{"preset", "weighted"}, {"track", "lakeside"}, {"laps", "2"}});
+  ASSERT_EQ(weighted.laps.size(), 2U);
+  EXPECT_LT(weighted.laps[1].mean_speed, 0.95 * weighted.laps[1].top_speed);
+  const auto delayed = drive({{"preset", "delay-in-model"}, {"track", "lakeside"}, {"laps", "2"}});
+  ASSERT_EQ(delayed.laps.size(), 2U);
+  EXPECT_LT(delayed.laps[1].mean_speed, 0.9 * delayed.laps[1].top_speed);
+}
+
+}  // namespace
+}  // namespace chicane::runtime
