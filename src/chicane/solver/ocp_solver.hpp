@@ -191,7 +191,7 @@ class OcpSolver {
       soft.z += dual * step.z;
       soft.n += dual * step.n;
     });
-    lower_barrier(primal);
+    if (horizon == static_cast<std::size_t>(target_)) lower_barrier(primal);
     return primal;
   }
 
@@ -264,12 +264,12 @@ class OcpSolver {
       const auto& stage = lq_.stage[k];
       for (std::size_t i = 0; i < kNx; ++i) t.x[k + 1][i] += length * lq_.dx[k + 1][i];
       for (std::size_t m = 0; m < kNu; ++m) {
-        const double du = length * std::min(std::max(lq_.du[k][m], stage.low[m]), stage.high[m]);
-        t.u[k][m] += du;
+        const double du = std::min(std::max(lq_.du[k][m], stage.low[m]), stage.high[m]);
+        t.u[k][m] += length * du;
         longest = std::max(longest, std::fabs(du));
       }
     }
-    progress_.note(longest, kNc > 0 && mu_ > final_mu());
+    progress_.note(longest, kNc > 0 && mu_ > final_mu() && !is_growing(t));
     return true;
   }
 
@@ -297,6 +297,14 @@ class OcpSolver {
     if (!full_steps_) shift_ = std::max(10.0 * shift_, 1.0);
     full_steps_ = has_curvature_ = false;
     smooth_descents_ = descents_ = 0;
+    mu_ = std::max(mu_, 0.01 * start_mu(problem));
+    SolveReport unused;
+    look(problem, best_, unused);  // an unstable system stays near the nodes only with feedback
+    lq_.backward(size_of(best_), shift_, true);
+    if (std::isfinite(try_step(problem, best_, 0.0))) {
+      trajectory = candidate_;
+      return true;
+    }
     const State x0 = trajectory.x[0];
     trajectory = best_;
     return roll_out(problem, x0, trajectory);
@@ -313,6 +321,7 @@ class OcpSolver {
     t = best_;
     t.horizon = kFirstHorizon;
     has_grown_ = true;
+    mu_ = start_mu(problem);
     return restart(problem, x0, t);
   }
   bool grow(const P& problem, Trajectory& t) noexcept {
@@ -347,6 +356,7 @@ class OcpSolver {
         const double allowed = merit + 1e-4 * length * expected + 1e-13 * std::fabs(merit);
         if (!(try_step(problem, t, length) <= allowed)) continue;
         t = candidate_;
+        if (-expected < mu_ * static_cast<double>(size_of(t) * kNc)) mu_ = std::max(final_mu(), 0.2 * mu_);
         accept(length, scale);
         return true;
       }
@@ -360,7 +370,6 @@ class OcpSolver {
     ++descents_;
     smooth_descents_ = length >= 1.0 && shift_ == 0.0 ? smooth_descents_ + 1 : 0;
     if (length >= 1.0) shift_ = shift_ > 1e-6 * scale ? 0.1 * shift_ : 0.0;
-    if (kNc > 0 && length >= 1.0) mu_ = std::max(final_mu(), 0.2 * mu_);
     if (smooth_descents_ < needed_descents_) return;
     full_steps_ = true;
     has_best_ = false;
