@@ -121,9 +121,10 @@ void ViewerEndpoint::send_cadence(Cadence cadence) {
 void ViewerEndpoint::send_channel(std::uint32_t channel) {
   const protocol::RosTopic& topic = protocol::ros_topics()[channel];
   const std::uint64_t time = protocol::to_nanoseconds(frame_.time);
-  std::optional<std::string> payload;  // encoded for the first that wants it
-  std::map<std::uint32_t, net::Bytes>
-      by_subscription;  // viewers of one kind use the same numbers and share bytes
+  // Encoded for the first that wants it; viewers of one kind use the same subscription numbers and share
+  // bytes.
+  std::optional<std::string> payload;
+  std::map<std::uint32_t, net::Bytes> by_subscription;
   for (const auto& [id, client] : clients_) {
     const auto wanted = client.subscriptions.find(channel);
     if (wanted == client.subscriptions.end()) continue;
