@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <variant>
 
@@ -34,7 +36,11 @@ int main(int count, char** words) {
     if (const Done* done = std::get_if<Done>(&parsed)) return done->code;
     const Options& options = std::get<Options>(parsed);
     for (const Command& command : commands()) {
-      if (command.name == options.command) return command.run(options);
+      if (command.name != options.command) continue;
+      const ExitCode code = command.run(options);
+      if (std::fflush(stdout) == 0) return code;
+      std::fprintf(stderr, "chicane: the results could not be written: %s\n", std::strerror(errno));
+      return kEnvironment;
     }
     return kUsage;
   } catch (const std::exception& e) {

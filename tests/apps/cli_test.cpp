@@ -182,6 +182,12 @@ TEST(Cli, APortThatIsTakenIsTheEnvironmentsFault) {
   ::close(taken);
 }
 
+TEST(Cli, ResultsThatCannotBeWrittenAreNotASuccess) {
+  const Outcome outcome = chicane_program("list presets > /dev/full");
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("could not be written"));
+}
+
 TEST(Cli, CtrlCEndsARunWithTheResultsSoFar) {
   const Outcome outcome = chicane_program("drive --port 0 --laps 9 --json & sleep 1; kill -INT $!; wait $!");
   const Json report = Json::parse(outcome.out, nullptr, false);

@@ -171,7 +171,9 @@ TEST_F(Library, FindsFilesInTheFolderTheEnvironmentNames) {
 }
 
 TEST_F(Library, AFolderIsNotAFile) {
-  EXPECT_EQ(read_file(folder_.string()).error().code, ErrorCode::kNotFound);
+  const Error error = read_file(folder_.string()).error();
+  EXPECT_EQ(error.code, ErrorCode::kNotFound);
+  EXPECT_THAT(error.message, HasSubstr("got a folder, expected a file"));
   EXPECT_FALSE(compose({(folder_ / "presets").string(), {}}));
 }
 

@@ -214,8 +214,10 @@ Result<std::string> locate(Shelf shelf, std::string_view name_or_file) {
 
 Result<std::string> read_file(const std::string& path) {
   std::error_code error;
-  if (!fs::is_regular_file(path, error))
-    return fail(ErrorCode::kNotFound, fmt::format("{}: file: got none, expected a file", path));
+  if (!fs::is_regular_file(path, error)) {
+    const std::string_view got = fs::is_directory(path, error) ? "a folder" : "none";
+    return fail(ErrorCode::kNotFound, fmt::format("{}: file: got {}, expected a file", path, got));
+  }
   const std::uintmax_t size = fs::file_size(path, error);
   if (!error && size > kMostBytes) {
     return fail(ErrorCode::kParse,
