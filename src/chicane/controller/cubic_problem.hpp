@@ -12,7 +12,7 @@
 
 namespace chicane::controller {
 
-/// The optimal control problem of the five write-ups (docs/problem.md, equations 1 to 12), in the car's
+/// The optimal control problem of the five write-ups (docs/problem.md, equations 1 to 13), in the car's
 /// frame:
 ///
 ///     state  x, y [m], ψ [rad], v [m/s, or mph with speed_in_mph], cte [m], eψ [rad], and the inputs of the
