@@ -26,8 +26,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::milliseconds;
 
-constexpr std::size_t kMaxMessage = 1024 * 1024;  // a reply with hundreds of points is 20 kB
-constexpr std::size_t kMaxHeader = 16 * 1024;
+constexpr std::size_t kMaxMessage = 1U << 20U;  // a reply with hundreds of points is 20 kB
+constexpr std::size_t kMaxHeader = 1U << 14U;
 constexpr std::string_view kKeyGuid = "258EAFA5-E914-47DA-95CA-C5AB0DC85B11";  // RFC 6455 §1.3
 
 /// Frame types of RFC 6455 §5.2.
@@ -130,7 +130,7 @@ class Socket {
 
   /// Appends what has arrived to `buffer`; false when nothing came until `end`.
   Result<bool> receive(std::string& buffer, Clock::time_point end) {
-    std::array<char, 16 * 1024> chunk;
+    std::array<char, 16384> chunk;
     for (;;) {
       const ssize_t count = ::recv(handle_, chunk.data(), chunk.size(), 0);
       if (count > 0) {

@@ -9,6 +9,8 @@
 #include <sstream>
 #include <string_view>
 
+#include <fmt/format.h>
+
 namespace chicane::net {
 namespace {
 
@@ -54,7 +56,7 @@ std::string port_holder(std::uint16_t port) {
     if (!is_process || !holds(it->path(), inodes)) continue;
     std::string name;
     std::getline(std::ifstream(it->path() / "comm"), name);
-    return name + " (pid " + pid + ")";
+    return fmt::format("{} (pid {})", name, pid);
   }
   return "another program";
 }

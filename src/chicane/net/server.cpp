@@ -35,7 +35,7 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
-using tcp = asio::ip::tcp;
+using Tcp = asio::ip::tcp;
 using ErrorCodeBoost = boost::system::error_code;
 
 constexpr int kSendBuffer = 32 * 1024;  // a reader that stalls holds this much kernel memory, not megabytes
@@ -88,7 +88,7 @@ struct Outgoing {
 /// ends.
 class WebSocket : public std::enable_shared_from_this<WebSocket> {
  public:
-  WebSocket(Core& core, tcp::socket socket, int endpoint, ConnectionId id)
+  WebSocket(Core& core, Tcp::socket socket, int endpoint, ConnectionId id)
       : core_{core}, ticket_{core.ticket}, stream_{std::move(socket)}, endpoint_{endpoint}, id_{id} {}
 
   void start(const http::request<http::empty_body>& request, const std::string& subprotocol) {
@@ -223,7 +223,7 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
 /// One connection before (or without) an upgrade.
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
  public:
-  HttpConnection(Core& core, tcp::socket socket)
+  HttpConnection(Core& core, Tcp::socket socket)
       : core_{core}, ticket_{core.ticket}, stream_{std::move(socket)} {}
 
   void start() {
@@ -349,7 +349,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   /// Half-closes and reads on until the peer has done the same, so that the refusal is not lost to a reset.
   void linger() {
     ErrorCodeBoost ignored;
-    stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    stream_.socket().shutdown(Tcp::socket::shutdown_send, ignored);
     stream_.expires_after(kLingerTimeout);
     drain();
   }
@@ -363,7 +363,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   Core& core_;
   std::shared_ptr<int> ticket_;
   beast::tcp_stream stream_;
-  beast::flat_buffer buffer_{64 * 1024};
+  beast::flat_buffer buffer_{65536};
   std::optional<http::request_parser<http::empty_body>> parser_;
   std::array<char, 1024> rest_{};
   std::string peer_;
@@ -392,7 +392,7 @@ class BeastServer final : public Server {
     if (ec)
       return fail(ErrorCode::kInvalidArgument,
                   fmt::format("address: got '{}', expected a numeric address", core_.options.address));
-    const tcp::endpoint endpoint{address, core_.options.port};
+    const Tcp::endpoint endpoint{address, core_.options.port};
     acceptor_.open(endpoint.protocol(), ec);
     if (!ec) acceptor_.set_option(asio::socket_base::reuse_address(true), ec);
     if (!ec && address == asio::ip::address{asio::ip::address_v6::any()}) {
@@ -449,13 +449,13 @@ class BeastServer final : public Server {
 
  private:
   void accept() {
-    acceptor_.async_accept([this](ErrorCodeBoost ec, tcp::socket socket) {
+    acceptor_.async_accept([this](ErrorCodeBoost ec, Tcp::socket socket) {
       if (core_.is_stopping) return;
       if (ec)
         return run_after(std::chrono::milliseconds{100},
                          [this] { accept(); });  // out of descriptors, for example
       ErrorCodeBoost ignored;
-      socket.set_option(tcp::no_delay(true), ignored);
+      socket.set_option(Tcp::no_delay(true), ignored);
       socket.set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
       std::make_shared<HttpConnection>(core_, std::move(socket))->start();
       accept();
@@ -473,7 +473,7 @@ class BeastServer final : public Server {
   }
 
   Core core_;
-  tcp::acceptor acceptor_{core_.io};
+  Tcp::acceptor acceptor_{core_.io};
   std::uint16_t port_ = 0;
   std::thread thread_;
 };

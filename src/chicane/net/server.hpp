@@ -52,11 +52,11 @@ struct Asset {
 /// `allowed_hosts`; an Origin header, where present (browsers always send it), must name the same host and
 /// port or be in `allowed_origins`.
 struct ServerOptions {
-  std::string address = "127.0.0.1";    ///< numeric; "::" listens on every IPv6 and IPv4 address
-  std::uint16_t port = 4567;            ///< 0 = any free port (see Server::port)
-  std::size_t max_message = 64 * 1024;  ///< larger messages close the connection with 1009 [byte]
-  std::size_t max_header = 8 * 1024;    ///< of an HTTP request; larger ones get 431 [byte]
-  std::size_t max_connections = 1024;   ///< more get 503
+  std::string address = "127.0.0.1";   ///< numeric; "::" listens on every IPv6 and IPv4 address
+  std::uint16_t port = 4567;           ///< 0 = any free port (see Server::port)
+  std::size_t max_message = 65536;     ///< larger messages close the connection with 1009 [byte]
+  std::size_t max_header = 8192;       ///< of an HTTP request; larger ones get 431 [byte]
+  std::size_t max_connections = 1024;  ///< more get 503
   std::chrono::milliseconds handshake_timeout{
       5000};  ///< for a whole HTTP request, and between two on one connection
   /// A WebSocket peer that has sent nothing for half of it is pinged; one that stays silent for all of it is

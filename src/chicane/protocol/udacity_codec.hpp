@@ -18,8 +18,7 @@
 /// exception; input of any size and content is safe.
 namespace chicane::protocol {
 
-inline constexpr std::size_t kMaxUdacityMessage =
-    64 * 1024;                              ///< longer texts are broken by definition [byte]
+inline constexpr std::size_t kMaxUdacityMessage = 65536;  ///< longer texts are broken by definition [byte]
 inline constexpr int kMaxUdacityLine = 25;  ///< points drawn for one line: each costs the original frame time
 
 /// `null` instead of data: a person drives by keyboard.

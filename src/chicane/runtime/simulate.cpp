@@ -2,13 +2,13 @@
 #include "chicane/runtime/simulate.hpp"
 
 #include <fcntl.h>
-#include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <future>
 #include <memory>
 #include <optional>
