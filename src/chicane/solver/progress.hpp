@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "chicane/base/math.hpp"
+
 namespace chicane::solver {
 
 /// Watches the length of full steps: the one measure that neither saturates at the bounds nor depends on the
@@ -31,7 +33,7 @@ class Progress {
   /// rate.
   [[nodiscard]] double turns_left(double residual, double tolerance) const noexcept {
     if (good_ < 3 || !(rate_ < 1.0)) return 0.0;
-    return std::log(residual / tolerance) / -std::log(rate_);
+    return log(residual / tolerance) / -log(rate_);
   }
 
  private:
