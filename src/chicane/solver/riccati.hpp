@@ -48,7 +48,7 @@ class Riccati {
   /// programming; the step then descends). Returns the largest extra shift that an indefinite input block
   /// needed; 0 when none did.
   double backward(std::size_t horizon, double shift, bool choose) noexcept {
-    double P[Stage::kHead][Stage::kHeadWidth];
+    double P[Stage::kHead][Stage::kHeadWidth] = {};
     std::copy(&terminal[0][0], &terminal[0][0] + Stage::kHead * Stage::kHeadWidth, &P[0][0]);
     double largest = 0.0;
     for (std::size_t k = horizon; k-- > 0;)
@@ -123,8 +123,7 @@ class Riccati {
         Q[c][Stage::kOne] = b;
       }
     }
-    for (std::size_t m = 0; m < Nu;
-         ++m) {  // inputs depend on the earlier ones of the stage: make the gains explicit
+    for (std::size_t m = 0; m < Nu; ++m) {  // an input depends on the earlier ones: make the gains explicit
       for (std::size_t j = 0; j < Stage::kHead; ++j) {
         double value = Q[Stage::kHead + m][j];
         for (std::size_t l = 0; l < m; ++l) value += Q[Stage::kHead + m][Stage::kHead + l] * s.gain[l][j];
@@ -137,29 +136,33 @@ class Riccati {
     return extra;
   }
 
-  /// Q = L + F̂ᵀ P F̂ with F̂ = [F; e_one].
+  /// Q = L + F̂ᵀ P F̂ with F̂ = [F; e_one] (eq. 9). Jacobians are mostly zeros: both products go by the entries
+  /// of F that are not.
   static void add_cost_to_go(const Stage& s, const double (&P)[Stage::kHead][Stage::kHeadWidth],
                              double (&Q)[Stage::kSize][Stage::kWidth]) noexcept {
-    double W[Stage::kHead][Stage::kWidth];
+    double PF[Stage::kSize][Stage::kHeadWidth] = {};  // (P F̂)ᵀ
+    std::copy(P[Stage::kOne], P[Stage::kOne] + Stage::kHeadWidth, PF[Stage::kOne]);
+    for (std::size_t i = 0; i < Nx; ++i) {
+      for (std::size_t j = 0; j < Stage::kSize; ++j) {
+        if (s.F[i][j] != 0.0) add_scaled<Stage::kHeadWidth>(s.F[i][j], P[i], PF[j]);
+      }
+    }
+    double W[Stage::kHead][Stage::kWidth] = {};
     for (std::size_t r = 0; r < Stage::kHead; ++r) {
-      double row[Stage::kWidth] = {};
-      for (std::size_t i = 0; i < Nx; ++i) {
-        for (std::size_t j = 0; j < Stage::kWidth; ++j) row[j] += P[r][i] * s.F[i][j];
-      }
-      row[Stage::kOne] += P[r][Stage::kOne];
-      std::copy(row, row + Stage::kWidth, W[r]);
+      for (std::size_t j = 0; j < Stage::kSize; ++j) W[r][j] = PF[j][r];
     }
-    for (std::size_t i = 0; i < Stage::kSize; ++i) {
-      double row[Stage::kWidth];
-      std::copy(s.L[i], s.L[i] + Stage::kWidth, row);
-      for (std::size_t r = 0; r < Nx; ++r) {
-        for (std::size_t j = 0; j < Stage::kWidth; ++j) row[j] += s.F[r][i] * W[r][j];
+    std::copy(&s.L[0][0], &s.L[0][0] + Stage::kSize * Stage::kWidth, &Q[0][0]);
+    add_scaled<Stage::kWidth>(1.0, W[Stage::kOne], Q[Stage::kOne]);
+    for (std::size_t r = 0; r < Nx; ++r) {
+      for (std::size_t i = 0; i < Stage::kSize; ++i) {
+        if (s.F[r][i] != 0.0) add_scaled<Stage::kWidth>(s.F[r][i], W[r], Q[i]);
       }
-      if (i == Stage::kOne) {
-        for (std::size_t j = 0; j < Stage::kWidth; ++j) row[j] += W[Stage::kOne][j];
-      }
-      std::copy(row, row + Stage::kWidth, Q[i]);
     }
+  }
+
+  template <std::size_t Width>
+  static void add_scaled(double factor, const double* row, double* sum) noexcept {
+    for (std::size_t j = 0; j < Width; ++j) sum[j] += factor * row[j];
   }
 
   /// Shifts the input block until its free part is positive definite, chooses the working set when asked, and
