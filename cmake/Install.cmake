@@ -14,11 +14,9 @@ set(package_of_tl::expected "tl-expected")
 set(package_of_Threads::Threads "Threads")
 set(package_of_fmt::fmt "fmt")
 set(package_of_yaml-cpp "yaml-cpp")
-set(package_of_fastcdr "fastcdr")
 set(pc_requires_of_Eigen3::Eigen "eigen3")
 set(pc_requires_of_fmt::fmt "fmt")
 set(pc_requires_of_yaml-cpp "yaml-cpp")
-set(pc_libs_of_fastcdr "-lfastcdr")
 set(pc_libs_of_Threads::Threads "-pthread")
 
 # Headers that only our own sources include: of no concern to users.
