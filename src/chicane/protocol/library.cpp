@@ -186,6 +186,7 @@ std::vector<Entry> entries(Shelf shelf) {
     }
   }
   std::vector<Entry> result;
+  result.reserve(found.size());
   for (auto& [name, entry] : found) result.push_back(std::move(entry));
   return result;
 }
@@ -204,6 +205,7 @@ Result<std::string> locate(Shelf shelf, std::string_view name_or_file) {
   }
   const std::vector<Entry> known = entries(shelf);
   std::vector<std::string_view> known_names;
+  known_names.reserve(known.size());
   for (const Entry& entry : known) known_names.push_back(entry.name);
   const std::string_view best = nearest(name_or_file, known_names);
   return fail(ErrorCode::kNotFound,

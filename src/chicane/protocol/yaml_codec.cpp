@@ -12,7 +12,7 @@
 namespace chicane::protocol {
 namespace {
 
-constexpr std::size_t kMostBytes = 256 * 1024;
+constexpr std::size_t kMostBytes = 256U << 10U;
 constexpr int kMostNodes = 10000;  // counted with aliases followed
 constexpr int kMostDepth = 8;
 constexpr std::size_t kMostFaults = 50;
