@@ -9,8 +9,9 @@
 #   clang    the other compiler (where it is installed)
 #   asan     address and undefined behaviour sanitizers
 #   tsan     thread sanitizer
+#   bits     the builds above drive the same laps, to the last bit
 set -uo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
+cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
 source tools/install_packages.sh
 
 check_format() { tools/check_format.sh; }
@@ -26,8 +27,26 @@ check_clang() { command -v clang++ >/dev/null || { say "clang++ is not installed
 check_asan() { check_preset asan; }
 check_tsan() { check_preset tsan; }
 
+# What each build says about a few laps: one state_hash for each of them, on one line.
+hashes() {
+  local run
+  for run in '--car udacity' '--car road-car' '--preset weighted' 'noisy-sensor'; do
+    # shellcheck disable=SC2086
+    "build/$1/apps/chicane/chicane" drive --fast --laps 1 --json $run 2>/dev/null | grep -o '"state_hash": "[0-9a-f]*"'
+  done | tr '\n' ' '
+}
+check_bits() {
+  local build wanted
+  wanted=$(hashes release)
+  for build in dev clang asan; do
+    [ -x "build/$build/apps/chicane/chicane" ] || continue
+    [ "$(hashes $build)" = "$wanted" ] || { say "build/$build drives other bits than build/release"; return 1; }
+  done
+  say "$wanted"
+}
+
 parts=("$@")
-[ $# -gt 0 ] || parts=(format layers tidy release dev clang asan tsan)
+[ $# -gt 0 ] || parts=(format layers tidy release dev clang asan tsan bits)
 mapfile -t others < <(node_packages; browser_packages)
 install_packages "${run_packages[@]}" "${test_packages[@]}" "${check_packages[@]}" "${others[@]}" || exit 3
 failed=()
