@@ -147,7 +147,7 @@ def draw_latency(runs, path):
     matplotlib.use("svg")
     matplotlib.rcParams["svg.hashsalt"] = "chicane"  # the same bytes each time
     import matplotlib.pyplot as plt
-    figure, axes = plt.subplots(figsize=(8, 4.5))
+    figure, axes = plt.subplots(figsize=(9.5, 4.5))
     reports = {key: runs.start(line).result() for key, line in latency_commands().items()}
     for name in dict.fromkeys(name for name, _ in reports):
         errors = [min(reports[name, latency]["total"]["rms_lateral_error_m"], 6.0) for latency in LATENCIES]
@@ -158,7 +158,7 @@ def draw_latency(runs, path):
     axes.set_ylabel("rms lateral error [m], at most 6 drawn")
     axes.set_title("lakeside at 40 mph: a cross is a run with a tyre off the road")
     axes.grid(alpha=0.3)
-    axes.legend()
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     figure.tight_layout()
     figure.savefig(path, metadata={"Date": None, "Creator": None})
 
