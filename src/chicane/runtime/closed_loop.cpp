@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "chicane/runtime/make.hpp"
@@ -14,6 +15,7 @@ namespace {
 constexpr double kLostDistance = 25.0;  // [m] off the line ...
 constexpr double kLostTime = 3.0;       // [s] ... for this long: the run is over
 constexpr double kTimePerLap = 600.0;   // [s] when no limit was given
+constexpr int kLapsRemembered = 1000;   // one by one, beyond those asked for
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -31,7 +33,7 @@ ClosedLoop::ClosedLoop(const scenario::Scenario& scenario, path::Track track, pa
       world_{*plant_, track_},
       sensor_{scenario.sensor, scenario.seed},
       gate_{scenario.vehicle},
-      metrics_{std::max(scenario.laps, 1), scenario.control_period} {
+      metrics_{std::max(scenario.laps, kLapsRemembered), scenario.control_period} {
   restart();
 }
 
@@ -54,7 +56,7 @@ void ClosedLoop::restart() {
   gate_.reset();
   in_flight_.reset({});
   sensor_ = sim::Sensor(scenario_.sensor, scenario_.seed);
-  metrics_ = telemetry::Metrics(std::max(scenario_.laps, 1), scenario_.control_period);
+  metrics_ = telemetry::Metrics(std::max(scenario_.laps, kLapsRemembered), scenario_.control_period);
   next_control_ = 0.0;
   step_time_ = 0.0;
   cycle_ = 0;
@@ -135,8 +137,9 @@ void ClosedLoop::judge() noexcept {
   if (world.lap > metrics_.laps_completed()) metrics_.lap_completed(world.last_lap_time);
 
   off_for_ = std::fabs(world.lateral_error) > kLostDistance ? off_for_ + plant_->step_length() : 0.0;
-  const double limit =
-      scenario_.time_limit > 0.0 ? scenario_.time_limit : kTimePerLap * std::max(scenario_.laps, 1);
+  const double default_limit =
+      scenario_.laps > 0 ? kTimePerLap * scenario_.laps : std::numeric_limits<double>::infinity();
+  const double limit = scenario_.time_limit > 0.0 ? scenario_.time_limit : default_limit;
   if (!is_endless_ && scenario_.laps > 0 && (world.lap >= scenario_.laps || world.is_finished)) {
     over_ = true;
   } else if (off_for_ > kLostTime) {

@@ -32,9 +32,9 @@ constexpr const char* kOpenPacket =
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
-/// Median over the last cycles of the time from telemetry to telemetry without the control step: artificial
-/// latency, both ways through the sockets and the simulator's turn-around. A command takes effect when the
-/// next telemetry is sampled.
+/// Median over the last cycles of the time from telemetry to telemetry: the control step, artificial latency,
+/// both ways through the sockets and the simulator's turn-around. A command takes effect when the next
+/// telemetry is sampled.
 class DelayMeter {
  public:
   explicit DelayMeter(double expected) : expected_{expected} {}
@@ -142,7 +142,7 @@ class UdacityEndpoint::Control {
 
   void drive(const Request& request) {
     if (last_received_) {
-      delay_.add(seconds(request.received - *last_received_) - frame_.step_time);
+      delay_.add(seconds(request.received - *last_received_));
       measured_delay_ = delay_.value();
     }
     last_received_ = request.received;

@@ -30,7 +30,8 @@ struct ServeOptions {
   /// Artificial, between the end of a control step and its answer, as the original controller sleeps. [0, 0.5
   /// s]
   std::chrono::nanoseconds latency = std::chrono::milliseconds{100};
-  std::chrono::nanoseconds step_budget{0};  ///< deadline of a control step; 0 = none
+  std::chrono::nanoseconds step_budget =
+      std::chrono::milliseconds{50};  ///< deadline of a control step; 0 = none
   /// A client that has said nothing for so long gets the Engine.IO open packet: stock clients wait for it,
   /// the original speaks first (and would double its loop if it got one).
   std::chrono::nanoseconds open_after = std::chrono::seconds{1};
@@ -52,7 +53,7 @@ struct ServeSummary {
   std::uint64_t connections = 0;    ///< simulators that were accepted
   std::uint64_t refusals = 0;       ///< simulators that came while another one drove
   std::uint64_t interventions = 0;  ///< commands that the gate had to change
-  double delay = 0.0;               ///< last measured, telemetry to actuation, without the step itself [s]
+  double delay = 0.0;               ///< last measured, telemetry to actuation [s]
 };
 
 /// The original controller program's place: answers every telemetry of one simulator with exactly one
