@@ -9,6 +9,8 @@
 
 #include "chicane/base/assert.hpp"
 #include "chicane/base/deadline.hpp"
+#include "chicane/solver/barrier.hpp"
+#include "chicane/solver/descent.hpp"
 #include "chicane/solver/linearisation.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/progress.hpp"
@@ -70,33 +72,22 @@ class OcpSolver {
  private:
   static constexpr std::size_t kNx = P::kNx;
   static constexpr std::size_t kNu = P::kNu;
-  static constexpr std::size_t kNc = P::kNc;
-  static constexpr std::size_t kOne = kNx;
-  static constexpr std::size_t kHead = kNx + 1;
-  static constexpr int kPatience =
-      3;  ///< turns without improvement before curvature is used while descending
+  static constexpr int kChances = 3;       ///< sweeps that may correct the whole working set in vain
   static constexpr int kFirstHorizon = 5;  ///< of the growing horizons
   static constexpr int kMaxGrowth = 16;
   static constexpr double kGoodEnoughToGrow = 1e-1;
-  static constexpr double kDefectShare = 1e-7;  ///< of the tolerance: Hessians amplify defects
-  static constexpr double kCurvaturePays =
-      6.0;  ///< expected further turns above which exact curvature is worth its cost
+  static constexpr double kDefectShare = 1e-7;   ///< of the tolerance: Hessians amplify defects
+  static constexpr double kCurvaturePays = 6.0;  ///< further turns that exact curvature costs
 
-  static SoftPenalty price_of([[maybe_unused]] const P& problem, [[maybe_unused]] std::size_t c) noexcept {
-    if constexpr (kNc > 0) return problem.soft_penalty(static_cast<int>(c));
-    return {};
-  }
   static std::size_t size_of(const Trajectory& t) noexcept { return static_cast<std::size_t>(t.horizon); }
 
   bool start(const P& problem, const State& x0, Trajectory& trajectory) noexcept {
     full_steps_ = is_fresh_ = true;
     has_best_ = has_curvature_ = has_grown_ = false;
-    smooth_descents_ = 0;
     progress_.restart();
-    needed_descents_ = 2;
+    descent_.start();
+    barrier_.start(problem, options_.tolerance);
     target_ = trajectory.horizon;
-    mu_ = start_mu(problem);
-    shift_ = 0.0;
     for (const double value : x0) {
       if (!std::isfinite(value)) return false;
     }
@@ -112,14 +103,17 @@ class OcpSolver {
     return roll_out(problem, x0, trajectory);
   }
 
-  /// Linearises the iterate and measures it.
+  /// Linearises the iterate and measures it. Slacks start on the central path, and return to it while the
+  /// cost descends.
   void look(const P& problem, const Trajectory& t, SolveReport& report) noexcept {
     now_.evaluate(problem, t, lq_, report);
-    if constexpr (kNc > 0) look_at_soft(problem, t, report);
+    merit_ = report.cost;
+    if (is_fresh_ || !full_steps_) merit_ += barrier_.centre(problem, size_of(t), now_);
+    report.complementarity = barrier_.residual(problem, size_of(t), now_);
     now_.measure(t, lq_, report);
     if (is_fresh_) guess_working_set(t);
     is_fresh_ = false;
-    now_.add_soft(problem, size_of(t), mu_, lq_);
+    now_.add_soft(problem, size_of(t), barrier_.mu(), lq_);
     if (options_.second_order) weigh_curvature(problem, t, report);
   }
 
@@ -127,77 +121,12 @@ class OcpSolver {
     return std::isfinite(report.cost) && std::isfinite(report.defect) && std::isfinite(report.stationarity);
   }
   [[nodiscard]] bool has_converged(const SolveReport& report) const noexcept {
-    const bool soft_done = kNc == 0 || (mu_ <= final_mu() && report.complementarity <= options_.tolerance);
     return report.stationarity <= options_.tolerance &&
-           now_.relative_defect <= kDefectShare * options_.tolerance && soft_done;
+           now_.relative_defect <= kDefectShare * options_.tolerance &&
+           report.complementarity <= options_.tolerance && barrier_.is_final();
   }
   static double residual(const SolveReport& report) noexcept {
     return std::max({report.stationarity, report.defect, report.complementarity});
-  }
-
-  // ---- soft constraints
-
-  [[nodiscard]] double final_mu() const noexcept { return options_.tolerance; }
-
-  /// Slacks start on the central path, and return to it while the cost descends, where the barrier's own cost
-  /// is the merit.
-  void look_at_soft(const P& problem, const Trajectory& t, SolveReport& report) noexcept {
-    report.complementarity = 0.0;
-    merit_ = report.cost;
-    for (std::size_t k = 0; k < size_of(t); ++k) {
-      for (std::size_t c = 0; c < kNc; ++c) {
-        SoftConstraint& soft = now_.soft[k][c];
-        const SoftPenalty price = price_of(problem, c);
-        if (is_fresh_ || !full_steps_) soft.centre(price, mu_);
-        if (!full_steps_) merit_ += soft.barrier(price, mu_) - soft.penalty(price);
-        report.complementarity = std::max(report.complementarity, soft.residual(price, mu_));
-      }
-    }
-  }
-
-  static double start_mu(const P& problem) noexcept {
-    double price = 0.0;
-    for (std::size_t c = 0; c < kNc; ++c) {
-      const SoftPenalty penalty = price_of(problem, c);
-      price = std::max({price, penalty.linear, 0.1 * penalty.quadratic});
-    }
-    return 0.2 * price;
-  }
-
-  /// Moves slacks and multipliers along their Newton steps, never beyond 0.995 of the way to zero; returns
-  /// the step length that the primal ones allow, and lowers the barrier the faster the longer it was.
-  double step_soft(const P& problem, std::size_t horizon) noexcept {
-    constexpr double kFraction = 0.995;
-    double primal = 1.0;
-    double dual = 1.0;
-    const auto each = [&](const auto& visit) {
-      for (std::size_t k = 0; k < horizon; ++k) {
-        for (std::size_t c = 0; c < kNc; ++c) {
-          SoftConstraint& soft = now_.soft[k][c];
-          visit(soft, soft.step(price_of(problem, c), mu_, now_.soft_change(k, c, lq_)));
-        }
-      }
-    };
-    const auto limit = [](double length, double value, double change) {
-      return change < 0.0 ? std::min(length, -kFraction * value / change) : length;
-    };
-    each([&](const SoftConstraint& soft, const SoftConstraint& step) {
-      primal = limit(limit(primal, soft.s, step.s), soft.t, step.t);
-      dual = limit(limit(dual, soft.z, step.z), soft.n, step.n);
-    });
-    each([&](SoftConstraint& soft, const SoftConstraint& step) {
-      soft.s += primal * step.s;
-      soft.t += primal * step.t;
-      soft.z += dual * step.z;
-      soft.n += dual * step.n;
-    });
-    if (horizon == static_cast<std::size_t>(target_)) lower_barrier(primal);
-    return primal;
-  }
-
-  void lower_barrier(double length) noexcept {
-    const double share = length > 0.9 ? std::min(0.1, std::sqrt(mu_)) : (length > 0.5 ? 0.2 : 0.6);
-    mu_ = std::max(final_mu(), share * mu_);
   }
 
   // ---- second order
@@ -207,7 +136,7 @@ class OcpSolver {
   void weigh_curvature(const P& problem, const Trajectory& t, const SolveReport& report) noexcept {
     const bool pays = full_steps_
                           ? progress_.turns_left(residual(report), options_.tolerance) > kCurvaturePays
-                          : descents_ > kPatience;
+                          : descent_.is_under_way();
     if (pays) {
       now_.evaluate_curvature(problem, t);
       has_curvature_ = true;
@@ -235,7 +164,7 @@ class OcpSolver {
     using Repair = typename decltype(lq_)::Repair;
     constexpr int kMaxSweeps = 20;
     int fewest = std::numeric_limits<int>::max();
-    int chances = kPatience;
+    int chances = kChances;
     for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
       ++report.sweeps;
       const double extra = lq_.backward(horizon, 0.0, false);
@@ -247,7 +176,7 @@ class OcpSolver {
       const int contradictions = lq_.forward(horizon, chances > 0 ? Repair::kAll : Repair::kLast);
       if (contradictions == 0) return true;
       if (deadline.spent()) return false;
-      chances = contradictions < fewest ? kPatience : chances - 1;
+      chances = contradictions < fewest ? kChances : chances - 1;
       fewest = std::min(fewest, contradictions);
     }
     lq_.backward(horizon, 0.0, true);
@@ -258,7 +187,8 @@ class OcpSolver {
   /// Takes the whole step of the quadratic program. False when the deadline came first.
   bool full_step(const P& problem, Trajectory& t, const Deadline& deadline, SolveReport& report) noexcept {
     if (!solve_qp(size_of(t), deadline, report)) return false;
-    const double length = kNc > 0 ? step_soft(problem, size_of(t)) : 1.0;
+    const double length = barrier_.step(problem, size_of(t), now_, lq_);
+    if (!is_growing(t)) barrier_.lower(length);
     double longest = 0.0;
     for (std::size_t k = 0; k < size_of(t); ++k) {
       const auto& stage = lq_.stage[k];
@@ -269,7 +199,7 @@ class OcpSolver {
         longest = std::max(longest, std::fabs(du));
       }
     }
-    progress_.note(longest, kNc > 0 && mu_ > final_mu() && !is_growing(t));
+    progress_.note(longest, !barrier_.is_final() && !is_growing(t));
     return true;
   }
 
@@ -294,19 +224,15 @@ class OcpSolver {
 
   /// Back to the best iterate, to descend from there. False when its inputs cannot be simulated.
   bool go_back(const P& problem, Trajectory& trajectory) noexcept {
-    if (!full_steps_) shift_ = std::max(10.0 * shift_, 1.0);
+    if (!full_steps_) descent_.damp();
     full_steps_ = has_curvature_ = false;
-    smooth_descents_ = descents_ = 0;
-    mu_ = std::max(mu_, 0.01 * start_mu(problem));
-    SolveReport unused;
-    look(problem, best_, unused);  // an unstable system stays near the nodes only with feedback
-    lq_.backward(size_of(best_), shift_, true);
-    if (std::isfinite(try_step(problem, best_, 0.0))) {
-      trajectory = candidate_;
-      return true;
-    }
-    const State x0 = trajectory.x[0];
+    descent_.begin();
+    barrier_.lift(problem);
     trajectory = best_;
+    SolveReport unused;
+    look(problem, trajectory, unused);
+    if (descent_.simulate(problem, lq_, barrier_, trajectory)) return true;
+    const State x0 = trajectory.x[0];
     return roll_out(problem, x0, trajectory);
   }
 
@@ -321,7 +247,7 @@ class OcpSolver {
     t = best_;
     t.horizon = kFirstHorizon;
     has_grown_ = true;
-    mu_ = start_mu(problem);
+    barrier_.start(problem, options_.tolerance);
     return restart(problem, x0, t);
   }
   bool grow(const P& problem, Trajectory& t) noexcept {
@@ -335,132 +261,48 @@ class OcpSolver {
     full_steps_ = is_fresh_ = true;
     has_best_ = has_curvature_ = false;
     progress_.restart();
-    needed_descents_ = 2;
+    descent_.forget();
     return roll_out(problem, x0, t);
   }
 
-  /// One descent step: control-limited dynamic programming with line search on the true cost; the iterate
-  /// stays a roll-out. False when no step length and no shift lowers the cost any more.
+  /// The last rung: one step that lowers the cost. False when there is none.
   bool descend(const P& problem, Trajectory& t, SolveReport& report) noexcept {
-    constexpr int kAttempts = 12;
-    constexpr int kHalvings = 6;
-    const double merit = kNc > 0 ? merit_ : report.cost;
-    for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      ++report.sweeps;
-      lq_.backward(size_of(t), shift_, true);
-      double scale = 0.0;
-      const double expected = expected_change(size_of(t), scale);
-      if (!(expected < 0.0)) return false;
-      double length = 1.0;
-      for (int trial = 0; trial < kHalvings; ++trial, length *= 0.5) {
-        const double allowed = merit + 1e-4 * length * expected + 1e-13 * std::fabs(merit);
-        if (!(try_step(problem, t, length) <= allowed)) continue;
-        t = candidate_;
-        if (-expected < mu_ * static_cast<double>(size_of(t) * kNc)) mu_ = std::max(final_mu(), 0.2 * mu_);
-        accept(length, scale);
-        return true;
-      }
-      smooth_descents_ = 0;
-      shift_ = std::max(10.0 * shift_, 1e-3 * scale);
-    }
-    return false;
-  }
-
-  void accept(double length, double scale) noexcept {
-    ++descents_;
-    smooth_descents_ = length >= 1.0 && shift_ == 0.0 ? smooth_descents_ + 1 : 0;
-    if (length >= 1.0) shift_ = shift_ > 1e-6 * scale ? 0.1 * shift_ : 0.0;
-    if (smooth_descents_ < needed_descents_) return;
+    if (!descent_.step(problem, lq_, barrier_, merit_, t, report.sweeps)) return false;
+    if (!descent_.is_smooth()) return true;
     full_steps_ = true;
     has_best_ = false;
-    smooth_descents_ = 0;
     progress_.restart();
-    needed_descents_ *= 2;
-  }
-
-  /// Change of cost that the quadratic model promises for the whole step; `scale`: largest curvature of an
-  /// input.
-  [[nodiscard]] double expected_change(std::size_t horizon, double& scale) const noexcept {
-    double change = 0.0;
-    for (std::size_t k = 0; k < horizon; ++k) {
-      const auto& stage = lq_.stage[k];
-      for (std::size_t m = 0; m < kNu; ++m) {
-        const double own = stage.gain[m][kOne];
-        change += own * stage.gradient[m][kOne];
-        for (std::size_t l = 0; l < kNu; ++l)
-          change += 0.5 * own * stage.gradient[m][kHead + l] * stage.gain[l][kOne];
-        scale = std::max(scale, stage.gradient[m][kHead + m]);
-      }
-    }
-    return change;
-  }
-
-  /// Rolls the gains out through the true dynamics into candidate_ and returns its merit.
-  double try_step(const P& problem, const Trajectory& t, double length) noexcept {
-    candidate_.horizon = t.horizon;
-    candidate_.x[0] = t.x[0];
-    double merit = 0.0;
-    for (std::size_t k = 0; k < size_of(t); ++k) {
-      const auto& stage = lq_.stage[k];
-      const int number = static_cast<int>(k);
-      const State& x = candidate_.x[k];
-      for (std::size_t m = 0; m < kNu; ++m) {
-        double du = length * stage.gain[m][kOne];
-        for (std::size_t i = 0; i < kNx; ++i) du += stage.gain[m][i] * (x[i] - t.x[k][i]);
-        candidate_.u[k][m] = t.u[k][m] + std::min(std::max(du, stage.low[m]), stage.high[m]);
-      }
-      for (const double r : problem.residual(number, x, candidate_.u[k])) merit += 0.5 * r * r;
-      if constexpr (kNc > 0) merit += soft_merit(problem, problem.constraint(number, x, candidate_.u[k]));
-      candidate_.x[k + 1] = problem.dynamics(number, x, candidate_.u[k]);
-    }
-    for (const double r : problem.terminal_residual(candidate_.x[size_of(t)])) merit += 0.5 * r * r;
-    return merit;
-  }
-
-  double soft_merit(const P& problem, const std::array<double, kNc>& values) const noexcept {
-    double merit = 0.0;
-    for (std::size_t c = 0; c < kNc; ++c) {
-      const SoftPenalty price = price_of(problem, c);
-      SoftConstraint soft;
-      soft.value = values[c];
-      soft.centre(price, mu_);
-      merit += soft.barrier(price, mu_);
-    }
-    return merit;
+    return true;
   }
 
   // ---- endings
 
-  /// Hands out the best iterate; unless it is optimal, its residuals decide the status.
+  /// Hands out the best iterate, extended to the whole horizon; unless it is optimal, its residuals decide
+  /// the status.
   SolveReport finish(SolveStatus status, const P& problem, Trajectory& trajectory,
-                     const SolveReport& report) noexcept {
-    SolveReport result = report;
+                     SolveReport report) noexcept {
     if (status != SolveStatus::kOptimal) {
-      if (has_best_) trajectory = best_;
-      result = best_report_;
-      while (is_growing(trajectory)) {
-        grow(problem, trajectory);
-        if (!is_growing(trajectory)) look(problem, trajectory, result);
+      const int iterations = report.iterations;
+      const int sweeps = report.sweeps;
+      if (has_best_) {
+        trajectory = best_;
+        report = best_report_;
       }
-      result.iterations = report.iterations;
-      result.sweeps = report.sweeps;
-      status =
-          residual(result) <= options_.loose_tolerance ? SolveStatus::kBudgetSpent : SolveStatus::kStalled;
-    }
-    if (status == SolveStatus::kOptimal && violates_a_cap(problem, size_of(trajectory)))
+      if (is_growing(trajectory) || !has_best_) {
+        while (is_growing(trajectory)) grow(problem, trajectory);
+        look(problem, trajectory, report);
+        if (!is_finite(report)) return give_up(problem, trajectory.x[0], trajectory, report);
+      }
+      report.iterations = iterations;
+      report.sweeps = sweeps;
+      const bool is_close = residual(report) <= options_.loose_tolerance;
+      status = is_close ? SolveStatus::kBudgetSpent : SolveStatus::kStalled;
+    } else if (barrier_.exceeds_a_cap(problem, size_of(trajectory), now_)) {
       status = SolveStatus::kInfeasible;
-    clamp_inputs(problem, trajectory);  // u + (bound − u) may miss the bound by one rounding
-    result.status = status;
-    return result;
-  }
-
-  [[nodiscard]] bool violates_a_cap(const P& problem, std::size_t horizon) const noexcept {
-    for (std::size_t k = 0; k < horizon; ++k) {
-      for (std::size_t c = 0; c < kNc; ++c) {
-        if (now_.soft[k][c].value > price_of(problem, c).cap) return true;
-      }
     }
-    return false;
+    clamp_inputs(problem, trajectory);  // u + (bound − u) may miss the bound by one rounding
+    report.status = status;
+    return report;
   }
 
   /// The data are not finite: leaves admissible inputs and finite states behind.
@@ -478,8 +320,10 @@ class OcpSolver {
   SolverOptions options_;
   Linearisation<P, Capacity> now_;  ///< of the present iterate
   Riccati<kNx, kNu, Capacity> lq_;  ///< its quadratic program
+  Barrier<P, Capacity> barrier_;
+  Descent<P, Capacity> descent_;
+  Progress progress_;
   Trajectory best_{};
-  Trajectory candidate_{};
   SolveReport best_report_{};
   bool has_best_ = false;
   bool full_steps_ = true;
@@ -487,13 +331,7 @@ class OcpSolver {
   bool has_grown_ = false;
   bool is_fresh_ = true;  ///< slacks and working set are to be guessed anew
   int target_ = 0;        ///< horizon asked for
-  Progress progress_;
-  int smooth_descents_ = 0;
-  int descents_ = 0;
-  int needed_descents_ = 2;
-  double shift_ = 0.0;  ///< Levenberg shift on the input blocks
-  double mu_ = 0.0;     ///< barrier of the soft constraints
-  double merit_ = 0.0;
+  double merit_ = 0.0;    ///< cost with the barrier's smoothed penalties
 };
 
 }  // namespace chicane::solver
