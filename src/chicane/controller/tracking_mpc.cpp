@@ -23,6 +23,7 @@ using StageInput = std::array<double, Problem::kNu>;
 
 constexpr double kFarFromLine = 15.0;       // [m] further away the car is lost
 constexpr double kSpeedAhead = 4.0;         // [m/s] wanted at most beyond what the last answer reaches
+constexpr double kLongestHold = 0.3;        // [s] the first command is believed to be held at most this long
 constexpr double kProjectionWindow = 30.0;  // [m] searched around the last place
 
 class TrackingMpc final : public Controller {
@@ -122,18 +123,23 @@ class TrackingMpc final : public Controller {
   /// the road for each stage on the way.
   void warm_start(double act_time) noexcept {
     const int n = options_.horizon_steps;
-    const double shift = (act_time - act_time_) / problem_.dt;
-    const bool can_shift = has_horizon_ && shift >= 0.0 && shift < 0.5 * n;
-    if (can_shift) {
-      old_ = horizon_;
-    }
+    const double elapsed = act_time - act_time_;
+    const bool can_shift = has_horizon_ && elapsed >= 0.0 && elapsed < 0.5 * problem_.time(n);
+    if (can_shift) old_ = horizon_;
+    const double old_first = problem_.first_dt;
+    problem_.first_dt = std::clamp(elapsed, problem_.dt, kLongestHold);
+    // Position of a time of the old answer in its stages, as a real number.
+    const auto old_stage = [&](double time) {
+      return std::clamp(time < old_first ? time / old_first : 1.0 + (time - old_first) / problem_.dt, 0.0,
+                        n - 1.0);
+    };
     horizon_.horizon = n;
     horizon_.x[0] = x0_;
     for (int k = 0; k < n; ++k) {
       const auto i = static_cast<std::size_t>(k);
       sample_stage(k, horizon_.x[i]);
       if (can_shift) {
-        const double where = std::min(k + shift, n - 1.0);
+        const double where = old_stage(problem_.time(k) + elapsed);
         const auto j = static_cast<std::size_t>(where);
         const std::size_t next = std::min<std::size_t>(j + 1, static_cast<std::size_t>(n - 1));
         const double share = where - static_cast<double>(j);
@@ -231,7 +237,7 @@ class TrackingMpc final : public Controller {
       const double c = cos(at.heading);
       const double sn = sin(at.heading);
       plan.reference[i] = at.position;
-      plan.points[i] = {.time = act_time + k * problem_.dt,
+      plan.points[i] = {.time = act_time + problem_.time(k),
                         .x = at.position.x() - x[Problem::kD] * sn,
                         .y = at.position.y() + x[Problem::kD] * c,
                         .psi = at.heading + x[Problem::kE],

@@ -44,7 +44,8 @@ struct TrackingProblem {
   };
 
   const PredictionModel* model = nullptr;
-  double dt = 0.05;  ///< [s]
+  double dt = 0.05;        ///< length of every stage but the first [s]
+  double first_dt = 0.05;  ///< of the first: its command is held until the next one comes [s]; >= dt
   int horizon = 0;
   RootWeights weight{};
   std::array<Stage, kCapacity + 1> stages{};
@@ -60,35 +61,25 @@ struct TrackingProblem {
     return stage.curvature + stage.curvature_slope * (s - stage.s);
   }
 
+  /// Length of stage k, and the time from the start to its beginning [s].
+  [[nodiscard]] double length(int k) const noexcept { return k == 0 ? first_dt : dt; }
+  [[nodiscard]] double time(int k) const noexcept { return k == 0 ? 0.0 : first_dt + (k - 1) * dt; }
+
   template <class T>
   [[nodiscard]] std::array<T, kNx> dynamics(int k, const std::array<T, kNx>& x,
                                             const std::array<T, kNu>& u) const noexcept {
-    const BodyMotion<T> to = model->advance(body(x), u[0], u[1], dt);
-    // Means over the interval carry the car along the line: second order in dt.
-    const T vx = 0.5 * (x[kVx] + to.vx);
-    const T vy = 0.5 * (x[kVy] + to.vy);
-    const T yaw = (0.5 * dt) * (x[kR] + to.r);
-    const T kappa = curvature(k, x[kS] + (0.5 * dt) * x[kVx]);
-    const T scale = 1.0 / (1.0 - kappa * x[kD]);
-    const T half = x[kE] + 0.5 * yaw - (0.5 * dt) * vx * kappa;
-    const T c = cos(half);
-    const T sn = sin(half);
-    const T ds = dt * (vx * c - vy * sn) * scale;
-    return {x[kS] + ds,
-            x[kD] + dt * (vx * sn + vy * c),
-            x[kE] + yaw - kappa * ds,
-            to.vx,
-            to.vy,
-            to.r,
-            to.steer,
-            to.acceleration};
+    // A long first stage is integrated in parts, none much longer than dt.
+    const int parts = k == 0 ? static_cast<int>(first_dt / dt + 0.75) : 1;
+    std::array<T, kNx> to = move(k, x, u, length(k) / parts);
+    for (int part = 1; part < parts; ++part) to = move(k, to, u, length(k) / parts);
+    return to;
   }
 
   template <class T>
   [[nodiscard]] std::array<T, kNr> residual(int k, const std::array<T, kNx>& x,
                                             const std::array<T, kNu>& u) const noexcept {
     const Stage& stage = stages[static_cast<std::size_t>(k)];
-    const T rate = (u[0] - x[kSteer]) * (1.0 / dt);
+    const T rate = (u[0] - x[kSteer]) * (1.0 / length(k));
     const std::array<T, 2> use = model->tire_use(body(x));
     const model::VehicleParams& car = model->vehicle();
     // Share of the friction ellipse, for tyres that have one: asked longitudinal over load, and lateral use.
@@ -99,7 +90,7 @@ struct TrackingProblem {
             weight.heading * x[kE],
             weight.speed * (x[kVx] - (stage.speed + stage.speed_slope * (x[kS] - stage.s))),
             weight.steer_rate * rate,
-            (weight.jerk / dt) * (u[1] - x[kAcceleration]),
+            (weight.jerk / length(k)) * (u[1] - x[kAcceleration]),
             weight.edge * excess(x[kD], stage.left),
             weight.edge * excess(-x[kD], stage.right),
             weight.slip * excess(abs(use[0]), kUsefulTireUse),
@@ -132,6 +123,31 @@ struct TrackingProblem {
   }
 
  private:
+  /// Motion over h [s] in coordinates along the line (eq. 15).
+  template <class T>
+  [[nodiscard]] std::array<T, kNx> move(int k, const std::array<T, kNx>& x, const std::array<T, kNu>& u,
+                                        double h) const noexcept {
+    const BodyMotion<T> to = model->advance(body(x), u[0], u[1], h);
+    // Means over the interval carry the car along the line: second order in h.
+    const T vx = 0.5 * (x[kVx] + to.vx);
+    const T vy = 0.5 * (x[kVy] + to.vy);
+    const T yaw = (0.5 * h) * (x[kR] + to.r);
+    const T kappa = curvature(k, x[kS] + (0.5 * h) * x[kVx]);
+    const T scale = 1.0 / (1.0 - kappa * x[kD]);
+    const T half = x[kE] + 0.5 * yaw - (0.5 * h) * vx * kappa;
+    const T c = cos(half);
+    const T sn = sin(half);
+    const T ds = h * (vx * c - vy * sn) * scale;
+    return {x[kS] + ds,
+            x[kD] + h * (vx * sn + vy * c),
+            x[kE] + yaw - kappa * ds,
+            to.vx,
+            to.vy,
+            to.r,
+            to.steer,
+            to.acceleration};
+  }
+
   static constexpr double kUsefulTireUse = 1.0;  ///< slip beyond this gives hardly more force
 
   /// max(0, value − limit)
