@@ -15,7 +15,8 @@ struct OptionRange {
   double high;
 };
 
-/// kInvalidArgument naming the first option out of range ("pid.integral_gain: got -1, expected 0 to 10"); NaN is.
+/// kInvalidArgument naming the first option out of range ("pid.integral_gain: got -1, expected 0 to 10"); NaN
+/// is.
 [[nodiscard]] Result<void> check_ranges(std::initializer_list<OptionRange> ranges);
 
 }  // namespace chicane::controller

@@ -10,13 +10,14 @@ namespace chicane::safety {
 enum class GateReason : signed char { kNone = 0, kNotFinite = 1, kRange = 2, kRate = 3 };
 
 struct GateResult {
-  model::Command command;                  ///< always finite, inside range and rate limits
-  GateReason reason = GateReason::kNone;   ///< worst one that applied
+  model::Command command;                 ///< always finite, inside range and rate limits
+  GateReason reason = GateReason::kNone;  ///< worst one that applied
 };
 
-/// The only way to an actuator: whatever is asked, what leaves is finite, inside the vehicle's steering and throttle range,
-/// and no faster than its steering rate allows. Non-finite parts are replaced by the last sent steering and gentle braking.
-/// A nominal command passes unchanged, bit for bit. No allocation; one thread.
+/// The only way to an actuator: whatever is asked, what leaves is finite, inside the vehicle's steering and
+/// throttle range, and no faster than its steering rate allows. Non-finite parts are replaced by the last
+/// sent steering and gentle braking. A nominal command passes unchanged, bit for bit. No allocation; one
+/// thread.
 class CommandGate {
  public:
   explicit CommandGate(const model::VehicleParams& vehicle) noexcept : vehicle_{vehicle} {}
