@@ -11,7 +11,7 @@ mv "$work/first" "$work/moved"
 prefix=$work/moved
 [ -f "$prefix/share/chicane/presets/default.yaml" ] || { echo "presets/default.yaml is not installed"; exit 1; }
 
-cmake -S "$consumer" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
+cmake -G Ninja -S "$consumer" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
 cmake --build "$work/cmake" >/dev/null
 "$work/cmake/consumer"
 
