@@ -13,6 +13,8 @@
 namespace {
 
 using namespace chicane;
+using test::CorridorProblem;
+using test::DescribedProblem;
 
 constexpr int kCapacity = 200;
 constexpr int kInstances = 64;
@@ -44,7 +46,7 @@ std::vector<Instance<Problem>> make_instances(int horizon, Start start) {
     }
     instance.guess.horizon = horizon;
     test::DescribedInstance plain;
-    plain.problem = instance.problem;
+    plain.problem = static_cast<const DescribedProblem&>(instance.problem);
     plain.start = instance.start;
     if (start != kCold) test::guess_by_path_law(plain, instance.guess);
     if (start != kWarm) continue;
@@ -83,8 +85,6 @@ void Solve(benchmark::State& state) {
   state.counters["sweeps"] =
       benchmark::Counter(static_cast<double>(sweeps), benchmark::Counter::kAvgIterations);
 }
-using test::CorridorProblem;
-using test::DescribedProblem;
 BENCHMARK(Solve<DescribedProblem, kCold>)
     ->Arg(10)
     ->Arg(20)

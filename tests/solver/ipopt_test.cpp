@@ -88,7 +88,8 @@ TEST_P(AgainstIpopt, AgreesOnTheOptimumWithASoftCorridor) {
   Random random{2000 + static_cast<std::uint64_t>(GetParam().horizon)};
   for (int i = 0; i < GetParam().count; ++i) {
     const auto instance = test::random_corridor(random, GetParam().horizon);
-    const test::DescribedInstance plain{.problem = instance.problem, .start = instance.start};
+    const test::DescribedInstance plain{.problem = static_cast<const DescribedProblem&>(instance.problem),
+                                        .start = instance.start};
     test::DescribedTrajectory<kCapacity> own;
     own.horizon = GetParam().horizon;
     choose_start(GetParam().start, plain, instance.problem, *ocp, own);

@@ -79,7 +79,7 @@ struct SoftOcp : testing::Test {
     trajectory.horizon = kCapacity;
     problem.path = {0.3, 0.05, 0.0, 0.0};
     problem.speed_reference = 12.0;
-    test::DescribedInstance plain{.problem = problem};
+    test::DescribedInstance plain{.problem = static_cast<const test::DescribedProblem&>(problem)};
     plain.place(12.0);
     start = plain.start;
   }

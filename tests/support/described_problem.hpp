@@ -107,8 +107,10 @@ void guess_by_path_law(const DescribedInstance& instance, DescribedTrajectory<Ca
         (p.path[0] + s[0] * (p.path[1] + s[0] * (p.path[2] + s[0] * p.path[3])) - s[1]) / sqrt(stretch);
     const double curvature = (2.0 * p.path[2] + 6.0 * p.path[3] * s[0]) / (stretch * sqrt(stretch));
     const double rate = 1.2;
-    const double pull = std::fmin(0.3, std::fmax(-0.3, p.kLength * rate * rate / (speed * speed) * offset));
-    const double steer = p.kLength * curvature + pull - 2.0 * rate * p.kLength / speed * (s[2] - atan(slope));
+    const double pull =
+        std::fmin(0.3, std::fmax(-0.3, DescribedProblem::kLength * rate * rate / (speed * speed) * offset));
+    const double steer = DescribedProblem::kLength * curvature + pull -
+                         2.0 * rate * DescribedProblem::kLength / speed * (s[2] - atan(slope));
     trajectory.u[k] = {
         std::fmin(p.steer_limit, std::fmax(-p.steer_limit, steer)),
         std::fmin(p.acceleration_limit, std::fmax(-p.acceleration_limit, 0.5 * (p.speed_reference - s[3])))};

@@ -90,7 +90,7 @@ LinearProblem<Nx, Nu> random_linear_problem(Random& random) {
 template <int Nx, int Nu>
 Eigen::VectorXd solve_densely(const LinearProblem<Nx, Nu>& p,
                               const std::array<double, LinearProblem<Nx, Nu>::kNx>& x0, int horizon) {
-  const Eigen::Index n = horizon * Nu;
+  const Eigen::Index n = Eigen::Index{horizon} * Nu;
   Eigen::MatrixXd X = Eigen::MatrixXd::Zero(Nx, n + 1);  // x_k as an affine function of all inputs
   for (int i = 0; i < Nx; ++i) X(i, n) = x0[static_cast<std::size_t>(i)];
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n + 1, n + 1);
