@@ -49,7 +49,8 @@ TEST(Durations, PercentilesAgreeWithASortedListToOneBin) {
     const double exact = static_cast<double>(values[static_cast<std::size_t>(share * 100000.0) - 1]);
     const double got = static_cast<double>(durations.percentile(share));
     EXPECT_GE(got, exact) << share;
-    EXPECT_LE(got, exact * (1.0 + 1.0 / 16.0)) << share;  // 16 bins per octave: the widest is 1/16 of its lower edge
+    EXPECT_LE(got, exact * (1.0 + 1.0 / 16.0))
+        << share;  // 16 bins per octave: the widest is 1/16 of its lower edge
   }
   EXPECT_EQ(durations.percentile(1.0), values.back());
 }

@@ -18,8 +18,8 @@ std::uint64_t hash(double a, double b) {
 TEST(Fnv, OfNothingIsTheOffsetBasis) { EXPECT_EQ(Fnv{}.value(), 0xcbf29ce484222325ULL); }
 
 TEST(Fnv, IsThePublishedFunction) {
-  // FNV-1a-64 of the eight bytes "foobar\0\0": "foobar" hashes to 0x85944171f73967e8 (Noll's test vectors), and each zero byte
-  // multiplies by the prime.
+  // FNV-1a-64 of the eight bytes "foobar\0\0": "foobar" hashes to 0x85944171f73967e8 (Noll's test vectors),
+  // and each zero byte multiplies by the prime.
   Fnv fnv;
   fnv.add(std::uint64_t{0x00007261626f6f66});
   EXPECT_EQ(fnv.value(), 0x85944171f73967e8ULL * 0x100000001b3ULL * 0x100000001b3ULL);

@@ -15,7 +15,8 @@ namespace {
 double ulps(double got, long double want) {
   const double rounded = static_cast<double>(want);
   const double ulp = std::nextafter(std::fabs(rounded), 1e308) - std::fabs(rounded);
-  return static_cast<double>(std::fabs((static_cast<long double>(got) - want)) / static_cast<long double>(ulp));
+  return static_cast<double>(std::fabs((static_cast<long double>(got) - want)) /
+                             static_cast<long double>(ulp));
 }
 
 /// Largest error in units of the last place over random arguments, against long double.
@@ -42,8 +43,11 @@ TEST(Math, IsWithinOneUlpOfLongDouble) {
 TEST(Math, CompositesAreWithinFourUlp) {
   using L = long double;
   EXPECT_LT(worst([](double x) { return tan(x); }, [](L x) { return std::tan(x); }, -1.5, 1.5), 3.0);
-  EXPECT_LT(worst([](double x) { return tanh(x); }, [](L x) { return std::tanh(x); }, 0.1, 20.0), 4.0);  // one exp, one difference, one quotient
-  EXPECT_LT(worst([](double x) { return atan2(x, -0.7); }, [](L x) { return std::atan2(x, L(-0.7)); }, -5.0, 5.0), 3.0);
+  EXPECT_LT(worst([](double x) { return tanh(x); }, [](L x) { return std::tanh(x); }, 0.1, 20.0),
+            4.0);  // one exp, one difference, one quotient
+  EXPECT_LT(
+      worst([](double x) { return atan2(x, -0.7); }, [](L x) { return std::atan2(x, L(-0.7)); }, -5.0, 5.0),
+      3.0);
 }
 
 TEST(Math, KeepsNotANumberAndTheAxes) {

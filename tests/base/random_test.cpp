@@ -10,7 +10,8 @@ namespace chicane {
 namespace {
 
 TEST(Random, FollowsThePublishedStream) {
-  // First outputs of SplitMix64 for seed 1234567, as printed by the reference C program (Vigna, splitmix64.c).
+  // First outputs of SplitMix64 for seed 1234567, as printed by the reference C program (Vigna,
+  // splitmix64.c).
   Random random(1234567);
   EXPECT_EQ(random.bits(), 6457827717110365317ULL);
   EXPECT_EQ(random.bits(), 3203168211198807973ULL);

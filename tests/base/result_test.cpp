@@ -10,7 +10,8 @@ namespace chicane {
 namespace {
 
 Result<int> half(int number) {
-  if (number % 2 != 0) return fail(ErrorCode::kInvalidArgument, "number: got " + std::to_string(number) + ", expected even");
+  if (number % 2 != 0)
+    return fail(ErrorCode::kInvalidArgument, "number: got " + std::to_string(number) + ", expected even");
   return number / 2;
 }
 
