@@ -127,7 +127,7 @@ class TrackingMpc final : public Controller {
     const bool can_shift = has_horizon_ && elapsed >= 0.0 && elapsed < 0.5 * problem_.time(n);
     if (can_shift) old_ = horizon_;
     const double old_first = problem_.first_dt;
-    problem_.first_dt = std::clamp(elapsed, problem_.dt, kLongestHold);
+    problem_.first_dt = can_shift ? std::clamp(elapsed, problem_.dt, kLongestHold) : problem_.dt;
     // Position of a time of the old answer in its stages, as a real number.
     const auto old_stage = [&](double time) {
       return std::clamp(time < old_first ? time / old_first : 1.0 + (time - old_first) / problem_.dt, 0.0,
