@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "chicane/runtime/make.hpp"
+#include "chicane/runtime/observe.hpp"
 
 namespace chicane::runtime {
 namespace {
@@ -104,36 +105,18 @@ void ClosedLoop::control(double budget) noexcept {
 }
 
 void ClosedLoop::fill_frame(const model::Measurement& now, double step_time) noexcept {
-  const sim::WorldState& world = world_.state();
+  observe(world_, frame_);
   frame_.cycle = cycle_;
   frame_.time = now.time;
-  frame_.truth = plant_->state();
-  frame_.has_truth = true;
   frame_.measurement = now;
   frame_.applied = in_flight_.at(time() + 1e-9);
   frame_.step_time = step_time;
   frame_.solve_time = frame_.result.report.solve_time;
-  frame_.lateral_acceleration = plant_->output().ay;
-  frame_.longitudinal_acceleration = plant_->output().ax;
-  frame_.s = world.s;
-  frame_.lateral_error = world.lateral_error;
-  frame_.heading_error = world.heading_error;
-  frame_.edge_distance = world.edge_distance;
-  frame_.is_off_track = world.is_off_track;
-  frame_.lap = world.lap;
-  frame_.lap_time = world.lap_time;
-  frame_.last_lap_time = world.last_lap_time;
-  frame_.off_track_events = world.off_track_events;
 }
 
 void ClosedLoop::judge() noexcept {
   const sim::WorldState& world = world_.state();
-  metrics_.add_physics({.step = plant_->step_length(),
-                        .state = plant_->state(),
-                        .lateral_acceleration = plant_->output().ay,
-                        .lateral_error = world.lateral_error,
-                        .edge_distance = world.edge_distance,
-                        .is_off_track = world.is_off_track});
+  metrics_.add_physics(physics_sample(world_));
   if (world.lap > metrics_.laps_completed()) metrics_.lap_completed(world.last_lap_time);
 
   off_for_ = std::fabs(world.lateral_error) > kLostDistance ? off_for_ + plant_->step_length() : 0.0;

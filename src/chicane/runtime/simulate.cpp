@@ -22,6 +22,7 @@
 #include "chicane/net/client.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/runtime/make.hpp"
+#include "chicane/runtime/observe.hpp"
 #include "chicane/runtime/sparse_log.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
@@ -131,23 +132,10 @@ class Scene {
     model::Measurement now = sensor_.sample(world_.time(), *plant_);
     sim::select_waypoints(waypoints_, {.x = state.x, .y = state.y, .psi = state.psi},
                           scenario_.waypoints_sent, now);
-    const sim::WorldState& world = world_.state();
+    observe(world_, frame);
     frame.time = now.time;
-    frame.truth = state;
-    frame.has_truth = true;
     frame.measurement = now;
     frame.applied = acting;
-    frame.lateral_acceleration = plant_->output().ay;
-    frame.longitudinal_acceleration = plant_->output().ax;
-    frame.s = world.s;
-    frame.lateral_error = world.lateral_error;
-    frame.heading_error = world.heading_error;
-    frame.edge_distance = world.edge_distance;
-    frame.is_off_track = world.is_off_track;
-    frame.lap = world.lap;
-    frame.lap_time = world.lap_time;
-    frame.last_lap_time = world.last_lap_time;
-    frame.off_track_events = world.off_track_events;
   }
 
   [[nodiscard]] bool is_over() const {
@@ -179,12 +167,7 @@ class Scene {
  private:
   void judge(double step) {
     const sim::WorldState& world = world_.state();
-    metrics_.add_physics({.step = step,
-                          .state = plant_->state(),
-                          .lateral_acceleration = plant_->output().ay,
-                          .lateral_error = world.lateral_error,
-                          .edge_distance = world.edge_distance,
-                          .is_off_track = world.is_off_track});
+    metrics_.add_physics(physics_sample(world_));
     if (world.lap > metrics_.laps_completed()) metrics_.lap_completed(world.last_lap_time);
     off_for_ = std::fabs(world.lateral_error) > kLostDistance ? off_for_ + step : 0.0;
   }

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "chicane/sim/world.hpp"
+#include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/metrics.hpp"
+
+namespace chicane::runtime {
+
+/// Writes what the world knows of the car into a frame: truth, accelerations, place, laps. The rest stays.
+inline void observe(const sim::World& world, telemetry::Frame& frame) noexcept {
+  const sim::WorldState& state = world.state();
+  frame.truth = world.plant().state();
+  frame.has_truth = true;
+  frame.lateral_acceleration = world.plant().output().ay;
+  frame.longitudinal_acceleration = world.plant().output().ax;
+  frame.s = state.s;
+  frame.lateral_error = state.lateral_error;
+  frame.heading_error = state.heading_error;
+  frame.edge_distance = state.edge_distance;
+  frame.is_off_track = state.is_off_track;
+  frame.lap = state.lap;
+  frame.lap_time = state.lap_time;
+  frame.last_lap_time = state.last_lap_time;
+  frame.off_track_events = state.off_track_events;
+}
+
+/// What metrics count of the physics step just done.
+[[nodiscard]] inline telemetry::PhysicsSample physics_sample(const sim::World& world) noexcept {
+  return {.step = world.plant().step_length(),
+          .state = world.plant().state(),
+          .lateral_acceleration = world.plant().output().ay,
+          .lateral_error = world.state().lateral_error,
+          .edge_distance = world.state().edge_distance,
+          .is_off_track = world.state().is_off_track};
+}
+
+}  // namespace chicane::runtime
