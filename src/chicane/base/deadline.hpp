@@ -6,8 +6,9 @@
 
 namespace chicane {
 
-/// A time budget that can be asked "spent?". Built at the rim (runtime) and handed down, so that nothing below
-/// reads a clock unless it was given one. `Deadline::never()` and `Deadline::stopwatch()` make a run deterministic.
+/// A time budget that can be asked "spent?". Built at the rim (runtime) and handed down, so that nothing
+/// below reads a clock unless it was given one. `Deadline::never()` and `Deadline::stopwatch()` make a run
+/// deterministic.
 class Deadline {
  public:
   using Clock = std::chrono::steady_clock;

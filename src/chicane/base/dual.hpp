@@ -7,11 +7,12 @@
 
 namespace chicane {
 
-/// Forward-mode dual number: a value and its derivatives with respect to N variables. T may itself be a Dual, which gives
-/// exact second derivatives. Use: write a model as a template over its scalar and call it with Dual<N>.
+/// Forward-mode dual number: a value and its derivatives with respect to N variables. T may itself be a Dual,
+/// which gives exact second derivatives. Use: write a model as a template over its scalar and call it with
+/// Dual<N>.
 ///
-/// Rules are those of calculus; comparison looks at the value only, so a branch picks one side and differentiates it.
-/// No allocation, no virtual call; costs about (1 + N) times the plain evaluation.
+/// Rules are those of calculus; comparison looks at the value only, so a branch picks one side and
+/// differentiates it. No allocation, no virtual call; costs about (1 + N) times the plain evaluation.
 template <int N, class T = double>
 struct Dual {
   T v{};                 ///< value
@@ -20,8 +21,7 @@ struct Dual {
   constexpr Dual() = default;
   constexpr Dual(double value) : v(value) {}  // NOLINT: constants mix freely with duals, as in formulas
   template <class U = T>
-    requires(!std::is_same_v<U, double>)
-  constexpr Dual(const T& value) : v(value) {}  // NOLINT
+  requires(!std::is_same_v<U, double>) constexpr Dual(const T& value) : v(value) {}  // NOLINT
 
   /// Variable number `index` at `value`.
   static constexpr Dual variable(const T& value, int index) {
@@ -61,7 +61,11 @@ struct Dual {
     for (std::size_t i = 0; i < N; ++i) r.d[i] = (a.d[i] - r.v * b.d[i]) / b.v;
     return r;
   }
-  friend constexpr Dual operator+(const Dual& a, double b) { Dual r = a; r.v = r.v + b; return r; }
+  friend constexpr Dual operator+(const Dual& a, double b) {
+    Dual r = a;
+    r.v = r.v + b;
+    return r;
+  }
   friend constexpr Dual operator+(double a, const Dual& b) { return b + a; }
   friend constexpr Dual operator-(const Dual& a, double b) { return a + (-b); }
   friend constexpr Dual operator-(double a, const Dual& b) { return (-b) + a; }
@@ -92,16 +96,22 @@ template <int N, class T>
 }
 
 template <int N, class T>
-[[nodiscard]] Dual<N, T> sin(const Dual<N, T>& a) { return Dual<N, T>::chain(a, sin(a.v), cos(a.v)); }
+[[nodiscard]] Dual<N, T> sin(const Dual<N, T>& a) {
+  return Dual<N, T>::chain(a, sin(a.v), cos(a.v));
+}
 template <int N, class T>
-[[nodiscard]] Dual<N, T> cos(const Dual<N, T>& a) { return Dual<N, T>::chain(a, cos(a.v), -sin(a.v)); }
+[[nodiscard]] Dual<N, T> cos(const Dual<N, T>& a) {
+  return Dual<N, T>::chain(a, cos(a.v), -sin(a.v));
+}
 template <int N, class T>
 [[nodiscard]] Dual<N, T> tan(const Dual<N, T>& a) {
   const T t = tan(a.v);
   return Dual<N, T>::chain(a, t, 1.0 + t * t);
 }
 template <int N, class T>
-[[nodiscard]] Dual<N, T> atan(const Dual<N, T>& a) { return Dual<N, T>::chain(a, atan(a.v), 1.0 / (1.0 + a.v * a.v)); }
+[[nodiscard]] Dual<N, T> atan(const Dual<N, T>& a) {
+  return Dual<N, T>::chain(a, atan(a.v), 1.0 / (1.0 + a.v * a.v));
+}
 template <int N, class T>
 [[nodiscard]] Dual<N, T> sqrt(const Dual<N, T>& a) {
   const T s = sqrt(a.v);
@@ -113,14 +123,18 @@ template <int N, class T>
   return Dual<N, T>::chain(a, e, e);
 }
 template <int N, class T>
-[[nodiscard]] Dual<N, T> log(const Dual<N, T>& a) { return Dual<N, T>::chain(a, log(a.v), 1.0 / a.v); }
+[[nodiscard]] Dual<N, T> log(const Dual<N, T>& a) {
+  return Dual<N, T>::chain(a, log(a.v), 1.0 / a.v);
+}
 template <int N, class T>
 [[nodiscard]] Dual<N, T> tanh(const Dual<N, T>& a) {
   const T t = tanh(a.v);
   return Dual<N, T>::chain(a, t, 1.0 - t * t);
 }
 template <int N, class T>
-[[nodiscard]] Dual<N, T> abs(const Dual<N, T>& a) { return value_of(a) < 0.0 ? -a : a; }
+[[nodiscard]] Dual<N, T> abs(const Dual<N, T>& a) {
+  return value_of(a) < 0.0 ? -a : a;
+}
 template <int N, class T>
 [[nodiscard]] Dual<N, T> atan2(const Dual<N, T>& y, const Dual<N, T>& x) {
   const T q = x.v * x.v + y.v * y.v;

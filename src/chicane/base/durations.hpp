@@ -8,8 +8,8 @@
 
 namespace chicane {
 
-/// Histogram of durations in fixed memory: 16 bins per octave from 1 ns to 18 minutes, so percentiles are exact to 4.4 %.
-/// No allocation; one writer.
+/// Histogram of durations in fixed memory: 16 bins per octave from 1 ns to 18 minutes, so percentiles are
+/// exact to 4.4 %. No allocation; one writer.
 class Durations {
  public:
   void add(std::uint64_t nanoseconds) noexcept {

@@ -8,14 +8,14 @@
 namespace chicane {
 namespace {
 
-constexpr double kHalfPiHigh = 1.57079632673412561417e+00;   // first 33 bits of π/2
+constexpr double kHalfPiHigh = 1.57079632673412561417e+00;    // first 33 bits of π/2
 constexpr double kHalfPiMiddle = 6.07710050630396597660e-11;  // second 33 bits of π/2
 constexpr double kHalfPiLow = 2.02226624879595063154e-21;     // the rest
 constexpr double kTwoOverPi = 6.36619772367581382433e-01;
 
 struct Reduced {
-  double r;      // x - n π/2, |r| <= π/4
-  double tail;   // what rounding lost of r
+  double r;     // x - n π/2, |r| <= π/4
+  double tail;  // what rounding lost of r
   unsigned quadrant;
 };
 
@@ -59,10 +59,14 @@ double sin(double x) noexcept {
   if (is_out_of_range(x)) return std::numeric_limits<double>::quiet_NaN();
   const Reduced a = reduce(x);
   switch (a.quadrant) {
-    case 0: return sin_kernel(a.r, a.tail);
-    case 1: return cos_kernel(a.r, a.tail);
-    case 2: return -sin_kernel(a.r, a.tail);
-    default: return -cos_kernel(a.r, a.tail);
+    case 0:
+      return sin_kernel(a.r, a.tail);
+    case 1:
+      return cos_kernel(a.r, a.tail);
+    case 2:
+      return -sin_kernel(a.r, a.tail);
+    default:
+      return -cos_kernel(a.r, a.tail);
   }
 }
 
@@ -70,24 +74,29 @@ double cos(double x) noexcept {
   if (is_out_of_range(x)) return std::numeric_limits<double>::quiet_NaN();
   const Reduced a = reduce(x);
   switch (a.quadrant) {
-    case 0: return cos_kernel(a.r, a.tail);
-    case 1: return -sin_kernel(a.r, a.tail);
-    case 2: return -cos_kernel(a.r, a.tail);
-    default: return sin_kernel(a.r, a.tail);
+    case 0:
+      return cos_kernel(a.r, a.tail);
+    case 1:
+      return -sin_kernel(a.r, a.tail);
+    case 2:
+      return -cos_kernel(a.r, a.tail);
+    default:
+      return sin_kernel(a.r, a.tail);
   }
 }
 
 double tan(double x) noexcept { return sin(x) / cos(x); }
 
 double atan(double x) noexcept {
-  constexpr double high[] = {4.63647609000806093515e-01, 7.85398163397448278999e-01, 9.82793723247329054082e-01,
-                             1.57079632679489655800e+00};
-  constexpr double low[] = {2.26987774529616870924e-17, 3.06161699786838301793e-17, 1.39033110312309984516e-17,
-                            6.12323399573676603587e-17};
-  constexpr double t[] = {3.33333333333329318027e-01,  -1.99999999998764832476e-01, 1.42857142725034663711e-01,
-                          -1.11111104054623557880e-01, 9.09088713343650656196e-02,  -7.69187620504482999495e-02,
-                          6.66107313738753120669e-02,  -5.83357013379057348645e-02, 4.97687799461593236017e-02,
-                          -3.65315727442169155270e-02, 1.62858201153657823623e-02};
+  constexpr double high[] = {4.63647609000806093515e-01, 7.85398163397448278999e-01,
+                             9.82793723247329054082e-01, 1.57079632679489655800e+00};
+  constexpr double low[] = {2.26987774529616870924e-17, 3.06161699786838301793e-17,
+                            1.39033110312309984516e-17, 6.12323399573676603587e-17};
+  constexpr double t[] = {
+      3.33333333333329318027e-01,  -1.99999999998764832476e-01, 1.42857142725034663711e-01,
+      -1.11111104054623557880e-01, 9.09088713343650656196e-02,  -7.69187620504482999495e-02,
+      6.66107313738753120669e-02,  -5.83357013379057348645e-02, 4.97687799461593236017e-02,
+      -3.65315727442169155270e-02, 1.62858201153657823623e-02};
   if (std::isnan(x)) return x;
   const double magnitude = std::fabs(x);
   double a = magnitude;
@@ -148,8 +157,9 @@ double exp(double x) noexcept {
 
 double log(double x) noexcept {
   constexpr double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
-  constexpr double g1 = 6.666666666666735130e-01, g2 = 3.999999999940941908e-01, g3 = 2.857142874366239149e-01,
-                   g4 = 2.222219843214978396e-01, g5 = 1.818357216161805012e-01, g6 = 1.531383769920937332e-01,
+  constexpr double g1 = 6.666666666666735130e-01, g2 = 3.999999999940941908e-01,
+                   g3 = 2.857142874366239149e-01, g4 = 2.222219843214978396e-01,
+                   g5 = 1.818357216161805012e-01, g6 = 1.531383769920937332e-01,
                    g7 = 1.479819860511658591e-01;
   if (std::isnan(x) || x < 0.0) return std::numeric_limits<double>::quiet_NaN();
   if (x == 0.0) return -std::numeric_limits<double>::infinity();

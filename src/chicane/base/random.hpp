@@ -9,7 +9,8 @@
 namespace chicane {
 
 /// Seeded random numbers with the same bits on every machine (the standard distributions are not portable).
-/// SplitMix64 (Steele, Lea, Flood 2014); normal numbers by Box–Muller on our own sine and logarithm. No allocation.
+/// SplitMix64 (Steele, Lea, Flood 2014); normal numbers by Box–Muller on our own sine and logarithm. No
+/// allocation.
 class Random {
  public:
   explicit Random(std::uint64_t seed) noexcept : state_{seed} {}

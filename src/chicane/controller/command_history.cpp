@@ -13,7 +13,7 @@ constexpr double kMaxStep = 0.01;      // [s] integration step of the estimator
 constexpr double kLongestGap = 1.0;    // [s] after a longer silence the estimate starts anew
 constexpr double kLostPosition = 3.0;  // [m] a measurement further from the prediction starts anew
 constexpr double kPositionGain = 0.8;  // share of the position and heading innovation taken over at once
-constexpr double kSlideGain = 0.2;         // share of the sideways innovation per second taken as sideslip error
+constexpr double kSlideGain = 0.2;     // share of the sideways innovation per second taken as sideslip error
 constexpr double kYawRateGain = 0.25;  // share of the heading innovation per second taken as yaw-rate error
 
 bool is_finite(const model::Measurement& m) {

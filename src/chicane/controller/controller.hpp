@@ -13,24 +13,24 @@ namespace chicane::controller {
 
 /// Who chose the command. Kept by controller/fallback.cpp and nowhere else.
 enum class Rung : signed char {
-  kController = 0,   ///< the controller's own answer
-  kShiftedPlan = 1,  ///< the last usable plan, at the time that has come
-  kHoldAndBrake = 2, ///< wheel held, gentle braking
-  kBrake = 3,        ///< wheel held, full useful braking
+  kController = 0,    ///< the controller's own answer
+  kShiftedPlan = 1,   ///< the last usable plan, at the time that has come
+  kHoldAndBrake = 2,  ///< wheel held, gentle braking
+  kBrake = 3,         ///< wheel held, full useful braking
 };
 
 /// How one step went.
 struct StepReport {
-  solver::SolveReport solve;       ///< zeroed with status kOptimal for controllers that solve nothing
+  solver::SolveReport solve;  ///< zeroed with status kOptimal for controllers that solve nothing
   Rung rung = Rung::kController;
-  double lateral_error = 0.0;      ///< of the measured position from the reference line [m], left positive
-  double heading_error = 0.0;      ///< measured yaw minus the line's heading [rad]
-  double speed_reference = 0.0;    ///< wanted at the point where the command acts [m/s]
-  double delay = 0.0;              ///< compensated: from measurement to actuation [s]
-  double sight = 0.0;              ///< length of known road ahead [m]
-  double solve_time = 0.0;         ///< of the optimisation alone [s], as the deadline's clock saw it; 0 without one
-  bool has_map = false;            ///< the lap is closed in memory
-  bool gated = false;              ///< the command gate had to change the command
+  double lateral_error = 0.0;    ///< of the measured position from the reference line [m], left positive
+  double heading_error = 0.0;    ///< measured yaw minus the line's heading [rad]
+  double speed_reference = 0.0;  ///< wanted at the point where the command acts [m/s]
+  double delay = 0.0;            ///< compensated: from measurement to actuation [s]
+  double sight = 0.0;            ///< length of known road ahead [m]
+  double solve_time = 0.0;  ///< of the optimisation alone [s], as the deadline's clock saw it; 0 without one
+  bool has_map = false;     ///< the lap is closed in memory
+  bool gated = false;       ///< the command gate had to change the command
 };
 
 struct StepResult {
@@ -41,8 +41,9 @@ struct StepResult {
 
 /// The contract every controller fulfils: a measurement goes in, a command comes out, always.
 ///
-/// step() is noexcept, allocates nothing, takes no lock and reads no clock but the deadline's. It accepts any measurement,
-/// also one with NaN or without waypoints. The result stays valid until the next call. One thread.
+/// step() is noexcept, allocates nothing, takes no lock and reads no clock but the deadline's. It accepts any
+/// measurement, also one with NaN or without waypoints. The result stays valid until the next call. One
+/// thread.
 class Controller {
  public:
   virtual ~Controller() = default;

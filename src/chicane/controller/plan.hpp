@@ -21,10 +21,10 @@ struct PlanPoint {
 /// What a controller intends: predicted motion with its commands, and the line it tries to follow. Data only.
 struct Plan {
   static constexpr int kCapacity = 256;
-  int size = 0;                                     ///< points in use; 0 = no plan
-  std::array<PlanPoint, kCapacity> points{};        ///< points[0] is where the first command acts
+  int size = 0;                               ///< points in use; 0 = no plan
+  std::array<PlanPoint, kCapacity> points{};  ///< points[0] is where the first command acts
   int reference_size = 0;
-  std::array<Vec2, kCapacity> reference{};          ///< reference line in W [m]
+  std::array<Vec2, kCapacity> reference{};  ///< reference line in W [m]
 };
 
 }  // namespace chicane::controller

@@ -3,8 +3,9 @@
 
 namespace chicane::model {
 
-/// Planar motion of a car, in the axes of the whole project (ISO 8855, docs/notation.md): world W right-handed with z up,
-/// body B at the centre of mass, x forward, y left. Yaw, yaw rate and steering are positive counter-clockwise, that is left.
+/// Planar motion of a car, in the axes of the whole project (ISO 8855, docs/notation.md): world W
+/// right-handed with z up, body B at the centre of mass, x forward, y left. Yaw, yaw rate and steering are
+/// positive counter-clockwise, that is left.
 struct State {
   double x = 0.0;      ///< position of B in W [m]
   double y = 0.0;      ///< position of B in W [m]

@@ -9,49 +9,55 @@
 
 namespace chicane::model {
 
-/// What a controller believes about a car: geometry, a single track with saturating tyres, and a longitudinal law. The
-/// simulator's plants are richer (sim/plant.hpp). Values of shipped cars: cars/*.yaml, each with its origin.
+/// What a controller believes about a car: geometry, a single track with saturating tyres, and a longitudinal
+/// law. The simulator's plants are richer (sim/plant.hpp). Values of shipped cars: cars/*.yaml, each with its
+/// origin.
 struct VehicleParams {
   std::string name = "udacity";
 
   // Geometry.
-  double front_axle = 1.27;          ///< centre of mass to front axle [m], > 0
-  double rear_axle = 1.60;           ///< centre of mass to rear axle [m], > 0
-  double track_width = 2.0;          ///< between the centres of the wheels of an axle [m]
-  double tire_width = 0.20;          ///< width of a contact patch [m]
-  double length = 4.47;              ///< body [m]
-  double width = 2.43;               ///< body [m]
-  double kinematic_length = 2.67;    ///< L_f of the described model: ψ' = v δ / L_f [m]
+  double front_axle = 1.27;        ///< centre of mass to front axle [m], > 0
+  double rear_axle = 1.60;         ///< centre of mass to rear axle [m], > 0
+  double track_width = 2.0;        ///< between the centres of the wheels of an axle [m]
+  double tire_width = 0.20;        ///< width of a contact patch [m]
+  double length = 4.47;            ///< body [m]
+  double width = 2.43;             ///< body [m]
+  double kinematic_length = 2.67;  ///< L_f of the described model: ψ' = v δ / L_f [m]
 
   // Mass.
-  double mass = 1000.0;              ///< [kg]
-  double yaw_inertia = 1600.0;       ///< [kg m²]
-  double height = 0.0;               ///< of the centre of mass above the road: load transfer along the car [m]
+  double mass = 1000.0;         ///< [kg]
+  double yaw_inertia = 1600.0;  ///< [kg m²]
+  double height = 0.0;          ///< of the centre of mass above the road: load transfer along the car [m]
 
   // Steering.
-  double steer_limit = 0.4363323129985824;  ///< 25° [rad]
+  double steer_limit = 0.4363323129985824;                            ///< 25° [rad]
   double steer_rate_limit = std::numeric_limits<double>::infinity();  ///< [rad/s]
-  double steer_lag = 0.0;            ///< time constant of the steering actuator [s], 0 = instant
+  double steer_lag = 0.0;  ///< time constant of the steering actuator [s], 0 = instant
 
-  // Tyres: lateral force = load · friction · tanh(cornering · slip / friction), load = mass · (load_0 + load_v · v) by axle.
-  double cornering_front = 5.05;     ///< normalised cornering stiffness [1/rad]
-  double cornering_rear = 4.85;      ///< [1/rad]
-  double friction = 1.0;             ///< peak lateral force over load
-  double friction_coupling = 0.0;    ///< 1 = friction ellipse (a real tyre), 0 = braking and cornering do not share force
-  double load_constant = 12.22;      ///< normal acceleration at rest [m/s²]
-  double load_per_speed = 0.0923;    ///< its growth with speed (downforce) [1/s]
-  double steer_helper = 0.774;       ///< share of each yaw change by which the car turns its velocity along; 0 = a real car
+  // Tyres: lateral force = load · friction · tanh(cornering · slip / friction), load = mass · (load_0 +
+  // load_v · v) by axle.
+  double cornering_front = 5.05;  ///< normalised cornering stiffness [1/rad]
+  double cornering_rear = 4.85;   ///< [1/rad]
+  double friction = 1.0;          ///< peak lateral force over load
+  double friction_coupling =
+      0.0;  ///< 1 = friction ellipse (a real tyre), 0 = braking and cornering do not share force
+  double load_constant = 12.22;    ///< normal acceleration at rest [m/s²]
+  double load_per_speed = 0.0923;  ///< its growth with speed (downforce) [1/s]
+  double steer_helper =
+      0.774;  ///< share of each yaw change by which the car turns its velocity along; 0 = a real car
 
-  // Longitudinal: a = drive_acceleration · throttle − drag_linear · v − drag_quadratic · v² for throttle >= 0,
-  // and − brake_acceleration · |throttle| − drag for throttle < 0. Stated for v >= 0.
+  // Longitudinal: a = drive_acceleration · throttle − drag_linear · v − drag_quadratic · v² for throttle >=
+  // 0, and − brake_acceleration · |throttle| − drag for throttle < 0. Stated for v >= 0.
   double drive_acceleration = 5.43;  ///< at full throttle and rest [m/s²]
-  double drive_power_per_mass = std::numeric_limits<double>::infinity();  ///< cap of drive acceleration · v [W/kg]
-  double drag_constant = 0.0;        ///< rolling resistance [m/s²]
-  double drag_linear = 0.104;        ///< [1/s]
-  double drag_quadratic = 0.0;       ///< [1/m]
-  double brake_acceleration = 218.0; ///< per unit of negative throttle, before the wheels lock [m/s²]
-  double brake_throttle_limit = 0.04;///< largest useful negative throttle: beyond it the wheels lock (1 = proportional)
-  double drive_lag = 0.0;            ///< time constant of drive and brake [s]
+  double drive_power_per_mass =
+      std::numeric_limits<double>::infinity();  ///< cap of drive acceleration · v [W/kg]
+  double drag_constant = 0.0;                   ///< rolling resistance [m/s²]
+  double drag_linear = 0.104;                   ///< [1/s]
+  double drag_quadratic = 0.0;                  ///< [1/m]
+  double brake_acceleration = 218.0;  ///< per unit of negative throttle, before the wheels lock [m/s²]
+  double brake_throttle_limit =
+      0.04;                ///< largest useful negative throttle: beyond it the wheels lock (1 = proportional)
+  double drive_lag = 0.0;  ///< time constant of drive and brake [s]
 
   [[nodiscard]] double wheelbase() const noexcept { return front_axle + rear_axle; }
 };
@@ -59,14 +65,17 @@ struct VehicleParams {
 /// The first field that is not physical, by name; success otherwise.
 [[nodiscard]] Result<void> validate(const VehicleParams& params);
 
-/// Longitudinal acceleration [m/s²] of the car at speed v [m/s] for a throttle in [-1, 1] (the law above, without lag).
-[[nodiscard]] double longitudinal_acceleration(const VehicleParams& params, double throttle, double v) noexcept;
+/// Longitudinal acceleration [m/s²] of the car at speed v [m/s] for a throttle in [-1, 1] (the law above,
+/// without lag).
+[[nodiscard]] double longitudinal_acceleration(const VehicleParams& params, double throttle,
+                                               double v) noexcept;
 
-/// The throttle in [-brake_throttle_limit, 1] whose acceleration at speed v [m/s] is nearest to `acceleration` [m/s²].
+/// The throttle in [-brake_throttle_limit, 1] whose acceleration at speed v [m/s] is nearest to
+/// `acceleration` [m/s²].
 [[nodiscard]] double throttle_for(const VehicleParams& params, double acceleration, double v) noexcept;
 
-/// What is believed about the shipped plants, fitted to them by `chicane_plant_report` (docs/plants.md). The original
-/// simulator's car: the defaults above.
+/// What is believed about the shipped plants, fitted to them by `chicane_plant_report` (docs/plants.md). The
+/// original simulator's car: the defaults above.
 [[nodiscard]] VehicleParams udacity_params();
 /// An ordinary car: 1300 kg, about 1.2 g, proportional brakes, 90°/s steering.
 [[nodiscard]] VehicleParams road_car_params();

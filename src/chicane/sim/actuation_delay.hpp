@@ -7,8 +7,9 @@
 
 namespace chicane::sim {
 
-/// Commands on their way to the actuators: each acts from its own time on, until a later one does. Any delay, not only
-/// multiples of a step. Fixed memory: when full, the oldest waiting command is dropped in favour of the next.
+/// Commands on their way to the actuators: each acts from its own time on, until a later one does. Any delay,
+/// not only multiples of a step. Fixed memory: when full, the oldest waiting command is dropped in favour of
+/// the next.
 class ActuationDelay {
  public:
   void reset(const model::Command& acting) noexcept;

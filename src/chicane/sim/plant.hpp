@@ -10,11 +10,11 @@ namespace chicane::sim {
 
 /// What an observer can see of a plant beside its state.
 struct PlantOutput {
-  double ax = 0.0;                      ///< acceleration of the centre of mass along B's x [m/s²]
-  double ay = 0.0;                      ///< along B's y, centripetal part included [m/s²]
-  double speed = 0.0;                   ///< |velocity| [m/s]
-  double throttle = 0.0;                ///< accelerator as telemetry reports it, [0, 1]: braking reads 0
-  std::array<double, 4> slip_angle{};   ///< front left, front right, rear left, rear right [rad]
+  double ax = 0.0;                     ///< acceleration of the centre of mass along B's x [m/s²]
+  double ay = 0.0;                     ///< along B's y, centripetal part included [m/s²]
+  double speed = 0.0;                  ///< |velocity| [m/s]
+  double throttle = 0.0;               ///< accelerator as telemetry reports it, [0, 1]: braking reads 0
+  std::array<double, 4> slip_angle{};  ///< front left, front right, rear left, rear right [rad]
   std::array<double, 4> slip_ratio{};
 };
 
@@ -26,7 +26,8 @@ class Plant {
   [[nodiscard]] virtual double step_length() const noexcept = 0;  ///< [s]
   /// Stands the car at `pose` in W, moving forward with `speed` [m/s], wheels rolling freely.
   virtual void reset(const model::Pose& pose, double speed) noexcept = 0;
-  /// One physics step with `command` acting on the actuators from its beginning. Any finite command; clamped inside.
+  /// One physics step with `command` acting on the actuators from its beginning. Any finite command; clamped
+  /// inside.
   virtual void advance(const model::Command& command) noexcept = 0;
   [[nodiscard]] virtual const model::State& state() const noexcept = 0;
   [[nodiscard]] virtual const PlantOutput& output() const noexcept = 0;

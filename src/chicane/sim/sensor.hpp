@@ -11,12 +11,12 @@ namespace chicane::sim {
 
 /// What stands between the plant and what a controller is told. Zero means perfect.
 struct SensorOptions {
-  double position_noise = 0.0;      ///< standard deviation of x and y [m]; [0, 10]
-  double heading_noise = 0.0;       ///< [rad]; [0, 0.5]
-  double speed_noise = 0.0;         ///< [m/s]; [0, 10]
-  double position_quantum = 0.0;    ///< x and y are rounded to multiples of it [m]; [0, 10]
-  double heading_quantum = 0.0;     ///< [rad]; [0, 0.5]
-  double speed_quantum = 0.0;       ///< [m/s]; [0, 10]
+  double position_noise = 0.0;    ///< standard deviation of x and y [m]; [0, 10]
+  double heading_noise = 0.0;     ///< [rad]; [0, 0.5]
+  double speed_noise = 0.0;       ///< [m/s]; [0, 10]
+  double position_quantum = 0.0;  ///< x and y are rounded to multiples of it [m]; [0, 10]
+  double heading_quantum = 0.0;   ///< [rad]; [0, 0.5]
+  double speed_quantum = 0.0;     ///< [m/s]; [0, 10]
 };
 
 /// Samples the plant as telemetry does; seeded and deterministic. Fills everything but waypoints and delay.
