@@ -79,8 +79,14 @@ def latency_commands():
     return rows
 
 
-def latency_table(runs):
-    reports = {key: runs.start(line) for key, line in latency_commands().items()}
+def fast_commands():
+    """The same for our own controller at its own speed."""
+    return {(name, latency): command("default", f"tracking_mpc.compensate_delay={value}", latency=latency)
+            for latency in LATENCIES for name, value in TRACKING.items()}
+
+
+def latency_table(runs, commands):
+    reports = {key: runs.start(line) for key, line in commands.items()}
     names = dict.fromkeys(name for name, _ in reports)
     text = "| | " + " | ".join(f"{latency} ms" for latency in LATENCIES) + " |\n|---|" + "--:|" * len(LATENCIES) + "\n"
     for name in names:
@@ -175,7 +181,8 @@ def write(page, marker, table):
 def main():
     runs = Runs(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release/apps/chicane/chicane")
     write("problem.md", "presets", preset_table(runs))
-    write("latency.md", "latency", latency_table(runs))
+    write("latency.md", "latency", latency_table(runs, latency_commands()))
+    write("latency.md", "fast", latency_table(runs, fast_commands()))
     write("latency.md", "cure", cure_table(runs))
     draw_latency(runs, ROOT / "docs/figures/latency.svg")
     fast, weighted = "fast-short-step", "weighted"
