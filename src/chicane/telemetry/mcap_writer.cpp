@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/telemetry/mcap_writer.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+namespace chicane::telemetry {
+namespace {
+
+using mcap::Fields;
+using mcap::Opcode;
+
+constexpr std::size_t kChunkBytes = 1U << 20U;
+
+std::string record(Opcode opcode, std::string_view content) {
+  std::string bytes;
+  bytes.reserve(mcap::kRecordHead + content.size());
+  bytes.push_back(static_cast<char>(opcode));
+  Fields(bytes).number(std::uint64_t{content.size()});
+  bytes.append(content);
+  return bytes;
+}
+
+std::string pairs(const std::map<std::string, std::string>& entries) {
+  std::string bytes;
+  for (const auto& [key, value] : entries) Fields(bytes).text(key).text(value);
+  return bytes;
+}
+
+Error io_error(const std::string& path, const char* what) {
+  return {ErrorCode::kIo, path + ": " + what + ": " + std::strerror(errno)};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::string& path, std::string_view library) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644);
+  if (file < 0) return fail(io_error(path, "cannot make the recording"));
+  std::unique_ptr<McapWriter> writer(new McapWriter(path, file));
+  std::string header;
+  Fields(header).text("ros2").text(library);
+  const Result<void> written = writer->put(std::string(mcap::kMagic) + record(Opcode::kHeader, header));
+  if (!written) return fail(written.error());
+  return writer;
+}
+
+McapWriter::~McapWriter() { static_cast<void>(close()); }
+
+Result<void> McapWriter::put(std::string_view bytes) {
+  if (!state_) return state_;
+  while (!bytes.empty()) {
+    const ::ssize_t count = ::write(file_, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return state_ = fail(io_error(path_, "cannot write the recording"));
+    position_ += static_cast<std::uint64_t>(count);
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return {};
+}
+
+std::uint16_t McapWriter::add_channel(std::string_view topic, std::string_view type,
+                                      std::string_view schema) {
+  const auto id = static_cast<std::uint16_t>(channels_.size());
+  const auto schema_id = static_cast<std::uint16_t>(id + 1);  // 0 means "none"
+  std::string content;
+  Fields(content).number(schema_id).text(type).text("ros2msg").text(schema);
+  Channel channel;
+  channel.schema_record = record(Opcode::kSchema, content);
+  content.clear();
+  Fields(content).number(id).number(schema_id).text(topic).text("cdr").number(std::uint32_t{0});
+  channel.record = record(Opcode::kChannel, content);
+  chunk_ += channel.schema_record + channel.record;
+  channels_.push_back(std::move(channel));
+  return id;
+}
+
+Result<void> McapWriter::add_metadata(std::string_view name,
+                                      const std::map<std::string, std::string>& entries) {
+  std::string content;
+  Fields(content).text(name).text(pairs(entries));
+  const std::string bytes = record(Opcode::kMetadata, content);
+  std::string index;
+  Fields(index).number(position_).number(std::uint64_t{bytes.size()}).text(name);
+  if (Result<void> written = put(bytes); !written) return written;
+  metadata_indexes_ += record(Opcode::kMetadataIndex, index);
+  ++metadata_;
+  return {};
+}
+
+Result<void> McapWriter::add_attachment(std::string_view name, std::string_view media_type,
+                                        std::string_view bytes) {
+  constexpr std::uint64_t kTime = 0;
+  std::string content;
+  Fields fields(content);
+  fields.number(kTime).number(kTime).text(name).text(media_type).number(std::uint64_t{bytes.size()});
+  content.append(bytes);
+  fields.number(mcap::crc32(content));
+  const std::string whole = record(Opcode::kAttachment, content);
+  std::string index;
+  Fields(index).number(position_).number(std::uint64_t{whole.size()}).number(kTime).number(kTime);
+  Fields(index).number(std::uint64_t{bytes.size()}).text(name).text(media_type);
+  if (Result<void> written = put(whole); !written) return written;
+  attachment_indexes_ += record(Opcode::kAttachmentIndex, index);
+  ++attachments_;
+  return {};
+}
+
+Result<void> McapWriter::write(std::uint16_t channel, std::uint64_t log_time, std::uint64_t publish_time,
+                               std::string_view bytes) {
+  if (!state_) return state_;
+  Channel& to = channels_.at(channel);
+  to.index.emplace_back(log_time, chunk_.size());
+  chunk_.push_back(static_cast<char>(Opcode::kMessage));
+  Fields(chunk_).number(std::uint64_t{22 + bytes.size()}).number(channel);
+  Fields(chunk_).number(static_cast<std::uint32_t>(to.messages)).number(log_time).number(publish_time);
+  chunk_.append(bytes);
+  chunk_start_ = chunk_messages_ == 0 ? log_time : std::min(chunk_start_, log_time);
+  chunk_end_ = std::max(chunk_end_, log_time);
+  start_ = messages_ == 0 ? log_time : std::min(start_, log_time);
+  end_ = std::max(end_, log_time);
+  ++chunk_messages_;
+  ++messages_;
+  ++to.messages;
+  return chunk_.size() >= kChunkBytes ? flush() : Result<void>{};
+}
+
+Result<void> McapWriter::flush() {
+  if (chunk_.empty() || !state_) return state_;
+  std::string content;
+  Fields(content).number(chunk_start_).number(chunk_end_).number(std::uint64_t{chunk_.size()});
+  Fields(content).number(mcap::crc32(chunk_)).text("").number(std::uint64_t{chunk_.size()});
+  std::string bytes = record(Opcode::kChunk, content + chunk_);
+  const std::uint64_t chunk_length = bytes.size();
+
+  std::string offsets;
+  for (std::size_t id = 0; id < channels_.size(); ++id) {
+    auto& index = channels_[id].index;
+    if (index.empty()) continue;
+    std::sort(index.begin(), index.end());
+    std::string entries;
+    for (const auto& [time, offset] : index) Fields(entries).number(time).number(offset);
+    Fields(offsets).number(static_cast<std::uint16_t>(id)).number(position_ + bytes.size());
+    std::string message_index;
+    Fields(message_index).number(static_cast<std::uint16_t>(id)).text(entries);
+    bytes += record(Opcode::kMessageIndex, message_index);
+    index.clear();
+  }
+  std::string chunk_index;
+  Fields(chunk_index).number(chunk_start_).number(chunk_end_).number(position_).number(chunk_length);
+  Fields(chunk_index).text(offsets).number(std::uint64_t{bytes.size() - chunk_length}).text("");
+  Fields(chunk_index).number(std::uint64_t{chunk_.size()}).number(std::uint64_t{chunk_.size()});
+  chunk_.clear();
+  chunk_messages_ = chunk_start_ = chunk_end_ = 0;
+  if (Result<void> written = put(bytes); !written) return written;
+  chunk_indexes_ += record(Opcode::kChunkIndex, chunk_index);
+  ++chunks_;
+  return {};
+}
+
+/// Everything from the summary to the end of the file, which begins at position_.
+std::string McapWriter::summary() const {
+  std::string schemas, channels, counts, statistics;
+  for (std::size_t id = 0; id < channels_.size(); ++id) {
+    schemas += channels_[id].schema_record;
+    channels += channels_[id].record;
+    Fields(counts).number(static_cast<std::uint16_t>(id)).number(channels_[id].messages);
+  }
+  Fields fields(statistics);
+  fields.number(messages_).number(static_cast<std::uint16_t>(channels_.size()));
+  fields.number(static_cast<std::uint32_t>(channels_.size())).number(attachments_).number(metadata_);
+  fields.number(chunks_).number(start_).number(end_).text(counts);
+
+  std::string bytes, offsets;
+  const auto group = [&](Opcode opcode, const std::string& records) {
+    if (records.empty()) return;
+    std::string offset;
+    Fields(offset).number(static_cast<unsigned char>(opcode)).number(position_ + bytes.size());
+    Fields(offset).number(std::uint64_t{records.size()});
+    offsets += record(Opcode::kSummaryOffset, offset);
+    bytes += records;
+  };
+  group(Opcode::kSchema, schemas);
+  group(Opcode::kChannel, channels);
+  group(Opcode::kStatistics, record(Opcode::kStatistics, statistics));
+  group(Opcode::kChunkIndex, chunk_indexes_);
+  group(Opcode::kAttachmentIndex, attachment_indexes_);
+  group(Opcode::kMetadataIndex, metadata_indexes_);
+  const std::uint64_t offsets_start = position_ + bytes.size();
+  bytes += offsets;
+  bytes.push_back(static_cast<char>(Opcode::kFooter));
+  Fields(bytes).number(std::uint64_t{20}).number(position_).number(offsets_start);
+  Fields(bytes).number(mcap::crc32(bytes));
+  return bytes.append(mcap::kMagic);
+}
+
+Result<void> McapWriter::close() {
+  if (file_ < 0) return state_;
+  static_cast<void>(flush());
+  std::string no_crc;  // every chunk and attachment has its own
+  Fields(no_crc).number(std::uint32_t{0});
+  static_cast<void>(put(record(Opcode::kDataEnd, no_crc)));
+  static_cast<void>(put(summary()));
+  if (::close(file_) != 0 && state_) state_ = fail(io_error(path_, "cannot close the recording"));
+  file_ = -1;
+  if (!state_) return state_;
+  state_ = fail(ErrorCode::kIo, path_ + ": the recording is closed");
+  return {};
+}
+
+}  // namespace chicane::telemetry

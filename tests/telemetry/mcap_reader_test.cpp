@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/telemetry/mcap_reader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sample_mcap.hpp"
+
+namespace chicane::telemetry {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Reads and holds every message against the one that was written.
+Result<McapReport> read_and_compare(const std::string& path) {
+  return read_mcap(path, {.on_message = [](const McapMessage& message) {
+                     EXPECT_EQ(message.bytes, sample_message(message.publish_time));
+                   }});
+}
+
+TEST(McapReader, ReadsEveryChunkBeforeACutWhereverItIs) {
+  const TemporaryFile file;
+  const std::vector<std::uint64_t> ends = write_sample(file.path());
+  for (std::uint64_t length = std::filesystem::file_size(file.path()) - 1; length >= mcap::kMagic.size();
+       --length) {
+    std::filesystem::resize_file(file.path(), length);
+    const auto report = read_and_compare(file.path());
+    ASSERT_TRUE(report) << length;
+    std::uint64_t flushed = 0;
+    for (const std::uint64_t end : ends) flushed += end <= length ? 1 : 0;
+    // The chunk itself may be there while its index is not.
+    ASSERT_GE(report->chunks, flushed) << length;
+    ASSERT_LE(report->chunks, flushed + 1) << length;
+    ASSERT_EQ(report->messages, kSamplePerChunk * report->chunks) << length;
+    ASSERT_EQ(report->damaged, 0U) << length;
+    ASSERT_FALSE(report->is_complete) << length;
+  }
+}
+
+TEST(McapReader, LeavesADamagedChunkOutAndGoesOn) {
+  const TemporaryFile file;
+  const std::vector<std::uint64_t> ends = write_sample(file.path());
+  const std::string whole = file.bytes();
+  std::string damaged = whole;
+  const std::size_t place = damaged.find(sample_message(9));
+  ASSERT_GT(place, ends[1]);
+  damaged[place] = static_cast<char>(damaged[place] ^ 1);
+  file.replace(damaged);
+  const auto report = read_and_compare(file.path());
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->chunks, 4U);
+  EXPECT_EQ(report->messages, 16U);
+  EXPECT_EQ(report->damaged, 1U);
+}
+
+TEST(McapReader, PassesNoDamagedMessageAsGoodWhicheverByteIsWrong) {
+  const TemporaryFile file;
+  write_sample(file.path());
+  const std::string whole = file.bytes();
+  std::fstream bytes(file.path(), std::ios::binary | std::ios::in | std::ios::out);
+  const auto put = [&](std::size_t place, char value) {
+    bytes.seekp(static_cast<std::streamoff>(place));
+    bytes.put(value).flush();
+  };
+  for (std::size_t i = mcap::kMagic.size(); i < whole.size(); ++i) {
+    put(i, static_cast<char>(whole[i] ^ 0x10));
+    static_cast<void>(read_and_compare(file.path()));
+    put(i, whole[i]);
+  }
+}
+
+TEST(McapReader, LeavesADamagedAttachmentOut) {
+  const TemporaryFile file;
+  write_sample(file.path());
+  std::string damaged = file.bytes();
+  damaged[damaged.find("laps: 2")] = 'm';
+  file.replace(damaged);
+  bool has_attachment = false;
+  const auto report = read_mcap(
+      file.path(), {.on_attachment = [&](std::string_view, std::string_view) { has_attachment = true; }});
+  ASSERT_TRUE(report);
+  EXPECT_FALSE(has_attachment);
+  EXPECT_EQ(report->damaged, 1U);
+}
+
+TEST(McapReader, RefusesOtherFilesInWords) {
+  const TemporaryFile file;
+  EXPECT_EQ(read_mcap(file.path(), {}).error().code, ErrorCode::kIo);
+  for (const char* content : {"", "MCAP", "x_m,y_m\n1,2\n"}) {
+    file.replace(content);
+    const auto report = read_mcap(file.path(), {});
+    ASSERT_FALSE(report) << content;
+    EXPECT_EQ(report.error().code, ErrorCode::kParse);
+    EXPECT_THAT(report.error().message, HasSubstr("expected an MCAP file"));
+  }
+}
+
+}  // namespace
+}  // namespace chicane::telemetry
