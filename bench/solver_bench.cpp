@@ -7,18 +7,18 @@
 #include <vector>
 
 #include "chicane/solver/ocp_solver.hpp"
-#include "support/corridor_problem.hpp"
-#include "support/described_problem.hpp"
+#include "problems/corridor_problem.hpp"
+#include "problems/described_problem.hpp"
 
 namespace {
 
 using namespace chicane;
-using test::CorridorProblem;
-using test::DescribedProblem;
+using bench::CorridorProblem;
+using bench::DescribedProblem;
 
 constexpr int kCapacity = 200;
 constexpr int kInstances = 64;
-using Trajectory = test::DescribedTrajectory<kCapacity>;
+using Trajectory = bench::DescribedTrajectory<kCapacity>;
 
 template <class Problem>
 struct Instance {
@@ -36,19 +36,19 @@ std::vector<Instance<Problem>> make_instances(int horizon, Start start) {
   std::vector<Instance<Problem>> instances(kInstances);
   for (auto& instance : instances) {
     if constexpr (Problem::kNc > 0) {
-      const auto corridor = test::random_corridor(random, horizon);
+      const auto corridor = bench::random_corridor(random, horizon);
       instance.problem = corridor.problem;
       instance.start = corridor.start;
     } else {
-      const auto plain = test::random_instance(random, horizon);
+      const auto plain = bench::random_instance(random, horizon);
       instance.problem = plain.problem;
       instance.start = plain.start;
     }
     instance.guess.horizon = horizon;
-    test::DescribedInstance plain;
+    bench::DescribedInstance plain;
     plain.problem = static_cast<const DescribedProblem&>(instance.problem);
     plain.start = instance.start;
-    if (start != kCold) test::guess_by_path_law(plain, instance.guess);
+    if (start != kCold) bench::guess_by_path_law(plain, instance.guess);
     if (start != kWarm) continue;
     Problem before = instance.problem;  // the cycle before: a step earlier, another speed wanted
     before.speed_reference -= 0.5;

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "chicane/solver/ocp_solver.hpp"
+#include "problems/described_problem.hpp"
 #include "support/alloc_guard.hpp"
-#include "support/described_problem.hpp"
 
 namespace {
 
@@ -25,12 +25,12 @@ TEST(AllocationGuard, CountsEveryWayToTheHeap) {
 
 TEST(OcpSolver, AllocatesNothingInAHundredSolves) {
   constexpr int kCapacity = 20;
-  const auto solver = std::make_unique<solver::OcpSolver<test::DescribedProblem, kCapacity>>();
-  const auto trajectory = std::make_unique<test::DescribedTrajectory<kCapacity>>();
+  const auto solver = std::make_unique<solver::OcpSolver<bench::DescribedProblem, kCapacity>>();
+  const auto trajectory = std::make_unique<bench::DescribedTrajectory<kCapacity>>();
   Random random{1};
   const test::AllocationGuard guard;
   for (int i = 0; i < 100; ++i) {
-    const test::DescribedInstance instance = test::random_instance(random, kCapacity);
+    const bench::DescribedInstance instance = bench::random_instance(random, kCapacity);
     trajectory->horizon = 1 + i % kCapacity;
     const auto report = solver->solve(instance.problem, instance.start, *trajectory);
     ASSERT_EQ(report.status, solver::SolveStatus::kOptimal);

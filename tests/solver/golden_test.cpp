@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "chicane/solver/ocp_solver.hpp"
-#include "support/described_problem.hpp"
-#include "support/optimality.hpp"
+#include "problems/described_problem.hpp"
+#include "problems/optimality.hpp"
 
 namespace chicane {
 namespace {
 
-using test::DescribedProblem;
+using bench::DescribedProblem;
 
 constexpr int kCapacity = 200;
 const std::string kFolder = std::string(CHICANE_SOURCE_DIR) + "/../shared/reference_nlp/";
@@ -52,18 +52,18 @@ TEST_P(Golden, OptimaAndFirstInputsAgree) {
   using Solver = solver::OcpSolver<DescribedProblem, kCapacity>;
   const auto ocp = std::make_unique<Solver>(solver::SolverOptions{.max_iterations = 100});
   int better = 0;
-  const auto trajectory = std::make_unique<test::DescribedTrajectory<kCapacity>>();
+  const auto trajectory = std::make_unique<bench::DescribedTrajectory<kCapacity>>();
   for (std::size_t i = 0; i < optima.size(); ++i) {
     if (optima[i][1] != 1.0) continue;
     const auto& row = cycles[static_cast<std::size_t>(optima[i][0])];
     DescribedProblem problem;
     problem.path = {row[6], row[7], row[8], row[9]};
     problem.speed_reference = row[10];
-    const test::DescribedInstance instance{
+    const bench::DescribedInstance instance{
         .problem = problem, .start = {row[0], row[1], row[2], row[3], row[4], row[5], 0.0, 0.0}};
     *trajectory = {};
     trajectory->horizon = GetParam().nodes - 1;
-    test::guess_by_path_law(instance, *trajectory);
+    bench::guess_by_path_law(instance, *trajectory);
     const auto report = ocp->solve(problem, instance.start, *trajectory);
     ASSERT_EQ(report.status, solver::SolveStatus::kOptimal) << "cycle " << i;
     if (report.cost < (1.0 - 1e-6) * optima[i][2]) {

@@ -4,19 +4,19 @@
 #include <memory>
 
 #include "chicane/solver/ocp_solver.hpp"
-#include "support/corridor_problem.hpp"
-#include "support/described_problem.hpp"
-#include "support/optimality.hpp"
+#include "problems/corridor_problem.hpp"
+#include "problems/described_problem.hpp"
+#include "problems/optimality.hpp"
 
 #ifdef CHICANE_HAVE_IPOPT
-#include "support/ipopt_reference.hpp"
+#include "problems/ipopt_problem.hpp"
 #endif
 
 namespace chicane {
 namespace {
 
+using bench::DescribedProblem;
 using solver::SolveStatus;
-using test::DescribedProblem;
 
 constexpr int kCapacity = 50;
 
@@ -36,13 +36,13 @@ std::string name_of(const testing::TestParamInfo<Family>& info) {
 }
 
 template <class Problem>
-void choose_start(Start start, const test::DescribedInstance& plain, const Problem& problem,
+void choose_start(Start start, const bench::DescribedInstance& plain, const Problem& problem,
                   solver::OcpSolver<Problem, kCapacity>& ocp,
-                  test::DescribedTrajectory<kCapacity>& trajectory) {
+                  bench::DescribedTrajectory<kCapacity>& trajectory) {
   const int horizon = trajectory.horizon;
   trajectory = {};
   trajectory.horizon = horizon;
-  if (start != Start::kCold) test::guess_by_path_law(plain, trajectory);
+  if (start != Start::kCold) bench::guess_by_path_law(plain, trajectory);
   if (start == Start::kWarm) {  // the previous cycle: half a step earlier, another speed wanted
     Problem before = problem;
     before.speed_reference -= 0.5;
@@ -63,43 +63,43 @@ TEST_P(AgainstIpopt, AgreesOnTheOptimumOfTheDescribedProblem) {
   const auto ocp = std::make_unique<solver::OcpSolver<DescribedProblem, kCapacity>>();
   Random random{1000 + static_cast<std::uint64_t>(GetParam().horizon)};
   for (int i = 0; i < GetParam().count; ++i) {
-    const auto instance = test::random_instance(random, GetParam().horizon);
-    test::DescribedTrajectory<kCapacity> own;
+    const auto instance = bench::random_instance(random, GetParam().horizon);
+    bench::DescribedTrajectory<kCapacity> own;
     own.horizon = GetParam().horizon;
     choose_start(GetParam().start, instance, instance.problem, *ocp, own);
     auto reference = own;
     const auto report = ocp->solve(instance.problem, instance.start, own);
     ASSERT_EQ(report.status, SolveStatus::kOptimal) << i;
-    const double cost = test::solve_with_ipopt(instance.problem, instance.start, reference);
+    const double cost = bench::solve_with_ipopt(instance.problem, instance.start, reference);
     ASSERT_NEAR(report.cost, cost, 1e-6 * cost) << i;
-    ASSERT_TRUE(test::inputs_are_inside(instance.problem, own)) << i;
+    ASSERT_TRUE(bench::inputs_are_inside(instance.problem, own)) << i;
     // Simulated anew, with derivatives that share no code with the solver's. Its own measure is 1e-6 at most;
     // at 50 stages the accepted defects (1e-13 of the state) times Hessians near 1e5 may add as much again.
-    ASSERT_LE(test::projected_gradient(instance.problem, instance.start, own),
+    ASSERT_LE(bench::projected_gradient(instance.problem, instance.start, own),
               own.horizon < 50 ? 1.1e-6 : 1e-5)
         << i;
   }
 }
 
 TEST_P(AgainstIpopt, AgreesOnTheOptimumWithASoftCorridor) {
-  using test::CorridorProblem;
+  using bench::CorridorProblem;
   if (GetParam().horizon < 2) GTEST_SKIP() << "one stage: the corridor is on the given state only";
   const auto ocp = std::make_unique<solver::OcpSolver<CorridorProblem, kCapacity>>();
   Random random{2000 + static_cast<std::uint64_t>(GetParam().horizon)};
   for (int i = 0; i < GetParam().count; ++i) {
-    const auto instance = test::random_corridor(random, GetParam().horizon);
-    const test::DescribedInstance plain{.problem = static_cast<const DescribedProblem&>(instance.problem),
-                                        .start = instance.start};
-    test::DescribedTrajectory<kCapacity> own;
+    const auto instance = bench::random_corridor(random, GetParam().horizon);
+    const bench::DescribedInstance plain{.problem = static_cast<const DescribedProblem&>(instance.problem),
+                                         .start = instance.start};
+    bench::DescribedTrajectory<kCapacity> own;
     own.horizon = GetParam().horizon;
     choose_start(GetParam().start, plain, instance.problem, *ocp, own);
     auto reference = own;
     const auto report = ocp->solve(instance.problem, instance.start, own);
     ASSERT_EQ(report.status, SolveStatus::kOptimal) << i;
-    const double cost = test::solve_with_ipopt(instance.problem, instance.start, reference);
+    const double cost = bench::solve_with_ipopt(instance.problem, instance.start, reference);
     ASSERT_NEAR(report.cost, cost, 1e-6 * cost) << i;
     ASSERT_LE(report.complementarity, 1e-6) << i;
-    ASSERT_TRUE(test::inputs_are_inside(instance.problem, own)) << i;
+    ASSERT_TRUE(bench::inputs_are_inside(instance.problem, own)) << i;
   }
 }
 

@@ -5,8 +5,8 @@
 
 #include "chicane/solver/ocp_solver.hpp"
 #include "chicane/solver/small_qp.hpp"
+#include "problems/optimality.hpp"
 #include "support/linear_problem.hpp"
-#include "support/optimality.hpp"
 
 namespace chicane {
 namespace {
@@ -54,7 +54,7 @@ void compare_with_dense(std::uint64_t seed, int count) {
     trajectory.horizon = 1 + i % Problem::kStages;
     const auto report = ocp->solve(problem, x0, trajectory);
     ASSERT_EQ(report.status, solver::SolveStatus::kOptimal) << "problem " << i;
-    EXPECT_TRUE(test::inputs_are_inside(problem, trajectory));
+    EXPECT_TRUE(bench::inputs_are_inside(problem, trajectory));
     const Eigen::VectorXd expected = test::solve_densely(problem, x0, trajectory.horizon);
     for (int k = 0; k < trajectory.horizon; ++k) {
       for (int m = 0; m < Nu; ++m) {
@@ -85,7 +85,7 @@ TEST(OcpSolver, SolvesAnUnboundedLinearProblemInOneTurnAndOneSweep) {
   EXPECT_EQ(report.status, solver::SolveStatus::kOptimal);
   EXPECT_EQ(report.iterations, 1);
   EXPECT_EQ(report.sweeps, 1);
-  EXPECT_LT(test::projected_gradient(problem, {1.0, -1.0, 0.5}, trajectory), 1e-10);
+  EXPECT_LT(bench::projected_gradient(problem, {1.0, -1.0, 0.5}, trajectory), 1e-10);
 }
 
 }  // namespace

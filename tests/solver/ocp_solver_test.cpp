@@ -7,18 +7,18 @@
 #include <limits>
 #include <memory>
 
-#include "support/described_problem.hpp"
-#include "support/optimality.hpp"
+#include "problems/described_problem.hpp"
+#include "problems/optimality.hpp"
 
 namespace chicane {
 namespace {
 
+using bench::DescribedInstance;
+using bench::DescribedProblem;
+using bench::DescribedTrajectory;
 using solver::SolveReport;
 using solver::SolverOptions;
 using solver::SolveStatus;
-using test::DescribedInstance;
-using test::DescribedProblem;
-using test::DescribedTrajectory;
 
 constexpr int kCapacity = 50;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -32,7 +32,7 @@ struct OcpSolverTest : testing::Test {
 
   OcpSolverTest() {
     Random random{5};
-    instance = test::random_instance(random, 20);
+    instance = bench::random_instance(random, 20);
     trajectory.horizon = 20;
   }
   SolveReport solve(const SolverOptions& options = {}, Deadline deadline = Deadline::never()) {
@@ -45,7 +45,7 @@ struct OcpSolverTest : testing::Test {
         if (!std::isfinite(x)) return false;
       }
     }
-    return test::inputs_are_inside(instance.problem, trajectory);
+    return bench::inputs_are_inside(instance.problem, trajectory);
   }
 };
 
@@ -53,9 +53,9 @@ TEST_F(OcpSolverTest, ReportsWhatItReturns) {
   const SolveReport report = solve();
   EXPECT_EQ(report.status, SolveStatus::kOptimal);
   EXPECT_LE(report.stationarity, 1e-6);
-  EXPECT_NEAR(report.cost, test::simulated_cost(instance.problem, instance.start, trajectory),
+  EXPECT_NEAR(report.cost, bench::simulated_cost(instance.problem, instance.start, trajectory),
               1e-9 * report.cost);
-  EXPECT_LE(test::projected_gradient(instance.problem, instance.start, trajectory), 1e-6);
+  EXPECT_LE(bench::projected_gradient(instance.problem, instance.start, trajectory), 1e-6);
   EXPECT_LT(report.defect, 1e-9);
   EXPECT_EQ(report.worst_stage, -1);
   EXPECT_GE(report.sweeps, report.iterations);
@@ -76,7 +76,7 @@ TEST_F(OcpSolverTest, SolvesEveryHorizonFromOneToItsCapacity) {
     trajectory.horizon = horizon;
     ASSERT_EQ(solve().status, SolveStatus::kOptimal) << horizon;
     // A bound of 2e-6: the solver's own 1e-6 plus defects near 1e-11 times Hessians near 1e5.
-    ASSERT_LE(test::projected_gradient(instance.problem, instance.start, trajectory), 2e-6) << horizon;
+    ASSERT_LE(bench::projected_gradient(instance.problem, instance.start, trajectory), 2e-6) << horizon;
   }
 }
 
@@ -88,7 +88,7 @@ TEST(OcpSolver, WorksWithACapacityOfOne) {
   DescribedTrajectory<1> trajectory;
   trajectory.horizon = 1;
   EXPECT_EQ(ocp.solve(instance.problem, instance.start, trajectory).status, SolveStatus::kOptimal);
-  EXPECT_LE(test::projected_gradient(instance.problem, instance.start, trajectory), 1e-6);
+  EXPECT_LE(bench::projected_gradient(instance.problem, instance.start, trajectory), 1e-6);
 }
 
 TEST_F(OcpSolverTest, HoldsAllInputsAtTheirBoundsWhenThatIsOptimal) {
@@ -107,7 +107,7 @@ TEST_F(OcpSolverTest, AcceptsInfiniteBounds) {
   instance.problem.acceleration_limit = kInfinity;
   instance.problem.steer_limit = kInfinity;
   ASSERT_EQ(solve().status, SolveStatus::kOptimal);
-  EXPECT_LE(test::projected_gradient(instance.problem, instance.start, trajectory), 1e-6);
+  EXPECT_LE(bench::projected_gradient(instance.problem, instance.start, trajectory), 1e-6);
 }
 
 TEST_F(OcpSolverTest, SolvesAtZeroSpeedWhereTheWheelHasNoEffect) {
@@ -151,7 +151,7 @@ TEST_F(OcpSolverTest, ADeadlineAlreadySpentStillGivesUsableInputs) {
   EXPECT_EQ(report.status, SolveStatus::kBudgetSpent);
   EXPECT_EQ(report.iterations, 0);
   EXPECT_TRUE(is_finite_and_inside());
-  EXPECT_NEAR(report.cost, test::simulated_cost(instance.problem, instance.start, trajectory),
+  EXPECT_NEAR(report.cost, bench::simulated_cost(instance.problem, instance.start, trajectory),
               1e-9 * report.cost);
 }
 
@@ -163,10 +163,10 @@ TEST_F(OcpSolverTest, GrowsTheHorizonWhenTheGuessIsHopeless) {
   EXPECT_EQ(trajectory.horizon, kCapacity);
   auto gentle = trajectory;
   gentle.u = {};
-  test::guess_by_path_law(instance, gentle);
-  const double hopeless = test::simulated_cost(instance.problem, instance.start, trajectory);
+  bench::guess_by_path_law(instance, gentle);
+  const double hopeless = bench::simulated_cost(instance.problem, instance.start, trajectory);
   ASSERT_EQ(ocp->solve(instance.problem, instance.start, gentle).status, SolveStatus::kOptimal);
-  EXPECT_NEAR(hopeless, test::simulated_cost(instance.problem, instance.start, gentle), 1e-6 * hopeless);
+  EXPECT_NEAR(hopeless, bench::simulated_cost(instance.problem, instance.start, gentle), 1e-6 * hopeless);
 }
 
 TEST_F(OcpSolverTest, ADeadlineWhileGrowingStillReturnsTheWholeHorizon) {
@@ -177,7 +177,7 @@ TEST_F(OcpSolverTest, ADeadlineWhileGrowingStillReturnsTheWholeHorizon) {
     ASSERT_EQ(trajectory.horizon, kCapacity) << turns;
     ASSERT_TRUE(is_finite_and_inside()) << turns;
     if (report.defect < 1e-9) {
-      ASSERT_NEAR(report.cost, test::simulated_cost(instance.problem, instance.start, trajectory),
+      ASSERT_NEAR(report.cost, bench::simulated_cost(instance.problem, instance.start, trajectory),
                   1e-6 * report.cost);
     }
   }
@@ -225,7 +225,7 @@ TEST_F(OcpSolverTest, AWarmStartThatIsNotFiniteIsReplaced) {
 
 TEST_F(OcpSolverTest, RemembersNothingFromSolveToSolve) {
   Random random{6};
-  const DescribedInstance other = test::random_instance(random, 20);
+  const DescribedInstance other = bench::random_instance(random, 20);
   auto scratch = trajectory;
   ocp->solve(other.problem, other.start, scratch);
   auto second = trajectory;

@@ -7,16 +7,16 @@
 #include <memory>
 
 #include "chicane/solver/ocp_solver.hpp"
-#include "support/corridor_problem.hpp"
-#include "support/optimality.hpp"
+#include "problems/corridor_problem.hpp"
+#include "problems/optimality.hpp"
 
 namespace chicane {
 namespace {
 
+using bench::CorridorProblem;
 using solver::SoftConstraint;
 using solver::SoftPenalty;
 using solver::SolveStatus;
-using test::CorridorProblem;
 
 /// Powers of ten between two exponents.
 double decade(Random& random, double low, double high) { return std::pow(10.0, random.uniform(low, high)); }
@@ -71,7 +71,7 @@ struct SoftOcp : testing::Test {
   static constexpr int kCapacity = 20;
   using Solver = solver::OcpSolver<CorridorProblem, kCapacity>;
   std::unique_ptr<Solver> ocp = std::make_unique<Solver>();
-  test::DescribedTrajectory<kCapacity> trajectory;
+  bench::DescribedTrajectory<kCapacity> trajectory;
   CorridorProblem problem;
   std::array<double, 8> start{};
 
@@ -79,7 +79,7 @@ struct SoftOcp : testing::Test {
     trajectory.horizon = kCapacity;
     problem.path = {0.3, 0.05, 0.0, 0.0};
     problem.speed_reference = 12.0;
-    test::DescribedInstance plain{.problem = static_cast<const test::DescribedProblem&>(problem)};
+    bench::DescribedInstance plain{.problem = static_cast<const bench::DescribedProblem&>(problem)};
     plain.place(12.0);
     start = plain.start;
   }
@@ -90,7 +90,7 @@ TEST_F(SoftOcp, ACorridorThatIsWideEnoughChangesNothing) {
   problem.half_width = 50.0;
   problem.window_end = 0;
   ASSERT_EQ(solve().status, SolveStatus::kOptimal);
-  EXPECT_LE(test::projected_gradient<test::DescribedProblem>(problem, start, trajectory), 1e-5);
+  EXPECT_LE(bench::projected_gradient<bench::DescribedProblem>(problem, start, trajectory), 1e-5);
 }
 
 TEST_F(SoftOcp, AWindowIsPassedWithoutViolationWhenThatIsPossible) {

@@ -5,12 +5,12 @@
 
 #include <limits>
 
-#include "support/described_problem.hpp"
+#include "problems/described_problem.hpp"
 
 namespace chicane {
 namespace {
 
-using test::DescribedTrajectory;
+using bench::DescribedTrajectory;
 
 DescribedTrajectory<8> counting(int horizon) {
   DescribedTrajectory<8> trajectory;
@@ -56,7 +56,7 @@ TEST(Shift, IgnoresTimesThatMakeNoSense) {
 }
 
 TEST(RollOut, ClampsTheInputsAndSimulatesThem) {
-  test::DescribedInstance instance;
+  bench::DescribedInstance instance;
   instance.place(10.0);
   DescribedTrajectory<8> t;
   t.horizon = 2;
@@ -71,7 +71,7 @@ TEST(RollOut, ClampsTheInputsAndSimulatesThem) {
 }
 
 TEST(RollOut, ReportsStatesThatAreNotFinite) {
-  test::DescribedInstance instance;
+  bench::DescribedInstance instance;
   instance.place(std::numeric_limits<double>::infinity());
   DescribedTrajectory<8> t;
   t.horizon = 2;

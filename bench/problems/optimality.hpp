@@ -10,7 +10,7 @@
 #include "chicane/base/dual.hpp"
 #include "chicane/solver/problem.hpp"
 
-namespace chicane::test {
+namespace chicane::bench {
 
 /// Objective of the inputs when they are simulated from x0, soft constraints as exact penalties. Works for
 /// any scalar: `u(k, m)` gives the inputs.
@@ -80,4 +80,4 @@ bool inputs_are_inside(const P& problem, const solver::Trajectory<P::kNx, P::kNu
   return true;
 }
 
-}  // namespace chicane::test
+}  // namespace chicane::bench

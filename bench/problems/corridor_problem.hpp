@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 
-#include "support/described_problem.hpp"
+#include "problems/described_problem.hpp"
 
-namespace chicane::test {
+namespace chicane::bench {
 
 /// The described problem with a soft corridor low_k <= cte_k <= high_k (linear price 500, quadratic 100):
 /// half-width 1.2 m with a window that forces the car at least 0.6 m to one side.
@@ -50,4 +50,4 @@ inline CorridorInstance random_corridor(Random& random, int horizon) {
   return instance;
 }
 
-}  // namespace chicane::test
+}  // namespace chicane::bench

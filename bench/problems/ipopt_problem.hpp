@@ -11,7 +11,7 @@
 #include "chicane/base/dual.hpp"
 #include "chicane/solver/problem.hpp"
 
-namespace chicane::test {
+namespace chicane::bench {
 
 /// Any OcpProblem as a sparse nonlinear program for Ipopt (Wächter, Biegler 2006): states and inputs as
 /// variables, dynamics as equations, soft constraints with explicit slacks, exact first and second
@@ -293,4 +293,4 @@ double solve_with_ipopt(const P& problem, const std::array<double, P::kNx>& x0,
   return nlp->cost;
 }
 
-}  // namespace chicane::test
+}  // namespace chicane::bench

@@ -12,7 +12,7 @@
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/warm_start.hpp"
 
-namespace chicane::test {
+namespace chicane::bench {
 
 /// The optimal control problem of the Udacity MPC project: kinematic bicycle by explicit Euler, cubic path in
 /// the car's frame, weights 200, 200, 0.1, 1, 1, 10, 1. State (x, y, ψ, v, cte, eψ, previous δ, previous a),
@@ -118,4 +118,4 @@ void guess_by_path_law(const DescribedInstance& instance, DescribedTrajectory<Ca
   }
 }
 
-}  // namespace chicane::test
+}  // namespace chicane::bench
