@@ -191,6 +191,8 @@ TEST(Simulate, WarnsOfAnOpenPacketAndAnswersAPing) {
 TEST(Simulate, SaysThatNobodyAnswers) {
   const Outcome outcome =
       run({.url = "ws://127.0.0.1:1/", .retry_after = 20ms, .lost_after = 100ms}, short_run(1.0));
+  EXPECT_EQ(outcome.log,
+            "no controller yet: 127.0.0.1:1: Connection refused; trying again\n");  // and only once
   ASSERT_FALSE(outcome.report);
   EXPECT_EQ(outcome.report.error().code, ErrorCode::kIo);
   EXPECT_THAT(outcome.report.error().message, HasSubstr("no controller: 127.0.0.1:1: Connection refused"));

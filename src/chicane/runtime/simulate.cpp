@@ -249,6 +249,8 @@ class Simulation {
       auto result = attempt_.get();
       next_attempt_ = now + options_.retry_after;
       if (result) return begin(std::move(*result));
+      if (result.error().message != last_failure_)
+        log_.complain(fmt::format("no controller yet: {}; trying again", result.error().message));
       last_failure_ = result.error().message;
       if (now - last_connected_ >= options_.lost_after) why_ = "no controller: " + last_failure_;
       return;
@@ -260,6 +262,7 @@ class Simulation {
 
   void begin(std::unique_ptr<net::Client> client) {
     client_ = std::move(client);
+    last_failure_.clear();
     if (report_.connections++ == 0) began_ = Clock::now();  // the clock starts with the first controller
     log_.say(fmt::format("connected to {}", options_.url));
     asked_.reset();
