@@ -23,7 +23,7 @@ constexpr double kBackOnTrackTime = 0.2;  // ... once held so long [s]
 }  // namespace
 
 World::World(Plant& plant, const path::Track& track) noexcept : plant_{plant}, track_{track} {
-  steps_per_judgement_ = std::max(1, static_cast<int>(kJudgementPeriod / plant.step_length() + 0.5));
+  steps_per_judgement_ = std::max(1, static_cast<int>(std::lround(kJudgementPeriod / plant.step_length())));
   lap_length_ = track.length() - (track.centre().is_closed() ? 0.0 : track.start_s());
   place(track.start_s(), track.start_d());
 }
