@@ -52,7 +52,7 @@ TEST(McapWriter, WritesWhatTheReaderReads) {
   EXPECT_EQ(report->chunks, 5U);
   EXPECT_EQ(report->damaged, 0U);
   EXPECT_TRUE(report->is_complete);
-  EXPECT_EQ(seen, "run:7lakeside;scenario.yaml=laps: 2\n");
+  EXPECT_EQ(seen, "run:7lakeside;notes.txt=laps: 2\n");
 }
 
 TEST(McapWriter, EndsAChunkThatIsLargeWithoutBeingAsked) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -19,10 +20,10 @@ namespace chicane::telemetry {
 /// A path in the folder for temporary files where nothing is yet; removed at the end.
 class TemporaryFile {
  public:
-  TemporaryFile()
-      : path_{std::filesystem::path(::testing::TempDir()) /
-              (std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) +
-               std::to_string(::getpid()) + ".mcap")} {
+  TemporaryFile() {
+    std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::replace(name.begin(), name.end(), '/', '_');
+    path_ = std::filesystem::path(::testing::TempDir()) / (name + std::to_string(::getpid()) + ".mcap");
     std::filesystem::remove(path_);
   }
   ~TemporaryFile() { std::filesystem::remove(path_); }
@@ -57,7 +58,7 @@ inline std::vector<std::uint64_t> write_sample(const std::string& path) {
   EXPECT_TRUE(writer.has_value());
   std::vector<std::uint64_t> ends;
   EXPECT_TRUE((*writer)->add_metadata("run", {{"seed", "7"}, {"track", "lakeside"}}));
-  EXPECT_TRUE((*writer)->add_attachment("scenario.yaml", "application/yaml", "laps: 2\n"));
+  EXPECT_TRUE((*writer)->add_attachment("notes.txt", "text/plain", "laps: 2\n"));
   const std::uint16_t first = (*writer)->add_channel("/a", "std_msgs/msg/String", "string data\n");
   const std::uint16_t second = (*writer)->add_channel("/b", "std_msgs/msg/Bool", "bool data\n");
   std::uint64_t number = 0;

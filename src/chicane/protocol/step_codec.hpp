@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "chicane/controller/controller.hpp"
+#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
+#include "chicane/telemetry/frame.hpp"
+
+namespace chicane::protocol {
+
+/// What one control step was told and what it sent, to the last bit: enough to compute it again.
+struct Step {
+  std::uint64_t cycle = 0;  ///< 0 begins a run: controller and gate have forgotten everything
+  model::Measurement measurement;
+  model::Command command;  ///< as it left the gate
+  controller::Rung rung = controller::Rung::kController;
+  bool gated = false;
+  double step_time = 0.0;  ///< of the control step [s], wall clock
+};
+
+/// The channel of recordings that holds every step, as a ROS 2 message.
+inline constexpr std::string_view kStepTopic = "/chicane/step";
+inline constexpr std::string_view kStepType = "chicane_msgs/msg/Step";
+[[nodiscard]] std::string_view step_schema();
+
+/// CDR as in ros_messages.hpp. Every double keeps its bits, not-a-number included.
+[[nodiscard]] std::string encode_step(const telemetry::Frame& frame);
+/// None when the bytes are not such a message.
+[[nodiscard]] std::optional<Step> decode_step(std::string_view bytes);
+
+}  // namespace chicane::protocol

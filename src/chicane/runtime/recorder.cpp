@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/runtime/recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <map>
+#include <utility>
+
+#include "chicane/protocol/step_codec.hpp"
+#include "chicane/protocol/yaml_codec.hpp"
+
+namespace chicane::runtime {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto kFlushEvery = std::chrono::milliseconds(50);
+constexpr auto kNap = std::chrono::milliseconds(2);
+constexpr auto kWait = std::chrono::microseconds(200);
+constexpr const char* kProgram = "chicane " CHICANE_VERSION;
+#ifdef __clang__
+constexpr const char* kCompiler = "clang " __VERSION__;
+#else
+constexpr const char* kCompiler = "gcc " __VERSION__;
+#endif
+
+}  // namespace
+
+Result<std::unique_ptr<Recorder>> Recorder::create(RecorderOptions options) {
+  auto writer = telemetry::McapWriter::create(options.path, kProgram);
+  if (!writer) return fail(writer.error());
+  return std::unique_ptr<Recorder>(new Recorder(std::move(options), std::move(*writer)));
+}
+
+Recorder::Recorder(RecorderOptions options, std::unique_ptr<telemetry::McapWriter> writer)
+    : options_{std::move(options)}, writer_{std::move(writer)}, ring_(kCapacity) {
+  thread_ = std::thread([this] { work(); });
+}
+
+Recorder::~Recorder() { static_cast<void>(finish()); }
+
+void Recorder::record(const telemetry::Frame& frame) noexcept {
+  const std::uint64_t number = put_.load(std::memory_order_relaxed);
+  while (number - taken_.load(std::memory_order_acquire) >= kCapacity) {
+    if (!options_.may_wait) {
+      ++left_out_;
+      return;
+    }
+    std::this_thread::sleep_for(kWait);
+  }
+  slot(number) = frame;
+  put_.store(number + 1, std::memory_order_release);
+}
+
+Result<RecorderReport> Recorder::finish() {
+  wants_end_ = true;
+  if (thread_.joinable()) thread_.join();
+  if (!state_) return fail(state_.error());
+  return RecorderReport{.frames = frames_, .left_out = left_out_, .bytes = writer_->bytes_written()};
+}
+
+void Recorder::work() {
+  begin();
+  Clock::time_point flushed = Clock::now();
+  while (true) {
+    const bool is_last = wants_end_.load(std::memory_order_acquire);  // asked before the ring is
+    const std::uint64_t number = taken_.load(std::memory_order_relaxed);
+    const bool has_frame = number != put_.load(std::memory_order_acquire);
+    if (has_frame) {
+      write(slot(number));
+      taken_.store(number + 1, std::memory_order_release);
+    }
+    if (Clock::now() - flushed >= kFlushEvery) {
+      keep(writer_->flush());
+      flushed = Clock::now();
+    }
+    if (has_frame) continue;
+    if (is_last) break;
+    std::this_thread::sleep_for(kNap);
+  }
+  keep(writer_->close());
+}
+
+void Recorder::keep(Result<void> done) {
+  if (state_ && !done) state_ = std::move(done);
+}
+
+/// What stays the same during the run.
+void Recorder::begin() {
+  const scenario::Scenario& scenario = options_.scenario;
+  keep(writer_->add_metadata(kRecordedRun, {{"program", kProgram},
+                                            {"compiler", kCompiler},
+                                            {"track", options_.run.track},
+                                            {"controller", scenario.controller},
+                                            {"preset", scenario.preset},
+                                            {"seed", fmt::format("{}", scenario.seed)},
+                                            {"step_budget_s", fmt::format("{}", options_.step_budget)}}));
+  keep(writer_->add_attachment(
+      kRecordedScenario, "application/yaml",
+      protocol::write_document(scenario, fmt::format("What was recorded by {}", kProgram))));
+  const telemetry::Frame nothing;
+  for (const protocol::RosTopic& topic : protocol::ros_topics()) {
+    const std::uint16_t channel = writer_->add_channel(topic.name, topic.type, topic.schema);
+    if (topic.cadence == protocol::Cadence::kFrame) continue;
+    keep(writer_->write(channel, 0, 0, topic.encode(nothing, options_.run)));
+  }
+  step_channel_ = writer_->add_channel(protocol::kStepTopic, protocol::kStepType, protocol::step_schema());
+}
+
+void Recorder::write(const telemetry::Frame& frame) {
+  const std::uint64_t time = protocol::to_nanoseconds(frame.time);
+  if (time + earlier_runs_ < last_log_time_) {  // the run was started anew
+    earlier_runs_ = last_log_time_ + protocol::to_nanoseconds(options_.scenario.control_period) - time;
+  }
+  last_log_time_ = time + earlier_runs_;
+  std::uint16_t channel = 0;
+  for (const protocol::RosTopic& topic : protocol::ros_topics()) {
+    if (topic.cadence == protocol::Cadence::kFrame) {
+      keep(writer_->write(channel, last_log_time_, time, topic.encode(frame, options_.run)));
+    }
+    ++channel;
+  }
+  keep(writer_->write(step_channel_, last_log_time_, time, protocol::encode_step(frame)));
+  if (state_) ++frames_;
+}
+
+}  // namespace chicane::runtime

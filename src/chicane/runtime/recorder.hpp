@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/protocol/ros_messages.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/mcap_writer.hpp"
+
+namespace chicane::runtime {
+
+/// The names in a recording beside its channels (docs/recording.md).
+inline constexpr const char* kRecordedScenario = "scenario.yaml";  ///< attachment
+inline constexpr const char* kRecordedRun = "run";                 ///< metadata
+
+struct RecorderOptions {
+  std::string path;
+  protocol::Run run;
+  scenario::Scenario scenario;
+  double step_budget = 0.0;  ///< deadline of each control step [s]; 0 = none
+  /// In virtual time a full buffer holds the run up; otherwise the newest frames are left out and counted.
+  bool may_wait = false;
+};
+
+struct RecorderReport {
+  std::uint64_t frames = 0;    ///< in the file
+  std::uint64_t left_out = 0;  ///< the disk was too slow
+  std::uint64_t bytes = 0;
+};
+
+/// Records a run as an MCAP file: all topics of protocol::ros_topics(), and every control step to the last
+/// bit (protocol/step_codec.hpp), so that verify_recording() can compute it again. What is recorded is handed
+/// to the operating system within 100 ms. A thread of its own encodes and writes; memory is bounded by 64
+/// frames and one chunk.
+class Recorder {
+ public:
+  /// kIo as McapWriter::create does.
+  [[nodiscard]] static Result<std::unique_ptr<Recorder>> create(RecorderOptions options);
+  /// finish(), if nobody called it; what fails then is not told.
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// One thread, the control thread: copies the frame, allocates nothing, and waits only with may_wait.
+  void record(const telemetry::Frame& frame) noexcept;
+  /// Writes the rest and closes the file. kIo with the first thing that went wrong while recording.
+  [[nodiscard]] Result<RecorderReport> finish();
+
+ private:
+  static constexpr std::uint64_t kCapacity = 64;
+
+  Recorder(RecorderOptions options, std::unique_ptr<telemetry::McapWriter> writer);
+  void work();
+  void begin();
+  void keep(Result<void> done);
+  void write(const telemetry::Frame& frame);
+  [[nodiscard]] telemetry::Frame& slot(std::uint64_t number) { return ring_[number % kCapacity]; }
+
+  RecorderOptions options_;
+  std::unique_ptr<telemetry::McapWriter> writer_;
+  std::vector<telemetry::Frame> ring_;
+  std::atomic<std::uint64_t> put_{0};    ///< frames put in so far; the control thread's
+  std::atomic<std::uint64_t> taken_{0};  ///< and taken out; the writing thread's
+  std::atomic<bool> wants_end_{false};
+  std::uint64_t left_out_ = 0;  ///< the control thread's
+
+  // The writing thread's, until it has ended.
+  std::uint16_t step_channel_ = 0;
+  std::uint64_t frames_ = 0;
+  std::uint64_t last_log_time_ = 0;  ///< [ns]
+  std::uint64_t earlier_runs_ = 0;   ///< what log times are ahead of the run's own time [ns]
+  Result<void> state_;
+  std::thread thread_;
+};
+
+}  // namespace chicane::runtime
