@@ -23,6 +23,7 @@ struct Command {
 [[nodiscard]] ExitCode simulate(const Options& options);
 [[nodiscard]] ExitCode check(const Options& options);
 [[nodiscard]] ExitCode list(const Options& options);
+[[nodiscard]] ExitCode bench(const Options& options);
 
 /// Says the error on stderr; which exit code it is.
 [[nodiscard]] ExitCode report(const Error& error);

@@ -16,6 +16,7 @@ constexpr Command kCommands[] = {
     {"simulate", "Simulator for an external controller, as the original game was", simulate},
     {"check", "Validate scenarios, presets, cars and tracks, and explain what is wrong", check},
     {"list", "Presets, tracks, cars, scenarios, controllers and parameters", list},
+    {"bench", "Times of solver and control step on this machine, beside Ipopt's", bench},
 };
 
 }  // namespace

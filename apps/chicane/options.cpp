@@ -8,6 +8,7 @@
 #include <charconv>
 #include <string_view>
 
+#include "bench_solves.hpp"
 #include "chicane/base/angle.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "commands.hpp"
@@ -135,6 +136,20 @@ void add_list(CLI::App& command, Options& options) {
   command.footer("Example: chicane list presets");
 }
 
+void add_bench(CLI::App& command, Options& options) {
+  command.add_option("--instances", options.instances, "Problems of each family and horizon")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command.add_option("--horizons", options.horizons, "Numbers of intervals, with commas")
+      ->type_name("N,...")
+      ->delimiter(',')
+      ->check(CLI::Range(2, kLongestHorizon))
+      ->capture_default_str();
+  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  command.footer("Example: chicane bench --instances 200 --horizons 10,20");
+}
+
 /// What was meant by the first word that nobody understood.
 std::string correction(const CLI::App& app, const std::vector<std::string>& unknown) {
   if (unknown.empty()) return "";
@@ -186,6 +201,7 @@ std::variant<Options, Done> parse_command_line(int count, const char* const* wor
     if (command.name == "simulate") add_simulate(*sub, options);
     if (command.name == "check") add_check(*sub, options);
     if (command.name == "list") add_list(*sub, options);
+    if (command.name == "bench") add_bench(*sub, options);
   }
   if (const std::string fault = command_fault(count, words); !fault.empty()) {
     fmt::print(stderr, "{}\nSee `chicane --help`.\n", fault);

@@ -38,6 +38,9 @@ struct Options {
   std::vector<std::string> files;  ///< check
   std::string shelf;               ///< list; empty: an overview
   bool is_markdown = false;        ///< list parameters
+
+  int instances = 100;                    ///< bench: of each family
+  std::vector<int> horizons{10, 20, 50};  ///< bench
 };
 
 /// Nothing is left to do: text was printed.

@@ -3,6 +3,7 @@
 
 #include <IpIpoptApplication.hpp>
 #include <IpTNLP.hpp>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -10,8 +11,14 @@
 
 #include "chicane/base/dual.hpp"
 #include "chicane/solver/problem.hpp"
+#include "problems/cpu_time.hpp"
 
 namespace chicane::bench {
+
+/// What Ipopt's answer has beside the variables: of lower and upper bounds, and of the equations.
+struct Multipliers {
+  std::vector<double> low, high, equation;
+};
 
 /// Any OcpProblem as a sparse nonlinear program for Ipopt (Wächter, Biegler 2006): states and inputs as
 /// variables, dynamics as equations, soft constraints with explicit slacks, exact first and second
@@ -32,6 +39,9 @@ class IpoptProblem : public Ipopt::TNLP {
   std::vector<double> start;  ///< of all variables
   std::vector<double> solution;
   double cost = 0.0;
+  Multipliers start_multipliers;   ///< asked for by warm_start_init_point
+  Multipliers multipliers;         ///< of the solution
+  double time_in_functions = 0.0;  ///< CPU time of values and derivatives [s]
 
   static int at_u(int k) { return k * kNz; }
   static int at_x(int k) { return (k - 1) * kNz + kNu; }
@@ -65,11 +75,20 @@ class IpoptProblem : public Ipopt::TNLP {
     }
     return true;
   }
-  bool get_starting_point(Index n, bool, Number* w, bool, Number*, Number*, Index, bool, Number*) override {
-    for (int i = 0; i < n; ++i) w[i] = start[static_cast<std::size_t>(i)];
+  bool get_starting_point(Index, bool, Number* w, bool wants_bounds, Number* low, Number* high, Index,
+                          bool wants_equations, Number* equations) override {
+    std::copy(start.begin(), start.end(), w);
+    if (wants_bounds) {
+      std::copy(start_multipliers.low.begin(), start_multipliers.low.end(), low);
+      std::copy(start_multipliers.high.begin(), start_multipliers.high.end(), high);
+    }
+    if (wants_equations) {
+      std::copy(start_multipliers.equation.begin(), start_multipliers.equation.end(), equations);
+    }
     return true;
   }
   bool eval_f(Index, const Number* w, bool, Number& value) override {
+    const Stopwatch stopwatch(time_in_functions);
     value = 0.0;
     for (int k = 0; k < horizon; ++k) {
       for (const double r : problem->residual(k, state<double>(w, k), input<double>(w, k)))
@@ -85,6 +104,7 @@ class IpoptProblem : public Ipopt::TNLP {
     return true;
   }
   bool eval_grad_f(Index n, const Number* w, bool, Number* gradient) override {
+    const Stopwatch stopwatch(time_in_functions);
     using D = Dual<kNz>;
     for (int i = 0; i < n; ++i) gradient[i] = 0.0;
     for (int k = 0; k < horizon; ++k) {
@@ -106,6 +126,7 @@ class IpoptProblem : public Ipopt::TNLP {
     return true;
   }
   bool eval_g(Index, const Number* w, bool, Index, Number* g) override {
+    const Stopwatch stopwatch(time_in_functions);
     for (int k = 0; k < horizon; ++k) {
       const auto x = state<double>(w, k);
       const auto u = input<double>(w, k);
@@ -122,6 +143,7 @@ class IpoptProblem : public Ipopt::TNLP {
   }
   bool eval_jac_g(Index, const Number* w, bool, Index, Index, Index* rows, Index* columns,
                   Number* values) override {
+    const Stopwatch stopwatch(time_in_functions);
     int entry = 0;
     visit_jacobian(w, [&](int row, int column, double value) {
       if (values != nullptr) {
@@ -136,6 +158,7 @@ class IpoptProblem : public Ipopt::TNLP {
   }
   bool eval_h(Index, const Number* w, bool, Number factor, Index, const Number* multipliers, bool, Index,
               Index* rows, Index* columns, Number* values) override {
+    const Stopwatch stopwatch(time_in_functions);
     int entry = 0;
     visit_hessian(w, factor, multipliers, [&](int row, int column, double value) {
       if (values != nullptr) {
@@ -148,14 +171,48 @@ class IpoptProblem : public Ipopt::TNLP {
     });
     return true;
   }
-  void finalize_solution(Ipopt::SolverReturn, Index n, const Number* w, const Number*, const Number*, Index,
-                         const Number*, const Number*, Number value, const Ipopt::IpoptData*,
-                         Ipopt::IpoptCalculatedQuantities*) override {
+  void finalize_solution(Ipopt::SolverReturn, Index n, const Number* w, const Number* low, const Number* high,
+                         Index m, const Number*, const Number* equations, Number value,
+                         const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
     solution.assign(w, w + n);
     cost = value;
+    multipliers = {{low, low + n}, {high, high + n}, {equations, equations + m}};
+  }
+
+  /// The trajectory's inputs and states as the point to start from.
+  template <int Capacity>
+  void take_start(const solver::Trajectory<kNx, kNu, Capacity>& t) {
+    horizon = t.horizon;
+    start.assign(static_cast<std::size_t>(t.horizon * (kNz + kNc)), 1e-2);
+    for (int k = 0; k < t.horizon; ++k) {
+      const auto stage = static_cast<std::size_t>(k);
+      std::copy(t.u[stage].begin(), t.u[stage].end(), start.begin() + at_u(k));
+      std::copy(t.x[stage + 1].begin(), t.x[stage + 1].end(), start.begin() + at_x(k + 1));
+    }
+  }
+  /// The solution's inputs and states.
+  template <int Capacity>
+  void give_solution(solver::Trajectory<kNx, kNu, Capacity>& t) const {
+    for (int k = 0; k < t.horizon; ++k) {
+      const auto stage = static_cast<std::size_t>(k);
+      std::copy_n(solution.begin() + at_u(k), kNu, t.u[stage].begin());
+      std::copy_n(solution.begin() + at_x(k + 1), kNx, t.x[stage + 1].begin());
+    }
   }
 
  private:
+  class Stopwatch {
+   public:
+    explicit Stopwatch(double& sum) : sum_(sum), begin_(cpu_time()) {}
+    ~Stopwatch() { sum_ += cpu_time() - begin_; }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+   private:
+    double& sum_;
+    double begin_;
+  };
+
   /// Where variable v of (x_k, u_k) stands among the unknowns; −1 for the given x_0.
   static int position(int k, int v) { return v >= kNx ? at_u(k) + v - kNx : (k > 0 ? at_x(k) + v : -1); }
 
@@ -265,15 +322,7 @@ double solve_with_ipopt(const P& problem, const std::array<double, P::kNx>& x0,
   const Ipopt::SmartPtr<Nlp> nlp = new Nlp;
   nlp->problem = &problem;
   nlp->x0 = x0;
-  nlp->horizon = t.horizon;
-  nlp->start.assign(static_cast<std::size_t>(t.horizon * (Nlp::kNz + Nlp::kNc)), 1e-2);
-  for (int k = 0; k < t.horizon; ++k) {
-    const auto stage = static_cast<std::size_t>(k);
-    for (std::size_t m = 0; m < t.u[stage].size(); ++m)
-      nlp->start[static_cast<std::size_t>(Nlp::at_u(k)) + m] = t.u[stage][m];
-    for (std::size_t i = 0; i < x0.size(); ++i)
-      nlp->start[static_cast<std::size_t>(Nlp::at_x(k + 1)) + i] = t.x[stage + 1][i];
-  }
+  nlp->take_start(t);
   const Ipopt::SmartPtr<Ipopt::IpoptApplication> app = IpoptApplicationFactory();
   app->Options()->SetIntegerValue("print_level", 0);
   app->Options()->SetStringValue("sb", "yes");
@@ -283,13 +332,7 @@ double solve_with_ipopt(const P& problem, const std::array<double, P::kNx>& x0,
   if (app->Initialize() != Ipopt::Solve_Succeeded) return std::nan("");
   const auto status = app->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(Ipopt::GetRawPtr(nlp)));
   if (status != Ipopt::Solve_Succeeded && status != Ipopt::Solved_To_Acceptable_Level) return std::nan("");
-  for (int k = 0; k < t.horizon; ++k) {
-    const auto stage = static_cast<std::size_t>(k);
-    for (std::size_t m = 0; m < t.u[stage].size(); ++m)
-      t.u[stage][m] = nlp->solution[static_cast<std::size_t>(Nlp::at_u(k)) + m];
-    for (std::size_t i = 0; i < x0.size(); ++i)
-      t.x[stage + 1][i] = nlp->solution[static_cast<std::size_t>(Nlp::at_x(k + 1)) + i];
-  }
+  nlp->give_solution(t);
   return nlp->cost;
 }
 

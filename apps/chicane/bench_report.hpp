@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench_solves.hpp"
+
+namespace chicane::apps {
+
+/// What a benchmark ran on, in the words of the report.
+struct Machine {
+  std::string processor, compiler, flags, commit, date, ipopt;
+  double load_before = 0.0, load_after = 0.0;  ///< jobs that want a core, mean over the last minute
+};
+[[nodiscard]] Machine this_machine();
+[[nodiscard]] double load();
+
+struct BenchReport {
+  Machine machine;
+  std::vector<SolveRow> solves{};
+  std::vector<SolveRow> growth{};  ///< cost against horizon, own solver only
+  double growth_exponent = 0.0;    ///< of the median time over the horizon; NaN when not measured
+  Spread step_cpu_us{};            ///< CPU time of a control step and one physics step, default controller
+  Spread step_us{};                ///< whole control steps of the default controller, wall clock
+  Spread step_solve_us{};          ///< the optimisation in them
+  std::size_t steps = 0;
+  bool was_interrupted = false;
+};
+
+[[nodiscard]] std::string to_markdown(const BenchReport& report);
+[[nodiscard]] std::string to_json(const BenchReport& report);
+
+}  // namespace chicane::apps
