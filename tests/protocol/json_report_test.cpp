@@ -28,6 +28,7 @@ telemetry::RunSummary example() {
   lap.mean_speed = 40.0;
   lap.top_speed = 44.704;
   lap.min_edge_distance = 0.75;
+  lap.sector_times = {9.0, 9.5, 10.0};
   run.laps = {lap};
   run.total = lap;
   run.step_time.p50 = 25e-6;
@@ -46,7 +47,7 @@ TEST(JsonReport, HasEveryKeyThatIsPromised) {
   for (const char* key :
        {"lap_time_s", "mean_speed_mps", "top_speed_mps", "top_speed_mph", "rms_lateral_error_m",
         "max_abs_lateral_error_m", "min_edge_distance_m", "max_lateral_acceleration_mps2",
-        "steering_rate_rms_radps", "gap_to_limit_percent"}) {
+        "steering_rate_rms_radps", "sector_times_s", "gap_to_limit_percent"}) {
     EXPECT_TRUE(report["laps"][0].contains(key)) << key;
   }
   for (const char* key : {"p50", "p99", "p999", "max"}) {
@@ -64,6 +65,11 @@ TEST(JsonReport, ConvertsUnits) {
   EXPECT_NEAR(report["step_time_us"]["p50"].get<double>(), 25.0, 1e-9);
   EXPECT_EQ(report["state_hash"], "0000000000000abc");
   EXPECT_EQ(report["seed"], 3);
+}
+
+TEST(JsonReport, TellsTheSectorsOfALapInTheirOrder) {
+  const Json report = Json::parse(to_json(example()));
+  EXPECT_EQ(report["laps"][0]["sector_times_s"], Json::parse("[9.0, 9.5, 10.0]"));
 }
 
 TEST(JsonReport, WhatWasNotMeasuredIsNull) {

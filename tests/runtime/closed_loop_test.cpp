@@ -29,6 +29,8 @@ void expect_clean(const telemetry::RunSummary& summary) {
   EXPECT_TRUE(summary.completed) << summary.end_reason;
   EXPECT_EQ(summary.off_track_events, 0);
   EXPECT_EQ(summary.fallbacks, 0U);
+  for (const auto& lap : summary.laps)
+    EXPECT_NEAR(lap.sector_times[0] + lap.sector_times[1] + lap.sector_times[2], lap.lap_time, 1e-9);
 }
 
 TEST(DefaultPreset, LapsLakesideFastAndClean) {

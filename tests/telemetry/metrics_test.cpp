@@ -50,11 +50,12 @@ TEST(Metrics, MeasuresALapFromEveryPhysicsStep) {
   PhysicsSample second = sample(30.0, 1.0, 2.0);
   second.lateral_acceleration = -7.0;
   metrics.add_physics(second);
-  metrics.lap_completed(0.93);
+  metrics.lap_completed(0.93, {0.3, 0.3, 0.33});
   const RunSummary run = metrics.summary();
   ASSERT_EQ(run.laps.size(), 1u);
   EXPECT_EQ(run.laps_completed, 1);
   EXPECT_EQ(run.laps[0].lap_time, 0.93);
+  EXPECT_EQ(run.laps[0].sector_times[2], 0.33);
   EXPECT_NEAR(run.laps[0].mean_speed, 20.0, kRounding);
   EXPECT_EQ(run.laps[0].top_speed, 30.0);
   EXPECT_NEAR(run.laps[0].rms_lateral_error, std::sqrt(5.0), kRounding);

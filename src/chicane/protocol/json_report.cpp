@@ -28,6 +28,8 @@ Json to_object(const LapSummary& lap) {
           {"min_edge_distance_m", number(lap.min_edge_distance)},
           {"max_lateral_acceleration_mps2", number(lap.max_lateral_acceleration)},
           {"steering_rate_rms_radps", number(lap.steering_rate_rms)},
+          {"sector_times_s",
+           {number(lap.sector_times[0]), number(lap.sector_times[1]), number(lap.sector_times[2])}},
           {"gap_to_limit_percent", lap.gap_to_limit ? number(100.0 * *lap.gap_to_limit) : Json(nullptr)}};
 }
 

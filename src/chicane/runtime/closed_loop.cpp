@@ -117,7 +117,8 @@ void ClosedLoop::fill_frame(const model::Measurement& now, double step_time) noe
 void ClosedLoop::judge() noexcept {
   const sim::WorldState& world = world_.state();
   metrics_.add_physics(physics_sample(world_));
-  if (world.lap > metrics_.laps_completed()) metrics_.lap_completed(world.last_lap_time);
+  if (world.lap > metrics_.laps_completed())
+    metrics_.lap_completed(world.last_lap_time, world.last_sector_times);
 
   off_for_ = std::fabs(world.lateral_error) > kLostDistance ? off_for_ + plant_->step_length() : 0.0;
   const double default_limit =

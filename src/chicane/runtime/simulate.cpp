@@ -168,7 +168,8 @@ class Scene {
   void judge(double step) {
     const sim::WorldState& world = world_.state();
     metrics_.add_physics(physics_sample(world_));
-    if (world.lap > metrics_.laps_completed()) metrics_.lap_completed(world.last_lap_time);
+    if (world.lap > metrics_.laps_completed())
+      metrics_.lap_completed(world.last_lap_time, world.last_sector_times);
     off_for_ = std::fabs(world.lateral_error) > kLostDistance ? off_for_ + step : 0.0;
   }
 

@@ -97,9 +97,12 @@ void Metrics::add(const Frame& frame) noexcept {
   if (report.gated) ++gated_;
 }
 
-void Metrics::lap_completed(double lap_time) noexcept {
+void Metrics::lap_completed(double lap_time, const std::array<double, 3>& sector_times) noexcept {
   ++laps_completed_;
-  if (laps_.size() < laps_.capacity()) laps_.push_back(lap_.summary(lap_time));
+  if (laps_.size() < laps_.capacity()) {
+    laps_.push_back(lap_.summary(lap_time));
+    laps_.back().sector_times = sector_times;
+  }
   lap_ = {};
 }
 

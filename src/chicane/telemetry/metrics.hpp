@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -24,6 +25,8 @@ struct PhysicsSample {
   bool is_off_track = false;   ///< any contact patch beyond the drivable surface
 };
 
+inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
 /// One lap, or any stretch of a run, in numbers. NaN where nothing was measured.
 struct LapSummary {
   double lap_time = 0.0;                                                ///< [s]
@@ -34,6 +37,7 @@ struct LapSummary {
   double min_edge_distance = std::numeric_limits<double>::quiet_NaN();  ///< signed, outermost tyre [m]
   double max_lateral_acceleration = 0.0;                                ///< magnitude [m/s²]
   double steering_rate_rms = 0.0;  ///< road wheel, from control cycle to control cycle [rad/s]
+  std::array<double, 3> sector_times = {kNotMeasured, kNotMeasured, kNotMeasured};  ///< thirds of a lap [s]
   std::optional<double>
       gap_to_limit;  ///< lap time over the physical limit's, minus one; none when not computed
 };
@@ -93,8 +97,9 @@ class Metrics {
 
   void add_physics(const PhysicsSample& sample) noexcept;
   void add(const Frame& frame) noexcept;
-  /// The running lap ended; `lap_time` [s] may be interpolated between physics steps.
-  void lap_completed(double lap_time) noexcept;
+  /// The running lap ended; `lap_time` [s] may be interpolated between physics steps, as may its thirds.
+  void lap_completed(double lap_time,
+                     const std::array<double, 3>& sector_times = LapSummary{}.sector_times) noexcept;
 
   [[nodiscard]] int laps_completed() const noexcept { return laps_completed_; }
   [[nodiscard]] int off_track_events() const noexcept { return off_track_events_; }
