@@ -77,6 +77,21 @@ INSTANTIATE_TEST_SUITE_P(Controllers, RecordedController,
                            return name;
                          });
 
+TEST(Recorder, KeepsAScenarioThatIsAllDefaultsWhole) {
+  const TemporaryFile file;
+  RecorderOptions options;
+  options.path = file.path();
+  ASSERT_TRUE((*Recorder::create(options))->finish());
+  std::string scenario;
+  ASSERT_TRUE(telemetry::read_mcap(
+      file.path(), {.on_attachment = [&](std::string_view, std::string_view bytes) { scenario = bytes; }}));
+  EXPECT_NE(scenario.find("control_period_ms: 40\n"), std::string::npos) << scenario;
+  const Result<ReplayReport> replayed = verify_recording(file.path());
+  ASSERT_TRUE(replayed) << replayed.error().message;
+  EXPECT_EQ(replayed->steps, 0U);
+  EXPECT_FALSE(replayed->is_verified());
+}
+
 /// Writes the recording anew, with the step messages as `change` leaves them; it may return false: left out.
 template <class Change>
 void rewrite(const std::string& from, const std::string& to, Change change) {

@@ -239,14 +239,15 @@ Result<void> apply_layers(std::span<const Document> layers, scenario::Scenario& 
   return {};
 }
 
-std::string write_document(const scenario::Scenario& scenario, std::string_view description) {
+std::string write_document(const scenario::Scenario& scenario, std::string_view description, bool is_whole) {
   const scenario::Scenario defaults;
   std::string text = fmt::format("# {}\n", description);
   std::replace_if(
       text.begin(), std::prev(text.end()), [](char c) { return c == '\n' || c == '\r'; }, ' ');
   std::string_view group;
   for (const Parameter& parameter : list()) {
-    if (parameter.key == "preset" || get(scenario, parameter) == get(defaults, parameter)) continue;
+    const bool is_default = get(scenario, parameter) == get(defaults, parameter);
+    if (parameter.key == "preset" || (is_default && !is_whole)) continue;
     const std::size_t dot = parameter.key.find('.');
     const bool is_grouped = dot != std::string_view::npos;
     const std::string_view own_group = is_grouped ? parameter.key.substr(0, dot) : "";

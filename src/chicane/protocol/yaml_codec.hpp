@@ -41,7 +41,9 @@ struct Document {
 [[nodiscard]] Result<void> apply_layers(std::span<const Document> layers, scenario::Scenario& scenario);
 
 /// A file, opening with `description` as a comment, that parse_document() reads back into the settings in
-/// which `scenario` differs from the defaults, but for its preset's name.
-[[nodiscard]] std::string write_document(const scenario::Scenario& scenario, std::string_view description);
+/// which `scenario` differs from the defaults, or into all of them when it `is_whole`, but for its preset's
+/// name.
+[[nodiscard]] std::string write_document(const scenario::Scenario& scenario, std::string_view description,
+                                         bool is_whole = false);
 
 }  // namespace chicane::protocol

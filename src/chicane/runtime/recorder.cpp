@@ -97,7 +97,7 @@ void Recorder::begin() {
                                             {"step_budget_s", fmt::format("{}", options_.step_budget)}}));
   keep(writer_->add_attachment(
       kRecordedScenario, "application/yaml",
-      protocol::write_document(scenario, fmt::format("What was recorded by {}", kProgram))));
+      protocol::write_document(scenario, fmt::format("What was recorded by {}", kProgram), true)));
   const telemetry::Frame nothing;
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
     const std::uint16_t channel = writer_->add_channel(topic.name, topic.type, topic.schema);
