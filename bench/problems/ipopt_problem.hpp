@@ -40,7 +40,7 @@ class IpoptProblem : public Ipopt::TNLP {
   std::vector<double> solution;
   double cost = 0.0;
   Multipliers start_multipliers;   ///< asked for by warm_start_init_point
-  Multipliers multipliers;         ///< of the solution
+  Multipliers end_multipliers;     ///< of the solution
   double time_in_functions = 0.0;  ///< CPU time of values and derivatives [s]
 
   static int at_u(int k) { return k * kNz; }
@@ -176,7 +176,7 @@ class IpoptProblem : public Ipopt::TNLP {
                          const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
     solution.assign(w, w + n);
     cost = value;
-    multipliers = {{low, low + n}, {high, high + n}, {equations, equations + m}};
+    end_multipliers = {{low, low + n}, {high, high + n}, {equations, equations + m}};
   }
 
   /// The trajectory's inputs and states as the point to start from.

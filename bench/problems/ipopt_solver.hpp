@@ -35,7 +35,7 @@ class IpoptSolver {
   /// Keeps the multipliers of the last answer, shifted by one interval, for solve_warm().
   void remember() {
     constexpr int kEquations = P::kNx;
-    nlp_->start_multipliers = nlp_->multipliers;
+    nlp_->start_multipliers = nlp_->end_multipliers;
     shift(nlp_->start_multipliers.low, Nlp::kNz);
     shift(nlp_->start_multipliers.high, Nlp::kNz);
     shift(nlp_->start_multipliers.equation, kEquations);
