@@ -21,6 +21,7 @@ struct Command {
 [[nodiscard]] ExitCode drive(const Options& options);
 [[nodiscard]] ExitCode serve(const Options& options);
 [[nodiscard]] ExitCode simulate(const Options& options);
+[[nodiscard]] ExitCode replay(const Options& options);
 [[nodiscard]] ExitCode check(const Options& options);
 [[nodiscard]] ExitCode list(const Options& options);
 [[nodiscard]] ExitCode bench(const Options& options);

@@ -14,6 +14,7 @@ constexpr Command kCommands[] = {
     {"drive", "Controller and simulator in one process, with a dashboard", drive},
     {"serve", "Controller for an external simulator, as the original program was", serve},
     {"simulate", "Simulator for an external controller, as the original game was", simulate},
+    {"replay", "Compute a recorded run again and compare every command, bit for bit", replay},
     {"check", "Validate scenarios, presets, cars and tracks, and explain what is wrong", check},
     {"list", "Presets, tracks, cars, scenarios, controllers and parameters", list},
     {"bench", "Times of solver and control step on this machine, beside Ipopt's", bench},

@@ -90,6 +90,8 @@ void add_drive(CLI::App& command, Options& options) {
               "Actuation delay of the simulated car [ms], default 100");
   command.add_flag("--fast", options.is_fast, "As fast as possible, deterministic, without sockets");
   add_port(command, options);
+  command.add_option("--record", options.record_file, "Record every control step in a new MCAP file")
+      ->type_name("FILE");
   command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
   add_set(command, options);
   command.footer("Example: chicane drive --preset sixty-mph --track lakeside --laps 2 --fast");
@@ -117,6 +119,16 @@ void add_simulate(CLI::App& command, Options& options) {
   command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
   add_set(command, options);
   command.footer("Example: chicane simulate --connect ws://127.0.0.1:4567 --track lakeside --laps 2");
+}
+
+void add_replay(CLI::App& command, Options& options) {
+  command.add_option("log", options.log_file, "What drive --record wrote")->type_name("LOG")->required();
+  command
+      .add_flag("--verify", options.wants_verification,
+                "Compute every recorded command again and compare it bit for bit; exit code 1 if one differs")
+      ->required();
+  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  command.footer("Example: chicane replay run.mcap --verify");
 }
 
 void add_check(CLI::App& command, Options& options) {
@@ -199,6 +211,7 @@ std::variant<Options, Done> parse_command_line(int count, const char* const* wor
     if (command.name == "drive") add_drive(*sub, options);
     if (command.name == "serve") add_serve(*sub, options);
     if (command.name == "simulate") add_simulate(*sub, options);
+    if (command.name == "replay") add_replay(*sub, options);
     if (command.name == "check") add_check(*sub, options);
     if (command.name == "list") add_list(*sub, options);
     if (command.name == "bench") add_bench(*sub, options);

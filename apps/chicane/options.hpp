@@ -28,6 +28,7 @@ struct Options {
 
   bool is_fast = false;  ///< as fast as possible, no sockets
   bool is_json = false;
+  std::string record_file;  ///< drive; empty: nothing is recorded
   std::string address = "127.0.0.1";
   std::uint16_t port = 4567;
 
@@ -35,9 +36,11 @@ struct Options {
       "ws://127.0.0.1:4567/socket.io/?EIO=4&transport=websocket";  ///< simulate: the controller
   std::string server;                                              ///< simulate: command that starts it
 
-  std::vector<std::string> files;  ///< check
-  std::string shelf;               ///< list; empty: an overview
-  bool is_markdown = false;        ///< list parameters
+  std::vector<std::string> files;   ///< check
+  std::string log_file;             ///< replay
+  bool wants_verification = false;  ///< replay: the one thing to do with it
+  std::string shelf;                ///< list; empty: an overview
+  bool is_markdown = false;         ///< list parameters
 
   int instances = 100;                    ///< bench: of each family
   std::vector<int> horizons{10, 20, 50};  ///< bench
