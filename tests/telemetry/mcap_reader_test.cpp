@@ -83,6 +83,19 @@ TEST(McapReader, LeavesADamagedAttachmentOut) {
   EXPECT_EQ(report->damaged, 1U);
 }
 
+TEST(McapReader, SaysThatItCannotReadCompressedChunks) {
+  const TemporaryFile file;
+  std::string content;
+  mcap::Fields(content).number(std::uint64_t{0}).number(std::uint64_t{0}).number(std::uint64_t{9});
+  mcap::Fields(content).number(std::uint32_t{0}).text("zstd").number(std::uint64_t{0});
+  std::string bytes = std::string(mcap::kMagic) + static_cast<char>(mcap::Opcode::kChunk);
+  mcap::Fields(bytes).number(std::uint64_t{content.size()});
+  file.replace(bytes + content);
+  const auto report = read_mcap(file.path(), {});
+  ASSERT_FALSE(report);
+  EXPECT_THAT(report.error().message, HasSubstr("got the compression \"zstd\", expected none"));
+}
+
 TEST(McapReader, RefusesOtherFilesInWords) {
   const TemporaryFile file;
   EXPECT_EQ(read_mcap(file.path(), {}).error().code, ErrorCode::kIo);
