@@ -37,42 +37,41 @@ std::string number(double value, int digits) {
 }
 std::string small(double value) { return std::isfinite(value) ? fmt::format("{:.0e}", value) : "–"; }
 
-std::string ratio(double reference, double own) {
-  return reference > 0.0 ? fmt::format("{:.0f}", reference / own) : "–";
-}
-
-std::string solve_row(const SolveRow& row) {
-  const SolverColumn& own = row.own;
+std::string own_table(const std::vector<SolveRow>& rows) {
   std::string text =
-      fmt::format("| {} | {} | {} | {} | {} | {} | {:.1f} | {} | {} / {} ", row.family, row.horizon,
-                  number(own.time_us.median, 0), number(own.time_us.p99, 0), number(own.time_us.p999, 0),
-                  number(own.time_us.p99 / own.time_us.median, 1), own.mean_turns, own.unsolved,
-                  small(own.median_gradient), small(own.worst_gradient));
-  if (!row.ipopt) return text + "|\n";
-  const SolverColumn& other = *row.ipopt;
-  text += fmt::format("| {} | {} | {} / {} | {} | {} | {} ", number(other.time_us.median, 0), other.unsolved,
-                      small(other.median_gradient), small(other.worst_gradient), small(own.worst_excess),
-                      ratio(other.time_us.median, own.time_us.median),
-                      ratio(other.linear_us.median, own.time_us.median));
-  if (!row.ipopt_warm) return text + "| – | – | – |\n";
-  const SolverColumn& warm = *row.ipopt_warm;
-  return text + fmt::format("| {} | {} | {} |\n", number(warm.time_us.median, 0),
-                            ratio(warm.time_us.median, own.time_us.median),
-                            ratio(warm.linear_us.median, own.time_us.median));
+      "| family | N | median µs | p99 | p99.9 | p99 / median | turns | unsolved | gradient median / worst |\n"
+      "|---|---|---|---|---|---|---|---|---|\n";
+  for (const SolveRow& row : rows) {
+    const SolverColumn& own = row.own;
+    text += fmt::format("| {} | {} | {:.0f} | {:.0f} | {:.0f} | {:.1f} | {:.1f} | {} | {} / {} |\n",
+                        row.family, row.horizon, own.time_us.median, own.time_us.p99, own.time_us.p999,
+                        own.time_us.p99 / own.time_us.median, own.mean_turns, own.unsolved,
+                        small(own.median_gradient), small(own.worst_gradient));
+  }
+  return text;
 }
 
-std::string solve_table(const BenchReport& report) {
-  std::string head =
-      "| family | N | median µs | p99 | p99.9 | p99/median | turns | unsolved | gradient median / worst ";
-  std::string line = "|---|---|---|---|---|---|---|---|---|";
-  if (!report.solves.empty() && report.solves.front().ipopt) {
-    head +=
-        "| Ipopt median µs | unsolved | gradient median / worst | own cost over its, worst | ratio | without "
-        "functions | Ipopt hot µs | ratio | without functions ";
-    line += "---|---|---|---|---|---|---|---|---|";
+/// "time | ratio | ratio without functions".
+std::string against(const std::optional<SolverColumn>& reference, const SolverColumn& own) {
+  if (!reference) return "– | – | –";
+  return fmt::format("{:.0f} | {:.0f} | {:.0f}", reference->time_us.median,
+                     reference->time_us.median / own.time_us.median,
+                     reference->linear_us.median / own.time_us.median);
+}
+
+std::string ipopt_table(const std::vector<SolveRow>& rows) {
+  std::string text =
+      "| family | N | Ipopt median µs | ratio | its functions free | hot start µs | ratio | its functions "
+      "free "
+      "| unsolved | gradient median / worst | our cost over its, worst |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const SolveRow& row : rows) {
+    if (!row.ipopt) continue;
+    text += fmt::format("| {} | {} | {} | {} | {} | {} / {} | {} |\n", row.family, row.horizon,
+                        against(row.ipopt, row.own), against(row.ipopt_warm, row.own), row.ipopt->unsolved,
+                        small(row.ipopt->median_gradient), small(row.ipopt->worst_gradient),
+                        small(row.own.worst_excess));
   }
-  std::string text = head + "|\n" + line + "\n";
-  for (const SolveRow& row : report.solves) text += solve_row(row);
   return text;
 }
 
@@ -133,7 +132,8 @@ std::string to_markdown(const BenchReport& report) {
                                  machine.ipopt.empty() ? "not in this program" : machine.ipopt);
   if (report.was_interrupted) text += "Interrupted: the last row has fewer instances.\n";
   if (!report.solves.empty()) {
-    text += fmt::format("{} instances each.\n\n", report.solves.front().instances) + solve_table(report);
+    text += fmt::format("{} instances each.\n\n", report.solves.front().instances) + own_table(report.solves);
+    if (report.solves.front().ipopt) text += "\n" + ipopt_table(report.solves);
   }
   if (!report.growth.empty()) {
     text += "\nMedian of warm solves against the horizon:";
