@@ -50,7 +50,8 @@ describe('a recorded run', () => {
   it('is opened by its index and says what it holds', async () => {
     const reader = await open();
     assert.equal(reader.header.profile, 'ros2');
-    assert.match(reader.header.library, /^chicane \d/);
+    const { library } = reader.header;
+    assert.match(library, /^chicane \d/);
     assert.equal(reader.channelsById.size, 14);
     assert.equal(reader.statistics.channelCount, 14);
     assert.equal(reader.statistics.chunkCount, reader.chunkIndexes.length);
