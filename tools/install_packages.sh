@@ -7,7 +7,7 @@ run_packages=(
   libeigen3-dev libexpected-dev libboost-dev nlohmann-json3-dev libyaml-cpp-dev libcli11-dev libfmt-dev
 )
 # To build and run the tests, on top of those.
-test_packages=(libgtest-dev libgmock-dev coinor-libipopt-dev liblapack-dev libblas-dev python3)
+test_packages=(libgtest-dev libgmock-dev coinor-libipopt-dev liblapack-dev libblas-dev locales python3)
 # To run tools/check.sh, on top of those.
 check_packages=(clang-format clang-tidy)
 

@@ -10,6 +10,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/random.hpp"
+#include "support/comma_locale.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -114,11 +115,12 @@ TEST(TrackCodec, ForgivesLineEndsMarksBlanksAndSeparators) {
 }
 
 TEST(TrackCodec, ReadsDecimalPointsInALocaleOfCommas) {
-  const char* set = std::setlocale(LC_ALL, "de_DE.UTF-8");
-  const TrackFile file = parse_track(ring("x,y\n", ","), "a").value();
-  std::setlocale(LC_ALL, "C");
-  EXPECT_EQ(file.points[0].position.x(), 60.0);
-  if (set == nullptr) GTEST_SKIP() << "locale de_DE.UTF-8 is not installed: checked in the C locale only";
+  const std::string text = ring("x,y\n", ",");  // std::to_string writes commas in that locale
+  const test::CommaLocale comma;
+  if (!comma.is_set()) GTEST_SKIP() << "the Debian package locales is not installed";
+  EXPECT_EQ(parse_track(text, "a")->points[0].position.x(), 60.0);
+  EXPECT_NEAR(parse_track(text, "a")->points[5].position.x(), 60.0 * std::sqrt(0.5), 1e-6)
+      << "six digits in the text";
 }
 
 TEST(TrackCodec, TellsOpenFromClosedAndCanBeForced) {

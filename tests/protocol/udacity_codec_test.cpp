@@ -12,6 +12,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "protocol/hostile_telemetry.hpp"
+#include "support/comma_locale.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -167,27 +168,15 @@ TEST(UdacityTelemetry, AnyOneChangedByteIsSafe) {
   }
 }
 
-/// Switches to a decimal comma; false when this machine knows no German.
-bool speak_german() {
-  if (std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr) return true;
-  const std::string folder = testing::TempDir() + "chicane_locales";
-  const std::string command =
-      "mkdir -p " + folder + " && localedef -i de_DE -f UTF-8 " + folder + "/de_DE.UTF-8 2>/dev/null";
-  if (std::system(command.c_str()) != 0) return false;
-  ::setenv("LOCPATH", folder.c_str(), 1);
-  return std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr;
-}
-
 TEST(UdacityCodec, DoesNotDependOnTheLocale) {
-  const std::string before = std::setlocale(LC_ALL, nullptr);
-  if (!speak_german()) GTEST_SKIP() << "the Debian package locales is not installed";
+  const test::CommaLocale comma;
+  if (!comma.is_set()) GTEST_SKIP() << "the Debian package locales is not installed";
   EXPECT_EQ(std::localeconv()->decimal_point, std::string(","));
   const auto message = parse_telemetry(kRealTelemetry);
   const auto& measurement = std::get<model::Measurement>(message);
   EXPECT_DOUBLE_EQ(measurement.x, -40.62008);
   EXPECT_THAT(encode_telemetry(measurement), HasSubstr("\"x\":-40.62008"));
   EXPECT_THAT(encode_steer({.steer = -0.1, .throttle = 0.5}, {}, {}), HasSubstr("\"throttle\":0.5"));
-  std::setlocale(LC_ALL, before.c_str());
 }
 
 controller::Plan straight_plan(int size) {
