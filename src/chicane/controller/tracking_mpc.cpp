@@ -103,7 +103,6 @@ class TrackingMpc final : public Controller {
     const path::PathPoint at = line.at(place.s);
     const double heading_error = angle_difference(start.state.psi, at.heading);
     if (std::fabs(heading_error) > 0.5 * kPi) return false;
-    progress_ = has_place_ ? line.difference(place.s, s_) : 0.0;
     s_ = place.s;
     has_place_ = true;
     revision_ = road_.revision();
@@ -258,8 +257,7 @@ class TrackingMpc final : public Controller {
   Horizon old_;
   StageState x0_{};
   StepResult result_;
-  double s_ = 0.0;         ///< arc length on the line where the command acts
-  double progress_ = 0.0;  ///< since the step before
+  double s_ = 0.0;  ///< arc length on the line where the command acts
   double act_time_ = 0.0;
   unsigned revision_ = 0;
   bool has_place_ = false;
