@@ -7,6 +7,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/controller/explain.hpp"
 #include "chicane/controller/fallback.hpp"
 #include "chicane/controller/option_range.hpp"
 #include "chicane/controller/speed_hold.hpp"
@@ -56,7 +57,8 @@ class Baseline final : public Controller {
         law_{law},
         speed_{speed, vehicle},
         fallback_{vehicle},
-        steer_limit_{vehicle.steer_limit} {
+        steer_limit_{vehicle.steer_limit},
+        lowest_throttle_{-vehicle.brake_throttle_limit} {
     reset();
   }
 
@@ -67,9 +69,9 @@ class Baseline final : public Controller {
     const path::Path& line = line_.path();
     const path::Projection here = line.project({now.x, now.y});
     const View view{line, here, angle_difference(now.psi, line.at(here.s).heading), now, elapsed(now.time)};
-    const double wanted = speed_.reference(line, here.s);
+    const SpeedHold::Wanted wanted = speed_.reference(line, here.s);
     const double steer = std::clamp(law_.steer(view), -steer_limit_, steer_limit_);
-    return answer(act_time, view, {steer, speed_.throttle(wanted, now.speed)}, wanted);
+    return answer(act_time, view, {steer, speed_.throttle(wanted.speed, now.speed)}, wanted);
   }
 
   void reset() noexcept override {
@@ -81,6 +83,9 @@ class Baseline final : public Controller {
   }
 
   [[nodiscard]] std::string_view name() const noexcept override { return name_; }
+  [[nodiscard]] std::span<const std::string_view> constraints() const noexcept override {
+    return kInputConstraintNames;
+  }
 
  private:
   static bool is_finite(const model::Measurement& now) noexcept {
@@ -96,7 +101,7 @@ class Baseline final : public Controller {
   }
 
   const StepResult& answer(double act_time, const View& view, const model::Command& command,
-                           double wanted) noexcept {
+                           const SpeedHold::Wanted& wanted) noexcept {
     const model::Measurement& now = view.now;
     result_.command = command;
     result_.plan.size = 1;
@@ -112,9 +117,20 @@ class Baseline final : public Controller {
     result_.report.solve.status = solver::SolveStatus::kOptimal;
     result_.report.lateral_error = view.here.d;
     result_.report.heading_error = view.heading_error;
-    result_.report.speed_reference = wanted;
+    result_.report.speed_reference = wanted.speed;
     result_.report.sight = sight;
+    explain_command(command, now.speed, wanted);
     return result_;
+  }
+
+  void explain_command(const model::Command& command, double speed,
+                       const SpeedHold::Wanted& wanted) noexcept {
+    Explanation& explanation = result_.report.explanation;
+    explanation.active_now =
+        bounds_met({command.steer, command.throttle}, {-steer_limit_, lowest_throttle_}, {steer_limit_, 1.0});
+    explanation.active_ahead = explanation.active_now;
+    explanation.speed_limit = wanted.speed;
+    explanation.speed_limiter = limiter_of(speed, wanted.speed, wanted.limiter, explanation.active_now);
   }
 
   const StepResult& fall_back(double act_time, const model::Measurement& now) noexcept {
@@ -133,6 +149,7 @@ class Baseline final : public Controller {
   SpeedHold speed_;
   Fallback fallback_;
   double steer_limit_;
+  double lowest_throttle_;
   WaypointLine line_;
   double last_time_ = 0.0;
   bool has_time_ = false;

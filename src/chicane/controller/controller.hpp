@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <span>
 #include <string_view>
 
 #include "chicane/base/deadline.hpp"
+#include "chicane/controller/explanation.hpp"
 #include "chicane/controller/plan.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
@@ -31,6 +33,7 @@ struct StepReport {
   double solve_time = 0.0;  ///< of the optimisation alone [s], as the deadline's clock saw it; 0 without one
   bool has_map = false;     ///< the lap is closed in memory
   bool gated = false;       ///< the command gate had to change the command
+  Explanation explanation;  ///< why the answer is what it is; empty on a rung below the controller
 };
 
 struct StepResult {
@@ -51,6 +54,9 @@ class Controller {
   /// Forget everything learned (map, warm start): a new run begins.
   virtual void reset() noexcept = 0;
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
+  /// Names of Explanation's cost terms and of the bits of its active constraints; empty for none.
+  [[nodiscard]] virtual std::span<const std::string_view> cost_terms() const noexcept { return {}; }
+  [[nodiscard]] virtual std::span<const std::string_view> constraints() const noexcept { return {}; }
 };
 
 }  // namespace chicane::controller

@@ -7,6 +7,7 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/controller/cubic_problem.hpp"
+#include "chicane/controller/explain.hpp"
 #include "chicane/controller/fallback.hpp"
 #include "chicane/controller/local_fit.hpp"
 #include "chicane/controller/option_range.hpp"
@@ -56,6 +57,12 @@ class CubicMpc final : public Controller {
   }
 
   [[nodiscard]] std::string_view name() const noexcept override { return "cubic-mpc"; }
+  [[nodiscard]] std::span<const std::string_view> cost_terms() const noexcept override {
+    return CubicTerms::kNames;
+  }
+  [[nodiscard]] std::span<const std::string_view> constraints() const noexcept override {
+    return kInputConstraintNames;
+  }
 
  private:
   static bool is_finite(const model::Measurement& now) noexcept {
@@ -112,9 +119,18 @@ class CubicMpc final : public Controller {
     has_answer_ = true;
     answer_time_ = start_time_;
     write_plan();
+    explain_answer();
     fallback_.accept(result_.plan);
     result_.command = result_.plan.points[0].command;
     return result_;
+  }
+
+  void explain_answer() noexcept {
+    Explanation& explanation = result_.report.explanation;
+    explain<CubicTerms>(problem_, answer_, explanation);
+    explanation.speed_limit = result_.report.speed_reference;
+    explanation.speed_limiter =
+        limiter_of(start_.speed, explanation.speed_limit, SpeedLimiter::kAsked, explanation.active_now);
   }
 
   const StepResult& fall_back(const model::Measurement& now) noexcept {

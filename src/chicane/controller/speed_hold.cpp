@@ -13,16 +13,21 @@ constexpr int kMaxSamples = 100;             ///< and how often
 
 }  // namespace
 
-double SpeedHold::reference(const path::Path& path, double s) const noexcept {
+SpeedHold::Wanted SpeedHold::reference(const path::Path& path, double s) const noexcept {
   double wanted_squared = options_.speed_reference * options_.speed_reference;
+  SpeedLimiter limiter = SpeedLimiter::kAsked;
   const double sight = path.length() - s;
   for (int i = 0; i < kMaxSamples && i * kSampleSpacing <= sight; ++i) {
     const double ahead = i * kSampleSpacing;
     const double curvature = std::fabs(path.at(s + ahead).curvature);
     const double limit_squared = options_.lateral_acceleration_limit / std::max(curvature, 1e-6);
-    wanted_squared = std::min(wanted_squared, limit_squared + 2.0 * kComfortableBraking * ahead);
+    const double here_squared = limit_squared + 2.0 * kComfortableBraking * ahead;
+    if (here_squared < wanted_squared) {
+      wanted_squared = here_squared;
+      limiter = i == 0 ? SpeedLimiter::kCurvature : SpeedLimiter::kBraking;
+    }
   }
-  return std::sqrt(wanted_squared);
+  return {std::sqrt(wanted_squared), limiter};
 }
 
 double SpeedHold::throttle(double wanted, double v) const noexcept {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "chicane/controller/baselines.hpp"
+#include "chicane/controller/explanation.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/path/path.hpp"
 
@@ -14,9 +15,13 @@ class SpeedHold {
   SpeedHold(const SpeedHoldOptions& options, const model::VehicleParams& vehicle) noexcept
       : options_{options}, vehicle_{vehicle} {}
 
-  /// Speed wanted at arc length s of `path` [m/s]: at most the reference, and slow enough to meet v² |κ| <=
-  /// limit everywhere ahead with comfortable braking.
-  [[nodiscard]] double reference(const path::Path& path, double s) const noexcept;
+  struct Wanted {
+    double speed = 0.0;  ///< [m/s]
+    SpeedLimiter limiter = SpeedLimiter::kAsked;
+  };
+  /// Speed wanted at arc length s of `path`: at most the reference, and slow enough to meet v² |κ| <= limit
+  /// everywhere ahead with comfortable braking.
+  [[nodiscard]] Wanted reference(const path::Path& path, double s) const noexcept;
   /// Pedal in [-brake_throttle_limit, 1] towards `wanted` [m/s] at speed v [m/s].
   [[nodiscard]] double throttle(double wanted, double v) const noexcept;
 

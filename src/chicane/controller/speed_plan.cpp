@@ -36,9 +36,19 @@ double longitudinal_share(double v, double demand, const model::VehicleParams& p
   return std::sqrt(std::max(0.0, 1.0 - p.friction_coupling * std::min(1.0, use * use)));
 }
 
+/// Lowers `speed` to `limit` and remembers why.
+void limit_to(double limit, SpeedLimiter reason, double& speed, SpeedLimiter& limiter) {
+  if (!(limit < speed)) return;
+  speed = limit;
+  limiter = reason;
+}
+
 }  // namespace
 
-SpeedPlan::SpeedPlan() { speed_.assign(static_cast<std::size_t>(kCapacity) * 2, 0.0); }
+SpeedPlan::SpeedPlan() {
+  speed_.assign(static_cast<std::size_t>(kCapacity) * 2, 0.0);
+  limiter_.assign(static_cast<std::size_t>(kCapacity), SpeedLimiter::kNone);
+}
 
 void SpeedPlan::rebuild(const path::Path& path, const model::VehicleParams& vehicle,
                         const SpeedPlanOptions& options) noexcept {
@@ -50,19 +60,23 @@ void SpeedPlan::rebuild(const path::Path& path, const model::VehicleParams& vehi
   count_ = is_closed_ ? intervals : intervals + 1;
   double* const speed = speed_.data();
   double* const demand = speed_.data() + kCapacity;
+  SpeedLimiter* const limiter = limiter_.data();
 
   for (int i = 0; i < count_; ++i) {
     const double s = i * spacing_;
     const double slope =
         (path.at(s + kSlopeReach).curvature - path.at(s - kSlopeReach).curvature) / (2.0 * kSlopeReach);
     demand[i] = demand_of(path.at(s).curvature, slope, vehicle);
-    speed[i] = std::min(options.speed_limit, speed_for(demand[i], vehicle, options.grip_share));
+    speed[i] = options.speed_limit;
+    limiter[i] = SpeedLimiter::kAsked;
+    limit_to(speed_for(demand[i], vehicle, options.grip_share), SpeedLimiter::kCurvature, speed[i],
+             limiter[i]);
     speed[i] = std::max(speed[i], kLowestSpeed);
   }
   if (!is_closed_) {
     const double end =
         speed_for((1.0 - vehicle.steer_helper) * options.end_curvature, vehicle, options.grip_share);
-    speed[count_ - 1] = std::min(speed[count_ - 1], std::max(end, kLowestSpeed));
+    limit_to(std::max(end, kLowestSpeed), SpeedLimiter::kSight, speed[count_ - 1], limiter[count_ - 1]);
   }
 
   // Twice round a closed path, so that the seam agrees.
@@ -75,8 +89,8 @@ void SpeedPlan::rebuild(const path::Path& path, const model::VehicleParams& vehi
     const double drag = longitudinal_acceleration(vehicle, 0.0, v);
     const double drive = longitudinal_acceleration(vehicle, 1.0, v) - drag;
     const double a = options.drive_share * share * drive + drag;
-    speed[to] =
-        std::min(speed[to], std::sqrt(std::max(kLowestSpeed * kLowestSpeed, v * v + 2.0 * a * spacing_)));
+    limit_to(std::sqrt(std::max(kLowestSpeed * kLowestSpeed, v * v + 2.0 * a * spacing_)),
+             SpeedLimiter::kPower, speed[to], limiter[to]);
   }
   for (int i = steps; i > 0; --i) {
     const int from = i % count_;
@@ -86,7 +100,10 @@ void SpeedPlan::rebuild(const path::Path& path, const model::VehicleParams& vehi
     const double drag = longitudinal_acceleration(vehicle, 0.0, v);
     const double brake = drag - longitudinal_acceleration(vehicle, -vehicle.brake_throttle_limit, v);
     const double a = options.brake_share * share * brake - drag;
-    speed[to] = std::min(speed[to], std::sqrt(v * v + 2.0 * a * spacing_));
+    // Braking for the end of sight is for want of sight.
+    const bool is_blind = limiter[from] == SpeedLimiter::kSight;
+    limit_to(std::sqrt(v * v + 2.0 * a * spacing_), is_blind ? SpeedLimiter::kSight : SpeedLimiter::kBraking,
+             speed[to], limiter[to]);
   }
 }
 
@@ -106,7 +123,7 @@ SpeedPlan::Sample SpeedPlan::at(double s) const noexcept {
   }
   const double v0 = speed_[static_cast<std::size_t>(index)];
   const double v1 = speed_[static_cast<std::size_t>(next)];
-  return {v0 + share * (v1 - v0), (v1 - v0) / spacing_};
+  return {v0 + share * (v1 - v0), (v1 - v0) / spacing_, limiter_[static_cast<std::size_t>(index)]};
 }
 
 }  // namespace chicane::controller

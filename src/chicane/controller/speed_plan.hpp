@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "chicane/controller/explanation.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/path/path.hpp"
 
@@ -36,14 +37,16 @@ class SpeedPlan {
                const SpeedPlanOptions& options) noexcept;
 
   struct Sample {
-    double speed = 0.0;  ///< [m/s]
-    double slope = 0.0;  ///< dv/ds [1/s]
+    double speed = 0.0;                          ///< [m/s]
+    double slope = 0.0;                          ///< dv/ds [1/s]
+    SpeedLimiter limiter = SpeedLimiter::kNone;  ///< which pass bound it at the sample before s
   };
   /// Speed at arc length s (wrapped when closed, held beyond open ends).
   [[nodiscard]] Sample at(double s) const noexcept;
 
  private:
   std::vector<double> speed_;
+  std::vector<SpeedLimiter> limiter_;
   double spacing_ = 1.0;
   int count_ = 0;
   bool is_closed_ = false;

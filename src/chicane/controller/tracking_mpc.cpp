@@ -6,6 +6,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/controller/command_history.hpp"
+#include "chicane/controller/explain.hpp"
 #include "chicane/controller/fallback.hpp"
 #include "chicane/controller/prediction.hpp"
 #include "chicane/controller/road.hpp"
@@ -84,6 +85,12 @@ class TrackingMpc final : public Controller {
   }
 
   [[nodiscard]] std::string_view name() const noexcept override { return "tracking-mpc"; }
+  [[nodiscard]] std::span<const std::string_view> cost_terms() const noexcept override {
+    return TrackingTerms::kNames;
+  }
+  [[nodiscard]] std::span<const std::string_view> constraints() const noexcept override {
+    return kConstraintNames;
+  }
 
  private:
   /// The predicted start in coordinates along the line. False when the car or the road is lost.
@@ -204,9 +211,18 @@ class TrackingMpc final : public Controller {
     model::Command& command = result_.command;
     command.steer = horizon_.u[0][0];
     command.throttle = throttle_for(model_.vehicle(), horizon_.u[0][1], start.state.vx);
+    explain_answer(start.state.vx);
     fallback_.accept(result_.plan);
     sent_.add(act_time_of(now), command);
     return result_;
+  }
+
+  void explain_answer(double speed) noexcept {
+    Explanation& explanation = result_.report.explanation;
+    explain<TrackingTerms>(problem_, horizon_, explanation);
+    const SpeedPlan::Sample planned = road_.speed(s_);
+    explanation.speed_limit = planned.speed;
+    explanation.speed_limiter = limiter_of(speed, planned.speed, planned.limiter, explanation.active_now);
   }
 
   const StepResult& fall_back(const model::Measurement& now, double act_time) noexcept {

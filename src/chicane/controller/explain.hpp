@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+
+#include "chicane/controller/cubic_problem.hpp"
+#include "chicane/controller/explanation.hpp"
+#include "chicane/controller/tracking_problem.hpp"
+
+/// What an optimal control problem's answer says about itself: cost by term, active constraints. Evaluates
+/// the residuals once along the plan (about 40 ns a stage), after the solver is done; changes nothing.
+namespace chicane::controller {
+
+/// Groups of TrackingProblem's residuals, in the order of their names.
+struct TrackingTerms {
+  enum Group : std::uint8_t { kLateral, kHeading, kSpeed, kSteerRate, kJerk, kEdge, kSlip, kFriction, kYaw };
+  static constexpr std::array<std::string_view, 9> kNames{
+      "lateral", "heading", "speed", "steer_rate", "jerk", "edge", "slip", "friction", "end_yaw_rate"};
+  static constexpr std::array<Group, TrackingProblem::kNr> kStage{
+      kLateral, kHeading, kSpeed, kSteerRate, kJerk, kEdge, kEdge, kSlip, kSlip, kSteerRate, kFriction};
+  static constexpr std::array<Group, TrackingProblem::kNe> kEnd{kLateral, kHeading, kSpeed, kYaw};
+  /// Residuals that are not zero where a constraint is active.
+  static constexpr std::array<std::pair<std::size_t, Constraint>, 6> kOneSided{
+      {{5, Constraint::kLeftEdge},
+       {6, Constraint::kRightEdge},
+       {7, Constraint::kFrontTire},
+       {8, Constraint::kRearTire},
+       {9, Constraint::kSteerRate},
+       {10, Constraint::kFrictionEllipse}}};
+};
+
+/// Groups of CubicProblem's residuals: the terms of equation 7, in its order (docs/problem.md).
+struct CubicTerms {
+  static constexpr std::array<std::string_view, 8> kNames{
+      "lateral", "heading", "speed", "steer", "throttle", "steer_change", "throttle_change", "speed_steer"};
+  static constexpr std::array<std::uint8_t, CubicProblem::kNr> kStage{0, 1, 2, 3, 4, 5, 6, 7};
+  static constexpr std::array<std::uint8_t, CubicProblem::kNe> kEnd{0, 1, 2};
+  static constexpr std::array<std::pair<std::size_t, Constraint>, 0> kOneSided{};
+};
+
+/// Bits of the inputs (steering, pedal or acceleration) that stand at a bound.
+[[nodiscard]] inline std::uint32_t bounds_met(const std::array<double, 2>& u,
+                                              const std::array<double, 2>& low,
+                                              const std::array<double, 2>& high) noexcept {
+  constexpr double kTouch = 1e-6;
+  std::uint32_t bits = 0;
+  if (u[0] <= low[0] + kTouch || u[0] >= high[0] - kTouch) bits |= bit(Constraint::kSteerLimit);
+  if (u[1] >= high[1] - kTouch) bits |= bit(Constraint::kThrottleMax);
+  if (u[1] <= low[1] + kTouch) bits |= bit(Constraint::kBrakeMax);
+  return bits;
+}
+
+/// Fills cost terms and active constraints from an answer. `Trajectory` has horizon, x and u.
+template <class Terms, class Problem, class Trajectory>
+void explain(const Problem& problem, const Trajectory& answer, Explanation& explanation) noexcept {
+  static_assert(Terms::kNames.size() <= Explanation::kMaxCostTerms);
+  explanation.cost_terms = {};
+  explanation.cost_term_count = static_cast<int>(Terms::kNames.size());
+  explanation.active_now = explanation.active_ahead = 0;
+  const auto pay = [&](const auto& residual, const auto& groups) {
+    for (std::size_t i = 0; i < groups.size(); ++i)
+      explanation.cost_terms[groups[i]] += 0.5 * residual[i] * residual[i];
+  };
+  for (int k = 0; k < answer.horizon; ++k) {
+    const auto& x = answer.x[static_cast<std::size_t>(k)];
+    const auto& u = answer.u[static_cast<std::size_t>(k)];
+    const auto residual = problem.template residual<double>(k, x, u);
+    pay(residual, Terms::kStage);
+    std::uint32_t active = bounds_met(u, problem.input_lower(k), problem.input_upper(k));
+    for (const auto& [row, constraint] : Terms::kOneSided) {
+      if (residual[row] > 0.0) active |= bit(constraint);
+    }
+    if (k == 0) explanation.active_now = active;
+    explanation.active_ahead |= active;
+  }
+  const auto& end = answer.x[static_cast<std::size_t>(answer.horizon)];
+  pay(problem.template terminal_residual<double>(end), Terms::kEnd);
+}
+
+/// What limits a car of `speed` [m/s] that may drive `limit` [m/s] where `by` says why. With the throttle at
+/// its bound and the limit not reached it is the drive.
+[[nodiscard]] inline SpeedLimiter limiter_of(double speed, double limit, SpeedLimiter by,
+                                             std::uint32_t active_now) noexcept {
+  constexpr double kReached = 0.5;  // [m/s]
+  const bool is_reached = speed >= limit - kReached;
+  if (!is_reached && (active_now & bit(Constraint::kThrottleMax)) != 0U) return SpeedLimiter::kPower;
+  // Below the wish at part throttle other prices hold the car back.
+  return !is_reached && by == SpeedLimiter::kAsked ? SpeedLimiter::kNone : by;
+}
+
+}  // namespace chicane::controller
