@@ -23,7 +23,8 @@ using namespace std::chrono_literals;
 /// A server that remembers what happened, for a test thread that waits for it.
 class Recorder {
  public:
-  explicit Recorder(ServerOptions options = {}, std::vector<Asset> assets = {}) {
+  explicit Recorder(ServerOptions options = {}, std::vector<Asset> assets = {},
+                    std::function<std::optional<Content>(std::string_view)> on_get = {}) {
     options.port = 0;
     ServerHandlers handlers{
         .on_start = {},
@@ -37,7 +38,8 @@ class Recorder {
         .on_message = [this](ConnectionId, int, std::string_view bytes,
                              bool) { note([&] { messages_.emplace_back(bytes); }); },
         .on_close = [this](ConnectionId, int,
-                           std::string_view why) { note([&] { closed_.emplace_back(why); }); }};
+                           std::string_view why) { note([&] { closed_.emplace_back(why); }); },
+        .on_get = std::move(on_get)};
     auto created = Server::create(options, std::move(handlers), std::move(assets));
     if (created) server_ = std::move(*created);
   }
@@ -206,6 +208,39 @@ TEST(Server, DoesNotSendAnAssetTwice) {
   const std::size_t start = page.find("ETag: ") + 6;
   const std::string tag = page.substr(start, page.find("\r\n", start) - start);
   EXPECT_THAT(get(recorder.port(), "/", "If-None-Match: " + tag + "\r\n"), StartsWith("HTTP/1.1 304"));
+}
+
+TEST(Server, AsksForAContentBeforeItLooksForAnAsset) {
+  Recorder recorder({}, {{.path = "/index.html", .content_type = "text/html", .content = "<h1>hello</h1>"}},
+                    [](std::string_view path) -> std::optional<Content> {
+                      if (path != "/mode.json") return std::nullopt;
+                      return Content{.content_type = "application/json", .bytes = R"({"mode":"live"})"};
+                    });
+  const std::string answer = get(recorder.port(), "/mode.json?x=1");
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 200 OK\r\n"));
+  EXPECT_THAT(answer, HasSubstr("Content-Type: application/json\r\n"));
+  EXPECT_THAT(answer, HasSubstr("X-Content-Type-Options: nosniff"));
+  EXPECT_THAT(answer, HasSubstr("\r\n\r\n{\"mode\":\"live\"}"));
+  EXPECT_THAT(get(recorder.port(), "/mode.json", "Range: bytes=2-5\r\n"), HasSubstr("\r\n\r\nmode"));
+  const std::string head = get(recorder.port(), "/mode.json", {}, "HEAD");
+  EXPECT_THAT(head, HasSubstr("Content-Length: 15\r\n"));
+  EXPECT_THAT(head, Not(HasSubstr("live")));
+  EXPECT_THAT(get(recorder.port(), "/"), HasSubstr("hello"));
+  EXPECT_THAT(get(recorder.port(), "/mode.json/../x"), StartsWith("HTTP/1.1 404"));
+  EXPECT_THAT(get(recorder.port(), "/mode.json", "Origin: http://evil.example\r\n"),
+              StartsWith("HTTP/1.1 403"));
+}
+
+TEST(Server, AnswersTheNextRequestOnTheSameConnection) {
+  Recorder recorder({}, {}, [](std::string_view path) {
+    return Content{.content_type = "text/plain", .bytes = std::string(100'000, path.back()) + "end"};
+  });
+  RawSocket socket(recorder.port());
+  for (const char* path : {"/a", "/b"}) {
+    socket.send("GET " + std::string(path) + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    EXPECT_THAT(socket.until("\r\n\r\n"), HasSubstr("Content-Length: 100003"));
+    EXPECT_EQ(socket.until("end"), std::string(100'000, path[1]) + "end");
+  }
 }
 
 TEST(Server, AnswersBrokenRequestsWithoutHarm) {

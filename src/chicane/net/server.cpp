@@ -10,13 +10,13 @@
 #include <boost/asio/ip/v6_only.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <deque>
 #include <optional>
 #include <thread>
@@ -24,8 +24,8 @@
 
 #include <fmt/format.h>
 
-#include "chicane/base/fnv.hpp"
 #include "chicane/net/access.hpp"
+#include "chicane/net/http_response.hpp"
 #include "chicane/net/port_holder.hpp"
 
 namespace chicane::net {
@@ -39,28 +39,11 @@ using Tcp = asio::ip::tcp;
 using ErrorCodeBoost = boost::system::error_code;
 
 constexpr int kSendBuffer = 32 * 1024;  // a reader that stalls holds this much kernel memory, not megabytes
-constexpr std::chrono::seconds kAnswerTimeout{30};  // for a whole asset on a slow line
+constexpr std::chrono::seconds kAnswerTimeout{30};  // for one piece of an answer on a slow line
 constexpr std::chrono::seconds kLingerTimeout{1};   // so that a refusal is read before the socket goes
 constexpr std::chrono::milliseconds kGoodbye{200};  // for close frames when the server ends
-constexpr const char* kContentSecurityPolicy =
-    "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; "
-    "img-src 'self' data: blob:; worker-src 'self' blob:; connect-src 'self' ws: wss:; object-src 'none'; "
-    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-
 std::string_view view(boost::string_view text) { return {text.data(), text.size()}; }
 boost::string_view view(std::string_view text) { return {text.data(), text.size()}; }
-
-/// An ETag that changes with the content.
-std::string tag_of(std::string_view content) {
-  Fnv hash;
-  hash.add(std::uint64_t{content.size()});
-  for (std::size_t i = 0; i < content.size(); i += sizeof(std::uint64_t)) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, content.data() + i, std::min(sizeof(word), content.size() - i));
-    hash.add(word);
-  }
-  return fmt::format("\"{:016x}\"", hash.value());
-}
 
 class WebSocket;
 
@@ -266,7 +249,13 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     if (request.method() != http::verb::get && request.method() != http::verb::head) {
       return refuse(http::status::method_not_allowed, "only GET and HEAD");
     }
-    serve_asset(request);
+    serve(request);
+  }
+
+  [[nodiscard]] bool is_foreign(const http::request<http::empty_body>& request) const {
+    const std::string_view origin = view(request[http::field::origin]);
+    return !origin.empty() &&
+           !origin_is_allowed(origin, view(request[http::field::host]), core_.options.allowed_origins);
   }
 
   void upgrade(const http::request<http::empty_body>& request) {
@@ -274,7 +263,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     const std::string_view host = view(request[http::field::host]);
     if (buffer_.size() > 0)
       return refuse(http::status::bad_request, "bytes sent before the upgrade was answered");
-    if (!origin.empty() && !origin_is_allowed(origin, host, core_.options.allowed_origins)) {
+    if (is_foreign(request)) {
       return refuse(http::status::forbidden, fmt::format("pages of '{}' may not connect here", origin));
     }
     UpgradeRequest asked{.id = core_.next_id++,
@@ -294,54 +283,52 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
         ->start(request, answer.subprotocol);
   }
 
-  void serve_asset(const http::request<http::empty_body>& request) {
+  void serve(const http::request<http::empty_body>& request) {
+    const HttpRequest asked{.is_head = request.method() == http::verb::head,
+                            .keep_alive = request.keep_alive(),
+                            .range = view(request[http::field::range]),
+                            .if_range = view(request[http::field::if_range]),
+                            .if_none_match = view(request[http::field::if_none_match])};
     const std::string_view target = view(request.target());
     const std::string_view path = target.substr(0, target.find('?'));
+    std::optional<Content> content;
+    if (core_.handlers.on_get) content = core_.handlers.on_get(path);
+    if (content && is_foreign(request))
+      return refuse(http::status::forbidden, "pages of other servers may not read this");
+    if (content) return reply(HttpResponse::of(std::move(*content), asked), asked);
     const std::string_view wanted = path == "/" ? "/index.html" : path;
     const auto asset = std::find_if(core_.assets.begin(), core_.assets.end(),
                                     [&](const Asset& candidate) { return candidate.path == wanted; });
-    const bool is_head = request.method() == http::verb::head;
     if (asset == core_.assets.end()) {
-      return reply(http::status::not_found, request.keep_alive(), is_head, "text/plain; charset=utf-8",
-                   "no such page\n");
+      return reply(HttpResponse::in_words("404 Not Found", "no such page"), asked);
     }
     const std::string& tag = core_.tags[static_cast<std::size_t>(asset - core_.assets.begin())];
-    const bool is_known = view(request[http::field::if_none_match]) == tag;
-    const auto status = is_known ? http::status::not_modified : http::status::ok;
-    reply(status, request.keep_alive(), is_head, asset->content_type,
-          is_known ? std::string_view{} : asset->content, asset->gzip, tag);
+    reply(HttpResponse::of_asset(asset->content, asset->content_type, asset->gzip, tag, asked), asked);
   }
 
   /// Answers in words and ends the connection.
   void refuse(http::status status, std::string words) {
-    text_ = std::move(words) + "\n";
-    reply(status, false, false, "text/plain; charset=utf-8", text_);
+    auto response = HttpResponse::in_words(
+        fmt::format("{} {}", static_cast<unsigned>(status), view(http::obsolete_reason(status))),
+        std::move(words));
+    if (status == http::status::method_not_allowed) response.add("Allow", "GET, HEAD");
+    reply(std::move(response), {});
   }
 
-  /// `content` must live until it is written: an asset, a literal, or text_.
-  void reply(http::status status, bool keep_alive, bool is_head, std::string_view type,
-             std::string_view content, bool gzip = false, const std::string& tag = {}) {
-    using Response = http::response<http::span_body<const char>>;
-    auto response = std::make_shared<Response>(status, 11);
-    response->set(http::field::server, "chicane");
-    response->set(http::field::content_type, view(type));
-    response->set(http::field::cache_control, "no-cache");
-    response->set("Content-Security-Policy", kContentSecurityPolicy);
-    response->set("X-Content-Type-Options", "nosniff");
-    response->set("Referrer-Policy", "no-referrer");
-    response->set("Cross-Origin-Opener-Policy", "same-origin");
-    response->set("Cross-Origin-Resource-Policy", "same-origin");
-    if (gzip) response->set(http::field::content_encoding, "gzip");
-    if (!tag.empty()) response->set(http::field::etag, tag);
-    if (status == http::status::method_not_allowed) response->set(http::field::allow, "GET, HEAD");
-    response->keep_alive(keep_alive);
-    if (status != http::status::not_modified) response->content_length(content.size());
-    if (!is_head) response->body() = {content.data(), content.size()};
+  void reply(HttpResponse response, const HttpRequest& asked) {
+    piece_ = response.head(asked);
+    body_ = asked.is_head ? Body{} : std::move(response.body());
+    write(asked.keep_alive);
+  }
+
+  void write(bool keep_alive) {
     stream_.expires_after(kAnswerTimeout);
-    http::async_write(stream_, *response,
-                      [self = shared_from_this(), response](ErrorCodeBoost ec, std::size_t) {
+    asio::async_write(stream_, asio::buffer(piece_),
+                      [self = shared_from_this(), keep_alive](ErrorCodeBoost ec, std::size_t) {
                         if (ec) return;
-                        if (response->keep_alive()) return self->read();
+                        if (self->body_.next(self->piece_)) return self->write(keep_alive);
+                        if (self->body_.is_short()) return;  // less than was promised: end the connection
+                        if (keep_alive) return self->read();
                         self->linger();
                       });
   }
@@ -367,7 +354,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   std::optional<http::request_parser<http::empty_body>> parser_;
   std::array<char, 1024> rest_{};
   std::string peer_;
-  std::string text_;
+  std::string piece_;  ///< of the answer, while it is written
+  Body body_;          ///< what follows it
 };
 
 class BeastServer final : public Server {

@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/net/http_response.hpp"
 
 namespace chicane::net {
 
@@ -75,6 +77,9 @@ struct ServerHandlers {
   std::function<void(ConnectionId, int endpoint)> on_open{};
   std::function<void(ConnectionId, int endpoint, std::string_view bytes, bool binary)> on_message{};
   std::function<void(ConnectionId, int endpoint, std::string_view why)> on_close{};
+  /// What a GET or HEAD of `path` (no query) is answered with; none: the asset of that name, or 404. Compare
+  /// whole paths with the few you offer, and never make a file's name of one. May be empty.
+  std::function<std::optional<Content>(std::string_view path)> on_get{};
 };
 
 /// How a message waits for a slow reader.
@@ -87,9 +92,9 @@ enum class Delivery {
 using Bytes = std::shared_ptr<const std::string>;
 
 /// HTTP and WebSocket server on one port and one network thread of its own. It knows bytes, no message and no
-/// car. Assets answer GET and HEAD; everything that asks for an upgrade, on any path, goes to `on_upgrade`.
-/// No extension is ever negotiated. All member functions may be called from any thread, and never wait for
-/// the network.
+/// car. `on_get` and assets answer GET and HEAD, the former by range too; everything that asks for an
+/// upgrade, on any path, goes to `on_upgrade`. No extension is ever negotiated. All member functions may be
+/// called from any thread, and never wait for the network.
 class Server {
  public:
   /// Binds and starts. kIo with the sentence that helps when the port is taken ("port 4567 is in use by

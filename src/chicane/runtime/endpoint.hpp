@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "chicane/net/server.hpp"
+#include "chicane/runtime/pages.hpp"
 
 namespace chicane::runtime {
 
@@ -39,8 +41,8 @@ class Router {
  public:
   Router(Endpoint* simulator, Endpoint* viewer) : endpoints_{simulator, viewer} {}
 
-  /// The router must outlive the server that was created with them.
-  [[nodiscard]] net::ServerHandlers handlers() {
+  /// The router must outlive the server that was created with them. `pages` are answered to GET.
+  [[nodiscard]] net::ServerHandlers handlers(Pages pages = live_pages()) {
     return {
         .on_start =
             [this](net::Server& server) {
@@ -53,6 +55,11 @@ class Router {
         .on_message = [this](net::ConnectionId id, int to, std::string_view bytes,
                              bool binary) { at(to).on_message(id, bytes, binary); },
         .on_close = [this](net::ConnectionId id, int to, std::string_view why) { at(to).on_close(id, why); },
+        .on_get = [pages = std::move(pages)](std::string_view path) -> std::optional<net::Content> {
+          const auto page = pages.find(path);
+          if (page == pages.end()) return std::nullopt;
+          return page->second();
+        },
     };
   }
 

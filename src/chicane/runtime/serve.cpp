@@ -15,6 +15,7 @@
 
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/safety/command_gate.hpp"
+#include "chicane/telemetry/prediction_check.hpp"
 
 namespace chicane::runtime {
 namespace {
@@ -135,6 +136,7 @@ class UdacityEndpoint::Control {
     driven_ = from;
     controller_.reset();
     gate_.reset();
+    promises_.reset();
     delay_.reset();
     last_received_.reset();
     last_answered_.reset();
@@ -162,7 +164,11 @@ class UdacityEndpoint::Control {
       frame_.result.plan.size = 0;
       frame_.result.plan.reference_size = 0;
       frame_.result.report.rung = controller::Rung::kHoldAndBrake;
+      frame_.result.report.explanation = {};
     }
+    frame_.asked = frame_.result.command;
+    frame_.prediction_error = promises_.error(frame_.time, {frame_.measurement.x, frame_.measurement.y});
+    promises_.add(frame_.result.plan, delay_.value());
     pass_gate();
     frame_.step_time = seconds(Clock::now() - begin);
     answer_(request, protocol::encode_steer(frame_.result.command, frame_.result.plan, pose_at_receipt()),
@@ -201,6 +207,7 @@ class UdacityEndpoint::Control {
   const std::function<void(const telemetry::Frame&)>& on_frame_;
   Answer answer_;
   safety::CommandGate gate_;
+  telemetry::PredictionCheck promises_;
   DelayMeter delay_;
   const Clock::time_point started_ = Clock::now();
   net::ConnectionId driven_ = 0;
@@ -386,9 +393,10 @@ bool UdacityEndpoint::is_quiet() const {
 Result<ServeSummary> serve(const ServeOptions& options, controller::Controller& controller, ServeHooks hooks,
                            Endpoint* viewer, std::vector<net::Asset> assets, const std::atomic<bool>& stop) {
   const auto announce = hooks.on_listening;
+  Pages pages = std::move(hooks.pages);
   UdacityEndpoint simulator(options, controller, std::move(hooks));
   Router router(&simulator, viewer);
-  auto server = net::Server::create(options.server, router.handlers(), std::move(assets));
+  auto server = net::Server::create(options.server, router.handlers(std::move(pages)), std::move(assets));
   if (!server) return fail(server.error());
   if (announce) announce((*server)->port());
   while (!stop) std::this_thread::sleep_for(milliseconds{20});

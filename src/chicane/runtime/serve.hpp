@@ -18,6 +18,7 @@
 #include "chicane/net/server.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/runtime/endpoint.hpp"
+#include "chicane/runtime/pages.hpp"
 #include "chicane/runtime/sparse_log.hpp"
 #include "chicane/telemetry/frame.hpp"
 
@@ -43,6 +44,7 @@ struct ServeHooks {
   std::function<void(const telemetry::Frame&)> on_frame{};  ///< after each answer, on the control thread
   std::function<void(std::string_view)> log{};  ///< one line about the connection, on the network thread
   std::function<void(std::uint16_t port)> on_listening{};  ///< once, when the port is ours
+  Pages pages = live_pages();                              ///< answered to GET, beside the assets
 };
 
 /// What has been served so far.

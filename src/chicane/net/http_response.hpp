@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+
+namespace chicane::net {
+
+/// What answers a GET of one path: bytes, or a file on disk.
+struct Content {
+  std::string content_type{};
+  std::string bytes{};
+  std::string file{};     ///< when not empty, the content is this file's as it is now
+  std::string save_as{};  ///< when not empty, a browser saves it under this name; no quotes, no line ends
+};
+
+/// Part of a content, in bytes from its start.
+struct ByteRange {
+  std::uint64_t first = 0;
+  std::uint64_t count = 0;
+};
+
+/// What a Range header asks of `size` bytes: one range, "bytes=0-99", "bytes=100-" or "bytes=-50" (RFC 9110
+/// §14.1.2), cut at the end. None when it asks for nothing we serve in parts (another unit, several ranges,
+/// not a range): then the whole is sent. A range without a single byte in it has count 0.
+[[nodiscard]] std::optional<ByteRange> parse_range(std::string_view header, std::uint64_t size);
+
+/// An ETag that changes with the content.
+[[nodiscard]] std::string tag_of(std::string_view content);
+
+/// Content on its way to a client, piece by piece: memory is one piece.
+class Body {
+ public:
+  Body() = default;
+  explicit Body(std::string bytes) : owned_{std::move(bytes)}, size_{owned_.size()} {}
+  /// Of bytes that live as long as the program.
+  static Body of_view(std::string_view bytes);
+  /// kIo when it cannot be read.
+  [[nodiscard]] static Result<Body> open(const std::string& file);
+
+  [[nodiscard]] std::uint64_t size() const { return size_; }
+  /// Of the whole, before restrict_to().
+  [[nodiscard]] std::string tag() const;
+  void restrict_to(ByteRange range);
+  /// Takes the next at most 64 KiB; false when nothing is left, or when a file has become shorter than it
+  /// was: then is_short().
+  [[nodiscard]] bool next(std::string& piece);
+  [[nodiscard]] bool is_short() const { return size_ > 0; }
+
+ private:
+  std::string owned_{};
+  std::string_view view_{};
+  std::ifstream file_{};
+  std::string file_tag_{};
+  std::uint64_t at_ = 0;    ///< of the next byte
+  std::uint64_t size_ = 0;  ///< what is left
+};
+
+/// A request, as far as an answer depends on it. Empty where a header is absent.
+struct HttpRequest {
+  bool is_head = false;
+  bool keep_alive = false;
+  std::string_view range{};
+  std::string_view if_range{};
+  std::string_view if_none_match{};
+};
+
+/// One answer: a head in HTTP/1.1 with our security headers, and what follows it.
+class HttpResponse {
+ public:
+  /// Words for a person; `status` as in "404 Not Found".
+  [[nodiscard]] static HttpResponse in_words(std::string_view status, std::string words);
+  /// A content, whole, by range (206, 416), or not again (304); 404 when its file cannot be read.
+  [[nodiscard]] static HttpResponse of(Content content, const HttpRequest& request);
+  /// Bytes that live as long as the program, with the ETag that tag_of() gave them.
+  [[nodiscard]] static HttpResponse of_asset(std::string_view bytes, std::string_view content_type,
+                                             bool is_gzip, std::string_view tag, const HttpRequest& request);
+
+  void add(std::string_view name, std::string_view value);
+  /// What is sent before the body.
+  [[nodiscard]] std::string head(const HttpRequest& request) const;
+  [[nodiscard]] Body& body() { return body_; }
+
+ private:
+  explicit HttpResponse(std::string_view status) : status_{status} {}
+  std::string status_;
+  std::vector<std::pair<std::string, std::string>> fields_{};
+  Body body_{};
+};
+
+}  // namespace chicane::net

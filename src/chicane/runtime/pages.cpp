@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/runtime/pages.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace chicane::runtime {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::function<net::Content()> mode_page(const Json& mode) {
+  return [text = mode.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"] {
+    return net::Content{.content_type = "application/json", .bytes = text};
+  };
+}
+
+}  // namespace
+
+Pages live_pages() { return {{"/mode.json", mode_page({{"mode", "live"}})}}; }
+
+Pages replay_pages(const std::vector<ServedLog>& logs, double start) {
+  Pages pages;
+  Json list = Json::array();
+  for (const ServedLog& log : logs) {
+    std::string url = fmt::format("/log/{}.mcap", list.size());
+    list.push_back({{"name", log.name}, {"url", url}});
+    pages[std::move(url)] = [file = log.file] {
+      return net::Content{.content_type = "application/octet-stream", .file = file};
+    };
+  }
+  pages["/mode.json"] = mode_page({{"mode", "replay"}, {"logs", std::move(list)}, {"start_s", start}});
+  return pages;
+}
+
+}  // namespace chicane::runtime
