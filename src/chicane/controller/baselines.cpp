@@ -11,6 +11,7 @@
 #include "chicane/controller/fallback.hpp"
 #include "chicane/controller/option_range.hpp"
 #include "chicane/controller/speed_hold.hpp"
+#include "chicane/controller/tunable.hpp"
 #include "chicane/path/path.hpp"
 
 namespace chicane::controller {
@@ -47,15 +48,16 @@ class WaypointLine {
 };
 
 /// All that the baselines share: the line, the speed, the report. `Law` steers: double steer(const View&),
-/// void reset().
+/// void configure(const Options&, const VehicleParams&), void reset().
 template <class Law>
-class Baseline final : public Controller {
+class Baseline final : public Controller, public Tunable<typename Law::Options> {
  public:
-  Baseline(std::string_view name, const Law& law, const SpeedHoldOptions& speed,
-           const model::VehicleParams& vehicle)
+  using Options = typename Law::Options;
+
+  Baseline(std::string_view name, const Options& options, const model::VehicleParams& vehicle)
       : name_{name},
-        law_{law},
-        speed_{speed, vehicle},
+        law_{options, vehicle},
+        speed_{options.speed, vehicle},
         fallback_{vehicle},
         steer_limit_{vehicle.steer_limit},
         lowest_throttle_{-vehicle.brake_throttle_limit} {
@@ -72,6 +74,13 @@ class Baseline final : public Controller {
     const SpeedHold::Wanted wanted = speed_.reference(line, here.s);
     const double steer = std::clamp(law_.steer(view), -steer_limit_, steer_limit_);
     return answer(act_time, view, {steer, speed_.throttle(wanted.speed, now.speed)}, wanted);
+  }
+
+  void configure(const Options& options, const model::VehicleParams& vehicle) noexcept override {
+    law_.configure(options, vehicle);
+    speed_.configure(options.speed, vehicle);
+    fallback_.set_vehicle(vehicle);
+    steer_limit_ = vehicle.steer_limit;
   }
 
   void reset() noexcept override {
@@ -158,8 +167,14 @@ class Baseline final : public Controller {
 
 class PidLaw {
  public:
-  PidLaw(const PidOptions& options, double steer_limit) noexcept
-      : options_{options}, steer_limit_{steer_limit} {}
+  using Options = PidOptions;
+  PidLaw(const PidOptions& options, const model::VehicleParams& vehicle) noexcept {
+    configure(options, vehicle);
+  }
+  void configure(const PidOptions& options, const model::VehicleParams& vehicle) noexcept {
+    options_ = options;
+    steer_limit_ = vehicle.steer_limit;
+  }
 
   double steer(const View& view) noexcept {
     const double error = view.here.d;
@@ -180,14 +195,21 @@ class PidLaw {
   }
 
   PidOptions options_;
-  double steer_limit_;
+  double steer_limit_ = 0.0;
   double integral_ = 0.0;
 };
 
 class PurePursuitLaw {
  public:
-  PurePursuitLaw(const PurePursuitOptions& options, const model::VehicleParams& vehicle) noexcept
-      : options_{options}, rear_axle_{vehicle.rear_axle}, wheelbase_{vehicle.wheelbase()} {}
+  using Options = PurePursuitOptions;
+  PurePursuitLaw(const PurePursuitOptions& options, const model::VehicleParams& vehicle) noexcept {
+    configure(options, vehicle);
+  }
+  void configure(const PurePursuitOptions& options, const model::VehicleParams& vehicle) noexcept {
+    options_ = options;
+    rear_axle_ = vehicle.rear_axle;
+    wheelbase_ = vehicle.wheelbase();
+  }
 
   double steer(const View& view) noexcept {
     const double lookahead = std::max(options_.lookahead_min, view.now.speed * options_.lookahead_time);
@@ -203,14 +225,20 @@ class PurePursuitLaw {
 
  private:
   PurePursuitOptions options_;
-  double rear_axle_;
-  double wheelbase_;
+  double rear_axle_ = 0.0;
+  double wheelbase_ = 0.0;
 };
 
 class StanleyLaw {
  public:
-  StanleyLaw(const StanleyOptions& options, double front_axle) noexcept
-      : options_{options}, front_axle_{front_axle} {}
+  using Options = StanleyOptions;
+  StanleyLaw(const StanleyOptions& options, const model::VehicleParams& vehicle) noexcept {
+    configure(options, vehicle);
+  }
+  void configure(const StanleyOptions& options, const model::VehicleParams& vehicle) noexcept {
+    options_ = options;
+    front_axle_ = vehicle.front_axle;
+  }
 
   double steer(const View& view) noexcept {
     const double psi = view.now.psi;
@@ -223,7 +251,7 @@ class StanleyLaw {
 
  private:
   StanleyOptions options_;
-  double front_axle_;
+  double front_axle_ = 0.0;
 };
 
 Result<void> check(const SpeedHoldOptions& speed, const model::VehicleParams& vehicle) {
@@ -234,10 +262,10 @@ Result<void> check(const SpeedHoldOptions& speed, const model::VehicleParams& ve
 }
 
 template <class Law>
-Result<std::unique_ptr<Controller>> make(std::string_view name, const Law& law, const SpeedHoldOptions& speed,
+Result<std::unique_ptr<Controller>> make(std::string_view name, const typename Law::Options& options,
                                          const model::VehicleParams& vehicle) {
-  if (const auto valid = check(speed, vehicle); !valid) return fail(valid.error());
-  return std::make_unique<Baseline<Law>>(name, law, speed, vehicle);
+  if (const auto valid = check(options.speed, vehicle); !valid) return fail(valid.error());
+  return std::make_unique<Baseline<Law>>(name, options, vehicle);
 }
 
 }  // namespace
@@ -247,7 +275,7 @@ Result<std::unique_ptr<Controller>> make_pid(const PidOptions& options, const mo
                                    {"pid.integral_gain", options.integral_gain, 0.0, 10.0},
                                    {"pid.derivative_gain", options.derivative_gain, 0.0, 10.0}});
   if (!valid) return fail(valid.error());
-  return make("pid", PidLaw{options, vehicle.steer_limit}, options.speed, vehicle);
+  return make<PidLaw>("pid", options, vehicle);
 }
 
 Result<std::unique_ptr<Controller>> make_pure_pursuit(const PurePursuitOptions& options,
@@ -255,7 +283,7 @@ Result<std::unique_ptr<Controller>> make_pure_pursuit(const PurePursuitOptions& 
   const auto valid = check_ranges({{"pure_pursuit.lookahead_time", options.lookahead_time, 0.0, 5.0},
                                    {"pure_pursuit.lookahead_min", options.lookahead_min, 0.5, 50.0}});
   if (!valid) return fail(valid.error());
-  return make("pure-pursuit", PurePursuitLaw{options, vehicle}, options.speed, vehicle);
+  return make<PurePursuitLaw>("pure-pursuit", options, vehicle);
 }
 
 Result<std::unique_ptr<Controller>> make_stanley(const StanleyOptions& options,
@@ -263,7 +291,7 @@ Result<std::unique_ptr<Controller>> make_stanley(const StanleyOptions& options,
   const auto valid = check_ranges({{"stanley.gain", options.gain, 0.0, 50.0},
                                    {"stanley.softening_speed", options.softening_speed, 0.01, 20.0}});
   if (!valid) return fail(valid.error());
-  return make("stanley", StanleyLaw{options, vehicle.front_axle}, options.speed, vehicle);
+  return make<StanleyLaw>("stanley", options, vehicle);
 }
 
 }  // namespace chicane::controller

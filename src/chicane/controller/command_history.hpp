@@ -42,6 +42,8 @@ class StateEstimator {
  public:
   explicit StateEstimator(const PredictionModel& model) noexcept : model_{model} {}
   void reset() noexcept { is_started_ = false; }
+  /// Another model from now on; the estimate stays.
+  void set_model(const PredictionModel& model) noexcept { model_ = model; }
 
   /// Takes in a measurement [finite]. Afterwards state() is the estimate at now.time.
   void correct(const model::Measurement& now, const CommandHistory& sent) noexcept;

@@ -12,6 +12,7 @@
 #include "chicane/controller/local_fit.hpp"
 #include "chicane/controller/option_range.hpp"
 #include "chicane/controller/roll_forward.hpp"
+#include "chicane/controller/tunable.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 
 namespace chicane::controller {
@@ -25,7 +26,7 @@ constexpr double kUnlimited = 1e9;
 
 using Solver = solver::OcpSolver<CubicProblem, kMaxSteps>;
 
-class CubicMpc final : public Controller {
+class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
  public:
   CubicMpc(const CubicMpcOptions& options, const model::VehicleParams& vehicle)
       : uses_polar_{options.polar_waypoints},
@@ -47,6 +48,23 @@ class CubicMpc final : public Controller {
     solve(now, deadline);
     if (!usable(result_.report.solve.status)) return fall_back(now);
     return accept();
+  }
+
+  void configure(const CubicMpcOptions& options, const model::VehicleParams& vehicle) noexcept override {
+    const double steer_sign = options.steering_right_positive ? -1.0 : 1.0;
+    const bool means_the_same = steer_sign == steer_sign_;  // of the last answer's inputs
+    const double ratio = options.step_length / problem_.dt;
+    uses_polar_ = options.polar_waypoints;
+    steer_sign_ = steer_sign;
+    stages_ = options.horizon_steps - 1;
+    roll_forward_.configure(options.latency_handling, options.latency, vehicle.kinematic_length);
+    problem_ = CubicProblem{options, vehicle};
+    fallback_.set_vehicle(vehicle);
+    if (has_answer_ && means_the_same) {
+      solver::resample(answer_, stages_, ratio);
+    } else {
+      forget_warm_start();
+    }
   }
 
   void reset() noexcept override {

@@ -45,6 +45,8 @@ class Fallback {
   /// as fast.
   [[nodiscard]] Answer command(double act_time, const model::Measurement& now) noexcept;
 
+  /// Another car's limits from now on; plan and steering stay.
+  void set_vehicle(const model::VehicleParams& vehicle) noexcept { vehicle_ = vehicle; }
   /// Forgets plan and steering: a new run begins.
   void reset() noexcept;
 

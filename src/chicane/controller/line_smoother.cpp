@@ -19,6 +19,11 @@ LineSmoother::LineSmoother(double width, double slope_length)
   workspace_->problem.slope_length = slope_length;
 }
 
+void LineSmoother::configure(double width, double slope_length) noexcept {
+  width_ = width;
+  workspace_->problem.slope_length = slope_length;
+}
+
 int LineSmoother::knots_for(double length, bool closed) noexcept {
   const double whole = closed ? length + 2.0 * kOverlap : length;
   const double spacing = std::max(kSpacing, whole / (kMaxKnots - 4));

@@ -26,6 +26,8 @@ class LineSmoother {
 
   /// width [m], slope_length ℓ [m].
   LineSmoother(double width, double slope_length);
+  /// For the next smooth().
+  void configure(double width, double slope_length) noexcept;
 
   /// Offsets for knots k = 0..count-1 at arc lengths k · spacing of `line`; count·spacing covers it (closed:
   /// exactly once). False, and all offsets zero, when there is nothing to do or no answer. Pre: count +

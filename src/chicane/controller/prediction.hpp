@@ -32,6 +32,7 @@ struct BodyMotion {
 class PredictionModel {
  public:
   explicit PredictionModel(const model::VehicleParams& vehicle) noexcept : vehicle_{vehicle} {}
+  void set_vehicle(const model::VehicleParams& vehicle) noexcept { vehicle_ = vehicle; }
 
   /// Motion after dt [s] with the given road-wheel angle and net acceleration asked for all along.
   template <class T>

@@ -38,6 +38,20 @@ void Road::reset() noexcept {
   ++revision_;
 }
 
+void Road::configure(const RoadOptions& options, const model::VehicleParams& vehicle) noexcept {
+  if (options == options_ && vehicle == vehicle_) return;
+  const bool has_same_line =
+      options.smoothing_width == options_.smoothing_width && slope_length(vehicle) == slope_length(vehicle_);
+  options_ = options;
+  vehicle_ = vehicle;
+  if (!has_same_line) {
+    smoother_.configure(options.smoothing_width, slope_length(vehicle));
+    rebuild();
+  } else if (is_known()) {
+    speed_plan_.rebuild(line_, vehicle_, options_.speed);
+  }
+}
+
 void Road::add(const model::Measurement& now) noexcept {
   if (!options_.remember_waypoints && !map_.points().empty()) {
     const bool is_new =

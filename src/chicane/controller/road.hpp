@@ -19,6 +19,8 @@ struct RoadOptions {
       1.5;  ///< the reference line may leave the waypoint line by this much [m]; 0 = none
   bool remember_waypoints = true;  ///< false: only what the last measurement shows
   SpeedPlanOptions speed{};
+
+  friend bool operator==(const RoadOptions&, const RoadOptions&) = default;
 };
 
 /// What a controller knows of the road: waypoints remembered, a smooth reference line through them, the speed
@@ -27,6 +29,8 @@ class Road {
  public:
   Road(const RoadOptions& options, const model::VehicleParams& vehicle);
   void reset() noexcept;
+  /// Other settings for the same road: what is known of it is planned anew when they differ.
+  void configure(const RoadOptions& options, const model::VehicleParams& vehicle) noexcept;
 
   /// Takes in the waypoints of a measurement; when they tell something new, line and speeds are planned anew.
   void add(const model::Measurement& now) noexcept;

@@ -40,6 +40,14 @@ class RollForward {
   /// What the last predict() compensated [s]; 0 when nothing is rolled forward.
   [[nodiscard]] double compensated() const noexcept;
   void reset() noexcept { latency_ = first_latency_; }
+  /// Other settings; a measured latency stays measured.
+  void configure(LatencyHandling handling, double latency, double kinematic_length) noexcept {
+    const bool is_told_anew = handling != handling_ || latency != first_latency_;
+    if (is_told_anew) latency_ = latency;
+    handling_ = handling;
+    first_latency_ = latency;
+    kinematic_length_ = kinematic_length;
+  }
 
  private:
   LatencyHandling handling_;

@@ -14,6 +14,10 @@ class SpeedHold {
  public:
   SpeedHold(const SpeedHoldOptions& options, const model::VehicleParams& vehicle) noexcept
       : options_{options}, vehicle_{vehicle} {}
+  void configure(const SpeedHoldOptions& options, const model::VehicleParams& vehicle) noexcept {
+    options_ = options;
+    vehicle_ = vehicle;
+  }
 
   struct Wanted {
     double speed = 0.0;  ///< [m/s]

@@ -16,6 +16,8 @@ struct SpeedPlanOptions {
   double brake_share = 0.8;     ///< of the braking; (0, 1]
   double drive_share = 1.0;     ///< of the drive; (0, 1]
   double end_curvature = 0.05;  ///< assumed behind the end of an open path [1/m]: sight limits the speed
+
+  friend bool operator==(const SpeedPlanOptions&, const SpeedPlanOptions&) = default;
 };
 
 /// Fastest speed along a path within the believed grip: a limit for each place from curvature and its slope,

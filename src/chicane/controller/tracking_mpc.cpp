@@ -11,6 +11,7 @@
 #include "chicane/controller/prediction.hpp"
 #include "chicane/controller/road.hpp"
 #include "chicane/controller/tracking_problem.hpp"
+#include "chicane/controller/tunable.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 
 namespace chicane::controller {
@@ -27,18 +28,12 @@ constexpr double kSpeedAhead = 4.0;         // [m/s] wanted at most beyond what 
 constexpr double kLongestHold = 0.3;        // [s] the first command is believed to be held at most this long
 constexpr double kProjectionWindow = 30.0;  // [m] searched around the last place
 
-class TrackingMpc final : public Controller {
+class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> {
  public:
   TrackingMpc(const TrackingMpcOptions& options, const model::VehicleParams& vehicle)
       : options_{options},
         model_{vehicle},
-        road_{{.half_width = options.assumed_half_width,
-               .smoothing_width = options.smoothing_width,
-               .remember_waypoints = options.remember_waypoints,
-               .speed = {.speed_limit = options.speed_limit,
-                         .grip_share = options.grip_share,
-                         .brake_share = options.brake_share}},
-              vehicle},
+        road_{road_options(options), vehicle},
         estimator_{model_},
         fallback_{vehicle},
         solver_{{.tolerance = 1e-3,
@@ -47,17 +42,16 @@ class TrackingMpc final : public Controller {
                  .may_start_short = false,
                  .second_order = false}} {
     problem_.model = &model_;
-    problem_.dt = options.step_length;
-    problem_.horizon = options.horizon_steps;
-    problem_.weight = {.lateral = std::sqrt(options.weight_lateral),
-                       .heading = std::sqrt(options.weight_heading),
-                       .speed = std::sqrt(options.weight_speed),
-                       .steer_rate = std::sqrt(options.weight_steer_rate),
-                       .jerk = std::sqrt(options.weight_jerk),
-                       .edge = std::sqrt(options.weight_edge),
-                       .slip = std::sqrt(options.weight_slip),
-                       .excess_steer_rate = 10.0,
-                       .friction = std::sqrt(options.weight_slip)};
+    shape_problem();
+  }
+
+  void configure(const TrackingMpcOptions& options, const model::VehicleParams& vehicle) noexcept override {
+    options_ = options;
+    model_.set_vehicle(vehicle);
+    road_.configure(road_options(options), vehicle);
+    estimator_.set_model(model_);
+    fallback_.set_vehicle(vehicle);
+    shape_problem();
   }
 
   [[nodiscard]] const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept override {
@@ -93,6 +87,30 @@ class TrackingMpc final : public Controller {
   }
 
  private:
+  static RoadOptions road_options(const TrackingMpcOptions& options) noexcept {
+    return {.half_width = options.assumed_half_width,
+            .smoothing_width = options.smoothing_width,
+            .remember_waypoints = options.remember_waypoints,
+            .speed = {.speed_limit = options.speed_limit,
+                      .grip_share = options.grip_share,
+                      .brake_share = options.brake_share}};
+  }
+
+  /// Horizon and prices, from the options.
+  void shape_problem() noexcept {
+    problem_.dt = options_.step_length;
+    problem_.horizon = options_.horizon_steps;
+    problem_.weight = {.lateral = std::sqrt(options_.weight_lateral),
+                       .heading = std::sqrt(options_.weight_heading),
+                       .speed = std::sqrt(options_.weight_speed),
+                       .steer_rate = std::sqrt(options_.weight_steer_rate),
+                       .jerk = std::sqrt(options_.weight_jerk),
+                       .edge = std::sqrt(options_.weight_edge),
+                       .slip = std::sqrt(options_.weight_slip),
+                       .excess_steer_rate = 10.0,
+                       .friction = std::sqrt(options_.weight_slip)};
+  }
+
   /// The predicted start in coordinates along the line. False when the car or the road is lost.
   bool place_on_line(const model::Measurement& now, const StateEstimator::Prediction& start) noexcept {
     StepReport& report = result_.report;
@@ -130,14 +148,15 @@ class TrackingMpc final : public Controller {
   void warm_start(double act_time) noexcept {
     const int n = options_.horizon_steps;
     const double elapsed = act_time - act_time_;
-    const bool can_shift = has_horizon_ && elapsed >= 0.0 && elapsed < 0.5 * problem_.time(n);
-    if (can_shift) old_ = horizon_;
     const double old_first = problem_.first_dt;
+    const double old_end = old_first + (horizon_.horizon - 1) * answer_dt_;
+    const bool can_shift = has_horizon_ && elapsed >= 0.0 && elapsed < 0.5 * old_end;
+    if (can_shift) old_ = horizon_;
     problem_.first_dt = can_shift ? std::clamp(elapsed, problem_.dt, kLongestHold) : problem_.dt;
     // Position of a time of the old answer in its stages, as a real number.
     const auto old_stage = [&](double time) {
-      return std::clamp(time < old_first ? time / old_first : 1.0 + (time - old_first) / problem_.dt, 0.0,
-                        n - 1.0);
+      return std::clamp(time < old_first ? time / old_first : 1.0 + (time - old_first) / answer_dt_, 0.0,
+                        old_.horizon - 1.0);
     };
     horizon_.horizon = n;
     horizon_.x[0] = x0_;
@@ -147,7 +166,7 @@ class TrackingMpc final : public Controller {
       if (can_shift) {
         const double where = old_stage(problem_.time(k) + elapsed);
         const auto j = static_cast<std::size_t>(where);
-        const std::size_t next = std::min<std::size_t>(j + 1, static_cast<std::size_t>(n - 1));
+        const std::size_t next = std::min(j + 1, static_cast<std::size_t>(old_.horizon - 1));
         const double share = where - static_cast<double>(j);
         for (std::size_t q = 0; q < Problem::kNu; ++q) {
           horizon_.u[i][q] = old_.u[j][q] + share * (old_.u[next][q] - old_.u[j][q]);
@@ -164,6 +183,7 @@ class TrackingMpc final : public Controller {
     }
     sample_stage(n, horizon_.x[static_cast<std::size_t>(n)]);
     act_time_ = act_time;
+    answer_dt_ = problem_.dt;
   }
 
   /// A guess far from the road is no place to linearise: pull it back.
@@ -275,6 +295,7 @@ class TrackingMpc final : public Controller {
   StepResult result_;
   double s_ = 0.0;  ///< arc length on the line where the command acts
   double act_time_ = 0.0;
+  double answer_dt_ = 0.0;  ///< step length of the last answer [s]
   unsigned revision_ = 0;
   bool has_place_ = false;
   bool has_horizon_ = false;

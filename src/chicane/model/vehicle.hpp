@@ -60,6 +60,8 @@ struct VehicleParams {
   double drive_lag = 0.0;  ///< time constant of drive and brake [s]
 
   [[nodiscard]] double wheelbase() const noexcept { return front_axle + rear_axle; }
+
+  friend bool operator==(const VehicleParams&, const VehicleParams&) = default;
 };
 
 /// The first field that is not physical, by name; success otherwise.

@@ -24,6 +24,8 @@ class CommandGate {
   /// `elapsed` [s] since the last command, for the rate limit; <= 0 or non-finite skips the rate check.
   [[nodiscard]] GateResult pass(const model::Command& asked, double elapsed) noexcept;
   void reset() noexcept { last_ = {}; }
+  /// Another car's limits from now on; the last command stays.
+  void set_vehicle(const model::VehicleParams& vehicle) noexcept { vehicle_ = vehicle; }
 
  private:
   model::VehicleParams vehicle_;

@@ -38,6 +38,28 @@ bool roll_out(const P& problem, const std::array<double, P::kNx>& x0,
   return finite;
 }
 
+/// The same motion on another grid: `horizon` intervals, each `ratio` times as long as those it had. Between
+/// the old points it interpolates, behind them the last ones are repeated. Pre: horizon in [1, Capacity],
+/// ratio > 0.
+template <int Nx, int Nu, int Capacity>
+void resample(Trajectory<Nx, Nu, Capacity>& trajectory, int horizon, double ratio) noexcept {
+  const Trajectory<Nx, Nu, Capacity> old = trajectory;
+  trajectory.horizon = horizon;
+  if (old.horizon < 1) return;
+  const auto blend = [&](const auto& from, auto& to, int last_from, int last_to) {
+    for (int k = 0; k <= last_to; ++k) {
+      const double where = std::min(k * ratio, static_cast<double>(last_from));
+      const int below = static_cast<int>(where);
+      const auto& low = from[static_cast<std::size_t>(below)];
+      const auto& high = from[static_cast<std::size_t>(std::min(below + 1, last_from))];
+      auto& value = to[static_cast<std::size_t>(k)];
+      for (std::size_t i = 0; i < value.size(); ++i) value[i] = low[i] + (where - below) * (high[i] - low[i]);
+    }
+  };
+  blend(old.u, trajectory.u, old.horizon - 1, horizon - 1);
+  blend(old.x, trajectory.x, old.horizon, horizon);
+}
+
 /// The same inputs and states `steps` intervals later (fractions interpolate; zero-order hold); the last ones
 /// are repeated. Used between control cycles: steps = elapsed time / interval. Negative or non-finite `steps`
 /// count as 0.
