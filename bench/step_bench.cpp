@@ -40,8 +40,7 @@ std::vector<Cycle> record(const scenario::Scenario& scenario) {
   const auto loop = runtime::ClosedLoop::create(scenario);
   if (!loop) return cycles;
   while (!(*loop)->is_over()) {
-    if ((*loop)->advance())
-      cycles.push_back({(*loop)->frame().measurement, (*loop)->frame().result.command});
+    if ((*loop)->advance()) cycles.push_back({(*loop)->frame().measurement, (*loop)->frame().result.command});
   }
   return cycles;
 }
