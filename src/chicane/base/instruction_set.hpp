@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "chicane/base/result.hpp"
+
+// How a file uses the widest registers of the machine it runs on, without being built for that machine:
+//
+//   1. Write the work as templates over an instruction set, `template <class Arch> class FastSolver : public
+//      Solver` with Pack<Arch, 8> inside, behind a small abstract interface `Solver`.
+//   2. In fast_solver.hpp: `template <class Arch> std::unique_ptr<Solver> make_fast_solver();`
+//   3. In fast_solver.cpp, compiled once for each instruction set: its definition and
+//      `template std::unique_ptr<Solver> make_fast_solver<arch::Native>();`
+//   4. In CMakeLists.txt, after chicane_module(): `chicane_simd_sources(my_module fast_solver.cpp)`; the file
+//      is in no other list of sources. A test then proves that each object defines tagged symbols only: every
+//      function template, class and lambda in it must have Arch among its arguments or be inlined.
+//   5. Where it is made: `with_instructions(chosen_instruction_set(), [](auto arch) {
+//      return make_fast_solver<decltype(arch)>(); })`.
+
+namespace chicane {
+
+/// Instruction sets a translation unit can be compiled for. Everything compiled for one of them carries its
+/// tag as a template argument, so that the linker never takes its code for another's.
+namespace arch {
+struct Baseline {  ///< what every processor of the family has; SSE2 on x86-64
+  static constexpr std::size_t kWidth = 2;
+  static constexpr bool kFused = false;
+};
+struct Avx2 {  ///< AVX2 and FMA
+  static constexpr std::size_t kWidth = 4;
+  static constexpr bool kFused = true;
+};
+struct Avx512 {  ///< AVX-512 F, DQ, VL
+  static constexpr std::size_t kWidth = 8;
+  static constexpr bool kFused = true;
+};
+struct Neon {  ///< aarch64 with fused arithmetic
+  static constexpr std::size_t kWidth = 2;
+  static constexpr bool kFused = true;
+};
+#if defined(CHICANE_ARCH)
+using Native = CHICANE_ARCH;  ///< of this translation unit (cmake/InstructionSets.cmake)
+#else
+using Native = Baseline;
+#endif
+}  // namespace arch
+
+/// Instruction sets a program can run on.
+enum class InstructionSet : std::uint8_t { kBaseline, kAvx2, kAvx512, kNeon };
+
+[[nodiscard]] std::string_view to_string(InstructionSet set) noexcept;
+
+/// "fused" where a · b + c rounds once, else "plain". Instruction sets with the same word compute the same
+/// bits; a recording names it, and replays bit by bit on any machine that has it.
+[[nodiscard]] std::string_view arithmetic(InstructionSet set) noexcept;
+
+/// Whether this processor has it.
+[[nodiscard]] bool is_available(InstructionSet set) noexcept;
+
+/// The best one of this processor.
+[[nodiscard]] InstructionSet detect_instruction_set() noexcept;
+
+/// By name: "baseline", "avx2", "avx512", "neon". Fails for other names, and for one that this processor does
+/// not have.
+[[nodiscard]] Result<InstructionSet> instruction_set_by_name(std::string_view name);
+
+/// The one that solvers made from now on use: the last choice, else the environment's CHICANE_SIMD, else the
+/// best one. A CHICANE_SIMD that is not available counts as "baseline": programs refuse it at their start
+/// with environment_instruction_set().
+[[nodiscard]] InstructionSet chosen_instruction_set() noexcept;
+/// Chooses; for replays and tests. Pre: is_available(set).
+void choose_instruction_set(InstructionSet set) noexcept;
+/// What CHICANE_SIMD asks for; the best one when it is not set. Fails like instruction_set_by_name().
+[[nodiscard]] Result<InstructionSet> environment_instruction_set();
+
+/// Calls f with the tag of `set`; sets of other families of processors are not compiled.
+template <class F>
+auto with_instructions(InstructionSet set, F&& f) {
+#if defined(__x86_64__)
+  if (set == InstructionSet::kAvx512) return f(arch::Avx512{});
+  if (set == InstructionSet::kAvx2) return f(arch::Avx2{});
+#elif defined(__aarch64__)
+  if (set == InstructionSet::kNeon) return f(arch::Neon{});
+#endif
+  static_cast<void>(set);
+  return f(arch::Baseline{});
+}
+
+}  // namespace chicane

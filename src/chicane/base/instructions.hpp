@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#include "chicane/base/instruction_set.hpp"
+
+// Longer than other headers because every processor has its own names for the same dozen operations.
+#if defined(__x86_64__)
+#include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#endif
+
+namespace chicane {
+
+/// One register of W doubles and what instruction sets do with it. For base/pack.hpp alone.
+namespace pack_detail {
+
+template <std::size_t W>
+struct Lanes {
+  using Real [[gnu::vector_size(W * 8)]] = double;
+  using Integer [[gnu::vector_size(W * 8)]] = long long;
+  using Unsigned [[gnu::vector_size(W * 8)]] = unsigned long long;
+};
+
+/// By vector extensions alone.
+template <std::size_t W>
+struct Portable {
+  using Real = typename Lanes<W>::Real;
+  using Integer = typename Lanes<W>::Integer;
+  using Mask = Integer;
+  [[gnu::always_inline]] static Real add(Real a, Real b) noexcept { return a + b; }
+  [[gnu::always_inline]] static Real subtract(Real a, Real b) noexcept { return a - b; }
+  [[gnu::always_inline]] static Real multiply(Real a, Real b) noexcept { return a * b; }
+  [[gnu::always_inline]] static Real divide(Real a, Real b) noexcept { return a / b; }
+  [[gnu::always_inline]] static Real negate(Real a) noexcept { return -a; }
+  [[gnu::always_inline]] static Integer integer_and(Integer a, Integer b) noexcept { return a & b; }
+  [[gnu::always_inline]] static Integer integer_or(Integer a, Integer b) noexcept { return a | b; }
+  [[gnu::always_inline]] static Integer integer_xor(Integer a, Integer b) noexcept { return a ^ b; }
+  [[gnu::always_inline]] static Integer integer_add(Integer a, Integer b) noexcept { return a + b; }
+  [[gnu::always_inline]] static Integer integer_subtract(Integer a, Integer b) noexcept { return a - b; }
+  [[gnu::always_inline]] static Integer shift_left(Integer a, int count) noexcept { return a << count; }
+  [[gnu::always_inline]] static Integer shift_right(Integer a, int count) noexcept {
+    using Unsigned = typename Lanes<W>::Unsigned;
+    return std::bit_cast<Integer>(std::bit_cast<Unsigned>(a) >> static_cast<unsigned long long>(count));
+  }
+  [[gnu::always_inline]] static Integer to_bits(Real a) noexcept { return std::bit_cast<Integer>(a); }
+  [[gnu::always_inline]] static Real to_real(Integer a) noexcept { return std::bit_cast<Real>(a); }
+  [[gnu::always_inline]] static Mask less(Real a, Real b) noexcept { return a < b; }
+  [[gnu::always_inline]] static Mask less_equal(Real a, Real b) noexcept { return a <= b; }
+  [[gnu::always_inline]] static Mask equal(Real a, Real b) noexcept { return a == b; }
+  [[gnu::always_inline]] static Mask from_bits(Integer a) noexcept { return a != Integer{}; }
+  [[gnu::always_inline]] static Real select(Mask m, Real a, Real b) noexcept { return m ? a : b; }
+  [[gnu::always_inline]] static Mask inverse(Mask m) noexcept { return ~m; }
+  [[gnu::always_inline]] static Mask both(Mask a, Mask b) noexcept { return a & b; }
+  [[gnu::always_inline]] static Mask either(Mask a, Mask b) noexcept { return a | b; }
+  [[gnu::always_inline]] static unsigned bits(Mask m) noexcept {
+    unsigned result = 0;
+    for (std::size_t i = 0; i < W; ++i) result |= (m[i] != 0 ? 1U : 0U) << i;
+    return result;
+  }
+  [[gnu::always_inline]] static Real min(Real a, Real b) noexcept { return a < b ? a : b; }
+  [[gnu::always_inline]] static Real max(Real a, Real b) noexcept { return a > b ? a : b; }
+  [[gnu::always_inline]] static Real sqrt(Real a) noexcept {
+    for (std::size_t i = 0; i < W; ++i) a[i] = __builtin_sqrt(a[i]);
+    return a;
+  }
+  [[gnu::always_inline]] static Real round(Real a) noexcept {
+    constexpr double kBig = 4503599627370496.0;  // 2^52: no fraction from here on
+    const Integer sign = std::bit_cast<Integer>(a) & (Integer{} + INT64_MIN);
+    const Real magnitude = std::bit_cast<Real>(std::bit_cast<Integer>(a) ^ sign);
+    const Real rounded = (magnitude + kBig) - kBig;
+    return magnitude < kBig ? std::bit_cast<Real>(std::bit_cast<Integer>(rounded) | sign) : a;
+  }
+  [[gnu::always_inline]] static Real fused_multiply_add(Real a, Real b, Real c) noexcept { return a * b + c; }
+  [[gnu::always_inline]] static Real fused_negative_multiply_add(Real a, Real b, Real c) noexcept {
+    return c - a * b;
+  }
+};
+
+template <class Arch, std::size_t W>
+struct Ops : Portable<W> {
+  static_assert(std::is_same_v<Arch, arch::Baseline>, "this file is not compiled for that instruction set");
+};
+
+#if defined(__x86_64__)
+template <>
+struct Ops<arch::Baseline, 2> : Portable<2> {
+  [[gnu::always_inline]] static Real min(Real a, Real b) noexcept { return _mm_min_pd(a, b); }
+  [[gnu::always_inline]] static Real max(Real a, Real b) noexcept { return _mm_max_pd(a, b); }
+  [[gnu::always_inline]] static Real sqrt(Real a) noexcept { return _mm_sqrt_pd(a); }
+  [[gnu::always_inline]] static unsigned bits(Mask m) noexcept {
+    return static_cast<unsigned>(_mm_movemask_pd(std::bit_cast<Real>(m)));
+  }
+};
+#endif
+
+#if defined(__AVX2__) && defined(__FMA__)
+template <>
+struct Ops<arch::Avx2, 2> : Ops<arch::Baseline, 2> {
+  [[gnu::always_inline]] static Real round(Real a) noexcept { return _mm_round_pd(a, 8); }
+  [[gnu::always_inline]] static Real fused_multiply_add(Real a, Real b, Real c) noexcept {
+    return _mm_fmadd_pd(a, b, c);
+  }
+  [[gnu::always_inline]] static Real fused_negative_multiply_add(Real a, Real b, Real c) noexcept {
+    return _mm_fnmadd_pd(a, b, c);
+  }
+};
+template <>
+struct Ops<arch::Avx2, 4> : Portable<4> {
+  [[gnu::always_inline]] static Real select(Mask m, Real a, Real b) noexcept {
+    return _mm256_blendv_pd(b, a, std::bit_cast<Real>(m));
+  }
+  [[gnu::always_inline]] static unsigned bits(Mask m) noexcept {
+    return static_cast<unsigned>(_mm256_movemask_pd(std::bit_cast<Real>(m)));
+  }
+  [[gnu::always_inline]] static Real min(Real a, Real b) noexcept { return _mm256_min_pd(a, b); }
+  [[gnu::always_inline]] static Real max(Real a, Real b) noexcept { return _mm256_max_pd(a, b); }
+  [[gnu::always_inline]] static Real sqrt(Real a) noexcept { return _mm256_sqrt_pd(a); }
+  [[gnu::always_inline]] static Real round(Real a) noexcept { return _mm256_round_pd(a, 8); }
+  [[gnu::always_inline]] static Real fused_multiply_add(Real a, Real b, Real c) noexcept {
+    return _mm256_fmadd_pd(a, b, c);
+  }
+  [[gnu::always_inline]] static Real fused_negative_multiply_add(Real a, Real b, Real c) noexcept {
+    return _mm256_fnmadd_pd(a, b, c);
+  }
+};
+#endif
+
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+template <>
+struct Ops<arch::Avx512, 2> : Ops<arch::Avx2, 2> {};
+template <>
+struct Ops<arch::Avx512, 4> : Ops<arch::Avx2, 4> {};
+template <>
+struct Ops<arch::Avx512, 8> : Portable<8> {
+  using Mask = __mmask8;
+  [[gnu::always_inline]] static Mask less(Real a, Real b) noexcept {
+    return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ);
+  }
+  [[gnu::always_inline]] static Mask less_equal(Real a, Real b) noexcept {
+    return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ);
+  }
+  [[gnu::always_inline]] static Mask equal(Real a, Real b) noexcept {
+    return _mm512_cmp_pd_mask(a, b, _CMP_EQ_OQ);
+  }
+  [[gnu::always_inline]] static Mask from_bits(Integer a) noexcept {
+    const auto bits = std::bit_cast<__m512i>(a);
+    return _mm512_test_epi64_mask(bits, bits);
+  }
+  [[gnu::always_inline]] static Real select(Mask m, Real a, Real b) noexcept {
+    return _mm512_mask_blend_pd(m, b, a);
+  }
+  [[gnu::always_inline]] static Mask inverse(Mask m) noexcept { return static_cast<Mask>(~m); }
+  [[gnu::always_inline]] static Mask both(Mask a, Mask b) noexcept { return static_cast<Mask>(a & b); }
+  [[gnu::always_inline]] static Mask either(Mask a, Mask b) noexcept { return static_cast<Mask>(a | b); }
+  [[gnu::always_inline]] static unsigned bits(Mask m) noexcept { return m; }
+  [[gnu::always_inline]] static Real min(Real a, Real b) noexcept { return _mm512_min_pd(a, b); }
+  [[gnu::always_inline]] static Real max(Real a, Real b) noexcept { return _mm512_max_pd(a, b); }
+  [[gnu::always_inline]] static Real sqrt(Real a) noexcept { return _mm512_sqrt_pd(a); }
+  [[gnu::always_inline]] static Real round(Real a) noexcept { return _mm512_roundscale_pd(a, 8); }
+  [[gnu::always_inline]] static Real fused_multiply_add(Real a, Real b, Real c) noexcept {
+    return _mm512_fmadd_pd(a, b, c);
+  }
+  [[gnu::always_inline]] static Real fused_negative_multiply_add(Real a, Real b, Real c) noexcept {
+    return _mm512_fnmadd_pd(a, b, c);
+  }
+};
+#endif
+
+#if defined(__aarch64__)
+template <>
+struct Ops<arch::Neon, 2> : Portable<2> {
+  [[gnu::always_inline]] static Real sqrt(Real a) noexcept { return cast(vsqrtq_f64(cast(a))); }
+  [[gnu::always_inline]] static Real round(Real a) noexcept { return cast(vrndnq_f64(cast(a))); }
+  [[gnu::always_inline]] static Real fused_multiply_add(Real a, Real b, Real c) noexcept {
+    return cast(vfmaq_f64(cast(c), cast(a), cast(b)));
+  }
+  [[gnu::always_inline]] static Real fused_negative_multiply_add(Real a, Real b, Real c) noexcept {
+    return cast(vfmsq_f64(cast(c), cast(a), cast(b)));
+  }
+
+ private:
+  [[gnu::always_inline]] static float64x2_t cast(Real a) noexcept { return std::bit_cast<float64x2_t>(a); }
+  template <class T = float64x2_t>
+  requires(!std::is_same_v<T, Real>) [[gnu::always_inline]] static Real cast(T a) noexcept {
+    return std::bit_cast<Real>(a);
+  }
+};
+#endif
+
+/// Rows of a W × W block become its columns.
+template <std::size_t W, class Real>
+[[gnu::always_inline]] inline void transpose_block(Real* r) noexcept {
+  if constexpr (W == 2) {
+    const Real a = __builtin_shufflevector(r[0], r[1], 0, 2);
+    r[1] = __builtin_shufflevector(r[0], r[1], 1, 3);
+    r[0] = a;
+  } else if constexpr (W == 4) {
+    const Real a = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6);
+    const Real b = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
+    const Real c = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6);
+    const Real d = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+    r[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+    r[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    r[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+    r[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+  } else {
+#if defined(__AVX512F__)
+    static_assert(W == 8);
+    __m512d t[8];
+    for (std::size_t i = 0; i < 4; ++i) {
+      t[2 * i] = _mm512_unpacklo_pd(r[2 * i], r[2 * i + 1]);
+      t[2 * i + 1] = _mm512_unpackhi_pd(r[2 * i], r[2 * i + 1]);
+    }
+    __m512d q[8];
+    for (std::size_t i = 0; i < 2; ++i) {
+      for (std::size_t j = 0; j < 2; ++j) {
+        q[4 * i + j] = _mm512_shuffle_f64x2(t[4 * i + j], t[4 * i + 2 + j], 0x88);
+        q[4 * i + 2 + j] = _mm512_shuffle_f64x2(t[4 * i + j], t[4 * i + 2 + j], 0xdd);
+      }
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      r[i] = _mm512_shuffle_f64x2(q[i], q[4 + i], 0x88);
+      r[4 + i] = _mm512_shuffle_f64x2(q[i], q[4 + i], 0xdd);
+    }
+#endif
+  }
+}
+
+/// result[p] = Op(operands[p]…) for every register p, always unrolled.
+template <auto Op, class Result, class... Operands>
+[[gnu::always_inline]] inline Result by_parts(const Operands&... operands) noexcept {
+  return [&]<std::size_t... P>(std::index_sequence<P...>) __attribute__((always_inline)) {
+    Result r;
+    const auto part = [&](auto p) __attribute__((always_inline)) { r.part[p] = Op(operands.part[p]...); };
+    (part(std::integral_constant<std::size_t, P>{}), ...);
+    return r;
+  }
+  (std::make_index_sequence<Result::kParts>{});
+}
+
+}  // namespace pack_detail
+
+}  // namespace chicane

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "chicane/base/instructions.hpp"
+
+namespace chicane {
+
+/// Calls f(std::integral_constant<std::size_t, 0>) … f(…<N − 1>): a loop that is always unrolled, and whose
+/// index is a constant.
+template <std::size_t N, class F>
+[[gnu::always_inline]] inline constexpr void unroll(F&& f) noexcept {
+  [&]<std::size_t... I>(std::index_sequence<I...>) __attribute__((always_inline)) {
+    (f(std::integral_constant<std::size_t, I>{}), ...);
+  }
+  (std::make_index_sequence<N>{});
+}
+
+/// Yes or no for each of N lanes.
+template <class Arch, std::size_t N>
+struct Mask {
+  static constexpr std::size_t kWidth = N < Arch::kWidth ? N : Arch::kWidth;
+  static constexpr std::size_t kParts = N / kWidth;
+  using Ops = pack_detail::Ops<Arch, kWidth>;
+  typename Ops::Mask part[kParts];
+
+  /// The first `count` lanes.
+  [[gnu::always_inline]] static Mask first(std::size_t count) noexcept {
+    struct {
+      typename Ops::Integer part[kParts];
+    } lane;
+    for (std::size_t i = 0; i < N; ++i) lane.part[i / kWidth][i % kWidth] = i < count ? -1 : 0;
+    return pack_detail::by_parts<Ops::from_bits, Mask>(lane);
+  }
+  /// Lane i is bit i.
+  [[nodiscard, gnu::always_inline]] unsigned bits() const noexcept {
+    unsigned result = 0;
+    for (std::size_t p = 0; p < kParts; ++p) result |= Ops::bits(part[p]) << (p * kWidth);
+    return result;
+  }
+  [[nodiscard, gnu::always_inline]] bool operator[](std::size_t lane) const noexcept {
+    return ((bits() >> lane) & 1U) != 0;
+  }
+  [[gnu::always_inline]] friend bool any(const Mask& m) noexcept { return m.bits() != 0; }
+  [[gnu::always_inline]] friend bool all(const Mask& m) noexcept { return m.bits() == (1U << N) - 1U; }
+  [[gnu::always_inline]] friend Mask operator&(const Mask& a, const Mask& b) noexcept {
+    return pack_detail::by_parts<Ops::both, Mask>(a, b);
+  }
+  [[gnu::always_inline]] friend Mask operator|(const Mask& a, const Mask& b) noexcept {
+    return pack_detail::by_parts<Ops::either, Mask>(a, b);
+  }
+  [[gnu::always_inline]] friend Mask operator!(const Mask& a) noexcept {
+    return pack_detail::by_parts<Ops::inverse, Mask>(a);
+  }
+};
+
+/// The 64 bits of each lane as an integer, for branch-free elementary functions.
+template <class Arch, std::size_t N>
+struct Bits {
+  static constexpr std::size_t kWidth = N < Arch::kWidth ? N : Arch::kWidth;
+  static constexpr std::size_t kParts = N / kWidth;
+  using Ops = pack_detail::Ops<Arch, kWidth>;
+  typename Ops::Integer part[kParts];
+
+  Bits() noexcept = default;
+  [[gnu::always_inline]] Bits(std::int64_t value) noexcept {  // NOLINT: constants mix freely, as in formulas
+    for (auto& p : part) p = typename Ops::Integer{} + value;
+  }
+  [[gnu::always_inline]] friend Bits operator&(const Bits& a, const Bits& b) noexcept {
+    return each<Ops::integer_and>(a, b);
+  }
+  [[gnu::always_inline]] friend Bits operator|(const Bits& a, const Bits& b) noexcept {
+    return each<Ops::integer_or>(a, b);
+  }
+  [[gnu::always_inline]] friend Bits operator^(const Bits& a, const Bits& b) noexcept {
+    return each<Ops::integer_xor>(a, b);
+  }
+  [[gnu::always_inline]] friend Bits operator+(const Bits& a, const Bits& b) noexcept {
+    return each<Ops::integer_add>(a, b);
+  }
+  [[gnu::always_inline]] friend Bits operator-(const Bits& a, const Bits& b) noexcept {
+    return each<Ops::integer_subtract>(a, b);
+  }
+  [[gnu::always_inline]] friend Bits operator<<(const Bits& a, int count) noexcept {
+    Bits r;
+    for (std::size_t p = 0; p < kParts; ++p) r.part[p] = Ops::shift_left(a.part[p], count);
+    return r;
+  }
+  /// Zeros come in from the left.
+  [[gnu::always_inline]] friend Bits operator>>(const Bits& a, int count) noexcept {
+    Bits r;
+    for (std::size_t p = 0; p < kParts; ++p) r.part[p] = Ops::shift_right(a.part[p], count);
+    return r;
+  }
+  /// Lanes that are not zero.
+  [[gnu::always_inline]] friend Mask<Arch, N> is_set(const Bits& a) noexcept {
+    return pack_detail::by_parts<Ops::from_bits, Mask<Arch, N>>(a);
+  }
+
+ private:
+  template <auto Op>
+  [[gnu::always_inline]] static Bits each(const Bits& a, const Bits& b) noexcept {
+    return pack_detail::by_parts<Op, Bits>(a, b);
+  }
+};
+
+/// N doubles (2, 4, 8 or 16) that the instruction set `Arch` works on at once, in as many registers as that
+/// takes. Every operation works lane by lane and rounds as IEEE 754 says, so that results do not depend on
+/// the width of registers: Avx2, Avx512 and Neon, which have a fused multiply-add, give the same bits
+/// ("fused"), Baseline, which has none, gives others ("plain").
+///
+/// Functions over any scalar take a Pack for it: arithmetic, comparison (to a Mask), select, min, max, abs,
+/// sqrt. A default-constructed Pack is not initialised.
+template <class Arch, std::size_t N>
+struct Pack {
+  static constexpr std::size_t kLanes = N;
+  static constexpr std::size_t kWidth = N < Arch::kWidth ? N : Arch::kWidth;
+  static constexpr std::size_t kParts = N / kWidth;
+  using Instructions = Arch;
+  using Ops = pack_detail::Ops<Arch, kWidth>;
+  using Real = typename Ops::Real;
+  using MaskType = Mask<Arch, N>;
+  using BitsType = Bits<Arch, N>;
+  Real part[kParts];
+
+  Pack() noexcept = default;
+  [[gnu::always_inline]] Pack(
+      double value) noexcept {  // NOLINT: constants mix freely with packs, as in formulas
+    for (auto& p : part) {
+      if constexpr (kWidth == 2) {
+        p = Real{value, value};
+      } else if constexpr (kWidth == 4) {
+        p = Real{value, value, value, value};
+      } else {
+        p = Real{value, value, value, value, value, value, value, value};
+      }
+    }
+  }
+  /// From N doubles at an address that is a multiple of 8 N bytes.
+  [[gnu::always_inline]] static Pack load(const double* from) noexcept {
+    return load_unaligned(static_cast<const double*>(__builtin_assume_aligned(from, kWidth * 8)));
+  }
+  [[gnu::always_inline]] static Pack load_unaligned(const double* from) noexcept {
+    Pack r;
+    for (std::size_t p = 0; p < kParts; ++p) __builtin_memcpy(&r.part[p], from + p * kWidth, kWidth * 8);
+    return r;
+  }
+  [[gnu::always_inline]] void store(double* to) const noexcept {
+    store_unaligned(static_cast<double*>(__builtin_assume_aligned(to, kWidth * 8)));
+  }
+  [[gnu::always_inline]] void store_unaligned(double* to) const noexcept {
+    for (std::size_t p = 0; p < kParts; ++p) __builtin_memcpy(to + p * kWidth, &part[p], kWidth * 8);
+  }
+  /// 0, 1, 2, …
+  [[gnu::always_inline]] static Pack iota() noexcept {
+    Pack r;
+    for (std::size_t i = 0; i < N; ++i) r.set(i, static_cast<double>(i));
+    return r;
+  }
+  [[nodiscard, gnu::always_inline]] double operator[](std::size_t lane) const noexcept {
+    return part[lane / kWidth][lane % kWidth];
+  }
+  [[gnu::always_inline]] void set(std::size_t lane, double value) noexcept {
+    part[lane / kWidth][lane % kWidth] = value;
+  }
+
+  [[gnu::always_inline]] friend Pack operator+(const Pack& a, const Pack& b) noexcept {
+    return each<Ops::add>(a, b);
+  }
+  [[gnu::always_inline]] friend Pack operator-(const Pack& a, const Pack& b) noexcept {
+    return each<Ops::subtract>(a, b);
+  }
+  [[gnu::always_inline]] friend Pack operator*(const Pack& a, const Pack& b) noexcept {
+    return each<Ops::multiply>(a, b);
+  }
+  [[gnu::always_inline]] friend Pack operator/(const Pack& a, const Pack& b) noexcept {
+    return each<Ops::divide>(a, b);
+  }
+  [[gnu::always_inline]] friend Pack operator-(const Pack& a) noexcept { return each<Ops::negate>(a); }
+  [[gnu::always_inline]] Pack& operator+=(const Pack& o) noexcept { return *this = *this + o; }
+  [[gnu::always_inline]] Pack& operator-=(const Pack& o) noexcept { return *this = *this - o; }
+  [[gnu::always_inline]] Pack& operator*=(const Pack& o) noexcept { return *this = *this * o; }
+  [[gnu::always_inline]] Pack& operator/=(const Pack& o) noexcept { return *this = *this / o; }
+
+  [[gnu::always_inline]] friend MaskType operator<(const Pack& a, const Pack& b) noexcept {
+    return compare<Ops::less>(a, b);
+  }
+  [[gnu::always_inline]] friend MaskType operator<=(const Pack& a, const Pack& b) noexcept {
+    return compare<Ops::less_equal>(a, b);
+  }
+  [[gnu::always_inline]] friend MaskType operator>(const Pack& a, const Pack& b) noexcept { return b < a; }
+  [[gnu::always_inline]] friend MaskType operator>=(const Pack& a, const Pack& b) noexcept { return b <= a; }
+  [[gnu::always_inline]] friend MaskType operator==(const Pack& a, const Pack& b) noexcept {
+    return compare<Ops::equal>(a, b);
+  }
+
+  /// a · b + c; with one rounding where the instruction set has it.
+  [[gnu::always_inline]] friend Pack fused_multiply_add(const Pack& a, const Pack& b,
+                                                        const Pack& c) noexcept {
+    return each<Ops::fused_multiply_add>(a, b, c);
+  }
+  /// c − a · b, likewise.
+  [[gnu::always_inline]] friend Pack fused_negative_multiply_add(const Pack& a, const Pack& b,
+                                                                 const Pack& c) noexcept {
+    return each<Ops::fused_negative_multiply_add>(a, b, c);
+  }
+  [[gnu::always_inline]] friend Pack select(const MaskType& m, const Pack& a, const Pack& b) noexcept {
+    return each<Ops::select>(m, a, b);
+  }
+  /// a < b ? a : b, and a > b ? a : b: the second one where a lane is not a number.
+  [[gnu::always_inline]] friend Pack min(const Pack& a, const Pack& b) noexcept {
+    return each<Ops::min>(a, b);
+  }
+  [[gnu::always_inline]] friend Pack max(const Pack& a, const Pack& b) noexcept {
+    return each<Ops::max>(a, b);
+  }
+  [[gnu::always_inline]] friend Pack sqrt(const Pack& a) noexcept { return each<Ops::sqrt>(a); }
+  /// To the nearest integer, ties to even.
+  [[gnu::always_inline]] friend Pack round(const Pack& a) noexcept { return each<Ops::round>(a); }
+  [[gnu::always_inline]] friend BitsType bits_of(const Pack& a) noexcept {
+    return pack_detail::by_parts<Ops::to_bits, BitsType>(a);
+  }
+  [[gnu::always_inline]] static Pack from_bits(const BitsType& a) noexcept { return each<Ops::to_real>(a); }
+  [[gnu::always_inline]] friend Pack abs(const Pack& a) noexcept {
+    return from_bits(bits_of(a) & BitsType(INT64_MAX));
+  }
+  [[gnu::always_inline]] friend Pack copysign(const Pack& magnitude, const Pack& sign) noexcept {
+    return from_bits((bits_of(magnitude) & BitsType(INT64_MAX)) | (bits_of(sign) & BitsType(INT64_MIN)));
+  }
+  /// Lanes that are numbers.
+  [[gnu::always_inline]] friend MaskType is_finite(const Pack& a) noexcept { return a - a == Pack(0.0); }
+  /// By halves, so that the order does not depend on registers.
+  [[gnu::always_inline]] friend double sum(const Pack& a) noexcept {
+    return reduce(
+        a, [](double x, double y) __attribute__((always_inline)) { return x + y; });
+  }
+  [[gnu::always_inline]] friend double largest(const Pack& a) noexcept {
+    return reduce(
+        a, [](double x, double y) __attribute__((always_inline)) { return x > y ? x : y; });
+  }
+
+ private:
+  template <auto Op, class... Operands>
+  [[gnu::always_inline]] static Pack each(const Operands&... operands) noexcept {
+    return pack_detail::by_parts<Op, Pack>(operands...);
+  }
+  template <auto Op>
+  [[gnu::always_inline]] static MaskType compare(const Pack& a, const Pack& b) noexcept {
+    return pack_detail::by_parts<Op, MaskType>(a, b);
+  }
+  template <class Op>
+  [[gnu::always_inline]] static double reduce(const Pack& a, Op op) noexcept {
+    double value[N];
+    a.store_unaligned(value);
+    for (std::size_t half = N / 2; half > 0; half /= 2) {
+      for (std::size_t i = 0; i < half; ++i) value[i] = op(value[i], value[i + half]);
+    }
+    return value[0];
+  }
+};
+
+/// Rows become columns; N packs of N lanes.
+template <class Arch, std::size_t N>
+[[gnu::always_inline]] inline void transpose(Pack<Arch, N> (&row)[N]) noexcept {
+  using P = Pack<Arch, N>;
+  constexpr std::size_t kW = P::kWidth;
+  typename P::Real block[P::kParts][P::kParts][kW];
+  unroll<P::kParts * P::kParts>([&](auto b) __attribute__((always_inline)) {
+    constexpr std::size_t kRow = b / P::kParts;
+    constexpr std::size_t kColumn = b % P::kParts;
+    unroll<kW>([&](auto r) __attribute__((always_inline)) {
+      block[kRow][kColumn][r] = row[kRow * kW + r].part[kColumn];
+    });
+    pack_detail::transpose_block<kW>(block[kRow][kColumn]);
+  });
+  unroll<P::kParts * P::kParts>([&](auto b) __attribute__((always_inline)) {
+    constexpr std::size_t kRow = b / P::kParts;
+    constexpr std::size_t kColumn = b % P::kParts;
+    unroll<kW>([&](auto r) __attribute__((always_inline)) {
+      row[kRow * kW + r].part[kColumn] = block[kColumn][kRow][r];
+    });
+  });
+}
+
+/// The same for plain numbers, so that formulas can be written once.
+template <class Arch>
+[[nodiscard, gnu::always_inline]] inline double fused_multiply_add(double a, double b, double c) noexcept {
+  if constexpr (Arch::kFused) return __builtin_fma(a, b, c);
+  return a * b + c;
+}
+template <class Arch>
+[[nodiscard, gnu::always_inline]] inline double fused_negative_multiply_add(double a, double b,
+                                                                            double c) noexcept {
+  if constexpr (Arch::kFused) return __builtin_fma(-a, b, c);
+  return c - a * b;
+}
+/// One constant or another in each lane.
+template <class Arch, std::size_t N>
+[[nodiscard, gnu::always_inline]] inline Pack<Arch, N> select(const Mask<Arch, N>& m, double a,
+                                                              double b) noexcept {
+  return select(m, Pack<Arch, N>(a), Pack<Arch, N>(b));
+}
+
+}  // namespace chicane
