@@ -51,6 +51,8 @@ class Controller {
  public:
   virtual ~Controller() = default;
   [[nodiscard]] virtual const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept = 0;
+  /// Somebody else drives: this was sent in the place of the last step's command.
+  virtual void note_sent(const model::Command& /*command*/) noexcept {}
   /// Forget everything learned (map, warm start): a new run begins.
   virtual void reset() noexcept = 0;
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;

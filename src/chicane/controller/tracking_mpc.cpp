@@ -69,6 +69,10 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     return accept(now, start, act_time);
   }
 
+  void note_sent(const model::Command& command) noexcept override {
+    if (std::isfinite(sent_time_)) sent_.add(sent_time_, command);
+  }
+
   void reset() noexcept override {
     road_.reset();
     estimator_.reset();
@@ -233,7 +237,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     command.throttle = throttle_for(model_.vehicle(), horizon_.u[0][1], start.state.vx);
     explain_answer(start.state.vx);
     fallback_.accept(result_.plan);
-    sent_.add(act_time_of(now), command);
+    send(now, command);
     return result_;
   }
 
@@ -252,11 +256,14 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     result_.report.rung = answer.rung;
     result_.plan.size = 0;
     result_.plan.reference_size = 0;
-    if (std::isfinite(act_time)) sent_.add(act_time_of(now), result_.command);
+    send(now, result_.command);
     return result_;
   }
 
-  static double act_time_of(const model::Measurement& now) noexcept { return now.time + now.delay; }
+  void send(const model::Measurement& now, const model::Command& command) noexcept {
+    sent_time_ = now.time + now.delay;
+    note_sent(command);
+  }
 
   void fill_plan(double act_time) noexcept {
     const path::Path& line = road_.line();
@@ -295,6 +302,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   StepResult result_;
   double s_ = 0.0;  ///< arc length on the line where the command acts
   double act_time_ = 0.0;
+  double sent_time_ = 0.0;  ///< from which the last command acts [s]
   double answer_dt_ = 0.0;  ///< step length of the last answer [s]
   unsigned revision_ = 0;
   bool has_place_ = false;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/telemetry/change.hpp"
 
 /// The server's side of the Foxglove WebSocket protocol, version 1 (github.com/foxglove/ws-protocol,
 /// docs/spec.md), as pure functions between structs and bytes. Both of its sub-protocol names mean the same
@@ -32,6 +33,10 @@ class ParameterStore {
   [[nodiscard]] virtual std::optional<Parameter> get(std::string_view name) const = 0;
   /// Fails with a sentence for the operator ("tracking_mpc.step_length_s: got 3, expected 0.01 to 0.2").
   [[nodiscard]] virtual Result<void> set(const Parameter& parameter) = 0;
+  /// What has another value than at the last call, whoever changed it.
+  [[nodiscard]] virtual std::vector<Parameter> news() { return {}; }
+  /// The changes that the run has taken up since the last call.
+  [[nodiscard]] virtual std::vector<telemetry::Change> applied() { return {}; }
 };
 
 // ---- What clients ask ----

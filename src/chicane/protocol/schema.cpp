@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -59,6 +60,13 @@ Kind Parameter::kind() const {
   if (std::holds_alternative<bool*>(where)) return Kind::kBool;
   if (std::holds_alternative<std::string*>(where)) return Kind::kText;
   return Kind::kInteger;
+}
+
+bool is_live(const Parameter& parameter) {
+  constexpr std::array<std::string_view, 5> kWhatRuns{"plant", "controller", "seed", "control_period_ms",
+                                                      "waypoints_sent"};
+  return parameter.kind() != Kind::kText &&  // preset, track, car: names
+         std::find(kWhatRuns.begin(), kWhatRuns.end(), parameter.key) == kWhatRuns.end();
 }
 
 const Parameter* find(std::string_view key) {

@@ -48,6 +48,8 @@ struct Parameter {
 
 /// All tunables in the order of the reference page: run, controllers, vehicle, world.
 [[nodiscard]] std::span<const Parameter> list();
+/// Whether a run that goes on can take the change up at its next control step; otherwise it must start anew.
+[[nodiscard]] bool is_live(const Parameter& parameter);
 /// The row of `key`; nullptr when there is none.
 [[nodiscard]] const Parameter* find(std::string_view key);
 /// The most similar thing among `known` when a typing mistake could explain `word`; otherwise empty.

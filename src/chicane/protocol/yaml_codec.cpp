@@ -192,6 +192,26 @@ std::string yaml_text(const Parameter& parameter, const scenario::Scenario& scen
   return fmt::format("\"{}\"", escaped);
 }
 
+/// The settings that `wants` lets in, group by group, under a comment.
+template <class Wants>
+std::string write(const scenario::Scenario& scenario, std::string_view description, Wants wants) {
+  std::string text = fmt::format("# {}\n", description);
+  std::replace_if(
+      text.begin(), std::prev(text.end()), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  std::string_view group;
+  for (const Parameter& parameter : list()) {
+    if (!wants(parameter)) continue;
+    const std::size_t dot = parameter.key.find('.');
+    const bool is_grouped = dot != std::string_view::npos;
+    const std::string_view own_group = is_grouped ? parameter.key.substr(0, dot) : "";
+    if (is_grouped && own_group != group) text += fmt::format("{}:\n", own_group);
+    group = own_group;
+    const std::string_view name = is_grouped ? parameter.key.substr(dot + 1) : parameter.key;
+    text += fmt::format("{}{}: {}\n", is_grouped ? "  " : "", name, yaml_text(parameter, scenario));
+  }
+  return text;
+}
+
 }  // namespace
 
 Result<Document> parse_document(std::string_view text, const std::string& file) {
@@ -241,22 +261,17 @@ Result<void> apply_layers(std::span<const Document> layers, scenario::Scenario& 
 
 std::string write_document(const scenario::Scenario& scenario, std::string_view description, bool is_whole) {
   const scenario::Scenario defaults;
-  std::string text = fmt::format("# {}\n", description);
-  std::replace_if(
-      text.begin(), std::prev(text.end()), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  std::string_view group;
-  for (const Parameter& parameter : list()) {
-    const bool is_default = get(scenario, parameter) == get(defaults, parameter);
-    if (parameter.key == "preset" || (is_default && !is_whole)) continue;
-    const std::size_t dot = parameter.key.find('.');
-    const bool is_grouped = dot != std::string_view::npos;
-    const std::string_view own_group = is_grouped ? parameter.key.substr(0, dot) : "";
-    if (is_grouped && own_group != group) text += fmt::format("{}:\n", own_group);
-    group = own_group;
-    const std::string_view name = is_grouped ? parameter.key.substr(dot + 1) : parameter.key;
-    text += fmt::format("{}{}: {}\n", is_grouped ? "  " : "", name, yaml_text(parameter, scenario));
-  }
-  return text;
+  return write(scenario, description, [&](const Parameter& parameter) {
+    return parameter.key != "preset" && (is_whole || get(scenario, parameter) != get(defaults, parameter));
+  });
+}
+
+std::string write_preset(const scenario::Scenario& scenario, const scenario::Scenario& base,
+                         std::string_view description) {
+  return write(scenario, description, [&](const Parameter& parameter) {
+    const bool is_named = parameter.key == "preset" || parameter.key == "car" || parameter.key == "track";
+    return is_named || get(scenario, parameter) != get(base, parameter);
+  });
 }
 
 }  // namespace chicane::protocol

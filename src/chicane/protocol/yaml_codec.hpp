@@ -46,4 +46,9 @@ struct Document {
 [[nodiscard]] std::string write_document(const scenario::Scenario& scenario, std::string_view description,
                                          bool is_whole = false);
 
+/// The same for a preset that builds on `scenario.preset`: the settings in which `scenario` differs from
+/// `base`, which is what that preset gives with the scenario's car; beside them the car and the track.
+[[nodiscard]] std::string write_preset(const scenario::Scenario& scenario, const scenario::Scenario& base,
+                                       std::string_view description);
+
 }  // namespace chicane::protocol

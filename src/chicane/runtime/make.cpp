@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "chicane/controller/tunable.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/sim/plant_factory.hpp"
@@ -13,7 +14,22 @@ namespace {
 
 constexpr double kWaypointSpacing = 12.0;  // [m] the median of the original's waypoints
 
+template <class Options>
+void configure_as(controller::Controller& controller, const Options& options,
+                  const model::VehicleParams& vehicle) noexcept {
+  if (auto* tunable = dynamic_cast<controller::Tunable<Options>*>(&controller))
+    tunable->configure(options, vehicle);
+}
+
 }  // namespace
+
+void configure(controller::Controller& controller, const scenario::Scenario& scenario) noexcept {
+  configure_as(controller, scenario.tracking_mpc, scenario.vehicle);
+  configure_as(controller, scenario.cubic_mpc, scenario.vehicle);
+  configure_as(controller, scenario.pid, scenario.vehicle);
+  configure_as(controller, scenario.pure_pursuit, scenario.vehicle);
+  configure_as(controller, scenario.stanley, scenario.vehicle);
+}
 
 Result<std::unique_ptr<controller::Controller>> make_controller(const scenario::Scenario& scenario) {
   const model::VehicleParams& vehicle = scenario.vehicle;

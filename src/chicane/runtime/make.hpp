@@ -14,6 +14,8 @@ namespace chicane::runtime {
 /// The parts of an experiment, built from its description. Each fails with the key and value that is wrong.
 [[nodiscard]] Result<std::unique_ptr<controller::Controller>> make_controller(
     const scenario::Scenario& scenario);
+/// Gives a controller of make_controller() the scenario's settings while it drives (controller/tunable.hpp).
+void configure(controller::Controller& controller, const scenario::Scenario& scenario) noexcept;
 [[nodiscard]] Result<std::unique_ptr<sim::Plant>> make_plant(const scenario::Scenario& scenario);
 [[nodiscard]] Result<path::Track> make_track(const scenario::Scenario& scenario);
 

@@ -23,6 +23,8 @@ struct SensorOptions {
 class Sensor {
  public:
   Sensor(const SensorOptions& options, std::uint64_t seed) noexcept : options_{options}, random_{seed} {}
+  /// Other options from now on; the stream of random numbers goes on.
+  void configure(const SensorOptions& options) noexcept { options_ = options; }
   [[nodiscard]] model::Measurement sample(double time, const Plant& plant) noexcept;
 
  private:

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/schema_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "chicane/protocol/library.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string_view name_of(Kind kind) {
+  switch (kind) {
+    case Kind::kNumber:
+      return "number";
+    case Kind::kInteger:
+      return "integer";
+    case Kind::kBool:
+      return "bool";
+    case Kind::kChoice:
+      return "choice";
+    case Kind::kText:
+      break;
+  }
+  return "text";
+}
+
+std::string_view group_of(std::string_view key) {
+  const std::size_t dot = key.find('.');
+  return dot == std::string_view::npos ? "run" : key.substr(0, dot);
+}
+
+Json to_json(const Value& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag;
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  const double number = std::get<double>(value);
+  return std::isfinite(number) ? Json(number) : Json("inf");
+}
+
+/// Kinds without a range have none in JSON either.
+Json entry(std::string_view key, Kind kind, std::string_view unit, double minimum, double maximum) {
+  const bool has_range = kind == Kind::kNumber || kind == Kind::kInteger;
+  return {{"key", key},
+          {"group", group_of(key)},
+          {"kind", name_of(kind)},
+          {"unit", unit},
+          {"minimum", has_range ? Json(minimum) : Json(nullptr)},
+          {"maximum", has_range ? Json(maximum) : Json(nullptr)}};
+}
+
+std::optional<Shelf> shelf_of(std::string_view key) {
+  if (key == "preset") return Shelf::kPreset;
+  if (key == "car") return Shelf::kCar;
+  if (key == "track") return Shelf::kTrack;
+  return std::nullopt;
+}
+
+/// What ships, and what is chosen now.
+Json names_on(Shelf shelf, const std::string& chosen) {
+  Json names = Json::array();
+  for (const Entry& each : entries(shelf)) names.push_back(each.name);
+  if (std::find(names.begin(), names.end(), chosen) == names.end()) names.push_back(chosen);
+  return names;
+}
+
+}  // namespace
+
+std::string schema_json(const scenario::Scenario& defaults,
+                        const std::function<bool(const Parameter&)>& is_offered,
+                        std::span<const Control> controls) {
+  Json list = Json::array();
+  for (const Parameter& row : protocol::list()) {
+    if (!is_offered(row)) continue;
+    Json json = entry(row.key, row.kind(), row.unit.name, row.minimum, row.maximum);
+    json["may_be_infinite"] = row.may_be_infinite;
+    json["choices"] = row.choices;
+    if (const std::optional<Shelf> shelf = shelf_of(row.key)) {
+      json["kind"] = name_of(Kind::kChoice);
+      json["choices"] = names_on(*shelf, std::get<std::string>(get(defaults, row)));
+    }
+    json["default"] = to_json(get(defaults, row));
+    json["meaning"] = row.meaning;
+    json["is_live"] = is_live(row);
+    list.push_back(std::move(json));
+  }
+  for (const Control& control : controls) {
+    Json json = entry(control.key, control.kind, control.unit, control.minimum, control.maximum);
+    json["may_be_infinite"] = false;
+    json["choices"] = Json::array();
+    json["default"] = to_json(control.initial);
+    json["meaning"] = control.meaning;
+    json["is_live"] = true;
+    list.push_back(std::move(json));
+  }
+  return list.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace chicane::protocol

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/protocol/foxglove_codec.hpp"
+#include "chicane/protocol/schema.hpp"
+#include "chicane/protocol/schema_json.hpp"
+#include "chicane/runtime/change_queue.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/telemetry/change.hpp"
+
+namespace chicane::runtime {
+
+struct LiveSettingsOptions {
+  scenario::Scenario scenario;  ///< what runs
+  /// Whether we simulate: offers what concerns the world, its pace and a person's hands, too. Otherwise only
+  /// controller and vehicle.
+  bool has_world = true;
+  /// Faults to switch, beside the rest: "fault.…".
+  std::vector<protocol::Control> faults{};
+  /// Builds the run anew with another scenario, and hands it over to the control thread, which takes it when
+  /// it meets the change that `starts_anew`. Its failure is shown to whoever asked. Null: what cannot change
+  /// while the run goes on is not offered.
+  std::function<Result<void>(const scenario::Scenario&)> start_anew{};
+  /// After each accepted change of the scenario.
+  std::function<void(const scenario::Scenario&)> on_accepted{};
+};
+
+/// The settings of a run that goes on, for viewers to read and set: every tunable of the schema under its own
+/// key, "run.pace", "manual.is_on", "manual.steer", "manual.throttle" and the faults (docs/viewer.md).
+///
+/// A value is checked here, on the network thread, and then waits in a queue until the control thread applies
+/// it between two cycles. get() and list() show what was accepted last: what holds from the next control step
+/// on. All member functions but tell() are the network thread's.
+class LiveSettings final : public protocol::foxglove::ParameterStore {
+ public:
+  /// `wishes` is drained by the control thread and outlives this.
+  LiveSettings(LiveSettingsOptions options, ChangeQueue& wishes);
+
+  [[nodiscard]] std::vector<protocol::foxglove::Parameter> list() const override;
+  [[nodiscard]] std::optional<protocol::foxglove::Parameter> get(std::string_view name) const override;
+  /// Fails with a sentence for unknown names, wrong types, values out of range, settings that exclude each
+  /// other, and when too many changes wait.
+  [[nodiscard]] Result<void> set(const protocol::foxglove::Parameter& parameter) override;
+
+  /// The control thread: a change was applied, or happened by itself. Never waits; when nobody has listened
+  /// for long, viewers do not hear of it.
+  void tell(const telemetry::Change& change) noexcept { static_cast<void>(told_.push(change)); }
+  [[nodiscard]] std::vector<telemetry::Change> applied() override;
+  [[nodiscard]] std::vector<protocol::foxglove::Parameter> news() override;
+
+  /// GET /schema.json; "default" is what the chosen preset gives with the chosen car.
+  [[nodiscard]] std::string schema_json() const;
+  /// GET /preset.yaml: what runs, as a preset.
+  [[nodiscard]] std::string preset_yaml() const;
+  [[nodiscard]] const scenario::Scenario& scenario() const { return scenario_; }
+
+ private:
+  [[nodiscard]] bool is_offered(const protocol::Parameter& row) const;
+  [[nodiscard]] Result<void> set_control(const protocol::Control& control,
+                                         const protocol::foxglove::ParameterValue& value);
+  [[nodiscard]] Result<void> set_row(const protocol::Parameter& row,
+                                     const protocol::foxglove::ParameterValue& value);
+  [[nodiscard]] Result<void> start_anew(std::string_view key, const std::string& value,
+                                        scenario::Scenario changed);
+  void hand_over_controls();
+  [[nodiscard]] Result<void> send(std::string_view name, std::string_view value, bool starts_anew);
+
+  LiveSettingsOptions options_;
+  ChangeQueue& wishes_;
+  ChangeQueue told_;
+  scenario::Scenario scenario_;
+  scenario::Scenario base_;  ///< what its preset gives with its car
+  std::vector<protocol::Control> controls_;
+  std::map<std::string, protocol::Value, std::less<>> control_values_;
+  std::vector<protocol::foxglove::Parameter> shown_;  ///< as news() told last
+  bool has_news_ = false;
+};
+
+}  // namespace chicane::runtime
