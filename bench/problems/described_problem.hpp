@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/dual.hpp"
@@ -14,15 +15,8 @@
 
 namespace chicane::bench {
 
-/// The optimal control problem of the Udacity MPC project: kinematic bicycle by explicit Euler, cubic path in
-/// the car's frame, weights 200, 200, 0.1, 1, 1, 10, 1. State (x, y, ψ, v, cte, eψ, previous δ, previous a),
-/// input (δ, a).
-struct DescribedProblem {
-  static constexpr int kNx = 8;
-  static constexpr int kNu = 2;
-  static constexpr int kNr = 7;
-  static constexpr int kNe = 3;
-  static constexpr int kNc = 0;
+/// What both forms of the described problem are given.
+struct DescribedData {
   static constexpr double kLength = 2.67;
   static constexpr double kStep = 0.1;
 
@@ -31,8 +25,26 @@ struct DescribedProblem {
   double steer_limit = degrees_to_radians(25.0);
   double acceleration_limit = 1.0;
 
-  template <class T>
-  std::array<T, kNx> dynamics(int, const std::array<T, kNx>& s, const std::array<T, kNu>& u) const {
+  [[nodiscard]] std::array<double, 2> input_lower(int) const { return {-steer_limit, -acceleration_limit}; }
+  [[nodiscard]] std::array<double, 2> input_upper(int) const { return {steer_limit, acceleration_limit}; }
+
+  /// w r² = ½ (√(2w) r)².
+  static double weight(double w) { return sqrt(2.0 * w); }
+};
+
+/// The optimal control problem of the Udacity MPC project as it is written down: kinematic bicycle by
+/// explicit Euler, cubic path in the car's frame, weights 200, 200, 0.1, 1, 1, 10, 1. State (x, y, ψ, v, cte,
+/// eψ, previous δ, previous a), input (δ, a). Level 1 of the solver's interface; all solutions are judged by
+/// it.
+struct DescribedProblem : DescribedData {
+  static constexpr int kNx = 8;
+  static constexpr int kNu = 2;
+  static constexpr int kNr = 7;
+  static constexpr int kNe = 3;
+  static constexpr int kNc = 0;
+
+  template <class K, class T>
+  std::array<T, kNx> dynamics(K, const std::array<T, kNx>& s, const std::array<T, kNu>& u) const {
     const T f = path[0] + s[0] * (path[1] + s[0] * (path[2] + s[0] * path[3]));
     const T slope = path[1] + s[0] * (2.0 * path[2] + s[0] * (3.0 * path[3]));
     const T turn = s[3] * u[0] * (kStep / kLength);
@@ -45,9 +57,9 @@ struct DescribedProblem {
             u[0],
             u[1]};
   }
-  template <class T>
-  std::array<T, kNr> residual(int k, const std::array<T, kNx>& s, const std::array<T, kNu>& u) const {
-    const double change = k > 0 ? 1.0 : 0.0;
+  template <class K, class T>
+  std::array<T, kNr> residual(K k, const std::array<T, kNx>& s, const std::array<T, kNu>& u) const {
+    const auto change = select(solver::stage_number(k) > 0.0, 1.0, 0.0);
     return {weight(200.0) * s[4],
             weight(200.0) * s[5],
             weight(0.1) * (s[3] - speed_reference),
@@ -60,11 +72,61 @@ struct DescribedProblem {
   std::array<T, kNe> terminal_residual(const std::array<T, kNx>& s) const {
     return {weight(200.0) * s[4], weight(200.0) * s[5], weight(0.1) * (s[3] - speed_reference)};
   }
-  [[nodiscard]] std::array<double, kNu> input_lower(int) const { return {-steer_limit, -acceleration_limit}; }
-  [[nodiscard]] std::array<double, kNu> input_upper(int) const { return {steer_limit, acceleration_limit}; }
+};
 
-  /// w r² = ½ (√(2w) r)².
-  static double weight(double w) { return sqrt(2.0 * w); }
+/// The same problem in the solver's structured form. cte_{k+1} depends on stage k alone: an output, not a
+/// state. State (x, y, ψ, v, eψ, previous δ, previous a), with the constant 1 as wide as one 512-bit vector.
+struct StructuredDescribedProblem : DescribedData {
+  static constexpr int kNx = 7;
+  static constexpr int kNu = 2;
+  static constexpr int kNr = 7;
+  static constexpr int kNe = 3;
+  static constexpr int kNc = 0;
+
+  double first_cte = 0.0;  ///< given with the start: a constant of the cost
+
+  StructuredDescribedProblem() = default;
+  explicit StructuredDescribedProblem(const DescribedProblem& plain, double cte)
+      : DescribedData(plain), first_cte(cte) {}
+
+  static std::array<double, kNx> without_cte(const std::array<double, DescribedProblem::kNx>& s) {
+    return {s[0], s[1], s[2], s[3], s[5], s[6], s[7]};
+  }
+
+  template <class K, class X, class U>
+  auto dynamics(K, const X& s, const U& input) const {
+    const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
+    const auto& [steer, a] = input;
+    const auto turn = v * steer * (kStep / kLength);
+    return std::make_tuple(x + v * cos(psi) * kStep, y + v * sin(psi) * kStep, psi + turn, v + a * kStep,
+                           psi - atan(slope(x)) + turn, steer, a);
+  }
+  template <class K, class X, class U>
+  auto residual(K k, const X& s, const U& input) const {
+    const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
+    const auto& [steer, a] = input;
+    const auto change = select(solver::stage_number(k) > 0.0, 1.0, 0.0);
+    return std::make_tuple(weight(200.0) * next_cte(s), weight(200.0) * epsi,
+                           weight(0.1) * (v - speed_reference), weight(1.0) * steer, weight(1.0) * a,
+                           change * weight(10.0) * (steer - last_steer), change * weight(1.0) * (a - last_a));
+  }
+  template <class X>
+  auto terminal_residual(const X& s) const {
+    const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
+    return std::make_tuple(weight(200.0) * first_cte, weight(200.0) * epsi,
+                           weight(0.1) * (v - speed_reference));
+  }
+  template <class X>
+  auto next_cte(const X& s) const {
+    const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
+    return path[0] + x * (path[1] + x * (path[2] + x * path[3])) - y + v * sin(epsi) * kStep;
+  }
+
+ private:
+  template <class T>
+  auto slope(const T& x) const {
+    return path[1] + x * (2.0 * path[2] + x * (3.0 * path[3]));
+  }
 };
 
 template <int Capacity>
@@ -114,7 +176,7 @@ void guess_by_path_law(const DescribedInstance& instance, DescribedTrajectory<Ca
     trajectory.u[k] = {
         std::fmin(p.steer_limit, std::fmax(-p.steer_limit, steer)),
         std::fmin(p.acceleration_limit, std::fmax(-p.acceleration_limit, 0.5 * (p.speed_reference - s[3])))};
-    s = p.dynamics(static_cast<int>(k), s, trajectory.u[k]);
+    s = p.dynamics(0, s, trajectory.u[k]);
   }
 }
 

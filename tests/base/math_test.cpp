@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
+#include "chicane/base/math_pack.hpp"
 #include "chicane/base/random.hpp"
 
 namespace chicane {
@@ -59,6 +62,39 @@ TEST(Math, KeepsNotANumberAndTheAxes) {
   EXPECT_EQ(sin(0.0), 0.0);
   EXPECT_EQ(cos(0.0), 1.0);
   EXPECT_EQ(exp(0.0), 1.0);
+}
+
+/// Every lane of a pack against the scalar call, bit by bit; ordinary arguments and all the odd ones.
+template <class Function>
+void expect_same_bits(Function f, double low, double high) {
+  using P = Pack<arch::Native, 8>;
+  constexpr double kOdd[] = {0.0,  -0.0,  1e300,  -1e300, 1e-310, 5e-324, INFINITY, -INFINITY, NAN,  1.0,
+                             -1.0, 709.5, -708.5, 0.4375, 0.6875, 1.1875, 2.4375,   22.5,      1e-5, 1e9};
+  Random random{11};
+  for (int turn = 0; turn < 3000; ++turn) {
+    P x;
+    for (std::size_t lane = 0; lane < 8; ++lane)
+      x.set(lane, turn < 20 ? kOdd[(static_cast<std::size_t>(turn) + lane) % 20] : random.uniform(low, high));
+    const P y = f(x);
+    for (std::size_t lane = 0; lane < 8; ++lane) {
+      const double scalar = f(x[lane]);
+      if (std::isnan(scalar) && std::isnan(y[lane])) continue;
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(y[lane]), std::bit_cast<std::uint64_t>(scalar)) << x[lane];
+    }
+  }
+}
+
+TEST(Math, APackHasTheBitsOfTheScalarCalls) {
+  expect_same_bits([](auto x) { return sin(x); }, -60.0, 60.0);
+  expect_same_bits([](auto x) { return cos(x); }, -60.0, 60.0);
+  expect_same_bits([](auto x) { return tan(x); }, -2.0, 2.0);
+  expect_same_bits([](auto x) { return atan(x); }, -6.0, 6.0);
+  expect_same_bits([](auto x) { return atan2(x, decltype(x)(-0.3)); }, -6.0, 6.0);
+  expect_same_bits([](auto x) { return atan2(decltype(x)(0.0), x); }, -6.0, 6.0);
+  expect_same_bits([](auto x) { return exp(x); }, -60.0, 60.0);
+  expect_same_bits([](auto x) { return log(x); }, 1e-9, 60.0);
+  expect_same_bits([](auto x) { return tanh(x); }, -23.0, 23.0);
+  expect_same_bits([](auto x) { return sqrt(x); }, 0.0, 60.0);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <type_traits>
 
 #include "chicane/base/math.hpp"
 
@@ -142,6 +143,27 @@ template <int N, class T>
   r.v = atan2(y.v, x.v);
   for (std::size_t i = 0; i < N; ++i) r.d[i] = (x.v * y.d[i] - y.v * x.d[i]) / q;
   return r;
+}
+
+template <int N, class T>
+[[nodiscard]] Dual<N, T> select(bool chosen, const Dual<N, T>& a, const std::type_identity_t<Dual<N, T>>& b) {
+  return chosen ? a : b;
+}
+template <int N, class T>
+[[nodiscard]] Dual<N, T> select(bool chosen, double a, const Dual<N, T>& b) {
+  return chosen ? Dual<N, T>(a) : b;
+}
+template <int N, class T>
+[[nodiscard]] Dual<N, T> max(const Dual<N, T>& a, const std::type_identity_t<Dual<N, T>>& b) {
+  return value_of(a) > value_of(b) ? a : b;
+}
+template <int N, class T>
+[[nodiscard]] Dual<N, T> min(const Dual<N, T>& a, const std::type_identity_t<Dual<N, T>>& b) {
+  return value_of(a) < value_of(b) ? a : b;
+}
+template <int N, class T>
+[[nodiscard]] Dual<N, T> positive_part(const Dual<N, T>& a) {
+  return value_of(a) > 0.0 ? a : Dual<N, T>(0.0);
 }
 
 }  // namespace chicane

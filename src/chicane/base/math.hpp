@@ -23,4 +23,10 @@ namespace chicane {
 [[nodiscard]] inline double abs(double x) noexcept { return std::fabs(x); }
 [[nodiscard]] inline double hypot(double x, double y) noexcept { return std::sqrt(x * x + y * y); }
 
+/// Choices as functions, so that code over any scalar needs no branch: the same names work on packs and jets.
+[[nodiscard]] constexpr double select(bool chosen, double a, double b) noexcept { return chosen ? a : b; }
+[[nodiscard]] constexpr double max(double a, double b) noexcept { return a > b ? a : b; }
+[[nodiscard]] constexpr double min(double a, double b) noexcept { return a < b ? a : b; }
+[[nodiscard]] constexpr double positive_part(double x) noexcept { return x > 0.0 ? x : 0.0; }
+
 }  // namespace chicane

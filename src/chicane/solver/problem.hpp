@@ -3,37 +3,118 @@
 
 #include <array>
 #include <concepts>
+#include <cstddef>
+#include <tuple>
+#include <utility>
+
+#include "chicane/base/jet.hpp"
+#include "chicane/solver/stage_data.hpp"
 
 namespace chicane::solver {
 
-/// A discrete-time optimal control problem, given as a type P with functions over any scalar T (double, or a
-/// Dual):
+/// A discrete-time optimal control problem is a type P with functions:
 ///
 ///     min Σ_{k<N} ½‖r_k(x_k, u_k)‖² + ½‖r_N(x_N)‖² + Σ soft penalty(c_k(x_k, u_k))
 ///     s.t. x_0 given, x_{k+1} = f_k(x_k, u_k), lower_k <= u_k <= upper_k
 ///
-/// P has the sizes kNx, kNu, kNr (stage residuals), kNe (terminal residuals), kNc (soft constraints c <= 0;
-/// may be 0; the constraint of stage k is on (x_k, u_k), k < N) and
+/// It has the sizes kNx, kNu, kNr (stage residuals), kNe (terminal residuals), kNc (soft constraints c <= 0;
+/// may be 0; the constraint of stage k is on (x_k, u_k), k < N), the functions of one of the two levels
+/// below, and
 ///
-///     template <class T> std::array<T, kNx> dynamics(int k, const std::array<T, kNx>& x, const std::array<T,
-///     kNu>& u) const; template <class T> std::array<T, kNr> residual(int k, const std::array<T, kNx>& x,
-///     const std::array<T, kNu>& u) const; template <class T> std::array<T, kNe> terminal_residual(const
-///     std::array<T, kNx>& x) const; template <class T> std::array<T, kNc> constraint(int k, const
-///     std::array<T, kNx>& x, const std::array<T, kNu>& u) const; std::array<double, kNu> input_lower(int k)
-///     const;   // may be -infinity std::array<double, kNu> input_upper(int k) const; SoftPenalty
-///     soft_penalty(int constraint) const;     // only when kNc > 0
+///     std::array<double, kNu> input_lower(int k) const;    // may be -infinity
+///     std::array<double, kNu> input_upper(int k) const;
+///     SoftPenalty soft_penalty(int constraint) const;      // only when kNc > 0
+///     std::string_view constraint_name(int constraint) const, constraint_unit(int constraint) const;  //
+///     optional
 ///
 /// Costs on input changes: make the previous input part of the state.
+///
+/// **Level 1, any model.** One scalar type for everything, branches allowed; derivatives are dense:
+///
+///     template <class T> std::array<T, kNx> dynamics(int k, const std::array<T, kNx>& x,
+///                                                    const std::array<T, kNu>& u) const;
+///     …and the same for std::array<T, kNr> residual(k, x, u), std::array<T, kNe> terminal_residual(x) and
+///     std::array<T, kNc> constraint(k, x, u).
+///
+/// With `template <class K, class T> … dynamics(K k, …)` instead of `int k` for all of them, and without
+/// branches on x and u, several stages are evaluated at once.
+///
+/// **Level 2, structured.** Every variable has a type of its own, which knows what it depends on (jet.hpp):
+/// derivatives that are zero by construction cost nothing, here or in the Riccati sweeps. Stages are
+/// evaluated in SIMD lanes.
+///
+///     template <class K, class X, class U> auto dynamics(K k, const X& x, const U& u) const {
+///       const auto& [position, speed] = x;          // works on arrays and on tuples
+///       const auto& [force] = u;
+///       return std::make_tuple(position + speed * dt, speed + force * (dt / mass.at(k)));
+///     }
+///
+/// and so on for residual(k, x, u), terminal_residual(x), constraint(k, x, u). Rules:
+///
+/// - `auto` for every intermediate; results by std::make_tuple (or std::array where all types are equal);
+/// - data that differ from stage to stage: a StageData member and `.at(k)`; `stage_number(k)` is k as a
+/// number;
+/// - no branches on values: select(mask, a, b), max, min, positive_part, abs instead; compile-time ones are
+/// fine;
+/// - model code over one type T (`struct Motion<T>`) runs on T = Common<A, B, …> of the variables it uses;
+/// - what is computed from x_k and u_k but needs no memory is an output, not a state: put it into residual();
+/// - the functions must also work on plain doubles: that is how they are simulated and tested.
+///
+/// A stage may have at most 24 variables (states and inputs).
+
+namespace detail {
+
+template <class V, int Order, int Begin, int... n>
+auto make_seeds(std::integer_sequence<int, n...>)
+    -> std::tuple<Jet<V, Order, variable(Begin + n), variable(Begin + n)>...>;
+template <class V, int Order, int Begin, int Count>
+using Seeds = decltype(make_seeds<V, Order, Begin>(std::make_integer_sequence<int, Count>{}));
+
+}  // namespace detail
+
+/// The states and inputs of a stage as jets, each of its own type: what the functions of a structured problem
+/// are called with.
+template <class P, class V, int Order>
+using StateJets = detail::Seeds<V, Order, 0, P::kNx>;
+template <class P, class V, int Order>
+using InputJets = detail::Seeds<V, Order, P::kNx, P::kNu>;
+
+/// A row of results (tuple or array, constants among them) as an array of one type.
+template <class T, class Row>
+[[nodiscard]] constexpr auto to_array(const Row& row) {
+  return std::apply([](const auto&... values) { return std::array<T, sizeof...(values)>{T(values)...}; },
+                    row);
+}
+template <class Row>
+inline constexpr int row_size = static_cast<int>(std::tuple_size_v<std::remove_cvref_t<Row>>);
+
 template <class P>
 concept OcpProblem = requires(const P& p, const std::array<double, P::kNx>& x,
                               const std::array<double, P::kNu>& u) {
-  { p.dynamics(0, x, u) } -> std::same_as<std::array<double, P::kNx>>;
-  { p.residual(0, x, u) } -> std::same_as<std::array<double, P::kNr>>;
-  { p.terminal_residual(x) } -> std::same_as<std::array<double, P::kNe>>;
+  requires row_size<decltype(p.dynamics(0, x, u))>
+  == P::kNx;
+  requires row_size<decltype(p.residual(0, x, u))>
+  == P::kNr;
+  requires row_size<decltype(p.terminal_residual(x))>
+  == P::kNe;
   { p.input_lower(0) } -> std::same_as<std::array<double, P::kNu>>;
   { p.input_upper(0) } -> std::same_as<std::array<double, P::kNu>>;
   { P::kNc } -> std::convertible_to<int>;
 };
+
+/// Level 2 of the interface.
+template <class P>
+concept StructuredProblem = OcpProblem<P> &&
+    requires(const P& p, const StateJets<P, double, 1>& x, const InputJets<P, double, 1>& u) {
+  p.dynamics(0, x, u);
+};
+
+/// x_{k+1} of plain numbers (or any one scalar type), whatever the level.
+template <class T, OcpProblem P>
+[[nodiscard]] std::array<T, P::kNx> next_state(const P& problem, int k, const std::array<T, P::kNx>& x,
+                                               const std::array<T, P::kNu>& u) {
+  return to_array<T>(problem.dynamics(k, x, u));
+}
 
 /// Price of violating a soft constraint c <= 0 by s > 0: linear · s + ½ quadratic · s².
 struct SoftPenalty {

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "chicane/base/math.hpp"
+
+namespace chicane::elementary {
+
+/// The algorithms behind math.hpp (double) and math_pack.hpp (packs): one text for both, without branches, so
+/// that a lane has the bits of the scalar call. After fdlibm (Sun Microsystems, 1993, freely distributable).
+/// Plain IEEE operations in a fixed order; never fused.
+
+[[nodiscard, gnu::always_inline]] inline std::uint64_t bits_of(double x) noexcept {
+  return std::bit_cast<std::uint64_t>(x);
+}
+[[nodiscard, gnu::always_inline]] inline bool is_set(std::uint64_t bits) noexcept { return bits != 0; }
+[[nodiscard, gnu::always_inline]] inline double copysign(double magnitude, double sign) noexcept {
+  return std::copysign(magnitude, sign);
+}
+
+/// How V turns bits back into numbers; packs have a member for it.
+template <class V>
+struct Number {
+  using Bits = typename V::BitsType;
+  [[gnu::always_inline]] static V from(const Bits& bits) noexcept { return V::from_bits(bits); }
+};
+template <>
+struct Number<double> {
+  using Bits = std::uint64_t;
+  [[gnu::always_inline]] static double from(Bits bits) noexcept { return std::bit_cast<double>(bits); }
+};
+
+/// Added to a number below 2^51 this leaves its nearest integer in the last bits.
+inline constexpr double kToInteger = 6755399441055744.0;  // 1.5 · 2^52
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+template <class V>
+struct Reduced {
+  V r;     // x − n π/2, |r| <= π/4
+  V tail;  // what rounding lost of r
+  typename Number<V>::Bits quadrant;
+};
+
+template <class V>
+[[nodiscard, gnu::always_inline]] inline Reduced<V> reduce(const V& x) noexcept {
+  constexpr double kHalfPiHigh = 1.57079632673412561417e+00;    // first 33 bits of π/2
+  constexpr double kHalfPiMiddle = 6.07710050630396597660e-11;  // second 33 bits of π/2
+  constexpr double kHalfPiLow = 2.02226624879595063154e-21;     // the rest
+  constexpr double kTwoOverPi = 6.36619772367581382433e-01;
+  const V counted = x * kTwoOverPi + kToInteger;
+  const V n = counted - kToInteger;
+  const V high = x - n * kHalfPiHigh;
+  const V middle = n * kHalfPiMiddle;
+  const V partial = high - middle;
+  const V low = n * kHalfPiLow - ((high - partial) - middle);
+  const V r = partial - low;
+  return {r, (partial - r) - low, bits_of(counted)};
+}
+
+template <class V>
+[[nodiscard, gnu::always_inline]] inline V sin_kernel(const V& x, const V& tail) noexcept {
+  constexpr double s1 = -1.66666666666666324348e-01, s2 = 8.33333333332248946124e-03,
+                   s3 = -1.98412698298579493134e-04, s4 = 2.75573137070700676789e-06,
+                   s5 = -2.50507602534068634195e-08, s6 = 1.58969099521155010221e-10;
+  const V z = x * x;
+  const V v = z * x;
+  const V r = s2 + z * (s3 + z * (s4 + z * (s5 + z * s6)));
+  return x - ((z * (0.5 * tail - v * r) - tail) - v * s1);
+}
+
+template <class V>
+[[nodiscard, gnu::always_inline]] inline V cos_kernel(const V& x, const V& tail) noexcept {
+  constexpr double c1 = 4.16666666666666019037e-02, c2 = -1.38888888888741095749e-03,
+                   c3 = 2.48015872894767294178e-05, c4 = -2.75573143513906633035e-07,
+                   c5 = 2.08757232129817482790e-09, c6 = -1.13596475577881948265e-11;
+  const V z = x * x;
+  const V r = z * (c1 + z * (c2 + z * (c3 + z * (c4 + z * (c5 + z * c6)))));
+  const V half = 0.5 * z;
+  const V w = 1.0 - half;
+  return w + (((1.0 - w) - half) + (z * r - x * tail));
+}
+
+/// Sine and cosine share all their work: calls for both of one argument cost little more than one.
+template <class V>
+[[nodiscard, gnu::always_inline]] inline V sin(const V& x) noexcept {
+  using Bits = typename Number<V>::Bits;
+  const Reduced<V> a = reduce(x);
+  const V s = select(is_set(a.quadrant & Bits(1)), cos_kernel(a.r, a.tail), sin_kernel(a.r, a.tail));
+  const V turned = Number<V>::from(bits_of(s) ^ ((a.quadrant & Bits(2)) << 62));
+  return select(abs(x) < V(1e9), turned, V(kNaN));
+}
+template <class V>
+[[nodiscard, gnu::always_inline]] inline V cos(const V& x) noexcept {
+  using Bits = typename Number<V>::Bits;
+  const Reduced<V> a = reduce(x);
+  const V c = select(is_set(a.quadrant & Bits(1)), sin_kernel(a.r, a.tail), cos_kernel(a.r, a.tail));
+  const V turned = Number<V>::from(bits_of(c) ^ (((a.quadrant + Bits(1)) & Bits(2)) << 62));
+  return select(abs(x) < V(1e9), turned, V(kNaN));
+}
+
+/// |x| is folded to below 7/16 by one of four tangent differences.
+template <class V>
+[[nodiscard, gnu::always_inline]] inline V atan(const V& x) noexcept {
+  constexpr double high[] = {4.63647609000806093515e-01, 7.85398163397448278999e-01,
+                             9.82793723247329054082e-01, 1.57079632679489655800e+00};
+  constexpr double low[] = {2.26987774529616870924e-17, 3.06161699786838301793e-17,
+                            1.39033110312309984516e-17, 6.12323399573676603587e-17};
+  constexpr double t[] = {
+      3.33333333333329318027e-01,  -1.99999999998764832476e-01, 1.42857142725034663711e-01,
+      -1.11111104054623557880e-01, 9.09088713343650656196e-02,  -7.69187620504482999495e-02,
+      6.66107313738753120669e-02,  -5.83357013379057348645e-02, 4.97687799461593236017e-02,
+      -3.65315727442169155270e-02, 1.62858201153657823623e-02};
+  const V m = abs(x);
+  const auto is_1 = m >= V(0.4375), is_2 = m >= V(0.6875), is_3 = m >= V(1.1875), is_4 = m >= V(2.4375);
+  const auto choose = [&](const V& a, const V& b, const V& c, const V& d, const V& e)
+      __attribute__((always_inline)) {
+    return select(is_4, e, select(is_3, d, select(is_2, c, select(is_1, b, a))));
+  };
+  const V a = choose(m, 2.0 * m - 1.0, m - 1.0, m - 1.5, V(-1.0)) /
+              choose(V(1.0), 2.0 + m, m + 1.0, 1.0 + 1.5 * m, m);
+  const V from = choose(V(0.0), V(high[0]), V(high[1]), V(high[2]), V(high[3]));
+  const V lost = choose(V(0.0), V(low[0]), V(low[1]), V(low[2]), V(low[3]));
+  const V z = a * a;
+  const V w = z * z;
+  const V odd = z * (t[0] + w * (t[2] + w * (t[4] + w * (t[6] + w * (t[8] + w * t[10])))));
+  const V even = w * (t[1] + w * (t[3] + w * (t[5] + w * (t[7] + w * t[9]))));
+  return copysign(from - ((a * (odd + even) - lost) - a), x);
+}
+
+template <class V>
+[[nodiscard, gnu::always_inline]] inline V atan2(const V& y, const V& x) noexcept {
+  constexpr double pi = 3.14159265358979311600e+00, pi_low = 1.22464679914735317723e-16;
+  const V zero(0.0);
+  const auto on_x = (y == zero) & (x == x);
+  const V a = elementary::atan(abs(select(on_x, zero, y / x)));
+  const auto is_behind = (copysign(V(1.0), x) < zero) & (on_x | (x < zero));
+  return copysign(select(is_behind, pi - (a - pi_low), a), y);
+}
+
+template <class V>
+[[nodiscard, gnu::always_inline]] inline V exp(const V& x) noexcept {
+  using Bits = typename Number<V>::Bits;
+  constexpr double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
+  constexpr double inverse_ln2 = 1.44269504088896338700e+00;
+  constexpr double p1 = 1.66666666666666019037e-01, p2 = -2.77777777770155933842e-03,
+                   p3 = 6.61375632143793436117e-05, p4 = -1.65339022054652515390e-06,
+                   p5 = 4.13813679705723846039e-08;
+  const V counted = x * inverse_ln2 + kToInteger;
+  const V k = counted - kToInteger;
+  const V hi = x - k * ln2_high;
+  const V lo = k * ln2_low;
+  const V r = hi - lo;
+  const V t = r * r;
+  const V c = r - t * (p1 + t * (p2 + t * (p3 + t * (p4 + t * p5))));
+  const V y = 1.0 - ((lo - (r * c) / (2.0 - c)) - hi);
+  const V power = Number<V>::from((bits_of(counted) + Bits(1023)) << 52);  // 2^k
+  return select(x > V(709.0), V(kInfinity), select(x < V(-708.0), V(0.0), y * power));
+}
+
+template <class V>
+[[nodiscard, gnu::always_inline]] inline V log(const V& x) noexcept {
+  using Bits = typename Number<V>::Bits;
+  constexpr double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
+  constexpr double g1 = 6.666666666666735130e-01, g2 = 3.999999999940941908e-01,
+                   g3 = 2.857142874366239149e-01, g4 = 2.222219843214978396e-01,
+                   g5 = 1.818357216161805012e-01, g6 = 1.531383769920937332e-01,
+                   g7 = 1.479819860511658591e-01;
+  constexpr double kLeastNormal = std::numeric_limits<double>::min();
+  constexpr double kTwo54 = 18014398509481984.0;
+  constexpr std::uint64_t kMantissa = (std::uint64_t{1} << 52) - 1;
+  constexpr std::uint64_t kTwo52 = std::uint64_t{0x433} << 52;  // bits of 2^52
+  constexpr std::uint64_t kHalf = std::uint64_t{0x3fe} << 52;   // bits of 1/2
+  const auto is_tiny = x < V(kLeastNormal);
+  const auto bits = bits_of(select(is_tiny, x * kTwo54, x));
+  const V exponent = Number<V>::from((bits >> 52) | Bits(kTwo52)) - 4503599627370496.0;
+  const V fraction = Number<V>::from((bits & Bits(kMantissa)) | Bits(kHalf));  // in [1/2, 1)
+  const auto is_low = fraction < V(0.70710678118654752440);
+  const V m = select(is_low, 2.0 * fraction, fraction);
+  const V k = exponent - select(is_tiny, V(1022.0 + 54.0), V(1022.0)) - select(is_low, V(1.0), V(0.0));
+  const V f = m - 1.0;
+  const V s = f / (2.0 + f);
+  const V z = s * s;
+  const V w = z * z;
+  const V r = w * (g2 + w * (g4 + w * g6)) + z * (g1 + w * (g3 + w * (g5 + w * g7)));
+  const V half = 0.5 * f * f;
+  const V result = k * ln2_high - ((half - (s * (half + r) + k * ln2_low)) - f);
+  const V special = select(x > V(0.0), x, select(x == V(0.0), V(-kInfinity), V(kNaN)));
+  return select((x > V(0.0)) & (x < V(kInfinity)), result, special);
+}
+
+template <class V>
+[[nodiscard, gnu::always_inline]] inline V tanh(const V& x) noexcept {
+  const V a = abs(x);
+  const V e = elementary::exp(-2.0 * a);
+  const V large = copysign(select(a > V(22.0), V(1.0), (1.0 - e) / (1.0 + e)), x);
+  return select(a < V(1e-4), x - x * x * x / 3.0, large);
+}
+
+}  // namespace chicane::elementary
