@@ -39,40 +39,67 @@ std::string small(double value) { return std::isfinite(value) ? fmt::format("{:.
 
 std::string own_table(const std::vector<SolveRow>& rows) {
   std::string text =
-      "| family | N | median µs | p99 | p99.9 | p99 / median | turns | unsolved | gradient median / worst |\n"
-      "|---|---|---|---|---|---|---|---|---|\n";
+      "| family | N | median µs | p99 | p99.9 | p99 / median | turns | sweeps | unsolved | gradient median / "
+      "worst |\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const SolveRow& row : rows) {
     const SolverColumn& own = row.own;
-    text += fmt::format("| {} | {} | {:.0f} | {:.0f} | {:.0f} | {:.1f} | {:.1f} | {} | {} / {} |\n",
+    text += fmt::format("| {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {} | {} / {} |\n",
                         row.family, row.horizon, own.time_us.median, own.time_us.p99, own.time_us.p999,
-                        own.time_us.p99 / own.time_us.median, own.mean_turns, own.unsolved,
+                        own.time_us.p99 / own.time_us.median, own.mean_turns, own.mean_sweeps, own.unsolved,
                         small(own.median_gradient), small(own.worst_gradient));
   }
   return text;
 }
 
-/// "time | ratio | ratio without functions".
-std::string against(const std::optional<SolverColumn>& reference, const SolverColumn& own) {
-  if (!reference) return "– | – | –";
-  return fmt::format("{:.0f} | {:.0f} | {:.0f}", reference->time_us.median,
-                     reference->time_us.median / own.time_us.median,
-                     reference->linear_us.median / own.time_us.median);
+double ratio(const SolverColumn* reference, const SolverColumn& own) {
+  return reference == nullptr ? std::nan("") : reference->time_us.median / own.time_us.median;
 }
 
-std::string ipopt_table(const std::vector<SolveRow>& rows) {
+std::string reference_table(const std::vector<SolveRow>& rows) {
   std::string text =
-      "| family | N | Ipopt median µs | ratio | its functions free | hot start µs | ratio | its functions "
-      "free "
-      "| unsolved | gradient median / worst | our cost over its, worst |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|\n";
+      "| family | N | solver | median µs | p99 | ratio | ratio, its functions free | turns | unsolved | "
+      "gradient median / worst | our cost over its, worst |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const SolveRow& row : rows) {
-    if (!row.ipopt) continue;
-    text += fmt::format("| {} | {} | {} | {} | {} | {} / {} | {} |\n", row.family, row.horizon,
-                        against(row.ipopt, row.own), against(row.ipopt_warm, row.own), row.ipopt->unsolved,
-                        small(row.ipopt->median_gradient), small(row.ipopt->worst_gradient),
-                        small(row.own.worst_excess));
+    for (const SolverColumn& column : row.references) {
+      const double free = column.without_functions_us / row.own.time_us.median;
+      text += fmt::format("| {} | {} | {} | {:.0f} | {:.0f} | {:.0f} | {} | {:.1f} | {} | {} / {} | {} |\n",
+                          row.family, row.horizon, column.name, column.time_us.median, column.time_us.p99,
+                          ratio(&column, row.own), free > 0.0 ? number(free, 0) : "–", column.mean_turns,
+                          column.unsolved, small(column.median_gradient), small(column.worst_gradient),
+                          small(column.worst_excess));
+    }
   }
   return text;
+}
+
+std::string golden_table(const std::vector<GoldenRow>& rows) {
+  std::string text =
+      "| set | problems | unsolved | agree to 1e-8 | ours lower | ours higher | worst excess | first steer, "
+      "median / worst [rad] | median µs |\n|---|---|---|---|---|---|---|---|---|\n";
+  for (const GoldenRow& row : rows) {
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} / {} | {:.1f} |\n", row.set, row.problems,
+                        row.unsolved, row.agree, row.better, row.worse, small(row.worst_excess),
+                        small(row.median_first_steer), small(row.worst_first_steer), row.median_us);
+  }
+  return text;
+}
+
+std::string target_table(const std::vector<Target>& rows) {
+  std::string text = "| what | promised | aim | measured | kept |\n|---|---|---|---|---|\n";
+  for (const Target& row : rows) {
+    const char* sign = row.is_ceiling ? "<=" : ">=";
+    const char* verdict = std::isnan(row.measured) ? "not measured" : row.is_kept() ? "yes" : "no";
+    text += fmt::format("| {} | {} {:g} | {:g} | {} | {} |\n", row.what, sign, row.least, row.aim,
+                        std::isfinite(row.measured) ? fmt::format("{:.4g}", row.measured) : "–", verdict);
+  }
+  return text;
+}
+
+const SolveRow* row_of(const std::vector<SolveRow>& rows, std::string_view family, int horizon) {
+  for (const SolveRow& row : rows) {
+    if (row.family == family && row.horizon == horizon) return &row;
+  }
+  return nullptr;
 }
 
 std::string step_row(std::string_view name, const Spread& spread) {
@@ -83,26 +110,57 @@ Json json_of(const Spread& spread) {
   return {{"p50", spread.median}, {"p99", spread.p99}, {"p999", spread.p999}};
 }
 
-void put(Json& row, const std::string& prefix, const SolverColumn& column) {
+void put(Json& row, const SolverColumn& column) {
+  const std::string& prefix = column.name;
   row[prefix + "_p50_us"] = column.time_us.median;
   row[prefix + "_p99_us"] = column.time_us.p99;
   row[prefix + "_p999_us"] = column.time_us.p999;
-  if (column.linear_us.median > 0.0) row[prefix + "_without_functions_p50_us"] = column.linear_us.median;
+  if (column.without_functions_us > 0.0)
+    row[prefix + "_without_functions_p50_us"] = column.without_functions_us;
   row[prefix + "_unsolved"] = column.unsolved;
   row[prefix + "_mean_turns"] = column.mean_turns;
+  if (column.mean_sweeps > 0.0) row[prefix + "_mean_sweeps"] = column.mean_sweeps;
   row[prefix + "_median_gradient"] = column.median_gradient;
   row[prefix + "_worst_gradient"] = column.worst_gradient;
-  row[prefix + "_worst_excess"] = column.worst_excess;
+  if (prefix != "own") row["worst_excess_over_" + prefix] = column.worst_excess;
 }
 
 Json json_of(const std::vector<SolveRow>& rows) {
   Json list = Json::array();
   for (const SolveRow& solved : rows) {
     Json row{{"family", solved.family}, {"horizon", solved.horizon}, {"instances", solved.instances}};
-    put(row, "own", solved.own);
-    if (solved.ipopt) put(row, "ipopt", *solved.ipopt);
-    if (solved.ipopt_warm) put(row, "ipopt_hot", *solved.ipopt_warm);
+    put(row, solved.own);
+    for (const SolverColumn& column : solved.references) put(row, column);
     list.push_back(row);
+  }
+  return list;
+}
+
+Json json_of(const std::vector<GoldenRow>& rows) {
+  Json list = Json::array();
+  for (const GoldenRow& row : rows) {
+    list.push_back({{"set", row.set},
+                    {"problems", row.problems},
+                    {"unsolved", row.unsolved},
+                    {"agree", row.agree},
+                    {"better", row.better},
+                    {"worse", row.worse},
+                    {"worst_excess", row.worst_excess},
+                    {"worst_first_steer_rad", row.worst_first_steer},
+                    {"p50_us", row.median_us}});
+  }
+  return list;
+}
+
+Json json_of(const std::vector<Target>& rows) {
+  Json list = Json::array();
+  for (const Target& row : rows) {
+    list.push_back({{"what", row.what},
+                    {"promised", row.least},
+                    {"aim", row.aim},
+                    {"is_ceiling", row.is_ceiling},
+                    {"measured", std::isfinite(row.measured) ? Json(row.measured) : Json(nullptr)},
+                    {"is_kept", row.is_kept()}});
   }
   return list;
 }
@@ -114,35 +172,75 @@ double load() {
   return getloadavg(&mean, 1) == 1 ? mean : std::nan("");
 }
 
-Machine this_machine() {
+std::vector<Target> targets(const BenchReport& report) {
+  std::vector<Target> list;
+  const auto add = [&](std::string what, double least, double aim, bool is_ceiling, double measured) {
+    list.push_back({std::move(what), least, aim, is_ceiling, measured});
+  };
+  const SolverColumn nothing{.name = "", .time_us = {std::nan(""), std::nan(""), std::nan("")}};
+  const auto own = [&](std::string_view family, int horizon) -> const SolverColumn& {
+    const SolveRow* row = row_of(report.solves, family, horizon);
+    return row == nullptr ? nothing : row->own;
+  };
+  const auto against = [&](std::string_view family, std::string_view reference) {
+    const SolveRow* row = row_of(report.solves, family, 20);
+    return row == nullptr ? std::nan("") : ratio(row->reference(reference), row->own);
+  };
+  for (const std::string_view family : {"cold0", "coldP", "warm"}) {
+    const bool is_warm = family == "warm";
+    add(fmt::format("{}, N = 20, median [µs]", family), is_warm ? 6 : 10, is_warm ? 3 : 5, true,
+        own(family, 20).time_us.median);
+    add(fmt::format("{}, N = 20, p99 over median", family), 2, 1.6, true,
+        own(family, 20).time_us.p99 / own(family, 20).time_us.median);
+    add(fmt::format("{}, N = 20, times faster than Ipopt with exact derivatives", family), 800, 1500, false,
+        against(family, "ipopt"));
+    add(fmt::format("{}, N = 20, times faster than Ipopt with CppAD", family), 1200, 2500, false,
+        against(family, "cppad"));
+  }
+  add("warm, N = 20, times faster than Ipopt at its best (hot start)", 400, 800, false,
+      against("warm", "ipopt_hot"));
+  add("corridor-warm, N = 20, median [µs]", 15, 10, true, own("corridor-warm", 20).time_us.median);
+  add("corridor-warm, N = 40, median [µs]", 35, 25, true, own("corridor-warm", 40).time_us.median);
+  add("exponent of the time over N, 10 to 200", 1.1, 1.1, true, report.growth_exponent);
+  double unsolved = 0.0;
+  for (const SolveRow& row : report.solves) unsolved += row.own.unsolved;
+  for (const GoldenRow& row : report.golden) unsolved += row.unsolved;
+  add("problems not solved", 0, 0, true, report.solves.empty() ? std::nan("") : unsolved);
+  add("whole control step of default, p99.9 of CPU time [µs]", 100, 40, true,
+      report.steps > 0 ? report.step_cpu_us.p999 : std::nan(""));
+  return list;
+}
+
+Machine this_machine(const bench::References& references) {
   return {.processor = processor(),
           .compiler = CHICANE_COMPILER,
           .flags = CHICANE_FLAGS,
           .commit = CHICANE_COMMIT,
           .date = today(),
-          .ipopt = ipopt_version(),
+          .references = references.versions,
           .load_before = load()};
 }
 
 std::string to_markdown(const BenchReport& report) {
   const Machine& machine = report.machine;
-  std::string text = fmt::format("{}, {} {}, commit {}, {}; load {:.1f} before, {:.1f} after. Ipopt: {}.\n",
-                                 machine.processor, machine.compiler, machine.flags, machine.commit,
-                                 machine.date, machine.load_before, machine.load_after,
-                                 machine.ipopt.empty() ? "not in this program" : machine.ipopt);
+  std::string text = fmt::format(
+      "{}, {} {}, commit {}, {}; load {:.1f} before, {:.1f} after. Compared with: {}.\n", machine.processor,
+      machine.compiler, machine.flags, machine.commit, machine.date, machine.load_before, machine.load_after,
+      machine.references.empty() ? "nothing" : machine.references);
   if (report.was_interrupted) text += "Interrupted: the last row has fewer instances.\n";
   if (!report.solves.empty()) {
     text += fmt::format("{} instances each.\n\n", report.solves.front().instances) + own_table(report.solves);
-    if (report.solves.front().ipopt) text += "\n" + ipopt_table(report.solves);
+    if (!machine.references.empty()) text += "\n" + reference_table(report.solves);
   }
   if (!report.growth.empty()) {
     text += "\nMedian of warm solves against the horizon:";
     for (const SolveRow& row : report.growth) {
-      text += fmt::format(" N = {}: {:.0f} µs{}", row.horizon, row.own.time_us.median,
+      text += fmt::format(" N = {}: {:.1f} µs{}", row.horizon, row.own.time_us.median,
                           &row == &report.growth.back() ? "" : ",");
     }
     text += fmt::format("; exponent {}.\n", number(report.growth_exponent, 2));
   }
+  if (!report.golden.empty()) text += "\n" + golden_table(report.golden);
   if (report.steps > 0) {
     text += fmt::format("\nControl step of `default` in closed loop, {} steps [µs]:\n\n", report.steps) +
             "| | p50 | p99 | p99.9 |\n|---|---|---|---|\n" +
@@ -150,6 +248,7 @@ std::string to_markdown(const BenchReport& report) {
             step_row("wall clock", report.step_us) +
             step_row("the optimisation in it, wall clock", report.step_solve_us);
   }
+  text += "\n" + target_table(targets(report));
   return text;
 }
 
@@ -160,17 +259,19 @@ std::string to_json(const BenchReport& report) {
                   {"flags", machine.flags},
                   {"commit", machine.commit},
                   {"date", machine.date},
-                  {"ipopt", machine.ipopt.empty() ? Json(nullptr) : Json(machine.ipopt)},
+                  {"references", machine.references},
                   {"load_before", machine.load_before},
                   {"load_after", machine.load_after},
                   {"interrupted", report.was_interrupted},
                   {"solves", json_of(report.solves)},
                   {"growth", json_of(report.growth)},
                   {"growth_exponent", report.growth_exponent},
+                  {"golden", json_of(report.golden)},
                   {"steps", report.steps},
                   {"step_cpu_time_us", json_of(report.step_cpu_us)},
                   {"step_time_us", json_of(report.step_us)},
-                  {"solve_time_us", json_of(report.step_solve_us)}};
+                  {"solve_time_us", json_of(report.step_solve_us)},
+                  {"targets", json_of(targets(report))}};
   return json.dump(2) + "\n";
 }
 

@@ -4,16 +4,18 @@
 #include <string>
 #include <vector>
 
+#include "bench_golden.hpp"
 #include "bench_solves.hpp"
 
 namespace chicane::apps {
 
 /// What a benchmark ran on, in the words of the report.
 struct Machine {
-  std::string processor, compiler, flags, commit, date, ipopt;
+  std::string processor, compiler, flags, commit, date;
+  std::string references;                      ///< what is compared with; empty without
   double load_before = 0.0, load_after = 0.0;  ///< jobs that want a core, mean over the last minute
 };
-[[nodiscard]] Machine this_machine();
+[[nodiscard]] Machine this_machine(const bench::References& references);
 [[nodiscard]] double load();
 
 struct BenchReport {
@@ -25,8 +27,21 @@ struct BenchReport {
   Spread step_us{};                ///< whole control steps of the default controller, wall clock
   Spread step_solve_us{};          ///< the optimisation in them
   std::size_t steps = 0;
+  std::vector<GoldenRow> golden{};
   bool was_interrupted = false;
 };
+
+/// One promise of docs/benchmarks.md beside what came out.
+struct Target {
+  std::string what;
+  double least = 0.0;  ///< to be kept
+  double aim = 0.0;
+  bool is_ceiling = false;  ///< smaller is better
+  double measured = 0.0;    ///< NaN: not measured in this run
+
+  [[nodiscard]] bool is_kept() const { return is_ceiling ? measured <= least : measured >= least; }
+};
+[[nodiscard]] std::vector<Target> targets(const BenchReport& report);
 
 [[nodiscard]] std::string to_markdown(const BenchReport& report);
 [[nodiscard]] std::string to_json(const BenchReport& report);

@@ -3,39 +3,32 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <functional>
 #include <limits>
 #include <memory>
-#include <numeric>
 
 #include "problems/cpu_time.hpp"
 #include "problems/families.hpp"
 #include "problems/optimality.hpp"
 
-#ifdef CHICANE_HAVE_IPOPT
-#include "problems/ipopt_solver.hpp"
-#endif
-
 namespace chicane::apps {
 namespace {
 
+using bench::Outcome;
 using bench::Start;
 
 constexpr int kCapacity = kLongestHorizon;
-constexpr int kRepeats = 3;
+constexpr int kTrials = 3;
+constexpr double kLeastTime = 50e-6;  ///< of one trial: the clock itself takes some 0.2 µs [s]
 constexpr double kMicroseconds = 1e6;
 
-template <class Problem>
-using Instance = bench::FamilyInstance<Problem, kCapacity>;
 using Trajectory = bench::DescribedTrajectory<kCapacity>;
+template <class Problem>
+using Instance = bench::Instance<Problem, kCapacity>;
 
 /// What one solver did with one instance.
 struct Sample {
-  double time = std::numeric_limits<double>::infinity();    // [s]
-  double linear = std::numeric_limits<double>::infinity();  // [s]
-  bool is_solved = true;
-  int turns = 0;
+  Outcome outcome;
+  double sweeps = 0.0;
   double gradient = std::nan("");
   double cost = 0.0;
 };
@@ -48,45 +41,44 @@ void judge(const Instance<Problem>& instance, const Trajectory& answer, Sample& 
   }
 }
 
+/// Our solver: the best of some trials, each long enough for the clock.
 template <class Problem>
 Sample solve_own(const Instance<Problem>& instance, solver::OcpSolver<Problem, kCapacity>& ocp,
                  Trajectory& answer) {
   Sample sample;
-  for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    answer = instance.guess;
-    const double begin = bench::cpu_time();
-    const solver::SolveReport report = ocp.solve(instance.problem, instance.start, answer);
-    sample.time = std::min(sample.time, bench::cpu_time() - begin);
-    sample.is_solved = report.status == solver::SolveStatus::kOptimal;
-    sample.turns = report.iterations;
+  const auto solve = [&] {
+    std::copy_n(instance.guess.u.begin(), instance.guess.horizon, answer.u.begin());
+    return ocp.solve(instance.problem, instance.start, answer);
+  };
+  answer = instance.guess;
+  double begin = bench::cpu_time();
+  const solver::SolveReport report = solve();
+  const int repeats = static_cast<int>(kLeastTime / std::max(bench::cpu_time() - begin, 1e-6)) + 1;
+  sample.outcome.time = std::numeric_limits<double>::infinity();
+  for (int trial = 0; trial < kTrials; ++trial) {
+    begin = bench::cpu_time();
+    for (int repeat = 0; repeat < repeats; ++repeat) solve();
+    sample.outcome.time = std::min(sample.outcome.time, (bench::cpu_time() - begin) / repeats);
   }
+  sample.outcome.is_solved = report.status == solver::SolveStatus::kOptimal;
+  sample.outcome.turns = report.iterations;
+  sample.sweeps = report.sweeps;
   judge(instance, answer, sample);
   return sample;
 }
 
-#ifdef CHICANE_HAVE_IPOPT
 template <class Problem>
-Sample solve_ipopt(const Instance<Problem>& instance, bench::IpoptSolver<Problem>& ipopt, bool is_warm,
-                   Trajectory& answer) {
+Sample solve_reference(const Instance<Problem>& instance, const Instance<Problem>* before,
+                       bench::Reference<Problem>& reference, Trajectory& answer) {
   Sample sample;
-  if (is_warm) {
-    answer = instance.guess_before;
-    ipopt.solve(instance.before, instance.start_before, answer);
-    ipopt.remember();
-  }
-  for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    answer = instance.guess;
-    const bench::IpoptReport report = is_warm ? ipopt.solve_warm(instance.problem, instance.start, answer)
-                                              : ipopt.solve(instance.problem, instance.start, answer);
-    sample.time = std::min(sample.time, report.time);
-    sample.linear = std::min(sample.linear, report.time - report.time_in_functions);
-    sample.is_solved = report.is_solved;
-    sample.turns = report.iterations;
+  sample.outcome = reference.solve(instance, before, answer);
+  for (int trial = 1; trial < kTrials; ++trial) {
+    const Outcome again = reference.solve(instance, before, answer);
+    if (again.time < sample.outcome.time) sample.outcome = again;
   }
   judge(instance, answer, sample);
   return sample;
 }
-#endif
 
 template <class Value>
 std::vector<double> column(const std::vector<Sample>& samples, const Value& value) {
@@ -95,16 +87,21 @@ std::vector<double> column(const std::vector<Sample>& samples, const Value& valu
   return values;
 }
 
-SolverColumn summarize(const std::vector<Sample>& samples, const std::vector<Sample>& other) {
-  SolverColumn result;
+SolverColumn summarize(std::string_view name, const std::vector<Sample>& samples,
+                       const std::vector<Sample>& own) {
+  SolverColumn result{.name = std::string(name)};
   if (samples.empty()) return result;
-  result.time_us = spread_of(column(samples, [](const Sample& s) { return s.time * kMicroseconds; }));
-  if (std::isfinite(samples.front().linear)) {
-    result.linear_us = spread_of(column(samples, [](const Sample& s) { return s.linear * kMicroseconds; }));
+  result.time_us = spread_of(column(samples, [](const Sample& s) { return s.outcome.time * kMicroseconds; }));
+  if (samples.front().outcome.time_in_functions > 0.0) {
+    result.without_functions_us = spread_of(column(samples, [](const Sample& s) {
+                                    return (s.outcome.time - s.outcome.time_in_functions) * kMicroseconds;
+                                  })).median;
   }
+  const auto count = static_cast<double>(samples.size());
   for (const Sample& sample : samples) {
-    result.unsolved += sample.is_solved ? 0 : 1;
-    result.mean_turns += static_cast<double>(sample.turns) / static_cast<double>(samples.size());
+    result.unsolved += sample.outcome.is_solved ? 0 : 1;
+    result.mean_turns += sample.outcome.turns / count;
+    result.mean_sweeps += sample.sweeps / count;
   }
   std::vector<double> gradients = column(samples, [](const Sample& s) { return s.gradient; });
   result.median_gradient = result.worst_gradient = std::nan("");
@@ -112,40 +109,38 @@ SolverColumn summarize(const std::vector<Sample>& samples, const std::vector<Sam
     result.worst_gradient = *std::max_element(gradients.begin(), gradients.end());
     result.median_gradient = spread_of(std::move(gradients)).median;
   }
-  result.worst_excess = other.empty() ? std::nan("") : -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < other.size(); ++i) {
+  result.worst_excess = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
     result.worst_excess =
-        std::max(result.worst_excess, (samples[i].cost - other[i].cost) / std::fabs(other[i].cost));
+        std::max(result.worst_excess, (own[i].cost - samples[i].cost) / std::fabs(samples[i].cost));
   }
   return result;
 }
 
 template <class Problem>
-void measure(Start start, int instances, [[maybe_unused]] bool with_ipopt, const std::atomic<bool>& stop,
+void measure(Start start, int instances, bench::References& references, const std::atomic<bool>& stop,
              SolveRow& row) {
   const auto ocp = std::make_unique<solver::OcpSolver<Problem, kCapacity>>();
   const auto answer = std::make_unique<Trajectory>();
+  auto& others = references.of<Problem>();
   std::vector<Sample> own;
-  std::vector<Sample> ipopt;
-  std::vector<Sample> ipopt_warm;
-#ifdef CHICANE_HAVE_IPOPT
-  bench::IpoptSolver<Problem> reference;
-#endif
-  Random random{static_cast<std::uint64_t>(7000 + row.horizon)};
-  for (int i = 0; i < instances && !stop; ++i) {
-    const auto instance =
-        std::make_unique<const Instance<Problem>>(bench::next_instance(random, row.horizon, start, *ocp));
-    own.push_back(solve_own(*instance, *ocp, *answer));
-#ifdef CHICANE_HAVE_IPOPT
-    if (!with_ipopt) continue;
-    ipopt.push_back(solve_ipopt(*instance, reference, false, *answer));
-    if (start == Start::kWarm) ipopt_warm.push_back(solve_ipopt(*instance, reference, true, *answer));
-#endif
+  std::vector<std::vector<Sample>> theirs(others.size());
+  if (stop) return;
+  // One more than is measured: the cycle before the first.
+  const auto family = bench::make_family<Problem, kCapacity>(start, row.horizon, instances + 1, *ocp);
+  for (std::size_t i = 1; i < family.size() && !stop; ++i) {
+    own.push_back(solve_own(family[i], *ocp, *answer));
+    for (std::size_t other = 0; other < others.size(); ++other) {
+      if (others[other]->is_hot() && start != Start::kWarm) continue;
+      theirs[other].push_back(solve_reference(family[i], &family[i - 1], *others[other], *answer));
+    }
   }
   row.instances = static_cast<int>(own.size());
-  row.own = summarize(own, ipopt);
-  if (!ipopt.empty()) row.ipopt = summarize(ipopt, own);
-  if (!ipopt_warm.empty()) row.ipopt_warm = summarize(ipopt_warm, own);
+  row.own = summarize("own", own, own);
+  for (std::size_t other = 0; other < others.size(); ++other) {
+    if (theirs[other].empty()) continue;
+    row.references.push_back(summarize(others[other]->name(), theirs[other], own));
+  }
 }
 
 }  // namespace
@@ -160,30 +155,29 @@ Spread spread_of(std::vector<double> values) {
   return {at(0.5), at(0.99), at(0.999)};
 }
 
+const SolverColumn* SolveRow::reference(std::string_view name) const {
+  for (const SolverColumn& column : references) {
+    if (column.name == name) return &column;
+  }
+  return nullptr;
+}
+
 const std::vector<std::string_view>& families() {
   static const std::vector<std::string_view> names{"cold0", "coldP", "warm", "corridor", "corridor-warm"};
   return names;
 }
 
-std::string ipopt_version() {
-#ifdef CHICANE_HAVE_IPOPT
-  return IPOPT_VERSION;
-#else
-  return "";
-#endif
-}
-
-SolveRow time_solves(std::string_view family, int horizon, int instances, bool with_ipopt,
+SolveRow time_solves(std::string_view family, int horizon, int instances, bench::References& references,
                      const std::atomic<bool>& stop) {
   SolveRow row{.family = family, .horizon = horizon};
-  if (family == "cold0") measure<bench::DescribedProblem>(Start::kCold, instances, with_ipopt, stop, row);
-  if (family == "coldP") measure<bench::DescribedProblem>(Start::kPathLaw, instances, with_ipopt, stop, row);
-  if (family == "warm") measure<bench::DescribedProblem>(Start::kWarm, instances, with_ipopt, stop, row);
+  if (family == "cold0") measure<bench::DescribedProblem>(Start::kCold, instances, references, stop, row);
+  if (family == "coldP") measure<bench::DescribedProblem>(Start::kPathLaw, instances, references, stop, row);
+  if (family == "warm") measure<bench::DescribedProblem>(Start::kWarm, instances, references, stop, row);
   if (family == "corridor") {
-    measure<bench::CorridorProblem>(Start::kPathLaw, instances, with_ipopt, stop, row);
+    measure<bench::CorridorProblem>(Start::kPathLaw, instances, references, stop, row);
   }
   if (family == "corridor-warm") {
-    measure<bench::CorridorProblem>(Start::kWarm, instances, with_ipopt, stop, row);
+    measure<bench::CorridorProblem>(Start::kWarm, instances, references, stop, row);
   }
   return row;
 }

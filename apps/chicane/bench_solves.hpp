@@ -2,10 +2,11 @@
 #pragma once
 
 #include <atomic>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "problems/reference.hpp"
 
 namespace chicane::apps {
 
@@ -20,15 +21,18 @@ struct Spread {
 
 /// One solver on all instances of a family.
 struct SolverColumn {
-  Spread time_us;    ///< CPU time of one converged solve, best of three in a row, over instances
-  Spread linear_us;  ///< the same without the problem's functions and derivatives; zeros when not measured
+  std::string name{};  ///< "own", or that of the reference
+  Spread time_us{};    ///< CPU time of one converged solve, best of three in a row, over instances
+  double without_functions_us =
+      0.0;           ///< median without the problem's functions and derivatives; 0 when not measured
   int unsolved = 0;  ///< did not say that it converged
   double mean_turns = 0.0;
+  double mean_sweeps = 0.0;  ///< own only
   /// ‖u − Proj(u − dJ/du)‖∞ of the simulated inputs by forward derivatives of the whole simulation, which
-  /// neither solver uses; NaN with soft constraints, whose penalty has a kink.
+  /// no solver uses; NaN with soft constraints, whose penalty has a kink.
   double median_gradient = 0.0;
   double worst_gradient = 0.0;
-  double worst_excess = 0.0;  ///< of the simulated cost over the other solver's, relative; own over Ipopt's
+  double worst_excess = 0.0;  ///< of our simulated cost over this solver's, relative, at most
 };
 
 struct SolveRow {
@@ -36,20 +40,20 @@ struct SolveRow {
   int horizon = 0;
   int instances = 0;
   SolverColumn own{};
-  std::optional<SolverColumn> ipopt{};       ///< same start
-  std::optional<SolverColumn> ipopt_warm{};  ///< with the multipliers of the cycle before, shifted
+  std::vector<SolverColumn> references{};
+
+  /// Null when that solver did not take part.
+  [[nodiscard]] const SolverColumn* reference(std::string_view name) const;
 };
 
 /// cold0, coldP, warm, corridor, corridor-warm (docs/benchmarks.md).
 [[nodiscard]] const std::vector<std::string_view>& families();
-/// Version of the Ipopt in this program; empty without.
-[[nodiscard]] std::string ipopt_version();
 
-inline constexpr int kLongestHorizon = 200;
+using bench::kLongestHorizon;
 
 /// Times `instances` seeded problems, the solvers taking turns on each. Ends early, with what there is, when
 /// `stop` is set.
-[[nodiscard]] SolveRow time_solves(std::string_view family, int horizon, int instances, bool with_ipopt,
-                                   const std::atomic<bool>& stop);
+[[nodiscard]] SolveRow time_solves(std::string_view family, int horizon, int instances,
+                                   bench::References& references, const std::atomic<bool>& stop);
 
 }  // namespace chicane::apps

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <filesystem>
 
 #include "bench_report.hpp"
 #include "bench_solves.hpp"
@@ -18,12 +22,13 @@ namespace {
 constexpr int kGrowthHorizons[] = {10, 20, 50, 100, 200};
 constexpr int kGrowthInstances = 64;
 
-void measure_solves(const Options& options, const std::atomic<bool>& stop, BenchReport& report) {
+void measure_solves(const Options& options, chicane::bench::References& references,
+                    const std::atomic<bool>& stop, BenchReport& report) {
   for (const std::string_view family : families()) {
     for (const int horizon : options.horizons) {
       if (stop) return;
       fmt::print(stderr, "{}, N = {}, {} instances\n", family, horizon, options.instances);
-      const SolveRow row = time_solves(family, horizon, options.instances, true, stop);
+      const SolveRow row = time_solves(family, horizon, options.instances, references, stop);
       if (row.instances > 0) report.solves.push_back(row);
     }
   }
@@ -45,10 +50,11 @@ double exponent(const std::vector<SolveRow>& rows) {
 }
 
 void measure_growth(const std::atomic<bool>& stop, BenchReport& report) {
+  chicane::bench::References none;
   for (const int horizon : kGrowthHorizons) {
     if (stop) break;
     fmt::print(stderr, "cost against horizon, N = {}\n", horizon);
-    const SolveRow row = time_solves("warm", horizon, kGrowthInstances, false, stop);
+    const SolveRow row = time_solves("warm", horizon, kGrowthInstances, none, stop);
     if (row.instances == kGrowthInstances) report.growth.push_back(row);
   }
   report.growth_exponent = exponent(report.growth);
@@ -81,23 +87,51 @@ Result<void> measure_steps(const std::atomic<bool>& stop, BenchReport& report) {
   return {};
 }
 
+/// The program beside this one that holds the other solvers; it never ships. Empty when there is none.
+std::string comparing_program() {
+  std::error_code error;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
+  const auto other = self.parent_path() / "chicane-bench";
+  return !error && std::filesystem::exists(other, error) ? other.string() : std::string();
+}
+
 }  // namespace
 
-ExitCode bench(const Options& options) {
+ExitCode measure(const Options& options, chicane::bench::References& references) {
   static std::atomic<bool> stop{false};  // as long as signals may come
   catch_interrupts(stop);
-  BenchReport result{.machine = this_machine()};
-  if (result.machine.ipopt.empty()) {
-    fmt::print(stderr, "Built without Ipopt (Debian: coinor-libipopt-dev): only our solver is timed.\n");
-  }
-  measure_solves(options, stop, result);
+  BenchReport result{.machine = this_machine(references)};
+  measure_solves(options, references, stop, result);
   measure_growth(stop, result);
+  if (!options.reference_folder.empty()) {
+    Result<std::vector<GoldenRow>> golden = solve_golden(options.reference_folder, stop);
+    if (!golden) return report(golden.error());
+    result.golden = std::move(*golden);
+  }
   const Result<void> done = measure_steps(stop, result);
   if (!done) return report(done.error());
   result.machine.load_after = load();
   result.was_interrupted = stop;
   fmt::print("{}", options.is_json ? to_json(result) : to_markdown(result));
   return kSuccess;
+}
+
+ExitCode bench(const Options& options) {
+  const std::string program = comparing_program();
+  if (!program.empty()) {
+    std::vector<std::string> words = options.words;
+    words.front() = program;
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    execv(program.c_str(), arguments.data());
+    fmt::print(stderr, "{} cannot be started: {}\n", program, std::strerror(errno));
+  }
+  fmt::print(
+      stderr,
+      "Built without Ipopt (Debian: coinor-libipopt-dev, then build again): only our solver is timed.\n");
+  chicane::bench::References none;
+  return measure(options, none);
 }
 
 }  // namespace chicane::apps

@@ -7,6 +7,10 @@
 #include "chicane/base/result.hpp"
 #include "options.hpp"
 
+namespace chicane::bench {
+struct References;
+}
+
 namespace chicane::apps {
 
 struct Command {
@@ -24,7 +28,11 @@ struct Command {
 [[nodiscard]] ExitCode replay(const Options& options);
 [[nodiscard]] ExitCode check(const Options& options);
 [[nodiscard]] ExitCode list(const Options& options);
+/// Hands over to the program chicane-bench beside this one, which knows other solvers; without it, our own
+/// times alone.
 [[nodiscard]] ExitCode bench(const Options& options);
+/// What `chicane bench` measures, beside these solvers.
+[[nodiscard]] ExitCode measure(const Options& options, chicane::bench::References& references);
 
 /// Says the error on stderr; which exit code it is.
 [[nodiscard]] ExitCode report(const Error& error);

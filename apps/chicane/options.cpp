@@ -158,6 +158,10 @@ void add_bench(CLI::App& command, Options& options) {
       ->delimiter(',')
       ->check(CLI::Range(2, kLongestHorizon))
       ->capture_default_str();
+  command
+      .add_option("--reference", options.reference_folder,
+                  "Folder of recorded problems with known optima (lap_*.csv, golden_*.csv)")
+      ->type_name("FOLDER");
   command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
   command.footer("Example: chicane bench --instances 200 --horizons 10,20");
 }
@@ -226,6 +230,7 @@ std::variant<Options, Done> parse_command_line(int count, const char* const* wor
     return explain(app, error);
   }
   options.command = app.get_subcommands().front()->get_name();
+  options.words.assign(words, words + count);
   return options;
 }
 

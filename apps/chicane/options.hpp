@@ -20,6 +20,7 @@ enum ExitCode : int {
 
 struct Options {
   std::string command;
+  std::vector<std::string> words;  ///< the command line itself, the program first
 
   std::string scenario_file;  ///< empty: none
   std::vector<std::pair<std::string, std::string>>
@@ -44,6 +45,7 @@ struct Options {
 
   int instances = 100;                    ///< bench: of each family
   std::vector<int> horizons{10, 20, 50};  ///< bench
+  std::string reference_folder;           ///< bench: problems with known optima; empty: none
 };
 
 /// Nothing is left to do: text was printed.

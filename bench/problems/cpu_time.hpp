@@ -12,4 +12,17 @@ inline double cpu_time() noexcept {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+/// Adds the CPU time of its life to a sum [s].
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& sum) noexcept : sum_(sum), begin_(cpu_time()) {}
+  ~Stopwatch() { sum_ += cpu_time() - begin_; }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& sum_;
+  double begin_;
+};
+
 }  // namespace chicane::bench

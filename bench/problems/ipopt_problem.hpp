@@ -201,18 +201,6 @@ class IpoptProblem : public Ipopt::TNLP {
   }
 
  private:
-  class Stopwatch {
-   public:
-    explicit Stopwatch(double& sum) : sum_(sum), begin_(cpu_time()) {}
-    ~Stopwatch() { sum_ += cpu_time() - begin_; }
-    Stopwatch(const Stopwatch&) = delete;
-    Stopwatch& operator=(const Stopwatch&) = delete;
-
-   private:
-    double& sum_;
-    double begin_;
-  };
-
   /// Where variable v of (x_k, u_k) stands among the unknowns; −1 for the given x_0.
   static int position(int k, int v) { return v >= kNx ? at_u(k) + v - kNx : (k > 0 ? at_x(k) + v : -1); }
 

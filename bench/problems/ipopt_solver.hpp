@@ -9,6 +9,7 @@
 
 #include "problems/cpu_time.hpp"
 #include "problems/ipopt_problem.hpp"
+#include "references/ipopt_settings.hpp"
 
 namespace chicane::bench {
 
@@ -24,7 +25,7 @@ struct IpoptReport {
 template <solver::OcpProblem P>
 class IpoptSolver {
  public:
-  IpoptSolver() : nlp_(new Nlp), app_(make(false)), warm_app_(make(true)) {}
+  IpoptSolver() : nlp_(new Nlp), app_(make_ipopt(false)), warm_app_(make_ipopt(true)) {}
 
   /// The trajectory is the start; then the optimum, or as it was.
   template <int Capacity>
@@ -50,26 +51,6 @@ class IpoptSolver {
  private:
   using Nlp = IpoptProblem<P>;
   using App = Ipopt::SmartPtr<Ipopt::IpoptApplication>;
-
-  static App make(bool is_warm) {
-    App app = IpoptApplicationFactory();
-    app->Options()->SetIntegerValue("print_level", 0);
-    app->Options()->SetStringValue("sb", "yes");
-    app->Options()->SetNumericValue("tol", 1e-6);
-    app->Options()->SetNumericValue("bound_relax_factor", 0.0);
-    app->Options()->SetIntegerValue("max_iter", 500);
-    if (is_warm) {
-      app->Options()->SetStringValue("warm_start_init_point", "yes");
-      app->Options()->SetNumericValue("mu_init", 1e-5);
-      for (const char* push :
-           {"warm_start_bound_push", "warm_start_bound_frac", "warm_start_slack_bound_push",
-            "warm_start_slack_bound_frac", "warm_start_mult_bound_push"}) {
-        app->Options()->SetNumericValue(push, 1e-6);
-      }
-    }
-    app->Initialize();
-    return app;
-  }
 
   template <int Capacity>
   IpoptReport run(Ipopt::IpoptApplication& app, const P& problem, const std::array<double, P::kNx>& x0,

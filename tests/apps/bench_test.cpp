@@ -6,7 +6,11 @@
 #include <cmath>
 #include <vector>
 
+#include "bench_golden.hpp"
 #include "bench_solves.hpp"
+#ifdef CHICANE_HAVE_IPOPT
+#include "references/ipopt_reference.hpp"
+#endif
 
 namespace chicane::apps {
 namespace {
@@ -21,10 +25,19 @@ TEST(Spread, TakesTheNearestRank) {
   EXPECT_EQ(spread_of({}).median, 0.0);
 }
 
+bench::References all_references() {
+  bench::References references;
+#ifdef CHICANE_HAVE_IPOPT
+  bench::add_ipopt(references);
+#endif
+  return references;
+}
+
 TEST(TimeSolves, SolvesEveryFamilyToTheOptimum) {
   const std::atomic<bool> stop{false};
+  bench::References references = all_references();
   for (const std::string_view family : families()) {
-    const SolveRow row = time_solves(family, 6, 5, true, stop);
+    const SolveRow row = time_solves(family, 6, 5, references, stop);
     EXPECT_EQ(row.instances, 5) << family;
     EXPECT_EQ(row.own.unsolved, 0) << family;
     EXPECT_GT(row.own.time_us.median, 0.0) << family;
@@ -33,17 +46,28 @@ TEST(TimeSolves, SolvesEveryFamilyToTheOptimum) {
     } else {
       EXPECT_LE(row.own.worst_gradient, 1.1e-6) << family;  // the solver's own tolerance, and its defects
     }
-    EXPECT_EQ(row.ipopt.has_value(), !ipopt_version().empty()) << family;
-    if (!row.ipopt) continue;
-    EXPECT_EQ(row.ipopt->unsolved, 0) << family;
-    EXPECT_EQ(row.ipopt_warm.has_value(), family.ends_with("warm")) << family;
-    EXPECT_LE(row.own.worst_excess, 1e-6) << family;
+    EXPECT_EQ(row.reference("ipopt") != nullptr, !references.versions.empty()) << family;
+    EXPECT_EQ(row.reference("ipopt_hot") != nullptr, !references.versions.empty() && family == "warm")
+        << family;
+    for (const SolverColumn& column : row.references) {
+      EXPECT_EQ(column.unsolved, 0) << family << " " << column.name;
+      EXPECT_LE(column.worst_excess, 1e-6) << family << " " << column.name;
+      if (!family.starts_with("corridor")) EXPECT_LE(column.median_gradient, 1e-3) << family << column.name;
+    }
   }
 }
 
 TEST(TimeSolves, StopsWhenAsked) {
   const std::atomic<bool> stop{true};
-  EXPECT_EQ(time_solves("cold0", 6, 5, true, stop).instances, 0);
+  bench::References references = all_references();
+  EXPECT_EQ(time_solves("cold0", 6, 5, references, stop).instances, 0);
+}
+
+TEST(Golden, RefusesAFolderWithoutProblems) {
+  const std::atomic<bool> stop{false};
+  const auto rows = solve_golden(std::string(CHICANE_SOURCE_DIR) + "/docs", stop);
+  ASSERT_FALSE(rows.has_value());
+  EXPECT_NE(rows.error().message.find("golden_<speed>_N<nodes>.csv"), std::string::npos);
 }
 
 }  // namespace

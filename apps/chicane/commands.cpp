@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include "commands.hpp"
+
+#include <cstdio>
+
+namespace chicane::apps {
+namespace {
+
+constexpr Command kCommands[] = {
+    {"drive", "Controller and simulator in one process, with a dashboard", drive},
+    {"serve", "Controller for an external simulator, as the original program was", serve},
+    {"simulate", "Simulator for an external controller, as the original game was", simulate},
+    {"replay", "Compute a recorded run again and compare every command, bit for bit", replay},
+    {"check", "Validate scenarios, presets, cars and tracks, and explain what is wrong", check},
+    {"list", "Presets, tracks, cars, scenarios, controllers and parameters", list},
+    {"bench", "Times of solver and control step on this machine, beside Ipopt's", bench},
+};
+
+}  // namespace
+
+std::span<const Command> commands() { return kCommands; }
+
+ExitCode report(const Error& error) {
+  std::fprintf(stderr, "%s\n", error.message.c_str());
+  return error.code == ErrorCode::kIo ? kEnvironment : kUsage;
+}
+
+}  // namespace chicane::apps
