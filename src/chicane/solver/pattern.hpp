@@ -94,12 +94,34 @@ struct Layout {
     return count;
   }();
 
-  /// Whether row i of L has entries among the states.
-  static constexpr bool has_row(std::size_t i) noexcept {
+  /// Whether row i of L has entries among the states, and its place among those rows that have.
+  static constexpr bool has_cost_row(std::size_t i) noexcept { return count(kL[i]) > 0; }
+  static constexpr std::size_t cost_row(std::size_t i) noexcept {
+    std::size_t place = 0;
+    for (std::size_t r = 0; r < i; ++r) place += has_cost_row(r) ? 1 : 0;
+    return place;
+  }
+  static constexpr std::size_t kCostRows = cost_row(kNz);
+
+  /// Whether state i of the next stage depends on states, and its place among those that do.
+  static constexpr bool has_state_row(std::size_t i) noexcept {
     for (std::size_t j = 0; j < kNx; ++j) {
-      if (kL[i][j] != kNone) return true;
+      if (Pattern::kF[i][j] != Entry::kZero) return true;
     }
     return false;
+  }
+  static constexpr std::size_t state_row(std::size_t i) noexcept {
+    std::size_t place = 0;
+    for (std::size_t r = 0; r < i; ++r) place += has_state_row(r) ? 1 : 0;
+    return place;
+  }
+  static constexpr std::size_t kStateRows = state_row(kNx);
+
+  /// Entries of a row that belong to states.
+  static constexpr std::size_t count(const std::array<std::size_t, kNz>& row) noexcept {
+    std::size_t stored = 0;
+    for (std::size_t j = 0; j < kNx; ++j) stored += row[j] != kNone ? 1 : 0;
+    return stored;
   }
   static constexpr bool has_rate_bounds() noexcept {
     for (const int state : Pattern::kRateState) {
@@ -109,89 +131,161 @@ struct Layout {
   }
 };
 
-/// One linear-quadratic problem: the stages' Jacobians, costs and bounds, and the terminal cost.
-///
-/// Jacobians and bounds lie stage after stage entry by entry (a pack over eight stages is one store; a sweep
-/// reads single numbers). Costs lie as rows over the states, ready for registers; the few entries among
-/// inputs and gradient of inputs lie like Jacobians.
+/// One linear-quadratic problem: the stages' Jacobians, costs and bounds, and the terminal cost. Stages are
+/// written eight at a time by packs whose lanes are stages; sweeps read each as rows whose lanes are states.
 template <class Pattern, std::size_t Capacity>
 struct LqProblem {
   using Layout = solver::Layout<Pattern>;
   static constexpr std::size_t kNx = Layout::kNx;
   static constexpr std::size_t kNu = Layout::kNu;
   static constexpr std::size_t kLanes = Layout::kLanes;
-  /// Room for whole packs of eight stages; not a multiple of half a kibibyte, which would put all entries of
-  /// a stage into the same lines of the cache.
-  static constexpr std::size_t kStride =
-      (Capacity + 7) / 8 * 8 + ((Capacity + 7) / 8 % 8 == 0 ? std::size_t{8} : std::size_t{0});
-  static constexpr std::size_t kCornerCount = kNu + kNu * (kNu + 1) / 2;
+  static constexpr std::size_t kStages = (Capacity + 7) / 8 * 8;  ///< room for whole packs
 
-  alignas(64) double F[Layout::kFCount][kStride]{};  ///< F[Layout::kF[i][j]][k]
-  alignas(64) double low[kNu][kStride]{};            ///< bounds on δu; infinite where there are none
-  alignas(64) double high[kNu][kStride]{};
-  alignas(64) double rate_low[kNu][kStride]{};  ///< bounds on δu − δx_previous, where the pattern has them
-  alignas(64) double rate_high[kNu][kStride]{};
-  alignas(64) double row[kStride][Layout::kNz][kLanes]{};  ///< L[i][j] for j < Nx, of stage k
-  alignas(64) double corner[kCornerCount][kStride]{};      ///< L[u_m][1], and L[u_m][u_l] for l <= m
-  alignas(64) double terminal[kNx + 1][kLanes]{};          ///< P_N; its last row is the gradient
+  struct alignas(64) Stage {
+    double A[Layout::kStateRows + 1][kLanes];  ///< row state_row(i): ∂x⁺_i / ∂x
+    double B[1 + kNu][kLanes];                 ///< columns of F over x⁺: the defect, then the inputs
+    double L[Layout::kCostRows + 1][kLanes];   ///< row cost_row(i): L[i][j] for the states j
+    double g[kNu];                             ///< L[u][1]
+    double H[kNu][kNu];                        ///< L[u][u]
+  };
+  Stage stage[kStages]{};
+  alignas(64) double low[kNu][kStages]{};  ///< bounds on δu; infinite where there are none
+  alignas(64) double high[kNu][kStages]{};
+  alignas(64) double rate_low[kNu][kStages]{};  ///< bounds on δu − δx of the rate state, where there is one
+  alignas(64) double rate_high[kNu][kStages]{};
+  alignas(64) double terminal[kNx + 1][kLanes]{};  ///< P_N; its last row is the gradient
 
-  /// Place of L[u_m][1] and of L[u_m][u_l] in `corner`.
-  static constexpr std::size_t corner_gradient(std::size_t m) noexcept { return m; }
-  static constexpr std::size_t corner_of(std::size_t m, std::size_t l) noexcept {
-    const std::size_t a = m > l ? m : l;
-    const std::size_t b = m > l ? l : m;
-    return kNu + a * (a + 1) / 2 + b;
+  LqProblem() noexcept {
+    for (Stage& s : stage) {
+      for (std::size_t i = 0; i < kNx; ++i) {
+        for (std::size_t j = 0; j < Layout::kNz; ++j) {
+          if (Pattern::kF[i][j] == Entry::kOne && j != Layout::kOne) entry_of_f(s, i, j) = 1.0;
+        }
+      }
+    }
+  }
+
+  /// Sets the Jacobians and defects of the eight stages from `k` (a multiple of 8) on; entries as numbered by
+  /// Layout::kF.
+  template <class Arch>
+  [[gnu::always_inline]] void set_jacobian(std::size_t k,
+                                           const std::array<Pack<Arch, 8>, Layout::kFCount>& entry) noexcept {
+    unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+      if constexpr (Layout::has_state_row(i))
+        write_row<state_entries(i)>(k, entry, [=](Stage& s) { return s.A[Layout::state_row(i)]; });
+    });
+    unroll<1 + kNu>([&](auto c) __attribute__((always_inline)) {
+      write_row<column_entries(kNx + c)>(k, entry, [=](Stage& s) { return s.B[c]; });
+    });
   }
 
   /// Sets the costs of the eight stages from `k` (a multiple of 8) on; entries as numbered by Layout::kL.
   template <class Arch>
   [[gnu::always_inline]] void set_cost(std::size_t k,
                                        const std::array<Pack<Arch, 8>, Layout::kLCount>& entry) noexcept {
-    using Stages = Pack<Arch, 8>;
     unroll<Layout::kNz>([&](auto i) __attribute__((always_inline)) {
-      if constexpr (Layout::has_row(i)) {
-        unroll<(kNx + 7) / 8>([&](auto block) __attribute__((always_inline)) {
-          Stages rows[8];
-          unroll<8>([&](auto lane) __attribute__((always_inline)) {
-            constexpr std::size_t kJ = block * 8 + lane;
-            rows[lane] = Stages(0.0);
-            if constexpr (kJ < kNx) {
-              if constexpr (Layout::kL[i][kJ] != Layout::kNone) rows[lane] = entry[Layout::kL[i][kJ]];
-            }
-          });
-          transpose(rows);
-          for (std::size_t stage = 0; stage < 8; ++stage) {
-            rows[stage].store(row[k + stage][i] + block * 8);
-          }
-        });
-      }
+      if constexpr (Layout::has_cost_row(i))
+        write_row<cost_entries(i)>(k, entry, [=](Stage& s) { return s.L[Layout::cost_row(i)]; });
     });
     unroll<kNu>([&](auto m) __attribute__((always_inline)) {
       constexpr std::size_t kU = Layout::kHead + m;
-      if constexpr (Layout::kL[kU][Layout::kOne] != Layout::kNone)
-        entry[Layout::kL[kU][Layout::kOne]].store(&corner[corner_gradient(m)][k]);
-      unroll<m + 1>([&](auto l) __attribute__((always_inline)) {
-        if constexpr (Layout::kL[kU][Layout::kHead + l] != Layout::kNone)
-          entry[Layout::kL[kU][Layout::kHead + l]].store(&corner[corner_of(m, l)][k]);
+      constexpr std::size_t kSlope = Layout::kL[kU][Layout::kOne];
+      if constexpr (kSlope != Layout::kNone)
+        scatter(k, entry[kSlope], [=](Stage& s) -> double& { return s.g[m]; });
+      unroll<kNu>([&](auto l) __attribute__((always_inline)) {
+        constexpr std::size_t kCurvature = Layout::kL[kU][Layout::kHead + l];
+        if constexpr (kCurvature != Layout::kNone)
+          scatter(k, entry[kCurvature], [=](Stage& s) -> double& { return s.H[m][l]; });
       });
     });
   }
 
-  /// The entry L[i][j] = L[j][i] of stage k, for code that does not work on eight stages at once.
+  /// Single entries of stage k, for code that does not work on eight stages at once. Pre: the pattern has
+  /// them.
+  void set_jacobian(std::size_t k, std::size_t i, std::size_t j, double value) noexcept {
+    entry_of_f(stage[k], i, j) = value;
+  }
   void set_cost(std::size_t k, std::size_t i, std::size_t j, double value) noexcept {
-    if (j < kNx) row[k][i][j] = value;
-    if (i < kNx) row[k][j][i] = value;
+    Stage& s = stage[k];
+    if (j < kNx) s.L[Layout::cost_row(i)][j] = value;
+    if (i < kNx) s.L[Layout::cost_row(j)][i] = value;
     const std::size_t first = i < j ? i : j;
     const std::size_t last = i < j ? j : i;
-    if (first == Layout::kOne && last > Layout::kOne)
-      corner[corner_gradient(last - Layout::kHead)][k] = value;
-    if (first > Layout::kOne) corner[corner_of(last - Layout::kHead, first - Layout::kHead)][k] = value;
+    if (first == Layout::kOne && last > Layout::kOne) s.g[last - Layout::kHead] = value;
+    if (first > Layout::kOne)
+      s.H[last - Layout::kHead][first - Layout::kHead] = s.H[first - Layout::kHead][last - Layout::kHead] =
+          value;
   }
 
-  /// F[i][j] of stage k.
-  [[nodiscard]] double jacobian(std::size_t k, std::size_t i, std::size_t j) const noexcept {
-    if (Layout::kF[i][j] != Layout::kNone) return F[Layout::kF[i][j]][k];
-    return Pattern::kF[i][j] == Entry::kOne ? 1.0 : 0.0;
+ private:
+  static double& entry_of_f(Stage& s, std::size_t i, std::size_t j) noexcept {
+    return j < kNx ? s.A[Layout::state_row(i)][j] : s.B[j - kNx][i];
+  }
+
+  /// Where the entries of one row come from: a number, or a constant.
+  struct Source {
+    std::array<std::size_t, kLanes> entry{};
+    std::array<bool, kLanes> is_one{};
+    std::size_t count = 0;
+  };
+  static constexpr Source state_entries(std::size_t i) noexcept {
+    Source row = nothing();
+    for (std::size_t j = 0; j < kNx; ++j) add(row, j, Layout::kF[i][j], Pattern::kF[i][j] == Entry::kOne);
+    return row;
+  }
+  static constexpr Source column_entries(std::size_t j) noexcept {
+    Source row = nothing();
+    for (std::size_t i = 0; i < kNx; ++i) add(row, i, Layout::kF[i][j], Pattern::kF[i][j] == Entry::kOne);
+    return row;
+  }
+  static constexpr Source cost_entries(std::size_t i) noexcept {
+    Source row = nothing();
+    for (std::size_t j = 0; j < kNx; ++j) add(row, j, Layout::kL[i][j], false);
+    return row;
+  }
+  static constexpr Source nothing() noexcept {
+    Source row;
+    row.entry.fill(Layout::kNone);
+    return row;
+  }
+  static constexpr void add(Source& row, std::size_t lane, std::size_t entry, bool is_one) noexcept {
+    row.entry[lane] = entry;
+    row.is_one[lane] = entry == Layout::kNone && is_one;
+    row.count += entry != Layout::kNone ? 1 : 0;
+  }
+
+  template <class Arch, class Place>
+  [[gnu::always_inline]] void scatter(std::size_t k, const Pack<Arch, 8>& value,
+                                      const Place& place) noexcept {
+    alignas(64) double by_stage[8];
+    value.store(by_stage);
+    for (std::size_t lane = 0; lane < 8; ++lane) place(stage[k + lane]) = by_stage[lane];
+  }
+
+  /// Rows of eight stages: whole by transposition, or entry by entry where they have few.
+  template <auto Row, class Entries, class Place>
+  [[gnu::always_inline]] void write_row(std::size_t k, const Entries& entry, const Place& place) noexcept {
+    using Stages = typename Entries::value_type;
+    if constexpr (Row.count > 3) {
+      unroll<kLanes / 8>([&](auto block) __attribute__((always_inline)) {
+        Stages rows[8];
+        unroll<8>([&](auto lane) __attribute__((always_inline)) {
+          constexpr std::size_t kJ = block * 8 + lane;
+          if constexpr (Row.entry[kJ] != Layout::kNone) {
+            rows[lane] = entry[Row.entry[kJ]];
+          } else {
+            rows[lane] = Stages(Row.is_one[kJ] ? 1.0 : 0.0);
+          }
+        });
+        transpose(rows);
+        for (std::size_t s = 0; s < 8; ++s) rows[s].store(place(stage[k + s]) + block * 8);
+      });
+    } else {
+      unroll<kLanes>([&](auto lane) __attribute__((always_inline)) {
+        if constexpr (Row.entry[lane] != Layout::kNone)
+          scatter(k, entry[Row.entry[lane]], [&place, lane](Stage& s) -> double& { return place(s)[lane]; });
+      });
+    }
   }
 };
 
