@@ -14,9 +14,11 @@ set(package_of_tl::expected "tl-expected")
 set(package_of_Threads::Threads "Threads")
 set(package_of_fmt::fmt "fmt")
 set(package_of_yaml-cpp "yaml-cpp")
+set(package_of_zstd::libzstd_shared "zstd")
 set(pc_requires_of_Eigen3::Eigen "eigen3")
 set(pc_requires_of_fmt::fmt "fmt")
 set(pc_requires_of_yaml-cpp "yaml-cpp")
+set(pc_requires_of_zstd::libzstd_shared "libzstd")
 set(pc_libs_of_Threads::Threads "-pthread")
 
 # Headers that only our own sources include: of no concern to users.

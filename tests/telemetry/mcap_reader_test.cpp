@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "chicane/telemetry/zstd.hpp"
 #include "sample_mcap.hpp"
 
 namespace chicane::telemetry {
@@ -83,17 +84,51 @@ TEST(McapReader, LeavesADamagedAttachmentOut) {
   EXPECT_EQ(report->damaged, 1U);
 }
 
-TEST(McapReader, SaysThatItCannotReadCompressedChunks) {
+TEST(McapReader, SaysThatItCannotReadChunksOfOtherCompressions) {
   const TemporaryFile file;
   std::string content;
   mcap::Fields(content).number(std::uint64_t{0}).number(std::uint64_t{0}).number(std::uint64_t{9});
-  mcap::Fields(content).number(std::uint32_t{0}).text("zstd").number(std::uint64_t{0});
+  mcap::Fields(content).number(std::uint32_t{0}).text("lz4").number(std::uint64_t{0});
   std::string bytes = std::string(mcap::kMagic) + static_cast<char>(mcap::Opcode::kChunk);
   mcap::Fields(bytes).number(std::uint64_t{content.size()});
   file.replace(bytes + content);
   const auto report = read_mcap(file.path(), {});
   ASSERT_FALSE(report);
-  EXPECT_THAT(report.error().message, HasSubstr("got the compression \"zstd\", expected none"));
+  EXPECT_THAT(report.error().message, HasSubstr("got the compression \"lz4\", expected "));
+}
+
+TEST(McapReader, ReadsCompressedChunksAndPassesNoDamagedOneAsGood) {
+  if (!zstd::is_available()) GTEST_SKIP() << "built without libzstd";
+  const TemporaryFile file;
+  const std::string message(10'000, 'x');
+  {
+    const auto writer = McapWriter::create(file.path(), "test", true);
+    ASSERT_TRUE(writer) << writer.error().message;
+    const std::uint16_t channel = (*writer)->add_channel("/a", "std_msgs/msg/String", "string data\n");
+    for (std::uint64_t i = 0; i < 3; ++i) {
+      ASSERT_TRUE((*writer)->write(channel, i, i, message));
+      ASSERT_TRUE((*writer)->flush());
+    }
+    ASSERT_TRUE((*writer)->close());
+  }
+  const std::string bytes = file.bytes();
+  EXPECT_LT(bytes.size(), message.size());
+  const auto intact = read_mcap(file.path(), {});
+  ASSERT_TRUE(intact) << intact.error().message;
+  EXPECT_EQ(intact->messages, 3U);
+  EXPECT_TRUE(intact->is_compressed);
+  EXPECT_TRUE(intact->is_complete);
+  const std::size_t chunk = bytes.find("\x28\xb5\x2f\xfd");  // a frame of Zstandard begins
+  ASSERT_NE(chunk, std::string::npos);
+  for (std::size_t i = chunk; i < chunk + 30; ++i) {
+    std::string damaged = bytes;
+    damaged[i] = static_cast<char>(damaged[i] ^ 0x55);
+    file.replace(damaged);
+    const auto report = read_mcap(
+        file.path(), {.on_message = [&](const McapMessage& read) { EXPECT_EQ(read.bytes, message); }});
+    ASSERT_TRUE(report);
+    EXPECT_EQ(report->messages + report->damaged, 3U) << i;
+  }
 }
 
 TEST(McapReader, RefusesOtherFilesInWords) {

@@ -4,9 +4,11 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <utility>
 
 #include "chicane/telemetry/mcap_format.hpp"
+#include "chicane/telemetry/zstd.hpp"
 
 namespace chicane::telemetry {
 namespace {
@@ -70,12 +72,20 @@ class Reader {
     const auto size = fields.number<std::uint64_t>();
     const auto crc = fields.number<std::uint32_t>();
     const std::string_view compression = fields.text();
-    const std::string_view records = fields.take(fields.number<std::uint64_t>());
-    const bool has_crc_fault = crc != 0 && mcap::crc32(records) != crc;
-    if (compression == "zstd" || compression == "lz4") {
+    std::string_view records = fields.take(fields.number<std::uint64_t>());
+    if (compression == "lz4" || (compression == "zstd" && !zstd::is_available())) {
       return fail(ErrorCode::kParse,
-                  path_ + ": chunk: got the compression \"" + std::string(compression) + "\", expected none");
+                  path_ + ": chunk: got the compression \"" + std::string(compression) + "\", expected " +
+                      (zstd::is_available() ? "zstd or none" : "none (built without libzstd)"));
     }
+    std::optional<std::string> plain;
+    if (compression == "zstd") {
+      report_.is_compressed = true;
+      plain = zstd::decompress(records, size);
+      if (plain) records = *plain;
+    }
+    const bool is_unreadable = compression == "zstd" && !plain;
+    const bool has_crc_fault = is_unreadable || (crc != 0 && mcap::crc32(records) != crc);
     if (fields.is_short() || has_crc_fault || size != records.size()) {
       ++report_.damaged;
       return {};

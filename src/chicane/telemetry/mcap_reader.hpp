@@ -40,14 +40,16 @@ struct McapReport {
   std::uint64_t messages = 0;
   std::uint64_t chunks = 0;   ///< intact ones
   std::uint64_t damaged = 0;  ///< chunks and attachments that were left out: wrong CRC or content
-  bool is_complete = false;   ///< closed as it should be; otherwise the writer was killed, or the end is lost
+  bool is_compressed = false;
+  bool is_complete = false;  ///< closed as it should be; otherwise the writer was killed, or the end is lost
 };
 
 /// Reads every intact record of an MCAP file, whether or not it was closed: from front to back, without its
 /// index. What ends in the middle of a record, and chunks whose CRC is wrong, are left out and counted; a
 /// wrong length between records ends the reading. Memory: one chunk.
 ///
-/// kIo when it cannot be read; kParse when it is no MCAP file, or has compressed chunks (ours have none).
+/// kIo when it cannot be read; kParse when it is no MCAP file, or is compressed by other means than
+/// Zstandard, or by that when this program was built without it.
 [[nodiscard]] Result<McapReport> read_mcap(const std::string& path, const McapVisitor& visitor);
 
 }  // namespace chicane::telemetry

@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "chicane/telemetry/zstd.hpp"
+
 namespace chicane::telemetry {
 namespace {
 
@@ -37,10 +39,16 @@ Error io_error(const std::string& path, const char* what) {
 
 }  // namespace
 
-Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::string& path, std::string_view library) {
+Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::string& path, std::string_view library,
+                                                       bool is_compressed) {
+  if (is_compressed && !zstd::is_available()) {
+    return fail(ErrorCode::kInvalidArgument, path +
+                                                 ": got a compressed recording to write, expected a program "
+                                                 "built with libzstd (Debian: libzstd-dev)");
+  }
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644);
   if (file < 0) return fail(io_error(path, "cannot make the recording"));
-  std::unique_ptr<McapWriter> writer(new McapWriter(path, file));
+  std::unique_ptr<McapWriter> writer(new McapWriter(path, file, is_compressed));
   std::string header;
   Fields(header).text("ros2").text(library);
   const Result<void> written = writer->put(std::string(mcap::kMagic) + record(Opcode::kHeader, header));
@@ -131,9 +139,12 @@ Result<void> McapWriter::write(std::uint16_t channel, std::uint64_t log_time, st
 Result<void> McapWriter::flush() {
   if (chunk_.empty() || !state_) return state_;
   std::string content;
+  const std::uint32_t crc = mcap::crc32(chunk_);
   Fields(content).number(chunk_start_).number(chunk_end_).number(std::uint64_t{chunk_.size()});
-  Fields(content).number(mcap::crc32(chunk_)).text("").number(std::uint64_t{chunk_.size()});
-  std::string bytes = record(Opcode::kChunk, content + chunk_);
+  const std::uint64_t size = chunk_.size();
+  const std::string stored = compression_.empty() ? std::move(chunk_) : zstd::compress(chunk_);
+  Fields(content).number(crc).text(compression_).number(std::uint64_t{stored.size()});
+  std::string bytes = record(Opcode::kChunk, content + stored);
   const std::uint64_t chunk_length = bytes.size();
 
   std::string offsets;
@@ -151,8 +162,8 @@ Result<void> McapWriter::flush() {
   }
   std::string chunk_index;
   Fields(chunk_index).number(chunk_start_).number(chunk_end_).number(position_).number(chunk_length);
-  Fields(chunk_index).text(offsets).number(std::uint64_t{bytes.size() - chunk_length}).text("");
-  Fields(chunk_index).number(std::uint64_t{chunk_.size()}).number(std::uint64_t{chunk_.size()});
+  Fields(chunk_index).text(offsets).number(std::uint64_t{bytes.size() - chunk_length}).text(compression_);
+  Fields(chunk_index).number(std::uint64_t{stored.size()}).number(size);
   chunk_.clear();
   chunk_messages_ = chunk_start_ = chunk_end_ = 0;
   if (Result<void> written = put(bytes); !written) return written;

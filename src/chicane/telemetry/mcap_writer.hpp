@@ -23,9 +23,11 @@ namespace chicane::telemetry {
 /// (a full disk) every further call fails in the same words and writes nothing.
 class McapWriter {
  public:
-  /// kIo when the file exists already or cannot be made: a recording is never written over.
+  /// kIo when the file exists already or cannot be made: a recording is never written over. `is_compressed`:
+  /// chunks by Zstandard; kInvalidArgument when this program was built without it.
   [[nodiscard]] static Result<std::unique_ptr<McapWriter>> create(const std::string& path,
-                                                                  std::string_view library);
+                                                                  std::string_view library,
+                                                                  bool is_compressed = false);
   /// Closes, if nobody did; what fails then is not told.
   ~McapWriter();
   McapWriter(const McapWriter&) = delete;
@@ -55,12 +57,14 @@ class McapWriter {
     std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  ///< of this chunk: log time, offset
   };
 
-  McapWriter(std::string path, int file) : path_{std::move(path)}, file_{file} {}
+  McapWriter(std::string path, int file, bool is_compressed)
+      : path_{std::move(path)}, file_{file}, compression_{is_compressed ? "zstd" : ""} {}
   Result<void> put(std::string_view bytes);
   [[nodiscard]] std::string summary() const;
 
   std::string path_;
   int file_ = -1;
+  std::string_view compression_;
   Result<void> state_;
   std::uint64_t position_ = 0;
   std::vector<Channel> channels_;
