@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "chicane/base/pack.hpp"
+#include "chicane/solver/small_qp.hpp"
+
+namespace chicane::solver {
+
+/// What one input of one stage must respect: bounds of its own, and bounds on its change moved to where the
+/// state it starts from is. Where both contradict each other, its own bounds count.
+struct InputBounds {
+  double own_low;
+  double own_high;
+  double rate_low = -std::numeric_limits<double>::infinity();
+  double rate_high = std::numeric_limits<double>::infinity();
+
+  [[nodiscard, gnu::always_inline]] double low() const noexcept {
+    const double low = own_low > rate_low ? own_low : rate_low;
+    return low < own_high ? low : own_high;
+  }
+  [[nodiscard, gnu::always_inline]] double high() const noexcept {
+    const double high = own_high < rate_high ? own_high : rate_high;
+    return high > own_low ? high : own_low;
+  }
+  [[nodiscard, gnu::always_inline]] double at(Hold hold) const noexcept {
+    switch (hold) {
+      case Hold::kRateLow:
+        return rate_low;
+      case Hold::kRateHigh:
+        return rate_high;
+      case Hold::kHigh:
+        return own_high;
+      default:
+        return own_low;
+    }
+  }
+  /// Which of the two bounds on that side it is.
+  [[nodiscard]] Hold which(Hold side) const noexcept {
+    if (side == Hold::kLow) return rate_low > own_low && rate_low < own_high ? Hold::kRateLow : Hold::kLow;
+    if (side == Hold::kHigh)
+      return rate_high < own_high && rate_high > own_low ? Hold::kRateHigh : Hold::kHigh;
+    return Hold::kFree;
+  }
+  /// The working-set rule of the primal-dual active set method: an input beyond a bound is held there, a held
+  /// one whose cost falls towards the inside (`slope` = dJ/du) is let go, one held beyond the other kind of
+  /// bound goes there. `curvature` scales the tolerance; an interval without width is always held.
+  [[nodiscard, gnu::always_inline]] Hold next(Hold hold, double u, double slope,
+                                              double curvature) const noexcept {
+    constexpr double kTolerance = 1e-10;
+    if (!(high() > low())) return which(Hold::kLow);
+    if (u > high() + kTolerance) return which(Hold::kHigh);
+    if (u < low() - kTolerance) return which(Hold::kLow);
+    if (hold == Hold::kFree) return hold;
+    const double inward = static_cast<int>(hold) < 0 ? -slope : slope;  // > 0: the cost falls inside
+    return inward > kTolerance * (1.0 + std::fabs(curvature)) ? Hold::kFree : hold;
+  }
+};
+
+/// The inputs' part of one stage's elimination: their curvature H and slope g, and the inverse of the free
+/// part of H. Rows and columns of held inputs are zero in the inverse. Everything is in closed form for up to
+/// three inputs, with one division.
+template <class Arch, std::size_t Nu>
+struct InputBlock {
+  double H[Nu][Nu];
+  double g[Nu];
+  double inverse[Nu][Nu];
+
+  /// Inverts the free part. False, and no inverse, when that is not safely positive definite.
+  [[nodiscard, gnu::always_inline]] bool invert(const bool (&is_held)[Nu]) noexcept {
+    double A[Nu][Nu];
+    for (std::size_t m = 0; m < Nu; ++m) {
+      for (std::size_t l = 0; l < Nu; ++l)
+        A[m][l] = is_held[m] || is_held[l] ? (m == l ? 1.0 : 0.0) : H[m][l];
+    }
+    const bool positive = invert_all(A);
+    for (std::size_t m = 0; m < Nu; ++m) inverse[m][m] = is_held[m] ? 0.0 : inverse[m][m];
+    return positive;
+  }
+  /// The same where no input is held.
+  [[nodiscard, gnu::always_inline]] bool invert() noexcept { return invert_all(H); }
+
+  /// Adds the smallest of a rising series of shifts that makes the free part positive definite, and inverts
+  /// it; returns the shift.
+  [[gnu::noinline, gnu::cold]] double shift_and_invert(const bool (&is_held)[Nu]) noexcept {
+    double diagonal = 0.0;
+    for (std::size_t m = 0; m < Nu; ++m)
+      diagonal = std::fabs(H[m][m]) > diagonal ? std::fabs(H[m][m]) : diagonal;
+    double added = 0.0;
+    for (int attempt = 0; attempt < 40; ++attempt) {
+      const double more = added > 0.0 ? 3.0 * added : 1e-8 * (1.0 + diagonal);
+      for (std::size_t m = 0; m < Nu; ++m) H[m][m] += more;
+      added += more;
+      if (invert(is_held)) break;
+    }
+    return added;
+  }
+
+ private:
+  /// A pivot this small beside its own entry is noise.
+  [[gnu::always_inline]] static double noise(double entry) noexcept {
+    return 1e-10 * std::fabs(entry) + 1e-12;
+  }
+  /// a d − b c
+  [[gnu::always_inline]] static double cross(double a, double d, double b, double c) noexcept {
+    return fused_negative_multiply_add<Arch>(b, c, a * d);
+  }
+
+  [[nodiscard, gnu::always_inline]] bool invert_all(const double (&A)[Nu][Nu]) noexcept {
+    if constexpr (Nu == 1) {
+      inverse[0][0] = 1.0 / A[0][0];
+      return A[0][0] > 1e-12;
+    } else if constexpr (Nu == 2) {
+      const double determinant = cross(A[0][0], A[1][1], A[1][0], A[1][0]);
+      const double scale = 1.0 / determinant;
+      inverse[0][0] = A[1][1] * scale;
+      inverse[1][1] = A[0][0] * scale;
+      inverse[0][1] = inverse[1][0] = -A[1][0] * scale;
+      return (A[1][1] > 1e-12) & (determinant > noise(A[0][0]) * A[1][1]);
+    } else if constexpr (Nu == 3) {
+      const double c00 = cross(A[1][1], A[2][2], A[2][1], A[2][1]);
+      const double c10 = cross(A[2][0], A[2][1], A[1][0], A[2][2]);
+      const double c20 = cross(A[1][0], A[2][1], A[2][0], A[1][1]);
+      const double c11 = cross(A[0][0], A[2][2], A[2][0], A[2][0]);
+      const double c21 = cross(A[1][0], A[2][0], A[0][0], A[2][1]);
+      const double c22 = cross(A[0][0], A[1][1], A[1][0], A[1][0]);
+      const double determinant =
+          fused_multiply_add<Arch>(A[2][0], c20, fused_multiply_add<Arch>(A[1][0], c10, A[0][0] * c00));
+      const double scale = 1.0 / determinant;
+      inverse[0][0] = c00 * scale;
+      inverse[1][1] = c11 * scale;
+      inverse[2][2] = c22 * scale;
+      inverse[0][1] = inverse[1][0] = c10 * scale;
+      inverse[0][2] = inverse[2][0] = c20 * scale;
+      inverse[1][2] = inverse[2][1] = c21 * scale;
+      return (A[2][2] > 1e-12) & (c00 > noise(A[1][1]) * A[2][2]) & (determinant > noise(A[0][0]) * c00);
+    } else {
+      return eliminate(A);
+    }
+  }
+
+  /// Gauss and Jordan, last input first.
+  bool eliminate(const double (&A)[Nu][Nu]) noexcept {
+    bool positive = true;
+    for (std::size_t m = 0; m < Nu; ++m) {
+      for (std::size_t l = 0; l < Nu; ++l) inverse[m][l] = A[m][l];
+    }
+    for (std::size_t p = Nu; p-- > 0;) {
+      positive = positive && inverse[p][p] > noise(A[p][p]);
+      const double scale = 1.0 / inverse[p][p];
+      for (std::size_t m = 0; m < Nu; ++m) {
+        if (m == p) continue;
+        const double factor = inverse[m][p] * scale;
+        for (std::size_t l = 0; l < Nu; ++l) {
+          if (l != p) inverse[m][l] = fused_negative_multiply_add<Arch>(factor, inverse[p][l], inverse[m][l]);
+        }
+        inverse[m][p] = -factor;
+      }
+      for (std::size_t l = 0; l < Nu; ++l) {
+        if (l != p) inverse[p][l] *= scale;
+      }
+      inverse[p][p] = scale;
+    }
+    return positive;
+  }
+};
+
+}  // namespace chicane::solver

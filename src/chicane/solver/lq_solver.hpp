@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "chicane/base/pack.hpp"
+#include "chicane/solver/input_block.hpp"
+#include "chicane/solver/pattern.hpp"
+#include "chicane/solver/small_qp.hpp"
+#include "chicane/solver/stage_algebra.hpp"
+
+namespace chicane::solver {
+
+/// What a backward sweep leaves of a stage. A free input follows δu = row · δx + constant; of a held one
+/// these are the slope d(cost to go)/dδu instead.
+template <std::size_t Nu, std::size_t Lanes>
+struct alignas(64) Feedback {
+  double row[Nu][Lanes]{};
+  double constant[Nu]{};
+  double H[Nu][Nu]{};  ///< curvature of the cost to go in the inputs, as factorised
+  double g[Nu]{};      ///< its slope at δu = 0
+};
+
+/// Solves min Σ ½ zᵀLz + terminal cost s.t. δx₀ = 0, δx⁺ = F z and bounds on δu and on its change, for one
+/// horizon (docs/solver.md, eq. 8–11). A backward sweep eliminates stage by stage with the inputs of the
+/// working set held at their bounds; a forward sweep finds the step and corrects the working set. Repeating
+/// both until nothing changes is the primal-dual active set method (Hintermüller, Ito, Kunisch 2003).
+///
+/// The sweep knows the pattern: states are lanes of registers, and each stored entry of F costs one
+/// multiply-add of whole registers. No allocation; time per sweep O(N).
+template <class Arch, class Pattern, std::size_t Capacity>
+class LqSolver {
+ public:
+  using Layout = solver::Layout<Pattern>;
+  using Lq = LqProblem<Pattern, Capacity>;
+  static constexpr std::size_t kNx = Layout::kNx;
+  static constexpr std::size_t kNu = Layout::kNu;
+  static constexpr std::size_t kLanes = Layout::kLanes;
+  static constexpr bool kHasRates = Layout::has_rate_bounds();
+
+  Lq lq;                          ///< the problem
+  Hold hold[Lq::kStages][kNu]{};  ///< working set
+  using Feedback = solver::Feedback<kNu, kLanes>;
+  Feedback feedback[Lq::kStages]{};
+  alignas(64) double dx[Capacity + 1][kLanes]{};  ///< step of the states
+  double du[Capacity][kNu]{};                     ///< step of the inputs
+
+  /// Factorises all stages with `shift` added to the input blocks. `choose`: take the working set of each
+  /// stage from its own small box problem (that is control-limited differential dynamic programming; the step
+  /// then descends). Returns the largest extra shift that an indefinite input block needed; 0 when none did.
+  double backward(std::size_t horizon, double shift = 0.0, bool choose = false) noexcept {
+    std::copy(&lq.terminal[0][0], &lq.terminal[0][0] + (kNx + 1) * kLanes, &value_[horizon][0][0]);
+    return choose ? sweep<true>(horizon, shift) : sweep<false>(horizon, shift);
+  }
+  /// The same after forward() has changed the working set: stages behind the last change are as they were.
+  /// Pre: backward() without `choose`, and the same problem.
+  double backward_again(double shift = 0.0) noexcept { return sweep<false>(last_change_ + 1, shift); }
+
+  /// What the forward sweep does with inputs that contradict the working set.
+  enum class Repair { kAll, kLast, kClip };
+
+  /// Computes dx and du, and corrects the working set: all contradicting inputs at once, only the last one,
+  /// or none while du is cut to its bounds. Returns how many inputs contradicted it.
+  int forward(std::size_t horizon, Repair repair) noexcept {
+    int contradictions = 0;
+    std::size_t last_input = 0;
+    Hold last_hold = Hold::kFree;
+    double x[kNx] = {};
+    for (std::size_t i = 0; i < kNx; ++i) dx[0][i] = 0.0;
+    for (std::size_t k = 0; k < horizon; ++k) {
+      double u[kNu];
+      unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+        const double value = dot_row(feedback[k].row[m], x, feedback[k].constant[m]);
+        const InputBounds bounds = bounds_of(k, m, x);
+        u[m] = hold[k][m] == Hold::kFree ? value : bounds.at(hold[k][m]);
+        if (repair == Repair::kClip) {
+          u[m] = std::min(std::max(u[m], bounds.low()), bounds.high());
+        } else if (const Hold next = bounds.next(hold[k][m], u[m], value, feedback[k].H[m][m]);
+                   next != hold[k][m]) [[unlikely]] {
+          ++contradictions;
+          last_change_ = k;
+          if (repair == Repair::kAll) hold[k][m] = next;
+          last_input = m;
+          last_hold = next;
+        }
+        du[k][m] = u[m];
+      });
+      advance(lq.stage[k], x, u);
+      for (std::size_t i = 0; i < kNx; ++i) dx[k + 1][i] = x[i];
+    }
+    if (repair == Repair::kLast && contradictions > 0) hold[last_change_][last_input] = last_hold;
+    return contradictions;
+  }
+
+  /// How far du follows its input's own feedback: the gain that belongs to state i, 0 where it is held.
+  [[nodiscard]] double gain(std::size_t k, std::size_t m, std::size_t i) const noexcept {
+    if (hold[k][m] == Hold::kFree) return feedback[k].row[m][i];
+    return is_rate(hold[k][m]) && i == rate_state(m) ? 1.0 : 0.0;
+  }
+  /// The part of du that does not depend on the state.
+  [[nodiscard]] double constant(std::size_t k, std::size_t m) const noexcept {
+    return hold[k][m] == Hold::kFree ? feedback[k].constant[m] : bound(k, m, hold[k][m]);
+  }
+
+ private:
+  using Stage = typename Lq::Stage;
+  using Algebra = StageAlgebra<Arch, Pattern, Stage>;
+  using Vector = typename Algebra::Vector;
+  using Value = typename Algebra::Value;
+  using Block = InputBlock<Arch, kNu>;
+  /// Rounding errors that are not symmetric are averaged away every few stages.
+  static constexpr std::size_t kSymmetryPeriod = 8;
+
+  static constexpr bool is_rate(Hold hold) noexcept {
+    return hold == Hold::kRateLow || hold == Hold::kRateHigh;
+  }
+
+  template <bool Choose>
+  double sweep(std::size_t from, double shift) noexcept {
+    Value P;
+    for (std::size_t i = 0; i <= kNx; ++i) P.column[i] = Vector::load(value_[from][i]);
+    double largest = 0.0;
+    for (std::size_t k = from; k-- > 0;) {
+      eliminate<Choose>(k, P, shift, largest);
+      if (k % kSymmetryPeriod == 0) Algebra::make_symmetric(P);
+      for (std::size_t i = 0; i <= kNx; ++i) P.column[i].store(value_[k][i]);
+    }
+    return largest;
+  }
+
+  /// One stage backwards: the value function P of stage k + 1 becomes that of stage k (eq. 9–11).
+  template <bool Choose>
+  [[gnu::always_inline]] void eliminate(std::size_t k, Value& P, double shift, double& largest) noexcept {
+    const Stage& s = lq.stage[k];
+    Feedback& out = feedback[k];
+    alignas(64) double w[1 + kNu][kLanes];
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+      Algebra::template times_jacobian<kNx + 1 + m>(s, P).store(w[1 + m]);
+    });
+    Algebra::template times_jacobian<kNx>(s, P).store(w[0]);
+    Algebra::settle(w);
+    Block block;
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+      unroll<m + 1>([&](auto l) __attribute__((always_inline)) {
+        block.H[m][l] = Algebra::template times_input<m>(s, w[1 + l], s.H[m][l]);
+        block.H[l][m] = block.H[m][l];
+      });
+      block.g[m] = Algebra::template times_input<m>(s, w[0], s.g[m]);
+      block.H[m][m] += shift;
+    });
+    Vector R[kNu];  // Q over inputs and states
+    alignas(64) double r[kNu][kLanes];
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+      R[m] = Algebra::template row_of_q<kNx + 1 + m>(s, w[1 + m]);
+      R[m].store(r[m]);
+    });
+    Algebra::settle(r);
+    Vector q = Algebra::template row_of_q<kNx>(s, w[0]);
+
+    bool is_held[kNu];
+    const bool any_held = settle_inputs<Choose>(k, block, is_held, largest);
+    double c[kNu];
+    constants(k, block, is_held, any_held, c);
+    Vector K[kNu];
+    gains(k, block, any_held, R, K);
+
+    alignas(64) double wx[kNx][kLanes];
+    unroll<kNx>([&](auto j) __attribute__((always_inline)) {
+      if constexpr (Algebra::has_column(j)) Algebra::template times_jacobian<j>(s, P).store(wx[j]);
+    });
+    Algebra::settle(wx);
+    unroll<kNx>([&](auto j) __attribute__((always_inline)) {
+      if constexpr (Algebra::has_column(j)) {
+        P.column[j] = Algebra::template row_of_q<j>(s, wx[j]);
+      } else {
+        P.column[j] = Algebra::template cost_row<j>(s);
+      }
+      for (std::size_t m = 0; m < kNu; ++m) P.column[j].add(r[m][j], K[m]);
+    });
+    P.column[kNx] = q;
+    for (std::size_t m = 0; m < kNu; ++m) P.column[kNx].add(c[m], R[m]);
+
+    for (std::size_t m = 0; m < kNu; ++m) {
+      K[m].store(out.row[m]);
+      out.constant[m] = c[m];
+      out.g[m] = block.g[m];
+      for (std::size_t l = 0; l < kNu; ++l) out.H[m][l] = block.H[m][l];
+    }
+    if (any_held) hold_inputs(k, block, is_held, r, P);
+  }
+
+  /// Reads (or with `Choose` chooses) which inputs are held, and inverts the free block, shifted until it is
+  /// positive definite. True when any input is held.
+  template <bool Choose>
+  [[gnu::always_inline]] bool settle_inputs(std::size_t k, Block& block, bool (&is_held)[kNu],
+                                            double& largest) noexcept {
+    if constexpr (Choose) largest = std::max(largest, choose_hold(k, block));
+    bool any_held = false;
+    for (std::size_t m = 0; m < kNu; ++m) {
+      is_held[m] = hold[k][m] != Hold::kFree;
+      any_held = any_held || is_held[m];
+    }
+    const bool is_positive = any_held ? block.invert(is_held) : block.invert();
+    if (!is_positive) [[unlikely]]
+      largest = std::max(largest, block.shift_and_invert(is_held));
+    return any_held;
+  }
+
+  /// The working set of stage k from its own box problem; returns the shift that the block needed.
+  [[gnu::noinline]] double choose_hold(std::size_t k, Block& block) noexcept {
+    SmallQp<kNu> box;
+    for (std::size_t m = 0; m < kNu; ++m) {
+      for (std::size_t l = 0; l < kNu; ++l) box.H[m][l] = block.H[m][l];
+      box.g[m] = block.g[m];
+      const InputBounds bounds = bounds_of(k, m, kAtRest);
+      box.low[m] = bounds.low();
+      box.high[m] = bounds.high();
+    }
+    const double extra = box.make_positive();
+    box.solve();
+    for (std::size_t m = 0; m < kNu; ++m) {
+      block.H[m][m] = box.H[m][m];
+      hold[k][m] = bounds_of(k, m, kAtRest).which(box.hold[m]);
+    }
+    return extra;
+  }
+
+  /// The parts of δu that do not depend on the state.
+  [[gnu::always_inline]] void constants(std::size_t k, const Block& block, const bool (&is_held)[kNu],
+                                        bool any_held, double (&c)[kNu]) const noexcept {
+    double g[kNu];
+    for (std::size_t m = 0; m < kNu; ++m) g[m] = block.g[m];
+    if (any_held) {
+      for (std::size_t h = 0; h < kNu; ++h) {
+        if (!is_held[h]) continue;
+        const double b = bound(k, h, hold[k][h]);
+        for (std::size_t m = 0; m < kNu; ++m) g[m] = fused_multiply_add<Arch>(block.H[m][h], b, g[m]);
+      }
+    }
+    for (std::size_t m = 0; m < kNu; ++m) {
+      double value = block.inverse[m][0] * g[0];
+      for (std::size_t l = 1; l < kNu; ++l)
+        value = fused_multiply_add<Arch>(block.inverse[m][l], g[l], value);
+      c[m] = any_held && is_held[m] ? bound(k, m, hold[k][m]) : -value;
+    }
+  }
+
+  /// How δu follows the state; zero for inputs at bounds of their own.
+  [[gnu::always_inline]] void gains(std::size_t k, const Block& block, bool any_held, const Vector (&R)[kNu],
+                                    Vector (&K)[kNu]) const noexcept {
+    for (std::size_t m = 0; m < kNu; ++m) {
+      K[m] = Vector::scaled(-block.inverse[m][0], R[0]);
+      for (std::size_t l = 1; l < kNu; ++l) K[m].add(-block.inverse[m][l], R[l]);
+    }
+    if constexpr (kHasRates) {
+      if (any_held) follow_rates(k, block, K);
+    }
+  }
+  /// An input whose change is at its bound follows the state that holds its previous value; the free ones
+  /// answer.
+  void follow_rates(std::size_t k, const Block& block, Vector (&K)[kNu]) const noexcept {
+    for (std::size_t h = 0; h < kNu; ++h) {
+      if (!is_rate(hold[k][h])) continue;
+      const Vector unit = unit_of_rate_state(h);
+      for (std::size_t m = 0; m < kNu; ++m) {
+        double pull = 0.0;
+        for (std::size_t l = 0; l < kNu; ++l) pull -= block.inverse[m][l] * block.H[l][h];
+        K[m].add(m == h ? 1.0 : pull, unit);
+      }
+    }
+  }
+  static constexpr std::size_t rate_state(std::size_t m) noexcept {
+    return Pattern::kRateState[m] < 0 ? 0 : static_cast<std::size_t>(Pattern::kRateState[m]);
+  }
+  static Vector unit_of_rate_state(std::size_t m) noexcept {
+    alignas(64) double lanes[kLanes]{};
+    lanes[rate_state(m)] = 1.0;
+    return Vector::load(lanes);
+  }
+
+  /// Keeps the slopes of held inputs for the forward sweep; those at a bound on their change also act on the
+  /// value function through the state they follow.
+  void hold_inputs(std::size_t k, const Block& block, const bool (&is_held)[kNu],
+                   const double (&r)[kNu][kLanes], Value& P) noexcept {
+    Vector slope[kNu];
+    double constant[kNu];
+    for (std::size_t h = 0; h < kNu; ++h) {
+      slope[h] = Vector::load(r[h]);
+      constant[h] = block.g[h];
+      for (std::size_t m = 0; m < kNu; ++m) {
+        slope[h].add(block.H[h][m], Vector::load(feedback[k].row[m]));
+        constant[h] = fused_multiply_add<Arch>(block.H[h][m], feedback[k].constant[m], constant[h]);
+      }
+    }
+    for (std::size_t h = 0; h < kNu; ++h) {
+      if (!is_held[h]) continue;
+      slope[h].store(feedback[k].row[h]);
+      feedback[k].constant[h] = constant[h];
+      if constexpr (kHasRates) {
+        if (!is_rate(hold[k][h])) continue;
+        P.column[rate_state(h)].add(slope[h]);
+        P.column[kNx].add(constant[h], unit_of_rate_state(h));
+      }
+    }
+  }
+
+  // ---- bounds
+
+  static constexpr double kAtRest[kNx] = {};
+
+  [[nodiscard]] double bound(std::size_t k, std::size_t m, Hold at) const noexcept {
+    switch (at) {
+      case Hold::kRateLow:
+        return lq.rate_low[m][k];
+      case Hold::kRateHigh:
+        return lq.rate_high[m][k];
+      case Hold::kHigh:
+        return lq.high[m][k];
+      default:
+        return lq.low[m][k];
+    }
+  }
+  [[gnu::always_inline]] InputBounds bounds_of(std::size_t k, std::size_t m,
+                                               const double (&x)[kNx]) const noexcept {
+    InputBounds bounds{lq.low[m][k], lq.high[m][k]};
+    if constexpr (kHasRates) {
+      if (const int state = Pattern::kRateState[m]; state >= 0) {
+        bounds.rate_low = lq.rate_low[m][k] + x[static_cast<std::size_t>(state)];
+        bounds.rate_high = lq.rate_high[m][k] + x[static_cast<std::size_t>(state)];
+      }
+    }
+    return bounds;
+  }
+
+  // ---- forward
+
+  /// start + row · x
+  [[gnu::always_inline]] static double dot_row(const double* row, const double (&x)[kNx],
+                                               double start) noexcept {
+    constexpr std::size_t kSums = kNx < 4 ? 1 : (kNx < 8 ? 2 : 4);
+    double sum[kSums] = {start};
+    unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+      double& side = sum[i % kSums];
+      side = i > 0 && i < kSums ? row[i] * x[i] : fused_multiply_add<Arch>(row[i], x[i], side);
+    });
+    if constexpr (kSums == 4) return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    if constexpr (kSums == 2) return sum[0] + sum[1];
+    return sum[0];
+  }
+
+  /// x becomes F z.
+  [[gnu::always_inline]] static void advance(const Stage& s, double (&x)[kNx],
+                                             const double (&u)[kNu]) noexcept {
+    double next[kNx];
+    unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+      double sum = s.B[0][i];
+      double other = 0.0;
+      unroll<kNx>([&](auto j) __attribute__((always_inline)) {
+        if constexpr (Layout::kF[i][j] != Layout::kNone) {
+          double& side = j % 2 == 0 ? sum : other;
+          side = fused_multiply_add<Arch>(Algebra::jacobian(s, i, j), x[j], side);
+        } else if constexpr (Pattern::kF[i][j] == Entry::kOne) {
+          sum += x[j];
+        }
+      });
+      sum += other;
+      unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+        constexpr std::size_t kU = kNx + 1 + m;
+        if constexpr (Layout::kF[i][kU] != Layout::kNone) {
+          sum = fused_multiply_add<Arch>(s.B[1 + m][i], u[m], sum);
+        } else if constexpr (Pattern::kF[i][kU] == Entry::kOne) {
+          sum += u[m];
+        }
+      });
+      next[i] = sum;
+    });
+    for (std::size_t i = 0; i < kNx; ++i) x[i] = next[i];
+  }
+
+  alignas(64) double value_[Capacity + 1][kNx + 1][kLanes]{};  ///< P of every stage, to start again from
+  std::size_t last_change_ = 0;  ///< last stage whose working set forward() changed
+};
+
+}  // namespace chicane::solver

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "chicane/base/pack.hpp"
+#include "chicane/solver/pattern.hpp"
+
+namespace chicane::solver {
+
+/// The products of the backward sweep (docs/solver.md, eq. 9) with the states as lanes of registers: each
+/// entry that a pattern stores is one multiply-add of whole registers, and entries that are zero are none.
+template <class Arch, class Pattern, class Stage>
+class StageAlgebra {
+ public:
+  using Layout = solver::Layout<Pattern>;
+  static constexpr std::size_t kNx = Layout::kNx;
+  static constexpr std::size_t kLanes = Layout::kLanes;
+  using V = Pack<Arch, kNx <= 4 ? 4 : 8>;
+  static constexpr std::size_t kBlocks = kNx <= 4 ? 1 : kLanes / 8;
+  static constexpr std::size_t kBlock = V::kLanes;
+
+  /// One vector over the states.
+  struct Vector {
+    V part[kBlocks];
+    [[gnu::always_inline]] static Vector load(const double* from) noexcept {
+      Vector v;
+      for (std::size_t b = 0; b < kBlocks; ++b) v.part[b] = V::load(from + b * kBlock);
+      return v;
+    }
+    [[gnu::always_inline]] void store(double* to) const noexcept {
+      for (std::size_t b = 0; b < kBlocks; ++b) part[b].store(to + b * kBlock);
+    }
+    [[gnu::always_inline]] void add(const Vector& o) noexcept {
+      for (std::size_t b = 0; b < kBlocks; ++b) part[b] += o.part[b];
+    }
+    [[gnu::always_inline]] void add(double factor, const Vector& o) noexcept {
+      const V f(factor);
+      for (std::size_t b = 0; b < kBlocks; ++b) part[b] = fused_multiply_add(f, o.part[b], part[b]);
+    }
+    [[gnu::always_inline]] static Vector scaled(double factor, const Vector& o) noexcept {
+      Vector v;
+      for (std::size_t b = 0; b < kBlocks; ++b) v.part[b] = V(factor) * o.part[b];
+      return v;
+    }
+  };
+  /// The value function ½ (δx, 1)ᵀ P (δx, 1): columns of P, then its gradient.
+  struct Value {
+    Vector column[kNx + 1];
+  };
+
+  /// A list of indices known at compile time.
+  struct Terms {
+    std::array<std::size_t, kNx> index{};
+    std::size_t count = 0;
+    constexpr void add(std::size_t i) noexcept { index[count++] = i; }
+  };
+  /// Rows of F with an entry in column j that is (or is not) a plain 1.
+  static constexpr Terms rows_of(std::size_t j, bool ones) noexcept {
+    Terms terms;
+    for (std::size_t i = 0; i < kNx; ++i) {
+      const bool is_stored = Layout::kF[i][j] != Layout::kNone;
+      if (ones ? !is_stored && Pattern::kF[i][j] == Entry::kOne : is_stored) terms.add(i);
+    }
+    return terms;
+  }
+  /// Rows of F that have states in them.
+  static constexpr Terms state_rows() noexcept {
+    Terms terms;
+    for (std::size_t i = 0; i < kNx; ++i) {
+      if (Layout::has_state_row(i)) terms.add(i);
+    }
+    return terms;
+  }
+  static constexpr bool has_column(std::size_t j) noexcept {
+    return rows_of(j, true).count + rows_of(j, false).count > 0;
+  }
+
+  [[gnu::always_inline]] static double jacobian(const Stage& s, std::size_t i, std::size_t j) noexcept {
+    return j < kNx ? s.A[Layout::state_row(i)][j] : s.B[j - kNx][i];
+  }
+
+  /// start + Σ_t factor(t) · vector(t) over `Count` terms; in two sums side by side when they are many, which
+  /// halves the wait for one to finish.
+  template <std::size_t Count, class Factor, class Operand>
+  [[gnu::always_inline]] static Vector combine(const Vector& start, const Factor& factor,
+                                               const Operand& operand) noexcept {
+    Vector sum = start;
+    if constexpr (Count < 4) {
+      unroll<Count>([&](auto t) __attribute__((always_inline)) { sum.add(factor(t), operand(t)); });
+    } else {
+      Vector other = Vector::scaled(factor(std::integral_constant<std::size_t, 0>{}),
+                                    operand(std::integral_constant<std::size_t, 0>{}));
+      unroll<Count - 1>([&](auto t) __attribute__((always_inline)) {
+        constexpr std::integral_constant<std::size_t, t + 1> kTerm{};
+        if constexpr (kTerm % 2 == 0) {
+          other.add(factor(kTerm), operand(kTerm));
+        } else {
+          sum.add(factor(kTerm), operand(kTerm));
+        }
+      });
+      sum.add(other);
+    }
+    return sum;
+  }
+
+  /// P F, column j.
+  template <std::size_t J>
+  [[gnu::always_inline]] static Vector times_jacobian(const Stage& s, const Value& P) noexcept {
+    constexpr Terms kOnes = rows_of(J, true);
+    constexpr Terms kValues = rows_of(J, false);
+    const auto factor = [&](auto t) __attribute__((always_inline)) {
+      return jacobian(s, kValues.index[t], J);
+    };
+    const auto column = [&](auto t) __attribute__((always_inline)) { return P.column[kValues.index[t]]; };
+    if constexpr (J == kNx) {
+      return combine<kValues.count>(P.column[kNx], factor, column);
+    } else if constexpr (kOnes.count > 0) {
+      Vector start = P.column[kOnes.index[0]];
+      unroll<kOnes.count - 1>([&](auto t) __attribute__((always_inline)) {
+        start.add(P.column[kOnes.index[t + 1]]);
+      });
+      return combine<kValues.count>(start, factor, column);
+    } else {
+      const Vector start =
+          Vector::scaled(factor(std::integral_constant<std::size_t, 0>{}), P.column[kValues.index[0]]);
+      const auto later_factor = [&](auto t) __attribute__((always_inline)) {
+        return factor(std::integral_constant<std::size_t, t + 1>{});
+      };
+      const auto later_column = [&](auto t) __attribute__((always_inline)) {
+        return column(std::integral_constant<std::size_t, t + 1>{});
+      };
+      return combine<kValues.count - 1>(start, later_factor, later_column);
+    }
+  }
+
+  template <std::size_t I>
+  [[gnu::always_inline]] static Vector cost_row(const Stage& s) noexcept {
+    if constexpr (Layout::has_cost_row(I)) {
+      return Vector::load(s.L[Layout::cost_row(I)]);
+    } else {
+      Vector zero;
+      for (auto& part : zero.part) part = V(0.0);
+      return zero;
+    }
+  }
+
+  /// Row i of Q over the states: L + Aᵀ w for a column w of P F that lies in memory.
+  template <std::size_t I>
+  [[gnu::always_inline]] static Vector row_of_q(const Stage& s, const double* w) noexcept {
+    constexpr Terms kRows = state_rows();
+    if constexpr (kRows.count == 0) {
+      return cost_row<I>(s);
+    } else {
+      return combine<kRows.count>(
+          cost_row<I>(s), [&](auto t) __attribute__((always_inline)) { return w[kRows.index[t]]; },
+          [&](auto t) __attribute__((always_inline)) { return Vector::load(s.A[t]); });
+    }
+  }
+
+  /// Bᵀ_m w for a column w of P F in memory.
+  template <std::size_t M>
+  [[gnu::always_inline]] static double times_input(const Stage& s, const double* w, double start) noexcept {
+    constexpr Terms kOnes = rows_of(kNx + 1 + M, true);
+    constexpr Terms kValues = rows_of(kNx + 1 + M, false);
+    double sum = start;
+    unroll<kOnes.count>([&](auto t) __attribute__((always_inline)) { sum += w[kOnes.index[t]]; });
+    double other = 0.0;
+    unroll<kValues.count>([&](auto t) __attribute__((always_inline)) {
+      constexpr std::size_t kI = kValues.index[t];
+      double& side = t % 2 == 0 ? sum : other;
+      side = fused_multiply_add<Arch>(s.B[1 + M][kI], w[kI], side);
+    });
+    return kValues.count > 1 ? sum + other : sum;
+  }
+
+  /// Keeps the compiler from taking numbers out of registers that are cheaper to load from memory.
+  template <class Memory>
+  [[gnu::always_inline]] static void settle(Memory& memory) noexcept {
+    asm volatile("" : "+m"(memory));  // NOLINT: no instruction
+  }
+
+  /// Rounding errors that are not symmetric would grow like an uncontrolled system: averaged away every few
+  /// stages.
+  [[gnu::always_inline]] static void make_symmetric(Value& P) noexcept {
+    unroll<kBlocks>([&](auto a) __attribute__((always_inline)) {
+      unroll<a + 1>([&](auto b) __attribute__((always_inline)) {
+        V upper[kBlock];
+        V lower[kBlock];
+        unroll<kBlock>([&](auto i) __attribute__((always_inline)) {
+          constexpr std::size_t kColumn = a * kBlock + i;
+          constexpr std::size_t kRow = b * kBlock + i;
+          upper[i] = kColumn < kNx ? P.column[kColumn < kNx ? kColumn : 0].part[b] : V(0.0);
+          lower[i] = kRow < kNx ? P.column[kRow < kNx ? kRow : 0].part[a] : V(0.0);
+        });
+        transpose(lower);
+        unroll<kBlock>([&](auto i)
+                           __attribute__((always_inline)) { upper[i] = 0.5 * (upper[i] + lower[i]); });
+        unroll<kBlock>([&](auto i) __attribute__((always_inline)) {
+          if constexpr (a * kBlock + i < kNx) P.column[a * kBlock + i].part[b] = upper[i];
+        });
+        if constexpr (a != b) {
+          transpose(upper);
+          unroll<kBlock>([&](auto i) __attribute__((always_inline)) {
+            if constexpr (b * kBlock + i < kNx) P.column[b * kBlock + i].part[a] = upper[i];
+          });
+        }
+      });
+    });
+  }
+};
+
+}  // namespace chicane::solver
