@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import { gateInWords, roadInWords, rungInWords, sightInWords, statusInWords } from './words';
+import { SPEED_LIMITER } from '../protocol/topics';
+import { gateInWords, limiterInWords, LIMITERS, nameInWords, roadInWords, rungInWords, sightInWords, statusInWords, worstInWords } from './words';
 
 describe('words', () => {
   it('gets graver with each rung', () => {
@@ -29,5 +30,21 @@ describe('words', () => {
     expect(roadInWords({ ...frame, off_track_events: 2 }).text).toContain('2 times');
     expect(roadInWords({ ...frame, is_off_track: true }).mood).toBe('bad');
     expect(roadInWords({ ...frame, edge_distance_m: NaN }).mood).toBe('unknown');
+  });
+
+  it('has words for whatever limits the speed', () => {
+    expect(LIMITERS).toHaveLength(Object.keys(SPEED_LIMITER).length);
+    expect(limiterInWords(SPEED_LIMITER.CURVATURE).short).toBe('grip');
+    expect(limiterInWords(SPEED_LIMITER.POWER).short).toBe('power');
+    expect(limiterInWords(17).title).toContain('17');
+  });
+
+  it('names the worst constraint only when one is violated', () => {
+    const frame = { violation: 0.0213, worst_stage: 7, worst_constraint: 1 };
+    expect(worstInWords(frame, ['steer_rate', 'left_edge'])).toBe('left edge exceeded by 0.021 at step 7 of the plan');
+    expect(worstInWords({ ...frame, violation: 0 }, [])).toBeNull();
+    expect(worstInWords({ ...frame, violation: NaN }, [])).toBeNull();
+    expect(worstInWords({ ...frame, worst_constraint: -1 }, [])).toBeNull();
+    expect(nameInWords('front_slip')).toBe('front slip');
   });
 });

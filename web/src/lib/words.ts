@@ -58,3 +58,25 @@ export function sightInWords(hasMap: boolean, metres: number): Sentence {
   const sight = metres > 0 ? `${Math.round(metres)} m` : 'no road';
   return { mood: 'good', text: hasMap ? `Knows the lap, uses ${sight}` : `Sees ${sight} ahead` };
 }
+
+/** What holds the speed where it is, by Frame.speed_limiter: a headline, why, and a short name for charts. */
+export const LIMITERS: readonly { readonly title: string; readonly why: string; readonly short: string }[] = [
+  { title: 'Not known', why: 'No plan tells what limits the speed.', short: 'unknown' },
+  { title: 'The speed asked for', why: 'The car drives as fast as it may.', short: 'asked' },
+  { title: 'Grip in the bend', why: 'Faster than this the tyres would not hold the curve.', short: 'grip' },
+  { title: 'Braking for a bend', why: 'Faster than this it would not be slow enough when the bend comes.', short: 'braking' },
+  { title: 'Power', why: 'Full throttle is all there is.', short: 'power' },
+  { title: 'Sight', why: 'The road ahead is not known far enough to go faster.', short: 'sight' },
+];
+
+export const limiterInWords = (limiter: number): (typeof LIMITERS)[number] => LIMITERS[limiter] ?? { title: `Limit ${limiter}`, why: 'This page does not know this limit.', short: `${limiter}` };
+
+/** snake_case to words. */
+export const nameInWords = (name: string): string => name.replace(/[_.-]+/g, ' ').trim();
+
+/** The constraint that is violated most in an answer; null when all hold to `tolerance`. */
+export function worstInWords(frame: Pick<Frame, 'violation' | 'worst_stage' | 'worst_constraint'>, names: readonly string[], tolerance = 1e-6): string | null {
+  const { violation, worst_stage: stage, worst_constraint: index } = frame;
+  if (!(violation > tolerance) || index < 0) return null;
+  return `${nameInWords(names[index] ?? `constraint ${index + 1}`)} exceeded by ${violation.toPrecision(2)} at step ${stage} of the plan`;
+}

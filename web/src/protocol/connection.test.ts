@@ -1,7 +1,8 @@
 import { readFileSync } from 'node:fs';
 import type { IWebSocket } from '@foxglove/ws-protocol';
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
-import { Connection, retryDelay, type ConnectionEvents } from './connection';
+import { Connection, retryDelay } from './connection';
+import type { SourceEvents } from './source';
 
 const folder = new URL('../../../tests/protocol/fixtures/ros/', import.meta.url);
 const topics = JSON.parse(readFileSync(new URL('topics.json', folder), 'utf8')) as { topic: string; type: string; schema: string }[];
@@ -27,8 +28,8 @@ class FakeSocket implements IWebSocket {
   sayBytes(bytes: Uint8Array): void {
     this.onmessage?.({ data: bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength) });
   }
-  introduce(): void {
-    this.say({ op: 'serverInfo', name: 'chicane', capabilities: [] });
+  introduce(capabilities: string[] = []): void {
+    this.say({ op: 'serverInfo', name: 'chicane', sessionId: 'a1', capabilities });
     this.say({
       op: 'advertise',
       channels: topics.map(({ topic, type, schema }, id) => ({ id, topic, encoding: 'cdr', schemaName: type, schema })),
@@ -42,12 +43,12 @@ class FakeSocket implements IWebSocket {
 
 function start() {
   const sockets: FakeSocket[] = [];
-  const events = { open: vi.fn(), lost: vi.fn(), message: vi.fn(), services: vi.fn(), notice: vi.fn() };
+  const events = { open: vi.fn(), lost: vi.fn(), message: vi.fn(), services: vi.fn(), settings: vi.fn(), notice: vi.fn() };
   const connection = new Connection(() => {
     const socket = new FakeSocket();
     sockets.push(socket);
     return socket;
-  }, events as ConnectionEvents);
+  }, events as SourceEvents);
   return { sockets, events, connection, last: () => sockets.at(-1) as FakeSocket };
 }
 
@@ -58,10 +59,10 @@ describe('connection', () => {
   it('subscribes to the topics it knows and hands decoded messages on', () => {
     const { events, last } = start();
     last().introduce();
-    expect(events.open).toHaveBeenCalledTimes(1);
+    expect(events.open).toHaveBeenCalledExactlyOnceWith('a1');
     const subscribed = last().sent.map((text) => (JSON.parse(text as string) as { subscriptions: { id: number; channelId: number }[] }).subscriptions[0]);
     expect(subscribed.map((s) => topics[s?.channelId ?? -1]?.topic).sort()).toEqual(
-      ['/chicane/frame', '/chicane/plan', '/chicane/run', '/reference', '/track/centre', '/track/left', '/track/right'],
+      ['/chicane/change', '/chicane/frame', '/chicane/lap', '/chicane/plan', '/chicane/run', '/reference', '/track/centre', '/track/left', '/track/right'],
     );
     const run = readFileSync(new URL('chicane_run.bin', folder));
     const channel = topics.findIndex(({ topic }) => topic === '/chicane/run');
@@ -109,5 +110,46 @@ describe('connection', () => {
     const pending = connection.call('/step');
     last().close();
     expect(await pending).toBe('the connection was lost');
+  });
+
+  const saidAs = (socket: FakeSocket, op: string) =>
+    socket.sent.filter((each) => typeof each === 'string').map((each) => JSON.parse(each as string) as { op: string; id?: string }).filter((each) => each.op === op);
+
+  it('asks for all parameters and to be told of changes, where there are any', () => {
+    const { events, connection, last } = start();
+    last().introduce();
+    expect(saidAs(last(), 'getParameters')).toEqual([]);
+    last().close();
+    vi.advanceTimersByTime(250);
+    last().introduce(['parameters', 'parametersSubscribe']);
+    expect(saidAs(last(), 'getParameters')).toEqual([{ op: 'getParameters', parameterNames: [], id: 'all' }]);
+    expect(saidAs(last(), 'subscribeParameterUpdates')).toHaveLength(1);
+    last().say({ op: 'parameterValues', id: 'all', parameters: [{ name: 'a', value: 1 }, { name: 'b', value: 'x' }, { name: 'c' }] });
+    expect(events.settings).toHaveBeenLastCalledWith(new Map<string, unknown>([['a', 1], ['b', 'x']]), true);
+    last().say({ op: 'parameterValues', parameters: [{ name: 'a', value: 2 }] });
+    expect(events.settings).toHaveBeenLastCalledWith(new Map([['a', 2]]), false);
+    connection.refresh();
+    expect(saidAs(last(), 'getParameters')).toHaveLength(2);
+  });
+
+  it('sets a parameter and tells the value in force, with the sentence of a refusal', async () => {
+    const { events, connection, last } = start();
+    expect((await connection.set('a', 1)).sentence).toMatch(/cannot be changed/);
+    last().introduce(['parameters']);
+    const granted = connection.set('latency_ms', 90);
+    const refused = connection.set('latency_ms', 900);
+    const [first, second] = saidAs(last(), 'setParameters');
+    expect(first).toMatchObject({ parameters: [{ name: 'latency_ms', value: 90, type: 'float64' }] });
+    last().say({ op: 'parameterValues', id: first?.id, parameters: [{ name: 'latency_ms', value: 90 }] });
+    last().say({ op: 'status', level: 2, message: 'latency_ms: got 900, expected a number in [0, 500] ms' });
+    last().say({ op: 'parameterValues', id: second?.id, parameters: [{ name: 'latency_ms', value: 90 }] });
+    expect(await granted).toEqual({ value: 90, sentence: null });
+    expect(await refused).toEqual({ value: 90, sentence: 'latency_ms: got 900, expected a number in [0, 500] ms' });
+    expect(events.notice).not.toHaveBeenCalled();
+    last().say({ op: 'status', level: 2, message: 'subscribe: there is no channel 99' });
+    expect(events.notice).toHaveBeenCalledOnce();
+    const pending = connection.set('latency_ms', 80);
+    last().close();
+    expect(await pending).toEqual({ value: null, sentence: 'the connection was lost' });
   });
 });

@@ -1,41 +1,42 @@
-import { FoxgloveClient, type Channel, type IWebSocket, type Service } from '@foxglove/ws-protocol';
+import { FoxgloveClient, type Channel, type IWebSocket, type Parameter, type Service } from '@foxglove/ws-protocol';
 import { decoder, encodeBool, encodeNothing } from './decoder';
-import { TOPIC_NAMES, type TopicName, type Topics } from './topics';
+import type { ServiceName, SetAnswer, Setting, Source, SourceEvents } from './source';
+import { TOPIC_NAMES, type Topics } from './topics';
 
 /** Both names mean the same bytes; servers pick one. */
 export const SUBPROTOCOLS = ['foxglove.sdk.v1', 'foxglove.websocket.v1'];
 
-export type ServiceName = '/pause' | '/step' | '/reset';
-
-export interface ConnectionEvents {
-  /** The socket is open and the server has introduced itself. */
-  open(): void;
-  /** It has ended; the next attempt, the `attempt`-th in a row, begins in `delay` milliseconds. */
-  lost(attempt: number, delay: number): void;
-  message<T extends TopicName>(topic: T, message: Topics[T]): void;
-  services(names: ReadonlySet<string>): void;
-  /** A sentence for the operator. */
-  notice(sentence: string): void;
-}
-
 /** How long to wait before the attempt number n = 1, 2, … [ms]: quick at first, never longer than two seconds. */
 export const retryDelay = (attempt: number): number => Math.min(2000, 250 * 2 ** (attempt - 1));
 
+const ALL = 'all'; // request id
+const LOST = 'the connection was lost';
+
+const isSetting = (value: Parameter['value']): value is Setting => ['number', 'boolean', 'string'].includes(typeof value);
+
+interface PendingSet {
+  readonly name: string;
+  sentence: string | null;
+  resolve(answer: SetAnswer): void;
+}
+
 /**
- * One lasting connection to a server of the Foxglove WebSocket protocol: subscribes to the topics this page draws, and
- * connects again, for ever, whenever it is lost.
+ * One lasting connection to a server of the Foxglove WebSocket protocol: subscribes to the topics this page draws and to all
+ * parameters, and connects again, for ever, whenever it is lost.
  */
-export class Connection {
+export class Connection implements Source {
   readonly #open: () => IWebSocket;
-  readonly #events: ConnectionEvents;
+  readonly #events: SourceEvents;
   #client: FoxgloveClient | undefined;
   #attempt = 0;
   #timer: ReturnType<typeof setTimeout> | undefined;
   #services = new Map<string, Service>();
   #calls = new Map<number, { service: Service; resolve: (sentence: string | null) => void }>();
+  #sets = new Map<string, PendingSet>(); // by request id, in the order sent
   #nextCall = 1;
+  #hasParameters = false;
 
-  constructor(open: () => IWebSocket, events: ConnectionEvents) {
+  constructor(open: () => IWebSocket, events: SourceEvents) {
     this.#open = open;
     this.#events = events;
     this.#connect();
@@ -48,14 +49,12 @@ export class Connection {
     client?.close();
   }
 
-  /** Tries at once instead of waiting for the next attempt. */
   retryNow(): void {
     if (this.#client) return;
     clearTimeout(this.#timer);
     this.#connect();
   }
 
-  /** Resolves to null when done, to a sentence when not. */
   call(name: ServiceName, data?: boolean): Promise<string | null> {
     const service = this.#services.get(name);
     if (!service || !this.#client) return Promise.resolve(`${name} is not offered by this run`);
@@ -65,16 +64,34 @@ export class Connection {
     return new Promise((resolve) => this.#calls.set(callId, { service, resolve }));
   }
 
+  set(name: string, value: Setting): Promise<SetAnswer> {
+    if (!this.#client || !this.#hasParameters) return Promise.resolve({ value: null, sentence: `${name} cannot be changed in this run` });
+    const id = `set ${this.#nextCall++}`;
+    // JSON does not tell 3 from 3.0: the type does.
+    const parameter: Parameter = typeof value === 'number' ? { name, value, type: 'float64' } : { name, value };
+    const answer = new Promise<SetAnswer>((resolve) => this.#sets.set(id, { name, sentence: null, resolve }));
+    this.#client.setParameters([parameter], id);
+    return answer;
+  }
+
+  refresh(): void {
+    if (this.#hasParameters) this.#client?.getParameters([], ALL);
+  }
+
   #connect(): void {
     const client = new FoxgloveClient({ ws: this.#open() });
     const readers = new Map<number, (bytes: ArrayBufferView) => void>();
     const mine = () => this.#client === client;
     this.#client = client;
 
-    client.on('serverInfo', () => {
+    client.on('serverInfo', ({ capabilities, sessionId }) => {
       if (!mine()) return;
       this.#attempt = 0;
-      this.#events.open();
+      this.#hasParameters = capabilities.includes('parameters');
+      this.#events.open(sessionId ?? '');
+      if (!this.#hasParameters) return;
+      client.getParameters([], ALL);
+      client.subscribeParameterUpdates([]);
     });
     client.on('advertise', (channels) => {
       for (const channel of mine() ? channels : []) this.#subscribe(client, channel, readers);
@@ -86,9 +103,12 @@ export class Connection {
       for (const service of services) this.#services.set(service.name, service);
       this.#events.services(new Set(this.#services.keys()));
     });
+    client.on('parameterValues', ({ parameters, id }) => {
+      if (mine()) this.#parameterValues(parameters, id);
+    });
     client.on('serviceCallResponse', ({ callId, data }) => this.#answer(callId, data));
     client.on('serviceCallFailure', ({ callId, message }) => this.#finish(callId, message));
-    client.on('status', ({ message }) => this.#events.notice(message));
+    client.on('status', ({ message }) => this.#status(message));
     client.on('error', () => undefined); // a close event follows
     client.on('close', () => {
       if (mine()) this.#lost();
@@ -102,6 +122,28 @@ export class Connection {
     readers.set(client.subscribe(channel.id), (bytes) => {
       this.#events.message(topic, decode(bytes) as Topics[typeof topic]);
     });
+  }
+
+  #parameterValues(parameters: readonly Parameter[], id: string | undefined): void {
+    const values = new Map<string, Setting>();
+    for (const { name, value } of parameters) if (isSetting(value)) values.set(name, value);
+    const pending = id === undefined ? undefined : this.#sets.get(id);
+    if (id !== undefined && pending) {
+      this.#sets.delete(id);
+      pending.resolve({ value: values.get(pending.name) ?? null, sentence: pending.sentence });
+      values.delete(pending.name);
+    }
+    if (values.size > 0) this.#events.settings(values, id === ALL);
+  }
+
+  /** A refusal names its parameter and comes before the answer; it belongs to the oldest open wish of that name. */
+  #status(sentence: string): void {
+    for (const pending of this.#sets.values()) {
+      if (pending.sentence !== null || !sentence.startsWith(pending.name)) continue;
+      pending.sentence = sentence;
+      return;
+    }
+    this.#events.notice(sentence);
   }
 
   #answer(callId: number, data: ArrayBufferView): void {
@@ -119,9 +161,12 @@ export class Connection {
 
   #lost(): void {
     this.#client = undefined;
+    this.#hasParameters = false;
     this.#services.clear();
     this.#events.services(new Set());
-    for (const callId of [...this.#calls.keys()]) this.#finish(callId, 'the connection was lost');
+    for (const callId of [...this.#calls.keys()]) this.#finish(callId, LOST);
+    for (const { resolve } of this.#sets.values()) resolve({ value: null, sentence: LOST });
+    this.#sets.clear();
     const delay = retryDelay(++this.#attempt);
     this.#events.lost(this.#attempt, delay);
     this.#timer = setTimeout(() => this.#connect(), delay);

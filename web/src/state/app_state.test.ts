@@ -1,6 +1,7 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import type { Frame, Path, Plan, Run } from '../protocol/topics';
-import { bestLap, Column, forget, isPaused, link, live, receive, refreshText, run, shown, silence } from './app_state';
+import type { Frame, Lap, Path, Plan, Run } from '../protocol/topics';
+import { beginSession, bestLap, forget, isPaused, laps, link, live, receive, refreshText, run, shown, silence } from './app_state';
+import { Column, COST_TERMS, costColumn } from './columns';
 
 const frame = (change: Partial<Frame>): Frame =>
   ({ time_s: 0, x_m: 0, y_m: 0, speed_mps: 10, speed_reference_mps: 12, lateral_error_m: 0.5, steer_asked_rad: 0.1,
@@ -22,6 +23,38 @@ describe('app state', () => {
     expect(live.plots.newest(Column.steerAsked)).toBeCloseTo(5.7296, 4);
     expect(live.plots.newest(Column.steerApplied)).toBeCloseTo(-5.7296, 4);
     expect(live.plots.newest(Column.stepTime)).toBe(1.5);
+  });
+
+  it('knows nothing of what an older program does not tell', () => {
+    receive('/chicane/frame', frame({}), 0);
+    expect(live.frame).toMatchObject({ steer_sent_rad: NaN, cost_terms: new Float64Array(), active_now: 0, is_manual: false });
+    expect(live.plots.newest(Column.speedLimit)).toBeNaN();
+    expect(live.plots.newest(costColumn(0))).toBeNaN();
+    receive('/chicane/run', {} as Run, 0);
+    expect(run.value).toMatchObject({ constraint_names: [], mode: '' });
+  });
+
+  it('stacks the terms of the cost, the last layer taking what is too many', () => {
+    const terms = new Float64Array(COST_TERMS + 2).fill(1);
+    terms[1] = -5; // no layer
+    receive('/chicane/frame', { ...frame({}), cost_terms: terms } as unknown as Frame, 0);
+    expect([0, 1, 2].map((term) => live.plots.newest(costColumn(term)))).toEqual([1, 1, 2]);
+    expect(live.plots.newest(costColumn(COST_TERMS - 1))).toBe(COST_TERMS + 1);
+  });
+
+  it('keeps laps by number', () => {
+    const lap = (number: number, time: number) => ({ lap: number, lap_time_s: time });
+    for (const each of [lap(2, 27), lap(1, 30), lap(2, 27)]) receive('/chicane/lap', each as Lap, 0);
+    expect(laps.value.map(({ lap: number }) => number)).toEqual([1, 2]);
+    beginSession();
+    expect(laps.value).toEqual([]);
+    expect(live.frame).toBeNull();
+  });
+
+  it('keeps about a second of plans', () => {
+    for (let i = 0; i < 1000; ++i) receive('/chicane/plan', { speed_mps: [], stamp: { sec: i, nsec: 0 } } as unknown as Plan, 0);
+    expect(live.pastPlans.length).toBe(96);
+    expect(live.pastPlans.at(-1)).toBe(live.plan);
   });
 
   it('plots a repeated frame once', () => {

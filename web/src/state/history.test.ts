@@ -32,6 +32,14 @@ describe('history', () => {
     expect(history.column(0)).toHaveLength(5);
   });
 
+  it('copies another', () => {
+    const [from, to] = [new History(1, 3), new History(1, 3)];
+    for (const value of [1, 2, 3, 4]) from.push([value]);
+    to.copyFrom(from);
+    from.push([5]);
+    expect([...to.column(0)]).toEqual([2, 3, 4]);
+  });
+
   it('marks what a short row leaves out as unknown', () => {
     const history = new History(2, 2);
     history.push([1]);

@@ -25,6 +25,12 @@ export class History {
     ++this.#count;
   }
 
+  /** Becomes a copy of another one of the same shape, in the memory it has. */
+  copyFrom(other: History): void {
+    this.#columns.forEach((column, i) => column.set(other.#columns[i] ?? []));
+    this.#count = other.#count;
+  }
+
   clear(): void {
     this.#count = 0;
   }

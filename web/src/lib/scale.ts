@@ -1,0 +1,56 @@
+import { clamp } from './math';
+
+/** How the way of a slider is divided among the values of its range. */
+export type Scale = 'linear' | 'cubic' | 'logarithmic';
+
+export interface Range {
+  readonly minimum: number;
+  readonly maximum: number;
+  readonly scale: Scale;
+  readonly isInteger: boolean;
+}
+
+/** Where a logarithmic scale that begins at 0 leaves 0: so many decades below its end. */
+const DECADES = 7;
+
+/**
+ * The scale on which a value is easy to find: logarithmic over more than three decades, or up from 0 to a thousand and
+ * more; cubic where what is usual lies within the first 5 % of the range; else linear.
+ */
+export function scaleOf(minimum: number, maximum: number, usual: number): Scale {
+  if (minimum > 0 ? maximum / minimum > 300 && usual < 0.2 * maximum : minimum === 0 && maximum >= 1000) return 'logarithmic';
+  return usual - minimum < 0.05 * (maximum - minimum) ? 'cubic' : 'linear';
+}
+
+/** The part of the way, in [0, 1], at which a value lies. */
+export function shareOf(value: number, { minimum, maximum, scale }: Range): number {
+  if (!(value > minimum)) return 0;
+  if (value >= maximum) return 1;
+  const linear = (value - minimum) / (maximum - minimum);
+  if (scale === 'linear') return linear;
+  if (scale === 'cubic') return Math.cbrt(linear);
+  if (minimum > 0) return Math.log(value / minimum) / Math.log(maximum / minimum);
+  return clamp(1 + Math.log10(value / maximum) / DECADES, 0, 1);
+}
+
+/** The value at a part of the way, rounded to what a hand can mean: three digits. */
+export function valueAt(share: number, { minimum, maximum, scale, isInteger }: Range): number {
+  if (share <= 0) return minimum;
+  if (share >= 1) return maximum;
+  const raw =
+    scale === 'linear'
+      ? minimum + share * (maximum - minimum)
+      : scale === 'cubic'
+        ? minimum + share ** 3 * (maximum - minimum)
+        : minimum > 0
+          ? minimum * (maximum / minimum) ** share
+          : maximum * 10 ** ((share - 1) * DECADES);
+  return clamp(isInteger ? Math.round(raw) : Number(raw.toPrecision(3)), minimum, maximum);
+}
+
+/** A number as people write it: no more than six digits, no trailing zeros, a true minus sign. */
+export function tidy(value: number): string {
+  if (value === Infinity) return '∞';
+  if (!Number.isFinite(value)) return '–';
+  return String(Number(value.toPrecision(6))).replace('-', '−');
+}

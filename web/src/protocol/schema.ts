@@ -1,0 +1,41 @@
+/** One tunable as /schema.json tells it; src/chicane/protocol/schema.hpp is the table behind it. */
+export interface SchemaEntry {
+  readonly key: string;
+  readonly group: string;
+  readonly kind: 'number' | 'integer' | 'bool' | 'choice' | 'text';
+  readonly unit: string;
+  readonly minimum: number | null;
+  readonly maximum: number | null;
+  readonly choices: readonly string[];
+  readonly default: number | boolean | string | null;
+  readonly meaning: string;
+  /** Applies at the next control step; otherwise the run starts anew. */
+  readonly is_live: boolean;
+}
+
+const KINDS: readonly string[] = ['number', 'integer', 'bool', 'choice', 'text'] satisfies SchemaEntry['kind'][];
+
+const numberOr = (value: unknown): number | null => (typeof value === 'number' && Number.isFinite(value) ? value : null);
+
+/** Takes what is well formed out of a parsed /schema.json: a page may be older or newer than its server. */
+export function readSchema(json: unknown): SchemaEntry[] {
+  if (!Array.isArray(json)) return [];
+  return json.flatMap((each: Partial<Record<keyof SchemaEntry, unknown>> | null) => {
+    if (typeof each?.key !== 'string' || typeof each.kind !== 'string' || !KINDS.includes(each.kind)) return [];
+    const value = each.default;
+    return [
+      {
+        key: each.key,
+        group: typeof each.group === 'string' && each.group !== '' ? each.group : (each.key.split('.')[0] ?? ''),
+        kind: each.kind as SchemaEntry['kind'],
+        unit: typeof each.unit === 'string' ? each.unit : '',
+        minimum: numberOr(each.minimum),
+        maximum: numberOr(each.maximum),
+        choices: Array.isArray(each.choices) ? each.choices.filter((choice) => typeof choice === 'string') : [],
+        default: typeof value === 'number' || typeof value === 'boolean' || typeof value === 'string' ? value : null,
+        meaning: typeof each.meaning === 'string' ? each.meaning : '',
+        is_live: each.is_live !== false,
+      },
+    ];
+  });
+}

@@ -1,0 +1,56 @@
+import { beforeEach, describe, expect, it } from 'vitest';
+import { events, forgetEvents, noteChange, noteEvents, setFaultNames } from './event_log';
+import type { Frame } from '../protocol/topics';
+
+const frame = (change: Partial<Frame>): Frame =>
+  ({ time_s: 0, rung: 0, solve_status: 0, is_gated: false, is_off_track: false, is_manual: false, active_faults: 0, ...change }) as Frame;
+
+let before: Frame | null = null;
+function see(change: Partial<Frame>): void {
+  const now = frame(change);
+  noteEvents(now, before);
+  before = now;
+}
+
+beforeEach(() => {
+  forgetEvents();
+  before = null;
+});
+
+describe('event log', () => {
+  it('tells when something began and how long it took', () => {
+    see({ time_s: 1 });
+    see({ time_s: 2, is_gated: true });
+    expect(events.value).toMatchObject([{ text: 'The gate changed the command', time: 2, duration: null }]);
+    see({ time_s: 3, is_gated: true });
+    see({ time_s: 4.5 });
+    expect(events.value).toMatchObject([{ time: 2, duration: 2.5 }]);
+  });
+
+  it('takes another rung for another event, newest first', () => {
+    see({ time_s: 1, rung: 1 });
+    see({ time_s: 2, rung: 3 });
+    see({ time_s: 3 });
+    expect(events.value.map(({ time, duration, mood }) => [time, duration, mood])).toEqual([[2, 1, 'bad'], [1, 1, 'warning']]);
+  });
+
+  it('names faults that come and go', () => {
+    setFaultNames(['link_lost', 'half_grip']);
+    see({ time_s: 1 });
+    see({ time_s: 2, active_faults: 2 });
+    see({ time_s: 5, active_faults: 0 });
+    expect(events.value).toMatchObject([{ text: 'Fault: half grip', time: 2, duration: 3 }]);
+  });
+
+  it('tells of changed tunables, but not of the wheel', () => {
+    noteChange({ stamp: { sec: 3, nsec: 500_000_000 }, cycle: 90n, name: 'latency_ms', value: '150' });
+    noteChange({ stamp: { sec: 4, nsec: 0 }, cycle: 91n, name: 'manual.steer', value: '0.1' });
+    expect(events.value).toMatchObject([{ text: 'latency_ms set to 150', time: 3.5 }]);
+  });
+
+  it('does not grow', () => {
+    for (let i = 0; i < 500; ++i) see({ time_s: i, is_gated: i % 2 === 1 });
+    expect(events.value.length).toBe(60);
+    expect(events.value[0]?.time).toBe(499);
+  });
+});

@@ -1,0 +1,82 @@
+import { signal } from '@preact/signals';
+import { hasBit } from '../lib/bits';
+import { rungInWords, statusInWords, type Mood } from '../lib/words';
+import type { Change, Frame } from '../protocol/topics';
+
+/** Something worth a line: when it began, and, once it has ended, how long it took. */
+export interface RunEvent {
+  readonly id: number;
+  readonly mood: Mood;
+  readonly text: string;
+  readonly time: number; // of the run [s]
+  readonly duration: number | null; // null: still going on, or a moment
+}
+
+const KEPT = 60;
+
+/** Newest first. */
+export const events = signal<readonly RunEvent[]>([]);
+
+interface Watch {
+  readonly name: string;
+  /** What is the matter in this frame; null: nothing. A different text is a different event. */
+  look(frame: Frame): { mood: Mood; text: string } | null;
+}
+
+const WATCHES: readonly Watch[] = [
+  { name: 'rung', look: ({ rung }) => (rung === 0 ? null : rungInWords(rung)) },
+  { name: 'status', look: ({ solve_status }) => (solve_status >= 0 ? null : statusInWords(solve_status)) },
+  { name: 'gate', look: ({ is_gated }) => (is_gated ? { mood: 'warning', text: 'The gate changed the command' } : null) },
+  { name: 'road', look: ({ is_off_track }) => (is_off_track ? { mood: 'bad', text: 'Off the road' } : null) },
+  { name: 'manual', look: ({ is_manual }) => (is_manual ? { mood: 'good', text: 'Driven by hand' } : null) },
+];
+
+let nextId = 1;
+let open = new Map<string, RunEvent>();
+let faultNames: readonly string[] = [];
+
+export function forgetEvents(): void {
+  events.value = [];
+  open = new Map();
+}
+
+export function setFaultNames(names: readonly string[]): void {
+  faultNames = names;
+}
+
+function add(event: RunEvent): void {
+  events.value = [event, ...events.value].slice(0, KEPT);
+}
+
+function follow(key: string, now: { mood: Mood; text: string } | null, time: number): void {
+  const running = open.get(key);
+  if (running && running.text !== now?.text) {
+    const ended = { ...running, duration: time - running.time };
+    events.value = events.value.map((event) => (event.id === running.id ? ended : event));
+    open.delete(key);
+  }
+  if (now && running?.text !== now.text) {
+    const event = { ...now, id: nextId++, time, duration: null };
+    open.set(key, event);
+    add(event);
+  }
+}
+
+/** Compares a frame with what went on before it. */
+export function noteEvents(frame: Frame, before: Frame | null): void {
+  for (const { name, look } of WATCHES) follow(name, look(frame), frame.time_s);
+  const changed = frame.active_faults ^ (before?.active_faults ?? 0);
+  if (changed === 0) return;
+  for (let i = 0; i < 32; ++i) {
+    if (!hasBit(changed, i)) continue;
+    const isOn = hasBit(frame.active_faults, i);
+    follow(`fault ${i}`, isOn ? { mood: 'warning', text: `Fault: ${faultInWords(faultNames[i] ?? `#${i + 1}`)}` } : null, frame.time_s);
+  }
+}
+
+export const faultInWords = (name: string): string => name.replace(/^fault\./, '').replace(/_/g, ' ');
+
+export function noteChange({ stamp, name, value }: Change): void {
+  if (/^(manual|fault|run)\./.test(name)) return; // told above, or by the page itself
+  add({ id: nextId++, mood: 'unknown', text: `${name} set to ${value}`, time: stamp.sec + stamp.nsec / 1e9, duration: null });
+}

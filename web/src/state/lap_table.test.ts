@@ -1,0 +1,46 @@
+import { describe, expect, it } from 'vitest';
+import type { Lap } from '../protocol/topics';
+import { LapSamples } from './lap_samples';
+import { bestsOf, lapSamplesCsv, lapsCsv } from './lap_table';
+
+const lap = (number: number, sectors: [number, number, number], more: Partial<Lap> = {}): Lap => ({
+  lap: number,
+  lap_time_s: sectors[0] + sectors[1] + sectors[2],
+  sector_times_s: new Float64Array(sectors),
+  is_clean: true,
+  mean_speed_mps: 40,
+  top_speed_mps: 45 + number,
+  min_edge_distance_m: 1,
+  rms_lateral_error_m: 0.2,
+  ...more,
+});
+
+describe('the table of laps', () => {
+  it('finds the best of each column', () => {
+    const bests = bestsOf([lap(1, [12, 9, 9]), lap(2, [9, 10, 8]), lap(3, [9.5, 8.5, 9.5])]);
+    expect(bests).toEqual({ lap: 2, time: 27, sectors: [9, 8.5, 8], topSpeed: 48 });
+  });
+
+  it('does not count a lap that left the road, unless all did', () => {
+    expect(bestsOf([lap(1, [9, 9, 9]), lap(2, [5, 5, 5], { is_clean: false })]).lap).toBe(1);
+    expect(bestsOf([lap(2, [5, 5, 5], { is_clean: false })]).lap).toBe(2);
+    expect(bestsOf([])).toEqual({ lap: -1, time: NaN, sectors: [NaN, NaN, NaN], topSpeed: NaN });
+  });
+
+  it('is written as a file', () => {
+    const lines = lapsCsv([lap(1, [12, 9, 9])]).split('\n');
+    expect(lines[0]?.split(',')).toHaveLength(10);
+    expect(lines[1]).toBe('1,30,12,9,9,true,40,46,1,0.2');
+  });
+
+  it('has a file for each lap along the road', () => {
+    const samples = new LapSamples();
+    samples.setLength(100);
+    const moment = (s: number, time: number) => ({ s_m: s, time_s: time, speed_mps: 10, lateral_error_m: 0, steer_rad: 0, throttle: 0.5, x_m: 7, y_m: 1 });
+    for (const [number, s, time] of [[0, 0, 0], [0, 99, 9.9], [1, 1, 0.1]] as const) samples.push(number, moment(s, time), number * 10);
+    const lines = lapSamplesCsv(samples, 0).trim().split('\n');
+    expect(lines[0]).toBe('s_m,time_s,speed_mps,lateral_error_m,steer_rad,throttle,x_m,y_m');
+    expect(lines).toHaveLength(samples.points + 1);
+    expect(lines.at(-1)).toBe('100,10,10,0,0,0.5,7,1');
+  });
+});

@@ -1,0 +1,48 @@
+import { csv } from '../lib/csv';
+import type { Lap } from '../protocol/topics';
+import { LAP_CHANNELS, type LapSamples } from './lap_samples';
+
+export interface LapBests {
+  readonly lap: number; // fastest clean one, or fastest where none is clean; −1 without laps
+  readonly time: number;
+  readonly sectors: readonly number[];
+  readonly topSpeed: number;
+}
+
+const least = (values: readonly number[]): number => values.reduce((a, b) => (b < a || Number.isNaN(a) ? b : a), NaN);
+
+/** The best of each column, over the laps that count: clean ones, if there are any. */
+export function bestsOf(laps: readonly Lap[]): LapBests {
+  const clean = laps.filter(({ is_clean }) => is_clean);
+  const count = clean.length > 0 ? clean : laps;
+  const time = least(count.map(({ lap_time_s }) => lap_time_s));
+  return {
+    lap: count.find(({ lap_time_s }) => lap_time_s === time)?.lap ?? -1,
+    time,
+    sectors: [0, 1, 2].map((sector) => least(count.map(({ sector_times_s }) => sector_times_s[sector] ?? NaN))),
+    topSpeed: -least(laps.map(({ top_speed_mps }) => -top_speed_mps)),
+  };
+}
+
+/** The table of laps as a file; times in seconds, in SI units. */
+export const lapsCsv = (laps: readonly Lap[]): string =>
+  csv(
+    ['lap', 'lap_time_s', 'sector_1_s', 'sector_2_s', 'sector_3_s', 'is_clean', 'mean_speed_mps', 'top_speed_mps', 'min_edge_distance_m', 'rms_lateral_error_m'],
+    laps.map((lap) => [
+      lap.lap,
+      lap.lap_time_s,
+      ...[0, 1, 2].map((sector) => lap.sector_times_s[sector] ?? NaN),
+      lap.is_clean,
+      lap.mean_speed_mps,
+      lap.top_speed_mps,
+      lap.min_edge_distance_m,
+      lap.rms_lateral_error_m,
+    ]),
+  );
+
+/** A lap along the road as a file; `index` counts from 0 as the samples do. */
+export function lapSamplesCsv(samples: LapSamples, index: number): string {
+  const channels = LAP_CHANNELS.map((name) => samples.channel(index, name) ?? new Float64Array());
+  const rows = Array.from({ length: samples.points }, (_, point) => [samples.s(point), ...channels.map((channel) => channel[point] ?? NaN)]);
+  return csv(['s_m', ...LAP_CHANNELS], rows);
+}

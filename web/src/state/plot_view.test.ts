@@ -1,0 +1,50 @@
+import { beforeEach, describe, expect, it } from 'vitest';
+import type { Frame } from '../protocol/topics';
+import { forget, live, receive } from './app_state';
+import { Column } from './columns';
+import { isFrozen, plotted, thaw, timeRange, toggleFrozen, windowSeconds, zoomed, zoomTo } from './plot_view';
+
+const see = (time: number): void => receive('/chicane/frame', { time_s: time, cost_terms: [] } as unknown as Frame, 0);
+
+beforeEach(() => {
+  forget();
+  live.frame = null;
+  thaw();
+  windowSeconds.value = 20;
+  for (let time = 0; time <= 30; ++time) see(time);
+});
+
+describe('the view of the plots', () => {
+  it('follows the run', () => {
+    expect(timeRange()).toEqual([10, 30]);
+    windowSeconds.value = 10;
+    expect(timeRange()).toEqual([20, 30]);
+    see(31);
+    expect(timeRange()).toEqual([21, 31]);
+  });
+
+  it('stands still while the run goes on', () => {
+    toggleFrozen();
+    see(31);
+    expect(timeRange()).toEqual([10, 30]);
+    expect(plotted().newest(Column.time)).toBe(30);
+    expect(live.plots.newest(Column.time)).toBe(31);
+    toggleFrozen();
+    expect(timeRange()).toEqual([11, 31]);
+  });
+
+  it('zooms into a stretch of time, which stands still too', () => {
+    zoomTo(12, 14);
+    expect(isFrozen.value).toBe(true);
+    see(60);
+    expect(timeRange()).toEqual([12, 14]);
+    thaw();
+    expect(zoomed.value).toBeNull();
+    expect(timeRange()).toEqual([40, 60]);
+  });
+
+  it('takes a click for no zoom', () => {
+    zoomTo(12, 12.01);
+    expect(isFrozen.value).toBe(false);
+  });
+});

@@ -1,0 +1,50 @@
+import { signal } from '@preact/signals';
+import { persisted } from '../lib/persisted';
+import { live, LONGEST_WINDOW_S } from './app_state';
+import { Column, COLUMN_COUNT } from './columns';
+import { History } from './history';
+
+export const WINDOWS_S = [10, 20, 60] as const;
+
+/** How far back plots reach while they follow the run [s]. */
+export const windowSeconds = persisted<number>('plots.window', 20, (value) => (WINDOWS_S as readonly unknown[]).includes(value));
+/** Plots stand still, while the run goes on. */
+export const isFrozen = signal(false);
+/** A stretch of time somebody has zoomed into [s]; plots are then frozen. */
+export const zoomed = signal<readonly [number, number] | null>(null);
+/** Time under the cursor of any plot [s]; null when it is on none. */
+export const cursorTime = signal<number | null>(null);
+
+let frozen: History | null = null;
+
+/** The table that plots draw: the run's, or what it was when they were frozen. */
+export const plotted = (): History => (isFrozen.value && frozen ? frozen : live.plots);
+
+export function freeze(): void {
+  if (isFrozen.value) return;
+  frozen ??= new History(COLUMN_COUNT, live.plots.capacity);
+  frozen.copyFrom(live.plots);
+  isFrozen.value = true;
+}
+
+export function thaw(): void {
+  isFrozen.value = false;
+  zoomed.value = null;
+}
+
+export const toggleFrozen = (): void => (isFrozen.value ? thaw() : freeze());
+
+/** Shows a stretch of time; one too short to mean anything is no zoom. */
+export function zoomTo(from: number, to: number): void {
+  if (!(to - from > 0.05)) return;
+  freeze();
+  zoomed.value = [from, to];
+}
+
+/** First and last time of the axis [s]. */
+export function timeRange(): [number, number] {
+  if (zoomed.value) return [zoomed.value[0], zoomed.value[1]];
+  const newest = plotted().newest(Column.time);
+  const end = Number.isFinite(newest) ? newest : 0;
+  return [end - Math.min(windowSeconds.value, LONGEST_WINDOW_S), end];
+}

@@ -1,0 +1,96 @@
+import { beforeEach, describe, expect, it } from 'vitest';
+import type { SetAnswer, Setting } from '../protocol/source';
+import { readSchema } from '../protocol/schema';
+import { refusals, settingChanges, settings, startSettings, Wishes } from './settings';
+
+/** A server that answers when told to. */
+function server() {
+  const asked: { key: string; value: Setting; answer: (answer: SetAnswer) => Promise<void> }[] = [];
+  const wishes = new Wishes(
+    (key, value) =>
+      new Promise((resolve) =>
+        asked.push({
+          key,
+          value,
+          answer: async (answer) => {
+            resolve(answer);
+            await new Promise((next) => setTimeout(next));
+          },
+        }),
+      ),
+  );
+  return { wishes, asked };
+}
+
+beforeEach(() => {
+  settings.value = new Map<string, Setting>([['latency_ms', 100], ['run.pace', 1]]);
+  startSettings.value = settings.value;
+  refusals.value = new Map();
+});
+
+describe('wishes', () => {
+  it('show at once, and stay when granted', async () => {
+    const { wishes, asked } = server();
+    void wishes.set('latency_ms', 150);
+    expect(settings.value.get('latency_ms')).toBe(150);
+    await asked[0]?.answer({ value: 150, sentence: null });
+    expect(settings.value.get('latency_ms')).toBe(150);
+  });
+
+  it('snap back when refused, with the sentence until the next success', async () => {
+    const { wishes, asked } = server();
+    void wishes.set('latency_ms', 900);
+    await asked[0]?.answer({ value: 100, sentence: 'latency_ms: got 900' });
+    expect(settings.value.get('latency_ms')).toBe(100);
+    expect(refusals.value.get('latency_ms')).toBe('latency_ms: got 900');
+    void wishes.set('latency_ms', 90);
+    await asked[1]?.answer({ value: 90, sentence: null });
+    expect(refusals.value.size).toBe(0);
+  });
+
+  it('never queue: of what comes while one is on its way only the newest follows', async () => {
+    const { wishes, asked } = server();
+    for (const value of [110, 120, 130, 140]) void wishes.set('latency_ms', value);
+    expect(asked).toHaveLength(1);
+    wishes.receive(new Map([['latency_ms', 110]])); // told to all viewers meanwhile
+    expect(settings.value.get('latency_ms')).toBe(140);
+    await asked[0]?.answer({ value: 110, sentence: null });
+    expect(asked.map(({ value }) => value)).toEqual([110, 140]);
+    expect(settings.value.get('latency_ms')).toBe(140);
+    await asked[1]?.answer({ value: 140, sentence: null });
+    expect(settings.value.get('latency_ms')).toBe(140);
+  });
+
+  it('keep what is shown when the connection is lost', async () => {
+    const { wishes, asked } = server();
+    void wishes.set('latency_ms', 150);
+    await asked[0]?.answer({ value: null, sentence: 'the connection was lost' });
+    expect(refusals.value.get('latency_ms')).toMatch(/lost/);
+  });
+
+  it('take what others have set', () => {
+    const { wishes } = server();
+    wishes.receive(new Map([['latency_ms', 50]]));
+    expect(settings.value.get('latency_ms')).toBe(50);
+  });
+});
+
+describe('changes', () => {
+  it('list what differs from the start, without the controls of the page', () => {
+    settings.value = new Map<string, Setting>([['latency_ms', 150], ['run.pace', 4]]);
+    expect(settingChanges.value).toEqual([{ key: 'latency_ms', from: 100, to: 150 }]);
+    settings.value = startSettings.value;
+    expect(settingChanges.value).toEqual([]);
+  });
+});
+
+describe('the schema', () => {
+  it('is read with care', () => {
+    const good = { key: 'a.b', group: 'a', kind: 'number', unit: 'm', minimum: 0, maximum: 1, choices: [], default: 0.5, meaning: 'x', is_live: true };
+    expect(readSchema([good, null, 7, { key: 'x' }, { ...good, kind: 'matrix' }])).toEqual([good]);
+    expect(readSchema([{ key: 'a.b', kind: 'bool' }])).toEqual([
+      { key: 'a.b', group: 'a', kind: 'bool', unit: '', minimum: null, maximum: null, choices: [], default: null, meaning: '', is_live: true },
+    ]);
+    expect(readSchema({})).toEqual([]);
+  });
+});
