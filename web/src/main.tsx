@@ -1,69 +1,108 @@
 import { render } from 'preact';
-import { Connection, SUBPROTOCOLS, type ServiceName } from './protocol/connection';
-import { attempt, isPaused, link, notice, receive, refreshText, services } from './state/app_state';
+import { addShortcuts, shortcutFor } from './lib/keys';
+import { Connection, SUBPROTOCOLS } from './protocol/connection';
+import { readSchema } from './protocol/schema';
+import type { Source } from './protocol/source';
+import { attempt, beginSession, isPaused, link, notice, receive, refreshText, services } from './state/app_state';
+import { attach, call } from './state/operate';
+import { toggleFrozen } from './state/plot_view';
+import { beginSettings, refreshWhenChosenAnew, takeSettings } from './state/settings_session';
+import { schema } from './state/settings';
 import { everyFrame } from './state/ticker';
-import { CockpitView } from './views/cockpit_view';
-import { ControllerView } from './views/controller_view';
-import { HeaderView, type Actions } from './views/header_view';
-import { PlotsView } from './views/plots_view';
-import { nextView, TrackView, zoom } from './views/track_view';
+import { AnewView } from './views/anew_view';
+import { changePace } from './views/drive_view';
+import { HeaderView } from './views/header_view';
+import { HelpView, isHelpOpen } from './views/help_view';
+import { handBack, listenToDriver, toggleManual } from './views/manual_view';
+import { nextView, zoom } from './views/track_view';
+import { focusSearch } from './views/tune_view';
+import { isPanelAlone, tab, TABS, toggleDock, WorkbenchView } from './views/workbench_view';
 
-const url = new URL('viewer', location.href);
-url.protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
+let session: string | null = null;
 
-const connection = new Connection(() => new WebSocket(url, SUBPROTOCOLS), {
-  open() {
-    link.value = 'live';
-    attempt.value = 0;
+async function loadSchema(): Promise<void> {
+  try {
+    const answer = await fetch('schema.json');
+    schema.value = answer.ok ? readSchema(await answer.json()) : [];
+  } catch {
+    schema.value = []; // the connection's own banner tells what is wrong
+  }
+}
+
+function live(): Source {
+  const url = new URL('viewer', location.href);
+  url.protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
+  return new Connection(() => new WebSocket(url, SUBPROTOCOLS), {
+    open(name) {
+      if (name !== session) {
+        beginSession();
+        beginSettings(name);
+        void loadSchema();
+      }
+      session = name;
+      link.value = 'live';
+      attempt.value = 0;
+    },
+    lost(number) {
+      link.value = 'lost';
+      attempt.value = number;
+    },
+    message: (topic, message) => receive(topic, message, performance.now()),
+    services: (names) => (services.value = names),
+    settings: takeSettings,
+    notice: (sentence) => (notice.value = sentence),
+  });
+}
+
+const source = live();
+attach(source);
+refreshWhenChosenAnew(() => source.refresh?.());
+listenToDriver();
+
+addShortcuts(
+  { keys: [' '], label: 'Space', does: 'Pause, resume', group: 'Run', action: () => call('/pause', !isPaused.value) },
+  { keys: ['s'], label: 'S', does: 'One control step while paused', group: 'Run', action: () => call('/step') },
+  { keys: ['r'], label: 'R', does: 'Back to the start', group: 'Run', action: () => call('/reset') },
+  { keys: ['[', ','], label: '[ ,', does: 'Half the pace', group: 'Run', action: () => changePace(0.5) },
+  { keys: [']', '.'], label: '] .', does: 'Twice the pace', group: 'Run', action: () => changePace(2) },
+  { keys: ['c'], label: 'C', does: 'Next camera', group: 'Camera', action: nextView },
+  { keys: ['+', '='], label: '+', does: 'Closer', group: 'Camera', action: () => zoom(0.8) },
+  { keys: ['-'], label: '−', does: 'Farther', group: 'Camera', action: () => zoom(1.25) },
+  ...TABS.map((name, i) => ({ keys: [String(i + 1)], label: String(i + 1), does: `${name[0]?.toUpperCase()}${name.slice(1)}`, group: 'Panels' as const, action: () => void (tab.value = name) })),
+  {
+    keys: ['/'],
+    label: '/',
+    does: 'Search tunables',
+    group: 'Panels',
+    action: () => {
+      tab.value = 'tune';
+      requestAnimationFrame(focusSearch);
+    },
   },
-  lost(number) {
-    link.value = 'lost';
-    attempt.value = number;
-  },
-  message: (topic, message) => receive(topic, message, performance.now()),
-  services: (names) => (services.value = names),
-  notice: (sentence) => (notice.value = sentence),
-});
-
-const actions: Actions = {
-  call(name: ServiceName, data?: boolean) {
-    void connection.call(name, data).then((sentence) => {
-      if (sentence !== null) notice.value = sentence;
-    });
-  },
-  retry: () => connection.retryNow(),
-};
-
-const KEYS: Readonly<Record<string, () => void>> = {
-  ' ': () => actions.call('/pause', !isPaused.value),
-  s: () => actions.call('/step'),
-  r: () => actions.call('/reset'),
-  c: nextView,
-  '+': () => zoom(0.8),
-  '=': () => zoom(0.8),
-  '-': () => zoom(1.25),
-};
+  { keys: ['p'], label: 'P', does: 'Hold the plots, follow again', group: 'Panels', action: toggleFrozen },
+  { keys: ['d'], label: 'D', does: 'Panel below or on the right', group: 'Panels', action: toggleDock },
+  { keys: ['f'], label: 'F', does: 'Panel alone', group: 'Panels', action: () => void (isPanelAlone.value = !isPanelAlone.value) },
+  { keys: ['?'], label: '?', does: 'These keys', group: 'Panels', action: () => void (isHelpOpen.value = true) },
+  { keys: ['m'], label: 'M', does: 'Take the wheel, hand it back', group: 'Driving by hand', action: toggleManual },
+  { keys: ['escape'], label: 'Esc', does: 'Hand the car back', group: 'Driving by hand', action: handBack },
+  { keys: [], label: '← → ↑ ↓', does: 'Steer, drive, brake', group: 'Driving by hand', action: () => undefined },
+);
 
 addEventListener('keydown', (event) => {
-  const action = KEYS[event.key.toLowerCase()];
-  const isOnButton = event.target instanceof HTMLButtonElement && event.key === ' ';
-  if (!action || isOnButton || event.ctrlKey || event.metaKey || event.altKey || event.repeat) return;
+  if (document.querySelector('dialog[open]')) return;
+  const shortcut = shortcutFor(event, event.target instanceof HTMLElement ? event.target : null);
+  if (!shortcut) return;
   event.preventDefault();
-  action();
+  shortcut.action();
 });
 
 function App() {
   return (
     <>
-      <HeaderView actions={actions} />
-      <main class={link.value === 'lost' ? 'stage stale' : 'stage'}>
-        <TrackView />
-        <aside class="side" aria-label="Car and controller">
-          <CockpitView />
-          <ControllerView />
-        </aside>
-        <PlotsView />
-      </main>
+      <HeaderView />
+      <WorkbenchView />
+      <HelpView />
+      <AnewView />
     </>
   );
 }

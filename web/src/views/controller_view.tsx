@@ -20,9 +20,9 @@ export function ControllerView() {
   const solve = frame ? statusInWords(frame.solve_status) : null;
   const turns = frame && frame.iterations > 0 ? `, ${plural(frame.iterations, 'iteration')}` : '';
   return (
-    <section class="panel controller" aria-label="Controller">
-      <h2>{run.value?.controller ?? 'Controller'}</h2>
-      <dl>
+    <section class="block" aria-label="Controller">
+      <h3>{run.value?.controller ?? 'Controller'}</h3>
+      <dl class="rows">
         <Row id="rung" label="Driving" sentence={frame ? rungInWords(frame.rung) : null} />
         <Row id="status" label="Answer" sentence={solve ? { ...solve, text: solve.text + turns } : null} />
         <Row id="gate" label="Gate" sentence={frame ? gateInWords(frame.is_gated) : null} />

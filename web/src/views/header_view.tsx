@@ -1,17 +1,14 @@
 import { fixed } from '../lib/format';
-import type { ServiceName } from '../protocol/connection';
-import { attempt, isPaused, link, notice, run, services, silence } from '../state/app_state';
-
-export interface Actions {
-  call(name: ServiceName, data?: boolean): void;
-  retry(): void;
-}
+import { tidy } from '../lib/scale';
+import { attempt, isPaused, link, notice, run, services, shown, silence } from '../state/app_state';
+import { call, can, retry } from '../state/operate';
+import { isHelpOpen } from './help_view';
 
 function RunSummary() {
   const now = run.value;
   if (!now) return <p class="summary">Waiting for a run</p>;
-  const parts = [now.controller, now.car, now.track, `${fixed(now.latency_s * 1000, 0)} ms latency`].filter((part) => part !== '');
-  return <p class="summary">{parts.join(' · ')}</p>;
+  const parts = [now.controller, now.preset !== now.controller ? now.preset : '', now.car, now.track, `${fixed(now.latency_s * 1000, 0)} ms latency`];
+  return <p class="summary">{parts.filter((part) => part !== '').join(' · ')}</p>;
 }
 
 function LinkState() {
@@ -22,23 +19,35 @@ function LinkState() {
   return <p class="pill good">Live</p>;
 }
 
-function Buttons({ actions }: { actions: Actions }) {
-  const can = (name: ServiceName): boolean => services.value.has(name) && link.value === 'live';
+/** What is out of the ordinary, wherever the reader looks. */
+function Marks() {
+  const frame = shown.value;
+  const pace = frame?.pace ?? NaN;
+  return (
+    <>
+      {frame?.is_manual && <p class="pill accent">By hand</p>}
+      {(frame?.active_faults ?? 0) !== 0 && <p class="pill bad">Fault</p>}
+      {Number.isFinite(pace) && Math.abs(pace - 1) > 1e-6 && <p class="pill">{tidy(pace)}× speed</p>}
+    </>
+  );
+}
+
+function Buttons() {
   if (services.value.size === 0) return null;
   return (
     <div class="buttons">
       {services.value.has('/pause') && (
-        <button type="button" class="primary" disabled={!can('/pause')} aria-keyshortcuts="Space" title="Space" onClick={() => actions.call('/pause', !isPaused.value)}>
+        <button type="button" class="primary" disabled={!can('/pause')} aria-keyshortcuts="Space" title="Space" onClick={() => call('/pause', !isPaused.value)}>
           {isPaused.value ? 'Resume' : 'Pause'}
         </button>
       )}
       {services.value.has('/step') && (
-        <button type="button" disabled={!can('/step') || !isPaused.value} aria-keyshortcuts="S" title="One control step while paused (S)" onClick={() => actions.call('/step')}>
+        <button type="button" disabled={!can('/step') || !isPaused.value} aria-keyshortcuts="S" title="One control step while paused (S)" onClick={() => call('/step')}>
           Step
         </button>
       )}
       {services.value.has('/reset') && (
-        <button type="button" disabled={!can('/reset')} aria-keyshortcuts="R" title="Back to the start (R)" onClick={() => actions.call('/reset')}>
+        <button type="button" disabled={!can('/reset')} aria-keyshortcuts="R" title="Back to the start (R)" onClick={() => call('/reset')}>
           Reset
         </button>
       )}
@@ -47,7 +56,7 @@ function Buttons({ actions }: { actions: Actions }) {
 }
 
 /** What the reader must not miss: above everything, spoken by screen readers. */
-function Banner({ actions }: { actions: Actions }) {
+function Banner() {
   return (
     <div aria-live="assertive">
       {link.value === 'lost' && (
@@ -55,7 +64,7 @@ function Banner({ actions }: { actions: Actions }) {
           <p>
             <b>Connection lost.</b> The numbers below are the last that came. Trying again{attempt.value > 1 ? ` (attempt ${attempt.value})` : ''} …
           </p>
-          <button type="button" onClick={() => actions.retry()}>
+          <button type="button" onClick={retry}>
             Try now
           </button>
         </div>
@@ -72,19 +81,25 @@ function Banner({ actions }: { actions: Actions }) {
   );
 }
 
-export function HeaderView({ actions }: { actions: Actions }) {
+export function HeaderView() {
   return (
     <header class="top">
       <div class="top-row">
         <h1>
           <img src="./favicon.svg" alt="" width="22" height="22" />
-          chicane
+          <span>chicane</span>
         </h1>
         <RunSummary />
-        <LinkState />
-        <Buttons actions={actions} />
+        <div class="pills">
+          <Marks />
+          <LinkState />
+        </div>
+        <Buttons />
+        <button type="button" class="icon" aria-label="Keys and help" title="Keys and help (?)" aria-keyshortcuts="?" onClick={() => (isHelpOpen.value = true)}>
+          ?
+        </button>
       </div>
-      <Banner actions={actions} />
+      <Banner />
     </header>
   );
 }

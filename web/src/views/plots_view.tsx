@@ -1,158 +1,164 @@
-import { useEffect, useRef } from 'preact/hooks';
-import uPlot from 'uplot';
-import 'uplot/dist/uPlot.min.css';
-import { firstSince, rangeAboutZero, rangeFromZero, secondsBack } from '../draw/axis';
-import { onThemeChange, theme, type Theme } from '../draw/theme';
-import { fixed } from '../lib/format';
-import { Column, live, shown, WINDOW_S } from '../state/app_state';
-import { everyFrame } from '../state/ticker';
+import { useComputed } from '@preact/signals';
+import { rangeAboutZero, rangeFromZero } from '../draw/axis';
+import { downloadPng, fileName } from '../lib/download';
+import { nameInWords } from '../lib/words';
+import { run } from '../state/app_state';
+import { Column, COST_TERMS, costColumn } from '../state/columns';
+import { isFrozen, thaw, toggleFrozen, windowSeconds, WINDOWS_S, zoomed } from '../state/plot_view';
+import { GgView } from './gg_view';
+import { HistogramView } from './histogram_view';
+import { pictureOfPlots } from './plot_picture';
+import { drawStatusStrip } from './status_strip';
+import { TimePlot, type PlotSpec } from './time_plot';
 
-interface Series {
-  readonly column: number;
-  readonly label: string;
-  readonly isDashed?: boolean;
-}
+/** One meaning, one colour in all plots: applied blue, asked orange, sent green. */
+const [APPLIED, ASKED, SENT, LIMIT] = [0, 1, 2, 4];
 
-interface PlotSpec {
-  readonly title: string;
-  readonly unit: string;
-  readonly decimals: number;
-  readonly series: readonly Series[];
-  readonly range: (columns: readonly ArrayLike<number>[]) => [number, number];
-}
-
-const PLOTS: readonly PlotSpec[] = [
+const BEFORE_COST: readonly PlotSpec[] = [
   {
     title: 'Speed',
     unit: 'mph',
     decimals: 1,
     series: [
-      { column: Column.speed, label: 'driven' },
-      { column: Column.speedWanted, label: 'wanted', isDashed: true },
+      { column: Column.speedLimit, label: 'limit', colour: LIMIT },
+      { column: Column.speedReference, label: 'reference', colour: ASKED, isDashed: true },
+      { column: Column.speed, label: 'driven', colour: APPLIED },
     ],
-    range: (columns) => rangeFromZero(columns, 20),
+    range: (columns) => rangeFromZero(columns.slice(1), 20),
   },
   {
     title: 'Lateral error',
     unit: 'm, + left',
     decimals: 2,
-    series: [{ column: Column.lateralError, label: 'car' }],
+    series: [{ column: Column.lateralError, label: 'car', colour: APPLIED }],
     range: (columns) => rangeAboutZero(columns, 0.5),
+  },
+  {
+    title: 'Heading error',
+    unit: '°, + left',
+    decimals: 1,
+    series: [{ column: Column.headingError, label: 'car', colour: APPLIED }],
+    range: (columns) => rangeAboutZero(columns, 2),
   },
   {
     title: 'Steering',
     unit: '°, + left',
     decimals: 1,
     series: [
-      { column: Column.steerApplied, label: 'applied' },
-      { column: Column.steerAsked, label: 'asked', isDashed: true },
+      { column: Column.steerSent, label: 'sent', colour: SENT },
+      { column: Column.steerAsked, label: 'asked', colour: ASKED, isDashed: true },
+      { column: Column.steerApplied, label: 'applied', colour: APPLIED },
     ],
     range: (columns) => rangeAboutZero(columns, 2),
+  },
+  {
+    title: 'Drive',
+    unit: '%, − brakes',
+    decimals: 0,
+    series: [
+      { column: Column.driveSent, label: 'sent', colour: SENT },
+      { column: Column.driveAsked, label: 'asked', colour: ASKED, isDashed: true },
+      { column: Column.driveApplied, label: 'applied', colour: APPLIED },
+    ],
+    range: () => [-105, 105],
+  },
+  {
+    title: 'Grip used',
+    unit: '%, over 100 slides',
+    decimals: 0,
+    series: [
+      { column: Column.frontTireUse, label: 'front', colour: APPLIED },
+      { column: Column.rearTireUse, label: 'rear', colour: ASKED },
+    ],
+    range: (columns) => rangeFromZero(columns, 110),
+  },
+];
+
+const AFTER_COST: readonly PlotSpec[] = [
+  {
+    title: 'Iterations',
+    unit: 'with how each solve ended',
+    decimals: 0,
+    series: [{ column: Column.iterations, label: 'iterations', colour: APPLIED }],
+    range: (columns) => rangeFromZero(columns, 5),
+    under: drawStatusStrip,
   },
   {
     title: 'Control step',
     unit: 'ms',
     decimals: 2,
-    series: [{ column: Column.stepTime, label: 'taken' }],
+    series: [{ column: Column.stepTime, label: 'taken', colour: APPLIED }],
     range: (columns) => rangeFromZero(columns, 0.5),
   },
 ];
 
-function optionsOf(spec: PlotSpec, colours: Theme): uPlot.Options {
-  const axis = { stroke: colours.faint, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, font: `11px ${colours.font}` };
+function costSpec(names: readonly string[]): PlotSpec {
+  const shownNames = names.length > COST_TERMS ? [...names.slice(0, COST_TERMS - 1), 'others'] : names;
   return {
-    width: 300,
-    height: 120,
-    legend: { show: false },
-    cursor: { sync: { key: 'plots' }, drag: { x: false, y: false }, points: { size: 7 } },
-    padding: [8, 18, 0, 0],
-    scales: { x: { time: false, range: (_plot, _low, high) => [high - WINDOW_S, high] }, y: { range: () => spec.range(dataOf(spec).slice(1)) } },
-    axes: [
-      {
-        ...axis,
-        size: 22,
-        splits: (_plot, _axis, _low, high) => secondsBack(high, WINDOW_S, 5),
-        values: (_plot, ticks) => ticks.map((tick) => (tick === ticks.at(-1) ? 'now' : `−${Math.round((ticks.at(-1) ?? 0) - tick)} s`)),
-      },
-      { ...axis, size: 42, space: 28, values: (_plot, ticks) => ticks.map((tick) => String(tick).replace('-', '−')) },
-    ],
-    series: [
-      {},
-      ...spec.series.map(({ label, isDashed }, i) => ({
-        label,
-        stroke: colours.series[i === 0 ? 0 : 1],
-        width: 1.75,
-        dash: isDashed ? [5, 4] : [],
-        points: { show: false },
-      })),
-    ],
+    title: 'Cost',
+    unit: names.length > 0 ? 'of the plan, stacked' : 'of the plan',
+    decimals: 1,
+    series:
+      names.length > 0
+        ? shownNames.map((name, term) => ({ column: costColumn(term), label: nameInWords(name), colour: term, isFilled: true }))
+        : [{ column: Column.cost, label: 'all', colour: APPLIED }],
+    range: (columns) => rangeFromZero(columns.slice(-1), 1e-3),
   };
 }
 
-/** Time and the columns of a plot, as far back as the plot reaches. */
-function dataOf(spec: PlotSpec): Float64Array[] {
-  const times = live.plots.column(Column.time);
-  const first = firstSince(times, (times.at(-1) ?? 0) - WINDOW_S);
-  return [Column.time, ...spec.series.map(({ column }) => column)].map((column) => live.plots.column(column).subarray(first));
-}
-
-function Plot({ spec }: { spec: PlotSpec }) {
-  const host = useRef<HTMLDivElement>(null);
-  useEffect(() => {
-    const element = host.current;
-    if (!element) return undefined;
-    const create = (): uPlot => new uPlot(optionsOf(spec, theme()), dataOf(spec) as unknown as uPlot.AlignedData, element);
-    let plot = create();
-    let drawn = NaN;
-    const fit = (): void => plot.setSize({ width: element.clientWidth, height: element.clientHeight });
-    const watcher = new ResizeObserver(fit);
-    watcher.observe(element);
-    const stop = everyFrame(() => {
-      const newest = live.plots.newest(Column.time);
-      if (Object.is(newest, drawn)) return;
-      drawn = newest;
-      plot.setData(dataOf(spec) as unknown as uPlot.AlignedData);
-    }, 50);
-    const unwatch = onThemeChange(() => {
-      plot.destroy();
-      plot = create();
-      fit();
-    });
-    return () => {
-      stop();
-      unwatch();
-      watcher.disconnect();
-      plot.destroy();
-    };
-  }, [spec]);
-
-  void shown.value; // renews the numbers in the title as often as other text
+function Toolbar() {
   return (
-    <section class="panel plot" aria-label={spec.title}>
-      <header>
-        <h2>
-          {spec.title} <span class="unit">({spec.unit})</span>
-        </h2>
-        <p>
-          {spec.series.map(({ column, label }, i) => (
-            <span key={label} class={`key series-${i + 1}`}>
-              {spec.series.length > 1 ? `${label} ` : ''}
-              <b>{fixed(live.plots.newest(column), spec.decimals)}</b>
-            </span>
-          ))}
-        </p>
-      </header>
-      <div class="plot-area" ref={host} />
-    </section>
+    <div class="toolbar" role="group" aria-label="Plots">
+      <button type="button" aria-pressed={isFrozen.value} aria-keyshortcuts="P" title="The run goes on (P)" onClick={toggleFrozen}>
+        {isFrozen.value ? 'Follow' : 'Hold plots'}
+      </button>
+      <div class="segments" role="group" aria-label="Time shown">
+        {WINDOWS_S.map((seconds) => (
+          <button
+            key={seconds}
+            type="button"
+            aria-pressed={windowSeconds.value === seconds && !zoomed.value}
+            onClick={() => {
+              zoomed.value = null;
+              windowSeconds.value = seconds;
+            }}
+          >
+            {seconds} s
+          </button>
+        ))}
+      </div>
+      {zoomed.value ? (
+        <button type="button" onClick={thaw}>
+          Reset zoom
+        </button>
+      ) : (
+        <span class="hint">Drag to zoom</span>
+      )}
+      <span class="spring" />
+      <button type="button" title="All plots as a picture" onClick={() => downloadPng(fileName([run.value?.track ?? '', 'plots'], 'png'), pictureOfPlots())}>
+        PNG
+      </button>
+    </div>
   );
 }
 
 export function PlotsView() {
+  const names = useComputed(() => run.value?.cost_term_names.join('\n') ?? '');
+  const cost = useComputed(() => costSpec(names.value === '' ? [] : names.value.split('\n')));
   return (
-    <div class="plots">
-      {PLOTS.map((spec) => (
-        <Plot key={spec.title} spec={spec} />
-      ))}
+    <div class="plots-view">
+      <Toolbar />
+      <div class="plots">
+        {BEFORE_COST.map((spec) => (
+          <TimePlot key={spec.title} spec={spec} />
+        ))}
+        <GgView />
+        <TimePlot key="cost" spec={cost.value} />
+        {AFTER_COST.map((spec) => (
+          <TimePlot key={spec.title} spec={spec} />
+        ))}
+        <HistogramView />
+      </div>
     </div>
   );
 }

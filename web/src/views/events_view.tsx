@@ -1,0 +1,25 @@
+import { fixed } from '../lib/format';
+import { events } from '../state/event_log';
+
+/** What happened, newest first. */
+export function EventsView() {
+  return (
+    <section class="block" aria-label="What happened">
+      <h3>What happened</h3>
+      {events.value.length === 0 ? (
+        <p class="soft">Nothing out of the ordinary so far.</p>
+      ) : (
+        <ol class="events" tabIndex={0}>
+          {events.value.map(({ id, mood, text, time, duration }) => (
+            <li key={id}>
+              <span class="event-time">{fixed(time, 2)} s</span>
+              <span class={`mood ${mood}`} aria-hidden="true" />
+              <span>{text}</span>
+              {duration !== null && <span class="unit">for {duration < 1 ? `${fixed(duration * 1000, 0)} ms` : `${fixed(duration, 1)} s`}</span>}
+            </li>
+          ))}
+        </ol>
+      )}
+    </section>
+  );
+}

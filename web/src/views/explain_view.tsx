@@ -1,0 +1,166 @@
+import { hasBit } from '../lib/bits';
+import { fixed, MPH, plural } from '../lib/format';
+import { gateInWords, LIMITERS, limiterInWords, nameInWords, rungInWords, sightInWords, statusInWords, worstInWords, type Sentence } from '../lib/words';
+import { live, run, shown } from '../state/app_state';
+import { Column } from '../state/columns';
+import { bitSharesOf, rmsOf, sharesOf } from '../state/explain';
+import { CanvasView } from './canvas_view';
+import { EventsView } from './events_view';
+import { paintLimiterStrip } from './limiter_strip';
+import { paintPrediction, paintSparkline } from './prediction_paint';
+
+const WINDOW_S = 20;
+
+function Limiter() {
+  const frame = shown.value;
+  const limiter = frame?.speed_limiter ?? 0;
+  const { title, why } = limiterInWords(limiter);
+  const shares = sharesOf(live.plots, Column.limiter, LIMITERS.length, WINDOW_S);
+  return (
+    <section class="block limiter" aria-label="What limits the speed">
+      <h3>What limits the speed</h3>
+      <div class="limiter-now">
+        <span class="limiter-colour" style={{ background: `var(--limiter-${limiter})` }} aria-hidden="true" />
+        <div>
+          <p class="headline" data-testid="limiter">
+            {title}
+          </p>
+          <p class="soft">{why}</p>
+        </div>
+        <p class="allowed">
+          <b data-testid="speed-limit">{fixed((frame?.speed_limit_mps ?? NaN) * MPH, 0)}</b> <span class="unit">mph allowed here</span>
+          <br />
+          <b>{fixed((frame?.speed_mps ?? NaN) * MPH, 0)}</b> <span class="unit">mph driven</span>
+        </p>
+      </div>
+      <CanvasView label="What limited the speed in the last 20 seconds" paint={paintLimiterStrip(WINDOW_S)} version={() => live.plots.newest(Column.time)} interval={100} tall="22px" />
+      <ul class="shares" aria-label="Shares of the last 20 seconds">
+        {LIMITERS.map(({ short }, i) =>
+          (shares[i] ?? 0) > 0.005 ? (
+            <li key={short}>
+              <span class="dot" style={{ background: `var(--limiter-${i})` }} aria-hidden="true" />
+              {short} <b>{fixed((shares[i] ?? 0) * 100, 0)} %</b>
+            </li>
+          ) : null,
+        )}
+      </ul>
+    </section>
+  );
+}
+
+function Constraints() {
+  const names = run.value?.constraint_names ?? [];
+  const frame = shown.value;
+  if (names.length === 0) return null;
+  const shares = bitSharesOf(live.plots, Column.activeNow, names.length, WINDOW_S);
+  return (
+    <section class="block" aria-label="Constraints">
+      <h3>Constraints</h3>
+      <table class="constraints">
+        <thead>
+          <tr>
+            <th scope="col">at its limit</th>
+            <th scope="col">now</th>
+            <th scope="col">ahead</th>
+            <th scope="col" class="wide">
+              of the last {WINDOW_S} s
+            </th>
+          </tr>
+        </thead>
+        <tbody>
+          {names.map((name, i) => {
+            const [isNow, isAhead] = [hasBit(frame?.active_now ?? 0, i), hasBit(frame?.active_ahead ?? 0, i)];
+            return (
+              <tr key={name} class={isNow ? 'now' : isAhead ? 'ahead' : ''}>
+                <th scope="row">{nameInWords(name)}</th>
+                <td>{isNow ? <span class="active-mark now">now</span> : <span class="soft">–</span>}</td>
+                <td>{isAhead ? <span class="active-mark">ahead</span> : <span class="soft">–</span>}</td>
+                <td>
+                  <div class="share">
+                    <span class="share-bar" aria-hidden="true">
+                      <span style={{ width: `${(shares[i] ?? 0) * 100}%` }} />
+                    </span>
+                    <span class="unit">{fixed((shares[i] ?? 0) * 100, 0)} %</span>
+                  </div>
+                </td>
+              </tr>
+            );
+          })}
+        </tbody>
+      </table>
+    </section>
+  );
+}
+
+function Row({ label, sentence }: { label: string; sentence: Sentence | null }) {
+  return (
+    <div class="row">
+      <dt>{label}</dt>
+      <dd>
+        {sentence ? <span class={`mood ${sentence.mood}`} aria-hidden="true" /> : null}
+        {sentence?.text ?? '–'}
+      </dd>
+    </div>
+  );
+}
+
+function Answer() {
+  const frame = shown.value;
+  const worst = frame ? worstInWords(frame, run.value?.constraint_names ?? []) : null;
+  const solve = frame ? statusInWords(frame.solve_status) : null;
+  const [optimality, violation] = [frame?.stationarity ?? NaN, frame?.violation ?? NaN];
+  const numbers = [
+    frame && frame.iterations > 0 ? plural(frame.iterations, 'iteration') : '',
+    Number.isFinite(optimality) ? `optimal to ${optimality.toExponential(1)}` : '',
+    Number.isFinite(violation) ? `constraints to ${violation.toExponential(1)}` : '',
+  ];
+  return (
+    <section class="block" aria-label="The answer">
+      <h3>The answer</h3>
+      <dl class="rows">
+        <Row label="Solver" sentence={solve} />
+        <Row label="Worst" sentence={frame ? (worst ? { mood: 'warning', text: worst } : { mood: 'good', text: 'All constraints hold' }) : null} />
+        <Row label="Driving" sentence={frame ? rungInWords(frame.rung) : null} />
+        <Row label="Gate" sentence={frame ? gateInWords(frame.is_gated) : null} />
+        <Row label="Sight" sentence={frame ? sightInWords(frame.has_map, frame.sight_m) : null} />
+      </dl>
+      <p class="soft">{numbers.filter(Boolean).join(' · ')}</p>
+    </section>
+  );
+}
+
+function Prediction() {
+  const frame = shown.value;
+  const error = frame?.prediction_error_m ?? NaN;
+  return (
+    <section class="block" aria-label="Prediction">
+      <h3>Prediction against what came</h3>
+      <div class="prediction">
+        <div>
+          <p class="soft">The plan of a second ago, and the way the car then took, seen from where it was:</p>
+          <CanvasView label="The plan of one second ago and the way driven since" paint={paintPrediction} version={() => live.plots.newest(Column.time)} tall="96px" />
+        </div>
+        <div>
+          <p class="soft">
+            Car from its plan, one delay and one step later: <b data-testid="prediction-error">{fixed(error * 100, 1)}</b> cm, in the mean{' '}
+            {fixed(rmsOf(live.plots, Column.predictionError, WINDOW_S) * 100, 1)} cm
+          </p>
+          <CanvasView label="Prediction error in the last 20 seconds" paint={paintSparkline(Column.predictionError, WINDOW_S)} version={() => live.plots.newest(Column.time)} interval={100} tall="56px" />
+        </div>
+      </div>
+    </section>
+  );
+}
+
+/** Why the car does what it does. */
+export function ExplainView() {
+  return (
+    <div class="blocks">
+      <Limiter />
+      <Constraints />
+      <Answer />
+      <Prediction />
+      <EventsView />
+    </div>
+  );
+}

@@ -1,0 +1,131 @@
+import { firstSince } from '../draw/axis';
+import { extent, niceCeil } from '../lib/math';
+import { fixed } from '../lib/format';
+import { shown } from '../state/app_state';
+import { Column } from '../state/columns';
+import { cursorTime, isFrozen, plotted, timeRange } from '../state/plot_view';
+import { CanvasView } from './canvas_view';
+import { chartColours } from './plot_colours';
+
+const G = 9.80665; // standard gravity [m/s²]
+
+/**
+ * The radius of the circle that a tyre's grip would allow [m/s²]: the acceleration at which the axle that uses more of its
+ * grip would use all of it, by proportion. Not-a-number where the use is not known or too small to tell.
+ */
+export function gripRadius(lateral: number, longitudinal: number, frontUse: number, rearUse: number): number {
+  const use = Math.max(frontUse, rearUse) / 100;
+  return use > 0.3 ? Math.hypot(lateral, longitudinal) / use : NaN;
+}
+
+let radius = NaN; // smoothed [g]
+
+function paint(context: CanvasRenderingContext2D, width: number, height: number): void {
+  const colours = chartColours();
+  const history = plotted();
+  const times = history.column(Column.time);
+  const [from, to] = timeRange();
+  const [first, end] = [firstSince(times, from), firstSince(times, to + 1e-9)];
+  const across = history.column(Column.lateralAcceleration).subarray(first, end);
+  const along = history.column(Column.longitudinalAcceleration).subarray(first, end);
+  const reach = Math.max(...[across, along].flatMap((values) => (extent(values) ?? [0, 0]).map(Math.abs))) / G;
+  const scale = niceCeil(Math.max(0.5, reach * 1.08));
+  const [middleX, middleY] = [width / 2, height / 2];
+  const pixels = (Math.min(width, height) / 2 - 16) / scale;
+
+  context.lineWidth = 1;
+  context.font = `11px ${colours.font}`;
+  context.fillStyle = colours.faint;
+  const step = scale > 4 ? 2 : scale > 1.5 ? 1 : 0.5;
+  for (let ring = step; ring <= scale + 1e-9; ring += step) {
+    context.strokeStyle = colours.grid;
+    context.beginPath();
+    context.arc(middleX, middleY, ring * pixels, 0, 2 * Math.PI);
+    context.stroke();
+    context.fillText(`${ring} g`, middleX + 4, middleY - ring * pixels - 3);
+  }
+  context.beginPath();
+  for (const [dx, dy] of [[1, 0], [0, 1]] as const) {
+    context.moveTo(middleX - dx * scale * pixels, middleY - dy * scale * pixels);
+    context.lineTo(middleX + dx * scale * pixels, middleY + dy * scale * pixels);
+  }
+  context.strokeStyle = colours.grid;
+  context.stroke();
+
+  const newest = across.length - 1;
+  drawGrip(context, middleX, middleY, pixels, newest + first);
+  // Left is positive in the data and on the left on the screen; accelerating is up.
+  const x = (i: number): number => middleX - ((across[i] ?? NaN) / G) * pixels;
+  const y = (i: number): number => middleY - ((along[i] ?? NaN) / G) * pixels;
+  drawTrail(context, x, y, across.length);
+  const mark = cursorTime.value === null ? newest : firstSince(times, cursorTime.value - 1e-9) - first;
+  if (mark < 0 || mark > newest) return;
+  context.beginPath();
+  context.arc(x(mark), y(mark), 5.5, 0, 2 * Math.PI);
+  context.fillStyle = colours.series[1] ?? colours.text;
+  context.strokeStyle = colours.panel;
+  context.lineWidth = 2;
+  context.fill();
+  context.stroke();
+}
+
+/** Old moments pale, new ones strong; in sixteen strokes, not thousands. */
+function drawTrail(context: CanvasRenderingContext2D, x: (i: number) => number, y: (i: number) => number, count: number): void {
+  const colours = chartColours();
+  context.lineWidth = 1.75;
+  context.lineJoin = 'round';
+  context.strokeStyle = colours.series[0] ?? colours.text;
+  for (let part = 0; part < 16; ++part) {
+    const [from, to] = [Math.floor((part * count) / 16), Math.floor(((part + 1) * count) / 16)];
+    context.globalAlpha = 0.1 + 0.9 * ((part + 1) / 16) ** 2;
+    context.beginPath();
+    for (let i = Math.max(0, from - 1); i < to; ++i) context.lineTo(x(i), y(i));
+    context.stroke();
+  }
+  context.globalAlpha = 1;
+}
+
+function drawGrip(context: CanvasRenderingContext2D, x: number, y: number, pixels: number, row: number): void {
+  const history = plotted();
+  const value = (column: number): number => history.column(column)[row] ?? NaN;
+  const now = gripRadius(value(Column.lateralAcceleration), value(Column.longitudinalAcceleration), value(Column.frontTireUse), value(Column.rearTireUse)) / G;
+  if (Number.isFinite(now)) radius = Number.isFinite(radius) ? radius + (now - radius) * 0.2 : now;
+  if (!Number.isFinite(radius)) return;
+  context.beginPath();
+  context.arc(x, y, radius * pixels, 0, 2 * Math.PI);
+  context.setLineDash([5, 4]);
+  context.lineWidth = 1.5;
+  context.strokeStyle = chartColours().bad;
+  context.stroke();
+  context.setLineDash([]);
+}
+
+/** Acceleration across and along: where on the friction circle the car is, and has been. */
+export function GgView() {
+  const frame = shown.value;
+  const [across, along] = [(frame?.lateral_acceleration_mps2 ?? NaN) / G, (frame?.longitudinal_acceleration_mps2 ?? NaN) / G];
+  return (
+    <section class="plot square" aria-label="Acceleration">
+      <header>
+        <h3>
+          Acceleration <span class="unit">g · up: drive, left: left</span>
+        </h3>
+        <p>
+          <span class="key">
+            <b>{fixed(Math.hypot(across, along), 2)}</b>
+          </span>
+          <span class="key">
+            <span class="stroke dashed" style={{ borderColor: 'var(--bad)' }} />
+            grip
+          </span>
+        </p>
+      </header>
+      <CanvasView
+        label="Acceleration across against along the car, with the circle of grip"
+        paint={paint}
+        version={() => `${plotted().newest(Column.time)} ${timeRange().join()} ${isFrozen.value} ${cursorTime.value}`}
+        interval={66}
+      />
+    </section>
+  );
+}

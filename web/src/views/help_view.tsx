@@ -1,0 +1,66 @@
+import { signal } from '@preact/signals';
+import { useEffect, useRef } from 'preact/hooks';
+import { allShortcuts, type Shortcut } from '../lib/keys';
+
+export const isHelpOpen = signal(false);
+
+const GROUPS: readonly Shortcut['group'][] = ['Run', 'Camera', 'Panels', 'Driving by hand'];
+
+/** A dialog over the page: the browser's own, with its focus handling and Escape. */
+export function Dialog({ isOpen, title, onClose, children }: { isOpen: boolean; title: string; onClose: () => void; children: preact.ComponentChildren }) {
+  const element = useRef<HTMLDialogElement>(null);
+  useEffect(() => {
+    const dialog = element.current;
+    if (!dialog) return;
+    if (isOpen && !dialog.open) dialog.showModal();
+    if (!isOpen && dialog.open) dialog.close();
+  }, [isOpen]);
+  return (
+    <dialog ref={element} aria-label={title} onClose={onClose} onClick={(event) => event.target === element.current && onClose()}>
+      {isOpen && (
+        <div class="dialog-body">
+          <h2>{title}</h2>
+          {children}
+        </div>
+      )}
+    </dialog>
+  );
+}
+
+export function HelpView() {
+  const close = (): void => void (isHelpOpen.value = false);
+  return (
+    <Dialog isOpen={isHelpOpen.value} title="Keys" onClose={close}>
+      <div class="help-groups">
+        {GROUPS.map((group) => (
+          <section key={group} aria-label={group}>
+            <h3>{group}</h3>
+            <dl class="keys">
+              {allShortcuts()
+                .filter((each) => each.group === group)
+                .map(({ label, does }) => (
+                  <div key={label}>
+                    <dt>
+                      {label.split(' ').map((key) => (
+                        <kbd key={key}>{key}</kbd>
+                      ))}
+                    </dt>
+                    <dd>{does}</dd>
+                  </div>
+                ))}
+            </dl>
+          </section>
+        ))}
+      </div>
+      <p class="soft">On plots: drag to zoom, double-click to come back. On the map: the wheel zooms.</p>
+      <p class="soft">
+        The data comes over the Foxglove WebSocket protocol; Foxglove, Lichtblick and scripts can watch the same run at <code>{location.host}</code>.
+      </p>
+      <div class="buttons end">
+        <button type="button" class="primary" onClick={close}>
+          Close
+        </button>
+      </div>
+    </Dialog>
+  );
+}

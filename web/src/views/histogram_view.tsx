@@ -1,0 +1,95 @@
+import { duration } from '../lib/format';
+import { live, run, shown } from '../state/app_state';
+import { CanvasView } from './canvas_view';
+import { chartColours } from './plot_colours';
+
+const QUANTILES = [
+  { share: 0.5, label: 'p50' },
+  { share: 0.99, label: 'p99' },
+  { share: 0.999, label: 'p99.9' },
+] as const;
+
+const micros = (value: number): string => {
+  const { value: number, unit } = duration(value);
+  return `${number} ${unit}`;
+};
+
+function paint(context: CanvasRenderingContext2D, width: number, height: number): void {
+  const colours = chartColours();
+  const histogram = live.stepTimes;
+  const span = histogram.span;
+  context.font = `11px ${colours.font}`;
+  context.fillStyle = colours.faint;
+  if (!span) return context.fillText('No control step yet', 12, 24);
+  // Whole decades around what there is.
+  const decade = Math.log10;
+  const low = Math.floor(decade(histogram.edge(span[0])) + 1e-9);
+  const high = Math.max(low + 1, Math.ceil(decade(histogram.edge(span[1])) - 1e-9));
+  const [left, right, top, bottom] = [12, width - 12, 26, height - 20];
+  const x = (value: number): number => left + ((decade(value) - low) / (high - low)) * (right - left);
+  const most = histogram.counts.reduce((a, b) => Math.max(a, b), 0);
+
+  context.lineWidth = 1;
+  context.strokeStyle = colours.grid;
+  context.textAlign = 'center';
+  for (let power = low; power <= high; ++power) {
+    context.beginPath();
+    context.moveTo(x(10 ** power), top);
+    context.lineTo(x(10 ** power), bottom);
+    context.stroke();
+    const isEnd = power === low || power === high;
+    context.textAlign = !isEnd ? 'center' : power === low ? 'left' : 'right';
+    context.fillText(micros(10 ** power), x(10 ** power), height - 5);
+  }
+  // Heights are logarithmic too: the rare slow steps are what matters.
+  const tall = (count: number): number => (Math.log10(1 + count) / Math.log10(1 + most)) * (bottom - top);
+  context.fillStyle = colours.series[0] ?? colours.text;
+  for (let bin = span[0]; bin < span[1]; ++bin) {
+    const [from, to] = [x(histogram.edge(bin)), x(histogram.edge(bin + 1))];
+    const size = tall(histogram.counts[bin] ?? 0);
+    context.fillRect(from + 0.5, bottom - size, Math.max(1, to - from - 1), size);
+  }
+  QUANTILES.forEach(({ share, label }, i) => {
+    const at = x(histogram.quantile(share));
+    context.strokeStyle = context.fillStyle = [colours.soft, colours.warning, colours.bad][i] ?? colours.text;
+    context.lineWidth = 1.5;
+    context.beginPath();
+    context.moveTo(at, top - 6);
+    context.lineTo(at, bottom);
+    context.stroke();
+    context.textAlign = i === 2 ? 'left' : 'right';
+    context.fillText(label, at + (i === 2 ? 4 : -4), top - (i === 1 ? 12 : 0));
+  });
+}
+
+/** How long control steps take: all of the run since the page was opened. */
+export function HistogramView() {
+  void shown.value;
+  const { stepTimes } = live;
+  const period = (run.value?.control_period_s ?? NaN) * 1e6;
+  return (
+    <section class="plot" aria-label="Control step">
+      <header>
+        <h3>
+          Control step <span class="unit">{stepTimes.total} steps, both axes logarithmic</span>
+        </h3>
+        <p>
+          {QUANTILES.map(({ share, label }) => (
+            <span key={label} class="key">
+              {label} <b>{micros(stepTimes.quantile(share))}</b>
+            </span>
+          ))}
+          <span class="key">
+            max <b>{micros(stepTimes.max)}</b>
+          </span>
+          {Number.isFinite(period) && (
+            <span class="key">
+              of <b>{micros(period)}</b>
+            </span>
+          )}
+        </p>
+      </header>
+      <CanvasView label="Histogram of the times of control steps" paint={paint} version={() => live.stepTimes.total} interval={250} />
+    </section>
+  );
+}

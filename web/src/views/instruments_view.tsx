@@ -1,0 +1,149 @@
+import { duration, fixed, lapTime, MPH, side, UNKNOWN } from '../lib/format';
+import { clamp, degrees } from '../lib/math';
+import { bestLap, live, run, shown } from '../state/app_state';
+
+/** Time lost to the best lap up to here [s]; not-a-number without one. */
+function delta(): number {
+  const frame = shown.value;
+  const { lapSamples } = live;
+  if (!frame || lapSamples.best < 0) return NaN;
+  return frame.lap_time_s - lapSamples.at(lapSamples.best, 'time_s', frame.s_m);
+}
+
+function Speed() {
+  const frame = shown.value;
+  const speed = frame?.speed_mps ?? NaN;
+  const wanted = frame?.speed_reference_mps ?? NaN;
+  return (
+    <div class="speed">
+      <p class="big">
+        <span class="value" data-testid="speed">
+          {fixed(speed * MPH, 0)}
+        </span>
+        <span class="unit">mph</span>
+      </p>
+      <p class="beside">
+        <span>
+          <b>{fixed(speed, 1)}</b> m/s
+        </span>
+        <span>
+          of <b>{fixed(wanted * MPH, 0)}</b> mph
+        </span>
+      </p>
+    </div>
+  );
+}
+
+function Lap() {
+  const frame = shown.value;
+  const gap = delta();
+  return (
+    <div class="lap">
+      <p class="label">
+        Lap <b data-testid="lap">{frame && Number.isFinite(frame.lap_time_s) ? frame.lap + 1 : UNKNOWN}</b>
+        {Number.isFinite(gap) && (
+          <span class={gap > 0 ? 'delta slower' : 'delta faster'} data-testid="delta" title="Against the best lap, at this place">
+            {gap > 0 ? '+' : ''}
+            {fixed(gap, 2)}
+          </span>
+        )}
+      </p>
+      <p class="clock value" data-testid="lap-time">
+        {lapTime(frame?.lap_time_s ?? NaN)}
+      </p>
+      <p class="beside">
+        <span>
+          last <b>{frame && frame.last_lap_time_s > 0 ? lapTime(frame.last_lap_time_s) : UNKNOWN}</b>
+        </span>
+        <span>
+          best <b>{lapTime(bestLap.value)}</b>
+        </span>
+      </p>
+    </div>
+  );
+}
+
+function Reading({ label, value, unit, note = '', id }: { label: string; value: string; unit: string; note?: string; id: string }) {
+  return (
+    <div class="number">
+      <p class="label">{label}</p>
+      <p>
+        <span class="value" data-testid={id}>
+          {value}
+        </span>
+        <span class="unit">{unit}</span>
+        <span class="note">{note}</span>
+      </p>
+    </div>
+  );
+}
+
+/** A bar that grows from its middle: steering to its side, the pedal to the right for drive and to the left for brake. */
+function Bar({ label, share, marker, text, id }: { label: string; share: number; marker?: number; text: string; id: string }) {
+  const at = (value: number): number => 50 + 50 * clamp(Number.isFinite(value) ? value : 0, -1, 1);
+  const [from, to] = [Math.min(50, at(share)), Math.max(50, at(share))];
+  return (
+    <div class="bar-row">
+      <span class="label">{label}</span>
+      <div class="bar" aria-hidden="true">
+        <span class={share < 0 ? 'fill negative' : 'fill'} style={{ left: `${from}%`, width: `${to - from}%` }} />
+        {marker !== undefined && <span class="marker" style={{ left: `${at(marker)}%` }} />}
+      </div>
+      <span class="bar-text" data-testid={id}>
+        {text}
+      </span>
+    </div>
+  );
+}
+
+function pedalInWords(throttle: number): string {
+  if (!Number.isFinite(throttle)) return UNKNOWN;
+  const percent = `${fixed(Math.abs(throttle) * 100, 0)} %`;
+  return throttle < 0 ? `brake ${percent}` : `drive ${percent}`;
+}
+
+function Controls() {
+  const frame = shown.value;
+  const limit = run.value?.steer_limit_rad ?? NaN;
+  const steer = frame?.steer_applied_rad ?? NaN;
+  const name = side(degrees(steer) / 10);
+  return (
+    <div class="bars" title="Filled: what acts on the car now. Marked: what is asked for.">
+      {/* Left is positive in the data and on the left on the screen. */}
+      <Bar
+        id="wheels"
+        label="Wheels"
+        share={-steer / limit}
+        marker={-(frame?.steer_asked_rad ?? NaN) / limit}
+        text={`${fixed(Math.abs(degrees(steer)), 1)}° ${name}`}
+      />
+      <Bar
+        id="pedal"
+        label="Pedal"
+        share={frame?.throttle_applied ?? NaN}
+        marker={frame?.throttle_asked ?? NaN}
+        text={pedalInWords(frame?.throttle_applied ?? NaN)}
+      />
+    </div>
+  );
+}
+
+/** The strip under the stage: what a driver's eyes look for. */
+export function InstrumentsView() {
+  const frame = shown.value;
+  const error = frame?.lateral_error_m ?? NaN;
+  const step = duration(frame?.step_time_us ?? NaN);
+  return (
+    <section class="panel instruments" aria-label="Numbers">
+      <Speed />
+      <Lap />
+      <Controls />
+      <div class="numbers">
+        <Reading id="lateral-error" label="Lateral error" value={fixed(Math.abs(error), 2)} unit="m" note={side(error)} />
+        <Reading id="edge-distance" label="To the edge" value={fixed(frame?.edge_distance_m ?? NaN, 2)} unit="m" />
+        <Reading id="step-time" label="Control step" value={step.value} unit={step.unit} />
+        <Reading id="delay" label="Delay foreseen" value={fixed((frame?.delay_s ?? NaN) * 1000, 0)} unit="ms" />
+      </div>
+    </section>
+  );
+}

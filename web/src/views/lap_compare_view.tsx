@@ -1,0 +1,129 @@
+import { useEffect, useRef } from 'preact/hooks';
+import uPlot from 'uplot';
+import 'uplot/dist/uPlot.min.css';
+import { rangeAboutZero, rangeFromZero } from '../draw/axis';
+import { onThemeChange } from '../draw/theme';
+import { fixed, MPH } from '../lib/format';
+import { live } from '../state/app_state';
+import { timeGap, type LapChannel } from '../state/lap_samples';
+import { chartColours } from './plot_colours';
+
+interface Curve {
+  readonly title: string;
+  readonly unit: string;
+  readonly decimals: number;
+  /** Both laps, or what lies between them. */
+  data(a: number, b: number): (Float64Array | null)[];
+  readonly range: (columns: readonly ArrayLike<number>[]) => [number, number];
+}
+
+const channel = (name: LapChannel, factor = 1) => (a: number, b: number): (Float64Array | null)[] => [a, b].map((lap) => live.lapSamples.channel(lap, name)?.map((value) => value * factor) ?? null);
+
+const CURVES: readonly Curve[] = [
+  { title: 'Speed', unit: 'mph', decimals: 1, data: channel('speed_mps', MPH), range: (columns) => rangeFromZero(columns, 20) },
+  { title: 'Lateral error', unit: 'm, + left', decimals: 2, data: channel('lateral_error_m'), range: (columns) => rangeAboutZero(columns, 0.5) },
+  {
+    title: 'Time gap',
+    unit: 's, + first lap behind',
+    decimals: 3,
+    data: (a, b) => {
+      const [first, second] = channel('time_s')(a, b);
+      return [first && second ? timeGap(first, second) : null];
+    },
+    range: (columns) => rangeAboutZero(columns, 0.1),
+  },
+];
+
+/** uPlot draws gaps where a value is null, not where it is not-a-number. */
+const withGaps = (values: Float64Array): (number | null)[] => Array.from(values, (value) => (Number.isFinite(value) ? value : null));
+
+function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number; names: readonly [string, string] }) {
+  const host = useRef<HTMLDivElement>(null);
+  const reading = useRef<HTMLParagraphElement>(null);
+  const [first, second] = curve.data(a, b);
+  useEffect(() => {
+    const element = host.current;
+    if (!element) return undefined;
+    const columns = [first, second].filter((each): each is Float64Array => each !== null && each !== undefined);
+    const places = Float64Array.from({ length: live.lapSamples.points }, (_, point) => live.lapSamples.s(point));
+    const create = (): uPlot => {
+      const colours = chartColours();
+      const axis = { stroke: colours.faint, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, font: `11px ${colours.font}` };
+      const stroke = columns.length === 1 ? [colours.series[3] ?? ''] : colours.series;
+      const options: uPlot.Options = {
+        width: element.clientWidth,
+        height: element.clientHeight,
+        legend: { show: false },
+        cursor: { sync: { key: 'laps', setSeries: false }, drag: { x: true, y: false }, points: { size: 7 } },
+        padding: [8, 18, 0, 0],
+        scales: { x: { time: false }, y: { range: () => curve.range(columns) } },
+        axes: [
+          { ...axis, size: 22, values: (_plot, ticks) => ticks.map((tick) => `${tick} m`) },
+          { ...axis, size: 44, space: 24, values: (_plot, ticks) => ticks.map((tick) => String(Number(tick.toPrecision(6))).replace('-', '−')) },
+        ],
+        series: [{}, ...columns.map((_, i) => ({ stroke: stroke[i] ?? '', width: 1.75, points: { show: false } }))],
+        hooks: {
+          setCursor: [
+            (plot) => {
+              if (!reading.current) return;
+              const at = plot.cursor.idx;
+              const values = at === null || at === undefined ? [] : columns.map((column) => fixed(column[at] ?? NaN, curve.decimals));
+              reading.current.textContent = at === null || at === undefined ? '' : `${fixed(places[at] ?? NaN, 0)} m: ${values.join(' / ')}`;
+            },
+          ],
+        },
+      };
+      return new uPlot(options, [places, ...columns.map(withGaps)] as uPlot.AlignedData, element);
+    };
+    let plot = create();
+    const watcher = new ResizeObserver(() => plot.setSize({ width: element.clientWidth, height: element.clientHeight }));
+    watcher.observe(element);
+    const unwatch = onThemeChange(() => {
+      plot.destroy();
+      plot = create();
+    });
+    return () => {
+      unwatch();
+      watcher.disconnect();
+      plot.destroy();
+    };
+    // The laps name their data: a lap that is kept whole does not change.
+  }, [curve, a, b, first === null]);
+  return (
+    <section class="plot" aria-label={`${curve.title} along the track`}>
+      <header>
+        <h3>
+          {curve.title} <span class="unit">{curve.unit}</span>
+        </h3>
+        {second === undefined ? null : (
+          <p>
+            {names.map((name, i) => (
+              <span key={name} class="key">
+                <span class="stroke" style={{ borderColor: `var(--series-${i + 1})` }} />
+                {name}
+              </span>
+            ))}
+          </p>
+        )}
+        <p class="reading" ref={reading} />
+      </header>
+      <div class="plot-area" ref={host} />
+    </section>
+  );
+}
+
+/** Two laps over the distance along the road; `a` and `b` count from 0. */
+export function LapCompareView({ a, b }: { a: number; b: number }) {
+  const names = [`lap ${a + 1}`, `lap ${b + 1}`] as const;
+  const missing = [a, b].filter((lap) => !live.lapSamples.channel(lap, 'time_s'));
+  if (missing.length > 0) {
+    return <p class="empty">This page has not seen all of {missing.map((lap) => `lap ${lap + 1}`).join(' and ')}: there is nothing to compare.</p>;
+  }
+  return (
+    <div class="compare">
+      {CURVES.map((curve) => (
+        <CurvePlot key={`${curve.title} ${a} ${b}`} curve={curve} a={a} b={b} names={names} />
+      ))}
+    </div>
+  );
+}

@@ -1,0 +1,133 @@
+import { signal } from '@preact/signals';
+import { download, downloadPng, fileName } from '../lib/download';
+import { fixed, lapTime, MPH, UNKNOWN } from '../lib/format';
+import type { Lap } from '../protocol/topics';
+import { bestLap, laps, live, run } from '../state/app_state';
+import { bestsOf, lapSamplesCsv, lapsCsv, type LapBests } from '../state/lap_table';
+import { everyFrame } from '../state/ticker';
+import { LapCompareView } from './lap_compare_view';
+
+/** The laps to compare, by number; null follows: the best against the newest. */
+const chosen = signal<readonly [number | null, number | null]>([null, null]);
+
+function gap(seconds: number): string {
+  if (!(Math.abs(seconds) >= 0.0005)) return UNKNOWN;
+  return seconds > 0 ? `+${fixed(seconds, 3)}` : fixed(seconds, 3);
+}
+
+function Row({ lap, bests }: { lap: Lap; bests: LapBests }) {
+  const [a, b] = compared(laps.value, bests);
+  const pick = (which: 0 | 1): void => void (chosen.value = which === 0 ? [lap.lap, chosen.value[1]] : [chosen.value[0], lap.lap]);
+  const isBest = lap.lap === bests.lap;
+  return (
+    <tr class={isBest ? 'best' : ''}>
+      <th scope="row">
+        {lap.lap}
+        {isBest && <span class="badge good">best</span>}
+        {!lap.is_clean && <span class="badge bad">off road</span>}
+      </th>
+      <td class="time">{lapTime(lap.lap_time_s)}</td>
+      <td>{gap(lap.lap_time_s - bests.time)}</td>
+      {[0, 1, 2].map((sector) => {
+        const time = lap.sector_times_s[sector] ?? NaN;
+        return (
+          <td key={sector} class={lap.is_clean && time === bests.sectors[sector] ? 'best-sector' : ''}>
+            {Number.isFinite(time) ? fixed(time, 2) : UNKNOWN}
+          </td>
+        );
+      })}
+      <td>{fixed(lap.top_speed_mps * MPH, 1)}</td>
+      <td>{fixed(lap.min_edge_distance_m, 2)}</td>
+      <td>{fixed(lap.rms_lateral_error_m, 2)}</td>
+      <td>
+        <div class="picks">
+          {([0, 1] as const).map((which) => (
+            <label key={which} title={`Compare as lap ${which === 0 ? 'A' : 'B'}`}>
+              <input type="radio" name={`compare-${which}`} aria-label={`Compare lap ${lap.lap} as ${which === 0 ? 'A' : 'B'}`} checked={(which === 0 ? a : b) === lap.lap} onChange={() => pick(which)} />
+              {which === 0 ? 'A' : 'B'}
+            </label>
+          ))}
+        </div>
+      </td>
+    </tr>
+  );
+}
+
+/** The pair shown: what was chosen, else the newest against the best, or against the one before it; of those seen whole. */
+function compared(all: readonly Lap[], bests: LapBests): [number, number] {
+  const seen = all.filter(({ lap }) => live.lapSamples.laps.includes(lap - 1)).map(({ lap }) => lap);
+  const newest = seen.at(-1) ?? all.at(-1)?.lap ?? -1;
+  const other = bests.lap !== newest && seen.includes(bests.lap) ? bests.lap : (seen.at(-2) ?? all.at(-2)?.lap ?? newest);
+  const isKnown = (lap: number | null): lap is number => all.some((each) => each.lap === lap);
+  return [isKnown(chosen.value[0]) ? chosen.value[0] : newest, isKnown(chosen.value[1]) ? chosen.value[1] : other];
+}
+
+/** The stage as a picture: taken right after it was painted, before a 3D canvas is emptied. */
+function savePicture(): void {
+  const end = everyFrame(() => {
+    end();
+    const canvas = document.querySelector<HTMLCanvasElement>('.map canvas');
+    if (!canvas) return;
+    const copy = document.createElement('canvas');
+    [copy.width, copy.height] = [canvas.width, canvas.height];
+    copy.getContext('2d')?.drawImage(canvas, 0, 0);
+    downloadPng(fileName([run.value?.track ?? '', 'map'], 'png'), copy);
+  });
+}
+
+function Toolbar({ pair }: { pair: readonly [number, number] }) {
+  const parts = [run.value?.track ?? '', run.value?.controller ?? ''];
+  const has = laps.value.length > 0;
+  return (
+    <div class="toolbar">
+      <button type="button" disabled={!has} onClick={() => download(fileName([...parts, 'laps'], 'csv'), lapsCsv(laps.value), 'text/csv')}>
+        Table as CSV
+      </button>
+      <button
+        type="button"
+        disabled={!has || !live.lapSamples.laps.includes(pair[0] - 1)}
+        title="Time, speed, error and commands of lap A along the track"
+        onClick={() => download(fileName([...parts, `lap-${pair[0]}`], 'csv'), lapSamplesCsv(live.lapSamples, pair[0] - 1), 'text/csv')}
+      >
+        Lap A as CSV
+      </button>
+      <button type="button" onClick={savePicture}>
+        Map as PNG
+      </button>
+    </div>
+  );
+}
+
+export function LapsView() {
+  const all = laps.value;
+  const bests = bestsOf(all);
+  const pair = compared(all, bests);
+  return (
+    <div class="laps">
+      <Toolbar pair={pair} />
+      {all.length === 0 ? (
+        <p class="empty">{Number.isFinite(bestLap.value) ? `Last lap ${lapTime(bestLap.value)}; this run does not tell of laps.` : 'No lap is completed yet.'}</p>
+      ) : (
+        <div class="table-scroll" tabIndex={0} role="region" aria-label="Laps">
+          <table class="lap-table">
+            <thead>
+              <tr>
+                {['Lap', 'Time', 'Gap', 'S 1', 'S 2', 'S 3', 'Top', 'Edge', 'Error', 'Compare'].map((head) => (
+                  <th key={head} scope="col">
+                    {head}
+                  </th>
+                ))}
+              </tr>
+            </thead>
+            <tbody>
+              {[...all].reverse().map((lap) => (
+                <Row key={lap.lap} lap={lap} bests={bests} />
+              ))}
+            </tbody>
+          </table>
+        </div>
+      )}
+      {all.length > 1 && <LapCompareView a={pair[0] - 1} b={pair[1] - 1} />}
+    </div>
+  );
+}

@@ -1,0 +1,24 @@
+import { Column } from '../state/columns';
+import { live } from '../state/app_state';
+import { rowsSince } from '../state/explain';
+import type { Paint } from './canvas_view';
+import { chartColours } from './plot_colours';
+
+/** A band through time in the colour of what limited the speed. */
+export const paintLimiterStrip =
+  (seconds: number): Paint =>
+  (context, width, height) => {
+    const colours = chartColours();
+    const times = live.plots.column(Column.time);
+    const limiters = live.plots.column(Column.limiter);
+    const end = times.at(-1) ?? 0;
+    const x = (time: number): number => width * (1 - (end - time) / seconds);
+    for (let i = rowsSince(live.plots, seconds); i < times.length; ) {
+      let next = i + 1;
+      while (next < times.length && limiters[next] === limiters[i]) ++next;
+      context.fillStyle = colours.limiter[limiters[i] ?? 0] ?? colours.faint;
+      const [from, to] = [x(times[i] ?? 0), x(times[Math.min(next, times.length - 1)] ?? 0)];
+      context.fillRect(from, 0, Math.max(1, to - from), height);
+      i = next;
+    }
+  };

@@ -1,0 +1,118 @@
+import { effect } from '@preact/signals';
+import { useRef } from 'preact/hooks';
+import { clamp } from '../lib/math';
+import { fixed } from '../lib/format';
+import { isTakenBy } from '../lib/keys';
+import { link, live } from '../state/app_state';
+import { held, holdKey, letGo, ramp, stick } from '../state/manual';
+import { canSet, set } from '../state/operate';
+import { settings } from '../state/settings';
+
+const RATE_HZ = 30;
+
+export const isManual = (): boolean => settings.value.get('manual.is_on') === true;
+
+export function toggleManual(): void {
+  if (!canSet('manual.is_on')) return;
+  set('manual.is_on', !isManual());
+}
+
+/** Gives the car back to the controller. */
+export function handBack(): void {
+  if (isManual()) set('manual.is_on', false);
+}
+
+/** Starts listening to the driver's keys, for as long as the page lives. */
+export function listenToDriver(): void {
+  const onKey = (event: KeyboardEvent): void => {
+    const isDown = event.type === 'keydown';
+    if (isDown && (!isManual() || event.ctrlKey || event.metaKey || event.altKey)) return;
+    const target = event.target as HTMLElement | null;
+    if (isDown && isTakenBy(target, event.key.toLowerCase())) return;
+    if (holdKey(event.key, isDown) && isDown) event.preventDefault();
+  };
+  addEventListener('keydown', onKey);
+  addEventListener('keyup', onKey);
+  // Keys that are let go elsewhere are never heard of again.
+  addEventListener('blur', letGo);
+  document.addEventListener('visibilitychange', () => document.hidden && letGo());
+
+  let timer: ReturnType<typeof setInterval> | undefined;
+  let last = 0;
+  const turn = (): void => {
+    const now = performance.now();
+    const next = ramp(stick.value, Math.min(0.1, (now - last) / 1000), live.frame?.speed_mps ?? 0);
+    last = now;
+    const before = stick.value;
+    stick.value = next;
+    if (next.steer !== before.steer) set('manual.steer', next.steer);
+    if (next.throttle !== before.throttle) set('manual.throttle', next.throttle);
+  };
+  effect(() => {
+    const isOn = isManual() && link.value === 'live';
+    if (isOn === (timer !== undefined)) return;
+    letGo();
+    if (isOn) {
+      last = performance.now();
+      set('manual.steer', 0);
+      set('manual.throttle', 0);
+      timer = setInterval(turn, 1000 / RATE_HZ);
+    } else {
+      clearInterval(timer);
+      timer = undefined;
+    }
+  });
+}
+
+/** A stick under a finger or the mouse: sideways steers, up drives, down brakes. */
+function Pad() {
+  const element = useRef<HTMLDivElement>(null);
+  const { steer, throttle } = stick.value;
+  const move = (event: PointerEvent): void => {
+    const box = element.current?.getBoundingClientRect();
+    if (!box || !element.current?.hasPointerCapture(event.pointerId)) return;
+    const share = (at: number, from: number, size: number): number => clamp((2 * (at - from)) / size - 1, -1, 1);
+    held.pad = { steer: -share(event.clientX, box.left, box.width), throttle: -share(event.clientY, box.top, box.height) };
+  };
+  const end = (): void => void (held.pad = null);
+  return (
+    <div
+      ref={element}
+      class="pad"
+      role="img"
+      aria-label="Pad: sideways steers, up drives, down brakes"
+      onPointerDown={(event) => {
+        event.currentTarget.setPointerCapture(event.pointerId);
+        move(event);
+      }}
+      onPointerMove={move}
+      onPointerUp={end}
+      onPointerCancel={end}
+    >
+      <span class="pad-stick" style={{ left: `${50 - 50 * steer}%`, top: `${50 - 50 * throttle}%` }} />
+    </div>
+  );
+}
+
+export function ManualView() {
+  if (!settings.value.has('manual.is_on')) return null;
+  const isOn = isManual();
+  return (
+    <section class={isOn ? 'block manual on' : 'block manual'} aria-label="Driving by hand">
+      <h3>Drive by hand</h3>
+      <div class="manual-row">
+        <button type="button" class={isOn ? 'danger' : ''} aria-pressed={isOn} aria-keyshortcuts="M" disabled={!canSet('manual.is_on')} onClick={toggleManual}>
+          {isOn ? 'Hand back (Esc)' : 'Take the wheel (M)'}
+        </button>
+        {isOn ? (
+          <p class="soft" data-testid="stick">
+            wheel {fixed(stick.value.steer * 100, 0)} % · pedal {fixed(stick.value.throttle * 100, 0)} %
+          </p>
+        ) : (
+          <p class="soft">Arrow keys steer, drive and brake. The controller keeps thinking along.</p>
+        )}
+      </div>
+      {isOn && <Pad />}
+    </section>
+  );
+}

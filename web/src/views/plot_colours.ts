@@ -1,0 +1,52 @@
+import { onThemeChange } from '../draw/theme';
+
+/** The colours of the style sheet that charts need. */
+export interface ChartColours {
+  readonly series: readonly string[];
+  readonly limiter: readonly string[];
+  readonly good: string;
+  readonly warning: string;
+  readonly bad: string;
+  readonly text: string;
+  readonly soft: string;
+  readonly faint: string;
+  readonly grid: string;
+  readonly panel: string;
+  readonly font: string;
+}
+
+function read(): ChartColours {
+  const style = getComputedStyle(document.documentElement);
+  const colour = (name: string): string => style.getPropertyValue(`--${name}`).trim();
+  return {
+    series: Array.from({ length: 10 }, (_, i) => colour(`series-${i + 1}`)),
+    limiter: Array.from({ length: 6 }, (_, i) => colour(`limiter-${i}`)),
+    good: colour('good'),
+    warning: colour('warning'),
+    bad: colour('bad'),
+    text: colour('text'),
+    soft: colour('text-soft'),
+    faint: colour('text-faint'),
+    grid: colour('grid'),
+    panel: colour('panel'),
+    font: style.fontFamily,
+  };
+}
+
+let current: ChartColours | null = null;
+onThemeChange(() => (current = null));
+
+export const chartColours = (): ChartColours => (current ??= read());
+
+/** A canvas of the size of its box, sharp on this screen; null when there is nothing to draw on. */
+export function fitCanvas(canvas: HTMLCanvasElement): { context: CanvasRenderingContext2D; width: number; height: number } | null {
+  const ratio = Math.min(devicePixelRatio, 2);
+  const { clientWidth: width, clientHeight: height } = canvas;
+  const context = canvas.getContext('2d');
+  if (!context || width === 0 || height === 0) return null;
+  const [wide, high] = [Math.round(width * ratio), Math.round(height * ratio)];
+  if (canvas.width !== wide || canvas.height !== high) [canvas.width, canvas.height] = [wide, high];
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.clearRect(0, 0, width, height);
+  return { context, width, height };
+}

@@ -1,0 +1,166 @@
+import { useState } from 'preact/hooks';
+import type { SchemaEntry } from '../protocol/schema';
+import type { Setting } from '../protocol/source';
+import { scaleOf, shareOf, tidy, valueAt, type Range } from '../lib/scale';
+import { nameInWords } from '../lib/words';
+import { canSet, set } from '../state/operate';
+import { refusals, settings, startSettings } from '../state/settings';
+
+const STEPS = 1000; // of a slider's way
+
+/** The part of a key that tells it from others of its group, in words and without the unit that stands beside it. */
+export function labelOf({ key, unit }: Pick<SchemaEntry, 'key' | 'unit'>): string {
+  const name = key.split('.').at(-1) ?? key;
+  const suffix = { 'm/s': 'mps', 'm/s²': 'mps2', deg: 'deg', 'deg/s': 'degps', ms: 'ms', s: 's', m: 'm', kg: 'kg', 'kg m²': 'kgm2', 'W/kg': 'wpkg' }[unit];
+  const bare = suffix !== undefined && name.endsWith(`_${suffix}`) ? name.slice(0, -suffix.length - 1) : name;
+  return nameInWords(bare);
+}
+
+export function rangeOf({ minimum, maximum, kind }: SchemaEntry, usual: Setting | undefined): Range | null {
+  if (minimum === null || maximum === null || !(maximum > minimum) || maximum > 1e12) return null;
+  const typical = typeof usual === 'number' ? usual : minimum;
+  return { minimum, maximum, scale: scaleOf(minimum, maximum, typical), isInteger: kind === 'integer' };
+}
+
+/** Sets a number as typed; "inf" means no limit where that is allowed. */
+function typed(text: string): Setting | null {
+  const plain = text.trim().replace('−', '-').replace(',', '.');
+  if (/^(inf|infinity|∞)$/i.test(plain)) return 'inf';
+  const value = Number(plain);
+  return plain === '' || Number.isNaN(value) ? null : value;
+}
+
+const asText = (value: Setting | undefined): string => (typeof value === 'number' ? tidy(value).replace('−', '-') : value === undefined ? '' : String(value));
+
+function NumberBox({ entry, id }: { entry: SchemaEntry; id: string }) {
+  const [draft, setDraft] = useState<string | null>(null);
+  const value = settings.value.get(entry.key);
+  const commit = (): void => {
+    const wish = draft === null ? null : typed(draft);
+    if (wish !== null && wish !== value) set(entry.key, wish);
+    setDraft(null);
+  };
+  return (
+    <input
+      class="number-box"
+      type="text"
+      inputMode="decimal"
+      aria-label={`${id}, value`}
+      disabled={!canSet(entry.key)}
+      value={draft ?? asText(value)}
+      onInput={(event) => setDraft(event.currentTarget.value)}
+      onBlur={commit}
+      onKeyDown={(event) => {
+        if (event.key === 'Enter') commit();
+        if (event.key === 'Escape') setDraft(null);
+      }}
+    />
+  );
+}
+
+function Slider({ entry, range, label }: { entry: SchemaEntry; range: Range; label: string }) {
+  const value = settings.value.get(entry.key);
+  const start = startSettings.value.get(entry.key);
+  const share = shareOf(typeof value === 'number' ? value : value === 'inf' ? Infinity : NaN, range);
+  return (
+    <div class="slider">
+      {typeof start === 'number' && <span class="start-mark" style={{ left: `calc(8px + (100% - 16px) * ${shareOf(start, range)})` }} />}
+      <input
+        type="range"
+        min={0}
+        max={STEPS}
+        step={1}
+        value={Math.round(share * STEPS)}
+        aria-label={label}
+        aria-valuetext={`${asText(value)} ${entry.unit}`}
+        disabled={!canSet(entry.key)}
+        // What starts the run anew waits for the hand to let go.
+        onInput={(event) => entry.is_live && set(entry.key, valueAt(Number(event.currentTarget.value) / STEPS, range))}
+        onChange={(event) => !entry.is_live && set(entry.key, valueAt(Number(event.currentTarget.value) / STEPS, range))}
+      />
+    </div>
+  );
+}
+
+export function ChoiceBox({ entry, label }: { entry: SchemaEntry; label: string }) {
+  const value = String(settings.value.get(entry.key) ?? '');
+  const choices = entry.choices.includes(value) || value === '' ? entry.choices : [value, ...entry.choices];
+  return (
+    <select aria-label={label} value={value} disabled={!canSet(entry.key)} onChange={(event) => set(entry.key, event.currentTarget.value)}>
+      {choices.map((choice) => (
+        <option key={choice} value={choice} selected={choice === value}>
+          {choice}
+        </option>
+      ))}
+    </select>
+  );
+}
+
+function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
+  const value = settings.value.get(entry.key);
+  if (entry.kind === 'bool') {
+    return <input type="checkbox" class="switch" role="switch" aria-label={label} checked={value === true} disabled={!canSet(entry.key)} onChange={(event) => set(entry.key, event.currentTarget.checked)} />;
+  }
+  if (entry.kind === 'choice' || entry.choices.length > 0) return <ChoiceBox entry={entry} label={label} />;
+  if (entry.kind === 'text') return <NumberBoxForText entry={entry} label={label} />;
+  const range = rangeOf(entry, startSettings.value.get(entry.key) ?? entry.default ?? undefined);
+  return (
+    <>
+      {range ? <Slider entry={entry} range={range} label={label} /> : <span class="slider" />}
+      <NumberBox entry={entry} id={label} />
+      <span class="unit">{entry.unit}</span>
+    </>
+  );
+}
+
+function NumberBoxForText({ entry, label }: { entry: SchemaEntry; label: string }) {
+  return (
+    <input
+      type="text"
+      class="text-box"
+      aria-label={label}
+      disabled={!canSet(entry.key)}
+      value={String(settings.value.get(entry.key) ?? '')}
+      onChange={(event) => set(entry.key, event.currentTarget.value)}
+    />
+  );
+}
+
+/** A tunable: what it is called, its control, its unit; what is wrong with the last wish; the way back to the start. */
+export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string }) {
+  const label = name ?? labelOf(entry);
+  const value = settings.value.get(entry.key);
+  const start = startSettings.value.get(entry.key);
+  const isChanged = start !== undefined && !Object.is(value, start);
+  const refusal = refusals.value.get(entry.key);
+  const bounds = entry.minimum !== null && entry.maximum !== null && entry.maximum > entry.minimum ? `${tidy(entry.minimum)} to ${tidy(entry.maximum)} ${entry.unit}` : '';
+  const about = [entry.meaning, bounds, entry.is_live ? '' : 'Starts the run anew.', entry.key].filter(Boolean).join('\n');
+  return (
+    <div class={`setting kind-${entry.kind}${isChanged ? ' changed' : ''}`} data-key={entry.key} title={about}>
+      <span class="setting-name">
+        {label}
+        {!entry.is_live && (
+          <span class="anew" title="Starts the run anew" aria-label="starts the run anew">
+            ↻
+          </span>
+        )}
+      </span>
+      <Control entry={entry} label={label} />
+      <button
+        type="button"
+        class="icon small"
+        aria-label={`Reset ${label}`}
+        title={start === undefined ? '' : `Back to ${asText(start)}`}
+        disabled={!isChanged || !canSet(entry.key)}
+        onClick={() => start !== undefined && set(entry.key, start)}
+      >
+        ↺
+      </button>
+      {refusal !== undefined && (
+        <p class="refusal" role="alert">
+          {refusal}
+        </p>
+      )}
+    </div>
+  );
+}

@@ -1,0 +1,34 @@
+import type uPlot from 'uplot';
+import { firstSince } from '../draw/axis';
+import { Column } from '../state/columns';
+import { plotted } from '../state/plot_view';
+import type { ChartColours } from './plot_colours';
+
+const HEIGHT = 5; // CSS pixels
+
+/** How grave a control step was: 0 all well, 1 with a makeshift, 2 not the controller's own answer. */
+export function gravity(status: number, rung: number, isGated: number): 0 | 1 | 2 {
+  if (status < 0 || rung >= 2) return 2;
+  return status > 0 || rung > 0 || isGated > 0 ? 1 : 0;
+}
+
+/** A band at the foot of a plot: green while the controller's answer was optimal and went through unchanged. */
+export function drawStatusStrip(plot: uPlot, colours: ChartColours): void {
+  const history = plotted();
+  const times = history.column(Column.time);
+  const [statuses, rungs, gated] = [Column.status, Column.rung, Column.isGated].map((column) => history.column(column));
+  const { left, top, width, height } = plot.bbox;
+  const tall = HEIGHT * devicePixelRatio;
+  const look = [colours.good, colours.warning, colours.bad];
+  const from = firstSince(times, plot.scales.x?.min ?? 0);
+  const pixel = (i: number): number => Math.min(left + width, Math.max(left, plot.valToPos(times[i] ?? 0, 'x', true)));
+  const at = (i: number): number => gravity(statuses?.[i] ?? 0, rungs?.[i] ?? 0, gated?.[i] ?? 0);
+  for (let i = from; i < times.length; ) {
+    const value = at(i);
+    let end = i + 1;
+    while (end < times.length && at(end) === value) ++end;
+    plot.ctx.fillStyle = look[value] ?? colours.text;
+    plot.ctx.fillRect(pixel(i), top + height - tall, Math.max(devicePixelRatio, pixel(Math.min(end, times.length - 1)) - pixel(i)), tall);
+    i = end;
+  }
+}

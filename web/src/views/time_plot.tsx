@@ -1,0 +1,168 @@
+import { effect } from '@preact/signals';
+import { useEffect, useRef } from 'preact/hooks';
+import uPlot from 'uplot';
+import 'uplot/dist/uPlot.min.css';
+import { firstSince, secondsBack } from '../draw/axis';
+import { onThemeChange } from '../draw/theme';
+import { fixed } from '../lib/format';
+import { shown } from '../state/app_state';
+import { Column } from '../state/columns';
+import { cursorTime, isFrozen, plotted, thaw, timeRange, windowSeconds, zoomed, zoomTo } from '../state/plot_view';
+import { everyFrame } from '../state/ticker';
+import { chartColours, type ChartColours } from './plot_colours';
+
+export interface Series {
+  readonly column: number;
+  readonly label: string;
+  readonly colour: number; // of --series-…, from 0
+  readonly isDashed?: boolean;
+  readonly isFilled?: boolean; // down to the series before, or to 0
+}
+
+export interface PlotSpec {
+  readonly title: string;
+  readonly unit: string;
+  readonly decimals: number;
+  readonly series: readonly Series[];
+  readonly range: (columns: readonly ArrayLike<number>[]) => [number, number];
+  /** Strokes under the lines. */
+  readonly under?: (plot: uPlot, colours: ChartColours) => void;
+}
+
+const axisNumber = (value: number): string => String(Number(value.toPrecision(6))).replace('-', '−');
+
+function timeAxis(low: number, high: number): number[] {
+  const span = high - low;
+  const step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20].find((each) => span / each <= 6) ?? 20;
+  if (!zoomed.value) return secondsBack(high, Math.ceil(span / step) * step, step).filter((time) => time >= low - 1e-9);
+  const first = Math.ceil(low / step - 1e-9);
+  return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, i) => (first + i) * step);
+}
+
+/** Back from now while the plot follows the run; the time of the run where somebody has zoomed in. */
+const timeLabel = (time: number, last: number): string =>
+  zoomed.value ? `${axisNumber(time)} s` : time === last ? (isFrozen.value ? `${fixed(time, 1)} s` : 'now') : `−${axisNumber(Math.round((last - time) * 10) / 10)} s`;
+
+/** Time and the columns of a plot, over the time its axis shows and one point more on each side. */
+function dataOf(spec: PlotSpec): Float64Array[] {
+  const history = plotted();
+  const times = history.column(Column.time);
+  const [from, to] = timeRange();
+  const first = Math.max(0, firstSince(times, from) - 1);
+  const end = firstSince(times, to) + 2;
+  return [Column.time, ...spec.series.map(({ column }) => column)].map((column) => history.column(column).subarray(first, end));
+}
+
+function seriesOptions({ label, colour, isDashed, isFilled }: Series, colours: ChartColours): uPlot.Series {
+  const stroke = colours.series[colour] ?? colours.text;
+  return { label, stroke, width: isFilled ? 1 : 1.75, dash: isDashed ? [5, 4] : [], points: { show: false } };
+}
+
+function optionsOf(spec: PlotSpec, colours: ChartColours): uPlot.Options {
+  const axis = { stroke: colours.faint, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, font: `11px ${colours.font}` };
+  const fill = (colour: number): string => `color-mix(in srgb, ${colours.series[colour] ?? colours.text} 55%, ${colours.panel})`;
+  return {
+    width: 300,
+    height: 120,
+    legend: { show: false },
+    cursor: { sync: { key: 'plots', setSeries: false }, drag: { x: true, y: false, setScale: false, dist: 5 }, points: { size: 7 }, bind: { dblclick: () => () => (thaw(), null) } },
+    padding: [8, 18, 0, 0],
+    scales: { x: { time: false, range: () => timeRange() }, y: { range: () => spec.range(dataOf(spec).slice(1)) } },
+    axes: [
+      { ...axis, size: 22, splits: (_plot, _axis, low, high) => timeAxis(low, high), values: (_plot, ticks) => ticks.map((tick) => timeLabel(tick, ticks.at(-1) ?? 0)) },
+      { ...axis, size: 44, space: 24, values: (_plot, ticks) => ticks.map(axisNumber) },
+    ],
+    series: [{}, ...spec.series.map((each) => ({ ...seriesOptions(each, colours), ...(each.isFilled && each === spec.series[0] ? { fill: fill(each.colour) } : {}) }))],
+    bands: spec.series.flatMap((each, i) => (each.isFilled && i > 0 ? [{ series: [i + 1, i] as [number, number], fill: fill(each.colour) }] : [])),
+    hooks: {
+      drawAxes: [(plot) => spec.under?.(plot, colours)],
+      setSelect: [
+        (plot) => {
+          const { left, width } = plot.select;
+          if (width > 0) zoomTo(plot.posToVal(left, 'x'), plot.posToVal(left + width, 'x'));
+          plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+        },
+      ],
+      setCursor: [
+        (plot) => {
+          const { idx } = plot.cursor;
+          const time = idx === null || idx === undefined ? null : (plot.data[0][idx] ?? null);
+          if (plot.cursor.event !== undefined || time === null) cursorTime.value = time;
+        },
+      ],
+    },
+  };
+}
+
+/** The value of a column under the cursor, or the newest. */
+export function readout(column: number): number {
+  const history = plotted();
+  const time = cursorTime.value;
+  if (time === null) return history.newest(column);
+  const at = firstSince(history.column(Column.time), time - 1e-9);
+  return history.column(column)[at] ?? NaN;
+}
+
+export function TimePlot({ spec }: { spec: PlotSpec }) {
+  const host = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    const element = host.current;
+    if (!element) return undefined;
+    const create = (): uPlot => new uPlot(optionsOf(spec, chartColours()), dataOf(spec) as unknown as uPlot.AlignedData, element);
+    let plot = create();
+    let drawn = NaN;
+    const redraw = (): void => plot.setData(dataOf(spec) as unknown as uPlot.AlignedData);
+    const fit = (): void => plot.setSize({ width: element.clientWidth, height: element.clientHeight });
+    const watcher = new ResizeObserver(fit);
+    watcher.observe(element);
+    const stop = everyFrame(() => {
+      const newest = plotted().newest(Column.time);
+      if (Object.is(newest, drawn) || !isNearScreen(element)) return;
+      drawn = newest;
+      redraw();
+    }, 66);
+    const unwatch = onThemeChange(() => {
+      plot.destroy();
+      plot = create();
+      fit();
+    });
+    const unfollow = effect(() => {
+      void [isFrozen.value, zoomed.value, windowSeconds.value];
+      drawn = NaN;
+    });
+    return () => {
+      stop();
+      unwatch();
+      unfollow();
+      watcher.disconnect();
+      plot.destroy();
+    };
+  }, [spec]);
+
+  void shown.value; // renews the numbers in the title as often as other text
+  return (
+    <section class="plot" aria-label={spec.title}>
+      <header>
+        <h3>
+          {spec.title} <span class="unit">{spec.unit}</span>
+        </h3>
+        <p>
+          {spec.series.map(({ column, label, colour, isDashed }) => (
+            <span key={label} class="key">
+              <span class={isDashed ? 'stroke dashed' : 'stroke'} style={{ borderColor: `var(--series-${colour + 1})` }} />
+              {spec.series.length > 1 ? `${label} ` : ''}
+              {spec.series.some(({ isFilled }) => isFilled) ? null : <b>{fixed(readout(column), spec.decimals)}</b>}
+            </span>
+          ))}
+        </p>
+      </header>
+      <div class="plot-area" ref={host} />
+    </section>
+  );
+}
+
+/** Plots that are scrolled away cost nothing. */
+function isNearScreen(element: Element): boolean {
+  const { top, bottom, width } = element.getBoundingClientRect();
+  return width > 0 && bottom > 0 && top < innerHeight;
+}

@@ -1,0 +1,120 @@
+import { computed, signal } from '@preact/signals';
+import type { SchemaEntry } from '../protocol/schema';
+import { tidy } from '../lib/scale';
+import { nameInWords } from '../lib/words';
+import type { Setting } from '../protocol/source';
+import { run } from '../state/app_state';
+import { set } from '../state/operate';
+import { isControl, schema, settingChanges, settings } from '../state/settings';
+import { NothingToSet } from './drive_view';
+import { SettingRow } from './setting_row';
+
+const search = signal('');
+const onlyChanged = signal(false);
+/** Groups the reader has opened or closed; others follow the controller that drives. */
+const isOpen = signal<ReadonlyMap<string, boolean>>(new Map());
+
+export const focusSearch = (): void => document.getElementById('tune-search')?.focus();
+
+const prefixOf = (key: string): string => (key.includes('.') ? (key.split('.')[0] ?? '') : 'run');
+
+/** Every word of the search must be in the name, meaning or unit. */
+export function isFound(entry: Pick<SchemaEntry, 'key' | 'meaning' | 'group'>, words: string): boolean {
+  const text = `${entry.key} ${nameInWords(entry.key)} ${entry.meaning} ${entry.group}`.toLowerCase();
+  return words.toLowerCase().split(/\s+/).every((word) => text.includes(word));
+}
+
+const groups = computed(() => {
+  const changed = new Set(settingChanges.value.map(({ key }) => key));
+  const all = new Map<string, SchemaEntry[]>();
+  for (const entry of schema.value) {
+    if (isControl(entry.key) || !settings.value.has(entry.key)) continue;
+    if (!isFound(entry, search.value) || (onlyChanged.value && !changed.has(entry.key))) continue;
+    const name = entry.group || prefixOf(entry.key);
+    all.set(name, [...(all.get(name) ?? []), entry]);
+  }
+  return [...all];
+});
+
+/** What concerns the running experiment is open: its controller, the world around it. */
+function isOpenAtFirst(entries: readonly SchemaEntry[]): boolean {
+  const prefix = prefixOf(entries[0]?.key ?? '');
+  const controller = (run.value?.controller ?? '').replace(/-/g, '_');
+  return prefix === controller || prefix === 'plant_options' || prefix === 'sensor';
+}
+
+const asText = (value: Setting): string => (typeof value === 'number' ? tidy(value) : String(value));
+
+function Changes() {
+  const changes = settingChanges.value;
+  return (
+    <section class={changes.length > 0 ? 'changes some' : 'changes'} aria-label="Changes" data-testid="changes">
+      <header>
+        <h3>{changes.length === 0 ? 'As it started' : changes.length === 1 ? '1 change' : `${changes.length} changes`}</h3>
+        <div class="buttons">
+          <button type="button" disabled={changes.length === 0} onClick={() => changes.forEach(({ key, from }) => set(key, from))}>
+            Reset all
+          </button>
+          <a class="button" href="preset.yaml" download="my-preset.yaml" title="All that differs from the defaults, for chicane drive FILE">
+            Save as preset
+          </a>
+        </div>
+      </header>
+      {changes.length > 0 && (
+        <ul>
+          {changes.map(({ key, from, to }) => (
+            <li key={key}>
+              <code>{key}</code> <span class="was">{asText(from)}</span> <span aria-label="to">→</span> <b>{asText(to)}</b>
+              <button type="button" class="icon small" aria-label={`Reset ${key}`} onClick={() => set(key, from)}>
+                ↺
+              </button>
+            </li>
+          ))}
+        </ul>
+      )}
+    </section>
+  );
+}
+
+function Group({ name, entries }: { name: string; entries: readonly SchemaEntry[] }) {
+  const isSearching = search.value !== '' || onlyChanged.value;
+  const open = isSearching || (isOpen.value.get(name) ?? isOpenAtFirst(entries));
+  const changed = settingChanges.value.filter(({ key }) => entries.some((entry) => entry.key === key)).length;
+  return (
+    <section class="group" aria-label={nameInWords(name)}>
+      <h3>
+        <button type="button" class="disclosure" aria-expanded={open} onClick={() => (isOpen.value = new Map([...isOpen.value, [name, !open]]))}>
+          <span aria-hidden="true">{open ? '▾' : '▸'}</span> {nameInWords(name)} <span class="unit">{entries.length}</span>
+          {changed > 0 && <span class="badge">{changed} changed</span>}
+        </button>
+      </h3>
+      {open && entries.map((entry) => <SettingRow key={entry.key} entry={entry} />)}
+    </section>
+  );
+}
+
+export function TuneView() {
+  if (schema.value.length === 0) return <NothingToSet />;
+  return (
+    <div class="tune">
+      <div class="toolbar">
+        <input
+          id="tune-search"
+          type="search"
+          placeholder="Search: weight, delay, friction …"
+          aria-label="Search tunables"
+          value={search.value}
+          onInput={(event) => (search.value = event.currentTarget.value)}
+        />
+        <button type="button" aria-pressed={onlyChanged.value} onClick={() => (onlyChanged.value = !onlyChanged.value)}>
+          Changed only
+        </button>
+      </div>
+      <Changes />
+      {groups.value.map(([name, entries]) => (
+        <Group key={name} name={name} entries={entries} />
+      ))}
+      {groups.value.length === 0 && <p class="empty">Nothing matches.</p>}
+    </div>
+  );
+}

@@ -1,0 +1,158 @@
+import { signal } from '@preact/signals';
+import type { ComponentType } from 'preact';
+import { persisted } from '../lib/persisted';
+import { clamp } from '../lib/math';
+import { link } from '../state/app_state';
+import { DriveView } from './drive_view';
+import { ExplainView } from './explain_view';
+import { FaultsView } from './faults_view';
+import { InstrumentsView } from './instruments_view';
+import { LapsView } from './laps_view';
+import { PlotsView } from './plots_view';
+import { TrackView } from './track_view';
+import { TuneView } from './tune_view';
+
+export const TABS = ['drive', 'plots', 'explain', 'tune', 'laps', 'faults'] as const;
+export type Tab = (typeof TABS)[number];
+
+const PANELS: Readonly<Record<Tab, { title: string; View: ComponentType }>> = {
+  drive: { title: 'Drive', View: DriveView },
+  plots: { title: 'Plots', View: PlotsView },
+  explain: { title: 'Explain', View: ExplainView },
+  tune: { title: 'Tune', View: TuneView },
+  laps: { title: 'Laps', View: LapsView },
+  faults: { title: 'Faults', View: FaultsView },
+};
+
+const isTab = (value: unknown): value is Tab => (TABS as readonly unknown[]).includes(value);
+
+/** The tab in the address wins over the one shown last: links can lead to a tab. */
+export const tab = persisted<Tab>('tab', 'plots', isTab);
+if (typeof location !== 'undefined' && isTab(location.hash.slice(1))) tab.value = location.hash.slice(1) as Tab;
+
+type Dock = 'right' | 'bottom';
+const dock = persisted<Dock>('dock', 'right', (value) => value === 'right' || value === 'bottom');
+const shareRight = persisted<number>('dock.right', 0.43);
+const shareBottom = persisted<number>('dock.bottom', 0.44);
+/** The panel alone, without stage and instruments. */
+export const isPanelAlone = signal(false);
+
+export const toggleDock = (): void => void (dock.value = dock.value === 'right' ? 'bottom' : 'right');
+
+function moveSplit(share: number): void {
+  const limited = clamp(share, 0.2, 0.8);
+  if (dock.value === 'right') shareRight.value = limited;
+  else shareBottom.value = limited;
+}
+
+/** The bar between stage and panel: dragged, or moved with the arrow keys. */
+function Splitter() {
+  const isVertical = dock.value === 'right';
+  const share = isVertical ? shareRight.value : shareBottom.value;
+  const drag = (event: PointerEvent): void => {
+    const bar = event.currentTarget as HTMLElement;
+    const box = bar.parentElement?.getBoundingClientRect();
+    if (!box || !bar.hasPointerCapture(event.pointerId)) return;
+    moveSplit(isVertical ? (box.right - event.clientX) / box.width : (box.bottom - event.clientY) / box.height);
+  };
+  const key = (event: KeyboardEvent): void => {
+    const step = { ArrowLeft: 0.02, ArrowUp: 0.02, ArrowRight: -0.02, ArrowDown: -0.02 }[event.key];
+    if (step === undefined) return;
+    event.preventDefault();
+    moveSplit(share + step);
+  };
+  return (
+    <div
+      class="splitter"
+      role="separator"
+      tabIndex={0}
+      aria-label="Size of the panel"
+      aria-orientation={isVertical ? 'vertical' : 'horizontal'}
+      aria-valuenow={Math.round(share * 100)}
+      aria-valuemin={20}
+      aria-valuemax={80}
+      onPointerDown={(event) => event.currentTarget.setPointerCapture(event.pointerId)}
+      onPointerMove={drag}
+      onKeyDown={key}
+    />
+  );
+}
+
+function Tabs() {
+  const key = (event: KeyboardEvent): void => {
+    const at = TABS.indexOf(tab.value);
+    const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: TABS.length - 1 }[event.key];
+    if (to === undefined) return;
+    event.preventDefault();
+    tab.value = TABS[(to + TABS.length) % TABS.length] as Tab;
+    document.getElementById(`tab-${tab.value}`)?.focus();
+  };
+  return (
+    <div class="tab-row">
+      <div class="tabs" role="tablist" aria-label="Panels" onKeyDown={key}>
+        {TABS.map((name, i) => (
+          <button
+            key={name}
+            id={`tab-${name}`}
+            type="button"
+            role="tab"
+            aria-selected={tab.value === name}
+            aria-controls="panel"
+            tabIndex={tab.value === name ? 0 : -1}
+            title={`${PANELS[name].title} (${i + 1})`}
+            onClick={() => (tab.value = name)}
+          >
+            {PANELS[name].title}
+          </button>
+        ))}
+      </div>
+      <button
+        type="button"
+        class="icon dock-button"
+        aria-label={dock.value === 'right' ? 'Put the panel below' : 'Put the panel on the right'}
+        title="Panel below or on the right (D)"
+        onClick={toggleDock}
+      >
+        <svg viewBox="0 0 16 16" width="16" height="16" aria-hidden="true">
+          <rect x="1.5" y="2.5" width="13" height="11" rx="1.5" fill="none" stroke="currentColor" />
+          {dock.value === 'right' ? <path d="M2 9.5h12v3.5H2z" fill="currentColor" /> : <path d="M9.5 3h4.5v10H9.5z" fill="currentColor" />}
+        </svg>
+      </button>
+      <button
+        type="button"
+        class="icon"
+        aria-pressed={isPanelAlone.value}
+        aria-label="Panel alone"
+        title="Panel alone, without the stage (F)"
+        onClick={() => (isPanelAlone.value = !isPanelAlone.value)}
+      >
+        <svg viewBox="0 0 16 16" width="16" height="16" aria-hidden="true">
+          <path d={isPanelAlone.value ? 'M6.5 2v4.5H2M9.5 2v4.5H14M6.5 14V9.5H2M9.5 14V9.5H14' : 'M2 6.5V2h4.5M14 6.5V2H9.5M2 9.5V14h4.5M14 9.5V14H9.5'} fill="none" stroke="currentColor" stroke-width="1.5" />
+        </svg>
+      </button>
+    </div>
+  );
+}
+
+export function WorkbenchView() {
+  const { View } = PANELS[tab.value];
+  const share = dock.value === 'right' ? shareRight.value : shareBottom.value;
+  const classes = ['workbench', `dock-${dock.value}`, isPanelAlone.value ? 'panel-alone' : '', link.value === 'lost' ? 'stale' : ''];
+  return (
+    <main class={classes.filter(Boolean).join(' ')} style={{ '--panel-share': String(share) }}>
+      {!isPanelAlone.value && (
+        <div class="stage">
+          <TrackView />
+          <InstrumentsView />
+        </div>
+      )}
+      {!isPanelAlone.value && <Splitter />}
+      <div class="panel side">
+        <Tabs />
+        <div class={`panel-body show-${tab.value}`} id="panel" role="tabpanel" aria-labelledby={`tab-${tab.value}`} tabIndex={0}>
+          <View key={tab.value} />
+        </div>
+      </div>
+    </main>
+  );
+}
