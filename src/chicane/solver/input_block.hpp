@@ -72,12 +72,14 @@ struct InputBlock {
   /// Inverts the free part. False, and no inverse, when that is not safely positive definite.
   [[nodiscard, gnu::always_inline]] bool invert(const bool (&is_held)[Nu]) noexcept {
     double A[Nu][Nu];
-    for (std::size_t m = 0; m < Nu; ++m) {
-      for (std::size_t l = 0; l < Nu; ++l)
+    unroll<Nu>([&](auto m) __attribute__((always_inline)) {
+      unroll<Nu>([&](auto l) __attribute__((always_inline)) {
         A[m][l] = is_held[m] || is_held[l] ? (m == l ? 1.0 : 0.0) : H[m][l];
-    }
+      });
+    });
     const bool positive = invert_all(A);
-    for (std::size_t m = 0; m < Nu; ++m) inverse[m][m] = is_held[m] ? 0.0 : inverse[m][m];
+    unroll<Nu>([&](auto m)
+                   __attribute__((always_inline)) { inverse[m][m] = is_held[m] ? 0.0 : inverse[m][m]; });
     return positive;
   }
   /// The same where no input is held.

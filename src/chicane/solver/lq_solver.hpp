@@ -177,17 +177,17 @@ class LqSolver {
       } else {
         P.column[j] = Algebra::template cost_row<j>(s);
       }
-      for (std::size_t m = 0; m < kNu; ++m) P.column[j].add(r[m][j], K[m]);
+      unroll<kNu>([&](auto m) __attribute__((always_inline)) { P.column[j].add(r[m][j], K[m]); });
     });
     P.column[kNx] = q;
-    for (std::size_t m = 0; m < kNu; ++m) P.column[kNx].add(c[m], R[m]);
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) { P.column[kNx].add(c[m], R[m]); });
 
-    for (std::size_t m = 0; m < kNu; ++m) {
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
       K[m].store(out.row[m]);
       out.constant[m] = c[m];
       out.g[m] = block.g[m];
-      for (std::size_t l = 0; l < kNu; ++l) out.H[m][l] = block.H[m][l];
-    }
+      unroll<kNu>([&](auto l) __attribute__((always_inline)) { out.H[m][l] = block.H[m][l]; });
+    });
     if (any_held) hold_inputs(k, block, is_held, r, P);
   }
 
@@ -198,10 +198,10 @@ class LqSolver {
                                             double& largest) noexcept {
     if constexpr (Choose) largest = std::max(largest, choose_hold(k, block));
     bool any_held = false;
-    for (std::size_t m = 0; m < kNu; ++m) {
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
       is_held[m] = hold[k][m] != Hold::kFree;
-      any_held = any_held || is_held[m];
-    }
+      any_held |= is_held[m];
+    });
     const bool is_positive = any_held ? block.invert(is_held) : block.invert();
     if (!is_positive) [[unlikely]]
       largest = std::max(largest, block.shift_and_invert(is_held));
@@ -231,29 +231,33 @@ class LqSolver {
   [[gnu::always_inline]] void constants(std::size_t k, const Block& block, const bool (&is_held)[kNu],
                                         bool any_held, double (&c)[kNu]) const noexcept {
     double g[kNu];
-    for (std::size_t m = 0; m < kNu; ++m) g[m] = block.g[m];
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) { g[m] = block.g[m]; });
     if (any_held) {
-      for (std::size_t h = 0; h < kNu; ++h) {
-        if (!is_held[h]) continue;
-        const double b = bound(k, h, hold[k][h]);
-        for (std::size_t m = 0; m < kNu; ++m) g[m] = fused_multiply_add<Arch>(block.H[m][h], b, g[m]);
-      }
+      unroll<kNu>([&](auto h) __attribute__((always_inline)) {
+        const double b = is_held[h] ? bound(k, h, hold[k][h]) : 0.0;
+        unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+          g[m] = fused_multiply_add<Arch>(block.H[m][h], b, g[m]);
+        });
+        c[h] = b;
+      });
     }
-    for (std::size_t m = 0; m < kNu; ++m) {
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
       double value = block.inverse[m][0] * g[0];
-      for (std::size_t l = 1; l < kNu; ++l)
-        value = fused_multiply_add<Arch>(block.inverse[m][l], g[l], value);
-      c[m] = any_held && is_held[m] ? bound(k, m, hold[k][m]) : -value;
-    }
+      unroll<kNu - 1>([&](auto l) __attribute__((always_inline)) {
+        value = fused_multiply_add<Arch>(block.inverse[m][l + 1], g[l + 1], value);
+      });
+      c[m] = any_held && is_held[m] ? c[m] : -value;
+    });
   }
 
   /// How δu follows the state; zero for inputs at bounds of their own.
   [[gnu::always_inline]] void gains(std::size_t k, const Block& block, bool any_held, const Vector (&R)[kNu],
                                     Vector (&K)[kNu]) const noexcept {
-    for (std::size_t m = 0; m < kNu; ++m) {
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
       K[m] = Vector::scaled(-block.inverse[m][0], R[0]);
-      for (std::size_t l = 1; l < kNu; ++l) K[m].add(-block.inverse[m][l], R[l]);
-    }
+      unroll<kNu - 1>([&](auto l)
+                          __attribute__((always_inline)) { K[m].add(-block.inverse[m][l + 1], R[l + 1]); });
+    });
     if constexpr (kHasRates) {
       if (any_held) follow_rates(k, block, K);
     }
@@ -360,7 +364,7 @@ class LqSolver {
       unroll<kNx>([&](auto j) __attribute__((always_inline)) {
         if constexpr (Layout::kF[i][j] != Layout::kNone) {
           double& side = j % 2 == 0 ? sum : other;
-          side = fused_multiply_add<Arch>(Algebra::jacobian(s, i, j), x[j], side);
+          side = fused_multiply_add<Arch>(Algebra::template jacobian<i, j>(s), x[j], side);
         } else if constexpr (Pattern::kF[i][j] == Entry::kOne) {
           sum += x[j];
         }

@@ -26,22 +26,24 @@ class StageAlgebra {
     V part[kBlocks];
     [[gnu::always_inline]] static Vector load(const double* from) noexcept {
       Vector v;
-      for (std::size_t b = 0; b < kBlocks; ++b) v.part[b] = V::load(from + b * kBlock);
+      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) { v.part[b] = V::load(from + b * kBlock); });
       return v;
     }
     [[gnu::always_inline]] void store(double* to) const noexcept {
-      for (std::size_t b = 0; b < kBlocks; ++b) part[b].store(to + b * kBlock);
+      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) { part[b].store(to + b * kBlock); });
     }
     [[gnu::always_inline]] void add(const Vector& o) noexcept {
-      for (std::size_t b = 0; b < kBlocks; ++b) part[b] += o.part[b];
+      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) { part[b] += o.part[b]; });
     }
     [[gnu::always_inline]] void add(double factor, const Vector& o) noexcept {
       const V f(factor);
-      for (std::size_t b = 0; b < kBlocks; ++b) part[b] = fused_multiply_add(f, o.part[b], part[b]);
+      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) {
+        part[b] = fused_multiply_add(f, o.part[b], part[b]);
+      });
     }
     [[gnu::always_inline]] static Vector scaled(double factor, const Vector& o) noexcept {
       Vector v;
-      for (std::size_t b = 0; b < kBlocks; ++b) v.part[b] = V(factor) * o.part[b];
+      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) { v.part[b] = V(factor) * o.part[b]; });
       return v;
     }
   };
@@ -77,8 +79,15 @@ class StageAlgebra {
     return rows_of(j, true).count + rows_of(j, false).count > 0;
   }
 
-  [[gnu::always_inline]] static double jacobian(const Stage& s, std::size_t i, std::size_t j) noexcept {
-    return j < kNx ? s.A[Layout::state_row(i)][j] : s.B[j - kNx][i];
+  /// F[I][J].
+  template <std::size_t I, std::size_t J>
+  [[gnu::always_inline]] static double jacobian(const Stage& s) noexcept {
+    if constexpr (J < kNx) {
+      constexpr std::size_t kRow = Layout::state_row(I);
+      return s.A[kRow][J];
+    } else {
+      return s.B[J - kNx][I];
+    }
   }
 
   /// start + Σ_t factor(t) · vector(t) over `Count` terms; in two sums side by side when they are many, which
@@ -111,7 +120,7 @@ class StageAlgebra {
     constexpr Terms kOnes = rows_of(J, true);
     constexpr Terms kValues = rows_of(J, false);
     const auto factor = [&](auto t) __attribute__((always_inline)) {
-      return jacobian(s, kValues.index[t], J);
+      return jacobian<kValues.index[t], J>(s);
     };
     const auto column = [&](auto t) __attribute__((always_inline)) { return P.column[kValues.index[t]]; };
     if constexpr (J == kNx) {
@@ -138,10 +147,11 @@ class StageAlgebra {
   template <std::size_t I>
   [[gnu::always_inline]] static Vector cost_row(const Stage& s) noexcept {
     if constexpr (Layout::has_cost_row(I)) {
-      return Vector::load(s.L[Layout::cost_row(I)]);
+      constexpr std::size_t kRow = Layout::cost_row(I);
+      return Vector::load(s.L[kRow]);
     } else {
       Vector zero;
-      for (auto& part : zero.part) part = V(0.0);
+      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) { zero.part[b] = V(0.0); });
       return zero;
     }
   }
