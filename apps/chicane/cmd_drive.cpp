@@ -32,15 +32,19 @@ bool stays_up(const Options& options) {
 
 protocol::Run description(const runtime::ClosedLoop& loop) {
   const scenario::Scenario& scenario = loop.scenario();
-  return {.track = loop.track().name(),
-          .track_length = loop.track().centre().length(),
-          .is_closed = loop.track().centre().is_closed(),
-          .controller = scenario.controller,
-          .preset = scenario.preset,
-          .latency = scenario.latency,
-          .control_period = scenario.control_period,
-          .vehicle = scenario.vehicle,
-          .road = protocol::road_lines(loop.track(), kRoadSpacing)};
+  protocol::Run run{.track = loop.track().name(),
+                    .track_length = loop.track().centre().length(),
+                    .is_closed = loop.track().centre().is_closed(),
+                    .controller = scenario.controller,
+                    .preset = scenario.preset,
+                    .latency = scenario.latency,
+                    .control_period = scenario.control_period,
+                    .vehicle = scenario.vehicle,
+                    .mode = "drive",
+                    .kerb_width = loop.track().kerb_width(),
+                    .road = protocol::road_lines(loop.track(), kRoadSpacing)};
+  protocol::describe(loop.controller(), run);
+  return run;
 }
 
 runtime::ViewerOptions viewing(const runtime::ClosedLoop& loop, runtime::RunControls& controls) {

@@ -32,7 +32,8 @@ Result<runtime::ServeSummary> run(const Options& options) {
   serving.latency =
       std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(scenario->latency));
   runtime::ViewerOptions viewing;
-  viewing.run.controller = scenario->controller;
+  viewing.run.mode = "serve";
+  protocol::describe(**controller, viewing.run);
   viewing.run.preset = scenario->preset;
   viewing.run.latency = scenario->latency;
   viewing.run.control_period = scenario->control_period;

@@ -44,7 +44,23 @@ inline telemetry::Frame frame() {
   report.sight = 140.0;
   report.has_map = true;
   report.gated = true;
-  frame.result.command = {0.02, 0.75};
+  report.solve.stationarity = 0.0009765625;
+  report.solve.violation = 0.0625;
+  report.solve.worst_stage = 17;
+  report.solve.worst_constraint = 4;
+  report.explanation.cost_terms = {0.5, 1.5, 121.5};
+  report.explanation.cost_term_count = 3;
+  report.explanation.speed_limiter = controller::SpeedLimiter::kBraking;
+  report.explanation.speed_limit = 34.5;
+  report.explanation.active_now = 1U << 1U;
+  report.explanation.active_ahead = 0b101010;
+  frame.asked = {0.02, 0.75};
+  frame.result.command = {0.01, 0.625};
+  frame.is_manual = true;
+  frame.tire_use = {0.875, 1.0625};
+  frame.prediction_error = 0.03125;
+  frame.pace = 0.25;
+  frame.active_faults = 0b100100;
   frame.applied = {0.015, -0.5};
   frame.step_time = 0.000456;
   frame.lateral_acceleration = 7.5;
@@ -58,6 +74,14 @@ inline telemetry::Frame frame() {
   frame.lap_time = 4.5;
   frame.last_lap_time = 28.125;
   frame.off_track_events = 3;
+  frame.completed_lap = {.lap = 2,
+                         .lap_time = 28.125,
+                         .sector_times = {9.25, 9.5, 9.375},
+                         .is_clean = true,
+                         .mean_speed = 47.5,
+                         .top_speed = 49.25,
+                         .min_edge_distance = 1.625,
+                         .rms_lateral_error = 0.1875};
   return frame;
 }
 
@@ -70,10 +94,17 @@ inline Run run() {
   run.latency = 0.1;
   run.control_period = 0.04;
   run.vehicle.rear_axle = 2.0;
+  run.mode = "serve";
+  run.cost_terms = {"lateral", "heading", "speed"};
+  run.constraints = {"steer_limit", "throttle_max"};
+  run.faults = {"link_lost", "half_grip"};
+  run.kerb_width = 0.75;
   run.road.left = {{0.0, 2.0}, {4.0, 2.0}, {0.0, 2.0}};
   run.road.right = {{0.0, -2.0}, {4.0, -2.0}, {0.0, -2.0}};
   run.road.centre = {{0.0, 0.0}, {4.0, 0.0}, {0.0, 0.0}};
   return run;
 }
+
+inline std::string change() { return encode_change(12.25, 306, "latency_ms", "150"); }
 
 }  // namespace chicane::protocol::samples

@@ -176,13 +176,34 @@ TEST(Recorder, HoldsEveryTopicAndTimesThatNeverGoBackWhenTheRunStartsAnew) {
                                          }});
   ASSERT_TRUE(read);
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
-    EXPECT_EQ(counts[std::string(topic.name)], topic.cadence == protocol::Cadence::kFrame ? 60 : 1)
-        << topic.name;
+    using enum protocol::Cadence;
+    const bool is_rare = topic.cadence == kLap || topic.cadence == kEvent;  // none in this second
+    EXPECT_EQ(counts[std::string(topic.name)], topic.cadence == kFrame ? 60 : is_rare ? 0 : 1) << topic.name;
   }
   EXPECT_EQ(counts["/chicane/step"], 60);
   const Result<ReplayReport> replayed = verify_recording(file.path());
   ASSERT_TRUE(replayed);
   EXPECT_TRUE(replayed->is_verified());
+}
+
+TEST(Recorder, WritesEachLapOnce) {
+  const TemporaryFile file;
+  const auto loop = short_run({{"controller", "pid"}});
+  auto recorder = Recorder::create(recording(*loop, file.path()));
+  ASSERT_TRUE(recorder);
+  while (!loop->advance()) {
+  }
+  telemetry::Frame frame = loop->frame();
+  for (const int lap : {0, 0, 1, 1, 2, 2, 0, 1}) {  // started anew after the second
+    frame.completed_lap.lap = lap;
+    (*recorder)->record(frame);
+  }
+  ASSERT_TRUE((*recorder)->finish());
+  int laps = 0;
+  ASSERT_TRUE(telemetry::read_mcap(file.path(), {.on_message = [&](const auto& message) {
+                                     if (message.channel.topic == "/chicane/lap") ++laps;
+                                   }}));
+  EXPECT_EQ(laps, 3);
 }
 
 TEST(Recorder, LeavesFramesOutRatherThanLetTheRunWait) {

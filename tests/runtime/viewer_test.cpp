@@ -111,6 +111,44 @@ TEST_F(Viewer, IsGreetedWithWhatThereIs) {
   EXPECT_EQ(json::parse(*greeting[1].bytes)["channels"].size(), protocol::ros_topics().size());
 }
 
+TEST_F(Viewer, IsToldOfTheLapsThatWereBeforeItCame) {
+  start({});
+  server.take();
+  telemetry::Frame frame = frame_at(1.0);
+  const auto publish = [&](int lap) {
+    frame.time += 1.0;
+    frame.completed_lap.lap = lap;
+    endpoint->publish(frame);
+    server.pass_time();
+  };
+  const auto laps = [&] {
+    std::vector<int> numbers;
+    for (const auto& message : server.take()) {
+      EXPECT_EQ(message.delivery, net::Delivery::kReliable);
+      numbers.push_back(message.bytes->at(13 + 4));  // after Foxglove's header and CDR's
+    }
+    return numbers;
+  };
+  for (const int lap : {0, 1, 1, 2}) publish(lap);
+  server.take();
+  say(subscribe(5, "/chicane/lap"));
+  EXPECT_EQ(laps(), (std::vector{1, 2}));
+  publish(2);
+  server.take();
+  publish(3);
+  const auto messages = server.take();
+  EXPECT_EQ(std::count_if(messages.begin(), messages.end(),
+                          [](const auto& message) { return message.bytes->front() == 1; }),
+            1);
+  publish(0);  // the run began anew
+  publish(1);
+  server.take();
+  endpoint->on_open(2);
+  server.take();
+  endpoint->on_message(2, subscribe(6, "/chicane/lap"), false);
+  EXPECT_EQ(laps(), (std::vector{1}));
+}
+
 TEST_F(Viewer, GetsTheNewestFrameOnlyAndOnlyOnce) {
   start({});
   say(subscribe(5, "/clock"));

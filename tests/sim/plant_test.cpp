@@ -134,6 +134,27 @@ TEST_P(EveryPlant, RepeatsItselfBitForBit) {
   EXPECT_EQ(hashes[0], hashes[1]);
 }
 
+TEST_P(EveryPlant, SaysHowMuchOfItsGripEachAxleUses) {
+  const auto plant = make();
+  const auto drive = [&](double speed, double steer, double throttle) {
+    plant->reset({}, speed);
+    for (int i = 0; i < steps(*plant, 1.0); ++i) plant->advance({.steer = steer, .throttle = throttle});
+    return plant->output().tire_use;
+  };
+  const auto rolling = drive(20.0, 0.0, 0.0);
+  EXPECT_LT(rolling[0] + rolling[1], 0.1);
+  const auto gentle = drive(15.0, 0.03, 0.0);
+  const auto hard = drive(25.0, 0.4, 0.0);
+  EXPECT_GT(gentle[0], rolling[0]);
+  EXPECT_LT(gentle[0], 0.7);
+  EXPECT_GT(hard[0], 1.0) << "full lock at 25 m/s slides";
+  // On half the grip the same corner takes more of it.
+  const auto slippery = make({.friction_scale = 0.5});
+  slippery->reset({}, 15.0);
+  for (int i = 0; i < steps(*slippery, 1.0); ++i) slippery->advance({.steer = 0.03, .throttle = 0.0});
+  EXPECT_GT(slippery->output().tire_use[0], 1.2 * gentle[0]);
+}
+
 TEST_P(EveryPlant, ResetForgetsEverything) {
   const auto used = make();
   const auto fresh = make();

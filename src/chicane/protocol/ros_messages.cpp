@@ -43,6 +43,16 @@ class Writer {
     return *this;
   }
   Writer& count(std::size_t value) { return put(static_cast<std::uint32_t>(value)); }
+  Writer& texts(const std::vector<std::string>& values) {
+    count(values.size());
+    for (const std::string& value : values) text(value);
+    return *this;
+  }
+  Writer& numbers(std::span<const double> values) {
+    count(values.size());
+    for (const double value : values) append(value);
+    return *this;
+  }
   Writer& stamp(double seconds) {
     const std::uint64_t ns = to_nanoseconds(seconds);
     return put(static_cast<std::int32_t>(ns / 1'000'000'000U),
@@ -90,15 +100,33 @@ model::Pose base_link(const model::State& state, const Run& run) {
   return {state.x - b * chicane::cos(state.psi), state.y - b * chicane::sin(state.psi), state.psi};
 }
 
+std::span<const double> cost_terms_of(const controller::Explanation& explanation) {
+  return std::span{explanation.cost_terms}.first(static_cast<std::size_t>(
+      std::clamp(explanation.cost_term_count, 0, controller::Explanation::kMaxCostTerms)));
+}
+
+/// The second half of a frame: what was sent, and why.
+void put_reasons(Writer& writer, const Frame& frame) {
+  const controller::StepReport& report = frame.result.report;
+  const controller::Explanation& why = report.explanation;
+  const model::Command& sent = frame.result.command;
+  writer.put(sent.steer, sent.throttle, frame.pace, frame.is_manual)
+      .numbers(cost_terms_of(why))
+      .put(static_cast<std::uint8_t>(why.speed_limiter), why.speed_limit)
+      .put(why.active_now, why.active_ahead, frame.tire_use[0], frame.tire_use[1], frame.active_faults)
+      .put(report.solve.stationarity, report.solve.violation)
+      .put(static_cast<std::int32_t>(report.solve.worst_stage),
+           static_cast<std::int32_t>(report.solve.worst_constraint), frame.prediction_error);
+}
+
 std::string encode_frame(const Frame& frame, const Run&) {
   const model::State now = motion(frame);
   const model::Measurement& seen = frame.measurement;
   const controller::StepReport& report = frame.result.report;
-  const model::Command& asked = frame.result.command;
   // What only a judge of the road knows: an external simulator tells none of it.
   const auto judged = [&](double value) { return frame.has_truth ? value : kNaN; };
-  return Writer{}
-      .stamp(frame.time)
+  Writer writer{1024};
+  writer.stamp(frame.time)
       .put(frame.cycle, frame.time, frame.has_truth)
       .put(now.x, now.y, now.psi, now.vx, now.vy, now.r)
       .put(frame.has_truth ? chicane::hypot(now.vx, now.vy) : seen.speed)
@@ -107,14 +135,15 @@ std::string encode_frame(const Frame& frame, const Run&) {
       .put(judged(frame.s), frame.lateral_error, frame.heading_error, judged(frame.edge_distance))
       .put(frame.is_off_track, static_cast<std::uint32_t>(frame.off_track_events))
       .put(static_cast<std::uint32_t>(frame.lap), judged(frame.lap_time), frame.last_lap_time)
-      .put(asked.steer, frame.applied.steer, asked.throttle, frame.applied.throttle)
+      .put(frame.asked.steer, frame.applied.steer, frame.asked.throttle, frame.applied.throttle)
       .put(static_cast<std::uint8_t>(report.rung), static_cast<std::int8_t>(report.solve.status))
       .put(report.gated, report.has_map)
       .put(static_cast<std::uint32_t>(report.solve.iterations),
            static_cast<std::uint32_t>(report.solve.sweeps))
       .put(report.solve.cost, 1e6 * frame.step_time, report.delay, report.speed_reference, report.sight)
-      .put(report.lateral_error, report.heading_error)
-      .bytes();
+      .put(report.lateral_error, report.heading_error);
+  put_reasons(writer, frame);
+  return writer.bytes();
 }
 
 std::span<const controller::PlanPoint> points_of(const controller::Plan& plan) {
@@ -151,6 +180,20 @@ std::string encode_run(const Frame&, const Run& run) {
       .text(car.name)
       .put(car.front_axle, car.rear_axle, car.track_width, car.tire_width, car.length, car.width,
            car.steer_limit)
+      .text(run.mode)
+      .texts(run.cost_terms)
+      .texts(run.constraints)
+      .texts(run.faults)
+      .put(run.kerb_width)
+      .bytes();
+}
+
+std::string encode_lap(const Frame& frame, const Run&) {
+  const telemetry::CompletedLap& lap = frame.completed_lap;
+  return Writer{}
+      .put(static_cast<std::uint32_t>(lap.lap), lap.lap_time)
+      .put(lap.sector_times[0], lap.sector_times[1], lap.sector_times[2], lap.is_clean)
+      .put(lap.mean_speed, lap.top_speed, lap.min_edge_distance, lap.rms_lateral_error)
       .bytes();
 }
 
@@ -222,12 +265,12 @@ std::string encode_transforms(const Frame& frame, const Run& run) {
 }
 
 std::string encode_drive(const Frame& frame, const Run& run) {
-  const model::Command& asked = frame.result.command;
+  const model::Command& sent = frame.result.command;
   const double acceleration =
-      model::longitudinal_acceleration(run.vehicle, asked.throttle, frame.measurement.speed);
+      model::longitudinal_acceleration(run.vehicle, sent.throttle, frame.measurement.speed);
   return Writer{}
       .header(frame.time, "base_link")
-      .put(static_cast<float>(asked.steer), 0.0F, static_cast<float>(frame.result.report.speed_reference),
+      .put(static_cast<float>(sent.steer), 0.0F, static_cast<float>(frame.result.report.speed_reference),
            static_cast<float>(acceleration), 0.0F)
       .bytes();
 }
@@ -353,8 +396,20 @@ const std::vector<RosTopic>& ros_topics() {
       topic("/track/left", "nav_msgs/msg/Path", Cadence::kRoad, encode_left),
       topic("/track/right", "nav_msgs/msg/Path", Cadence::kRoad, encode_right),
       topic("/track/centre", "nav_msgs/msg/Path", Cadence::kRoad, encode_centre),
+      topic("/chicane/lap", "chicane_msgs/msg/Lap", Cadence::kLap, encode_lap),
+      topic("/chicane/change", "chicane_msgs/msg/Change", Cadence::kEvent, nullptr),
   };
   return topics;
+}
+
+void describe(const controller::Controller& controller, Run& run) {
+  run.controller = controller.name();
+  run.cost_terms.assign(controller.cost_terms().begin(), controller.cost_terms().end());
+  run.constraints.assign(controller.constraints().begin(), controller.constraints().end());
+}
+
+std::string encode_change(double time, std::uint64_t cycle, std::string_view name, std::string_view value) {
+  return Writer{}.stamp(time).put(cycle).text(name).text(value).bytes();
 }
 
 std::string ros_schema(std::string_view type) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "chicane/base/types.hpp"
+#include "chicane/controller/controller.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -36,14 +37,24 @@ struct Run {
   double control_period = 0.0;  ///< [s]
   bool is_paused = false;
   model::VehicleParams vehicle;
+  std::string mode{};                     ///< "drive": our simulator; "serve": an external one
+  std::vector<std::string> cost_terms{};  ///< names, controller::Controller::cost_terms()
+  std::vector<std::string> constraints{};
+  std::vector<std::string> faults{};  ///< names of the bits of Frame::active_faults
+  double kerb_width = 0.0;            ///< [m]
   RoadLines road;
 };
+
+/// What a controller says about itself, copied into a run.
+void describe(const controller::Controller& controller, Run& run);
 
 /// When the content of a topic changes.
 enum class Cadence {
   kFrame,  ///< with each control cycle
   kRun,    ///< with Run, road excepted
   kRoad,   ///< with Run::road
+  kLap,    ///< when a lap completes: Frame::completed_lap has another number
+  kEvent,  ///< when something happens that is in no frame; encode is null, see encode_change()
 };
 
 /// One stream of messages of a ROS 2 type, encoded as CDR (XCDR1, little endian, with its four-byte header):
@@ -62,6 +73,11 @@ struct RosTopic {
 
 /// All topics, in a fixed order: the index is a stable channel number.
 [[nodiscard]] const std::vector<RosTopic>& ros_topics();
+
+/// A message for "/chicane/change", of the topic's type: `name` got `value` before the control step `cycle`
+/// at `time` [s].
+[[nodiscard]] std::string encode_change(double time, std::uint64_t cycle, std::string_view name,
+                                        std::string_view value);
 
 /// The definition of a type ("nav_msgs/msg/Odometry") with all it refers to; empty for a type not known.
 [[nodiscard]] std::string ros_schema(std::string_view type);

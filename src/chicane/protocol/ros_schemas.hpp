@@ -86,7 +86,7 @@ uint32 lap                              # laps completed
 float64 lap_time_s                      # of the running lap
 float64 last_lap_time_s                 # 0 before the first completed lap
 
-# Commands: asked by the controller now, and acting on the car after the delay
+# Commands: asked by the controller now, before the gate, and acting on the car after the delay
 float64 steer_asked_rad
 float64 steer_applied_rad
 float64 throttle_asked                  # [-1, 1], negative brakes
@@ -115,6 +115,37 @@ float64 speed_reference_mps
 float64 sight_m                         # length of known road ahead
 float64 tracked_lateral_error_m         # from the line the controller follows
 float64 tracked_heading_error_rad
+
+# Commands as sent, after the gate
+float64 steer_sent_rad
+float64 throttle_sent
+float64 pace                            # run seconds per second of the clock
+bool is_manual                          # a person drives
+
+# Why: price of the plan by term (names: Run.cost_term_names), summed over its stages
+float64[] cost_terms
+uint8 SPEED_LIMITER_NONE=0              # nothing that is known
+uint8 SPEED_LIMITER_ASKED=1             # the speed asked for is reached
+uint8 SPEED_LIMITER_CURVATURE=2         # tyre grip in the bend
+uint8 SPEED_LIMITER_BRAKING=3           # braking for a slower place ahead
+uint8 SPEED_LIMITER_POWER=4             # throttle at its bound, or the drive out of the last bend
+uint8 SPEED_LIMITER_SIGHT=5             # road known too short
+uint8 speed_limiter
+float64 speed_limit_mps                 # what the speed plan allows where the command acts
+uint32 active_now                       # constraints (bits: Run.constraint_names) in the plan's first stage
+uint32 active_ahead                     # and anywhere in it
+
+# The simulated car: share of the grip each axle uses, more than 1 slides
+float64 front_tire_use
+float64 rear_tire_use
+uint32 active_faults                    # bits: Run.fault_names
+
+# The solver's own judgement
+float64 stationarity                    # largest step a projected gradient would still take
+float64 violation                       # largest violation of a soft constraint
+int32 worst_stage                       # where it is, -1 nowhere
+int32 worst_constraint
+float64 prediction_error_m              # of the car now from where plans said, one delay and one period ago
 )"},
     RosDefinition{"chicane_msgs/Plan",
                   R"(# What the controller intends: predicted motion of the centre of mass with
@@ -147,6 +178,28 @@ float64 tire_width_m
 float64 body_length_m
 float64 body_width_m
 float64 steer_limit_rad
+
+string mode                             # "drive": our simulator; "serve": an external one
+string[] cost_term_names                # of Frame.cost_terms
+string[] constraint_names               # of the bits of Frame.active_now and active_ahead, from the lowest
+string[] fault_names                    # of the bits of Frame.active_faults
+float64 kerb_width_m                    # drivable, outside each edge
+)"},
+    RosDefinition{"chicane_msgs/Lap", R"(# One completed lap, sent when it is.
+uint32 lap                              # its number, from 1
+float64 lap_time_s
+float64[3] sector_times_s               # thirds of the lap
+bool is_clean                           # no tyre left the road
+float64 mean_speed_mps
+float64 top_speed_mps
+float64 min_edge_distance_m             # of the outermost tyre, negative = off the road
+float64 rms_lateral_error_m
+)"},
+    RosDefinition{"chicane_msgs/Change", R"(# A setting that changed during the run, before this control cycle.
+builtin_interfaces/Time stamp
+uint64 cycle
+string name                             # key as in YAML and --set: "latency_ms"
+string value                            # as --set takes it
 )"},
 };
 

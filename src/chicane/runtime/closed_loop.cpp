@@ -58,6 +58,8 @@ void ClosedLoop::restart() {
   in_flight_.reset({});
   sensor_ = sim::Sensor(scenario_.sensor, scenario_.seed);
   metrics_ = telemetry::Metrics(std::max(scenario_.laps, kLapsRemembered), scenario_.control_period);
+  promises_.reset();
+  frame_ = {};
   next_control_ = 0.0;
   step_time_ = 0.0;
   cycle_ = 0;
@@ -95,6 +97,7 @@ void ClosedLoop::control(double budget) noexcept {
   if (budget > 0.0) step_time_ += 0.1 * (std::min(taken, budget) - step_time_);
 
   frame_.result = answer;
+  frame_.asked = answer.command;
   frame_.result.command = gated.command;
   frame_.result.report.gated = gated.reason != safety::GateReason::kNone;
   fill_frame(now, taken);
@@ -112,13 +115,17 @@ void ClosedLoop::fill_frame(const model::Measurement& now, double step_time) noe
   frame_.applied = in_flight_.at(time() + 1e-9);
   frame_.step_time = step_time;
   frame_.solve_time = frame_.result.report.solve_time;
+  frame_.prediction_error = promises_.error(now.time, {frame_.truth.x, frame_.truth.y});
+  promises_.add(frame_.result.plan, scenario_.control_period);
 }
 
 void ClosedLoop::judge() noexcept {
   const sim::WorldState& world = world_.state();
   metrics_.add_physics(physics_sample(world_));
-  if (world.lap > metrics_.laps_completed())
+  if (world.lap > metrics_.laps_completed()) {
     metrics_.lap_completed(world.last_lap_time, world.last_sector_times);
+    frame_.completed_lap = completed_lap(world, metrics_.last_lap());
+  }
 
   off_for_ = std::fabs(world.lateral_error) > kLostDistance ? off_for_ + plant_->step_length() : 0.0;
   const double default_limit =

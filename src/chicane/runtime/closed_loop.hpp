@@ -17,6 +17,7 @@
 #include "chicane/sim/world.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
+#include "chicane/telemetry/prediction_check.hpp"
 
 namespace chicane::runtime {
 
@@ -47,6 +48,7 @@ class ClosedLoop {
   [[nodiscard]] const path::Track& track() const noexcept { return track_; }
   [[nodiscard]] const sim::WorldState& world() const noexcept { return world_.state(); }
   [[nodiscard]] const scenario::Scenario& scenario() const noexcept { return scenario_; }
+  [[nodiscard]] const controller::Controller& controller() const noexcept { return *controller_; }
   [[nodiscard]] telemetry::RunSummary summary() const;
 
  private:
@@ -66,6 +68,7 @@ class ClosedLoop {
   sim::ActuationDelay in_flight_;
   safety::CommandGate gate_;
   telemetry::Metrics metrics_;
+  telemetry::PredictionCheck promises_;
   telemetry::Frame frame_;
   std::uint64_t cycle_ = 0;
   double next_control_ = 0.0;

@@ -14,6 +14,7 @@ inline void observe(const sim::World& world, telemetry::Frame& frame) noexcept {
   frame.has_truth = true;
   frame.lateral_acceleration = world.plant().output().ay;
   frame.longitudinal_acceleration = world.plant().output().ax;
+  frame.tire_use = world.plant().output().tire_use;
   frame.s = state.s;
   frame.lateral_error = state.lateral_error;
   frame.heading_error = state.heading_error;
@@ -23,6 +24,19 @@ inline void observe(const sim::World& world, telemetry::Frame& frame) noexcept {
   frame.lap_time = state.lap_time;
   frame.last_lap_time = state.last_lap_time;
   frame.off_track_events = state.off_track_events;
+}
+
+/// The lap that the world has just timed, as metrics have measured it.
+[[nodiscard]] inline telemetry::CompletedLap completed_lap(const sim::WorldState& world,
+                                                           const telemetry::LapSummary& measured) noexcept {
+  return {.lap = world.lap,
+          .lap_time = measured.lap_time,
+          .sector_times = measured.sector_times,
+          .is_clean = world.last_lap_was_clean,
+          .mean_speed = measured.mean_speed,
+          .top_speed = measured.top_speed,
+          .min_edge_distance = measured.min_edge_distance,
+          .rms_lateral_error = measured.rms_lateral_error};
 }
 
 /// What metrics count of the physics step just done.

@@ -101,8 +101,9 @@ void Recorder::begin() {
   const telemetry::Frame nothing;
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
     const std::uint16_t channel = writer_->add_channel(topic.name, topic.type, topic.schema);
-    if (topic.cadence == protocol::Cadence::kFrame) continue;
-    keep(writer_->write(channel, 0, 0, topic.encode(nothing, options_.run)));
+    const bool is_constant =
+        topic.cadence == protocol::Cadence::kRun || topic.cadence == protocol::Cadence::kRoad;
+    if (is_constant) keep(writer_->write(channel, 0, 0, topic.encode(nothing, options_.run)));
   }
   step_channel_ = writer_->add_channel(protocol::kStepTopic, protocol::kStepType, protocol::step_schema());
 }
@@ -115,11 +116,14 @@ void Recorder::write(const telemetry::Frame& frame) {
   last_log_time_ = time + earlier_runs_;
   std::uint16_t channel = 0;
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
-    if (topic.cadence == protocol::Cadence::kFrame) {
+    const bool is_lap = topic.cadence == protocol::Cadence::kLap && frame.completed_lap.lap != laps_ &&
+                        frame.completed_lap.lap > 0;
+    if (topic.cadence == protocol::Cadence::kFrame || is_lap) {
       keep(writer_->write(channel, last_log_time_, time, topic.encode(frame, options_.run)));
     }
     ++channel;
   }
+  laps_ = frame.completed_lap.lap;
   keep(writer_->write(step_channel_, last_log_time_, time, protocol::encode_step(frame)));
   if (state_) ++frames_;
 }

@@ -74,6 +74,7 @@ class Recorder {
   // The writing thread's, until it has ended.
   std::uint16_t step_channel_ = 0;
   std::uint64_t frames_ = 0;
+  int laps_ = 0;                     ///< recorded of this run
   std::uint64_t last_log_time_ = 0;  ///< [ns]
   std::uint64_t earlier_runs_ = 0;   ///< what log times are ahead of the run's own time [ns]
   Result<void> state_;

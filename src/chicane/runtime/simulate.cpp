@@ -133,6 +133,7 @@ class Scene {
     sim::select_waypoints(waypoints_, {.x = state.x, .y = state.y, .psi = state.psi},
                           scenario_.waypoints_sent, now);
     observe(world_, frame);
+    frame.completed_lap = completed_lap_;
     frame.time = now.time;
     frame.measurement = now;
     frame.applied = acting;
@@ -168,8 +169,10 @@ class Scene {
   void judge(double step) {
     const sim::WorldState& world = world_.state();
     metrics_.add_physics(physics_sample(world_));
-    if (world.lap > metrics_.laps_completed())
+    if (world.lap > metrics_.laps_completed()) {
       metrics_.lap_completed(world.last_lap_time, world.last_sector_times);
+      completed_lap_ = completed_lap(world, metrics_.last_lap());
+    }
     off_for_ = std::fabs(world.lateral_error) > kLostDistance ? off_for_ + step : 0.0;
   }
 
@@ -184,6 +187,7 @@ class Scene {
   sim::World world_;
   sim::Sensor sensor_;
   telemetry::Metrics metrics_;
+  telemetry::CompletedLap completed_lap_;
   double off_for_ = 0.0;
 };
 
@@ -352,7 +356,7 @@ class Simulation {
     pending_ = steer.command;
     ++frame_.cycle;
     frame_.step_time = waited;
-    frame_.result.command = steer.command;
+    frame_.result.command = frame_.asked = steer.command;  // its own gate is unknown
     frame_.result.report.solve.status =
         solver::SolveStatus::kOptimal;  // of an external solver nothing is known
     place_lines(steer, scene_.car(), frame_.result.plan);

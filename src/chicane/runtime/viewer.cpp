@@ -17,6 +17,8 @@ using protocol::Cadence;
 /// Topic number of the time for net::Delivery::kNewest; channels use their own number plus one.
 constexpr std::uint32_t kTimeTopic = 1'000'000;
 
+constexpr std::size_t kMostLaps = 1000;  // kept for viewers that come later
+
 constexpr std::string_view kTrigger = "std_srvs/srv/Trigger";
 constexpr std::string_view kSetBool = "std_srvs/srv/SetBool";
 
@@ -109,6 +111,23 @@ void ViewerEndpoint::tick() {
     if (!client.subscriptions.empty()) server_->send(id, time, true, net::Delivery::kNewest, kTimeTopic);
   }
   send_cadence(Cadence::kFrame);
+  note_lap();
+}
+
+/// Keeps the laps of this run for viewers that come later, and tells the present ones.
+void ViewerEndpoint::note_lap() {
+  const int lap = frame_.completed_lap.lap;
+  if (lap < lap_) laps_.clear();  // the run began anew
+  const bool is_new = lap > 0 && lap != lap_;
+  lap_ = lap;
+  if (!is_new) return;
+  if (laps_.size() >= kMostLaps) laps_.erase(laps_.begin());
+  const auto& topics = protocol::ros_topics();
+  for (std::uint32_t channel = 0; channel < topics.size(); ++channel) {
+    if (topics[channel].cadence != Cadence::kLap) continue;
+    laps_.push_back({frame_.time, topics[channel].encode(frame_, options_.run)});
+    send_channel(channel);
+  }
 }
 
 void ViewerEndpoint::send_cadence(Cadence cadence) {
@@ -187,6 +206,14 @@ void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::Subscribe& mes
       continue;
     }
     // What is known now, because the next change may be far away.
+    if (topics[channel].cadence == Cadence::kLap) {
+      for (const auto& [time, payload] : laps_) {
+        server_->send(id, foxglove::message_data(subscription, protocol::to_nanoseconds(time), payload),
+                      true);
+      }
+      continue;
+    }
+    if (topics[channel].cadence == Cadence::kEvent) continue;
     if (topics[channel].cadence == Cadence::kFrame && !has_frame_) continue;
     server_->send(id,
                   foxglove::message_data(subscription, protocol::to_nanoseconds(frame_.time),

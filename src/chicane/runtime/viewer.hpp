@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "chicane/base/latest.hpp"
@@ -72,6 +73,7 @@ class ViewerEndpoint final : public Endpoint {
              std::function<Result<std::string>(std::string_view)> call);
   void schedule();
   void tick();
+  void note_lap();
   void send_cadence(protocol::Cadence cadence);
   void send_channel(std::uint32_t channel);
   void send_text(net::ConnectionId id, std::string text);
@@ -92,6 +94,8 @@ class ViewerEndpoint final : public Endpoint {
   Latest<telemetry::Frame> latest_;
   telemetry::Frame frame_;
   bool has_frame_ = false;
+  std::vector<std::pair<double, std::string>> laps_;  ///< of this run: time [s] and message
+  int lap_ = 0;                                       ///< completed so far
   net::Server* server_ = nullptr;
   std::map<net::ConnectionId, Client> clients_;
 };

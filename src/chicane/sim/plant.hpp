@@ -16,6 +16,9 @@ struct PlantOutput {
   double throttle = 0.0;               ///< accelerator as telemetry reports it, [0, 1]: braking reads 0
   std::array<double, 4> slip_angle{};  ///< front left, front right, rear left, rear right [rad]
   std::array<double, 4> slip_ratio{};
+  /// Share of its grip that each axle uses, front and rear, wheels weighted by their load: force over peak up
+  /// to the slip of the peak, slip over that slip beyond it. 1 is all there is, more is sliding.
+  std::array<double, 2> tire_use{};
 };
 
 /// The car that answers back: tyres, drive, brakes, actuators. Not the model a controller believes in.

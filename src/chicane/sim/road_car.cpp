@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::sim {
@@ -17,6 +18,17 @@ double finite_or_zero(double value) noexcept { return std::isfinite(value) ? val
 /// `v` from axes turned by an angle with cosine c and sine s, to the axes it is turned against.
 Vec2 turned(const Vec2& v, double c, double s) noexcept {
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+}
+
+/// Where the curve has its maximum: C atan(B x − E (B x − atan(B x))) = π/2, by Newton's method.
+double peak_slip_of(const model::MagicFormula& tire) noexcept {
+  const double wanted = tan(kPi / (2.0 * tire.shape));
+  double z = wanted;  // B x; exact for E = 0
+  for (int i = 0; i < 20; ++i) {
+    const double error = z - tire.curvature * (z - atan(z)) - wanted;
+    z -= error / (1.0 - tire.curvature * (1.0 - 1.0 / (1.0 + z * z)));
+  }
+  return z / tire.stiffness;
 }
 
 }  // namespace
@@ -34,6 +46,7 @@ RoadCar::RoadCar(const RoadCarParams& params) noexcept : params_{params} {
                   .shape = params.shape,
                   .peak = 1.0,
                   .curvature = params.curvature};
+    wheel.peak_slip = peak_slip_of(wheel.tire);
   }
   reset({}, 0.0);
 }
@@ -90,10 +103,13 @@ Vec2 RoadCar::tire_force(Wheel& wheel, const Vec2& v) const noexcept {
 
   // Combined slip by similarity (eq. 6).
   const double size = hypot(along, across);
+  wheel.use = 0.0;
   if (size < 1e-9 || wheel.load <= 0.0) return Vec2::Zero();
   const double friction =
       params_.friction * (1.0 - params_.load_sensitivity * (wheel.load / wheel.static_load - 1.0));
-  const double force = wheel.load * std::max(friction, 0.1) * wheel.tire(size);
+  const double share = wheel.tire(size);
+  wheel.use = size < wheel.peak_slip ? share : size / wheel.peak_slip;
+  const double force = wheel.load * std::max(friction, 0.1) * share;
   return {force * along / size, force * across / size};
 }
 
@@ -141,6 +157,12 @@ void RoadCar::move() noexcept {
     moment += wheel.position.x() * force.y() - wheel.position.y() * force.x();
     output_.slip_angle[i] = -atan(wheel.slip_across);
     output_.slip_ratio[i] = wheel.slip_along;
+  }
+  for (std::size_t axle = 0; axle < 2; ++axle) {
+    const Wheel& left = wheels_[2 * axle];
+    const Wheel& right = wheels_[2 * axle + 1];
+    output_.tire_use[axle] =
+        (left.load * left.use + right.load * right.use) / std::max(left.load + right.load, 1.0);
   }
 
   const Vec2 a_B = force_B / params_.mass;

@@ -82,6 +82,8 @@ class RoadCar final : public Plant {
     double slip_along = 0.0;       ///< relaxed (ω R − v_x) / |v_x|
     double slip_across = 0.0;      ///< relaxed −v_y / |v_x|
     model::MagicFormula tire;
+    double peak_slip = 0.0;  ///< combined slip of the largest force
+    double use = 0.0;        ///< of the grip, as PlantOutput::tire_use
   };
 
   void load_wheels() noexcept;

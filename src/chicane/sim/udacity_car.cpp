@@ -27,6 +27,12 @@ double engine_yaw(double psi) noexcept {
   return yaw < 0.0 ? yaw + 360.0 : yaw;
 }
 
+/// Force over peak up to the slip of the peak, slip over that slip beyond it.
+double use_of(const model::FrictionCurve& curve, double slip) noexcept {
+  const double size = std::fabs(slip);
+  return size < curve.extremum_slip ? curve(size) / curve.extremum_value : size / curve.extremum_slip;
+}
+
 }  // namespace
 
 UdacityCar::UdacityCar(const UdacityCarParams& params) noexcept : params_{params} {
@@ -178,9 +184,13 @@ void UdacityCar::publish(const Vec2& velocity_before, double pedal) noexcept {
   output_.ay = a_B.y();
   output_.speed = velocity_.norm();
   output_.throttle = std::max(pedal, 0.0);
+  output_.tire_use = {};
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     output_.slip_angle[i] = wheels_[i].slip_angle;
     output_.slip_ratio[i] = wheels_[i].slip_ratio;
+    // Both directions have a curve of their own and share nothing. The wheels of an axle carry the same load.
+    output_.tire_use[i / 2] += 0.5 * std::max(use_of(params_.sideways, wheels_[i].slip_angle),
+                                              use_of(params_.forward, wheels_[i].slip_ratio));
   }
 }
 

@@ -99,10 +99,9 @@ void Metrics::add(const Frame& frame) noexcept {
 
 void Metrics::lap_completed(double lap_time, const std::array<double, 3>& sector_times) noexcept {
   ++laps_completed_;
-  if (laps_.size() < laps_.capacity()) {
-    laps_.push_back(lap_.summary(lap_time));
-    laps_.back().sector_times = sector_times;
-  }
+  last_lap_ = lap_.summary(lap_time);
+  last_lap_.sector_times = sector_times;
+  if (laps_.size() < laps_.capacity()) laps_.push_back(last_lap_);
   lap_ = {};
 }
 

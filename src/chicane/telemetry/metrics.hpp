@@ -102,6 +102,8 @@ class Metrics {
                      const std::array<double, 3>& sector_times = LapSummary{}.sector_times) noexcept;
 
   [[nodiscard]] int laps_completed() const noexcept { return laps_completed_; }
+  /// The last completed lap; zeros before the first.
+  [[nodiscard]] const LapSummary& last_lap() const noexcept { return last_lap_; }
   [[nodiscard]] int off_track_events() const noexcept { return off_track_events_; }
   [[nodiscard]] std::uint64_t state_hash() const noexcept { return hash_.value(); }
   /// The run so far; what the run time knows (names, seed, completed) is left at its defaults. Allocates.
@@ -125,6 +127,7 @@ class Metrics {
   };
 
   std::vector<LapSummary> laps_;
+  LapSummary last_lap_;
   double deadline_;
   Stretch lap_, total_;
   Durations step_times_, solve_times_;

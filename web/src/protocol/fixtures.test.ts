@@ -1,8 +1,8 @@
 import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
 import { decoder } from './decoder';
-import type { Frame, Path, Plan, Run } from './topics';
-import { TOPIC_NAMES } from './topics';
+import type { Change, Frame, Lap, Path, Plan, Run } from './topics';
+import { SPEED_LIMITER, TOPIC_NAMES } from './topics';
 
 // Written by tests/protocol/ros_messages_test.cpp; the numbers are those of tests/protocol/viewer_samples.hpp.
 const folder = new URL('../../../tests/protocol/fixtures/ros/', import.meta.url);
@@ -66,7 +66,24 @@ describe('messages of the C++ side', () => {
       sight_m: 140,
       tracked_lateral_error_m: 0.31,
       tracked_heading_error_rad: -0.02,
+      steer_sent_rad: 0.01,
+      throttle_sent: 0.625,
+      pace: 0.25,
+      is_manual: true,
+      speed_limiter: SPEED_LIMITER.BRAKING,
+      speed_limit_mps: 34.5,
+      active_now: 0b10,
+      active_ahead: 0b101010,
+      front_tire_use: 0.875,
+      rear_tire_use: 1.0625,
+      active_faults: 0b100100,
+      stationarity: 0.0009765625,
+      violation: 0.0625,
+      worst_stage: 17,
+      worst_constraint: 4,
+      prediction_error_m: 0.03125,
     } satisfies Partial<Frame>);
+    expect([...frame.cost_terms]).toEqual([0.5, 1.5, 121.5]);
     expect(frame.step_time_us).toBeCloseTo(456, 9);
     expect(frame.speed_mps).toBeCloseTo(Math.hypot(30, 0.4), 12);
   });
@@ -91,6 +108,34 @@ describe('messages of the C++ side', () => {
       is_paused: false,
       car: 'udacity',
       rear_axle_m: 2,
+      mode: 'serve',
+      cost_term_names: ['lateral', 'heading', 'speed'],
+      constraint_names: ['steer_limit', 'throttle_max'],
+      fault_names: ['link_lost', 'half_grip'],
+      kerb_width_m: 0.75,
+    });
+  });
+
+  it('carry a lap', () => {
+    const lap = read<Lap>('/chicane/lap');
+    expect(lap).toMatchObject({
+      lap: 2,
+      lap_time_s: 28.125,
+      is_clean: true,
+      mean_speed_mps: 47.5,
+      top_speed_mps: 49.25,
+      min_edge_distance_m: 1.625,
+      rms_lateral_error_m: 0.1875,
+    });
+    expect([...lap.sector_times_s]).toEqual([9.25, 9.5, 9.375]);
+  });
+
+  it('carry a change', () => {
+    expect(read<Change>('/chicane/change')).toEqual({
+      stamp: { sec: 12, nsec: 250_000_000 },
+      cycle: 306n,
+      name: 'latency_ms',
+      value: '150',
     });
   });
 
@@ -112,7 +157,7 @@ describe('messages of the C++ side', () => {
       status: [{ level: 1, name: 'chicane: controller', hardware_id: 'tracking-mpc' }, { level: 2, message: 'off the road' }],
     });
     const { drive } = read<{ drive: { steering_angle: number; speed: number } }>('/drive');
-    expect(drive.steering_angle).toBeCloseTo(0.02, 7);
+    expect(drive.steering_angle).toBeCloseTo(0.01, 7);
     expect(drive.speed).toBe(33);
   });
 });

@@ -51,7 +51,27 @@ export interface Frame {
   sight_m: number;
   tracked_lateral_error_m: number;
   tracked_heading_error_rad: number;
+  steer_sent_rad: number;
+  throttle_sent: number;
+  pace: number;
+  is_manual: boolean;
+  cost_terms: Float64Array;
+  speed_limiter: number;
+  speed_limit_mps: number;
+  active_now: number;
+  active_ahead: number;
+  front_tire_use: number;
+  rear_tire_use: number;
+  active_faults: number;
+  stationarity: number;
+  violation: number;
+  worst_stage: number;
+  worst_constraint: number;
+  prediction_error_m: number;
 }
+
+/** Frame.speed_limiter */
+export const SPEED_LIMITER = { NONE: 0, ASKED: 1, CURVATURE: 2, BRAKING: 3, POWER: 4, SIGHT: 5 } as const;
 
 /** chicane_msgs/msg/Plan: columns of equal length. */
 export interface Plan {
@@ -83,6 +103,31 @@ export interface Run {
   body_length_m: number;
   body_width_m: number;
   steer_limit_rad: number;
+  mode: string;
+  cost_term_names: string[];
+  constraint_names: string[];
+  fault_names: string[];
+  kerb_width_m: number;
+}
+
+/** chicane_msgs/msg/Lap: one completed lap */
+export interface Lap {
+  lap: number;
+  lap_time_s: number;
+  sector_times_s: Float64Array;
+  is_clean: boolean;
+  mean_speed_mps: number;
+  top_speed_mps: number;
+  min_edge_distance_m: number;
+  rms_lateral_error_m: number;
+}
+
+/** chicane_msgs/msg/Change: a setting that changed during the run */
+export interface Change {
+  stamp: Stamp;
+  cycle: bigint;
+  name: string;
+  value: string;
 }
 
 /** The part of nav_msgs/msg/Path this page draws. */
@@ -99,6 +144,8 @@ export interface Topics {
   '/track/left': Path;
   '/track/right': Path;
   '/track/centre': Path;
+  '/chicane/lap': Lap;
+  '/chicane/change': Change;
 }
 
 export type TopicName = keyof Topics;
@@ -111,4 +158,6 @@ export const TOPIC_NAMES: readonly TopicName[] = [
   '/track/left',
   '/track/right',
   '/track/centre',
+  '/chicane/lap',
+  '/chicane/change',
 ];

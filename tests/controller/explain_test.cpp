@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/controller/explain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+
+#include "chicane/controller/baselines.hpp"
+#include "chicane/controller/cubic_mpc.hpp"
+#include "chicane/controller/speed_plan.hpp"
+#include "chicane/controller/tracking_mpc.hpp"
+#include "controller/sample_road.hpp"
+
+namespace chicane::controller {
+namespace {
+
+std::unique_ptr<Controller> tracking(const TrackingMpcOptions& options = {}) {
+  return std::move(*make_tracking_mpc(options, model::udacity_params()));
+}
+std::unique_ptr<Controller> cubic(const CubicMpcOptions& options = {}) {
+  return std::move(*make_cubic_mpc(options, model::udacity_params()));
+}
+
+/// The answer after a few cycles in which the car stands still in `now`'s world.
+StepResult answer(Controller& controller, model::Measurement now) {
+  for (int i = 0; i < 5; ++i) {
+    static_cast<void>(controller.step(now, Deadline::never()));
+    now.time += 0.001;
+  }
+  return controller.step(now, Deadline::never());
+}
+
+double sum(const Explanation& explanation) {
+  return std::accumulate(explanation.cost_terms.begin(),
+                         explanation.cost_terms.begin() + explanation.cost_term_count, 0.0);
+}
+
+double term(const Controller& controller, const Explanation& explanation, std::string_view name) {
+  const auto names = controller.cost_terms();
+  const auto found = std::find(names.begin(), names.end(), name);
+  EXPECT_NE(found, names.end()) << name;
+  return explanation.cost_terms[static_cast<std::size_t>(found - names.begin())];
+}
+
+TEST(Explanation, CostTermsAddUpToTheSolversCost) {
+  for (const auto& controller : {tracking(), cubic()}) {
+    const StepReport report = answer(*controller, on_a_left_bend()).report;
+    ASSERT_EQ(report.explanation.cost_term_count, static_cast<int>(controller->cost_terms().size()));
+    ASSERT_GT(report.solve.cost, 0.0);
+    // 1e-9: the same squares, added in another order.
+    EXPECT_NEAR(sum(report.explanation), report.solve.cost, 1e-9 * report.solve.cost) << controller->name();
+  }
+}
+
+TEST(Explanation, ATermIsPaidForWhatItNames) {
+  model::Measurement aside = on_a_left_bend();
+  aside.y += 1.0;
+  const auto controller = tracking();
+  const Explanation near = answer(*controller, on_a_left_bend()).report.explanation;
+  controller->reset();
+  const Explanation far = answer(*controller, aside).report.explanation;
+  EXPECT_GT(term(*controller, far, "lateral"), 3.0 * term(*controller, near, "lateral"));
+  EXPECT_EQ(term(*controller, near, "edge"), 0.0);
+
+  const auto priced = cubic({.weight_speed_steer = 10.0});
+  EXPECT_GT(term(*priced, answer(*priced, on_a_left_bend()).report.explanation, "speed_steer"), 0.0);
+  const auto free = cubic();
+  EXPECT_EQ(term(*free, answer(*free, on_a_left_bend()).report.explanation, "speed_steer"), 0.0);
+}
+
+TEST(Explanation, NamesTheEdgeTheCarIsBeyond) {
+  model::Measurement aside = on_a_left_bend();
+  aside.y += 2.5;  // 3 m left of the line, more than the road is assumed to be wide
+  const auto controller = tracking({.assumed_half_width = 2.0, .smoothing_width = 0.0});
+  const Explanation left = answer(*controller, aside).report.explanation;
+  EXPECT_NE(left.active_now & bit(Constraint::kLeftEdge), 0U);
+  EXPECT_EQ(left.active_ahead & bit(Constraint::kRightEdge), 0U);
+  controller->reset();
+  const Explanation right = answer(*controller, mirrored(aside)).report.explanation;
+  EXPECT_NE(right.active_now & bit(Constraint::kRightEdge), 0U);
+}
+
+TEST(Explanation, SaysWhatLimitsTheSpeed) {
+  model::Measurement now = on_a_left_bend();
+  now.speed = 5.0;
+  const auto slow = tracking();
+  const Explanation power = answer(*slow, now).report.explanation;
+  EXPECT_NE(power.active_now & bit(Constraint::kThrottleMax), 0U);
+  EXPECT_EQ(power.speed_limiter, SpeedLimiter::kPower);
+
+  const auto limited = tracking({.speed_limit = 15.0});
+  const Explanation asked = answer(*limited, on_a_left_bend()).report.explanation;
+  EXPECT_EQ(asked.speed_limiter, SpeedLimiter::kAsked);
+  EXPECT_DOUBLE_EQ(asked.speed_limit, 15.0);
+
+  now.speed = 45.0;  // with 54 m of known road ahead
+  const auto blind = tracking();
+  EXPECT_EQ(answer(*blind, now).report.explanation.speed_limiter, SpeedLimiter::kSight);
+
+  const auto described = cubic({.speed_reference = 15.0});
+  EXPECT_EQ(answer(*described, on_a_left_bend()).report.explanation.speed_limiter, SpeedLimiter::kAsked);
+}
+
+TEST(Explanation, BaselinesKnowTheirInputsAndTheBendAhead) {
+  const auto pid = std::move(*make_pid({.proportional_gain = 10.0, .speed = {}}, model::udacity_params()));
+  const Explanation full_lock = answer(*pid, on_a_left_bend()).report.explanation;
+  EXPECT_NE(full_lock.active_now & bit(Constraint::kSteerLimit), 0U);
+  EXPECT_EQ(full_lock.cost_term_count, 0);
+  EXPECT_TRUE(pid->cost_terms().empty());
+
+  // 80 m of radius at 1 m/s² allow 9 m/s.
+  const PidOptions gentle{.proportional_gain = 0.06,
+                          .speed = {.speed_reference = 30.0, .lateral_acceleration_limit = 1.0}};
+  const auto careful = std::move(*make_pid(gentle, model::udacity_params()));
+  const Explanation bend = answer(*careful, on_a_left_bend()).report.explanation;
+  EXPECT_TRUE(bend.speed_limiter == SpeedLimiter::kCurvature || bend.speed_limiter == SpeedLimiter::kBraking);
+  EXPECT_LT(bend.speed_limit, 15.0);
+}
+
+TEST(Explanation, IsEmptyOnARungBelowTheController) {
+  model::Measurement blind = on_a_left_bend();
+  blind.waypoint_count = 0;
+  for (const auto& controller : {tracking(), cubic()}) {
+    const StepReport report = controller->step(blind, Deadline::never()).report;
+    ASSERT_NE(report.rung, Rung::kController);
+    EXPECT_EQ(report.explanation.cost_term_count, 0) << controller->name();
+    EXPECT_EQ(report.explanation.active_ahead, 0U);
+    EXPECT_TRUE(std::isnan(report.explanation.speed_limit));
+  }
+}
+
+/// A straight of 300 m, a bend of 40 m radius, a straight of 300 m, open.
+path::Path straight_bend_straight() {
+  std::vector<Vec2> points;
+  constexpr double kRadius = 40.0;
+  for (int i = 0; i < 60; ++i) points.emplace_back(5.0 * i - 300.0, 0.0);
+  for (int i = 0; i <= 12; ++i) {
+    const double angle = kPi / 2.0 * i / 12.0;
+    points.emplace_back(kRadius * sin(angle), kRadius * (1.0 - cos(angle)));
+  }
+  for (int i = 1; i <= 60; ++i) points.emplace_back(kRadius, kRadius + 5.0 * i);
+  path::Path path = path::Path::with_capacity(static_cast<int>(points.size()));
+  EXPECT_TRUE(path.rebuild(points, false));
+  return path;
+}
+
+TEST(SpeedPlan, KnowsWhichPassBoundIt) {
+  const path::Path path = straight_bend_straight();
+  SpeedPlan plan;
+  plan.rebuild(path, model::road_car_params(), {.speed_limit = 35.0});
+  std::vector<SpeedLimiter> met;
+  for (double s = 0.0; s < path.length(); s += 1.0) {
+    if (met.empty() || met.back() != plan.at(s).limiter) met.push_back(plan.at(s).limiter);
+  }
+  const std::vector expected{SpeedLimiter::kAsked, SpeedLimiter::kBraking, SpeedLimiter::kCurvature,
+                             SpeedLimiter::kPower, SpeedLimiter::kSight};
+  std::size_t next = 0;
+  for (const SpeedLimiter limiter : met) {
+    if (next < expected.size() && limiter == expected[next]) ++next;
+  }
+  EXPECT_EQ(next, expected.size()) << "the order of a straight, a bend and an end";
+  EXPECT_EQ(met.front(), SpeedLimiter::kAsked);
+  EXPECT_EQ(met.back(), SpeedLimiter::kSight);
+}
+
+}  // namespace
+}  // namespace chicane::controller
