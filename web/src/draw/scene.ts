@@ -14,6 +14,7 @@ export interface Scene {
   readonly traceY: Float64Array;
   readonly plan: Plan | null;
   readonly speedScale: number; // the speed that has the last colour [m/s]
+  readonly ghost: { x: number; y: number; yaw: number } | null; // drawn in the car's shape
   readonly car: { x: number; y: number; yaw: number; isBraking: boolean; shape: CarShape } | null;
 }
 
@@ -148,6 +149,23 @@ function drawCar(ctx: Context, car: NonNullable<Scene['car']>, colours: Theme, p
   ctx.restore();
 }
 
+/** The outline of another drive's car; nothing where it would only smudge the car itself. */
+function drawGhost(ctx: Context, ghost: NonNullable<Scene['ghost']>, car: NonNullable<Scene['car']>, colours: Theme, px: number): void {
+  const { shape } = car;
+  const grown = Math.max(1, (18 * px) / (shape.front - shape.rear));
+  if (Math.hypot(ghost.x - car.x, ghost.y - car.y) < grown) return;
+  ctx.save();
+  ctx.translate(ghost.x, ghost.y);
+  ctx.rotate(ghost.yaw);
+  ctx.scale(grown, grown);
+  ctx.beginPath();
+  ctx.roundRect(shape.rear, -0.84 * shape.halfWidth, shape.front - shape.rear, 1.68 * shape.halfWidth, [0.5, 0.9, 0.9, 0.5]);
+  ctx.globalAlpha = 0.45;
+  ctx.fillStyle = colours.accent;
+  ctx.fill();
+  ctx.restore();
+}
+
 /** Draws the picture on the whole canvas, which has `ratio` device pixels to a CSS pixel. */
 export function drawScene(ctx: Context, scene: Scene, camera: Camera, colours: Theme, ratio: number): void {
   ctx.setTransform(1, 0, 0, 1, 0, 0);
@@ -162,6 +180,7 @@ export function drawScene(ctx: Context, scene: Scene, camera: Camera, colours: T
   drawTrace(ctx, scene.traceX, scene.traceY, colours.trace, Math.max(0.2, 2 * px));
   stroke(ctx, trail(scene.reference), scene.road ? colours.reference : colours.faint, Math.max(0.12, 1.5 * px));
   if (scene.plan) drawPlan(ctx, scene.plan, scene.speedScale, Math.max(0.45, 4 * px));
+  if (scene.ghost && scene.car) drawGhost(ctx, scene.ghost, scene.car, colours, px);
   if (scene.car) drawCar(ctx, scene.car, colours, px);
 }
 

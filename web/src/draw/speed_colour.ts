@@ -11,15 +11,18 @@ const STOPS: readonly (readonly [number, number, number])[] = [
   [255, 112, 77],
 ];
 
-/** Colour for a share of the top speed in [0, 1]. */
-export function speedColour(share: number): string {
+/** Red, green, blue in [0, 255] for a share of the top speed in [0, 1]. */
+export function speedRgb(share: number): readonly [number, number, number] {
   const at = clamp(Number.isFinite(share) ? share : 0, 0, 1) * (STOPS.length - 1);
   const i = Math.min(Math.floor(at), STOPS.length - 2);
   const [from, to] = [STOPS[i], STOPS[i + 1]];
-  if (!from || !to) return 'rgb(0 0 0)';
+  if (!from || !to) return [0, 0, 0];
   const channel = (k: 0 | 1 | 2): number => Math.round(mix(from[k], to[k], at - i));
-  return `rgb(${channel(0)} ${channel(1)} ${channel(2)})`;
+  return [channel(0), channel(1), channel(2)];
 }
+
+/** The same as a CSS colour. */
+export const speedColour = (share: number): string => `rgb(${speedRgb(share).join(' ')})`;
 
 /** The upper end of the colour scale: a multiple of 20 mph [m/s]. */
 export const topOfScale = (topSpeed: number): number => (Math.ceil(Math.max(20, topSpeed * MPH) / 20 - 1e-9) * 20) / MPH;

@@ -7,6 +7,11 @@ import { speedGradient, topOfScale } from '../draw/speed_colour';
 import { onThemeChange, theme } from '../draw/theme';
 import { fixed, MPH } from '../lib/format';
 import { boundsOf, extrapolate, wrapAngle, type Box, type Point } from '../lib/math';
+import { CAMERAS } from '../scene3d/cameras';
+import { Scene3dView } from '../scene3d/scene3d_view';
+import type { GhostPose } from '../scene3d/ghost';
+import { session } from '../scene3d/session';
+import { camera, choose, dimension, isSpared, nextCamera, obstacle, shows3d, wants3d, zoomCamera, type Dimension } from '../scene3d/view_state';
 import { isPaused, link, live, run, shown } from '../state/app_state';
 import { everyFrame } from '../state/ticker';
 
@@ -19,16 +24,27 @@ const VIEWS: readonly { view: View; label: string; title: string }[] = [
 ];
 
 export const view = signal<View>('behind');
+const INSET_INTERVAL_MS = 80; // the small map beside the 3D picture
+
 const metresAcross = signal(100);
 const bar = signal({ metres: 10, pixels: 80 });
 const scaleTop = signal(20 / MPH);
+const ghostLabel = signal<string | null>(null);
 
+/** The next camera, or the next cut of the map where that is what one sees. */
 export function nextView(): void {
+  if (shows3d.value) return nextCamera();
   const at = VIEWS.findIndex((each) => each.view === view.value);
   view.value = VIEWS[(at + 1) % VIEWS.length]?.view ?? 'behind';
 }
 
+/** Between the picture in three dimensions and the map. */
+export function toggleDimension(): void {
+  choose(wants3d.value ? '2d' : '3d');
+}
+
 export function zoom(factor: number): void {
+  if (shows3d.value) return zoomCamera(factor);
   metresAcross.value = zoomed(metresAcross.value, factor);
 }
 
@@ -41,6 +57,7 @@ class Painter {
   #roadVersion = -1;
   #heading = NaN; // smoothed yaw of the car [rad]
   #lastPaint = 0;
+  readonly #ghost: GhostPose = { x: 0, y: 0, yaw: 0, steer: 0 };
 
   constructor(canvas: HTMLCanvasElement) {
     this.#canvas = canvas;
@@ -48,6 +65,8 @@ class Painter {
   }
 
   paint(now: number): void {
+    const isInset = shows3d.value;
+    if (isInset && now - this.#lastPaint < INSET_INTERVAL_MS) return;
     const ratio = Math.min(devicePixelRatio, 2);
     const { clientWidth: width, clientHeight: height } = this.#canvas;
     if (!this.#context || width === 0 || height === 0) return;
@@ -55,7 +74,8 @@ class Painter {
     if (this.#roadVersion !== live.roadVersion) this.#renewRoad();
 
     const car = this.#carNow(now);
-    const camera = this.#camera(car, now, width, height);
+    const camera = this.#camera(car, now, width, height, isInset);
+    this.#lastPaint = now;
     const top = topOfScale(live.topSpeed);
     if (scaleTop.value !== top) scaleTop.value = top;
     const length = scaleBar(camera.scale, Math.min(120, width / 4));
@@ -68,10 +88,11 @@ class Painter {
       traceY: live.trace.column(1),
       plan: live.plan,
       speedScale: top,
+      ghost: this.#ghostNow(),
       car,
     };
     drawScene(this.#context, scene, camera, theme(), ratio);
-    if (view.value !== 'whole' && this.#road && this.#roadBox) this.#inset(car, width, ratio);
+    if (!isInset && view.value !== 'whole' && this.#road && this.#roadBox) this.#inset(car, width, ratio);
   }
 
   #inset(car: Point | null, width: number, ratio: number): void {
@@ -106,38 +127,50 @@ class Painter {
     return { ...pose, isBraking: frame.throttle_applied < 0, shape: carShape(size, frame.steer_applied_rad) };
   }
 
-  #camera(car: Scene['car'], now: number, width: number, height: number): Camera {
+  #ghostNow(): GhostPose | null {
+    return session.ghost?.poseAt(live.frame?.lap_time_s ?? NaN, this.#ghost) ? this.#ghost : null;
+  }
+
+  #camera(car: Scene['car'], now: number, width: number, height: number, isInset: boolean): Camera {
     const box = this.#roadBox;
-    if (view.value === 'whole' || !car) {
+    if (isInset || view.value === 'whole' || !car) {
       const all = box ?? boundsOf(car ? [car, ...live.reference] : [{ x: 0, y: 0 }, { x: 100, y: 60 }]);
-      return fitting(all as Box, width, height, 52);
+      return fitting(all as Box, width, height, isInset ? 10 : 52);
     }
     if (view.value === 'above') return above(car, width, height, metresAcross.value);
     // A quarter of a second of smoothing: corners turn the world, wheel movements do not.
     const share = Number.isNaN(this.#heading) ? 1 : 1 - Math.exp(-(now - this.#lastPaint) / 250);
     const from = Number.isNaN(this.#heading) ? car.yaw : this.#heading;
     this.#heading = from + wrapAngle(car.yaw - from) * share;
-    this.#lastPaint = now;
     return behind(car, this.#heading, width, height, metresAcross.value);
   }
 }
 
+function Swatch({ name, label, isMinor = false }: { name: string; label: string; isMinor?: boolean }) {
+  return (
+    <div class={isMinor ? 'legend-item minor' : 'legend-item'}>
+      <span class={`swatch ${name}`} />
+      <span>{label}</span>
+    </div>
+  );
+}
+
 function Legend() {
   const top = scaleTop.value * MPH;
+  const ghost = ghostLabel.value;
   return (
     <div class="legend">
-      <div class="legend-item">
-        <span class="scale-bar" style={{ width: `${bar.value.pixels}px` }} />
-        <span>{bar.value.metres} m</span>
-      </div>
-      <div class="legend-item">
-        <span class="swatch reference" />
-        <span>reference</span>
-      </div>
-      <div class="legend-item">
-        <span class="swatch trace" />
-        <span>driven</span>
-      </div>
+      {!shows3d.value && (
+        <div class="legend-item">
+          <span class="scale-bar" style={{ width: `${bar.value.pixels}px` }} />
+          <span>{bar.value.metres} m</span>
+        </div>
+      )}
+      <Swatch name="reference" label="reference" />
+      <Swatch name="trace" label="driven" />
+      {ghost !== null && <Swatch name="ghost" label={ghost} />}
+      {shows3d.value && <Swatch name="rubber" label="tyres sliding" isMinor />}
+      {shows3d.value && <Swatch name="brake" label="braking begins" isMinor />}
       <div class="legend-item">
         <span>plan 0</span>
         <span class="gradient" style={{ background: speedGradient() }} />
@@ -154,7 +187,67 @@ function describeMap(): string {
   return `Map of the track: the car is ${place} at ${fixed(frame.speed_mps * MPH, 0)} miles per hour`;
 }
 
-export function TrackView() {
+interface Choice<T> {
+  readonly view: T;
+  readonly label: string;
+  readonly title: string;
+}
+
+function Segments<T extends string>({ name, choices, chosen, choose: pick }: { name: string; choices: readonly Choice<T>[]; chosen: T; choose: (view: T) => void }) {
+  return (
+    <div class="segments" role="group" aria-label={name}>
+      {choices.map((each) => (
+        <button key={each.view} type="button" title={each.title} aria-pressed={chosen === each.view} onClick={() => pick(each.view)}>
+          {each.label}
+        </button>
+      ))}
+    </div>
+  );
+}
+
+const DIMENSIONS: readonly Choice<Dimension>[] = [
+  { view: '3d', label: '3D', title: 'The road as one stands on it (V)' },
+  { view: '2d', label: '2D', title: 'The map (V)' },
+];
+
+function MapControls() {
+  const is3d = shows3d.value;
+  const canZoom = is3d || view.value !== 'whole';
+  return (
+    <div class="map-controls">
+      <Segments name="Dimensions" choices={DIMENSIONS} chosen={is3d ? '3d' : '2d'} choose={choose} />
+      {is3d ? (
+        <Segments name="View" choices={CAMERAS} chosen={camera.value} choose={(next) => (camera.value = next)} />
+      ) : (
+        <Segments name="View" choices={VIEWS} chosen={view.value} choose={(next) => (view.value = next)} />
+      )}
+      {canZoom && (
+        <div class="segments" role="group" aria-label="Zoom">
+          <button type="button" title="Zoom out (−)" aria-label="Zoom out" onClick={() => zoom(1.25)}>
+            −
+          </button>
+          <button type="button" title="Zoom in (+)" aria-label="Zoom in" onClick={() => zoom(0.8)}>
+            +
+          </button>
+        </div>
+      )}
+    </div>
+  );
+}
+
+/** Why there is no 3D picture, where somebody could expect one. */
+function Note() {
+  if (dimension.value === '3d' && obstacle.value !== null) {
+    return (
+      <p class="obstacle warning" role="status">
+        {obstacle.value}
+      </p>
+    );
+  }
+  return isSpared.value ? <p class="obstacle">No graphics card here: 3D is drawn by the processor, with fewer pictures.</p> : null;
+}
+
+function usePainter() {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
     if (!canvas.current) return undefined;
@@ -166,7 +259,11 @@ export function TrackView() {
       zoom(Math.exp(event.deltaY * 0.0015));
     };
     element.addEventListener('wheel', onWheel, { passive: false });
-    const stop = everyFrame((now) => painter.paint(now));
+    const stop = everyFrame((now) => {
+      painter.paint(now);
+      const label = session.ghost?.label ?? null;
+      if (ghostLabel.value !== label) ghostLabel.value = label;
+    });
     const unwatch = onThemeChange(() => painter.paint(performance.now()));
     return () => {
       stop();
@@ -174,35 +271,19 @@ export function TrackView() {
       element.removeEventListener('wheel', onWheel);
     };
   }, []);
+  return canvas;
+}
 
+export function TrackView() {
+  const canvas = usePainter();
+  const label = describeMap();
   return (
-    <section class="panel map" aria-label="Track">
-      <canvas ref={canvas} role="img" aria-label={describeMap()} />
-      <div class="map-controls">
-        <div class="segments" role="group" aria-label="View">
-          {VIEWS.map((each) => (
-            <button
-              key={each.view}
-              type="button"
-              title={each.title}
-              aria-pressed={view.value === each.view}
-              onClick={() => (view.value = each.view)}
-            >
-              {each.label}
-            </button>
-          ))}
-        </div>
-        {view.value !== 'whole' && (
-          <div class="segments" role="group" aria-label="Zoom">
-            <button type="button" title="Zoom out (−)" aria-label="Zoom out" onClick={() => zoom(1.25)}>
-              −
-            </button>
-            <button type="button" title="Zoom in (+)" aria-label="Zoom in" onClick={() => zoom(0.8)}>
-              +
-            </button>
-          </div>
-        )}
-      </div>
+    <section class={shows3d.value ? 'panel map has-3d' : 'panel map'} aria-label="Track">
+      {wants3d.value && <Scene3dView label={label.replace('Map', 'Picture')} />}
+      {/* Always there: in full, or as the small map beside the 3D picture. */}
+      <canvas ref={canvas} class="map-2d" role="img" aria-label={label} />
+      <MapControls />
+      <Note />
       <Legend />
     </section>
   );

@@ -1,0 +1,54 @@
+/** How far the body leans at 1 g, and how its springs answer: chosen for looks, not taken from the plant. */
+const ROLL_PER_G = 0.062; // [rad]
+const PITCH_PER_G = 0.038; // [rad]
+const FREQUENCY = 2 * Math.PI * 1.7; // [rad/s]
+const DAMPING = 0.5;
+const GRAVITY = 9.81;
+const STEP_S = 1 / 240;
+
+/** One lean of the body: a mass on a spring with a damper, drawn to where the acceleration would hold it. */
+class Lean {
+  angle = 0;
+  #rate = 0;
+
+  step(aim: number, dt: number): void {
+    this.#rate += (FREQUENCY * FREQUENCY * (aim - this.angle) - 2 * DAMPING * FREQUENCY * this.#rate) * dt;
+    this.angle += this.#rate * dt;
+  }
+
+  rest(): void {
+    this.angle = 0;
+    this.#rate = 0;
+  }
+}
+
+/** Roll (right side down positive) and pitch (nose down positive) of a body that leans in its springs [rad]. */
+export class BodyMotion {
+  readonly #roll = new Lean();
+  readonly #pitch = new Lean();
+
+  get roll(): number {
+    return this.#roll.angle;
+  }
+
+  get pitch(): number {
+    return this.#pitch.angle;
+  }
+
+  /** Goes on by `seconds` of the run with the body's accelerations forward and to the left [m/s²]. */
+  advance(seconds: number, ax: number, ay: number): void {
+    const share = (a: number): number => Math.max(-1.6, Math.min(1.6, Number.isFinite(a) ? a / GRAVITY : 0));
+    // A bend to the left pushes the body to the right; braking pushes its nose down.
+    const [roll, pitch] = [ROLL_PER_G * share(ay), -PITCH_PER_G * share(ax)];
+    for (let left = Math.min(seconds, 0.25); left > 1e-9; left -= STEP_S) {
+      const dt = Math.min(left, STEP_S);
+      this.#roll.step(roll, dt);
+      this.#pitch.step(pitch, dt);
+    }
+  }
+
+  rest(): void {
+    this.#roll.rest();
+    this.#pitch.rest();
+  }
+}

@@ -1,0 +1,67 @@
+import { describe, expect, it } from 'vitest';
+import { carModel } from './car_mesh';
+import type { MeshData } from './mesh';
+
+const SIZE = { front_axle_m: 1.25, rear_axle_m: 1.45, track_width_m: 1.6, tire_width_m: 0.205, body_length_m: 4.3, body_width_m: 1.8 };
+const model = carModel(SIZE);
+
+function corners({ positions }: MeshData): number[][] {
+  const all: number[][] = [];
+  for (let i = 0; i < positions.length; i += 3) all.push([positions[i] ?? NaN, positions[i + 1] ?? NaN, positions[i + 2] ?? NaN]);
+  return all;
+}
+
+/** Volume inside a closed skin by the divergence theorem: positive when its triangles face outwards. */
+function volume({ positions }: MeshData): number {
+  let sum = 0;
+  for (let i = 0; i < positions.length; i += 9) {
+    const [ax = 0, ay = 0, az = 0, bx = 0, by = 0, bz = 0, cx = 0, cy = 0, cz = 0] = positions.slice(i, i + 9);
+    sum += ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx);
+  }
+  return sum / 6;
+}
+
+describe('the car', () => {
+  it('is as long and as wide as it is told, and stands on the road', () => {
+    const all = [...corners(model.paint), ...corners(model.dark)];
+    const xs = all.map(([x]) => x ?? NaN);
+    const ys = all.map(([, y]) => y ?? NaN);
+    const zs = all.map(([, , z]) => z ?? NaN);
+    expect(Math.max(...xs) - Math.min(...xs)).toBeCloseTo(4.3, 0);
+    expect(Math.max(...ys)).toBeLessThanOrEqual(model.width / 2 + 0.02);
+    expect(Math.min(...zs)).toBeGreaterThan(0.05);
+    expect(Math.max(...zs)).toBeLessThan(1.3);
+    expect(model.wheels.map(({ x }) => x)).toEqual([1.25, 1.25, -1.45, -1.45]);
+    expect(model.wheels.map(({ y }) => y)).toEqual([0.8, -0.8, 0.8, -0.8]);
+    for (const { radius } of model.wheels) expect(radius).toBe(model.wheelRadius);
+  });
+
+  it('looks the same in a mirror', () => {
+    for (const part of [model.paint, model.dark, model.lamps, model.headlamps]) {
+      const key = ([x, y, z]: number[], side: number): string => [x, (y ?? 0) * side || 0, z].map((v) => (v ?? 0).toFixed(4).replace('-0.0000', '0.0000')).join();
+      const here = new Set(corners(part).map((corner) => key(corner, 1)));
+      const there = new Set(corners(part).map((corner) => key(corner, -1)));
+      expect([...there].filter((corner) => !here.has(corner))).toEqual([]);
+    }
+  });
+
+  it('turns its skin outwards', () => {
+    for (const part of ['paint', 'dark', 'lamps', 'headlamps', 'helmet', 'hand', 'wheel'] as const) expect(volume(model[part]), part).toBeGreaterThan(0);
+    // A wheel of radius r and width w lies within a cylinder.
+    expect(volume(model.wheel)).toBeLessThan(Math.PI * model.wheelRadius ** 2 * 0.24);
+  });
+
+  it('has finite normals of length one', () => {
+    for (const part of [model.paint, model.wheel, model.hand]) {
+      for (let i = 0; i < part.normals.length; i += 3) {
+        expect(Math.hypot(part.normals[i] ?? NaN, part.normals[i + 1] ?? NaN, part.normals[i + 2] ?? NaN)).toBeCloseTo(1, 5);
+      }
+    }
+  });
+
+  it('can be small', () => {
+    const toy = carModel({ front_axle_m: 0.16, rear_axle_m: 0.16, track_width_m: 0.2, tire_width_m: 0.03, body_length_m: 0.5, body_width_m: 0.27 });
+    expect(toy.wheelRadius).toBeLessThan(0.06);
+    expect(Math.max(...corners(toy.paint).map(([, , z]) => z ?? NaN))).toBeLessThan(0.15);
+  });
+});

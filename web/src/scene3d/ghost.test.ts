@@ -1,0 +1,90 @@
+import { describe, expect, it } from 'vitest';
+import type { Frame } from '../protocol/topics';
+import { LapRecorder, type GhostPose } from './ghost';
+
+const PERIOD = 0.05;
+
+/** Drives laps of `times` seconds round a circle, from `start` seconds into the first, and tells the recorder. */
+function drive(recorder: LapRecorder, times: readonly number[], { begin = 0, start = 0, offTrackIn = -1 } = {}): void {
+  let time = begin;
+  let events = 0;
+  times.forEach((lapTime, lap) => {
+    if (lap === offTrackIn) ++events;
+    for (let t = lap === 0 ? start : 0; t < lapTime - 1e-9; t += PERIOD) {
+      const angle = (2 * Math.PI * t) / lapTime;
+      const frame = {
+        time_s: time,
+        lap,
+        lap_time_s: t,
+        last_lap_time_s: lap > 0 ? (times[lap - 1] ?? NaN) : NaN,
+        x_m: 50 * Math.cos(angle),
+        y_m: 50 * Math.sin(angle),
+        yaw_rad: angle + Math.PI / 2,
+        steer_applied_rad: 0.05,
+        off_track_events: lap === offTrackIn && t > 1 ? events : lap > offTrackIn ? events : 0,
+      };
+      recorder.push(frame as Frame);
+      time += PERIOD;
+    }
+  });
+}
+
+describe('the ghost', () => {
+  it('is the best whole lap, and goes as it went', () => {
+    const recorder = new LapRecorder();
+    drive(recorder, [12, 10, 11, 3]);
+    const ghost = recorder.best;
+    expect(ghost?.lapTime).toBe(10);
+    expect(ghost?.label).toBe('best lap 0:10.00');
+    const pose: GhostPose = { x: 0, y: 0, yaw: 0, steer: 0 };
+    for (const time of [0, 2.51, 7.77, 9.9, 1.2]) {
+      expect(ghost?.poseAt(time, pose)).toBe(true);
+      const angle = (2 * Math.PI * time) / 10;
+      expect(Math.hypot(pose.x - 50 * Math.cos(angle), pose.y - 50 * Math.sin(angle))).toBeLessThan(0.02);
+      expect(pose.yaw).toBeCloseTo(angle + Math.PI / 2, 4);
+    }
+  });
+
+  it('is nowhere before its lap and after it', () => {
+    const recorder = new LapRecorder();
+    drive(recorder, [10, 1]);
+    const pose: GhostPose = { x: 7, y: 7, yaw: 7, steer: 7 };
+    for (const time of [-0.1, 10.01, NaN]) expect(recorder.best?.poseAt(time, pose)).toBe(false);
+    expect(pose.x).toBe(7);
+  });
+
+  it('is no lap that was joined half way, left the road, or is still being driven', () => {
+    const recorder = new LapRecorder();
+    drive(recorder, [10, 1], { start: 4 });
+    expect(recorder.best).toBeNull();
+    drive(recorder, [10, 12, 2], { begin: 100, offTrackIn: 0 });
+    expect(recorder.best?.lapTime).toBe(12);
+  });
+
+  it('stays to be raced after a reset, and goes with its track', () => {
+    const recorder = new LapRecorder();
+    drive(recorder, [10, 3]);
+    drive(recorder, [9, 3]); // from time 0 again
+    expect(recorder.best?.lapTime).toBe(9);
+    drive(recorder, [11, 3]);
+    expect(recorder.best?.lapTime).toBe(9);
+    recorder.clear();
+    expect(recorder.best).toBeNull();
+  });
+
+  it('has a line of about the length of the lap', () => {
+    const recorder = new LapRecorder();
+    drive(recorder, [10, 1]);
+    const line = recorder.best?.line ?? new Float32Array();
+    let length = 0;
+    for (let i = 2; i < line.length; i += 2) length += Math.hypot((line[i] ?? 0) - (line[i - 2] ?? 0), (line[i + 1] ?? 0) - (line[i - 1] ?? 0));
+    expect(length).toBeGreaterThan(0.98 * 2 * Math.PI * 50);
+    expect(length).toBeLessThan(2 * Math.PI * 50);
+  });
+
+  it('forgets a lap too long to keep', () => {
+    const recorder = new LapRecorder();
+    drive(recorder, [31_000 * PERIOD, 1]);
+    expect(recorder.best).toBeNull();
+  });
+});

@@ -1,0 +1,123 @@
+import { wrapAngle } from '../lib/math';
+import type { Frame } from '../protocol/topics';
+
+/** Where another car was, and how its front wheels stood, at a time of the lap. */
+export interface GhostPose {
+  x: number;
+  y: number;
+  yaw: number;
+  steer: number;
+}
+
+/** Another drive round the same track, by lap time: the best lap of this session, a lap of a log, another controller's. */
+export interface GhostSource {
+  /** For people, e.g. "best lap 0:26.60". */
+  readonly label: string;
+  /** Time for the whole lap [s]. */
+  readonly lapTime: number;
+  /** Writes where it was `time` seconds into its lap; false when it was nowhere then. */
+  poseAt(time: number, into: GhostPose): boolean;
+  /** Its line, for drawing: x, y one after another [m]; fixed for the life of the source. */
+  readonly line: Float32Array;
+}
+
+const ROW = 5; // time, x, y, yaw, steer
+const CAPACITY = 30_000; // rows: 10 minutes at 50 frames a second
+const LINE_SPACING_M = 1;
+
+/** A lap kept as rows of numbers; poses between rows are interpolated. */
+export class RecordedLap implements GhostSource {
+  readonly line: Float32Array;
+  readonly #rows: Float32Array;
+  #last = 0; // row found by the last question: the next one is nearly always close
+
+  constructor(
+    rows: Float32Array,
+    readonly lapTime: number,
+    readonly label: string,
+  ) {
+    this.#rows = rows;
+    const line: number[] = [];
+    for (let i = 0; i + ROW <= rows.length; i += ROW) {
+      const [x, y] = [rows[i + 1] ?? NaN, rows[i + 2] ?? NaN];
+      const far = Math.hypot(x - (line.at(-2) ?? Infinity), y - (line.at(-1) ?? Infinity)) >= LINE_SPACING_M;
+      if (far) line.push(x, y);
+    }
+    this.line = new Float32Array(line);
+  }
+
+  poseAt(time: number, into: GhostPose): boolean {
+    const rows = this.#rows;
+    const count = rows.length / ROW;
+    const at = (row: number, column: number): number => rows[row * ROW + column] ?? NaN;
+    if (count < 2 || !(time >= 0) || time > this.lapTime) return false;
+    let row = this.#last;
+    if (row > count - 2 || at(row, 0) > time) row = 0;
+    while (row < count - 2 && at(row + 1, 0) <= time) ++row;
+    this.#last = row;
+    const span = at(row + 1, 0) - at(row, 0);
+    const share = span > 0 ? Math.min(Math.max((time - at(row, 0)) / span, 0), 1) : 0;
+    const mix = (column: number): number => at(row, column) + (at(row + 1, column) - at(row, column)) * share;
+    into.x = mix(1);
+    into.y = mix(2);
+    into.yaw = at(row, 3) + wrapAngle(at(row + 1, 3) - at(row, 3)) * share;
+    into.steer = mix(4);
+    return true;
+  }
+}
+
+const clock = (seconds: number): string => `${Math.floor(seconds / 60)}:${(seconds % 60).toFixed(2).padStart(5, '0')}`;
+
+/** Watches frames go by and keeps the best whole lap, in fixed memory. A lap that left the road is not kept. */
+export class LapRecorder {
+  best: RecordedLap | null = null;
+  readonly #rows = new Float32Array(CAPACITY * ROW);
+  #count = 0;
+  #isWhole = false;
+  #lap = NaN; // none yet
+  #offTrackEvents = 0;
+  #time = -Infinity;
+
+  /** Forgets everything: another run. */
+  clear(): void {
+    this.best = null;
+    this.#begin(NaN, false, 0);
+    this.#time = -Infinity;
+  }
+
+  push(frame: Frame): void {
+    if (frame.time_s === this.#time) return;
+    // A reset: the lap begun is lost, the best one stays to be raced.
+    if (frame.time_s < this.#time) this.#begin(NaN, false, 0);
+    this.#time = frame.time_s;
+    if (!Number.isFinite(frame.lap_time_s)) return;
+    if (frame.lap !== this.#lap) {
+      const isNext = frame.lap === this.#lap + 1;
+      if (isNext && this.#isWhole) this.#finish(frame);
+      // Only what was seen from the line on is a whole lap.
+      this.#begin(frame.lap, isNext || frame.lap_time_s < 0.5, frame.off_track_events);
+    }
+    this.#add(frame);
+  }
+
+  #begin(lap: number, isWhole: boolean, events: number): void {
+    this.#lap = lap;
+    this.#isWhole = isWhole;
+    this.#count = 0;
+    this.#offTrackEvents = events;
+  }
+
+  #add(frame: Frame): void {
+    if (this.#count >= CAPACITY) this.#isWhole = false; // an endless lap
+    if (!this.#isWhole) return;
+    this.#rows.set([frame.lap_time_s, frame.x_m, frame.y_m, frame.yaw_rad, frame.steer_applied_rad], this.#count * ROW);
+    ++this.#count;
+  }
+
+  #finish(frame: Frame): void {
+    const time = frame.last_lap_time_s;
+    const isClean = frame.off_track_events === this.#offTrackEvents;
+    if (!(time > 0) || !isClean || this.#count < 2 || (this.best && time >= this.best.lapTime)) return;
+    this.best = new RecordedLap(this.#rows.slice(0, this.#count * ROW), time, `best lap ${clock(time)}`);
+  }
+}

@@ -1,0 +1,183 @@
+import { clamp, extrapolate, wrapAngle } from '../lib/math';
+import type { Frame } from '../protocol/topics';
+
+/** What of a frame is needed to draw the car. SI, radians, W; not-a-number is unknown. */
+export interface Motion {
+  time: number; // of the run [s]
+  x: number;
+  y: number;
+  yaw: number; // unwrapped within a Playout
+  vx: number; // in the car's axes [m/s]
+  vy: number;
+  yawRate: number;
+  speed: number;
+  steer: number; // applied
+  throttle: number; // applied
+  ax: number; // [m/s²]
+  ay: number;
+  lapTime: number;
+  frontUse: number; // share of the tyres' grip
+  rearUse: number;
+}
+
+export function motionOf(frame: Frame): Motion {
+  return {
+    time: frame.time_s,
+    x: frame.x_m,
+    y: frame.y_m,
+    yaw: frame.yaw_rad,
+    vx: frame.vx_mps,
+    vy: frame.vy_mps,
+    yawRate: frame.yaw_rate_radps,
+    speed: frame.speed_mps,
+    steer: frame.steer_applied_rad,
+    throttle: frame.throttle_applied,
+    ax: frame.longitudinal_acceleration_mps2,
+    ay: frame.lateral_acceleration_mps2,
+    lapTime: frame.lap_time_s,
+    frontUse: frame.front_tire_use,
+    rearUse: frame.rear_tire_use,
+  };
+}
+
+const known = (value: number): number => (Number.isFinite(value) ? value : 0);
+const mix = (a: number, b: number, u: number): number => known(a) + (known(b) - known(a)) * u;
+
+/** The cubic with values a, b and slopes p, q (per second) at the ends of `span` seconds, at share u. */
+function hermite(a: number, p: number, b: number, q: number, span: number, u: number): number {
+  const [u2, u3] = [u * u, u * u * u];
+  return (2 * u3 - 3 * u2 + 1) * a + (u3 - 2 * u2 + u) * span * p + (3 * u2 - 2 * u3) * b + (u3 - u2) * span * q;
+}
+
+const worldVelocity = (m: Motion): [number, number] => {
+  const [cos, sin] = [Math.cos(m.yaw), Math.sin(m.yaw)];
+  const [vx, vy] = [known(m.vx), known(m.vy)];
+  return [vx * cos - vy * sin, vx * sin + vy * cos];
+};
+
+/** The motion at `time` in [a.time, b.time]: position and velocity agree with both. */
+export function interpolate(a: Motion, b: Motion, time: number): Motion {
+  const span = b.time - a.time;
+  const u = span > 0 ? clamp((time - a.time) / span, 0, 1) : 1;
+  const [[ax, ay], [bx, by]] = [worldVelocity(a), worldVelocity(b)];
+  const hasRates = Number.isFinite(a.yawRate) && Number.isFinite(b.yawRate);
+  const step = wrapAngle(b.yaw - a.yaw);
+  return {
+    time,
+    x: hermite(a.x, ax, b.x, bx, span, u),
+    y: hermite(a.y, ay, b.y, by, span, u),
+    yaw: a.yaw + (hasRates ? hermite(0, a.yawRate, step, b.yawRate, span, u) : step * u),
+    vx: mix(a.vx, b.vx, u),
+    vy: mix(a.vy, b.vy, u),
+    yawRate: mix(a.yawRate, b.yawRate, u),
+    speed: mix(a.speed, b.speed, u),
+    steer: mix(a.steer, b.steer, u),
+    throttle: b.throttle, // a switch, not a slope
+    ax: mix(a.ax, b.ax, u),
+    ay: mix(a.ay, b.ay, u),
+    lapTime: b.lapTime >= a.lapTime ? mix(a.lapTime, b.lapTime, u) : b.lapTime - (b.time - time),
+    frontUse: b.frontUse,
+    rearUse: b.rearUse,
+  };
+}
+
+/** Was the car put somewhere else between two frames, rather than driven there? */
+export function isJump(a: Motion, b: Motion): boolean {
+  const span = b.time - a.time;
+  if (!(span > 0) || span > 2) return true;
+  const reach = 3 + 1.6 * Math.max(known(a.speed), known(b.speed)) * span;
+  return !(Math.hypot(b.x - a.x, b.y - a.y) <= reach);
+}
+
+const KEPT = 32;
+const LONGEST_DELAY_MS = 60;
+const LONGEST_LEAD_S = 0.12; // run time shown beyond the newest frame
+const SLEW_S = 0.25;
+
+/**
+ * Turns frames that arrive now and then into motion at every repaint. It plays the run about one frame late, at the pace at
+ * which frames arrive, so that there is nearly always a frame before and one after the moment shown. The delay is bounded:
+ * where frames are rarer than that the car is led on from the newest with constant speed and yaw rate.
+ */
+export class Playout {
+  #frames: Motion[] = [];
+  #arrivals: number[] = []; // of each [ms]
+  #shown = NaN; // run time [s]
+  #at = NaN; // of the last advance [ms]
+  /** Counts the times the car was put somewhere else; whoever smooths starts anew. */
+  jumps = 0;
+
+  /** Takes a frame that arrived at `now` [ms]. */
+  push(frame: Motion, now: number): void {
+    const last = this.#frames.at(-1);
+    if (last && frame.time === last.time && frame.x === last.x && frame.y === last.y) return;
+    if (last && isJump(last, frame)) {
+      this.#frames = [];
+      this.#arrivals = [];
+      this.#shown = NaN;
+      ++this.jumps;
+    }
+    this.#frames.push(frame);
+    this.#arrivals.push(now);
+    if (this.#frames.length > KEPT) {
+      this.#frames.shift();
+      this.#arrivals.shift();
+    }
+  }
+
+  clear(): void {
+    this.#frames = [];
+    this.#arrivals = [];
+    this.#shown = NaN;
+    ++this.jumps;
+  }
+
+  /** Run time per time of the clock, as the frames kept came in; 1 until two of them did. */
+  pace(): number {
+    const n = this.#frames.length;
+    if (n < 2) return 1;
+    const run = (this.#frames[n - 1]?.time ?? 0) - (this.#frames[0]?.time ?? 0);
+    const wall = ((this.#arrivals[n - 1] ?? 0) - (this.#arrivals[0] ?? 0)) / 1000;
+    return wall > 0 ? clamp(run / wall, 0.02, 50) : 1;
+  }
+
+  /** How far behind the newest frame the picture is meant to be [ms]. */
+  #delay(): number {
+    const n = this.#frames.length;
+    if (n < 2) return 0;
+    const apart = ((this.#arrivals[n - 1] ?? 0) - (this.#arrivals[0] ?? 0)) / (n - 1);
+    return Math.min(apart, LONGEST_DELAY_MS);
+  }
+
+  /** The motion to show at `now` [ms]; null before the first frame. While the run is held the newest frame is shown as it is. */
+  advance(now: number, isHeld: boolean): Motion | null {
+    const newest = this.#frames.at(-1);
+    if (!newest) return null;
+    const elapsed = Number.isFinite(this.#at) ? clamp((now - this.#at) / 1000, 0, 0.25) : 0;
+    this.#at = now;
+    const pace = this.pace();
+    const age = (now - (this.#arrivals.at(-1) ?? now)) / 1000;
+    const aim = isHeld ? newest.time : Math.min(newest.time + (age - this.#delay() / 1000) * pace, newest.time + LONGEST_LEAD_S);
+    const steady = this.#shown + elapsed * pace;
+    const off = aim - steady;
+    if (!Number.isFinite(this.#shown) || Math.abs(off) > Math.max(0.3, 0.6 * pace)) this.#shown = aim;
+    else if (isHeld) this.#shown = Math.min(newest.time, this.#shown + elapsed * Math.max(pace, 1));
+    else this.#shown = steady + off * (1 - Math.exp(-elapsed / SLEW_S));
+    if (isHeld && this.#shown > newest.time - 1e-9) this.#shown = newest.time;
+    return this.#sample(this.#shown, newest);
+  }
+
+  #sample(time: number, newest: Motion): Motion {
+    if (time >= newest.time) {
+      const lead = Math.min(time - newest.time, LONGEST_LEAD_S);
+      if (lead === 0) return newest;
+      const pose = extrapolate(newest, { vx: newest.vx, vy: newest.vy, yawRate: newest.yawRate }, lead);
+      return { ...newest, ...pose, time: newest.time + lead, lapTime: newest.lapTime + lead };
+    }
+    for (let i = this.#frames.length - 1; i > 0; --i) {
+      const [a, b] = [this.#frames[i - 1] as Motion, this.#frames[i] as Motion];
+      if (time >= a.time) return interpolate(a, b, time);
+    }
+    return this.#frames[0] as Motion;
+  }
+}

@@ -1,0 +1,79 @@
+import { theme } from '../draw/theme';
+import { colourOf, type Colour } from './mesh';
+import type { RoadPaint } from './road_mesh';
+
+/** What the world looks like by day and at dusk; colours as light. */
+export interface Palette {
+  readonly isDark: boolean;
+  readonly zenith: Colour;
+  readonly horizon: Colour;
+  readonly ground: Colour;
+  readonly hills: Colour;
+  readonly farHills: Colour;
+  readonly leaves: readonly Colour[];
+  readonly trunk: Colour;
+  readonly road: RoadPaint;
+  readonly reference: Colour;
+  readonly trace: Colour;
+  readonly ghost: Colour;
+  readonly rubber: Colour;
+  readonly sun: number; // strength of the light from one side
+  readonly sky: number; // and from all around
+}
+
+const DAY: Omit<Palette, 'isDark'> = {
+  zenith: colourOf('#5b9bd9'),
+  horizon: colourOf('#dce9f1'),
+  ground: colourOf('#a5bd86'),
+  hills: colourOf('#9db8a4'),
+  farHills: colourOf('#bccfd8'),
+  leaves: ['#5f8f55', '#6f9d5c', '#4f7f50'].map(colourOf),
+  trunk: colourOf('#6b5848'),
+  road: {
+    road: colourOf('#5d636c'),
+    edge: colourOf('#f6f6f2'),
+    centreLine: colourOf('#a3aab3'),
+    verge: colourOf('#bdc79b'),
+    concrete: colourOf('#b9bcb8'),
+    kerbRed: colourOf('#c8342c'),
+    kerbWhite: colourOf('#f2f2ee'),
+  },
+  reference: colourOf('#ffffff'),
+  trace: colourOf('#c6d5f2'),
+  ghost: colourOf('#3f7cf0'),
+  rubber: colourOf('#16181c'),
+  sun: 2.6,
+  sky: 1.3,
+};
+
+const DUSK: Omit<Palette, 'isDark'> = {
+  zenith: colourOf('#0a101d'),
+  horizon: colourOf('#3a4a63'),
+  ground: colourOf('#1c2722'),
+  hills: colourOf('#1d2a33'),
+  farHills: colourOf('#2a3a4e'),
+  leaves: ['#3b6651', '#457359', '#335a48'].map(colourOf),
+  trunk: colourOf('#4d443c'),
+  road: {
+    road: colourOf('#323944'),
+    edge: colourOf('#b9c2cd'),
+    centreLine: colourOf('#5d6774'),
+    verge: colourOf('#243029'),
+    concrete: colourOf('#4a515b'),
+    kerbRed: colourOf('#8f3a3a'),
+    kerbWhite: colourOf('#a9b1bd'),
+  },
+  reference: colourOf('#aab6c6'),
+  trace: colourOf('#6283c0'),
+  ghost: colourOf('#7aa7ff'),
+  rubber: colourOf('#0a0c0f'),
+  sun: 1.3,
+  sky: 1.0,
+};
+
+/** Follows the page: as dark as its ground. */
+export function palette(): Palette {
+  const [r, g, b] = colourOf(theme().ground);
+  const isDark = r + g + b < 0.6;
+  return { ...(isDark ? DUSK : DAY), isDark };
+}

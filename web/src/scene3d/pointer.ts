@@ -1,0 +1,78 @@
+import { live } from '../state/app_state';
+import { orbited } from './cameras';
+import { camera, orbit, zoomCamera } from './view_state';
+
+const TURN = 0.007; // [rad] for each pixel
+const KEY_TURN = 0.09; // [rad] for each press
+
+const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
+  ArrowLeft: [KEY_TURN, 0],
+  ArrowRight: [-KEY_TURN, 0],
+  ArrowUp: [0, KEY_TURN],
+  ArrowDown: [0, -KEY_TURN],
+};
+
+/** Drag, pinch, wheel and arrow keys move the camera; returns the end of it. */
+export function listenToPointers(canvas: HTMLCanvasElement): () => void {
+  const down = new Map<number, { x: number; y: number }>();
+
+  const spread = (): number => {
+    const [a, b] = [...down.values()];
+    return a && b ? Math.hypot(a.x - b.x, a.y - b.y) : 0;
+  };
+
+  const begin = (event: PointerEvent): void => {
+    if (event.pointerType === 'mouse' && event.button !== 0) return;
+    // Fingers scroll the page unless the camera is free; a mouse takes the camera along.
+    if (event.pointerType !== 'mouse' && camera.value !== 'free') return;
+    canvas.setPointerCapture(event.pointerId);
+    down.set(event.pointerId, { x: event.clientX, y: event.clientY });
+  };
+  const move = (event: PointerEvent): void => {
+    const last = down.get(event.pointerId);
+    if (!last) return;
+    const before = spread();
+    const [dx, dy] = [event.clientX - last.x, event.clientY - last.y];
+    down.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    if (down.size === 2) {
+      const after = spread();
+      if (before > 0 && after > 0) zoomCamera(before / after);
+      return;
+    }
+    if (camera.value !== 'free') {
+      // Takes over from where the camera stands: behind the car.
+      orbit.value = { ...orbit.value, azimuth: 0, elevation: 0.3 };
+      camera.value = 'free';
+    }
+    orbit.value = orbited(orbit.value, -dx * TURN, dy * TURN);
+  };
+  const end = (event: PointerEvent): void => void down.delete(event.pointerId);
+  const wheel = (event: WheelEvent): void => {
+    if (event.ctrlKey) return; // the browser's own zoom
+    event.preventDefault();
+    zoomCamera(Math.exp(event.deltaY * 0.0015));
+  };
+  const key = (event: KeyboardEvent): void => {
+    const turn = ARROWS[event.key];
+    // While somebody drives by hand the arrows are the car's.
+    if (!turn || camera.value !== 'free' || live.frame?.is_manual || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    event.stopPropagation();
+    orbit.value = orbited(orbit.value, turn[0], turn[1]);
+  };
+
+  canvas.addEventListener('pointerdown', begin);
+  canvas.addEventListener('pointermove', move);
+  canvas.addEventListener('pointerup', end);
+  canvas.addEventListener('pointercancel', end);
+  canvas.addEventListener('wheel', wheel, { passive: false });
+  canvas.addEventListener('keydown', key);
+  return () => {
+    canvas.removeEventListener('pointerdown', begin);
+    canvas.removeEventListener('pointermove', move);
+    canvas.removeEventListener('pointerup', end);
+    canvas.removeEventListener('pointercancel', end);
+    canvas.removeEventListener('wheel', wheel);
+    canvas.removeEventListener('keydown', key);
+  };
+}

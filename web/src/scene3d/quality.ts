@@ -1,0 +1,63 @@
+/** What a picture may cost, from dear to cheap. */
+export interface Quality {
+  readonly pixelRatio: number; // pixels drawn for each CSS pixel, at most
+  readonly hasShadow: boolean;
+  readonly interval: number; // least time between pictures [ms]
+}
+
+export const LEVELS: readonly Quality[] = [
+  { pixelRatio: 2, hasShadow: true, interval: 0 },
+  { pixelRatio: 1.5, hasShadow: true, interval: 0 },
+  { pixelRatio: 1, hasShadow: true, interval: 0 },
+  { pixelRatio: 1, hasShadow: false, interval: 0 },
+  { pixelRatio: 0.75, hasShadow: false, interval: 30 },
+  { pixelRatio: 0.6, hasShadow: false, interval: 45 },
+  { pixelRatio: 0.5, hasShadow: false, interval: 60 },
+];
+
+/** Where a picture drawn by the processor instead of a graphics card starts; it never climbs above. */
+export const SOFTWARE_LEVEL = 4;
+
+const WINDOW = 40; // pictures judged together
+const LATE = 1.45; // times the interval meant
+const CALM_WINDOWS = 6; // good ones in a row before it dares more
+
+/** Picks the dearest level at which pictures come in time, from the measured time between them. */
+export class QualityGovernor {
+  level: number;
+  readonly #best: number;
+  #gaps: number[] = [];
+  #calm = 0;
+  #patience = CALM_WINDOWS;
+
+  constructor(isSoftware: boolean) {
+    this.level = isSoftware ? SOFTWARE_LEVEL : 0;
+    this.#best = this.level;
+  }
+
+  get quality(): Quality {
+    return LEVELS[this.level] as Quality;
+  }
+
+  /** Takes the time since the last picture and what drawing took of the page's own thread [ms]; true when the level changed. */
+  picture(gap: number, cost: number): boolean {
+    if (!(gap > 0) || gap > 500) return false; // hidden, or just begun
+    this.#gaps.push(Math.max(gap, cost * 2)); // never more than half of the page's thread
+    if (this.#gaps.length < WINDOW) return false;
+    const sorted = this.#gaps.sort((a, b) => a - b);
+    const typical = sorted[Math.floor(sorted.length * 0.6)] ?? 0;
+    this.#gaps = [];
+    const meant = Math.max(this.quality.interval, 1000 / 60);
+    if (typical > LATE * meant && this.level < LEVELS.length - 1) {
+      this.#patience *= 2; // it was too dear: not again so soon
+      this.#calm = 0;
+      ++this.level;
+      return true;
+    }
+    this.#calm = typical < 1.15 * meant ? this.#calm + 1 : 0;
+    if (this.#calm < this.#patience || this.level <= this.#best) return false;
+    this.#calm = 0;
+    --this.level;
+    return true;
+  }
+}

@@ -1,0 +1,18 @@
+/** Who draws in 3D on this machine. */
+export type Renderer = 'card' | 'processor' | 'none';
+
+const BY_PROCESSOR = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
+function ask(): Renderer {
+  const context = document.createElement('canvas').getContext('webgl2');
+  if (!context) return 'none';
+  const info = context.getExtension('WEBGL_debug_renderer_info');
+  const name = String(context.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : context.RENDERER));
+  context.getExtension('WEBGL_lose_context')?.loseContext(); // contexts are few
+  return BY_PROCESSOR.test(name) ? 'processor' : 'card';
+}
+
+let answer: Renderer | undefined;
+
+/** Asked once, without the noise a drawing library makes when there is nothing to draw with. */
+export const renderer = (): Renderer => (answer ??= ask());

@@ -1,0 +1,91 @@
+import { useEffect, useRef } from 'preact/hooks';
+import { onThemeChange } from '../draw/theme';
+import { isPaused, link, live, run } from '../state/app_state';
+import { everyFrame } from '../state/ticker';
+import { listenToPointers } from './pointer';
+import './scene3d.css';
+import { renderer } from './renderer';
+import { session } from './session';
+import type { Stage, View } from './stage';
+import { camera, isReady, obstacle, orbit } from './view_state';
+
+const stillness = matchMedia('(prefers-reduced-motion: reduce)');
+
+function viewNow(): View {
+  return {
+    session,
+    run: run.value,
+    road: live.road,
+    roadVersion: live.roadVersion,
+    plan: live.plan,
+    reference: live.reference,
+    topSpeed: live.topSpeed,
+    ghost: session.ghost,
+    camera: camera.value,
+    orbit: orbit.value,
+    isHeld: isPaused.value || link.value !== 'live',
+    isCalm: stillness.matches,
+  };
+}
+
+/** Draws on the canvas until told to stop; what it needs is loaded first. Says in `obstacle` what stands against it. */
+function play(canvas: HTMLCanvasElement): () => void {
+  const ends: (() => void)[] = [];
+  let isOver = false;
+  const stop = (): void => {
+    isOver = true;
+    isReady.value = false;
+    for (const end of ends.splice(0).reverse()) end();
+  };
+  const give = (sentence: string): void => {
+    if (isOver) return;
+    stop();
+    obstacle.value = sentence;
+  };
+  if (renderer() === 'none') {
+    give('This browser offers no WebGL 2, so the track is drawn flat.');
+    return stop;
+  }
+  const lost = (event: Event): void => {
+    event.preventDefault();
+    give('The browser stopped the 3D picture, so the track is drawn flat. Choose 3D to try again.');
+  };
+  import('./stage').then(
+    ({ Stage: Made }) => {
+      if (isOver) return;
+      let stage: Stage;
+      try {
+        stage = new Made(canvas, session, renderer() === 'processor');
+      } catch {
+        return give('The 3D picture could not be set up, so the track is drawn flat.');
+      }
+      canvas.addEventListener('webglcontextlost', lost);
+      ends.push(() => {
+        canvas.removeEventListener('webglcontextlost', lost);
+        stage.dispose();
+      });
+      ends.push(listenToPointers(canvas));
+      ends.push(onThemeChange(() => stage.repaint()));
+      ends.push(everyFrame((now) => stage.paint(now, viewNow())));
+      isReady.value = true;
+    },
+    () => give('The 3D picture could not be loaded, so the track is drawn flat. Choose 3D to try again.'),
+  );
+  return stop;
+}
+
+/** The run in three dimensions; `label` says in words what is seen. */
+export function Scene3dView({ label }: { label: string }) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  useEffect(() => (canvas.current ? play(canvas.current) : undefined), []);
+  const isFree = camera.value === 'free';
+  return (
+    <canvas
+      ref={canvas}
+      class={isFree ? 'map-3d is-free' : 'map-3d'}
+      role={isFree ? 'application' : 'img'}
+      aria-label={isFree ? `${label}. Arrow keys turn the camera.` : label}
+      {...(isFree ? { tabIndex: 0 } : {})}
+    />
+  );
+}

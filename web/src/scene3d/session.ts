@@ -1,0 +1,98 @@
+import type { Frame } from '../protocol/topics';
+import { frameListeners, run } from '../state/app_state';
+import { LapRecorder, type GhostSource } from './ghost';
+import { motionOf, Playout, type Motion } from './motion';
+import { RibbonRing } from './ribbon';
+import { TyreMarks } from './tyre_marks';
+
+const TRACE_SPACING_M = 0.8;
+const BRAKE_MARK_M = 0.35;
+const TRACE_WIDTH_M = 0.16;
+
+/**
+ * What drawing the run needs to remember, in fixed memory: the last frames, the best lap, rubber, the driven line, and where
+ * the brakes came on. It listens to frames also while nothing is drawn.
+ */
+export class Session {
+  readonly playout = new Playout();
+  readonly laps = new LapRecorder();
+  readonly marks = new TyreMarks();
+  readonly trace = new RibbonRing(4000, 1);
+  readonly brakes = new RibbonRing(256, 1);
+  /** Another drive to be shown instead of the best lap; null shows the best lap. */
+  rival: GhostSource | null = null;
+  #last: Motion | null = null;
+  #jumps = 0;
+  #tracePoint = { x: NaN, y: NaN };
+
+  /** Who is raced: the rival where there is one, else the best lap of this session. */
+  get ghost(): GhostSource | null {
+    return this.rival ?? this.laps.best;
+  }
+
+  take(frame: Frame, now: number): void {
+    const motion = motionOf(frame);
+    if (this.#last && motion.time < this.#last.time) this.#forgetMarks();
+    this.playout.push(motion, now);
+    if (this.playout.jumps !== this.#jumps) {
+      this.#jumps = this.playout.jumps;
+      this.marks.lift();
+      this.trace.lift(0);
+    }
+    this.laps.push(frame);
+    this.#trace(motion);
+    const car = run.value;
+    if (car) {
+      const wheels = { front: car.front_axle_m, rear: car.rear_axle_m, halfTrack: car.track_width_m / 2, tyreWidth: Math.max(car.tire_width_m, 0.2) };
+      this.marks.push(motion, wheels);
+    }
+    const wasBraking = (this.#last?.throttle ?? 0) < -0.05;
+    if (motion.throttle < -0.05 && !wasBraking && motion.speed > 3) this.#markBrake(motion, car?.track_width_m ?? 1.6);
+    this.#last = motion;
+  }
+
+  /** Another track: nothing remembered belongs to it. */
+  forget(): void {
+    this.playout.clear();
+    this.laps.clear();
+    this.#forgetMarks();
+    this.#last = null;
+  }
+
+  #forgetMarks(): void {
+    this.marks.clear();
+    this.trace.clear();
+    this.brakes.clear();
+    this.#tracePoint = { x: NaN, y: NaN };
+  }
+
+  #trace({ x, y, yaw }: Motion): void {
+    if (Math.hypot(x - this.#tracePoint.x, y - this.#tracePoint.y) < TRACE_SPACING_M) return;
+    this.#tracePoint = { x, y };
+    const [dx, dy] = [(-Math.sin(yaw) * TRACE_WIDTH_M) / 2, (Math.cos(yaw) * TRACE_WIDTH_M) / 2];
+    this.trace.push(0, x + dx, y + dy, x - dx, y - dy, 1);
+  }
+
+  /** A stroke across the road where the pedal went down. */
+  #markBrake({ x, y, yaw }: Motion, width: number): void {
+    const [cos, sin] = [Math.cos(yaw), Math.sin(yaw)];
+    const half = width / 2;
+    this.brakes.lift(0);
+    for (const ahead of [0, BRAKE_MARK_M]) {
+      const [px, py] = [x + ahead * cos, y + ahead * sin];
+      this.brakes.push(0, px - half * sin, py + half * cos, px + half * sin, py - half * cos, 1);
+    }
+  }
+}
+
+export const session = new Session();
+
+let track = '';
+frameListeners.add((frame, now) => {
+  const name = `${run.value?.track} ${run.value?.track_length_m}`;
+  if (run.value && name !== track) {
+    if (track !== '') session.forget();
+    track = name;
+  }
+  session.take(frame, now);
+});

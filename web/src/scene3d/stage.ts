@@ -1,0 +1,281 @@
+import { Color, DirectionalLight, HemisphereLight, PerspectiveCamera, PMREMGenerator, Scene, SRGBColorSpace, type WebGLRenderTarget, WebGLRenderer } from 'three';
+import { topOfScale } from '../draw/speed_colour';
+import type { Point } from '../lib/math';
+import type { Plan, Run } from '../protocol/topics';
+import type { Road } from '../state/app_state';
+import { BodyMotion } from './body_motion';
+import { CameraMan, type CameraName, type Orbit, type Shot } from './cameras';
+import { CarView, GhostView } from './car_view';
+import type { GhostPose, GhostSource } from './ghost';
+import { Landscape } from './landscape';
+import type { Motion } from './motion';
+import { palette, type Palette } from './palette';
+import { QualityGovernor } from './quality';
+import { BandView, RingView } from './ribbon_view';
+import { tidyLines } from './road_mesh';
+import { RoadView } from './road_view';
+import type { Session } from './session';
+import { plantTrees } from './trees';
+
+/** What the picture is to show, read anew at every repaint. */
+export interface View {
+  readonly session: Session;
+  readonly run: Run | null;
+  readonly road: Road;
+  readonly roadVersion: number;
+  readonly plan: Plan | null;
+  readonly reference: readonly Point[];
+  readonly topSpeed: number;
+  readonly ghost: GhostSource | null;
+  readonly camera: CameraName;
+  readonly orbit: Orbit;
+  readonly isHeld: boolean; // paused, or the connection is lost
+  readonly isCalm: boolean; // the reader wants little motion
+}
+
+const SETTLE_MS = 1200; // of smoothing after the last change
+
+/** The three-dimensional picture on one canvas. */
+export class Stage {
+  readonly #canvas: HTMLCanvasElement;
+  readonly #renderer: WebGLRenderer;
+  readonly #scene = new Scene();
+  readonly #camera = new PerspectiveCamera(55, 1, 0.12, 2400);
+  readonly #sun = new DirectionalLight();
+  readonly #skyLight = new HemisphereLight();
+  readonly #landscape: Landscape;
+  readonly #road: RoadView;
+  readonly #bestLine: BandView;
+  readonly #trace: RingView;
+  readonly #marks: RingView;
+  readonly #brakes: RingView;
+  readonly #reference: BandView;
+  readonly #plan: BandView;
+  readonly #governor: QualityGovernor;
+  readonly #cameraMan = new CameraMan();
+  readonly #body = new BodyMotion();
+  #environment: WebGLRenderTarget | null = null;
+  #palette: Palette = palette();
+  #car: CarView | null = null;
+  #ghost: GhostView | null = null;
+  #carKey = '';
+  #roadKey = '';
+  #lineShown: Float32Array | null = null;
+  #planShown: Plan | null = null;
+  #referenceShown: readonly Point[] | null = null;
+  #jumps = -1;
+  #runTime = NaN;
+  #wheelAngle = 0;
+  #lastPicture = -Infinity;
+  #lastChange = 0;
+  #changeKey = '';
+  #wasCamera: CameraName | null = null;
+
+  /** `isSoftware`: drawn by the processor, so smooth only when cheap. Throws where the browser gives no WebGL 2. */
+  constructor(canvas: HTMLCanvasElement, session: Session, isSoftware: boolean) {
+    this.#canvas = canvas;
+    this.#renderer = new WebGLRenderer({ canvas, antialias: !isSoftware });
+    this.#renderer.outputColorSpace = SRGBColorSpace;
+    this.#governor = new QualityGovernor(isSoftware);
+    const anisotropy = Math.min(isSoftware ? 1 : 8, this.#renderer.capabilities.getMaxAnisotropy());
+    this.#camera.up.set(0, 0, 1);
+    this.#landscape = new Landscape(this.#scene, anisotropy);
+    this.#road = new RoadView(this.#scene, anisotropy);
+    this.#bestLine = new BandView(this.#scene, 20_000, 1);
+    this.#trace = new RingView(this.#scene, session.trace, 2, 0.65);
+    this.#marks = new RingView(this.#scene, session.marks.ring, 3, 0.75);
+    this.#brakes = new RingView(this.#scene, session.brakes, 4, 0.8);
+    this.#reference = new BandView(this.#scene, 512, 5);
+    this.#plan = new BandView(this.#scene, 512, 6);
+    this.#sun.shadow.mapSize.set(1024, 1024);
+    this.#scene.add(this.#sun, this.#sun.target, this.#skyLight);
+    this.repaint();
+  }
+
+  /** The page turned light or dark. */
+  repaint(): void {
+    this.#palette = palette();
+    const { zenith, ground, sun, sky, isDark } = this.#palette;
+    this.#landscape.paint(this.#palette);
+    this.#sun.intensity = sun;
+    this.#sun.color = new Color(isDark ? '#b9cdf5' : '#fff3df');
+    this.#skyLight.color = new Color().setRGB(...zenith).lerp(new Color('#ffffff'), isDark ? 0.25 : 0.6);
+    this.#skyLight.groundColor = new Color().setRGB(...ground);
+    this.#skyLight.intensity = sky;
+    this.#trace.paint(this.#palette.trace);
+    this.#marks.paint(this.#palette.rubber);
+    this.#brakes.paint([0.75, 0.03, 0.02]);
+    this.#reference.paint(this.#palette.reference);
+    this.#bestLine.paint(this.#palette.ghost);
+    this.#car?.paint(this.#palette);
+    this.#ghost?.paint(this.#palette);
+    this.#roadKey = '';
+    this.#reflectSky();
+    this.#lastChange = performance.now();
+  }
+
+  /** The paint of the car mirrors this sky. */
+  #reflectSky(): void {
+    this.#environment?.dispose();
+    const generator = new PMREMGenerator(this.#renderer);
+    const empty = new Scene();
+    const sky = new Landscape(empty, 1);
+    sky.paint(this.#palette);
+    this.#environment = generator.fromScene(empty, 0.02, 0.1, 2000);
+    sky.dispose();
+    generator.dispose();
+    this.#scene.environment = this.#environment.texture;
+    this.#scene.environmentIntensity = this.#palette.isDark ? 0.9 : 0.5;
+  }
+
+  /** Draws when there is something new to see. */
+  paint(now: number, view: View): void {
+    const { clientWidth: width, clientHeight: height } = this.#canvas;
+    if (width === 0 || height === 0 || this.#renderer.getContext().isContextLost()) return;
+    const gap = now - this.#lastPicture;
+    if (gap < this.#governor.quality.interval - 4) return;
+    const motion = view.session.playout.advance(now, view.isHeld);
+    if (!this.#isWorth(now, view, motion, width, height)) return;
+
+    const begin = performance.now();
+    this.#lastPicture = now;
+    this.#resize(width, height);
+    this.#renew(view);
+    this.#move(view, motion);
+    this.#film(view, motion, width / height, Math.min(gap, 100) / 1000);
+    this.#renderer.render(this.#scene, this.#camera);
+    if (this.#governor.picture(gap, performance.now() - begin)) this.#lastChange = now;
+  }
+
+  #isWorth(now: number, view: View, motion: Motion | null, width: number, height: number): boolean {
+    const { orbit } = view;
+    const key = [motion?.time, motion?.x, motion?.yaw, view.camera, orbit.azimuth, orbit.elevation, orbit.zoom, width, height, view.roadVersion].join();
+    if (key !== this.#changeKey || view.plan !== this.#planShown) {
+      this.#changeKey = key;
+      this.#lastChange = now;
+    }
+    return now - this.#lastChange < SETTLE_MS;
+  }
+
+  #resize(width: number, height: number): void {
+    const { pixelRatio, hasShadow } = this.#governor.quality;
+    const ratio = Math.min(devicePixelRatio, pixelRatio);
+    const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
+    if (this.#canvas.width !== w || this.#canvas.height !== h) this.#renderer.setSize(w, h, false);
+    this.#sun.castShadow = hasShadow;
+    this.#renderer.shadowMap.enabled = hasShadow;
+  }
+
+  /** Builds what changes rarely: car, road, lines. */
+  #renew(view: View): void {
+    const { run } = view;
+    if (run) {
+      const carKey = [run.front_axle_m, run.rear_axle_m, run.track_width_m, run.tire_width_m, run.body_length_m, run.body_width_m].join();
+      if (carKey !== this.#carKey) this.#renewCar(run, carKey);
+      const roadKey = [view.roadVersion, run.is_closed, run.kerb_width_m].join();
+      if (roadKey !== this.#roadKey) {
+        this.#roadKey = roadKey;
+        const lines = tidyLines(view.road, run.is_closed);
+        this.#road.show(lines, run.is_closed, run.kerb_width_m, this.#palette);
+        this.#landscape.plant(lines ? plantTrees(lines) : [], this.#palette);
+      }
+    }
+    const line = view.ghost?.line ?? null;
+    if (line !== this.#lineShown) {
+      this.#lineShown = line;
+      const every = (axis: number): Float32Array => (line ?? new Float32Array()).filter((_, i) => i % 2 === axis);
+      this.#bestLine.show(every(0), every(1), 0.3, () => 0.55);
+    }
+    if (view.reference !== this.#referenceShown) {
+      this.#referenceShown = view.reference;
+      const [xs, ys] = [view.reference.map(({ x }) => x), view.reference.map(({ y }) => y)];
+      this.#reference.show(xs, ys, 0.14, (share) => 0.9 * Math.min(1, 4 * (1 - share)));
+    }
+    if (view.plan !== this.#planShown) {
+      this.#planShown = view.plan;
+      this.#plan.showPlan(view.plan, topOfScale(view.topSpeed), 0.5 * ((this.#car?.model.length ?? 4.5) / 4.5));
+    }
+    for (const ring of [this.#trace, this.#marks, this.#brakes]) ring.update();
+  }
+
+  #renewCar(run: Run, key: string): void {
+    this.#carKey = key;
+    this.#car?.dispose();
+    this.#ghost?.dispose();
+    this.#car = new CarView(this.#scene, run);
+    this.#ghost = new GhostView(this.#scene, run, this.#car.model);
+    this.#car.paint(this.#palette);
+    this.#ghost.paint(this.#palette);
+    const reach = this.#car.model.length;
+    const shadow = this.#sun.shadow.camera;
+    [shadow.left, shadow.right, shadow.bottom, shadow.top, shadow.near, shadow.far] = [-reach, reach, -reach, reach, 1, 10 * reach];
+    shadow.updateProjectionMatrix();
+    this.#sun.shadow.bias = -0.002;
+  }
+
+  #move(view: View, motion: Motion | null): void {
+    const car = this.#car;
+    if (car) car.group.visible = motion !== null;
+    if (!car || !motion) return;
+    if (view.session.playout.jumps !== this.#jumps || motion.time < this.#runTime) {
+      this.#jumps = view.session.playout.jumps;
+      this.#runTime = motion.time;
+      this.#cameraMan.cut();
+      this.#body.rest();
+    }
+    const passed = Math.max(0, motion.time - this.#runTime);
+    this.#runTime = motion.time;
+    this.#wheelAngle = (this.#wheelAngle + (motion.vx * passed) / car.model.wheelRadius || 0) % (2 * Math.PI);
+    if (view.isCalm) this.#body.rest();
+    else this.#body.advance(passed, motion.ax, motion.ay);
+    const { roll, pitch } = this.#body;
+    const pose = { x: motion.x, y: motion.y, yaw: motion.yaw, steer: motion.steer, roll, pitch, wheelAngle: this.#wheelAngle, isBraking: motion.throttle < -0.02 };
+    car.pose(pose, view.camera !== 'cockpit');
+    const away = 6 * car.model.length;
+    this.#sun.target.position.set(motion.x, motion.y, 0);
+    this.#sun.position.set(motion.x - 0.45 * away, motion.y + 0.35 * away, 0.8 * away);
+    this.#moveGhost(view.ghost, motion, car.model.length);
+  }
+
+  readonly #ghostPose: GhostPose = { x: 0, y: 0, yaw: 0, steer: 0 };
+
+  #moveGhost(source: GhostSource | null, motion: Motion, length: number): void {
+    const pose = this.#ghostPose;
+    if (!source?.poseAt(motion.lapTime, pose)) this.#ghost?.hide();
+    else this.#ghost?.pose(pose, this.#wheelAngle, Math.hypot(pose.x - motion.x, pose.y - motion.y), length);
+  }
+
+  #film(view: View, motion: Motion | null, aspect: number, seconds: number): void {
+    if (view.camera !== this.#wasCamera) this.#cameraMan.cut();
+    this.#wasCamera = view.camera;
+    const model = this.#car?.model;
+    const start = view.road.centre[0];
+    const subject = {
+      x: motion?.x ?? start?.x ?? 0,
+      y: motion?.y ?? start?.y ?? 0,
+      yaw: motion?.yaw ?? 0,
+      speed: motion?.speed ?? 0,
+      length: model?.length ?? 4.5,
+      eye: model?.eye ?? ([0, 0, 1] as const),
+    };
+    const shot: Shot = this.#cameraMan.shoot(view.camera, subject, view.orbit, aspect, seconds, view.isCalm);
+    const camera = this.#camera;
+    camera.position.set(...shot.position);
+    camera.up.set(...shot.up);
+    camera.lookAt(...shot.target);
+    camera.fov = (shot.fieldOfView * 180) / Math.PI;
+    camera.aspect = aspect;
+    camera.updateProjectionMatrix();
+    this.#landscape.follow(shot.position[0], shot.position[1]);
+  }
+
+  dispose(): void {
+    this.#car?.dispose();
+    this.#ghost?.dispose();
+    this.#landscape.plant([], this.#palette);
+    for (const part of [this.#landscape, this.#road, this.#bestLine, this.#trace, this.#marks, this.#brakes, this.#reference, this.#plan]) part.dispose();
+    this.#environment?.dispose();
+    this.#sun.dispose();
+    this.#renderer.dispose();
+  }
+}
