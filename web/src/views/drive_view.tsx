@@ -117,9 +117,9 @@ export function DriveView() {
     <div class="blocks">
       <NothingToSet />
       <Pace />
+      <ManualView />
       <Choices />
       <World />
-      <ManualView />
       <ControllerView />
     </div>
   );

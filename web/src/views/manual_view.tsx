@@ -9,6 +9,7 @@ import { canSet, set } from '../state/operate';
 import { settings } from '../state/settings';
 
 const RATE_HZ = 30;
+const REMIND_MS = 250; // a driver who says nothing for a second is taken for gone
 
 export const isManual = (): boolean => settings.value.get('manual.is_on') === true;
 
@@ -38,15 +39,17 @@ export function listenToDriver(): void {
   document.addEventListener('visibilitychange', () => document.hidden && letGo());
 
   let timer: ReturnType<typeof setInterval> | undefined;
-  let last = 0;
+  let [last, said] = [0, 0];
   const turn = (): void => {
     const now = performance.now();
     const next = ramp(stick.value, Math.min(0.1, (now - last) / 1000), live.frame?.speed_mps ?? 0);
     last = now;
     const before = stick.value;
     stick.value = next;
-    if (next.steer !== before.steer) set('manual.steer', next.steer);
-    if (next.throttle !== before.throttle) set('manual.throttle', next.throttle);
+    const isReminder = now - said > REMIND_MS;
+    if (isReminder) said = now;
+    if (isReminder || next.steer !== before.steer) set('manual.steer', next.steer);
+    if (isReminder || next.throttle !== before.throttle) set('manual.throttle', next.throttle);
   };
   effect(() => {
     const isOn = isManual() && link.value === 'live';
@@ -54,8 +57,7 @@ export function listenToDriver(): void {
     letGo();
     if (isOn) {
       last = performance.now();
-      set('manual.steer', 0);
-      set('manual.throttle', 0);
+      said = 0;
       timer = setInterval(turn, 1000 / RATE_HZ);
     } else {
       clearInterval(timer);

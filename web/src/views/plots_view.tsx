@@ -21,7 +21,7 @@ const BEFORE_COST: readonly PlotSpec[] = [
     decimals: 1,
     series: [
       { column: Column.speedLimit, label: 'limit', colour: LIMIT },
-      { column: Column.speedReference, label: 'reference', colour: ASKED, isDashed: true },
+      { column: Column.speedReference, label: 'ref.', colour: ASKED, isDashed: true },
       { column: Column.speed, label: 'driven', colour: APPLIED },
     ],
     range: (columns) => rangeFromZero(columns.slice(1), 20),
