@@ -14,7 +14,7 @@ import { changePace } from './views/drive_view';
 import { HeaderView } from './views/header_view';
 import { HelpView, isHelpOpen } from './views/help_view';
 import { handBack, listenToDriver, toggleManual } from './views/manual_view';
-import { nextView, zoom } from './views/track_view';
+import { nextView, toggleDimension, zoom } from './views/track_view';
 import { focusSearch } from './views/tune_view';
 import { isPanelAlone, tab, TABS, toggleDock, WorkbenchView } from './views/workbench_view';
 
@@ -66,6 +66,7 @@ addShortcuts(
   { keys: ['[', ','], label: '[ ,', does: 'Half the pace', group: 'Run', action: () => changePace(0.5) },
   { keys: [']', '.'], label: '] .', does: 'Twice the pace', group: 'Run', action: () => changePace(2) },
   { keys: ['c'], label: 'C', does: 'Next camera', group: 'Camera', action: nextView },
+  { keys: ['v'], label: 'V', does: 'Three dimensions, or the map', group: 'Camera', action: toggleDimension },
   { keys: ['+', '='], label: '+', does: 'Closer', group: 'Camera', action: () => zoom(0.8) },
   { keys: ['-'], label: '−', does: 'Farther', group: 'Camera', action: () => zoom(1.25) },
   ...TABS.map((name, i) => ({ keys: [String(i + 1)], label: String(i + 1), does: `${name[0]?.toUpperCase()}${name.slice(1)}`, group: 'Panels' as const, action: () => void (tab.value = name) })),
