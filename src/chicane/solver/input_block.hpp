@@ -61,13 +61,14 @@ struct InputBounds {
 };
 
 /// The inputs' part of one stage's elimination: their curvature H and slope g, and the inverse of the free
-/// part of H. Rows and columns of held inputs are zero in the inverse. Everything is in closed form for up to
-/// three inputs, with one division.
+/// part of H as adjugate · scale (so that the rest of the stage need not wait for the division). Rows and
+/// columns of held inputs are zero in it. In closed form for up to three inputs.
 template <class Arch, std::size_t Nu>
 struct InputBlock {
   double H[Nu][Nu];
   double g[Nu];
-  double inverse[Nu][Nu];
+  double adjugate[Nu][Nu];
+  double scale;
 
   /// Inverts the free part. False, and no inverse, when that is not safely positive definite.
   [[nodiscard, gnu::always_inline]] bool invert(const bool (&is_held)[Nu]) noexcept {
@@ -79,7 +80,7 @@ struct InputBlock {
     });
     const bool positive = invert_all(A);
     unroll<Nu>([&](auto m)
-                   __attribute__((always_inline)) { inverse[m][m] = is_held[m] ? 0.0 : inverse[m][m]; });
+                   __attribute__((always_inline)) { adjugate[m][m] = is_held[m] ? 0.0 : adjugate[m][m]; });
     return positive;
   }
   /// The same where no input is held.
@@ -113,32 +114,28 @@ struct InputBlock {
 
   [[nodiscard, gnu::always_inline]] bool invert_all(const double (&A)[Nu][Nu]) noexcept {
     if constexpr (Nu == 1) {
-      inverse[0][0] = 1.0 / A[0][0];
+      adjugate[0][0] = 1.0;
+      scale = 1.0 / A[0][0];
       return A[0][0] > 1e-12;
     } else if constexpr (Nu == 2) {
       const double determinant = cross(A[0][0], A[1][1], A[1][0], A[1][0]);
-      const double scale = 1.0 / determinant;
-      inverse[0][0] = A[1][1] * scale;
-      inverse[1][1] = A[0][0] * scale;
-      inverse[0][1] = inverse[1][0] = -A[1][0] * scale;
+      scale = 1.0 / determinant;
+      adjugate[0][0] = A[1][1];
+      adjugate[1][1] = A[0][0];
+      adjugate[0][1] = adjugate[1][0] = -A[1][0];
       return (A[1][1] > 1e-12) & (determinant > noise(A[0][0]) * A[1][1]);
     } else if constexpr (Nu == 3) {
-      const double c00 = cross(A[1][1], A[2][2], A[2][1], A[2][1]);
-      const double c10 = cross(A[2][0], A[2][1], A[1][0], A[2][2]);
-      const double c20 = cross(A[1][0], A[2][1], A[2][0], A[1][1]);
-      const double c11 = cross(A[0][0], A[2][2], A[2][0], A[2][0]);
-      const double c21 = cross(A[1][0], A[2][0], A[0][0], A[2][1]);
-      const double c22 = cross(A[0][0], A[1][1], A[1][0], A[1][0]);
-      const double determinant =
-          fused_multiply_add<Arch>(A[2][0], c20, fused_multiply_add<Arch>(A[1][0], c10, A[0][0] * c00));
-      const double scale = 1.0 / determinant;
-      inverse[0][0] = c00 * scale;
-      inverse[1][1] = c11 * scale;
-      inverse[2][2] = c22 * scale;
-      inverse[0][1] = inverse[1][0] = c10 * scale;
-      inverse[0][2] = inverse[2][0] = c20 * scale;
-      inverse[1][2] = inverse[2][1] = c21 * scale;
-      return (A[2][2] > 1e-12) & (c00 > noise(A[1][1]) * A[2][2]) & (determinant > noise(A[0][0]) * c00);
+      adjugate[0][0] = cross(A[1][1], A[2][2], A[2][1], A[2][1]);
+      adjugate[0][1] = adjugate[1][0] = cross(A[2][0], A[2][1], A[1][0], A[2][2]);
+      adjugate[0][2] = adjugate[2][0] = cross(A[1][0], A[2][1], A[2][0], A[1][1]);
+      adjugate[1][1] = cross(A[0][0], A[2][2], A[2][0], A[2][0]);
+      adjugate[1][2] = adjugate[2][1] = cross(A[1][0], A[2][0], A[0][0], A[2][1]);
+      adjugate[2][2] = cross(A[0][0], A[1][1], A[1][0], A[1][0]);
+      const double minor = adjugate[0][0];
+      const double determinant = fused_multiply_add<Arch>(
+          A[2][0], adjugate[2][0], fused_multiply_add<Arch>(A[1][0], adjugate[1][0], A[0][0] * minor));
+      scale = 1.0 / determinant;
+      return (A[2][2] > 1e-12) & (minor > noise(A[1][1]) * A[2][2]) & (determinant > noise(A[0][0]) * minor);
     } else {
       return eliminate(A);
     }
@@ -147,24 +144,26 @@ struct InputBlock {
   /// Gauss and Jordan, last input first.
   bool eliminate(const double (&A)[Nu][Nu]) noexcept {
     bool positive = true;
+    scale = 1.0;
     for (std::size_t m = 0; m < Nu; ++m) {
-      for (std::size_t l = 0; l < Nu; ++l) inverse[m][l] = A[m][l];
+      for (std::size_t l = 0; l < Nu; ++l) adjugate[m][l] = A[m][l];
     }
     for (std::size_t p = Nu; p-- > 0;) {
-      positive = positive && inverse[p][p] > noise(A[p][p]);
-      const double scale = 1.0 / inverse[p][p];
+      positive = positive && adjugate[p][p] > noise(A[p][p]);
+      const double pivot = 1.0 / adjugate[p][p];
       for (std::size_t m = 0; m < Nu; ++m) {
         if (m == p) continue;
-        const double factor = inverse[m][p] * scale;
+        const double factor = adjugate[m][p] * pivot;
         for (std::size_t l = 0; l < Nu; ++l) {
-          if (l != p) inverse[m][l] = fused_negative_multiply_add<Arch>(factor, inverse[p][l], inverse[m][l]);
+          if (l != p)
+            adjugate[m][l] = fused_negative_multiply_add<Arch>(factor, adjugate[p][l], adjugate[m][l]);
         }
-        inverse[m][p] = -factor;
+        adjugate[m][p] = -factor;
       }
       for (std::size_t l = 0; l < Nu; ++l) {
-        if (l != p) inverse[p][l] *= scale;
+        if (l != p) adjugate[p][l] *= pivot;
       }
-      inverse[p][p] = scale;
+      adjugate[p][p] = pivot;
     }
     return positive;
   }

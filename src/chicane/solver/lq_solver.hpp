@@ -144,11 +144,10 @@ class LqSolver {
     Block block;
     unroll<kNu>([&](auto m) __attribute__((always_inline)) {
       unroll<m + 1>([&](auto l) __attribute__((always_inline)) {
-        block.H[m][l] = Algebra::template times_input<m>(s, w[1 + l], s.H[m][l]);
+        block.H[m][l] = Algebra::template times_input<m>(s, w[1 + l], s.H[m][l] + (m == l ? shift : 0.0));
         block.H[l][m] = block.H[m][l];
       });
       block.g[m] = Algebra::template times_input<m>(s, w[0], s.g[m]);
-      block.H[m][m] += shift;
     });
     Vector R[kNu];  // Q over inputs and states
     alignas(64) double r[kNu][kLanes];
@@ -188,7 +187,15 @@ class LqSolver {
       out.g[m] = block.g[m];
       unroll<kNu>([&](auto l) __attribute__((always_inline)) { out.H[m][l] = block.H[m][l]; });
     });
-    if (any_held) hold_inputs(k, block, is_held, r, P);
+    if (any_held) {
+      if constexpr (kHasRates) {
+        Value changed = P;
+        hold_inputs(k, block, is_held, r, changed);
+        P = changed;
+      } else {
+        hold_inputs(k, block, is_held, r, unused_);
+      }
+    }
   }
 
   /// Reads (or with `Choose` chooses) which inputs are held, and inverts the free block, shifted until it is
@@ -196,15 +203,22 @@ class LqSolver {
   template <bool Choose>
   [[gnu::always_inline]] bool settle_inputs(std::size_t k, Block& block, bool (&is_held)[kNu],
                                             double& largest) noexcept {
-    if constexpr (Choose) largest = std::max(largest, choose_hold(k, block));
+    if constexpr (Choose) {
+      Block chosen = block;
+      largest = std::max(largest, choose_hold(k, chosen));
+      block = chosen;
+    }
     bool any_held = false;
     unroll<kNu>([&](auto m) __attribute__((always_inline)) {
       is_held[m] = hold[k][m] != Hold::kFree;
       any_held |= is_held[m];
     });
     const bool is_positive = any_held ? block.invert(is_held) : block.invert();
-    if (!is_positive) [[unlikely]]
-      largest = std::max(largest, block.shift_and_invert(is_held));
+    if (!is_positive) [[unlikely]] {
+      Block shifted = block;
+      largest = std::max(largest, shifted.shift_and_invert(is_held));
+      block = shifted;
+    }
     return any_held;
   }
 
@@ -242,10 +256,11 @@ class LqSolver {
       });
     }
     unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-      double value = block.inverse[m][0] * g[0];
+      double value = block.adjugate[m][0] * g[0];
       unroll<kNu - 1>([&](auto l) __attribute__((always_inline)) {
-        value = fused_multiply_add<Arch>(block.inverse[m][l + 1], g[l + 1], value);
+        value = fused_multiply_add<Arch>(block.adjugate[m][l + 1], g[l + 1], value);
       });
+      value *= block.scale;
       c[m] = any_held && is_held[m] ? c[m] : -value;
     });
   }
@@ -254,9 +269,10 @@ class LqSolver {
   [[gnu::always_inline]] void gains(std::size_t k, const Block& block, bool any_held, const Vector (&R)[kNu],
                                     Vector (&K)[kNu]) const noexcept {
     unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-      K[m] = Vector::scaled(-block.inverse[m][0], R[0]);
+      K[m] = Vector::scaled(block.adjugate[m][0], R[0]);
       unroll<kNu - 1>([&](auto l)
-                          __attribute__((always_inline)) { K[m].add(-block.inverse[m][l + 1], R[l + 1]); });
+                          __attribute__((always_inline)) { K[m].add(block.adjugate[m][l + 1], R[l + 1]); });
+      K[m] = Vector::scaled(-block.scale, K[m]);
     });
     if constexpr (kHasRates) {
       if (any_held) follow_rates(k, block, K);
@@ -270,7 +286,7 @@ class LqSolver {
       const Vector unit = unit_of_rate_state(h);
       for (std::size_t m = 0; m < kNu; ++m) {
         double pull = 0.0;
-        for (std::size_t l = 0; l < kNu; ++l) pull -= block.inverse[m][l] * block.H[l][h];
+        for (std::size_t l = 0; l < kNu; ++l) pull -= block.scale * block.adjugate[m][l] * block.H[l][h];
         K[m].add(m == h ? 1.0 : pull, unit);
       }
     }
@@ -383,6 +399,7 @@ class LqSolver {
     for (std::size_t i = 0; i < kNx; ++i) x[i] = next[i];
   }
 
+  Value unused_{};
   alignas(64) double value_[Capacity + 1][kNx + 1][kLanes]{};  ///< P of every stage, to start again from
   std::size_t last_change_ = 0;  ///< last stage whose working set forward() changed
 };
