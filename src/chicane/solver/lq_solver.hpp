@@ -144,10 +144,11 @@ class LqSolver {
     Block block;
     unroll<kNu>([&](auto m) __attribute__((always_inline)) {
       unroll<m + 1>([&](auto l) __attribute__((always_inline)) {
-        block.H[m][l] = Algebra::template times_input<m>(s, w[1 + l], s.H[m][l] + (m == l ? shift : 0.0));
+        block.H[m][l] =
+            Algebra::template times_column<kNx + 1 + m>(s, w[1 + l], s.H[m][l] + (m == l ? shift : 0.0));
         block.H[l][m] = block.H[m][l];
       });
-      block.g[m] = Algebra::template times_input<m>(s, w[0], s.g[m]);
+      block.g[m] = Algebra::template times_column<kNx + 1 + m>(s, w[0], s.g[m]);
     });
     Vector R[kNu];  // Q over inputs and states
     alignas(64) double r[kNu][kLanes];

@@ -169,20 +169,21 @@ class StageAlgebra {
     }
   }
 
-  /// Bᵀ_m w for a column w of P F in memory.
-  template <std::size_t M>
-  [[gnu::always_inline]] static double times_input(const Stage& s, const double* w, double start) noexcept {
-    constexpr Terms kOnes = rows_of(kNx + 1 + M, true);
-    constexpr Terms kValues = rows_of(kNx + 1 + M, false);
+  /// start + column J of F times w, number by number.
+  template <std::size_t J>
+  [[gnu::always_inline]] static double times_column(const Stage& s, const double* w, double start) noexcept {
+    constexpr Terms kOnes = rows_of(J, true);
+    constexpr Terms kValues = rows_of(J, false);
     double sum = start;
     unroll<kOnes.count>([&](auto t) __attribute__((always_inline)) { sum += w[kOnes.index[t]]; });
-    double other = 0.0;
-    unroll<kValues.count>([&](auto t) __attribute__((always_inline)) {
-      constexpr std::size_t kI = kValues.index[t];
+    if constexpr (kValues.count == 0) return sum;
+    double other = jacobian<kValues.index[0], J>(s) * w[kValues.index[0]];
+    unroll<kValues.count == 0 ? 0 : kValues.count - 1>([&](auto t) __attribute__((always_inline)) {
+      constexpr std::size_t kI = kValues.index[t + 1];
       double& side = t % 2 == 0 ? sum : other;
-      side = fused_multiply_add<Arch>(s.B[1 + M][kI], w[kI], side);
+      side = fused_multiply_add<Arch>(jacobian<kI, J>(s), w[kI], side);
     });
-    return kValues.count > 1 ? sum + other : sum;
+    return sum + other;
   }
 
   /// Keeps the compiler from taking numbers out of registers that are cheaper to load from memory.
