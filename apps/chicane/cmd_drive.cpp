@@ -3,11 +3,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <deque>
 #include <memory>
+#include <mutex>
+#include <utility>
 
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/runtime/assets.hpp"
 #include "chicane/runtime/closed_loop.hpp"
+#include "chicane/runtime/live_settings.hpp"
+#include "chicane/runtime/pages.hpp"
 #include "chicane/runtime/realtime_loop.hpp"
 #include "chicane/runtime/recorder.hpp"
 #include "chicane/runtime/viewer.hpp"
@@ -47,35 +52,39 @@ protocol::Run description(const runtime::ClosedLoop& loop) {
   return run;
 }
 
-runtime::ViewerOptions viewing(const runtime::ClosedLoop& loop, runtime::RunControls& controls) {
-  runtime::ViewerOptions viewing;
-  viewing.run = description(loop);
-  viewing.services.pause = [&controls](bool is_paused) -> Result<void> {
+runtime::ViewerServices services(runtime::RunControls& controls) {
+  runtime::ViewerServices services;
+  services.pause = [&controls](bool is_paused) -> Result<void> {
     controls.is_paused = is_paused;
     return {};
   };
-  viewing.services.step = [&controls]() -> Result<void> {
+  services.step = [&controls]() -> Result<void> {
     if (!controls.is_paused) return fail(ErrorCode::kInvalidArgument, "the run is not paused");
     ++controls.steps;
     return {};
   };
-  viewing.services.reset = [&controls]() -> Result<void> {
+  services.reset = [&controls]() -> Result<void> {
     controls.wants_restart = true;
     return {};
   };
-  return viewing;
+  return services;
+}
+
+double step_budget(const Options& options, const scenario::Scenario& scenario) {
+  if (options.step_budget_ms) return 1e-3 * *options.step_budget_ms;
+  return runtime::RealtimeOptions{}.budget_share * scenario.control_period;
 }
 
 /// --record: null when nobody asked for it.
 Result<std::unique_ptr<runtime::Recorder>> start_recorder(const Options& options,
                                                           const runtime::ClosedLoop& loop) {
   if (options.record_file.empty()) return nullptr;
-  const double budget = runtime::RealtimeOptions{}.budget_share * loop.scenario().control_period;
-  return runtime::Recorder::create({.path = options.record_file,
-                                    .run = description(loop),
-                                    .scenario = loop.scenario(),
-                                    .step_budget = options.is_fast ? 0.0 : budget,
-                                    .may_wait = options.is_fast});
+  return runtime::Recorder::create(
+      {.path = options.record_file,
+       .run = description(loop),
+       .scenario = loop.scenario(),
+       .step_budget = options.is_fast ? 0.0 : step_budget(options, loop.scenario()),
+       .may_wait = options.is_fast});
 }
 
 /// The results of a run, which are told even when its recording failed.
@@ -95,28 +104,105 @@ Outcome conclude(const Options& options, telemetry::RunSummary summary, runtime:
   return {std::move(summary), {}};
 }
 
-Result<Outcome> run_with_dashboard(const Options& options, runtime::ClosedLoop& loop,
-                                   runtime::RunControls& controls) {
-  runtime::ViewerEndpoint viewer(viewing(loop, controls));
-  runtime::Router router(nullptr, &viewer);
-  const auto server = net::Server::create({.address = options.address, .port = options.port},
-                                          router.handlers(), runtime::embedded_assets());
-  if (!server) return fail(server.error());
-  const auto recorder = start_recorder(options, loop);
-  if (!recorder) return fail(recorder.error());
-  fmt::print(stderr, "dashboard at http://localhost:{}/; Ctrl-C ends\n", (*server)->port());
-  telemetry::RunSummary summary;
-  {
-    Progress progress;
-    summary = runtime::run_realtime(loop, {.stay_at_end = stays_up(options)}, controls,
-                                    [&](const telemetry::Frame& frame) {
-                                      if (*recorder) (*recorder)->record(frame);
-                                      viewer.publish(frame);
-                                      progress.show(frame);
-                                    });
+/// A run that viewers change while it goes on. What cannot change in a run that goes on starts another one,
+/// built on the network thread and taken over by ours.
+class WatchedRun {
+ public:
+  WatchedRun(const Options& options, std::unique_ptr<runtime::ClosedLoop> loop,
+             runtime::RunControls& controls)
+      : options_{options},
+        controls_{controls},
+        loop_{std::move(loop)},
+        settings_{{.scenario = loop_->scenario(),
+                   .start_anew = [this](const scenario::Scenario& next) { return build(next); },
+                   .on_accepted = [this](const scenario::Scenario& now) { describe_anew(now); }},
+                  controls.wishes},
+        viewer_{{.run = description(*loop_), .services = services(controls), .parameters = &settings_}} {}
+
+  Result<Outcome> go() {
+    if (const Result<void> begun = begin(); !begun) return fail(begun.error());
+    runtime::Router router(nullptr, &viewer_);
+    const auto server =
+        net::Server::create({.address = options_.address, .port = options_.port},
+                            router.handlers(runtime::live_pages(settings_)), runtime::embedded_assets());
+    if (!server) return fail(server.error());
+    auto recorder = start_recorder(options_, *loop_);
+    if (!recorder) return fail(recorder.error());
+    recorder_ = std::move(*recorder);
+    fmt::print(stderr, "dashboard at http://localhost:{}/; Ctrl-C ends\n", (*server)->port());
+    telemetry::RunSummary summary = drive();
+    return conclude(options_, std::move(summary), recorder_.get());
   }
-  return conclude(options, std::move(summary), recorder->get());
-}
+
+ private:
+  /// What the command line says beside the scenario goes the way that viewers' wishes go.
+  Result<void> begin() {
+    if (options_.pace) {
+      if (Result<void> set = settings_.set({"run.pace", *options_.pace}); !set) return set;
+    }
+    return options_.is_manual ? settings_.set({"manual.is_on", true}) : Result<void>{};
+  }
+
+  telemetry::RunSummary drive() {
+    Progress progress;
+    const runtime::RealtimeHooks hooks{
+        .on_frame =
+            [&](const telemetry::Frame& frame) {
+              if (recorder_) recorder_->record(frame);
+              viewer_.publish(frame);
+              progress.show(frame);
+            },
+        .on_change = [this](const telemetry::Change& change) { note(change); }};
+    for (;;) {
+      telemetry::RunSummary summary = runtime::run_realtime(
+          *loop_,
+          {.step_budget = step_budget(options_, loop_->scenario()), .stay_at_end = stays_up(options_)},
+          controls_, hooks);
+      if (!take_over()) return summary;
+    }
+  }
+
+  void note(const telemetry::Change& change) { settings_.tell(change); }
+
+  /// Goes on with the run that the next change begins. False when there is none.
+  bool take_over() {
+    const telemetry::Change* next = controls_.wishes.front();
+    if (next == nullptr || !next->starts_anew || controls_.wants_stop) return false;
+    {
+      const std::lock_guard lock(mutex_);
+      loop_ = std::move(built_.front());
+      built_.pop_front();
+    }
+    note(*next);
+    controls_.wishes.pop();
+    viewer_.set_run(description(*loop_));
+    return true;
+  }
+
+  Result<void> build(const scenario::Scenario& scenario) {
+    auto loop = runtime::ClosedLoop::create(scenario);
+    if (!loop) return fail(loop.error());
+    const std::lock_guard lock(mutex_);
+    built_.push_back(std::move(*loop));
+    return {};
+  }
+
+  void describe_anew(const scenario::Scenario& now) {
+    viewer_.change_run([latency = now.latency, vehicle = now.vehicle](protocol::Run& run) {
+      run.latency = latency;
+      run.vehicle = vehicle;
+    });
+  }
+
+  const Options& options_;
+  runtime::RunControls& controls_;
+  std::unique_ptr<runtime::ClosedLoop> loop_;
+  runtime::LiveSettings settings_;
+  runtime::ViewerEndpoint viewer_;
+  std::unique_ptr<runtime::Recorder> recorder_;
+  std::mutex mutex_;
+  std::deque<std::unique_ptr<runtime::ClosedLoop>> built_;  ///< one for each change that starts anew
+};
 
 Result<Outcome> run_fast(const Options& options, runtime::ClosedLoop& loop,
                          const runtime::RunControls& controls) {
@@ -141,10 +227,10 @@ Result<Outcome> run(const Options& options) {
   catch_interrupts(controls.wants_stop);
   const Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
-  const Result<std::unique_ptr<runtime::ClosedLoop>> loop = runtime::ClosedLoop::create(*scenario);
+  Result<std::unique_ptr<runtime::ClosedLoop>> loop = runtime::ClosedLoop::create(*scenario);
   if (!loop) return fail(loop.error());
   if (options.is_fast) return run_fast(options, **loop, controls);
-  return run_with_dashboard(options, **loop, controls);
+  return WatchedRun(options, std::move(*loop), controls).go();
 }
 
 }  // namespace

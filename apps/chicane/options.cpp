@@ -11,6 +11,7 @@
 #include "bench_solves.hpp"
 #include "chicane/base/angle.hpp"
 #include "chicane/protocol/schema.hpp"
+#include "chicane/runtime/closed_loop.hpp"
 #include "commands.hpp"
 
 namespace chicane::apps {
@@ -90,6 +91,22 @@ void add_drive(CLI::App& command, Options& options) {
               "Actuation delay of the simulated car [ms], default 100");
   command.add_flag("--fast", options.is_fast, "As fast as possible, deterministic, without sockets");
   add_port(command, options);
+  command
+      .add_option("--pace", options.pace,
+                  "Seconds of the run in a second of the clock; viewers can change it")
+      ->type_name("X")
+      ->check(CLI::Range(runtime::kSlowestPace, runtime::kFastestPace))
+      ->excludes("--fast");
+  command
+      .add_option("--step-budget-ms", options.step_budget_ms,
+                  "Bound of a control step by the clock; 0 = none, default 80 % of the control period")
+      ->type_name("X")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->excludes("--fast");
+  command
+      .add_flag("--manual", options.is_manual,
+                "A person drives, by the dashboard's arrow keys or \"manual.…\"")
+      ->excludes("--fast");
   command.add_option("--record", options.record_file, "Record every control step in a new MCAP file")
       ->type_name("FILE");
   command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -29,7 +30,10 @@ struct Options {
 
   bool is_fast = false;  ///< as fast as possible, no sockets
   bool is_json = false;
-  std::string record_file;  ///< drive; empty: nothing is recorded
+  std::optional<double> pace;            ///< drive: run seconds per second of the clock
+  std::optional<double> step_budget_ms;  ///< drive: bound of a control step; 0 = none
+  bool is_manual = false;                ///< drive: a person has the wheel
+  std::string record_file;               ///< drive; empty: nothing is recorded
   std::string address = "127.0.0.1";
   std::uint16_t port = 4567;
 

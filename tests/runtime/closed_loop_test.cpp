@@ -117,15 +117,16 @@ TEST(RealtimeLoop, DoesWhatTheFastLoopDoesAndObeysItsControls) {
   scenario::Scenario scenario = scenario_of("udacity", "oval", 1);
   scenario.time_limit = 2.0;
   std::unique_ptr<ClosedLoop> loop = std::move(*ClosedLoop::create(scenario));
+  loop->apply({.name = "run.pace", .value = "20"});
   RunControls controls;
   controls.is_paused = true;
   controls.steps = 3;
   int frames = 0;
   const telemetry::RunSummary summary =
-      run_realtime(*loop, {.pace = 100.0}, controls, [&](const telemetry::Frame& frame) {
+      run_realtime(*loop, {}, controls, {.on_frame = [&](const telemetry::Frame& frame) {
         ++frames;
         if (frame.cycle == 2) controls.is_paused = false;  // the third single step
-      });
+      }});
   EXPECT_EQ(controls.steps, 0);
   EXPECT_EQ(summary.end_reason, "time limit reached");
   EXPECT_EQ(static_cast<int>(summary.cycles), frames);

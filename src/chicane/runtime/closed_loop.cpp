@@ -2,11 +2,14 @@
 #include "chicane/runtime/closed_loop.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 
+#include "chicane/protocol/schema.hpp"
 #include "chicane/runtime/make.hpp"
 #include "chicane/runtime/observe.hpp"
 
@@ -56,6 +59,7 @@ void ClosedLoop::restart() {
   controller_->reset();
   gate_.reset();
   in_flight_.reset({});
+  hands_.restart();
   sensor_ = sim::Sensor(scenario_.sensor, scenario_.seed);
   metrics_ = telemetry::Metrics(std::max(scenario_.laps, kLapsRemembered), scenario_.control_period);
   promises_.reset();
@@ -75,29 +79,69 @@ void ClosedLoop::drive_on() {
 }
 
 bool ClosedLoop::advance(double budget) noexcept {
-  const bool is_due = time() >= next_control_ - 1e-9;
-  if (is_due) control(budget);
+  const bool is_due = is_control_due();
+  if (is_due) control(budget, nullptr);
   world_.advance(in_flight_.at(time() + 1e-9));
   judge();
   return is_due;
 }
 
-void ClosedLoop::control(double budget) noexcept {
+bool ClosedLoop::advance(const GivenStep& given) noexcept {
+  const bool is_due = is_control_due();
+  if (is_due) control(0.0, &given);
+  world_.advance(in_flight_.at(time() + 1e-9));
+  judge();
+  return is_due;
+}
+
+void ClosedLoop::apply(const telemetry::Change& change) noexcept {
+  if (hands_.apply(change)) return;
+  const std::string_view name = change.name.view();
+  const std::string_view value = change.value.view();
+  if (name == "run.pace") {
+    std::from_chars(value.data(), value.data() + value.size(), pace_);
+    pace_ = std::clamp(pace_, kSlowestPace, kFastestPace);
+    return;
+  }
+  const protocol::Parameter* row = protocol::find(name);
+  if (row == nullptr || !protocol::is_live(*row) || !protocol::set_text(scenario_, name, value)) return;
+  configure(*controller_, scenario_);
+  gate_.set_vehicle(scenario_.vehicle);
+  sensor_.configure(scenario_.sensor);
+  plant_->deviate({.friction_scale = scenario_.plant_options.friction_scale,
+                   .mass_scale = scenario_.plant_options.mass_scale});
+}
+
+void ClosedLoop::control(double budget, const GivenStep* given) noexcept {
   model::Measurement now = sensor_.sample(time(), *plant_);
   sim::select_waypoints(waypoints_, {now.x, now.y, now.psi}, scenario_.waypoints_sent, now);
-  now.delay = scenario_.latency + step_time_;
+  // Commands act in the order they are sent: behind a latency that has just been shortened they still wait.
+  now.delay = std::max(scenario_.latency + step_time_, in_flight_.last_time() - now.time);
+  DeadlineLog questions;
+  if (given != nullptr) {
+    now.delay = given->delay;
+    questions.spent_at = given->deadline_spent_at;
+  }
 
   const auto start = std::chrono::steady_clock::now();
   const Deadline deadline =
       budget > 0.0 ? Deadline::after(std::chrono::nanoseconds(static_cast<long long>(budget * 1e9)))
                    : Deadline::stopwatch();
-  const controller::StepResult& answer = controller_->step(now, deadline);
-  const safety::GateResult gated = gate_.pass(answer.command, cycle_ == 0 ? 0.0 : scenario_.control_period);
+  const controller::StepResult& answer = controller_->step(now, deadline.counted_in(questions));
+  frame_.begins = cycle_ == 0;
+  frame_.gate_interval = frame_.begins ? 0.0 : scenario_.control_period;
+  frame_.deadline_spent_at = questions.spent_at;
+  frame_.is_manual = hands_.is_on();
+  if (frame_.is_manual) frame_.manual = hands_.wish(now, scenario_.vehicle);
+  const safety::GateResult gated =
+      gate_.pass(frame_.is_manual ? frame_.manual : answer.command, frame_.gate_interval);
+  if (frame_.is_manual) controller_->note_sent(gated.command);
   const double taken = seconds_since(start);
   if (budget > 0.0) step_time_ += 0.1 * (std::min(taken, budget) - step_time_);
 
   frame_.result = answer;
   frame_.asked = answer.command;
+  frame_.pace = pace_;
   frame_.result.command = gated.command;
   frame_.result.report.gated = gated.reason != safety::GateReason::kNone;
   fill_frame(now, taken);
@@ -127,7 +171,8 @@ void ClosedLoop::judge() noexcept {
     frame_.completed_lap = completed_lap(world, metrics_.last_lap());
   }
 
-  off_for_ = std::fabs(world.lateral_error) > kLostDistance ? off_for_ + plant_->step_length() : 0.0;
+  const bool is_lost = std::fabs(world.lateral_error) > kLostDistance && !hands_.is_on();
+  off_for_ = is_lost ? off_for_ + plant_->step_length() : 0.0;
   const double default_limit =
       scenario_.laps > 0 ? kTimePerLap * scenario_.laps : std::numeric_limits<double>::infinity();
   const double limit = scenario_.time_limit > 0.0 ? scenario_.time_limit : default_limit;

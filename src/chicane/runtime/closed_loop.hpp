@@ -9,17 +9,29 @@
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/path/track.hpp"
+#include "chicane/runtime/manual_drive.hpp"
 #include "chicane/safety/command_gate.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/actuation_delay.hpp"
 #include "chicane/sim/plant.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
+#include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
 #include "chicane/telemetry/prediction_check.hpp"
 
 namespace chicane::runtime {
+
+/// Run seconds per second of the clock.
+inline constexpr double kSlowestPace = 0.05;
+inline constexpr double kFastestPace = 20.0;
+
+/// What the clock did to a recorded control step: with it, a run in real time is computed again bit for bit.
+struct GivenStep {
+  double delay = 0.0;                   ///< that was measured [s]
+  std::uint32_t deadline_spent_at = 0;  ///< DeadlineLog::spent_at
+};
 
 /// One experiment: controller against plant, in virtual time. The same object is run flat out
 /// (run_closed_loop) and paced by the clock (realtime_loop.hpp); given the same scenario it does the same,
@@ -35,6 +47,17 @@ class ClosedLoop {
   /// One physics step, preceded by a control step when one is due. True when there was a control step:
   /// frame() is new. `budget` [s] bounds the control step; 0 = no bound.
   bool advance(double budget = 0.0) noexcept;
+  /// The same, with the clock of a recording: `given` is what holds in the control step when one is due.
+  bool advance(const GivenStep& given) noexcept;
+  /// The next advance() begins with the control step number cycle().
+  [[nodiscard]] bool is_control_due() const noexcept { return time() >= next_control_ - 1e-9; }
+  [[nodiscard]] std::uint64_t cycle() const noexcept { return cycle_; }
+  /// A setting changes before the next control step: a key of the schema that is_live(), "run.pace" or
+  /// "manual.…". What was learned and what is under way stay. A change that --set would refuse changes
+  /// nothing. Allocates nothing; call it between two advance().
+  void apply(const telemetry::Change& change) noexcept;
+  /// Run seconds that were asked for per second of the clock.
+  [[nodiscard]] double pace() const noexcept { return pace_; }
   /// All laps driven, the car lost, or time up.
   [[nodiscard]] bool is_over() const noexcept { return over_; }
   /// More laps than were asked for: is_over() only when the car is lost. Their laps are counted and
@@ -54,7 +77,7 @@ class ClosedLoop {
  private:
   ClosedLoop(const scenario::Scenario& scenario, path::Track track, path::Track waypoints,
              std::unique_ptr<sim::Plant> plant, std::unique_ptr<controller::Controller> controller);
-  void control(double budget) noexcept;
+  void control(double budget, const GivenStep* given) noexcept;
   void fill_frame(const model::Measurement& now, double step_time) noexcept;
   void judge() noexcept;
 
@@ -67,6 +90,8 @@ class ClosedLoop {
   sim::Sensor sensor_;
   sim::ActuationDelay in_flight_;
   safety::CommandGate gate_;
+  ManualDrive hands_;
+  double pace_ = 1.0;
   telemetry::Metrics metrics_;
   telemetry::PredictionCheck promises_;
   telemetry::Frame frame_;

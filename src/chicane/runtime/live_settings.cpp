@@ -12,6 +12,7 @@
 #include "chicane/model/vehicle.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
+#include "chicane/runtime/closed_loop.hpp"
 
 namespace chicane::runtime {
 namespace {
@@ -45,7 +46,8 @@ Result<scenario::Scenario> composed(const scenario::Scenario& of) {
 std::vector<Control> run_controls(bool has_world, const std::vector<Control>& faults) {
   if (!has_world) return {};
   std::vector<Control> controls{
-      {"run.pace", Kind::kNumber, "", 0.05, 20.0, 1.0, "Seconds of the run in a second of the clock."},
+      {"run.pace", Kind::kNumber, "", kSlowestPace, kFastestPace, 1.0,
+       "Seconds of the run in a second of the clock."},
       {"manual.is_on", Kind::kBool, "", 0.0, 0.0, false, "A person drives instead of the controller."},
       {"manual.steer", Kind::kNumber, "", -1.0, 1.0, 0.0, "Share of the steering lock, left positive."},
       {"manual.throttle", Kind::kNumber, "", -1.0, 1.0, 0.0,

@@ -21,6 +21,18 @@ std::function<net::Content()> mode_page(const Json& mode) {
 
 Pages live_pages() { return {{"/mode.json", mode_page({{"mode", "live"}})}}; }
 
+Pages live_pages(const LiveSettings& settings) {
+  Pages pages = live_pages();
+  pages["/schema.json"] = [&settings] {
+    return net::Content{.content_type = "application/json", .bytes = settings.schema_json()};
+  };
+  pages["/preset.yaml"] = [&settings] {
+    return net::Content{
+        .content_type = "application/yaml", .bytes = settings.preset_yaml(), .save_as = "preset.yaml"};
+  };
+  return pages;
+}
+
 Pages replay_pages(const std::vector<ServedLog>& logs, double start) {
   Pages pages;
   Json list = Json::array();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "chicane/net/http_response.hpp"
+#include "chicane/runtime/live_settings.hpp"
 
 namespace chicane::runtime {
 
@@ -22,6 +23,8 @@ struct ServedLog {
 
 /// GET /mode.json of a run that is going on: {"mode":"live"}.
 [[nodiscard]] Pages live_pages();
+/// The same, /schema.json and /preset.yaml of its settings, which must outlive the server.
+[[nodiscard]] Pages live_pages(const LiveSettings& settings);
 /// GET /mode.json that names the logs, and each of them as /log/0.mcap, /log/1.mcap, ...; `start` is where
 /// the dashboard's time line begins [s].
 [[nodiscard]] Pages replay_pages(const std::vector<ServedLog>& logs, double start);

@@ -3,8 +3,11 @@
 
 #include <atomic>
 #include <functional>
+#include <optional>
 
+#include "chicane/runtime/change_queue.hpp"
 #include "chicane/runtime/closed_loop.hpp"
+#include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
@@ -17,19 +20,28 @@ struct RunControls {
   std::atomic<int> steps{0};  ///< control cycles to do while paused
   std::atomic<bool> wants_restart{false};
   std::atomic<bool> wants_stop{false};
+  ChangeQueue wishes{};  ///< changes of settings, from one thread
 };
 
 struct RealtimeOptions {
-  double pace = 1.0;          ///< run seconds per second of the clock; (0, 100]
   double budget_share = 0.8;  ///< of the control period that a control step may take; (0, 1]
-  bool stay_at_end = false;   ///< drive on after the last lap until asked to stop
+  std::optional<double> step_budget = std::nullopt;  ///< instead of the share [s]; 0 = no bound
+  bool stay_at_end = false;                          ///< drive on after the last lap until asked to stop
 };
 
-/// Runs an experiment paced by the clock. A loop that falls behind more than 100 ms does not catch up: it
-/// goes on from where it is (missed time is skipped, as a plant that is not simulated would have skipped it
-/// for the controller). `on_frame` is called on this thread after each control cycle and must not block.
-[[nodiscard]] telemetry::RunSummary run_realtime(
-    ClosedLoop& loop, const RealtimeOptions& options, RunControls& controls,
-    const std::function<void(const telemetry::Frame&)>& on_frame = {});
+/// What happens, told on the thread that runs; must not block.
+struct RealtimeHooks {
+  std::function<void(const telemetry::Frame&)> on_frame{};    ///< after each control cycle
+  std::function<void(const telemetry::Change&)> on_change{};  ///< after it was applied, before the next cycle
+};
+
+/// Runs an experiment at ClosedLoop::pace() by the clock. A loop that falls behind more than 100 ms does not
+/// catch up: it goes on from where it is (missed time is skipped, as a plant that is not simulated would have
+/// skipped it for the controller).
+///
+/// Changes that wait are applied between two cycles, also while paused. Comes back, beside at the end, when
+/// the next one `starts_anew`; it is left in the queue.
+[[nodiscard]] telemetry::RunSummary run_realtime(ClosedLoop& loop, const RealtimeOptions& options,
+                                                 RunControls& controls, const RealtimeHooks& hooks = {});
 
 }  // namespace chicane::runtime

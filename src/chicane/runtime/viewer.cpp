@@ -30,6 +30,17 @@ std::vector<foxglove::Channel> channels() {
   return list;
 }
 
+std::uint32_t change_channel() {
+  static const auto channel = [] {
+    const auto& topics = protocol::ros_topics();
+    const auto found = std::find_if(topics.begin(), topics.end(), [](const protocol::RosTopic& topic) {
+      return topic.cadence == Cadence::kEvent;
+    });
+    return static_cast<std::uint32_t>(found - topics.begin());
+  }();
+  return channel;
+}
+
 /// A frame is stale once the next one is there; descriptions of the run must arrive.
 net::Delivery delivery_of(Cadence cadence) {
   return cadence == Cadence::kFrame ? net::Delivery::kNewest : net::Delivery::kReliable;
@@ -78,8 +89,12 @@ void ViewerEndpoint::set_run(protocol::Run run) {
 }
 
 void ViewerEndpoint::set_paused(bool paused) {
-  on_network([this, paused] {
-    options_.run.is_paused = paused;
+  change_run([paused](protocol::Run& run) { run.is_paused = paused; });
+}
+
+void ViewerEndpoint::change_run(std::function<void(protocol::Run&)> change) {
+  on_network([this, change = std::move(change)] {
+    change(options_.run);
     send_cadence(Cadence::kRun);
   });
 }
@@ -103,6 +118,7 @@ void ViewerEndpoint::schedule() {
 }
 
 void ViewerEndpoint::tick() {
+  tell_changes();
   if (!latest_.take(frame_)) return;
   has_frame_ = true;
   const auto time =
@@ -112,6 +128,35 @@ void ViewerEndpoint::tick() {
   }
   send_cadence(Cadence::kFrame);
   note_lap();
+}
+
+/// Changes that the run has taken up go out in order; parameters that have another value, to those who
+/// follow them.
+void ViewerEndpoint::tell_changes() {
+  if (options_.parameters == nullptr) return;
+  for (const telemetry::Change& change : options_.parameters->applied()) {
+    const std::string payload =
+        protocol::encode_change(change.time, change.cycle, change.name.view(), change.value.view());
+    for (const auto& [id, client] : clients_) {
+      const auto wanted = client.subscriptions.find(change_channel());
+      if (wanted == client.subscriptions.end()) continue;
+      server_->send(
+          id, foxglove::message_data(wanted->second, protocol::to_nanoseconds(change.time), payload), true);
+    }
+  }
+  send_parameters(options_.parameters->news());
+}
+
+void ViewerEndpoint::send_parameters(const std::vector<foxglove::Parameter>& values) {
+  if (values.empty()) return;
+  for (const auto& [id, client] : clients_) {
+    std::vector<foxglove::Parameter> wanted;
+    std::copy_if(values.begin(), values.end(), std::back_inserter(wanted),
+                 [&, &client = client](const foxglove::Parameter& value) {
+                   return client.wants_all_parameters || client.wanted_parameters.contains(value.name);
+                 });
+    if (!wanted.empty()) send_text(id, foxglove::parameter_values(wanted));
+  }
 }
 
 /// Keeps the laps of this run for viewers that come later, and tells the present ones.
@@ -250,14 +295,14 @@ void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::SetParameters&
     if (auto now = options_.parameters->get(wish.name)) values.push_back(std::move(*now));
   }
   if (message.request) send_text(id, foxglove::parameter_values(values, message.request));
-  for (const auto& [other, client] : clients_) {
-    std::vector<foxglove::Parameter> wanted;
-    std::copy_if(values.begin(), values.end(), std::back_inserter(wanted),
-                 [&, &client = client](const foxglove::Parameter& value) {
-                   return client.wants_all_parameters || client.wanted_parameters.contains(value.name);
-                 });
-    if (!wanted.empty()) send_text(other, foxglove::parameter_values(wanted));
+  // A choice of preset changes more than its own value.
+  for (foxglove::Parameter& other : options_.parameters->news()) {
+    const bool is_told = std::any_of(values.begin(), values.end(), [&](const foxglove::Parameter& value) {
+      return value.name == other.name;
+    });
+    if (!is_told) values.push_back(std::move(other));
   }
+  send_parameters(values);
 }
 
 void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::SubscribeParameters& message) {

@@ -49,6 +49,8 @@ class ViewerEndpoint final : public Endpoint {
   void publish(const telemetry::Frame& frame) noexcept { latest_.put(frame); }
   /// Another track, car or controller from now on. Any thread, but not while on_start runs.
   void set_run(protocol::Run run);
+  /// Part of it changes, the road excepted. Any thread, but not while on_start runs.
+  void change_run(std::function<void(protocol::Run&)> change);
   /// For runs that are paused by others than viewers. Any thread, but not while on_start runs.
   void set_paused(bool paused);
 
@@ -73,6 +75,8 @@ class ViewerEndpoint final : public Endpoint {
              std::function<Result<std::string>(std::string_view)> call);
   void schedule();
   void tick();
+  void tell_changes();
+  void send_parameters(const std::vector<protocol::foxglove::Parameter>& values);
   void note_lap();
   void send_cadence(protocol::Cadence cadence);
   void send_channel(std::uint32_t channel);

@@ -2,6 +2,7 @@
 #include "chicane/sim/actuation_delay.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace chicane::sim {
 
@@ -12,14 +13,18 @@ void ActuationDelay::reset(const model::Command& acting) noexcept {
 }
 
 void ActuationDelay::push(double time, const model::Command& command) noexcept {
-  if (count_ > 0)
-    time = std::max(time, waiting_[static_cast<std::size_t>((first_ + count_ - 1) % kCapacity)].time);
+  time = std::max(time, last_time());
   if (count_ == kCapacity) {
     first_ = (first_ + 1) % kCapacity;
     --count_;
   }
   waiting_[static_cast<std::size_t>((first_ + count_) % kCapacity)] = {time, command};
   ++count_;
+}
+
+double ActuationDelay::last_time() const noexcept {
+  if (count_ == 0) return -std::numeric_limits<double>::infinity();
+  return waiting_[static_cast<std::size_t>((first_ + count_ - 1) % kCapacity)].time;
 }
 
 const model::Command& ActuationDelay::at(double time) noexcept {

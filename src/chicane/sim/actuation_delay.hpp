@@ -15,6 +15,8 @@ class ActuationDelay {
   void reset(const model::Command& acting) noexcept;
   /// `command` acts from `time` [s] on. Times must not decrease; a decreasing one is raised to the last.
   void push(double time, const model::Command& command) noexcept;
+  /// When the last command that waits will act [s]; minus infinity when none does.
+  [[nodiscard]] double last_time() const noexcept;
   /// The command acting at `time` [s]. Times must not decrease from call to call.
   [[nodiscard]] const model::Command& at(double time) noexcept;
 

@@ -21,6 +21,12 @@ struct PlantOutput {
   std::array<double, 2> tire_use{};
 };
 
+/// How a plant differs from its nominal self: what a controller is not told.
+struct PlantDeviation {
+  double friction_scale = 1.0;  ///< all tyre forces times this; (0, 2]
+  double mass_scale = 1.0;      ///< mass and yaw inertia of the body times this; [0.5, 2]
+};
+
 /// The car that answers back: tyres, drive, brakes, actuators. Not the model a controller believes in.
 /// Deterministic, allocation-free, one thread. Fixed physics step.
 class Plant {
@@ -29,6 +35,9 @@ class Plant {
   [[nodiscard]] virtual double step_length() const noexcept = 0;  ///< [s]
   /// Stands the car at `pose` in W, moving forward with `speed` [m/s], wheels rolling freely.
   virtual void reset(const model::Pose& pose, double speed) noexcept = 0;
+  /// Another deviation from the nominal car from the next step on; the car stays where it is, as fast as it
+  /// is.
+  virtual void deviate(const PlantDeviation& deviation) noexcept = 0;
   /// One physics step with `command` acting on the actuators from its beginning. Any finite command; clamped
   /// inside.
   virtual void advance(const model::Command& command) noexcept = 0;

@@ -19,18 +19,14 @@ Result<std::unique_ptr<Plant>> make_plant(std::string_view name, const PlantDevi
                 "plant.mass_scale: got " + std::to_string(deviation.mass_scale) + ", expected in [0.5, 2]");
   }
   if (name == "udacity") {
-    UdacityCarParams params;
-    params.friction_scale *= deviation.friction_scale;
-    params.mass *= deviation.mass_scale;
-    params.yaw_inertia *= deviation.mass_scale;
-    return std::make_unique<UdacityCar>(params);
+    auto car = std::make_unique<UdacityCar>();
+    car->deviate(deviation);
+    return car;
   }
   if (name == "road-car") {
-    RoadCarParams params;
-    params.friction *= deviation.friction_scale;
-    params.mass *= deviation.mass_scale;
-    params.yaw_inertia *= deviation.mass_scale;
-    return std::make_unique<RoadCar>(params);
+    auto car = std::make_unique<RoadCar>();
+    car->deviate(deviation);
+    return car;
   }
   return fail(ErrorCode::kNotFound, "plant: got \"" + std::string(name) + "\", expected udacity or road-car");
 }

@@ -33,15 +33,13 @@ double peak_slip_of(const model::MagicFormula& tire) noexcept {
 
 }  // namespace
 
-RoadCar::RoadCar(const RoadCarParams& params) noexcept : params_{params} {
-  const double wheelbase = params.front_axle + params.rear_axle;
+RoadCar::RoadCar(const RoadCarParams& params) noexcept : nominal_{params}, params_{params} {
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     const bool is_front = i < 2;
     Wheel& wheel = wheels_[i];
     wheel.position = {is_front ? params.front_axle : -params.rear_axle,
                       i % 2 == 0 ? params.half_track : -params.half_track};
-    wheel.static_load =
-        0.5 * params.mass * params.gravity * (is_front ? params.rear_axle : params.front_axle) / wheelbase;
+    wheel.static_load = static_load(is_front);
     wheel.tire = {.stiffness = is_front ? params.stiffness_front : params.stiffness_rear,
                   .shape = params.shape,
                   .peak = 1.0,
@@ -63,6 +61,19 @@ void RoadCar::reset(const model::Pose& pose, double speed) noexcept {
   }
   output_ = {};
   output_.speed = speed;
+}
+
+void RoadCar::deviate(const PlantDeviation& deviation) noexcept {
+  params_.mass = nominal_.mass * deviation.mass_scale;
+  params_.yaw_inertia = nominal_.yaw_inertia * deviation.mass_scale;
+  params_.friction = nominal_.friction * deviation.friction_scale;
+  for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].static_load = static_load(i < 2);
+}
+
+double RoadCar::static_load(bool is_front) const noexcept {
+  const double wheelbase = params_.front_axle + params_.rear_axle;
+  return 0.5 * params_.mass * params_.gravity * (is_front ? params_.rear_axle : params_.front_axle) /
+         wheelbase;
 }
 
 void RoadCar::advance(const model::Command& command) noexcept {

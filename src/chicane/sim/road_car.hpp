@@ -68,6 +68,7 @@ class RoadCar final : public Plant {
 
   [[nodiscard]] double step_length() const noexcept override { return kStepLength; }
   void reset(const model::Pose& pose, double speed) noexcept override;
+  void deviate(const PlantDeviation& deviation) noexcept override;
   void advance(const model::Command& command) noexcept override;
   [[nodiscard]] const model::State& state() const noexcept override { return state_; }
   [[nodiscard]] const PlantOutput& output() const noexcept override { return output_; }
@@ -86,12 +87,14 @@ class RoadCar final : public Plant {
     double use = 0.0;        ///< of the grip, as PlantOutput::tire_use
   };
 
+  [[nodiscard]] double static_load(bool is_front) const noexcept;  ///< of one wheel [N]
   void load_wheels() noexcept;
   [[nodiscard]] Vec2 tire_force(Wheel& wheel, const Vec2& v) const noexcept;
   void spin(Wheel& wheel, double force, double drive, double brake, double speed_along) const noexcept;
   void move() noexcept;
 
-  RoadCarParams params_;
+  RoadCarParams nominal_;
+  RoadCarParams params_;  ///< those of this car, which may deviate
   std::array<Wheel, 4> wheels_{};
   Vec2 velocity_ = Vec2::Zero();  ///< in W [m/s]
   Vec2 transfer_ = Vec2::Zero();  ///< lagged acceleration that shifts load, in B [m/s²]

@@ -35,7 +35,7 @@ double use_of(const model::FrictionCurve& curve, double slip) noexcept {
 
 }  // namespace
 
-UdacityCar::UdacityCar(const UdacityCarParams& params) noexcept : params_{params} {
+UdacityCar::UdacityCar(const UdacityCarParams& params) noexcept : nominal_{params}, params_{params} {
   const double wheelbase = params.front_axle + params.rear_axle;
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     const bool is_front = i < 2;
@@ -60,6 +60,12 @@ void UdacityCar::reset(const model::Pose& pose, double speed) noexcept {
   }
   output_ = {};
   output_.speed = speed;
+}
+
+void UdacityCar::deviate(const PlantDeviation& deviation) noexcept {
+  params_.mass = nominal_.mass * deviation.mass_scale;
+  params_.yaw_inertia = nominal_.yaw_inertia * deviation.mass_scale;
+  params_.friction_scale = nominal_.friction_scale * deviation.friction_scale;
 }
 
 void UdacityCar::advance(const model::Command& command) noexcept {

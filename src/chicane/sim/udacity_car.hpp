@@ -69,6 +69,7 @@ class UdacityCar final : public Plant {
   [[nodiscard]] double step_length() const noexcept override { return kStepLength; }
   /// From standstill the drive torque starts at 0, as when the scene starts; at speed > 0 it starts in full.
   void reset(const model::Pose& pose, double speed) noexcept override;
+  void deviate(const PlantDeviation& deviation) noexcept override;
   void advance(const model::Command& command) noexcept override;
   [[nodiscard]] const model::State& state() const noexcept override { return state_; }
   [[nodiscard]] const PlantOutput& output() const noexcept override { return output_; }
@@ -96,7 +97,8 @@ class UdacityCar final : public Plant {
   [[nodiscard]] double forward_force(Wheel& wheel, double speed_along, double dt) const noexcept;
   void publish(const Vec2& velocity_before, double pedal) noexcept;
 
-  UdacityCarParams params_;
+  UdacityCarParams nominal_;
+  UdacityCarParams params_;  ///< those of this car, which may deviate
   std::array<Wheel, 4> wheels_{};
   Vec2 velocity_ = Vec2::Zero();  ///< in W [m/s]
   double drive_torque_ = 0.0;     ///< allowed by traction control, over all wheels [N m]

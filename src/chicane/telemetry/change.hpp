@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -15,9 +16,11 @@ template <std::size_t Capacity>
 class ShortText {
  public:
   ShortText() = default;
-  ShortText(std::string_view text) noexcept  // NOLINT(google-explicit-constructor): it is a text
-      : size_{std::min(text.size(), Capacity)} {
-    std::copy_n(text.begin(), size_, bytes_.begin());
+  template <std::convertible_to<std::string_view> Text>
+  ShortText(const Text& text) noexcept {  // NOLINT(google-explicit-constructor): it is a text
+    const std::string_view all = text;
+    size_ = std::min(all.size(), Capacity);
+    std::copy_n(all.begin(), size_, bytes_.begin());
   }
   [[nodiscard]] static constexpr bool fits(std::string_view text) noexcept { return text.size() <= Capacity; }
   [[nodiscard]] std::string_view view() const noexcept { return {bytes_.data(), size_}; }
