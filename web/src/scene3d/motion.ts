@@ -90,7 +90,7 @@ export function isJump(a: Motion, b: Motion): boolean {
 }
 
 const KEPT = 32;
-const LONGEST_DELAY_MS = 60;
+const LONGEST_DELAY_MS = 50;
 const LONGEST_LEAD_S = 0.12; // run time shown beyond the newest frame
 const SLEW_S = 0.25;
 

@@ -11,8 +11,8 @@ export const LEVELS: readonly Quality[] = [
   { pixelRatio: 1, hasShadow: true, interval: 0 },
   { pixelRatio: 1, hasShadow: false, interval: 0 },
   { pixelRatio: 0.75, hasShadow: false, interval: 30 },
-  { pixelRatio: 0.6, hasShadow: false, interval: 45 },
-  { pixelRatio: 0.5, hasShadow: false, interval: 60 },
+  { pixelRatio: 0.6, hasShadow: false, interval: 40 },
+  { pixelRatio: 0.5, hasShadow: false, interval: 50 },
 ];
 
 /** Where a picture drawn by the processor instead of a graphics card starts; it never climbs above. */

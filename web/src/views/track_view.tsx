@@ -167,7 +167,7 @@ function Legend() {
         </div>
       )}
       <Swatch name="reference" label="reference" />
-      <Swatch name="trace" label="driven" />
+      <Swatch name="trace" label="driven" isMinor />
       {ghost !== null && <Swatch name="ghost" label={ghost} />}
       {shows3d.value && <Swatch name="rubber" label="tyres sliding" isMinor />}
       {shows3d.value && <Swatch name="brake" label="braking begins" isMinor />}
