@@ -57,7 +57,7 @@ TEST(Explanation, CostTermsAddUpToTheSolversCost) {
 TEST(Explanation, ATermIsPaidForWhatItNames) {
   model::Measurement aside = on_a_left_bend();
   aside.y += 1.0;
-  const auto controller = tracking();
+  const auto controller = tracking({.smoothing_width = 0.0});
   const Explanation near = answer(*controller, on_a_left_bend()).report.explanation;
   controller->reset();
   const Explanation far = answer(*controller, aside).report.explanation;
@@ -131,28 +131,25 @@ TEST(Explanation, IsEmptyOnARungBelowTheController) {
   }
 }
 
-/// A straight of 300 m, a bend of 40 m radius, a straight of 300 m, open.
-path::Path straight_bend_straight() {
-  std::vector<Vec2> points;
-  constexpr double kRadius = 40.0;
-  for (int i = 0; i < 60; ++i) points.emplace_back(5.0 * i - 300.0, 0.0);
-  for (int i = 0; i <= 12; ++i) {
-    const double angle = kPi / 2.0 * i / 12.0;
-    points.emplace_back(kRadius * sin(angle), kRadius * (1.0 - cos(angle)));
-  }
-  for (int i = 1; i <= 60; ++i) points.emplace_back(kRadius, kRadius + 5.0 * i);
-  path::Path path = path::Path::with_capacity(static_cast<int>(points.size()));
-  EXPECT_TRUE(path.rebuild(points, false));
-  return path;
+/// A straight of 300 m, a bend of 40 m radius, a straight of 300 m, open. For a speed plan only: no
+/// positions.
+ReferenceLine straight_bend_straight() {
+  constexpr int kIntervals = 442;
+  ReferenceLine line(kIntervals + 1);
+  EXPECT_TRUE(line.shape(663.0, kIntervals, false));
+  for (std::size_t i = 200; i <= 242; ++i) line.samples()[i].curve.curvature = 1.0 / 40.0;
+  return line;
 }
 
 TEST(SpeedPlan, KnowsWhichPassBoundIt) {
-  const path::Path path = straight_bend_straight();
-  SpeedPlan plan;
-  plan.rebuild(path, model::road_car_params(), {.speed_limit = 35.0});
+  ReferenceLine line = straight_bend_straight();
+  SpeedPlan plan(static_cast<int>(line.samples().size()));
+  plan.begin(model::road_car_params(), {.speed_limit = 35.0});
+  int work = 1'000'000;
+  ASSERT_TRUE(plan.advance(work, line));
   std::vector<SpeedLimiter> met;
-  for (double s = 0.0; s < path.length(); s += 1.0) {
-    if (met.empty() || met.back() != plan.at(s).limiter) met.push_back(plan.at(s).limiter);
+  for (const ReferenceLine::Sample& sample : line.samples()) {
+    if (met.empty() || met.back() != sample.limiter) met.push_back(sample.limiter);
   }
   const std::vector expected{SpeedLimiter::kAsked, SpeedLimiter::kBraking, SpeedLimiter::kCurvature,
                              SpeedLimiter::kPower, SpeedLimiter::kSight};

@@ -29,6 +29,16 @@ model::Measurement seeing(const std::vector<Vec2>& points, int first, int count 
   return now;
 }
 
+/// Drives round until the lap is planned. Returns how many measurements that took after the loop was closed.
+int learn(Road& road, const std::vector<Vec2>& points, int begin = 0) {
+  const int count = static_cast<int>(points.size());
+  for (int i = 0; i < count; ++i) road.add(seeing(points, begin + i));
+  int more = 0;
+  for (; !road.line().is_closed() && more < 1000; ++more) road.add(seeing(points, begin + more / 8));
+  EXPECT_TRUE(road.line().is_closed());
+  return more;
+}
+
 TEST(WaypointMap, ClosesTheLoopWhenTheFirstWaypointComesBack) {
   const std::vector<Vec2> points = stadium();
   WaypointMap map;
@@ -72,30 +82,79 @@ TEST(WaypointMap, IgnoresWaypointsThatAreNotNumbersAndKeepsWithinItsMemory) {
 
 TEST(SpeedPlan, KeepsTheTyresWithinTheirShare) {
   Road road({.smoothing_width = 0.0, .speed = {.grip_share = 0.7}}, model::road_car_params());
-  const std::vector<Vec2> points = stadium();
-  for (int i = 0; i < 60; ++i) road.add(seeing(points, i));
-  ASSERT_TRUE(road.is_closed());
+  learn(road, stadium());
   const model::VehicleParams car = model::road_car_params();
   for (double s = 0.0; s < road.line().length(); s += 5.0) {
-    const double v = road.speed(s).speed;
+    const ReferenceLine::Demand at = road.line().demand(s);
     // 3 %: samples lie 1.5 m apart.
-    EXPECT_LE(v * v * std::fabs(road.line().at(s).curvature), 1.03 * 0.7 * car.friction * car.load_constant)
+    EXPECT_LE(at.speed * at.speed * std::fabs(at.curvature), 1.03 * 0.7 * car.friction * car.load_constant)
         << s;
-    EXPECT_GE(v, 2.0);
+    EXPECT_GE(at.speed, 2.0);
   }
 }
 
 TEST(SpeedPlan, NeverAsksForMoreThanDriveAndBrakesGive) {
   const model::VehicleParams car = model::road_car_params();
   Road road({.speed = {.brake_share = 0.5}}, car);
-  const std::vector<Vec2> points = stadium();
-  for (int i = 0; i < 60; ++i) road.add(seeing(points, i));
+  learn(road, stadium());
   for (double s = 0.0; s < road.line().length(); s += 2.0) {
-    const SpeedPlan::Sample sample = road.speed(s);
-    const double a = sample.speed * sample.slope;
+    const ReferenceLine::Demand at = road.line().demand(s);
+    const double a = at.speed * at.speed_slope;
     // 0.15 m/s²: interpolation between samples.
-    EXPECT_LE(a, longitudinal_acceleration(car, 1.0, sample.speed) + 0.15) << s;
-    EXPECT_GE(a, longitudinal_acceleration(car, -1.0, sample.speed) - 0.15) << s;
+    EXPECT_LE(a, longitudinal_acceleration(car, 1.0, at.speed) + 0.15) << s;
+    EXPECT_GE(a, longitudinal_acceleration(car, -1.0, at.speed) - 0.15) << s;
+  }
+}
+
+TEST(SpeedPlan, IsTheSameAtTheSeam) {
+  Road road({}, model::udacity_params());
+  learn(road, stadium());
+  const auto samples = road.line().samples();
+  EXPECT_EQ(samples.front().speed, samples.back().speed);
+  EXPECT_NEAR(samples.front().curve.curvature, samples.back().curve.curvature, 1e-12);
+  EXPECT_NEAR(samples.back().curve.heading - samples.front().curve.heading, kTwoPi, 1e-12);
+  EXPECT_NEAR((samples.front().curve.position - samples.back().curve.position).norm(), 0.0, 1e-9);
+}
+
+/// The line's own figures agree with each other: tangent, heading and curvature are those of its positions.
+void expect_a_curve(const ReferenceLine& line) {
+  constexpr double kStep = 0.5;  // [m]
+  for (double s = 2.0; s < line.length() - 2.0; s += 0.7) {
+    const CurvePoint at = line.at(s);
+    const Vec2 before = line.at(s - kStep).position;
+    const Vec2 after = line.at(s + kStep).position;
+    EXPECT_NEAR((after - before).norm(), 2.0 * kStep, 2e-3) << s;
+    EXPECT_NEAR(angle_difference(atan2(at.tangent.y(), at.tangent.x()), at.heading), 0.0, 2e-3) << s;
+    const Vec2 bend = (after - 2.0 * at.position + before) / (kStep * kStep);
+    const double curvature = at.tangent.x() * bend.y() - at.tangent.y() * bend.x();
+    EXPECT_NEAR(curvature, at.curvature, 4e-3) << s;  // a cubic between samples against a line through them
+  }
+}
+
+TEST(ReferenceLine, IsOneCurveInPositionHeadingAndCurvature) {
+  Road road({.smoothing_width = 1.0}, model::udacity_params());
+  const std::vector<Vec2> points = stadium();
+  for (int i = 0; i < 20; ++i) road.add(seeing(points, i));
+  ASSERT_FALSE(road.line().is_empty());
+  expect_a_curve(road.line());
+  learn(road, points, 20);
+  expect_a_curve(road.line());
+}
+
+TEST(ReferenceLine, ProjectsOntoTheNearestPlace) {
+  Road road({}, model::udacity_params());
+  learn(road, stadium());
+  const ReferenceLine& line = road.line();
+  for (double s = 0.0; s < line.length(); s += 3.3) {
+    for (const double d : {-3.0, 0.0, 2.0}) {
+      const CurvePoint at = line.at(s);
+      const Vec2 point = at.position + d * Vec2{-at.tangent.y(), at.tangent.x()};
+      const auto near = line.project(point, s + 10.0, 30.0);
+      EXPECT_NEAR(near.s, s, 1e-4);  // the foot of a cubic between samples
+      EXPECT_NEAR(near.d, d, 1e-6);
+      EXPECT_NEAR(near.distance, std::fabs(d), 1e-6);
+      EXPECT_NEAR(line.project(point).s, near.s, 1e-9);
+    }
   }
 }
 
@@ -105,12 +164,12 @@ TEST(Road, SmoothsWithinItsWidthAndBendsLess) {
     points[i] *= 1.0 + (i % 2 == 0 ? 0.002 : -0.002);  // ±0.3 m zigzag
   const auto bending = [&](double width) {
     Road road({.half_width = 3.0, .smoothing_width = width}, model::udacity_params());
-    for (int i = 0; i < 60; ++i) road.add(seeing(points, i));
+    learn(road, points);
     double sum = 0.0;
     for (double s = 0.0; s < road.line().length(); s += 1.0) {
-      const double curvature = road.line().at(s).curvature;
-      sum += curvature * curvature;
-      const Road::Room room = road.room(s);
+      const ReferenceLine::Demand at = road.line().demand(s);
+      sum += at.curvature * at.curvature;
+      const Road::Room room = road.room(at.offset);
       EXPECT_NEAR(room.left + room.right, 6.0, 1e-9);
       EXPECT_GE(std::min(room.left, room.right), 3.0 - 1.3 * width)
           << "the price keeps it within about the width";
@@ -125,13 +184,55 @@ TEST(Road, IsTheSameWhereverItsMapBegins) {
   double shortest = 1e9, longest = 0.0;
   for (int begin : {0, 7, 23, 41}) {
     Road road({}, model::udacity_params());
-    for (int i = 0; i < 60; ++i) road.add(seeing(points, begin + i));
+    learn(road, points, begin);
     double time = 0.0;
-    for (double s = 0.0; s < road.line().length(); s += 1.0) time += 1.0 / road.speed(s).speed;
+    for (double s = 0.0; s < road.line().length(); s += 1.0) time += 1.0 / road.line().demand(s).speed;
     shortest = std::min(shortest, time);
     longest = std::max(longest, time);
   }
-  EXPECT_LT(longest, 1.02 * shortest);
+  EXPECT_LT(longest, 1.002 * shortest);
+}
+
+TEST(Road, PlansTheLapInInstalmentsAndHasALineAllTheTime) {
+  Road road({}, model::udacity_params());
+  const std::vector<Vec2> points = stadium();
+  for (int i = 0; i < 55; ++i) road.add(seeing(points, i));
+  int cycles = 0;
+  for (; !road.line().is_closed() && cycles < 1000; ++cycles) {
+    EXPECT_FALSE(road.line().is_empty());
+    const Vec2 car = points[static_cast<std::size_t>(55 + cycles / 8) % points.size()];
+    EXPECT_LT(road.line().project(car).distance, 2.0) << "the line is where the car is";
+    EXPECT_GT(road.line().length() - road.line().project(car).s, 30.0) << "and reaches on from there";
+    road.add(seeing(points, 55 + cycles / 8));
+  }
+  EXPECT_GT(cycles, 5);
+  EXPECT_LT(cycles, 60);
+}
+
+TEST(Road, KeepsDrivingByTheOldLineWhileNewSettingsArePlanned) {
+  Road road({}, model::udacity_params());
+  const std::vector<Vec2> points = stadium();
+  learn(road, points);
+  const double before = road.line().demand(100.0).speed;
+  road.configure({.speed = {.grip_share = 0.5}}, model::udacity_params());
+  EXPECT_TRUE(road.line().is_closed());
+  int cycles = 0;
+  for (; road.line().demand(100.0).speed == before && cycles < 100; ++cycles) road.add(seeing(points, 10));
+  EXPECT_GT(cycles, 3);
+  EXPECT_LT(road.line().demand(100.0).speed, 0.9 * before);
+}
+
+TEST(Road, GoesOnFromAMapThatIsFull) {
+  Road road({}, model::udacity_params());
+  model::Measurement now;
+  now.waypoint_count = 6;
+  for (int i = 0; i < WaypointMap::kCapacity + 100; ++i) {
+    for (int j = 0; j < 6; ++j)
+      now.waypoints[static_cast<std::size_t>(j)] = {10.0 * (i + j), 20.0 * sin(0.05 * (i + j))};
+    road.add(now);
+    ASSERT_FALSE(road.line().is_empty()) << i;
+    EXPECT_LT(road.line().project(now.waypoints[4]).distance, 2.0) << i;
+  }
 }
 
 }  // namespace

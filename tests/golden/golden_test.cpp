@@ -39,11 +39,11 @@ TEST_P(GoldenRun, HasTheBitsItHad) {
 INSTANTIATE_TEST_SUITE_P(
     Runs, GoldenRun,
     ::testing::Values(
-        Golden{"default_udacity", {{"track", "lakeside"}}, 0x554511beffefbde1},
-        Golden{"default_road_car", {{"track", "hairpins"}, {"car", "road-car"}}, 0x650d5c5bacede71d},
+        Golden{"default_udacity", {{"track", "lakeside"}}, 0x28089d288be32acb},
+        Golden{"default_road_car", {{"track", "hairpins"}, {"car", "road-car"}}, 0xbfbd8619d2a61151},
         Golden{"with_noise",
                {{"track", "oval"}, {"sensor.position_noise_m", "0.05"}, {"seed", "7"}},
-               0x5494ec18d5c0527a},
+               0xce7a52d35dfd5766},
         Golden{"weighted", {{"preset", "weighted"}}, 0x2dbdf2fd492fe1cf},
         Golden{"delay_in_model", {{"preset", "delay-in-model"}}, 0x29ffd23f7171698a},
         Golden{"pid", {{"preset", "pid"}, {"latency_ms", "37"}}, 0xdab4f526bb2d5617}),

@@ -2,53 +2,51 @@
 #include "chicane/controller/road.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <span>
-
-#include "chicane/base/math.hpp"
+#include <limits>
 
 namespace chicane::controller {
 namespace {
 
-constexpr int kOpenWindow = 18;  // last waypoints used while the lap is not closed
-
-/// Eq. 9: what the curvature's slope costs relative to curvature is the yaw inertia against the tyres' share.
-double slope_length(const model::VehicleParams& vehicle) noexcept {
-  const double length = vehicle.yaw_inertia / (vehicle.mass * vehicle.rear_axle);
-  return std::clamp(length / std::max(0.05, 1.0 - vehicle.steer_helper), 1.0, 10.0);
-}
+constexpr int kSeam = WaypointLine::kSettled + 1;  // waypoint where laps begin: drawn with others before it
 
 }  // namespace
 
 Road::Road(const RoadOptions& options, const model::VehicleParams& vehicle)
     : options_{options},
       vehicle_{vehicle},
-      raw_{path::Path::with_capacity(WaypointMap::kCapacity)},
-      line_{path::Path::with_capacity(WaypointMap::kCapacity)},
-      smoother_{options.smoothing_width, slope_length(vehicle)} {
-  knots_.reserve(static_cast<std::size_t>(LineSmoother::kMaxKnots));
-  offset_.reserve(static_cast<std::size_t>(LineSmoother::kMaxKnots));
+      stretch_planner_{kStretchKnots},
+      lap_planner_{WaypointLine::kCapacity},
+      stretch_{LinePlanner::samples_for(kStretchKnots)},
+      laps_{ReferenceLine{LinePlanner::samples_for(WaypointLine::kCapacity)},
+            ReferenceLine{LinePlanner::samples_for(WaypointLine::kCapacity)}} {
+  configure_planners();
+}
+
+void Road::configure_planners() noexcept {
+  const LinePlannerOptions line{.smoothing_width = options_.smoothing_width, .speed = options_.speed};
+  stretch_planner_.configure(line, vehicle_);
+  lap_planner_.configure(line, vehicle_);
 }
 
 void Road::reset() noexcept {
   map_.clear();
-  knot_count_ = 0;
-  line_ = path::Path::with_capacity(WaypointMap::kCapacity);
+  generation_ = map_.generation();
+  waypoints_.clear();
+  stretch_.clear();
+  is_lap_ = is_lap_begun_ = false;
   ++revision_;
 }
 
 void Road::configure(const RoadOptions& options, const model::VehicleParams& vehicle) noexcept {
   if (options == options_ && vehicle == vehicle_) return;
-  const bool has_same_line =
-      options.smoothing_width == options_.smoothing_width && slope_length(vehicle) == slope_length(vehicle_);
   options_ = options;
   vehicle_ = vehicle;
-  if (!has_same_line) {
-    smoother_.configure(options.smoothing_width, slope_length(vehicle));
-    rebuild();
-  } else if (is_known()) {
-    speed_plan_.rebuild(line_, vehicle_, options_.speed);
+  configure_planners();
+  is_lap_begun_ = false;
+  if (is_lap_) {
+    plan_lap();
+  } else if (waypoints_.newest() >= 0) {
+    plan_stretch();
   }
 }
 
@@ -58,46 +56,65 @@ void Road::add(const model::Measurement& now) noexcept {
         now.waypoint_count > 0 && (map_.points().front() - now.waypoints[0]).norm() > WaypointMap::kSame;
     if (is_new) map_.clear();
   }
-  if (map_.add(now)) rebuild();
-}
-
-void Road::rebuild() noexcept {
-  std::span<const Vec2> points = map_.points();
-  if (!map_.is_closed() && points.size() > static_cast<std::size_t>(kOpenWindow))
-    points = points.last(static_cast<std::size_t>(kOpenWindow));
-  if (points.size() < 3 || !raw_.rebuild(points, map_.is_closed())) return;
-  if (!smooth()) return;
-  speed_plan_.rebuild(line_, vehicle_, options_.speed);
-  ++revision_;
-}
-
-bool Road::smooth() noexcept {
-  const bool closed = raw_.is_closed();
-  const int intervals = LineSmoother::knots_for(raw_.length(), closed);
-  const double spacing = raw_.length() / intervals;
-  const bool use = smoother_.smooth(raw_, spacing, intervals);
-  knot_count_ = closed ? intervals : intervals + 1;
-  knots_.clear();
-  offset_.clear();
-  for (int k = 0; k < knot_count_; ++k) {
-    const path::PathPoint at = raw_.at(k * spacing);
-    const double n = use ? smoother_.offset(k) : 0.0;
-    offset_.push_back(n);
-    knots_.emplace_back(at.position.x() - n * sin(at.heading), at.position.y() + n * cos(at.heading));
+  if (!is_lap_ && waypoints_.is_full()) map_.clear();
+  const bool has_grown = map_.add(now);
+  if (map_.generation() != generation_) {
+    generation_ = map_.generation();
+    waypoints_.clear();
+    is_lap_ = is_lap_begun_ = false;
   }
-  return line_.rebuild(knots_, closed);
+  if (!map_.is_closed()) {
+    if (has_grown) extend(static_cast<int>(map_.points().size()) - 1);
+  } else if (!is_lap_ && waypoints_.newest() < newest_needed(now)) {
+    extend(waypoints_.newest() + 1);
+  } else if (!is_lap_ || is_lap_begun_) {
+    plan_lap();
+  }
 }
 
-Road::Room Road::room(double s) const noexcept {
-  if (knot_count_ < 2) return {options_.half_width, options_.half_width};
-  const double position =
-      line_.wrap(s) / line_.length() * (line_.is_closed() ? knot_count_ : knot_count_ - 1);
-  const int i = std::clamp(static_cast<int>(position), 0, knot_count_ - 1);
-  const int j = line_.is_closed() ? (i + 1) % knot_count_ : std::min(i + 1, knot_count_ - 1);
-  const double share = std::clamp(position - i, 0.0, 1.0);
-  const double n = offset_[static_cast<std::size_t>(i)] +
-                   share * (offset_[static_cast<std::size_t>(j)] - offset_[static_cast<std::size_t>(i)]);
-  return {options_.half_width - n, options_.half_width + n};
+/// The waypoint up to which the line of a closed map is drawn: on into the second lap as far as the first
+/// piece of it is settled, and as far as the car sees.
+int Road::newest_needed(const model::Measurement& now) const noexcept {
+  const int count = static_cast<int>(map_.points().size());
+  const int first = map_.first_seen() < count / 2 ? map_.first_seen() + count : map_.first_seen();
+  return std::max(count + kSeam + WaypointLine::kSettled, first + now.waypoint_count - 1);
+}
+
+void Road::extend(int newest) noexcept {
+  if (waypoints_.extend(map_, newest)) plan_stretch();
+}
+
+void Road::plan_stretch() noexcept {
+  const int count = static_cast<int>(map_.points().size());
+  int first = map_.first_seen();
+  if (first + count <= waypoints_.newest()) first += count;
+  const double from = std::max(0.0, waypoints_.along(first) - kBehind);
+  // From one of the waypoint line's own knots: what is settled stays as it was.
+  const double knot = std::floor(from / WaypointLine::kSpacing) * WaypointLine::kSpacing;
+  const double to =
+      std::min(waypoints_.along(waypoints_.newest()), knot + (kStretchKnots - 2) * WaypointLine::kSpacing);
+  stretch_.clear();
+  ++revision_;
+  if (!stretch_planner_.begin(waypoints_, knot, to, false)) return;
+  (void)stretch_planner_.advance(std::numeric_limits<int>::max(), stretch_);
+}
+
+void Road::plan_lap() noexcept {
+  const std::size_t other = 1 - current_lap_;
+  if (!is_lap_begun_) {
+    const int count = static_cast<int>(map_.points().size());
+    is_lap_begun_ = true;
+    if (!lap_planner_.begin(waypoints_, waypoints_.along(kSeam), waypoints_.along(kSeam + count), true)) {
+      is_lap_begun_ = false;
+      return;
+    }
+  }
+  if (!lap_planner_.advance(kLapWork, laps_[other])) return;
+  is_lap_begun_ = false;
+  if (laps_[other].is_empty()) return;
+  current_lap_ = other;
+  is_lap_ = true;
+  ++revision_;
 }
 
 }  // namespace chicane::controller

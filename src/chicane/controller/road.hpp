@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <vector>
+#include <array>
 
-#include "chicane/controller/line_smoother.hpp"
-#include "chicane/controller/speed_plan.hpp"
+#include "chicane/controller/line_planner.hpp"
+#include "chicane/controller/reference_line.hpp"
+#include "chicane/controller/waypoint_line.hpp"
 #include "chicane/controller/waypoint_map.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/vehicle.hpp"
-#include "chicane/path/path.hpp"
 
 namespace chicane::controller {
 
@@ -23,8 +23,13 @@ struct RoadOptions {
   friend bool operator==(const RoadOptions&, const RoadOptions&) = default;
 };
 
-/// What a controller knows of the road: waypoints remembered, a smooth reference line through them, the speed
-/// planned along it, and the room left and right of it. All memory is reserved at construction.
+/// What a controller knows of the road: waypoints remembered, a smooth reference line along them with its
+/// speeds, and the room left and right of it. All memory is reserved at construction.
+///
+/// Until a lap is known the line reaches from a little behind the car to the last waypoint seen, and is
+/// planned anew with each new one. When the loop closes, the lap is planned beside the driving, kLapWork in
+/// each measurement, and takes over when it is ready: 3 to 5 s for a lap of 1.3 km. So add() is bounded, by
+/// about 30 µs (docs/tracking.md), and does the same work for the same measurements.
 class Road {
  public:
   Road(const RoadOptions& options, const model::VehicleParams& vehicle);
@@ -32,39 +37,48 @@ class Road {
   /// Other settings for the same road: what is known of it is planned anew when they differ.
   void configure(const RoadOptions& options, const model::VehicleParams& vehicle) noexcept;
 
-  /// Takes in the waypoints of a measurement; when they tell something new, line and speeds are planned anew.
+  /// Takes in the waypoints of a measurement, and does this cycle's share of the planning.
   void add(const model::Measurement& now) noexcept;
 
-  [[nodiscard]] bool is_known() const noexcept { return !line_.is_empty(); }
-  [[nodiscard]] bool is_closed() const noexcept { return line_.is_closed(); }
-  /// The reference line in W.
-  [[nodiscard]] const path::Path& line() const noexcept { return line_; }
-  [[nodiscard]] SpeedPlan::Sample speed(double s) const noexcept { return speed_plan_.at(s); }
-
+  /// The reference line in W; empty while nothing is known.
+  [[nodiscard]] const ReferenceLine& line() const noexcept {
+    return is_lap_ ? laps_[current_lap_] : stretch_;
+  }
   struct Room {
     double left = 0.0;   ///< [m]
     double right = 0.0;  ///< [m]
   };
-  /// Room for the centre of mass beside the reference line at arc length s.
-  [[nodiscard]] Room room(double s) const noexcept;
-  /// Increases with every new plan: positions along an older line mean nothing any more.
+  /// Room for the centre of mass beside the reference line where it has moved sideways by `offset` [m].
+  [[nodiscard]] Room room(double offset) const noexcept {
+    return {options_.half_width - offset, options_.half_width + offset};
+  }
+  /// Increases with every new line: positions along an older one mean nothing any more.
   [[nodiscard]] unsigned revision() const noexcept { return revision_; }
 
  private:
-  void rebuild() noexcept;
-  bool smooth() noexcept;
+  static constexpr int kLapWork = 1500;      ///< units of LinePlanner in each measurement
+  static constexpr int kStretchKnots = 168;  ///< 500 m
+  static constexpr double kBehind = 60.0;    ///< [m] the line begins so far behind the first waypoint seen
+
+  void configure_planners() noexcept;
+  void extend(int newest) noexcept;
+  void plan_stretch() noexcept;
+  void plan_lap() noexcept;
+  [[nodiscard]] int newest_needed(const model::Measurement& now) const noexcept;
 
   RoadOptions options_;
   model::VehicleParams vehicle_;
   WaypointMap map_;
-  path::Path raw_;   ///< through the waypoints
-  path::Path line_;  ///< smoothed
-  SpeedPlan speed_plan_;
-  std::vector<Vec2> knots_;
-  std::vector<double> offset_;  ///< of the line from the raw path, by knot [m]
-  int knot_count_ = 0;
+  WaypointLine waypoints_;
+  LinePlanner stretch_planner_;
+  LinePlanner lap_planner_;
+  ReferenceLine stretch_;
+  std::array<ReferenceLine, 2> laps_;  ///< one to drive by, one to be planned
+  std::size_t current_lap_ = 0;
+  unsigned generation_ = 0;  ///< of the map the lines belong to
   unsigned revision_ = 0;
-  LineSmoother smoother_;
+  bool is_lap_ = false;        ///< the current lap is driven by
+  bool is_lap_begun_ = false;  ///< the other one is being planned
 };
 
 }  // namespace chicane::controller

@@ -9,7 +9,6 @@
 namespace chicane::controller {
 namespace {
 
-constexpr double kSpacing = 1.5;      // [m] wanted between samples
 constexpr double kSlopeReach = 3.0;   // [m] each way: shorter changes of curvature than a car are not felt
 constexpr double kLowestSpeed = 2.0;  // [m/s] the plan never asks to stop
 
@@ -32,98 +31,105 @@ double demand_of(double curvature, double slope, const model::VehicleParams& p) 
 /// Share of the longitudinal force left beside the lateral use of the friction ellipse (1 for uncoupled
 /// tyres).
 double longitudinal_share(double v, double demand, const model::VehicleParams& p, double grip) {
+  if (p.friction_coupling == 0.0) return 1.0;
   const double use = v * v * demand / (grip * p.friction * (p.load_constant + p.load_per_speed * v));
   return std::sqrt(std::max(0.0, 1.0 - p.friction_coupling * std::min(1.0, use * use)));
 }
 
-/// Lowers `speed` to `limit` and remembers why.
-void limit_to(double limit, SpeedLimiter reason, double& speed, SpeedLimiter& limiter) {
-  if (!(limit < speed)) return;
-  speed = limit;
-  limiter = reason;
+/// Lowers the speed to `limit` and remembers why.
+void limit_to(double limit, SpeedLimiter reason, ReferenceLine::Sample& sample) {
+  if (limit >= sample.speed) return;
+  sample.speed = limit;
+  sample.limiter = reason;
 }
 
 }  // namespace
 
-SpeedPlan::SpeedPlan() {
-  speed_.assign(static_cast<std::size_t>(kCapacity) * 2, 0.0);
-  limiter_.assign(static_cast<std::size_t>(kCapacity), SpeedLimiter::kNone);
+void SpeedPlan::begin(const model::VehicleParams& vehicle, const SpeedPlanOptions& options) noexcept {
+  vehicle_ = vehicle;
+  options_ = options;
+  instalments_.restart();
 }
 
-void SpeedPlan::rebuild(const path::Path& path, const model::VehicleParams& vehicle,
-                        const SpeedPlanOptions& options) noexcept {
-  count_ = 0;
-  if (path.is_empty()) return;
-  is_closed_ = path.is_closed();
-  const int intervals = std::clamp(static_cast<int>(std::ceil(path.length() / kSpacing)), 2, kCapacity - 1);
-  spacing_ = path.length() / intervals;
-  count_ = is_closed_ ? intervals : intervals + 1;
-  double* const speed = speed_.data();
-  double* const demand = speed_.data() + kCapacity;
-  SpeedLimiter* const limiter = limiter_.data();
-
-  for (int i = 0; i < count_; ++i) {
-    const double s = i * spacing_;
-    const double slope =
-        (path.at(s + kSlopeReach).curvature - path.at(s - kSlopeReach).curvature) / (2.0 * kSlopeReach);
-    demand[i] = demand_of(path.at(s).curvature, slope, vehicle);
-    speed[i] = options.speed_limit;
-    limiter[i] = SpeedLimiter::kAsked;
-    limit_to(speed_for(demand[i], vehicle, options.grip_share), SpeedLimiter::kCurvature, speed[i],
-             limiter[i]);
-    speed[i] = std::max(speed[i], kLowestSpeed);
+bool SpeedPlan::advance(int& work, ReferenceLine& line) noexcept {
+  const int last = static_cast<int>(line.samples().size()) - 1;
+  if (instalments_.phase() == 0) {
+    instalments_.loop(last + 1, 4, work, [&](int i) { limit(line, i); });
+    if (instalments_.phase() == 1) finish_limits(line);
   }
-  if (!is_closed_) {
-    const double end =
-        speed_for((1.0 - vehicle.steer_helper) * options.end_curvature, vehicle, options.grip_share);
-    limit_to(std::max(end, kLowestSpeed), SpeedLimiter::kSight, speed[count_ - 1], limiter[count_ - 1]);
+  if (instalments_.phase() == 1) {
+    instalments_.loop(last, 4, work, [&](int turn) { accelerate(line, turn); });
   }
-
-  // Twice round a closed path, so that the seam agrees.
-  const int steps = is_closed_ ? 2 * count_ : count_ - 1;
-  for (int i = 0; i < steps; ++i) {
-    const int from = i % count_;
-    const int to = (i + 1) % count_;
-    const double v = speed[from];
-    const double share = longitudinal_share(v, demand[from], vehicle, options.grip_share);
-    const double drag = longitudinal_acceleration(vehicle, 0.0, v);
-    const double drive = longitudinal_acceleration(vehicle, 1.0, v) - drag;
-    const double a = options.drive_share * share * drive + drag;
-    limit_to(std::sqrt(std::max(kLowestSpeed * kLowestSpeed, v * v + 2.0 * a * spacing_)),
-             SpeedLimiter::kPower, speed[to], limiter[to]);
+  if (instalments_.phase() == 2) {
+    instalments_.loop(last, 4, work, [&](int turn) { brake(line, turn); });
   }
-  for (int i = steps; i > 0; --i) {
-    const int from = i % count_;
-    const int to = (i - 1) % count_;
-    const double v = speed[from];
-    const double share = longitudinal_share(v, demand[from], vehicle, options.grip_share);
-    const double drag = longitudinal_acceleration(vehicle, 0.0, v);
-    const double brake = drag - longitudinal_acceleration(vehicle, -vehicle.brake_throttle_limit, v);
-    const double a = options.brake_share * share * brake - drag;
-    // Braking for the end of sight is for want of sight.
-    const bool is_blind = limiter[from] == SpeedLimiter::kSight;
-    limit_to(std::sqrt(v * v + 2.0 * a * spacing_), is_blind ? SpeedLimiter::kSight : SpeedLimiter::kBraking,
-             speed[to], limiter[to]);
+  if (instalments_.phase() < 3) return false;
+  if (line.is_closed()) {
+    line.samples()[static_cast<std::size_t>(last)].speed = line.samples()[0].speed;
+    line.samples()[static_cast<std::size_t>(last)].limiter = line.samples()[0].limiter;
   }
+  return true;
 }
 
-SpeedPlan::Sample SpeedPlan::at(double s) const noexcept {
-  if (count_ < 2) return {};
-  const double position = s / spacing_;
-  const double floor = std::floor(position);
-  const double share = position - floor;
-  auto index = static_cast<long>(floor);
-  long next = index + 1;
-  if (is_closed_) {
-    index = ((index % count_) + count_) % count_;
-    next = (index + 1) % count_;
-  } else {
-    index = std::clamp<long>(index, 0, count_ - 1);
-    next = std::clamp<long>(next, 0, count_ - 1);
-  }
-  const double v0 = speed_[static_cast<std::size_t>(index)];
-  const double v1 = speed_[static_cast<std::size_t>(next)];
-  return {v0 + share * (v1 - v0), (v1 - v0) / spacing_, limiter_[static_cast<std::size_t>(index)]};
+void SpeedPlan::limit(ReferenceLine& line, int i) noexcept {
+  const auto samples = line.samples();
+  const int last = static_cast<int>(samples.size()) - 1;
+  const int reach = std::max(1, static_cast<int>(kSlopeReach / line.spacing() + 0.5));
+  const auto curvature = [&](int at) {
+    if (line.is_closed()) at = at < 0 ? at + last : (at > last ? at - last : at);
+    return samples[static_cast<std::size_t>(std::clamp(at, 0, last))].curve.curvature;
+  };
+  const auto index = static_cast<std::size_t>(i);
+  const double slope = (curvature(i + reach) - curvature(i - reach)) / (2.0 * reach * line.spacing());
+  demand_[index] = demand_of(curvature(i), slope, vehicle_);
+  ReferenceLine::Sample& sample = samples[index];
+  sample.speed = options_.speed_limit;
+  sample.limiter = SpeedLimiter::kAsked;
+  limit_to(speed_for(demand_[index], vehicle_, options_.grip_share), SpeedLimiter::kCurvature, sample);
+  sample.speed = std::max(sample.speed, kLowestSpeed);
+  if (i == 0 || sample.speed < samples[static_cast<std::size_t>(slowest_)].speed) slowest_ = i;
+}
+
+void SpeedPlan::finish_limits(ReferenceLine& line) noexcept {
+  if (line.is_closed()) return;
+  slowest_ = 0;
+  const double end =
+      speed_for((1.0 - vehicle_.steer_helper) * options_.end_curvature, vehicle_, options_.grip_share);
+  limit_to(std::max(end, kLowestSpeed), SpeedLimiter::kSight, line.samples().back());
+}
+
+/// Once round a closed line from its slowest place, whose speed nothing lowers any more; an open one from its
+/// beginning.
+void SpeedPlan::accelerate(ReferenceLine& line, int turn) noexcept {
+  const int laps = static_cast<int>(line.samples().size()) - 1;
+  const int at = (slowest_ + turn) % laps;
+  const auto from = static_cast<std::size_t>(at);
+  const std::size_t to = line.is_closed() && at + 1 == laps ? 0 : from + 1;
+  const double v = line.samples()[from].speed;
+  const double share = longitudinal_share(v, demand_[from], vehicle_, options_.grip_share);
+  const double drag = longitudinal_acceleration(vehicle_, 0.0, v);
+  const double drive = longitudinal_acceleration(vehicle_, 1.0, v) - drag;
+  const double a = options_.drive_share * share * drive + drag;
+  const double squared = std::max(kLowestSpeed * kLowestSpeed, v * v + 2.0 * a * line.spacing());
+  limit_to(std::sqrt(squared), SpeedLimiter::kPower, line.samples()[to]);
+}
+
+/// The same the other way round; an open line from its end.
+void SpeedPlan::brake(ReferenceLine& line, int turn) noexcept {
+  const int laps = static_cast<int>(line.samples().size()) - 1;
+  const int at = line.is_closed() ? (slowest_ + laps - turn) % laps : laps - turn;
+  const auto from = static_cast<std::size_t>(at);
+  const std::size_t to = at == 0 ? static_cast<std::size_t>(laps - 1) : from - 1;
+  const ReferenceLine::Sample& ahead = line.samples()[from];
+  const double v = ahead.speed;
+  const double share = longitudinal_share(v, demand_[from], vehicle_, options_.grip_share);
+  const double drag = longitudinal_acceleration(vehicle_, 0.0, v);
+  const double force = drag - longitudinal_acceleration(vehicle_, -vehicle_.brake_throttle_limit, v);
+  const double a = options_.brake_share * share * force - drag;
+  // Braking for the end of sight is for want of sight.
+  const bool is_blind = ahead.limiter == SpeedLimiter::kSight;
+  limit_to(std::sqrt(v * v + 2.0 * a * line.spacing()),
+           is_blind ? SpeedLimiter::kSight : SpeedLimiter::kBraking, line.samples()[to]);
 }
 
 }  // namespace chicane::controller

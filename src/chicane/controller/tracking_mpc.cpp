@@ -120,16 +120,16 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     StepReport& report = result_.report;
     report = {};
     report.delay = now.delay;
-    const path::Path& line = road_.line();
+    const ReferenceLine& line = road_.line();
     if (line.is_empty() || !std::isfinite(start.state.x + start.state.y + start.state.psi + start.state.vx))
       return false;
     const Vec2 position{start.state.x, start.state.y};
     if (revision_ != road_.revision()) has_place_ = false;
-    path::Projection place =
+    ReferenceLine::Projection place =
         has_place_ ? line.project(position, s_, kProjectionWindow) : line.project(position);
     if (has_place_ && place.distance > 0.5 * kFarFromLine) place = line.project(position);
     if (!(place.distance < kFarFromLine)) return false;
-    const path::PathPoint at = line.at(place.s);
+    const CurvePoint at = line.at(place.s);
     const double heading_error = angle_difference(start.state.psi, at.heading);
     if (std::fabs(heading_error) > 0.5 * kPi) return false;
     s_ = place.s;
@@ -138,10 +138,10 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     x0_ = {0.0,           place.d,           heading_error,     start.state.vx, start.state.vy,
            start.state.r, start.state.steer, start.acceleration};
 
-    const path::Projection measured = line.project({now.x, now.y}, s_, kProjectionWindow);
+    const ReferenceLine::Projection measured = line.project({now.x, now.y}, s_, kProjectionWindow);
     report.lateral_error = measured.d;
     report.heading_error = angle_difference(now.psi, line.at(measured.s).heading);
-    report.speed_reference = road_.speed(s_).speed;
+    report.speed_reference = line.demand(s_).speed;
     report.sight = line.is_closed() ? line.length() : line.length() - s_;
     report.has_map = line.is_closed();
     return true;
@@ -207,21 +207,19 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   }
 
   void sample_stage(int k, const StageState& x) noexcept {
-    const path::Path& line = road_.line();
     const double s = x[Problem::kS];
-    const path::PathPoint at = line.at(s_ + s);
-    const SpeedPlan::Sample speed = road_.speed(s_ + s);
-    const Road::Room room = road_.room(s_ + s);
+    const ReferenceLine::Demand road = road_.line().demand(s_ + s);
+    const Road::Room room = road_.room(road.offset);
     const model::VehicleParams& car = model_.vehicle();
     const double v = std::max(x[Problem::kVx], 0.0);
     // Asking for far more than the car can do would only drown the other prices (and Gauss–Newton with them).
-    const bool is_reachable = speed.speed < v + kSpeedAhead;
+    const bool is_reachable = road.speed < v + kSpeedAhead;
     problem_.stages[static_cast<std::size_t>(k)] = {
         .s = s,
-        .curvature = at.curvature,
-        .curvature_slope = at.curvature_slope,
-        .speed = is_reachable ? speed.speed : v + kSpeedAhead,
-        .speed_slope = is_reachable ? speed.slope : 0.0,
+        .curvature = road.curvature,
+        .curvature_slope = road.curvature_slope,
+        .speed = is_reachable ? road.speed : v + kSpeedAhead,
+        .speed_slope = is_reachable ? road.speed_slope : 0.0,
         .left = room.left,
         .right = room.right,
         .acceleration_min = longitudinal_acceleration(car, -car.brake_throttle_limit, v),
@@ -244,7 +242,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   void explain_answer(double speed) noexcept {
     Explanation& explanation = result_.report.explanation;
     explain<TrackingTerms>(problem_, horizon_, explanation);
-    const SpeedPlan::Sample planned = road_.speed(s_);
+    const ReferenceLine::Demand planned = road_.line().demand(s_);
     explanation.speed_limit = planned.speed;
     explanation.speed_limiter = limiter_of(speed, planned.speed, planned.limiter, explanation.active_now);
   }
@@ -266,7 +264,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   }
 
   void fill_plan(double act_time) noexcept {
-    const path::Path& line = road_.line();
+    const ReferenceLine& line = road_.line();
     Plan& plan = result_.plan;
     const int n = options_.horizon_steps;
     plan.size = n + 1;
@@ -275,13 +273,11 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
       const auto i = static_cast<std::size_t>(k);
       const StageState& x = horizon_.x[i];
       const StageInput& u = horizon_.u[static_cast<std::size_t>(std::min(k, n - 1))];
-      const path::PathPoint at = line.at(s_ + x[Problem::kS]);
-      const double c = cos(at.heading);
-      const double sn = sin(at.heading);
+      const CurvePoint at = line.at(s_ + x[Problem::kS]);
       plan.reference[i] = at.position;
       plan.points[i] = {.time = act_time + problem_.time(k),
-                        .x = at.position.x() - x[Problem::kD] * sn,
-                        .y = at.position.y() + x[Problem::kD] * c,
+                        .x = at.position.x() - x[Problem::kD] * at.tangent.y(),
+                        .y = at.position.y() + x[Problem::kD] * at.tangent.x(),
                         .psi = at.heading + x[Problem::kE],
                         .speed = x[Problem::kVx],
                         .command = {u[0], throttle_for(model_.vehicle(), u[1], x[Problem::kVx])}};

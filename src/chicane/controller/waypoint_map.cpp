@@ -25,21 +25,18 @@ void WaypointMap::clear() noexcept {
   points_.clear();
   is_closed_ = false;
   hint_ = 0;
+  ++generation_;
 }
 
 int WaypointMap::find(const Vec2& point) const noexcept {
   const int n = static_cast<int>(points_.size());
-  for (int i = 0; i < n; ++i) {
-    const int j = (hint_ + i) % n;
-    if (is_same(points_[static_cast<std::size_t>(j)], point)) return j;
+  for (int i = hint_; i < n; ++i) {
+    if (is_same(points_[static_cast<std::size_t>(i)], point)) return i;
+  }
+  for (int i = 0; i < std::min(hint_, n); ++i) {
+    if (is_same(points_[static_cast<std::size_t>(i)], point)) return i;
   }
   return -1;
-}
-
-bool WaypointMap::append(const Vec2& point) noexcept {
-  if (static_cast<int>(points_.size()) >= kCapacity) return false;
-  points_.push_back(point);
-  return true;
 }
 
 bool WaypointMap::add(const model::Measurement& now) noexcept {
@@ -51,8 +48,10 @@ bool WaypointMap::add(const model::Measurement& now) noexcept {
     if (is_finite(p)) known = find(p);
   }
   bool changed = false;
-  if (known < 0) {
+  const bool is_full = !is_closed_ && static_cast<int>(points_.size()) + count > kCapacity;
+  if (known < 0 || is_full) {
     if (count < 2) return false;
+    known = -1;
     clear();
     first = 0;
     changed = true;
@@ -72,7 +71,8 @@ bool WaypointMap::add(const model::Measurement& now) noexcept {
     if (size >= kFewestForLoop && is_same(points_.front(), p)) {
       is_closed_ = true;
       changed = true;
-    } else if (append(p)) {
+    } else {
+      points_.push_back(p);
       known = static_cast<int>(points_.size()) - 1;
       changed = true;
     }

@@ -14,7 +14,8 @@ namespace chicane::controller {
 /// one.
 ///
 /// Memory for kCapacity waypoints is reserved at construction; add() allocates nothing. A measurement whose
-/// waypoints match nothing known starts a new map (another scene, or a car that was moved).
+/// waypoints match nothing known starts a new map (another scene, or a car that was moved), and so does one
+/// that no longer fits.
 class WaypointMap {
  public:
   static constexpr int kCapacity = 4096;
@@ -27,13 +28,17 @@ class WaypointMap {
 
   [[nodiscard]] std::span<const Vec2> points() const noexcept { return points_; }
   [[nodiscard]] bool is_closed() const noexcept { return is_closed_; }
+  /// Index of the first waypoint of the last measurement that showed one known.
+  [[nodiscard]] int first_seen() const noexcept { return hint_; }
+  /// Increases when the map is begun anew.
+  [[nodiscard]] unsigned generation() const noexcept { return generation_; }
 
  private:
   [[nodiscard]] int find(const Vec2& point) const noexcept;
-  bool append(const Vec2& point) noexcept;
 
   std::vector<Vec2> points_;
   bool is_closed_ = false;
+  unsigned generation_ = 0;
   int hint_ = 0;  ///< index where the last measurement's first waypoint was found
 };
 

@@ -55,6 +55,10 @@ class Path {
   [[nodiscard]] bool is_closed() const noexcept { return closed_; }
   [[nodiscard]] double length() const noexcept { return length_; }
   [[nodiscard]] bool is_empty() const noexcept { return length_ <= 0.0; }
+  /// Where point `i` of those the curve was made of lies [m]. Pre: 0 <= i < their number.
+  [[nodiscard]] double arc_length(int i) const noexcept {
+    return i < count_ ? segments_[static_cast<std::size_t>(i)].s0 : length_;
+  }
   /// Change of heading over a closed lap [rad]: 2π for a simple counter-clockwise loop, −2π for a clockwise
   /// one.
   [[nodiscard]] double turning() const noexcept { return turning_; }
