@@ -10,6 +10,33 @@ function(build_pages)
   endif()
 endfunction()
 
+# The same in one script and one style, for `chicane report`.
+function(build_report)
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env CHICANE_REPORT=1 ${NODE} node_modules/vite/bin/vite.js build
+                          --outDir ${BUILD}/report --emptyOutDir --logLevel warn
+                  WORKING_DIRECTORY ${SOURCE} RESULT_VARIABLE failed)
+  file(GLOB scripts ${BUILD}/report/assets/*.js)
+  file(GLOB styles ${BUILD}/report/assets/*.css)
+  list(LENGTH scripts script_count)
+  list(LENGTH styles style_count)
+  if(failed OR NOT script_count EQUAL 1 OR NOT style_count EQUAL 1)
+    message(FATAL_ERROR "Vite could not build the report in ${SOURCE}: expected one script and one style")
+  endif()
+  set(report_script ${scripts} PARENT_SCOPE)
+  set(report_style ${styles} PARENT_SCOPE)
+endfunction()
+
+# C++ that defines constexpr array `name` with the compressed bytes of a file.
+function(compressed_array name file result)
+  file(ARCHIVE_CREATE OUTPUT ${BUILD}/file.gz PATHS ${file} FORMAT raw COMPRESSION GZip COMPRESSION_LEVEL 9)
+  file(READ ${BUILD}/file.gz hex HEX)
+  file(REMOVE ${BUILD}/file.gz)
+  string(REGEX REPLACE "(..)" "0x\\1," bytes "${hex}")
+  string(REPEAT "." 100 line)
+  string(REGEX REPLACE "(${line})" "\\1\n    " bytes "${bytes}")
+  set(${result} "constexpr unsigned char ${name}[] = {\n    ${bytes}};\n" PARENT_SCOPE)
+endfunction()
+
 function(write_plain_page)
   file(REMOVE_RECURSE ${BUILD}/dist)
   file(WRITE ${BUILD}/dist/index.html "<!doctype html>
@@ -50,17 +77,18 @@ function(write_source)
   set(index 0)
   foreach(file ${files})
     content_type(${file} type)
-    file(ARCHIVE_CREATE OUTPUT ${BUILD}/file.gz PATHS ${BUILD}/dist/${file} FORMAT raw COMPRESSION GZip
-         COMPRESSION_LEVEL 9)
-    file(READ ${BUILD}/file.gz hex HEX)
-    string(REGEX REPLACE "(..)" "0x\\1," bytes "${hex}")
-    string(REPEAT "." 100 line)
-    string(REGEX REPLACE "(${line})" "\\1\n    " bytes "${bytes}")
-    string(APPEND arrays "constexpr unsigned char kFile${index}[] = {\n    ${bytes}};\n")
+    compressed_array(kFile${index} ${BUILD}/dist/${file} array)
+    string(APPEND arrays "${array}")
     string(APPEND table "      {\"/${file}\", \"${type}\", view(kFile${index}), true},\n")
     math(EXPR index "${index} + 1")
   endforeach()
-  file(REMOVE ${BUILD}/file.gz)
+  set(bundle "")
+  if(report_script)
+    compressed_array(kReportScript ${report_script} script)
+    compressed_array(kReportStyle ${report_style} style)
+    string(APPEND arrays "${script}${style}")
+    set(bundle "view(kReportScript), view(kReportStyle)")
+  endif()
   file(WRITE ${BUILD}/web_assets.cpp "// Generated from web/ by cmake/EmbedWebFiles.cmake: do not edit.
 #include \"chicane/runtime/assets.hpp\"
 
@@ -80,6 +108,8 @@ std::vector<net::Asset> embedded_assets() {
 ${table}  };
 }
 
+ReportBundle report_bundle() { return {${bundle}}; }
+
 }  // namespace chicane::runtime
 ")
 endfunction()
@@ -95,5 +125,6 @@ if(MISSING)
   write_plain_page()
 else()
   build_pages()
+  build_report()
 endif()
 write_source()

@@ -20,11 +20,10 @@
 #include "experiment.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
+#include "record.hpp"
 
 namespace chicane::apps {
 namespace {
-
-constexpr double kRoadSpacing = 2.0;  // [m] between the drawn points of the road
 
 /// Somebody watches: the dashboard stays up after the last lap. Scripts, and whoever asked for a number of
 /// laps, get an end.
@@ -33,23 +32,6 @@ bool stays_up(const Options& options) {
                                     [](const auto& setting) { return setting.first == "laps"; });
   const bool is_watched = isatty(STDOUT_FILENO) == 1 && isatty(STDERR_FILENO) == 1;
   return is_watched && !has_laps && !options.is_fast && !options.is_json;
-}
-
-protocol::Run description(const runtime::ClosedLoop& loop) {
-  const scenario::Scenario& scenario = loop.scenario();
-  protocol::Run run{.track = loop.track().name(),
-                    .track_length = loop.track().centre().length(),
-                    .is_closed = loop.track().centre().is_closed(),
-                    .controller = scenario.controller,
-                    .preset = scenario.preset,
-                    .latency = scenario.latency,
-                    .control_period = scenario.control_period,
-                    .vehicle = scenario.vehicle,
-                    .mode = "drive",
-                    .kerb_width = loop.track().kerb_width(),
-                    .road = protocol::road_lines(loop.track(), kRoadSpacing)};
-  protocol::describe(loop.controller(), run);
-  return run;
 }
 
 runtime::ViewerServices services(runtime::RunControls& controls) {
@@ -75,16 +57,10 @@ double step_budget(const Options& options, const scenario::Scenario& scenario) {
   return runtime::RealtimeOptions{}.budget_share * scenario.control_period;
 }
 
-/// --record: null when nobody asked for it.
 Result<std::unique_ptr<runtime::Recorder>> start_recorder(const Options& options,
                                                           const runtime::ClosedLoop& loop) {
-  if (options.record_file.empty()) return nullptr;
-  return runtime::Recorder::create(
-      {.path = options.record_file,
-       .run = description(loop),
-       .scenario = loop.scenario(),
-       .step_budget = options.is_fast ? 0.0 : step_budget(options, loop.scenario()),
-       .may_wait = options.is_fast});
+  return start_recorder(options, description(loop), loop.scenario(),
+                        options.is_fast ? 0.0 : step_budget(options, loop.scenario()));
 }
 
 /// The results of a run, which are told even when its recording failed.
@@ -94,14 +70,7 @@ struct Outcome {
 };
 
 Outcome conclude(const Options& options, telemetry::RunSummary summary, runtime::Recorder* recorder) {
-  if (recorder == nullptr) return {std::move(summary), {}};
-  const Result<runtime::RecorderReport> report = recorder->finish();
-  if (!report) return {std::move(summary), fail(report.error())};
-  fmt::print(stderr, "{}: recorded {} steps, {:.1f} MB\n", options.record_file, report->frames,
-             1e-6 * static_cast<double>(report->bytes));
-  if (report->left_out > 0)
-    fmt::print(stderr, "{}: the disk was too slow for {} steps\n", options.record_file, report->left_out);
-  return {std::move(summary), {}};
+  return {std::move(summary), finish_recorder(options, recorder)};
 }
 
 /// A run that viewers change while it goes on. What cannot change in a run that goes on starts another one,
@@ -162,7 +131,10 @@ class WatchedRun {
     }
   }
 
-  void note(const telemetry::Change& change) { settings_.tell(change); }
+  void note(const telemetry::Change& change) {
+    if (recorder_) recorder_->record(change);
+    settings_.tell(change);
+  }
 
   /// Goes on with the run that the next change begins. False when there is none.
   bool take_over() {
@@ -173,6 +145,9 @@ class WatchedRun {
       loop_ = std::move(built_.front());
       built_.pop_front();
     }
+    if (recorder_)
+      recorder_->record(std::make_unique<const runtime::RecordedRun>(
+          runtime::RecordedRun{.run = description(*loop_), .scenario = loop_->scenario()}));
     note(*next);
     controls_.wishes.pop();
     viewer_.set_run(description(*loop_));

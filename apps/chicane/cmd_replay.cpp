@@ -2,68 +2,173 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
-#include <nlohmann/json.hpp>
-#include <optional>
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <list>
+#include <memory>
 #include <string>
+#include <thread>
+#include <utility>
+#include <vector>
 
-#include "chicane/runtime/replay.hpp"
+#include "chicane/runtime/assets.hpp"
+#include "chicane/runtime/endpoint.hpp"
+#include "chicane/runtime/excerpt.hpp"
+#include "chicane/runtime/pages.hpp"
+#include "chicane/runtime/recorder.hpp"
+#include "chicane/runtime/temporary_file.hpp"
 #include "commands.hpp"
+#include "interrupt.hpp"
+#include "record.hpp"
+#include "replay_report.hpp"
 
 namespace chicane::apps {
 namespace {
 
-using Json = nlohmann::ordered_json;
+/// What the browser is given of a recording: itself, or a copy with an index where it has none, because its
+/// writer was killed, or is compressed.
+class Shown {
+ public:
+  Result<void> add(const std::string& file, std::string name) {
+    const Result<telemetry::McapReport> read = telemetry::read_mcap(file, {});
+    if (!read) return fail(read.error());
+    if (read->messages == 0) {
+      return fail(ErrorCode::kParse, file + ": messages: got none, expected a recording");
+    }
+    if (read->damaged > 0) fmt::print(stderr, "{}: damaged parts left out: {}\n", file, read->damaged);
+    std::string served = std::filesystem::absolute(file).string();
+    if (!read->is_complete || read->is_compressed || read->damaged > 0) {
+      copies_.emplace_back(".mcap");
+      served = copies_.back().path();
+      if (const auto copied = runtime::excerpt(file, served, {}); !copied) return fail(copied.error());
+    }
+    logs_.push_back({std::move(name), std::move(served)});
+    return {};
+  }
+  [[nodiscard]] const std::vector<runtime::ServedLog>& logs() const { return logs_; }
 
-Json cycle(const std::optional<std::uint64_t>& number) { return number ? Json(*number) : Json(nullptr); }
+ private:
+  std::list<runtime::TemporaryFile> copies_;
+  std::vector<runtime::ServedLog> logs_;
+};
 
-std::string to_json(const runtime::ReplayReport& report) {
-  const Json object{{"recorded_by", report.recorded_by},
-                    {"controller", report.controller},
-                    {"track", report.track},
-                    {"verified", report.is_verified()},
-                    {"steps", report.steps},
-                    {"identical", report.identical},
-                    {"different", report.different},
-                    {"unknown", report.unknown},
-                    {"first_difference", cycle(report.first_difference)},
-                    {"late", report.late},
-                    {"first_late", cycle(report.first_late)},
-                    {"damaged", report.damaged},
-                    {"closed", report.is_complete}};
-  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+Result<void> show(const Options& options, const Shown& shown, double start) {
+  static std::atomic<bool> stop{false};  // as long as signals may come
+  catch_interrupts(stop);
+  runtime::Router router(nullptr, nullptr);
+  const auto server = net::Server::create({.address = options.address, .port = options.port},
+                                          router.handlers(runtime::replay_pages(shown.logs(), start)),
+                                          runtime::embedded_assets());
+  if (!server) return fail(server.error());
+  fmt::print(stderr, "recordings at http://localhost:{}/; Ctrl-C ends\n", (*server)->port());
+  while (!stop) std::this_thread::sleep_for(std::chrono::milliseconds{20});
+  return {};
 }
 
-std::string to_text(const runtime::ReplayReport& report) {
-  const double share =
-      report.steps == 0 ? 0.0
-                        : 100.0 * static_cast<double>(report.identical) / static_cast<double>(report.steps);
-  // Never rounded up to 100.
-  const std::string percent = report.is_verified() ? "100" : fmt::format("{:.3f}", std::min(share, 99.999));
-  std::string text = fmt::format(
-      "{} on {}, recorded by {}: {} of {} commands came out identical, bit for bit ({} %)\n",
-      report.controller, report.track, report.recorded_by, report.identical, report.steps, percent);
-  if (report.first_difference) {
-    text +=
-        fmt::format("first difference: cycle {} ({} in all)\n", *report.first_difference, report.different);
+/// The second future's recording while it is computed.
+class BranchRecorder {
+ public:
+  BranchRecorder(const Options& options, const std::string& file) : options_{options} {
+    options_.record_file = file;
+    options_.is_fast = true;  // the run waits for the disk
   }
-  if (report.unknown > 0) text += fmt::format("behind missing steps, not comparable: {}\n", report.unknown);
-  if (report.first_late) {
-    text += fmt::format("deadline spent, cannot come out the same: {}, first in cycle {}\n", report.late,
-                        *report.first_late);
+
+  runtime::BranchHooks hooks() {
+    return {.on_begin = [this](const runtime::ClosedLoop& loop) { return begin(loop); },
+            .on_change = [this](const telemetry::Change& change) { recorder_->record(change); },
+            .on_frame = [this](const telemetry::Frame& frame) { recorder_->record(frame); }};
   }
-  if (report.damaged > 0) text += fmt::format("damaged parts left out: {}\n", report.damaged);
-  if (!report.is_complete) text += "the recording was not closed: its end is missing\n";
-  return text;
+  Result<void> finish() {
+    if (recorder_ == nullptr) return {};
+    const Result<runtime::RecorderReport> report = recorder_->finish();
+    return report ? Result<void>{} : fail(report.error());
+  }
+
+ private:
+  Result<void> begin(const runtime::ClosedLoop& loop) {
+    if (recorder_) {
+      recorder_->record(std::make_unique<const runtime::RecordedRun>(
+          runtime::RecordedRun{.run = description(loop), .scenario = loop.scenario()}));
+      return {};
+    }
+    auto recorder = start_recorder(options_, description(loop), loop.scenario(), 0.0);
+    if (!recorder) return fail(recorder.error());
+    recorder_ = std::move(*recorder);
+    return {};
+  }
+
+  Options options_;
+  std::unique_ptr<runtime::Recorder> recorder_;
+};
+
+bool has_page(const Options& options) { return options.is_served && !options.is_json; }
+
+Result<ExitCode> branch(const Options& options) {
+  const std::string& log = options.log_files.front();
+  if (options.log_files.size() > 1) {
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("logs: got {}, expected one to branch from", options.log_files.size()));
+  }
+  const runtime::TemporaryFile temporary(".mcap");
+  const std::string& file = options.output_file.empty() ? temporary.path() : options.output_file;
+  BranchRecorder recorder(options, file);
+  const runtime::BranchOptions branching{.log = log,
+                                         .at = *options.branch_at,
+                                         .settings = options.settings,
+                                         .duration = options.for_s,
+                                         .laps = options.branch_laps};
+  const Result<runtime::BranchReport> report = runtime::branch_recording(branching, recorder.hooks());
+  if (const Result<void> kept = recorder.finish(); report && !kept) return fail(kept.error());
+  if (!report) {
+    std::error_code error;
+    std::filesystem::remove(file, error);  // half a branch is of no use
+    return fail(report.error());
+  }
+  fmt::print("{}", options.is_json ? to_json(*report) : to_text(*report, options.settings));
+  std::fflush(stdout);
+  if (has_page(options)) {
+    Shown shown;
+    if (Result<void> added = shown.add(log, std::filesystem::path(log).filename().string()); !added)
+      return fail(added.error());
+    if (Result<void> added = shown.add(file, fmt::format("branch at {:.1f} s", report->at)); !added)
+      return fail(added.error());
+    if (Result<void> done = show(options, shown, report->at); !done) return fail(done.error());
+  }
+  return report->first_difference ? kBrokenPromise : kSuccess;
+}
+
+Result<ExitCode> verify(const Options& options) {
+  bool is_verified = true;
+  for (const std::string& log : options.log_files) {
+    const Result<runtime::ReplayReport> result = runtime::verify_recording(log);
+    if (!result) return fail(result.error());
+    fmt::print("{}", options.is_json ? to_json(*result) : to_text(*result));
+    is_verified = is_verified && result->is_verified();
+  }
+  return is_verified ? kSuccess : kBrokenPromise;
+}
+
+Result<ExitCode> show_logs(const Options& options) {
+  if (!has_page(options)) {
+    return fail(ErrorCode::kInvalidArgument, "replay: got nothing to do, expected --verify or --branch-at");
+  }
+  Shown shown;
+  for (const std::string& log : options.log_files) {
+    if (Result<void> added = shown.add(log, std::filesystem::path(log).filename().string()); !added)
+      return fail(added.error());
+  }
+  if (Result<void> done = show(options, shown, 0.0); !done) return fail(done.error());
+  return kSuccess;
 }
 
 }  // namespace
 
 ExitCode replay(const Options& options) {
-  const Result<runtime::ReplayReport> result = runtime::verify_recording(options.log_file);
-  if (!result) return report(result.error());
-  fmt::print("{}", options.is_json ? to_json(*result) : to_text(*result));
-  return result->is_verified() ? kSuccess : kBrokenPromise;
+  const Result<ExitCode> done = options.wants_verification ? verify(options)
+                                : options.branch_at        ? branch(options)
+                                                           : show_logs(options);
+  return done ? *done : report(done.error());
 }
 
 }  // namespace chicane::apps

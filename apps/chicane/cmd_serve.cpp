@@ -13,6 +13,7 @@
 #include "experiment.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
+#include "record.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -38,10 +39,14 @@ Result<runtime::ServeSummary> run(const Options& options) {
   viewing.run.latency = scenario->latency;
   viewing.run.control_period = scenario->control_period;
   viewing.run.vehicle = scenario->vehicle;
+  const auto recorder = start_recorder(options, viewing.run, *scenario,
+                                       std::chrono::duration<double>(serving.step_budget).count());
+  if (!recorder) return fail(recorder.error());
   runtime::ViewerEndpoint viewer(std::move(viewing));
   Progress progress;
   runtime::ServeHooks hooks;
   hooks.on_frame = [&](const telemetry::Frame& frame) {
+    if (*recorder) (*recorder)->record(frame);
     viewer.publish(frame);
     progress.show(frame);
   };
@@ -51,7 +56,11 @@ Result<runtime::ServeSummary> run(const Options& options) {
         "{} ({}) waits for a simulator on port {}; dashboard at http://localhost:{}/; Ctrl-C ends",
         scenario->preset, scenario->controller, port, port));
   };
-  return runtime::serve(serving, **controller, std::move(hooks), &viewer, runtime::embedded_assets(), stop);
+  auto summary =
+      runtime::serve(serving, **controller, std::move(hooks), &viewer, runtime::embedded_assets(), stop);
+  if (const Result<void> recorded = finish_recorder(options, recorder->get()); summary && !recorded)
+    return fail(recorded.error());
+  return summary;
 }
 
 }  // namespace

@@ -4,14 +4,31 @@
 #include <atomic>
 
 #include "chicane/protocol/json_report.hpp"
+#include "chicane/runtime/make.hpp"
 #include "chicane/runtime/simulate.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
+#include "record.hpp"
 
 namespace chicane::apps {
 namespace {
+
+/// Our road and car; who drives is not known.
+Result<protocol::Run> description_of_external(const scenario::Scenario& scenario) {
+  const Result<path::Track> track = runtime::make_track(scenario);
+  if (!track) return fail(track.error());
+  return protocol::Run{.track = track->name(),
+                       .track_length = track->centre().length(),
+                       .is_closed = track->centre().is_closed(),
+                       .controller = "external",
+                       .preset = "external",
+                       .vehicle = scenario.vehicle,
+                       .mode = runtime::kSimulateMode,
+                       .kerb_width = track->kerb_width(),
+                       .road = protocol::road_lines(*track, kRoadSpacing)};
+}
 
 Result<runtime::SimulateReport> run(const Options& options) {
   static std::atomic<bool> stop{false};  // as long as signals may come
@@ -21,11 +38,25 @@ Result<runtime::SimulateReport> run(const Options& options) {
   runtime::SimulateOptions simulating;
   simulating.url = options.connect;
   simulating.server_command = options.server;
-  Progress progress;
-  return runtime::simulate(simulating, *scenario,
-                           {.on_frame = [&](const telemetry::Frame& frame) { progress.show(frame); },
-                            .log = [&](std::string_view line) { progress.say(line); }},
-                           stop);
+  const Result<protocol::Run> described = description_of_external(*scenario);
+  if (!described) return fail(described.error());
+  const auto recorder = start_recorder(options, *described, *scenario, 0.0);
+  if (!recorder) return fail(recorder.error());
+  Result<runtime::SimulateReport> done;
+  {
+    Progress progress;
+    done = runtime::simulate(simulating, *scenario,
+                             {.on_frame =
+                                  [&](const telemetry::Frame& frame) {
+                                    if (*recorder) (*recorder)->record(frame);
+                                    progress.show(frame);
+                                  },
+                              .log = [&](std::string_view line) { progress.say(line); }},
+                             stop);
+  }
+  if (const Result<void> recorded = finish_recorder(options, recorder->get()); done && !recorded)
+    return fail(recorded.error());
+  return done;
 }
 
 }  // namespace

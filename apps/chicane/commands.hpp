@@ -26,6 +26,7 @@ struct Command {
 [[nodiscard]] ExitCode serve(const Options& options);
 [[nodiscard]] ExitCode simulate(const Options& options);
 [[nodiscard]] ExitCode replay(const Options& options);
+[[nodiscard]] ExitCode report_logs(const Options& options);
 [[nodiscard]] ExitCode check(const Options& options);
 [[nodiscard]] ExitCode list(const Options& options);
 /// Hands over to the program chicane-bench beside this one, which knows other solvers; without it, our own

@@ -81,6 +81,13 @@ void add_port(CLI::App& command, Options& options) {
       ->capture_default_str();
 }
 
+void add_record(CLI::App& command, Options& options) {
+  command.add_option("--record", options.record_file, "Record every control step in a new MCAP file")
+      ->type_name("FILE");
+  command.add_flag("--compress", options.is_compressed, "The recording by Zstandard: about half the size")
+      ->needs("--record");
+}
+
 void add_drive(CLI::App& command, Options& options) {
   command
       .add_option("scenario", options.scenario_file, "Scenario by name or file; other options win over it")
@@ -107,8 +114,7 @@ void add_drive(CLI::App& command, Options& options) {
       .add_flag("--manual", options.is_manual,
                 "A person drives, by the dashboard's arrow keys or \"manual.…\"")
       ->excludes("--fast");
-  command.add_option("--record", options.record_file, "Record every control step in a new MCAP file")
-      ->type_name("FILE");
+  add_record(command, options);
   command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
   add_set(command, options);
   command.footer("Example: chicane drive --preset sixty-mph --track lakeside --laps 2 --fast");
@@ -119,6 +125,7 @@ void add_serve(CLI::App& command, Options& options) {
   add_setting(command, options, "--latency-ms", "latency_ms", "X",
               "Sleep before each answer [ms], default 100 as the original");
   add_port(command, options);
+  add_record(command, options);
   add_set(command, options);
   command.footer("Example: chicane serve --preset weighted --port 4567");
 }
@@ -133,19 +140,52 @@ void add_simulate(CLI::App& command, Options& options) {
       ->type_name("CMD");
   add_setting(command, options, "--car", "car", "NAME|FILE", "Simulated car (chicane list cars)");
   add_world(command, options);
+  add_record(command, options);
   command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
   add_set(command, options);
   command.footer("Example: chicane simulate --connect ws://127.0.0.1:4567 --track lakeside --laps 2");
 }
 
+void add_logs(CLI::App& command, Options& options, const std::string& help) {
+  command.add_option("logs", options.log_files, help)->type_name("LOG")->required();
+}
+
 void add_replay(CLI::App& command, Options& options) {
-  command.add_option("log", options.log_file, "What drive --record wrote")->type_name("LOG")->required();
+  add_logs(command, options, "What --record wrote; several are shown beside each other");
+  command.add_flag(
+      "--verify", options.wants_verification,
+      "Compute every recorded command again and compare it bit for bit; exit code 1 if one differs");
   command
-      .add_flag("--verify", options.wants_verification,
-                "Compute every recorded command again and compare it bit for bit; exit code 1 if one differs")
+      .add_option("--branch-at", options.branch_at,
+                  "Drive on otherwise from this second of the recording, and compare the two futures")
+      ->type_name("T")
+      ->check(CLI::NonNegativeNumber)
+      ->excludes("--verify");
+  add_set(command, options);
+  command.get_option("--set")->needs("--branch-at");
+  command.add_option("--for-s", options.for_s, "Length of the branch [s]; else to the end of the recording")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber)
+      ->needs("--branch-at");
+  command.add_option("--laps", options.branch_laps, "The branch ends when the run has so many laps")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->needs("--branch-at");
+  command.add_option("--output", options.output_file, "Keep the branch in a new MCAP file")
+      ->type_name("FILE")
+      ->needs("--branch-at");
+  add_port(command, options);
+  command.add_flag("!--no-serve", options.is_served, "Show nothing in a browser");
+  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr; shows nothing");
+  command.footer("Example: chicane replay run.mcap --branch-at 12 --set plant_options.friction_scale=0.5");
+}
+
+void add_report(CLI::App& command, Options& options) {
+  add_logs(command, options, "What --record wrote");
+  command.add_option("-o,--output", options.output_file, "The page; an older one is replaced")
+      ->type_name("FILE.html")
       ->required();
-  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
-  command.footer("Example: chicane replay run.mcap --verify");
+  command.footer("Example: chicane report run.mcap -o run.html");
 }
 
 void add_check(CLI::App& command, Options& options) {
@@ -233,6 +273,7 @@ std::variant<Options, Done> parse_command_line(int count, const char* const* wor
     if (command.name == "serve") add_serve(*sub, options);
     if (command.name == "simulate") add_simulate(*sub, options);
     if (command.name == "replay") add_replay(*sub, options);
+    if (command.name == "report") add_report(*sub, options);
     if (command.name == "check") add_check(*sub, options);
     if (command.name == "list") add_list(*sub, options);
     if (command.name == "bench") add_bench(*sub, options);

@@ -33,7 +33,8 @@ struct Options {
   std::optional<double> pace;            ///< drive: run seconds per second of the clock
   std::optional<double> step_budget_ms;  ///< drive: bound of a control step; 0 = none
   bool is_manual = false;                ///< drive: a person has the wheel
-  std::string record_file;               ///< drive; empty: nothing is recorded
+  std::string record_file;               ///< empty: nothing is recorded
+  bool is_compressed = false;            ///< the recording
   std::string address = "127.0.0.1";
   std::uint16_t port = 4567;
 
@@ -41,11 +42,16 @@ struct Options {
       "ws://127.0.0.1:4567/socket.io/?EIO=4&transport=websocket";  ///< simulate: the controller
   std::string server;                                              ///< simulate: command that starts it
 
-  std::vector<std::string> files;   ///< check
-  std::string log_file;             ///< replay
-  bool wants_verification = false;  ///< replay: the one thing to do with it
-  std::string shelf;                ///< list; empty: an overview
-  bool is_markdown = false;         ///< list parameters
+  std::vector<std::string> files;      ///< check
+  std::vector<std::string> log_files;  ///< replay, report
+  bool wants_verification = false;     ///< replay: nothing else is done
+  std::optional<double> branch_at;     ///< replay: on the recording's time line [s]
+  double for_s = 0.0;                  ///< replay: length of the branch; 0: to the end of the recording
+  int branch_laps = 0;                 ///< replay: of the run; 0: no matter
+  std::string output_file;             ///< replay: the branch's recording; report: the page
+  bool is_served = true;               ///< replay
+  std::string shelf;                   ///< list; empty: an overview
+  bool is_markdown = false;            ///< list parameters
 
   int instances = 100;                    ///< bench: of each family
   std::vector<int> horizons{10, 20, 50};  ///< bench

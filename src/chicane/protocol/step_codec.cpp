@@ -12,7 +12,7 @@ constexpr std::string_view kHeader{"\0\1\0\0", 4};  // XCDR1, little endian
 // All fields lie where CDR would align them: eight-byte ones first, and two bytes of padding before the
 // count.
 constexpr std::string_view kSchema =
-    "uint64 cycle             # 0 begins a run\n"
+    "uint64 cycle             # as in Frame\n"
     "float64 time             # of the measurement [s]\n"
     "float64 x                # measured, world frame [m]\n"
     "float64 y                # [m]\n"
@@ -26,7 +26,15 @@ constexpr std::string_view kSchema =
     "float64 step_time        # of the control step [s], wall clock\n"
     "int8 rung                # who chose: 0 controller, 1 shifted plan, 2 hold and brake, 3 brake\n"
     "bool gated               # the command gate changed it\n"
-    "float64[] waypoints      # x and y in turn, world frame [m]\n";
+    "float64[] waypoints      # x and y in turn, world frame [m]\n"
+    "float64 gate_interval    # since the command before [s]; 0 skips the rate limit\n"
+    "float64 manual_steer     # a person's wish, while is_manual [rad], left positive\n"
+    "float64 manual_throttle  # [-1, 1]\n"
+    "uint32 deadline_spent_at # the solver's first question to the clock that was answered with \"late\"; 0 "
+    "none\n"
+    "bool begins              # controller and gate had forgotten everything\n"
+    "bool has_measurement     # false: what came was unusable, the controller was not asked\n"
+    "bool is_manual           # a person drove\n";
 
 }  // namespace
 
@@ -49,6 +57,13 @@ std::string encode_step(const telemetry::Frame& frame) {
   for (int i = 0; i < seen.waypoint_count; ++i) {
     real(seen.waypoints[static_cast<std::size_t>(i)].x());
     real(seen.waypoints[static_cast<std::size_t>(i)].y());
+  }
+  real(frame.gate_interval);
+  real(frame.manual.steer);
+  real(frame.manual.throttle);
+  fields.number(frame.deadline_spent_at);
+  for (const bool flag : {frame.begins, frame.has_measurement, frame.is_manual}) {
+    fields.number(static_cast<std::uint8_t>(flag));
   }
   return bytes;
 }
@@ -75,8 +90,35 @@ std::optional<Step> decode_step(std::string_view bytes) {
     seen.waypoints[i].x() = real();
     seen.waypoints[i].y() = real();
   }
+  step.gate_interval = real();
+  const model::Command manual{.steer = real(), .throttle = real()};
+  step.deadline_spent_at = fields.number<std::uint32_t>();
+  step.begins = fields.number<std::uint8_t>() != 0;
+  step.has_measurement = fields.number<std::uint8_t>() != 0;
+  if (fields.number<std::uint8_t>() != 0) step.manual = manual;
   if (fields.is_short() || !fields.rest().empty()) return std::nullopt;
   return step;
+}
+
+std::optional<telemetry::Change> decode_change(std::string_view bytes) {
+  telemetry::mcap::FieldReader fields(bytes);
+  if (fields.take(kHeader.size()) != kHeader) return std::nullopt;
+  const auto text = [&]() -> std::string_view {
+    const std::size_t odd = (bytes.size() - fields.rest().size()) % 4;  // lengths lie at multiples of four
+    static_cast<void>(fields.take(odd == 0 ? 0 : 4 - odd));
+    const std::string_view with_end = fields.text();
+    return with_end.substr(0, with_end.empty() ? 0 : with_end.size() - 1);
+  };
+  telemetry::Change change;
+  change.time = static_cast<double>(fields.number<std::uint32_t>());
+  change.time += 1e-9 * static_cast<double>(fields.number<std::uint32_t>());
+  change.cycle = fields.number<std::uint64_t>();
+  const std::string_view name = text(), value = text();
+  if (fields.is_short() || !decltype(change.name)::fits(name) || !decltype(change.value)::fits(value))
+    return std::nullopt;
+  change.name = name;
+  change.value = value;
+  return change;
 }
 
 }  // namespace chicane::protocol

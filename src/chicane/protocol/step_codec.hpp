@@ -9,18 +9,25 @@
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
+#include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
 
 namespace chicane::protocol {
 
 /// What one control step was told and what it sent, to the last bit: enough to compute it again.
 struct Step {
-  std::uint64_t cycle = 0;  ///< 0 begins a run: controller and gate have forgotten everything
+  std::uint64_t cycle = 0;
   model::Measurement measurement;
   model::Command command;  ///< as it left the gate
   controller::Rung rung = controller::Rung::kController;
   bool gated = false;
   double step_time = 0.0;  ///< of the control step [s], wall clock
+
+  bool begins = false;                     ///< a run begins: controller and gate have forgotten everything
+  bool has_measurement = true;             ///< false: what came was unusable, the controller was not asked
+  std::optional<model::Command> manual{};  ///< a person's wish, sent in the controller's place
+  double gate_interval = 0.0;              ///< as the gate was told [s]
+  std::uint32_t deadline_spent_at = 0;     ///< DeadlineLog::spent_at
 };
 
 /// The channel of recordings that holds every step, as a ROS 2 message.
@@ -32,5 +39,10 @@ inline constexpr std::string_view kStepType = "chicane_msgs/msg/Step";
 [[nodiscard]] std::string encode_step(const telemetry::Frame& frame);
 /// None when the bytes are not such a message.
 [[nodiscard]] std::optional<Step> decode_step(std::string_view bytes);
+
+/// The channel of the settings that changed during a run (ros_messages.hpp, encode_change()).
+inline constexpr std::string_view kChangeTopic = "/chicane/change";
+/// None when the bytes are not such a message, or hold more than fits.
+[[nodiscard]] std::optional<telemetry::Change> decode_change(std::string_view bytes);
 
 }  // namespace chicane::protocol

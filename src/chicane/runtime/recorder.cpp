@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <utility>
 
+#include "chicane/base/instruction_set.hpp"
 #include "chicane/protocol/step_codec.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 
@@ -27,29 +29,56 @@ constexpr const char* kCompiler = "gcc " __VERSION__;
 }  // namespace
 
 Result<std::unique_ptr<Recorder>> Recorder::create(RecorderOptions options) {
-  auto writer = telemetry::McapWriter::create(options.path, kProgram);
+  auto writer = telemetry::McapWriter::create(options.path, kProgram, options.is_compressed);
   if (!writer) return fail(writer.error());
   return std::unique_ptr<Recorder>(new Recorder(std::move(options), std::move(*writer)));
 }
 
 Recorder::Recorder(RecorderOptions options, std::unique_ptr<telemetry::McapWriter> writer)
-    : options_{std::move(options)}, writer_{std::move(writer)}, ring_(kCapacity) {
+    : options_{std::move(options)}, writer_{std::move(writer)}, ring_(kCapacity + kReserve) {
   thread_ = std::thread([this] { work(); });
 }
 
 Recorder::~Recorder() { static_cast<void>(finish()); }
 
-void Recorder::record(const telemetry::Frame& frame) noexcept {
+Recorder::Entry* Recorder::next_entry(std::uint64_t capacity) noexcept {
   const std::uint64_t number = put_.load(std::memory_order_relaxed);
-  while (number - taken_.load(std::memory_order_acquire) >= kCapacity) {
-    if (!options_.may_wait) {
-      ++left_out_;
-      return;
-    }
+  while (number - taken_.load(std::memory_order_acquire) >= capacity) {
+    if (!options_.may_wait) return nullptr;
     std::this_thread::sleep_for(kWait);
   }
-  slot(number) = frame;
-  put_.store(number + 1, std::memory_order_release);
+  return &slot(number);
+}
+
+void Recorder::record(const telemetry::Frame& frame) noexcept {
+  Entry* const entry = next_entry(kCapacity);
+  if (entry == nullptr) {
+    ++left_out_;
+    return;
+  }
+  entry->frame = frame;
+  entry->has_frame = true;
+  commit();
+}
+
+void Recorder::record(const telemetry::Change& change) noexcept {
+  Entry* const entry = next_entry(kCapacity + kReserve);
+  if (entry == nullptr) {
+    ++left_out_;
+    return;
+  }
+  entry->change = change;
+  commit();
+}
+
+void Recorder::record(std::unique_ptr<const RecordedRun> run) noexcept {
+  Entry* const entry = next_entry(kCapacity + kReserve);
+  if (entry == nullptr) {
+    ++left_out_;
+    return;
+  }
+  entry->run = std::move(run);
+  commit();
 }
 
 Result<RecorderReport> Recorder::finish() {
@@ -65,8 +94,8 @@ void Recorder::work() {
   while (true) {
     const bool is_last = wants_end_.load(std::memory_order_acquire);  // asked before the ring is
     const std::uint64_t number = taken_.load(std::memory_order_relaxed);
-    const bool has_frame = number != put_.load(std::memory_order_acquire);
-    if (has_frame) {
+    const bool has_entry = number != put_.load(std::memory_order_acquire);
+    if (has_entry) {
       write(slot(number));
       taken_.store(number + 1, std::memory_order_release);
     }
@@ -74,7 +103,7 @@ void Recorder::work() {
       keep(writer_->flush());
       flushed = Clock::now();
     }
-    if (has_frame) continue;
+    if (has_entry) continue;
     if (is_last) break;
     std::this_thread::sleep_for(kNap);
   }
@@ -85,11 +114,23 @@ void Recorder::keep(Result<void> done) {
   if (state_ && !done) state_ = std::move(done);
 }
 
-/// What stays the same during the run.
 void Recorder::begin() {
+  for (const protocol::RosTopic& topic : protocol::ros_topics()) {
+    static_cast<void>(writer_->add_channel(topic.name, topic.type, topic.schema));
+  }
+  step_channel_ = writer_->add_channel(protocol::kStepTopic, protocol::kStepType, protocol::step_schema());
+  describe();
+}
+
+/// What stays the same during a run.
+void Recorder::describe() {
   const scenario::Scenario& scenario = options_.scenario;
+  const InstructionSet set = chosen_instruction_set();
   keep(writer_->add_metadata(kRecordedRun, {{"program", kProgram},
                                             {"compiler", kCompiler},
+                                            {"instruction_set", std::string(to_string(set))},
+                                            {"arithmetic", std::string(arithmetic(set))},
+                                            {"mode", options_.run.mode},
                                             {"track", options_.run.track},
                                             {"controller", scenario.controller},
                                             {"preset", scenario.preset},
@@ -99,13 +140,38 @@ void Recorder::begin() {
       kRecordedScenario, "application/yaml",
       protocol::write_document(scenario, fmt::format("What was recorded by {}", kProgram), true)));
   const telemetry::Frame nothing;
+  std::uint16_t channel = 0;
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
-    const std::uint16_t channel = writer_->add_channel(topic.name, topic.type, topic.schema);
     const bool is_constant =
         topic.cadence == protocol::Cadence::kRun || topic.cadence == protocol::Cadence::kRoad;
-    if (is_constant) keep(writer_->write(channel, 0, 0, topic.encode(nothing, options_.run)));
+    if (is_constant) keep(writer_->write(channel, last_log_time_, 0, topic.encode(nothing, options_.run)));
+    ++channel;
   }
-  step_channel_ = writer_->add_channel(protocol::kStepTopic, protocol::kStepType, protocol::step_schema());
+}
+
+void Recorder::write(Entry& entry) {
+  if (std::exchange(entry.has_frame, false)) write(entry.frame);
+  if (entry.change) write(*std::exchange(entry.change, std::nullopt));
+  if (const auto run = std::move(entry.run)) {
+    options_.run = run->run;
+    options_.scenario = run->scenario;
+    keep(writer_->flush());  // so that all is in the file in its order
+    describe();
+  }
+}
+
+void Recorder::write(const telemetry::Change& change) {
+  const std::uint64_t time = protocol::to_nanoseconds(change.time);
+  const std::uint64_t log_time = std::max(last_log_time_, time + earlier_runs_);
+  std::uint16_t channel = 0;
+  for (const protocol::RosTopic& topic : protocol::ros_topics()) {
+    if (topic.name == protocol::kChangeTopic) {
+      keep(writer_->write(
+          channel, log_time, time,
+          protocol::encode_change(change.time, change.cycle, change.name.view(), change.value.view())));
+    }
+    ++channel;
+  }
 }
 
 void Recorder::write(const telemetry::Frame& frame) {

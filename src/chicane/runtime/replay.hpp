@@ -19,8 +19,7 @@ struct ReplayReport {
   std::uint64_t different = 0;
   std::uint64_t unknown = 0;                      ///< behind missing steps: their history is not known
   std::optional<std::uint64_t> first_difference;  ///< its cycle
-  std::optional<std::uint64_t> first_late;        ///< the first cycle whose deadline may have been spent
-  std::uint64_t late = 0;                         ///< how many there are
+  std::uint64_t late = 0;                         ///< whose deadline was spent; they come out the same, too
   std::uint64_t damaged = 0;                      ///< chunks that were left out
   bool is_complete = false;                       ///< the file was closed as it should be
 
@@ -30,9 +29,9 @@ struct ReplayReport {
 /// Builds the controller that a recording describes, gives it every recorded measurement, and compares what
 /// leaves the gate with what was recorded.
 ///
-/// Runs in virtual time come out the same. In real time a step that spent its deadline took what the solver
-/// had by then; that cannot be computed again (ReplayReport::late). Fails when the file cannot be read, or is
-/// no recording of ours.
+/// All come out the same, those in real time too: a step whose deadline was spent has recorded which question
+/// to the clock said so (base/deadline.hpp), and gets the same answer again. Fails when the file cannot be
+/// read, or is no recording of ours.
 [[nodiscard]] Result<ReplayReport> verify_recording(const std::string& path);
 
 }  // namespace chicane::runtime

@@ -140,6 +140,7 @@ class UdacityEndpoint::Control {
     delay_.reset();
     last_received_.reset();
     last_answered_.reset();
+    begins_ = true;
   }
 
   void drive(const Request& request) {
@@ -152,11 +153,14 @@ class UdacityEndpoint::Control {
     ++frame_.cycle;
     frame_.time = seconds(request.received - started_);
     frame_.applied = last_sent_;
-    if (request.kind == Request::Kind::kTelemetry) {
+    frame_.begins = std::exchange(begins_, false);
+    frame_.has_measurement = request.kind == Request::Kind::kTelemetry;
+    DeadlineLog questions;
+    if (frame_.has_measurement) {
       frame_.measurement = request.measurement;
       frame_.measurement.time = frame_.time;
       frame_.measurement.delay = delay_.value();
-      frame_.result = controller_.step(frame_.measurement, deadline());
+      frame_.result = controller_.step(frame_.measurement, deadline().counted_in(questions));
     } else {
       constexpr double kNothing =
           std::numeric_limits<double>::quiet_NaN();  // the gate holds the wheel and brakes
@@ -169,6 +173,7 @@ class UdacityEndpoint::Control {
     frame_.asked = frame_.result.command;
     frame_.prediction_error = promises_.error(frame_.time, {frame_.measurement.x, frame_.measurement.y});
     promises_.add(frame_.result.plan, delay_.value());
+    frame_.deadline_spent_at = questions.spent_at;
     pass_gate();
     frame_.step_time = seconds(Clock::now() - begin);
     answer_(request, protocol::encode_steer(frame_.result.command, frame_.result.plan, pose_at_receipt()),
@@ -182,9 +187,9 @@ class UdacityEndpoint::Control {
 
   void pass_gate() {
     const Clock::time_point now = Clock::now();
-    const double elapsed = last_answered_ ? seconds(now - *last_answered_) : 0.0;
+    frame_.gate_interval = last_answered_ ? seconds(now - *last_answered_) : 0.0;
     last_answered_ = now;
-    const safety::GateResult gated = gate_.pass(frame_.result.command, elapsed);
+    const safety::GateResult gated = gate_.pass(frame_.result.command, frame_.gate_interval);
     frame_.result.report.gated = gated.reason != safety::GateReason::kNone;
     if (frame_.result.report.gated) ++interventions_;
     frame_.result.command = gated.command;
@@ -213,6 +218,7 @@ class UdacityEndpoint::Control {
   net::ConnectionId driven_ = 0;
   std::optional<Clock::time_point> last_received_;
   std::optional<Clock::time_point> last_answered_;
+  bool begins_ = true;
   model::Command last_sent_;
   telemetry::Frame frame_;
   std::atomic<std::uint64_t> answers_{0};

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "chicane/runtime/html_report.hpp"
+#include "commands.hpp"
+
+namespace chicane::apps {
+
+ExitCode report_logs(const Options& options) {
+  runtime::ReportOptions reporting{
+      .output = options.output_file, .logs = {}, .bundle = runtime::report_bundle()};
+  for (const std::string& file : options.log_files) {
+    reporting.logs.push_back({std::filesystem::path(file).filename().string(), file});
+  }
+  const Result<runtime::ReportSummary> written = runtime::write_report(reporting);
+  if (!written) return report(written.error());
+  fmt::print("{}: {:.1f} MB, {:g} messages a second; open it in a browser\n", options.output_file,
+             1e-6 * static_cast<double>(written->bytes), written->rate);
+  return kSuccess;
+}
+
+}  // namespace chicane::apps
