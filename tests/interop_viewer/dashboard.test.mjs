@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The dashboard as a reader meets it: headless Chromium, the program's own server, a car on rails.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
 import { launch } from './browser.mjs';
+import { DashboardPage, differentFrom, PHONE, TABS } from './dashboard_page.mjs';
 import { startDemo } from './viewer_demo.mjs';
-
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
 let browser;
 let demo;
-let context;
+let dashboard;
 let page;
-let complaints; // of the browser's console
 
 before(async () => {
   browser = await launch();
@@ -24,168 +20,209 @@ after(async () => {
   await demo.stop();
 });
 
-async function open(options = {}) {
-  context = await browser.newContext({ viewport: { width: 1366, height: 768 }, colorScheme: 'light', ...options });
-  page = await context.newPage();
-  complaints = [];
-  page.on('console', (message) => {
-    if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
-  });
-  page.on('pageerror', (error) => complaints.push(String(error)));
-  page.on('response', (response) => {
-    if (response.status() >= 400) complaints.push(`${response.status()} ${response.url()}`);
-  });
-  await page.goto(demo.url);
-  await page.getByText('Live', { exact: true }).waitFor();
-}
-
-const text = (id) => page.getByTestId(id).innerText();
-const seconds = async () => {
-  const [minutes, rest] = (await text('lap-time')).split(':').map(Number);
-  return 60 * minutes + rest;
-};
-/** Waits until `read` gives something that `accept` accepts. */
-async function until(read, accept, what) {
-  const end = Date.now() + 8000;
-  for (;;) {
-    const value = await read();
-    if (accept(value)) return value;
-    assert.ok(Date.now() < end, `${what}: still ${value}`);
-    await page.waitForTimeout(50);
-  }
-}
-const differentFrom = (before) => (now) => now !== before;
-/** How many different colours a canvas shows. */
-const colours = (selector) =>
-  page.locator(selector).first().evaluate((canvas) => {
-    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-    return new Set(new Uint32Array(data.buffer)).size;
-  });
-async function accessibilityFindings() {
-  await page.evaluate(axe);
-  const { violations } = await page.evaluate(() => globalThis.axe.run());
-  return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target).join(', ')}`);
+async function open(options) {
+  dashboard = await DashboardPage.open(browser, demo.url, options);
+  page = dashboard.page;
 }
 
 describe('the dashboard', () => {
   beforeEach(() => open());
-  afterEach(async () => {
-    assert.deepEqual(complaints, []);
-    await context.close();
-  });
+  afterEach(() => dashboard.close());
 
   it('loads and says what runs', async () => {
     assert.equal(await page.locator('html').getAttribute('lang'), 'en');
     assert.equal(await page.locator('main').count(), 1);
     assert.match(await page.locator('h1').innerText(), /chicane/);
-    assert.match(await page.locator('.summary').innerText(), /tracking-mpc · udacity · demo road · 100 ms latency/);
-    assert.equal(await text('rung'), 'The controller drives');
-    assert.equal(await text('status'), 'Optimal, 3 iterations');
-    assert.equal(await text('gate'), 'Passed the command unchanged');
-    assert.equal(await text('road'), 'On the road, never off it');
+    assert.match(await page.locator('.summary').innerText(), /tracking-mpc · default · udacity · demo road · 100 ms latency/);
+    assert.equal(await dashboard.text('rung'), 'The controller drives');
+    assert.equal(await dashboard.text('status'), 'Optimal, 3 iterations');
+    assert.equal(await dashboard.text('gate'), 'Passed the command unchanged');
+    assert.equal(await dashboard.text('road'), 'On the road, never off it');
   });
 
   it('shows a car that moves and numbers that change', async () => {
-    const picture = () => page.locator('.map canvas').evaluate((canvas) => canvas.toDataURL());
-    const [firstPicture, firstTime, firstError] = [await picture(), await seconds(), await text('lateral-error')];
-    await until(seconds, (now) => now > firstTime + 0.5, 'lap time');
-    await until(picture, differentFrom(firstPicture), 'map');
-    await until(() => text('lateral-error'), differentFrom(firstError), 'lateral error');
-    await until(async () => Number(await text('speed')), (speed) => speed > 5, 'speed in mph');
-    assert.ok((await colours('.map canvas')) > 20, 'the map shows road, car and plan');
-    assert.equal(await page.locator('.plot canvas').count(), 4);
-    assert.ok((await colours('.plot canvas')) > 5, 'the plots show lines');
+    await dashboard.show('plots');
+    const picture = () => page.locator('.map canvas').first().evaluate((canvas) => canvas.toDataURL());
+    const [firstPicture, firstTime, firstError] = [await picture(), await dashboard.seconds(), await dashboard.text('lateral-error')];
+    await dashboard.until(() => dashboard.seconds(), (now) => now > firstTime + 0.5, 'lap time');
+    await dashboard.until(picture, differentFrom(firstPicture), 'map');
+    await dashboard.until(() => dashboard.text('lateral-error'), differentFrom(firstError), 'lateral error');
+    await dashboard.until(() => dashboard.number('speed'), (speed) => speed > 5, 'speed in mph');
+    assert.ok((await dashboard.colours('.map canvas')) > 20, 'the map shows road, car and plan');
+    assert.equal(await page.locator('.plot').count(), 11);
+    for (const title of ['Speed', 'Steering', 'Drive', 'Acceleration', 'Iterations', 'Control step', 'Step times']) {
+      const colours = () => dashboard.colours(`.plot[aria-label="${title}"] canvas`);
+      await page.locator(`.plot[aria-label="${title}"]`).first().scrollIntoViewIfNeeded();
+      await dashboard.until(colours, (count) => count > 5, `${title} shows lines`);
+    }
   });
 
   it('pauses, steps, resumes and resets by its buttons', async () => {
-    await page.getByRole('button', { name: 'Pause' }).click();
+    await dashboard.button('Pause').click();
     await page.getByText('Paused', { exact: true }).waitFor();
     await page.waitForTimeout(300); // the last frame before the pause, and the text's own pace
-    const paused = await seconds();
+    const paused = await dashboard.seconds();
     await page.waitForTimeout(300);
-    assert.equal(await seconds(), paused);
-    await page.getByRole('button', { name: 'Step' }).click();
-    const stepped = await until(seconds, differentFrom(paused), 'lap time after a step');
+    assert.equal(await dashboard.seconds(), paused);
+    await dashboard.button('Step').click();
+    const stepped = await dashboard.until(() => dashboard.seconds(), differentFrom(paused), 'lap time after a step');
     assert.equal(stepped.toFixed(2), (paused + 0.04).toFixed(2));
-    await page.getByRole('button', { name: 'Reset' }).click();
-    await until(seconds, (now) => now === 0, 'lap time after a reset');
-    await page.getByRole('button', { name: 'Resume' }).click();
-    await until(seconds, (now) => now > 0.2, 'lap time after going on');
-    assert.equal(await page.getByRole('button', { name: 'Step' }).isDisabled(), true);
+    await dashboard.button('Reset').click();
+    await dashboard.until(() => dashboard.seconds(), (now) => now === 0, 'lap time after a reset');
+    await dashboard.button('Resume').click();
+    await dashboard.until(() => dashboard.seconds(), (now) => now > 0.2, 'lap time after going on');
+    assert.equal(await dashboard.button('Step').isDisabled(), true);
   });
 
-  it('obeys the keyboard', async () => {
-    const pressed = () => page.locator('[aria-label="View"] [aria-pressed="true"]').innerText();
-    assert.equal(await pressed(), 'Chase');
+  it('holds plots while the run goes on, and zooms by dragging', async () => {
+    await dashboard.show('plots');
+    const plot = page.locator('.plot[aria-label="Speed"]');
+    const ticks = () => plot.locator('canvas').evaluate((canvas) => canvas.toDataURL());
+    await dashboard.button('Hold plots').click();
+    await page.waitForTimeout(200);
+    const [still, time] = [await ticks(), await dashboard.seconds()];
+    await dashboard.until(() => dashboard.seconds(), differentFrom(time), 'the run');
+    await page.waitForTimeout(300);
+    assert.equal(await ticks(), still);
+    await dashboard.button('Follow').click();
+    await dashboard.until(ticks, differentFrom(still), 'plots that follow');
+
+    const box = await plot.locator('.u-over').boundingBox();
+    await page.mouse.move(box.x + box.width * 0.5, box.y + 20);
+    await page.mouse.down();
+    await page.mouse.move(box.x + box.width * 0.9, box.y + 30, { steps: 4 });
+    await page.mouse.up();
+    await dashboard.button('Reset zoom').waitFor();
+    await page.mouse.dblclick(box.x + box.width * 0.5, box.y + 20);
+    await dashboard.button('Reset zoom').waitFor({ state: 'detached' });
+    await dashboard.button('Hold plots').waitFor();
+  });
+
+  it('shows the value under the cursor in all plots', async () => {
+    await dashboard.show('plots');
+    await dashboard.until(() => dashboard.seconds(), (now) => now > 1, 'some data');
+    await dashboard.button('Pause').click();
+    await page.getByText('Paused', { exact: true }).waitFor();
+    await page.waitForTimeout(300);
+    const values = () => page.locator('.plot[aria-label="Lateral error"] .key b, .plot[aria-label="Speed"] .key b').allInnerTexts();
+    const newest = await values();
+    const box = await page.locator('.plot[aria-label="Speed"] .u-over').boundingBox();
+    await page.mouse.move(box.x + box.width - 6, box.y + 20);
+    const pointed = await dashboard.until(values, (now) => now.join() !== newest.join(), 'values under the cursor');
+    assert.notEqual(pointed.at(-1), newest.at(-1), 'the other plot follows the cursor');
+    await dashboard.button('Resume').click();
+  });
+
+  it('can be used without a mouse', async () => {
+    const chosen = () => page.locator('[role="tab"][aria-selected="true"]').innerText();
+    for (const [i, tab] of TABS.entries()) {
+      await page.keyboard.press(String(i + 1));
+      assert.equal((await chosen()).toLowerCase(), tab);
+    }
+    await page.locator('#tab-faults').focus();
+    await page.keyboard.press('ArrowRight');
+    assert.equal(await chosen(), 'Drive');
+    await page.keyboard.press('End');
+    assert.equal(await chosen(), 'Faults');
+
+    const view = () => page.locator('[aria-label="View"] [aria-pressed="true"], [aria-label="Camera"] [aria-pressed="true"]').first().innerText();
+    await page.evaluate(() => document.activeElement.blur());
+    const first = await view();
     await page.keyboard.press('c');
-    await until(pressed, (name) => name === 'North up', 'view');
-    await page.keyboard.press('c');
-    await until(pressed, (name) => name === 'Whole track', 'view');
+    await dashboard.until(view, differentFrom(first), 'view');
     await page.keyboard.press('Space');
     await page.getByText('Paused', { exact: true }).waitFor();
     await page.keyboard.press('Space');
     await page.getByText('Live', { exact: true }).waitFor();
-    await page.keyboard.press('Tab');
-    assert.equal(await page.evaluate(() => document.activeElement?.textContent), 'Pause');
+    await dashboard.button('Pause').focus();
     await page.keyboard.press('Space'); // presses the button, once
     await page.getByText('Paused', { exact: true }).waitFor();
     await page.keyboard.press('Enter');
     await page.getByText('Live', { exact: true }).waitFor();
+
+    await page.keyboard.press('?');
+    await page.getByRole('dialog', { name: 'Keys' }).waitFor();
+    assert.ok((await page.locator('kbd').count()) > 15);
+    await page.keyboard.press('Escape');
+    await page.getByRole('dialog').waitFor({ state: 'detached' });
+
+    const splitter = page.getByRole('separator');
+    const share = async () => Number(await splitter.getAttribute('aria-valuenow'));
+    const before = await share();
+    await splitter.focus();
+    await page.keyboard.press('ArrowLeft');
+    await dashboard.until(share, (now) => now === before + 2, 'size of the panel');
+    await page.keyboard.press('d');
+    assert.equal(await splitter.getAttribute('aria-orientation'), 'horizontal');
+    await page.keyboard.press('d');
+    await page.keyboard.press('f');
+    await page.locator('.stage').waitFor({ state: 'detached' });
+    await page.keyboard.press('f');
   });
 
   it('lets a pause of one viewer be seen by another', async () => {
-    const other = await context.newPage();
+    const other = await page.context().newPage();
     await other.goto(demo.url);
     await other.getByText('Live', { exact: true }).waitFor();
-    await page.getByRole('button', { name: 'Pause' }).click();
+    await dashboard.button('Pause').click();
     await other.getByText('Paused', { exact: true }).waitFor();
     await other.getByRole('button', { name: 'Resume' }).click();
     await page.getByText('Live', { exact: true }).waitFor();
   });
-
-  it('has nothing that axe objects to', async () => {
-    assert.deepEqual(await accessibilityFindings(), []);
-  });
 });
 
-it('is dark for readers who like it dark, with nothing that axe objects to', async () => {
+for (const colorScheme of ['light', 'dark']) {
+  it(`has nothing that axe objects to, on any tab, ${colorScheme}`, async () => {
+    await open({ colorScheme });
+    for (const tab of TABS) {
+      await dashboard.show(tab);
+      assert.deepEqual(await dashboard.accessibilityFindings(), [], tab);
+      assert.deepEqual(await dashboard.overflow(), { across: 0, down: 0 }, `${tab} fits the window`);
+    }
+    await page.keyboard.press('?');
+    assert.deepEqual(await dashboard.accessibilityFindings(), [], 'help');
+    await dashboard.close();
+  });
+}
+
+it('is dark for readers who like it dark', async () => {
   await open({ colorScheme: 'dark' });
   const ground = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
   const light = Math.max(...ground.match(/\d+/g).map(Number));
   assert.ok(light < 40, ground);
-  assert.deepEqual(await accessibilityFindings(), []);
   await page.emulateMedia({ colorScheme: 'light' });
   const corner = () =>
-    page.locator('.map canvas').evaluate((canvas) => [...canvas.getContext('2d').getImageData(2, canvas.height - 2, 1, 1).data]);
-  await until(corner, ([red]) => red > 200, 'the map turns light with the page');
-  assert.deepEqual(complaints, []);
-  await context.close();
+    page
+      .locator('.map canvas')
+      .first()
+      .evaluate((canvas) => [...canvas.getContext('2d').getImageData(2, canvas.height - 2, 1, 1).data]);
+  await dashboard.until(corner, ([red]) => red > 200, 'the map turns light with the page');
+  await dashboard.close();
 });
 
 it('fits a phone', async () => {
-  await open({ viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true });
-  const { width, content } = await page.evaluate(() => ({ width: innerWidth, content: document.documentElement.scrollWidth }));
-  assert.ok(content <= width, `${content} px of content on ${width} px`);
-  const sizes = await page.locator('p, dd, dt, button').evaluateAll((all) => all.map((each) => parseFloat(getComputedStyle(each).fontSize)));
-  assert.ok(Math.min(...sizes) >= 12, `smallest text ${Math.min(...sizes)} px`);
-  assert.deepEqual(await accessibilityFindings(), []);
-  assert.deepEqual(complaints, []);
-  await context.close();
+  await open(PHONE);
+  for (const tab of TABS) {
+    await dashboard.show(tab);
+    assert.deepEqual(await dashboard.overflow(), { across: 0, down: 0 }, tab);
+    const sizes = await page.locator('p, dd, dt, button, td, th, label').evaluateAll((all) => all.map((each) => parseFloat(getComputedStyle(each).fontSize)));
+    assert.ok(Math.min(...sizes) >= 12, `smallest text ${Math.min(...sizes)} px`);
+    assert.deepEqual(await dashboard.accessibilityFindings(), [], tab);
+  }
+  await dashboard.close();
 });
 
 it('says when the connection is lost, and comes back by itself', async () => {
-  await open();
+  await open({ tab: 'plots' });
   const { port } = demo;
   await demo.stop();
   await page.getByTestId('banner').waitFor();
-  assert.match(await text('banner'), /Connection lost/);
-  assert.deepEqual(await accessibilityFindings(), []);
+  assert.match(await dashboard.text('banner'), /Connection lost/);
+  assert.deepEqual(await dashboard.accessibilityFindings(), []);
   demo = await startDemo(port);
   await page.getByTestId('banner').waitFor({ state: 'detached' });
-  const first = await seconds();
-  await until(seconds, (now) => now > first || now < first, 'lap time after coming back');
-  assert.equal(await page.locator('.plot canvas').count(), 4);
+  const first = await dashboard.seconds();
+  await dashboard.until(() => dashboard.seconds(), differentFrom(first), 'lap time after coming back');
   // What browsers always say of a socket that cannot connect is the only complaint.
-  assert.deepEqual(complaints.filter((each) => !each.startsWith('WebSocket connection to')), []);
-  await context.close();
+  await dashboard.close((each) => each.startsWith('WebSocket connection to'));
 });

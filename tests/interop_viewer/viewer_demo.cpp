@@ -53,6 +53,10 @@ struct Wishes {
   std::atomic<bool> reset{false};
 };
 
+/// What the dashboard reads of the tunables above.
+constexpr std::string_view kSchema = R"([{"key": "demo.gain", "group": "demo", "kind": "number", "unit": "",
+"minimum": 0, "maximum": 10, "choices": [], "default": 1.5, "meaning": "Nothing.", "is_live": true}])";
+
 protocol::Run run_of(const path::Track& track, double period) {
   protocol::Run run;
   run.track = track.name();
@@ -104,7 +108,12 @@ int main(int argc, char** argv) {
   };
   runtime::ViewerEndpoint viewer{std::move(options)};
   runtime::Router router{nullptr, &viewer};
-  const auto server = net::Server::create(server_options, router.handlers(), runtime::embedded_assets());
+  runtime::Pages pages = runtime::live_pages();
+  pages["/schema.json"] = [] {
+    return net::Content{.content_type = "application/json", .bytes = std::string{kSchema}};
+  };
+  const auto server =
+      net::Server::create(server_options, router.handlers(std::move(pages)), runtime::embedded_assets());
   if (!server) return fmt::print(stderr, "{}\n", server.error().message), 3;
   fmt::print("listening on http://127.0.0.1:{}/\n", (*server)->port());
   std::fflush(stdout);

@@ -37,7 +37,7 @@ function live(): Source {
       if (name !== session) {
         beginSession();
         beginSettings(name);
-        void loadSchema();
+        schema.value = [];
       }
       session = name;
       link.value = 'live';
@@ -49,7 +49,10 @@ function live(): Source {
     },
     message: (topic, message) => receive(topic, message, performance.now()),
     services: (names) => (services.value = names),
-    settings: takeSettings,
+    settings(values, isAll) {
+      takeSettings(values, isAll);
+      if (isAll && schema.value.length === 0) void loadSchema();
+    },
     notice: (sentence) => (notice.value = sentence),
   });
 }

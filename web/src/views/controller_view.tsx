@@ -21,7 +21,7 @@ export function ControllerView() {
   const turns = frame && frame.iterations > 0 ? `, ${plural(frame.iterations, 'iteration')}` : '';
   return (
     <section class="block" aria-label="Controller">
-      <h3>{run.value?.controller ?? 'Controller'}</h3>
+      <h2>{run.value?.controller ?? 'Controller'}</h2>
       <dl class="rows">
         <Row id="rung" label="Driving" sentence={frame ? rungInWords(frame.rung) : null} />
         <Row id="status" label="Answer" sentence={solve ? { ...solve, text: solve.text + turns } : null} />

@@ -33,7 +33,7 @@ function Pace() {
   if (pace === undefined) return null;
   return (
     <section class="block" aria-label="Pace">
-      <h3>Pace</h3>
+      <h2>Pace</h2>
       <div class="pace">
         <SettingRow entry={{ ...PACE, unit: '×' }} name="speed of time" />
         <div class="segments" role="group" aria-label="Usual paces">
@@ -63,9 +63,9 @@ function Choices() {
   if (entries.length === 0) return null;
   return (
     <section class="block" aria-label="Choose">
-      <h3>
+      <h2>
         Choose <span class="unit">starts the run anew</span>
-      </h3>
+      </h2>
       <div class="choices">
         {entries.map(({ entry, label }) => (
           <label key={entry.key} data-key={entry.key}>
@@ -95,9 +95,9 @@ function World() {
   if (entries.length === 0) return null;
   return (
     <section class="block" aria-label="World">
-      <h3>
+      <h2>
         The world <span class="unit">what the controller is not told</span>
-      </h3>
+      </h2>
       {entries.map(({ entry, name }) => (
         <SettingRow key={entry.key} entry={entry} name={name} />
       ))}

@@ -5,7 +5,7 @@ import { events } from '../state/event_log';
 export function EventsView() {
   return (
     <section class="block" aria-label="What happened">
-      <h3>What happened</h3>
+      <h2>What happened</h2>
       {events.value.length === 0 ? (
         <p class="soft">Nothing out of the ordinary so far.</p>
       ) : (

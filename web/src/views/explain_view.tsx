@@ -18,7 +18,7 @@ function Limiter() {
   const shares = sharesOf(live.plots, Column.limiter, LIMITERS.length, WINDOW_S);
   return (
     <section class="block limiter" aria-label="What limits the speed">
-      <h3>What limits the speed</h3>
+      <h2>What limits the speed</h2>
       <div class="limiter-now">
         <span class="limiter-colour" style={{ background: `var(--limiter-${limiter})` }} aria-hidden="true" />
         <div>
@@ -55,7 +55,7 @@ function Constraints() {
   const shares = bitSharesOf(live.plots, Column.activeNow, names.length, WINDOW_S);
   return (
     <section class="block" aria-label="Constraints">
-      <h3>Constraints</h3>
+      <h2>Constraints</h2>
       <table class="constraints">
         <thead>
           <tr>
@@ -116,7 +116,7 @@ function Answer() {
   ];
   return (
     <section class="block" aria-label="The answer">
-      <h3>The answer</h3>
+      <h2>The answer</h2>
       <dl class="rows">
         <Row label="Solver" sentence={solve} />
         <Row label="Worst" sentence={frame ? (worst ? { mood: 'warning', text: worst } : { mood: 'good', text: 'All constraints hold' }) : null} />
@@ -134,7 +134,7 @@ function Prediction() {
   const error = frame?.prediction_error_m ?? NaN;
   return (
     <section class="block" aria-label="Prediction">
-      <h3>Prediction against what came</h3>
+      <h2>Prediction against what came</h2>
       <div class="prediction">
         <div>
           <p class="soft">The plan of a second ago, and the way the car then took, seen from where it was:</p>

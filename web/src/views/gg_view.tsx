@@ -107,9 +107,9 @@ export function GgView() {
   return (
     <section class="plot square" aria-label="Acceleration">
       <header>
-        <h3>
+        <h2>
           Acceleration <span class="unit">g · up: drive, left: left</span>
-        </h3>
+        </h2>
         <p>
           <span class="key">
             <b>{fixed(Math.hypot(across, along), 2)}</b>

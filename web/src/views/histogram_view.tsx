@@ -68,11 +68,11 @@ export function HistogramView() {
   const { stepTimes } = live;
   const period = (run.value?.control_period_s ?? NaN) * 1e6;
   return (
-    <section class="plot" aria-label="Control step">
+    <section class="plot" aria-label="Step times">
       <header>
-        <h3>
-          Control step <span class="unit">{stepTimes.total} steps, both axes logarithmic</span>
-        </h3>
+        <h2>
+          Step times <span class="unit">{stepTimes.total} steps, logarithmic</span>
+        </h2>
         <p>
           {QUANTILES.map(({ share, label }) => (
             <span key={label} class="key">

@@ -92,9 +92,9 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
   return (
     <section class="plot" aria-label={`${curve.title} along the track`}>
       <header>
-        <h3>
+        <h2>
           {curve.title} <span class="unit">{curve.unit}</span>
-        </h3>
+        </h2>
         {second === undefined ? null : (
           <p>
             {names.map((name, i) => (

@@ -101,7 +101,7 @@ export function ManualView() {
   const isOn = isManual();
   return (
     <section class={isOn ? 'block manual on' : 'block manual'} aria-label="Driving by hand">
-      <h3>Drive by hand</h3>
+      <h2>Drive by hand</h2>
       <div class="manual-row">
         <button type="button" class={isOn ? 'danger' : ''} aria-pressed={isOn} aria-keyshortcuts="M" disabled={!canSet('manual.is_on')} onClick={toggleManual}>
           {isOn ? 'Hand back (Esc)' : 'Take the wheel (M)'}

@@ -10,7 +10,7 @@ export function pictureOfPlots(): HTMLCanvasElement {
   const colours = chartColours();
   const plots = [...document.querySelectorAll<HTMLElement>('.plots .plot')].flatMap((plot) => {
     const canvas = plot.querySelector('canvas');
-    return canvas && canvas.width > 0 ? [{ canvas, title: plot.querySelector('h3')?.innerText ?? '', keys: keysOf(plot) }] : [];
+    return canvas && canvas.width > 0 ? [{ canvas, title: plot.querySelector('h2')?.innerText ?? '', keys: keysOf(plot) }] : [];
   });
   const tall = Math.max(120, ...plots.map(({ canvas }) => (canvas.height / canvas.width) * COLUMN).filter((height) => height < COLUMN * 0.6));
   const rows = Math.ceil(plots.length / 2);

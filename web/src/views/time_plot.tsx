@@ -143,9 +143,9 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
   return (
     <section class="plot" aria-label={spec.title}>
       <header>
-        <h3>
+        <h2>
           {spec.title} <span class="unit">{spec.unit}</span>
-        </h3>
+        </h2>
         <p>
           {spec.series.map(({ column, label, colour, isDashed }) => (
             <span key={label} class="key">

@@ -50,7 +50,7 @@ function Changes() {
   return (
     <section class={changes.length > 0 ? 'changes some' : 'changes'} aria-label="Changes" data-testid="changes">
       <header>
-        <h3>{changes.length === 0 ? 'As it started' : changes.length === 1 ? '1 change' : `${changes.length} changes`}</h3>
+        <h2>{changes.length === 0 ? 'As it started' : changes.length === 1 ? '1 change' : `${changes.length} changes`}</h2>
         <div class="buttons">
           <button type="button" disabled={changes.length === 0} onClick={() => changes.forEach(({ key, from }) => set(key, from))}>
             Reset all
@@ -82,12 +82,12 @@ function Group({ name, entries }: { name: string; entries: readonly SchemaEntry[
   const changed = settingChanges.value.filter(({ key }) => entries.some((entry) => entry.key === key)).length;
   return (
     <section class="group" aria-label={nameInWords(name)}>
-      <h3>
+      <h2>
         <button type="button" class="disclosure" aria-expanded={open} onClick={() => (isOpen.value = new Map([...isOpen.value, [name, !open]]))}>
           <span aria-hidden="true">{open ? '▾' : '▸'}</span> {nameInWords(name)} <span class="unit">{entries.length}</span>
           {changed > 0 && <span class="badge">{changed} changed</span>}
         </button>
-      </h3>
+      </h2>
       {open && entries.map((entry) => <SettingRow key={entry.key} entry={entry} />)}
     </section>
   );

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// A dashboard in a headless browser, with what its tests ask of it.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+export const LAPTOP = { viewport: { width: 1366, height: 768 }, colorScheme: 'light' };
+export const PHONE = { viewport: { width: 390, height: 844 }, colorScheme: 'light', deviceScaleFactor: 2, isMobile: true, hasTouch: true };
+export const TABS = ['drive', 'plots', 'explain', 'tune', 'laps', 'faults'];
+
+export const differentFrom = (before) => (now) => now !== before;
+
+export class DashboardPage {
+  /** Opens the page at a tab and waits until it is live. What the browser complains of is kept in `complaints`. */
+  static async open(browser, url, { tab = 'drive', ...options } = {}) {
+    const context = await browser.newContext({ ...LAPTOP, ...options });
+    const page = await context.newPage();
+    const complaints = [];
+    page.on('console', (message) => {
+      if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
+    });
+    page.on('pageerror', (error) => complaints.push(String(error)));
+    page.on('response', (response) => {
+      if (response.status() >= 400) complaints.push(`${response.status()} ${response.url()}`);
+    });
+    await page.goto(`${url}#${tab}`);
+    const dashboard = new DashboardPage(page, complaints);
+    await page.getByText('Live', { exact: true }).waitFor();
+    return dashboard;
+  }
+
+  constructor(page, complaints) {
+    this.page = page;
+    this.complaints = complaints;
+  }
+
+  /** Ends with the assertion that the browser had nothing to complain of, but for `expected`. */
+  async close(expected = () => false) {
+    const complaints = this.complaints.filter((each) => !expected(each));
+    await this.page.context().close();
+    assert.deepEqual(complaints, []);
+  }
+
+  text(id) {
+    return this.page.getByTestId(id).innerText();
+  }
+
+  async number(id) {
+    return Number((await this.text(id)).replace('−', '-'));
+  }
+
+  /** The lap clock. */
+  async seconds() {
+    const [minutes, rest] = (await this.text('lap-time')).split(':').map(Number);
+    return 60 * minutes + rest;
+  }
+
+  show(tab) {
+    return this.page.locator(`#tab-${tab}`).click();
+  }
+
+  button(name) {
+    return this.page.getByRole('button', { name, exact: true });
+  }
+
+  /** Waits until `read` gives something that `accept` accepts. */
+  async until(read, accept, what) {
+    const end = Date.now() + 10_000;
+    for (;;) {
+      const value = await read();
+      if (accept(value)) return value;
+      assert.ok(Date.now() < end, `${what}: still ${value}`);
+      await this.page.waitForTimeout(50);
+    }
+  }
+
+  /** How many different colours a canvas shows. */
+  colours(selector) {
+    return this.page
+      .locator(selector)
+      .first()
+      .evaluate((canvas) => {
+        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+        return new Set(new Uint32Array(data.buffer)).size;
+      });
+  }
+
+  async accessibilityFindings() {
+    if (!(await this.page.evaluate(() => 'axe' in globalThis))) await this.page.evaluate(axe);
+    const { violations } = await this.page.evaluate(() => globalThis.axe.run());
+    return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target} ${failureSummary}`).join(', ')}`);
+  }
+
+  /** What lies beyond the window's right and lower edge [px]. */
+  overflow() {
+    return this.page.evaluate(() => ({
+      across: document.documentElement.scrollWidth - innerWidth,
+      down: document.documentElement.scrollHeight - innerHeight,
+    }));
+  }
+}
