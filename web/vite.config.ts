@@ -4,7 +4,11 @@ import { defineConfig } from 'vitest/config';
 export default defineConfig({
   base: './',
   esbuild: { jsx: 'automatic', jsxImportSource: 'preact' },
-  build: { target: 'es2022', assetsInlineLimit: 0, reportCompressedSize: false, modulePreload: false, chunkSizeWarningLimit: 700 },
+  build: {
+    target: 'es2022', assetsInlineLimit: 0, reportCompressedSize: false, modulePreload: false, chunkSizeWarningLimit: 700,
+    // One script for `chicane report`, whose page stands alone.
+    rollupOptions: process.env['CHICANE_REPORT'] ? { output: { inlineDynamicImports: true } } : {},
+  },
   server: {
     // `npm run dev` beside `chicane drive`: the page is Vite's, the data the program's.
     proxy: {
