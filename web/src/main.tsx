@@ -4,7 +4,8 @@ import { Connection, SUBPROTOCOLS } from './protocol/connection';
 import { readSchema } from './protocol/schema';
 import type { Source } from './protocol/source';
 import { attempt, beginSession, isPaused, link, notice, receive, refreshText, services } from './state/app_state';
-import { attach, call } from './state/operate';
+import { begin, timeline } from './recording/begin';
+import { call, refresh } from './state/operate';
 import { toggleFrozen } from './state/plot_view';
 import { beginSettings, refreshWhenChosenAnew, takeSettings } from './state/settings_session';
 import { schema } from './state/settings';
@@ -57,9 +58,8 @@ function live(): Source {
   });
 }
 
-const source = live();
-attach(source);
-refreshWhenChosenAnew(() => source.refresh?.());
+void begin(live);
+refreshWhenChosenAnew(refresh);
 listenToDriver();
 
 addShortcuts(
@@ -101,9 +101,11 @@ addEventListener('keydown', (event) => {
 });
 
 function App() {
+  const TimelineView = timeline.value;
   return (
     <>
       <HeaderView />
+      {TimelineView && <TimelineView />}
       <WorkbenchView />
       <HelpView />
       <AnewView />

@@ -61,12 +61,18 @@ const row: number[] = new Array<number>(COLUMN_COUNT).fill(NaN);
 /** Called with each frame as it comes, also while the page is hidden; `now` as of performance.now(). */
 export const frameListeners = new Set<(frame: Frame, now: number) => void>();
 
+/** All laps of a recording are known from its beginning, so no moment of it adds to them or takes them away. */
+let hasAllLaps = false;
+export function keepAllLaps(): void {
+  hasAllLaps = true;
+}
+
 /** Where the car has been and what was plotted belongs to the run before. */
 export function forget(): void {
   live.plots.clear();
   live.trace.clear();
   live.stepTimes.clear();
-  live.lapSamples.clear();
+  if (!hasAllLaps) live.lapSamples.clear();
   live.topSpeed = 0;
   live.plan = null;
   live.pastPlans = [];
@@ -80,6 +86,12 @@ export function beginSession(): void {
   forget();
   live.frame = null;
   shown.value = null;
+}
+
+/** Another moment of the same run: what was shown goes, and comes again. */
+export function rewind(): void {
+  forget();
+  live.frame = null;
 }
 
 function receiveFrame(message: Frame, now: number): void {
@@ -100,6 +112,11 @@ function takeSample(frame: Frame, before: Frame | null): void {
   noteEvents(frame, before && before.time_s < frame.time_s ? before : null);
   const [x, y] = [live.trace.newest(0), live.trace.newest(1)];
   if (!(Math.hypot(frame.x_m - x, frame.y_m - y) < TRACE_SPACING_M)) live.trace.push([frame.x_m, frame.y_m]);
+  if (!hasAllLaps) sampleLap(frame);
+}
+
+/** Adds a frame to the laps as functions of the distance. */
+export function sampleLap(frame: Frame): void {
   live.lapSamples.setLength(run.value?.track_length_m ?? NaN);
   live.lapSamples.push(
     frame.lap,

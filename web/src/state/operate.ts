@@ -18,6 +18,9 @@ export function attach(to: Source): void {
 
 export const retry = (): void => source?.retryNow?.();
 
+/** Asks for the values of all tunables again. */
+export const refresh = (): void => source?.refresh?.();
+
 export const can = (name: ServiceName): boolean => services.value.has(name) && link.value === 'live';
 
 export function call(name: ServiceName, data?: boolean): void {

@@ -1,0 +1,41 @@
+import { signal } from '@preact/signals';
+import type { FunctionComponent } from 'preact';
+import type { Source } from '../protocol/source';
+import { notice } from '../state/app_state';
+import { attach } from '../state/operate';
+import { findMode } from './mode';
+
+/** The time line, once there is a recording; its code is not loaded before. */
+export const timeline = signal<FunctionComponent | null>(null);
+
+let current: Source | null = null;
+
+function take(source: Source): void {
+  current?.close();
+  current = source;
+  attach(source);
+}
+
+const sentence = (error: unknown): string => (error instanceof Error ? error.message : String(error));
+
+/** Shows recordings where the page was opened for them, otherwise a live run; and recordings that are dropped on it. */
+export async function begin(live: () => Source): Promise<void> {
+  addEventListener('dragover', (event) => {
+    if (event.dataTransfer?.types.includes('Files')) event.preventDefault();
+  });
+  addEventListener('drop', (event) => {
+    const files = [...(event.dataTransfer?.files ?? [])].filter((file) => file.name.endsWith('.mcap'));
+    if (files.length === 0) return;
+    event.preventDefault();
+    show((player) => player.playFiles(files)).catch((error: unknown) => (notice.value = sentence(error)));
+  });
+  const mode = await findMode();
+  if (mode.name === 'live') return take(live());
+  await show((player) => player.playMode(mode)).catch((error: unknown) => (notice.value = sentence(error)));
+}
+
+async function show(open: (player: typeof import('./player')) => Promise<Source>): Promise<void> {
+  const [player, view] = await Promise.all([import('./player'), import('./timeline_view')]);
+  take(await open(player));
+  timeline.value = view.TimelineView;
+}

@@ -1,0 +1,225 @@
+import { McapWriter } from '@mcap/core';
+import { MessageWriter } from '@foxglove/rosmsg2-serialization';
+import { parse } from '@foxglove/rosmsg';
+import { beforeAll, describe, expect, it } from 'vitest';
+import type { Frame, TopicName } from '../protocol/topics';
+import { landmarksOf, LogSource, type LogEvents } from './log_source';
+import { McapLog } from './mcap_log';
+import { BytesReadable, HttpReadable } from './readable';
+import { RecordedDrive } from './recorded_drive';
+
+// A small recording of 10 s: frames at 10 Hz on a straight, a lap at 4 s, off the road at 6 s, a setting changed at 7 s.
+const FRAME = 'float64 time_s\nfloat64 x_m\nfloat64 y_m\nfloat64 yaw_rad\nfloat64 steer_applied_rad\nuint32 off_track_events\nuint8 rung\nbool is_gated\n';
+const LAP = 'uint32 lap\nfloat64 lap_time_s\n';
+const CHANGE = 'string name\nstring value\n';
+const RUN = 'string track\nbool is_paused\n';
+const HOUR_NS = 3_600_000_000_000n; // log times need not begin at zero
+
+class Bytes {
+  parts: Uint8Array[] = [];
+  length = 0;
+  write(part: Uint8Array): Promise<void> {
+    this.parts.push(part.slice());
+    this.length += part.byteLength;
+    return Promise.resolve();
+  }
+  position(): bigint {
+    return BigInt(this.length);
+  }
+  whole(): Uint8Array {
+    const all = new Uint8Array(this.length);
+    let at = 0;
+    for (const part of this.parts) {
+      all.set(part, at);
+      at += part.byteLength;
+    }
+    return all;
+  }
+}
+
+async function record(isClosed = true): Promise<Uint8Array> {
+  const file = new Bytes();
+  const writer = new McapWriter({ writable: file, chunkSize: 2000 });
+  await writer.start({ profile: 'ros2', library: 'test' });
+  const channels = new Map<string, { id: number; writer: MessageWriter }>();
+  for (const [topic, text] of [
+    ['/chicane/run', RUN],
+    ['/chicane/frame', FRAME],
+    ['/chicane/lap', LAP],
+    ['/chicane/change', CHANGE],
+  ] as const) {
+    const schemaId = await writer.registerSchema({ name: topic, encoding: 'ros2msg', data: new TextEncoder().encode(text) });
+    const id = await writer.registerChannel({ schemaId, topic, messageEncoding: 'cdr', metadata: new Map() });
+    channels.set(topic, { id, writer: new MessageWriter(parse(text, { ros2: true })) });
+  }
+  const add = async (topic: string, seconds: number, message: object): Promise<void> => {
+    const channel = channels.get(topic);
+    if (!channel) throw new Error(topic);
+    const logTime = HOUR_NS + BigInt(Math.round(seconds * 1e9));
+    await writer.addMessage({ channelId: channel.id, sequence: 0, logTime, publishTime: logTime, data: channel.writer.writeMessage(message) });
+  };
+  await add('/chicane/run', 0, { track: 'straight', is_paused: false });
+  for (let i = 0; i <= 100; ++i) {
+    const time = i / 10;
+    await add('/chicane/frame', time, { time_s: time, x_m: 2 * time, y_m: 0, yaw_rad: 0, steer_applied_rad: 0.01 * i, off_track_events: time >= 6 ? 1 : 0, rung: 0, is_gated: false });
+    if (i === 40) await add('/chicane/lap', time, { lap: 1, lap_time_s: 4 });
+    if (i === 70) await add('/chicane/change', time, { name: 'latency_ms', value: '150' });
+  }
+  if (isClosed) await writer.end();
+  return file.whole();
+}
+
+class Page implements LogEvents {
+  sessions: string[] = [];
+  told: { topic: TopicName; message: unknown }[] = [];
+  rewinds = 0;
+  where = { time: NaN, isPlaying: false };
+  paces: unknown[] = [];
+  open = (session: string): void => void this.sessions.push(session);
+  lost = (): void => undefined;
+  message = (topic: TopicName, message: unknown): void => void this.told.push({ topic, message });
+  services = (): void => undefined;
+  settings = (values: ReadonlyMap<string, unknown>): void => void this.paces.push(values.get('run.pace'));
+  notice = (sentence: string): never => {
+    throw new Error(sentence);
+  };
+  rewind = (): void => {
+    ++this.rewinds;
+    this.told = [];
+  };
+  moved = (time: number, isPlaying: boolean): void => void (this.where = { time, isPlaying });
+  frames(): number[] {
+    return this.told.filter(({ topic }) => topic === '/chicane/frame').map(({ message }) => (message as Frame).time_s);
+  }
+}
+
+let bytes: Uint8Array;
+let log: McapLog;
+beforeAll(async () => {
+  bytes = await record();
+  log = await McapLog.open('run.mcap', new BytesReadable(bytes));
+});
+
+/** Lets pending reads come to their end. */
+const settle = async (): Promise<void> => {
+  for (let i = 0; i < 20; ++i) await new Promise((resolve) => setTimeout(resolve, 0));
+};
+
+describe('a recording', () => {
+  it('counts its time from its first message', () => expect(log.duration).toBeCloseTo(10, 6));
+
+  it('names what cannot be read, and what helps', async () => {
+    await expect(McapLog.open('cut.mcap', new BytesReadable((await record(false)).slice(0, 3000)))).rejects.toThrow(/cut\.mcap.*chicane replay/);
+    await expect(McapLog.open('text', new BytesReadable(new Uint8Array(40)))).rejects.toThrow('text');
+  });
+
+  it('shows its landmarks', async () => {
+    const shares: number[] = [];
+    const found = await landmarksOf(log, (share) => shares.push(share));
+    expect(found.map(({ kind, time }) => [kind, Math.round(time * 10) / 10])).toEqual([
+      ['lap', 4],
+      ['off-track', 6],
+      ['change', 7],
+    ]);
+    expect(shares.at(-1)).toBeCloseTo(1, 6);
+  });
+});
+
+describe('playing a recording', () => {
+  it('tells the past of the moment one seeks, and no more', async () => {
+    const page = new Page();
+    const source = await LogSource.open(log, page);
+    await source.seek(5.04);
+    expect(page.rewinds).toBe(1);
+    expect(page.frames().at(0)).toBe(0);
+    expect(page.frames().at(-1)).toBe(5);
+    expect(page.told.filter(({ topic }) => topic === '/chicane/lap')).toHaveLength(1);
+    await source.seek(3);
+    expect(page.frames().at(-1)).toBe(3);
+    expect(page.told.filter(({ topic }) => topic === '/chicane/lap')).toHaveLength(0);
+    expect(page.told.find(({ topic }) => topic === '/chicane/run')?.message).toMatchObject({ track: 'straight', mode: 'replay', is_paused: true });
+  });
+
+  it('plays at its pace, in order, each message once, to the end', async () => {
+    const page = new Page();
+    const source = await LogSource.open(log, page);
+    await source.seek(0);
+    expect(await source.set('run.pace', 2)).toEqual({ value: 2, sentence: null });
+    await source.call('/pause', false);
+    let now = 1000;
+    source.advance(now);
+    await settle();
+    for (let i = 0; i < 10; ++i) source.advance((now += 100)); // one second at twice the pace
+    expect(page.where.time).toBeCloseTo(2, 6);
+    expect(page.frames().at(-1)).toBeCloseTo(2, 6);
+    for (let i = 0; i < 100 && source.isPlaying; ++i) {
+      source.advance((now += 100));
+      await settle();
+    }
+    expect(source.isPlaying).toBe(false);
+    expect(page.where).toEqual({ time: log.duration, isPlaying: false });
+    expect(page.frames()).toEqual([...new Set(page.frames())].sort((a, b) => a - b));
+    expect(page.frames()).toHaveLength(101);
+  });
+
+  it('steps from one control step to the next', async () => {
+    const page = new Page();
+    const source = await LogSource.open(log, page);
+    await source.seek(6.95);
+    expect(await source.call('/step')).toBeNull();
+    expect(page.frames().at(-1)).toBe(7);
+    expect(page.told.some(({ topic }) => topic === '/chicane/change')).toBe(true);
+    await source.seek(10);
+    expect(await source.call('/step')).toMatch('ends here');
+  });
+
+  it('forgets a jump that another one overtook', async () => {
+    const page = new Page();
+    const source = await LogSource.open(log, page);
+    await Promise.all([source.seek(9), source.seek(1)]);
+    expect(page.rewinds).toBe(1);
+    expect(page.frames().at(-1)).toBe(1);
+  });
+
+  it('refuses to change what was recorded, and an impossible pace', async () => {
+    const source = await LogSource.open(log, new Page());
+    expect((await source.set('latency_ms', 50)).sentence).toMatch('belongs to the recording');
+    expect(await source.set('run.pace', 100)).toEqual({ value: 1, sentence: 'run.pace: got 100, expected 0.05 to 20' });
+  });
+});
+
+describe('another drive beside it', () => {
+  it('is where it was at the time shown', async () => {
+    const frames = (await log.read(['/chicane/frame'], 0, 10)).map(({ time, message }) => ({ time, frame: message as Frame }));
+    let now = 2.05;
+    const drive = RecordedDrive.from('other', frames, () => now);
+    const pose = { x: 0, y: 0, yaw: 0, steer: 0 };
+    expect(drive.poseAt(0, pose)).toBe(true);
+    expect(pose.x).toBeCloseTo(4.1, 6);
+    expect(pose.steer).toBeCloseTo(0.205, 6);
+    now = 11;
+    expect(drive.poseAt(0, pose)).toBe(false);
+  });
+});
+
+describe('a recording on a server', () => {
+  const serve = (asked: string[]): typeof fetch =>
+    ((_url: string, init: { headers: { range: string } }) => {
+      asked.push(init.headers.range);
+      const [from = 0, to = 0] = init.headers.range.slice('bytes='.length).split('-').map(Number);
+      const body = bytes.slice(from, to + 1);
+      return Promise.resolve(new Response(body, { status: 206, headers: { 'content-range': `bytes ${from}-${to}/${bytes.length}` } }));
+    }) as unknown as typeof fetch;
+
+  it('is read by ranges, each block once', async () => {
+    const asked: string[] = [];
+    const remote = await McapLog.open('run.mcap', new HttpReadable('/log/0.mcap', serve(asked)));
+    expect(await remote.read(['/chicane/frame'], 0, 10)).toHaveLength(101);
+    expect(asked).toEqual(['bytes=0-0', `bytes=0-${bytes.length - 1}`]);
+  });
+
+  it('says when the server knows no ranges', async () => {
+    const whole = (() => Promise.resolve(new Response('all of it', { status: 200 }))) as unknown as typeof fetch;
+    await expect(McapLog.open('run.mcap', new HttpReadable('/log/0.mcap', whole))).rejects.toThrow('HTTP 200');
+  });
+});

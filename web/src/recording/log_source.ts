@@ -1,0 +1,228 @@
+import type { ServiceName, Setting, SetAnswer, Source, SourceEvents } from '../protocol/source';
+import type { Lap, Run, TopicName } from '../protocol/topics';
+import type { LoggedMessage, McapLog } from './mcap_log';
+
+/** What a reader of a recording looks for. */
+export interface Landmark {
+  readonly time: number; // [s]
+  readonly kind: 'lap' | 'change' | 'off-track' | 'fallback' | 'gate' | 'fault';
+  readonly label: string;
+}
+
+/** What a recording tells beside the events of any source. */
+export interface LogEvents extends SourceEvents {
+  /** The time line jumps: what was shown belongs to another moment. */
+  rewind(): void;
+  /** Where it is now [s], and whether it plays. */
+  moved(time: number, isPlaying: boolean): void;
+}
+
+const STATIC: readonly TopicName[] = ['/chicane/run', '/track/left', '/track/right', '/track/centre', '/chicane/lap'];
+const MOVING: readonly TopicName[] = ['/chicane/frame', '/chicane/plan', '/reference', '/chicane/change'];
+const SHORT: readonly TopicName[] = ['/chicane/plan', '/reference'];
+/** What is shown of the past: plots reach back so far [s]. */
+const LOOK_BACK_S = 60;
+/** Plans behind the moment shown: the page compares with that of a second ago [s]. */
+const PLAN_BACK_S = 1.2;
+const SEGMENT_S = 4; // read ahead at once
+const LEAST_PACE = 0.05;
+const MOST_PACE = 20;
+
+/**
+ * Plays a recording as if it happened: same messages, same page. Pausing, stepping and going back to the start are what a live run
+ * offers; seek() goes anywhere. Time is read from the clock it is given; advance() must be called often.
+ */
+export class LogSource implements Source {
+  readonly log: McapLog;
+  readonly #events: LogEvents;
+  #static: LoggedMessage[] = [];
+  #segment: LoggedMessage[] = [];
+  #readTo = 0; // the segment reaches so far [s]
+  #isReading = false;
+  #generation = 0; // of jumps: an older one's answer is nobody's business
+  #position = 0;
+  #isPlaying = false;
+  #pace = 1;
+  #clock = NaN; // of the last advance() [ms]
+
+  private constructor(log: McapLog, events: LogEvents) {
+    this.log = log;
+    this.#events = events;
+  }
+
+  static async open(log: McapLog, events: LogEvents): Promise<LogSource> {
+    const source = new LogSource(log, events);
+    source.#static = await log.read(STATIC, 0, log.duration);
+    events.open(log.name);
+    events.services(new Set<ServiceName>(['/pause', '/step', '/reset']));
+    source.#tellPace(true);
+    return source;
+  }
+
+  get position(): number {
+    return this.#position;
+  }
+
+  get isPlaying(): boolean {
+    return this.#isPlaying;
+  }
+
+  close(): void {
+    ++this.#generation;
+    this.#isPlaying = false;
+  }
+
+  call(name: ServiceName, data?: boolean): Promise<string | null> {
+    if (name === '/pause') return this.#play(!(data ?? true));
+    if (name === '/reset') return this.seek(0).then(() => null);
+    return this.step();
+  }
+
+  set(name: string, value: Setting): Promise<SetAnswer> {
+    if (name !== 'run.pace' || typeof value !== 'number') return Promise.resolve({ value: null, sentence: `${name} belongs to the recording and cannot be changed` });
+    const isInRange = value >= LEAST_PACE && value <= MOST_PACE;
+    if (isInRange) this.#pace = value;
+    this.#tellPace(false);
+    return Promise.resolve({ value: this.#pace, sentence: isInRange ? null : `run.pace: got ${value}, expected ${LEAST_PACE} to ${MOST_PACE}` });
+  }
+
+  refresh(): void {
+    this.#tellPace(true);
+  }
+
+  /** Shows the moment `time` [s]: the minute before it is told again, at once. */
+  async seek(time: number): Promise<void> {
+    const generation = ++this.#generation;
+    const to = Math.min(Math.max(time, 0), this.log.duration);
+    this.#position = to;
+    this.#events.moved(to, this.#isPlaying);
+    const [past, plans] = await Promise.all([
+      this.log.read(
+        MOVING.filter((topic) => !SHORT.includes(topic)),
+        to - LOOK_BACK_S,
+        to,
+      ),
+      this.log.read(SHORT, to - PLAN_BACK_S, to),
+    ]);
+    if (generation !== this.#generation) return;
+    this.#events.rewind();
+    this.#tellStatic(to);
+    for (const each of [...past, ...plans].sort((a, b) => a.time - b.time)) this.#tell(each);
+    this.#segment = [];
+    this.#readTo = to;
+    this.#clock = NaN;
+    this.#events.moved(to, this.#isPlaying);
+  }
+
+  /** To the next control step. */
+  async step(): Promise<string | null> {
+    const generation = this.#generation;
+    for (let ahead = 0.1; ahead < 20; ahead *= 4) {
+      const frames = await this.log.read(['/chicane/frame'], this.#position + 1e-6, this.#position + ahead);
+      if (generation !== this.#generation) return null;
+      const next = frames[0];
+      if (!next) continue;
+      const all = await this.log.read([...MOVING, ...STATIC], this.#position + 1e-6, next.time + 1e-6);
+      if (generation !== this.#generation) return null;
+      for (const each of all) this.#tell(each);
+      this.#position = this.#readTo = next.time;
+      this.#segment = [];
+      this.#events.moved(next.time, this.#isPlaying);
+      return null;
+    }
+    return 'the recording ends here';
+  }
+
+  /** Tells what has come to pass until `now`, performance.now() [ms]. */
+  advance(now: number): void {
+    const elapsed = (now - this.#clock) / 1000;
+    this.#clock = now;
+    if (!this.#isPlaying) return;
+    void this.#readAhead();
+    if (!(elapsed >= 0)) return;
+    const wanted = this.#position + Math.min(elapsed, 0.25) * this.#pace;
+    const until = Math.min(wanted, this.#readTo, this.log.duration); // waits for what is not read yet
+    let told = 0;
+    for (const each of this.#segment) {
+      if (each.time > until + 1e-9) break; // sums of intervals are not exact
+      this.#tell(each);
+      ++told;
+    }
+    this.#segment.splice(0, told);
+    this.#position = until;
+    if (until >= this.log.duration) this.#isPlaying = false;
+    this.#events.moved(until, this.#isPlaying);
+    if (!this.#isPlaying) this.#tellStatic(until);
+  }
+
+  async #play(isPlaying: boolean): Promise<null> {
+    if (isPlaying && this.#position >= this.log.duration) await this.seek(0);
+    this.#isPlaying = isPlaying;
+    this.#clock = NaN;
+    this.#tellStatic(this.#position, ['/chicane/run']);
+    this.#events.moved(this.#position, isPlaying);
+    return null;
+  }
+
+  async #readAhead(): Promise<void> {
+    const enough = this.#position + (SEGMENT_S / 2) * Math.max(1, this.#pace);
+    if (this.#isReading || this.#readTo >= enough || this.#readTo >= this.log.duration) return;
+    this.#isReading = true;
+    const generation = this.#generation;
+    const [from, to] = [this.#readTo, this.#readTo + SEGMENT_S * Math.max(1, this.#pace)];
+    try {
+      const messages = await this.log.read([...MOVING, ...STATIC], from + 1e-9, to);
+      if (generation !== this.#generation) return;
+      this.#segment.push(...messages);
+      this.#readTo = to;
+    } catch (error) {
+      this.#isPlaying = false;
+      this.#events.notice(`the recording cannot be read further: ${error instanceof Error ? error.message : String(error)}`);
+    } finally {
+      this.#isReading = false;
+    }
+  }
+
+  /** The run, the road and the laps as they were at `time`. */
+  #tellStatic(time: number, topics: readonly TopicName[] = STATIC): void {
+    for (const topic of topics) {
+      const known = this.#static.filter((each) => each.topic === topic);
+      const told = topic === '/chicane/lap' ? known.filter((each) => each.time <= time) : [known.filter((each) => each.time <= time).at(-1) ?? known[0]];
+      for (const each of told) if (each) this.#tell(each);
+    }
+  }
+
+  #tell({ topic, message }: LoggedMessage): void {
+    if (topic === '/chicane/run') this.#events.message(topic, { ...(message as Run), mode: 'replay', is_paused: !this.#isPlaying });
+    else this.#events.message(topic, message as never);
+  }
+
+  #tellPace(isAll: boolean): void {
+    this.#events.settings(new Map([['run.pace', this.#pace]]), isAll);
+  }
+}
+
+/** The moments of a recording that one wants to find again. `progress` in [0, 1] as it is read. */
+export async function landmarksOf(log: McapLog, progress: (share: number) => void = () => undefined): Promise<Landmark[]> {
+  const found: Landmark[] = [];
+  const was = { offTrack: 0, rung: 0, isGated: false, faults: 0, lap: -1 };
+  for await (const { topic, time, message } of log.messages(['/chicane/frame', '/chicane/lap', '/chicane/change'], 0, log.duration)) {
+    progress(log.duration > 0 ? time / log.duration : 1);
+    if (topic === '/chicane/lap') {
+      const { lap, lap_time_s: seconds } = message as Lap;
+      found.push({ time, kind: 'lap', label: `lap ${lap}: ${seconds.toFixed(2)} s` });
+    } else if (topic === '/chicane/change') {
+      const { name, value } = message as { name: string; value: string };
+      if (!name.startsWith('manual.')) found.push({ time, kind: 'change', label: `${name} = ${value}` });
+    } else if (topic === '/chicane/frame') {
+      const frame = message as { off_track_events: number; rung: number; is_gated: boolean; active_faults?: number };
+      const faults = frame.active_faults ?? 0;
+      if (frame.off_track_events > was.offTrack) found.push({ time, kind: 'off-track', label: 'off the road' });
+      if (frame.rung > 0 && was.rung === 0) found.push({ time, kind: 'fallback', label: 'fallback took over' });
+      if (frame.is_gated && !was.isGated) found.push({ time, kind: 'gate', label: 'command gate intervened' });
+      if (faults !== 0 && was.faults === 0) found.push({ time, kind: 'fault', label: 'fault' });
+      Object.assign(was, { offTrack: frame.off_track_events, rung: frame.rung, isGated: frame.is_gated, faults });
+    }
+  }
+  return found;
+}

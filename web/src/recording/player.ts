@@ -1,0 +1,95 @@
+import { computed, signal } from '@preact/signals';
+import { session as drawing } from '../scene3d/session';
+import { beginSession, keepAllLaps, link, notice, receive, rewind, run, sampleLap, services } from '../state/app_state';
+import { completeFrame } from '../state/message_fields';
+import type { Frame } from '../protocol/topics';
+import { schema } from '../state/settings';
+import { readSchema } from '../protocol/schema';
+import { beginSettings, takeSettings } from '../state/settings_session';
+import { everyFrame } from '../state/ticker';
+import { landmarksOf, LogSource, type Landmark } from './log_source';
+import type { McapLog } from './mcap_log';
+import type { Mode } from './mode';
+import { openFiles, openShelf, type Shelf } from './open';
+import { RecordedDrive } from './recorded_drive';
+
+// What the time line shows.
+
+export const player = signal<LogSource | null>(null);
+export const logs = signal<readonly McapLog[]>([]);
+/** Which of them is played. */
+export const played = signal(0);
+export const position = signal(0); // [s]
+export const isPlaying = signal(false);
+export const landmarks = signal<readonly Landmark[]>([]);
+/** Share of the recording that was looked through for them. */
+export const searched = signal(0);
+export const duration = computed(() => player.value?.log.duration ?? 0);
+
+/** The pace is the only thing that can be set: in the schema's form, so that the page's own control serves. */
+const PACE = readSchema([
+  { key: 'run.pace', group: 'run', kind: 'number', unit: '', minimum: 0.05, maximum: 20, choices: [], default: 1, meaning: 'How fast the recording plays.', is_live: true },
+]);
+
+async function framesOf(log: McapLog): Promise<{ time: number; frame: Frame }[]> {
+  const frames = await log.read(['/chicane/frame'], 0, log.duration);
+  return frames.map(({ time, message }) => ({ time, frame: completeFrame(message as Frame) }));
+}
+
+/** Plays one recording of a shelf; another one, the second future, drives beside it. */
+export async function play(shelf: Shelf, which = 0, start = shelf.start): Promise<LogSource> {
+  const log = shelf.logs[which];
+  if (!log) throw new Error('there is no recording to show');
+  player.value?.close();
+  logs.value = shelf.logs;
+  played.value = which;
+  landmarks.value = [];
+  const source = await LogSource.open(log, {
+    open(name) {
+      beginSession();
+      beginSettings(name);
+      schema.value = PACE;
+      link.value = 'live';
+    },
+    lost: () => undefined,
+    rewind,
+    message: (topic, message) => receive(topic, message, performance.now()),
+    services: (names) => (services.value = names),
+    settings: takeSettings,
+    notice: (sentence) => (notice.value = sentence),
+    moved(time, plays) {
+      position.value = time;
+      isPlaying.value = plays;
+    },
+  });
+  player.value = source;
+  await source.seek(start);
+  void look(source);
+  const rival = shelf.logs[which === 0 ? 1 : 0];
+  drawing.rival = rival && rival !== log ? RecordedDrive.from(rival.name, await framesOf(rival), () => position.value) : null;
+  return source;
+}
+
+export const playMode = async (mode: Exclude<Mode, { name: 'live' }>): Promise<LogSource> => play(await openShelf(mode));
+export const playFiles = async (files: readonly File[]): Promise<LogSource> => play(await openFiles(files));
+
+/** Reads the recording once, beside playing it: landmarks, and all laps for comparison. */
+async function look(source: LogSource): Promise<void> {
+  const { log } = source;
+  try {
+    const found = await landmarksOf(log, (share) => (searched.value = share));
+    if (player.value !== source) return;
+    landmarks.value = found;
+    searched.value = 1;
+    if (!run.value) return;
+    keepAllLaps();
+    for (const { frame } of await framesOf(log)) {
+      if (player.value !== source) return;
+      sampleLap(frame);
+    }
+  } catch (error) {
+    notice.value = error instanceof Error ? error.message : String(error);
+  }
+}
+
+everyFrame((now) => player.value?.advance(now));

@@ -1,0 +1,88 @@
+import './timeline.css';
+import { lapTime } from '../lib/format';
+import { notice } from '../state/app_state';
+import { attach } from '../state/operate';
+import type { Landmark } from './log_source';
+import { duration, isPlaying, landmarks, logs, play, played, player, position, searched } from './player';
+
+const seek = (time: number): void => void player.value?.seek(time).catch((error: unknown) => (notice.value = String(error)));
+
+/** The next landmark in a direction, from a moment. */
+export function neighbour(all: readonly Landmark[], time: number, direction: 1 | -1): Landmark | null {
+  const margin = 0.05; // a landmark one stands on is not the next one [s]
+  const onward = direction > 0 ? all.filter((each) => each.time > time + margin) : all.filter((each) => each.time < time - margin);
+  return (direction > 0 ? onward[0] : onward.at(-1)) ?? null;
+}
+
+function jump(direction: 1 | -1): void {
+  const next = neighbour(landmarks.value, position.value, direction);
+  if (next) seek(next.time);
+}
+
+export async function choose(which: number): Promise<void> {
+  try {
+    attach(await play({ logs: logs.value, start: position.value }, which, position.value));
+  } catch (error) {
+    notice.value = error instanceof Error ? error.message : String(error);
+  }
+}
+
+function Marks() {
+  const length = duration.value;
+  return (
+    <div class="timeline-marks" aria-hidden="true">
+      {landmarks.value.map(({ time, kind, label }) => (
+        <i key={`${kind}${time}`} class={kind} style={{ left: `${(100 * time) / length}%` }} title={`${lapTime(time)}: ${label}`} />
+      ))}
+    </div>
+  );
+}
+
+/** Where in the recording we are; absent while a run is live. */
+export function TimelineView() {
+  const source = player.value;
+  if (!source) return null;
+  const length = duration.value;
+  const playing = isPlaying.value;
+  return (
+    <section class="timeline" aria-label="Time line of the recording">
+      <button type="button" class="primary" aria-keyshortcuts="Space" onClick={() => void source.call('/pause', playing)}>
+        {playing ? 'Pause' : 'Play'}
+      </button>
+      <button type="button" class="icon" aria-label="Landmark before" title="Landmark before (,)" disabled={!neighbour(landmarks.value, position.value, -1)} onClick={() => jump(-1)}>
+        ⏮
+      </button>
+      <div class="timeline-track">
+        <Marks />
+        <input
+          type="range"
+          min={0}
+          max={length}
+          step={0.01}
+          value={position.value}
+          aria-label="Moment of the recording"
+          aria-valuetext={`${lapTime(position.value)} of ${lapTime(length)}`}
+          onInput={(event) => seek(event.currentTarget.valueAsNumber)}
+        />
+      </div>
+      <button type="button" class="icon" aria-label="Next landmark" title="Next landmark" disabled={!neighbour(landmarks.value, position.value, 1)} onClick={() => jump(1)}>
+        ⏭
+      </button>
+      <output class="timeline-time">
+        {lapTime(position.value)} <span>/ {lapTime(length)}</span>
+      </output>
+      {logs.value.length > 1 ? (
+        <select aria-label="Recording that is played" value={played.value} onChange={(event) => void choose(Number(event.currentTarget.value))}>
+          {logs.value.map((log, i) => (
+            <option key={log.name} value={i}>
+              {log.name}
+            </option>
+          ))}
+        </select>
+      ) : (
+        <span class="timeline-name">{source.log.name}</span>
+      )}
+      {searched.value < 1 && <progress max={1} value={searched.value} aria-label="Looking for landmarks" />}
+    </section>
+  );
+}
