@@ -1,11 +1,18 @@
 import { describe, expect, it } from 'vitest';
-import { firstSince, rangeAboutZero, rangeFromZero, secondsBack } from './axis';
+import { firstSince, rangeAboutZero, rangeFromZero, rangeInSteps, secondsBack } from './axis';
 
 describe('axes', () => {
   it('start at zero and end at a round number', () => {
     expect(rangeFromZero([[3, 73], [12]], 20)).toEqual([0, 80]);
     expect(rangeFromZero([[]], 20)).toEqual([0, 20]);
     expect(rangeFromZero([[NaN, 4]], 1)).toEqual([0, 5]);
+  });
+
+  it('look closer where all values are far from zero', () => {
+    expect(rangeInSteps([[71, 96], [83]], 10, 20)).toEqual([70, 100]);
+    expect(rangeInSteps([[71, 76]], 10, 40)).toEqual([40, 80]);
+    expect(rangeInSteps([[3, NaN]], 10, 40)).toEqual([0, 40]);
+    expect(rangeInSteps([[], [NaN]], 10, 40)).toEqual([0, 40]);
   });
 
   it('are symmetric for signed values', () => {

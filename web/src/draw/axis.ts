@@ -8,6 +8,15 @@ export function rangeFromZero(values: readonly ArrayLike<number>[], least: numbe
   return [0, niceCeil(Math.max(least, HEADROOM * high))];
 }
 
+/** Around all values in whole steps, at least `least` tall: for values far from 0. */
+export function rangeInSteps(values: readonly ArrayLike<number>[], step: number, least: number): [number, number] {
+  const extents = values.flatMap((column) => extent(column) ?? []);
+  if (extents.length === 0) return [0, least];
+  const low = Math.floor(Math.min(...extents) / step) * step;
+  const high = Math.ceil(Math.max(...extents) / step) * step;
+  return high - low >= least ? [low, high] : [Math.max(0, high - least), Math.max(high, least)];
+}
+
 /** Symmetric about 0, to a round number beyond all values, at least `least`. */
 export function rangeAboutZero(values: readonly ArrayLike<number>[], least: number): [number, number] {
   const reach = values.map((column) => {

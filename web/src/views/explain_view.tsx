@@ -112,7 +112,7 @@ function Answer() {
   const numbers = [
     frame && frame.iterations > 0 ? plural(frame.iterations, 'iteration') : '',
     Number.isFinite(optimality) ? `optimal to ${optimality.toExponential(1)}` : '',
-    Number.isFinite(violation) ? `constraints to ${violation.toExponential(1)}` : '',
+    Number.isFinite(violation) ? `constraints ${violation === 0 ? 'exact' : `to ${violation.toExponential(1)}`}` : '',
   ];
   return (
     <section class="block" aria-label="The answer">

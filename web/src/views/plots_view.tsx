@@ -1,5 +1,5 @@
 import { useComputed } from '@preact/signals';
-import { rangeAboutZero, rangeFromZero } from '../draw/axis';
+import { rangeAboutZero, rangeFromZero, rangeInSteps } from '../draw/axis';
 import { downloadPng, fileName } from '../lib/download';
 import { nameInWords } from '../lib/words';
 import { run } from '../state/app_state';
@@ -24,7 +24,7 @@ const BEFORE_COST: readonly PlotSpec[] = [
       { column: Column.speedReference, label: 'ref.', colour: ASKED, isDashed: true },
       { column: Column.speed, label: 'driven', colour: APPLIED },
     ],
-    range: (columns) => rangeFromZero(columns.slice(1), 20),
+    range: (columns) => rangeInSteps(columns.slice(1), 10, 40),
   },
   {
     title: 'Lateral error',

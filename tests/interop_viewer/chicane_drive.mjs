@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Starts `chicane drive` (its path in CHICANE) and listens to it as a second viewer, by the protocol's reference client.
+import { spawn } from 'node:child_process';
+import { once } from 'node:events';
+import rosmsg from '@foxglove/rosmsg';
+import cdr from '@foxglove/rosmsg2-serialization';
+import foxglove from '@foxglove/ws-protocol';
+import WebSocket from 'ws';
+
+export async function startDrive(args = [], port = 0) {
+  const child = spawn(process.env.CHICANE ?? 'chicane', ['drive', '--port', String(port), '--laps', '10000', ...args], { stdio: ['ignore', 'ignore', 'pipe'] });
+  let said = '';
+  const address = new Promise((resolve, reject) => {
+    child.stderr.on('data', (data) => {
+      said = (said + data).slice(-4000);
+      const found = /http:\/\/localhost:(\d+)\//.exec(said);
+      if (found) resolve(Number(found[1]));
+    });
+    child.on('exit', (code) => reject(new Error(`chicane drive ended with ${code}: ${said}`)));
+  });
+  const listening = await address;
+  return {
+    port: listening,
+    url: `http://127.0.0.1:${listening}/`,
+    async stop() {
+      if (child.exitCode !== null) return;
+      child.kill('SIGTERM');
+      await once(child, 'exit');
+    },
+  };
+}
+
+/** Frames by cycle, the newest 2000 of them, and all changes. */
+export async function watch(url) {
+  const socket = new WebSocket(url.replace('http', 'ws'), ['foxglove.sdk.v1']);
+  const client = new foxglove.FoxgloveClient({ ws: socket });
+  const readers = new Map();
+  const seen = { frames: new Map(), changes: [], newest: null };
+  client.on('advertise', (channels) => {
+    for (const { id, topic, schema } of channels) {
+      if (topic !== '/chicane/frame' && topic !== '/chicane/change') continue;
+      readers.set(client.subscribe(id), { topic, reader: new cdr.MessageReader(rosmsg.parse(schema, { ros2: true })) });
+    }
+  });
+  client.on('message', ({ subscriptionId, data }) => {
+    const { topic, reader } = readers.get(subscriptionId);
+    const message = reader.readMessage(data);
+    if (topic === '/chicane/change') return seen.changes.push(message);
+    seen.newest = message;
+    seen.frames.set(message.cycle, message);
+    if (seen.frames.size > 2000) seen.frames.delete(seen.frames.keys().next().value);
+  });
+  await once(socket, 'open');
+  return { ...seen, get newest() { return seen.newest; }, close: () => socket.terminate() };
+}

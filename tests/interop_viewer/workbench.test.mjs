@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+// The workbench on a real run: chicane drive with its controller and simulator, changed, driven and broken from the page.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
+import { launch } from './browser.mjs';
+import { startDrive, watch } from './chicane_drive.mjs';
+import { DashboardPage, differentFrom } from './dashboard_page.mjs';
+
+let browser;
+let drive;
+let dashboard;
+let page;
+
+before(async () => {
+  browser = await launch();
+  drive = await startDrive(['--track', 'lakeside']);
+});
+after(async () => {
+  await browser.close();
+  await drive.stop();
+});
+
+async function open(tab) {
+  dashboard = await DashboardPage.open(browser, drive.url, { tab });
+  page = dashboard.page;
+}
+
+const setting = (key) => page.locator(`.panel-body [data-key="${key}"]`);
+const choice = (label) => page.locator('.choices').getByLabel(label, { exact: true });
+const box = (key) => setting(key).locator('.number-box');
+/** Types a value, as a reader would. */
+async function type(key, value) {
+  await box(key).fill(String(value));
+  await box(key).press('Enter');
+}
+async function download(name) {
+  const [file] = await Promise.all([page.waitForEvent('download'), page.getByText(name, { exact: true }).click()]);
+  return { name: file.suggestedFilename(), content: readFileSync(await file.path()) };
+}
+
+describe('the workbench', () => {
+  beforeEach(() => open('drive'));
+  afterEach(() => dashboard.close());
+
+  it('changes the command from the next control step on', async () => {
+    const other = await watch(drive.url);
+    await dashboard.button('Reset').click();
+    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 15 && mph < 60, 'a car that gathers speed');
+    await dashboard.button('Pause').click();
+    await page.getByText('Paused', { exact: true }).waitFor();
+    await page.waitForTimeout(300);
+    const before = other.newest;
+    assert.ok(before.throttle_asked > 0.5, `throttle ${before.throttle_asked}`);
+    await dashboard.show('tune');
+    await type('tracking_mpc.speed_limit_mps', 3);
+    await dashboard.button('Step').click();
+    await dashboard.until(() => other.newest.cycle, (cycle) => cycle > before.cycle, 'one control step');
+    const change = other.changes.find(({ name }) => name === 'tracking_mpc.speed_limit_mps');
+    assert.equal(change?.cycle, before.cycle + 1n, 'applied before the next step');
+    assert.equal(other.frames.get(change.cycle).cycle, other.newest.cycle);
+    assert.ok(other.newest.throttle_asked < before.throttle_asked - 0.3, `throttle ${before.throttle_asked}, then ${other.newest.throttle_asked}`);
+    assert.match(await dashboard.text('changes'), /tracking_mpc\.speed_limit_mps.*3/s);
+    await dashboard.button('Reset all').click();
+    await page.getByText('As it started').waitFor();
+    await dashboard.button('Resume').click();
+    other.close();
+  });
+
+  it('moves sliders with the keyboard, and says what they do', async () => {
+    const slider = setting('latency_ms').locator('input[type="range"]');
+    const value = async () => Number(await box('latency_ms').inputValue());
+    const first = await value();
+    await slider.focus();
+    for (let i = 0; i < 10; ++i) await page.keyboard.press('ArrowRight');
+    await dashboard.until(value, (now) => now > first, 'latency');
+    assert.match(await setting('latency_ms').getAttribute('title'), /delay.*0 to 500 ms/s);
+    await setting('latency_ms').getByRole('button').click();
+    await dashboard.until(value, (now) => now === first, 'latency as it started');
+  });
+
+  it('snaps back what is refused, and shows the sentence', async () => {
+    const first = await box('latency_ms').inputValue();
+    await type('latency_ms', 9999);
+    await setting('latency_ms').getByRole('alert').waitFor();
+    assert.match(await setting('latency_ms').getByRole('alert').innerText(), /latency_ms: got 9999, expected a number in \[0, 500\] ms/);
+    assert.equal(await box('latency_ms').inputValue(), first);
+    await type('latency_ms', Number(first) + 1);
+    await setting('latency_ms').getByRole('alert').waitFor({ state: 'detached' });
+    await type('latency_ms', first);
+  });
+
+  it('finds tunables by words, and saves them as a preset', async () => {
+    await dashboard.show('tune');
+    await page.keyboard.press('/');
+    await page.keyboard.type('squared lateral');
+    const found = await page.locator('.panel-body .setting').evaluateAll((all) => all.map((each) => each.dataset.key));
+    assert.ok(found.includes('tracking_mpc.weight_lateral') && found.every((key) => /weight/.test(key)), found.join());
+    const before = await box('tracking_mpc.weight_lateral').inputValue();
+    await type('tracking_mpc.weight_lateral', 7);
+    await dashboard.until(() => dashboard.text('changes'), (text) => /1 change/.test(text), 'the list of changes');
+    const preset = await download('Save as preset');
+    assert.match(preset.content.toString(), /weight_lateral: 7/);
+    await type('tracking_mpc.weight_lateral', before);
+    await page.getByText('As it started').waitFor();
+  });
+
+  it('drives by hand, and hands back', async () => {
+    await page.locator('body').press('m');
+    await page.getByText('By hand', { exact: true }).waitFor();
+    await page.keyboard.down('ArrowLeft');
+    await dashboard.until(() => dashboard.text('wheels'), (text) => /left/.test(text) && parseFloat(text) > 0.5, 'wheels to the left');
+    await page.keyboard.up('ArrowLeft');
+    await page.keyboard.down('ArrowDown');
+    await dashboard.until(() => dashboard.text('pedal'), (text) => /brake/.test(text), 'the brake');
+    await page.keyboard.up('ArrowDown');
+    const pad = await page.locator('.pad').boundingBox();
+    await page.mouse.move(pad.x + pad.width * 0.9, pad.y + pad.height * 0.1);
+    await page.mouse.down();
+    await dashboard.until(() => dashboard.text('pedal'), (text) => /drive [1-9]/.test(text), 'the throttle');
+    await page.mouse.up();
+    await page.keyboard.press('Escape');
+    await page.getByText('By hand', { exact: true }).waitFor({ state: 'detached' });
+    await dashboard.button('Reset').click();
+  });
+
+  it('changes the pace of the run', async () => {
+    await dashboard.button('4×').click();
+    await page.getByText('4× speed').waitFor();
+    const first = await dashboard.seconds();
+    await page.waitForTimeout(1500);
+    const passed = (await dashboard.seconds()) - first;
+    assert.ok(passed > 3 || passed < 0, `${passed} s of the run in 1.5 s`); // below 0: another lap
+    await page.locator('body').press('[');
+    await page.getByText('2× speed').waitFor();
+    await dashboard.button('1×').click();
+    await page.getByText('2× speed').waitFor({ state: 'detached' });
+  });
+
+  it('injects a fault and clears it', async (test) => {
+    await dashboard.show('faults');
+    if ((await page.getByText('This run has no faults to inject.').count()) > 0) return test.skip('this program offers no faults');
+    const fault = page.locator('.fault').first();
+    await fault.click();
+    await page.locator('.fault[aria-pressed="true"]').first().waitFor();
+    await page.locator('.pill', { hasText: 'Fault' }).waitFor();
+    await page.locator('.events li', { hasText: 'Fault' }).first().waitFor();
+    await dashboard.button('Clear all').click();
+    await page.locator('.pill', { hasText: 'Fault' }).waitFor({ state: 'detached' });
+    assert.equal(await page.locator('.fault[aria-pressed="true"]').count(), 0);
+  });
+
+  it('explains what limits the speed', async () => {
+    await dashboard.show('explain');
+    const titles = ['The speed asked for', 'Grip in the bend', 'Braking for a bend', 'Power', 'Sight'];
+    await dashboard.until(() => dashboard.text('limiter'), (title) => titles.includes(title), 'a known limit');
+    assert.ok((await page.locator('.constraints tbody tr').count()) > 3);
+    await dashboard.until(() => dashboard.number('prediction-error'), Number.isFinite, 'prediction error');
+  });
+
+  it('starts anew with another track, after asking once', async () => {
+    const summary = () => page.locator('.summary').innerText();
+    await choice('Track').selectOption('oval');
+    await page.getByRole('dialog').getByText('Keep driving').click();
+    assert.match(await summary(), /lakeside/);
+    assert.equal(await choice('Track').inputValue(), 'lakeside');
+    await choice('Track').selectOption('oval');
+    await page.getByRole('dialog').getByText('Start anew').click();
+    await dashboard.until(summary, (text) => /oval/.test(text), 'the other track');
+    await choice('Controller').selectOption('stanley');
+    await dashboard.until(summary, (text) => /stanley/.test(text), 'the other controller');
+    await choice('Preset').selectOption('weighted');
+    await dashboard.until(summary, (text) => /cubic-mpc · weighted/.test(text), 'the preset');
+    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 10, 'a car that drives');
+  });
+
+  it('counts laps, compares two of them and exports', async () => {
+    await dashboard.show('drive');
+    await type('run.pace', 20);
+    await dashboard.show('laps');
+    await dashboard.until(() => page.locator('.lap-table tbody tr').count(), (count) => count >= 3, 'laps');
+    assert.ok((await page.locator('.lap-table tbody tr.best').count()) === 1);
+    assert.ok((await page.locator('.best-sector').count()) >= 3);
+    await dashboard.until(() => page.locator('.compare canvas').count(), (count) => count === 3, 'curves');
+    const table = await download('Table as CSV');
+    assert.match(table.name, /oval.*laps\.csv/);
+    assert.match(table.content.toString(), /^lap,lap_time_s,sector_1_s/);
+    const lap = await download('Lap A as CSV');
+    assert.match(lap.content.toString(), /^s_m,time_s,speed_mps/);
+    const picture = await download('Map as PNG');
+    assert.equal(picture.content.subarray(1, 4).toString(), 'PNG');
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await dashboard.show('drive');
+    await dashboard.button('1×').click();
+  });
+
+  it('has nothing that axe objects to while everything is in use', async () => {
+    for (const tab of ['drive', 'explain', 'tune', 'faults', 'plots']) {
+      await dashboard.show(tab);
+      assert.deepEqual(await dashboard.accessibilityFindings(), [], tab);
+    }
+  });
+});
+
+it('takes another run of a restarted server for another run', async () => {
+  await open('plots');
+  await dashboard.until(() => dashboard.seconds(), (now) => now > 1, 'a run');
+  const { port } = drive;
+  await drive.stop();
+  await page.getByTestId('banner').waitFor();
+  drive = await startDrive(['--track', 'hairpins', '--controller', 'pid'], port);
+  await page.getByTestId('banner').waitFor({ state: 'detached' });
+  await dashboard.until(() => page.locator('.summary').innerText(), (text) => /pid.*hairpins/.test(text), 'the other run');
+  const first = await dashboard.seconds();
+  await dashboard.until(() => dashboard.seconds(), differentFrom(first), 'the lap clock');
+  await dashboard.show('tune');
+  await page.getByText('As it started').waitFor();
+  await dashboard.close((each) => each.startsWith('WebSocket connection to'));
+});
