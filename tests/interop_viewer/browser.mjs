@@ -2,17 +2,20 @@
 // A headless Chromium of the system, as Debian installs it.
 import { chromium } from 'playwright-core';
 
-export const launch = () =>
+/** WebGL is drawn by the processor. `more`: further switches, e.g. '--disable-3d-apis'. */
+export const launch = (...more) =>
   chromium.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
     args: [
       '--headless',
       '--no-sandbox',
       '--disable-gpu',
+      '--enable-unsafe-swiftshader',
       '--disable-quic',
       '--no-first-run',
       '--disable-background-networking',
       '--disable-component-update',
       '--disable-sync',
+      ...more,
     ],
   });

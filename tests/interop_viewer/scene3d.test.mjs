@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+// The 3D picture in headless Chromium, drawn by the processor; and what is shown where there is none.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { after, before, describe, it } from 'node:test';
+import { launch } from './browser.mjs';
+import { startDemo } from './viewer_demo.mjs';
+
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+let demo;
+before(async () => {
+  demo = await startDemo();
+});
+after(() => demo.stop());
+
+/** Counts draw calls, so that a test can see whether anything is drawn. */
+const countDrawing = () => {
+  globalThis.drawn = 0;
+  for (const name of ['drawArrays', 'drawElements', 'drawElementsInstanced']) {
+    const draw = WebGL2RenderingContext.prototype[name];
+    WebGL2RenderingContext.prototype[name] = function (...rest) {
+      ++globalThis.drawn;
+      return draw.apply(this, rest);
+    };
+  }
+};
+
+async function open(browser, { storage = {}, script, ...options } = {}) {
+  const context = await browser.newContext({ viewport: { width: 820, height: 560 }, colorScheme: 'light', ...options });
+  const page = await context.newPage();
+  const complaints = [];
+  page.on('console', (message) => {
+    // What drivers say of a canvas that is read back for a picture without a graphics card.
+    if (['error', 'warning'].includes(message.type()) && !message.text().includes('GL Driver Message')) complaints.push(message.text());
+  });
+  page.on('pageerror', (error) => complaints.push(String(error)));
+  if (script) await page.addInitScript(script);
+  await page.addInitScript(countDrawing);
+  await page.addInitScript((entries) => {
+    try {
+      if (localStorage.length === 0) for (const [key, value] of entries) localStorage.setItem(key, JSON.stringify(value));
+    } catch {
+      // A test without storage.
+    }
+  }, Object.entries(storage));
+  await page.goto(demo.url);
+  await page.getByText('Live', { exact: true }).waitFor();
+  return { context, page, complaints };
+}
+
+const in3d = { 'chicane.dimension': '3d' };
+const ready = (page) => page.locator('.map.has-3d canvas.map-3d').waitFor({ timeout: 30_000 });
+const button = (page, name) => page.getByRole('button', { name, exact: true });
+
+/** A small copy of the 3D picture, from the moment it is drawn: how many colours it has, and the copy itself. */
+const picture = (page) =>
+  page.evaluate(async () => {
+    const canvas = document.querySelector('canvas.map-3d');
+    const copy = Object.assign(document.createElement('canvas'), { width: 64, height: 40 });
+    const context = copy.getContext('2d', { willReadFrequently: true });
+    let best = { colours: 0, text: '' };
+    for (let i = 0; i < 40 && best.colours < 30; ++i) {
+      await new Promise(requestAnimationFrame);
+      context.drawImage(canvas, 0, 0, 64, 40);
+      const { data } = context.getImageData(0, 0, 64, 40);
+      const colours = new Set(new Uint32Array(data.buffer)).size;
+      if (colours > best.colours) best = { colours, text: copy.toDataURL() };
+    }
+    return best;
+  });
+
+async function accessibilityFindings(page) {
+  await page.evaluate(axe);
+  const { violations } = await page.evaluate(() => globalThis.axe.run());
+  return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target).join(', ')}`);
+}
+
+describe('the 3D picture', () => {
+  let browser;
+  before(async () => {
+    browser = await launch();
+  });
+  after(() => browser.close());
+
+  it('is drawn when chosen, from every camera, and chosen again after a reload', async () => {
+    const { context, page, complaints } = await open(browser);
+    // Without a graphics card the map comes first, and says why.
+    await page.getByText('No graphics card here').waitFor();
+    assert.equal(await page.locator('canvas.map-3d').count(), 0);
+    await button(page, '3D').click();
+    await ready(page);
+    const seen = new Set();
+    for (const camera of ['Chase', 'Top', 'Cockpit', 'Free']) {
+      await button(page, camera).click();
+      assert.equal(await button(page, camera).getAttribute('aria-pressed'), 'true');
+      await page.waitForTimeout(150);
+      const { colours, text } = await picture(page);
+      assert.ok(colours >= 30, `${camera}: ${colours} colours`);
+      seen.add(text);
+    }
+    assert.equal(seen.size, 4);
+    await page.reload();
+    await ready(page);
+    assert.equal(await button(page, 'Free').getAttribute('aria-pressed'), 'true');
+    assert.ok((await page.locator('canvas.map-2d').boundingBox()).width < 200, 'the map stays, small');
+    assert.deepEqual(complaints, []);
+    await context.close();
+  });
+
+  it('obeys the keyboard: cameras, map, and turning the free camera', async () => {
+    const { context, page, complaints } = await open(browser, { storage: in3d });
+    await ready(page);
+    const pressed = () => page.locator('[aria-label="View"] [aria-pressed="true"]').innerText();
+    const names = [];
+    for (let i = 0; i < 4; ++i) {
+      names.push(await pressed());
+      await page.keyboard.press('c');
+      await page.waitForTimeout(120);
+    }
+    assert.deepEqual(names, ['Chase', 'Top', 'Cockpit', 'Free']);
+    await button(page, 'Free').click();
+    await button(page, 'Pause').click();
+    await page.getByText('Paused', { exact: true }).waitFor();
+    await page.waitForTimeout(1000);
+    const before = await picture(page);
+    await page.locator('canvas.map-3d').focus();
+    for (let i = 0; i < 6; ++i) await page.keyboard.press('ArrowLeft');
+    await page.waitForTimeout(300);
+    assert.notEqual((await picture(page)).text, before.text);
+    await page.keyboard.press('v');
+    await page.locator('.map:not(.has-3d)').waitFor();
+    await page.keyboard.press('v');
+    await ready(page);
+    await button(page, 'Resume').click();
+    assert.deepEqual(complaints, []);
+    await context.close();
+  });
+
+  it('rests while nothing moves, and goes on after a reset', async () => {
+    const { context, page, complaints } = await open(browser, { storage: in3d });
+    await ready(page);
+    await button(page, 'Pause').click();
+    await page.getByText('Paused', { exact: true }).waitFor();
+    await page.waitForTimeout(2500);
+    const still = await page.evaluate(() => globalThis.drawn);
+    await page.waitForTimeout(600);
+    assert.equal(await page.evaluate(() => globalThis.drawn), still);
+    await button(page, 'Reset').click();
+    await button(page, 'Resume').click();
+    await page.getByText('Live', { exact: true }).waitFor();
+    await page.waitForFunction((before) => globalThis.drawn > before, still);
+    assert.ok((await picture(page)).colours >= 30);
+    assert.deepEqual(complaints, []);
+    await context.close();
+  });
+
+  it('gives way to the map when the browser takes the context, and comes back when asked', async () => {
+    const { context, page } = await open(browser, { storage: in3d });
+    await ready(page);
+    await page.evaluate(() => document.querySelector('canvas.map-3d').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext());
+    await page.getByText('The browser stopped the 3D picture').waitFor();
+    assert.ok((await page.locator('canvas.map-2d').boundingBox()).width > 300, 'the map fills the place');
+    await button(page, '3D').click();
+    await ready(page);
+    assert.ok((await picture(page)).colours >= 30);
+    await context.close();
+  });
+
+  for (const [name, options] of [
+    ['in the light', {}],
+    ['in the dark', { colorScheme: 'dark' }],
+    ['on a phone', { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true }],
+    ['for readers who want little motion', { reducedMotion: 'reduce' }],
+  ]) {
+    it(`has nothing that axe objects to ${name}`, async () => {
+      const { context, page, complaints } = await open(browser, { storage: { ...in3d, 'chicane.camera': 'free' }, ...options });
+      await ready(page);
+      assert.ok((await picture(page)).colours >= 30);
+      assert.deepEqual(await accessibilityFindings(page), []);
+      const { width, content } = await page.evaluate(() => ({ width: innerWidth, content: document.documentElement.scrollWidth }));
+      assert.ok(content <= width, `${content} px of content on ${width} px`);
+      assert.deepEqual(complaints, []);
+      await context.close();
+    });
+  }
+});
+
+it('is replaced by the map, with a note, where there is no WebGL', async () => {
+  const browser = await launch('--disable-3d-apis');
+  const { context, page, complaints } = await open(browser);
+  await page.getByText('This browser offers no WebGL 2').waitFor();
+  const colours = await page.locator('canvas.map-2d').evaluate((canvas) => {
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    return new Set(new Uint32Array(data.buffer)).size;
+  });
+  assert.ok(colours > 20, 'the map shows road and car');
+  assert.equal(await button(page, '2D').getAttribute('aria-pressed'), 'true');
+  await button(page, 'Whole track').click();
+  assert.deepEqual(await accessibilityFindings(page), []);
+  await button(page, '3D').click(); // in vain, and says so again
+  await page.getByText('This browser offers no WebGL 2').waitFor();
+  await button(page, '2D').click();
+  await page.getByText('This browser offers no WebGL 2').waitFor({ state: 'detached' });
+  assert.deepEqual(complaints, []);
+  await context.close();
+  await browser.close();
+});
+
+it('works where the browser keeps nothing', async () => {
+  const browser = await launch();
+  const script = () => Object.defineProperty(window, 'localStorage', { get: () => { throw new DOMException('denied', 'SecurityError'); } });
+  const { context, page, complaints } = await open(browser, { script });
+  await button(page, '3D').click();
+  await ready(page);
+  assert.ok((await picture(page)).colours >= 30);
+  assert.deepEqual(complaints, []);
+  await context.close();
+  await browser.close();
+});
