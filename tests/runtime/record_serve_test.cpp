@@ -68,13 +68,19 @@ ReplayReport record_and_verify(const std::string& name, std::chrono::nanoseconds
   options.quiet_after = std::chrono::milliseconds{10};
   options.vehicle = scenario.vehicle;
   options.step_budget = step_budget;
-  UdacityEndpoint endpoint(options, **controller,
-                           {.on_frame = [&](const telemetry::Frame& frame) { (*recorder)->record(frame); }});
+  options.scenario = scenario;
+  ChangeQueue wishes;
+  UdacityEndpoint endpoint(
+      options, **controller,
+      {.wishes = &wishes,
+       .on_change = [&](const telemetry::Change& change) { (*recorder)->record(change); },
+       .on_frame = [&](const telemetry::Frame& frame) { (*recorder)->record(frame); }});
   Router router(&endpoint, nullptr);
   auto server = net::Server::create(options.server, router.handlers(), {});
   EXPECT_TRUE(server);
   const std::vector<std::string> messages = telemetry_of_a_drive();
   for (int session = 0; session < 2; ++session) {
+    EXPECT_TRUE(wishes.push({.name = "vehicle.steer_limit_deg", .value = session == 0 ? "3" : "20"}));
     drive((*server)->port(), messages);
     std::this_thread::sleep_for(2 * options.quiet_after);
   }

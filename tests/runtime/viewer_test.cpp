@@ -289,7 +289,7 @@ TEST_F(Viewer, MustSpeakOneOfTheTwoSubprotocols) {
 }
 
 /// Parameters a and b; only a can be set, to positive numbers.
-class Store final : public protocol::foxglove::ParameterStore {
+class Store : public protocol::foxglove::ParameterStore {
  public:
   std::vector<protocol::foxglove::Parameter> list() const override { return {{"a", a}, {"b", 2.0}}; }
   std::optional<protocol::foxglove::Parameter> get(std::string_view name) const override {
@@ -331,6 +331,53 @@ TEST_F(Viewer, SetsParametersAndOthersSeeIt) {
   say(R"({"op":"getParameters","parameterNames":[]})");
   EXPECT_EQ(answer()["parameters"].size(), 2U);
   EXPECT_EQ(store.a, 7.0);
+}
+
+TEST_F(Viewer, TellsOfParametersThatChangeWithoutBeingSet) {
+  struct Lively final : Store {
+    std::vector<protocol::foxglove::Parameter> news() override { return std::exchange(waiting, {}); }
+    std::vector<protocol::foxglove::Parameter> waiting;
+  } store;
+  ViewerOptions options;
+  options.parameters = &store;
+  start(std::move(options));
+  endpoint->on_open(2);
+  say(R"({"op":"subscribeParameterUpdates","parameterNames":["b"]})");
+  server.take();
+  store.waiting = {{"a", 5.0}, {"b", 3.0}};
+  server.pass_time();
+  json told = answer();
+  EXPECT_EQ(told["op"], "parameterValues");
+  ASSERT_EQ(told["parameters"].size(), 1U);
+  EXPECT_EQ(told["parameters"][0]["value"], 3.0);
+  server.pass_time();
+  EXPECT_TRUE(server.take().empty());
+  // What else follows from a wish goes out with it, once.
+  store.waiting = {{"a", 7.0}, {"b", 4.0}};
+  say(R"({"op":"setParameters","parameters":[{"name":"a","value":7}]})");
+  told = answer();
+  ASSERT_EQ(told["parameters"].size(), 1U);
+  EXPECT_EQ(told["parameters"][0]["name"], "b");
+}
+
+TEST_F(Viewer, PublishesTheChangesThatTheRunHasTakenUp) {
+  struct Lively final : Store {
+    std::vector<telemetry::Change> applied() override { return std::exchange(waiting, {}); }
+    std::vector<telemetry::Change> waiting;
+  } store;
+  ViewerOptions options;
+  options.parameters = &store;
+  start(std::move(options));
+  say(subscribe(9, "/chicane/change"));
+  EXPECT_EQ(server.take().size(), 2U);  // the greeting; no change yet
+  store.waiting = {{.cycle = 7, .time = 0.28, .name = "latency_ms", .value = "30"},
+                   {.cycle = 7, .time = 0.28, .name = "run.pace", .value = "2"}};
+  server.pass_time();
+  const auto messages = server.take();
+  ASSERT_EQ(messages.size(), 2U);
+  EXPECT_EQ(subscription_of(messages[0]), 9U);
+  EXPECT_EQ(messages[0].delivery, net::Delivery::kReliable);
+  EXPECT_EQ(messages[0].bytes->substr(13), protocol::encode_change(0.28, 7, "latency_ms", "30"));
 }
 
 }  // namespace

@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# Records runs with each of several builds of the program and verifies each recording with all builds: compilers and build
+# types compute the same bits.
+#
+#   tools/verify_across_builds.sh build/gcc/apps/chicane/chicane build/clang/apps/chicane/chicane ...
+#
+# Exit code 1 when any step of any recording differs in any build.
+set -euo pipefail
+if [ $# -lt 1 ]; then
+  sed -n '2,7s/^# \{0,1\}//p' "$0" >&2
+  exit 2
+fi
+
+runs=(
+  "--preset default"
+  "--preset measured-latency"
+  "--preset weighted"
+  "--preset stanley"
+  "--preset default --car road-car --set sensor.position_noise_m=0.05"
+)
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+builds=("$@")
+for i in "${!builds[@]}"; do
+  for j in "${!runs[@]}"; do
+    # Exit code 1 says that the lap was not finished, or not clean: the recording is what counts here.
+    # shellcheck disable=SC2086  # the options are words
+    "${builds[$i]}" drive --fast --laps 1 --set time_limit_s=40 ${runs[$j]} --record "$folder/$i-$j.mcap" >"$folder/out" 2>&1 ||
+      [ $? -eq 1 ] || { cat "$folder/out" >&2; exit 1; }
+  done
+done
+
+status=0
+for recorder in "${!builds[@]}"; do
+  for verifier in "${!builds[@]}"; do
+    for j in "${!runs[@]}"; do
+      result=$("${builds[$verifier]}" replay "$folder/$recorder-$j.mcap" --verify) || status=1
+      printf '%s, recorded by %s, verified by %s: %s\n' "${runs[$j]}" "${builds[$recorder]}" "${builds[$verifier]}" \
+        "$(head -n 1 <<<"$result")"
+    done
+  done
+done
+exit $status
