@@ -17,7 +17,7 @@ namespace chicane::runtime {
 
 /// A recorded run that goes on otherwise from a moment on.
 struct BranchOptions {
-  std::string log;
+  std::string log{};
   double at = 0.0;                                              ///< on the recording's time line [s]
   std::vector<std::pair<std::string, std::string>> settings{};  ///< as --set takes them; empty: no change
   double duration = 0.0;  ///< from `at` on [s]; 0: to the end of the recording, or `laps`
