@@ -8,6 +8,7 @@
 #include "chicane/base/pack.hpp"
 #include "chicane/solver/input_block.hpp"
 #include "chicane/solver/pattern.hpp"
+#include "chicane/solver/rate_set.hpp"
 #include "chicane/solver/small_qp.hpp"
 #include "chicane/solver/stage_algebra.hpp"
 
@@ -59,39 +60,71 @@ class LqSolver {
   double backward_again(double shift = 0.0) noexcept { return sweep<false>(last_change_ + 1, shift); }
 
   /// What the forward sweep does with inputs that contradict the working set.
-  enum class Repair { kAll, kLast, kClip };
+  enum class Repair { kAll, kLast, kClip, kNone };
 
   /// Computes dx and du, and corrects the working set: all contradicting inputs at once, only the last one,
-  /// or none while du is cut to its bounds. Returns how many inputs contradicted it.
+  /// or none; with kClip du is cut to its bounds. Returns how many inputs contradicted it.
   int forward(std::size_t horizon, Repair repair) noexcept {
-    int contradictions = 0;
-    std::size_t last_input = 0;
-    Hold last_hold = Hold::kFree;
+    Contradictions found;
     double x[kNx] = {};
-    for (std::size_t i = 0; i < kNx; ++i) dx[0][i] = 0.0;
+    double carried[kNu] = {};
+    unroll<kNx>([&](auto i) __attribute__((always_inline)) { dx[0][i] = 0.0; });
     for (std::size_t k = 0; k < horizon; ++k) {
       double u[kNu];
       unroll<kNu>([&](auto m) __attribute__((always_inline)) {
         const double value = dot_row(feedback[k].row[m], x, feedback[k].constant[m]);
         const InputBounds bounds = bounds_of(k, m, x);
-        u[m] = hold[k][m] == Hold::kFree ? value : bounds.at(hold[k][m]);
-        if (repair == Repair::kClip) {
-          u[m] = std::min(std::max(u[m], bounds.low()), bounds.high());
-        } else if (const Hold next = bounds.next(hold[k][m], u[m], value, feedback[k].H[m][m]);
-                   next != hold[k][m]) [[unlikely]] {
-          ++contradictions;
-          last_change_ = k;
-          if (repair == Repair::kAll) hold[k][m] = next;
-          last_input = m;
-          last_hold = next;
+        if constexpr (has_rate(m)) {
+          u[m] = with_rate(k, m, value, bounds, repair, carried[m], found);
+        } else {
+          const Hold now = hold[k][m];
+          u[m] = now == Hold::kFree ? value : bounds.at(now);
+          if (repair == Repair::kClip) {
+            u[m] = std::min(std::max(u[m], bounds.low()), bounds.high());
+          } else if (const Hold next = bounds.next(now, u[m], value, feedback[k].H[m][m]); next != now)
+              [[unlikely]] {
+            if (repair == Repair::kAll) hold[k][m] = next;
+            found.add(k, m, next);
+          }
         }
         du[k][m] = u[m];
       });
       advance(lq.stage[k], x, u);
-      for (std::size_t i = 0; i < kNx; ++i) dx[k + 1][i] = x[i];
+      unroll<kNx>([&](auto i) __attribute__((always_inline)) { dx[k + 1][i] = x[i]; });
     }
-    if (repair == Repair::kLast && contradictions > 0) hold[last_change_][last_input] = last_hold;
-    return contradictions;
+    if (found.count == 0) return 0;
+    last_change_ = found.stage;
+    if (repair == Repair::kLast) apply(found);
+    if (kHasRates && repair != Repair::kNone) {
+      for (std::size_t m = 0; m < kNu; ++m) RateSet<kNu>(hold, m).tidy(horizon);
+    }
+    return found.count;
+  }
+
+  /// The states that follow from the du as they are.
+  void simulate(std::size_t horizon) noexcept {
+    double x[kNx] = {};
+    for (std::size_t k = 0; k < horizon; ++k) {
+      advance(lq.stage[k], x, du[k]);
+      unroll<kNx>([&](auto i) __attribute__((always_inline)) { dx[k + 1][i] = x[i]; });
+    }
+  }
+
+  /// Slope of the cost to go by a held input, after forward().
+  [[nodiscard]] double slope(std::size_t k, std::size_t m) const noexcept {
+    double sum = feedback[k].constant[m];
+    for (std::size_t i = 0; i < kNx; ++i) sum += feedback[k].row[m][i] * dx[k][i];
+    return sum;
+  }
+  /// Bounds of input m of stage k when its last value has moved by `last`.
+  [[nodiscard]] InputBounds bounds_at(std::size_t k, std::size_t m, double last) const noexcept {
+    InputBounds bounds{lq.low[m][k], lq.high[m][k]};
+    if (kHasRates && has_rate(m)) {
+      const double moved = k == 0 ? 0.0 : last + lq.stage[k - 1].B[0][rate_state(m)];
+      bounds.rate_low = lq.rate_low[m][k] + moved;
+      bounds.rate_high = lq.rate_high[m][k] + moved;
+    }
+    return bounds;
   }
 
   /// How far du follows its input's own feedback: the gain that belongs to state i, 0 where it is held.
@@ -161,7 +194,7 @@ class LqSolver {
 
     bool is_held[kNu];
     const bool any_held = settle_inputs<Choose>(k, block, is_held, largest);
-    double c[kNu];
+    double c[kNu] = {};
     constants(k, block, is_held, any_held, c);
     Vector K[kNu];
     gains(k, block, any_held, R, K);
@@ -317,6 +350,7 @@ class LqSolver {
     }
     for (std::size_t h = 0; h < kNu; ++h) {
       if (!is_held[h]) continue;
+      if constexpr (kHasRates) fixed_[k][h] = feedback[k].constant[h];
       slope[h].store(feedback[k].row[h]);
       feedback[k].constant[h] = constant[h];
       if constexpr (kHasRates) {
@@ -325,6 +359,55 @@ class LqSolver {
         P.column[kNx].add(constant[h], unit_of_rate_state(h));
       }
     }
+  }
+
+  // ---- working set
+
+  using Finding = typename RateSet<kNu>::Finding;
+  /// What contradicted the working set in a forward sweep: how many, and the last one.
+  struct Contradictions {
+    int count = 0;
+    std::size_t stage = 0;
+    std::size_t input = 0;
+    Hold next = Hold::kFree;           ///< what to do about it, without bounds on changes
+    Finding finding = Finding::kNone;  ///< and with them
+    InputBounds bounds{};
+    double u = 0.0;
+    void add(std::size_t k, std::size_t m, Hold hold) noexcept {
+      ++count;
+      stage = k;
+      input = m;
+      next = hold;
+      finding = Finding::kNone;
+    }
+  };
+  static constexpr bool has_rate(std::size_t m) noexcept { return Pattern::kRateState[m] >= 0; }
+
+  void apply(const Contradictions& found) noexcept {
+    if (found.finding == Finding::kNone) {
+      hold[found.stage][found.input] = found.next;
+    } else {
+      RateSet<kNu>(hold, found.input).repair(found.stage, found.finding, found.bounds, found.u);
+    }
+  }
+
+  /// One input whose change is bounded: its step; `carried` is the slope of the members that it fixes.
+  double with_rate(std::size_t k, std::size_t m, double value, const InputBounds& bounds, Repair repair,
+                   double& carried, Contradictions& found) noexcept {
+    using Set = RateSet<kNu>;
+    const Hold now = hold[k][m];
+    double u = now == Hold::kFree ? value : (Set::precedes(now) ? fixed_[k][m] : bounds.at(now));
+    const double slope = value + (Set::is_fixed(now) ? carried : 0.0);
+    carried = Set::precedes(now) ? slope : 0.0;
+    if (repair == Repair::kClip) return std::min(std::max(u, bounds.low()), bounds.high());
+    const Finding finding = Set::find(now, bounds, u, slope, feedback[k].H[m][m]);
+    if (finding == Finding::kNone) return u;
+    if (repair == Repair::kAll) Set(hold, m).repair(k, finding, bounds, u);
+    found.add(k, m, now);
+    found.finding = finding;
+    found.bounds = bounds;
+    found.u = u;
+    return u;
   }
 
   // ---- bounds
@@ -339,6 +422,10 @@ class LqSolver {
         return lq.rate_high[m][k];
       case Hold::kHigh:
         return lq.high[m][k];
+      case Hold::kNextLow:
+        return fixed_[k + 1][m] - lq.rate_low[m][k + 1] - lq.stage[k].B[0][rate_state(m)];
+      case Hold::kNextHigh:
+        return fixed_[k + 1][m] - lq.rate_high[m][k + 1] - lq.stage[k].B[0][rate_state(m)];
       default:
         return lq.low[m][k];
     }
@@ -401,6 +488,7 @@ class LqSolver {
   }
 
   Value unused_{};
+  double fixed_[Capacity + 1][kNu]{};                          ///< of inputs that the working set fixes
   alignas(64) double value_[Capacity + 1][kNx + 1][kLanes]{};  ///< P of every stage, to start again from
   std::size_t last_change_ = 0;  ///< last stage whose working set forward() changed
 };

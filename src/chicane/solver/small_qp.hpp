@@ -8,8 +8,17 @@
 
 namespace chicane::solver {
 
-/// Where an input stands in the working set: free, at a bound of its own, or at a bound on its change.
-enum class Hold : std::int8_t { kRateLow = -2, kLow = -1, kFree = 0, kHigh = 1, kRateHigh = 2 };
+/// Where an input stands in the working set: free, at a bound of its own, at a bound on its change from the
+/// one before (kRate…), or fixed by the next one, whose change from it is at a bound (kNext…).
+enum class Hold : std::int8_t {
+  kNextLow = -3,
+  kRateLow = -2,
+  kLow = -1,
+  kFree = 0,
+  kHigh = 1,
+  kRateHigh = 2,
+  kNextHigh = 3
+};
 
 /// The working-set rule of the primal-dual active set method: an input beyond a bound is held there, a held
 /// one whose cost falls towards the inside (`slope` = dJ/du) is let go. `curvature` scales the tolerance; an
