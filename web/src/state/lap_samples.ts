@@ -4,15 +4,8 @@ import { mix } from '../lib/math';
 export const LAP_CHANNELS = ['time_s', 'speed_mps', 'lateral_error_m', 'steer_rad', 'throttle', 'x_m', 'y_m'] as const;
 export type LapChannel = (typeof LAP_CHANNELS)[number];
 
-/** One moment of a lap. */
+/** One moment of a lap; `s_m` is along the road's line, which need not begin where laps do. */
 export type LapMoment = Readonly<Record<LapChannel, number>> & { readonly s_m: number };
-
-/** Every channel, linear from one moment to another. */
-function between(from: LapMoment, to: LapMoment, share: number): LapMoment {
-  const moment = { s_m: mix(from.s_m, to.s_m, share) } as Record<LapChannel | 's_m', number>;
-  for (const name of LAP_CHANNELS) moment[name] = mix(from[name], to[name], share);
-  return moment;
-}
 
 const POINTS = 1000;
 const KEPT = 16; // laps beside the best
@@ -24,17 +17,24 @@ interface Slot {
   readonly channels: Readonly<Record<LapChannel, Float64Array>>;
 }
 
+/** Every channel, linear from one moment to another. */
+function between(from: LapMoment, to: LapMoment, share: number): LapMoment {
+  const moment = { s_m: mix(from.s_m, to.s_m, share) } as Record<LapChannel | 's_m', number>;
+  for (const name of LAP_CHANNELS) moment[name] = mix(from[name], to[name], share);
+  return moment;
+}
+
 /**
  * Laps as functions of the distance along the road, in fixed memory: the newest ones and the fastest. Frames come at
- * equal times; between two of them everything is taken as linear in s.
+ * equal times; between two of them everything is taken as linear in s. The start line is where the lap count changes.
  */
 export class LapSamples {
   readonly points = POINTS;
   readonly #slots: Slot[];
   #length = NaN; // of the road [m]
+  #line = NaN; // where laps begin [m]
   #current: Slot | null = null;
   #last: (LapMoment & { lap: number }) | null = null;
-  #next = 0; // first point of the current lap not written yet
 
   constructor(kept = KEPT) {
     const channels = () => Object.fromEntries(LAP_CHANNELS.map((name) => [name, new Float64Array(POINTS)])) as Slot['channels'];
@@ -45,6 +45,7 @@ export class LapSamples {
     for (const slot of this.#slots) slot.lap = -1;
     this.#current = null;
     this.#last = null;
+    this.#line = NaN;
   }
 
   /** Another road: nothing of before can be compared. */
@@ -54,63 +55,85 @@ export class LapSamples {
     this.#length = length;
   }
 
-  /** Distance along the road of a point [m]. */
+  /** Distance of a point from the start line along the road [m]. */
   s(point: number): number {
-    return (point * this.#length) / (POINTS - 1);
+    return (this.#firstPoint + point) * this.#spacing - this.#line;
   }
 
   /** Numbers of the laps that are kept whole, rising. */
   get laps(): number[] {
-    return this.#slots
-      .filter((slot) => slot.lap >= 0 && slot.isComplete)
-      .map((slot) => slot.lap)
-      .sort((a, b) => a - b);
+    return this.#done.map((slot) => slot.lap).sort((a, b) => a - b);
   }
 
   /** The fastest lap that is kept; −1 without any. */
   get best(): number {
-    const done = this.#slots.filter((slot) => slot.lap >= 0 && slot.isComplete);
-    return done.reduce<Slot | null>((a, b) => (a && a.time <= b.time ? a : b), null)?.lap ?? -1;
+    return this.#done.reduce<Slot | null>((a, b) => (a && a.time <= b.time ? a : b), null)?.lap ?? -1;
   }
 
-  /** A channel of a lap at a distance along the road, linear between points; not-a-number where it is not known. */
+  /** A channel of a lap at a place of the road, linear between points; not-a-number where it is not known. */
   at(lap: number, name: LapChannel, s: number): number {
-    const values = this.channel(lap, name);
-    const point = (s / this.#length) * (POINTS - 1);
-    const below = Math.min(Math.floor(point), POINTS - 2);
-    return values ? mix(values[below] ?? NaN, values[below + 1] ?? NaN, point - below) : NaN;
+    const slot = this.#done.find((each) => each.lap === lap);
+    if (!slot || !Number.isFinite(s)) return NaN;
+    const place = s / this.#spacing;
+    const values = slot.channels;
+    const [below, above] = [index(Math.floor(place)), index(Math.floor(place) + 1)];
+    const isOverTheLine = (values.time_s[above] ?? NaN) < (values.time_s[below] ?? NaN);
+    return isOverTheLine ? NaN : mix(values[name][below] ?? NaN, values[name][above] ?? NaN, place - Math.floor(place));
   }
 
-  /** A channel of a lap; null when that lap is not kept. Points the lap did not pass are not-a-number. */
+  /** A channel of a lap from the start line on; null when that lap is not kept. Places it did not pass are not-a-number. */
   channel(lap: number, name: LapChannel): Float64Array | null {
-    return this.#slots.find((slot) => slot.lap === lap && slot.isComplete)?.channels[name] ?? null;
+    const values = this.#done.find((slot) => slot.lap === lap)?.channels[name];
+    if (!values) return null;
+    const first = index(this.#firstPoint);
+    const rotated = new Float64Array(POINTS);
+    rotated.set(values.subarray(first));
+    rotated.set(values.subarray(0, first), POINTS - first);
+    return rotated;
   }
 
   /** Takes one moment; `lap` counts completed laps, `lastLapTime` is of the lap before. */
   push(lap: number, moment: LapMoment, lastLapTime: number): void {
     if (!(this.#length > 0) || !Number.isFinite(moment.s_m)) return;
-    if (this.#last?.lap !== lap) this.#turn(lap, moment, lastLapTime);
-    else this.#fill(this.#last, moment);
+    const last = this.#last;
     this.#last = { ...moment, lap };
+    if (last?.lap === lap) return this.#fill(last, this.#after(last, moment));
+    if (last && this.#current && lap === last.lap + 1) return this.#cross(last, this.#after(last, moment), lap, lastLapTime);
+    if (this.#current && !this.#current.isComplete) this.#current.lap = -1;
+    this.#begin(lap);
   }
 
-  #turn(lap: number, moment: LapMoment, lastLapTime: number): void {
-    const last = this.#last;
-    const crossed = this.#current !== null && last !== null && lap === last.lap + 1;
-    if (!crossed) {
-      if (this.#current && !this.#current.isComplete) this.#current.lap = -1;
-      return this.#begin(lap);
-    }
-    // The line lies between two frames: the old lap ends, and the new one begins, on it.
-    const rest = this.#length - last.s_m;
-    const line = between(last, moment, rest / (rest + moment.s_m));
-    this.#fill(last, { ...line, s_m: this.#length, time_s: lastLapTime });
+  get #done(): Slot[] {
+    return this.#slots.filter((slot) => slot.lap >= 0 && slot.isComplete);
+  }
+
+  get #spacing(): number {
+    return this.#length / POINTS;
+  }
+
+  /** The first point behind the start line. */
+  get #firstPoint(): number {
+    return Math.ceil(this.#line / this.#spacing - 1e-9);
+  }
+
+  /** The same moment with its s counted on from a moment before it, over the seam of the road's line. */
+  #after(before: LapMoment, moment: LapMoment): LapMoment {
+    const step = moment.s_m - before.s_m;
+    return { ...moment, s_m: before.s_m + step - this.#length * Math.round(step / this.#length) };
+  }
+
+  /** The line lies between two frames: the old lap ends, and the new one begins, on it. */
+  #cross(last: LapMoment, moment: LapMoment, lap: number, lastLapTime: number): void {
+    const rest = lastLapTime - last.time_s; // of the old lap [s]
+    const line = between(last, moment, Math.min(1, Math.max(0, rest / (rest + moment.time_s))));
+    this.#fill(last, { ...line, time_s: lastLapTime });
     if (this.#current) {
       this.#current.isComplete = true;
       this.#current.time = lastLapTime;
     }
+    if (!Number.isFinite(this.#line)) this.#line = line.s_m - this.#length * Math.floor(line.s_m / this.#length);
     this.#begin(lap);
-    this.#fill({ ...line, s_m: 0, time_s: 0 }, moment);
+    this.#fill({ ...line, time_s: 0 }, moment);
   }
 
   #begin(lap: number): void {
@@ -120,27 +143,27 @@ export class LapSamples {
     slot.time = NaN;
     for (const name of LAP_CHANNELS) slot.channels[name].fill(NaN);
     this.#current = slot;
-    this.#next = 0;
   }
 
   /** The oldest lap but for the fastest. */
   #oldest(): Slot {
-    const done = this.#slots.filter((slot) => slot.isComplete);
-    const best = done.reduce((a, b) => (b.time < a.time ? b : a), done[0] as Slot);
-    return done.filter((slot) => slot !== best).reduce((a, b) => (b.lap < a.lap ? b : a));
+    const { best } = this;
+    return this.#done.filter((slot) => slot.lap !== best).reduce((a, b) => (b.lap < a.lap ? b : a));
   }
 
   #fill(from: LapMoment, to: LapMoment): void {
     const slot = this.#current;
     const span = to.s_m - from.s_m;
     if (!slot || !(span > 0)) return;
-    if (this.s(this.#next) < from.s_m) this.#next = Math.ceil((from.s_m / this.#length) * (POINTS - 1));
-    for (; this.#next < POINTS && this.s(this.#next) <= to.s_m + 1e-9; ++this.#next) {
-      const share = (this.s(this.#next) - from.s_m) / span;
-      for (const name of LAP_CHANNELS) slot.channels[name][this.#next] = mix(from[name], to[name], share);
+    for (let point = Math.ceil(from.s_m / this.#spacing - 1e-9); point * this.#spacing < to.s_m - 1e-9; ++point) {
+      const share = (point * this.#spacing - from.s_m) / span;
+      for (const name of LAP_CHANNELS) slot.channels[name][index(point)] = mix(from[name], to[name], share);
     }
   }
 }
+
+/** A point counted from the beginning of the road's line, wherever it was counted on to. */
+const index = (point: number): number => ((point % POINTS) + POINTS) % POINTS;
 
 /** Time lost by lap `a` to lap `b` up to each point [s]: rising where `a` is slower. */
 export const timeGap = (a: Float64Array, b: Float64Array): Float64Array => a.map((time, i) => time - (b[i] ?? NaN));

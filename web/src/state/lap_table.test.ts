@@ -41,6 +41,6 @@ describe('the table of laps', () => {
     const lines = lapSamplesCsv(samples, 0).trim().split('\n');
     expect(lines[0]).toBe('s_m,time_s,speed_mps,lateral_error_m,steer_rad,throttle,x_m,y_m');
     expect(lines).toHaveLength(samples.points + 1);
-    expect(lines.at(-1)).toBe('100,10,10,0,0,0.5,7,1');
+    expect(lines.at(-1)).toBe('99.9,9.99,10,0,0,0.5,7,1');
   });
 });

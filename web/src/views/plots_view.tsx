@@ -132,7 +132,7 @@ function Toolbar() {
           Reset zoom
         </button>
       ) : (
-        <span class="hint">Drag to zoom</span>
+        <span class="hint wide-only">Drag to zoom</span>
       )}
       <span class="spring" />
       <button type="button" title="All plots as a picture" onClick={() => downloadPng(fileName([run.value?.track ?? '', 'plots'], 'png'), pictureOfPlots())}>
