@@ -183,11 +183,11 @@ export class LogSource implements Source {
     }
   }
 
-  /** The run, the road and the laps as they were at `time`. */
+  /** The run and the road as they were at `time`, and all laps there are. */
   #tellStatic(time: number, topics: readonly TopicName[] = STATIC): void {
     for (const topic of topics) {
       const known = this.#static.filter((each) => each.topic === topic);
-      const told = topic === '/chicane/lap' ? known.filter((each) => each.time <= time) : [known.filter((each) => each.time <= time).at(-1) ?? known[0]];
+      const told = topic === '/chicane/lap' ? known : [known.filter((each) => each.time <= time).at(-1) ?? known[0]];
       for (const each of told) if (each) this.#tell(each);
     }
   }

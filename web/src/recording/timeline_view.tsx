@@ -27,6 +27,14 @@ export async function choose(which: number): Promise<void> {
   }
 }
 
+function Arrow({ direction }: { direction: 1 | -1 }) {
+  return (
+    <svg viewBox="0 0 16 16" width="16" height="16" aria-hidden="true">
+      <path d={direction > 0 ? 'M3 3l7 5-7 5zM11 3h2v10h-2z' : 'M13 3L6 8l7 5zM5 3H3v10h2z'} fill="currentColor" />
+    </svg>
+  );
+}
+
 function Marks() {
   const length = duration.value;
   return (
@@ -49,8 +57,8 @@ export function TimelineView() {
       <button type="button" class="primary" aria-keyshortcuts="Space" onClick={() => void source.call('/pause', playing)}>
         {playing ? 'Pause' : 'Play'}
       </button>
-      <button type="button" class="icon" aria-label="Landmark before" title="Landmark before (,)" disabled={!neighbour(landmarks.value, position.value, -1)} onClick={() => jump(-1)}>
-        ⏮
+      <button type="button" class="icon" aria-label="Landmark before" title="Landmark before" disabled={!neighbour(landmarks.value, position.value, -1)} onClick={() => jump(-1)}>
+        <Arrow direction={-1} />
       </button>
       <div class="timeline-track">
         <Marks />
@@ -66,7 +74,7 @@ export function TimelineView() {
         />
       </div>
       <button type="button" class="icon" aria-label="Next landmark" title="Next landmark" disabled={!neighbour(landmarks.value, position.value, 1)} onClick={() => jump(1)}>
-        ⏭
+        <Arrow direction={1} />
       </button>
       <output class="timeline-time">
         {lapTime(position.value)} <span>/ {lapTime(length)}</span>

@@ -37,7 +37,7 @@ function Buttons() {
   if (services.value.size === 0) return null;
   return (
     <div class="buttons">
-      {services.value.has('/pause') && (
+      {services.value.has('/pause') && run.value?.mode !== 'replay' && (
         <button type="button" class="primary" disabled={!can('/pause')} aria-keyshortcuts="Space" title="Space" onClick={() => call('/pause', !isPaused.value)}>
           {isPaused.value ? 'Resume' : 'Pause'}
         </button>
