@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "chicane/runtime/assets.hpp"
+#include "chicane/runtime/live_settings.hpp"
 #include "chicane/runtime/make.hpp"
 #include "chicane/runtime/serve.hpp"
 #include "chicane/runtime/viewer.hpp"
@@ -30,6 +31,7 @@ Result<runtime::ServeSummary> run(const Options& options) {
   serving.server.address = options.address;
   serving.server.port = options.port;
   serving.vehicle = scenario->vehicle;
+  serving.scenario = *scenario;
   serving.latency =
       std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(scenario->latency));
   runtime::ViewerOptions viewing;
@@ -42,9 +44,18 @@ Result<runtime::ServeSummary> run(const Options& options) {
   const auto recorder = start_recorder(options, viewing.run, *scenario,
                                        std::chrono::duration<double>(serving.step_budget).count());
   if (!recorder) return fail(recorder.error());
+  runtime::ChangeQueue wishes;
+  runtime::LiveSettings settings({.scenario = *scenario, .has_world = false}, wishes);
+  viewing.parameters = &settings;
   runtime::ViewerEndpoint viewer(std::move(viewing));
   Progress progress;
   runtime::ServeHooks hooks;
+  hooks.wishes = &wishes;
+  hooks.on_change = [&](const telemetry::Change& change) {
+    if (*recorder) (*recorder)->record(change);
+    settings.tell(change);
+  };
+  hooks.pages = runtime::live_pages(settings);
   hooks.on_frame = [&](const telemetry::Frame& frame) {
     if (*recorder) (*recorder)->record(frame);
     viewer.publish(frame);

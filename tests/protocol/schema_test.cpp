@@ -176,6 +176,15 @@ TEST(Schema, AWrongTypeOfValueIsAnErrorForEveryParameter) {
   }
 }
 
+TEST(Schema, OnlyWhatMakesTheRunAnotherOneIsNotLive) {
+  std::vector<std::string_view> not_live;
+  for (const Parameter& parameter : list()) {
+    if (!is_live(parameter)) not_live.push_back(parameter.key);
+  }
+  EXPECT_EQ(not_live, (std::vector<std::string_view>{"preset", "track", "car", "plant", "controller", "seed",
+                                                     "control_period_ms", "waypoints_sent", "vehicle.name"}));
+}
+
 TEST(Schema, SuggestsWhatWasMeant) {
   EXPECT_THAT(error_of("latency", "1"), HasSubstr("did you mean latency_ms?"));
   EXPECT_THAT(error_of("cubic_mpc.horizon_step", "1"), HasSubstr("did you mean cubic_mpc.horizon_steps?"));

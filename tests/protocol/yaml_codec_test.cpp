@@ -196,6 +196,22 @@ TEST(YamlCodec, WritesOnlyWhatDiffers) {
   EXPECT_EQ(write_document({}, "Nothing"), "# Nothing\n");
 }
 
+TEST(YamlCodec, WritesAPresetThatBuildsOnAnother) {
+  scenario::Scenario base;
+  base.preset = "sixty-mph";
+  base.cubic_mpc.horizon_steps = 7;
+  scenario::Scenario changed = base;
+  changed.cubic_mpc.horizon_steps = 10;  // a default again, but not the preset's
+  changed.latency = 0.05;
+  EXPECT_EQ(write_preset(changed, base, "Mine"),
+            "# Mine\npreset: \"sixty-mph\"\ntrack: \"lakeside\"\ncar: \"udacity\"\nlatency_ms: 50\n"
+            "cubic_mpc:\n  horizon_steps: 10\n");
+  const Result<Document> read = parse_document(write_preset(changed, base, "Mine"), "mine.yaml");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->preset, "sixty-mph");
+  EXPECT_EQ(read->assignments.size(), 4U);
+}
+
 TEST(YamlCodec, AnyBytesGetAnAnswer) {
   Random random(17);
   const std::string seed = read(fs::path(CHICANE_SOURCE_DIR) / "presets/weighted.yaml");

@@ -13,7 +13,9 @@
 
 #include <fmt/format.h>
 
+#include "chicane/protocol/schema.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
+#include "chicane/runtime/make.hpp"
 #include "chicane/safety/command_gate.hpp"
 #include "chicane/telemetry/prediction_check.hpp"
 
@@ -74,12 +76,13 @@ class UdacityEndpoint::Control {
  public:
   using Answer = std::function<void(const Request&, std::string text, std::chrono::nanoseconds after)>;
 
-  Control(const ServeOptions& options, controller::Controller& controller,
-          const std::function<void(const telemetry::Frame&)>& on_frame, Answer answer)
+  Control(const ServeOptions& options, controller::Controller& controller, const ServeHooks& hooks,
+          Answer answer)
       : options_{options},
         controller_{controller},
-        on_frame_{on_frame},
+        hooks_{hooks},
         answer_{std::move(answer)},
+        scenario_{options.scenario},
         gate_{options.vehicle},
         delay_{seconds(options.latency) + kTypicalTurnAround},
         thread_{[this] { run(); }} {}
@@ -152,6 +155,7 @@ class UdacityEndpoint::Control {
     const Clock::time_point begin = Clock::now();
     ++frame_.cycle;
     frame_.time = seconds(request.received - started_);
+    take_up_changes();
     frame_.applied = last_sent_;
     frame_.begins = std::exchange(begins_, false);
     frame_.has_measurement = request.kind == Request::Kind::kTelemetry;
@@ -182,7 +186,21 @@ class UdacityEndpoint::Control {
     frame_.solve_time = frame_.result.report.solve_time;
     frame_.lateral_error = frame_.result.report.lateral_error;
     frame_.heading_error = frame_.result.report.heading_error;
-    if (on_frame_) on_frame_(frame_);
+    if (hooks_.on_frame) hooks_.on_frame(frame_);
+  }
+
+  void take_up_changes() {
+    while (const telemetry::Change* next = hooks_.wishes == nullptr ? nullptr : hooks_.wishes->front()) {
+      telemetry::Change change = *next;
+      hooks_.wishes->pop();
+      change.cycle = frame_.cycle;
+      change.time = frame_.time;
+      if (protocol::set_text(scenario_, change.name.view(), change.value.view())) {
+        configure(controller_, scenario_);
+        gate_.set_vehicle(scenario_.vehicle);
+      }
+      if (hooks_.on_change) hooks_.on_change(change);
+    }
   }
 
   void pass_gate() {
@@ -209,8 +227,9 @@ class UdacityEndpoint::Control {
 
   const ServeOptions& options_;
   controller::Controller& controller_;
-  const std::function<void(const telemetry::Frame&)>& on_frame_;
+  const ServeHooks& hooks_;
   Answer answer_;
+  scenario::Scenario scenario_;
   safety::CommandGate gate_;
   telemetry::PredictionCheck promises_;
   DelayMeter delay_;
@@ -235,7 +254,7 @@ class UdacityEndpoint::Control {
 
 UdacityEndpoint::UdacityEndpoint(const ServeOptions& options, controller::Controller& controller,
                                  ServeHooks hooks)
-    : options_{options}, on_frame_{std::move(hooks.on_frame)}, log_{std::move(hooks.log)} {
+    : options_{options}, hooks_{std::move(hooks)}, log_{hooks_.log} {
   const auto answer = [this](const Request& request, std::string text, std::chrono::nanoseconds after) {
     server_->run_after(after, [this, id = request.from, text = std::move(text)]() mutable {
       if (id != session_.id) return;  // another simulator drives now
@@ -243,7 +262,7 @@ UdacityEndpoint::UdacityEndpoint(const ServeOptions& options, controller::Contro
       send(id, std::move(text));
     });
   };
-  control_ = std::make_unique<Control>(options_, controller, on_frame_, answer);
+  control_ = std::make_unique<Control>(options_, controller, hooks_, answer);
 }
 
 UdacityEndpoint::~UdacityEndpoint() = default;

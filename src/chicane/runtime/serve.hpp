@@ -17,9 +17,12 @@
 #include "chicane/model/vehicle.hpp"
 #include "chicane/net/server.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
+#include "chicane/runtime/change_queue.hpp"
 #include "chicane/runtime/endpoint.hpp"
 #include "chicane/runtime/pages.hpp"
 #include "chicane/runtime/sparse_log.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
 
 namespace chicane::runtime {
@@ -28,6 +31,7 @@ namespace chicane::runtime {
 struct ServeOptions {
   net::ServerOptions server;
   model::VehicleParams vehicle;  ///< bounds of what is sent
+  scenario::Scenario scenario;   ///< what the controller was made from: needed to change it while it drives
   /// Artificial, between the end of a control step and its answer, as the original controller sleeps. [0, 0.5
   /// s]
   std::chrono::nanoseconds latency = std::chrono::milliseconds{100};
@@ -41,6 +45,9 @@ struct ServeOptions {
 };
 
 struct ServeHooks {
+  ChangeQueue* wishes = nullptr;  ///< settings to change before the next answer; outlives the endpoint
+  std::function<void(const telemetry::Change&)>
+      on_change{};                                          ///< when one was taken up, on the control thread
   std::function<void(const telemetry::Frame&)> on_frame{};  ///< after each answer, on the control thread
   std::function<void(std::string_view)> log{};  ///< one line about the connection, on the network thread
   std::function<void(std::uint16_t port)> on_listening{};  ///< once, when the port is ours
@@ -111,7 +118,7 @@ class UdacityEndpoint final : public Endpoint {
   [[nodiscard]] bool is_quiet() const;
 
   ServeOptions options_;
-  std::function<void(const telemetry::Frame&)> on_frame_;
+  ServeHooks hooks_;
   SparseLog log_;
   net::Server* server_ = nullptr;
   Session session_;
