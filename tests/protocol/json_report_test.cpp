@@ -90,6 +90,7 @@ TEST(JsonReport, TheTableSaysHowItEnded) {
   telemetry::RunSummary run = example();
   EXPECT_THAT(to_table(run), HasSubstr("1 of 1 laps, completed, all tyres on the road"));
   EXPECT_THAT(to_table(run), HasSubstr("28.500"));
+  EXPECT_THAT(to_table(run), HasSubstr("9.00 9.50 10.00"));
   run.off_track_events = 2;
   EXPECT_THAT(to_table(run), HasSubstr("completed, but left the road"));
   run.completed = false;

@@ -38,12 +38,20 @@ Json to_object(const TimeSummary& time) {
       {"p50", 1e6 * time.p50}, {"p99", 1e6 * time.p99}, {"p999", 1e6 * time.p999}, {"max", 1e6 * time.max}};
 }
 
+/// "8.93 8.80 9.14", or "-" for a stretch that was no lap.
+std::string sectors(const LapSummary& lap) {
+  const auto& times = lap.sector_times;
+  if (!std::isfinite(times[0] + times[1] + times[2])) return "-";
+  return fmt::format("{:.2f} {:.2f} {:.2f}", times[0], times[1], times[2]);
+}
+
 std::string row(std::string_view name, const LapSummary& lap) {
   const std::string edge =
       std::isfinite(lap.min_edge_distance) ? fmt::format("{:.2f}", lap.min_edge_distance) : "-";
-  return fmt::format("{:>6} {:>9.3f} {:>9.1f} {:>9.1f} {:>9.2f} {:>9.2f} {:>9} {:>9.1f}\n", name,
+  return fmt::format("{:>6} {:>9.3f} {:>9.1f} {:>9.1f} {:>9.2f} {:>9.2f} {:>9} {:>9.1f} {:>20}\n", name,
                      lap.lap_time, mps_to_mph(lap.mean_speed), mps_to_mph(lap.top_speed),
-                     lap.rms_lateral_error, lap.max_abs_lateral_error, edge, lap.max_lateral_acceleration);
+                     lap.rms_lateral_error, lap.max_abs_lateral_error, edge, lap.max_lateral_acceleration,
+                     sectors(lap));
 }
 
 std::string times(const TimeSummary& time) {
@@ -86,10 +94,10 @@ std::string to_json(const RunSummary& run) {
 std::string to_table(const RunSummary& run) {
   std::string text = fmt::format("{} on {}, {} ({}), {:g} ms latency, seed {}\n", run.car, run.track,
                                  run.preset, run.controller, 1e3 * run.latency, run.seed);
-  text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "lap", "time", "mean", "top",
-                      "error rms", "error max", "to edge", "lateral");
-  text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "", "s", "mph", "mph", "m", "m",
-                      "m", "m/s²");
+  text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>20}\n", "lap", "time", "mean",
+                      "top", "error rms", "error max", "to edge", "lateral", "sectors");
+  text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>20}\n", "", "s", "mph", "mph", "m",
+                      "m", "m", "m/s²", "s");
   int lap = 0;
   for (const LapSummary& summary : run.laps) text += row(fmt::format("{}", ++lap), summary);
   text += row("all", run.total);
