@@ -55,6 +55,27 @@ TEST(Shift, IgnoresTimesThatMakeNoSense) {
   }
 }
 
+TEST(Resample, ToTheSameGridChangesNothing) {
+  auto t = counting(4);
+  solver::resample(t, 4, 1.0);
+  EXPECT_EQ(t.horizon, 4);
+  EXPECT_EQ(t.u, counting(4).u);
+  EXPECT_EQ(t.x, counting(4).x);
+}
+
+TEST(Resample, KeepsTheMotionInTimeAndRepeatsItsEnd) {
+  auto t = counting(4);
+  solver::resample(t, 6, 0.5);  // intervals half as long
+  EXPECT_EQ(t.horizon, 6);
+  EXPECT_DOUBLE_EQ(t.u[1][1], 0.5);
+  EXPECT_DOUBLE_EQ(t.u[4][1], 2.0);
+  EXPECT_DOUBLE_EQ(t.x[6][0], 3.0);
+  t = counting(4);
+  solver::resample(t, 6, 1.0);
+  EXPECT_DOUBLE_EQ(t.u[5][1], 3.0);
+  EXPECT_DOUBLE_EQ(t.x[6][0], 4.0);
+}
+
 TEST(RollOut, ClampsTheInputsAndSimulatesThem) {
   bench::DescribedInstance instance;
   instance.place(10.0);
