@@ -109,11 +109,34 @@ function helmetMesh(centre: Vector, radius: number): MeshData {
   return mesh.data();
 }
 
-/**
- * An open single-seater: nothing hides the front wheels, whichever way one looks. Axles, track, tyres, length and width are
- * those of the car; the rest of its shape is ours.
- */
-export function carModel(size: CarSize): CarModel {
+/** The measures everything is drawn from [m]. */
+interface Measures {
+  readonly k: number; // scale: 1 for a car of 4.5 m
+  readonly front: number; // axles, and ends of the body
+  readonly rear: number;
+  readonly nose: number;
+  readonly tail: number;
+  readonly radius: number; // of the wheels
+  readonly tyre: number; // width
+  readonly halfTrack: number;
+  readonly halfWidth: number;
+  readonly inner: number; // half the room between the wheels
+  readonly tub: number; // half widths
+  readonly pod: number;
+  readonly length: number;
+  /** Along the car: 0 at the rear axle, 1 at the front axle. */
+  at(share: number): number;
+}
+
+/** Parts of one kind of surface each, still growing. */
+interface Parts {
+  readonly paint: MeshBuilder;
+  readonly dark: MeshBuilder;
+  readonly lamps: MeshBuilder;
+  readonly headlamps: MeshBuilder;
+}
+
+function measure(size: CarSize): Measures {
   const wheelbase = size.front_axle_m + size.rear_axle_m;
   const length = Math.max(size.body_length_m, wheelbase * 1.15);
   const k = length / 4.5; // drawn for a car of 4.5 m
@@ -128,11 +151,11 @@ export function carModel(size: CarSize): CarModel {
   const at = (share: number): number => rear + share * wheelbase; // 0 rear axle, 1 front axle
   const tub = Math.min(0.36 * k, inner);
   const pod = Math.min(halfWidth - 0.1 * k, Math.max(halfTrack - 0.08 * k, tub + 0.1));
+  return { k, front, rear, nose, tail, radius, tyre, halfTrack, halfWidth, inner, tub, pod, length, at };
+}
 
-  const paint = new MeshBuilder();
-  const dark = new MeshBuilder();
-
-  // Tub: from the tail over the engine and the seat to the nose.
+/** From the tail over the engine and the seat to the nose, with windscreen and hoop. */
+function addTub({ paint, dark }: Parts, { k, front, rear, nose, tail, tub, at }: Measures): void {
   const stations: readonly (readonly [x: number, half: number, low: number, high: number])[] = [
     [tail + 0.12 * k, 0.16 * k, 0.3 * k, 0.46 * k],
     [rear, 0.24 * k, 0.16 * k, 0.6 * k],
@@ -149,15 +172,9 @@ export function carModel(size: CarSize): CarModel {
   const rings = stations.map(([x, half, low, high]) => mirroredRing(x, section(half, low, high)));
   paint.loft(rings, (x, face) => (face === 3 && x > at(0.66) ? ACCENT : face === 7 ? CARBON : WHITE));
 
-  // The seat: a dark opening with a rim, and the hoop with its intake behind the head.
-  const seat = (z: number, half: number, from: number, to: number): Vector[] => [
-    [from, -half, z],
-    [to, -half * 0.8, z],
-    [to, half * 0.8, z],
-    [from, half, z],
-  ];
-  const floor = seat(0.665 * k, tub * 0.72, at(0.375), at(0.625));
-  dark.quad(floor[0] as Vector, floor[1] as Vector, floor[2] as Vector, floor[3] as Vector, SOOT);
+  // The seat: a dark opening with its rim, and the hoop with its intake behind the head.
+  const [wide, narrow, high] = [tub * 0.72, tub * 0.58, 0.665 * k];
+  dark.quad([at(0.375), -wide, high], [at(0.625), -narrow, high], [at(0.625), narrow, high], [at(0.375), wide, high], SOOT);
   for (const side of [-1, 1]) {
     paint.rod([at(0.37), side * tub * 0.9, 0.68 * k], [at(0.62), side * tub * 0.8, 0.64 * k], 0.055 * k, WHITE);
   }
@@ -172,8 +189,10 @@ export function carModel(size: CarSize): CarModel {
   );
   // Windscreen: a low dark wedge.
   dark.hull(mirroredRing(at(0.6), section(tub * 0.66, 0.6 * k, 0.75 * k)), mirroredRing(at(0.71), section(tub * 0.6, 0.6 * k, 0.64 * k)), CARBON);
+}
 
-  // Side pods with their intakes, and the floor.
+/** Side pods with their intakes, mirrors, and the floor. */
+function addPods({ paint, dark }: Parts, { k, inner, tub, pod, at }: Measures): void {
   for (const side of [-1, 1]) {
     const ring = (x: number, from: number, to: number, low: number, high: number): Vector[] => {
       const corners: Vector[] = [
@@ -193,7 +212,7 @@ export function carModel(size: CarSize): CarModel {
         ring(at(0.52), tub * 0.5, pod, 0.1 * k, 0.54 * k),
         ring(at(0.62), tub * 0.5, pod * 0.97, 0.14 * k, 0.5 * k),
       ],
-      (_x, face) => (face === 3 ? ACCENT : face === 0 ? CARBON : WHITE),
+      (_x, face) => (face === (side > 0 ? 3 : 1) ? ACCENT : face === (side > 0 ? 0 : 4) ? CARBON : WHITE),
     );
     dark.loft([ring(at(0.615), tub * 0.9, pod * 0.9, 0.2 * k, 0.46 * k), ring(at(0.627), tub * 0.9, pod * 0.88, 0.22 * k, 0.44 * k)], SOOT);
     // Mirrors.
@@ -203,8 +222,10 @@ export function carModel(size: CarSize): CarModel {
   }
   dark.box([at(0.02), -pod * 0.98, 0.075 * k], [at(0.72), pod * 0.98, 0.1 * k], CARBON);
   dark.box([at(-0.1), -inner, 0.1 * k], [at(0.1), inner, 0.14 * k], CARBON);
+}
 
-  // Front wing in two planes with end plates.
+/** Front wing in two planes with end plates, rear wing on its plates, and the lamps. */
+function addWings({ paint, dark, lamps, headlamps }: Parts, { k, rear, nose, tail, halfWidth, inner }: Measures): void {
   const wing = halfWidth - 0.02 * k;
   const slanted = (x0: number, x1: number, z0: number, z1: number, half: number): readonly [Vector[], Vector[]] => [
     mirroredRing(x0, [
@@ -224,7 +245,6 @@ export function carModel(size: CarSize): CarModel {
   const back = Math.min(inner + 0.18 * k, halfWidth);
   paint.hull(...slanted(tail + 0.02 * k, tail + 0.34 * k, 0.9 * k, 0.84 * k, back), ACCENT);
   paint.hull(...slanted(tail - 0.06 * k, tail + 0.1 * k, 0.99 * k, 0.93 * k, back), WHITE);
-  const lamps = new MeshBuilder();
   for (const side of [-1, 1]) {
     const [a, b] = [side * wing, side * (wing + 0.025 * k)];
     paint.box([nose - 0.48 * k, Math.min(a, b), 0.1 * k], [nose - 0.02 * k, Math.max(a, b), 0.28 * k], ACCENT);
@@ -235,14 +255,14 @@ export function carModel(size: CarSize): CarModel {
     lamps.box([tail - 0.005, Math.min(e, f), 0.915 * k], [tail + 0.05 * k, Math.max(e, f), 0.955 * k], LAMP);
   }
   lamps.box([tail + 0.08 * k, -0.07 * k, 0.34 * k], [tail + 0.13 * k, 0.07 * k, 0.42 * k], LAMP);
-  const headlamps = new MeshBuilder();
   for (const side of [-1, 1]) {
     const y = side * 0.115 * k;
     headlamps.box([nose - 0.26 * k, y - 0.03 * k, 0.31 * k], [nose - 0.2 * k, y + 0.03 * k, 0.35 * k], colourOf('#fff4d8'));
   }
+}
 
-  // Wishbones from the tub to the hubs.
-  const hub = radius;
+/** Wishbones from the tub to the hubs. */
+function addWishbones({ dark }: Parts, { k, front, rear, radius, tyre, halfTrack, tub }: Measures): void {
   for (const side of [-1, 1]) {
     const y = side * (halfTrack - tyre / 2);
     for (const [x, root] of [
@@ -250,18 +270,27 @@ export function carModel(size: CarSize): CarModel {
       [rear, 0.22 * k],
     ] as const) {
       for (const lean of [-0.26, 0.26]) {
-        dark.rod([x + lean * k, side * root, hub + 0.12 * k], [x, y, hub + 0.08 * k], 0.035 * k, CARBON);
-        dark.rod([x + lean * k, side * root, hub - 0.12 * k], [x, y, hub - 0.1 * k], 0.035 * k, CARBON);
+        dark.rod([x + lean * k, side * root, radius + 0.12 * k], [x, y, radius + 0.08 * k], 0.035 * k, CARBON);
+        dark.rod([x + lean * k, side * root, radius - 0.12 * k], [x, y, radius - 0.1 * k], 0.035 * k, CARBON);
       }
     }
   }
+}
 
-  const steeringWheel: Vector = [at(0.6), 0, 0.66 * k];
+/**
+ * An open single-seater: nothing hides the front wheels, whichever way one looks. Axles, track, tyres, length and width are
+ * those of the car; the rest of its shape is ours.
+ */
+export function carModel(size: CarSize): CarModel {
+  const measures = measure(size);
+  const { k, front, rear, radius, tyre, halfTrack, halfWidth, length, at } = measures;
+  const parts: Parts = { paint: new MeshBuilder(), dark: new MeshBuilder(), lamps: new MeshBuilder(), headlamps: new MeshBuilder() };
+  for (const add of [addTub, addPods, addWings, addWishbones]) add(parts, measures);
   return {
-    paint: paint.data(),
-    dark: dark.data(),
-    lamps: lamps.data(),
-    headlamps: headlamps.data(),
+    paint: parts.paint.data(),
+    dark: parts.dark.data(),
+    lamps: parts.lamps.data(),
+    headlamps: parts.headlamps.data(),
     helmet: helmetMesh([at(0.425), 0, 0.82 * k], 0.14 * k),
     hand: handMesh(k),
     wheel: wheelMesh(radius, tyre),
@@ -272,7 +301,7 @@ export function carModel(size: CarSize): CarModel {
       { x: rear, y: -halfTrack, radius },
     ],
     wheelRadius: radius,
-    steeringWheel,
+    steeringWheel: [at(0.6), 0, 0.66 * k],
     eye: [at(0.41), 0, 0.97 * k],
     length,
     width: 2 * halfWidth,

@@ -142,7 +142,7 @@ export class Stage {
     this.#resize(width, height);
     this.#renew(view);
     this.#move(view, motion);
-    this.#film(view, motion, width / height, Math.min(gap, 100) / 1000);
+    this.#film(view, motion, width / height, Math.min(gap, 1000) / 1000);
     this.#renderer.render(this.#scene, this.#camera);
     if (this.#governor.picture(gap, performance.now() - begin)) this.#lastChange = now;
   }
