@@ -1,31 +1,46 @@
 // SPDX-License-Identifier: MIT
 // Pictures of a running dashboard for the documentation:
-//   node screenshots.mjs http://127.0.0.1:4567/ ../../docs/figures [seconds to wait]
+//   node screenshots.mjs http://127.0.0.1:4567/ ../../docs/figures [seconds to wait] [only these names]
 import { argv } from 'node:process';
 import { launch } from './browser.mjs';
 
-const [url = 'http://127.0.0.1:4567/', folder = '.', wait = '20'] = argv.slice(2);
+const [url = 'http://127.0.0.1:4567/', folder = '.', wait = '20', ...names] = argv.slice(2);
+const isWanted = ({ name }) => names.length === 0 || names.includes(name);
 
+/** The workbench, all pages watching the same run; `prepare` is done just before the picture. */
+const LAPTOP = [1440, 900];
 const PICTURES = [
-  { name: 'dashboard', size: [1440, 900], colorScheme: 'light' },
-  { name: 'dashboard_dark', size: [1440, 900], colorScheme: 'dark', keys: ['c', 'c'] },
-  { name: 'dashboard_phone', size: [390, 844], colorScheme: 'light', deviceScaleFactor: 2 },
+  { name: 'dashboard', tab: 'plots', size: LAPTOP, colorScheme: 'light' },
+  { name: 'dashboard_explain', tab: 'explain', size: LAPTOP, colorScheme: 'dark' },
+  { name: 'dashboard_laps', tab: 'laps', size: LAPTOP, colorScheme: 'light' },
+  { name: 'dashboard_plots', tab: 'plots', size: [1600, 900], colorScheme: 'dark', prepare: (page) => page.keyboard.press('f') },
+  { name: 'dashboard_tune', tab: 'tune', size: LAPTOP, colorScheme: 'light', prepare: tune },
+  { name: 'dashboard_faults', tab: 'faults', size: LAPTOP, colorScheme: 'dark', prepare: (page) => page.locator('.fault').nth(1).click() },
+  { name: 'dashboard_phone', tab: 'drive', size: [390, 844], colorScheme: 'light', deviceScaleFactor: 2, isMobile: true, hasTouch: true, prepare: (page) => page.keyboard.press('m') },
 ];
+
+async function tune(page) {
+  const box = page.locator('[data-key="tracking_mpc.weight_lateral"] .number-box');
+  await box.fill('4');
+  await box.press('Enter');
+}
 
 const browser = await launch();
 const pages = [];
-for (const { name, size, keys = [], ...options } of PICTURES) {
+for (const { name, tab, size, prepare, ...options } of PICTURES.filter(isWanted)) {
   const context = await browser.newContext({ viewport: { width: size[0], height: size[1] }, ...options });
   const page = await context.newPage();
-  await page.goto(url);
-  for (const key of keys) await page.keyboard.press(key);
-  pages.push({ name, page });
+  await page.addInitScript(() => localStorage.setItem('chicane.dimension', '"2d"'));
+  await page.goto(`${url}#${tab}`);
+  pages.push({ name, page, prepare });
 }
-await pages[0].page.waitForTimeout(Number(wait) * 1000);
-for (const { name, page } of pages) {
+await pages[0]?.page.waitForTimeout(Number(wait) * 1000);
+for (const { name, page, prepare } of pages) {
   await page.bringToFront();
-  await page.waitForTimeout(300);
+  await prepare?.(page);
+  await page.waitForTimeout(prepare ? 1200 : 300);
   await page.screenshot({ path: `${folder}/${name}.png` });
+  if (prepare === tune) await page.getByRole('button', { name: 'Reset all' }).click();
 }
 for (const { page } of pages) await page.close();
 
@@ -44,7 +59,7 @@ const pretendCard = () => {
   };
 };
 
-for (const { name, camera, colorScheme, part = 'body' } of SCENES) {
+for (const { name, camera, colorScheme, part = 'body' } of SCENES.filter(isWanted)) {
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, colorScheme });
   await context.addInitScript(pretendCard);
   await context.addInitScript((value) => localStorage.setItem('chicane.camera', JSON.stringify(value)), camera);
@@ -52,7 +67,8 @@ for (const { name, camera, colorScheme, part = 'body' } of SCENES) {
   await page.goto(url);
   await page.locator('.map.has-3d').waitFor();
   await page.waitForTimeout(8000);
-  await page.locator(part).screenshot({ path: `${folder}/${name}.png` });
+  const clip = await page.locator(part).boundingBox();
+  await page.screenshot({ path: `${folder}/${name}.png`, clip, timeout: 120_000 });
   await context.close();
 }
 await browser.close();
