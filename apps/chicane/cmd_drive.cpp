@@ -8,6 +8,7 @@
 #include <mutex>
 #include <utility>
 
+#include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/runtime/assets.hpp"
 #include "chicane/runtime/closed_loop.hpp"
@@ -83,6 +84,7 @@ class WatchedRun {
         controls_{controls},
         loop_{std::move(loop)},
         settings_{{.scenario = loop_->scenario(),
+                   .faults = protocol::fault_controls(),
                    .start_anew = [this](const scenario::Scenario& next) { return build(next); },
                    .on_accepted = [this](const scenario::Scenario& now) { describe_anew(now); }},
                   controls.wishes},
@@ -119,6 +121,7 @@ class WatchedRun {
             [&](const telemetry::Frame& frame) {
               if (recorder_) recorder_->record(frame);
               viewer_.publish(frame);
+              note_faults(frame);
               progress.show(frame);
             },
         .on_change = [this](const telemetry::Change& change) { note(change); }};
@@ -131,7 +134,25 @@ class WatchedRun {
     }
   }
 
+  /// Faults that began or ended by themselves: nobody asked, so nobody has been told.
+  void note_faults(const telemetry::Frame& frame) {
+    const std::uint32_t changed = frame.active_faults ^ told_faults_;
+    for (std::size_t i = 0; i < faults_.size() && changed != 0U; ++i) {
+      if ((changed >> i & 1U) == 0U) continue;
+      const bool is_on = (frame.active_faults >> i & 1U) != 0U;
+      note({.cycle = frame.cycle + 1,
+            .time = frame.time,
+            .name = faults_[i].key,
+            .value = is_on ? "true" : "false"});
+    }
+  }
+
   void note(const telemetry::Change& change) {
+    for (std::size_t i = 0; i < faults_.size(); ++i) {
+      if (faults_[i].key != change.name.view()) continue;
+      const bool is_on = change.value.view() == "true";
+      told_faults_ = (told_faults_ & ~(1U << i)) | (is_on ? 1U << i : 0U);
+    }
     if (recorder_) recorder_->record(change);
     settings_.tell(change);
   }
@@ -175,6 +196,8 @@ class WatchedRun {
   runtime::LiveSettings settings_;
   runtime::ViewerEndpoint viewer_;
   std::unique_ptr<runtime::Recorder> recorder_;
+  const std::vector<protocol::Control> faults_ = protocol::fault_controls();
+  std::uint32_t told_faults_ = 0;  ///< bits, as viewers know them
   std::mutex mutex_;
   std::deque<std::unique_ptr<runtime::ClosedLoop>> built_;  ///< one for each change that starts anew
 };

@@ -8,6 +8,7 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
+#include "chicane/sim/fault.hpp"
 #include "commands.hpp"
 
 namespace chicane::apps {
@@ -90,11 +91,34 @@ void print_page() {
   }
 }
 
+std::string strength_of(const sim::FaultKind& kind) {
+  return kind.strength_meaning.empty() ? "" : fmt::format("{}", kind.strength);
+}
+
+void print_faults(bool is_markdown) {
+  if (is_markdown)
+    fmt::print(
+        "| fault | what happens | for [s] | strength | range | what it is |\n|---|---|---|---|---|---|\n");
+  for (const sim::FaultKind& kind : sim::fault_kinds()) {
+    const std::string range =
+        kind.strength_meaning.empty() ? "" : fmt::format("{} … {}", kind.weakest, kind.strongest);
+    if (is_markdown) {
+      fmt::print("| `{}` | {} | {} | {} | {} | {} |\n", kind.name, kind.meaning, kind.duration,
+                 strength_of(kind), range, kind.strength_meaning);
+    } else {
+      fmt::print("{:<18} {:>4} s  {:<4} {}{}\n", kind.name, kind.duration, strength_of(kind), kind.meaning,
+                 kind.strength_meaning.empty() ? "" : fmt::format(" Strength: {}.", kind.strength_meaning));
+    }
+  }
+}
+
 }  // namespace
 
 ExitCode list(const Options& options) {
   if (options.shelf == "parameters") {
     options.is_markdown ? print_page() : print_parameters();
+  } else if (options.shelf == "faults") {
+    print_faults(options.is_markdown);
   } else if (options.shelf == "controllers") {
     print_controllers();
   } else if (!options.shelf.empty()) {

@@ -114,6 +114,12 @@ void add_drive(CLI::App& command, Options& options) {
       .add_flag("--manual", options.is_manual,
                 "A person drives, by the dashboard's arrow keys or \"manual.…\"")
       ->excludes("--fast");
+  command
+      .add_option(
+          "--fault", options.faults,
+          "A fault at a second of the run, for so long, so strong (chicane list faults); may be repeated")
+      ->type_name("NAME@S+S*X")
+      ->take_all();
   add_record(command, options);
   command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
   add_set(command, options);
@@ -198,10 +204,12 @@ void add_check(CLI::App& command, Options& options) {
 void add_list(CLI::App& command, Options& options) {
   command
       .add_option("what", options.shelf,
-                  "presets, tracks, cars, scenarios, controllers or parameters; all when left out")
+                  "presets, tracks, cars, scenarios, controllers, faults or parameters; all when left out")
       ->type_name("WHAT")
-      ->check(CLI::IsMember({"presets", "tracks", "cars", "scenarios", "controllers", "parameters"}));
-  command.add_flag("--markdown", options.is_markdown, "parameters: as the page docs/configuration.md");
+      ->check(
+          CLI::IsMember({"presets", "tracks", "cars", "scenarios", "controllers", "faults", "parameters"}));
+  command.add_flag("--markdown", options.is_markdown,
+                   "parameters and faults: as in docs/configuration.md and docs/faults.md");
   command.footer("Example: chicane list presets");
 }
 

@@ -35,6 +35,7 @@ struct Options {
   bool is_manual = false;                ///< drive: a person has the wheel
   std::string record_file;               ///< empty: nothing is recorded
   bool is_compressed = false;            ///< the recording
+  std::vector<std::string> faults{};     ///< drive: NAME@SECOND+SECONDS*STRENGTH
   std::string address = "127.0.0.1";
   std::uint16_t port = 4567;
 
@@ -51,7 +52,7 @@ struct Options {
   std::string output_file;             ///< replay: the branch's recording; report: the page
   bool is_served = true;               ///< replay
   std::string shelf;                   ///< list; empty: an overview
-  bool is_markdown = false;            ///< list parameters
+  bool is_markdown = false;            ///< list parameters, list faults
 
   int instances = 100;                    ///< bench: of each family
   std::vector<int> horizons{10, 20, 50};  ///< bench

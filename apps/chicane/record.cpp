@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "chicane/protocol/fault_codec.hpp"
+
 namespace chicane::apps {
 protocol::Run description(const runtime::ClosedLoop& loop) {
   const scenario::Scenario& scenario = loop.scenario();
@@ -20,6 +22,7 @@ protocol::Run description(const runtime::ClosedLoop& loop) {
                     .kerb_width = loop.track().kerb_width(),
                     .road = protocol::road_lines(loop.track(), kRoadSpacing)};
   protocol::describe(loop.controller(), run);
+  run.faults = protocol::fault_names();
   return run;
 }
 

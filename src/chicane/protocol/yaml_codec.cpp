@@ -6,8 +6,11 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
+
+#include "chicane/protocol/fault_codec.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -130,6 +133,8 @@ class Reader {
     }
     if (key == "preset") {
       read_preset(node, line);
+    } else if (key == "faults") {
+      read_faults(node, line);
     } else if (const Parameter* parameter = find(key); parameter != nullptr) {
       read_value(*parameter, node, line);
     } else if (!is_group(key)) {
@@ -153,6 +158,52 @@ class Reader {
     } else {
       fault(line, "preset", fmt::format("got {}, expected the name of a preset", shown(node)));
     }
+  }
+
+  void read_faults(const YAML::Node& node, int line) {
+    if (!node.IsSequence() || node.size() > sim::FaultLab::kCapacity) {
+      fault(line, "faults",
+            fmt::format("got {}, expected a list of at most {} faults",
+                        node.IsSequence() ? fmt::format("{} of them", node.size()) : shown(node),
+                        sim::FaultLab::kCapacity));
+      return;
+    }
+    document_.faults.emplace();
+    for (const YAML::Node& item : node) read_fault_event(item);
+  }
+
+  void read_fault_event(const YAML::Node& item) {
+    const int line = item.Mark().line + 1;
+    if (!item.IsMap()) {
+      fault(line, "faults", fmt::format("got {}, expected {{name: half_grip, at_s: 12}}", shown(item)));
+      return;
+    }
+    FaultText text;
+    const std::array<std::pair<std::string_view, std::string*>, 4> fields{
+        {{"name", &text.name}, {"at_s", &text.at}, {"for_s", &text.duration}, {"strength", &text.strength}}};
+    for (const auto& entry : item) {
+      const int entry_line = entry.first.Mark().line + 1;
+      const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
+      const auto* const field =
+          std::find_if(fields.begin(), fields.end(), [&](const auto& each) { return each.first == name; });
+      if (field == fields.end()) {
+        fault(entry_line, "faults",
+              fmt::format("got {}, expected name, at_s, for_s or strength", shown(entry.first)));
+        return;
+      }
+      if (!entry.second.IsScalar() || entry.second.Scalar().empty()) {
+        fault(entry_line, fmt::format("faults.{}", name),
+              fmt::format("got {}, expected one value", shown(entry.second)));
+        return;
+      }
+      *field->second = entry.second.Scalar();
+    }
+    const Result<sim::FaultEvent> event = read_fault(text);
+    if (!event) {
+      faults_.push_back(place(document_.file, line) + event.error().message);
+      return;
+    }
+    document_.faults->push_back(*event);
   }
 
   void read_value(const Parameter& parameter, const YAML::Node& node, int line) {
@@ -209,6 +260,8 @@ std::string write(const scenario::Scenario& scenario, std::string_view descripti
     const std::string_view name = is_grouped ? parameter.key.substr(dot + 1) : parameter.key;
     text += fmt::format("{}{}: {}\n", is_grouped ? "  " : "", name, yaml_text(parameter, scenario));
   }
+  if (!scenario.faults.empty()) text += "faults:\n";
+  for (const sim::FaultEvent& event : scenario.faults) text += fmt::format("  - {}\n", write_fault(event));
   return text;
 }
 
@@ -248,6 +301,7 @@ Result<void> apply_layers(std::span<const Document> layers, scenario::Scenario& 
       if (!done) faults.push_back(where + done.error().message);
       places[assignment.parameter->key] = where;
     }
+    if (layer.faults) changed.faults = *layer.faults;
   }
   for (const Contradiction& contradiction : contradictions(changed)) {
     std::string where = places[contradiction.key];
@@ -261,9 +315,12 @@ Result<void> apply_layers(std::span<const Document> layers, scenario::Scenario& 
 
 std::string write_document(const scenario::Scenario& scenario, std::string_view description, bool is_whole) {
   const scenario::Scenario defaults;
-  return write(scenario, description, [&](const Parameter& parameter) {
+  std::string text = write(scenario, description, [&](const Parameter& parameter) {
     return parameter.key != "preset" && (is_whole || get(scenario, parameter) != get(defaults, parameter));
   });
+  if (!scenario.faults.empty()) text += "faults:\n";
+  for (const sim::FaultEvent& event : scenario.faults) text += fmt::format("  - {}\n", write_fault(event));
+  return text;
 }
 
 std::string write_preset(const scenario::Scenario& scenario, const scenario::Scenario& base,

@@ -21,7 +21,8 @@ struct Assignment {
 
 /// The settings of one preset, scenario or car file: every value checked by itself, nothing applied yet.
 struct Document {
-  std::string file;                   ///< for messages; empty for settings from the command line
+  std::string file;  ///< for messages; empty for settings from the command line
+  std::optional<std::vector<sim::FaultEvent>> faults;  ///< the file's `faults:`, which replace earlier ones
   std::optional<std::string> preset;  ///< the file's `preset:`, whose settings come before its own
   std::vector<Assignment> assignments;
 };
@@ -29,6 +30,8 @@ struct Document {
 /// Reads a YAML map of settings, nested (`cubic_mpc: {horizon_steps: 20}`) or dotted
 /// (`cubic_mpc.horizon_steps: 20`), with or without the wrapper of ROS 2 parameter files (`/**:
 /// {ros__parameters: ...}`). JSON is YAML.
+///
+/// `faults:` is a list of {name, at_s, for_s, strength} (docs/faults.md); the last two may be left out.
 ///
 /// Numbers have a decimal point in every locale. kParse lists all faults of the file, one on each line,
 /// "presets/x.yaml:7: cubic_mpc.horizon_steps: got 500, expected an integer in [2, 200]": unknown, duplicate

@@ -37,6 +37,8 @@ ClosedLoop::ClosedLoop(const scenario::Scenario& scenario, path::Track track, pa
       world_{*plant_, track_},
       sensor_{scenario.sensor, scenario.seed},
       gate_{scenario.vehicle},
+      faults_{scenario.faults, scenario.seed},
+      arrivals_{scenario.control_period},
       metrics_{std::max(scenario.laps, kLapsRemembered), scenario.control_period} {
   restart();
 }
@@ -60,6 +62,8 @@ void ClosedLoop::restart() {
   gate_.reset();
   in_flight_.reset({});
   hands_.restart();
+  faults_.reset();
+  arrivals_.reset();
   sensor_ = sim::Sensor(scenario_.sensor, scenario_.seed);
   metrics_ = telemetry::Metrics(std::max(scenario_.laps, kLapsRemembered), scenario_.control_period);
   promises_.reset();
@@ -81,7 +85,8 @@ void ClosedLoop::drive_on() {
 bool ClosedLoop::advance(double budget) noexcept {
   const bool is_due = is_control_due();
   if (is_due) control(budget, nullptr);
-  world_.advance(in_flight_.at(time() + 1e-9));
+  watch_faults();
+  world_.advance(acting());
   judge();
   return is_due;
 }
@@ -89,7 +94,8 @@ bool ClosedLoop::advance(double budget) noexcept {
 bool ClosedLoop::advance(const GivenStep& given) noexcept {
   const bool is_due = is_control_due();
   if (is_due) control(0.0, &given);
-  world_.advance(in_flight_.at(time() + 1e-9));
+  watch_faults();
+  world_.advance(acting());
   judge();
   return is_due;
 }
@@ -98,6 +104,9 @@ void ClosedLoop::apply(const telemetry::Change& change) noexcept {
   if (hands_.apply(change)) return;
   const std::string_view name = change.name.view();
   const std::string_view value = change.value.view();
+  constexpr std::string_view kFault = "fault.";
+  if (name.starts_with(kFault))
+    return static_cast<void>(set_fault(name.substr(kFault.size()), value == "true"));
   if (name == "run.pace") {
     std::from_chars(value.data(), value.data() + value.size(), pace_);
     pace_ = std::clamp(pace_, kSlowestPace, kFastestPace);
@@ -112,12 +121,34 @@ void ClosedLoop::apply(const telemetry::Change& change) noexcept {
                    .mass_scale = scenario_.plant_options.mass_scale});
 }
 
+bool ClosedLoop::set_fault(std::string_view name, bool on) noexcept {
+  const std::optional<sim::Fault> fault = sim::fault_named(name);
+  if (fault) faults_.set(*fault, on, time());
+  return fault.has_value();
+}
+
+/// Begins and ends faults; the plant feels them from this step on.
+void ClosedLoop::watch_faults() noexcept {
+  faults_.update(time());
+  plant_->disturb({.grip = faults_.grip(), .side_acceleration = faults_.side_acceleration()});
+}
+
+/// What the actuators do now: the command that has arrived; when none has for long, the car brakes by itself.
+model::Command ClosedLoop::acting() noexcept {
+  const double late = faults_.extra_delay(scenario_.latency);
+  const model::Command& arrived = in_flight_.at(time() + 1e-9 - late);
+  return faults_.done(arrivals_.guard(arrived, time() - late, plant_->output().speed,
+                                      scenario_.vehicle.brake_throttle_limit));
+}
+
 void ClosedLoop::control(double budget, const GivenStep* given) noexcept {
+  faults_.update(time());
   model::Measurement now = sensor_.sample(time(), *plant_);
   sim::select_waypoints(waypoints_, {now.x, now.y, now.psi}, scenario_.waypoints_sent, now);
+  now = faults_.seen(now);
   // Commands act in the order they are sent: behind a latency that has just been shortened they still wait.
   now.delay = std::max(scenario_.latency + step_time_, in_flight_.last_time() - now.time);
-  DeadlineLog questions;
+  DeadlineLog questions{.spent_at = faults_.deadline_questions()};
   if (given != nullptr) {
     now.delay = given->delay;
     questions.spent_at = given->deadline_spent_at;
@@ -145,7 +176,10 @@ void ClosedLoop::control(double budget, const GivenStep* given) noexcept {
   frame_.result.command = gated.command;
   frame_.result.report.gated = gated.reason != safety::GateReason::kNone;
   fill_frame(now, taken);
-  in_flight_.push(now.time + now.delay, gated.command);
+  if (faults_.is_delivered()) {
+    in_flight_.push(now.time + now.delay, gated.command);
+    arrivals_.arrived(now.time + now.delay);
+  }
   metrics_.add(frame_);
   next_control_ += scenario_.control_period;
   ++cycle_;
@@ -156,7 +190,8 @@ void ClosedLoop::fill_frame(const model::Measurement& now, double step_time) noe
   frame_.cycle = cycle_;
   frame_.time = now.time;
   frame_.measurement = now;
-  frame_.applied = in_flight_.at(time() + 1e-9);
+  frame_.applied = acting();
+  frame_.active_faults = faults_.bits();
   frame_.step_time = step_time;
   frame_.solve_time = frame_.result.report.solve_time;
   frame_.prediction_error = promises_.error(now.time, {frame_.truth.x, frame_.truth.y});

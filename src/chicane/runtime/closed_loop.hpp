@@ -10,9 +10,11 @@
 #include "chicane/controller/controller.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/runtime/manual_drive.hpp"
+#include "chicane/safety/arrival_watch.hpp"
 #include "chicane/safety/command_gate.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/actuation_delay.hpp"
+#include "chicane/sim/fault.hpp"
 #include "chicane/sim/plant.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
@@ -52,12 +54,16 @@ class ClosedLoop {
   /// The next advance() begins with the control step number cycle().
   [[nodiscard]] bool is_control_due() const noexcept { return time() >= next_control_ - 1e-9; }
   [[nodiscard]] std::uint64_t cycle() const noexcept { return cycle_; }
-  /// A setting changes before the next control step: a key of the schema that is_live(), "run.pace" or
-  /// "manual.…". What was learned and what is under way stay. A change that --set would refuse changes
-  /// nothing. Allocates nothing; call it between two advance().
+  /// A setting changes before the next control step: a key of the schema that is_live(), "run.pace",
+  /// "manual.…" or "fault.…". What was learned and what is under way stay. A change that --set would refuse
+  /// changes nothing. Allocates nothing; call it between two advance().
   void apply(const telemetry::Change& change) noexcept;
   /// Run seconds that were asked for per second of the clock.
   [[nodiscard]] double pace() const noexcept { return pace_; }
+  /// Switches a fault (sim/fault.hpp) on, for its own duration and with its own strength, or off. False, and
+  /// nothing changes, for a name that is none. Call it between two advance(). What is on is in
+  /// Frame::active_faults.
+  bool set_fault(std::string_view name, bool on) noexcept;
   /// All laps driven, the car lost, or time up.
   [[nodiscard]] bool is_over() const noexcept { return over_; }
   /// More laps than were asked for: is_over() only when the car is lost. Their laps are counted and
@@ -78,6 +84,8 @@ class ClosedLoop {
   ClosedLoop(const scenario::Scenario& scenario, path::Track track, path::Track waypoints,
              std::unique_ptr<sim::Plant> plant, std::unique_ptr<controller::Controller> controller);
   void control(double budget, const GivenStep* given) noexcept;
+  void watch_faults() noexcept;
+  [[nodiscard]] model::Command acting() noexcept;
   void fill_frame(const model::Measurement& now, double step_time) noexcept;
   void judge() noexcept;
 
@@ -92,6 +100,8 @@ class ClosedLoop {
   safety::CommandGate gate_;
   ManualDrive hands_;
   double pace_ = 1.0;
+  sim::FaultLab faults_;
+  safety::ArrivalWatch arrivals_;
   telemetry::Metrics metrics_;
   telemetry::PredictionCheck promises_;
   telemetry::Frame frame_;

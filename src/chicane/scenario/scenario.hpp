@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "chicane/controller/baselines.hpp"
 #include "chicane/controller/cubic_mpc.hpp"
 #include "chicane/controller/tracking_mpc.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/sim/fault.hpp"
 #include "chicane/sim/sensor.hpp"
 
 namespace chicane::scenario {
@@ -40,6 +42,7 @@ struct Scenario {
   model::VehicleParams vehicle;  ///< what the controller believes
   PlantOptions plant_options;
   sim::SensorOptions sensor;
+  std::vector<sim::FaultEvent> faults;  ///< that happen during the run; at most sim::FaultLab::kCapacity
 
   controller::TrackingMpcOptions tracking_mpc;
   controller::CubicMpcOptions cubic_mpc;

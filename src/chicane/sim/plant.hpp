@@ -27,6 +27,12 @@ struct PlantDeviation {
   double mass_scale = 1.0;      ///< mass and yaw inertia of the body times this; [0.5, 2]
 };
 
+/// What happens to a plant from outside (sim/fault.hpp).
+struct Disturbance {
+  double grip = 1.0;               ///< all tyre forces times this, beside any lasting deviation; > 0
+  double side_acceleration = 0.0;  ///< push along B's y [m/s²]
+};
+
 /// The car that answers back: tyres, drive, brakes, actuators. Not the model a controller believes in.
 /// Deterministic, allocation-free, one thread. Fixed physics step.
 class Plant {
@@ -38,6 +44,8 @@ class Plant {
   /// Another deviation from the nominal car from the next step on; the car stays where it is, as fast as it
   /// is.
   virtual void deviate(const PlantDeviation& deviation) noexcept = 0;
+  /// Acts from the next step on, until told otherwise; survives reset().
+  virtual void disturb(const Disturbance& /*disturbance*/) noexcept {}
   /// One physics step with `command` acting on the actuators from its beginning. Any finite command; clamped
   /// inside.
   virtual void advance(const model::Command& command) noexcept = 0;

@@ -120,7 +120,7 @@ Vec2 RoadCar::tire_force(Wheel& wheel, const Vec2& v) const noexcept {
       params_.friction * (1.0 - params_.load_sensitivity * (wheel.load / wheel.static_load - 1.0));
   const double share = wheel.tire(size);
   wheel.use = size < wheel.peak_slip ? share : size / wheel.peak_slip;
-  const double force = wheel.load * std::max(friction, 0.1) * share;
+  const double force = wheel.load * std::max(friction, 0.1) * disturbance_.grip * share;
   return {force * along / size, force * across / size};
 }
 
@@ -176,6 +176,7 @@ void RoadCar::move() noexcept {
         (left.load * left.use + right.load * right.use) / std::max(left.load + right.load, 1.0);
   }
 
+  force_B.y() += params_.mass * disturbance_.side_acceleration;
   const Vec2 a_B = force_B / params_.mass;
   transfer_ += (kDt / params_.load_lag) * (a_B - transfer_);
   velocity_ += kDt * turned(a_B, c, s);

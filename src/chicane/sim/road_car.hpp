@@ -69,6 +69,7 @@ class RoadCar final : public Plant {
   [[nodiscard]] double step_length() const noexcept override { return kStepLength; }
   void reset(const model::Pose& pose, double speed) noexcept override;
   void deviate(const PlantDeviation& deviation) noexcept override;
+  void disturb(const Disturbance& disturbance) noexcept override { disturbance_ = disturbance; }
   void advance(const model::Command& command) noexcept override;
   [[nodiscard]] const model::State& state() const noexcept override { return state_; }
   [[nodiscard]] const PlantOutput& output() const noexcept override { return output_; }
@@ -95,6 +96,7 @@ class RoadCar final : public Plant {
 
   RoadCarParams nominal_;
   RoadCarParams params_;  ///< those of this car, which may deviate
+  Disturbance disturbance_;
   std::array<Wheel, 4> wheels_{};
   Vec2 velocity_ = Vec2::Zero();  ///< in W [m/s]
   Vec2 transfer_ = Vec2::Zero();  ///< lagged acceleration that shifts load, in B [m/s²]

@@ -120,7 +120,8 @@ void UdacityCar::load_wheels() noexcept {
   const double load = rest + params_.downforce * velocity_.norm();
   const double slope = (3.0 - params_.load_filter_offset) / 3.0;
   const double filtered = std::min(rest * params_.load_filter_offset + slope * load, 3.0 * rest);
-  for (Wheel& wheel : wheels_) wheel.load = filtered * wheel.load_share * params_.friction_scale;
+  for (Wheel& wheel : wheels_)
+    wheel.load = filtered * wheel.load_share * params_.friction_scale * disturbance_.grip;
 }
 
 double UdacityCar::forward_force(Wheel& wheel, double speed_along, double dt) const noexcept {
@@ -174,6 +175,7 @@ void UdacityCar::move(double dt) noexcept {
     force_B += force;
     moment += wheel.position.x() * force.y() - wheel.position.y() * force.x();
   }
+  force_B.y() += params_.mass * disturbance_.side_acceleration;
   velocity_ += (dt / params_.mass) * rotated(force_B, state_.psi);
   state_.r += dt * moment / params_.yaw_inertia;
   state_.x += dt * velocity_.x();

@@ -70,6 +70,7 @@ class UdacityCar final : public Plant {
   /// From standstill the drive torque starts at 0, as when the scene starts; at speed > 0 it starts in full.
   void reset(const model::Pose& pose, double speed) noexcept override;
   void deviate(const PlantDeviation& deviation) noexcept override;
+  void disturb(const Disturbance& disturbance) noexcept override { disturbance_ = disturbance; }
   void advance(const model::Command& command) noexcept override;
   [[nodiscard]] const model::State& state() const noexcept override { return state_; }
   [[nodiscard]] const PlantOutput& output() const noexcept override { return output_; }
@@ -99,6 +100,7 @@ class UdacityCar final : public Plant {
 
   UdacityCarParams nominal_;
   UdacityCarParams params_;  ///< those of this car, which may deviate
+  Disturbance disturbance_;
   std::array<Wheel, 4> wheels_{};
   Vec2 velocity_ = Vec2::Zero();  ///< in W [m/s]
   double drive_torque_ = 0.0;     ///< allowed by traction control, over all wheels [N m]

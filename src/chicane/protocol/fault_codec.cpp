@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/fault_codec.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "chicane/protocol/schema.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+constexpr double kLongest = 1e6;  // [s]
+
+std::optional<double> number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// Reads `text` into `value` when there is one; the sentence of what is wrong otherwise.
+std::string read(std::string_view key, std::string_view text, double low, double high, double& value) {
+  if (text.empty()) return {};
+  const std::optional<double> read = number(text);
+  if (read && *read >= low && *read <= high) {
+    value = *read;
+    return {};
+  }
+  return fmt::format("{}: got {}, expected a number in [{}, {}]", key, quoted(text), low, high);
+}
+
+}  // namespace
+
+std::string expected_fault(std::string_view word) {
+  std::vector<std::string_view> names;
+  for (const sim::FaultKind& kind : sim::fault_kinds()) names.push_back(kind.name);
+  const std::string_view best = nearest(word, names);
+  return best.empty() ? "one of `chicane list faults`"
+                      : fmt::format("one of `chicane list faults` (did you mean {}?)", best);
+}
+
+Result<sim::FaultEvent> read_fault(const FaultText& text) {
+  const std::optional<sim::Fault> fault = sim::fault_named(text.name);
+  if (!fault) {
+    return fail(ErrorCode::kInvalidArgument, fmt::format("faults.name: got {}, expected {}",
+                                                         quoted(text.name), expected_fault(text.name)));
+  }
+  const sim::FaultKind& kind = sim::kind_of(*fault);
+  sim::FaultEvent event = sim::default_event(*fault, 0.0);
+  std::string wrong;
+  if (text.at.empty()) wrong = "faults.at_s: got nothing, expected when it begins [s]";
+  if (wrong.empty()) wrong = read("faults.at_s", text.at, 0.0, kLongest, event.at);
+  if (wrong.empty()) wrong = read("faults.for_s", text.duration, 0.001, kLongest, event.duration);
+  if (wrong.empty() && kind.strength_meaning.empty() && !text.strength.empty()) {
+    wrong = fmt::format("faults.strength: got {}, expected none: {} has no strength", quoted(text.strength),
+                        kind.name);
+  }
+  if (wrong.empty())
+    wrong = read("faults.strength", text.strength, kind.weakest, kind.strongest, event.strength);
+  if (!wrong.empty()) return fail(ErrorCode::kInvalidArgument, wrong);
+  return event;
+}
+
+Result<sim::FaultEvent> parse_fault(std::string_view text) {
+  FaultText parts;
+  const auto cut = [](std::string_view& rest, char mark) {
+    const std::size_t at = rest.find(mark);
+    if (at == std::string_view::npos) return std::string{};
+    std::string tail(rest.substr(at + 1));
+    rest = rest.substr(0, at);
+    return tail.empty() ? std::string(1, mark) : tail;  // "x@12+" says a plus and then nothing: no number
+  };
+  std::string_view rest = text;
+  parts.strength = cut(rest, '*');
+  parts.duration = cut(rest, '+');
+  parts.at = cut(rest, '@');
+  parts.name = rest;
+  Result<sim::FaultEvent> event = read_fault(parts);
+  if (event) return event;
+  return fail(ErrorCode::kInvalidArgument,
+              fmt::format("--fault {}: {}; written as NAME@SECOND+SECONDS*STRENGTH", quoted(text),
+                          event.error().message));
+}
+
+std::string write_fault(const sim::FaultEvent& event) {
+  const sim::FaultKind& kind = sim::kind_of(event.fault);
+  std::string text = fmt::format("{{name: {}, at_s: {}, for_s: {}", kind.name, event.at, event.duration);
+  if (!kind.strength_meaning.empty()) text += fmt::format(", strength: {}", event.strength);
+  return text + "}";
+}
+
+std::vector<std::string> fault_names() {
+  std::vector<std::string> names;
+  for (const sim::FaultKind& kind : sim::fault_kinds()) names.emplace_back(kind.name);
+  return names;
+}
+
+std::vector<Control> fault_controls() {
+  static const std::vector<std::string> keys = [] {
+    std::vector<std::string> list = fault_names();
+    for (std::string& name : list) name.insert(0, "fault.");
+    return list;
+  }();
+  std::vector<Control> controls;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    controls.push_back({keys[i], Kind::kBool, "", 0.0, 0.0, false, sim::fault_kinds()[i].meaning});
+  return controls;
+}
+
+}  // namespace chicane::protocol

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "chicane/base/random.hpp"
+#include "chicane/base/types.hpp"
+#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
+
+namespace chicane::sim {
+
+/// Everything that can go wrong on purpose, in the order of fault_kinds() and of the bits that say what is
+/// on.
+enum class Fault : std::uint8_t {
+  kLinkLost,
+  kFrozenSensor,
+  kNanMeasurement,
+  kPositionJump,
+  kGpsNoise,
+  kSpeedSensorZero,
+  kWaypointsMissing,
+  kHalfGrip,
+  kIcePatch,
+  kSideWind,
+  kWeakBrakes,
+  kSteeringStuck,
+  kSteeringOffset,
+  kThrottleStuck,
+  kSlowSolver,
+  kDeadController,
+  kDelayDoubled,
+  kCommandDropped,
+};
+inline constexpr std::size_t kFaultCount = 18;
+
+/// What a fault is called, what it does, and how.
+struct FaultKind {
+  std::string_view name;     ///< "half_grip"
+  std::string_view meaning;  ///< one sentence
+  double duration = 1.0;     ///< unless said otherwise [s]
+  double strength = 1.0;     ///< unless said otherwise
+  double weakest = 0.0;      ///< range of the strength
+  double strongest = 1.0;
+  std::string_view strength_meaning;  ///< with its unit; empty when the fault has no strength
+};
+
+/// The one list of faults: scenario files, --fault, dashboard, tests and docs/faults.md all read it.
+[[nodiscard]] std::span<const FaultKind> fault_kinds() noexcept;
+[[nodiscard]] inline const FaultKind& kind_of(Fault fault) noexcept {
+  return fault_kinds()[static_cast<std::size_t>(fault)];
+}
+/// None for a name that is not in the list.
+[[nodiscard]] std::optional<Fault> fault_named(std::string_view name) noexcept;
+
+/// A fault with its time: what a scenario holds.
+struct FaultEvent {
+  Fault fault = Fault::kLinkLost;
+  double at = 0.0;        ///< when it begins [s]; >= 0
+  double duration = 1.0;  ///< [s]; > 0
+  double strength = 1.0;  ///< in the kind's range
+};
+/// With the kind's own duration and strength.
+[[nodiscard]] FaultEvent default_event(Fault fault, double at) noexcept;
+
+/// What goes wrong in a run: scheduled events and switches, applied to what passes between car and
+/// controller. Seeded and deterministic: chance is drawn only by faults that are on, each from a stream of
+/// its own. No allocation after construction; one thread.
+class FaultLab {
+ public:
+  static constexpr std::size_t kCapacity = 64;  ///< scheduled events; later ones are left out
+
+  FaultLab(std::span<const FaultEvent> events, std::uint64_t seed) noexcept;
+  /// A new run: nothing is on, all is scheduled again.
+  void reset() noexcept;
+
+  /// Begins and ends what is due at `time` [s]; times do not decrease. Call it before the rest.
+  void update(double time) noexcept;
+  /// Switches on from `time` for the kind's own duration and with its own strength, or off; what is already
+  /// as asked stays.
+  void set(Fault fault, bool on, double time) noexcept;
+
+  [[nodiscard]] bool is_on(Fault fault) const noexcept { return (bits_ & bit(fault)) != 0U; }
+  [[nodiscard]] std::uint32_t bits() const noexcept { return bits_; }
+
+  /// What the controller is told instead of `now`. With a lost link only the time is known.
+  [[nodiscard]] model::Measurement seen(const model::Measurement& now) noexcept;
+  /// False when a command gets lost on its way.
+  [[nodiscard]] bool is_delivered() noexcept;
+  /// What the actuators do instead of `command`.
+  [[nodiscard]] model::Command done(const model::Command& command) noexcept;
+  /// Time that commands arrive later than the controller is told, when they are told `latency` [s].
+  [[nodiscard]] double extra_delay(double latency) const noexcept;
+  /// Tyre forces times this.
+  [[nodiscard]] double grip() const noexcept;
+  /// Sideways push on the car [m/s²], left positive.
+  [[nodiscard]] double side_acceleration() const noexcept;
+  /// Questions to the deadline until it is spent, 0 = as the clock says (base/deadline.hpp).
+  [[nodiscard]] std::uint32_t deadline_questions() const noexcept;
+
+ private:
+  struct Active {
+    double until = 0.0;
+    double strength = 1.0;
+  };
+  [[nodiscard]] static constexpr std::uint32_t bit(Fault fault) noexcept {
+    return 1U << static_cast<unsigned>(fault);
+  }
+  [[nodiscard]] double strength(Fault fault) const noexcept {
+    return active_[static_cast<std::size_t>(fault)].strength;
+  }
+  void begin(Fault fault, double until, double strength) noexcept;
+  void end(Fault fault) noexcept;
+
+  std::array<FaultEvent, kCapacity> events_{};
+  std::array<bool, kCapacity> has_begun_{};
+  std::size_t event_count_ = 0;
+  std::uint64_t seed_;
+  std::array<Active, kFaultCount> active_{};
+  std::uint32_t bits_ = 0;
+  Random noise_;
+  Random loss_;
+  std::optional<model::Measurement> frozen_;  ///< the last one before the sensor froze
+  std::optional<double> stuck_steer_;         ///< [rad]
+  std::optional<double> stuck_throttle_;
+};
+
+}  // namespace chicane::sim
