@@ -155,11 +155,24 @@ function Swatch({ name, label, isMinor = false }: { name: string; label: string;
   );
 }
 
+/** Why there is no 3D picture, where somebody could expect one. */
+function Note() {
+  if (dimension.value === '3d' && obstacle.value !== null) {
+    return (
+      <p class="obstacle warning" role="status">
+        {obstacle.value}
+      </p>
+    );
+  }
+  return isSpared.value ? <p class="obstacle">No graphics card here: 3D works, but slowly.</p> : null;
+}
+
 function Legend() {
   const top = scaleTop.value * MPH;
   const ghost = ghostLabel.value;
   return (
     <div class="legend">
+      <Note />
       {!shows3d.value && (
         <div class="legend-item">
           <span class="scale-bar" style={{ width: `${bar.value.pixels}px` }} />
@@ -235,18 +248,6 @@ function MapControls() {
   );
 }
 
-/** Why there is no 3D picture, where somebody could expect one. */
-function Note() {
-  if (dimension.value === '3d' && obstacle.value !== null) {
-    return (
-      <p class="obstacle warning" role="status">
-        {obstacle.value}
-      </p>
-    );
-  }
-  return isSpared.value ? <p class="obstacle">No graphics card here: 3D is drawn by the processor, with fewer pictures.</p> : null;
-}
-
 function usePainter() {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
@@ -283,7 +284,6 @@ export function TrackView() {
       {/* Always there: in full, or as the small map beside the 3D picture. */}
       <canvas ref={canvas} class="map-2d" role="img" aria-label={label} />
       <MapControls />
-      <Note />
       <Legend />
     </section>
   );
