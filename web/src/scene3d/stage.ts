@@ -141,8 +141,9 @@ export class Stage {
     this.#lastPicture = now;
     this.#resize(width, height);
     this.#renew(view);
-    this.#move(view, motion);
-    this.#film(view, motion, width / height, Math.min(gap, 1000) / 1000);
+    const passed = this.#move(view, motion);
+    // In fast motion, and after a pause of the page, the camera keeps up with the run.
+    this.#film(view, motion, width / height, Math.max(Math.min(gap, 1000) / 1000, passed));
     this.#renderer.render(this.#scene, this.#camera);
     if (this.#governor.picture(gap, performance.now() - begin)) this.#lastChange = now;
   }
@@ -213,10 +214,11 @@ export class Stage {
     this.#sun.shadow.bias = -0.002;
   }
 
-  #move(view: View, motion: Motion | null): void {
+  /** Returns how much of the run has passed since the last picture [s]. */
+  #move(view: View, motion: Motion | null): number {
     const car = this.#car;
     if (car) car.group.visible = motion !== null;
-    if (!car || !motion) return;
+    if (!car || !motion) return 0;
     if (view.session.playout.jumps !== this.#jumps || motion.time < this.#runTime) {
       this.#jumps = view.session.playout.jumps;
       this.#runTime = motion.time;
@@ -235,6 +237,7 @@ export class Stage {
     this.#sun.target.position.set(motion.x, motion.y, 0);
     this.#sun.position.set(motion.x - 0.45 * away, motion.y + 0.35 * away, 0.8 * away);
     this.#moveGhost(view.ghost, motion, car.model.length);
+    return passed;
   }
 
   readonly #ghostPose: GhostPose = { x: 0, y: 0, yaw: 0, steer: 0 };
