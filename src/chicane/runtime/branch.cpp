@@ -98,7 +98,13 @@ class Branching {
 
   Result<BranchReport> run() {
     RecordingHead head;
-    const auto read = read_recording(options_.log, head, [this](const RecordedEvent& event) {
+    const auto read = read_recording(options_.log, head, [&](const RecordedEvent& event) -> Result<void> {
+      if (head["mode"] == "serve") {
+        return fail(ErrorCode::kInvalidArgument,
+                    options_.log +
+                        ": mode: got serve, expected drive: the car of an external simulator is not "
+                        "here to drive on");
+      }
       return std::visit([this](const auto& one) { return take(one); }, event);
     });
     if (!read) return fail(read.error());
