@@ -112,18 +112,39 @@ BENCHMARK(Solve<CorridorProblem, kWarm>)->Arg(10)->Arg(20)->Arg(40)->Unit(benchm
 /// One pass over 100 stages; reported as seconds for each stage.
 struct Passes {
   static constexpr int kStages = 100;
-  using Lin = solver::Linearisation<DescribedProblem, kCapacity>;
-  std::vector<Instance<DescribedProblem>> instances = make_instances<DescribedProblem>(kStages, kPathLaw);
-  std::unique_ptr<Lin> now = std::make_unique<Lin>();
-  std::unique_ptr<Lin::Lq> lq = std::make_unique<Lin::Lq>();
-  Trajectory trajectory = instances[0].guess;
+  using Problem = bench::StructuredDescribedProblem;
+  using Arch = arch::Native;
+  using Lq = solver::LqSolver<Arch, solver::ProblemPattern<Problem>, kCapacity>;
+  Instance<DescribedProblem> instance = make_instances<DescribedProblem>(kStages, kPathLaw)[0];
+  Problem problem{instance.problem, instance.start[4]};
+  std::unique_ptr<solver::Linearisation<Problem, kCapacity, Arch>> now =
+      std::make_unique<solver::Linearisation<Problem, kCapacity, Arch>>();
+  std::unique_ptr<Lq> lq = std::make_unique<Lq>();
+  std::unique_ptr<solver::Barrier<Problem, kCapacity, Arch>> slacks =
+      std::make_unique<solver::Barrier<Problem, kCapacity, Arch>>();
+  solver::Iterate<7, 2, kCapacity> point;
   solver::SolveReport report;
 
   Passes() {
-    solver::roll_out(instances[0].problem, instances[0].start, trajectory);
-    now->evaluate(instances[0].problem, trajectory, *lq, report);
-    now->measure(trajectory, *lq, report);
+    solver::Trajectory<7, 2, kCapacity> trajectory;
+    trajectory.horizon = kStages;
+    trajectory.u = instance.guess.u;
+    solver::roll_out(problem, Problem::without_cte(instance.start), trajectory);
+    point.horizon = kStages;
+    for (std::size_t k = 0; k <= kStages; ++k) {
+      for (std::size_t i = 0; i < 7; ++i) point.x[i][k] = trajectory.x[k][i];
+      for (std::size_t m = 0; m < 2; ++m) {
+        point.u[m][k] = trajectory.u[k][m];
+        now->lower[m][k] = problem.input_lower(0)[m];
+        now->upper[m][k] = problem.input_upper(0)[m];
+      }
+    }
+    look<1>();
     lq->backward(kStages, 0.0, true);
+  }
+  template <int Order>
+  void look() {
+    now->look<Order>(problem, point, false, 1e-13, *slacks, lq->lq, report);
   }
 };
 
@@ -137,17 +158,14 @@ void per_stage(benchmark::State& state, const Pass& pass) {
       Passes::kStages, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void FirstDerivatives(benchmark::State& state) {
+/// Values, derivatives, adjoint, optimality and the stages of the quadratic program.
+void LookFirstOrder(benchmark::State& state) {
   Passes p;
-  per_stage(state, [&] { p.now->evaluate(p.instances[0].problem, p.trajectory, *p.lq, p.report); });
+  per_stage(state, [&] { p.look<1>(); });
 }
-void SecondDerivatives(benchmark::State& state) {
+void LookSecondOrder(benchmark::State& state) {
   Passes p;
-  per_stage(state, [&] { p.now->evaluate_curvature(p.instances[0].problem, p.trajectory); });
-}
-void Adjoint(benchmark::State& state) {
-  Passes p;
-  per_stage(state, [&] { p.now->measure(p.trajectory, *p.lq, p.report); });
+  per_stage(state, [&] { p.look<2>(); });
 }
 void BackwardSweep(benchmark::State& state) {
   Passes p;
@@ -155,13 +173,11 @@ void BackwardSweep(benchmark::State& state) {
 }
 void ForwardSweep(benchmark::State& state) {
   Passes p;
-  per_stage(state, [&] {
-    benchmark::DoNotOptimize(p.lq->forward(Passes::kStages, Passes::Lin::Lq::Repair::kLast));
-  });
+  per_stage(state,
+            [&] { benchmark::DoNotOptimize(p.lq->forward(Passes::kStages, Passes::Lq::Repair::kLast)); });
 }
-BENCHMARK(FirstDerivatives);
-BENCHMARK(SecondDerivatives);
-BENCHMARK(Adjoint);
+BENCHMARK(LookFirstOrder);
+BENCHMARK(LookSecondOrder);
 BENCHMARK(BackwardSweep);
 BENCHMARK(ForwardSweep);
 

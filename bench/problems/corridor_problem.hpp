@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
+#include <tuple>
 
 #include "problems/described_problem.hpp"
 
@@ -31,6 +33,39 @@ struct CorridorProblem : DescribedProblem {
     return {s[4] - high, low - s[4]};
   }
   [[nodiscard]] solver::SoftPenalty soft_penalty(int) const { return price; }
+};
+
+/// The same problem in the solver's structured form. cte_{k+1} is an output of stage k, so each bound stands
+/// one stage earlier; the last stage has none, as the end has none.
+struct StructuredCorridorProblem : StructuredDescribedProblem {
+  static constexpr int kNc = 2;
+  static constexpr std::size_t kCapacity = 200;
+  static constexpr double kFar = 1e3;  ///< [m]
+
+  solver::StageData<kCapacity> low;
+  solver::StageData<kCapacity> high;
+  solver::SoftPenalty price;
+
+  StructuredCorridorProblem() = default;
+  StructuredCorridorProblem(const CorridorProblem& plain, double cte, int horizon)
+      : StructuredDescribedProblem(plain, cte), price(plain.price) {
+    for (int k = 0; k < horizon; ++k) {
+      const std::array<double, 2> excess =
+          plain.constraint(k + 1, std::array<double, DescribedProblem::kNx>{}, std::array<double, 2>{});
+      const bool is_last = k == horizon - 1;
+      high[static_cast<std::size_t>(k)] = is_last ? kFar : -excess[0];
+      low[static_cast<std::size_t>(k)] = is_last ? -kFar : excess[1];
+    }
+  }
+
+  template <class K, class X, class U>
+  auto constraint(K k, const X& s, const U&) const {
+    const auto cte = next_cte(s);
+    return std::make_tuple(cte - high.at(k), low.at(k) - cte);
+  }
+  [[nodiscard]] solver::SoftPenalty soft_penalty(int) const { return price; }
+  [[nodiscard]] static std::string_view constraint_name(int c) { return c == 0 ? "left edge" : "right edge"; }
+  [[nodiscard]] static std::string_view constraint_unit(int) { return "m"; }
 };
 
 /// A random instance of it for a horizon.

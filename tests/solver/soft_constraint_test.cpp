@@ -27,7 +27,7 @@ TEST(SoftConstraint, CentreSolvesTheCentralPathForAnyPriceAndValue) {
     const SoftPenalty price{.linear = i % 10 == 0 ? 0.0 : decade(random, -2.0, 5.0),
                             .quadratic = decade(random, -2.0, 5.0)};
     const double mu = decade(random, -8.0, 3.0);
-    SoftConstraint c;
+    SoftConstraint<> c;
     c.value = (i % 2 == 0 ? 1.0 : -1.0) * decade(random, -6.0, 3.0);
     c.centre(price, mu);
     ASSERT_GT(c.s, 0.0);
@@ -42,15 +42,15 @@ TEST(SoftConstraint, ModelPredictsTheMultiplierAfterTheStep) {
   Random random{42};
   const SoftPenalty price{.linear = 500.0, .quadratic = 100.0};
   for (int i = 0; i < 1000; ++i) {
-    SoftConstraint c;
+    SoftConstraint<> c;
     c.value = random.uniform(-2.0, 2.0);
     c.s = decade(random, -3.0, 1.0);
     c.t = decade(random, -3.0, 1.0);
     c.n = decade(random, -1.0, 3.0);
     c.z = decade(random, -1.0, 3.0);
     const double change = random.uniform(-0.5, 0.5);
-    const SoftConstraint step = c.step(price, 0.1, change);
-    const SoftConstraint::Model model = c.model(price, 0.1);
+    const SoftConstraint<> step = c.step(price, 0.1, change);
+    const SoftConstraint<>::Model model = c.model(price, 0.1);
     const double predicted = model.slope + model.curvature * change;
     ASSERT_NEAR(c.z + step.z, predicted, 1e-9 * (std::fabs(predicted) + model.curvature + c.z)) << i;
     ASSERT_GE(model.curvature, 0.0);
@@ -60,7 +60,7 @@ TEST(SoftConstraint, ModelPredictsTheMultiplierAfterTheStep) {
 TEST(SoftConstraint, SmoothedPenaltyTendsToTheExactOne) {
   const SoftPenalty price{.linear = 500.0, .quadratic = 100.0};
   for (const double value : {-1.0, -1e-3, 1e-3, 1.0}) {
-    SoftConstraint c;
+    SoftConstraint<> c;
     c.value = value;
     c.centre(price, 1e-9);
     EXPECT_NEAR(c.barrier(price, 1e-9), c.penalty(price), 1e-6);

@@ -30,16 +30,23 @@ struct Jet {
   static constexpr Pairs kSecond = Second;
   static constexpr std::size_t kSlopes = static_cast<std::size_t>(size_of(First & ~Unit));
   static constexpr std::size_t kCurvatures = static_cast<std::size_t>(Second.size());
+  /// Every derivative with respect to variables 0 … n is stored: loops do.
+  static constexpr bool kIsDense = Unit == 0 && First != 0 && (First & (First + 1)) == 0 &&
+                                   (Order < 2 || Second == Pairs::of(First, First));
 
-  V v{};                                    ///< value
-  std::array<V, kSlopes> slopes{};          ///< by variable
-  std::array<V, kCurvatures> curvatures{};  ///< by pair, in the order of members<Second>()
+  V v;                                    ///< value
+  std::array<V, kSlopes> slopes;          ///< by variable
+  std::array<V, kCurvatures> curvatures;  ///< by pair, in the order of members<Second>()
 
-  constexpr Jet() = default;
+  constexpr Jet() noexcept {}  // NOLINT: not initialised, like a plain double
   /// A constant, where all derivatives can be stored as zero.
   template <class S>
-  requires(Unit == 0 && std::convertible_to<S, V>) constexpr Jet(const S& value)
-      : v(value) {}  // NOLINT: constants mix freely with jets, as in formulas
+  requires(Unit == 0 && std::convertible_to<S, V>) constexpr Jet(
+      const S& value)  // NOLINT: constants mix freely with jets, as in formulas
+      : v(value) {
+    slopes.fill(V(0.0));
+    curvatures.fill(V(0.0));
+  }
   /// The same with more stored zeros.
   template <Variables F, Variables U, Pairs P>
   requires(
@@ -50,6 +57,7 @@ struct Jet {
   constexpr Jet& operator+=(const Jet& o) { return *this = *this + o; }
   constexpr Jet& operator-=(const Jet& o) { return *this = *this - o; }
   constexpr Jet& operator*=(const Jet& o) { return *this = *this * o; }
+  constexpr Jet& operator/=(const Jet& o) { return *this = *this / o; }
 };
 
 /// Variable number `Index` itself.
@@ -190,11 +198,36 @@ constexpr Pairs second_of() noexcept {
   return set;
 }
 
-/// The chain rule in two arguments.
+/// The chain rule for jets that store everything: plain loops, quick to compile.
+template <AnyJet A, class PA, class PB, class AA, class AB, class BB>
+[[nodiscard, gnu::always_inline]] inline constexpr A chain_dense(const A& a, const A& b,
+                                                                 const typename A::Value& value,
+                                                                 const Partials<PA, PB, AA, AB, BB>& f) {
+  using V = typename A::Value;
+  constexpr std::size_t count = A::kSlopes;
+  A r;
+  r.v = value;
+  for (std::size_t i = 0; i < count; ++i)
+    r.slopes[i] = number<V>(plus<V>(times(f.a, a.slopes[i]), times(f.b, b.slopes[i])));
+  if constexpr (A::kOrder == 2) {
+    std::size_t at = 0;
+    for (std::size_t j = 0; j < count; ++j) {
+      const auto aj = plus<V>(times(f.aa, a.slopes[j]), times(f.ab, b.slopes[j]));
+      const auto bj = plus<V>(times(f.bb, b.slopes[j]), times(f.ab, a.slopes[j]));
+      for (std::size_t i = 0; i <= j; ++i, ++at) {
+        const auto inner = plus<V>(times(f.a, a.curvatures[at]), times(f.b, b.curvatures[at]));
+        r.curvatures[at] = number<V>(plus<V>(inner, plus<V>(times(aj, a.slopes[i]), times(bj, b.slopes[i]))));
+      }
+    }
+  }
+  return r;
+}
+
+/// The chain rule for jets of any types: each entry on its own.
 template <AnyJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
-[[nodiscard, gnu::always_inline]] inline constexpr auto chain(const A& a, const B& b,
-                                                              const typename A::Value& value,
-                                                              const Partials<PA, PB, AA, AB, BB>& f) {
+[[nodiscard, gnu::always_inline]] inline constexpr auto chain_sparse(const A& a, const B& b,
+                                                                     const typename A::Value& value,
+                                                                     const Partials<PA, PB, AA, AB, BB>& f) {
   using V = typename A::Value;
   constexpr Variables first = (is_zero<PA> ? 0 : A::kFirst) | (is_zero<PB> ? 0 : B::kFirst);
   constexpr Variables unit = unit_of<PA, PB, A, B>();
@@ -224,13 +257,29 @@ template <AnyJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
   return r;
 }
 
+/// The chain rule in two arguments.
+template <AnyJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
+[[nodiscard, gnu::always_inline]] inline constexpr auto chain(const A& a, const B& b,
+                                                              const typename A::Value& value,
+                                                              const Partials<PA, PB, AA, AB, BB>& f) {
+  if constexpr (std::is_same_v<A, B> && A::kIsDense) {
+    return chain_dense(a, b, value, f);
+  } else {
+    return chain_sparse(a, b, value, f);
+  }
+}
+
 /// The chain rule in one argument: f(a) with its slope and curvature.
 template <AnyJet A, class Slope, class Curvature>
 [[nodiscard, gnu::always_inline]] inline constexpr auto chain(const A& a, const typename A::Value& value,
                                                               const Slope& slope,
                                                               const Curvature& curvature) {
-  using Constant = Jet<typename A::Value, A::kOrder, 0>;
-  return chain(a, Constant{}, value, Partials{slope, Zero{}, curvature, Zero{}, Zero{}});
+  const Partials f{slope, Zero{}, curvature, Zero{}, Zero{}};
+  if constexpr (A::kIsDense) {
+    return chain_dense(a, a, value, f);
+  } else {
+    return chain_sparse(a, Jet<typename A::Value, A::kOrder, 0>{}, value, f);
+  }
 }
 
 }  // namespace jet
@@ -337,6 +386,17 @@ requires(AnyJet<A> || AnyJet<B>) [[nodiscard, gnu::always_inline]] inline conste
   return jet::value(a) > jet::value(b);
 }
 
+template <class A, class B>
+requires(AnyJet<A> || AnyJet<B>) [[nodiscard, gnu::always_inline]] inline constexpr auto operator<=(
+    const A& a, const B& b) {
+  return jet::value(a) <= jet::value(b);
+}
+template <class A, class B>
+requires(AnyJet<A> || AnyJet<B>) [[nodiscard, gnu::always_inline]] inline constexpr auto operator>=(
+    const A& a, const B& b) {
+  return jet::value(a) >= jet::value(b);
+}
+
 // ---- elementary functions
 
 template <AnyJet A>
@@ -401,6 +461,12 @@ template <class M, AnyJet A, AnyJet B>
   Jet<V, A::kOrder, A::kFirst | B::kFirst, A::kUnit & B::kUnit, A::kSecond | B::kSecond> r;
   using R = decltype(r);
   r.v = select(mask, a.v, b.v);
+  if constexpr (std::is_same_v<A, B>) {
+    for (std::size_t n = 0; n < R::kSlopes; ++n) r.slopes[n] = select(mask, a.slopes[n], b.slopes[n]);
+    for (std::size_t n = 0; n < R::kCurvatures; ++n)
+      r.curvatures[n] = select(mask, a.curvatures[n], b.curvatures[n]);
+    return r;
+  }
   jet::repeat<static_cast<int>(R::kSlopes)>([&](auto n) __attribute__((always_inline)) {
     constexpr int i = member_of(R::kFirst & ~R::kUnit, n);
     r.slopes[n] = select(mask, jet::number<V>(jet::slope<i>(a)), jet::number<V>(jet::slope<i>(b)));

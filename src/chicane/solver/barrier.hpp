@@ -6,19 +6,29 @@
 #include <cmath>
 #include <cstddef>
 
-#include "chicane/solver/linearisation.hpp"
-#include "chicane/solver/problem.hpp"
+#include "chicane/solver/iterate.hpp"
+#include "chicane/solver/problem_pattern.hpp"
 #include "chicane/solver/soft_constraint.hpp"
 
 namespace chicane::solver {
 
-/// All soft constraints of a horizon and their common barrier μ (docs/solver.md, eq. 14–21). Empty loops
-/// without constraints.
-template <OcpProblem P, std::size_t Capacity>
+/// The price of soft constraint `c`.
+template <OcpProblem P>
+[[nodiscard]] SoftPenalty price_of([[maybe_unused]] const P& problem,
+                                   [[maybe_unused]] std::size_t c) noexcept {
+  if constexpr (P::kNc > 0) return problem.soft_penalty(static_cast<int>(c));
+  return {};
+}
+
+/// All soft constraints of a horizon and their common barrier μ (docs/solver.md, eq. 14–21). Without
+/// constraints there is nothing to it.
+template <OcpProblem P, std::size_t Capacity, class Arch>
 class Barrier {
  public:
   static constexpr std::size_t kNc = P::kNc;
-  using Lin = Linearisation<P, Capacity>;
+  static constexpr std::size_t kNz = P::kNx + P::kNu;
+  using V = Stages<Arch>;
+  using Step = Iterate<P::kNx, P::kNu, Capacity>;
 
   /// Begins with a barrier in proportion to the prices; it will end at `final_mu`.
   void start(const P& problem, double final_mu) noexcept {
@@ -31,32 +41,37 @@ class Barrier {
   [[nodiscard]] double mu() const noexcept { return mu_; }
   [[nodiscard]] bool is_final() const noexcept { return kNc == 0 || mu_ <= final_; }
 
-  /// Puts every constraint on the central path; returns what the barrier adds to the cost there.
-  double centre(const P& problem, std::size_t horizon, Lin& now) const noexcept {
-    double added = 0.0;
-    each(problem, horizon, now,
-         [&](SoftConstraint& soft, const SoftPenalty& price, std::size_t, std::size_t) {
-           soft.centre(price, mu_);
-           added += soft.barrier(price, mu_) - soft.penalty(price);
-         });
-    return added;
+  // ---- constraint c of the eight stages from k on
+  [[nodiscard]] [[gnu::always_inline]] SoftConstraint<V> load(std::size_t c, std::size_t k) const noexcept {
+    return {V::load(value_[c] + k), V::load(s_[c] + k), V::load(t_[c] + k), V::load(n_[c] + k),
+            V::load(z_[c] + k)};
+  }
+  [[gnu::always_inline]] void store(std::size_t c, std::size_t k, const SoftConstraint<V>& soft) noexcept {
+    soft.value.store(value_[c] + k);
+    soft.s.store(s_[c] + k);
+    soft.t.store(t_[c] + k);
+    soft.n.store(n_[c] + k);
+    soft.z.store(z_[c] + k);
+  }
+  /// Keeps its derivatives, for soft_change().
+  template <class J>
+  [[gnu::always_inline]] void store_row(std::size_t c, std::size_t k, const J& constraint) noexcept {
+    jet::repeat<size_of(J::kFirst)>([&](auto n) __attribute__((always_inline)) {
+      constexpr int j = member_of(J::kFirst, n);
+      jet::number<V>(jet::slope<j>(constraint)).store(row_[c][j] + k);
+    });
   }
 
-  /// Largest residual of the constraints' own optimality conditions (eq. 15–17).
-  double residual(const P& problem, std::size_t horizon, Lin& now) const noexcept {
-    double worst = 0.0;
-    each(problem, horizon, now,
-         [&](const SoftConstraint& soft, const SoftPenalty& price, std::size_t, std::size_t) {
-           worst = std::max(worst, soft.residual(price, mu_));
-         });
-    return worst;
-  }
+  /// Value of constraint c of stage k at the last look.
+  [[nodiscard]] double value(std::size_t c, std::size_t k) const noexcept { return value_[c][k]; }
+  /// Its multiplier: what a unit more room would save.
+  [[nodiscard]] double multiplier(std::size_t c, std::size_t k) const noexcept { return z_[c][k]; }
 
   /// Smoothed penalty of the constraint values of one stage.
   double merit(const P& problem, const std::array<double, kNc>& values) const noexcept {
     double sum = 0.0;
     for (std::size_t c = 0; c < kNc; ++c) {
-      SoftConstraint soft;
+      SoftConstraint<> soft;
       soft.value = values[c];
       soft.centre(price_of(problem, c), mu_);
       sum += soft.barrier(price_of(problem, c), mu_);
@@ -64,32 +79,29 @@ class Barrier {
     return sum;
   }
 
-  /// Moves slacks and multipliers along their Newton steps for the step in `lq`, never beyond 0.995 of the
-  /// way to zero; returns the step length that the slacks allow.
-  double step(const P& problem, std::size_t horizon, Lin& now, const typename Lin::Lq& lq) const noexcept {
+  /// Moves slacks and multipliers along their Newton steps for a step of states and inputs, never beyond
+  /// 0.995 of the way to zero; returns the step length that the slacks allow.
+  double step(const P& problem, const Step& step) noexcept {
     constexpr double kFraction = 0.995;
-    double primal = 1.0;
-    double dual = 1.0;
-    const auto limit = [](double length, double value, double change) {
-      return change < 0.0 ? std::min(length, -kFraction * value / change) : length;
-    };
-    const auto newton = [&](const SoftConstraint& soft, const SoftPenalty& price, std::size_t k,
-                            std::size_t c) { return soft.step(price, mu_, now.soft_change(k, c, lq)); };
-    each(problem, horizon, now,
-         [&](const SoftConstraint& soft, const SoftPenalty& price, std::size_t k, std::size_t c) {
-           const SoftConstraint d = newton(soft, price, k, c);
-           primal = limit(limit(primal, soft.s, d.s), soft.t, d.t);
-           dual = limit(limit(dual, soft.z, d.z), soft.n, d.n);
+    if constexpr (kNc == 0) return 1.0;
+    V primal(0.0);  // how often the longest change goes into its value
+    V dual(0.0);
+    each(problem, step,
+         [&](const SoftConstraint<V>& soft, const SoftConstraint<V>& d, auto live, std::size_t, std::size_t) {
+           primal = max(select(live, max(-d.s / soft.s, -d.t / soft.t), V(0.0)), primal);
+           dual = max(select(live, max(-d.z / soft.z, -d.n / soft.n), V(0.0)), dual);
          });
-    each(problem, horizon, now,
-         [&](SoftConstraint& soft, const SoftPenalty& price, std::size_t k, std::size_t c) {
-           const SoftConstraint d = newton(soft, price, k, c);
-           soft.s += primal * d.s;
-           soft.t += primal * d.t;
-           soft.z += dual * d.z;
-           soft.n += dual * d.n;
+    const double length = std::min(1.0, kFraction / std::max(largest(primal), 1e-30));
+    const double dual_length = std::min(1.0, kFraction / std::max(largest(dual), 1e-30));
+    each(problem, step,
+         [&](SoftConstraint<V> soft, const SoftConstraint<V>& d, auto, std::size_t c, std::size_t k) {
+           soft.s += length * d.s;
+           soft.t += length * d.t;
+           soft.z += dual_length * d.z;
+           soft.n += dual_length * d.n;
+           store(c, k, soft);
          });
-    return primal;
+    return length;
   }
 
   /// Lowers the barrier after a full step, the faster the longer the slacks let it be.
@@ -102,20 +114,19 @@ class Barrier {
     if (gain < mu_ * static_cast<double>(horizon * kNc)) mu_ = std::max(final_, 0.2 * mu_);
   }
 
-  bool exceeds_a_cap(const P& problem, std::size_t horizon, Lin& now) const noexcept {
-    bool exceeds = false;
-    each(problem, horizon, now,
-         [&](const SoftConstraint& soft, const SoftPenalty& price, std::size_t, std::size_t) {
-           exceeds = exceeds || soft.value > price.cap;
-         });
-    return exceeds;
+  bool exceeds_a_cap(const P& problem, std::size_t horizon) const noexcept {
+    for (std::size_t c = 0; c < kNc; ++c) {
+      const double cap = price_of(problem, c).cap;
+      for (std::size_t k = 0; k < horizon; ++k) {
+        if (value_[c][k] > cap) return true;
+      }
+    }
+    return false;
   }
 
  private:
-  static SoftPenalty price_of([[maybe_unused]] const P& problem, [[maybe_unused]] std::size_t c) noexcept {
-    if constexpr (kNc > 0) return problem.soft_penalty(static_cast<int>(c));
-    return {};
-  }
+  static constexpr std::size_t kStride = kStageStride<Capacity>;
+
   static double start_mu(const P& problem) noexcept {
     double price = 0.0;
     for (std::size_t c = 0; c < kNc; ++c) {
@@ -123,17 +134,34 @@ class Barrier {
     }
     return 0.2 * price;
   }
+
   template <class Visit>
-  static void each(const P& problem, std::size_t horizon, Lin& now, const Visit& visit) noexcept {
-    if constexpr (kNc > 0) {
-      for (std::size_t k = 0; k < horizon; ++k) {
-        for (std::size_t c = 0; c < kNc; ++c) visit(now.soft[k][c], price_of(problem, c), k, c);
+  void each(const P& problem, const Step& step, const Visit& visit) noexcept {
+    for (std::size_t k = 0; k < step.horizon; k += 8) {
+      const auto live =
+          stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(step.horizon));
+      for (std::size_t c = 0; c < kNc; ++c) {
+        const SoftConstraint<V> soft = load(c, k);
+        visit(soft, soft.step(price_of(problem, c), mu_, change(step, c, k)), live, c, k);
       }
     }
+  }
+  /// First-order change of constraint c under the step.
+  V change(const Step& step, std::size_t c, std::size_t k) const noexcept {
+    V sum(0.0);
+    for (std::size_t i = 0; i < P::kNx; ++i) sum += V::load(row_[c][i] + k) * V::load(step.x[i] + k);
+    for (std::size_t m = 0; m < P::kNu; ++m) sum += V::load(row_[c][P::kNx + m] + k) * V::load(step.u[m] + k);
+    return sum;
   }
 
   double mu_ = 0.0;
   double final_ = 0.0;
+  alignas(64) double value_[kNc > 0 ? kNc : 1][kStride]{};
+  alignas(64) double s_[kNc > 0 ? kNc : 1][kStride]{};
+  alignas(64) double t_[kNc > 0 ? kNc : 1][kStride]{};
+  alignas(64) double n_[kNc > 0 ? kNc : 1][kStride]{};
+  alignas(64) double z_[kNc > 0 ? kNc : 1][kStride]{};
+  alignas(64) double row_[kNc > 0 ? kNc : 1][kNz][kStride]{};  ///< Jacobian; what is zero by type stays zero
 };
 
 }  // namespace chicane::solver

@@ -6,25 +6,27 @@
 #include <cmath>
 #include <cstddef>
 
+#include "chicane/base/deadline.hpp"
 #include "chicane/solver/barrier.hpp"
+#include "chicane/solver/evaluation.hpp"
+#include "chicane/solver/iterate.hpp"
+#include "chicane/solver/lq_solver.hpp"
 #include "chicane/solver/problem.hpp"
-#include "chicane/solver/riccati.hpp"
 
 namespace chicane::solver {
 
 /// Steps that lower the true cost every time: control-limited dynamic programming (Tassa, Mansard, Todorov
 /// 2014) with line search and Levenberg shift. Slower than full steps, and works from where those fail. The
 /// iterates are simulations.
-template <OcpProblem P, int Capacity>
+template <OcpProblem P, std::size_t Capacity, class Arch>
 class Descent {
  public:
   static constexpr std::size_t kNx = P::kNx;
   static constexpr std::size_t kNu = P::kNu;
-  static constexpr std::size_t kOne = kNx;
-  static constexpr std::size_t kHead = kNx + 1;
-  using Trajectory = solver::Trajectory<P::kNx, P::kNu, Capacity>;
-  using Lq = Riccati<kNx, kNu, static_cast<std::size_t>(Capacity)>;
-  using Slacks = Barrier<P, static_cast<std::size_t>(Capacity)>;
+  using Evaluate = Evaluation<P, Arch>;
+  using Point = Iterate<kNx, kNu, Capacity>;
+  using Lq = LqSolver<Arch, ProblemPattern<P>, Capacity>;
+  using Slacks = Barrier<P, Capacity, Arch>;
 
   /// A new solve.
   void start() noexcept {
@@ -50,30 +52,32 @@ class Descent {
 
   /// Simulates the trajectory with the gains as feedback, so that an unstable system stays near it. False,
   /// and nothing changed, when that is not finite.
-  bool simulate(const P& problem, Lq& lq, const Slacks& slacks, Trajectory& t) noexcept {
-    lq.backward(static_cast<std::size_t>(t.horizon), shift_, true);
+  bool simulate(const P& problem, Lq& lq, const Slacks& slacks, Point& t) noexcept {
+    lq.backward(t.horizon, shift_, true);
     if (!std::isfinite(try_step(problem, t, lq, slacks, 0.0))) return false;
     t = candidate_;
     return true;
   }
 
-  /// One step from t with merit `merit`. False when no step length and no shift lowers it any more.
-  bool step(const P& problem, Lq& lq, Slacks& slacks, double merit, Trajectory& t, int& sweeps) noexcept {
+  /// One step from t with merit `merit`. False when no step length and no shift lowers it any more, or the
+  /// deadline came first.
+  bool step(const P& problem, Lq& lq, Slacks& slacks, double merit, Point& t, const Deadline& deadline,
+            int& sweeps) noexcept {
     constexpr int kAttempts = 12;
     constexpr int kHalvings = 6;
-    const auto horizon = static_cast<std::size_t>(t.horizon);
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       ++sweeps;
-      lq.backward(horizon, shift_, true);
+      lq.backward(t.horizon, shift_, true);
       double scale = 0.0;
-      const double expected = expected_change(lq, horizon, scale);
+      const double expected = expected_change(lq, t.horizon, scale);
       if (!(expected < 0.0)) return false;
       double length = 1.0;
       for (int trial = 0; trial < kHalvings; ++trial, length *= 0.5) {
+        if (deadline.spent()) return false;
         const double allowed = merit + 1e-4 * length * expected + 1e-13 * std::fabs(merit);
         if (!(try_step(problem, t, lq, slacks, length) <= allowed)) continue;
         t = candidate_;
-        slacks.lower_for_gain(-expected, horizon);
+        slacks.lower_for_gain(-expected, t.horizon);
         ++taken_;
         smooth_ = length >= 1.0 && shift_ == 0.0 ? smooth_ + 1 : 0;
         if (length >= 1.0) shift_ = shift_ > 1e-6 * scale ? 0.1 * shift_ : 0.0;
@@ -91,45 +95,53 @@ class Descent {
   static double expected_change(const Lq& lq, std::size_t horizon, double& scale) noexcept {
     double change = 0.0;
     for (std::size_t k = 0; k < horizon; ++k) {
-      const auto& stage = lq.stage[k];
       for (std::size_t m = 0; m < kNu; ++m) {
-        const double own = stage.gain[m][kOne];
-        change += own * stage.gradient[m][kOne];
-        for (std::size_t l = 0; l < kNu; ++l) {
-          change += 0.5 * own * stage.gradient[m][kHead + l] * stage.gain[l][kOne];
-        }
-        scale = std::max(scale, stage.gradient[m][kHead + m]);
+        const double own = lq.constant(k, m);
+        change += own * lq.feedback[k].g[m];
+        for (std::size_t l = 0; l < kNu; ++l)
+          change += 0.5 * own * lq.feedback[k].H[m][l] * lq.constant(k, l);
+        scale = std::max(scale, lq.feedback[k].H[m][m]);
       }
     }
     return change;
   }
 
   /// Simulates the gains from t into candidate_ with the constant part times `length`; returns the merit.
-  double try_step(const P& problem, const Trajectory& t, const Lq& lq, const Slacks& slacks,
+  double try_step(const P& problem, const Point& t, const Lq& lq, const Slacks& slacks,
                   double length) noexcept {
+    using One = typename Evaluate::One;
     candidate_.horizon = t.horizon;
-    candidate_.x[0] = t.x[0];
+    for (std::size_t i = 0; i < kNx; ++i) candidate_.x[i][0] = t.x[i][0];
     double merit = 0.0;
-    const auto horizon = static_cast<std::size_t>(t.horizon);
-    for (std::size_t k = 0; k < horizon; ++k) {
-      const auto& stage = lq.stage[k];
-      const int number = static_cast<int>(k);
-      const auto& x = candidate_.x[k];
+    for (std::size_t k = 0; k < t.horizon; ++k) {
       for (std::size_t m = 0; m < kNu; ++m) {
-        double du = length * stage.gain[m][kOne];
-        for (std::size_t i = 0; i < kNx; ++i) du += stage.gain[m][i] * (x[i] - t.x[k][i]);
-        candidate_.u[k][m] = t.u[k][m] + std::min(std::max(du, stage.low[m]), stage.high[m]);
+        double du = length * lq.constant(k, m);
+        for (std::size_t i = 0; i < kNx; ++i) du += lq.gain(k, m, i) * (candidate_.x[i][k] - t.x[i][k]);
+        candidate_.u[m][k] = t.u[m][k] + std::min(std::max(du, lq.lq.low[m][k]), lq.lq.high[m][k]);
       }
-      for (const double r : problem.residual(number, x, candidate_.u[k])) merit += 0.5 * r * r;
-      if constexpr (P::kNc > 0)
-        merit += slacks.merit(problem, problem.constraint(number, x, candidate_.u[k]));
-      candidate_.x[k + 1] = problem.dynamics(number, x, candidate_.u[k]);
+      const auto x = candidate_.template state<One>(k);
+      const auto u = candidate_.template input<One>(k);
+      merit += half_square(problem.residual(static_cast<int>(k), x, u));
+      if constexpr (P::kNc > 0) {
+        std::array<double, static_cast<std::size_t>(P::kNc)> values;
+        const auto constraint = to_array<One>(problem.constraint(static_cast<int>(k), x, u));
+        for (std::size_t c = 0; c < values.size(); ++c) values[c] = Evaluate::number(constraint[c]);
+        merit += slacks.merit(problem, values);
+      }
+      const auto next = Evaluate::next(problem, k, x, u);
+      for (std::size_t i = 0; i < kNx; ++i) candidate_.x[i][k + 1] = Evaluate::number(next[i]);
     }
-    for (const double r : problem.terminal_residual(candidate_.x[horizon])) merit += 0.5 * r * r;
-    return merit;
+    return merit + half_square(problem.terminal_residual(candidate_.template state<One>(t.horizon)));
+  }
+  template <class Row>
+  static double half_square(const Row& row) noexcept {
+    double sum = 0.0;
+    for (const auto& r : to_array<typename Evaluate::One>(row))
+      sum += 0.5 * Evaluate::number(r) * Evaluate::number(r);
+    return sum;
   }
 
-  Trajectory candidate_{};
+  Point candidate_;
   double shift_ = 0.0;  ///< Levenberg shift on the input blocks
   int taken_ = 0;       ///< steps since the descent began
   int smooth_ = 0;      ///< whole unshifted ones in a row

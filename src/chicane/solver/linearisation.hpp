@@ -5,226 +5,260 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <tuple>
+#include <type_traits>
 
-#include "chicane/base/dual.hpp"
+#include "chicane/solver/barrier.hpp"
+#include "chicane/solver/evaluation.hpp"
+#include "chicane/solver/iterate.hpp"
+#include "chicane/solver/pattern.hpp"
 #include "chicane/solver/problem.hpp"
-#include "chicane/solver/riccati.hpp"
-#include "chicane/solver/soft_constraint.hpp"
+#include "chicane/solver/problem_pattern.hpp"
 #include "chicane/solver/solution.hpp"
+#include "chicane/solver/stage_entries.hpp"
 
 namespace chicane::solver {
 
-/// Everything the solver knows about one trajectory: values, first derivatives by dual numbers, exact
-/// adjoint, and on request the second derivatives that Gauss–Newton leaves out. Fills the stages of the
-/// linear-quadratic problem (docs/solver.md, eq. 4–7).
-template <OcpProblem P, std::size_t Capacity>
+/// Looks at an iterate: values and derivatives of every stage, exact adjoint, optimality measures, and the
+/// stages of the quadratic program (docs/solver.md, eq. 4–8, 12, 13, 22). Goes through the horizon from its
+/// end, eight stages at a time: evaluate them in lanes, run the adjoint through them, add up their costs.
+template <OcpProblem P, std::size_t Capacity, class Arch>
 class Linearisation {
  public:
   static constexpr std::size_t kNx = P::kNx;
   static constexpr std::size_t kNu = P::kNu;
   static constexpr std::size_t kNc = P::kNc;
-  static constexpr std::size_t kNz = kNx + kNu;
-  static constexpr std::size_t kOne = kNx;
-  static constexpr std::size_t kHead = kNx + 1;
-  using Trajectory = solver::Trajectory<P::kNx, P::kNu, static_cast<int>(Capacity)>;
-  using Lq = Riccati<kNx, kNu, Capacity>;
-  using Soft = std::array<SoftConstraint, kNc>;
+  static constexpr int kVariables = P::kNx + P::kNu;
+  using V = Stages<Arch>;
+  using Pattern = ProblemPattern<P>;
+  using Layout = solver::Layout<Pattern>;
+  using Lq = LqProblem<Pattern, Capacity>;
+  using Point = Iterate<kNx, kNu, Capacity>;
+  using Slacks = Barrier<P, Capacity, Arch>;
 
-  std::array<Soft, Capacity> soft{};  ///< values and slacks of the soft constraints
-  double relative_defect = 0.0;       ///< largest defect as a share of 1 + |x|
-  double slope[Capacity][kNu]{};      ///< dJ/du along the dynamics, from the exact adjoint
+  alignas(64) double slope[kNu][kStageStride<Capacity>]{};    ///< dJ/du along the dynamics
+  alignas(64) double adjoint[kNx][kStageStride<Capacity>]{};  ///< adjoint[i][k]: price of x_{k+1}
+  alignas(64) double lower[kNu][kStageStride<Capacity>]{};    ///< bounds of the inputs
+  alignas(64) double upper[kNu][kStageStride<Capacity>]{};
+  double merit = 0.0;          ///< cost with the barrier's smoothed penalties; when slacks were centred
+  double defect_excess = 0.0;  ///< largest defect beyond its tolerance; <= 0: all are small enough
 
-  /// Position of variable `i` of (x, u) in z = (x, 1, u).
-  static constexpr std::size_t in_z(std::size_t i) noexcept { return i < kNx ? i : i + 1; }
-
-  /// Values and first derivatives of every stage. Sets cost, defect and violation of the report.
-  void evaluate(const P& problem, const Trajectory& t, Lq& lq, SolveReport& report) noexcept {
-    report.cost = report.defect = report.violation = relative_defect = 0.0;
-    report.worst_stage = report.worst_constraint = -1;
-    const auto horizon = static_cast<std::size_t>(t.horizon);
-    for (std::size_t k = 0; k < horizon; ++k) evaluate_stage(problem, t, k, lq.stage[k], report);
-    std::array<Dual<P::kNx>, kNx> x;
-    for (std::size_t i = 0; i < kNx; ++i) x[i] = Dual<P::kNx>::variable(t.x[horizon][i], static_cast<int>(i));
-    add_squares(problem.terminal_residual(x), lq.terminal, terminal_gradient_, report.cost);
-  }
-
-  /// Exact adjoint λ and slopes dJ/du; the slope projected on the bounds is the optimality measure (eq. 12).
-  void measure(const Trajectory& t, const Lq& lq, SolveReport& report) noexcept {
-    report.stationarity = 0.0;
-    std::array<double, kNx> lambda;
-    std::copy(terminal_gradient_, terminal_gradient_ + kNx, lambda.begin());
-    for (auto k = static_cast<std::size_t>(t.horizon); k-- > 0;) {
-      const auto& stage = lq.stage[k];
-      adjoint_[k] = lambda;
-      double g[kNz];
-      std::copy(gradient_[k], gradient_[k] + kNz, g);
-      for (std::size_t c = 0; c < kNc; ++c) {
-        for (std::size_t i = 0; i < kNz; ++i) g[i] += soft[k][c].z * soft_row_[k][c][i];
-      }
-      for (std::size_t i = 0; i < kNx; ++i) {
-        for (std::size_t j = 0; j < kNz; ++j) g[j] += stage.F[i][in_z(j)] * lambda[i];
-      }
-      std::copy(g, g + kNx, lambda.begin());
-      for (std::size_t m = 0; m < kNu; ++m) {
-        slope[k][m] = g[kNx + m];
-        const double projected = std::min(std::max(-slope[k][m], stage.low[m]), stage.high[m]);
-        report.stationarity =
-            worse(report.stationarity, std::isnan(slope[k][m]) ? slope[k][m] : std::fabs(projected));
-      }
-    }
-  }
-
-  /// Adds the eliminated slacks at barrier μ to the stages (eq. 20–21).
-  void add_soft(const P& problem, std::size_t horizon, double mu, Lq& lq) const noexcept {
-    if constexpr (kNc > 0) {
-      for (std::size_t k = 0; k < horizon; ++k) {
-        for (std::size_t c = 0; c < kNc; ++c) {
-          const auto model = soft[k][c].model(problem.soft_penalty(static_cast<int>(c)), mu);
-          add_row(lq.stage[k].L, soft_row_[k][c], model.slope, model.curvature);
-        }
-      }
-    }
-  }
-
-  /// First-order change of soft constraint c of stage k under the step in `lq`.
-  [[nodiscard]] double soft_change(std::size_t k, std::size_t c, const Lq& lq) const noexcept {
-    double change = 0.0;
-    for (std::size_t i = 0; i < kNx; ++i) change += soft_row_[k][c][i] * lq.dx[k][i];
-    for (std::size_t m = 0; m < kNu; ++m) change += soft_row_[k][c][kNx + m] * lq.du[k][m];
-    return change;
-  }
-
-  /// Second derivatives that Gauss–Newton leaves out: Σ r ∇²r + λ ∇²f + z ∇²c by nested duals (eq. 22). Costs
-  /// about (Nx + Nu) first-order passes. Pre: measure().
-  void evaluate_curvature(const P& problem, const Trajectory& t) noexcept {
-    const auto horizon = static_cast<std::size_t>(t.horizon);
-    for (std::size_t k = 0; k < horizon; ++k) {
-      const int number = static_cast<int>(k);
-      std::array<Twice<kNz>, kNx> x;
-      std::array<Twice<kNz>, kNu> u;
-      for (std::size_t i = 0; i < kNx; ++i) x[i] = twice<kNz>(t.x[k][i], i);
-      for (std::size_t m = 0; m < kNu; ++m) u[m] = twice<kNz>(t.u[k][m], kNx + m);
-      auto& H = curvature_[k];
-      H = {};
-      const auto next = problem.dynamics(number, x, u);
-      for (std::size_t i = 0; i < kNx; ++i) add_hessian(next[i], adjoint_[k][i], H);
-      for (const auto& r : problem.residual(number, x, u)) add_hessian(r, r.v.v, H);
-      if constexpr (kNc > 0) {
-        const auto constraint = problem.constraint(number, x, u);
-        for (std::size_t c = 0; c < kNc; ++c) add_hessian(constraint[c], soft[k][c].z, H);
-      }
-    }
-    std::array<Twice<kNx>, kNx> x;
-    for (std::size_t i = 0; i < kNx; ++i) x[i] = twice<kNx>(t.x[horizon][i], i);
-    terminal_curvature_ = {};
-    for (const auto& r : problem.terminal_residual(x)) add_hessian(r, r.v.v, terminal_curvature_);
-  }
-
-  /// Adds `weight` times the second derivatives kept by evaluate_curvature() to the stages.
-  void add_curvature(std::size_t horizon, double weight, Lq& lq) const noexcept {
-    for (std::size_t k = 0; k < horizon; ++k) {
-      for (std::size_t i = 0; i < kNz; ++i) {
-        for (std::size_t j = 0; j < kNz; ++j) lq.stage[k].L[in_z(i)][in_z(j)] += weight * curvature_[k][i][j];
-      }
-    }
-    for (std::size_t i = 0; i < kNx; ++i) {
-      for (std::size_t j = 0; j < kNx; ++j) lq.terminal[i][j] += weight * terminal_curvature_[i][j];
-    }
+  /// Looks at `t`. With Order 2 the stages get exact Hessians of the Lagrangian, else Gauss–Newton's.
+  /// `centre`: slacks are put on the central path first. `defect_share`: of 1 + |x| that defects may have.
+  /// Sets cost, defect, stationarity, complementarity and violation of the report.
+  template <int Order>
+  void look(const P& problem, const Point& t, bool centre, double defect_share, Slacks& slacks, Lq& lq,
+            SolveReport& report) noexcept {
+    Sums sums;
+    double lambda[kNx];
+    sums.end_cost = look_at_end<Order>(problem, t, lq, lambda);
+    for (std::size_t k = (t.horizon - 1) / 8 * 8 + 8; k > 0; k -= 8)
+      look_at<Order>(problem, t, k - 8, {centre, defect_share}, slacks, lambda, lq, sums);
+    sums.finish(*this, report);
   }
 
  private:
-  using Number = Dual<static_cast<int>(kNz)>;
+  using Evaluate = Evaluation<P, Arch>;
+  using Entries = StageEntries<P, V>;
+  using Costs = typename Entries::Costs;
+  using Jacobians = typename Entries::Jacobians;
+  using Gradient = typename Entries::Gradient;
 
-  template <std::size_t N>
-  using Square = std::array<std::array<double, N>, N>;
-  template <std::size_t N>
-  using Twice = Dual<static_cast<int>(N), Dual<static_cast<int>(N)>>;
+  struct How {
+    bool centre;
+    double defect_share;
+  };
 
-  template <std::size_t N>
-  static Twice<N> twice(double value, std::size_t index) noexcept {
-    const int i = static_cast<int>(index);
-    return Twice<N>::variable(Dual<static_cast<int>(N)>::variable(value, i), i);
-  }
-  template <std::size_t N>
-  static void add_hessian(const Twice<N>& value, double weight, Square<N>& H) noexcept {
-    for (std::size_t i = 0; i < N; ++i) {
-      for (std::size_t j = 0; j < N; ++j) H[i][j] += weight * value.d[i].d[j];
+  /// What is added up over the horizon, eight stages side by side.
+  struct Sums {
+    double end_cost = 0.0;
+    V cost{0.0}, smoothing{0.0};
+    V defect{0.0}, defects{0.0}, defect_excess{-1.0};
+    V stationarity{0.0}, slopes{0.0};
+    V complementarity{0.0}, violation{0.0};
+
+    void finish(Linearisation& now, SolveReport& report) const noexcept {
+      report.cost = end_cost + sum(cost);
+      now.merit = report.cost + sum(smoothing);
+      now.defect_excess = largest(defect_excess);
+      // A maximum may lose what is not a number, a sum does not.
+      report.defect = is_number(sum(defects)) ? largest(defect) : kNotANumber;
+      report.stationarity = is_number(sum(slopes)) ? largest(stationarity) : kNotANumber;
+      report.complementarity = largest(complementarity);
+      report.violation = largest(violation);
     }
-  }
+    static bool is_number(double x) noexcept { return !std::isnan(x); }
+    static constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+  };
 
-  void evaluate_stage(const P& problem, const Trajectory& t, std::size_t k, typename Lq::Stage& stage,
-                      SolveReport& report) noexcept {
-    const int number = static_cast<int>(k);
-    std::array<Number, kNx> x;
-    std::array<Number, kNu> u;
-    for (std::size_t i = 0; i < kNx; ++i) x[i] = Number::variable(t.x[k][i], static_cast<int>(i));
-    for (std::size_t m = 0; m < kNu; ++m) u[m] = Number::variable(t.u[k][m], static_cast<int>(kNx + m));
-    const std::array<Number, kNx> next = problem.dynamics(number, x, u);
-    for (std::size_t i = 0; i < kNx; ++i) {
-      for (std::size_t j = 0; j < kNz; ++j) stage.F[i][in_z(j)] = next[i].d[j];
-      stage.F[i][kOne] = next[i].v - t.x[k + 1][i];
-      const double defect = std::fabs(stage.F[i][kOne]);
-      report.defect = worse(report.defect, defect);
-      relative_defect = worse(relative_defect, defect / (1.0 + std::fabs(next[i].v)));
-    }
-    add_squares(problem.residual(number, x, u), stage.L, gradient_[k], report.cost);
-    if constexpr (kNc > 0) {
-      const std::array<Number, kNc> constraint = problem.constraint(number, x, u);
-      for (std::size_t c = 0; c < kNc; ++c) {
-        soft[k][c].value = constraint[c].v;
-        soft_row_[k][c] = constraint[c].d;
-        report.cost += soft[k][c].penalty(problem.soft_penalty(static_cast<int>(c)));
-        if (constraint[c].v <= report.violation) continue;
-        report.violation = constraint[c].v;
-        report.worst_stage = number;
-        report.worst_constraint = static_cast<int>(c);
+  /// Terminal cost, its quadratic model and the adjoint there.
+  template <int Order>
+  double look_at_end(const P& problem, const Point& t, Lq& lq, double (&lambda)[kNx]) noexcept {
+    for (auto& row : lq.terminal) std::fill(std::begin(row), std::end(row), 0.0);
+    const auto rows = Evaluate::template end<Order>(problem, t);
+    double cost = 0.0;
+    each_row<typename Evaluate::One, Order>(rows, [&](auto, const auto& r) {
+      using R = std::remove_cvref_t<decltype(r)>;
+      const double value = Evaluate::number(r.v);
+      cost += 0.5 * value * value;
+      const auto d = plain_derivatives<P, Arch>(r);
+      for (std::size_t i = 0; i < kNx; ++i) {
+        lq.terminal[kNx][i] += value * d.first[i];
+        for (std::size_t j = 0; j < kNx; ++j) {
+          lq.terminal[i][j] += d.first[i] * d.first[j];
+          if constexpr (R::kOrder == 2) lq.terminal[i][j] += value * d.second[i][j];
+        }
       }
-    }
-    const auto low = problem.input_lower(number);
-    const auto high = problem.input_upper(number);
-    for (std::size_t m = 0; m < kNu; ++m) {
-      stage.low[m] = low[m] - t.u[k][m];
-      stage.high[m] = high[m] - t.u[k][m];
-    }
+    });
+    std::copy(lq.terminal[kNx], lq.terminal[kNx] + kNx, lambda);
+    return cost;
   }
 
-  /// ½‖r‖² with gradient and Gauss–Newton Hessian in z coordinates.
-  template <class Residual, std::size_t Rows, std::size_t Width, std::size_t Size>
-  static void add_squares(const Residual& residual, double (&L)[Rows][Width], double (&gradient)[Size],
-                          double& cost) noexcept {
-    std::fill(&L[0][0], &L[0][0] + Rows * Width, 0.0);
-    std::fill(gradient, gradient + Size, 0.0);
-    for (const auto& r : residual) {
-      cost += 0.5 * r.v * r.v;
-      for (std::size_t i = 0; i < Size; ++i) gradient[i] += r.v * r.d[i];
-      add_row(L, r.d, r.v, 1.0);
-    }
+  /// The eight stages from k0 on; those beyond the horizon count for nothing.
+  template <int Order>
+  void look_at(const P& problem, const Point& t, std::size_t k0, How how, Slacks& slacks,
+               double (&lambda)[kNx], Lq& lq, Sums& sums) noexcept {
+    const auto rows = Evaluate::template stages<Order>(problem, t, k0);
+    const auto live = stage_number(StageLanes<V>{static_cast<int>(k0)}) < V(static_cast<double>(t.horizon));
+    Jacobians f;
+    Costs l;
+    Gradient gradient;  // of the stage cost, with the constraints' multipliers as they are
+
+    collect_dynamics<Order>(rows.next, t, k0, live, how.defect_share, f, sums);
+    add_residuals<Order>(rows.residual, live, gradient, l, sums);
+    if constexpr (kNc > 0)
+      add_soft<Order>(problem, rows.constraint, k0, live, how.centre, slacks, gradient, l, sums);
+    run_adjoint(t.horizon, k0, f, gradient, lambda);
+    measure(t, k0, live, f, gradient, lq, sums);
+    if constexpr (Order == 2) add_curvature(rows, k0, slacks, l);
+    lq.set_jacobian(k0, f);
+    lq.set_cost(k0, l);
   }
 
-  /// Adds slope · row to the linear and curvature · rowᵀ row to the quadratic part; most entries of a row are
-  /// zero.
-  template <std::size_t Rows, std::size_t Width, std::size_t Size>
-  static void add_row(double (&L)[Rows][Width], const std::array<double, Size>& row, double slope,
-                      double curvature) noexcept {
-    for (std::size_t i = 0; i < Size; ++i) {
-      if (row[i] == 0.0) continue;
-      const double scaled = curvature * row[i];
-      for (std::size_t j = 0; j < Size; ++j) L[in_z(i)][in_z(j)] += scaled * row[j];
-      L[in_z(i)][kOne] += slope * row[i];
-      L[kOne][in_z(i)] += slope * row[i];
-    }
+  template <int Order, class Row, class Mask>
+  [[gnu::always_inline]] static void collect_dynamics(const Row& next, const Point& t, std::size_t k0,
+                                                      const Mask& live, double defect_share, Jacobians& f,
+                                                      Sums& sums) noexcept {
+    each_row<V, Order>(
+        next, [&](auto i, const auto& row) __attribute__((always_inline)) {
+          const V defect = row.v - V::load_unaligned(t.x[i] + k0 + 1);
+          Entries::set_jacobian(i, row, defect, f);
+          const V size = select(live, abs(defect), V(0.0));
+          sums.defect = max(sums.defect, size);
+          sums.defects += size;
+          sums.defect_excess = max(sums.defect_excess, size - defect_share * (1.0 + abs(row.v)));
+        });
   }
 
-  /// The larger one; not-a-number wins.
-  static double worse(double a, double b) noexcept { return b <= a ? a : (std::isnan(a) ? a : b); }
+  /// ½‖r‖² with gradient and Gauss–Newton Hessian.
+  template <int Order, class Row, class Mask>
+  [[gnu::always_inline]] static void add_residuals(const Row& residual, const Mask& live, Gradient& gradient,
+                                                   Costs& l, Sums& sums) noexcept {
+    V squares(0.0);
+    Entries::template clear<Row>(gradient, l);
+    each_row<V, Order>(
+        residual, [&](auto n, const auto& r) __attribute__((always_inline)) {
+          squares += r.v * r.v;
+          Entries::template add_gradient<Row>(n, r, r.v, gradient);
+          Entries::template add_square<Row>(n, r, V(1.0), l);
+        });
+    Entries::set_gradient(gradient, l);
+    sums.cost += select(live, 0.5 * squares, V(0.0));
+  }
 
-  double gradient_[Capacity][kNz]{};  ///< of the stage costs without soft constraints
-  double terminal_gradient_[kNx]{};
-  std::array<std::array<double, kNx>, Capacity> adjoint_{};  ///< adjoint_[k]: price of x_{k+1}
-  std::array<std::array<std::array<double, kNz>, kNc>, Capacity>
-      soft_row_{};  ///< Jacobian of the soft constraints
-  std::array<Square<kNz>, Capacity> curvature_{};
-  Square<kNx> terminal_curvature_{};
+  /// Soft constraints: their multipliers to the gradient, their eliminated slacks to the quadratic program
+  /// (eq. 20, 21).
+  template <int Order, class Row, class Mask>
+  [[gnu::always_inline]] static void add_soft(const P& problem, const Row& constraint, std::size_t k0,
+                                              const Mask& live, bool centre, Slacks& slacks,
+                                              Gradient& gradient, Costs& l, Sums& sums) noexcept {
+    const double mu = slacks.mu();
+    each_row<V, Order>(
+        constraint, [&](auto n, const auto& c) __attribute__((always_inline)) {
+          const SoftPenalty price = price_of(problem, n);
+          SoftConstraint<V> soft = slacks.load(n, k0);
+          soft.value = c.v;
+          if (centre) {
+            soft.centre(price, mu);
+            sums.smoothing += select(live, soft.barrier(price, mu) - soft.penalty(price), V(0.0));
+          }
+          slacks.store(n, k0, soft);
+          slacks.store_row(n, k0, c);
+          const auto model = soft.model(price, mu);
+          Entries::template add_gradient<void>(n, c, soft.z, gradient);
+          Entries::add_to_gradient(c, model.slope, l);
+          Entries::template add_square<void>(n, c, model.curvature, l);
+          sums.cost += select(live, soft.penalty(price), V(0.0));
+          sums.complementarity = max(sums.complementarity, select(live, soft.residual(price, mu), V(0.0)));
+          sums.violation = max(sums.violation, select(live, c.v, V(0.0)));
+        });
+  }
+
+  /// λ_k = g_x + Aᵀ λ_{k+1} through the stages of the group, last first. The only sequential part.
+  [[gnu::always_inline]] void run_adjoint(std::size_t horizon, std::size_t k0, const Jacobians& f,
+                                          const Gradient& gradient, double (&lambda)[kNx]) noexcept {
+    double now[kNx];  // in registers
+    unroll<kNx>([&](auto i) __attribute__((always_inline)) { now[i] = lambda[i]; });
+    for (std::size_t lane = std::min<std::size_t>(8, horizon - k0); lane-- > 0;) {
+      double before[kNx];
+      unroll<kNx>([&](auto j) __attribute__((always_inline)) {
+        adjoint[j][k0 + lane] = now[j];
+        double sum = gradient[j][lane];
+        unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+          if constexpr (Pattern::kF[i][j] == Entry::kOne) sum += now[i];
+          if constexpr (Pattern::kF[i][j] == Entry::kValue)
+            sum = fused_multiply_add<Arch>(f[Layout::kF[i][j]][lane], now[i], sum);
+        });
+        before[j] = sum;
+      });
+      unroll<kNx>([&](auto i) __attribute__((always_inline)) { now[i] = before[i]; });
+    }
+    unroll<kNx>([&](auto i) __attribute__((always_inline)) { lambda[i] = now[i]; });
+  }
+
+  /// Slopes of the inputs, and how far they are from optimal (eq. 12); bounds on the step.
+  template <class Mask>
+  [[gnu::always_inline]] void measure(const Point& t, std::size_t k0, const Mask& live, const Jacobians& f,
+                                      const Gradient& gradient, Lq& lq, Sums& sums) noexcept {
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+      constexpr std::size_t column = Layout::kHead + m;
+      V sum = gradient[kNx + m];
+      unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+        if constexpr (Pattern::kF[i][column] == Entry::kOne) sum += V::load(adjoint[i] + k0);
+        if constexpr (Pattern::kF[i][column] == Entry::kValue)
+          sum = fused_multiply_add(f[Layout::kF[i][column]], V::load(adjoint[i] + k0), sum);
+      });
+      sum.store(slope[m] + k0);
+      const V u = V::load(t.u[m] + k0);
+      const V low = V::load(lower[m] + k0) - u;
+      const V high = V::load(upper[m] + k0) - u;
+      low.store(lq.low[m] + k0);
+      high.store(lq.high[m] + k0);
+      const V projected = select(live, abs(min(max(-sum, low), high)), V(0.0));
+      sums.stationarity = max(sums.stationarity, projected);
+      sums.slopes += select(live, sum, V(0.0));
+    });
+  }
+
+  /// What Gauss–Newton leaves out: Σ r ∇²r + λ ∇²f + z ∇²c (eq. 22).
+  template <class StageRows>
+  [[gnu::always_inline]] void add_curvature(const StageRows& rows, std::size_t k0, const Slacks& slacks,
+                                            Costs& l) const noexcept {
+    each_row<V, 2>(
+        rows.next, [&](auto i, const auto& f) __attribute__((always_inline)) {
+          Entries::add_curvature(f, V::load(adjoint[i] + k0), l);
+        });
+    each_row<V, 2>(
+        rows.residual, [&](auto, const auto& r)
+                           __attribute__((always_inline)) { Entries::add_curvature(r, r.v, l); });
+    if constexpr (kNc > 0) {
+      each_row<V, 2>(
+          rows.constraint, [&](auto n, const auto& c) __attribute__((always_inline)) {
+            Entries::add_curvature(c, slacks.load(n, k0).z, l);
+          });
+    }
+  }
 };
 
 }  // namespace chicane::solver

@@ -11,10 +11,12 @@
 #include "chicane/base/deadline.hpp"
 #include "chicane/solver/barrier.hpp"
 #include "chicane/solver/descent.hpp"
+#include "chicane/solver/evaluation.hpp"
+#include "chicane/solver/iterate.hpp"
 #include "chicane/solver/linearisation.hpp"
+#include "chicane/solver/lq_solver.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/progress.hpp"
-#include "chicane/solver/riccati.hpp"
 #include "chicane/solver/solution.hpp"
 #include "chicane/solver/warm_start.hpp"
 
@@ -22,16 +24,17 @@ namespace chicane::solver {
 
 /// Sequential quadratic programming by direct multiple shooting for any OcpProblem (docs/solver.md).
 ///
-/// One turn: linearise every stage with dual numbers, measure optimality with the exact adjoint, solve the
-/// stage-structured quadratic program by an active set over Riccati sweeps, step. Soft constraints enter by a
-/// primal-dual interior point whose slacks are eliminated stage by stage. Steps are full; when they stop
-/// improving, the solver goes back to its best iterate and descends by nonlinear roll-outs with line search
-/// and Levenberg shift until full steps work again.
+/// One turn: linearise all stages, eight at a time; measure optimality with the exact adjoint; solve the
+/// stage-structured quadratic program by an active set over Riccati sweeps; step. Soft constraints enter by a
+/// primal-dual interior point whose slacks are eliminated stage by stage. Steps are full, first
+/// Gauss–Newton's, near the solution Newton's; when they stop improving, the solver goes back to its best
+/// iterate and descends by nonlinear roll-outs with line search and Levenberg shift until full steps work
+/// again.
 ///
 /// One plain object holding its workspace; no allocation, lock, exception, and no clock but the deadline's.
 /// Nothing is remembered from solve to solve: the trajectory is the warm start, so a failure cannot poison
-/// the next call. One thread.
-template <OcpProblem P, int Capacity>
+/// the next call. One thread. `Arch`: the instruction set that its translation unit is compiled for.
+template <OcpProblem P, int Capacity, class Arch = arch::Native>
 class OcpSolver {
  public:
   using State = std::array<double, P::kNx>;
@@ -49,225 +52,281 @@ class OcpSolver {
     SolveReport report;
     if (!start(problem, x0, trajectory)) return give_up(problem, x0, trajectory, report);
     for (;; ++report.iterations) {
-      look(problem, trajectory, report);
+      look(problem, report);
       if (!is_finite(report) && !has_best_) return give_up(problem, x0, trajectory, report);
-      if (is_growing(trajectory) && residual(report) <= kGoodEnoughToGrow) {
-        if (!grow(problem, trajectory)) break;
+      if (is_growing() && residual(report) <= kGoodEnoughToGrow) {
+        if (!grow(problem)) break;
         continue;
       }
       if (has_converged(report)) return finish(SolveStatus::kOptimal, problem, trajectory, report);
       const bool budget_spent = report.iterations >= options_.max_iterations || deadline.spent();
-      if (!keep_best(trajectory, report) && !budget_spent && has_lost_its_way(report)) {
-        if (!(may_grow(trajectory) ? start_short(problem, trajectory) : go_back(problem, trajectory))) break;
+      if (!keep_best(report) && !budget_spent && has_lost_its_way(report)) {
+        if (!(may_grow() ? start_short(problem) : go_back(problem))) break;
         continue;
       }
       if (budget_spent) break;
-      if (!(full_steps_ ? full_step(problem, trajectory, deadline, report)
-                        : descend(problem, trajectory, report)))
-        break;
+      if (!(full_steps_ ? full_step(problem, deadline, report) : descend(problem, deadline, report))) break;
     }
     return finish(SolveStatus::kBudgetSpent, problem, trajectory, report);
+  }
+
+  /// After a solve: the price of state i of x_{k+1}, i.e. d(cost)/dx of what follows; k < horizon.
+  [[nodiscard]] double adjoint(int k, int i) const noexcept { return now_.adjoint[i][k]; }
+  /// The multiplier of the bounds of input m of stage k: d(cost)/du, 0 (within the tolerance) between them.
+  [[nodiscard]] double bound_multiplier(int k, int m) const noexcept { return now_.slope[m][k]; }
+  /// The multiplier of soft constraint c of stage k: what a unit more room would save.
+  [[nodiscard]] double constraint_multiplier(int k, int c) const noexcept {
+    return barrier_.multiplier(static_cast<std::size_t>(c), static_cast<std::size_t>(k));
   }
 
  private:
   static constexpr std::size_t kNx = P::kNx;
   static constexpr std::size_t kNu = P::kNu;
-  static constexpr int kChances = 3;       ///< sweeps that may correct the whole working set in vain
-  static constexpr int kFirstHorizon = 5;  ///< of the growing horizons
-  static constexpr int kMaxGrowth = 16;
+  static constexpr std::size_t kSize = Capacity;
+  static constexpr int kChances = 3;               ///< sweeps that may correct the whole working set in vain
+  static constexpr std::size_t kFirstHorizon = 5;  ///< of the growing horizons
+  static constexpr std::size_t kMaxGrowth = 16;
   static constexpr double kGoodEnoughToGrow = 1e-1;
-  static constexpr double kDefectShare = 1e-7;   ///< of the tolerance: Hessians amplify defects
-  static constexpr double kCurvaturePays = 6.0;  ///< further turns that exact curvature costs
+  static constexpr double kDefectShare = 1e-7;  ///< of the tolerance: Hessians amplify defects
+  static constexpr double kNear = 1e-2;         ///< steps this short: exact curvature from here on
 
-  static std::size_t size_of(const Trajectory& t) noexcept { return static_cast<std::size_t>(t.horizon); }
+  using Evaluate = Evaluation<P, Arch>;
+  using Lq = LqSolver<Arch, ProblemPattern<P>, kSize>;
+  using Repair = typename Lq::Repair;
+  using V = Stages<Arch>;
 
-  bool start(const P& problem, const State& x0, Trajectory& trajectory) noexcept {
+  bool start(const P& problem, const State& x0, const Trajectory& trajectory) noexcept {
     full_steps_ = is_fresh_ = true;
-    has_best_ = has_curvature_ = has_grown_ = false;
+    has_best_ = is_exact_ = has_grown_ = false;
     progress_.restart();
     descent_.start();
     barrier_.start(problem, options_.tolerance);
-    target_ = trajectory.horizon;
-    for (const double value : x0) {
-      if (!std::isfinite(value)) return false;
+    target_ = t_.horizon = static_cast<std::size_t>(trajectory.horizon);
+    for (std::size_t i = 0; i < kNx; ++i) {
+      if (!std::isfinite(x0[i])) return false;
+      t_.x[i][0] = x0[i];
     }
-    for (int k = 0; k < trajectory.horizon; ++k) {
-      const auto low = problem.input_lower(k);
-      const auto high = problem.input_upper(k);
+    for (std::size_t k = 0; k < target_; ++k) {
+      const auto low = problem.input_lower(static_cast<int>(k));
+      const auto high = problem.input_upper(static_cast<int>(k));
       for (std::size_t m = 0; m < kNu; ++m) {
         if (!(low[m] <= high[m])) return false;
+        now_.lower[m][k] = low[m];
+        now_.upper[m][k] = high[m];
+        t_.u[m][k] = nearest(trajectory.u[k][m], low[m], high[m]);
       }
     }
-    if (roll_out(problem, x0, trajectory)) return true;
-    for (auto& u : trajectory.u) u.fill(0.0);
-    return roll_out(problem, x0, trajectory);
+    if (roll_out(problem)) return true;
+    fill_inputs(0);
+    return roll_out(problem);
+  }
+  /// The admissible value nearest to `value`, or to zero when that is not a number.
+  static double nearest(double value, double low, double high) noexcept {
+    return std::min(std::max(std::isfinite(value) ? value : 0.0, low), high);
+  }
+  /// Inputs of zero, or their bounds, from stage k on.
+  void fill_inputs(std::size_t from) noexcept {
+    for (std::size_t m = 0; m < kNu; ++m) {
+      for (std::size_t k = from; k < t_.horizon; ++k)
+        t_.u[m][k] = nearest(0.0, now_.lower[m][k], now_.upper[m][k]);
+    }
+  }
+  /// Simulates the inputs from x_0. True when every state is finite.
+  bool roll_out(const P& problem) noexcept {
+    using One = typename Evaluate::One;
+    auto x = t_.template state<One>(0);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < t_.horizon; ++k) {
+      x = Evaluate::next(problem, k, x, t_.template input<One>(k));
+      for (std::size_t i = 0; i < kNx; ++i) {
+        t_.x[i][k + 1] = Evaluate::number(x[i]);
+        sum += 0.0 * t_.x[i][k + 1];  // only a number that is not finite makes a difference
+      }
+    }
+    return sum == 0.0;
   }
 
   /// Linearises the iterate and measures it. Slacks start on the central path, and return to it while the
   /// cost descends.
-  void look(const P& problem, const Trajectory& t, SolveReport& report) noexcept {
-    now_.evaluate(problem, t, lq_, report);
-    merit_ = report.cost;
-    if (is_fresh_ || !full_steps_) merit_ += barrier_.centre(problem, size_of(t), now_);
-    report.complementarity = barrier_.residual(problem, size_of(t), now_);
-    now_.measure(t, lq_, report);
-    if (is_fresh_) guess_working_set(t);
+  void look(const P& problem, SolveReport& report) noexcept {
+    const bool centre = is_fresh_ || !full_steps_;
+    const double share = kDefectShare * options_.tolerance;
+    if (is_exact_) {
+      now_.template look<2>(problem, t_, centre, share, barrier_, lq_.lq, report);
+    } else {
+      now_.template look<1>(problem, t_, centre, share, barrier_, lq_.lq, report);
+    }
+    if (is_fresh_) guess_working_set();
     is_fresh_ = false;
-    now_.add_soft(problem, size_of(t), barrier_.mu(), lq_);
-    if (options_.second_order) weigh_curvature(problem, t, report);
   }
 
   static bool is_finite(const SolveReport& report) noexcept {
     return std::isfinite(report.cost) && std::isfinite(report.defect) && std::isfinite(report.stationarity);
   }
   [[nodiscard]] bool has_converged(const SolveReport& report) const noexcept {
-    return report.stationarity <= options_.tolerance &&
-           now_.relative_defect <= kDefectShare * options_.tolerance &&
+    return report.stationarity <= options_.tolerance && now_.defect_excess <= 0.0 &&
            report.complementarity <= options_.tolerance && barrier_.is_final();
   }
   static double residual(const SolveReport& report) noexcept {
     return std::max({report.stationarity, report.defect, report.complementarity});
   }
 
-  // ---- second order
-
-  /// Gauss–Newton converges linearly; when its rate promises many more turns, the missing second derivatives
-  /// are evaluated once and kept: the rest of the way is short.
-  void weigh_curvature(const P& problem, const Trajectory& t, const SolveReport& report) noexcept {
-    const bool pays = full_steps_
-                          ? progress_.turns_left(residual(report), options_.tolerance) > kCurvaturePays
-                          : descent_.is_under_way();
-    if (pays) {
-      now_.evaluate_curvature(problem, t);
-      has_curvature_ = true;
-    }
-    if (has_curvature_) now_.add_curvature(size_of(t), 1.0, lq_);
-  }
-
   // ---- full steps
 
   /// First guess of the working set: inputs at a bound whose cost falls beyond it.
-  void guess_working_set(const Trajectory& t) noexcept {
-    for (std::size_t k = 0; k < size_of(t); ++k) {
-      auto& stage = lq_.stage[k];
-      for (std::size_t m = 0; m < kNu; ++m) {
-        stage.hold[m] = Hold::kFree;
-        if (stage.low[m] >= 0.0 && now_.slope[k][m] > 0.0) stage.hold[m] = Hold::kLow;
-        if (stage.high[m] <= 0.0 && now_.slope[k][m] < 0.0) stage.hold[m] = Hold::kHigh;
+  void guess_working_set() noexcept {
+    for (std::size_t m = 0; m < kNu; ++m) {
+      for (std::size_t k = 0; k < t_.horizon; ++k) {
+        const double slope = now_.slope[m][k];
+        Hold hold = Hold::kFree;
+        if (lq_.lq.low[m][k] >= 0.0 && slope > 0.0) hold = Hold::kLow;
+        if (lq_.lq.high[m][k] <= 0.0 && slope < 0.0) hold = Hold::kHigh;
+        lq_.hold[k][m] = hold;
       }
     }
   }
 
   /// Solves the quadratic program: working-set turns, all corrections at once as long as that lowers their
   /// number. False when the deadline came first.
-  bool solve_qp(std::size_t horizon, const Deadline& deadline, SolveReport& report) noexcept {
-    using Repair = typename decltype(lq_)::Repair;
+  bool solve_qp(const P& problem, const Deadline& deadline, SolveReport& report) noexcept {
     constexpr int kMaxSweeps = 20;
     int fewest = std::numeric_limits<int>::max();
     int chances = kChances;
-    for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-      ++report.sweeps;
-      const double extra = lq_.backward(horizon, 0.0, false);
-      if (extra > 0.0 && has_curvature_) {  // indefinite: Gauss–Newton is not
-        now_.add_curvature(horizon, -1.0, lq_);
-        has_curvature_ = false;
-        continue;
+    ++report.sweeps;
+    double extra = lq_.backward(t_.horizon);
+    for (int sweep = 1; sweep < kMaxSweeps; ++sweep) {
+      if (extra > 0.0 && is_exact_) {  // indefinite: Gauss–Newton is not
+        is_exact_ = false;
+        SolveReport unused;
+        look(problem, unused);
+        ++report.sweeps;
+        extra = lq_.backward(t_.horizon);
       }
-      const int contradictions = lq_.forward(horizon, chances > 0 ? Repair::kAll : Repair::kLast);
+      const int contradictions = lq_.forward(t_.horizon, chances > 0 ? Repair::kAll : Repair::kLast);
       if (contradictions == 0) return true;
       if (deadline.spent()) return false;
       chances = contradictions < fewest ? kChances : chances - 1;
       fewest = std::min(fewest, contradictions);
+      ++report.sweeps;
+      extra = lq_.backward_again();
     }
-    lq_.backward(horizon, 0.0, true);
-    lq_.forward(horizon, Repair::kClip);
+    ++report.sweeps;
+    lq_.backward(t_.horizon, 0.0, true);
+    lq_.forward(t_.horizon, Repair::kClip);
     return true;
   }
 
   /// Takes the whole step of the quadratic program. False when the deadline came first.
-  bool full_step(const P& problem, Trajectory& t, const Deadline& deadline, SolveReport& report) noexcept {
-    if (!solve_qp(size_of(t), deadline, report)) return false;
-    const double length = barrier_.step(problem, size_of(t), now_, lq_);
-    if (!is_growing(t)) barrier_.lower(length);
+  bool full_step(const P& problem, const Deadline& deadline, SolveReport& report) noexcept {
+    if (!solve_qp(problem, deadline, report)) return false;
+    const double longest = collect_step();
+    const double length = barrier_.step(problem, step_);
+    if (!is_growing()) barrier_.lower(length);
+    take_step(length);
+    progress_.note(longest, !barrier_.is_final() && !is_growing());
+    is_exact_ = options_.second_order && longest <= kNear;
+    return true;
+  }
+  /// The step of the quadratic program, stage after stage of one variable; returns its longest input.
+  double collect_step() noexcept {
+    step_.horizon = t_.horizon;
+    for (std::size_t k0 = 0; k0 <= t_.horizon; k0 += 8) {
+      for (std::size_t block = 0; block < Lq::kLanes; block += 8) {
+        V rows[8];
+        unroll<8>([&](auto lane) __attribute__((always_inline)) {
+          rows[lane] = V::load(lq_.dx[std::min(k0 + lane, t_.horizon)] + block);
+        });
+        transpose(rows);
+        unroll<8>([&](auto i) __attribute__((always_inline)) {
+          if (block + i < kNx) rows[i].store(step_.x[block + i] + k0);
+        });
+      }
+    }
     double longest = 0.0;
-    for (std::size_t k = 0; k < size_of(t); ++k) {
-      const auto& stage = lq_.stage[k];
-      for (std::size_t i = 0; i < kNx; ++i) t.x[k + 1][i] += length * lq_.dx[k + 1][i];
-      for (std::size_t m = 0; m < kNu; ++m) {
-        const double du = std::min(std::max(lq_.du[k][m], stage.low[m]), stage.high[m]);
-        t.u[k][m] += length * du;
+    for (std::size_t m = 0; m < kNu; ++m) {
+      for (std::size_t k = 0; k < t_.horizon; ++k) {
+        const double du = std::min(std::max(lq_.du[k][m], lq_.lq.low[m][k]), lq_.lq.high[m][k]);
+        step_.u[m][k] = du;
         longest = std::max(longest, std::fabs(du));
       }
     }
-    progress_.note(longest, !barrier_.is_final() && !is_growing(t));
-    return true;
+    return longest;
+  }
+  void take_step(double length) noexcept {
+    for (std::size_t k = 0; k <= t_.horizon; k += 8) {
+      const auto move = [&](double* value, const double* change) __attribute__((always_inline)) {
+        (V::load(value + k) + length * V::load(change + k)).store(value + k);
+      };
+      for (std::size_t i = 0; i < kNx; ++i) move(t_.x[i], step_.x[i]);
+      for (std::size_t m = 0; m < kNu; ++m) move(t_.u[m], step_.u[m]);
+    }
   }
 
   // ---- globalisation
 
   /// True when this is the best iterate so far: by its residuals while steps are full, the latest one while
   /// the cost descends.
-  bool keep_best(const Trajectory& trajectory, const SolveReport& report) noexcept {
+  bool keep_best(const SolveReport& report) noexcept {
     if (!is_finite(report)) return false;
     if (full_steps_ && has_best_ && !progress_.is_good() && residual(report) >= residual(best_report_))
       return false;
-    best_ = trajectory;
+    best_ = t_;
     best_report_ = report;
     has_best_ = true;
     return true;
   }
 
   /// Steps have not improved for a while, or left the finite numbers.
-  bool has_lost_its_way(const SolveReport& report) noexcept {
+  [[nodiscard]] bool has_lost_its_way(const SolveReport& report) const noexcept {
     return !is_finite(report) || (full_steps_ && progress_.is_lost());
   }
 
   /// Back to the best iterate, to descend from there. False when its inputs cannot be simulated.
-  bool go_back(const P& problem, Trajectory& trajectory) noexcept {
+  bool go_back(const P& problem) noexcept {
     if (!full_steps_) descent_.damp();
-    full_steps_ = has_curvature_ = false;
+    full_steps_ = is_exact_ = false;
     descent_.begin();
     barrier_.lift(problem);
-    trajectory = best_;
+    t_ = best_;
     SolveReport unused;
-    look(problem, trajectory, unused);
-    if (descent_.simulate(problem, lq_, barrier_, trajectory)) return true;
-    const State x0 = trajectory.x[0];
-    return roll_out(problem, x0, trajectory);
+    look(problem, unused);
+    return descent_.simulate(problem, lq_, barrier_, t_) || roll_out(problem);
   }
 
   /// The second rung: solve a short horizon first and let it grow. Short problems are easy, and each is a
   /// good start for the next one.
-  [[nodiscard]] bool is_growing(const Trajectory& t) const noexcept { return t.horizon < target_; }
-  [[nodiscard]] bool may_grow(const Trajectory& t) const noexcept {
-    return options_.may_start_short && !has_grown_ && t.horizon > kFirstHorizon;
+  [[nodiscard]] bool is_growing() const noexcept { return t_.horizon < target_; }
+  [[nodiscard]] bool may_grow() const noexcept {
+    return options_.may_start_short && !has_grown_ && t_.horizon > kFirstHorizon;
   }
-  bool start_short(const P& problem, Trajectory& t) noexcept {
-    const State x0 = t.x[0];
-    t = best_;
-    t.horizon = kFirstHorizon;
+  bool start_short(const P& problem) noexcept {
+    t_ = best_;
+    t_.horizon = kFirstHorizon;
     has_grown_ = true;
     barrier_.start(problem, options_.tolerance);
-    return restart(problem, x0, t);
+    return restart(problem);
   }
-  bool grow(const P& problem, Trajectory& t) noexcept {
-    const std::size_t known = size_of(t);
-    t.horizon = std::min(target_, t.horizon + std::min((t.horizon + 1) / 2, kMaxGrowth));
-    for (std::size_t k = known; k < size_of(t); ++k) t.u[k] = t.u[known - 1];
-    const State x0 = t.x[0];
-    return restart(problem, x0, t);
+  bool grow(const P& problem) noexcept {
+    const std::size_t known = t_.horizon;
+    t_.horizon = std::min(target_, known + std::min((known + 1) / 2, kMaxGrowth));
+    for (std::size_t m = 0; m < kNu; ++m) {
+      for (std::size_t k = known; k < t_.horizon; ++k)
+        t_.u[m][k] = nearest(t_.u[m][known - 1], now_.lower[m][k], now_.upper[m][k]);
+    }
+    return restart(problem);
   }
-  bool restart(const P& problem, const State& x0, Trajectory& t) noexcept {
+  bool restart(const P& problem) noexcept {
     full_steps_ = is_fresh_ = true;
-    has_best_ = has_curvature_ = false;
+    has_best_ = is_exact_ = false;
     progress_.restart();
     descent_.forget();
-    return roll_out(problem, x0, t);
+    return roll_out(problem);
   }
 
   /// The last rung: one step that lowers the cost. False when there is none.
-  bool descend(const P& problem, Trajectory& t, SolveReport& report) noexcept {
-    if (!descent_.step(problem, lq_, barrier_, merit_, t, report.sweeps)) return false;
+  bool descend(const P& problem, const Deadline& deadline, SolveReport& report) noexcept {
+    if (!descent_.step(problem, lq_, barrier_, now_.merit, t_, deadline, report.sweeps)) return false;
+    is_exact_ = options_.second_order && descent_.is_under_way();
     if (!descent_.is_smooth()) return true;
     full_steps_ = true;
     has_best_ = false;
@@ -285,30 +344,49 @@ class OcpSolver {
       const int iterations = report.iterations;
       const int sweeps = report.sweeps;
       if (has_best_) {
-        trajectory = best_;
+        t_ = best_;
         report = best_report_;
       }
-      if (is_growing(trajectory) || !has_best_) {
-        while (is_growing(trajectory)) grow(problem, trajectory);
-        look(problem, trajectory, report);
-        if (!is_finite(report)) return give_up(problem, trajectory.x[0], trajectory, report);
+      if (is_growing() || !has_best_) {
+        while (is_growing()) grow(problem);
+        look(problem, report);
+        if (!is_finite(report)) return give_up(problem, t_.template state<double>(0), trajectory, report);
       }
       report.iterations = iterations;
       report.sweeps = sweeps;
       const bool is_close = residual(report) <= options_.loose_tolerance;
       status = is_close ? SolveStatus::kBudgetSpent : SolveStatus::kStalled;
-    } else if (barrier_.exceeds_a_cap(problem, size_of(trajectory), now_)) {
+    } else if (barrier_.exceeds_a_cap(problem, t_.horizon)) {
       status = SolveStatus::kInfeasible;
     }
-    clamp_inputs(problem, trajectory);  // u + (bound − u) may miss the bound by one rounding
+    t_.write(trajectory);
+    for (std::size_t k = 0; k < t_.horizon; ++k) {  // u + (bound − u) may miss the bound by one rounding
+      for (std::size_t m = 0; m < kNu; ++m)
+        trajectory.u[k][m] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
+    }
+    find_worst(report);
     report.status = status;
     return report;
+  }
+  /// Where the largest violation is.
+  void find_worst(SolveReport& report) const noexcept {
+    report.worst_stage = report.worst_constraint = -1;
+    double worst = 0.0;
+    for (std::size_t k = 0; k < t_.horizon; ++k) {
+      for (std::size_t c = 0; c < static_cast<std::size_t>(P::kNc); ++c) {
+        if (barrier_.value(c, k) <= worst) continue;
+        worst = barrier_.value(c, k);
+        report.worst_stage = static_cast<int>(k);
+        report.worst_constraint = static_cast<int>(c);
+      }
+    }
   }
 
   /// The data are not finite: leaves admissible inputs and finite states behind.
   SolveReport give_up(const P& problem, const State& x0, Trajectory& trajectory,
                       SolveReport report) noexcept {
     for (auto& u : trajectory.u) u.fill(0.0);
+    trajectory.horizon = static_cast<int>(target_);
     clamp_inputs(problem, trajectory);
     for (auto& x : trajectory.x) {
       for (std::size_t i = 0; i < kNx; ++i) x[i] = std::isfinite(x0[i]) ? x0[i] : 0.0;
@@ -318,20 +396,21 @@ class OcpSolver {
   }
 
   SolverOptions options_;
-  Linearisation<P, Capacity> now_;  ///< of the present iterate
-  Riccati<kNx, kNu, Capacity> lq_;  ///< its quadratic program
-  Barrier<P, Capacity> barrier_;
-  Descent<P, Capacity> descent_;
+  Linearisation<P, kSize, Arch> now_;  ///< of the present iterate
+  Lq lq_;                              ///< its quadratic program
+  Barrier<P, kSize, Arch> barrier_;
+  Descent<P, kSize, Arch> descent_;
   Progress progress_;
-  Trajectory best_{};
+  Iterate<kNx, kNu, kSize> t_;     ///< the present iterate
+  Iterate<kNx, kNu, kSize> step_;  ///< from it to the next
+  Iterate<kNx, kNu, kSize> best_;
   SolveReport best_report_{};
   bool has_best_ = false;
   bool full_steps_ = true;
-  bool has_curvature_ = false;
+  bool is_exact_ = false;  ///< Hessians of the next look
   bool has_grown_ = false;
-  bool is_fresh_ = true;  ///< slacks and working set are to be guessed anew
-  int target_ = 0;        ///< horizon asked for
-  double merit_ = 0.0;    ///< cost with the barrier's smoothed penalties
+  bool is_fresh_ = true;    ///< slacks and working set are to be guessed anew
+  std::size_t target_ = 0;  ///< horizon asked for
 };
 
 }  // namespace chicane::solver

@@ -32,7 +32,7 @@ bool roll_out(const P& problem, const std::array<double, P::kNx>& x0,
   bool finite = true;
   for (int k = 0; k < trajectory.horizon; ++k) {
     const auto stage = static_cast<std::size_t>(k);
-    trajectory.x[stage + 1] = problem.dynamics(k, trajectory.x[stage], trajectory.u[stage]);
+    trajectory.x[stage + 1] = next_state(problem, k, trajectory.x[stage], trajectory.u[stage]);
     for (const double value : trajectory.x[stage + 1]) finite = finite && std::isfinite(value);
   }
   return finite;

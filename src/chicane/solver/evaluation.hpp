@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "chicane/solver/iterate.hpp"
+#include "chicane/solver/problem.hpp"
+#include "chicane/solver/problem_pattern.hpp"
+
+namespace chicane::solver {
+
+/// Calls the functions of a problem for eight stages and hands out jets over packs, whatever its level:
+/// structured ones in lanes with a type for each variable; those that take lanes of one type likewise; others
+/// stage by stage.
+template <OcpProblem P, class Arch>
+class Evaluation {
+ public:
+  using V = Stages<Arch>;
+  static constexpr int kNx = P::kNx;
+  static constexpr int kNu = P::kNu;
+  static constexpr int kNc = P::kNc;
+  static constexpr int kVariables = kNx + kNu;
+  static constexpr bool kIsStructured = StructuredProblem<P>;
+  /// One stage as a value: a pack of equal lanes, so that its code carries the tag of the instruction set;
+  /// plain doubles for functions that may branch.
+  using One = std::conditional_t<kIsStructured, Pack<Arch, 2>, double>;
+
+  template <class Next, class Residual, class Constraint>
+  struct StageRows {
+    Next next;
+    Residual residual;
+    Constraint constraint;
+  };
+  template <class N, class R, class C>
+  StageRows(N, R, C) -> StageRows<N, R, C>;
+
+  /// Functions of the stages k0 … k0 + 7 with derivatives up to Order.
+  template <int Order, class Point>
+  [[gnu::always_inline]] static auto stages(const P& problem, const Point& t, std::size_t k0) noexcept {
+    if constexpr (kIsStructured) {
+      return evaluate<Order>(problem, StageLanes<V>{static_cast<int>(k0)}, seeds<Order, 0, kNx>(t.x, k0),
+                             seeds<Order, kNx, kNu>(t.u, k0));
+    } else if constexpr (kTakesLanes) {
+      return evaluate<Order>(problem, StageLanes<V>{static_cast<int>(k0)}, dense<V, Order, 0, kNx>(t.x, k0),
+                             dense<V, Order, kNx, kNu>(t.u, k0));
+    } else {
+      return one_by_one<Order>(problem, t, k0);
+    }
+  }
+
+  /// x_{k+1} of one stage.
+  static std::array<One, P::kNx> next(const P& problem, std::size_t k, const std::array<One, P::kNx>& x,
+                                      const std::array<One, P::kNu>& u) noexcept {
+    return to_array<One>(problem.dynamics(static_cast<int>(k), x, u));
+  }
+
+  /// Terminal residuals; their values through number() and slope_number().
+  template <int Order, class Point>
+  static auto end(const P& problem, const Point& t) noexcept {
+    if constexpr (kIsStructured) {
+      StateJets<P, One, Order> x;
+      jet::repeat<kNx>([&](auto i)
+                           __attribute__((always_inline)) { std::get<i>(x).v = One(t.x[i][t.horizon]); });
+      return problem.terminal_residual(x);
+    } else {
+      return problem.terminal_residual(dense<One, Order, 0, kNx>(t.x, t.horizon));
+    }
+  }
+  [[gnu::always_inline]] static double number(double x) noexcept { return x; }
+  template <std::size_t N>
+  [[gnu::always_inline]] static double number(const Pack<Arch, N>& x) noexcept {
+    return x[0];
+  }
+  template <class S>
+  [[gnu::always_inline]] static double slope_number(const S& s) noexcept {
+    return number(jet::number<One>(s));
+  }
+
+ private:
+  template <class T, int Order>
+  using Dense = DenseJet<P, T, Order>;
+  static constexpr bool kTakesLanes =
+      !kIsStructured && requires(const P& p, StageLanes<V> k, const std::array<Dense<V, 1>, kNx>& x,
+                                 const std::array<Dense<V, 1>, kNu>& u) {
+    p.dynamics(k, x, u);
+    p.residual(k, x, u);
+    requires kNc == 0 || requires { p.constraint(k, x, u); };
+  };
+
+  template <int Order, class K, class X, class U>
+  [[gnu::always_inline]] static auto evaluate(const P& problem, K k, const X& x, const U& u) noexcept {
+    if constexpr (kNc > 0) {
+      return StageRows{problem.dynamics(k, x, u), problem.residual(k, x, u), problem.constraint(k, x, u)};
+    } else {
+      return StageRows{problem.dynamics(k, x, u), problem.residual(k, x, u), std::tuple<>{}};
+    }
+  }
+
+  template <int Order, int Begin, int Count, class Values>
+  [[gnu::always_inline]] static auto seeds(const Values& values, std::size_t k0) noexcept {
+    detail::Seeds<V, Order, Begin, Count> result;
+    jet::repeat<Count>([&](auto n) __attribute__((always_inline)) {
+      std::get<n>(result).v = V::load(values[n] + k0);
+    });
+    return result;
+  }
+  /// Variables of one type that stores all derivatives.
+  template <class T, int Order, int Begin, int Count, class Values>
+  [[gnu::always_inline]] static auto dense(const Values& values, std::size_t k0) noexcept {
+    std::array<Dense<T, Order>, static_cast<std::size_t>(Count)> result;
+    for (std::size_t n = 0; n < static_cast<std::size_t>(Count); ++n) {
+      if constexpr (std::is_same_v<T, double>) {
+        result[n] = Dense<T, Order>(values[n][k0]);
+      } else {
+        result[n] = Dense<T, Order>(T::load(values[n] + k0));
+      }
+      result[n].slopes[static_cast<std::size_t>(Begin) + n] = T(1.0);
+    }
+    return result;
+  }
+
+  /// Rows of jets over packs, gathered from eight calls.
+  template <int Order, std::size_t Count>
+  struct Gathered {
+    static constexpr std::size_t kNumbers =
+        1 + Dense<double, Order>::kSlopes + Dense<double, Order>::kCurvatures;
+    alignas(64) double numbers[Count > 0 ? Count : 1][kNumbers][8] = {};
+
+    void put(std::size_t lane, const std::array<Dense<double, Order>, Count>& row) noexcept {
+      for (std::size_t i = 0; i < Count; ++i) {
+        std::size_t at = 0;
+        numbers[i][at++][lane] = row[i].v;
+        for (const double d : row[i].slopes) numbers[i][at++][lane] = d;
+        for (const double d : row[i].curvatures) numbers[i][at++][lane] = d;
+      }
+    }
+    [[nodiscard]] std::array<Dense<V, Order>, Count> rows() const noexcept {
+      std::array<Dense<V, Order>, Count> result;
+      for (std::size_t i = 0; i < Count; ++i) {
+        std::size_t at = 0;
+        result[i].v = V::load(numbers[i][at++]);
+        for (V& d : result[i].slopes) d = V::load(numbers[i][at++]);
+        for (V& d : result[i].curvatures) d = V::load(numbers[i][at++]);
+      }
+      return result;
+    }
+  };
+
+  template <int Order, class Point>
+  static auto one_by_one(const P& problem, const Point& t, std::size_t k0) noexcept {
+    Gathered<Order, static_cast<std::size_t>(kNx)> next;
+    Gathered<Order, static_cast<std::size_t>(P::kNr)> residual;
+    Gathered<Order, static_cast<std::size_t>(kNc)> constraint;
+    for (std::size_t lane = 0; lane < 8 && k0 + lane < t.horizon; ++lane) {
+      const int k = static_cast<int>(k0 + lane);
+      const auto x = dense<double, Order, 0, kNx>(t.x, k0 + lane);
+      const auto u = dense<double, Order, kNx, kNu>(t.u, k0 + lane);
+      next.put(lane, problem.dynamics(k, x, u));
+      residual.put(lane, problem.residual(k, x, u));
+      if constexpr (kNc > 0) constraint.put(lane, problem.constraint(k, x, u));
+    }
+    return StageRows{next.rows(), residual.rows(), constraint.rows()};
+  }
+};
+
+}  // namespace chicane::solver

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <tuple>
+#include <utility>
+
+#include "chicane/base/jet.hpp"
+#include "chicane/solver/pattern.hpp"
+#include "chicane/solver/problem.hpp"
+
+namespace chicane::solver {
+
+/// Position of variable `i` of (x, u) in z = (x, 1, u).
+template <class P>
+constexpr std::size_t in_z(int i) noexcept {
+  return static_cast<std::size_t>(i < P::kNx ? i : i + 1);
+}
+
+/// The jet that stores every derivative of a stage: what problems of level 1 are called with.
+template <class P, class V, int Order>
+using DenseJet =
+    Jet<V, Order, first_variables(P::kNx + P::kNu), 0,
+        Order == 2 ? Pairs::of(first_variables(P::kNx + P::kNu), first_variables(P::kNx + P::kNu)) : Pairs{}>;
+
+/// A result of a problem's functions as a jet: constants have no derivatives.
+template <class V, int Order, class T>
+[[nodiscard, gnu::always_inline]] inline decltype(auto) as_jet(const T& value) {
+  if constexpr (AnyJet<T>) {
+    return (value);
+  } else {
+    return Jet<V, Order, 0>(value);
+  }
+}
+
+namespace detail {
+
+/// The patterns of all rows of a result.
+template <class... J>
+struct JetSets {
+  static constexpr std::array<Variables, sizeof...(J)> kFirst{J::kFirst...};
+  static constexpr std::array<Variables, sizeof...(J)> kUnit{J::kUnit...};
+  static constexpr Pairs squares() noexcept {  // of residuals: JᵀJ
+    Pairs set;
+    ((set |= Pairs::of(J::kFirst, J::kFirst)), ...);
+    return set;
+  }
+  static constexpr Pairs second() noexcept {
+    Pairs set;
+    ((set |= J::kSecond), ...);
+    return set;
+  }
+  /// The first row with variable i, or with i and j; -1 when there is none.
+  static constexpr int first_with(int i) noexcept { return first_with(i, i); }
+  static constexpr int first_with(int i, int j) noexcept {
+    for (std::size_t n = 0; n < sizeof...(J); ++n) {
+      if (contains(kFirst[n], i) && contains(kFirst[n], j)) return static_cast<int>(n);
+    }
+    return -1;
+  }
+  static constexpr Variables first() noexcept { return (J::kFirst | ... | Variables{0}); }
+};
+template <class T>
+using JetOf = std::remove_cvref_t<decltype(as_jet<double, 2>(std::declval<const T&>()))>;
+template <class Row, class Sequence = std::make_index_sequence<std::tuple_size_v<Row>>>
+struct RowSets;
+template <class Row, std::size_t... n>
+struct RowSets<Row, std::index_sequence<n...>> : JetSets<JetOf<std::tuple_element_t<n, Row>>...> {};
+
+}  // namespace detail
+
+/// Which entries of the stages of its quadratic programs a structured problem can make other than zero, read
+/// off the types that its functions return.
+template <StructuredProblem P>
+struct StructuredPattern {
+  static constexpr std::size_t kNx = P::kNx;
+  static constexpr std::size_t kNu = P::kNu;
+  static constexpr std::size_t kNz = kNx + 1 + kNu;
+  using X = StateJets<P, double, 2>;
+  using U = InputJets<P, double, 2>;
+  using Next = decltype(std::declval<const P&>().dynamics(0, X{}, U{}));
+  using Residual = decltype(std::declval<const P&>().residual(0, X{}, U{}));
+  static constexpr auto constraint_type() {
+    if constexpr (P::kNc > 0) {
+      return std::type_identity<decltype(std::declval<const P&>().constraint(0, X{}, U{}))>{};
+    } else {
+      return std::type_identity<std::tuple<>>{};
+    }
+  }
+  using Constraint = typename decltype(constraint_type())::type;
+
+  static constexpr auto kF = [] {
+    std::array<std::array<Entry, kNz>, kNx> f{};
+    for (std::size_t i = 0; i < kNx; ++i) {
+      for (int j = 0; j < P::kNx + P::kNu; ++j) {
+        if (!contains(detail::RowSets<Next>::kFirst[i], j)) continue;
+        f[i][in_z<P>(j)] = contains(detail::RowSets<Next>::kUnit[i], j) ? Entry::kOne : Entry::kValue;
+      }
+      f[i][kNx] = Entry::kValue;
+    }
+    return f;
+  }();
+  static constexpr auto kL = [] {
+    const Pairs pairs = detail::RowSets<Residual>::squares() | detail::RowSets<Constraint>::squares() |
+                        detail::RowSets<Next>::second() | detail::RowSets<Residual>::second() |
+                        detail::RowSets<Constraint>::second();
+    const Variables first = detail::RowSets<Residual>::first() | detail::RowSets<Constraint>::first();
+    std::array<std::array<bool, kNz>, kNz> l{};
+    for (int i = 0; i < P::kNx + P::kNu; ++i) {
+      for (int j = 0; j < P::kNx + P::kNu; ++j) l[in_z<P>(i)][in_z<P>(j)] = pairs.contains(i, j);
+      l[in_z<P>(i)][kNx] = l[kNx][in_z<P>(i)] = contains(first, i);
+    }
+    return l;
+  }();
+  static constexpr auto kRateState = FullPattern<kNx, kNu>::kRateState;
+};
+
+namespace detail {
+template <class P>
+struct PatternOf {
+  using type = FullPattern<P::kNx, P::kNu>;
+};
+template <StructuredProblem P>
+struct PatternOf<P> {
+  using type = StructuredPattern<P>;
+};
+}  // namespace detail
+
+/// The pattern of any problem; a dense one for level 1.
+template <OcpProblem P>
+using ProblemPattern = typename detail::PatternOf<P>::type;
+
+}  // namespace chicane::solver

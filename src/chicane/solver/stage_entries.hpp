@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+
+#include "chicane/base/jet.hpp"
+#include "chicane/solver/pattern.hpp"
+#include "chicane/solver/problem_pattern.hpp"
+
+namespace chicane::solver {
+
+template <class Row>
+inline constexpr bool is_dense_row = false;
+template <AnyJet J, std::size_t N>
+inline constexpr bool is_dense_row<std::array<J, N>> = J::kIsDense;
+
+/// Calls visit(n, jet) for each result of a problem's function. Of a tuple, n is a constant; of an array
+/// whose jets store everything, a number: loops are quicker to compile.
+template <class V, int Order, class Row, class Visit>
+[[gnu::always_inline]] inline void each_row(const Row& row, const Visit& visit) noexcept {
+  constexpr std::size_t count = std::tuple_size_v<Row>;
+  if constexpr (count == 0) {
+    return;
+  } else if constexpr (is_dense_row<Row>) {
+    for (std::size_t n = 0; n < count; ++n) visit(n, row[n]);
+  } else {
+    unroll<count>([&](auto n)
+                      __attribute__((always_inline)) { visit(n, as_jet<V, Order>(std::get<n>(row))); });
+  }
+}
+
+/// The entries of eight stages of the quadratic program while they are added up, as packs over the stages:
+/// for problems whose every entry counts.
+template <OcpProblem P, class V>
+struct StageEntries {
+  static constexpr std::size_t kVariables = static_cast<std::size_t>(P::kNx + P::kNu);
+  using Layout = solver::Layout<ProblemPattern<P>>;
+  using Jacobians = std::array<V, Layout::kFCount>;
+  using Costs = std::array<V, Layout::kLCount>;
+  using Gradient = std::array<V, kVariables>;  ///< of the stage cost, constraints' multipliers as they are
+
+  static constexpr std::size_t z(std::size_t i) noexcept { return i < P::kNx ? i : i + 1; }
+
+  template <class J>
+  static void set_jacobian(std::size_t i, const J& row, const V& defect, Jacobians& f) noexcept {
+    for (std::size_t j = 0; j < kVariables; ++j) f[Layout::kF[i][z(j)]] = row.slopes[j];
+    f[Layout::kF[i][Layout::kOne]] = defect;
+  }
+  template <class Rows>
+  static void clear(Gradient& gradient, Costs& l) noexcept {
+    gradient.fill(V(0.0));
+    l.fill(V(0.0));
+  }
+  /// gradient += weight · dr
+  template <class Rows, class J>
+  static void add_gradient(std::size_t, const J& r, const V& weight, Gradient& gradient) noexcept {
+    for (std::size_t i = 0; i < kVariables; ++i) gradient[i] += weight * r.slopes[i];
+  }
+  /// l += weight · drᵀ dr
+  template <class Rows, class J>
+  static void add_square(std::size_t, const J& r, const V& weight, Costs& l) noexcept {
+    for (std::size_t j = 0; j < kVariables; ++j) {
+      const V scaled = weight * r.slopes[j];
+      for (std::size_t i = 0; i <= j; ++i) l[Layout::kL[z(i)][z(j)]] += scaled * r.slopes[i];
+    }
+  }
+  static void set_gradient(const Gradient& gradient, Costs& l) noexcept {
+    for (std::size_t i = 0; i < kVariables; ++i) l[Layout::kL[z(i)][Layout::kOne]] = gradient[i];
+  }
+  template <class J>
+  static void add_to_gradient(const J& r, const V& weight, Costs& l) noexcept {
+    for (std::size_t i = 0; i < kVariables; ++i) l[Layout::kL[z(i)][Layout::kOne]] += weight * r.slopes[i];
+  }
+  /// l += weight · ddr
+  template <class J>
+  static void add_curvature(const J& r, const V& weight, Costs& l) noexcept {
+    std::size_t at = 0;
+    for (std::size_t j = 0; j < kVariables; ++j) {
+      for (std::size_t i = 0; i <= j; ++i, ++at) l[Layout::kL[z(i)][z(j)]] += weight * r.curvatures[at];
+    }
+  }
+};
+
+/// The same for structured problems: what is zero by type is not there, and the first row that has an entry
+/// sets it.
+template <StructuredProblem P, class V>
+struct StageEntries<P, V> {
+  static constexpr int kVariables = P::kNx + P::kNu;
+  using Layout = solver::Layout<ProblemPattern<P>>;
+  using Jacobians = std::array<V, Layout::kFCount>;
+  using Costs = std::array<V, Layout::kLCount>;
+  using Gradient = std::array<V, static_cast<std::size_t>(kVariables)>;
+
+  template <std::size_t I, class J>
+  [[gnu::always_inline]] static void set_jacobian(std::integral_constant<std::size_t, I>, const J& row,
+                                                  const V& defect, Jacobians& f) noexcept {
+    jet::repeat<kVariables>([&](auto j) __attribute__((always_inline)) {
+      constexpr std::size_t entry = Layout::kF[I][in_z<P>(j)];
+      if constexpr (entry != Layout::kNone) f[entry] = jet::number<V>(jet::slope<j>(row));
+    });
+    f[Layout::kF[I][Layout::kOne]] = defect;
+  }
+  /// Sets to zero what no row of `Rows` has.
+  template <class Rows>
+  [[gnu::always_inline]] static void clear(Gradient& gradient, Costs& l) noexcept {
+    using Sets = detail::RowSets<Rows>;
+    jet::repeat<kVariables>([&](auto j) __attribute__((always_inline)) {
+      if constexpr (Sets::first_with(j) < 0) gradient[j] = V(0.0);
+      jet::repeat<j + 1>([&](auto i) __attribute__((always_inline)) {
+        constexpr std::size_t entry = Layout::kL[in_z<P>(i)][in_z<P>(j)];
+        if constexpr (entry != Layout::kNone && Sets::first_with(i, j) < 0) l[entry] = V(0.0);
+      });
+    });
+  }
+  template <class Rows, class N, class J>
+  [[gnu::always_inline]] static void add_gradient(N, const J& r, const V& weight,
+                                                  Gradient& gradient) noexcept {
+    for_slopes(
+        r, [&](auto i, const auto& slope) __attribute__((always_inline)) {
+          const V share = jet::number<V>(jet::times(weight, slope));
+          gradient[i] = is_first<Rows, N>(i, i) ? share : gradient[i] + share;
+        });
+  }
+  template <class Rows, class N, class J>
+  [[gnu::always_inline]] static void add_square(N, const J& r, const V& weight, Costs& l) noexcept {
+    for_slopes(
+        r, [&](auto j, const auto& slope_j) __attribute__((always_inline)) {
+          const V scaled = jet::number<V>(jet::times(weight, slope_j));
+          for_slopes(
+              r, [&](auto i, const auto& slope_i) __attribute__((always_inline)) {
+                if constexpr (i <= j) {
+                  V& entry = l[Layout::kL[in_z<P>(i)][in_z<P>(j)]];
+                  const V share = jet::number<V>(jet::times(scaled, slope_i));
+                  entry = is_first<Rows, N>(i, j) ? share : entry + share;
+                }
+              });
+        });
+  }
+  [[gnu::always_inline]] static void set_gradient(const Gradient& gradient, Costs& l) noexcept {
+    jet::repeat<kVariables>([&](auto i) __attribute__((always_inline)) {
+      constexpr std::size_t entry = Layout::kL[in_z<P>(i)][Layout::kOne];
+      if constexpr (entry != Layout::kNone) l[entry] = gradient[i];
+    });
+  }
+  template <class J>
+  [[gnu::always_inline]] static void add_to_gradient(const J& r, const V& weight, Costs& l) noexcept {
+    for_slopes(
+        r, [&](auto i, const auto& slope) __attribute__((always_inline)) {
+          l[Layout::kL[in_z<P>(i)][Layout::kOne]] += jet::number<V>(jet::times(weight, slope));
+        });
+  }
+  template <class J>
+  [[gnu::always_inline]] static void add_curvature(const J& r, const V& weight, Costs& l) noexcept {
+    jet::repeat<J::kSecond.size()>([&](auto n) __attribute__((always_inline)) {
+      constexpr Pair p = members<J::kSecond>()[n];
+      l[Layout::kL[in_z<P>(p.i)][in_z<P>(p.j)]] += weight * r.curvatures[n];
+    });
+  }
+
+ private:
+  template <class J, class Visit>
+  [[gnu::always_inline]] static void for_slopes(const J& r, const Visit& visit) noexcept {
+    jet::repeat<size_of(J::kFirst)>([&](auto n) __attribute__((always_inline)) {
+      constexpr int i = member_of(J::kFirst, n);
+      visit(std::integral_constant<int, i>{}, jet::slope<i>(r));
+    });
+  }
+  /// Whether row N is the first of `Rows` with variables i and j. Rows that only add are not (Rows = void).
+  template <class Rows, class N>
+  static constexpr bool is_first(int i, int j) noexcept {
+    if constexpr (std::is_void_v<Rows>) {
+      return false;
+    } else {
+      return detail::RowSets<Rows>::first_with(i, j) == static_cast<int>(N::value);
+    }
+  }
+};
+
+/// Derivatives with respect to the states as plain numbers.
+template <OcpProblem P>
+struct PlainDerivatives {
+  double first[P::kNx] = {};
+  double second[P::kNx][P::kNx] = {};
+};
+template <OcpProblem P, class Arch, class J>
+[[nodiscard]] PlainDerivatives<P> plain_derivatives(const J& r) noexcept {
+  const auto number = [](const auto& value) {
+    if constexpr (std::is_same_v<typename J::Value, double>) {
+      return jet::number<double>(value);
+    } else {
+      return jet::number<typename J::Value>(value)[0];
+    }
+  };
+  PlainDerivatives<P> result;
+  jet::repeat<size_of(J::kFirst)>([&](auto n) {
+    constexpr int i = member_of(J::kFirst, n);
+    if constexpr (i < P::kNx) result.first[i] = number(jet::slope<i>(r));
+  });
+  constexpr auto pairs = members<J::kSecond>();
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    if (pairs[n].j >= P::kNx) continue;
+    result.second[pairs[n].i][pairs[n].j] = result.second[pairs[n].j][pairs[n].i] = number(r.curvatures[n]);
+  }
+  return result;
+}
+
+}  // namespace chicane::solver
