@@ -1,6 +1,6 @@
 # chicane_simd_sources(controller fast_solver.cpp): compiles the file once for every instruction set of the processor
 # family and adds the objects to the module (or the test of that name); how such a file is written is said in base/instruction_set.hpp. For each a
-# test with label architecture proves that the object defines no symbol that other objects could share.
+# test with label architecture proves that the object defines no code that other objects could share.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
   set(CHICANE_INSTRUCTION_SETS Baseline Avx2 Avx512)
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
@@ -33,7 +33,8 @@ function(chicane_simd_sources module)
       set(object ${module_target}_${stem}_${suffix})
       add_library(${object} OBJECT ${source})
       set_target_properties(${object} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-      target_include_directories(${object} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)
+      target_include_directories(${object} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests
+                                 ${PROJECT_SOURCE_DIR}/bench)
       target_link_libraries(${object} PRIVATE chicane_options ${libraries})
       chicane_simd_options(${object} ${set})
       target_sources(${module_target} PRIVATE $<TARGET_OBJECTS:${object}>)

@@ -258,7 +258,7 @@ class LqSolver {
 
   /// The working set of stage k from its own box problem; returns the shift that the block needed.
   [[gnu::noinline]] double choose_hold(std::size_t k, Block& block) noexcept {
-    SmallQp<kNu> box;
+    SmallQp<kNu, Arch> box;
     for (std::size_t m = 0; m < kNu; ++m) {
       for (std::size_t l = 0; l < kNu; ++l) box.H[m][l] = block.H[m][l];
       box.g[m] = block.g[m];

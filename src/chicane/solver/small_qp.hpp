@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "chicane/base/instruction_set.hpp"
+
 namespace chicane::solver {
 
 /// Where an input stands in the working set: free, at a bound of its own, at a bound on its change from the
@@ -37,7 +39,8 @@ enum class Hold : std::int8_t {
 }
 
 /// min ½ uᵀ H u + gᵀ u s.t. low <= u <= high for a handful of inputs: the box problem of one stage.
-template <std::size_t N>
+/// `Arch` only tells apart what different files are compiled for.
+template <std::size_t N, class Arch = arch::Native>
 struct SmallQp {
   double H[N][N]{};
   double g[N]{};
