@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <utility>
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/step_codec.hpp"
@@ -151,6 +152,40 @@ TEST_F(BranchTest, OfARunWhoseDeadlinesWereSpentStartsFromTheSameBits) {
   const auto report = branch(file_, branched_, {.at = 6.0});
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_FALSE(report->first_difference);
+}
+
+TEST_F(BranchTest, OfARunWithFaultsHasTheSameFaultsAndTakesAnother) {
+  const auto loop = short_run();
+  {
+    Recording recording(file_.path());
+    ASSERT_TRUE(recording.begin(*loop));
+    std::uint32_t told = 0;
+    for (int cycle = 0; cycle < 200;) {
+      if (loop->is_control_due() && cycle == 50) {
+        const telemetry::Change change{.cycle = 50, .time = 2.0, .name = "fault.half_grip", .value = "true"};
+        loop->apply(change);
+        (*recording).record(change);
+      }
+      if (!loop->advance()) continue;
+      (*recording).record(loop->frame());
+      const std::uint32_t ended = std::exchange(told, loop->frame().active_faults) & ~told;
+      if (ended != 0U) {  // by itself, told after the step that showed it
+        (*recording)
+            .record(telemetry::Change{
+                .cycle = loop->cycle(), .time = loop->time(), .name = "fault.half_grip", .value = "false"});
+      }
+      ++cycle;
+    }
+    ASSERT_TRUE((*recording).finish());
+  }
+  const auto same = branch(file_, branched_, {.at = 3.0});
+  ASSERT_TRUE(same) << same.error().message;
+  EXPECT_FALSE(same->first_difference);
+  EXPECT_EQ(same->branched.max_lateral_error, same->recorded.max_lateral_error);
+  std::filesystem::remove(branched_);
+  const auto other = branch(file_, branched_, {.at = 3.0, .settings = {{"fault.link_lost", "true"}}});
+  ASSERT_TRUE(other) << other.error().message;
+  EXPECT_NE(other->branched.mean_speed, other->recorded.mean_speed);
 }
 
 TEST_F(BranchTest, FollowsARunThatStartedAnew) {

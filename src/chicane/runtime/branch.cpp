@@ -9,6 +9,7 @@
 #include <limits>
 #include <variant>
 
+#include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/runtime/recorder.hpp"
 #include "chicane/runtime/recording.hpp"
@@ -78,7 +79,16 @@ class Rebuilt {
     loop_->drive_on();
     return {};
   }
-  void apply(const telemetry::Change& change) { loop_->apply(change); }
+  /// A fault that begins or ends by itself is in the recording too, after the step that showed it: the run
+  /// that is computed again has it already.
+  void apply(const telemetry::Change& change) {
+    const std::vector<protocol::Control> faults = protocol::fault_controls();
+    for (std::size_t i = 0; i < faults.size(); ++i) {
+      const bool is_on = (loop_->frame().active_faults >> i & 1U) != 0U;
+      if (faults[i].key == change.name.view() && is_on == (change.value.view() == "true")) return;
+    }
+    loop_->apply(change);
+  }
   const telemetry::Frame& follow(const protocol::Step& step) {
     if (step.begins && loop_->cycle() > 0) loop_->restart();
     const GivenStep given{.delay = step.measurement.delay, .deadline_spent_at = step.deadline_spent_at};
@@ -161,26 +171,38 @@ class Branching {
     if (recorded.step.begins && loop.cycle() > 0) loop.restart();
     scenario::Scenario changed = loop.scenario();
     for (const auto& [key, text] : options_.settings) {
-      const protocol::Parameter* row = protocol::find(key);
-      if (row != nullptr && !protocol::is_live(*row)) {
-        return fail(ErrorCode::kInvalidArgument,
-                    key +
-                        ": got a change while the run goes on, expected one of the settings that can change "
-                        "then (docs/viewer.md)");
-      }
-      if (Result<void> set = protocol::set_text(changed, key, text); !set) return set;
-      telemetry::Change change{.cycle = loop.cycle(),
-                               .time = loop.time(),
-                               .name = std::string_view(key),
-                               .value = std::string_view(text)};
-      if (!decltype(change.value)::fits(text))
-        return fail(ErrorCode::kInvalidArgument, key + ": is too long");
-      change_second(change);
+      if (Result<void> set = check(key, text, changed); !set) return set;
+      change_second({.cycle = loop.cycle(),
+                     .time = loop.time(),
+                     .name = std::string_view(key),
+                     .value = std::string_view(text)});
     }
     for (const protocol::Contradiction& found : protocol::contradictions(changed)) {
       return fail(ErrorCode::kInvalidArgument, fmt::format("{}: {}", found.key, found.message));
     }
     return {};
+  }
+
+  /// May this change while a run goes on? Settings are set in `scenario`, too.
+  static Result<void> check(const std::string& key, const std::string& text, scenario::Scenario& scenario) {
+    const std::vector<protocol::Control> faults = protocol::fault_controls();
+    const bool is_fault = std::any_of(faults.begin(), faults.end(),
+                                      [&](const protocol::Control& fault) { return fault.key == key; });
+    if (is_fault && (text == "true" || text == "false")) return {};
+    if (is_fault) {
+      return fail(ErrorCode::kInvalidArgument,
+                  fmt::format("{}: got {}, expected true or false", key, protocol::quoted(text)));
+    }
+    const protocol::Parameter* row = protocol::find(key);
+    if (row != nullptr && !protocol::is_live(*row)) {
+      return fail(ErrorCode::kInvalidArgument,
+                  key +
+                      ": got a change while the run goes on, expected a setting that can change then "
+                      "(docs/viewer.md)");
+    }
+    if (!decltype(telemetry::Change::value)::fits(text))
+      return fail(ErrorCode::kInvalidArgument, key + ": is too long");
+    return protocol::set_text(scenario, key, text);
   }
 
   void change_second(const telemetry::Change& change) {
