@@ -108,7 +108,7 @@ export function GgView() {
     <section class="plot square" aria-label="Acceleration">
       <header>
         <h2>
-          Acceleration <span class="unit">g · up: drive, left: left</span>
+          Acceleration <span class="unit">g · left turns left, braking down</span>
         </h2>
         <p>
           <span class="key">

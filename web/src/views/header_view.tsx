@@ -96,7 +96,7 @@ export function HeaderView() {
           <LinkState />
         </div>
         <Buttons />
-        <button type="button" class="icon" aria-label="Keys and help" title="Keys and help (?)" aria-keyshortcuts="?" onClick={() => (isHelpOpen.value = true)}>
+        <button type="button" class="icon help" aria-label="Keys and help" title="Keys and help (?)" aria-keyshortcuts="?" onClick={() => (isHelpOpen.value = true)}>
           ?
         </button>
       </div>

@@ -42,8 +42,8 @@ function Lap() {
       <p class="label">
         Lap <b data-testid="lap">{frame && Number.isFinite(frame.lap_time_s) ? frame.lap + 1 : UNKNOWN}</b>
         {Number.isFinite(gap) && (
-          <span class={gap > 0 ? 'delta slower' : 'delta faster'} data-testid="delta" title="Against the best lap, at this place">
-            {gap > 0 ? '+' : ''}
+          <span class={gap >= 0.005 ? 'delta slower' : 'delta faster'} data-testid="delta" title="Against the best lap, at this place">
+            {gap >= 0.005 ? '+' : ''}
             {fixed(gap, 2)}
           </span>
         )}

@@ -1,0 +1,36 @@
+import { expect, it } from 'vitest';
+import type { Frame, Plan, Run } from '../protocol/topics';
+import { forget, live, receive } from './app_state';
+import { events } from './event_log';
+
+const FRAMES = 30_000; // eight minutes at sixty a second: longer than anything the page keeps
+const SPEED = 45; // [m/s]
+
+it('what the page keeps stops growing', () => {
+  forget();
+  receive('/chicane/run', { track_length_m: 1000 } as Run, 0);
+  const sizes = () => [
+    live.plots.length,
+    live.trace.length,
+    live.pastPlans.length,
+    live.stepTimes.counts.length,
+    live.lapSamples.laps.length,
+    events.value.length,
+  ];
+  const drive = (from: number, to: number): void => {
+    for (let i = from; i < to; ++i) {
+      const distance = (i * SPEED) / 60;
+      const lap = Math.floor(distance / 1000);
+      receive('/chicane/frame', {
+        cycle: BigInt(i), time_s: i / 60, s_m: distance % 1000, lap, lap_time_s: (distance % 1000) / SPEED, last_lap_time_s: lap > 0 ? 1000 / SPEED : 0,
+        x_m: distance, y_m: 0, speed_mps: SPEED, step_time_us: 200 + (i % 997), is_gated: i % 200 === 0, cost_terms: [1, 2, 3], active_faults: i % 300 === 0 ? 1 : 0,
+      } as unknown as Frame, i);
+      receive('/chicane/plan', { stamp: { sec: Math.floor(i / 60), nsec: 0 }, speed_mps: [SPEED] } as unknown as Plan, i);
+    }
+  };
+  drive(0, FRAMES);
+  const full = sizes();
+  expect(full).toEqual([3600, 4000, 96, 120, 17, 60]);
+  drive(FRAMES, 1.5 * FRAMES);
+  expect(sizes()).toEqual(full);
+}, 60_000);
