@@ -265,6 +265,12 @@ std::string write(const scenario::Scenario& scenario, std::string_view descripti
   return text;
 }
 
+std::string write_faults(const scenario::Scenario& scenario) {
+  std::string text = scenario.faults.empty() ? "" : "faults:\n";
+  for (const sim::FaultEvent& event : scenario.faults) text += fmt::format("  - {}\n", write_fault(event));
+  return text;
+}
+
 }  // namespace
 
 Result<Document> parse_document(std::string_view text, const std::string& file) {
@@ -315,20 +321,19 @@ Result<void> apply_layers(std::span<const Document> layers, scenario::Scenario& 
 
 std::string write_document(const scenario::Scenario& scenario, std::string_view description, bool is_whole) {
   const scenario::Scenario defaults;
-  std::string text = write(scenario, description, [&](const Parameter& parameter) {
+  const std::string text = write(scenario, description, [&](const Parameter& parameter) {
     return parameter.key != "preset" && (is_whole || get(scenario, parameter) != get(defaults, parameter));
   });
-  if (!scenario.faults.empty()) text += "faults:\n";
-  for (const sim::FaultEvent& event : scenario.faults) text += fmt::format("  - {}\n", write_fault(event));
-  return text;
+  return text + write_faults(scenario);
 }
 
 std::string write_preset(const scenario::Scenario& scenario, const scenario::Scenario& base,
                          std::string_view description) {
-  return write(scenario, description, [&](const Parameter& parameter) {
+  const std::string text = write(scenario, description, [&](const Parameter& parameter) {
     const bool is_named = parameter.key == "preset" || parameter.key == "car" || parameter.key == "track";
     return is_named || get(scenario, parameter) != get(base, parameter);
   });
+  return text + write_faults(scenario);
 }
 
 }  // namespace chicane::protocol

@@ -195,6 +195,7 @@ Result<void> LiveSettings::start_anew(std::string_view key, const std::string& v
   if (!base) return fail(base.error());
   if (key == "preset") {
     scenario::Scenario fresh = *base;
+    fresh.faults = changed.faults;
     for (const protocol::Parameter& row : protocol::list()) {
       if (!is_of_the_world(row.key)) continue;
       if (Result<void> kept = protocol::set(fresh, row, protocol::get(changed, row)); !kept) return kept;
