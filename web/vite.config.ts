@@ -12,6 +12,7 @@ export default defineConfig({
   server: {
     // `npm run dev` beside `chicane drive`: the page is Vite's, the data the program's.
     proxy: {
+      '^/(schema.json|preset.yaml|mode.json|log/)': 'http://127.0.0.1:4567',
       '/viewer': { target: 'ws://127.0.0.1:4567', ws: true, changeOrigin: true, headers: { origin: 'http://127.0.0.1:4567' } },
     },
   },

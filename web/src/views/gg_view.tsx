@@ -10,12 +10,13 @@ import { chartColours } from './plot_colours';
 const G = 9.80665; // standard gravity [m/s²]
 
 /**
- * The radius of the circle that a tyre's grip would allow [m/s²]: the acceleration at which the axle that uses more of its
- * grip would use all of it, by proportion. Not-a-number where the use is not known or too small to tell.
+ * The radius of the circle that the tyres' grip would allow [m/s²]: the acceleration at which the axle that uses more of its
+ * grip would use all of it, by proportion. Told in bends only, where the tyres' force is what accelerates the car; on a
+ * straight most of it balances the drag. Not-a-number elsewhere, and where the use is not known.
  */
-export function gripRadius(lateral: number, longitudinal: number, frontUse: number, rearUse: number): number {
+export function gripRadius(lateral: number, frontUse: number, rearUse: number): number {
   const use = Math.max(frontUse, rearUse) / 100;
-  return use > 0.3 ? Math.hypot(lateral, longitudinal) / use : NaN;
+  return use > 0.3 && Math.abs(lateral) > 3 ? Math.abs(lateral) / use : NaN;
 }
 
 let radius = NaN; // smoothed [g]
@@ -88,7 +89,7 @@ function drawTrail(context: CanvasRenderingContext2D, x: (i: number) => number, 
 function drawGrip(context: CanvasRenderingContext2D, x: number, y: number, pixels: number, row: number): void {
   const history = plotted();
   const value = (column: number): number => history.column(column)[row] ?? NaN;
-  const now = gripRadius(value(Column.lateralAcceleration), value(Column.longitudinalAcceleration), value(Column.frontTireUse), value(Column.rearTireUse)) / G;
+  const now = gripRadius(value(Column.lateralAcceleration), value(Column.frontTireUse), value(Column.rearTireUse)) / G;
   if (Number.isFinite(now)) radius = Number.isFinite(radius) ? radius + (now - radius) * 0.2 : now;
   if (!Number.isFinite(radius)) return;
   context.beginPath();

@@ -9,6 +9,9 @@ const QUANTILES = [
   { share: 0.999, label: 'p99.9' },
 ] as const;
 
+/** A power of ten of microseconds, for the axis. */
+const decadeLabel = (power: number): string => (power < 3 ? `${10 ** power} µs` : power < 6 ? `${10 ** (power - 3)} ms` : `${10 ** (power - 6)} s`);
+
 const micros = (value: number): string => {
   const { value: number, unit } = duration(value);
   return `${number} ${unit}`;
@@ -39,7 +42,7 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number)
     context.stroke();
     const isEnd = power === low || power === high;
     context.textAlign = !isEnd ? 'center' : power === low ? 'left' : 'right';
-    context.fillText(micros(10 ** power), x(10 ** power), height - 5);
+    context.fillText(decadeLabel(power), x(10 ** power), height - 5);
   }
   // Heights are logarithmic too: the rare slow steps are what matters.
   const tall = (count: number): number => (Math.log10(1 + count) / Math.log10(1 + most)) * (bottom - top);

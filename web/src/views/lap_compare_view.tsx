@@ -1,7 +1,7 @@
 import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
-import { rangeAboutZero, rangeFromZero } from '../draw/axis';
+import { rangeAboutZero, rangeInSteps } from '../draw/axis';
 import { onThemeChange } from '../draw/theme';
 import { fixed, MPH } from '../lib/format';
 import { live } from '../state/app_state';
@@ -20,7 +20,7 @@ interface Curve {
 const channel = (name: LapChannel, factor = 1) => (a: number, b: number): (Float64Array | null)[] => [a, b].map((lap) => live.lapSamples.channel(lap, name)?.map((value) => value * factor) ?? null);
 
 const CURVES: readonly Curve[] = [
-  { title: 'Speed', unit: 'mph', decimals: 1, data: channel('speed_mps', MPH), range: (columns) => rangeFromZero(columns, 20) },
+  { title: 'Speed', unit: 'mph', decimals: 1, data: channel('speed_mps', MPH), range: (columns) => rangeInSteps(columns, 10, 40) },
   { title: 'Lateral error', unit: 'm, + left', decimals: 2, data: channel('lateral_error_m'), range: (columns) => rangeAboutZero(columns, 0.5) },
   {
     title: 'Time gap',
