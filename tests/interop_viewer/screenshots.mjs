@@ -7,16 +7,16 @@ import { launch } from './browser.mjs';
 const [url = 'http://127.0.0.1:4567/', folder = '.', wait = '20', ...names] = argv.slice(2);
 const isWanted = ({ name }) => names.length === 0 || names.includes(name);
 
-/** The workbench, all pages watching the same run; `prepare` is done just before the picture. */
+/** The workbench, all pages watching the same run; `prepare` is done just before the picture, `undo` after it. */
 const LAPTOP = [1440, 900];
 const PICTURES = [
   { name: 'dashboard', tab: 'plots', size: LAPTOP, colorScheme: 'light' },
   { name: 'dashboard_explain', tab: 'explain', size: LAPTOP, colorScheme: 'dark' },
   { name: 'dashboard_laps', tab: 'laps', size: LAPTOP, colorScheme: 'light' },
   { name: 'dashboard_plots', tab: 'plots', size: [1600, 900], colorScheme: 'dark', prepare: (page) => page.keyboard.press('f') },
-  { name: 'dashboard_tune', tab: 'tune', size: LAPTOP, colorScheme: 'light', prepare: tune },
-  { name: 'dashboard_faults', tab: 'faults', size: LAPTOP, colorScheme: 'dark', prepare: (page) => page.locator('.fault').nth(1).click() },
-  { name: 'dashboard_phone', tab: 'drive', size: [390, 844], colorScheme: 'light', deviceScaleFactor: 2, isMobile: true, hasTouch: true, prepare: (page) => page.keyboard.press('m') },
+  { name: 'dashboard_tune', tab: 'tune', size: LAPTOP, colorScheme: 'light', prepare: tune, undo: (page) => page.getByRole('button', { name: 'Reset all' }).click() },
+  { name: 'dashboard_faults', tab: 'faults', size: LAPTOP, colorScheme: 'dark', prepare: (page) => page.locator('.fault').nth(1).click(), undo: (page) => page.getByRole('button', { name: 'Clear all' }).click() },
+  { name: 'dashboard_phone', tab: 'drive', size: [390, 844], colorScheme: 'light', deviceScaleFactor: 2, isMobile: true, hasTouch: true, prepare: (page) => page.keyboard.press('m'), undo: (page) => page.keyboard.press('Escape') },
 ];
 
 async function tune(page) {
@@ -27,20 +27,21 @@ async function tune(page) {
 
 const browser = await launch();
 const pages = [];
-for (const { name, tab, size, prepare, ...options } of PICTURES.filter(isWanted)) {
+for (const { name, tab, size, prepare, undo, ...options } of PICTURES.filter(isWanted)) {
   const context = await browser.newContext({ viewport: { width: size[0], height: size[1] }, ...options });
   const page = await context.newPage();
   await page.addInitScript(() => localStorage.setItem('chicane.dimension', '"2d"'));
   await page.goto(`${url}#${tab}`);
-  pages.push({ name, page, prepare });
+  pages.push({ name, page, prepare, undo });
 }
+await pages[0]?.page.keyboard.press('r');
 await pages[0]?.page.waitForTimeout(Number(wait) * 1000);
-for (const { name, page, prepare } of pages) {
+for (const { name, page, prepare, undo } of pages) {
   await page.bringToFront();
   await prepare?.(page);
   await page.waitForTimeout(prepare ? 1200 : 300);
   await page.screenshot({ path: `${folder}/${name}.png` });
-  if (prepare === tune) await page.getByRole('button', { name: 'Reset all' }).click();
+  await undo?.(page);
 }
 for (const { page } of pages) await page.close();
 
