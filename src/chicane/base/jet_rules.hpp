@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+
+#include "chicane/base/math.hpp"
+#include "chicane/base/variable_sets.hpp"
+
+namespace chicane {
+
+/// A value with its derivatives, of which only those are stored that are not zero by construction: which ones
+/// is part of the type. Sums and products have the types that follow from the rules of calculus, so the
+/// sparsity pattern of a problem is read off the return types of its functions, and zeros are never computed.
+///
+/// V is double, or a pack of doubles with one stage in each lane. `First`: variables with a first derivative;
+/// `Unit`: those of them where it is exactly 1 (not stored). With Order 2 also second derivatives, for the
+/// pairs in `Second`. Comparison and branches see values only. No allocation; everything is inlined.
+template <class V, int Order, Variables First, Variables Unit = 0, Pairs Second = Pairs{}>
+struct Jet {
+  static_assert((Unit & ~First) == 0);
+  using Value = V;
+  static constexpr int kOrder = Order;
+  static constexpr Variables kFirst = First;
+  static constexpr Variables kUnit = Unit;
+  static constexpr Pairs kSecond = Second;
+  static constexpr std::size_t kSlopes = static_cast<std::size_t>(size_of(First & ~Unit));
+  static constexpr std::size_t kCurvatures = static_cast<std::size_t>(Second.size());
+  /// Every derivative with respect to variables 0 … n is stored: loops do.
+  static constexpr bool kIsDense = Unit == 0 && First != 0 && (First & (First + 1)) == 0 &&
+                                   (Order < 2 || Second == Pairs::of(First, First));
+
+  V v;                                    ///< value
+  std::array<V, kSlopes> slopes;          ///< by variable
+  std::array<V, kCurvatures> curvatures;  ///< by pair, in the order of members<Second>()
+
+  constexpr Jet() noexcept {}  // NOLINT: not initialised, like a plain double
+  /// A constant, where all derivatives can be stored as zero.
+  template <class S>
+  requires(Unit == 0 && std::convertible_to<S, V>) constexpr Jet(
+      const S& value)  // NOLINT: constants mix freely with jets, as in formulas
+      : v(value) {
+    slopes.fill(V(0.0));
+    curvatures.fill(V(0.0));
+  }
+  /// The same with more stored zeros.
+  template <Variables F, Variables U, Pairs P>
+  requires(
+      (F & ~First) == 0 && (Unit & ~U) == 0 && P.is_within(Second) &&
+      !(F == First && U == Unit &&
+        P == Second)) constexpr Jet(const Jet<V, Order, F, U, P>& narrow);  // NOLINT: as safe as int to long
+
+  constexpr Jet& operator+=(const Jet& o) { return *this = *this + o; }
+  constexpr Jet& operator-=(const Jet& o) { return *this = *this - o; }
+  constexpr Jet& operator*=(const Jet& o) { return *this = *this * o; }
+  constexpr Jet& operator/=(const Jet& o) { return *this = *this / o; }
+};
+
+/// Variable number `Index` itself.
+template <int Order, int Index, class V>
+[[nodiscard]] constexpr auto seed(const V& value) {
+  Jet<V, Order, variable(Index), variable(Index)> result;
+  result.v = value;
+  return result;
+}
+
+template <class T>
+inline constexpr bool is_jet = false;
+template <class V, int O, Variables F, Variables U, Pairs S>
+inline constexpr bool is_jet<Jet<V, O, F, U, S>> = true;
+template <class T>
+concept AnyJet = is_jet<std::remove_cvref_t<T>>;
+/// A constant beside a jet: double, or the pack of its values.
+template <class S, class J>
+concept ConstantFor = !AnyJet<S> && std::convertible_to<S, typename J::Value>;
+
+template <class V, int O, Variables F, Variables U, Pairs S>
+[[nodiscard]] constexpr const V& value_of(const Jet<V, O, F, U, S>& x) noexcept {
+  return x.v;
+}
+
+namespace jet {
+
+template <class T>
+[[nodiscard, gnu::always_inline]] inline constexpr const auto& value(const T& x) noexcept {
+  if constexpr (AnyJet<T>)
+    return x.v;
+  else
+    return x;
+}
+
+/// Partial derivatives known at compile time.
+struct Zero {};
+struct One {};
+struct Minus {};
+
+template <class T>
+inline constexpr bool is_zero = std::is_same_v<T, Zero>;
+template <class T>
+inline constexpr bool is_one = std::is_same_v<T, One>;
+
+template <class A, class B>
+[[nodiscard, gnu::always_inline]] inline constexpr auto times(const A& a, const B& b) {
+  if constexpr (is_zero<A> || is_zero<B>)
+    return Zero{};
+  else if constexpr (is_one<A>)
+    return b;
+  else if constexpr (is_one<B>)
+    return a;
+  else if constexpr (std::is_same_v<A, Minus> && std::is_same_v<B, Minus>)
+    return One{};
+  else if constexpr (std::is_same_v<A, Minus>)
+    return -b;
+  else if constexpr (std::is_same_v<B, Minus>)
+    return -a;
+  else
+    return a * b;
+}
+template <class V, class A>
+[[nodiscard, gnu::always_inline]] inline constexpr V number(const A& a) {
+  if constexpr (is_zero<A>)
+    return V(0.0);
+  else if constexpr (is_one<A>)
+    return V(1.0);
+  else if constexpr (std::is_same_v<A, Minus>)
+    return V(-1.0);
+  else
+    return a;
+}
+template <class V, class A, class B>
+[[nodiscard, gnu::always_inline]] inline constexpr auto plus(const A& a, const B& b) {
+  if constexpr (is_zero<A>)
+    return b;
+  else if constexpr (is_zero<B>)
+    return a;
+  else
+    return number<V>(a) + number<V>(b);
+}
+
+/// First derivative with respect to variable I, in the cheapest form.
+template <int I, AnyJet J>
+[[nodiscard, gnu::always_inline]] inline constexpr auto slope(const J& x) {
+  if constexpr (!contains(J::kFirst, I))
+    return Zero{};
+  else if constexpr (contains(J::kUnit, I))
+    return One{};
+  else
+    return x.slopes[rank_of(J::kFirst & ~J::kUnit, I)];
+}
+template <int I, int K, AnyJet J>
+[[nodiscard, gnu::always_inline]] inline constexpr auto curvature(const J& x) {
+  if constexpr (!J::kSecond.contains(I, K))
+    return Zero{};
+  else
+    return x.curvatures[J::kSecond.rank(I, K)];
+}
+
+template <int N, class Visit>
+[[gnu::always_inline]] inline constexpr void repeat(const Visit& visit) {
+  [&]<int... n>(std::integer_sequence<int, n...>) __attribute__((always_inline)) {
+    (visit(std::integral_constant<int, n>{}), ...);
+  }
+  (std::make_integer_sequence<int, N>{});
+}
+
+/// Outer derivatives of f(a, b): f_a, f_b, f_aa, f_ab, f_bb.
+template <class A, class B, class AA, class AB, class BB>
+struct Partials {
+  A a;
+  B b;
+  AA aa;
+  AB ab;
+  BB bb;
+};
+template <class A, class B, class AA, class AB, class BB>
+Partials(A, B, AA, AB, BB) -> Partials<A, B, AA, AB, BB>;
+
+/// Variables whose derivative is 1 in f(a, b): those with slope 1 in one argument that do not occur in the
+/// other.
+template <class PA, class PB, AnyJet A, AnyJet B>
+constexpr Variables unit_of() noexcept {
+  const Variables in_a = is_zero<PA> ? 0 : A::kFirst;
+  const Variables in_b = is_zero<PB> ? 0 : B::kFirst;
+  return (is_one<PA> ? A::kUnit & ~in_b : 0) | (is_one<PB> ? B::kUnit & ~in_a : 0);
+}
+template <class PA, class PB, class AA, class AB, class BB, AnyJet A, AnyJet B>
+constexpr Pairs second_of() noexcept {
+  Pairs set;
+  if constexpr (!is_zero<PA>) set |= A::kSecond;
+  if constexpr (!is_zero<PB>) set |= B::kSecond;
+  if constexpr (!is_zero<AA>) set |= Pairs::of(A::kFirst, A::kFirst);
+  if constexpr (!is_zero<AB>) set |= Pairs::of(A::kFirst, B::kFirst);
+  if constexpr (!is_zero<BB>) set |= Pairs::of(B::kFirst, B::kFirst);
+  return set;
+}
+
+/// The chain rule for jets that store everything: plain loops, quick to compile.
+template <AnyJet A, class PA, class PB, class AA, class AB, class BB>
+[[nodiscard, gnu::always_inline]] inline constexpr A chain_dense(const A& a, const A& b,
+                                                                 const typename A::Value& value,
+                                                                 const Partials<PA, PB, AA, AB, BB>& f) {
+  using V = typename A::Value;
+  constexpr std::size_t count = A::kSlopes;
+  A r;
+  r.v = value;
+  for (std::size_t i = 0; i < count; ++i)
+    r.slopes[i] = number<V>(plus<V>(times(f.a, a.slopes[i]), times(f.b, b.slopes[i])));
+  if constexpr (A::kOrder == 2) {
+    std::size_t at = 0;
+    for (std::size_t j = 0; j < count; ++j) {
+      const auto aj = plus<V>(times(f.aa, a.slopes[j]), times(f.ab, b.slopes[j]));
+      const auto bj = plus<V>(times(f.bb, b.slopes[j]), times(f.ab, a.slopes[j]));
+      for (std::size_t i = 0; i <= j; ++i, ++at) {
+        const auto inner = plus<V>(times(f.a, a.curvatures[at]), times(f.b, b.curvatures[at]));
+        r.curvatures[at] = number<V>(plus<V>(inner, plus<V>(times(aj, a.slopes[i]), times(bj, b.slopes[i]))));
+      }
+    }
+  }
+  return r;
+}
+
+/// The chain rule for jets of any types: each entry on its own.
+template <AnyJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
+[[nodiscard, gnu::always_inline]] inline constexpr auto chain_sparse(const A& a, const B& b,
+                                                                     const typename A::Value& value,
+                                                                     const Partials<PA, PB, AA, AB, BB>& f) {
+  using V = typename A::Value;
+  constexpr Variables first = (is_zero<PA> ? 0 : A::kFirst) | (is_zero<PB> ? 0 : B::kFirst);
+  constexpr Variables unit = unit_of<PA, PB, A, B>();
+  constexpr Pairs second = [] {
+    if constexpr (A::kOrder == 2)
+      return second_of<PA, PB, AA, AB, BB, A, B>();
+    else
+      return Pairs{};
+  }();
+  Jet<V, A::kOrder, first, unit, second> r;
+  r.v = value;
+  repeat<size_of(first & ~unit)>([&](auto n) __attribute__((always_inline)) {
+    constexpr int i = member_of(first & ~unit, n);
+    r.slopes[n] = number<V>(plus<V>(times(f.a, slope<i>(a)), times(f.b, slope<i>(b))));
+  });
+  repeat<second.size()>([&](auto n) __attribute__((always_inline)) {
+    constexpr Pair p = members<second>()[n];
+    const auto ai = slope<p.i>(a);
+    const auto ak = slope<p.j>(a);
+    const auto bi = slope<p.i>(b);
+    const auto bk = slope<p.j>(b);
+    const auto inner = plus<V>(times(f.a, curvature<p.i, p.j>(a)), times(f.b, curvature<p.i, p.j>(b)));
+    const auto own = plus<V>(times(f.aa, times(ai, ak)), times(f.bb, times(bi, bk)));
+    const auto mixed = times(f.ab, plus<V>(times(ai, bk), times(ak, bi)));
+    r.curvatures[n] = number<V>(plus<V>(plus<V>(inner, own), mixed));
+  });
+  return r;
+}
+
+/// The chain rule in two arguments.
+template <AnyJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
+[[nodiscard, gnu::always_inline]] inline constexpr auto chain(const A& a, const B& b,
+                                                              const typename A::Value& value,
+                                                              const Partials<PA, PB, AA, AB, BB>& f) {
+  if constexpr (std::is_same_v<A, B> && A::kIsDense) {
+    return chain_dense(a, b, value, f);
+  } else {
+    return chain_sparse(a, b, value, f);
+  }
+}
+
+/// The chain rule in one argument: f(a) with its slope and curvature.
+template <AnyJet A, class Slope, class Curvature>
+[[nodiscard, gnu::always_inline]] inline constexpr auto chain(const A& a, const typename A::Value& value,
+                                                              const Slope& slope,
+                                                              const Curvature& curvature) {
+  const Partials f{slope, Zero{}, curvature, Zero{}, Zero{}};
+  if constexpr (A::kIsDense) {
+    return chain_dense(a, a, value, f);
+  } else {
+    return chain_sparse(a, Jet<typename A::Value, A::kOrder, 0>{}, value, f);
+  }
+}
+
+}  // namespace jet
+
+template <class V, int Order, Variables First, Variables Unit, Pairs Second>
+template <Variables F, Variables U, Pairs P>
+requires((F & ~First) == 0 && (Unit & ~U) == 0 && P.is_within(Second) &&
+         !(F == First && U == Unit && P == Second))
+    [[gnu::always_inline]] constexpr Jet<V, Order, First, Unit, Second>::Jet(
+        const Jet<V, Order, F, U, P>& narrow)
+    : v(narrow.v) {
+  jet::repeat<size_of(First & ~Unit)>([&](auto n) __attribute__((always_inline)) {
+    constexpr int i = member_of(First & ~Unit, n);
+    slopes[n] = jet::number<V>(jet::slope<i>(narrow));
+  });
+  jet::repeat<Second.size()>([&](auto n) __attribute__((always_inline)) {
+    constexpr Pair p = members<Second>()[n];
+    curvatures[n] = jet::number<V>(jet::curvature<p.i, p.j>(narrow));
+  });
+}
+
+}  // namespace chicane

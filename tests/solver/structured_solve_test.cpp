@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "chicane/base/dual.hpp"
+#include "chicane/solver/describe.hpp"
+#include "chicane/solver/ocp_solver.hpp"
+#include "problems/corridor_problem.hpp"
+#include "problems/described_problem.hpp"
+#include "problems/optimality.hpp"
+#include "problems/racing_problem.hpp"
+
+namespace chicane {
+namespace {
+
+using bench::CorridorProblem;
+using bench::DescribedProblem;
+using bench::RacingProblem;
+using bench::StructuredCorridorProblem;
+using bench::StructuredDescribedProblem;
+using solver::SolveStatus;
+
+constexpr int kCapacity = 60;
+
+/// Derivatives of each row of a structured problem, jets against duals of one type.
+template <class Row, class DualRow, int Nz>
+void expect_same_derivatives(const Row& jets, const DualRow& duals) {
+  jet::repeat<solver::row_size<Row>>([&](auto n) {
+    const auto& x = solver::as_jet<double, 2>(std::get<n>(jets));
+    const Dual<Nz, Dual<Nz>> y(std::get<n>(duals));
+    jet::repeat<Nz>([&](auto i) {
+      const double d = jet::number<double>(jet::slope<i>(x));
+      EXPECT_NEAR(d, y.d[i].v, 1e-12 * (1.0 + std::fabs(d))) << n << ' ' << i;
+      jet::repeat<Nz>([&](auto j) {
+        const double h = jet::number<double>(jet::curvature<i, j>(x));
+        EXPECT_NEAR(h, y.d[i].d[j], 1e-10 * (1.0 + std::fabs(h))) << n << ' ' << i << ' ' << j;
+      });
+    });
+  });
+}
+
+template <class P>
+void check_derivatives(const P& problem, const std::array<double, P::kNx>& x0,
+                       const std::array<double, P::kNu>& u0) {
+  constexpr int nz = P::kNx + P::kNu;
+  using D = Dual<nz, Dual<nz>>;
+  solver::StateJets<P, double, 2> x;
+  solver::InputJets<P, double, 2> u;
+  std::array<D, P::kNx> xd;
+  std::array<D, P::kNu> ud;
+  jet::repeat<P::kNx>([&](auto i) {
+    std::get<i>(x).v = x0[i];
+    xd[i] = D::variable(Dual<nz>::variable(x0[i], i), i);
+  });
+  jet::repeat<P::kNu>([&](auto m) {
+    std::get<m>(u).v = u0[m];
+    ud[m] = D::variable(Dual<nz>::variable(u0[m], P::kNx + m), P::kNx + m);
+  });
+  const auto check = [](const auto& jets, const auto& duals) {
+    expect_same_derivatives<std::remove_cvref_t<decltype(jets)>, std::remove_cvref_t<decltype(duals)>, nz>(
+        jets, duals);
+  };
+  check(problem.dynamics(1, x, u), problem.dynamics(1, xd, ud));
+  check(problem.residual(1, x, u), problem.residual(1, xd, ud));
+  if constexpr (P::kNc > 0) check(problem.constraint(1, x, u), problem.constraint(1, xd, ud));
+}
+
+TEST(StructuredProblem, HasTheFirstAndSecondDerivativesOfDuals) {
+  Random random{4};
+  for (int turn = 0; turn < 20; ++turn) {
+    const auto instance = bench::random_instance(random, 20);
+    const auto at = [&] { return random.uniform(-0.5, 0.5); };
+    const StructuredDescribedProblem described{instance.problem, 0.3};
+    check_derivatives(described, {20.0 * at(), at(), at(), 12.0 + at(), at(), at(), at()}, {at(), at()});
+    check_derivatives(bench::sample_racing_problem(0.02),
+                      {10.0, at(), at(), 25.0 + at(), at(), at(), 0.2 * at(), at(), at()},
+                      {at(), at(), at()});
+  }
+}
+
+TEST(StructuredSolve, FindsTheOptimumOfTheDescribedProblem) {
+  using Own = solver::OcpSolver<StructuredDescribedProblem, kCapacity>;
+  const auto own = std::make_unique<Own>();
+  Random random{77};
+  for (const int horizon : {1, 2, 7, 8, 9, 16, 20, 50, 60}) {
+    for (int turn = 0; turn < 12; ++turn) {
+      const auto instance = bench::random_instance(random, horizon);
+      bench::DescribedTrajectory<kCapacity> plain;
+      plain.horizon = horizon;
+      if (turn % 2 == 0) bench::guess_by_path_law(instance, plain);
+      const StructuredDescribedProblem problem{instance.problem, instance.start[4]};
+      Own::Trajectory answer;
+      answer.horizon = horizon;
+      answer.u = plain.u;
+      const auto report = own->solve(problem, problem.without_cte(instance.start), answer);
+      ASSERT_EQ(report.status, SolveStatus::kOptimal) << horizon << ' ' << turn;
+      plain.u = answer.u;
+      ASSERT_TRUE(bench::inputs_are_inside(instance.problem, plain));
+      // Judged on the problem as it is written down, by derivatives that share no code with the solver; at 50
+      // stages the accepted defects times Hessians near 1e5 may add to the solver's own 1e-6.
+      ASSERT_LE(bench::projected_gradient(instance.problem, instance.start, plain),
+                horizon < 50 ? 1.2e-6 : 1e-5)
+          << horizon << ' ' << turn;
+      ASSERT_NEAR(report.cost, bench::simulated_cost(instance.problem, instance.start, plain),
+                  1e-8 * (1.0 + report.cost));
+      for (int k = 0; k < horizon; ++k) {
+        for (int m = 0; m < 2; ++m) {
+          const double u = answer.u[static_cast<std::size_t>(k)][static_cast<std::size_t>(m)];
+          const double limit = m == 0 ? instance.problem.steer_limit : 1.0;
+          if (std::fabs(u) < limit - 1e-9) {  // a step may miss its bound by a rounding
+            ASSERT_LE(std::fabs(own->bound_multiplier(k, m)), 1e-6);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(StructuredSolve, AgreesWithTheDensePathInACorridor) {
+  using Own = solver::OcpSolver<StructuredCorridorProblem, kCapacity>;
+  const auto own = std::make_unique<Own>();
+  const auto dense = std::make_unique<solver::OcpSolver<CorridorProblem, kCapacity>>();
+  Random random{78};
+  for (const int horizon : {2, 10, 20, 40}) {
+    for (int turn = 0; turn < 10; ++turn) {
+      const auto instance = bench::random_corridor(random, horizon);
+      const bench::DescribedInstance start{.problem = instance.problem, .start = instance.start};
+      bench::DescribedTrajectory<kCapacity> plain;
+      plain.horizon = horizon;
+      bench::guess_by_path_law(start, plain);
+      const StructuredCorridorProblem problem{instance.problem, instance.start[4], horizon};
+      Own::Trajectory answer;
+      answer.horizon = horizon;
+      answer.u = plain.u;
+      const auto report = own->solve(problem, problem.without_cte(instance.start), answer);
+      ASSERT_EQ(report.status, SolveStatus::kOptimal) << horizon << ' ' << turn;
+      ASSERT_LE(report.complementarity, 1e-6);
+      ASSERT_EQ(dense->solve(instance.problem, instance.start, plain).status, SolveStatus::kOptimal);
+      const double expected = bench::simulated_cost(instance.problem, instance.start, plain);
+      plain.u = answer.u;
+      ASSERT_NEAR(bench::simulated_cost(instance.problem, instance.start, plain), expected, 1e-6 * expected)
+          << horizon << ' ' << turn;
+    }
+  }
+}
+
+TEST(StructuredSolve, SolvesARacingProblemAndSaysWhatBinds) {
+  using Own = solver::OcpSolver<RacingProblem, kCapacity>;
+  const auto own = std::make_unique<Own>(solver::SolverOptions{.max_iterations = 100});
+  for (const double bend : {-0.015, 0.005, 0.01, 0.02}) {
+    const RacingProblem problem = bench::sample_racing_problem(bend);
+    for (const int horizon : {40, 60}) {
+      Own::Trajectory answer;
+      answer.horizon = horizon;
+      const auto report = own->solve(problem, bench::kRacingStart, answer);
+      ASSERT_EQ(report.status, SolveStatus::kOptimal) << bend << ' ' << horizon;
+      ASSERT_LE(report.stationarity, 1e-6);
+      for (int k = 0; k <= horizon; ++k)
+        EXPECT_LT(std::fabs(answer.x[static_cast<std::size_t>(k)][1]), problem.half_width + 1.0);
+      if (report.worst_stage >= 0) {
+        EXPECT_NE(solver::describe(problem, report).find(" exceeded by "), std::string::npos);
+      }
+    }
+  }
+}
+
+TEST(Describe, NamesConstraintStageAndUnit) {
+  solver::SolveReport report;
+  report.status = SolveStatus::kInfeasible;
+  report.violation = 0.12;
+  report.worst_stage = 14;
+  report.worst_constraint = 1;
+  EXPECT_EQ(solver::describe(RacingProblem{}, report),
+            "infeasible: right edge exceeded by 0.12 m at stage 14");
+  report.worst_stage = report.worst_constraint = -1;
+  report.status = SolveStatus::kOptimal;
+  EXPECT_EQ(solver::describe(RacingProblem{}, report), "optimal");
+}
+
+}  // namespace
+}  // namespace chicane
