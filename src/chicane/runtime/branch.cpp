@@ -87,6 +87,7 @@ class Rebuilt {
       const bool is_on = (loop_->frame().active_faults >> i & 1U) != 0U;
       if (faults[i].key == change.name.view() && is_on == (change.value.view() == "true")) return;
     }
+    while (!loop_->is_control_due()) static_cast<void>(loop_->advance());  // changes come between two cycles
     loop_->apply(change);
   }
   const telemetry::Frame& follow(const protocol::Step& step) {
