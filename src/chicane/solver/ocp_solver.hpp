@@ -224,8 +224,14 @@ class OcpSolver {
     if (!is_growing()) barrier_.lower(length);
     take_step(length);
     progress_.note(longest, !barrier_.is_final() && !is_growing());
-    is_exact_ = options_.second_order && longest <= kNear;
+    is_exact_ = options_.second_order && longest <= kNear && curvature_pays();
     return true;
+  }
+  /// Structured problems have second derivatives almost for free. Dense ones cost as much as several turns:
+  /// only where Gauss–Newton needs more than that.
+  [[nodiscard]] bool curvature_pays() const noexcept {
+    constexpr double kTurns = 6.0;
+    return StructuredProblem<P> || progress_.is_slow(0.1 * options_.tolerance, kTurns);
   }
   /// The step of the quadratic program, stage after stage of one variable; returns its longest input.
   double collect_step() noexcept {

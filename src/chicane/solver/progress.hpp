@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "chicane/base/math.hpp"
+
 namespace chicane::solver {
 
 /// Watches the length of full steps: the one measure that neither saturates at the bounds nor depends on the
@@ -20,6 +22,7 @@ class Progress {
       idle_ = step < kImprovement * shortest_ ? 0 : idle_ + 1;
       shortest_ = std::fmin(step, shortest_);
     }
+    rate_ = step / last_;
     last_ = step;
   }
 
@@ -27,14 +30,18 @@ class Progress {
   [[nodiscard]] bool is_good() const noexcept { return idle_ == 0; }
   /// Steps have not become shorter for a while.
   [[nodiscard]] bool is_lost() const noexcept { return idle_ >= kPatience; }
-  /// Length of the latest step.
-  [[nodiscard]] double last() const noexcept { return last_; }
+  /// Whether more than `turns` further steps would be needed to get as short as `length`, at the present
+  /// linear rate.
+  [[nodiscard]] bool is_slow(double length, double turns) const noexcept {
+    return log(last_ / length) > turns * -log(std::fmin(rate_, 1.0));
+  }
 
  private:
   static constexpr double kImprovement = 0.9;
   static constexpr int kPatience = 2;
   double shortest_ = std::numeric_limits<double>::infinity();
   double last_ = std::numeric_limits<double>::infinity();
+  double rate_ = 0.0;
   int idle_ = 0;
 };
 
