@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// What the passes over a quadratic program cost for each stage, for each instruction set of this processor:
+// the described problem's pattern, and full ones. And the throughput of batches.
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+#include "chicane/base/instruction_set.hpp"
+#include "kernel_cases.hpp"
+
+namespace {
+
+using namespace chicane;
+using bench::Kernel;
+using bench::Shape;
+
+void Pass(benchmark::State& state, InstructionSet set, Kernel kernel, Shape shape) {
+  with_instructions(set, [&](auto arch) {
+    for (auto _ : state) {
+      bench::run_kernel<decltype(arch)>(kernel, shape);
+      benchmark::ClobberMemory();
+    }
+  });
+  state.counters["s/stage"] =
+      benchmark::Counter(static_cast<double>(bench::kKernelStages),
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void Batch(benchmark::State& state, InstructionSet set) {
+  int solved = 0;
+  with_instructions(set, [&](auto arch) {
+    for (auto _ : state) solved = bench::run_batch<decltype(arch)>(static_cast<int>(state.range(0)));
+  });
+  state.counters["solved"] = solved;
+  state.counters["problems/s"] =
+      benchmark::Counter(bench::kBatchProblems, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+const struct {
+  const char* name;
+  Shape shape;
+} kShapes[] = {{"described", Shape::kDescribed}, {"full4", Shape::kFull4},   {"full6", Shape::kFull6},
+               {"full8", Shape::kFull8},         {"full10", Shape::kFull10}, {"full12", Shape::kFull12}};
+const struct {
+  const char* name;
+  Kernel kernel;
+} kKernels[] = {
+    {"Backward", Kernel::kBackward}, {"Forward", Kernel::kForward}, {"Adjoint", Kernel::kAdjoint}};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  for (const auto set :
+       {InstructionSet::kBaseline, InstructionSet::kAvx2, InstructionSet::kAvx512, InstructionSet::kNeon}) {
+    if (!is_available(set)) continue;
+    const std::string name(to_string(set));
+    for (const auto& kernel : kKernels) {
+      for (const auto& shape : kShapes) {
+        benchmark::RegisterBenchmark(
+            (std::string(kernel.name) + "/" + shape.name + "/" + name).c_str(),
+            [=](benchmark::State& state) { Pass(state, set, kernel.kernel, shape.shape); });
+      }
+    }
+    benchmark::RegisterBenchmark(("BatchWarm/" + name).c_str(),
+                                 [=](benchmark::State& state) { Batch(state, set); })
+        ->Arg(10)
+        ->Arg(20)
+        ->Arg(50)
+        ->Unit(benchmark::kMicrosecond);
+  }
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

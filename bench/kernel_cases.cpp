@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "kernel_cases.hpp"
+
+#include <array>
+#include <memory>
+
+#include "chicane/base/random.hpp"
+#include "chicane/solver/adjoint.hpp"
+#include "chicane/solver/batch_solver.hpp"
+#include "chicane/solver/lq_solver.hpp"
+#include "problems/described_batch.hpp"
+
+namespace chicane::bench {
+namespace {
+
+constexpr int kCapacity = 200;
+
+template <class Arch, class Pattern>
+struct Passes {
+  using Solver = solver::LqSolver<Arch, Pattern, kCapacity>;
+  using Layout = solver::Layout<Pattern>;
+  Solver qp;
+  solver::Adjoint<Pattern, Solver::Lq::kStages> adjoint;
+
+  Passes() noexcept {
+    Random random{1};
+    for (std::size_t k = 0; k < kKernelStages; ++k) {
+      for (std::size_t i = 0; i < Layout::kNz; ++i) {
+        for (std::size_t j = 0; j < Layout::kNz; ++j) {
+          const double noise = random.uniform(-0.1, 0.1);
+          if (i < Layout::kNx && Layout::kF[i][j] != Layout::kNone)
+            qp.lq.set_jacobian(k, i, j, noise + (i == j ? 0.9 : 0.0));
+          if (j <= i && Layout::kL[i][j] != Layout::kNone)
+            qp.lq.set_cost(k, i, j, noise + (i == j ? 2.0 : 0.0));
+        }
+      }
+      for (std::size_t m = 0; m < Layout::kNu; ++m) {
+        qp.lq.low[m][k] = -10.0;
+        qp.lq.high[m][k] = 10.0;
+      }
+    }
+    for (std::size_t i = 0; i < Layout::kNx; ++i) qp.lq.terminal[i][i] = 1.0;
+    qp.backward(kKernelStages);
+  }
+  void run(Kernel kernel) noexcept {
+    if (kernel == Kernel::kBackward) qp.backward(kKernelStages);
+    if (kernel == Kernel::kForward) qp.forward(kKernelStages, Solver::Repair::kLast);
+    if (kernel == Kernel::kAdjoint) adjoint.template solve<Arch>(qp.lq, kKernelStages);
+  }
+};
+
+template <class Arch, class Pattern>
+void run(Kernel kernel) noexcept {
+  static Passes<Arch, Pattern> passes;
+  passes.run(kernel);
+}
+
+template <class Arch>
+struct WarmBatch {
+  using Batch = solver::BatchSolver<DescribedOver, Arch, kCapacity>;
+  Batch batch;
+  std::array<DescribedOver<double>, kBatchProblems> problems;
+  std::array<std::array<double, 7>, kBatchProblems> starts;
+  std::array<typename Batch::Trajectory, kBatchProblems> guesses;
+  std::array<typename Batch::Trajectory, kBatchProblems> answers;
+  std::array<solver::SolveReport, kBatchProblems> reports;
+  int horizon = 0;
+
+  struct GiveUp {
+    template <class Problem, class State, class Trajectory>
+    solver::SolveReport operator()(const Problem&, const State&, Trajectory&) const noexcept {
+      return {};
+    }
+  };
+  /// Guesses are the optima of a cycle before: a step earlier, another speed wanted.
+  void prepare(int wanted) noexcept {
+    horizon = wanted;
+    Random random{1};
+    for (std::size_t i = 0; i < problems.size(); ++i) {
+      const DescribedInstance instance = random_instance(random, horizon);
+      problems[i] = for_batch(instance.problem, instance.start[4]);
+      starts[i] = StructuredDescribedProblem::without_cte(instance.start);
+      guesses[i].horizon = horizon;
+      guesses[i].u.fill({});
+      problems[i].speed_reference -= 0.5;
+      starts[i][1] -= 0.05;
+    }
+    batch.solve(problems, starts, guesses, reports, GiveUp{});
+    for (std::size_t i = 0; i < problems.size(); ++i) {
+      problems[i].speed_reference += 0.5;
+      starts[i][1] += 0.05;
+    }
+  }
+  int run(int wanted) noexcept {
+    if (wanted != horizon) prepare(wanted);
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      answers[i].horizon = horizon;
+      for (std::size_t k = 0; k < static_cast<std::size_t>(horizon); ++k) answers[i].u[k] = guesses[i].u[k];
+    }
+    batch.solve(problems, starts, answers, reports, GiveUp{});
+    int solved = 0;
+    for (const auto& report : reports) solved += report.status == solver::SolveStatus::kOptimal ? 1 : 0;
+    return solved;
+  }
+};
+
+}  // namespace
+
+template <class Arch>
+void run_kernel(Kernel kernel, Shape shape) noexcept {
+  switch (shape) {
+    case Shape::kDescribed:
+      return run<Arch, solver::GaussNewtonPattern<StructuredDescribedProblem>>(kernel);
+    case Shape::kFull4:
+      return run<Arch, solver::FullPattern<4, 2>>(kernel);
+    case Shape::kFull6:
+      return run<Arch, solver::FullPattern<6, 2>>(kernel);
+    case Shape::kFull8:
+      return run<Arch, solver::FullPattern<8, 2>>(kernel);
+    case Shape::kFull10:
+      return run<Arch, solver::FullPattern<10, 2>>(kernel);
+    case Shape::kFull12:
+      return run<Arch, solver::FullPattern<12, 2>>(kernel);
+  }
+}
+
+template <class Arch>
+int run_batch(int horizon) noexcept {
+  static WarmBatch<Arch> batch;
+  return batch.run(horizon);
+}
+
+template void run_kernel<arch::Native>(Kernel, Shape) noexcept;
+template int run_batch<arch::Native>(int) noexcept;
+
+}  // namespace chicane::bench

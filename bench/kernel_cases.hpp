@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+
+namespace chicane::bench {
+
+/// The passes over the stages of one quadratic program.
+enum class Kernel { kBackward, kForward, kAdjoint };
+/// The described problem's pattern, or a full one of so many states.
+enum class Shape { kDescribed, kFull4, kFull6, kFull8, kFull10, kFull12 };
+constexpr std::size_t kKernelStages = 20;
+
+/// One pass over kKernelStages stages with random numbers and two inputs.
+template <class Arch>
+void run_kernel(Kernel kernel, Shape shape) noexcept;
+
+/// One batch of 64 warm starts of the described problem; returns how many lanes solved.
+template <class Arch>
+int run_batch(int horizon) noexcept;
+constexpr int kBatchProblems = 64;
+
+}  // namespace chicane::bench
