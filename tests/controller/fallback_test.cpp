@@ -59,6 +59,53 @@ TEST(Fallback, WalksDownTheLadderAsTimePasses) {
   EXPECT_DOUBLE_EQ(brake.command.throttle, -vehicle.brake_throttle_limit);
 }
 
+/// The same plan along x at 20 m/s: 2 m from point to point.
+std::unique_ptr<Plan> moving_plan(double start, int size) {
+  auto plan = counting_plan(start, size);
+  for (int i = 0; i < size; ++i) plan->points[static_cast<std::size_t>(i)].x = 2.0 * i;
+  return plan;
+}
+
+TEST(Fallback, SteersAlongThePlansPathWhileItBrakes) {
+  model::VehicleParams neutral;
+  neutral.cornering_front = neutral.cornering_rear = 5.0;  // then equation 4 leaves the angle as planned
+  Fallback fallback{neutral};
+  fallback.accept(*moving_plan(10.0, 30));
+  for (int i = 1; i <= 5; ++i) static_cast<void>(fallback.command(10.0 + 0.1 * i, driving(20.0)));
+  // 10 m driven; at 10 m/s it takes as long again to reach each further point.
+  const auto hold = fallback.command(10.75, driving(10.0));
+  EXPECT_EQ(hold.rung, Rung::kHoldAndBrake);
+  EXPECT_DOUBLE_EQ(hold.command.steer, 0.07);  // 12.5 m: the seventh point
+  EXPECT_DOUBLE_EQ(fallback.command(10.95, driving(10.0)).command.steer, 0.08);
+}
+
+TEST(Fallback, BrakesToStopWhereThePlanEnds) {
+  const model::VehicleParams vehicle;
+  Fallback fallback{vehicle};
+  fallback.accept(*moving_plan(10.0, 7));  // 12 m long; 20 m/s need far more
+  const auto hold = fallback.command(10.7, driving(20.0));
+  EXPECT_EQ(hold.rung, Rung::kHoldAndBrake);
+  EXPECT_DOUBLE_EQ(hold.command.throttle, -vehicle.brake_throttle_limit);
+}
+
+TEST(Fallback, CountsItsSpeedOnWhenNobodyTellsIt) {
+  Fallback fallback{model::VehicleParams{}};
+  fallback.accept(*moving_plan(10.0, 5));
+  double throttle = -1.0;
+  double time = 10.0;
+  while (throttle < 0.0 && time < 30.0) {
+    time += 0.1;
+    throttle = fallback.command(time, driving(kNaN)).command.throttle;
+    if (time < 11.0) throttle = -1.0;
+  }
+  // 20 m/s at half of 8.7 m/s² take 4.6 s; fading takes its time.
+  EXPECT_GT(time, 13.0);
+  double last = throttle;
+  for (int i = 0; i < 100; ++i) last = fallback.command(time += 0.1, driving(kNaN)).command.throttle;
+  EXPECT_GT(last, -0.01 * model::VehicleParams{}.brake_throttle_limit)
+      << "a blind car that stands does not back up";
+}
+
 TEST(Fallback, DoesNotReadBeyondTheEndOfAShortPlan) {
   Fallback fallback{model::VehicleParams{}};
   fallback.accept(*counting_plan(10.0, 3));

@@ -75,8 +75,14 @@ void StateEstimator::advance(model::State& state, double& acceleration, double f
 }
 
 void StateEstimator::correct(const model::Measurement& now, const CommandHistory& sent) noexcept {
-  if (!is_finite(now)) return;
   const double elapsed = now.time - time_;
+  if (!is_finite(now)) {
+    if (is_started_ && elapsed > 0.0 && elapsed < kLongestGap) {
+      advance(state_, acceleration_, time_, now.time, sent);
+      time_ = now.time;
+    }
+    return;
+  }
   if (is_started_ && elapsed > 0.0 && elapsed < kLongestGap) {
     advance(state_, acceleration_, time_, now.time, sent);
     const double dx = now.x - state_.x;

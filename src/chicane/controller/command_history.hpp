@@ -45,9 +45,11 @@ class StateEstimator {
   /// Another model from now on; the estimate stays.
   void set_model(const PredictionModel& model) noexcept { model_ = model; }
 
-  /// Takes in a measurement [finite]. Afterwards state() is the estimate at now.time.
+  /// Takes in a measurement. Afterwards state() is the estimate at now.time; one that is not finite is
+  /// replaced by what the model expects.
   void correct(const model::Measurement& now, const CommandHistory& sent) noexcept;
   [[nodiscard]] const model::State& state() const noexcept { return state_; }
+  [[nodiscard]] bool is_started() const noexcept { return is_started_; }
   [[nodiscard]] double acceleration() const noexcept { return acceleration_; }
 
   /// The state at `time` >= the last measurement's [s], commands in flight replayed for exactly the fractions

@@ -7,6 +7,7 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/controller/cubic_problem.hpp"
+#include "chicane/controller/doubt.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/fallback.hpp"
 #include "chicane/controller/local_fit.hpp"
@@ -38,7 +39,8 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
     reset();
   }
 
-  [[nodiscard]] const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept override {
+  [[nodiscard]] const StepResult& step(const model::Measurement& told, Deadline deadline) noexcept override {
+    const model::Measurement& now = doubt_.judge(told);
     result_.report = {};
     if (!is_finite(now)) return fall_back(now);
     start_ = roll_forward_.predict(now);  // where the car is when the command acts
@@ -68,6 +70,7 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
   }
 
   void reset() noexcept override {
+    doubt_.reset();
     roll_forward_.reset();
     fallback_.reset();
     forget_warm_start();
@@ -206,6 +209,7 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
   CubicProblem problem_;
   Solver solver_{solver::SolverOptions{.max_iterations = kMaxIterations}};
   Fallback fallback_;
+  Doubt doubt_;
   Motion start_;               ///< of the horizon
   double start_time_ = 0.0;    ///< [s]
   Solver::Trajectory answer_;  ///< of the last usable solve, in the frame of its start

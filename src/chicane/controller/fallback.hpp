@@ -13,11 +13,15 @@ namespace chicane::controller {
 
 /// What a car does when there is no answer, for every controller: the one place where that is decided.
 ///
-///     answer usable                                    kController     (the controller's own business; tell
-///     accept()) last plan at most kPlanAge old, and not over     kShiftedPlan    its command for the time
-///     that has come less than kHoldAge since the last usable plan    kHoldAndBrake   last steering, gentle
-///     braking otherwise                                        kBrake          last steering, full useful
-///     braking
+///     kController    the answer is usable; tell accept()
+///     kShiftedPlan   last plan at most kPlanAge old, and not over: its command for the time that has come
+///     kHoldAndBrake  less than kHoldAge since the last usable plan: along its path, braking gently
+///     kBrake         otherwise: along its path, all useful braking
+///
+/// Along its path: the wheel as planned for the distance driven since, scaled to the speed that there is
+/// (docs/faults.md, eq. 4); held where no plan was. Braking gently: at least kGentleBraking, and enough to
+/// stop where the plan ends. A speed that is not measured is counted on from the last one, with half of the
+/// braking asked for: who is blind brakes too long rather than too short.
 ///
 /// Braking fades below kFadeSpeed, so that a car whose negative pedal drives backwards comes to rest instead.
 /// Everything returned is finite and inside the vehicle's range, whatever came in. No allocation; one thread.
@@ -53,8 +57,13 @@ class Fallback {
  private:
   struct Intention {
     double time = 0.0;
+    double distance = 0.0;  ///< along the plan [m]
+    double speed = 0.0;     ///< [m/s]
     model::Command command;
   };
+  void drive_on(double elapsed, double measured_speed) noexcept;
+  [[nodiscard]] double steer_along_path() const noexcept;
+  [[nodiscard]] double gentle_share() const noexcept;
   [[nodiscard]] const model::Command* planned(double time) const noexcept;
 
   model::VehicleParams vehicle_;
@@ -64,6 +73,10 @@ class Fallback {
   double good_time_ = 0.0;   ///< when the last usable plan began [s]
   double last_time_ = 0.0;   ///< act time of the last command [s]
   double last_steer_ = 0.0;  ///< of the last command [rad]
+  double last_throttle_ = 0.0;
+  double speed_ = 0.0;  ///< measured, or counted on from there [m/s]
+  bool has_speed_ = false;
+  double distance_ = 0.0;  ///< driven since the last usable plan began [m]
 };
 
 }  // namespace chicane::controller

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/controller/command_history.hpp"
+#include "chicane/controller/doubt.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/fallback.hpp"
 #include "chicane/controller/prediction.hpp"
@@ -26,6 +28,9 @@ using StageInput = std::array<double, Problem::kNu>;
 constexpr double kFarFromLine = 15.0;       // [m] further away the car is lost
 constexpr double kSpeedAhead = 4.0;         // [m/s] wanted at most beyond what the last answer reaches
 constexpr double kLongestHold = 0.3;        // [s] the first command is believed to be held at most this long
+constexpr double kBlindAfter = 0.3;         // [s] without a measurement, or a waypoint: stop
+constexpr double kPreview = 0.3;            // [s] the car answers the wheel about so late
+constexpr double kCrawl = 3.0;              // [m/s] who stops is brought to rest by the fallback from here
 constexpr double kProjectionWindow = 30.0;  // [m] searched around the last place
 
 class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> {
@@ -54,18 +59,25 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     shape_problem();
   }
 
-  [[nodiscard]] const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept override {
+  [[nodiscard]] const StepResult& step(const model::Measurement& told, Deadline deadline) noexcept override {
+    const model::Measurement& now = doubt_.judge(told);
     const double act_time = now.time + (options_.compensate_delay ? now.delay : 0.0);
     road_.add(now);
     estimator_.correct(now, sent_);
+    watch_sight(now);
     const StateEstimator::Prediction start = estimator_.predict(act_time, sent_);
     if (!place_on_line(now, start)) return fall_back(now, act_time);
+    if (start.state.vx < kCrawl && stopping_speed(0.0) < kCrawl) return fall_back(now, act_time);
     warm_start(act_time);
     const double started = deadline.elapsed();
     const solver::SolveReport report = solver_.solve(problem_, x0_, horizon_, deadline);
     result_.report.solve_time = deadline.elapsed() - started;
     result_.report.solve = report;
-    if (!usable(report.status)) return fall_back(now, act_time);
+    // A guess that was never improved is no answer, however well it went before.
+    const bool is_guess = report.status == solver::SolveStatus::kBudgetSpent && report.iterations == 0;
+    late_.note(!is_guess, now.time);
+    if (is_guess && late_.is_long && start.state.vx > kCrawl) return stop_on_line(now, start);
+    if (!usable(report.status) || is_guess) return fall_back(now, act_time);
     return accept(now, start, act_time);
   }
 
@@ -80,6 +92,8 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     sent_.clear();
     has_horizon_ = false;
     has_place_ = false;
+    doubt_.reset();
+    blind_ = roadless_ = late_ = Absence{};
   }
 
   [[nodiscard]] std::string_view name() const noexcept override { return "tracking-mpc"; }
@@ -113,6 +127,39 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
                        .slip = std::sqrt(options_.weight_slip),
                        .excess_steer_rate = 10.0,
                        .friction = std::sqrt(options_.weight_slip)};
+  }
+
+  /// How long something has not been there that was.
+  struct Absence {
+    double since = 0.0;  ///< [s]
+    bool was_there = false;
+    bool is_long = false;
+    void note(bool is_there, double time) noexcept {
+      if (is_there) since = time;
+      was_there = was_there || is_there;
+      is_long = was_there && std::isfinite(time) && time - since > kBlindAfter;
+    }
+  };
+
+  void watch_sight(const model::Measurement& now) noexcept {
+    blind_.note(std::isfinite(now.x + now.y + now.psi + now.speed), now.time);
+    roadless_.note(now.waypoint_count > 0, now.time);
+  }
+
+  /// Who has not been told where he is for a while knows the road and counts on: he stops on it. Who is not
+  /// shown more road stops where it ends. Highest speed at s [m] ahead, with the braking that the speed plan
+  /// counts on [m/s].
+  [[nodiscard]] double stopping_speed(double s) const noexcept {
+    const model::VehicleParams& car = model_.vehicle();
+    const ReferenceLine& line = road_.line();
+    const double v = std::max(x0_[Problem::kVx], 0.0);
+    const double braking =
+        -options_.brake_share * longitudinal_acceleration(car, -car.brake_throttle_limit, v);
+    double squared = std::numeric_limits<double>::infinity();
+    if (blind_.is_long) squared = v * v - 2.0 * braking * s;
+    if (roadless_.is_long && !line.is_closed())
+      squared = std::min(squared, 2.0 * braking * (line.length() - s_ - s));
+    return std::sqrt(std::max(squared, 0.0));
   }
 
   /// The predicted start in coordinates along the line. False when the car or the road is lost.
@@ -208,7 +255,11 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
 
   void sample_stage(int k, const StageState& x) noexcept {
     const double s = x[Problem::kS];
-    const ReferenceLine::Demand road = road_.line().demand(s_ + s);
+    ReferenceLine::Demand road = road_.line().demand(s_ + s);
+    if (const double stop = stopping_speed(s); stop < road.speed) {
+      road.speed = stop;
+      road.speed_slope = 0.0;
+    }
     const Road::Room room = road_.room(road.offset);
     const model::VehicleParams& car = model_.vehicle();
     const double v = std::max(x[Problem::kVx], 0.0);
@@ -245,6 +296,23 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     const ReferenceLine::Demand planned = road_.line().demand(s_);
     explanation.speed_limit = planned.speed;
     explanation.speed_limiter = limiter_of(speed, planned.speed, planned.limiter, explanation.active_now);
+  }
+
+  /// No time to solve, and the last plan is old: the wheel by feedback to the line, all useful braking.
+  const StepResult& stop_on_line(const model::Measurement& now,
+                                 const StateEstimator::Prediction& start) noexcept {
+    const model::VehicleParams& car = model_.vehicle();
+    const int ahead = std::min(static_cast<int>(kPreview / problem_.dt), options_.horizon_steps - 1);
+    result_.command.steer =
+        std::clamp(follow_line(ahead, horizon_.x[0])[0], -car.steer_limit, car.steer_limit);
+    result_.command.throttle = throttle_for(
+        car, longitudinal_acceleration(car, -car.brake_throttle_limit, start.state.vx), start.state.vx);
+    result_.report.rung = Rung::kHoldAndBrake;
+    result_.plan.size = 0;
+    result_.plan.reference_size = 0;
+    has_horizon_ = false;
+    send(now, result_.command);
+    return result_;
   }
 
   const StepResult& fall_back(const model::Measurement& now, double act_time) noexcept {
@@ -303,6 +371,10 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   unsigned revision_ = 0;
   bool has_place_ = false;
   bool has_horizon_ = false;
+  Doubt doubt_;
+  Absence blind_;     ///< of measurements that tell where the car is
+  Absence roadless_;  ///< of waypoints
+  Absence late_;      ///< of answers, for want of time
 };
 
 }  // namespace

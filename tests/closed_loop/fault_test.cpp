@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// Every fault, into each controller and each car at speed: what must hold then (docs/faults.md).
+#include "chicane/sim/fault.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ostream>
+#include <string>
+#include <string_view>
+
+#include "closed_loop/drive.hpp"
+
+namespace chicane::runtime {
+namespace {
+
+using sim::Fault;
+
+constexpr double kBegins = 14.0;  // [s] at speed, with the road known up to the sixth waypoint only
+constexpr double kEnds = 34.0;
+
+struct Outcome {
+  double worst_edge = std::numeric_limits<double>::infinity();  ///< from the beginning of the fault on [m]
+  double slowest = std::numeric_limits<double>::infinity();     ///< [m/s]
+  double speed_at_end = 0.0;
+  bool is_bounded = true;
+  bool was_on = false;
+  controller::Rung lowest_rung = controller::Rung::kController;
+  std::uint64_t hash = 0;
+};
+
+Outcome drive_through(const Settings& settings, Fault fault) {
+  auto scenario = protocol::compose({.scenario_file = "", .settings = settings});
+  EXPECT_TRUE(scenario);
+  scenario->laps = 0;
+  scenario->faults = {sim::default_event(fault, kBegins)};
+  const auto loop = std::move(*ClosedLoop::create(*scenario));
+  const model::VehicleParams& car = loop->scenario().vehicle;
+  Outcome outcome;
+  while (loop->time() < kEnds && !loop->is_over()) {
+    const bool is_new = loop->advance();
+    if (loop->time() > kBegins)
+      outcome.worst_edge = std::min(outcome.worst_edge, loop->world().edge_distance);
+    if (!is_new) continue;
+    const telemetry::Frame& frame = loop->frame();
+    const model::Command& sent = frame.result.command;
+    outcome.is_bounded &= std::isfinite(sent.steer) && std::isfinite(sent.throttle) &&
+                          std::fabs(sent.steer) <= car.steer_limit && std::fabs(sent.throttle) <= 1.0;
+    outcome.was_on |= frame.active_faults == 1U << static_cast<unsigned>(fault);
+    if (frame.time < kBegins) continue;
+    const double speed = std::hypot(frame.truth.vx, frame.truth.vy);
+    outcome.slowest = std::min(outcome.slowest, speed);
+    outcome.speed_at_end = speed;
+    outcome.lowest_rung = std::max(outcome.lowest_rung, frame.result.report.rung);
+  }
+  outcome.hash = loop->summary().state_hash;
+  return outcome;
+}
+
+struct Driver {
+  const char* name;
+  const char* preset;
+  const char* car;
+};
+std::ostream& operator<<(std::ostream& out, const Driver& driver) { return out << driver.name; }
+
+constexpr Driver kDrivers[] = {{"tracking_udacity", "default", "udacity"},
+                               {"tracking_road", "default", "road-car"},
+                               {"cubic_udacity", "weighted", "udacity"},
+                               {"cubic_road", "weighted", "road-car"}};
+
+class EveryFault : public testing::TestWithParam<std::tuple<Driver, int>> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Drivers, EveryFault,
+    testing::Combine(testing::ValuesIn(kDrivers), testing::Range(0, static_cast<int>(sim::kFaultCount))),
+    [](const auto& each) {
+      return std::string(std::get<0>(each.param).name) + "_" +
+             std::string(sim::fault_kinds()[static_cast<std::size_t>(std::get<1>(each.param))].name);
+    });
+
+/// How far the outermost tyre may come beyond the edge [m]: not at all, but for what the controller is not
+/// told and cannot find out in time. Measured worst plus a fifth; docs/faults.md has the figures and says
+/// why.
+double beyond_edge(Fault fault, std::string_view driver) {
+  if (fault == Fault::kHalfGrip && driver == "tracking_road") return 2.2;
+  if (fault == Fault::kHalfGrip && driver == "cubic_road") return 9.0;
+  if (fault == Fault::kGpsNoise && driver == "tracking_road") return 2.6;
+  if (fault == Fault::kDelayDoubled && driver == "cubic_road") return 16.0;
+  return 0.0;
+}
+
+TEST_P(EveryFault, LeavesTheCarOnTheRoadAndGoingOn) {
+  const auto& [driver, index] = GetParam();
+  const auto fault = static_cast<Fault>(index);
+  const Outcome outcome = drive_through({{"preset", driver.preset}, {"car", driver.car}}, fault);
+  RecordProperty("edge_cm", static_cast<int>(100.0 * outcome.worst_edge));
+  EXPECT_TRUE(outcome.was_on);
+  EXPECT_TRUE(outcome.is_bounded);
+  const double allowed = beyond_edge(fault, driver.name);
+  EXPECT_GE(outcome.worst_edge, -allowed);
+  if (allowed < 5.0) {
+    EXPECT_GT(outcome.speed_at_end, 5.0) << "it goes on";
+  }
+  if (fault == Fault::kLinkLost || fault == Fault::kSlowSolver) {
+    EXPECT_LT(outcome.slowest, 16.0) << "it brakes";
+  }
+}
+
+TEST(Faults, SameSeedSameBits) {
+  for (const Fault fault : {Fault::kGpsNoise, Fault::kCommandDropped}) {
+    const Outcome first = drive_through({}, fault);
+    EXPECT_EQ(first.hash, drive_through({}, fault).hash);
+    EXPECT_NE(first.hash, drive_through({{"seed", "2"}}, fault).hash);
+  }
+  EXPECT_EQ(drive_through({}, Fault::kSlowSolver).hash, drive_through({}, Fault::kSlowSolver).hash);
+}
+
+TEST(Faults, AreSwitchedWhileTheRunGoesOn) {
+  const auto scenario = protocol::compose({.scenario_file = "", .settings = {}});
+  const auto loop = std::move(*ClosedLoop::create(*scenario));
+  while (loop->time() < 1.0) loop->advance();
+  EXPECT_EQ(loop->frame().active_faults, 0U);
+  EXPECT_TRUE(loop->set_fault("half_grip", true));
+  EXPECT_FALSE(loop->set_fault("no_such", true));
+  while (loop->time() < 2.0) loop->advance();
+  EXPECT_EQ(loop->frame().active_faults, 1U << static_cast<unsigned>(Fault::kHalfGrip));
+  loop->set_fault("half_grip", false);
+  while (loop->time() < 3.0) loop->advance();
+  EXPECT_EQ(loop->frame().active_faults, 0U);
+}
+
+}  // namespace
+}  // namespace chicane::runtime

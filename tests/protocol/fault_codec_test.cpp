@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/fault_codec.hpp"
+
+#include <gmock/gmock.h>
+
+#include <array>
+
+#include "chicane/protocol/yaml_codec.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string refusal(std::string_view text) {
+  const auto event = parse_fault(text);
+  EXPECT_FALSE(event) << text;
+  return event ? "" : event.error().message;
+}
+
+TEST(FaultText, NamesAFaultItsTimeAndPerhapsMore) {
+  const auto all = parse_fault("half_grip@12+5*0.25");
+  ASSERT_TRUE(all) << all.error().message;
+  EXPECT_EQ(all->fault, sim::Fault::kHalfGrip);
+  EXPECT_EQ(all->at, 12.0);
+  EXPECT_EQ(all->duration, 5.0);
+  EXPECT_EQ(all->strength, 0.25);
+  const auto least = parse_fault("link_lost@0.5");
+  ASSERT_TRUE(least);
+  EXPECT_EQ(least->duration, sim::kind_of(sim::Fault::kLinkLost).duration);
+}
+
+TEST(FaultText, SaysWhatIsWrongAndWhatWasMeant) {
+  EXPECT_THAT(refusal("half_girp@12"), HasSubstr("did you mean half_grip?"));
+  EXPECT_THAT(refusal("half_grip"), HasSubstr("faults.at_s: got nothing"));
+  EXPECT_THAT(refusal("half_grip@-1"), HasSubstr("faults.at_s: got -1, expected a number in [0, "));
+  EXPECT_THAT(refusal("half_grip@1+"), HasSubstr("faults.for_s: got +"));
+  EXPECT_THAT(refusal("half_grip@1*7"), HasSubstr("faults.strength: got 7, expected a number in [0.05, 1]"));
+  EXPECT_THAT(refusal("link_lost@1*7"), HasSubstr("link_lost has no strength"));
+  EXPECT_THAT(refusal(""), HasSubstr("faults.name: got nothing"));
+  EXPECT_THAT(refusal("half_grip@nan"), HasSubstr("faults.at_s"));
+}
+
+TEST(FaultYaml, IsAListInAScenarioAndComesBackTheSame) {
+  const auto document = parse_document(
+      "laps: 2\nfaults:\n  - {name: half_grip, at_s: 12, for_s: 5, strength: 0.3}\n  - name: link_lost\n    "
+      "at_s: 20.1\n",
+      "wet.yaml");
+  ASSERT_TRUE(document) << document.error().message;
+  scenario::Scenario scenario;
+  const std::array layers{*document};
+  ASSERT_TRUE(apply_layers(layers, scenario));
+  ASSERT_EQ(scenario.faults.size(), 2U);
+  EXPECT_EQ(scenario.faults[0].strength, 0.3);
+  EXPECT_EQ(scenario.faults[1].at, 20.1);
+
+  const std::string text = write_document(scenario, "test", true);
+  const auto again = parse_document(text, "again.yaml");
+  ASSERT_TRUE(again) << again.error().message;
+  ASSERT_TRUE(again->faults);
+  ASSERT_EQ(again->faults->size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ((*again->faults)[i].fault, scenario.faults[i].fault);
+    EXPECT_EQ((*again->faults)[i].at, scenario.faults[i].at);
+    EXPECT_EQ((*again->faults)[i].duration, scenario.faults[i].duration);
+    EXPECT_EQ((*again->faults)[i].strength, scenario.faults[i].strength);
+  }
+}
+
+TEST(FaultYaml, RefusesWithFileLineAndKey) {
+  const auto refused = [](const std::string& text) {
+    const auto document = parse_document(text, "f.yaml");
+    EXPECT_FALSE(document) << text;
+    return document ? "" : document.error().message;
+  };
+  EXPECT_THAT(refused("faults: 3\n"), HasSubstr("f.yaml:1: faults: got 3, expected a list"));
+  EXPECT_THAT(refused("faults:\n  - 3\n"), HasSubstr("f.yaml:2: faults: got 3, expected {name: half_grip"));
+  EXPECT_THAT(refused("faults:\n  - {name: half_grip, at: 3}\n"),
+              HasSubstr("f.yaml:2: faults: got at, expected name"));
+  EXPECT_THAT(refused("laps: 1\nfaults:\n  - {name: hlaf_grip, at_s: 3}\n"),
+              HasSubstr("f.yaml:3: faults.name: got hlaf_grip"));
+  EXPECT_THAT(refused("faults:\n  - {name: half_grip, at_s: [1]}\n"),
+              HasSubstr("f.yaml:2: faults.at_s: got a list, expected one value"));
+  EXPECT_THAT(refused("faults:\n  - {name: half_grip, at_s: 1, for_s: 0}\n"),
+              HasSubstr("faults.for_s: got 0"));
+}
+
+TEST(FaultControls, AreOneSwitchForEach) {
+  const auto controls = fault_controls();
+  ASSERT_EQ(controls.size(), sim::kFaultCount);
+  EXPECT_EQ(controls[0].key, "fault.link_lost");
+  EXPECT_EQ(controls[0].kind, Kind::kBool);
+}
+
+}  // namespace
+}  // namespace chicane::protocol

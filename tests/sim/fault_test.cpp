@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sim/fault.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "chicane/base/angle.hpp"
+
+namespace chicane::sim {
+namespace {
+
+model::Measurement measurement(double time = 0.0) {
+  model::Measurement now;
+  now.time = time;
+  now.x = 10.0 + time;
+  now.y = 20.0;
+  now.psi = 0.5 * kPi;
+  now.speed = 15.0;
+  now.steer = 0.1;
+  now.throttle = 0.2;
+  now.delay = 0.1;
+  now.waypoint_count = 6;
+  return now;
+}
+
+FaultLab lab_with(Fault fault, double strength) {
+  const FaultEvent event{fault, 0.0, 10.0, strength};
+  FaultLab lab({&event, 1}, 7);
+  lab.update(0.0);
+  return lab;
+}
+FaultLab lab_with(Fault fault) { return lab_with(fault, kind_of(fault).strength); }
+
+TEST(FaultKinds, AreNamedOnceAndMeanSomething) {
+  std::set<std::string_view> names;
+  for (std::size_t i = 0; i < kFaultCount; ++i) {
+    const FaultKind& kind = fault_kinds()[i];
+    EXPECT_TRUE(names.insert(kind.name).second) << kind.name;
+    EXPECT_EQ(fault_named(kind.name), static_cast<Fault>(i));
+    EXPECT_TRUE(kind.meaning.ends_with('.')) << kind.name;
+    EXPECT_GT(kind.duration, 0.0);
+    EXPECT_GE(kind.strength, kind.weakest) << kind.name;
+    EXPECT_LE(kind.strength, kind.strongest) << kind.name;
+  }
+  EXPECT_EQ(fault_named("no_such"), std::nullopt);
+}
+
+TEST(FaultLab, BeginsAndEndsWhenItIsTold) {
+  const std::vector<FaultEvent> events{{Fault::kHalfGrip, 2.0, 3.0, 0.5}, {Fault::kSideWind, 4.0, 3.0, -1.5}};
+  FaultLab lab(events, 1);
+  for (const auto& [time, bits] : std::vector<std::pair<double, std::uint32_t>>{{0.0, 0U},
+                                                                                {1.99, 0U},
+                                                                                {2.0, 1U << 7U},
+                                                                                {4.5, 1U << 7U | 1U << 9U},
+                                                                                {5.5, 1U << 9U},
+                                                                                {7.0, 0U},
+                                                                                {9.0, 0U}}) {
+    lab.update(time);
+    EXPECT_EQ(lab.bits(), bits) << time;
+    EXPECT_EQ(lab.grip(), lab.is_on(Fault::kHalfGrip) ? 0.5 : 1.0);
+    EXPECT_EQ(lab.side_acceleration(), lab.is_on(Fault::kSideWind) ? -1.5 : 0.0);
+  }
+  lab.reset();
+  lab.update(2.5);
+  EXPECT_TRUE(lab.is_on(Fault::kHalfGrip)) << "a new run has the same schedule";
+}
+
+TEST(FaultLab, SwitchesOnForTheKindsOwnTimeAndOff) {
+  FaultLab lab({}, 1);
+  lab.set(Fault::kIcePatch, true, 10.0);
+  lab.update(10.1);
+  lab.set(Fault::kIcePatch, true, 10.1);  // already on: its end stays
+  EXPECT_EQ(lab.grip(), kind_of(Fault::kIcePatch).strength);
+  lab.update(10.0 + kind_of(Fault::kIcePatch).duration);
+  EXPECT_EQ(lab.bits(), 0U);
+  lab.set(Fault::kLinkLost, true, 20.0);
+  lab.set(Fault::kLinkLost, false, 20.1);
+  EXPECT_EQ(lab.bits(), 0U);
+}
+
+TEST(FaultLab, ChangesNothingWhenNothingIsOn) {
+  FaultLab lab({}, 1);
+  lab.update(1.0);
+  const model::Measurement told = lab.seen(measurement());
+  EXPECT_EQ(told.x, 10.0);
+  EXPECT_EQ(told.waypoint_count, 6);
+  EXPECT_TRUE(lab.is_delivered());
+  EXPECT_EQ(lab.done({0.1, -0.2}).steer, 0.1);
+  EXPECT_EQ(lab.done({0.1, -0.2}).throttle, -0.2);
+  EXPECT_EQ(lab.extra_delay(0.1), 0.0);
+  EXPECT_EQ(lab.deadline_questions(), 0U);
+}
+
+TEST(FaultLab, SpoilsMeasurements) {
+  const model::Measurement lost = lab_with(Fault::kLinkLost).seen(measurement());
+  EXPECT_TRUE(std::isnan(lost.x + lost.speed));
+  EXPECT_TRUE(std::isnan(lost.steer));
+  EXPECT_EQ(lost.waypoint_count, 0);
+  EXPECT_EQ(lost.time, 0.0);
+
+  const model::Measurement broken = lab_with(Fault::kNanMeasurement).seen(measurement());
+  EXPECT_TRUE(std::isnan(broken.x) && std::isnan(broken.y) && std::isnan(broken.psi) &&
+              std::isnan(broken.speed));
+  EXPECT_EQ(broken.waypoint_count, 6);
+
+  const model::Measurement jump = lab_with(Fault::kPositionJump, 5.0).seen(measurement());
+  EXPECT_NEAR(jump.x, 5.0, 1e-12);  // the car looks along +y: left is −x
+  EXPECT_NEAR(jump.y, 20.0, 1e-12);
+
+  EXPECT_EQ(lab_with(Fault::kSpeedSensorZero).seen(measurement()).speed, 0.0);
+  EXPECT_EQ(lab_with(Fault::kWaypointsMissing).seen(measurement()).waypoint_count, 0);
+
+  FaultLab frozen = lab_with(Fault::kFrozenSensor);
+  static_cast<void>(frozen.seen(measurement(1.0)));
+  const model::Measurement later = frozen.seen(measurement(3.0));
+  EXPECT_EQ(later.x, 11.0);
+  EXPECT_EQ(later.time, 3.0);
+
+  FaultLab noisy = lab_with(Fault::kGpsNoise, 0.5);
+  double sum = 0.0;
+  constexpr int kSamples = 4000;
+  for (int i = 0; i < kSamples; ++i) sum += std::pow(noisy.seen(measurement()).x - 10.0, 2);
+  EXPECT_NEAR(std::sqrt(sum / kSamples), 0.5, 0.03);  // five standard deviations of the estimate
+}
+
+TEST(FaultLab, SpoilsCommandsOnTheirWayAndAtTheActuators) {
+  EXPECT_FALSE(lab_with(Fault::kDeadController).is_delivered());
+  FaultLab lossy = lab_with(Fault::kCommandDropped, 0.5);
+  int delivered = 0;
+  for (int i = 0; i < 1000; ++i) delivered += lossy.is_delivered() ? 1 : 0;
+  EXPECT_NEAR(delivered, 500, 80);  // five standard deviations
+  EXPECT_NEAR(lab_with(Fault::kDelayDoubled).extra_delay(0.1), 0.1, 1e-15);
+  EXPECT_EQ(lab_with(Fault::kSlowSolver).deadline_questions(), 1U);
+
+  FaultLab stuck = lab_with(Fault::kSteeringStuck);
+  EXPECT_EQ(stuck.done({0.1, 0.5}).steer, 0.1);
+  EXPECT_EQ(stuck.done({-0.2, 0.7}).steer, 0.1);
+  EXPECT_EQ(stuck.done({-0.2, 0.7}).throttle, 0.7);
+  FaultLab pedal = lab_with(Fault::kThrottleStuck);
+  EXPECT_EQ(pedal.done({0.1, 0.5}).throttle, 0.5);
+  EXPECT_EQ(pedal.done({0.1, -1.0}).throttle, 0.5);
+  EXPECT_NEAR(lab_with(Fault::kSteeringOffset, 2.0).done({0.1, 0.0}).steer, 0.1 + degrees_to_radians(2.0),
+              1e-15);
+  EXPECT_EQ(lab_with(Fault::kWeakBrakes, 0.25).done({0.0, -0.8}).throttle, -0.2);
+  EXPECT_EQ(lab_with(Fault::kWeakBrakes, 0.25).done({0.0, 0.8}).throttle, 0.8);
+}
+
+TEST(FaultLab, OneFaultsChanceDoesNotShiftAnothers) {
+  FaultLab alone = lab_with(Fault::kGpsNoise);
+  const std::vector<FaultEvent> both{default_event(Fault::kGpsNoise, 0.0),
+                                     default_event(Fault::kCommandDropped, 0.0)};
+  FaultLab together(both, 7);
+  together.update(0.0);
+  for (int i = 0; i < 20; ++i) {
+    static_cast<void>(together.is_delivered());
+    EXPECT_EQ(alone.seen(measurement()).x, together.seen(measurement()).x);
+  }
+}
+
+}  // namespace
+}  // namespace chicane::sim
