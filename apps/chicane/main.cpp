@@ -5,6 +5,7 @@
 #include <exception>
 #include <variant>
 
+#include "chicane/base/instruction_set.hpp"
 #include "commands.hpp"
 
 int main(int count, char** words) {
@@ -13,6 +14,10 @@ int main(int count, char** words) {
     const std::variant<Options, Done> parsed = parse_command_line(count, words);
     if (const Done* done = std::get_if<Done>(&parsed)) return done->code;
     const Options& options = std::get<Options>(parsed);
+    if (const auto set = chicane::environment_instruction_set(); !set) {
+      std::fprintf(stderr, "chicane: %s\n", set.error().message.c_str());
+      return kUsage;
+    }
     for (const Command& command : commands()) {
       if (command.name != options.command) continue;
       const ExitCode code = command.run(options);
