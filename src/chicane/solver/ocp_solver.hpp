@@ -51,7 +51,7 @@ class OcpSolver {
     CHICANE_ASSERT(trajectory.horizon >= 1 && trajectory.horizon <= Capacity);
     SolveReport report;
     if (!start(problem, x0, trajectory)) return give_up(problem, x0, trajectory, report);
-    for (;; ++report.iterations) {
+    for (;; ++report.iterations, work_ += share_of_horizon()) {
       look(problem, report);
       if (!is_finite(report) && !has_best_) return give_up(problem, x0, trajectory, report);
       if (is_growing() && residual(report) <= kGoodEnoughToGrow) {
@@ -59,7 +59,7 @@ class OcpSolver {
         continue;
       }
       if (has_converged(report)) return finish(SolveStatus::kOptimal, problem, trajectory, report);
-      const bool budget_spent = report.iterations >= options_.max_iterations || deadline.spent();
+      const bool budget_spent = work_ >= options_.max_iterations || deadline.spent();
       if (!keep_best(report) && !budget_spent && has_lost_its_way(report)) {
         if (!(may_grow() ? start_short(problem) : go_back(problem))) break;
         continue;
@@ -98,6 +98,7 @@ class OcpSolver {
   bool start(const P& problem, const State& x0, const Trajectory& trajectory) noexcept {
     full_steps_ = is_fresh_ = true;
     has_best_ = is_exact_ = has_grown_ = false;
+    work_ = 0.0;
     progress_.restart();
     descent_.start();
     barrier_.start(problem, options_.tolerance);
@@ -305,6 +306,10 @@ class OcpSolver {
   [[nodiscard]] bool may_grow() const noexcept {
     return options_.may_start_short && !has_grown_ && t_.horizon > kFirstHorizon;
   }
+  /// What a turn costs beside one of the whole horizon.
+  [[nodiscard]] double share_of_horizon() const noexcept {
+    return static_cast<double>(t_.horizon) / static_cast<double>(target_);
+  }
   bool start_short(const P& problem) noexcept {
     t_ = best_;
     t_.horizon = kFirstHorizon;
@@ -417,6 +422,7 @@ class OcpSolver {
   bool has_grown_ = false;
   bool is_fresh_ = true;    ///< slacks and working set are to be guessed anew
   std::size_t target_ = 0;  ///< horizon asked for
+  double work_ = 0.0;       ///< turns so far, those of a shorter horizon by their share
 };
 
 }  // namespace chicane::solver
