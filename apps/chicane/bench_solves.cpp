@@ -9,6 +9,7 @@
 #include "problems/cpu_time.hpp"
 #include "problems/families.hpp"
 #include "problems/optimality.hpp"
+#include "problems/structured_solver.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -41,16 +42,26 @@ void judge(const Instance<Problem>& instance, const Trajectory& answer, Sample& 
   }
 }
 
-/// Our solver: the best of some trials, each long enough for the clock.
+bench::StructuredDescribedProblem structured(const Instance<bench::DescribedProblem>& instance) {
+  return bench::StructuredDescribedProblem{instance.problem, instance.start[4]};
+}
+bench::StructuredCorridorProblem structured(const Instance<bench::CorridorProblem>& instance) {
+  return {instance.problem, instance.start[4], instance.guess.horizon};
+}
+
+/// Our solver on the structured form of the problem, with the instruction set that is chosen: the best of
+/// some trials, each long enough for the clock.
 template <class Problem>
-Sample solve_own(const Instance<Problem>& instance, solver::OcpSolver<Problem, kCapacity>& ocp,
-                 Trajectory& answer) {
+Sample solve_own(const Instance<Problem>& instance, Trajectory& answer) {
   Sample sample;
+  const auto problem = structured(instance);
+  const auto start = bench::StructuredDescribedProblem::without_cte(instance.start);
+  bench::StructuredTrajectory own;
+  own.horizon = instance.guess.horizon;
   const auto solve = [&] {
-    std::copy_n(instance.guess.u.begin(), instance.guess.horizon, answer.u.begin());
-    return ocp.solve(instance.problem, instance.start, answer);
+    std::copy_n(instance.guess.u.begin(), instance.guess.horizon, own.u.begin());
+    return bench::solve_fast(problem, start, own);
   };
-  answer = instance.guess;
   double begin = bench::cpu_time();
   const solver::SolveReport report = solve();
   const int repeats = static_cast<int>(kLeastTime / std::max(bench::cpu_time() - begin, 1e-6)) + 1;
@@ -63,6 +74,8 @@ Sample solve_own(const Instance<Problem>& instance, solver::OcpSolver<Problem, k
   sample.outcome.is_solved = report.status == solver::SolveStatus::kOptimal;
   sample.outcome.turns = report.iterations;
   sample.sweeps = report.sweeps;
+  answer = instance.guess;
+  std::copy_n(own.u.begin(), own.horizon, answer.u.begin());
   judge(instance, answer, sample);
   return sample;
 }
@@ -129,7 +142,7 @@ void measure(Start start, int instances, bench::References& references, const st
   // One more than is measured: the cycle before the first.
   const auto family = bench::make_family<Problem, kCapacity>(start, row.horizon, instances + 1, *ocp);
   for (std::size_t i = 1; i < family.size() && !stop; ++i) {
-    own.push_back(solve_own(family[i], *ocp, *answer));
+    own.push_back(solve_own(family[i], *answer));
     for (std::size_t other = 0; other < others.size(); ++other) {
       if (others[other]->is_hot() && start != Start::kWarm) continue;
       theirs[other].push_back(solve_reference(family[i], &family[i - 1], *others[other], *answer));
