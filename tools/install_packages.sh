@@ -4,7 +4,7 @@
 # To build and run the program.
 run_packages=(
   g++ cmake ninja-build ccache pkg-config
-  libeigen3-dev libexpected-dev libboost-dev nlohmann-json3-dev libyaml-cpp-dev libcli11-dev libfmt-dev
+  libeigen3-dev libexpected-dev libboost-dev nlohmann-json3-dev libyaml-cpp-dev libcli11-dev libfmt-dev libzstd-dev
 )
 # To build and run the tests, on top of those.
 test_packages=(libgtest-dev libgmock-dev coinor-libipopt-dev liblapack-dev libblas-dev locales python3)
