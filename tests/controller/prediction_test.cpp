@@ -8,6 +8,7 @@
 
 #include "chicane/base/random.hpp"
 #include "chicane/controller/tracking_problem.hpp"
+#include "chicane/solver/problem.hpp"
 
 namespace chicane::controller {
 namespace {
@@ -22,7 +23,7 @@ BodyMotion<double> settle(const PredictionModel& model, double speed, double ste
                           double dt) {
   BodyMotion<double> motion{.vx = speed};
   for (double t = 0.0; t < seconds; t += dt) {
-    motion = model.advance(motion, steer, 0.0, dt);
+    motion = model.advance(motion, steer, 0.0, dt, model.lags(dt));
     motion.vx = speed;
   }
   return motion;
@@ -53,8 +54,10 @@ TEST(PredictionModel, StaysFiniteFromStandstillToTopSpeedForAnyStep) {
     BodyMotion<double> motion{
         .vx = random.uniform(0.0, 60.0), .vy = random.uniform(-2.0, 2.0), .r = random.uniform(-1.5, 1.5)};
     for (int k = 0; k < 20; ++k) {
-      motion = model.advance(motion, random.uniform(-0.43, 0.43), random.uniform(-9.0, 5.0),
-                             random.uniform(0.001, 0.1));
+      const double steer = random.uniform(-0.43, 0.43);
+      const double acceleration = random.uniform(-9.0, 5.0);
+      const double dt = random.uniform(0.001, 0.1);
+      motion = model.advance(motion, steer, acceleration, dt, model.lags(dt));
       motion.vx = std::max(motion.vx, 0.0);
     }
     EXPECT_TRUE(std::isfinite(motion.vx + motion.vy + motion.r));
@@ -64,8 +67,10 @@ TEST(PredictionModel, StaysFiniteFromStandstillToTopSpeedForAnyStep) {
 
 TEST(PredictionModel, MirrorsLeftAndRightExactly) {
   const PredictionModel model(model::road_car_params());
-  const BodyMotion<double> left = model.advance<double>({25.0, -0.4, 0.3, 0.05, -2.0}, 0.08, -3.0, 0.05);
-  const BodyMotion<double> right = model.advance<double>({25.0, 0.4, -0.3, -0.05, -2.0}, -0.08, -3.0, 0.05);
+  const BodyMotion<double> left =
+      model.advance({25.0, -0.4, 0.3, 0.05, -2.0}, 0.08, -3.0, 0.05, model.lags(0.05));
+  const BodyMotion<double> right =
+      model.advance({25.0, 0.4, -0.3, -0.05, -2.0}, -0.08, -3.0, 0.05, model.lags(0.05));
   EXPECT_EQ(left.vx, right.vx);
   EXPECT_EQ(left.vy, -right.vy);
   EXPECT_EQ(left.r, -right.r);
@@ -85,29 +90,39 @@ Problem sample_problem(const PredictionModel& model, Random& random) {
                     .slip = 4.0,
                     .excess_steer_rate = 10.0,
                     .friction = 4.0};
-  for (auto& stage : problem.stages) {
-    stage = {.s = 1.0,
-             .curvature = random.uniform(-0.05, 0.05),
-             .curvature_slope = random.uniform(-0.003, 0.003),
-             .speed = random.uniform(5.0, 50.0),
-             .speed_slope = random.uniform(-0.3, 0.1),
-             .left = 1.0,
-             .right = 1.5};
+  problem.first = {0.08, model.lags(0.08)};
+  problem.others = {0.05, model.lags(0.05)};
+  for (std::size_t k = 0; k <= 5; ++k) {
+    problem.road.s[k] = 1.0;
+    problem.road.curvature[k] = random.uniform(-0.05, 0.05);
+    problem.road.curvature_slope[k] = random.uniform(-0.003, 0.003);
+    problem.road.speed[k] = random.uniform(5.0, 50.0);
+    problem.road.speed_slope[k] = random.uniform(-0.3, 0.1);
+    problem.road.left[k] = 1.0;
+    problem.road.right[k] = 1.5;
   }
   return problem;
 }
 
-/// Largest difference between dual-number and central-difference Jacobians of a function of (x, u), relative
-/// to its size.
+/// A jet with all derivatives of (x, u): what jets with fewer are widened to.
+constexpr int kN = Problem::kNx + Problem::kNu;
+using Full = Jet<double, 1, (Variables{1} << kN) - 1>;
+
+template <class Seeds, class Values>
+void set_values(Seeds& seeds, const Values& values) {
+  [&]<std::size_t... i>(std::index_sequence<i...>) { ((std::get<i>(seeds).v = values[i]), ...); }
+  (std::make_index_sequence<std::tuple_size_v<Seeds>>{});
+}
+
+/// Largest difference between exact and central-difference Jacobians of a function of (x, u), relative to its
+/// size.
 template <class F>
 double worst_jacobian_error(const F& function, const X& x, const U& u) {
-  constexpr int kN = Problem::kNx + Problem::kNu;
-  using D = Dual<kN>;
-  std::array<D, Problem::kNx> xd;
-  std::array<D, Problem::kNu> ud;
-  for (int i = 0; i < Problem::kNx; ++i) xd[i] = D::variable(x[i], i);
-  for (int i = 0; i < Problem::kNu; ++i) ud[i] = D::variable(u[i], Problem::kNx + i);
-  const auto exact = function(xd, ud);
+  solver::StateJets<Problem, double, 1> xd;
+  solver::InputJets<Problem, double, 1> ud;
+  set_values(xd, x);
+  set_values(ud, u);
+  const auto exact = solver::to_array<Full>(function(xd, ud));
   double worst = 0.0;
   for (int j = 0; j < kN; ++j) {
     const double at = j < Problem::kNx ? x[j] : u[j - Problem::kNx];
@@ -117,17 +132,20 @@ double worst_jacobian_error(const F& function, const X& x, const U& u) {
     U up = u, um = u;
     (j < Problem::kNx ? xp[j] : up[j - Problem::kNx]) += h;
     (j < Problem::kNx ? xm[j] : um[j - Problem::kNx]) -= h;
-    const auto plus = function(xp, up);
-    const auto minus = function(xm, um);
+    const auto plus = solver::to_array<double>(function(xp, up));
+    const auto minus = solver::to_array<double>(function(xm, um));
     for (std::size_t i = 0; i < plus.size(); ++i) {
       const double difference = (plus[i] - minus[i]) / (2.0 * h);
-      worst = std::max(worst, std::fabs(difference - exact[i].d[j]) / (1.0 + std::fabs(difference)));
+      worst = std::max(worst, std::fabs(difference - exact[i].slopes[static_cast<std::size_t>(j)]) /
+                                  (1.0 + std::fabs(difference)));
     }
   }
   return worst;
 }
 
 TEST(TrackingProblem, JacobiansEqualCentralDifferences) {
+  // Differences of residuals with hinges and steep tyre curves; a wrong term would show as 1e-2 or more.
+  constexpr double kClose = 1e-5;
   Random random(5);
   for (int i = 0; i < 400; ++i) {
     const PredictionModel model(car_number(i % 2));
@@ -136,17 +154,15 @@ TEST(TrackingProblem, JacobiansEqualCentralDifferences) {
               random.uniform(0.5, 50.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
               random.uniform(-0.2, 0.2), random.uniform(-6.0, 5.0)};
     const U u{random.uniform(-0.3, 0.3), random.uniform(-6.0, 5.0)};
-    // 1e-5: differences of residuals with hinges and steep tyre curves; a wrong term would show as 1e-2 or
-    // more.
-    EXPECT_LT(
-        worst_jacobian_error([&](const auto& a, const auto& b) { return problem.dynamics(2, a, b); }, x, u),
-        1e-5);
-    EXPECT_LT(
-        worst_jacobian_error([&](const auto& a, const auto& b) { return problem.residual(2, a, b); }, x, u),
-        1e-5);
+    for (const int k : {0, 2}) {
+      const auto dynamics = [&](const auto& a, const auto& b) { return problem.dynamics(k, a, b); };
+      const auto residual = [&](const auto& a, const auto& b) { return problem.residual(k, a, b); };
+      EXPECT_LT(worst_jacobian_error(dynamics, x, u), kClose);
+      EXPECT_LT(worst_jacobian_error(residual, x, u), kClose);
+    }
     EXPECT_LT(
         worst_jacobian_error([&](const auto& a, const auto&) { return problem.terminal_residual(a); }, x, u),
-        1e-5);
+        kClose);
   }
 }
 
@@ -154,10 +170,33 @@ TEST(TrackingProblem, AStraightLineIsDrivenStraight) {
   const PredictionModel model(model::udacity_params());
   Problem problem;
   problem.model = &model;
-  const X to = problem.dynamics<double>(0, {0.0, 0.5, 0.0, 20.0, 0.0, 0.0, 0.0, 0.0}, {0.0, 0.0});
-  EXPECT_DOUBLE_EQ(to[Problem::kS], 20.0 * problem.dt);
+  const X to = solver::next_state(problem, 0, X{0.0, 0.5, 0.0, 20.0, 0.0, 0.0, 0.0, 0.0}, U{0.0, 0.0});
+  EXPECT_DOUBLE_EQ(to[Problem::kS], 20.0 * problem.first.length);
   EXPECT_DOUBLE_EQ(to[Problem::kD], 0.5);
   EXPECT_DOUBLE_EQ(to[Problem::kE], 0.0);
+}
+
+TEST(TrackingProblem, AMoveInPartsIsThatOfShorterStages) {
+  Random random(8);
+  const PredictionModel model(model::road_car_params());
+  Problem problem = sample_problem(model, random);
+  const X x{0.0, 0.4, -0.1, 24.0, 0.2, 0.3, 0.02, -1.0};
+  const U u{0.05, 1.5};
+  problem.first = {0.15, model.lags(0.15)};
+  const X whole = problem.move_in_parts(0, x, u, 3);
+  problem.first = problem.others;
+  X step = x;
+  for (int i = 0; i < 3; ++i) step = solver::next_state(problem, 0, step, u);
+  for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_NEAR(whole[i], step[i], 1e-12) << i;
+}
+
+TEST(TrackingProblem, DependsOnlyOnWhatItMust) {
+  using Next = decltype(std::declval<Problem>().dynamics(0, solver::StateJets<Problem, double, 1>{},
+                                                         solver::InputJets<Problem, double, 1>{}));
+  using Steer = std::tuple_element_t<Problem::kSteer, Next>;
+  EXPECT_EQ(Steer::kFirst, variable(Problem::kSteer) | variable(Problem::kNx));
+  using YawRate = std::tuple_element_t<Problem::kR, Next>;
+  EXPECT_EQ(YawRate::kFirst & (variable(Problem::kS) | variable(Problem::kD) | variable(Problem::kE)), 0U);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "controller/sample_road.hpp"
@@ -102,6 +103,32 @@ TEST(TrackingMpc, AnswersAnythingWithABoundedCommand) {
   }
   EXPECT_EQ(controller->step(now, Deadline::never()).report.rung, Rung::kController)
       << "no poison stays behind";
+}
+
+TEST(TrackingMpc, TurnsRoundAfterASpinAndDrivesOn) {
+  const auto controller = make();
+  const double wheelbase = model::udacity_params().wheelbase();
+  model::Measurement now;
+  now.x = 40.0;
+  now.y = 3.0;
+  now.psi = 2.6;  // nearly backwards on a straight road along x
+  double speed = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    now.time = 0.05 * i;
+    now.speed = speed;
+    now.waypoint_count = 6;
+    for (int j = 0; j < 6; ++j)
+      now.waypoints[static_cast<std::size_t>(j)] = {12.0 * (std::floor(now.x / 12.0) + j), 0.0};
+    const model::Command command = controller->step(now, Deadline::never()).command;
+    speed = std::max(
+        0.0, speed + 0.05 * longitudinal_acceleration(model::udacity_params(), command.throttle, speed));
+    now.psi += 0.05 * speed * std::tan(command.steer) / wheelbase;
+    now.x += 0.05 * speed * std::cos(now.psi);
+    now.y += 0.05 * speed * std::sin(now.psi);
+    if (std::fabs(angle_difference(now.psi, 0.0)) < 0.1 && speed > 8.0) return;
+    ASSERT_LT(std::fabs(now.y), 20.0) << "it does not wander off";
+  }
+  FAIL() << "still at " << speed << " m/s and " << now.psi << " rad";
 }
 
 TEST(TrackingMpc, AMissedDeadlineStillGivesACommand) {

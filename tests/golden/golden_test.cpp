@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The same scenario and seed give the same bits in every build: Debug, Release, with sanitizers, from gcc and
+// The same scenario and seed give the same bits in every build and for every instruction set of the same
+// arithmetic (base/instruction_set.hpp): Debug, Release, with sanitizers, from gcc and
 // clang, on every machine. A hash that changes says that the driving changed: look at the laps
 // (tools/measure.py) before renewing it with what this test prints.
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "chicane/base/instruction_set.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/runtime/closed_loop.hpp"
 
@@ -18,35 +20,53 @@ namespace {
 struct Golden {
   const char* name;
   std::vector<std::pair<std::string, std::string>> settings;
-  std::uint64_t hash;
+  std::uint64_t plain;
+  std::uint64_t fused;  ///< with the fused multiply-add of AVX2, AVX-512, and aarch64
 };
 
 void PrintTo(const Golden& golden, std::ostream* out) { *out << golden.name; }
 
 class GoldenRun : public ::testing::TestWithParam<Golden> {};
 
-TEST_P(GoldenRun, HasTheBitsItHad) {
-  auto settings = GetParam().settings;
+std::uint64_t hash_of(const Golden& golden, InstructionSet set) {
+  choose_instruction_set(set);
+  auto settings = golden.settings;
   settings.emplace_back("time_limit_s", "20");
   const auto scenario = protocol::compose({.scenario_file = {}, .settings = settings});
-  ASSERT_TRUE(scenario) << scenario.error().message;
-  const auto loop = runtime::ClosedLoop::create(*scenario);
-  ASSERT_TRUE(loop) << loop.error().message;
-  const std::uint64_t hash = runtime::run_closed_loop(**loop).state_hash;
-  EXPECT_EQ(hash, GetParam().hash) << fmt::format("now 0x{:016x}", hash);
+  const auto loop = scenario ? runtime::ClosedLoop::create(*scenario) : fail(scenario.error());
+  choose_instruction_set(detect_instruction_set());
+  if (!loop) {
+    ADD_FAILURE() << loop.error().message;
+    return 0;
+  }
+  return runtime::run_closed_loop(**loop).state_hash;
+}
+
+TEST_P(GoldenRun, HasTheBitsItHad) {
+  const std::uint64_t plain = hash_of(GetParam(), InstructionSet::kBaseline);
+  EXPECT_EQ(plain, GetParam().plain) << fmt::format("now 0x{:016x}", plain);
+  for (const InstructionSet set : {InstructionSet::kAvx2, InstructionSet::kAvx512, InstructionSet::kNeon}) {
+    if (!is_available(set)) continue;
+    const std::uint64_t fused = hash_of(GetParam(), set);
+    EXPECT_EQ(fused, GetParam().fused) << to_string(set) << fmt::format(" now 0x{:016x}", fused);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Runs, GoldenRun,
     ::testing::Values(
-        Golden{"default_udacity", {{"track", "lakeside"}}, 0x28089d288be32acb},
-        Golden{"default_road_car", {{"track", "hairpins"}, {"car", "road-car"}}, 0xbfbd8619d2a61151},
+        Golden{"default_udacity", {{"track", "lakeside"}}, 0x334df853a0ee5ef9, 0x28fff6600ca02b3f},
+        Golden{"default_road_car",
+               {{"track", "hairpins"}, {"car", "road-car"}},
+               0xf04dc58fbe08ee3d,
+               0x0f28091d78de6f25},
         Golden{"with_noise",
                {{"track", "oval"}, {"sensor.position_noise_m", "0.05"}, {"seed", "7"}},
-               0xce7a52d35dfd5766},
-        Golden{"weighted", {{"preset", "weighted"}}, 0x2dbdf2fd492fe1cf},
-        Golden{"delay_in_model", {{"preset", "delay-in-model"}}, 0x29ffd23f7171698a},
-        Golden{"pid", {{"preset", "pid"}, {"latency_ms", "37"}}, 0xdab4f526bb2d5617}),
+               0xd31d73cca43b3436,
+               0xd474a6cc22c52f94},
+        Golden{"weighted", {{"preset", "weighted"}}, 0x47c94acc085df132, 0x47c94acc085df132},
+        Golden{"delay_in_model", {{"preset", "delay-in-model"}}, 0xdecb066ecf7eb22c, 0xdecb066ecf7eb22c},
+        Golden{"pid", {{"preset", "pid"}, {"latency_ms", "37"}}, 0xdab4f526bb2d5617, 0xdab4f526bb2d5617}),
     [](const auto& run) { return std::string(run.param.name); });
 
 }  // namespace

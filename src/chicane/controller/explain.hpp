@@ -10,6 +10,7 @@
 #include "chicane/controller/cubic_problem.hpp"
 #include "chicane/controller/explanation.hpp"
 #include "chicane/controller/tracking_problem.hpp"
+#include "chicane/solver/problem.hpp"
 
 /// What an optimal control problem's answer says about itself: cost by term, active constraints. Evaluates
 /// the residuals once along the plan (about 40 ns a stage), after the solver is done; changes nothing.
@@ -68,7 +69,7 @@ void explain(const Problem& problem, const Trajectory& answer, Explanation& expl
   for (int k = 0; k < answer.horizon; ++k) {
     const auto& x = answer.x[static_cast<std::size_t>(k)];
     const auto& u = answer.u[static_cast<std::size_t>(k)];
-    const auto residual = problem.template residual<double>(k, x, u);
+    const auto residual = solver::to_array<double>(problem.residual(k, x, u));
     pay(residual, Terms::kStage);
     std::uint32_t active = bounds_met(u, problem.input_lower(k), problem.input_upper(k));
     for (const auto& [row, constraint] : Terms::kOneSided) {
@@ -78,7 +79,7 @@ void explain(const Problem& problem, const Trajectory& answer, Explanation& expl
     explanation.active_ahead |= active;
   }
   const auto& end = answer.x[static_cast<std::size_t>(answer.horizon)];
-  pay(problem.template terminal_residual<double>(end), Terms::kEnd);
+  pay(solver::to_array<double>(problem.terminal_residual(end)), Terms::kEnd);
 }
 
 /// What limits a car of `speed` [m/s] that may drive `limit` [m/s] where `by` says why. With the throttle at

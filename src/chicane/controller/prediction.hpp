@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "chicane/base/dual.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/model/vehicle.hpp"
 
@@ -28,28 +27,41 @@ struct BodyMotion {
 /// r): tyres that are stiff at low speed cannot make it unstable, and v_x → 0 tends to the kinematic bicycle,
 /// so one model serves every speed from standstill on.
 ///
-/// T is double or a Dual. No allocation, no failure for finite input, any dt > 0. Error O(dt²) per step.
+/// T is double, or holds derivatives, several stages at once, or both (base/jet.hpp). No allocation, no
+/// failure for finite input, any dt > 0. Error O(dt²) per step.
 class PredictionModel {
  public:
   explicit PredictionModel(const model::VehicleParams& vehicle) noexcept : vehicle_{vehicle} {}
   void set_vehicle(const model::VehicleParams& vehicle) noexcept { vehicle_ = vehicle; }
 
-  /// Motion after dt [s] with the given road-wheel angle and net acceleration asked for all along.
-  template <class T>
-  [[nodiscard]] BodyMotion<T> advance(const BodyMotion<T>& from, const T& steer_asked,
-                                      const T& acceleration_asked, double dt) const noexcept {
-    const model::VehicleParams& p = vehicle_;
-    BodyMotion<T> to;
-    const T steer = lag(from.steer, steer_asked, p.steer_lag, dt, to.steer);
-    const T acceleration = lag(from.acceleration, acceleration_asked, p.drive_lag, dt, to.acceleration);
+  /// What a first-order lag leaves of the difference between now and asked.
+  struct Lag {
+    double end = 0.0;   ///< at the end of a step
+    double mean = 0.0;  ///< in its mean
+  };
+  /// Those of steering and drive over dt [s].
+  struct Lags {
+    Lag steer;
+    Lag drive;
+  };
+  [[nodiscard]] Lags lags(double dt) const noexcept {
+    return {lag(vehicle_.steer_lag, dt), lag(vehicle_.drive_lag, dt)};
+  }
 
+  /// v_x, v_y and r after dt [s] with the given mean road-wheel angle and net acceleration. `dt` is a double,
+  /// or one for each lane of T.
+  template <class T, class D>
+  [[nodiscard, gnu::always_inline]] inline BodyMotion<T> advance(const BodyMotion<T>& from, const T& steer,
+                                                                 const T& acceleration,
+                                                                 const D& dt) const noexcept {
+    const model::VehicleParams& p = vehicle_;
     const Tires<T> tires = tire_state(from, steer);
     const T& kf = tires.stiffness_front;
     const T& kr = tires.stiffness_rear;
-    const T inverse_v = 1.0 / tires.speed;
+    const T& inverse_v = tires.inverse_speed;
     const double a = p.front_axle;
     const double b = p.rear_axle;
-    const double mass_over_inertia = p.mass / p.yaw_inertia;
+    const D turn = dt * (p.mass / p.yaw_inertia);
 
     // (1 − dt A)(v_y, r)⁺ = (v_y, r) + dt B δ
     const T sum = (kf + kr) * inverse_v;
@@ -57,25 +69,41 @@ class PredictionModel {
     const T damping = (a * a * kf + b * b * kr) * inverse_v;
     const T a11 = 1.0 + dt * sum;
     const T a12 = dt * (moment + (1.0 - p.steer_helper) * from.vx);
-    const T a21 = (dt * mass_over_inertia) * moment;
-    const T a22 = 1.0 + (dt * mass_over_inertia) * damping;
-    const T b1 = from.vy + dt * kf * steer;
-    const T b2 = from.r + (dt * mass_over_inertia * a) * kf * steer;
+    const T a21 = turn * moment;
+    const T a22 = 1.0 + turn * damping;
+    const T force = kf * steer;
+    const T b1 = from.vy + dt * force;
+    const T b2 = from.r + (turn * a) * force;
     const T det = a11 * a22 - a12 * a21;
     // A car about to spin has no implicit step for large dt: let it grow fivefold, not without bound.
-    const T inverse_det = 1.0 / (value_of(det) > kLeastDeterminant ? det : T(kLeastDeterminant));
+    const T inverse_det = 1.0 / T(select(det > kLeastDeterminant, det, kLeastDeterminant));
+    BodyMotion<T> to;
     to.vy = (b1 * a22 - a12 * b2) * inverse_det;
     to.r = (a11 * b2 - a21 * b1) * inverse_det;
 
     const T slip_front = steer - (to.vy + a * to.r) * inverse_v;
-    to.vx = from.vx + dt * (acceleration + (1.0 - p.steer_helper) * to.r * to.vy - kf * slip_front * steer);
+    to.vx = from.vx + dt * (acceleration + (1.0 - p.steer_helper) * to.r * to.vy - force * slip_front);
+    return to;
+  }
+
+  /// The whole motion after dt [s] with what is asked for all along.
+  [[nodiscard]] BodyMotion<double> advance(const BodyMotion<double>& from, double steer_asked,
+                                           double acceleration_asked, double dt,
+                                           const Lags& lags) const noexcept {
+    const double steer = from.steer - steer_asked;
+    const double acceleration = from.acceleration - acceleration_asked;
+    BodyMotion<double> to = advance(from, steer_asked + steer * lags.steer.mean,
+                                    acceleration_asked + acceleration * lags.drive.mean, dt);
+    to.steer = steer_asked + steer * lags.steer.end;
+    to.acceleration = acceleration_asked + acceleration * lags.drive.end;
     return to;
   }
 
   /// Normalised lateral tyre use, front and rear: cornering · slip / friction. 1 is where the linear tyre
   /// would reach its peak; larger means sliding.
   template <class T>
-  [[nodiscard]] std::array<T, 2> tire_use(const BodyMotion<T>& motion) const noexcept {
+  [[nodiscard, gnu::always_inline]] inline std::array<T, 2> tire_use(
+      const BodyMotion<T>& motion) const noexcept {
     const Tires<T> tires = tire_state(motion, motion.steer);
     return {tires.use_front, tires.use_rear};
   }
@@ -94,35 +122,36 @@ class PredictionModel {
 
   template <class T>
   struct Tires {
-    T speed, use_front, use_rear, stiffness_front, stiffness_rear;
+    T inverse_speed, use_front, use_rear, stiffness_front, stiffness_rear;
   };
 
-  /// First-order lag over dt: returns the mean over the step, `end` is the value at its end.
-  template <class T>
-  static T lag(const T& now, const T& asked, double time_constant, double dt, T& end) noexcept {
-    if (time_constant <= 1e-4) {
-      end = asked;
-      return asked;
-    }
+  static Lag lag(double time_constant, double dt) noexcept {
+    if (time_constant <= 1e-4) return {};
     const double decay = exp(-dt / time_constant);
-    end = asked + (now - asked) * decay;
-    return asked + (now - asked) * ((1.0 - decay) * time_constant / dt);
+    return {decay, (1.0 - decay) * time_constant / dt};
   }
 
   template <class T>
-  [[nodiscard]] Tires<T> tire_state(const BodyMotion<T>& m, const T& steer) const noexcept {
+  [[nodiscard, gnu::always_inline]] inline Tires<T> tire_state(const BodyMotion<T>& m,
+                                                               const T& steer) const noexcept {
     const model::VehicleParams& p = vehicle_;
     const double per_wheelbase = 1.0 / p.wheelbase();
-    Tires<T> t;
-    t.speed = sqrt(m.vx * m.vx + kSpeedFloor * kSpeedFloor);
-    const T load_now = p.load_constant + p.load_per_speed * t.speed;
+    const T speed = sqrt(m.vx * m.vx + kSpeedFloor * kSpeedFloor);
+    const T load_now = p.load_constant + p.load_per_speed * speed;
     const T transfer = (p.height / kGravity) * m.acceleration;
     const T share_front = 1.0 - (1.0 / p.rear_axle) * transfer;  // of its load at rest
     const T share_rear = 1.0 + (1.0 / p.front_axle) * transfer;
     const T along = m.acceleration / (p.friction * load_now);
-    const T peak = p.friction * sqrt(1.0 - p.friction_coupling * limited_square(along));
-    t.use_front = p.cornering_front / (peak * share_front) * (steer - (m.vy + p.front_axle * m.r) / t.speed);
-    t.use_rear = -p.cornering_rear / (peak * share_rear) * ((m.vy - p.rear_axle * m.r) / t.speed);
+    const T square = along * along;
+    // Even a locked car keeps some sideways force.
+    const T taken = select(square < kMostOfEllipse, square, kMostOfEllipse);
+    const T peak = p.friction * sqrt(1.0 - p.friction_coupling * taken);
+    Tires<T> t;
+    t.inverse_speed = 1.0 / speed;
+    const T slip_front = steer - (m.vy + p.front_axle * m.r) * t.inverse_speed;
+    const T slip_rear = (p.rear_axle * m.r - m.vy) * t.inverse_speed;
+    t.use_front = p.cornering_front * slip_front / (peak * share_front);
+    t.use_rear = p.cornering_rear * slip_rear / (peak * share_rear);
     // Load moves the peak, not the slope: cornering stiffness grows far less than in proportion to load.
     t.stiffness_front =
         (p.cornering_front * p.rear_axle * per_wheelbase) * load_now * saturation(t.use_front);
@@ -130,20 +159,14 @@ class PredictionModel {
     return t;
   }
 
-  /// x², never above 0.8: even a locked car keeps some sideways force.
-  template <class T>
-  static T limited_square(const T& x) noexcept {
-    const T square = x * x;
-    return value_of(square) < 0.8 ? square : T(0.8);
-  }
-
   /// Secant of the tyre curve over its initial slope: (1 + z⁴)^(−1/4); force tends to the peak, never falls.
   template <class T>
-  static T saturation(const T& z) noexcept {
+  [[gnu::always_inline]] static inline T saturation(const T& z) noexcept {
     const T z2 = z * z;
     return 1.0 / sqrt(sqrt(1.0 + z2 * z2));
   }
 
+  static constexpr double kMostOfEllipse = 0.8;
   model::VehicleParams vehicle_;
 };
 

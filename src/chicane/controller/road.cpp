@@ -7,6 +7,7 @@
 namespace chicane::controller {
 namespace {
 
+constexpr int kRoundTheSeam = 90;                  // knots are enough until the lap is planned
 constexpr int kSeam = WaypointLine::kSettled + 1;  // waypoint where laps begin: drawn with others before it
 
 }  // namespace
@@ -64,9 +65,9 @@ void Road::add(const model::Measurement& now) noexcept {
     is_lap_ = is_lap_begun_ = false;
   }
   if (!map_.is_closed()) {
-    if (has_grown) extend(static_cast<int>(map_.points().size()) - 1);
+    if (has_grown && waypoints_.extend(map_, static_cast<int>(map_.points().size()) - 1)) plan_stretch();
   } else if (!is_lap_ && waypoints_.newest() < newest_needed(now)) {
-    extend(waypoints_.newest() + 1);
+    go_round(newest_needed(now));
   } else if (!is_lap_ || is_lap_begun_) {
     plan_lap();
   }
@@ -80,8 +81,11 @@ int Road::newest_needed(const model::Measurement& now) const noexcept {
   return std::max(count + kSeam + WaypointLine::kSettled, first + now.waypoint_count - 1);
 }
 
-void Road::extend(int newest) noexcept {
-  if (waypoints_.extend(map_, newest)) plan_stretch();
+/// Draws a closed map's line on round the seam, a few waypoints in each measurement, then the stretch anew.
+void Road::go_round(int newest) noexcept {
+  constexpr int kAtOnce = 3;
+  const int to = std::min(newest, waypoints_.newest() + kAtOnce);
+  if (waypoints_.extend(map_, to) && to == newest) plan_stretch();
 }
 
 void Road::plan_stretch() noexcept {
@@ -91,8 +95,8 @@ void Road::plan_stretch() noexcept {
   const double from = std::max(0.0, waypoints_.along(first) - kBehind);
   // From one of the waypoint line's own knots: what is settled stays as it was.
   const double knot = std::floor(from / WaypointLine::kSpacing) * WaypointLine::kSpacing;
-  const double to =
-      std::min(waypoints_.along(waypoints_.newest()), knot + (kStretchKnots - 2) * WaypointLine::kSpacing);
+  const double most = (map_.is_closed() ? kRoundTheSeam : kStretchKnots - 2) * WaypointLine::kSpacing;
+  const double to = std::min(waypoints_.along(waypoints_.newest()), knot + most);
   stretch_.clear();
   ++revision_;
   if (!stretch_planner_.begin(waypoints_, knot, to, false)) return;

@@ -57,11 +57,11 @@ class Road {
 
  private:
   static constexpr int kLapWork = 1500;      ///< units of LinePlanner in each measurement
-  static constexpr int kStretchKnots = 168;  ///< 500 m
+  static constexpr int kStretchKnots = 128;  ///< 380 m
   static constexpr double kBehind = 60.0;    ///< [m] the line begins so far behind the first waypoint seen
 
   void configure_planners() noexcept;
-  void extend(int newest) noexcept;
+  void go_round(int newest) noexcept;
   void plan_stretch() noexcept;
   void plan_lap() noexcept;
   [[nodiscard]] int newest_needed(const model::Measurement& now) const noexcept;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/base/instruction_set.hpp"
 #include "chicane/controller/command_history.hpp"
 #include "chicane/controller/doubt.hpp"
 #include "chicane/controller/explain.hpp"
@@ -13,19 +14,23 @@
 #include "chicane/controller/prediction.hpp"
 #include "chicane/controller/road.hpp"
 #include "chicane/controller/tracking_problem.hpp"
+#include "chicane/controller/tracking_solver.hpp"
 #include "chicane/controller/tunable.hpp"
-#include "chicane/solver/ocp_solver.hpp"
 
 namespace chicane::controller {
 namespace {
 
 using Problem = TrackingProblem;
-using Solver = solver::OcpSolver<Problem, Problem::kCapacity>;
-using Horizon = solver::Trajectory<Problem::kNx, Problem::kNu, Problem::kCapacity>;
+using Horizon = TrackingTrajectory;
 using StageState = std::array<double, Problem::kNx>;
 using StageInput = std::array<double, Problem::kNu>;
 
+constexpr int kTurns = 3;                   // of the solver in one step: docs/tracking.md, section 4
 constexpr double kFarFromLine = 15.0;       // [m] further away the car is lost
+constexpr double kLost = 60.0;              // [m] and further away still it does not look for its way back
+constexpr double kSlow = 6.0;               // [m/s] below which it may turn round
+constexpr double kWalkingPace = 3.0;        // [m/s]
+constexpr double kApproach = 8.0;           // [m] beside the line where the course back is at 45° to it
 constexpr double kSpeedAhead = 4.0;         // [m/s] wanted at most beyond what the last answer reaches
 constexpr double kLongestHold = 0.3;        // [s] the first command is believed to be held at most this long
 constexpr double kBlindAfter = 0.3;         // [s] without a measurement, or a waypoint: stop
@@ -41,11 +46,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
         road_{road_options(options), vehicle},
         estimator_{model_},
         fallback_{vehicle},
-        solver_{{.tolerance = 1e-3,
-                 .loose_tolerance = 1e3,
-                 .max_iterations = 8,
-                 .may_start_short = false,
-                 .second_order = false}} {
+        solver_{make_solver()} {
     problem_.model = &model_;
     shape_problem();
   }
@@ -66,11 +67,11 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     estimator_.correct(now, sent_);
     watch_sight(now);
     const StateEstimator::Prediction start = estimator_.predict(act_time, sent_);
-    if (!place_on_line(now, start)) return fall_back(now, act_time);
+    if (!place_on_line(now, start)) return find_back(now, start, act_time);
     if (start.state.vx < kCrawl && stopping_speed(0.0) < kCrawl) return fall_back(now, act_time);
-    warm_start(act_time);
+    prepare(act_time);
     const double started = deadline.elapsed();
-    const solver::SolveReport report = solver_.solve(problem_, x0_, horizon_, deadline);
+    const solver::SolveReport report = solver_->solve(problem_, x0_, horizon_, deadline);
     result_.report.solve_time = deadline.elapsed() - started;
     result_.report.solve = report;
     // A guess that was never improved is no answer, however well it went before.
@@ -105,6 +106,17 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   }
 
  private:
+  static std::unique_ptr<TrackingSolver> make_solver() {
+    const solver::SolverOptions options{.tolerance = 1e-3,
+                                        .loose_tolerance = 1e3,
+                                        .max_iterations = kTurns,
+                                        .may_start_short = false,
+                                        .second_order = false};
+    return with_instructions(chosen_instruction_set(), [&](auto instructions) {
+      return make_tracking_solver<decltype(instructions)>(options);
+    });
+  }
+
   static RoadOptions road_options(const TrackingMpcOptions& options) noexcept {
     return {.half_width = options.assumed_half_width,
             .smoothing_width = options.smoothing_width,
@@ -116,7 +128,8 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
 
   /// Horizon and prices, from the options.
   void shape_problem() noexcept {
-    problem_.dt = options_.step_length;
+    problem_.others = {options_.step_length, model_.lags(options_.step_length)};
+    problem_.first = problem_.others;
     problem_.horizon = options_.horizon_steps;
     problem_.weight = {.lateral = std::sqrt(options_.weight_lateral),
                        .heading = std::sqrt(options_.weight_heading),
@@ -178,7 +191,8 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     if (!(place.distance < kFarFromLine)) return false;
     const CurvePoint at = line.at(place.s);
     const double heading_error = angle_difference(start.state.psi, at.heading);
-    if (std::fabs(heading_error) > 0.5 * kPi) return false;
+    const double most = start.state.vx < kSlow ? 0.25 * kPi : 0.5 * kPi;
+    if (std::fabs(heading_error) > most) return false;
     s_ = place.s;
     has_place_ = true;
     revision_ = road_.revision();
@@ -194,47 +208,104 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     return true;
   }
 
-  /// The last answer, moved on by the time that has passed; a path-following law where there is none. Samples
-  /// the road for each stage on the way.
-  void warm_start(double act_time) noexcept {
-    const int n = options_.horizon_steps;
+  /// The problem of this step and its first guess: the last answer, moved on by the time that has passed, or
+  /// what a path-following law does where there is none.
+  void prepare(double act_time) noexcept {
     const double elapsed = act_time - act_time_;
-    const double old_first = problem_.first_dt;
-    const double old_end = old_first + (horizon_.horizon - 1) * answer_dt_;
+    const double old_end = old_first_ + (horizon_.horizon - 1) * old_step_;
     const bool can_shift = has_horizon_ && elapsed >= 0.0 && elapsed < 0.5 * old_end;
-    if (can_shift) old_ = horizon_;
-    problem_.first_dt = can_shift ? std::clamp(elapsed, problem_.dt, kLongestHold) : problem_.dt;
+    const double step = options_.step_length;
+    const double first = can_shift ? std::clamp(elapsed, step, kLongestHold) : step;
+    problem_.first = first == step ? problem_.others : Problem::Step{first, model_.lags(first)};
+    problem_.first_correction = {};
+    if (can_shift) {
+      shift_answer(elapsed);
+    } else {
+      follow_line();
+    }
+    correct_first();
+    act_time_ = act_time;
+    old_first_ = first;
+    old_step_ = step;
+  }
+
+  /// The last answer `elapsed` [s] later. Its states say where to ask the road; the solver simulates the
+  /// inputs anew.
+  void shift_answer(double elapsed) noexcept {
+    old_ = horizon_;
+    const double last = old_.horizon;
     // Position of a time of the old answer in its stages, as a real number.
-    const auto old_stage = [&](double time) {
-      return std::clamp(time < old_first ? time / old_first : 1.0 + (time - old_first) / answer_dt_, 0.0,
-                        old_.horizon - 1.0);
+    const auto stage_at = [&](double time) {
+      const double stage = time < old_first_ ? time / old_first_ : 1.0 + (time - old_first_) / old_step_;
+      return std::clamp(stage, 0.0, last);
     };
-    horizon_.horizon = n;
+    const auto blend = [](const auto& from, const auto& to, double share) {
+      auto value = from;
+      for (std::size_t i = 0; i < value.size(); ++i) value[i] += share * (to[i] - from[i]);
+      return value;
+    };
+    const auto state_at = [&](double stage) {
+      const std::size_t j = std::min(static_cast<std::size_t>(stage), static_cast<std::size_t>(last - 1.0));
+      return blend(old_.x[j], old_.x[j + 1], stage - static_cast<double>(j));
+    };
+    const double begin = state_at(stage_at(elapsed))[Problem::kS];
+    horizon_.horizon = options_.horizon_steps;
     horizon_.x[0] = x0_;
-    for (int k = 0; k < n; ++k) {
+    for (int k = 0; k <= horizon_.horizon; ++k) {
       const auto i = static_cast<std::size_t>(k);
-      sample_stage(k, horizon_.x[i]);
-      if (can_shift) {
-        const double where = old_stage(problem_.time(k) + elapsed);
-        const auto j = static_cast<std::size_t>(where);
-        const std::size_t next = std::min(j + 1, static_cast<std::size_t>(old_.horizon - 1));
-        const double share = where - static_cast<double>(j);
-        for (std::size_t q = 0; q < Problem::kNu; ++q) {
-          horizon_.u[i][q] = old_.u[j][q] + share * (old_.u[next][q] - old_.u[j][q]);
-        }
-      } else {
-        horizon_.u[i] = follow_line(k, horizon_.x[i]);
+      const double time = problem_.time(k) + elapsed;
+      if (k > 0) {
+        horizon_.x[i] = state_at(stage_at(time));
+        // Beyond the end of the old answer: on at its last speed.
+        const double beyond = std::max(0.0, time - old_first_ - (last - 1.0) * old_step_);
+        horizon_.x[i][Problem::kS] += beyond * horizon_.x[i][Problem::kVx] - begin;
       }
-      const StageInput low = problem_.input_lower(k);
-      const StageInput high = problem_.input_upper(k);
-      for (std::size_t q = 0; q < Problem::kNu; ++q)
-        horizon_.u[i][q] = std::clamp(horizon_.u[i][q], low[q], high[q]);
-      horizon_.x[i + 1] = problem_.dynamics(k, horizon_.x[i], horizon_.u[i]);
+      ask_road(k, horizon_.x[i]);
+      if (k == horizon_.horizon) break;
+      const double stage = std::min(stage_at(time), last - 1.0);
+      const auto j = static_cast<std::size_t>(stage);
+      const std::size_t next = std::min(j + 1, static_cast<std::size_t>(last - 1.0));
+      horizon_.u[i] = within_bounds(k, blend(old_.u[j], old_.u[next], stage - static_cast<double>(j)));
+    }
+  }
+
+  /// What a path-following law does, simulated.
+  void follow_line() noexcept {
+    horizon_.horizon = options_.horizon_steps;
+    horizon_.x[0] = x0_;
+    for (int k = 0; k < horizon_.horizon; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      ask_road(k, horizon_.x[i]);
+      horizon_.u[i] = within_bounds(k, following(k, horizon_.x[i]));
+      horizon_.x[i + 1] = solver::next_state(problem_, k, horizon_.x[i], horizon_.u[i]);
       keep_sane(horizon_.x[i + 1]);
     }
-    sample_stage(n, horizon_.x[static_cast<std::size_t>(n)]);
-    act_time_ = act_time;
-    answer_dt_ = problem_.dt;
+    ask_road(horizon_.horizon, horizon_.x[static_cast<std::size_t>(horizon_.horizon)]);
+  }
+
+  /// The law: towards the line in state x, on the road as stage k sees it.
+  [[nodiscard]] StageInput following(int k, const StageState& x) const noexcept {
+    const double v = std::max(x[Problem::kVx], 1.0);
+    const double curvature =
+        problem_.road.curvature.at(k) - x[Problem::kD] / (v * v) - 1.4 * x[Problem::kE] / v;
+    return {model_.vehicle().wheelbase() * curvature, problem_.road.speed.at(k) - x[Problem::kVx]};
+  }
+
+  /// A long first stage moves as several steps would, at least for the first guess of its input.
+  void correct_first() noexcept {
+    const int parts = static_cast<int>(problem_.first.length / problem_.others.length + 0.75);
+    if (parts < 2) return;
+    const StageInput& u = horizon_.u[0];
+    const StageState exact = problem_.move_in_parts(0, x0_, u, parts);
+    const StageState rough = solver::next_state(problem_, 0, x0_, u);
+    for (std::size_t i = 0; i < exact.size(); ++i) problem_.first_correction[i] = exact[i] - rough[i];
+  }
+
+  [[nodiscard]] StageInput within_bounds(int k, StageInput u) const noexcept {
+    const StageInput low = problem_.input_lower(k);
+    const StageInput high = problem_.input_upper(k);
+    for (std::size_t q = 0; q < u.size(); ++q) u[q] = std::clamp(u[q], low[q], high[q]);
+    return u;
   }
 
   /// A guess far from the road is no place to linearise: pull it back.
@@ -244,37 +315,30 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     x[Problem::kVx] = std::max(x[Problem::kVx], 0.0);
   }
 
-  [[nodiscard]] StageInput follow_line(int k, const StageState& x) const noexcept {
-    const model::VehicleParams& car = model_.vehicle();
-    const Problem::Stage& stage = problem_.stages[static_cast<std::size_t>(k)];
-    const double v = std::max(x[Problem::kVx], 1.0);
-    const double steer =
-        car.wheelbase() * (stage.curvature - x[Problem::kD] / (v * v) - 1.4 * x[Problem::kE] / v);
-    return {steer, stage.speed - x[Problem::kVx]};
-  }
-
-  void sample_stage(int k, const StageState& x) noexcept {
+  /// What the road asks at stage k where the car is about to be in state x.
+  void ask_road(int k, const StageState& x) noexcept {
     const double s = x[Problem::kS];
-    ReferenceLine::Demand road = road_.line().demand(s_ + s);
-    if (const double stop = stopping_speed(s); stop < road.speed) {
-      road.speed = stop;
-      road.speed_slope = 0.0;
+    ReferenceLine::Demand demand = road_.line().demand(s_ + s);
+    if (const double stop = stopping_speed(s); stop < demand.speed) {
+      demand.speed = stop;
+      demand.speed_slope = 0.0;
     }
-    const Road::Room room = road_.room(road.offset);
+    const Road::Room room = road_.room(demand.offset);
     const model::VehicleParams& car = model_.vehicle();
     const double v = std::max(x[Problem::kVx], 0.0);
     // Asking for far more than the car can do would only drown the other prices (and Gauss–Newton with them).
-    const bool is_reachable = road.speed < v + kSpeedAhead;
-    problem_.stages[static_cast<std::size_t>(k)] = {
-        .s = s,
-        .curvature = road.curvature,
-        .curvature_slope = road.curvature_slope,
-        .speed = is_reachable ? road.speed : v + kSpeedAhead,
-        .speed_slope = is_reachable ? road.speed_slope : 0.0,
-        .left = room.left,
-        .right = room.right,
-        .acceleration_min = longitudinal_acceleration(car, -car.brake_throttle_limit, v),
-        .acceleration_max = longitudinal_acceleration(car, 1.0, v)};
+    const bool is_reachable = demand.speed < v + kSpeedAhead;
+    const auto i = static_cast<std::size_t>(k);
+    Problem::Road& road = problem_.road;
+    road.s[i] = s;
+    road.curvature[i] = demand.curvature;
+    road.curvature_slope[i] = demand.curvature_slope;
+    road.speed[i] = is_reachable ? demand.speed : v + kSpeedAhead;
+    road.speed_slope[i] = is_reachable ? demand.speed_slope : 0.0;
+    road.left[i] = room.left;
+    road.right[i] = room.right;
+    road.acceleration_min[i] = longitudinal_acceleration(car, -car.brake_throttle_limit, v);
+    road.acceleration_max[i] = longitudinal_acceleration(car, 1.0, v);
   }
 
   const StepResult& accept(const model::Measurement& now, const StateEstimator::Prediction& start,
@@ -302,15 +366,39 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   const StepResult& stop_on_line(const model::Measurement& now,
                                  const StateEstimator::Prediction& start) noexcept {
     const model::VehicleParams& car = model_.vehicle();
-    const int ahead = std::min(static_cast<int>(kPreview / problem_.dt), options_.horizon_steps - 1);
-    result_.command.steer =
-        std::clamp(follow_line(ahead, horizon_.x[0])[0], -car.steer_limit, car.steer_limit);
+    const int ahead = std::min(static_cast<int>(kPreview / options_.step_length), options_.horizon_steps - 1);
+    result_.command.steer = std::clamp(following(ahead, horizon_.x[0])[0], -car.steer_limit, car.steer_limit);
     result_.command.throttle = throttle_for(
         car, longitudinal_acceleration(car, -car.brake_throttle_limit, start.state.vx), start.state.vx);
     result_.report.rung = Rung::kHoldAndBrake;
     result_.plan.size = 0;
     result_.plan.reference_size = 0;
     has_horizon_ = false;
+    send(now, result_.command);
+    return result_;
+  }
+
+  /// A car that has spun, or is far from its line: it brakes first, then drives at walking pace on a course
+  /// that leads back.
+  const StepResult& find_back(const model::Measurement& now, const StateEstimator::Prediction& start,
+                              double act_time) noexcept {
+    const ReferenceLine& line = road_.line();
+    const model::State& car = start.state;
+    const bool is_known = std::isfinite(car.x + car.y + car.psi + car.vx + now.time + now.delay);
+    const bool must_stop = blind_.is_long || roadless_.is_long;
+    if (line.is_empty() || !is_known || must_stop || !(std::fabs(car.vx) < kSlow))
+      return fall_back(now, act_time);
+    const ReferenceLine::Projection place = line.project({car.x, car.y});
+    if (!(place.distance < kLost)) return fall_back(now, act_time);
+    const double course = line.at(place.s).heading - atan(place.d / kApproach);
+    const double turn = std::clamp(2.0 * angle_difference(course, car.psi), -1.0, 1.0);
+    const double acceleration = std::clamp(kWalkingPace - car.vx, -2.0, 1.0);
+    has_horizon_ = false;
+    result_.command = {turn * model_.vehicle().steer_limit,
+                       throttle_for(model_.vehicle(), acceleration, car.vx)};
+    result_.report.rung = Rung::kController;
+    result_.plan.size = 0;
+    result_.plan.reference_size = 0;
     send(now, result_.command);
     return result_;
   }
@@ -359,7 +447,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   CommandHistory sent_;
   Fallback fallback_;
   Problem problem_;
-  Solver solver_;
+  std::unique_ptr<TrackingSolver> solver_;
   Horizon horizon_;  ///< the last answer, then the guess, then the new answer
   Horizon old_;
   StageState x0_{};
@@ -367,7 +455,8 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   double s_ = 0.0;  ///< arc length on the line where the command acts
   double act_time_ = 0.0;
   double sent_time_ = 0.0;  ///< from which the last command acts [s]
-  double answer_dt_ = 0.0;  ///< step length of the last answer [s]
+  double old_first_ = 0.0;  ///< length of the first stage of the last answer [s]
+  double old_step_ = 0.0;   ///< of its other stages [s]
   unsigned revision_ = 0;
   bool has_place_ = false;
   bool has_horizon_ = false;

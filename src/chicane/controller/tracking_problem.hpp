@@ -2,15 +2,19 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <tuple>
 
+#include "chicane/base/jet.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/controller/prediction.hpp"
+#include "chicane/solver/stage_data.hpp"
 
 namespace chicane::controller {
 
 /// The optimal control problem of the default controller (docs/tracking.md, eq. 15–24): the prediction model
 /// in coordinates along a reference line, squares of what should be small, one-sided squares of what must not
-/// be exceeded.
+/// be exceeded. In the solver's structured form (solver/problem.hpp).
 ///
 /// State x = (s, d, e, v_x, v_y, r, δ, a): arc length from the start [m], offset to the left [m], heading
 /// error [rad], body velocity [m/s], yaw rate [rad/s], road-wheel angle [rad], net acceleration [m/s²]. Input
@@ -22,20 +26,25 @@ struct TrackingProblem {
   static constexpr int kNe = 4;
   static constexpr int kNc = 0;
   static constexpr int kCapacity = 100;
+  static constexpr bool kGaussNewton = true;  ///< a step has no time for exact Hessians
 
   enum StateIndex { kS, kD, kE, kVx, kVy, kR, kSteer, kAcceleration };
 
-  /// What the road asks at one stage, linear in arc length around `s`.
-  struct Stage {
-    double s = 0.0;                 ///< where it was taken [m from the start]
-    double curvature = 0.0;         ///< [1/m]
-    double curvature_slope = 0.0;   ///< [1/m²]
-    double speed = 0.0;             ///< wanted [m/s]
-    double speed_slope = 0.0;       ///< [1/s]
-    double left = 0.0;              ///< room for the centre of mass to the left of the line [m]
-    double right = 0.0;             ///< to the right [m]
-    double acceleration_min = 0.0;  ///< [m/s²]
-    double acceleration_max = 0.0;
+  using State = std::array<double, kNx>;
+  using Input = std::array<double, kNu>;
+  using Data = solver::StageData<kCapacity + 1>;
+
+  /// What the road asks at the stages 0..horizon, linear in arc length around `s`.
+  struct Road {
+    Data s;                 ///< where it was taken [m from the start]
+    Data curvature;         ///< [1/m]
+    Data curvature_slope;   ///< [1/m²]
+    Data speed;             ///< wanted [m/s]
+    Data speed_slope;       ///< [1/s]
+    Data left;              ///< room for the centre of mass to the left of the line [m]
+    Data right;             ///< to the right [m]
+    Data acceleration_min;  ///< [m/s²]
+    Data acceleration_max;
   };
 
   /// Square roots of the prices.
@@ -43,117 +52,145 @@ struct TrackingProblem {
     double lateral, heading, speed, steer_rate, jerk, edge, slip, excess_steer_rate, friction;
   };
 
+  /// A kind of stage by its length.
+  struct Step {
+    double length = 0.05;  ///< [s]
+    PredictionModel::Lags lags;
+  };
+
   const PredictionModel* model = nullptr;
-  double dt = 0.05;        ///< length of every stage but the first [s]
-  double first_dt = 0.05;  ///< of the first: its command is held until the next one comes [s]; >= dt
   int horizon = 0;
+  Step first;   ///< of stage 0: its command is held until the next one comes
+  Step others;  ///< of all other stages
   RootWeights weight{};
-  std::array<Stage, kCapacity + 1> stages{};
+  Road road;
+  /// What the model moves in a long first stage beyond one step of its length, at the first guess. Zero for
+  /// a short one.
+  State first_correction{};
 
-  template <class T>
-  [[nodiscard]] static BodyMotion<T> body(const std::array<T, kNx>& x) noexcept {
-    return {x[kVx], x[kVy], x[kR], x[kSteer], x[kAcceleration]};
+  /// Time from the start to stage k [s].
+  [[nodiscard]] double time(int k) const noexcept {
+    return k == 0 ? 0.0 : first.length + (k - 1) * others.length;
+  }
+  [[nodiscard]] const Step& step(int k) const noexcept { return k == 0 ? first : others; }
+
+  template <class K, class X, class U>
+  [[nodiscard]] auto dynamics(K k, const X& x, const U& u) const noexcept {
+    const auto is_first = solver::stage_number(k) < 0.5;
+    const auto [s, d, e, vx, vy, r, steer, a] = move(k, x, u);
+    const State& more = first_correction;
+    return std::make_tuple(s + select(is_first, more[kS], 0.0), d + select(is_first, more[kD], 0.0),
+                           e + select(is_first, more[kE], 0.0), vx + select(is_first, more[kVx], 0.0),
+                           vy + select(is_first, more[kVy], 0.0), r + select(is_first, more[kR], 0.0), steer,
+                           a);
   }
 
-  template <class T>
-  [[nodiscard]] T curvature(int k, const T& s) const noexcept {
-    const Stage& stage = stages[static_cast<std::size_t>(k)];
-    return stage.curvature + stage.curvature_slope * (s - stage.s);
-  }
-
-  /// Length of stage k, and the time from the start to its beginning [s].
-  [[nodiscard]] double length(int k) const noexcept { return k == 0 ? first_dt : dt; }
-  [[nodiscard]] double time(int k) const noexcept { return k == 0 ? 0.0 : first_dt + (k - 1) * dt; }
-
-  template <class T>
-  [[nodiscard]] std::array<T, kNx> dynamics(int k, const std::array<T, kNx>& x,
-                                            const std::array<T, kNu>& u) const noexcept {
-    // A long first stage is integrated in parts, none much longer than dt.
-    const int parts = k == 0 ? static_cast<int>(first_dt / dt + 0.75) : 1;
-    std::array<T, kNx> to = move(k, x, u, length(k) / parts);
-    for (int part = 1; part < parts; ++part) to = move(k, to, u, length(k) / parts);
-    return to;
-  }
-
-  template <class T>
-  [[nodiscard]] std::array<T, kNr> residual(int k, const std::array<T, kNx>& x,
-                                            const std::array<T, kNu>& u) const noexcept {
-    const Stage& stage = stages[static_cast<std::size_t>(k)];
-    const T rate = (u[0] - x[kSteer]) * (1.0 / length(k));
-    const std::array<T, 2> use = model->tire_use(body(x));
+  template <class K, class X, class U>
+  [[nodiscard]] auto residual(K k, const X& x, const U& u) const noexcept {
+    const auto& [s, d, e, vx, vy, r, steer, a] = x;
+    const auto& [steer_asked, a_asked] = u;
+    const auto per_length = select(solver::stage_number(k) < 0.5, 1.0 / first.length, 1.0 / others.length);
+    const auto rate = (steer_asked - steer) * per_length;
+    using T = Common<decltype(vx), decltype(vy), decltype(r), decltype(steer), decltype(a)>;
+    const auto use = model->tire_use(BodyMotion<T>{T(vx), T(vy), T(r), T(steer), T(a)});
     const model::VehicleParams& car = model->vehicle();
     // Share of the friction ellipse, for tyres that have one: asked longitudinal over load, and lateral use.
-    const T load = car.load_constant + car.load_per_speed * x[kVx];
-    const T along = (car.friction_coupling / car.friction) * u[1] / load;
-    const T ellipse = along * along + 0.5 * (use[0] * use[0] + use[1] * use[1]);
-    return {weight.lateral * x[kD],
-            weight.heading * x[kE],
-            weight.speed * (x[kVx] - (stage.speed + stage.speed_slope * (x[kS] - stage.s))),
-            weight.steer_rate * rate,
-            (weight.jerk / length(k)) * (u[1] - x[kAcceleration]),
-            weight.edge * excess(x[kD], stage.left),
-            weight.edge * excess(-x[kD], stage.right),
-            weight.slip * excess(abs(use[0]), kUsefulTireUse),
-            weight.slip * excess(abs(use[1]), kUsefulTireUse),
-            weight.excess_steer_rate * excess(abs(rate), car.steer_rate_limit),
-            car.friction_coupling > 0.0 ? weight.friction * excess(ellipse, 1.0) : T(0.0)};
+    const auto load = car.load_constant + car.load_per_speed * vx;
+    const auto along = (car.friction_coupling / car.friction) * a_asked / load;
+    const auto ellipse = along * along + 0.5 * (use[0] * use[0] + use[1] * use[1]);
+    const double friction = car.friction_coupling > 0.0 ? weight.friction : 0.0;
+    return std::make_tuple(
+        weight.lateral * d, weight.heading * e,
+        weight.speed * (vx - (road.speed.at(k) + road.speed_slope.at(k) * (s - road.s.at(k)))),
+        weight.steer_rate * rate, (weight.jerk * per_length) * (a_asked - a),
+        weight.edge * positive_part(d - road.left.at(k)), weight.edge * positive_part(-d - road.right.at(k)),
+        weight.slip * positive_part(abs(use[0]) - kUsefulTireUse),
+        weight.slip * positive_part(abs(use[1]) - kUsefulTireUse),
+        weight.excess_steer_rate * positive_part(abs(rate) - car.steer_rate_limit),
+        friction * positive_part(ellipse - 1.0));
   }
 
-  template <class T>
-  [[nodiscard]] std::array<T, kNe> terminal_residual(const std::array<T, kNx>& x) const noexcept {
-    const Stage& stage = stages[static_cast<std::size_t>(horizon)];
+  template <class X>
+  [[nodiscard]] auto terminal_residual(const X& x) const noexcept {
+    const auto& [s, d, e, vx, vy, r, steer, a] = x;
     constexpr double kEndFactor =
         3.0;  // the end stands for what follows: the square root of about ten stages
-    return {kEndFactor * weight.lateral * x[kD], kEndFactor * weight.heading * x[kE],
-            kEndFactor * weight.speed * (x[kVx] - (stage.speed + stage.speed_slope * (x[kS] - stage.s))),
-            kEndFactor * weight.heading * 0.3 * (x[kR] - stage.curvature * x[kVx])};
+    const double wanted = road.speed.at(horizon);
+    return std::make_tuple(
+        kEndFactor * weight.lateral * d, kEndFactor * weight.heading * e,
+        kEndFactor * weight.speed * (vx - (wanted + road.speed_slope.at(horizon) * (s - road.s.at(horizon)))),
+        kEndFactor * weight.heading * 0.3 * (r - road.curvature.at(horizon) * vx));
   }
 
-  template <class T>
-  [[nodiscard]] std::array<T, kNc> constraint(int, const std::array<T, kNx>&,
-                                              const std::array<T, kNu>&) const noexcept {
-    return {};
+  [[nodiscard]] Input input_lower(int k) const noexcept {
+    return {-model->vehicle().steer_limit, road.acceleration_min.at(k)};
   }
-
-  [[nodiscard]] std::array<double, kNu> input_lower(int k) const noexcept {
-    return {-model->vehicle().steer_limit, stages[static_cast<std::size_t>(k)].acceleration_min};
-  }
-  [[nodiscard]] std::array<double, kNu> input_upper(int k) const noexcept {
-    return {model->vehicle().steer_limit, stages[static_cast<std::size_t>(k)].acceleration_max};
+  [[nodiscard]] Input input_upper(int k) const noexcept {
+    return {model->vehicle().steer_limit, road.acceleration_max.at(k)};
   }
 
  private:
+  template <class Row>
+  static State to_state(const Row& row) noexcept {
+    return std::apply([](const auto&... values) { return State{values...}; }, row);
+  }
+
+  template <class K, class X, class U>
+  [[nodiscard, gnu::always_inline]] inline auto move(K k, const X& x, const U& u) const noexcept {
+    const auto is_first = solver::stage_number(k) < 0.5;
+    const auto either = [&](double of_first, double of_others) __attribute__((always_inline)) {
+      return select(is_first, of_first, of_others);
+    };
+    using D = decltype(either(0.0, 0.0));
+    struct {
+      struct {
+        D end, mean;
+      } steer, drive;
+    } const lags{{either(first.lags.steer.end, others.lags.steer.end),
+                  either(first.lags.steer.mean, others.lags.steer.mean)},
+                 {either(first.lags.drive.end, others.lags.drive.end),
+                  either(first.lags.drive.mean, others.lags.drive.mean)}};
+    return move_by(either(first.length, others.length), lags, k, x, u);
+  }
+
   /// Motion over h [s] in coordinates along the line (eq. 15).
-  template <class T>
-  [[nodiscard]] std::array<T, kNx> move(int k, const std::array<T, kNx>& x, const std::array<T, kNu>& u,
-                                        double h) const noexcept {
-    const BodyMotion<T> to = model->advance(body(x), u[0], u[1], h);
+  template <class D, class Lags, class K, class X, class U>
+  [[nodiscard, gnu::always_inline]] inline auto move_by(const D& h, const Lags& lags, K k, const X& x,
+                                                        const U& u) const noexcept {
+    const auto& [s, d, e, vx, vy, r, steer, a] = x;
+    const auto& [steer_asked, a_asked] = u;
+    const auto late_steer = steer - steer_asked;
+    const auto late_a = a - a_asked;
+    using T = Common<decltype(vx), decltype(vy), decltype(r), decltype(steer), decltype(a),
+                     decltype(steer_asked), decltype(a_asked)>;
+    const BodyMotion<T> from{T(vx), T(vy), T(r), T(steer), T(a)};
+    const BodyMotion<T> to = model->advance(from, T(steer_asked + late_steer * lags.steer.mean),
+                                            T(a_asked + late_a * lags.drive.mean), h);
     // Means over the interval carry the car along the line: second order in h.
-    const T vx = 0.5 * (x[kVx] + to.vx);
-    const T vy = 0.5 * (x[kVy] + to.vy);
-    const T yaw = (0.5 * h) * (x[kR] + to.r);
-    const T kappa = curvature(k, x[kS] + (0.5 * h) * x[kVx]);
-    const T scale = 1.0 / (1.0 - kappa * x[kD]);
-    const T half = x[kE] + 0.5 * yaw - (0.5 * h) * vx * kappa;
-    const T c = cos(half);
-    const T sn = sin(half);
-    const T ds = h * (vx * c - vy * sn) * scale;
-    return {x[kS] + ds,
-            x[kD] + h * (vx * sn + vy * c),
-            x[kE] + yaw - kappa * ds,
-            to.vx,
-            to.vy,
-            to.r,
-            to.steer,
-            to.acceleration};
+    const auto mean_vx = 0.5 * (vx + to.vx);
+    const auto mean_vy = 0.5 * (vy + to.vy);
+    const D half_h = 0.5 * h;
+    const auto yaw = half_h * (r + to.r);
+    const auto kappa = road.curvature.at(k) + road.curvature_slope.at(k) * (s + half_h * vx - road.s.at(k));
+    const auto half = e + 0.5 * yaw - half_h * mean_vx * kappa;
+    const auto c = cos(half);
+    const auto sn = sin(half);
+    const auto ds = h * (mean_vx * c - mean_vy * sn) / (1.0 - kappa * d);
+    return std::make_tuple(s + ds, d + h * (mean_vx * sn + mean_vy * c), e + yaw - kappa * ds, to.vx, to.vy,
+                           to.r, steer_asked + late_steer * lags.steer.end,
+                           a_asked + late_a * lags.drive.end);
   }
 
   static constexpr double kUsefulTireUse = 1.0;  ///< slip beyond this gives hardly more force
 
-  /// max(0, value − limit)
-  template <class T>
-  static T excess(const T& value, double limit) noexcept {
-    return value_of(value) > limit ? value - limit : T(0.0);
+ public:
+  /// The motion over stage k in `parts` steps, without first_correction.
+  [[nodiscard]] State move_in_parts(int k, const State& x, const Input& u, int parts) const noexcept {
+    const double h = step(k).length / parts;
+    const PredictionModel::Lags lags = model->lags(h);
+    State to = x;
+    for (int i = 0; i < parts; ++i) to = to_state(move_by(h, lags, k, to, u));
+    return to;
   }
 };
 

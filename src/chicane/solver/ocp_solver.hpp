@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 
 #include "chicane/base/assert.hpp"
 #include "chicane/base/deadline.hpp"
@@ -16,6 +17,7 @@
 #include "chicane/solver/linearisation.hpp"
 #include "chicane/solver/lq_solver.hpp"
 #include "chicane/solver/problem.hpp"
+#include "chicane/solver/problem_pattern.hpp"
 #include "chicane/solver/progress.hpp"
 #include "chicane/solver/solution.hpp"
 #include "chicane/solver/warm_start.hpp"
@@ -152,10 +154,13 @@ class OcpSolver {
   void look(const P& problem, SolveReport& report) noexcept {
     const bool centre = is_fresh_ || !full_steps_;
     const double share = kDefectShare * options_.tolerance;
-    if (is_exact_) {
-      now_.template look<2>(problem, t_, centre, share, barrier_, lq_.lq, report);
+    const auto look = [&](auto order) {
+      now_.template look<order>(problem, t_, centre, share, barrier_, lq_.lq, report);
+    };
+    if constexpr (has_hessians<P>()) {
+      is_exact_ ? look(std::integral_constant<int, 2>{}) : look(std::integral_constant<int, 1>{});
     } else {
-      now_.template look<1>(problem, t_, centre, share, barrier_, lq_.lq, report);
+      look(std::integral_constant<int, 1>{});
     }
     if (is_fresh_) guess_working_set();
     is_fresh_ = false;

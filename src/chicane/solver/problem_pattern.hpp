@@ -70,6 +70,14 @@ struct RowSets<Row, std::index_sequence<n...>> : JetSets<JetOf<std::tuple_elemen
 
 }  // namespace detail
 
+/// Whether the solver knows second derivatives of the problem: unless it says `kGaussNewton = true`, to be
+/// built in a fraction of the time where exact Hessians are not wanted.
+template <class P>
+[[nodiscard]] constexpr bool has_hessians() noexcept {
+  if constexpr (requires { P::kGaussNewton; }) return !P::kGaussNewton;
+  return true;
+}
+
 /// Which entries of the stages of its quadratic programs a structured problem can make other than zero, read
 /// off the types that its functions return.
 template <StructuredProblem P>
@@ -77,8 +85,8 @@ struct StructuredPattern {
   static constexpr std::size_t kNx = P::kNx;
   static constexpr std::size_t kNu = P::kNu;
   static constexpr std::size_t kNz = kNx + 1 + kNu;
-  using X = StateJets<P, double, 2>;
-  using U = InputJets<P, double, 2>;
+  using X = StateJets<P, double, has_hessians<P>() ? 2 : 1>;
+  using U = InputJets<P, double, has_hessians<P>() ? 2 : 1>;
   using Next = decltype(std::declval<const P&>().dynamics(0, X{}, U{}));
   using Residual = decltype(std::declval<const P&>().residual(0, X{}, U{}));
   static constexpr auto constraint_type() {

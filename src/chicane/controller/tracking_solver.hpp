@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+
+#include "chicane/base/deadline.hpp"
+#include "chicane/controller/tracking_problem.hpp"
+#include "chicane/solver/problem.hpp"
+#include "chicane/solver/solution.hpp"
+
+namespace chicane::controller {
+
+using TrackingTrajectory =
+    solver::Trajectory<TrackingProblem::kNx, TrackingProblem::kNu, TrackingProblem::kCapacity>;
+
+/// The solver of the tracking problem, whatever instruction set it is compiled for
+/// (base/instruction_set.hpp).
+class TrackingSolver {
+ public:
+  virtual ~TrackingSolver() = default;
+  /// As OcpSolver::solve().
+  virtual solver::SolveReport solve(const TrackingProblem& problem, const TrackingProblem::State& start,
+                                    TrackingTrajectory& trajectory, Deadline deadline) noexcept = 0;
+};
+
+/// For one instruction set; defined in tracking_solver.cpp, which is compiled for each.
+template <class Arch>
+[[nodiscard]] std::unique_ptr<TrackingSolver> make_tracking_solver(const solver::SolverOptions& options);
+
+}  // namespace chicane::controller
