@@ -12,6 +12,7 @@
 #include "problems/described_problem.hpp"
 #include "problems/optimality.hpp"
 #include "solver/batch_cases.hpp"
+#include "support/alloc_guard.hpp"
 
 namespace chicane {
 namespace {
@@ -117,6 +118,15 @@ TEST(BatchSolver, GivesTheSameBitsForEveryWidthOfRegisters) {
   for (std::size_t i = 0; i < narrow.problems.size(); ++i)
     EXPECT_EQ(
         std::memcmp(&narrow.trajectories[i].u, &wide.trajectories[i].u, sizeof narrow.trajectories[i].u), 0);
+}
+
+TEST(BatchSolver, AllocatesNothingButItself) {
+  for (const InstructionSet set : available_sets()) {
+    Batch batch(65, 20, 20);
+    const test::AllocationGuard guard;
+    batch.solve(set);
+    EXPECT_EQ(guard.count(), 1) << to_string(set);
+  }
 }
 
 TEST(BatchSolver, HandsOverWhatIsNotANumberAndLeavesTheRestAlone) {
