@@ -186,6 +186,25 @@ TEST(Recorder, HoldsEveryTopicAndTimesThatNeverGoBackWhenTheRunStartsAnew) {
   EXPECT_TRUE(replayed->is_verified());
 }
 
+TEST(Recorder, RecordsFaultsSoThatTheyComeOutTheSame) {
+  const TemporaryFile file;
+  auto scenario = protocol::compose({.scenario_file = "", .settings = {}});
+  ASSERT_TRUE(scenario);
+  for (const sim::Fault fault : {sim::Fault::kGpsNoise, sim::Fault::kSlowSolver, sim::Fault::kLinkLost}) {
+    scenario->faults.push_back(sim::default_event(fault, 0.5 + static_cast<double>(scenario->faults.size())));
+  }
+  const auto loop = std::move(*ClosedLoop::create(*scenario));
+  auto recorder = Recorder::create(recording(*loop, file.path()));
+  ASSERT_TRUE(recorder);
+  while (loop->time() < 4.0) {
+    if (loop->advance()) (*recorder)->record(loop->frame());
+  }
+  ASSERT_TRUE((*recorder)->finish());
+  const Result<ReplayReport> replayed = verify_recording(file.path());
+  ASSERT_TRUE(replayed) << replayed.error().message;
+  EXPECT_TRUE(replayed->is_verified()) << replayed->different << " differ";
+}
+
 TEST(Recorder, WritesEachLapOnce) {
   const TemporaryFile file;
   const auto loop = short_run({{"controller", "pid"}});

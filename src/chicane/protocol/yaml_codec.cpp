@@ -260,8 +260,6 @@ std::string write(const scenario::Scenario& scenario, std::string_view descripti
     const std::string_view name = is_grouped ? parameter.key.substr(dot + 1) : parameter.key;
     text += fmt::format("{}{}: {}\n", is_grouped ? "  " : "", name, yaml_text(parameter, scenario));
   }
-  if (!scenario.faults.empty()) text += "faults:\n";
-  for (const sim::FaultEvent& event : scenario.faults) text += fmt::format("  - {}\n", write_fault(event));
   return text;
 }
 
