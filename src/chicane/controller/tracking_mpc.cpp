@@ -25,7 +25,7 @@ using Horizon = TrackingTrajectory;
 using StageState = std::array<double, Problem::kNx>;
 using StageInput = std::array<double, Problem::kNu>;
 
-constexpr int kTurns = 3;                   // of the solver in one step: docs/tracking.md, section 4
+constexpr int kTurns = 8;                   // of the solver in one step: docs/tracking.md, section 4
 constexpr double kFarFromLine = 15.0;       // [m] further away the car is lost
 constexpr double kLost = 60.0;              // [m] and further away still it does not look for its way back
 constexpr double kSlow = 6.0;               // [m/s] below which it may turn round
