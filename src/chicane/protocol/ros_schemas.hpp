@@ -195,7 +195,8 @@ float64 top_speed_mps
 float64 min_edge_distance_m             # of the outermost tyre, negative = off the road
 float64 rms_lateral_error_m
 )"},
-    RosDefinition{"chicane_msgs/Change", R"(# A setting that changed during the run, before this control cycle.
+    RosDefinition{"chicane_msgs/Change",
+                  R"(# A setting that changed during the run, before this control cycle.
 builtin_interfaces/Time stamp
 uint64 cycle
 string name                             # key as in YAML and --set: "latency_ms"
