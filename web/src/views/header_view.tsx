@@ -87,7 +87,9 @@ export function HeaderView() {
     <header class="top">
       <div class="top-row">
         <h1>
-          <img src="./favicon.svg" alt="" width="22" height="22" />
+          <svg viewBox="0 0 32 32" width="22" height="22" aria-hidden="true">
+            <rect width="32" height="32" rx="8" fill="#2563d9"/><path d="M9 27C9 17 23 17 23 5" fill="none" stroke="#fff" stroke-width="5" stroke-linecap="round"/><path d="M9 27C9 17 23 17 23 5" fill="none" stroke="#2563d9" stroke-width="1" stroke-dasharray="2.5 3"/>
+          </svg>
           <span>chicane</span>
         </h1>
         <RunSummary />

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+// A recorded run in the page: served by chicane replay with a second future beside it, and alone in a report.
+import assert from 'node:assert/strict';
+import { execFileSync, spawn } from 'node:child_process';
+import { once } from 'node:events';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, afterEach, before, describe, it } from 'node:test';
+import { pathToFileURL } from 'node:url';
+import { launch } from './browser.mjs';
+import { DashboardPage, PHONE } from './dashboard_page.mjs';
+
+const program = process.env.CHICANE ?? 'chicane';
+const folder = mkdtempSync(join(tmpdir(), 'chicane-recording-'));
+const log = join(folder, 'run.mcap');
+const future = join(folder, 'branch.mcap');
+const report = join(folder, 'report.html');
+
+let browser;
+let server;
+let url;
+let dashboard;
+
+before(async () => {
+  const run = (...words) => execFileSync(program, words, { stdio: 'ignore' });
+  run('drive', '--fast', '--laps', '2', '--record', log);
+  run('replay', log, '--branch-at', '40', '--set', 'tracking_mpc.speed_limit_mps=20', '--output', future, '--json');
+  run('report', log, future, '--output', report);
+  server = spawn(program, ['replay', log, future, '--port', '0'], { stdio: ['ignore', 'ignore', 'pipe'] });
+  let said = '';
+  url = await new Promise((resolve, reject) => {
+    server.stderr.on('data', (data) => {
+      said += data;
+      const found = /http:\/\/localhost:(\d+)\//.exec(said);
+      if (found) resolve(`http://127.0.0.1:${found[1]}/`);
+    });
+    server.on('exit', (code) => reject(new Error(`chicane replay ended with ${code}: ${said}`)));
+  });
+  browser = await launch();
+});
+after(async () => {
+  await browser?.close();
+  server?.kill('SIGINT');
+  if (server && server.exitCode === null) await once(server, 'exit');
+  assert.equal(server?.exitCode, 0, 'Ctrl-C ends it well');
+  rmSync(folder, { recursive: true });
+});
+
+/** The page once its recording is read to the end. */
+async function open(address, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1366, height: 768 }, ...options });
+  const page = await context.newPage();
+  const complaints = [];
+  page.on('console', (message) => {
+    if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
+  });
+  page.on('pageerror', (error) => complaints.push(String(error)));
+  page.on('request', (request) => {
+    if (!request.url().startsWith(new URL(address).origin) && /^(https?|wss?):/.test(request.url())) complaints.push(`asked for ${request.url()}`);
+  });
+  await page.goto(`${address}#laps`);
+  dashboard = new DashboardPage(page, complaints);
+  await page.getByText('Recording', { exact: true }).waitFor({ timeout: 30_000 });
+  await page.getByLabel('Looking for landmarks').waitFor({ state: 'detached', timeout: 30_000 });
+  return page;
+}
+/** 3D drawn by the processor is said to be slow. */
+const isAboutGraphics = (text) => /GPU|WebGL|GL Driver/i.test(text);
+const scrub = (page, seconds) =>
+  page.getByLabel('Moment of the recording').evaluate((slider, value) => {
+    slider.value = String(value);
+    slider.dispatchEvent(new Event('input', { bubbles: true }));
+  }, seconds);
+const time = (page) => page.locator('.timeline-time').innerText();
+
+describe('a recording in the page', () => {
+  afterEach(() => dashboard.close(isAboutGraphics));
+
+  it('is scrubbed, played and stepped', async () => {
+    const page = await open(url);
+    await page.locator('tbody tr').nth(1).waitFor(); // both laps, though we stand at the start
+    await scrub(page, 30);
+    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 50, 'the speed of that moment');
+    assert.match(await time(page), /^0:30\.00/);
+    const there = await dashboard.number('speed');
+    await scrub(page, 0);
+    await dashboard.until(() => dashboard.number('speed'), (mph) => mph < 1, 'standstill at the start');
+    await scrub(page, 30);
+    await dashboard.until(() => dashboard.number('speed'), (mph) => mph === there, 'the same moment again');
+    await dashboard.button('Step').click();
+    await dashboard.until(() => time(page), (text) => /^0:30\.0[1-9]/.test(text), 'the next control step');
+    await dashboard.button('Play').click();
+    await dashboard.until(() => time(page), (text) => /^0:3[2-9]/.test(text), 'it plays');
+    await page.keyboard.press('Space');
+    await page.getByText('Recording', { exact: true }).waitFor();
+    await dashboard.button('Next landmark').click();
+    await dashboard.until(() => time(page), (text) => /^0:3[4-9]|^1:/.test(text), 'the end of a lap');
+  });
+
+  it('shows both futures, each in turn', async () => {
+    const page = await open(url);
+    await scrub(page, 55);
+    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 60, 'as it was driven');
+    await page.getByText('branch.mcap', { exact: true }).first().waitFor({ state: 'attached' });
+    await page.getByLabel('Recording that is played').selectOption({ label: 'branch.mcap' });
+    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 20 && mph < 50, 'slower since the branch');
+    assert.match(await time(page), /^0:55/);
+  });
+
+  it('says what belongs to the recording and cannot be changed', async () => {
+    const page = await open(url);
+    await dashboard.show('tune');
+    assert.equal(await page.locator('.panel-body [data-key="tracking_mpc.horizon_steps"]').count(), 0);
+  });
+
+  it('is accessible, also on a phone', async () => {
+    await open(url, PHONE);
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    assert.ok((await dashboard.overflow()).across <= 0);
+  });
+});
+
+describe('a report', () => {
+  afterEach(() => dashboard.close(isAboutGraphics));
+
+  it('opens from disk, alone', async () => {
+    const page = await open(pathToFileURL(report).href);
+    await scrub(page, 30);
+    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 50, 'the speed of that moment');
+    assert.equal(await page.locator('tbody tr').count(), 2);
+    assert.ok((await page.pdf()).length > 10_000, 'it prints');
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+  });
+});
+
+it('has nothing that its reader would fetch', () => {
+  const html = readFileSync(report, 'utf8');
+  assert.doesNotMatch(html.replace(/<script[\s\S]*?<\/script>/g, ''), /(src|href)="(?!data:|#)/);
+});
