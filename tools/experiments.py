@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs the experiments of docs/problem.md, docs/latency.md and docs/tuning.md, and writes their tables and figure.
+"""Runs the experiments of docs/problem.md and of the pages on effects (latency, horizon, step_length, weights, friction), and
+writes their tables and figures.
 
     /usr/bin/python3 tools/experiments.py [PROGRAM]
 
@@ -39,12 +40,15 @@ class Runs:
         return json.loads(result.stdout)
 
 
-def command(preset, *settings, track="lakeside", laps=2, latency=100, mph=None, seconds=200):
+def command(preset, *settings, track="lakeside", laps=2, latency=100, mph=None, seconds=200, car=None):
     """One line that a reader can type. Answers come as from the original: one 20 ms after the last one arrived."""
+    period = [] if any(setting.startswith("control_period_ms=") for setting in settings) else [f"control_period_ms={latency + 20}"]
     text = f"drive --fast --preset {preset} --track {track} --laps {laps} --latency-ms {latency}"
+    if car:
+        text += f" --car {car}"
     if mph:
         text += f" --speed-mph {mph}"
-    for setting in (f"control_period_ms={latency + 20}", f"time_limit_s={seconds}", *settings):
+    for setting in (*period, f"time_limit_s={seconds}", *settings):
         text += f" --set {setting}"
     return text
 
@@ -139,20 +143,51 @@ def sweep_table(runs, preset, what, values, **options):
     return text
 
 
-def values(key, numbers):
-    return {f"{number}": [f"cubic_mpc.{key}={number}"] for number in numbers}
+def values(key, numbers, of="cubic_mpc", *more):
+    return {f"{number}": [f"{of}.{key}={number}", *more] for number in numbers}
 
 
-def steps_and_lengths(pairs):
-    return {f"{steps}, {length}": [f"cubic_mpc.horizon_steps={steps}", f"cubic_mpc.step_length_s={length}"] for steps, length in pairs}
+def steps_and_lengths(pairs, of="cubic_mpc", *more):
+    return {f"{steps}, {length}": [f"{of}.horizon_steps={steps}", f"{of}.step_length_s={length}", *more] for steps, length in pairs}
 
 
-def draw_latency(runs, path):
-    """rms lateral error over latency, one curve for each way; a cross where a tyre left the road."""
+def draw_sweeps(runs, path, label, curves, logarithmic=False):
+    """Flying lap above, rms lateral error below, one curve for each (name, preset, {number: settings}, options); a cross where a tyre left the road."""
+    plt = plotting()
+    figure, (above, below) = plt.subplots(2, 1, figsize=(9.5, 6.5), sharex=True)
+    for name, preset, sweep, options in curves:
+        reports = {number: runs.start(command(preset, *settings, laps=3, seconds=400, **options)).result() for number, settings in sweep.items()}
+        numbers = list(reports)
+        laps = [r["laps"][-1]["lap_time_s"] if r["completed"] else float("nan") for r in reports.values()]
+        errors = [min(r["total"]["rms_lateral_error_m"], 6.0) for r in reports.values()]
+        off = [number for number, r in reports.items() if r["off_track_events"] or not r["completed"]]
+        above.plot(numbers, laps, marker="o", label=name)
+        (curve,) = below.plot(numbers, errors, marker="o", label=name)
+        below.plot(off, [errors[numbers.index(number)] for number in off], "x", color=curve.get_color(), markersize=11, markeredgewidth=2.5)
+    above.set_ylabel("flying lap [s]")
+    below.set_ylabel("rms lateral error [m], at most 6 drawn")
+    below.set_xlabel(label)
+    above.set_title("lakeside, 100 ms of latency: a cross is a run with a tyre off the road")
+    for axes in (above, below):
+        axes.grid(alpha=0.3)
+        if logarithmic:
+            axes.set_xscale("log")
+    above.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    figure.tight_layout()
+    figure.savefig(path, metadata={"Date": None, "Creator": None})
+
+
+def plotting():
     import matplotlib
     matplotlib.use("svg")
     matplotlib.rcParams["svg.hashsalt"] = "chicane"  # the same bytes each time
     import matplotlib.pyplot as plt
+    return plt
+
+
+def draw_latency(runs, path):
+    """rms lateral error over latency, one curve for each way; a cross where a tyre left the road."""
+    plt = plotting()
     figure, axes = plt.subplots(figsize=(9.5, 4.5))
     reports = {key: runs.start(line).result() for key, line in latency_commands().items()}
     for name in dict.fromkeys(name for name, _ in reports):
@@ -178,27 +213,70 @@ def write(page, marker, table):
     path.write_text(head + begin + table + end + rest.split(end, 1)[1], encoding="utf-8")
 
 
+def effects(runs):
+    """One page for each effect."""
+    fast, weighted, own = "fast-short-step", "weighted", "default"
+    often = "control_period_ms=40"
+    steps = {n: [f"tracking_mpc.horizon_steps={n}", often] for n in (5, 8, 12, 20, 30, 40, 60, 100)}
+    lengths = {2.0 / n: [f"tracking_mpc.horizon_steps={n}", f"tracking_mpc.step_length_s={2.0 / n}", often] for n in (100, 80, 50, 40, 25, 20, 10)}
+    laterals = {w: [f"tracking_mpc.weight_lateral={w}", often] for w in (0.01, 0.03, 0.1, 0.3, 1, 3, 10)}
+    frictions = {f: [f"plant_options.friction_scale={f}", often] for f in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.3)}
+    shares = {g: [f"tracking_mpc.grip_share={g}", "plant_options.friction_scale=0.7", often] for g in (0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)}
+    cubic_steps = {n: [f"cubic_mpc.horizon_steps={n}"] for n in (5, 7, 10, 20, 50, 100)}
+    cubic_lengths = {dt: [f"cubic_mpc.step_length_s={dt}"] for dt in (0.005, 0.01, 0.025, 0.05, 0.1, 0.2)}
+    throttles = {w: [f"cubic_mpc.weight_throttle={w}"] for w in (160, 80, 64, 48, 32)}
+    road_car = {"car": "road-car"}
+    pages = {
+        "horizon.md": {
+            "own_steps": sweep_table(runs, own, "N", steps),
+            "steps": sweep_table(runs, weighted, "N", values("horizon_steps", (5, 7, 10, 20, 50, 100)), mph=80),
+            "steps_measured": sweep_table(runs, "measured-latency", "N", values("horizon_steps", (5, 7, 10, 20, 50))),
+        },
+        "step_length.md": {
+            "own_length": sweep_table(runs, own, "dt [s]", lengths),
+            "length": sweep_table(runs, fast, "dt [s]", values("step_length_s", (0.005, 0.01, 0.025, 0.05, 0.1, 0.2))),
+            "preview": sweep_table(runs, fast, "N, dt [s]", steps_and_lengths([(125, 0.005), (62, 0.01), (25, 0.025), (12, 0.05), (6, 0.1)])),
+            "higher": sweep_table(runs, "measured-latency", "N, dt [s]", steps_and_lengths([(20, 0.1), (10, 0.2), (10, 0.5)]), mph=60),
+        },
+        "weights.md": {
+            "own_lateral": sweep_table(runs, own, "weight_lateral", laterals),
+            "knob": sweep_table(runs, fast, "w_a", values("weight_throttle", (160, 80, 64, 48, 32))),
+            "speed": sweep_table(runs, weighted, "w_v", values("weight_speed", (0.02, 0.05, 0.1, 0.5, 1)), mph=60),
+            "product": sweep_table(runs, "delay-in-model", "w_vδ", values("weight_speed_steer", (0, 10, 30, 100, 300))),
+            "unit": sweep_table(runs, weighted, "`speed_in_mph`", values("speed_in_mph", ("false", "true")), mph=40),
+        },
+        "friction.md": {
+            "friction_udacity": sweep_table(runs, own, "grip of the road", frictions),
+            "friction_road_car": sweep_table(runs, own, "grip of the road", frictions, **road_car),
+            "grip_share": sweep_table(runs, own, "grip_share", shares, **road_car),
+        },
+    }
+    for page, tables in pages.items():
+        for marker, table in tables.items():
+            write(page, marker, table)
+    figures = ROOT / "docs/figures"
+    draw_sweeps(runs, figures / "horizon.svg", "steps of the horizon, N",
+                [("default", own, steps, {}), ("weighted, 80 mph", weighted, cubic_steps, {"mph": 80})], logarithmic=True)
+    draw_sweeps(runs, figures / "step_length.svg", "step length [s]",
+                [("default, N dt = 2 s", own, lengths, {}), ("fast-short-step, N = 25", fast, cubic_lengths, {})], logarithmic=True)
+    draw_sweeps(runs, figures / "weights.svg", "weight",
+                [("default, weight_lateral", own, laterals, {}), ("fast-short-step, weight_throttle", fast, throttles, {})], logarithmic=True)
+    draw_sweeps(runs, figures / "friction.svg", "grip of the road over that believed",
+                [("udacity", own, frictions, {}), ("road-car", own, frictions, road_car),
+                 ("road-car, road 0.7, over grip_share", own, shares, road_car)])
+
+
 def main():
+    if len(sys.argv) > 1 and sys.argv[1] in ("-h", "--help"):
+        print(__doc__)
+        return 0
     runs = Runs(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release/apps/chicane/chicane")
     write("problem.md", "presets", preset_table(runs))
     write("latency.md", "latency", latency_table(runs, latency_commands()))
     write("latency.md", "fast", latency_table(runs, fast_commands()))
     write("latency.md", "cure", cure_table(runs))
     draw_latency(runs, ROOT / "docs/figures/latency.svg")
-    fast, weighted = "fast-short-step", "weighted"
-    tables = {
-        "knob": sweep_table(runs, fast, "w_a", values("weight_throttle", (160, 80, 64, 48, 32))),
-        "length": sweep_table(runs, fast, "dt [s]", values("step_length_s", (0.005, 0.01, 0.025, 0.05, 0.1, 0.2))),
-        "preview": sweep_table(runs, fast, "N, dt [s]", steps_and_lengths([(125, 0.005), (62, 0.01), (25, 0.025), (12, 0.05), (6, 0.1)])),
-        "steps": sweep_table(runs, weighted, "N", values("horizon_steps", (5, 7, 10, 20, 50, 100)), mph=80),
-        "steps_measured": sweep_table(runs, "measured-latency", "N", values("horizon_steps", (5, 7, 10, 20, 50))),
-        "higher": sweep_table(runs, "measured-latency", "N, dt [s]", steps_and_lengths([(20, 0.1), (10, 0.2), (10, 0.5)]), mph=60),
-        "speed": sweep_table(runs, weighted, "w_v", values("weight_speed", (0.02, 0.05, 0.1, 0.5, 1)), mph=60),
-        "product": sweep_table(runs, "delay-in-model", "w_vδ", values("weight_speed_steer", (0, 10, 30, 100, 300))),
-        "unit": sweep_table(runs, weighted, "`speed_in_mph`", values("speed_in_mph", ("false", "true")), mph=40),
-    }
-    for marker, table in tables.items():
-        write("tuning.md", marker, table)
+    effects(runs)
     return 0
 
 
