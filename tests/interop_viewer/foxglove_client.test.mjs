@@ -64,10 +64,12 @@ for (const subprotocol of ['foxglove.websocket.v1', 'foxglove.sdk.v1']) {
 
     it('sends every advertised topic, each decodable by its own schema', async () => {
       const { client, seen, next } = connection;
-      assert.equal(seen.channels.size, 13);
+      assert.equal(seen.channels.size, 15);
+      const onOccasion = ['/chicane/lap', '/chicane/change']; // a lap completed, a setting changed: not in this short run
       for (const channel of seen.channels.values()) {
         assert.equal(channel.encoding, 'cdr');
         assert.equal(channel.schemaEncoding, 'ros2msg');
+        if (onOccasion.includes(channel.topic)) continue;
         const id = client.subscribe(channel.id);
         const { data } = await next('message', ({ subscriptionId }) => subscriptionId === id);
         const message = decode(channel.schema, data);
