@@ -65,9 +65,9 @@ export class DashboardPage {
     return this.page.getByRole('button', { name, exact: true });
   }
 
-  /** Waits until `read` gives something that `accept` accepts. */
+  /** Waits until `read` gives something that `accept` accepts; long, for a busy machine is slow but not wrong. */
   async until(read, accept, what) {
-    const end = Date.now() + 10_000;
+    const end = Date.now() + 30_000;
     for (;;) {
       const value = await read();
       if (accept(value)) return value;

@@ -106,6 +106,7 @@ describe('the workbench', () => {
   });
 
   it('drives by hand, and hands back', async () => {
+    await page.getByRole('button', { name: /Take the wheel/ }).waitFor(); // before the settings are there, the key does nothing
     await page.locator('body').press('m');
     await page.getByText('By hand', { exact: true }).waitFor();
     await page.keyboard.down('ArrowLeft');
@@ -156,6 +157,53 @@ describe('the workbench', () => {
     await dashboard.until(() => dashboard.text('limiter'), (title) => titles.includes(title), 'a known limit');
     assert.ok((await page.locator('.constraints tbody tr').count()) > 3);
     await dashboard.until(() => dashboard.number('prediction-error'), Number.isFinite, 'prediction error');
+  });
+
+  it('shows the plan of a second ago beside what came of it, for who wants it', async () => {
+    const pink = () =>
+      page
+        .locator('canvas.map-2d')
+        .evaluate((canvas) => {
+          const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });
+          const context = copy.getContext('2d', { willReadFrequently: true });
+          context.drawImage(canvas, 0, 0);
+          const { data } = context.getImageData(0, 0, copy.width, copy.height);
+          let count = 0;
+          for (let i = 0; i < data.length; i += 4) count += data[i] - data[i + 1] > 60 && data[i + 2] - data[i + 1] > 40 ? 1 : 0;
+          return count;
+        });
+    const line = page.locator('.legend button', { hasText: 'plan 1 s ago' });
+    assert.equal(await line.getAttribute('aria-pressed'), 'false');
+    await page.locator('body').press('o');
+    assert.equal(await line.getAttribute('aria-pressed'), 'true');
+    await dashboard.until(pink, (count) => count > 50, 'the plan of a second ago');
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await line.click();
+    await dashboard.until(pink, (count) => count === 0, 'the map without it');
+  });
+
+  it('tells speeds in the unit of the reader, and remembers it', async () => {
+    const unit = page.locator('.speed .big .unit');
+    await dashboard.button('Pause').click();
+    await page.getByText('Paused', { exact: true }).waitFor();
+    const metres = () => page.locator('.speed .beside b').first().innerText();
+    await dashboard.until(metres, (text) => Number(text) > 1, 'a car that drives');
+    const told = { mph: 0, 'km/h': 0, 'm/s': 0 };
+    await dashboard.show('plots');
+    for (const name of Object.keys(told)) {
+      await dashboard.until(() => unit.innerText(), (text) => text === name, name);
+      told[name] = await dashboard.number('speed');
+      assert.match(await page.locator('.plot[aria-label="Speed"] h2').innerText(), new RegExp(name));
+      assert.ok((await page.locator('.legend').innerText()).includes(name));
+      await page.locator('body').press('u');
+    }
+    assert.ok(Math.abs(told['km/h'] - 1.609344 * told.mph) <= 1.5, JSON.stringify(told));
+    assert.ok(Math.abs(told['km/h'] - 3.6 * told['m/s']) <= 2.5, JSON.stringify(told));
+    await unit.click();
+    await page.reload();
+    await dashboard.until(() => unit.innerText(), (text) => text === 'km/h', 'the same unit after a reload');
+    await page.getByText('Paused', { exact: true }).waitFor();
+    await dashboard.button('Resume').click();
   });
 
   it('starts anew with another track, after asking once', async () => {

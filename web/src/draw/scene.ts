@@ -1,5 +1,6 @@
 import type { Point } from '../lib/math';
 import type { Plan } from '../protocol/topics';
+import type { Hindsight, Pose } from '../state/hindsight';
 import type { Road } from '../state/app_state';
 import { groundGrid, transformOf, type Camera } from './camera';
 import type { CarShape } from './car';
@@ -14,7 +15,8 @@ export interface Scene {
   readonly traceY: Float64Array;
   readonly plan: Plan | null;
   readonly speedScale: number; // the speed that has the last colour [m/s]
-  readonly ghost: { x: number; y: number; yaw: number } | null; // drawn in the car's shape
+  readonly hindsight: Hindsight | null; // what was predicted, beside what came
+  readonly ghost: Pose | null; // drawn in the car's shape
   readonly car: { x: number; y: number; yaw: number; isBraking: boolean; shape: CarShape } | null;
 }
 
@@ -95,6 +97,20 @@ function drawPlan(ctx: Context, plan: Plan, speedScale: number, width: number): 
   ctx.lineCap = 'butt';
 }
 
+function line(xs: ArrayLike<number>, ys: ArrayLike<number>): Path2D {
+  const path = new Path2D();
+  for (let i = 0; i < xs.length; ++i) path.lineTo(xs[i] ?? NaN, ys[i] ?? NaN);
+  return path;
+}
+
+/** A plan as a broad band, and on it the way that was then driven. */
+function drawHindsight(ctx: Context, { plan, drivenX, drivenY }: Hindsight, colours: Theme, px: number): void {
+  ctx.globalAlpha = 0.6;
+  stroke(ctx, line(plan.x_m, plan.y_m), colours.foreseen, Math.max(1.1, 8 * px));
+  ctx.globalAlpha = 1;
+  stroke(ctx, line(drivenX, drivenY), colours.came, Math.max(0.18, 2 * px));
+}
+
 function drawWheels(ctx: Context, shape: CarShape, colour: string): void {
   ctx.fillStyle = colour;
   for (const wheel of shape.wheels) {
@@ -149,17 +165,32 @@ function drawCar(ctx: Context, car: NonNullable<Scene['car']>, colours: Theme, p
   ctx.restore();
 }
 
-/** The outline of another drive's car; nothing where it would only smudge the car itself. */
-function drawGhost(ctx: Context, ghost: NonNullable<Scene['ghost']>, car: NonNullable<Scene['car']>, colours: Theme, px: number): void {
-  const { shape } = car;
+/** The car's outline at another pose. */
+function outline(ctx: Context, pose: Pose, { shape }: NonNullable<Scene['car']>, px: number): void {
   const grown = Math.max(1, (18 * px) / (shape.front - shape.rear));
-  if (Math.hypot(ghost.x - car.x, ghost.y - car.y) < grown) return;
-  ctx.save();
-  ctx.translate(ghost.x, ghost.y);
-  ctx.rotate(ghost.yaw);
+  ctx.translate(pose.x, pose.y);
+  ctx.rotate(pose.yaw);
   ctx.scale(grown, grown);
   ctx.beginPath();
   ctx.roundRect(shape.rear, -0.84 * shape.halfWidth, shape.front - shape.rear, 1.68 * shape.halfWidth, [0.5, 0.9, 0.9, 0.5]);
+}
+
+/** Where the car was to be now, by the plan of a second ago. */
+function drawForeseen(ctx: Context, pose: Pose, car: NonNullable<Scene['car']>, colours: Theme, px: number): void {
+  ctx.save();
+  outline(ctx, pose, car, px);
+  ctx.restore();
+  ctx.strokeStyle = colours.foreseen;
+  ctx.lineWidth = Math.max(0.15, 1.5 * px);
+  ctx.stroke();
+}
+
+/** Another drive's car; nothing where it would only smudge the car itself. */
+function drawGhost(ctx: Context, ghost: Pose, car: NonNullable<Scene['car']>, colours: Theme, px: number): void {
+  const { shape } = car;
+  if (Math.hypot(ghost.x - car.x, ghost.y - car.y) < Math.max(1, (18 * px) / (shape.front - shape.rear))) return;
+  ctx.save();
+  outline(ctx, ghost, car, px);
   ctx.globalAlpha = 0.45;
   ctx.fillStyle = colours.accent;
   ctx.fill();
@@ -179,9 +210,11 @@ export function drawScene(ctx: Context, scene: Scene, camera: Camera, colours: T
   if (scene.road) drawRoad(ctx, scene.road, colours, px);
   drawTrace(ctx, scene.traceX, scene.traceY, colours.trace, Math.max(0.2, 2 * px));
   stroke(ctx, trail(scene.reference), scene.road ? colours.reference : colours.faint, Math.max(0.12, 1.5 * px));
+  if (scene.hindsight) drawHindsight(ctx, scene.hindsight, colours, px);
   if (scene.plan) drawPlan(ctx, scene.plan, scene.speedScale, Math.max(0.45, 4 * px));
   if (scene.ghost && scene.car) drawGhost(ctx, scene.ghost, scene.car, colours, px);
   if (scene.car) drawCar(ctx, scene.car, colours, px);
+  if (scene.hindsight?.foreseen && scene.car) drawForeseen(ctx, scene.hindsight.foreseen, scene.car, colours, px);
 }
 
 /** The whole track in a corner, with the car as a dot. */

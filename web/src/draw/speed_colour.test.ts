@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { MPH } from '../lib/format';
+import { SPEED_UNITS, type SpeedUnit } from '../lib/units';
 import { speedColour, speedGradient, topOfScale } from './speed_colour';
 
 describe('speed colour', () => {
@@ -21,8 +21,12 @@ describe('speed colour', () => {
   });
 
   it('ends the scale at a round speed', () => {
-    expect(topOfScale(0) * MPH).toBeCloseTo(20, 9);
-    expect(topOfScale(100 / MPH) * MPH).toBeCloseTo(100, 9);
-    expect(topOfScale(101 / MPH) * MPH).toBeCloseTo(120, 9);
+    const [mph, kmh, mps] = SPEED_UNITS as readonly [SpeedUnit, SpeedUnit, SpeedUnit];
+    const top = (speed: number, unit: SpeedUnit) => topOfScale(speed / unit.perMps, unit) * unit.perMps;
+    expect(top(0, mph)).toBeCloseTo(20, 9);
+    expect(top(100, mph)).toBeCloseTo(100, 9);
+    expect(top(101, mph)).toBeCloseTo(120, 9);
+    expect(top(161, kmh)).toBeCloseTo(200, 9);
+    expect(top(45, mps)).toBeCloseTo(50, 9);
   });
 });

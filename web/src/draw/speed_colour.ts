@@ -1,5 +1,5 @@
 import { clamp, mix } from '../lib/math';
-import { MPH } from '../lib/format';
+import type { SpeedUnit } from '../lib/units';
 
 /** Slow to fast; equal steps look equally far apart and differ in lightness too, for colour-blind eyes. */
 const STOPS: readonly (readonly [number, number, number])[] = [
@@ -24,8 +24,8 @@ export function speedRgb(share: number): readonly [number, number, number] {
 /** The same as a CSS colour. */
 export const speedColour = (share: number): string => `rgb(${speedRgb(share).join(' ')})`;
 
-/** The upper end of the colour scale: a multiple of 20 mph [m/s]. */
-export const topOfScale = (topSpeed: number): number => (Math.ceil(Math.max(20, topSpeed * MPH) / 20 - 1e-9) * 20) / MPH;
+/** The upper end of the colour scale: round in the reader's unit [m/s]. */
+export const topOfScale = (topSpeed: number, { perMps, scaleStep }: SpeedUnit): number => (Math.ceil(Math.max(scaleStep, topSpeed * perMps) / scaleStep - 1e-9) * scaleStep) / perMps;
 
 /** The scale as a CSS gradient, for the legend. */
 export const speedGradient = (): string => `linear-gradient(to right, ${STOPS.map((c) => `rgb(${c.join(' ')})`).join(', ')})`;

@@ -7,6 +7,8 @@ export interface Theme {
   readonly centreLine: string;
   readonly reference: string;
   readonly trace: string;
+  readonly foreseen: string;
+  readonly came: string;
   readonly carBody: string;
   readonly carGlass: string;
   readonly carEdge: string;
@@ -32,6 +34,8 @@ function read(): Theme {
     centreLine: colour('centre-line'),
     reference: colour('reference'),
     trace: colour('trace'),
+    foreseen: colour('foreseen'),
+    came: colour('came'),
     carBody: colour('car-body'),
     carGlass: colour('car-glass'),
     carEdge: colour('car-edge'),

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { duration, fixed, lapTime, MPH, plural, side, UNKNOWN } from './format';
+import { duration, fixed, lapTime, plural, side, UNKNOWN } from './format';
 
 describe('format', () => {
   it('writes numbers without a negative zero', () => {
@@ -30,10 +30,6 @@ describe('format', () => {
     expect(duration(1234)).toEqual({ value: '1.23', unit: 'ms' });
     expect(duration(45_678)).toEqual({ value: '45.7', unit: 'ms' });
     expect(duration(NaN).value).toBe(UNKNOWN);
-  });
-
-  it('knows miles per hour', () => {
-    expect(44.704 * MPH).toBeCloseTo(100, 9);
   });
 
   it('counts in words', () => {

@@ -1,9 +1,6 @@
 /** What stands where a number is not known. */
 export const UNKNOWN = '–';
 
-/** mph in one m/s: 3600 s/h over 1609.344 m/mile. */
-export const MPH = 3600 / 1609.344;
-
 /** A number with fixed decimals, a true minus sign and no "−0.0". */
 export function fixed(value: number, decimals: number): string {
   if (!Number.isFinite(value)) return UNKNOWN;

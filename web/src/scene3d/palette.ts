@@ -15,6 +15,8 @@ export interface Palette {
   readonly road: RoadPaint;
   readonly reference: Colour;
   readonly trace: Colour;
+  readonly foreseen: Colour;
+  readonly came: Colour;
   readonly ghost: Colour;
   readonly rubber: Colour;
   readonly sun: number; // strength of the light from one side
@@ -40,6 +42,8 @@ const DAY: Omit<Palette, 'isDark'> = {
   },
   reference: colourOf('#ffffff'),
   trace: colourOf('#c6d5f2'),
+  foreseen: colourOf('#f25fc4'),
+  came: colourOf('#ffffff'),
   ghost: colourOf('#3f7cf0'),
   rubber: colourOf('#16181c'),
   sun: 2.6,
@@ -65,6 +69,8 @@ const DUSK: Omit<Palette, 'isDark'> = {
   },
   reference: colourOf('#aab6c6'),
   trace: colourOf('#6283c0'),
+  foreseen: colourOf('#e05ab6'),
+  came: colourOf('#e4ebf5'),
   ghost: colourOf('#7aa7ff'),
   rubber: colourOf('#0a0c0f'),
   sun: 1.3,

@@ -1,6 +1,8 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { onThemeChange } from '../draw/theme';
 import { isPaused, link, live, run } from '../state/app_state';
+import { hindsight } from '../state/hindsight';
+import { layers } from '../state/layers';
 import { everyFrame } from '../state/ticker';
 import { listenToPointers } from './pointer';
 import './scene3d.css';
@@ -19,6 +21,7 @@ function viewNow(): View {
     roadVersion: live.roadVersion,
     plan: live.plan,
     reference: live.reference,
+    hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
     topSpeed: live.topSpeed,
     ghost: session.ghost,
     camera: camera.value,

@@ -1,8 +1,10 @@
 import { Color, DirectionalLight, HemisphereLight, PerspectiveCamera, PMREMGenerator, Scene, SRGBColorSpace, type WebGLRenderTarget, WebGLRenderer } from 'three';
 import { topOfScale } from '../draw/speed_colour';
 import type { Point } from '../lib/math';
+import { speedUnit } from '../lib/units';
 import type { Plan, Run } from '../protocol/topics';
 import type { Road } from '../state/app_state';
+import type { Hindsight } from '../state/hindsight';
 import { BodyMotion } from './body_motion';
 import { CameraMan, type CameraName, type Orbit, type Shot } from './cameras';
 import { CarView, GhostView } from './car_view';
@@ -25,6 +27,7 @@ export interface View {
   readonly roadVersion: number;
   readonly plan: Plan | null;
   readonly reference: readonly Point[];
+  readonly hindsight: Hindsight | null;
   readonly topSpeed: number;
   readonly ghost: GhostSource | null;
   readonly camera: CameraName;
@@ -50,6 +53,8 @@ export class Stage {
   readonly #marks: RingView;
   readonly #brakes: RingView;
   readonly #reference: BandView;
+  readonly #foreseen: BandView;
+  readonly #came: BandView;
   readonly #plan: BandView;
   readonly #governor: QualityGovernor;
   readonly #cameraMan = new CameraMan();
@@ -86,7 +91,9 @@ export class Stage {
     this.#marks = new RingView(this.#scene, session.marks.ring, 3, 0.75);
     this.#brakes = new RingView(this.#scene, session.brakes, 4, 0.8);
     this.#reference = new BandView(this.#scene, 512, 5);
-    this.#plan = new BandView(this.#scene, 512, 6);
+    this.#foreseen = new BandView(this.#scene, 512, 6);
+    this.#came = new BandView(this.#scene, 512, 7);
+    this.#plan = new BandView(this.#scene, 512, 8);
     this.#sun.shadow.mapSize.set(1024, 1024);
     this.#scene.add(this.#sun, this.#sun.target, this.#skyLight);
     this.repaint();
@@ -106,6 +113,8 @@ export class Stage {
     this.#marks.paint(this.#palette.rubber);
     this.#brakes.paint([0.75, 0.03, 0.02]);
     this.#reference.paint(this.#palette.reference);
+    this.#foreseen.paint(this.#palette.foreseen);
+    this.#came.paint(this.#palette.came);
     this.#bestLine.paint(this.#palette.ghost);
     this.#car?.paint(this.#palette);
     this.#ghost?.paint(this.#palette);
@@ -150,7 +159,7 @@ export class Stage {
 
   #isWorth(now: number, view: View, motion: Motion | null, width: number, height: number): boolean {
     const { orbit } = view;
-    const key = [motion?.time, motion?.x, motion?.yaw, view.camera, orbit.azimuth, orbit.elevation, orbit.zoom, width, height, view.roadVersion].join();
+    const key = [motion?.time, motion?.x, motion?.yaw, view.camera, orbit.azimuth, orbit.elevation, orbit.zoom, width, height, view.roadVersion, view.hindsight === null].join();
     if (key !== this.#changeKey || view.plan !== this.#planShown) {
       this.#changeKey = key;
       this.#lastChange = now;
@@ -192,9 +201,12 @@ export class Stage {
       const [xs, ys] = [view.reference.map(({ x }) => x), view.reference.map(({ y }) => y)];
       this.#reference.show(xs, ys, 0.14, (share) => 0.9 * Math.min(1, 4 * (1 - share)));
     }
+    const size = (this.#car?.model.length ?? 4.5) / 4.5;
+    this.#foreseen.show(view.hindsight?.plan.x_m ?? [], view.hindsight?.plan.y_m ?? [], 1.2 * size, () => 0.6);
+    this.#came.show(view.hindsight?.drivenX ?? [], view.hindsight?.drivenY ?? [], 0.2 * size, () => 1);
     if (view.plan !== this.#planShown) {
       this.#planShown = view.plan;
-      this.#plan.showPlan(view.plan, topOfScale(view.topSpeed), 0.5 * ((this.#car?.model.length ?? 4.5) / 4.5));
+      this.#plan.showPlan(view.plan, topOfScale(view.topSpeed, speedUnit()), 0.5 * size);
     }
     for (const ring of [this.#trace, this.#marks, this.#brakes]) ring.update();
   }
@@ -276,7 +288,7 @@ export class Stage {
     this.#car?.dispose();
     this.#ghost?.dispose();
     this.#landscape.plant([], this.#palette);
-    for (const part of [this.#landscape, this.#road, this.#bestLine, this.#trace, this.#marks, this.#brakes, this.#reference, this.#plan]) part.dispose();
+    for (const part of [this.#landscape, this.#road, this.#bestLine, this.#trace, this.#marks, this.#brakes, this.#reference, this.#foreseen, this.#came, this.#plan]) part.dispose();
     this.#environment?.dispose();
     this.#sun.dispose();
     this.#renderer.dispose();

@@ -1,4 +1,3 @@
-import { MPH } from '../lib/format';
 import { degrees } from '../lib/math';
 import type { Frame } from '../protocol/topics';
 
@@ -49,12 +48,12 @@ export const costColumn = (term: number): number => NAMES.length + Math.min(term
 
 const percent = (share: number): number => share * 100;
 
-/** One row of the history for a frame, in the units of the axes. Written into `row`, which is returned. */
+/** One row of the history for a frame, in the units of the axes but for speeds [m/s]. Written into `row`, which is returned. */
 export function plotRow(frame: Frame, row: number[]): number[] {
   row[Column.time] = frame.time_s;
-  row[Column.speed] = frame.speed_mps * MPH;
-  row[Column.speedLimit] = frame.speed_limit_mps * MPH;
-  row[Column.speedReference] = frame.speed_reference_mps * MPH;
+  row[Column.speed] = frame.speed_mps;
+  row[Column.speedLimit] = frame.speed_limit_mps;
+  row[Column.speedReference] = frame.speed_reference_mps;
   row[Column.lateralError] = frame.lateral_error_m;
   row[Column.headingError] = degrees(frame.heading_error_rad);
   row[Column.steerAsked] = degrees(frame.steer_asked_rad);

@@ -1,5 +1,6 @@
 import { hasBit } from '../lib/bits';
-import { fixed, MPH, plural } from '../lib/format';
+import { fixed, plural } from '../lib/format';
+import { inSpeedUnit, speedUnit } from '../lib/units';
 import { gateInWords, LIMITERS, limiterInWords, nameInWords, rungInWords, sightInWords, statusInWords, worstInWords, type Sentence } from '../lib/words';
 import { live, run, shown } from '../state/app_state';
 import { Column } from '../state/columns';
@@ -28,9 +29,9 @@ function Limiter() {
           <p class="soft">{why}</p>
         </div>
         <p class="allowed">
-          <b data-testid="speed-limit">{fixed((frame?.speed_limit_mps ?? NaN) * MPH, 0)}</b> <span class="unit">mph allowed here</span>
+          <b data-testid="speed-limit">{fixed(inSpeedUnit(frame?.speed_limit_mps ?? NaN), 0)}</b> <span class="unit">{speedUnit().name} allowed here</span>
           <br />
-          <b>{fixed((frame?.speed_mps ?? NaN) * MPH, 0)}</b> <span class="unit">mph driven</span>
+          <b>{fixed(inSpeedUnit(frame?.speed_mps ?? NaN), 0)}</b> <span class="unit">{speedUnit().name} driven</span>
         </p>
       </div>
       <CanvasView label="What limited the speed in the last 20 seconds" paint={paintLimiterStrip(WINDOW_S)} version={() => live.plots.newest(Column.time)} interval={100} tall="22px" />

@@ -1,5 +1,6 @@
-import { duration, fixed, lapTime, MPH, side, UNKNOWN } from '../lib/format';
+import { duration, fixed, lapTime, side, UNKNOWN } from '../lib/format';
 import { clamp, degrees } from '../lib/math';
+import { inSpeedUnit, nextSpeedUnit, speedUnit, SPEED_UNITS, type SpeedUnit } from '../lib/units';
 import { bestLap, live, run, shown } from '../state/app_state';
 
 /** Time lost to the best lap up to here [s]; not-a-number without one. */
@@ -10,24 +11,31 @@ function delta(): number {
   return frame.lap_time_s - lapSamples.at(lapSamples.best, 'time_s', frame.s_m);
 }
 
+/** In m/s too, or in km/h where that is the reader's unit. */
+const beside = (unit: SpeedUnit): SpeedUnit => SPEED_UNITS.find(({ name }) => name === (unit.name === 'm/s' ? 'km/h' : 'm/s')) ?? unit;
+
 function Speed() {
   const frame = shown.value;
+  const unit = speedUnit();
+  const other = beside(unit);
   const speed = frame?.speed_mps ?? NaN;
   const wanted = frame?.speed_reference_mps ?? NaN;
   return (
     <div class="speed">
       <p class="big">
         <span class="value" data-testid="speed">
-          {fixed(speed * MPH, 0)}
+          {fixed(inSpeedUnit(speed), 0)}
         </span>
-        <span class="unit">mph</span>
+        <button type="button" class="unit" aria-label={`Speeds in ${unit.spoken}: change the unit`} aria-keyshortcuts="U" title="Another unit for speeds (U)" onClick={nextSpeedUnit}>
+          {unit.name}
+        </button>
       </p>
       <p class="beside">
         <span>
-          <b>{fixed(speed, 1)}</b> m/s
+          <b>{fixed(speed * other.perMps, 1)}</b> {other.name}
         </span>
         <span>
-          of <b>{fixed(wanted * MPH, 0)}</b> mph
+          of <b>{fixed(inSpeedUnit(wanted), 0)}</b> {unit.name}
         </span>
       </p>
     </div>

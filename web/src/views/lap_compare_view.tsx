@@ -1,9 +1,11 @@
+import { computed } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import { rangeAboutZero, rangeInSteps } from '../draw/axis';
 import { onThemeChange } from '../draw/theme';
-import { fixed, MPH } from '../lib/format';
+import { fixed } from '../lib/format';
+import { speedUnit } from '../lib/units';
 import { live } from '../state/app_state';
 import { timeGap, type LapChannel } from '../state/lap_samples';
 import { chartColours } from './plot_colours';
@@ -19,8 +21,12 @@ interface Curve {
 
 const channel = (name: LapChannel, factor = 1) => (a: number, b: number): (Float64Array | null)[] => [a, b].map((lap) => live.lapSamples.channel(lap, name)?.map((value) => value * factor) ?? null);
 
-const CURVES: readonly Curve[] = [
-  { title: 'Speed', unit: 'mph', decimals: 1, data: channel('speed_mps', MPH), range: (columns) => rangeInSteps(columns, 10, 40) },
+const SPEED = computed<Curve>(() => {
+  const { name, perMps, axisStep, axisLeast } = speedUnit();
+  return { title: 'Speed', unit: name, decimals: 1, data: channel('speed_mps', perMps), range: (columns) => rangeInSteps(columns, axisStep, axisLeast) };
+});
+
+const OTHERS: readonly Curve[] = [
   { title: 'Lateral error', unit: 'm, + left', decimals: 2, data: channel('lateral_error_m'), range: (columns) => rangeAboutZero(columns, 0.5) },
   {
     title: 'Time gap',
@@ -121,8 +127,8 @@ export function LapCompareView({ a, b }: { a: number; b: number }) {
   }
   return (
     <div class="compare">
-      {CURVES.map((curve) => (
-        <CurvePlot key={`${curve.title} ${a} ${b}`} curve={curve} a={a} b={b} names={names} />
+      {[SPEED.value, ...OTHERS].map((curve) => (
+        <CurvePlot key={`${curve.title} ${curve.unit} ${a} ${b}`} curve={curve} a={a} b={b} names={names} />
       ))}
     </div>
   );

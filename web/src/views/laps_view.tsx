@@ -1,6 +1,7 @@
 import { signal } from '@preact/signals';
 import { download, downloadPng, fileName } from '../lib/download';
-import { fixed, lapTime, MPH, UNKNOWN } from '../lib/format';
+import { fixed, lapTime, UNKNOWN } from '../lib/format';
+import { inSpeedUnit, speedUnit } from '../lib/units';
 import type { Lap } from '../protocol/topics';
 import { bestLap, laps, live, run } from '../state/app_state';
 import { bestsOf, lapSamplesCsv, lapsCsv, type LapBests } from '../state/lap_table';
@@ -36,7 +37,7 @@ function Row({ lap, bests }: { lap: Lap; bests: LapBests }) {
           </td>
         );
       })}
-      <td>{fixed(lap.top_speed_mps * MPH, 1)}</td>
+      <td>{fixed(inSpeedUnit(lap.top_speed_mps), 1)}</td>
       <td>{fixed(lap.min_edge_distance_m, 2)}</td>
       <td>{fixed(lap.rms_lateral_error_m, 2)}</td>
       <td>
@@ -112,7 +113,7 @@ export function LapsView() {
           <table class="lap-table">
             <thead>
               <tr>
-                {['Lap', 'Time', 'Gap', 'S 1', 'S 2', 'S 3', 'Top', 'Edge', 'Error', 'Compare'].map((head) => (
+                {['Lap', 'Time', 'Gap', 'S 1', 'S 2', 'S 3', `Top ${speedUnit().name}`, 'Edge', 'Error', 'Compare'].map((head) => (
                   <th key={head} scope="col">
                     {head}
                   </th>

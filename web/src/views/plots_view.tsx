@@ -1,6 +1,7 @@
 import { useComputed } from '@preact/signals';
 import { rangeAboutZero, rangeFromZero, rangeInSteps } from '../draw/axis';
 import { downloadPng, fileName } from '../lib/download';
+import { speedUnit, type SpeedUnit } from '../lib/units';
 import { nameInWords } from '../lib/words';
 import { run } from '../state/app_state';
 import { Column, COST_TERMS, costColumn } from '../state/columns';
@@ -14,18 +15,19 @@ import { TimePlot, type PlotSpec } from './time_plot';
 /** One meaning, one colour in all plots: applied blue, asked orange, sent green. */
 const [APPLIED, ASKED, SENT, LIMIT] = [0, 1, 2, 4];
 
+const speedSpec = ({ name, perMps, axisStep, axisLeast }: SpeedUnit): PlotSpec => ({
+  title: 'Speed',
+  unit: name,
+  decimals: 1,
+  series: [
+    { column: Column.speedLimit, label: 'limit', colour: LIMIT, factor: perMps },
+    { column: Column.speedReference, label: 'ref.', colour: ASKED, isDashed: true, factor: perMps },
+    { column: Column.speed, label: 'driven', colour: APPLIED, factor: perMps },
+  ],
+  range: (columns) => rangeInSteps(columns.slice(1), axisStep, axisLeast),
+});
+
 const BEFORE_COST: readonly PlotSpec[] = [
-  {
-    title: 'Speed',
-    unit: 'mph',
-    decimals: 1,
-    series: [
-      { column: Column.speedLimit, label: 'limit', colour: LIMIT },
-      { column: Column.speedReference, label: 'ref.', colour: ASKED, isDashed: true },
-      { column: Column.speed, label: 'driven', colour: APPLIED },
-    ],
-    range: (columns) => rangeInSteps(columns.slice(1), 10, 40),
-  },
   {
     title: 'Lateral error',
     unit: 'm, + left',
@@ -144,11 +146,13 @@ function Toolbar() {
 
 export function PlotsView() {
   const names = useComputed(() => run.value?.cost_term_names.join('\n') ?? '');
+  const speed = useComputed(() => speedSpec(speedUnit()));
   const cost = useComputed(() => costSpec(names.value === '' ? [] : names.value.split('\n')));
   return (
     <div class="plots-view">
       <Toolbar />
       <div class="plots">
+        <TimePlot key="speed" spec={speed.value} />
         {BEFORE_COST.map((spec) => (
           <TimePlot key={spec.title} spec={spec} />
         ))}

@@ -1,12 +1,10 @@
-import { firstSince } from '../draw/axis';
 import { extent, niceCeil } from '../lib/math';
 import { live } from '../state/app_state';
 import { Column } from '../state/columns';
-import { planOf, rowsSince, toLocal, type LocalLine } from '../state/explain';
+import { rowsSince, toLocal, type LocalLine } from '../state/explain';
+import { hindsight } from '../state/hindsight';
 import type { Paint } from './canvas_view';
 import { chartColours } from './plot_colours';
-
-const AGE_S = 1;
 
 /** A column over time, from 0 up. */
 export const paintSparkline =
@@ -47,15 +45,14 @@ function strokeLine(context: CanvasRenderingContext2D, line: LocalLine, x: (ahea
 /** The plan of a second ago in its own axes, the way driven since over it; sideways stretched, for centimetres matter. */
 export const paintPrediction: Paint = (context, width, height) => {
   const colours = chartColours();
-  const now = live.frame?.time_s ?? NaN;
-  const plan = planOf(live.pastPlans, now, AGE_S);
+  const seen = hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN);
   context.font = `11px ${colours.font}`;
   context.fillStyle = colours.faint;
-  if (!plan || plan.x_m.length < 2) return context.fillText('No plan yet', 8, 16);
+  if (!seen) return context.fillText('No plan yet', 8, 16);
+  const { plan, drivenX, drivenY } = seen;
   const pose = { x: plan.x_m[0] ?? 0, y: plan.y_m[0] ?? 0, yaw: plan.yaw_rad[0] ?? 0 };
   const planned = toLocal(plan.x_m, plan.y_m, pose);
-  const first = firstSince(live.plots.column(Column.time), plan.time_s[0] ?? NaN);
-  const driven = toLocal(live.plots.column(Column.x), live.plots.column(Column.y), pose, Math.max(0, first - 1));
+  const driven = toLocal(drivenX, drivenY, pose);
 
   const reach = Math.max(10, (planned.ahead.at(-1) ?? 0) * 1.02);
   const [low, high] = extent([...planned.left, ...driven.left]) ?? [0, 0];

@@ -17,6 +17,7 @@ export interface Series {
   readonly colour: number; // of --series-…, from 0
   readonly isDashed?: boolean;
   readonly isFilled?: boolean; // down to the series before, or to 0
+  readonly factor?: number; // from the column's unit to the plot's
 }
 
 export interface PlotSpec {
@@ -50,7 +51,8 @@ function dataOf(spec: PlotSpec): Float64Array[] {
   const [from, to] = timeRange();
   const first = Math.max(0, firstSince(times, from) - 1);
   const end = firstSince(times, to) + 2;
-  return [Column.time, ...spec.series.map(({ column }) => column)].map((column) => history.column(column).subarray(first, end));
+  const part = (column: number): Float64Array => history.column(column).subarray(first, end);
+  return [part(Column.time), ...spec.series.map(({ column, factor = 1 }) => (factor === 1 ? part(column) : part(column).map((value) => value * factor)))];
 }
 
 function seriesOptions({ label, colour, isDashed, isFilled }: Series, colours: ChartColours): uPlot.Series {
@@ -147,11 +149,11 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
           {spec.title} <span class="unit">{spec.unit}</span>
         </h2>
         <p>
-          {spec.series.map(({ column, label, colour, isDashed }) => (
+          {spec.series.map(({ column, label, colour, isDashed, factor = 1 }) => (
             <span key={label} class="key">
               <span class={isDashed ? 'stroke dashed' : 'stroke'} style={{ borderColor: `var(--series-${colour + 1})` }} />
               {spec.series.length > 1 ? `${label} ` : ''}
-              {spec.series.some(({ isFilled }) => isFilled) ? null : <b>{fixed(readout(column), spec.decimals)}</b>}
+              {spec.series.some(({ isFilled }) => isFilled) ? null : <b>{fixed(readout(column) * factor, spec.decimals)}</b>}
             </span>
           ))}
         </p>

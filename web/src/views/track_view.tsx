@@ -5,14 +5,17 @@ import { carShape } from '../draw/car';
 import { drawInset, drawScene, roadShape, type RoadShape, type Scene } from '../draw/scene';
 import { speedGradient, topOfScale } from '../draw/speed_colour';
 import { onThemeChange, theme } from '../draw/theme';
-import { fixed, MPH } from '../lib/format';
+import { fixed } from '../lib/format';
 import { boundsOf, extrapolate, wrapAngle, type Box, type Point } from '../lib/math';
+import { inSpeedUnit, speedUnit } from '../lib/units';
 import { CAMERAS } from '../scene3d/cameras';
 import { Scene3dView } from '../scene3d/scene3d_view';
 import type { GhostPose } from '../scene3d/ghost';
 import { session } from '../scene3d/session';
 import { camera, choose, dimension, isSpared, nextCamera, obstacle, shows3d, wants3d, zoomCamera, type Dimension } from '../scene3d/view_state';
 import { isPaused, link, live, run, shown } from '../state/app_state';
+import { hindsight } from '../state/hindsight';
+import { layers, toggleLayer, type Layer } from '../state/layers';
 import { everyFrame } from '../state/ticker';
 
 export type View = 'behind' | 'above' | 'whole';
@@ -28,7 +31,7 @@ const INSET_INTERVAL_MS = 80; // the small map beside the 3D picture
 
 const metresAcross = signal(100);
 const bar = signal({ metres: 10, pixels: 80 });
-const scaleTop = signal(20 / MPH);
+const scaleTop = signal(10); // [m/s]
 const ghostLabel = signal<string | null>(null);
 
 /** The next camera, or the next cut of the map where that is what one sees. */
@@ -76,7 +79,7 @@ class Painter {
     const car = this.#carNow(now);
     const camera = this.#camera(car, now, width, height, isInset);
     this.#lastPaint = now;
-    const top = topOfScale(live.topSpeed);
+    const top = topOfScale(live.topSpeed, speedUnit());
     if (scaleTop.value !== top) scaleTop.value = top;
     const length = scaleBar(camera.scale, Math.min(120, width / 4));
     if (bar.value.metres !== length.metres || Math.abs(bar.value.pixels - length.pixels) > 0.5) bar.value = length;
@@ -88,6 +91,7 @@ class Painter {
       traceY: live.trace.column(1),
       plan: live.plan,
       speedScale: top,
+      hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
       ghost: this.#ghostNow(),
       car,
     };
@@ -155,6 +159,17 @@ function Swatch({ name, label, isMinor = false }: { name: string; label: string;
   );
 }
 
+/** A line that the reader can have or not. */
+function Switch({ layer, label, title }: { layer: Layer; label: string; title: string }) {
+  const isOn = layers[layer].value;
+  return (
+    <button type="button" class="legend-item" aria-pressed={isOn} title={title} onClick={() => toggleLayer(layer)}>
+      <span class={`swatch ${layer}`} />
+      <span>{label}</span>
+    </button>
+  );
+}
+
 /** Why there is no 3D picture, where somebody could expect one. */
 function Note() {
   if (dimension.value === '3d' && obstacle.value !== null) {
@@ -168,7 +183,7 @@ function Note() {
 }
 
 function Legend() {
-  const top = scaleTop.value * MPH;
+  const top = inSpeedUnit(scaleTop.value);
   const ghost = ghostLabel.value;
   return (
     <div class="legend">
@@ -181,13 +196,14 @@ function Legend() {
       )}
       <Swatch name="reference" label="reference" />
       <Swatch name="trace" label="driven" isMinor />
+      <Switch layer="hindsight" label="plan 1 s ago" title="The plan of a second ago and the way driven since; the outline is where it saw the car now (O)" />
       {ghost !== null && <Swatch name="ghost" label={ghost} />}
       {shows3d.value && <Swatch name="rubber" label="tyres sliding" isMinor />}
       {shows3d.value && <Swatch name="brake" label="braking begins" isMinor />}
       <div class="legend-item">
         <span>plan 0</span>
         <span class="gradient" style={{ background: speedGradient() }} />
-        <span>{fixed(top, 0)} mph</span>
+        <span>{fixed(top, 0)} {speedUnit().name}</span>
       </div>
     </div>
   );
@@ -197,7 +213,7 @@ function describeMap(): string {
   const frame = shown.value;
   if (!frame) return 'Map of the track, no car yet';
   const place = frame.is_off_track ? 'off the road' : 'on the road';
-  return `Map of the track: the car is ${place} at ${fixed(frame.speed_mps * MPH, 0)} miles per hour`;
+  return `Map of the track: the car is ${place} at ${fixed(inSpeedUnit(frame.speed_mps), 0)} ${speedUnit().spoken}`;
 }
 
 interface Choice<T> {

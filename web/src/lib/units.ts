@@ -1,0 +1,33 @@
+import { persisted } from './persisted';
+
+/** A unit for speeds: everything the page says of speeds goes through one of these. */
+export interface SpeedUnit {
+  readonly name: 'mph' | 'km/h' | 'm/s';
+  readonly spoken: string; // for screen readers
+  readonly perMps: number; // of the unit in one m/s
+  readonly axisStep: number; // of plots [unit]
+  readonly axisLeast: number; // a plot is at least so tall [unit]
+  readonly scaleStep: number; // the colours of a plan end at a multiple of it [unit]
+}
+
+/** mph in one m/s: 3600 s/h over 1609.344 m/mile. */
+export const MPH = 3600 / 1609.344;
+
+export const SPEED_UNITS: readonly SpeedUnit[] = [
+  { name: 'mph', spoken: 'miles per hour', perMps: MPH, axisStep: 10, axisLeast: 40, scaleStep: 20 },
+  { name: 'km/h', spoken: 'kilometres per hour', perMps: 3.6, axisStep: 20, axisLeast: 60, scaleStep: 40 },
+  { name: 'm/s', spoken: 'metres per second', perMps: 1, axisStep: 5, axisLeast: 20, scaleStep: 10 },
+];
+
+const chosen = persisted<SpeedUnit['name']>('speed-unit', 'mph', (value) => SPEED_UNITS.some(({ name }) => name === value));
+
+/** The reader's unit; who reads it while drawing text follows its changes. */
+export const speedUnit = (): SpeedUnit => SPEED_UNITS.find(({ name }) => name === chosen.value) ?? (SPEED_UNITS[0] as SpeedUnit);
+
+/** A speed [m/s] as a number in the reader's unit. */
+export const inSpeedUnit = (mps: number): number => mps * speedUnit().perMps;
+
+export function nextSpeedUnit(): void {
+  const at = SPEED_UNITS.findIndex(({ name }) => name === chosen.value);
+  chosen.value = SPEED_UNITS[(at + 1) % SPEED_UNITS.length]?.name ?? 'mph';
+}

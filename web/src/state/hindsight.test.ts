@@ -1,0 +1,45 @@
+import { describe, expect, it } from 'vitest';
+import type { Plan } from '../protocol/topics';
+import { Column, COLUMN_COUNT } from './columns';
+import { hindsight, poseOf } from './hindsight';
+import { History } from './history';
+
+/** Straight on along x at 10 m/s, made at `time` and acting 0.1 s later. */
+const plan = (time: number): Plan => {
+  const times = [0.1, 0.6, 1.1, 1.6].map((ahead) => time + ahead);
+  return {
+    stamp: { sec: Math.floor(time), nsec: (time % 1) * 1e9 },
+    time_s: Float64Array.from(times),
+    x_m: Float64Array.from(times, (each) => 10 * each),
+    y_m: Float64Array.from([0, 0, 1, 2]),
+    yaw_rad: Float64Array.from([0, 0, 0.2, 0.4]),
+  } as unknown as Plan;
+};
+
+function driven(until: number): History {
+  const all = new History(COLUMN_COUNT, 100);
+  for (let i = 0; i <= Math.round(until * 10); ++i) {
+    const row = new Array<number>(COLUMN_COUNT).fill(NaN);
+    [row[Column.time], row[Column.x], row[Column.y]] = [i / 10, i, 0.5];
+    all.push(row);
+  }
+  return all;
+}
+
+describe('hindsight', () => {
+  it('holds the plan of a second ago against the way driven since', () => {
+    const plans = [0, 0.5, 1, 1.5, 2].map(plan);
+    const seen = hindsight(plans, driven(2), 2);
+    expect(seen?.plan).toBe(plans[2]);
+    expect([...(seen?.drivenX ?? [])]).toEqual([10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20]);
+    expect(seen?.foreseen).toEqual({ x: expect.closeTo(20), y: expect.closeTo(0.8), yaw: expect.closeTo(0.16) });
+  });
+
+  it('is nothing before there is a plan', () => expect(hindsight([], driven(1), 1)).toBeNull());
+
+  it('does not see beyond the ends of a plan', () => {
+    expect(poseOf(plan(0), 0.05)).toBeNull();
+    expect(poseOf(plan(0), 1.7)).toBeNull();
+    expect(poseOf(plan(0), 1.6)).toEqual({ x: 16, y: 2, yaw: 0.4 });
+  });
+});
