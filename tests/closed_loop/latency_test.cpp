@@ -36,5 +36,19 @@ TEST(Latency, MakesThePresetsThatSurviveItTrackWorse) {
   EXPECT_LT(error("delay-in-model", "inside-model"), 0.85 * error("delay-in-model", "none"));
 }
 
+TEST(Latency, CostsTheDefaultControllerHardlyAnyTime) {
+  const auto flying_lap = [](const char* latency_ms, const char* period_ms) {
+    const auto run = drive({{"preset", "default"},
+                            {"track", "lakeside"},
+                            {"laps", "2"},
+                            {"latency_ms", latency_ms},
+                            {"control_period_ms", period_ms}});
+    EXPECT_TRUE(run.completed);
+    EXPECT_EQ(run.off_track_events, 0);
+    return run.laps.size() == 2U ? run.laps[1].lap_time : 1e9;
+  };
+  EXPECT_LT(flying_lap("300", "320"), 1.03 * flying_lap("0", "20"));
+}
+
 }  // namespace
 }  // namespace chicane::runtime

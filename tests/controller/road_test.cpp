@@ -210,6 +210,28 @@ TEST(Road, PlansTheLapInInstalmentsAndHasALineAllTheTime) {
   EXPECT_LT(cycles, 60);
 }
 
+TEST(Road, PlansTheLapAsSoonHoweverRarelyItIsAsked) {
+  const std::vector<Vec2> points = stadium();
+  const auto seconds_until_closed = [&](double period) {
+    Road road({}, model::udacity_params());
+    double time = 100.0;
+    const auto add = [&](int first) {
+      model::Measurement now = seeing(points, first);
+      now.time = time;
+      road.add(now);
+      time += period;
+    };
+    for (int i = 0; i < 55; ++i) add(i);
+    const double closed = time;
+    while (!road.line().is_closed() && time < closed + 20.0) add(55 + static_cast<int>((time - closed) * 3.0));
+    return time - closed;
+  };
+  const double often = seconds_until_closed(0.04);
+  EXPECT_GT(often, 0.3);
+  EXPECT_LT(seconds_until_closed(0.32), often + 2.0 * 0.32);
+  EXPECT_LT(seconds_until_closed(0.12), often + 2.0 * 0.12);
+}
+
 TEST(Road, KeepsDrivingByTheOldLineWhileNewSettingsArePlanned) {
   Road road({}, model::udacity_params());
   const std::vector<Vec2> points = stadium();

@@ -2,6 +2,7 @@
 #include "chicane/controller/road.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace chicane::controller {
@@ -45,7 +46,7 @@ void Road::configure(const RoadOptions& options, const model::VehicleParams& veh
   configure_planners();
   is_lap_begun_ = false;
   if (is_lap_) {
-    plan_lap();
+    plan_lap(1);
   } else if (waypoints_.newest() >= 0) {
     plan_stretch();
   }
@@ -59,6 +60,7 @@ void Road::add(const model::Measurement& now) noexcept {
   }
   if (!is_lap_ && waypoints_.is_full()) map_.clear();
   const bool has_grown = map_.add(now);
+  const int shares = shares_until(now.time);
   if (map_.generation() != generation_) {
     generation_ = map_.generation();
     waypoints_.clear();
@@ -67,10 +69,17 @@ void Road::add(const model::Measurement& now) noexcept {
   if (!map_.is_closed()) {
     if (has_grown && waypoints_.extend(map_, static_cast<int>(map_.points().size()) - 1)) plan_stretch();
   } else if (!is_lap_ && waypoints_.newest() < newest_needed(now)) {
-    go_round(newest_needed(now));
+    go_round(newest_needed(now), shares);
   } else if (!is_lap_ || is_lap_begun_) {
-    plan_lap();
+    plan_lap(shares);
   }
+}
+
+/// Shares of planning due at a measurement: who is asked rarely has the more time for each answer.
+int Road::shares_until(double time) noexcept {
+  const double shares = std::round((time - time_) / kShare);
+  time_ = time;
+  return shares >= 1.0 ? static_cast<int>(std::min(shares, static_cast<double>(kMostShares))) : 1;
 }
 
 /// The waypoint up to which the line of a closed map is drawn: on into the second lap as far as the first
@@ -81,11 +90,13 @@ int Road::newest_needed(const model::Measurement& now) const noexcept {
   return std::max(count + kSeam + WaypointLine::kSettled, first + now.waypoint_count - 1);
 }
 
-/// Draws a closed map's line on round the seam, a few waypoints in each measurement, then the stretch anew.
-void Road::go_round(int newest) noexcept {
+/// Draws a closed map's line on round the seam, a few waypoints in each share, then the stretch anew.
+void Road::go_round(int newest, int shares) noexcept {
   constexpr int kAtOnce = 3;
-  const int to = std::min(newest, waypoints_.newest() + kAtOnce);
-  if (waypoints_.extend(map_, to) && to == newest) plan_stretch();
+  for (int share = 0; share < shares && waypoints_.newest() < newest; ++share) {
+    const int to = std::min(newest, waypoints_.newest() + kAtOnce);
+    if (waypoints_.extend(map_, to) && to == newest) plan_stretch();
+  }
 }
 
 void Road::plan_stretch() noexcept {
@@ -103,7 +114,7 @@ void Road::plan_stretch() noexcept {
   (void)stretch_planner_.advance(std::numeric_limits<int>::max(), stretch_);
 }
 
-void Road::plan_lap() noexcept {
+void Road::plan_lap(int shares) noexcept {
   const std::size_t other = 1 - current_lap_;
   if (!is_lap_begun_) {
     const int count = static_cast<int>(map_.points().size());
@@ -113,7 +124,7 @@ void Road::plan_lap() noexcept {
       return;
     }
   }
-  if (!lap_planner_.advance(kLapWork, laps_[other])) return;
+  if (!lap_planner_.advance(shares * kLapWork, laps_[other])) return;
   is_lap_begun_ = false;
   if (laps_[other].is_empty()) return;
   current_lap_ = other;

@@ -27,9 +27,10 @@ struct RoadOptions {
 /// speeds, and the room left and right of it. All memory is reserved at construction.
 ///
 /// Until a lap is known the line reaches from a little behind the car to the last waypoint seen, and is
-/// planned anew with each new one. When the loop closes, the lap is planned beside the driving, kLapWork in
-/// each measurement, and takes over when it is ready: 3 to 5 s for a lap of 1.3 km. So add() is bounded, by
-/// about 30 µs (docs/tracking.md), and does the same work for the same measurements.
+/// planned anew with each new one. When the loop closes, the lap is planned beside the driving, kLapWork for
+/// each kShare that has passed, and takes over when it is ready: 3 to 5 s for a lap of 1.3 km, however rarely
+/// measurements come. So add() is bounded, by about 30 µs when it is called every kShare (docs/tracking.md),
+/// and does the same work for the same measurements.
 class Road {
  public:
   Road(const RoadOptions& options, const model::VehicleParams& vehicle);
@@ -56,14 +57,17 @@ class Road {
   [[nodiscard]] unsigned revision() const noexcept { return revision_; }
 
  private:
-  static constexpr int kLapWork = 1500;      ///< units of LinePlanner in each measurement
+  static constexpr double kShare = 0.04;     ///< [s] of driving that pay for one share of planning
+  static constexpr int kMostShares = 8;      ///< in one measurement, however long ago the last one is
+  static constexpr int kLapWork = 1500;      ///< units of LinePlanner in each share
   static constexpr int kStretchKnots = 128;  ///< 380 m
   static constexpr double kBehind = 60.0;    ///< [m] the line begins so far behind the first waypoint seen
 
   void configure_planners() noexcept;
-  void go_round(int newest) noexcept;
+  [[nodiscard]] int shares_until(double time) noexcept;
+  void go_round(int newest, int shares) noexcept;
   void plan_stretch() noexcept;
-  void plan_lap() noexcept;
+  void plan_lap(int shares) noexcept;
   [[nodiscard]] int newest_needed(const model::Measurement& now) const noexcept;
 
   RoadOptions options_;
@@ -77,6 +81,7 @@ class Road {
   std::size_t current_lap_ = 0;
   unsigned generation_ = 0;  ///< of the map the lines belong to
   unsigned revision_ = 0;
+  double time_ = 0.0;          ///< of the last measurement [s]
   bool is_lap_ = false;        ///< the current lap is driven by
   bool is_lap_begun_ = false;  ///< the other one is being planned
 };
