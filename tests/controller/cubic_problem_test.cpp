@@ -9,18 +9,23 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
-#include "chicane/base/dual.hpp"
+#include "chicane/base/instruction_set.hpp"
+#include "chicane/base/jet.hpp"
 #include "chicane/base/random.hpp"
+#include "chicane/controller/cubic_solver.hpp"
 #include "chicane/solver/ocp_solver.hpp"
+#include "controller/dense_cubic_problem.hpp"
 
 namespace chicane::controller {
 namespace {
 
-using States = CubicProblem::States<double>;
-using Inputs = CubicProblem::Inputs<double>;
-using Solver = solver::OcpSolver<CubicProblem, 200>;
+using State = CubicProblem::State;
+using Input = CubicProblem::Input;
+
+const State kState{2.0, 0.3, 0.1, 12.0, -0.04, 0.2, -0.5};
 
 CubicProblem sample_problem(LatencyHandling handling = LatencyHandling::kNone, bool right_positive = false) {
   CubicMpcOptions options;
@@ -32,82 +37,117 @@ CubicProblem sample_problem(LatencyHandling handling = LatencyHandling::kNone, b
   return problem;
 }
 
+State next(const CubicProblem& problem, const State& x, const Input& u) {
+  return solver::next_state(problem, 1, x, u);
+}
+
 TEST(CubicProblem, MovesAsDescribed) {
   const CubicProblem p = sample_problem();
-  const States x{2.0, 0.3, 0.1, 12.0, 0.7, -0.04, 0.2, -0.5};
-  const Inputs u{0.05, 0.8};
-  const States next = p.dynamics(0, x, u);
+  const State to = next(p, kState, {0.05, 0.8});
   const double f = 0.4 - 0.05 * 2.0 + 0.004 * 4.0 - 3e-5 * 8.0;
   const double slope = -0.05 + 2.0 * 0.004 * 2.0 - 3.0 * 3e-5 * 4.0;
   const double turn = 12.0 / 2.67 * 0.05 * 0.1;
-  EXPECT_NEAR(next[0], 2.0 + 12.0 * std::cos(0.1) * 0.1, 1e-14);
-  EXPECT_NEAR(next[1], 0.3 + 12.0 * std::sin(0.1) * 0.1, 1e-14);
-  EXPECT_NEAR(next[2], 0.1 + turn, 1e-14);
-  EXPECT_NEAR(next[3], 12.0 + 0.8 * 0.1, 1e-14);
-  EXPECT_NEAR(next[4], f - 0.3 + 12.0 * std::sin(-0.04) * 0.1, 1e-14);
-  EXPECT_NEAR(next[5], 0.1 - std::atan(slope) + turn, 1e-14);
-  EXPECT_EQ(next[6], 0.05);
-  EXPECT_EQ(next[7], 0.8);
+  EXPECT_NEAR(to[0], 2.0 + 12.0 * std::cos(0.1) * 0.1, 1e-14);
+  EXPECT_NEAR(to[1], 0.3 + 12.0 * std::sin(0.1) * 0.1, 1e-14);
+  EXPECT_NEAR(to[2], 0.1 + turn, 1e-14);
+  EXPECT_NEAR(to[3], 12.0 + 0.8 * 0.1, 1e-14);
+  EXPECT_NEAR(to[4], 0.1 - std::atan(slope) + turn, 1e-14);
+  EXPECT_EQ(to[5], 0.05);
+  EXPECT_EQ(to[6], 0.8);
+  EXPECT_NEAR(p.next_lateral_error(kState), f - 0.3 + 12.0 * std::sin(-0.04) * 0.1, 1e-14);
 }
 
 TEST(CubicProblem, TurnsTheOtherWayWithTheSimulatorsSign) {
-  const States x{2.0, 0.3, 0.1, 12.0, 0.7, -0.04, 0.2, -0.5};
-  const States left = sample_problem().dynamics(0, x, Inputs{0.05, 0.8});
-  const States right = sample_problem(LatencyHandling::kNone, true).dynamics(0, x, Inputs{-0.05, 0.8});
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(left[i], right[i]) << i;
+  const State left = next(sample_problem(), kState, {0.05, 0.8});
+  const State right = next(sample_problem(LatencyHandling::kNone, true), kState, {-0.05, 0.8});
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(left[i], right[i]) << i;
 }
 
 TEST(CubicProblem, DrivesAStageByTheInputsOfTheStageBeforeInsideTheModel) {
-  const States x{2.0, 0.3, 0.1, 12.0, 0.7, -0.04, 0.2, -0.5};
-  const States late = sample_problem(LatencyHandling::kInsideModel).dynamics(0, x, Inputs{0.05, 0.8});
-  const States direct = sample_problem().dynamics(0, x, Inputs{0.2, -0.5});
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(late[i], direct[i]) << i;
-  EXPECT_EQ(late[6], 0.05);
-  EXPECT_EQ(late[7], 0.8);
+  const State late = next(sample_problem(LatencyHandling::kInsideModel), kState, {0.05, 0.8});
+  const State direct = next(sample_problem(), kState, {0.2, -0.5});
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(late[i], direct[i]) << i;
+  EXPECT_EQ(late[5], 0.05);
+  EXPECT_EQ(late[6], 0.8);
+}
+
+double half_square(const auto& residual) {
+  double sum = 0.0;
+  for (const double r : solver::to_array<double>(residual)) sum += 0.5 * r * r;
+  return sum;
 }
 
 TEST(CubicProblem, PaysTheDescribedSum) {
-  const CubicProblem p = sample_problem();
-  const States x{2.0, 0.3, 0.1, 12.0, 0.7, -0.04, 0.2, -0.5};
-  const Inputs u{0.05, 0.8};
-  double cost = 0.0;
-  for (const double r : p.residual(1, x, u)) cost += 0.5 * r * r;
+  CubicProblem p = sample_problem();
+  p.first_lateral_error = 0.7;
+  const Input u{0.05, 0.8};
   const auto square = [](double v) { return v * v; };
-  const double stage = 200.0 * square(0.7) + 200.0 * square(-0.04) + 0.1 * square(12.0 - 17.9) +
-                       square(0.05) + square(0.8) + 0.3 * square(12.0 * 0.05);
-  EXPECT_NEAR(cost, stage + 10.0 * square(0.05 - 0.2) + square(0.8 + 0.5), 1e-10);
-  double first = 0.0;
-  for (const double r : p.residual(0, x, u)) first += 0.5 * r * r;
-  EXPECT_NEAR(first, stage, 1e-10);  // no change to pay for in the first stage
+  const double errors = 200.0 * square(-0.04) + 0.1 * square(12.0 - 17.9);
+  const double stage = 200.0 * square(p.next_lateral_error(kState)) + errors + square(0.05) + square(0.8) +
+                       0.3 * square(12.0 * 0.05);
+  EXPECT_NEAR(half_square(p.residual(1, kState, u)), stage + 10.0 * square(0.05 - 0.2) + square(0.8 + 0.5),
+              1e-10);
+  EXPECT_NEAR(half_square(p.residual(0, kState, u)), stage, 1e-10);  // no change to pay for in the first
+  EXPECT_NEAR(half_square(p.terminal_residual(kState)), 200.0 * square(0.7) + errors, 1e-10);
+}
+
+/// Every handling that changes the model, both signs, metres and miles.
+std::vector<CubicProblem> all_variants(Random& random) {
+  std::vector<CubicProblem> problems;
+  for (const auto handling : {LatencyHandling::kNone, LatencyHandling::kInsideModel}) {
+    for (const bool is_right_positive : {false, true}) {
+      for (const bool is_in_mph : {false, true}) {
+        CubicMpcOptions options;
+        options.latency_handling = handling;
+        options.steering_right_positive = is_right_positive;
+        options.speed_in_mph = is_in_mph;
+        options.speed_reference = random.uniform(5.0, 25.0);
+        options.weight_speed_steer = random.uniform(0.0, 1.0);
+        options.weight_steer_change = random.uniform(0.0, 100.0);
+        options.weight_throttle = random.uniform(0.1, 50.0);
+        CubicProblem problem{options, model::VehicleParams{}};
+        problem.line = {{random.uniform(-1.5, 1.5), random.uniform(-0.3, 0.3), random.uniform(-4e-3, 4e-3),
+                         random.uniform(-3e-5, 3e-5)}};
+        problem.first_lateral_error = problem.line.at(0.0);
+        problems.push_back(problem);
+      }
+    }
+  }
+  return problems;
+}
+
+/// By all states and inputs.
+std::array<double, 9> slopes(const auto& value) {
+  std::array<double, 9> d{};
+  jet::repeat<9>([&](auto i) { d[i] = jet::number<double>(jet::slope<i>(value)); });
+  return d;
 }
 
 TEST(CubicProblem, HasTheDerivativesThatDifferencesShow) {
-  using D = Dual<10>;
   Random random{5};
-  for (const auto handling : {LatencyHandling::kNone, LatencyHandling::kInsideModel}) {
-    const CubicProblem p = sample_problem(handling);
-    for (int turn = 0; turn < 50; ++turn) {
-      std::array<double, 10> z{};
+  for (const CubicProblem& p : all_variants(random)) {
+    for (int turn = 0; turn < 20; ++turn) {
+      std::array<double, 9> z{};
       for (double& value : z) value = random.uniform(-0.4, 0.4);
       z[0] *= 100.0;
       z[3] = random.uniform(0.0, 50.0);
-      const auto evaluate = [&](const std::array<double, 10>& at) {
-        States x{};
-        std::copy(at.begin(), at.begin() + 8, x.begin());
-        const Inputs u{at[8], at[9]};
+      const auto evaluate = [&](const std::array<double, 9>& at) {
+        const State x{at[0], at[1], at[2], at[3], at[4], at[5], at[6]};
+        const Input u{at[7], at[8]};
         std::vector<double> values;
-        for (const double value : p.dynamics(1, x, u)) values.push_back(value);
-        for (const double value : p.residual(1, x, u)) values.push_back(value);
+        for (const double value : next(p, x, u)) values.push_back(value);
+        for (const double value : solver::to_array<double>(p.residual(1, x, u))) values.push_back(value);
         return values;
       };
-      std::array<D, 8> x;
-      for (int i = 0; i < 8; ++i)
-        x[static_cast<std::size_t>(i)] = D::variable(z[static_cast<std::size_t>(i)], i);
-      const std::array<D, 2> u{D::variable(z[8], 8), D::variable(z[9], 9)};
-      std::vector<D> duals;
-      for (const D& value : p.dynamics(1, x, u)) duals.push_back(value);
-      for (const D& value : p.residual(1, x, u)) duals.push_back(value);
-      for (std::size_t j = 0; j < 10; ++j) {
+      // As the solver sees them: every variable of a type of its own.
+      const auto x = std::make_tuple(seed<1, 0>(z[0]), seed<1, 1>(z[1]), seed<1, 2>(z[2]), seed<1, 3>(z[3]),
+                                     seed<1, 4>(z[4]), seed<1, 5>(z[5]), seed<1, 6>(z[6]));
+      const auto u = std::make_tuple(seed<1, 7>(z[7]), seed<1, 8>(z[8]));
+      std::vector<std::array<double, 9>> rows;
+      const auto collect = [&](const auto&... values) { (rows.push_back(slopes(values)), ...); };
+      std::apply(collect, p.dynamics(1, x, u));
+      std::apply(collect, p.residual(1, x, u));
+      for (std::size_t j = 0; j < 9; ++j) {
         const double h = 1e-6 * std::max(1.0, std::fabs(z[j]));
         auto plus = z;
         auto minus = z;
@@ -115,12 +155,75 @@ TEST(CubicProblem, HasTheDerivativesThatDifferencesShow) {
         minus[j] -= h;
         const auto a = evaluate(plus);
         const auto b = evaluate(minus);
-        for (std::size_t i = 0; i < duals.size(); ++i) {
+        ASSERT_EQ(rows.size(), a.size());
+        for (std::size_t i = 0; i < rows.size(); ++i) {
           // 1e-6 relative: rounding of central differences with h = 1e-6.
-          ASSERT_NEAR(duals[i].d[j], (a[i] - b[i]) / (2.0 * h), 1e-6 * (1.0 + std::fabs(duals[i].d[j])))
+          ASSERT_NEAR(rows[i][j], (a[i] - b[i]) / (2.0 * h), 1e-6 * (1.0 + std::fabs(rows[i][j])))
               << i << ' ' << j;
         }
       }
+    }
+  }
+}
+
+solver::SolveReport solve(const CubicProblem& problem, const State& start, CubicTrajectory& answer) {
+  return with_instructions(chosen_instruction_set(), [&](auto instructions) {
+    return make_cubic_solver<decltype(instructions)>({.max_iterations = 100})
+        ->solve(problem, start, answer, Deadline::never());
+  });
+}
+
+TEST(CubicProblem, HasTheOptimaOfTheDenseForm) {
+  using Dense = solver::OcpSolver<DenseCubicProblem, 200>;
+  const auto dense_solver = std::make_unique<Dense>(solver::SolverOptions{.max_iterations = 100});
+  const auto dense = std::make_unique<Dense::Trajectory>();
+  const auto answer = std::make_unique<CubicTrajectory>();
+  Random random{11};
+  int compared = 0;
+  for (int turn = 0; turn < 8; ++turn) {
+    for (const CubicProblem& problem : all_variants(random)) {
+      const double speed = random.uniform(5.0, 25.0) * problem.speed_unit;
+      const State start{0.0, 0.0, 0.0, speed, -std::atan(problem.line.slope(0.0)), random.uniform(-0.1, 0.1),
+                        0.3};
+      answer->horizon = dense->horizon = 9;
+      answer->u.fill({});
+      dense->u.fill({});
+      const solver::SolveReport report = solve(problem, start, *answer);
+      const DenseCubicProblem described{problem};
+      const solver::SolveReport expected = dense_solver->solve(
+          described, DenseCubicProblem::with_lateral_error(start, problem.first_lateral_error), *dense,
+          Deadline::never());
+      ASSERT_EQ(report.status, solver::SolveStatus::kOptimal);
+      ASSERT_EQ(expected.status, solver::SolveStatus::kOptimal);
+      if (std::fabs(report.cost - expected.cost) > 1e-6 * expected.cost) continue;  // another local optimum
+      ++compared;
+      for (std::size_t k = 0; k < 9; ++k) {
+        ASSERT_NEAR(answer->u[k][0], dense->u[k][0], 2e-5) << k;  // both solvers' tolerance
+        ASSERT_NEAR(answer->u[k][1], dense->u[k][1], 2e-4) << k;
+      }
+    }
+  }
+  EXPECT_GE(compared, 60) << "of 64";
+}
+
+TEST(CubicProblem, HasMirroredOptima) {
+  const auto left = std::make_unique<CubicTrajectory>();
+  const auto right = std::make_unique<CubicTrajectory>();
+  Random random{3};
+  for (CubicProblem problem : all_variants(random)) {
+    State start{0.0, 0.0, 0.0, 15.0, -std::atan(problem.line.slope(0.0)), 0.05, 0.3};
+    left->horizon = right->horizon = 9;
+    left->u.fill({});
+    right->u.fill({});
+    (void)solve(problem, start, *left);
+    for (double& c : problem.line.c) c = -c;
+    problem.first_lateral_error = -problem.first_lateral_error;
+    start[CubicProblem::kEpsi] = -start[CubicProblem::kEpsi];
+    start[CubicProblem::kLastSteer] = -start[CubicProblem::kLastSteer];
+    (void)solve(problem, start, *right);
+    for (std::size_t k = 0; k < 9; ++k) {
+      EXPECT_EQ(left->u[k][0], -right->u[k][0]) << k;  // the same arithmetic
+      EXPECT_EQ(left->u[k][1], right->u[k][1]) << k;
     }
   }
 }
@@ -144,8 +247,7 @@ std::vector<std::vector<double>> read_csv(const std::string& path) {
 TEST(CubicProblem, HasTheOptimaThatIpoptFinds) {
   const std::string folder = std::string{CHICANE_SOURCE_DIR} + "/../shared/reference_nlp/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
-  const auto solver = std::make_unique<Solver>();
-  const auto answer = std::make_unique<Solver::Trajectory>();
+  const auto answer = std::make_unique<CubicTrajectory>();
   int compared = 0;
   int unequal = 0;
   int unsolved = 0;
@@ -163,8 +265,8 @@ TEST(CubicProblem, HasTheOptimaThatIpoptFinds) {
       problem.line = {{in[6], in[7], in[8], in[9]}};
       answer->horizon = n - 1;
       answer->u.fill({});
-      const auto report = solver->solve(problem, {in[0], in[1], in[2], in[3], in[4], in[5], 0.0, 0.0},
-                                        *answer, Deadline::never());
+      problem.first_lateral_error = in[4];
+      const auto report = solve(problem, {in[0], in[1], in[2], in[3], in[5], 0.0, 0.0}, *answer);
       ++compared;
       if (report.status != solver::SolveStatus::kOptimal) {
         ++unsolved;

@@ -64,8 +64,8 @@ INSTANTIATE_TEST_SUITE_P(
                {{"track", "oval"}, {"sensor.position_noise_m", "0.05"}, {"seed", "7"}},
                0x0075a7792a421900,
                0x31bb96d363fd0d7a},
-        Golden{"weighted", {{"preset", "weighted"}}, 0x47c94acc085df132, 0x47c94acc085df132},
-        Golden{"delay_in_model", {{"preset", "delay-in-model"}}, 0xdecb066ecf7eb22c, 0xdecb066ecf7eb22c},
+        Golden{"weighted", {{"preset", "weighted"}}, 0x091b005c1886cede, 0xa91771e4faded080},
+        Golden{"delay_in_model", {{"preset", "delay-in-model"}}, 0xceefe72daaf472a6, 0xe71652142efa67ba},
         Golden{"pid", {{"preset", "pid"}, {"latency_ms", "37"}}, 0xdab4f526bb2d5617, 0xdab4f526bb2d5617}),
     [](const auto& run) { return std::string(run.param.name); });
 

@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/base/instruction_set.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/controller/cubic_problem.hpp"
+#include "chicane/controller/cubic_solver.hpp"
 #include "chicane/controller/doubt.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/fallback.hpp"
@@ -14,18 +16,15 @@
 #include "chicane/controller/option_range.hpp"
 #include "chicane/controller/roll_forward.hpp"
 #include "chicane/controller/tunable.hpp"
-#include "chicane/solver/ocp_solver.hpp"
+#include "chicane/solver/warm_start.hpp"
 
 namespace chicane::controller {
 namespace {
 
-constexpr int kMaxSteps = 200;
 constexpr int kMaxIterations =
     100;  ///< one solve in thousands needs more than 40: a cubic far beyond the waypoints
 constexpr int kReferencePoints = 32;
 constexpr double kUnlimited = 1e9;
-
-using Solver = solver::OcpSolver<CubicProblem, kMaxSteps>;
 
 class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
  public:
@@ -86,6 +85,12 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
   }
 
  private:
+  static std::unique_ptr<CubicSolver> make_solver() {
+    return with_instructions(chosen_instruction_set(), [&](auto instructions) {
+      return make_cubic_solver<decltype(instructions)>({.max_iterations = kMaxIterations});
+    });
+  }
+
   static bool is_finite(const model::Measurement& now) noexcept {
     return std::isfinite(now.time) && std::isfinite(now.x) && std::isfinite(now.y) &&
            std::isfinite(now.psi) && std::isfinite(now.speed) && std::isfinite(now.steer) &&
@@ -109,20 +114,20 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
   }
 
   /// In its own frame the car stands at the origin; equations 8 and 9 give the errors there.
-  [[nodiscard]] Solver::State initial_state(const model::Measurement& now) const noexcept {
+  [[nodiscard]] CubicProblem::State initial_state(const model::Measurement& now) const noexcept {
     return {0.0,
             0.0,
             0.0,
             start_.speed * problem_.speed_unit,
-            problem_.line.at(0.0),
             -atan(problem_.line.slope(0.0)),
             steer_sign_ * now.steer,
             now.throttle};
   }
 
   void solve(const model::Measurement& now, const Deadline& deadline) noexcept {
+    problem_.first_lateral_error = problem_.line.at(0.0);
     const double started = deadline.elapsed();
-    result_.report.solve = solver_.solve(problem_, initial_state(now), answer_, deadline);
+    result_.report.solve = solver_->solve(problem_, initial_state(now), answer_, deadline);
     result_.report.solve_time = deadline.elapsed() - started;
   }
 
@@ -207,13 +212,13 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
   int stages_;         ///< intervals: one less than states
   RollForward roll_forward_;
   CubicProblem problem_;
-  Solver solver_{solver::SolverOptions{.max_iterations = kMaxIterations}};
+  std::unique_ptr<CubicSolver> solver_ = make_solver();
   Fallback fallback_;
   Doubt doubt_;
-  Motion start_;               ///< of the horizon
-  double start_time_ = 0.0;    ///< [s]
-  Solver::Trajectory answer_;  ///< of the last usable solve, in the frame of its start
-  double answer_time_ = 0.0;   ///< when it started [s]
+  Motion start_;              ///< of the horizon
+  double start_time_ = 0.0;   ///< [s]
+  CubicTrajectory answer_;    ///< of the last usable solve, in the frame of its start
+  double answer_time_ = 0.0;  ///< when it started [s]
   bool has_answer_ = false;
   StepResult result_;
 };
@@ -223,19 +228,19 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
 Result<std::unique_ptr<Controller>> make_cubic_mpc(const CubicMpcOptions& options,
                                                    const model::VehicleParams& vehicle) {
   if (const auto valid = model::validate(vehicle); !valid) return fail(valid.error());
-  const auto valid =
-      check_ranges({{"cubic_mpc.horizon_steps", static_cast<double>(options.horizon_steps), 2.0, kMaxSteps},
-                    {"cubic_mpc.step_length", options.step_length, 0.005, 0.5},
-                    {"cubic_mpc.speed_reference", options.speed_reference, 0.0, 90.0},
-                    {"cubic_mpc.latency", options.latency, 0.0, 0.5},
-                    {"cubic_mpc.weight_lateral", options.weight_lateral, 0.0, kUnlimited},
-                    {"cubic_mpc.weight_heading", options.weight_heading, 0.0, kUnlimited},
-                    {"cubic_mpc.weight_speed", options.weight_speed, 0.0, kUnlimited},
-                    {"cubic_mpc.weight_steer", options.weight_steer, 0.0, kUnlimited},
-                    {"cubic_mpc.weight_throttle", options.weight_throttle, 0.0, kUnlimited},
-                    {"cubic_mpc.weight_steer_change", options.weight_steer_change, 0.0, kUnlimited},
-                    {"cubic_mpc.weight_throttle_change", options.weight_throttle_change, 0.0, kUnlimited},
-                    {"cubic_mpc.weight_speed_steer", options.weight_speed_steer, 0.0, kUnlimited}});
+  const auto valid = check_ranges(
+      {{"cubic_mpc.horizon_steps", static_cast<double>(options.horizon_steps), 2.0, CubicProblem::kCapacity},
+       {"cubic_mpc.step_length", options.step_length, 0.005, 0.5},
+       {"cubic_mpc.speed_reference", options.speed_reference, 0.0, 90.0},
+       {"cubic_mpc.latency", options.latency, 0.0, 0.5},
+       {"cubic_mpc.weight_lateral", options.weight_lateral, 0.0, kUnlimited},
+       {"cubic_mpc.weight_heading", options.weight_heading, 0.0, kUnlimited},
+       {"cubic_mpc.weight_speed", options.weight_speed, 0.0, kUnlimited},
+       {"cubic_mpc.weight_steer", options.weight_steer, 0.0, kUnlimited},
+       {"cubic_mpc.weight_throttle", options.weight_throttle, 0.0, kUnlimited},
+       {"cubic_mpc.weight_steer_change", options.weight_steer_change, 0.0, kUnlimited},
+       {"cubic_mpc.weight_throttle_change", options.weight_throttle_change, 0.0, kUnlimited},
+       {"cubic_mpc.weight_speed_steer", options.weight_speed_steer, 0.0, kUnlimited}});
   if (!valid) return fail(valid.error());
   return std::make_unique<CubicMpc>(options, vehicle);
 }

@@ -3,36 +3,39 @@
 
 #include <array>
 #include <cstddef>
+#include <tuple>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/controller/cubic_mpc.hpp"
 #include "chicane/controller/local_fit.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/solver/stage_data.hpp"
 
 namespace chicane::controller {
 
 /// The optimal control problem of the five write-ups (docs/problem.md, equations 1 to 13), in the car's
-/// frame:
+/// frame and the solver's structured form (solver/problem.hpp):
 ///
-///     state  x, y [m], ψ [rad], v [m/s, or mph with speed_in_mph], cte [m], eψ [rad], and the inputs of the
-///     stage before, δ⁻ [rad], a⁻ input  δ [rad], |δ| <= steer_limit, in the model's own sign; a in [-1, 1],
-///     throttle taken for acceleration [m/s²]
+///     state  x, y [m], ψ [rad], v [m/s, or mph with speed_in_mph], eψ [rad], and the inputs of the stage
+///            before, δ⁻ [rad], a⁻
+///     input  δ [rad], |δ| <= steer_limit, in the model's own sign; a in [-1, 1], throttle taken for
+///            acceleration [m/s²]
 ///
-/// A solver::OcpProblem: residuals carry √(2 weight), so that the solver's ½‖r‖² is the described weighted
-/// sum of squares.
+/// cte of a stage follows from the stage before alone (equation 5): it is an output that this one pays for,
+/// not a state. Residuals carry √(2 weight), so that the solver's ½‖r‖² is the described weighted sum of
+/// squares.
 struct CubicProblem {
-  static constexpr int kNx = 8;
+  static constexpr int kNx = 7;
   static constexpr int kNu = 2;
   static constexpr int kNr = 8;
   static constexpr int kNe = 3;
   static constexpr int kNc = 0;
-  enum StateIndex : std::size_t { kX, kY, kPsi, kV, kCte, kEpsi, kLastSteer, kLastThrottle };
-  enum InputIndex : std::size_t { kSteer, kThrottle };
-  template <class T>
-  using States = std::array<T, kNx>;
-  template <class T>
-  using Inputs = std::array<T, kNu>;
+  static constexpr int kCapacity = 200;
+  enum StateIndex : std::size_t { kX, kY, kPsi, kV, kEpsi, kLastSteer, kLastThrottle };
+
+  using State = std::array<double, kNx>;
+  using Input = std::array<double, kNu>;
 
   CubicProblem(const CubicMpcOptions& options, const model::VehicleParams& vehicle) noexcept
       : dt{options.step_length},
@@ -46,54 +49,63 @@ struct CubicProblem {
              weight_root(options.weight_throttle),        weight_root(options.weight_steer_change),
              weight_root(options.weight_throttle_change), weight_root(options.weight_speed_steer)} {}
 
-  /// Equations 1 to 6: forward Euler, with the described recursions of both errors.
-  template <class T>
-  [[nodiscard]] States<T> dynamics(int, const States<T>& x, const Inputs<T>& u) const {
-    const T steer = acts_late ? x[kLastSteer] : u[kSteer];
-    const T throttle = acts_late ? x[kLastThrottle] : u[kThrottle];
-    const T turn = x[kV] * steer * (turn_per_metre * dt);
-    return {x[kX] + x[kV] * cos(x[kPsi]) * dt,
-            x[kY] + x[kV] * sin(x[kPsi]) * dt,
-            x[kPsi] + turn,
-            x[kV] + throttle * dt,
-            line.at(x[kX]) - x[kY] + x[kV] * sin(x[kEpsi]) * dt,
-            x[kPsi] - atan(line.slope(x[kX])) + turn,
-            u[kSteer],
-            u[kThrottle]};
+  /// Equations 1 to 4 and 6: forward Euler, with the described recursion of the heading error.
+  template <class K, class X, class U>
+  [[nodiscard]] auto dynamics(K, const X& state, const U& input) const noexcept {
+    const auto& [x, y, psi, v, epsi, last_steer, last_throttle] = state;
+    const auto& [steer, throttle] = input;
+    const auto turn = v * acting(last_steer, steer) * (turn_per_metre * dt);
+    return std::make_tuple(x + v * cos(psi) * dt, y + v * sin(psi) * dt, psi + turn,
+                           v + acting(last_throttle, throttle) * dt, psi - atan(line.slope(x)) + turn, steer,
+                           throttle);
   }
 
-  /// Equation 7, one stage. The first stage has no change to pay for, as described.
-  template <class T>
-  [[nodiscard]] std::array<T, kNr> residual(int k, const States<T>& x, const Inputs<T>& u) const {
-    const double is_change = k > 0 ? 1.0 : 0.0;
-    return {x[kCte] * root[0],
-            x[kEpsi] * root[1],
-            (x[kV] - speed_reference) * root[2],
-            u[kSteer] * root[3],
-            u[kThrottle] * root[4],
-            (u[kSteer] - x[kLastSteer]) * (is_change * root[5]),
-            (u[kThrottle] - x[kLastThrottle]) * (is_change * root[6]),
-            x[kV] * u[kSteer] * root[7]};
+  /// Equation 7, one stage, with cte of the next one. The first stage has no change to pay for, as described.
+  template <class K, class X, class U>
+  [[nodiscard]] auto residual(K k, const X& state, const U& input) const noexcept {
+    const auto& [x, y, psi, v, epsi, last_steer, last_throttle] = state;
+    const auto& [steer, throttle] = input;
+    const auto is_change = select(solver::stage_number(k) > 0.0, 1.0, 0.0);
+    return std::make_tuple(next_lateral_error(state) * root[0], epsi * root[1],
+                           (v - speed_reference) * root[2], steer * root[3], throttle * root[4],
+                           is_change * root[5] * (steer - last_steer),
+                           is_change * root[6] * (throttle - last_throttle), v * steer * root[7]);
   }
 
-  template <class T>
-  [[nodiscard]] std::array<T, kNe> terminal_residual(const States<T>& x) const {
-    return {x[kCte] * root[0], x[kEpsi] * root[1], (x[kV] - speed_reference) * root[2]};
+  /// The end, and cte of the beginning, which is given.
+  template <class X>
+  [[nodiscard]] auto terminal_residual(const X& state) const noexcept {
+    const auto& [x, y, psi, v, epsi, last_steer, last_throttle] = state;
+    return std::make_tuple(first_lateral_error * root[0], epsi * root[1], (v - speed_reference) * root[2]);
   }
 
-  [[nodiscard]] Inputs<double> input_lower(int) const { return {-steer_limit, -1.0}; }
-  [[nodiscard]] Inputs<double> input_upper(int) const { return {steer_limit, 1.0}; }
+  /// Equation 5: cte of the stage after this one [m].
+  template <class X>
+  [[nodiscard]] auto next_lateral_error(const X& state) const noexcept {
+    const auto& [x, y, psi, v, epsi, last_steer, last_throttle] = state;
+    return line.at(x) - y + v * sin(epsi) * dt;
+  }
+
+  [[nodiscard]] Input input_lower(int) const noexcept { return {-steer_limit, -1.0}; }
+  [[nodiscard]] Input input_upper(int) const noexcept { return {steer_limit, 1.0}; }
 
   double dt;              ///< [s]
   double turn_per_metre;  ///< ±1 / L_f: + for steering positive left, − for the simulator's own sign [1/m]
   double steer_limit;     ///< [rad]
   double speed_unit;      ///< the model's v for 1 m/s
-  double speed_reference;        ///< as the model's v
-  bool acts_late;                ///< the inputs of a stage act in the next one
-  std::array<double, kNr> root;  ///< √(2 weight) of: cte, eψ, v, δ, a, Δδ, Δa, v δ
-  Cubic line;                    ///< reference, renewed in every step
+  double speed_reference;            ///< as the model's v
+  bool acts_late;                    ///< the inputs of a stage act in the next one
+  std::array<double, kNr> root;      ///< √(2 weight) of: cte, eψ, v, δ, a, Δδ, Δa, v δ
+  Cubic line;                        ///< reference, renewed in every step
+  double first_lateral_error = 0.0;  ///< cte where the horizon begins, renewed in every step [m]
 
  private:
+  /// The input that drives a stage: its own, or inside the model that of the stage before (equation 13).
+  template <class Last, class Own>
+  [[nodiscard]] auto acting(const Last& last, const Own& own) const noexcept {
+    const double late = acts_late ? 1.0 : 0.0;
+    return own * (1.0 - late) + last * late;
+  }
   static double weight_root(double weight) noexcept { return sqrt(2.0 * weight); }
 };
 

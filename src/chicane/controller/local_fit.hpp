@@ -15,12 +15,12 @@ struct Cubic {
   std::array<double, 4> c{};
 
   template <class T>
-  [[nodiscard]] T at(const T& x) const {
+  [[nodiscard]] auto at(const T& x) const {
     return c[0] + x * (c[1] + x * (c[2] + x * c[3]));
   }
   /// f'(x) = dy/dx, the tangent of the line's heading.
   template <class T>
-  [[nodiscard]] T slope(const T& x) const {
+  [[nodiscard]] auto slope(const T& x) const {
     return c[1] + x * (2.0 * c[2] + x * (3.0 * c[3]));
   }
 };

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Compiled once for each instruction set (base/instruction_set.hpp).
+#include "chicane/controller/cubic_solver.hpp"
+
+#include "chicane/solver/ocp_solver.hpp"
+
+namespace chicane::controller {
+namespace {
+
+template <class Arch>
+class ArchSolver final : public CubicSolver {
+ public:
+  explicit ArchSolver(const solver::SolverOptions& options) : solver_{options} {}
+
+  solver::SolveReport solve(const CubicProblem& problem, const CubicProblem::State& start,
+                            CubicTrajectory& trajectory, Deadline deadline) noexcept override {
+    return solver_.solve(problem, start, trajectory, deadline);
+  }
+
+ private:
+  solver::OcpSolver<CubicProblem, CubicProblem::kCapacity, Arch> solver_;
+};
+
+}  // namespace
+
+template <class Arch>
+std::unique_ptr<CubicSolver> make_cubic_solver(const solver::SolverOptions& options) {
+  return std::make_unique<ArchSolver<Arch>>(options);
+}
+
+template std::unique_ptr<CubicSolver> make_cubic_solver<arch::Native>(const solver::SolverOptions&);
+
+}  // namespace chicane::controller

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+
+#include "chicane/base/deadline.hpp"
+#include "chicane/controller/cubic_problem.hpp"
+#include "chicane/solver/problem.hpp"
+#include "chicane/solver/solution.hpp"
+
+namespace chicane::controller {
+
+using CubicTrajectory = solver::Trajectory<CubicProblem::kNx, CubicProblem::kNu, CubicProblem::kCapacity>;
+
+/// The solver of the described problem, whatever instruction set it is compiled for
+/// (base/instruction_set.hpp).
+class CubicSolver {
+ public:
+  virtual ~CubicSolver() = default;
+  /// As OcpSolver::solve().
+  virtual solver::SolveReport solve(const CubicProblem& problem, const CubicProblem::State& start,
+                                    CubicTrajectory& trajectory, Deadline deadline) noexcept = 0;
+};
+
+/// For one instruction set; defined in cubic_solver.cpp, which is compiled for each.
+template <class Arch>
+[[nodiscard]] std::unique_ptr<CubicSolver> make_cubic_solver(const solver::SolverOptions& options);
+
+}  // namespace chicane::controller
