@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/runtime/simulate.hpp"
 
-#include <fcntl.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <future>
 #include <memory>
 #include <optional>
@@ -23,6 +17,7 @@
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/runtime/make.hpp"
 #include "chicane/runtime/observe.hpp"
+#include "chicane/runtime/server_process.hpp"
 #include "chicane/runtime/sparse_log.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
@@ -39,65 +34,11 @@ constexpr double kLostTime = 3.0;       // ... for so long: the run is over [s]
 constexpr double kTimePerLap = 600.0;   // when no limit was given [s]
 constexpr milliseconds kConnectTimeout{1000};
 constexpr milliseconds kNap{5};
-constexpr std::chrono::seconds kRestartAfter{1};
 
 Clock::duration duration(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
-
-/// The controller program that we started ourselves, in a process group of its own.
-class ServerProcess {
- public:
-  ServerProcess(std::string command, SparseLog& log) : command_{std::move(command)}, log_{log} {}
-  ServerProcess(const ServerProcess&) = delete;
-  ServerProcess& operator=(const ServerProcess&) = delete;
-  ~ServerProcess() {
-    if (pid_ <= 0) return;
-    ::kill(-pid_, SIGTERM);
-    for (int i = 0; i < 100 && ::waitpid(pid_, nullptr, WNOHANG) == 0; ++i)
-      std::this_thread::sleep_for(milliseconds{10});
-    ::kill(-pid_, SIGKILL);
-    ::waitpid(pid_, nullptr, 0);
-  }
-
-  [[nodiscard]] std::uint64_t starts() const { return starts_; }
-
-  /// Starts it, at first and after its death, but not in a busy loop.
-  void keep_running(Clock::time_point now) {
-    if (command_.empty()) return;
-    if (pid_ > 0) {
-      int status = 0;
-      if (::waitpid(pid_, &status, WNOHANG) != pid_) return;
-      pid_ = -1;
-      log_.say(WIFSIGNALED(status) ? fmt::format("the controller was ended by signal {}", WTERMSIG(status))
-                                   : fmt::format("the controller ended with status {}", WEXITSTATUS(status)));
-    }
-    if (starts_ > 0 && now - started_ < kRestartAfter) return;
-    start();
-    started_ = now;
-    ++starts_;
-  }
-
- private:
-  void start() {
-    pid_ = ::fork();
-    if (pid_ != 0) return;
-    ::setpgid(0, 0);
-    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-    const int nothing = ::open("/dev/null", O_RDWR);
-    ::dup2(nothing, STDIN_FILENO);
-    ::dup2(nothing, STDOUT_FILENO);  // the original's controllers print every message
-    ::execl("/bin/sh", "sh", "-c", command_.c_str(), static_cast<char*>(nullptr));
-    ::_exit(127);
-  }
-
-  std::string command_;
-  SparseLog& log_;
-  pid_t pid_ = -1;
-  std::uint64_t starts_ = 0;
-  Clock::time_point started_{};
-};
 
 /// The physical side: plant, road and what is measured of them.
 class Scene {
