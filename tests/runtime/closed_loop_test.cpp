@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/runtime/realtime_loop.hpp"
@@ -125,12 +126,25 @@ TEST(RealtimeLoop, DoesWhatTheFastLoopDoesAndObeysItsControls) {
   const telemetry::RunSummary summary =
       run_realtime(*loop, {}, controls, {.on_frame = [&](const telemetry::Frame& frame) {
         ++frames;
-        if (frame.cycle == 2) controls.is_paused = false;  // the third single step
+        if (frame.cycle == 3) controls.is_paused = false;  // where it begins, then three single steps
       }});
   EXPECT_EQ(controls.steps, 0);
   EXPECT_EQ(summary.end_reason, "time limit reached");
   EXPECT_EQ(static_cast<int>(summary.cycles), frames);
   EXPECT_NEAR(summary.duration, 2.0, 0.05);
+}
+
+TEST(RealtimeLoop, ShowsWhereAPausedRunBegins) {
+  std::unique_ptr<ClosedLoop> loop = std::move(*ClosedLoop::create(scenario_of("udacity", "oval", 1)));
+  RunControls controls;
+  controls.is_paused = true;
+  std::vector<double> times;
+  static_cast<void>(run_realtime(*loop, {}, controls, {.on_frame = [&](const telemetry::Frame& frame) {
+    times.push_back(frame.time);
+    controls.wants_restart = times.size() == 1;
+    controls.wants_stop = times.size() == 2;
+  }}));
+  EXPECT_EQ(times, (std::vector<double>{0.0, 0.0}));
 }
 
 }  // namespace

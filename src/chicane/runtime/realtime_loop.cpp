@@ -57,10 +57,11 @@ class Session {
       if (controls_.wants_restart.exchange(false)) {
         loop_.restart();
         pacer_.anchor(loop_.time());
+        is_unseen_ = true;
       }
       if (controls_.is_paused) {
         finish_cycle();
-        if (wait_while_paused()) one_cycle();
+        if (is_unseen_ || wait_while_paused()) one_cycle();  // viewers are to see where a run begins
         pacer_.anchor(loop_.time());
         continue;
       }
@@ -76,6 +77,7 @@ class Session {
   bool advance() {
     if (loop_.is_control_due()) take_up_changes();
     if (is_to_start_anew_ || !loop_.advance(budget_)) return false;
+    is_unseen_ = false;
     if (hooks_.on_frame) hooks_.on_frame(loop_.frame());
     return true;
   }
@@ -123,6 +125,7 @@ class Session {
   const RealtimeHooks& hooks_;
   Pacer pacer_;
   bool is_to_start_anew_ = false;
+  bool is_unseen_ = true;  ///< no frame since it began
 };
 
 }  // namespace
