@@ -15,7 +15,6 @@
 #include "chicane/runtime/live_settings.hpp"
 #include "chicane/runtime/pages.hpp"
 #include "chicane/runtime/realtime_loop.hpp"
-#include "chicane/runtime/recorder.hpp"
 #include "chicane/runtime/viewer.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
@@ -58,21 +57,16 @@ double step_budget(const Options& options, const scenario::Scenario& scenario) {
   return runtime::RealtimeOptions{}.budget_share * scenario.control_period;
 }
 
-Result<std::unique_ptr<runtime::Recorder>> start_recorder(const Options& options,
-                                                          const runtime::ClosedLoop& loop) {
-  return start_recorder(options, description(loop), loop.scenario(),
+Result<std::unique_ptr<KeptRun>> keep(const Options& options, const runtime::ClosedLoop& loop) {
+  return KeptRun::start(options, description(loop), loop.scenario(),
                         options.is_fast ? 0.0 : step_budget(options, loop.scenario()));
 }
 
 /// The results of a run, which are told even when its recording failed.
 struct Outcome {
   telemetry::RunSummary summary;
-  Result<void> recorded;
+  Result<void> kept;
 };
-
-Outcome conclude(const Options& options, telemetry::RunSummary summary, runtime::Recorder* recorder) {
-  return {std::move(summary), finish_recorder(options, recorder)};
-}
 
 /// A run that viewers change while it goes on. What cannot change in a run that goes on starts another one,
 /// built on the network thread and taken over by ours.
@@ -97,12 +91,12 @@ class WatchedRun {
         net::Server::create({.address = options_.address, .port = options_.port},
                             router.handlers(runtime::live_pages(settings_)), runtime::embedded_assets());
     if (!server) return fail(server.error());
-    auto recorder = start_recorder(options_, *loop_);
-    if (!recorder) return fail(recorder.error());
-    recorder_ = std::move(*recorder);
+    auto kept = keep(options_, *loop_);
+    if (!kept) return fail(kept.error());
+    kept_ = std::move(*kept);
     fmt::print(stderr, "dashboard at http://localhost:{}/; Ctrl-C ends\n", (*server)->port());
     telemetry::RunSummary summary = drive();
-    return conclude(options_, std::move(summary), recorder_.get());
+    return Outcome{std::move(summary), kept_->finish()};
   }
 
  private:
@@ -119,7 +113,7 @@ class WatchedRun {
     const runtime::RealtimeHooks hooks{
         .on_frame =
             [&](const telemetry::Frame& frame) {
-              if (recorder_) recorder_->record(frame);
+              kept_->record(frame);
               viewer_.publish(frame);
               note_faults(frame);
               progress.show(frame);
@@ -153,7 +147,7 @@ class WatchedRun {
       const bool is_on = change.value.view() == "true";
       told_faults_ = (told_faults_ & ~(1U << i)) | (is_on ? 1U << i : 0U);
     }
-    if (recorder_) recorder_->record(change);
+    kept_->record(change);
     settings_.tell(change);
   }
 
@@ -166,9 +160,8 @@ class WatchedRun {
       loop_ = std::move(built_.front());
       built_.pop_front();
     }
-    if (recorder_)
-      recorder_->record(std::make_unique<const runtime::RecordedRun>(
-          runtime::RecordedRun{.run = description(*loop_), .scenario = loop_->scenario()}));
+    kept_->record(std::make_unique<const runtime::RecordedRun>(
+        runtime::RecordedRun{.run = description(*loop_), .scenario = loop_->scenario()}));
     note(*next);
     controls_.wishes.pop();
     viewer_.set_run(description(*loop_));
@@ -195,7 +188,7 @@ class WatchedRun {
   std::unique_ptr<runtime::ClosedLoop> loop_;
   runtime::LiveSettings settings_;
   runtime::ViewerEndpoint viewer_;
-  std::unique_ptr<runtime::Recorder> recorder_;
+  std::unique_ptr<KeptRun> kept_;
   const std::vector<protocol::Control> faults_ = protocol::fault_controls();
   std::uint32_t told_faults_ = 0;  ///< bits, as viewers know them
   std::mutex mutex_;
@@ -204,20 +197,20 @@ class WatchedRun {
 
 Result<Outcome> run_fast(const Options& options, runtime::ClosedLoop& loop,
                          const runtime::RunControls& controls) {
-  const auto recorder = start_recorder(options, loop);
-  if (!recorder) return fail(recorder.error());
+  const auto kept = keep(options, loop);
+  if (!kept) return fail(kept.error());
   telemetry::RunSummary summary;
   {
     Progress progress;
     summary = runtime::run_closed_loop(
         loop,
         [&](const telemetry::Frame& frame) {
-          if (*recorder) (*recorder)->record(frame);
+          (*kept)->record(frame);
           progress.show(frame);
         },
         [&] { return controls.wants_stop.load(); });
   }
-  return conclude(options, std::move(summary), recorder->get());
+  return Outcome{std::move(summary), (*kept)->finish()};
 }
 
 Result<Outcome> run(const Options& options) {
@@ -238,7 +231,7 @@ ExitCode drive(const Options& options) {
   if (!outcome) return report(outcome.error());
   const telemetry::RunSummary& summary = outcome->summary;
   fmt::print("{}", options.is_json ? protocol::to_json(summary) : protocol::to_table(summary));
-  if (!outcome->recorded) return report(outcome->recorded.error());
+  if (!outcome->kept) return report(outcome->kept.error());
   const bool is_kept = stays_up(options) ? summary.off_track_events == 0 : kept_its_promises(summary);
   return is_kept ? kSuccess : kBrokenPromise;
 }

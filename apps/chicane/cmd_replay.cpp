@@ -69,10 +69,7 @@ Result<void> show(const Options& options, const Shown& shown, double start) {
 /// The second future's recording while it is computed.
 class BranchRecorder {
  public:
-  BranchRecorder(const Options& options, const std::string& file) : options_{options} {
-    options_.record_file = file;
-    options_.is_fast = true;  // the run waits for the disk
-  }
+  explicit BranchRecorder(std::string file) : file_{std::move(file)} {}
 
   runtime::BranchHooks hooks() {
     return {.on_begin = [this](const runtime::ClosedLoop& loop) { return begin(loop); },
@@ -92,13 +89,14 @@ class BranchRecorder {
           runtime::RecordedRun{.run = description(loop), .scenario = loop.scenario()}));
       return {};
     }
-    auto recorder = start_recorder(options_, description(loop), loop.scenario(), 0.0);
+    auto recorder = runtime::Recorder::create(
+        {.path = file_, .run = description(loop), .scenario = loop.scenario(), .may_wait = true});
     if (!recorder) return fail(recorder.error());
     recorder_ = std::move(*recorder);
     return {};
   }
 
-  Options options_;
+  std::string file_;
   std::unique_ptr<runtime::Recorder> recorder_;
 };
 
@@ -112,7 +110,7 @@ Result<ExitCode> branch(const Options& options) {
   }
   const runtime::TemporaryFile temporary(".mcap");
   const std::string& file = options.output_file.empty() ? temporary.path() : options.output_file;
-  BranchRecorder recorder(options, file);
+  BranchRecorder recorder(file);
   const runtime::BranchOptions branching{.log = log,
                                          .at = *options.branch_at,
                                          .settings = options.settings,

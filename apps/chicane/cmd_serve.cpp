@@ -41,9 +41,9 @@ Result<runtime::ServeSummary> run(const Options& options) {
   viewing.run.latency = scenario->latency;
   viewing.run.control_period = scenario->control_period;
   viewing.run.vehicle = scenario->vehicle;
-  const auto recorder = start_recorder(options, viewing.run, *scenario,
-                                       std::chrono::duration<double>(serving.step_budget).count());
-  if (!recorder) return fail(recorder.error());
+  const auto kept = KeptRun::start(options, viewing.run, *scenario,
+                                   std::chrono::duration<double>(serving.step_budget).count());
+  if (!kept) return fail(kept.error());
   runtime::ChangeQueue wishes;
   runtime::LiveSettings settings({.scenario = *scenario, .has_world = false}, wishes);
   viewing.parameters = &settings;
@@ -52,12 +52,12 @@ Result<runtime::ServeSummary> run(const Options& options) {
   runtime::ServeHooks hooks;
   hooks.wishes = &wishes;
   hooks.on_change = [&](const telemetry::Change& change) {
-    if (*recorder) (*recorder)->record(change);
+    (*kept)->record(change);
     settings.tell(change);
   };
   hooks.pages = runtime::live_pages(settings);
   hooks.on_frame = [&](const telemetry::Frame& frame) {
-    if (*recorder) (*recorder)->record(frame);
+    (*kept)->record(frame);
     viewer.publish(frame);
     progress.show(frame);
   };
@@ -69,8 +69,7 @@ Result<runtime::ServeSummary> run(const Options& options) {
   };
   auto summary =
       runtime::serve(serving, **controller, std::move(hooks), &viewer, runtime::embedded_assets(), stop);
-  if (const Result<void> recorded = finish_recorder(options, recorder->get()); summary && !recorded)
-    return fail(recorded.error());
+  if (const Result<void> done = (*kept)->finish(); summary && !done) return fail(done.error());
   return summary;
 }
 

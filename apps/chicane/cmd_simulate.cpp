@@ -40,22 +40,21 @@ Result<runtime::SimulateReport> run(const Options& options) {
   simulating.server_command = options.server;
   const Result<protocol::Run> described = description_of_external(*scenario);
   if (!described) return fail(described.error());
-  const auto recorder = start_recorder(options, *described, *scenario, 0.0);
-  if (!recorder) return fail(recorder.error());
+  const auto kept = KeptRun::start(options, *described, *scenario, 0.0);
+  if (!kept) return fail(kept.error());
   Result<runtime::SimulateReport> done;
   {
     Progress progress;
     done = runtime::simulate(simulating, *scenario,
                              {.on_frame =
                                   [&](const telemetry::Frame& frame) {
-                                    if (*recorder) (*recorder)->record(frame);
+                                    (*kept)->record(frame);
                                     progress.show(frame);
                                   },
                               .log = [&](std::string_view line) { progress.say(line); }},
                              stop);
   }
-  if (const Result<void> recorded = finish_recorder(options, recorder->get()); done && !recorded)
-    return fail(recorded.error());
+  if (const Result<void> finished = (*kept)->finish(); done && !finished) return fail(finished.error());
   return done;
 }
 

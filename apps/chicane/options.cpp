@@ -75,6 +75,7 @@ void add_world(CLI::App& command, Options& options) {
 void add_port(CLI::App& command, Options& options) {
   command.add_option("--port", options.port, "Port of dashboard and simulator socket; 0 takes any free one")
       ->type_name("P")
+      ->check(CLI::Range(0, 65535))
       ->capture_default_str();
   command.add_option("--address", options.address, "Address to listen on; 0.0.0.0 lets other machines in")
       ->type_name("A")
@@ -86,6 +87,10 @@ void add_record(CLI::App& command, Options& options) {
       ->type_name("FILE");
   command.add_flag("--compress", options.is_compressed, "The recording by Zstandard: about half the size")
       ->needs("--record");
+  command
+      .add_option("--report", options.report_file,
+                  "Write the run as one HTML page at its end; replaces an older one")
+      ->type_name("FILE.html");
 }
 
 void add_drive(CLI::App& command, Options& options) {

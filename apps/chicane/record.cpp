@@ -2,10 +2,15 @@
 #include "record.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
 #include <utility>
 
 #include "chicane/protocol/fault_codec.hpp"
+#include "chicane/runtime/html_report.hpp"
 
 namespace chicane::apps {
 protocol::Run description(const runtime::ClosedLoop& loop) {
@@ -26,26 +31,64 @@ protocol::Run description(const runtime::ClosedLoop& loop) {
   return run;
 }
 
-Result<std::unique_ptr<runtime::Recorder>> start_recorder(const Options& options, protocol::Run run,
-                                                          const scenario::Scenario& scenario,
-                                                          double step_budget) {
-  if (options.record_file.empty()) return nullptr;
-  return runtime::Recorder::create({.path = options.record_file,
-                                    .run = std::move(run),
-                                    .scenario = scenario,
-                                    .is_compressed = options.is_compressed,
-                                    .step_budget = step_budget,
-                                    .may_wait = options.is_fast});
+namespace {
+
+/// Better told before the run than after it.
+Result<void> can_be_reported(const std::string& file) {
+  if (runtime::report_bundle().script.empty()) {
+    return fail(
+        ErrorCode::kNotFound,
+        "--report: this program was built without its dashboard: install Node.js and npm, and build again");
+  }
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  if (::access(folder.empty() ? "." : folder.c_str(), W_OK) == 0) return {};
+  return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
 }
 
-Result<void> finish_recorder(const Options& options, runtime::Recorder* recorder) {
-  if (recorder == nullptr) return {};
-  const Result<runtime::RecorderReport> report = recorder->finish();
+}  // namespace
+
+Result<std::unique_ptr<KeptRun>> KeptRun::start(const Options& options, protocol::Run run,
+                                                const scenario::Scenario& scenario, double step_budget) {
+  std::unique_ptr<KeptRun> kept(new KeptRun(options));
+  if (options.record_file.empty() && options.report_file.empty()) return kept;
+  if (!options.report_file.empty()) {
+    if (const Result<void> possible = can_be_reported(options.report_file); !possible)
+      return fail(possible.error());
+    if (options.record_file.empty()) kept->temporary_.emplace(".mcap");
+  }
+  auto recorder =
+      runtime::Recorder::create({.path = kept->temporary_ ? kept->temporary_->path() : options.record_file,
+                                 .run = std::move(run),
+                                 .scenario = scenario,
+                                 .is_compressed = options.is_compressed,
+                                 .step_budget = step_budget,
+                                 .may_wait = options.is_fast});
+  if (!recorder) return fail(recorder.error());
+  kept->recorder_ = std::move(*recorder);
+  return kept;
+}
+
+Result<void> KeptRun::finish() {
+  if (!recorder_) return {};
+  const Result<runtime::RecorderReport> report = recorder_->finish();
   if (!report) return fail(report.error());
-  fmt::print(stderr, "{}: recorded {} steps, {:.1f} MB\n", options.record_file, report->frames,
-             1e-6 * static_cast<double>(report->bytes));
+  const std::string& told = temporary_ ? report_file_ : record_file_;
+  if (!temporary_)
+    fmt::print(stderr, "{}: recorded {} steps, {:.1f} MB\n", told, report->frames,
+               1e-6 * static_cast<double>(report->bytes));
   if (report->left_out > 0)
-    fmt::print(stderr, "{}: the disk was too slow for {} steps\n", options.record_file, report->left_out);
+    fmt::print(stderr, "{}: the disk was too slow for {} steps\n", told, report->left_out);
+  return report_file_.empty() ? Result<void>{} : write_report();
+}
+
+Result<void> KeptRun::write_report() const {
+  const std::string& log = temporary_ ? temporary_->path() : record_file_;
+  const std::string name = std::filesystem::path(temporary_ ? report_file_ : record_file_).filename();
+  const Result<runtime::ReportSummary> written = runtime::write_report(
+      {.output = report_file_, .logs = {{name, log}}, .bundle = runtime::report_bundle()});
+  if (!written) return fail(written.error());
+  fmt::print(stderr, "{}: {:.1f} MB, {:g} messages a second; open it in a browser\n", report_file_,
+             1e-6 * static_cast<double>(written->bytes), written->rate);
   return {};
 }
 

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/runtime/closed_loop.hpp"
 #include "chicane/runtime/recorder.hpp"
+#include "chicane/runtime/temporary_file.hpp"
 #include "options.hpp"
 
 namespace chicane::apps {
@@ -15,14 +19,33 @@ inline constexpr double kRoadSpacing = 2.0;  ///< [m] between the drawn points o
 /// What viewers and logs are told of a run with our simulator.
 [[nodiscard]] protocol::Run description(const runtime::ClosedLoop& loop);
 
-/// --record: null when nobody asked for it. `step_budget` [s]: deadline of a control step in real time; 0
-/// with
-/// --fast, where the run waits for the disk.
-[[nodiscard]] Result<std::unique_ptr<runtime::Recorder>> start_recorder(const Options& options,
-                                                                        protocol::Run run,
-                                                                        const scenario::Scenario& scenario,
-                                                                        double step_budget);
-/// Closes the recording and says on stderr what is in it. Nothing happens for null.
-[[nodiscard]] Result<void> finish_recorder(const Options& options, runtime::Recorder* recorder);
+/// What --record and --report keep of a run: every control step. Nothing is kept where neither is asked for.
+class KeptRun {
+ public:
+  /// `step_budget` [s]: deadline of a control step in real time; 0 with --fast, where the run waits for the
+  /// disk. Fails as Recorder::create does, and where a report could not be written at the end: kNotFound
+  /// without a dashboard in this program, kIo without a folder for it.
+  [[nodiscard]] static Result<std::unique_ptr<KeptRun>> start(const Options& options, protocol::Run run,
+                                                              const scenario::Scenario& scenario,
+                                                              double step_budget);
+
+  /// As Recorder::record does.
+  template <class What>
+  void record(What&& what) {
+    if (recorder_) recorder_->record(std::forward<What>(what));
+  }
+  /// Closes the recording, writes the report, and says on stderr what is in them.
+  [[nodiscard]] Result<void> finish();
+
+ private:
+  explicit KeptRun(const Options& options)
+      : record_file_{options.record_file}, report_file_{options.report_file} {}
+  [[nodiscard]] Result<void> write_report() const;
+
+  std::string record_file_;
+  std::string report_file_;
+  std::optional<runtime::TemporaryFile> temporary_;  ///< what a report is made of, where nothing is recorded
+  std::unique_ptr<runtime::Recorder> recorder_;
+};
 
 }  // namespace chicane::apps

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -88,6 +89,7 @@ TEST(Cli, WrongUsageIsExplainedWithExitCodeTwo) {
       {"drive --fast --preset sixty_mph", "(did you mean sixty-mph?)"},
       {"drive --fast --track nowhere", "track: got \"nowhere\", expected a file or one of"},
       {"drive --fast --controller mpc", "controller: got mpc, expected one of tracking-mpc"},
+      {"drive --port 99999", "--port: Value 99999 not in range 0 to 65535"},
       {"drive --fast --set laps", "got laps, expected key=value"},
       {"drive --fast --set latenzy_ms=3", "(did you mean latency_ms?)"},
       {"drive --fast --speed-mps 999", "speed_limit_mps: got 999"},
@@ -154,6 +156,29 @@ TEST(Cli, ARecordedRunIsVerifiedBitForBit) {
   fs::remove(log);
 }
 
+TEST(Cli, ARunWritesItsReport) {
+  const fs::path folder = fs::path(::testing::TempDir()) / ("chicane_report_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  const std::string page = (folder / "run.html").string();
+  const std::string arguments = "drive --fast --laps 1 --set time_limit_s=5 --json --report '" + page + "'";
+  const Outcome outcome = chicane_program(arguments);
+  EXPECT_FALSE(Json::parse(outcome.out, nullptr, false).is_discarded()) << outcome.out;
+  EXPECT_THAT(outcome.err, HasSubstr("open it in a browser"));
+  EXPECT_THAT(read(page), HasSubstr("{\"name\":\"run.html\",\"mcap_base64\":"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "nothing but the page is left";
+
+  const std::string log = (folder / "run.mcap").string();
+  const Outcome both = chicane_program(arguments + " --record '" + log + "'");
+  EXPECT_THAT(both.err, HasSubstr("recorded 125 steps"));
+  EXPECT_THAT(read(page), HasSubstr("{\"name\":\"run.mcap\",\"mcap_base64\":"));
+  EXPECT_EQ(chicane_program("replay '" + log + "' --verify").code, 0);
+
+  const Outcome nowhere = chicane_program("drive --fast --laps 9 --report no/such/folder/run.html");
+  EXPECT_EQ(nowhere.code, 3);
+  EXPECT_THAT(nowhere.err, HasSubstr("no/such/folder/run.html: cannot be written"));
+  fs::remove_all(folder);
+}
+
 TEST(Cli, CheckAcceptsWhatShips) {
   const Outcome outcome = chicane_program("check presets/*.yaml cars/*.yaml scenarios/*.yaml tracks/*.csv");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -216,6 +241,31 @@ TEST(Cli, CtrlCEndsARunWithTheResultsSoFar) {
   ASSERT_FALSE(report.is_discarded()) << outcome.out << outcome.err;
   EXPECT_EQ(report["completed"], false);
   EXPECT_EQ(outcome.code, 1);
+}
+
+TEST(Cli, NothingASimulatorStartedOutlivesIt) {
+  const fs::path note = fs::path(::testing::TempDir()) / ("chicane_child_" + std::to_string(::getpid()));
+  fs::remove(note);
+  const pid_t simulator = ::fork();
+  if (simulator == 0) {
+    // The shell waits for what it started: who ends the shell alone leaves that behind.
+    const std::string server = "sleep 600 & echo $! > '" + note.string() + "'; wait";
+    ::execl(CHICANE_PROGRAM, "chicane", "simulate", "--connect", "ws://127.0.0.1:1/", "--server",
+            server.c_str(), static_cast<char*>(nullptr));
+    ::_exit(127);
+  }
+  const auto wait_until = [](const auto& holds) {
+    for (int i = 0; i < 2000 && !holds(); ++i) ::usleep(10000);
+    return holds();
+  };
+  pid_t child = 0;
+  EXPECT_TRUE(wait_until([&] { return static_cast<bool>(std::ifstream(note) >> child); })) << "never started";
+  ::kill(simulator, SIGKILL);
+  ::waitpid(simulator, nullptr, 0);
+  if (child > 0) {
+    EXPECT_TRUE(wait_until([&] { return ::kill(child, 0) != 0; })) << "process " << child;
+  }
+  fs::remove(note);
 }
 
 TEST(Cli, NoCommandIsAdvertisedThatDoesNotExist) {

@@ -61,10 +61,10 @@ export interface LocalLine {
   readonly left: number[];
 }
 
-export function toLocal(xs: ArrayLike<number>, ys: ArrayLike<number>, pose: { x: number; y: number; yaw: number }, from = 0): LocalLine {
+export function toLocal(xs: ArrayLike<number>, ys: ArrayLike<number>, pose: { x: number; y: number; yaw: number }): LocalLine {
   const [cos, sin] = [Math.cos(pose.yaw), Math.sin(pose.yaw)];
   const line: LocalLine = { ahead: [], left: [] };
-  for (let i = from; i < xs.length; ++i) {
+  for (let i = 0; i < xs.length; ++i) {
     const [dx, dy] = [(xs[i] ?? NaN) - pose.x, (ys[i] ?? NaN) - pose.y];
     line.ahead.push(cos * dx + sin * dy);
     line.left.push(-sin * dx + cos * dy);
