@@ -6,6 +6,7 @@ import { forgetEvents, noteChange, noteEvents, setFaultNames } from './event_log
 import { Histogram } from './histogram';
 import { History } from './history';
 import { LapSamples } from './lap_samples';
+import { bestsOf } from './lap_table';
 import { completeFrame, completeRun } from './message_fields';
 
 // ---- What the page's text shows: signals, renewed about ten times a second ----
@@ -33,6 +34,7 @@ export const isPaused = computed(() => run.value?.is_paused ?? false);
 export const LONGEST_WINDOW_S = 60;
 const FRAMES_PER_SECOND = 60; // the server sends no more
 const TRACE_SPACING_M = 0.75;
+const LAPS_KEPT = 1000;
 const PLANS_KEPT = 96; // more than one second of them at 60 a second
 
 export interface Road {
@@ -141,8 +143,11 @@ function receivePlan(plan: Plan): void {
   for (const speed of plan.speed_mps) if (speed > live.topSpeed) live.topSpeed = speed;
 }
 
+/** The newest laps, and the best one. */
 function receiveLap(lap: Lap): void {
-  laps.value = [...laps.value.filter((each) => each.lap !== lap.lap), lap].sort((a, b) => a.lap - b.lap);
+  const all = [...laps.value.filter((each) => each.lap !== lap.lap), lap].sort((a, b) => a.lap - b.lap);
+  const best = all.length > LAPS_KEPT ? bestsOf(all).lap : NaN;
+  laps.value = all.filter((each, i) => i >= all.length - LAPS_KEPT || each.lap === best);
 }
 
 const pointsOf = (path: Path): Point[] => path.poses.map(({ pose }) => pose.position);

@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
-import type { Frame, Plan, Run } from '../protocol/topics';
-import { forget, live, receive } from './app_state';
+import type { Frame, Lap, Plan, Run } from '../protocol/topics';
+import { forget, laps, live, receive } from './app_state';
 import { events } from './event_log';
 
 const FRAMES = 30_000; // eight minutes at sixty a second: longer than anything the page keeps
@@ -34,3 +34,10 @@ it('what the page keeps stops growing', () => {
   drive(FRAMES, 1.5 * FRAMES);
   expect(sizes()).toEqual(full);
 }, 60_000);
+
+it('keeps the newest thousand laps, and the best', () => {
+  forget();
+  for (let lap = 1; lap <= 2000; ++lap) receive('/chicane/lap', { lap, lap_time_s: lap === 7 ? 20 : 30, sector_times_s: Float64Array.of(1, 2, 3), is_clean: true, top_speed_mps: 40 } as unknown as Lap, 0);
+  expect(laps.value.map(({ lap }) => lap).slice(0, 3)).toEqual([7, 1001, 1002]);
+  expect(laps.value).toHaveLength(1001);
+});

@@ -54,6 +54,15 @@ function Row({ lap, bests }: { lap: Lap; bests: LapBests }) {
   );
 }
 
+const ROWS = 40;
+const showsAll = signal(false);
+
+/** The newest laps, and the best; all when asked for. */
+function rowsOf(all: readonly Lap[], bests: LapBests): Lap[] {
+  const first = showsAll.value ? 0 : all.length - ROWS;
+  return all.filter((lap, i) => i >= first || lap.lap === bests.lap).reverse();
+}
+
 /** The pair shown: what was chosen, else the newest against the best, or against the one before it; of those seen whole. */
 function compared(all: readonly Lap[], bests: LapBests): [number, number] {
   const seen = all.filter(({ lap }) => live.lapSamples.laps.includes(lap - 1)).map(({ lap }) => lap);
@@ -121,11 +130,16 @@ export function LapsView() {
               </tr>
             </thead>
             <tbody>
-              {[...all].reverse().map((lap) => (
+              {rowsOf(all, bests).map((lap) => (
                 <Row key={lap.lap} lap={lap} bests={bests} />
               ))}
             </tbody>
           </table>
+          {all.length > ROWS && (
+            <button type="button" aria-pressed={showsAll.value} onClick={() => (showsAll.value = !showsAll.value)}>
+              All {all.length} laps
+            </button>
+          )}
         </div>
       )}
       {all.length > 1 && <LapCompareView a={pair[0] - 1} b={pair[1] - 1} />}
