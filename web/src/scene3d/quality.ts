@@ -18,7 +18,9 @@ export const LEVELS: readonly Quality[] = [
 /** Where a picture drawn by the processor instead of a graphics card starts; it never climbs above. */
 export const SOFTWARE_LEVEL = 4;
 
-const WINDOW = 40; // pictures judged together
+const WINDOW = 40; // pictures judged together, or fewer where they take long
+const LONG_WINDOW_MS = 3000;
+const LEAST_WINDOW = 8;
 const LATE = 1.45; // times the interval meant
 const CALM_WINDOWS = 6; // good ones in a row before it dares more
 
@@ -43,7 +45,8 @@ export class QualityGovernor {
   picture(gap: number, cost: number): boolean {
     if (!(gap > 0) || gap > 500) return false; // hidden, or just begun
     this.#gaps.push(Math.max(gap, cost * 2)); // never more than half of the page's thread
-    if (this.#gaps.length < WINDOW) return false;
+    const isLong = this.#gaps.length >= LEAST_WINDOW && this.#gaps.reduce((a, b) => a + b) > LONG_WINDOW_MS;
+    if (this.#gaps.length < WINDOW && !isLong) return false;
     const sorted = this.#gaps.sort((a, b) => a - b);
     const typical = sorted[Math.floor(sorted.length * 0.6)] ?? 0;
     this.#gaps = [];

@@ -17,6 +17,7 @@ import { BandView, RingView } from './ribbon_view';
 import { tidyLines } from './road_mesh';
 import { RoadView } from './road_view';
 import type { Session } from './session';
+import { SlowPicture } from './slow_picture';
 import { plantTrees } from './trees';
 
 /** What the picture is to show, read anew at every repaint. */
@@ -57,6 +58,7 @@ export class Stage {
   readonly #came: BandView;
   readonly #plan: BandView;
   readonly #governor: QualityGovernor;
+  readonly #slow: SlowPicture | null; // where the processor draws
   readonly #cameraMan = new CameraMan();
   readonly #body = new BodyMotion();
   #environment: WebGLRenderTarget | null = null;
@@ -79,9 +81,10 @@ export class Stage {
   /** `isSoftware`: drawn by the processor, so smooth only when cheap. Throws where the browser gives no WebGL 2. */
   constructor(canvas: HTMLCanvasElement, session: Session, isSoftware: boolean) {
     this.#canvas = canvas;
-    this.#renderer = new WebGLRenderer({ canvas, antialias: !isSoftware });
+    this.#renderer = new WebGLRenderer({ canvas, antialias: !isSoftware, preserveDrawingBuffer: isSoftware });
     this.#renderer.outputColorSpace = SRGBColorSpace;
     this.#governor = new QualityGovernor(isSoftware);
+    this.#slow = isSoftware ? new SlowPicture(this.#renderer) : null;
     const anisotropy = Math.min(isSoftware ? 1 : 8, this.#renderer.capabilities.getMaxAnisotropy());
     this.#camera.up.set(0, 0, 1);
     this.#landscape = new Landscape(this.#scene, anisotropy);
@@ -141,19 +144,19 @@ export class Stage {
   paint(now: number, view: View): void {
     const { clientWidth: width, clientHeight: height } = this.#canvas;
     if (width === 0 || height === 0 || this.#renderer.getContext().isContextLost()) return;
+    this.#slow?.show(now);
     const gap = now - this.#lastPicture;
-    if (gap < this.#governor.quality.interval - 4) return;
+    if (gap < this.#governor.quality.interval - 4 || this.#slow?.isFree(now) === false) return;
     const motion = view.session.playout.advance(now, view.isHeld);
     if (!this.#isWorth(now, view, motion, width, height)) return;
 
     const begin = performance.now();
     this.#lastPicture = now;
-    this.#resize(width, height);
     this.#renew(view);
     const passed = this.#move(view, motion);
     // In fast motion, and after a pause of the page, the camera keeps up with the run.
     this.#film(view, motion, width / height, Math.max(Math.min(gap, 1000) / 1000, passed));
-    this.#renderer.render(this.#scene, this.#camera);
+    this.#draw(width, height, now);
     if (this.#governor.picture(gap, performance.now() - begin)) this.#lastChange = now;
   }
 
@@ -167,13 +170,15 @@ export class Stage {
     return now - this.#lastChange < SETTLE_MS;
   }
 
-  #resize(width: number, height: number): void {
+  #draw(width: number, height: number, now: number): void {
     const { pixelRatio, hasShadow } = this.#governor.quality;
     const ratio = Math.min(devicePixelRatio, pixelRatio);
     const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
-    if (this.#canvas.width !== w || this.#canvas.height !== h) this.#renderer.setSize(w, h, false);
     this.#sun.castShadow = hasShadow;
     this.#renderer.shadowMap.enabled = hasShadow;
+    if (this.#slow) return this.#slow.draw(this.#scene, this.#camera, w, h, now);
+    if (this.#canvas.width !== w || this.#canvas.height !== h) this.#renderer.setSize(w, h, false);
+    this.#renderer.render(this.#scene, this.#camera);
   }
 
   /** Builds what changes rarely: car, road, lines. */
@@ -291,6 +296,7 @@ export class Stage {
     for (const part of [this.#landscape, this.#road, this.#bestLine, this.#trace, this.#marks, this.#brakes, this.#reference, this.#foreseen, this.#came, this.#plan]) part.dispose();
     this.#environment?.dispose();
     this.#sun.dispose();
+    this.#slow?.dispose();
     this.#renderer.dispose();
   }
 }
