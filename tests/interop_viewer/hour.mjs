@@ -23,7 +23,7 @@ const MOST_GROWTH_MB = 1; // from the first sample to the last
 const folder = mkdtempSync(join(tmpdir(), 'chicane-hour-'));
 const log = join(folder, 'hour.mcap');
 console.error(`driving ${MINUTES} minutes …`);
-const settings = [`time_limit_s=${60 * MINUTES}`, 'control_period_ms=16', 'tracking_mpc.horizon_steps=20'];
+const settings = ['car=road-car', `time_limit_s=${60 * MINUTES}`, 'control_period_ms=16', 'tracking_mpc.horizon_steps=20'];
 try {
   execFileSync(process.env.CHICANE ?? 'chicane', ['drive', '--fast', '--laps', '10000', '--record', log, ...settings.flatMap((each) => ['--set', each])], { stdio: 'ignore' });
 } catch {
