@@ -19,6 +19,7 @@
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/problem_pattern.hpp"
 #include "chicane/solver/progress.hpp"
+#include "chicane/solver/roll_out.hpp"
 #include "chicane/solver/solution.hpp"
 #include "chicane/solver/warm_start.hpp"
 
@@ -135,19 +136,7 @@ class OcpSolver {
     }
   }
   /// Simulates the inputs from x_0. True when every state is finite.
-  bool roll_out(const P& problem) noexcept {
-    using One = typename Evaluate::One;
-    auto x = t_.template state<One>(0);
-    double sum = 0.0;
-    for (std::size_t k = 0; k < t_.horizon; ++k) {
-      x = Evaluate::next(problem, k, x, t_.template input<One>(k));
-      for (std::size_t i = 0; i < kNx; ++i) {
-        t_.x[i][k + 1] = Evaluate::number(x[i]);
-        sum += 0.0 * t_.x[i][k + 1];  // only a number that is not finite makes a difference
-      }
-    }
-    return sum == 0.0;
-  }
+  bool roll_out(const P& problem) noexcept { return RollOut<P, Arch>::run(problem, t_); }
 
   /// Linearises the iterate and measures it. Slacks start on the central path, and return to it while the
   /// cost descends.

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "chicane/solver/evaluation.hpp"
+#include "chicane/solver/iterate.hpp"
+#include "chicane/solver/problem.hpp"
+#include "chicane/solver/problem_pattern.hpp"
+#include "chicane/solver/stage_order.hpp"
+
+namespace chicane::solver {
+
+/// Simulates inputs. Where the pattern allows it one state after the other with eight stages in lanes
+/// (stage_order.hpp), else stage after stage.
+///
+/// Both ways add in the same order: where x_i + … is the last thing that a function does for a state, they
+/// give the same bits. What a pattern cannot show is a branch by select() on a state that no derivative
+/// belongs to; states of such a function may be off, and the defects of the first look say so.
+template <OcpProblem P, class Arch>
+class RollOut {
+ public:
+  using V = Stages<Arch>;
+  static constexpr std::size_t kNx = P::kNx;
+  static constexpr std::size_t kNu = P::kNu;
+  using Order = StageOrder<ProblemPattern<P>>;
+  static constexpr bool kInLanes = StructuredProblem<P> && Order::kExists;
+
+  /// x_1 … x_N of `t` from its x_0 and inputs. True when every state is finite.
+  template <class Point>
+  static bool run(const P& problem, Point& t) noexcept {
+    if constexpr (kInLanes) {
+      unroll<Order::kLevels>([&](auto level) { simulate_level<level>(problem, t); });
+    } else {
+      simulate_stages(problem, t);
+    }
+    V all(0.0);  // only a number that is not finite makes a difference
+    for (std::size_t k = 0; k <= t.horizon; k += 8) {
+      const auto live = stage_number(StageLanes<V>{static_cast<int>(k)}) <= V(static_cast<double>(t.horizon));
+      for (std::size_t i = 0; i < kNx; ++i) all += select(live, 0.0 * V::load(t.x[i] + k), V(0.0));
+    }
+    return sum(all) == 0.0;
+  }
+
+ private:
+  using Evaluate = Evaluation<P, Arch>;
+  /// Eight stages as ever, under a name that makes each level's call a function of its own: called once, it is
+  /// inlined, and what is not used of its results goes away.
+  template <std::size_t>
+  struct LanesOfLevel : StageLanes<V> {};
+
+  template <class Point>
+  static void simulate_stages(const P& problem, Point& t) noexcept {
+    using One = typename Evaluate::One;
+    auto x = t.template state<One>(0);
+    for (std::size_t k = 0; k < t.horizon; ++k) {
+      x = Evaluate::next(problem, k, x, t.template input<One>(k));
+      for (std::size_t i = 0; i < kNx; ++i) t.x[i][k + 1] = Evaluate::number(x[i]);
+    }
+  }
+
+  /// All stages of the states of one level; those that they depend on are known. What a function says of
+  /// other states is not used, and so never computed.
+  template <std::size_t Level, class Point>
+  static void simulate_level(const P& problem, Point& t) noexcept {
+    double now[kNx];  // where each sum has got to
+    for (std::size_t i = 0; i < kNx; ++i) now[i] = t.x[i][0];
+    for (std::size_t k = 0; k < t.horizon; k += 8) {
+      const auto next = changes<Level>(problem, t, k);
+      unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+        if constexpr (Order::kLevel[i] == Level && Order::is_sum(i)) {
+          now[i] = running_sum(now[i], next[i], t.x[i] + k);
+          t.x[i][k + 8] = now[i];
+        } else if constexpr (Order::kLevel[i] == Level) {
+          next[i].store_unaligned(t.x[i] + k + 1);
+        }
+      });
+    }
+  }
+  /// x⁺ of the eight stages from k on, of sums without what they are added to.
+  template <std::size_t Level, class Point>
+  [[gnu::always_inline]] static auto changes(const P& problem, const Point& t, std::size_t k) noexcept {
+    std::array<V, kNx> x;
+    unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+      x[i] = Order::kLevel[i] < Level ? V::load(t.x[i] + k) : V(kNothing);
+    });
+    std::array<V, kNu> u;
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) { u[m] = V::load(t.u[m] + k); });
+    return to_array<V>(problem.dynamics(LanesOfLevel<Level>{{static_cast<int>(k)}}, x, u));
+  }
+  /// start, start + c_0, start + c_0 + c_1, … to `to`; returns the sum of all. Added one by one, so that the
+  /// rounding is that of a simulation.
+  [[gnu::always_inline]] static double running_sum(double start, const V& change, double* to) noexcept {
+    alignas(64) double by_stage[8];
+    change.store(by_stage);
+    V sum(start);
+    unroll<7>([&](auto lane) __attribute__((always_inline)) {
+      sum += select(V::iota() > V(static_cast<double>(lane)), V(by_stage[lane]), V(kNothing));
+    });
+    sum.store(to);
+    return sum[7] + by_stage[7];
+  }
+
+  static constexpr double kNothing = -0.0;  ///< x + kNothing is x, of zeros, too
+};
+
+}  // namespace chicane::solver
