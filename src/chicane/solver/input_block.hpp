@@ -86,6 +86,16 @@ struct InputBlock {
   /// The same where no input is held.
   [[nodiscard, gnu::always_inline]] bool invert() noexcept { return invert_all(H); }
 
+  /// Row m of the adjugate times v.
+  [[nodiscard, gnu::always_inline]] double adjugate_times(std::size_t m,
+                                                          const double (&v)[Nu]) const noexcept {
+    double sum = adjugate[m][0] * v[0];
+    unroll<Nu - 1>([&](auto l) __attribute__((always_inline)) {
+      sum = fused_multiply_add<Arch>(adjugate[m][l + 1], v[l + 1], sum);
+    });
+    return sum;
+  }
+
   /// Adds the smallest of a rising series of shifts that makes the free part positive definite, and inverts
   /// it; returns the shift.
   [[gnu::noinline, gnu::cold]] double shift_and_invert(const bool (&is_held)[Nu]) noexcept {

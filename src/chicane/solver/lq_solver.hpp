@@ -153,12 +153,13 @@ class LqSolver {
   template <bool Choose>
   double sweep(std::size_t from, double shift) noexcept {
     Value P;
-    for (std::size_t i = 0; i <= kNx; ++i) P.column[i] = Vector::load(value_[from][i]);
+    unroll<kNx + 1>([&](auto i)
+                        __attribute__((always_inline)) { P.column[i] = Vector::load(value_[from][i]); });
     double largest = 0.0;
     for (std::size_t k = from; k-- > 0;) {
       eliminate<Choose>(k, P, shift, largest);
       if (k % kSymmetryPeriod == 0) Algebra::make_symmetric(P);
-      for (std::size_t i = 0; i <= kNx; ++i) P.column[i].store(value_[k][i]);
+      unroll<kNx + 1>([&](auto i) __attribute__((always_inline)) { P.column[i].store(value_[k][i]); });
     }
     return largest;
   }
@@ -168,11 +169,14 @@ class LqSolver {
   [[gnu::always_inline]] void eliminate(std::size_t k, Value& P, double shift, double& largest) noexcept {
     const Stage& s = lq.stage[k];
     Feedback& out = feedback[k];
+    Vector W[1 + kNu];  // columns of P F: the defect's, then the inputs'
     alignas(64) double w[1 + kNu][kLanes];
     unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-      Algebra::template times_jacobian<kNx + 1 + m>(s, P).store(w[1 + m]);
+      W[1 + m] = Algebra::template times_jacobian<kNx + 1 + m>(s, P);
+      W[1 + m].store(w[1 + m]);
     });
-    Algebra::template times_jacobian<kNx>(s, P).store(w[0]);
+    W[0] = Algebra::template times_jacobian<kNx>(s, P);
+    W[0].store(w[0]);
     Algebra::settle(w);
     Block block;
     unroll<kNu>([&](auto m) __attribute__((always_inline)) {
@@ -186,44 +190,52 @@ class LqSolver {
     Vector R[kNu];  // Q over inputs and states
     alignas(64) double r[kNu][kLanes];
     unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-      R[m] = Algebra::template row_of_q<kNx + 1 + m>(s, w[1 + m]);
+      R[m] = Algebra::template row_of_q<kNx + 1 + m>(s, W[1 + m], w[1 + m]);
       R[m].store(r[m]);
     });
     Algebra::settle(r);
-    Vector q = Algebra::template row_of_q<kNx>(s, w[0]);
+    Vector q = Algebra::template row_of_q<kNx>(s, W[0], w[0]);
 
     bool is_held[kNu];
     const bool any_held = settle_inputs<Choose>(k, block, is_held, largest);
-    double c[kNu] = {};
-    constants(k, block, is_held, any_held, c);
-    Vector K[kNu];
-    gains(k, block, any_held, R, K);
+    double b[kNu] = {};  // where inputs are held
+    double g[kNu];       // slopes with them there
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) { g[m] = block.g[m]; });
+    if (any_held) substitute_held(k, block, is_held, R, b, g, q);
+    Vector T[kNu];
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) { T[m] = Algebra::combination(block.adjugate[m], R); });
 
+    Vector Wx[kNx];
     alignas(64) double wx[kNx][kLanes];
     unroll<kNx>([&](auto j) __attribute__((always_inline)) {
-      if constexpr (Algebra::has_column(j)) Algebra::template times_jacobian<j>(s, P).store(wx[j]);
+      if constexpr (Algebra::has_column(j)) {
+        Wx[j] = Algebra::template times_jacobian<j>(s, P);
+        Wx[j].store(wx[j]);
+      }
     });
     Algebra::settle(wx);
     unroll<kNx>([&](auto j) __attribute__((always_inline)) {
       if constexpr (Algebra::has_column(j)) {
-        P.column[j] = Algebra::template row_of_q<j>(s, wx[j]);
+        P.column[j] = Algebra::template row_of_q<j>(s, Wx[j], wx[j]);
       } else {
         P.column[j] = Algebra::template cost_row<j>(s);
       }
-      unroll<kNu>([&](auto m) __attribute__((always_inline)) { P.column[j].add(r[m][j], K[m]); });
+      Algebra::template eliminate_inputs<j>(T, block.scale, r, P.column[j]);
     });
     P.column[kNx] = q;
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) { P.column[kNx].add(c[m], R[m]); });
+    P.column[kNx].add(-block.scale, Algebra::combination(g, T));
 
     unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-      K[m].store(out.row[m]);
-      out.constant[m] = c[m];
+      Vector::scaled(-block.scale, T[m]).store(out.row[m]);
+      const double value = -block.scale * block.adjugate_times(m, g);
+      out.constant[m] = any_held && is_held[m] ? b[m] : value;
       out.g[m] = block.g[m];
       unroll<kNu>([&](auto l) __attribute__((always_inline)) { out.H[m][l] = block.H[m][l]; });
     });
     if (any_held) {
       if constexpr (kHasRates) {
         Value changed = P;
+        follow_rates(k, block, r, changed);
         hold_inputs(k, block, is_held, r, changed);
         P = changed;
       } else {
@@ -275,53 +287,33 @@ class LqSolver {
     return extra;
   }
 
-  /// The parts of δu that do not depend on the state.
-  [[gnu::always_inline]] void constants(std::size_t k, const Block& block, const bool (&is_held)[kNu],
-                                        bool any_held, double (&c)[kNu]) const noexcept {
-    double g[kNu];
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) { g[m] = block.g[m]; });
-    if (any_held) {
-      unroll<kNu>([&](auto h) __attribute__((always_inline)) {
-        const double b = is_held[h] ? bound(k, h, hold[k][h]) : 0.0;
-        unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-          g[m] = fused_multiply_add<Arch>(block.H[m][h], b, g[m]);
-        });
-        c[h] = b;
+  /// Where held inputs are, and the slopes of the cost with them there.
+  [[gnu::always_inline]] void substitute_held(std::size_t k, const Block& block, const bool (&is_held)[kNu],
+                                              const Vector (&R)[kNu], double (&b)[kNu], double (&g)[kNu],
+                                              Vector& q) const noexcept {
+    unroll<kNu>([&](auto h) __attribute__((always_inline)) {
+      b[h] = is_held[h] ? bound(k, h, hold[k][h]) : 0.0;
+      unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+        g[m] = fused_multiply_add<Arch>(block.H[m][h], b[h], g[m]);
       });
-    }
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-      double value = block.adjugate[m][0] * g[0];
-      unroll<kNu - 1>([&](auto l) __attribute__((always_inline)) {
-        value = fused_multiply_add<Arch>(block.adjugate[m][l + 1], g[l + 1], value);
-      });
-      value *= block.scale;
-      c[m] = any_held && is_held[m] ? c[m] : -value;
+      q.add(b[h], R[h]);
     });
   }
 
-  /// How δu follows the state; zero for inputs at bounds of their own.
-  [[gnu::always_inline]] void gains(std::size_t k, const Block& block, bool any_held, const Vector (&R)[kNu],
-                                    Vector (&K)[kNu]) const noexcept {
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-      K[m] = Vector::scaled(block.adjugate[m][0], R[0]);
-      unroll<kNu - 1>([&](auto l)
-                          __attribute__((always_inline)) { K[m].add(block.adjugate[m][l + 1], R[l + 1]); });
-      K[m] = Vector::scaled(-block.scale, K[m]);
-    });
-    if constexpr (kHasRates) {
-      if (any_held) follow_rates(k, block, K);
-    }
-  }
   /// An input whose change is at its bound follows the state that holds its previous value; the free ones
-  /// answer.
-  void follow_rates(std::size_t k, const Block& block, Vector (&K)[kNu]) const noexcept {
+  /// answer (eq. K7).
+  void follow_rates(std::size_t k, const Block& block, const double (&r)[kNu][kLanes], Value& P) noexcept {
     for (std::size_t h = 0; h < kNu; ++h) {
       if (!is_rate(hold[k][h])) continue;
       const Vector unit = unit_of_rate_state(h);
       for (std::size_t m = 0; m < kNu; ++m) {
-        double pull = 0.0;
-        for (std::size_t l = 0; l < kNu; ++l) pull -= block.scale * block.adjugate[m][l] * block.H[l][h];
-        K[m].add(m == h ? 1.0 : pull, unit);
+        double follow = m == h ? 1.0 : 0.0;
+        for (std::size_t l = 0; l < kNu && m != h; ++l)
+          follow -= block.scale * block.adjugate[m][l] * block.H[l][h];
+        for (std::size_t j = 0; j < kNx; ++j) P.column[j].add(r[m][j] * follow, unit);
+        Vector row = Vector::load(feedback[k].row[m]);
+        row.add(follow, unit);
+        row.store(feedback[k].row[m]);
       }
     }
   }

@@ -103,10 +103,12 @@ struct Layout {
   }
   static constexpr std::size_t kCostRows = cost_row(kNz);
 
-  /// Whether state i of the next stage depends on states, and its place among those that do.
+  /// Whether state i of the next stage is its own value and something: that 1 is not stored.
+  static constexpr bool is_sum(std::size_t i) noexcept { return Pattern::kF[i][i] == Entry::kOne; }
+  /// Whether state i of the next stage depends on states in another way, and its place among those that do.
   static constexpr bool has_state_row(std::size_t i) noexcept {
     for (std::size_t j = 0; j < kNx; ++j) {
-      if (Pattern::kF[i][j] != Entry::kZero) return true;
+      if (Pattern::kF[i][j] != Entry::kZero && !(i == j && is_sum(i))) return true;
     }
     return false;
   }
@@ -142,7 +144,7 @@ struct LqProblem {
   static constexpr std::size_t kStages = (Capacity + 7) / 8 * 8;  ///< room for whole packs
 
   struct alignas(64) Stage {
-    double A[Layout::kStateRows + 1][kLanes];  ///< row state_row(i): ∂x⁺_i / ∂x
+    double A[Layout::kStateRows + 1][kLanes];  ///< row state_row(i): ∂x⁺_i / ∂x, without the 1 of a sum
     double B[1 + kNu][kLanes];                 ///< columns of F over x⁺: the defect, then the inputs
     double L[Layout::kCostRows + 1][kLanes];   ///< row cost_row(i): L[i][j] for the states j
     double g[kNu];                             ///< L[u][1]
@@ -159,7 +161,7 @@ struct LqProblem {
     for (Stage& s : stage) {
       for (std::size_t i = 0; i < kNx; ++i) {
         for (std::size_t j = 0; j < Layout::kNz; ++j) {
-          if (Pattern::kF[i][j] == Entry::kOne && j != Layout::kOne) entry_of_f(s, i, j) = 1.0;
+          if (Pattern::kF[i][j] == Entry::kOne && j != Layout::kOne && j != i) entry_of_f(s, i, j) = 1.0;
         }
       }
     }
@@ -230,7 +232,8 @@ struct LqProblem {
   };
   static constexpr Source state_entries(std::size_t i) noexcept {
     Source row = nothing();
-    for (std::size_t j = 0; j < kNx; ++j) add(row, j, Layout::kF[i][j], Pattern::kF[i][j] == Entry::kOne);
+    for (std::size_t j = 0; j < kNx; ++j)
+      add(row, j, Layout::kF[i][j], Pattern::kF[i][j] == Entry::kOne && j != i);
     return row;
   }
   static constexpr Source column_entries(std::size_t j) noexcept {

@@ -16,6 +16,7 @@ class StageAlgebra {
  public:
   using Layout = solver::Layout<Pattern>;
   static constexpr std::size_t kNx = Layout::kNx;
+  static constexpr std::size_t kNu = Layout::kNu;
   static constexpr std::size_t kLanes = Layout::kLanes;
   using V = Pack<Arch, kNx <= 4 ? 4 : 8>;
   static constexpr std::size_t kBlocks = kNx <= 4 ? 1 : kLanes / 8;
@@ -54,7 +55,7 @@ class StageAlgebra {
 
   /// A list of indices known at compile time.
   struct Terms {
-    std::array<std::size_t, kNx> index{};
+    std::array<std::size_t, (kNx > kNu ? kNx : kNu)> index{};
     std::size_t count = 0;
     constexpr void add(std::size_t i) noexcept { index[count++] = i; }
   };
@@ -67,7 +68,7 @@ class StageAlgebra {
     }
     return terms;
   }
-  /// Rows of F that have states in them.
+  /// Rows of F that are stored.
   static constexpr Terms state_rows() noexcept {
     Terms terms;
     for (std::size_t i = 0; i < kNx; ++i) {
@@ -156,17 +157,71 @@ class StageAlgebra {
     }
   }
 
-  /// Row i of Q over the states: L + Aᵀ w for a column w of P F that lies in memory.
+  /// States whose next value is theirs and something, as lanes.
+  alignas(64) static constexpr std::array<double, kLanes> kSums = [] {
+    std::array<double, kLanes> lanes{};
+    for (std::size_t i = 0; i < kNx; ++i) lanes[i] = Layout::is_sum(i) ? 1.0 : 0.0;
+    return lanes;
+  }();
+  static constexpr bool kHasSums = [] {
+    for (const double lane : kSums) {
+      if (lane > 0.0) return true;
+    }
+    return false;
+  }();
+  /// sum + the lanes of w that belong to such states.
+  [[gnu::always_inline]] static void add_sums(Vector& sum, const Vector& w) noexcept {
+    if constexpr (kHasSums) {
+      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) {
+        const auto is_sum = V::load(kSums.data() + b * kBlock) > V(0.0);
+        sum.part[b] = select(is_sum, sum.part[b] + w.part[b], sum.part[b]);
+      });
+    }
+  }
+
+  /// Row i of Q over the states: L + Aᵀ w for a column w of P F, in registers and in memory.
   template <std::size_t I>
-  [[gnu::always_inline]] static Vector row_of_q(const Stage& s, const double* w) noexcept {
+  [[gnu::always_inline]] static Vector row_of_q(const Stage& s, const Vector& w,
+                                                const double* w_in_memory) noexcept {
     constexpr Terms kRows = state_rows();
+    Vector start = cost_row<I>(s);
+    add_sums(start, w);
     if constexpr (kRows.count == 0) {
-      return cost_row<I>(s);
+      return start;
     } else {
       return combine<kRows.count>(
-          cost_row<I>(s), [&](auto t) __attribute__((always_inline)) { return w[kRows.index[t]]; },
+          start, [&](auto t) __attribute__((always_inline)) { return w_in_memory[kRows.index[t]]; },
           [&](auto t) __attribute__((always_inline)) { return Vector::load(s.A[t]); });
     }
+  }
+  /// Σ_m factor_m · v_m over the inputs.
+  [[gnu::always_inline]] static Vector combination(const double (&factor)[kNu],
+                                                   const Vector (&v)[kNu]) noexcept {
+    Vector sum = Vector::scaled(factor[0], v[0]);
+    unroll<kNu - 1>([&](auto m) __attribute__((always_inline)) { sum.add(factor[m + 1], v[m + 1]); });
+    return sum;
+  }
+  /// column − scale · Σ_m r_mj T_m, over the inputs whose row of Q can have an entry at state J.
+  template <std::size_t J>
+  [[gnu::always_inline]] static void eliminate_inputs(const Vector (&T)[kNu], double scale,
+                                                      const double (&r)[kNu][kLanes],
+                                                      Vector& column) noexcept {
+    constexpr Terms kInputs = inputs_with(J);
+    if constexpr (kInputs.count > 0) {
+      Vector sum = Vector::scaled(r[kInputs.index[0]][J], T[kInputs.index[0]]);
+      unroll<kInputs.count - 1>([&](auto n) __attribute__((always_inline)) {
+        constexpr std::size_t m = kInputs.index[n + 1];
+        sum.add(r[m][J], T[m]);
+      });
+      column.add(-scale, sum);
+    }
+  }
+  static constexpr Terms inputs_with(std::size_t j) noexcept {
+    Terms inputs;
+    for (std::size_t m = 0; m < kNu; ++m) {
+      if (has_column(j) || Layout::kL[Layout::kHead + m][j] != Layout::kNone) inputs.add(m);
+    }
+    return inputs;
   }
 
   /// start + column J of F times w, number by number.
