@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the passes over a quadratic program cost for each stage, for each instruction set of this processor:
-// the described problem's pattern, and full ones. And the throughput of batches.
+// the described problem's pattern, and full ones; what its functions cost; and the throughput of batches.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -12,18 +12,27 @@ namespace {
 
 using namespace chicane;
 using bench::Kernel;
+using bench::Look;
 using bench::Shape;
 
-void Pass(benchmark::State& state, InstructionSet set, Kernel kernel, Shape shape) {
+template <class Run>
+void per_stage(benchmark::State& state, InstructionSet set, const Run& run) {
   with_instructions(set, [&](auto arch) {
     for (auto _ : state) {
-      bench::run_kernel<decltype(arch)>(kernel, shape);
+      run(arch);
       benchmark::ClobberMemory();
     }
   });
   state.counters["s/stage"] =
       benchmark::Counter(static_cast<double>(bench::kKernelStages),
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void Pass(benchmark::State& state, InstructionSet set, Kernel kernel, Shape shape) {
+  per_stage(state, set, [&](auto arch) { bench::run_kernel<decltype(arch)>(kernel, shape); });
+}
+void Functions(benchmark::State& state, InstructionSet set, Look look) {
+  per_stage(state, set, [&](auto arch) { bench::run_look<decltype(arch)>(look); });
 }
 
 void Batch(benchmark::State& state, InstructionSet set) {
@@ -47,6 +56,14 @@ const struct {
 } kKernels[] = {
     {"Backward", Kernel::kBackward}, {"Forward", Kernel::kForward}, {"Adjoint", Kernel::kAdjoint}};
 
+const struct {
+  const char* name;
+  Look look;
+} kLooks[] = {{"RollOut", Look::kRollOut},
+              {"LookFirstOrder", Look::kFirstOrder},
+              {"LookSecondOrder", Look::kSecondOrder},
+              {"SetStages", Look::kSetStages}};
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -61,6 +78,10 @@ int main(int argc, char** argv) {
             (std::string(kernel.name) + "/" + shape.name + "/" + name).c_str(),
             [=](benchmark::State& state) { Pass(state, set, kernel.kernel, shape.shape); });
       }
+    }
+    for (const auto& look : kLooks) {
+      benchmark::RegisterBenchmark((std::string(look.name) + "/described/" + name).c_str(),
+                                   [=](benchmark::State& state) { Functions(state, set, look.look); });
     }
     benchmark::RegisterBenchmark(("BatchWarm/" + name).c_str(),
                                  [=](benchmark::State& state) { Batch(state, set); })

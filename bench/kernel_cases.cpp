@@ -7,7 +7,9 @@
 #include "chicane/base/random.hpp"
 #include "chicane/solver/adjoint.hpp"
 #include "chicane/solver/batch_solver.hpp"
+#include "chicane/solver/linearisation.hpp"
 #include "chicane/solver/lq_solver.hpp"
+#include "chicane/solver/roll_out.hpp"
 #include "problems/described_batch.hpp"
 
 namespace chicane::bench {
@@ -54,6 +56,49 @@ void run(Kernel kernel) noexcept {
   static Passes<Arch, Pattern> passes;
   passes.run(kernel);
 }
+
+template <class Arch>
+struct Looks {
+  using Problem = StructuredDescribedProblem;
+  using Linearisation = solver::Linearisation<Problem, kCapacity, Arch>;
+  using Layout = typename Linearisation::Layout;
+  using Stages = solver::Stages<Arch>;
+  Problem problem;
+  typename Linearisation::Point point;
+  Linearisation now;
+  typename Linearisation::Slacks slacks;
+  typename Linearisation::Lq lq;
+  std::array<Stages, Layout::kFCount> f;
+  std::array<Stages, Layout::kLCount> l;
+  solver::SolveReport report;
+
+  Looks() noexcept {
+    Random random{1};
+    const DescribedInstance instance = random_instance(random, kKernelStages);
+    problem = Problem{instance.problem, instance.start[4]};
+    point.horizon = kKernelStages;
+    const auto start = Problem::without_cte(instance.start);
+    for (std::size_t i = 0; i < start.size(); ++i) point.x[i][0] = start[i];
+    for (std::size_t k = 0; k < kKernelStages; ++k) {
+      for (std::size_t m = 0; m < 2; ++m) {
+        point.u[m][k] = random.uniform(-0.1, 0.1);
+        now.lower[m][k] = problem.input_lower(0)[m];
+        now.upper[m][k] = problem.input_upper(0)[m];
+      }
+    }
+    f.fill(Stages(0.5));
+    l.fill(Stages(0.5));
+    run(Look::kRollOut);
+  }
+  void run(Look look) noexcept {
+    if (look == Look::kRollOut) solver::RollOut<Problem, Arch>::run(problem, point);
+    if (look == Look::kFirstOrder) now.template look<1>(problem, point, false, 1e-13, slacks, lq, report);
+    if (look == Look::kSecondOrder) now.template look<2>(problem, point, false, 1e-13, slacks, lq, report);
+    if (look == Look::kSetStages) {
+      for (std::size_t k = 0; k < kKernelStages; k += 8) lq.set(k, f, l);
+    }
+  }
+};
 
 template <class Arch>
 struct WarmBatch {
@@ -125,12 +170,19 @@ void run_kernel(Kernel kernel, Shape shape) noexcept {
 }
 
 template <class Arch>
+void run_look(Look look) noexcept {
+  static Looks<Arch> looks;
+  looks.run(look);
+}
+
+template <class Arch>
 int run_batch(int horizon) noexcept {
   static WarmBatch<Arch> batch;
   return batch.run(horizon);
 }
 
 template void run_kernel<arch::Native>(Kernel, Shape) noexcept;
+template void run_look<arch::Native>(Look) noexcept;
 template int run_batch<arch::Native>(int) noexcept;
 
 }  // namespace chicane::bench

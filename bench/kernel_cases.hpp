@@ -15,6 +15,14 @@ constexpr std::size_t kKernelStages = 20;
 template <class Arch>
 void run_kernel(Kernel kernel, Shape shape) noexcept;
 
+/// What a turn does with the functions of the described problem: simulate inputs, look at an iterate with
+/// Hessians of first or second order, and, the last part of a look, turn entries into stages of the quadratic
+/// program.
+enum class Look { kRollOut, kFirstOrder, kSecondOrder, kSetStages };
+/// The same for kKernelStages stages of the described problem.
+template <class Arch>
+void run_look(Look look) noexcept;
+
 /// One batch of 64 warm starts of the described problem; returns how many lanes solved.
 template <class Arch>
 int run_batch(int horizon) noexcept;

@@ -29,8 +29,7 @@ void load(const LqData& data, solver::LqProblem<Pattern, LqData::kMostStages>& l
         }
       }
     }
-    lq.template set_jacobian<Arch>(k, f);
-    lq.template set_cost<Arch>(k, l);
+    lq.template set<Arch>(k, f, l);
   }
   for (std::size_t k = 0; k < data.horizon; ++k) {
     for (std::size_t m = 0; m < Layout::kNu; ++m) {

@@ -109,7 +109,9 @@ TEST(RollOut, SaysWhenAStateIsNotFinite) {
   Random random{7};
   const auto t = std::make_unique<Point>();
   StructuredDescribedProblem problem;
-  const auto run = [&] { return solver::RollOut<StructuredDescribedProblem, arch::Native>::run(problem, *t); };
+  const auto run = [&] {
+    return solver::RollOut<StructuredDescribedProblem, arch::Native>::run(problem, *t);
+  };
   for (const std::size_t horizon : {8U, 13U}) {
     t->horizon = horizon;
     fill(random, *t);

@@ -26,6 +26,25 @@ struct Lanes {
   using Real [[gnu::vector_size(W * 8)]] = double;
   using Integer [[gnu::vector_size(W * 8)]] = long long;
   using Unsigned [[gnu::vector_size(W * 8)]] = unsigned long long;
+
+  /// A register's worth of doubles at a multiple of its size, and at any address. Not by memcpy: a variable
+  /// whose address is taken stays in memory.
+  [[gnu::always_inline]] static Real load(const double* from) noexcept {
+    return *static_cast<const Aligned*>(static_cast<const void*>(from));
+  }
+  [[gnu::always_inline]] static Real load_unaligned(const double* from) noexcept {
+    return *static_cast<const Unaligned*>(static_cast<const void*>(from));
+  }
+  [[gnu::always_inline]] static void store(double* to, Real value) noexcept {
+    *static_cast<Aligned*>(static_cast<void*>(to)) = value;
+  }
+  [[gnu::always_inline]] static void store_unaligned(double* to, Real value) noexcept {
+    *static_cast<Unaligned*>(static_cast<void*>(to)) = value;
+  }
+
+ private:
+  using Aligned [[gnu::vector_size(W * 8), gnu::may_alias]] = double;
+  using Unaligned [[gnu::vector_size(W * 8), gnu::may_alias, gnu::aligned(8)]] = double;
 };
 
 /// By vector extensions alone.

@@ -141,18 +141,20 @@ struct Pack {
   }
   /// From N doubles at an address that is a multiple of 8 N bytes.
   [[gnu::always_inline]] static Pack load(const double* from) noexcept {
-    return load_unaligned(static_cast<const double*>(__builtin_assume_aligned(from, kWidth * 8)));
+    Pack r;
+    for (std::size_t p = 0; p < kParts; ++p) r.part[p] = Memory::load(from + p * kWidth);
+    return r;
   }
   [[gnu::always_inline]] static Pack load_unaligned(const double* from) noexcept {
     Pack r;
-    for (std::size_t p = 0; p < kParts; ++p) __builtin_memcpy(&r.part[p], from + p * kWidth, kWidth * 8);
+    for (std::size_t p = 0; p < kParts; ++p) r.part[p] = Memory::load_unaligned(from + p * kWidth);
     return r;
   }
   [[gnu::always_inline]] void store(double* to) const noexcept {
-    store_unaligned(static_cast<double*>(__builtin_assume_aligned(to, kWidth * 8)));
+    for (std::size_t p = 0; p < kParts; ++p) Memory::store(to + p * kWidth, part[p]);
   }
   [[gnu::always_inline]] void store_unaligned(double* to) const noexcept {
-    for (std::size_t p = 0; p < kParts; ++p) __builtin_memcpy(to + p * kWidth, &part[p], kWidth * 8);
+    for (std::size_t p = 0; p < kParts; ++p) Memory::store_unaligned(to + p * kWidth, part[p]);
   }
   /// 0, 1, 2, …
   [[gnu::always_inline]] static Pack iota() noexcept {
@@ -243,6 +245,7 @@ struct Pack {
   }
 
  private:
+  using Memory = pack_detail::Lanes<kWidth>;
   template <auto Op, class... Operands>
   [[gnu::always_inline]] static Pack each(const Operands&... operands) noexcept {
     return pack_detail::by_parts<Op, Pack>(operands...);

@@ -98,21 +98,42 @@ class Linearisation {
     for (auto& row : lq.terminal) std::fill(std::begin(row), std::end(row), 0.0);
     const auto rows = Evaluate::template end<Order>(problem, t);
     double cost = 0.0;
-    each_row<typename Evaluate::One, Order>(rows, [&](auto, const auto& r) {
-      using R = std::remove_cvref_t<decltype(r)>;
-      const double value = Evaluate::number(r.v);
-      cost += 0.5 * value * value;
-      const auto d = plain_derivatives<P, Arch>(r);
-      for (std::size_t i = 0; i < kNx; ++i) {
-        lq.terminal[kNx][i] += value * d.first[i];
-        for (std::size_t j = 0; j < kNx; ++j) {
-          lq.terminal[i][j] += d.first[i] * d.first[j];
-          if constexpr (R::kOrder == 2) lq.terminal[i][j] += value * d.second[i][j];
-        }
-      }
-    });
+    each_row<typename Evaluate::One, Order>(
+        rows, [&](auto, const auto& r) __attribute__((always_inline)) {
+          const double value = Evaluate::number(r.v);
+          cost += 0.5 * value * value;
+          add_end_row(r, value, lq);
+        });
     std::copy(lq.terminal[kNx], lq.terminal[kNx] + kNx, lambda);
     return cost;
+  }
+
+  /// The share of one terminal residual: its gradient, Gauss–Newton's Hessian, and with Order 2 the rest.
+  template <class R>
+  [[gnu::always_inline]] static void add_end_row(const R& r, double value, Lq& lq) noexcept {
+    each_state<R>([&](auto i) __attribute__((always_inline)) {
+      const double slope = Evaluate::slope_number(jet::slope<i>(r));
+      lq.terminal[kNx][i] += value * slope;
+      each_state<R>([&](auto j) __attribute__((always_inline)) {
+        lq.terminal[i][j] += slope * Evaluate::slope_number(jet::slope<j>(r));
+      });
+    });
+    jet::repeat<R::kSecond.size()>([&](auto n) __attribute__((always_inline)) {
+      constexpr Pair p = members<R::kSecond>()[n];
+      if constexpr (p.i < P::kNx && p.j < P::kNx) {
+        const double share = value * Evaluate::number(r.curvatures[n]);
+        lq.terminal[p.i][p.j] += share;
+        if constexpr (p.i != p.j) lq.terminal[p.j][p.i] += share;
+      }
+    });
+  }
+  /// Calls visit(i) for every state that a row depends on.
+  template <class R, class Visit>
+  [[gnu::always_inline]] static void each_state(const Visit& visit) noexcept {
+    jet::repeat<size_of(R::kFirst)>([&](auto n) __attribute__((always_inline)) {
+      constexpr int i = member_of(R::kFirst, n);
+      if constexpr (i < P::kNx) visit(std::integral_constant<int, i>{});
+    });
   }
 
   /// The eight stages from k0 on; those beyond the horizon count for nothing.
@@ -132,8 +153,7 @@ class Linearisation {
     run_adjoint(t.horizon, k0, f, gradient, lambda);
     measure(t, k0, live, f, gradient, lq, sums);
     if constexpr (Order == 2) add_curvature(rows, k0, slacks, l);
-    lq.set_jacobian(k0, f);
-    lq.set_cost(k0, l);
+    lq.set(k0, f, l);
   }
 
   template <int Order, class Row, class Mask>

@@ -120,7 +120,7 @@ class LqSolver {
   [[nodiscard]] InputBounds bounds_at(std::size_t k, std::size_t m, double last) const noexcept {
     InputBounds bounds{lq.low[m][k], lq.high[m][k]};
     if (kHasRates && has_rate(m)) {
-      const double moved = k == 0 ? 0.0 : last + lq.stage[k - 1].B[0][rate_state(m)];
+      const double moved = k == 0 ? 0.0 : last + lq.stage[k - 1].defect(rate_state(m));
       bounds.rate_low = lq.rate_low[m][k] + moved;
       bounds.rate_high = lq.rate_high[m][k] + moved;
     }
@@ -181,11 +181,12 @@ class LqSolver {
     Block block;
     unroll<kNu>([&](auto m) __attribute__((always_inline)) {
       unroll<m + 1>([&](auto l) __attribute__((always_inline)) {
-        block.H[m][l] =
-            Algebra::template times_column<kNx + 1 + m>(s, w[1 + l], s.H[m][l] + (m == l ? shift : 0.0));
+        const double own = Algebra::template cost<kNx + 1 + m, kNx + 1 + l>(s) + (m == l ? shift : 0.0);
+        block.H[m][l] = Algebra::template times_column<kNx + 1 + m>(s, w[1 + l], own);
         block.H[l][m] = block.H[m][l];
       });
-      block.g[m] = Algebra::template times_column<kNx + 1 + m>(s, w[0], s.g[m]);
+      block.g[m] =
+          Algebra::template times_column<kNx + 1 + m>(s, w[0], Algebra::template cost<kNx + 1 + m, kNx>(s));
     });
     Vector R[kNu];  // Q over inputs and states
     alignas(64) double r[kNu][kLanes];
@@ -203,7 +204,8 @@ class LqSolver {
     unroll<kNu>([&](auto m) __attribute__((always_inline)) { g[m] = block.g[m]; });
     if (any_held) substitute_held(k, block, is_held, R, b, g, q);
     Vector T[kNu];
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) { T[m] = Algebra::combination(block.adjugate[m], R); });
+    unroll<kNu>([&](auto m)
+                    __attribute__((always_inline)) { T[m] = Algebra::combination(block.adjugate[m], R); });
 
     Vector Wx[kNx];
     alignas(64) double wx[kNx][kLanes];
@@ -415,9 +417,9 @@ class LqSolver {
       case Hold::kHigh:
         return lq.high[m][k];
       case Hold::kNextLow:
-        return fixed_[k + 1][m] - lq.rate_low[m][k + 1] - lq.stage[k].B[0][rate_state(m)];
+        return fixed_[k + 1][m] - lq.rate_low[m][k + 1] - lq.stage[k].defect(rate_state(m));
       case Hold::kNextHigh:
-        return fixed_[k + 1][m] - lq.rate_high[m][k + 1] - lq.stage[k].B[0][rate_state(m)];
+        return fixed_[k + 1][m] - lq.rate_high[m][k + 1] - lq.stage[k].defect(rate_state(m));
       default:
         return lq.low[m][k];
     }
@@ -455,7 +457,7 @@ class LqSolver {
                                              const double (&u)[kNu]) noexcept {
     double next[kNx];
     unroll<kNx>([&](auto i) __attribute__((always_inline)) {
-      double sum = s.B[0][i];
+      double sum = s.defect(i);
       double other = 0.0;
       unroll<kNx>([&](auto j) __attribute__((always_inline)) {
         if constexpr (Layout::kF[i][j] != Layout::kNone) {
@@ -469,7 +471,7 @@ class LqSolver {
       unroll<kNu>([&](auto m) __attribute__((always_inline)) {
         constexpr std::size_t kU = kNx + 1 + m;
         if constexpr (Layout::kF[i][kU] != Layout::kNone) {
-          sum = fused_multiply_add<Arch>(s.B[1 + m][i], u[m], sum);
+          sum = fused_multiply_add<Arch>(Algebra::template jacobian<i, kU>(s), u[m], sum);
         } else if constexpr (Pattern::kF[i][kU] == Entry::kOne) {
           sum += u[m];
         }

@@ -94,30 +94,67 @@ struct Layout {
     return count;
   }();
 
-  /// Whether row i of L has entries among the states, and its place among those rows that have.
+  /// Rows over the states that sweeps read as registers are kept as such where they are wide, with more than
+  /// two entries; the others are put together from numbers.
+  static constexpr std::size_t kNarrow = 2;
+  /// Whether row i of L has entries among the states.
   static constexpr bool has_cost_row(std::size_t i) noexcept { return count(kL[i]) > 0; }
-  static constexpr std::size_t cost_row(std::size_t i) noexcept {
-    std::size_t place = 0;
-    for (std::size_t r = 0; r < i; ++r) place += has_cost_row(r) ? 1 : 0;
-    return place;
-  }
-  static constexpr std::size_t kCostRows = cost_row(kNz);
-
+  static constexpr bool is_wide_cost(std::size_t i) noexcept { return count(kL[i]) > kNarrow; }
   /// Whether state i of the next stage is its own value and something: that 1 is not stored.
   static constexpr bool is_sum(std::size_t i) noexcept { return Pattern::kF[i][i] == Entry::kOne; }
-  /// Whether state i of the next stage depends on states in another way, and its place among those that do.
+  /// Whether F[i][j] is a 1 in a row over the states.
+  static constexpr bool is_one(std::size_t i, std::size_t j) noexcept {
+    return Pattern::kF[i][j] == Entry::kOne && j != i && j < kNx;
+  }
+  /// Whether state i of the next stage depends on states in another way than as a sum.
   static constexpr bool has_state_row(std::size_t i) noexcept {
     for (std::size_t j = 0; j < kNx; ++j) {
-      if (Pattern::kF[i][j] != Entry::kZero && !(i == j && is_sum(i))) return true;
+      if (is_one(i, j) || kF[i][j] != kNone) return true;
     }
     return false;
   }
-  static constexpr std::size_t state_row(std::size_t i) noexcept {
+  static constexpr bool is_wide_state(std::size_t i) noexcept { return count(kF[i]) > kNarrow; }
+
+  /// The place of wide row i of F, and of L, among all.
+  static constexpr std::size_t wide_state(std::size_t i) noexcept {
     std::size_t place = 0;
-    for (std::size_t r = 0; r < i; ++r) place += has_state_row(r) ? 1 : 0;
+    for (std::size_t r = 0; r < i; ++r) place += is_wide_state(r) ? 1 : 0;
     return place;
   }
-  static constexpr std::size_t kStateRows = state_row(kNx);
+  static constexpr std::size_t wide_cost(std::size_t i) noexcept {
+    std::size_t place = wide_state(kNx);
+    for (std::size_t r = 0; r < i; ++r) place += is_wide_cost(r) ? 1 : 0;
+    return place;
+  }
+  static constexpr std::size_t kWideRows = wide_cost(kNz);
+
+  /// All entries that sweeps read as numbers, in one series; F[i][kOne], the defects, come first.
+  struct Numbers {
+    JacobianTable f{};
+    CostTable l{};
+    std::size_t count = 0;
+  };
+  static constexpr Numbers kNumber = [] {
+    Numbers numbers;
+    for (auto& row : numbers.f) row.fill(kNone);
+    for (auto& row : numbers.l) row.fill(kNone);
+    for (std::size_t i = 0; i < kNx; ++i) numbers.f[i][kOne] = numbers.count++;
+    for (std::size_t i = 0; i < kNx; ++i) {
+      for (std::size_t j = 0; j < kNz; ++j) {
+        if (j != kOne && kF[i][j] != kNone && (j > kOne || !is_wide_state(i)))
+          numbers.f[i][j] = numbers.count++;
+      }
+    }
+    for (std::size_t i = 0; i < kNz; ++i) {
+      for (std::size_t j = 0; j < kNz; ++j) {  // row i is read over states, or of inputs by number
+        const bool is_read = j < kNx ? !is_wide_cost(i) : (i >= kOne && j >= kOne);
+        if (kL[i][j] != kNone && is_read && numbers.l[i][j] == kNone)
+          numbers.l[i][j] = numbers.l[j][i] = numbers.count++;
+      }
+    }
+    return numbers;
+  }();
+  static constexpr std::size_t kNumbers = (kNumber.count + 7) / 8 * 8;
 
   /// Entries of a row that belong to states.
   static constexpr std::size_t count(const std::array<std::size_t, kNz>& row) noexcept {
@@ -144,11 +181,10 @@ struct LqProblem {
   static constexpr std::size_t kStages = (Capacity + 7) / 8 * 8;  ///< room for whole packs
 
   struct alignas(64) Stage {
-    double A[Layout::kStateRows + 1][kLanes];  ///< row state_row(i): ∂x⁺_i / ∂x, without the 1 of a sum
-    double B[1 + kNu][kLanes];                 ///< columns of F over x⁺: the defect, then the inputs
-    double L[Layout::kCostRows + 1][kLanes];   ///< row cost_row(i): L[i][j] for the states j
-    double g[kNu];                             ///< L[u][1]
-    double H[kNu][kNu];                        ///< L[u][u]
+    double number[Layout::kNumbers];             ///< entries as numbered by Layout::kNumber
+    double wide[Layout::kWideRows + 1][kLanes];  ///< wide rows over the states: of F, then of L
+
+    [[nodiscard]] double defect(std::size_t i) const noexcept { return number[i]; }
   };
   Stage stage[kStages]{};
   alignas(64) double low[kNu][kStages]{};  ///< bounds on δu; infinite where there are none
@@ -160,135 +196,106 @@ struct LqProblem {
   LqProblem() noexcept {
     for (Stage& s : stage) {
       for (std::size_t i = 0; i < kNx; ++i) {
-        for (std::size_t j = 0; j < Layout::kNz; ++j) {
-          if (Pattern::kF[i][j] == Entry::kOne && j != Layout::kOne && j != i) entry_of_f(s, i, j) = 1.0;
+        for (std::size_t j = 0; j < kNx; ++j) {
+          if (Layout::is_wide_state(i) && Layout::is_one(i, j)) s.wide[Layout::wide_state(i)][j] = 1.0;
         }
       }
     }
   }
 
-  /// Sets the Jacobians and defects of the eight stages from `k` (a multiple of 8) on; entries as numbered by
-  /// Layout::kF.
+  /// Sets Jacobians, defects and costs of the eight stages from `k` (a multiple of 8) on; entries as numbered
+  /// by Layout::kF and Layout::kL. Any eight entries make eight stages' lines by one transposition.
   template <class Arch>
-  [[gnu::always_inline]] void set_jacobian(std::size_t k,
-                                           const std::array<Pack<Arch, 8>, Layout::kFCount>& entry) noexcept {
+  [[gnu::always_inline]] void set(std::size_t k, const std::array<Pack<Arch, 8>, Layout::kFCount>& f,
+                                  const std::array<Pack<Arch, 8>, Layout::kLCount>& l) noexcept {
+    unroll<Layout::kNumbers / 8>([&](auto line) __attribute__((always_inline)) {
+      write<sources_of_numbers(line)>(k, f, l, [=](Stage& s) { return s.number + line * 8; });
+    });
     unroll<kNx>([&](auto i) __attribute__((always_inline)) {
-      if constexpr (Layout::has_state_row(i))
-        write_row<state_entries(i)>(k, entry, [=](Stage& s) { return s.A[Layout::state_row(i)]; });
+      if constexpr (Layout::is_wide_state(i)) write_row<i, true>(k, f, l);
     });
-    unroll<1 + kNu>([&](auto c) __attribute__((always_inline)) {
-      write_row<column_entries(kNx + c)>(k, entry, [=](Stage& s) { return s.B[c]; });
-    });
-  }
-
-  /// Sets the costs of the eight stages from `k` (a multiple of 8) on; entries as numbered by Layout::kL.
-  template <class Arch>
-  [[gnu::always_inline]] void set_cost(std::size_t k,
-                                       const std::array<Pack<Arch, 8>, Layout::kLCount>& entry) noexcept {
     unroll<Layout::kNz>([&](auto i) __attribute__((always_inline)) {
-      if constexpr (Layout::has_cost_row(i))
-        write_row<cost_entries(i)>(k, entry, [=](Stage& s) { return s.L[Layout::cost_row(i)]; });
-    });
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-      constexpr std::size_t kU = Layout::kHead + m;
-      constexpr std::size_t kSlope = Layout::kL[kU][Layout::kOne];
-      if constexpr (kSlope != Layout::kNone)
-        scatter(k, entry[kSlope], [=](Stage& s) -> double& { return s.g[m]; });
-      unroll<kNu>([&](auto l) __attribute__((always_inline)) {
-        constexpr std::size_t kCurvature = Layout::kL[kU][Layout::kHead + l];
-        if constexpr (kCurvature != Layout::kNone)
-          scatter(k, entry[kCurvature], [=](Stage& s) -> double& { return s.H[m][l]; });
-      });
+      if constexpr (Layout::is_wide_cost(i)) write_row<i, false>(k, f, l);
     });
   }
 
   /// Single entries of stage k, for code that does not work on eight stages at once. Pre: the pattern has
   /// them.
   void set_jacobian(std::size_t k, std::size_t i, std::size_t j, double value) noexcept {
-    entry_of_f(stage[k], i, j) = value;
+    Stage& s = stage[k];
+    if (const std::size_t n = Layout::kNumber.f[i][j]; n != Layout::kNone) s.number[n] = value;
+    if (j < kNx && Layout::is_wide_state(i)) s.wide[Layout::wide_state(i)][j] = value;
   }
   void set_cost(std::size_t k, std::size_t i, std::size_t j, double value) noexcept {
     Stage& s = stage[k];
-    if (j < kNx) s.L[Layout::cost_row(i)][j] = value;
-    if (i < kNx) s.L[Layout::cost_row(j)][i] = value;
-    const std::size_t first = i < j ? i : j;
-    const std::size_t last = i < j ? j : i;
-    if (first == Layout::kOne && last > Layout::kOne) s.g[last - Layout::kHead] = value;
-    if (first > Layout::kOne)
-      s.H[last - Layout::kHead][first - Layout::kHead] = s.H[first - Layout::kHead][last - Layout::kHead] =
-          value;
+    if (const std::size_t n = Layout::kNumber.l[i][j]; n != Layout::kNone) s.number[n] = value;
+    if (j < kNx && Layout::is_wide_cost(i)) s.wide[Layout::wide_cost(i)][j] = value;
+    if (i < kNx && Layout::is_wide_cost(j)) s.wide[Layout::wide_cost(j)][i] = value;
   }
 
  private:
-  static double& entry_of_f(Stage& s, std::size_t i, std::size_t j) noexcept {
-    return j < kNx ? s.A[Layout::state_row(i)][j] : s.B[j - kNx][i];
-  }
-
-  /// Where the entries of one row come from: a number, or a constant.
-  struct Source {
-    std::array<std::size_t, kLanes> entry{};
-    std::array<bool, kLanes> is_one{};
-    std::size_t count = 0;
+  /// Where a line of eight numbers comes from: entries of F, of L, or constants.
+  struct Sources {
+    std::array<std::size_t, 8> f{};
+    std::array<std::size_t, 8> l{};
+    std::array<bool, 8> is_one{};
   };
-  static constexpr Source state_entries(std::size_t i) noexcept {
-    Source row = nothing();
-    for (std::size_t j = 0; j < kNx; ++j)
-      add(row, j, Layout::kF[i][j], Pattern::kF[i][j] == Entry::kOne && j != i);
-    return row;
+  static constexpr Sources nothing() noexcept {
+    Sources sources;
+    sources.f.fill(Layout::kNone);
+    sources.l.fill(Layout::kNone);
+    return sources;
   }
-  static constexpr Source column_entries(std::size_t j) noexcept {
-    Source row = nothing();
-    for (std::size_t i = 0; i < kNx; ++i) add(row, i, Layout::kF[i][j], Pattern::kF[i][j] == Entry::kOne);
-    return row;
-  }
-  static constexpr Source cost_entries(std::size_t i) noexcept {
-    Source row = nothing();
-    for (std::size_t j = 0; j < kNx; ++j) add(row, j, Layout::kL[i][j], false);
-    return row;
-  }
-  static constexpr Source nothing() noexcept {
-    Source row;
-    row.entry.fill(Layout::kNone);
-    return row;
-  }
-  static constexpr void add(Source& row, std::size_t lane, std::size_t entry, bool is_one) noexcept {
-    row.entry[lane] = entry;
-    row.is_one[lane] = entry == Layout::kNone && is_one;
-    row.count += entry != Layout::kNone ? 1 : 0;
-  }
-
-  template <class Arch, class Place>
-  [[gnu::always_inline]] void scatter(std::size_t k, const Pack<Arch, 8>& value,
-                                      const Place& place) noexcept {
-    alignas(64) double by_stage[8];
-    value.store(by_stage);
-    for (std::size_t lane = 0; lane < 8; ++lane) place(stage[k + lane]) = by_stage[lane];
-  }
-
-  /// Rows of eight stages: whole by transposition, or entry by entry where they have few.
-  template <auto Row, class Entries, class Place>
-  [[gnu::always_inline]] void write_row(std::size_t k, const Entries& entry, const Place& place) noexcept {
-    using Stages = typename Entries::value_type;
-    if constexpr (Row.count > 3) {
-      unroll<kLanes / 8>([&](auto block) __attribute__((always_inline)) {
-        Stages rows[8];
-        unroll<8>([&](auto lane) __attribute__((always_inline)) {
-          constexpr std::size_t kJ = block * 8 + lane;
-          if constexpr (Row.entry[kJ] != Layout::kNone) {
-            rows[lane] = entry[Row.entry[kJ]];
-          } else {
-            rows[lane] = Stages(Row.is_one[kJ] ? 1.0 : 0.0);
-          }
-        });
-        transpose(rows);
-        for (std::size_t s = 0; s < 8; ++s) rows[s].store(place(stage[k + s]) + block * 8);
-      });
-    } else {
-      unroll<kLanes>([&](auto lane) __attribute__((always_inline)) {
-        if constexpr (Row.entry[lane] != Layout::kNone)
-          scatter(k, entry[Row.entry[lane]], [&place, lane](Stage& s) -> double& { return place(s)[lane]; });
-      });
+  static constexpr Sources sources_of_numbers(std::size_t line) noexcept {
+    Sources sources = nothing();
+    const auto in_line = [&](std::size_t n) { return n != Layout::kNone && n / 8 == line; };
+    for (std::size_t j = 0; j < Layout::kNz; ++j) {
+      for (std::size_t i = 0; i < kNx; ++i) {
+        if (const std::size_t n = Layout::kNumber.f[i][j]; in_line(n)) sources.f[n % 8] = Layout::kF[i][j];
+      }
+      for (std::size_t i = 0; i < Layout::kNz; ++i) {
+        if (const std::size_t n = Layout::kNumber.l[i][j]; in_line(n)) sources.l[n % 8] = Layout::kL[i][j];
+      }
     }
+    return sources;
+  }
+  static constexpr Sources sources_of_row(std::size_t i, bool of_f, std::size_t block) noexcept {
+    Sources sources = nothing();
+    for (std::size_t lane = 0; lane < 8 && block * 8 + lane < kNx; ++lane) {
+      const std::size_t j = block * 8 + lane;
+      if (of_f) {
+        sources.f[lane] = Layout::kF[i][j];
+        sources.is_one[lane] = Layout::is_one(i, j);
+      } else {
+        sources.l[lane] = Layout::kL[i][j];
+      }
+    }
+    return sources;
+  }
+
+  /// Writes wide row I of F, or of L.
+  template <std::size_t I, bool OfF, class F, class L>
+  [[gnu::always_inline]] void write_row(std::size_t k, const F& f, const L& l) noexcept {
+    constexpr std::size_t kRow = OfF ? Layout::wide_state(I) : Layout::wide_cost(I);
+    unroll<kLanes / 8>([&](auto block) __attribute__((always_inline)) {
+      write<sources_of_row(I, OfF, block)>(k, f, l, [=](Stage& s) { return s.wide[kRow] + block * 8; });
+    });
+  }
+  template <auto Line, class F, class L, class Place>
+  [[gnu::always_inline]] void write(std::size_t k, const F& f, const L& l, const Place& place) noexcept {
+    using Stages = typename F::value_type;
+    Stages rows[8];
+    unroll<8>([&](auto lane) __attribute__((always_inline)) {
+      if constexpr (Line.f[lane] != Layout::kNone) {
+        rows[lane] = f[Line.f[lane]];
+      } else if constexpr (Line.l[lane] != Layout::kNone) {
+        rows[lane] = l[Line.l[lane]];
+      } else {
+        rows[lane] = Stages(Line.is_one[lane] ? 1.0 : 0.0);
+      }
+    });
+    transpose(rows);
+    for (std::size_t s = 0; s < 8; ++s) rows[s].store(place(stage[k + s]));
   }
 };
 

@@ -58,7 +58,9 @@ namespace chicane::solver {
 /// fine;
 /// - model code over one type T (`struct Motion<T>`) runs on T = Common<A, B, …> of the variables it uses;
 /// - what is computed from x_k and u_k but needs no memory is an output, not a state: put it into residual();
-/// - the functions must also work on plain doubles: that is how they are simulated and tested.
+/// - the functions must also work on plain doubles: that is how they are simulated and tested;
+/// - they are called from several places: without [[gnu::always_inline]] on them and on what they call, jets
+/// may go through memory.
 ///
 /// A stage may have at most 24 variables (states and inputs).
 

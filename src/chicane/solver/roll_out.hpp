@@ -45,8 +45,8 @@ class RollOut {
 
  private:
   using Evaluate = Evaluation<P, Arch>;
-  /// Eight stages as ever, under a name that makes each level's call a function of its own: called once, it is
-  /// inlined, and what is not used of its results goes away.
+  /// Eight stages as ever, under a name that makes each level's call a function of its own: called once, it
+  /// is inlined, and what is not used of its results goes away.
   template <std::size_t>
   struct LanesOfLevel : StageLanes<V> {};
 

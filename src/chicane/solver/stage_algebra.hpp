@@ -30,8 +30,16 @@ class StageAlgebra {
       unroll<kBlocks>([&](auto b) __attribute__((always_inline)) { v.part[b] = V::load(from + b * kBlock); });
       return v;
     }
+    [[gnu::always_inline]] static Vector zero() noexcept {
+      Vector v;
+      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) { v.part[b] = V(0.0); });
+      return v;
+    }
     [[gnu::always_inline]] void store(double* to) const noexcept {
       unroll<kBlocks>([&](auto b) __attribute__((always_inline)) { part[b].store(to + b * kBlock); });
+    }
+    [[gnu::always_inline]] void set(std::size_t i, double value) noexcept {
+      part[i / kBlock].set(i % kBlock, value);
     }
     [[gnu::always_inline]] void add(const Vector& o) noexcept {
       unroll<kBlocks>([&](auto b) __attribute__((always_inline)) { part[b] += o.part[b]; });
@@ -68,7 +76,7 @@ class StageAlgebra {
     }
     return terms;
   }
-  /// Rows of F that are stored.
+  /// Rows of F with more among the states than the 1 of a sum.
   static constexpr Terms state_rows() noexcept {
     Terms terms;
     for (std::size_t i = 0; i < kNx; ++i) {
@@ -83,11 +91,48 @@ class StageAlgebra {
   /// F[I][J].
   template <std::size_t I, std::size_t J>
   [[gnu::always_inline]] static double jacobian(const Stage& s) noexcept {
-    if constexpr (J < kNx) {
-      constexpr std::size_t kRow = Layout::state_row(I);
-      return s.A[kRow][J];
+    constexpr std::size_t kNumber = Layout::kNumber.f[I][J];
+    if constexpr (kNumber != Layout::kNone) {
+      return s.number[kNumber];
     } else {
-      return s.B[J - kNx][I];
+      constexpr std::size_t kRow = Layout::wide_state(I);
+      return s.wide[kRow][J];
+    }
+  }
+  /// L[I][J], I and J inputs or the constant; zero where the pattern has no such entry.
+  template <std::size_t I, std::size_t J>
+  [[gnu::always_inline]] static double cost(const Stage& s) noexcept {
+    constexpr std::size_t kNumber = Layout::kNumber.l[I][J];
+    if constexpr (kNumber != Layout::kNone) return s.number[kNumber];
+    return 0.0;
+  }
+  /// Row I of F over the states, without the 1 of a sum.
+  template <std::size_t I>
+  [[gnu::always_inline]] static Vector state_row(const Stage& s) noexcept {
+    if constexpr (Layout::is_wide_state(I)) {
+      constexpr std::size_t kRow = Layout::wide_state(I);
+      return Vector::load(s.wide[kRow]);
+    } else {
+      Vector row = Vector::zero();
+      unroll<kNx>([&](auto j) __attribute__((always_inline)) {
+        if constexpr (Layout::is_one(I, j)) row.set(j, 1.0);
+        if constexpr (Layout::kF[I][j] != Layout::kNone) row.set(j, jacobian<I, j>(s));
+      });
+      return row;
+    }
+  }
+  /// Row I of L over the states.
+  template <std::size_t I>
+  [[gnu::always_inline]] static Vector cost_row(const Stage& s) noexcept {
+    if constexpr (Layout::is_wide_cost(I)) {
+      constexpr std::size_t kRow = Layout::wide_cost(I);
+      return Vector::load(s.wide[kRow]);
+    } else {
+      Vector row = Vector::zero();
+      unroll<kNx>([&](auto j) __attribute__((always_inline)) {
+        if constexpr (Layout::kL[I][j] != Layout::kNone) row.set(j, s.number[Layout::kNumber.l[I][j]]);
+      });
+      return row;
     }
   }
 
@@ -145,18 +190,6 @@ class StageAlgebra {
     }
   }
 
-  template <std::size_t I>
-  [[gnu::always_inline]] static Vector cost_row(const Stage& s) noexcept {
-    if constexpr (Layout::has_cost_row(I)) {
-      constexpr std::size_t kRow = Layout::cost_row(I);
-      return Vector::load(s.L[kRow]);
-    } else {
-      Vector zero;
-      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) { zero.part[b] = V(0.0); });
-      return zero;
-    }
-  }
-
   /// States whose next value is theirs and something, as lanes.
   alignas(64) static constexpr std::array<double, kLanes> kSums = [] {
     std::array<double, kLanes> lanes{};
@@ -191,7 +224,7 @@ class StageAlgebra {
     } else {
       return combine<kRows.count>(
           start, [&](auto t) __attribute__((always_inline)) { return w_in_memory[kRows.index[t]]; },
-          [&](auto t) __attribute__((always_inline)) { return Vector::load(s.A[t]); });
+          [&](auto t) __attribute__((always_inline)) { return state_row<kRows.index[t]>(s); });
     }
   }
   /// Σ_m factor_m · v_m over the inputs.

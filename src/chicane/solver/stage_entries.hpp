@@ -180,32 +180,4 @@ struct StageEntries<P, V> {
   }
 };
 
-/// Derivatives with respect to the states as plain numbers.
-template <OcpProblem P>
-struct PlainDerivatives {
-  double first[P::kNx] = {};
-  double second[P::kNx][P::kNx] = {};
-};
-template <OcpProblem P, class Arch, class J>
-[[nodiscard]] PlainDerivatives<P> plain_derivatives(const J& r) noexcept {
-  const auto number = [](const auto& value) {
-    if constexpr (std::is_same_v<typename J::Value, double>) {
-      return jet::number<double>(value);
-    } else {
-      return jet::number<typename J::Value>(value)[0];
-    }
-  };
-  PlainDerivatives<P> result;
-  jet::repeat<size_of(J::kFirst)>([&](auto n) {
-    constexpr int i = member_of(J::kFirst, n);
-    if constexpr (i < P::kNx) result.first[i] = number(jet::slope<i>(r));
-  });
-  constexpr auto pairs = members<J::kSecond>();
-  for (std::size_t n = 0; n < pairs.size(); ++n) {
-    if (pairs[n].j >= P::kNx) continue;
-    result.second[pairs[n].i][pairs[n].j] = result.second[pairs[n].j][pairs[n].i] = number(r.curvatures[n]);
-  }
-  return result;
-}
-
 }  // namespace chicane::solver
