@@ -55,17 +55,17 @@ TEST_P(GoldenRun, HasTheBitsItHad) {
 INSTANTIATE_TEST_SUITE_P(
     Runs, GoldenRun,
     ::testing::Values(
-        Golden{"default_udacity", {{"track", "lakeside"}}, 0x8e7206c1364b62d5, 0x1949524425084ce3},
+        Golden{"default_udacity", {{"track", "lakeside"}}, 0x4ba3ff55d9fdd94b, 0xca5b380934fe84d1},
         Golden{"default_road_car",
                {{"track", "hairpins"}, {"car", "road-car"}},
-               0x6d9993035a527c53,
-               0x91c994132a3de5b2},
+               0x950d9458b78578c5,
+               0x28cb21425f8c54ad},
         Golden{"with_noise",
                {{"track", "oval"}, {"sensor.position_noise_m", "0.05"}, {"seed", "7"}},
-               0x0075a7792a421900,
-               0x31bb96d363fd0d7a},
-        Golden{"weighted", {{"preset", "weighted"}}, 0x091b005c1886cede, 0xa91771e4faded080},
-        Golden{"delay_in_model", {{"preset", "delay-in-model"}}, 0xceefe72daaf472a6, 0xe71652142efa67ba},
+               0x3d3dcf6ed5d01044,
+               0xe71340054c0cfb6a},
+        Golden{"weighted", {{"preset", "weighted"}}, 0xf518e2648beb1f7a, 0x7a1a279cfb2d07b6},
+        Golden{"delay_in_model", {{"preset", "delay-in-model"}}, 0x729431f185b84bff, 0xa14519e718c637ab},
         Golden{"pid", {{"preset", "pid"}, {"latency_ms", "37"}}, 0xdab4f526bb2d5617, 0xdab4f526bb2d5617}),
     [](const auto& run) { return std::string(run.param.name); });
 
