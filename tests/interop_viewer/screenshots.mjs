@@ -34,6 +34,7 @@ for (const { name, tab, size, prepare, undo, ...options } of PICTURES.filter(isW
   await page.goto(`${url}#${tab}`);
   pages.push({ name, page, prepare, undo });
 }
+await pages[0]?.page.locator('button', { hasText: 'Reset' }).waitFor();
 await pages[0]?.page.keyboard.press('r');
 await pages[0]?.page.waitForTimeout(Number(wait) * 1000);
 for (const { name, page, prepare, undo } of pages) {
