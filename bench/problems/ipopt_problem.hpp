@@ -22,7 +22,8 @@ struct Multipliers {
 
 /// Any OcpProblem as a sparse nonlinear program for Ipopt (Wächter, Biegler 2006): states and inputs as
 /// variables, dynamics as equations, soft constraints with explicit slacks, exact first and second
-/// derivatives by dual numbers. Variables: u_0, x_1, u_1, …, x_N, then the slacks.
+/// derivatives by dual numbers. Variables: u_0, x_1, u_1, …, x_N, then the slacks. Equations: dynamics, then
+/// constraints with slacks, then changes of inputs where those are bounded.
 template <solver::OcpProblem P>
 class IpoptProblem : public Ipopt::TNLP {
  public:
@@ -32,6 +33,7 @@ class IpoptProblem : public Ipopt::TNLP {
   static constexpr int kNu = P::kNu;
   static constexpr int kNc = P::kNc;
   static constexpr int kNz = kNx + kNu;
+  static constexpr int kNd = solver::has_rate_bounds<P> ? kNu : 0;
 
   const P* problem = nullptr;
   std::array<double, kNx> x0{};
@@ -46,10 +48,12 @@ class IpoptProblem : public Ipopt::TNLP {
   static int at_u(int k) { return k * kNz; }
   static int at_x(int k) { return (k - 1) * kNz + kNu; }
   [[nodiscard]] int at_s(int k) const { return horizon * kNz + k * kNc; }
+  /// The row of the change of input m of stage k.
+  [[nodiscard]] int rate_row(int k, int m) const { return horizon * (kNx + kNc) + k * kNd + m; }
 
   bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
     n = horizon * (kNz + kNc);
-    m = horizon * (kNx + kNc);
+    m = horizon * (kNx + kNc + kNd);
     jacobian = visit_jacobian(nullptr, [](int, int, double) {});
     hessian = visit_hessian(nullptr, 0.0, nullptr, [](int, int, double) {});
     style = C_STYLE;
@@ -71,6 +75,14 @@ class IpoptProblem : public Ipopt::TNLP {
         high[at_s(k) + c] = 2e19;
         g_low[horizon * kNx + k * kNc + c] = -2e19;
         g_high[horizon * kNx + k * kNc + c] = 0.0;
+      }
+      if constexpr (kNd > 0) {
+        for (int m = 0; m < kNu; ++m) {
+          const auto input = static_cast<std::size_t>(m);
+          const bool is_bounded = P::kPreviousInput[input] >= 0;
+          g_low[rate_row(k, m)] = is_bounded ? std::fmax(problem->input_rate_lower(k)[input], -2e19) : -2e19;
+          g_high[rate_row(k, m)] = is_bounded ? std::fmin(problem->input_rate_upper(k)[input], 2e19) : 2e19;
+        }
       }
     }
     return true;
@@ -138,6 +150,7 @@ class IpoptProblem : public Ipopt::TNLP {
           g[horizon * kNx + k * kNc + c] = values[static_cast<std::size_t>(c)] - w[at_s(k) + c];
         }
       }
+      for (int m = 0; m < kNd; ++m) g[rate_row(k, m)] = change<double>(x, u, m);
     }
     return true;
   }
@@ -231,6 +244,13 @@ class IpoptProblem : public Ipopt::TNLP {
     return u;
   }
 
+  /// u_m − the state that holds its previous value.
+  template <class T>
+  static T change(const std::array<T, kNx>& x, const std::array<T, kNu>& u, int m) {
+    const int state = solver::previous_inputs<P>()[static_cast<std::size_t>(m)];
+    return u[static_cast<std::size_t>(m)] - x[static_cast<std::size_t>(std::max(state, 0))];
+  }
+
   template <class Put>
   int visit_jacobian(const Number* w, const Put& put) {
     using D = Dual<kNz>;
@@ -252,6 +272,7 @@ class IpoptProblem : public Ipopt::TNLP {
         put(k * kNx + i, at_x(k + 1) + i, -1.0);
         ++count;
       }
+      for (int m = 0; m < kNd; ++m) row(rate_row(k, m), k, change<D>(x, u, m));
       if constexpr (kNc > 0) {
         const auto values = problem->constraint(k, x, u);
         for (int c = 0; c < kNc; ++c) {

@@ -7,6 +7,7 @@
 #include "problems/corridor_problem.hpp"
 #include "problems/described_problem.hpp"
 #include "problems/optimality.hpp"
+#include "problems/rate_problem.hpp"
 
 #ifdef CHICANE_HAVE_IPOPT
 #include "problems/ipopt_problem.hpp"
@@ -99,6 +100,27 @@ TEST_P(AgainstIpopt, AgreesOnTheOptimumWithASoftCorridor) {
     const double cost = bench::solve_with_ipopt(instance.problem, instance.start, reference);
     ASSERT_NEAR(report.cost, cost, 1e-6 * cost) << i;
     ASSERT_LE(report.complementarity, 1e-6) << i;
+    ASSERT_TRUE(bench::inputs_are_inside(instance.problem, own)) << i;
+  }
+}
+
+TEST_P(AgainstIpopt, AgreesOnTheOptimumWithBoundsOnChanges) {
+  using bench::RateProblem;
+  const auto ocp = std::make_unique<solver::OcpSolver<RateProblem, kCapacity>>(
+      solver::SolverOptions{.max_iterations = 100});
+  Random random{3000 + static_cast<std::uint64_t>(GetParam().horizon)};
+  for (int i = 0; i < GetParam().count; ++i) {
+    const auto instance = bench::random_rates(random, GetParam().horizon);
+    const bench::DescribedInstance plain{.problem = static_cast<const DescribedProblem&>(instance.problem),
+                                         .start = instance.start};
+    bench::DescribedTrajectory<kCapacity> own;
+    own.horizon = GetParam().horizon;
+    choose_start(GetParam().start, plain, instance.problem, *ocp, own);
+    auto reference = own;
+    const auto report = ocp->solve(instance.problem, instance.start, own);
+    ASSERT_EQ(report.status, SolveStatus::kOptimal) << i;
+    const double cost = bench::solve_with_ipopt(instance.problem, instance.start, reference);
+    ASSERT_NEAR(report.cost, cost, 1e-6 * cost) << i;
     ASSERT_TRUE(bench::inputs_are_inside(instance.problem, own)) << i;
   }
 }

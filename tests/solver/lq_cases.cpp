@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "chicane/solver/adjoint.hpp"
+#include "chicane/solver/interior_point.hpp"
 #include "chicane/solver/lq_solver.hpp"
-#include "chicane/solver/primal_active_set.hpp"
 
 namespace chicane::test {
 namespace {
@@ -72,8 +72,18 @@ void solve_lq(const LqData& data, LqAnswer& answer) noexcept {
   }
   if constexpr (Solver::kHasRates) {
     if (answer.sweeps == 100) {
-      const auto slow = std::make_unique<solver::PrimalActiveSet<Solver>>(*qp);
-      answer.sweeps = slow->solve(data.horizon, 300) ? 99 : 100;
+      const auto interior = std::make_unique<solver::InteriorPoint<Solver>>();
+      const auto slope = [&](std::size_t k, std::size_t m) { return data.L[k][kNx][kNx + 1 + m]; };
+      answer.sweeps = interior->solve(*qp, data.horizon, slope, [] { return false; });
+      answer.ends_inside = true;
+      interior->put_step(*qp, data.horizon);
+      for (int turn = 0; turn < 20; ++turn) {
+        qp->backward(data.horizon);
+        if (qp->forward(data.horizon, turn < 5 ? Solver::Repair::kAll : Solver::Repair::kLast) > 0) continue;
+        answer.ends_inside = false;
+        break;
+      }
+      if (answer.ends_inside) interior->put_step(*qp, data.horizon);
     }
   }
   const auto adjoint = std::make_unique<solver::Adjoint<Pattern, Solver::Lq::kStages>>();

@@ -33,6 +33,7 @@ struct LqAnswer {
   double slope[LqData::kMostStages][LqData::kMostInputs]{};
   double shift = 0.0;         ///< of the first backward sweep
   int sweeps = 0;             ///< until nothing contradicts; 100 when that does not happen
+  bool ends_inside = false;   ///< with the interior point's step, whose working set was contradicted
   bool again_is_same = true;  ///< sweeps begun at the last change gave the bits of whole ones
 };
 

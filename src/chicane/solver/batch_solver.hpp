@@ -38,6 +38,7 @@ class BatchSolver {
   using Trajectory = solver::Trajectory<One::kNx, One::kNu, Capacity>;
   static_assert(sizeof(Many) == kLanes * sizeof(One), "a problem of a batch consists of its numbers alone");
   static_assert(One::kNc == 0, "no soft constraints in a batch");
+  static_assert(!has_rate_bounds<One>, "no bounds on the changes of inputs in a batch");
 
   explicit BatchSolver(const SolverOptions& options = {}) noexcept : options_(options) {}
 

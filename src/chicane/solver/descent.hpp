@@ -10,6 +10,7 @@
 #include "chicane/solver/barrier.hpp"
 #include "chicane/solver/evaluation.hpp"
 #include "chicane/solver/iterate.hpp"
+#include "chicane/solver/linearisation.hpp"
 #include "chicane/solver/lq_solver.hpp"
 #include "chicane/solver/problem.hpp"
 
@@ -27,6 +28,7 @@ class Descent {
   using Point = Iterate<kNx, kNu, Capacity>;
   using Lq = LqSolver<Arch, ProblemPattern<P>, Capacity>;
   using Slacks = Barrier<P, Capacity, Arch>;
+  using Look = Linearisation<P, Capacity, Arch>;
 
   /// A new solve.
   void start() noexcept {
@@ -52,16 +54,16 @@ class Descent {
 
   /// Simulates the trajectory with the gains as feedback, so that an unstable system stays near it. False,
   /// and nothing changed, when that is not finite.
-  bool simulate(const P& problem, Lq& lq, const Slacks& slacks, Point& t) noexcept {
+  bool simulate(const P& problem, const Look& now, Lq& lq, const Slacks& slacks, Point& t) noexcept {
     lq.backward(t.horizon, shift_, true);
-    if (!std::isfinite(try_step(problem, t, lq, slacks, 0.0))) return false;
+    if (!std::isfinite(try_step(problem, t, now, lq, slacks, 0.0))) return false;
     t = candidate_;
     return true;
   }
 
-  /// One step from t with merit `merit`. False when no step length and no shift lowers it any more, or the
+  /// One step from t, at which `now` looks. False when no step length and no shift lowers it any more, or the
   /// deadline came first.
-  bool step(const P& problem, Lq& lq, Slacks& slacks, double merit, Point& t, const Deadline& deadline,
+  bool step(const P& problem, const Look& now, Lq& lq, Slacks& slacks, Point& t, const Deadline& deadline,
             int& sweeps) noexcept {
     constexpr int kAttempts = 12;
     constexpr int kHalvings = 6;
@@ -74,8 +76,8 @@ class Descent {
       double length = 1.0;
       for (int trial = 0; trial < kHalvings; ++trial, length *= 0.5) {
         if (deadline.spent()) return false;
-        const double allowed = merit + 1e-4 * length * expected + 1e-13 * std::fabs(merit);
-        if (!(try_step(problem, t, lq, slacks, length) <= allowed)) continue;
+        const double allowed = now.merit + 1e-4 * length * expected + 1e-13 * std::fabs(now.merit);
+        if (!(try_step(problem, t, now, lq, slacks, length) <= allowed)) continue;
         t = candidate_;
         slacks.lower_for_gain(-expected, t.horizon);
         ++taken_;
@@ -107,7 +109,7 @@ class Descent {
   }
 
   /// Simulates the gains from t into candidate_ with the constant part times `length`; returns the merit.
-  double try_step(const P& problem, const Point& t, const Lq& lq, const Slacks& slacks,
+  double try_step(const P& problem, const Point& t, const Look& now, const Lq& lq, const Slacks& slacks,
                   double length) noexcept {
     using One = typename Evaluate::One;
     candidate_.horizon = t.horizon;
@@ -118,6 +120,9 @@ class Descent {
         double du = length * lq.constant(k, m);
         for (std::size_t i = 0; i < kNx; ++i) du += lq.gain(k, m, i) * (candidate_.x[i][k] - t.x[i][k]);
         candidate_.u[m][k] = t.u[m][k] + std::min(std::max(du, lq.lq.low[m][k]), lq.lq.high[m][k]);
+        if (now.chains.is_bounded(m))
+          candidate_.u[m][k] =
+              now.chains.admit(k, m, candidate_.u[m][k], k > 0 ? candidate_.u[m][k - 1] : 0.0);
       }
       const auto x = candidate_.template state<One>(k);
       const auto u = candidate_.template input<One>(k);

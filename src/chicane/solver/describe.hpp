@@ -3,17 +3,38 @@
 
 #include <cstdio>
 #include <string>
+#include <string_view>
 
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/solution.hpp"
 
 namespace chicane::solver {
 
+namespace detail {
+/// "0.12 m at stage 14"
+[[nodiscard]] inline std::string amount(double value, std::string_view unit, int stage) {
+  char number[32];
+  std::snprintf(number, sizeof(number), "%.3g", value);
+  std::string text{number};
+  if (!unit.empty()) text.append(" ").append(unit);
+  return text + " at stage " + std::to_string(stage);
+}
+}  // namespace detail
+
 /// A report in one sentence, in the problem's own words: "infeasible: right edge exceeded by 0.12 m at stage
-/// 14". Constraints without a name are "constraint 1". Allocates: not for the control loop.
+/// 14", "optimal: change of steering beyond its bound by 0.1 rad at stage 0". What has no name is "constraint
+/// 1" or "input 0". Allocates: not for the control loop.
 template <OcpProblem P>
 [[nodiscard]] std::string describe(const P& problem, const SolveReport& report) {
   std::string text{to_string(report.status)};
+  if (report.rate_input >= 0) {
+    std::string name = "input " + std::to_string(report.rate_input);
+    std::string unit;
+    if constexpr (requires { problem.input_name(0); }) name = problem.input_name(report.rate_input);
+    if constexpr (requires { problem.input_unit(0); }) unit = problem.input_unit(report.rate_input);
+    text += ": change of " + name + " beyond its bound by " +
+            detail::amount(report.rate_excess, unit, report.rate_stage);
+  }
   if (report.worst_constraint < 0) return text;
   std::string name = "constraint " + std::to_string(report.worst_constraint);
   std::string unit;
@@ -21,11 +42,7 @@ template <OcpProblem P>
     name = problem.constraint_name(report.worst_constraint);
   if constexpr (requires { problem.constraint_unit(0); })
     unit = problem.constraint_unit(report.worst_constraint);
-  char amount[32];
-  std::snprintf(amount, sizeof(amount), "%.3g", report.violation);
-  text += ": " + name + " exceeded by " + amount;
-  if (!unit.empty()) text += " " + unit;
-  return text + " at stage " + std::to_string(report.worst_stage);
+  return text + ": " + name + " exceeded by " + detail::amount(report.violation, unit, report.worst_stage);
 }
 
 }  // namespace chicane::solver

@@ -11,6 +11,7 @@
 
 #include "chicane/solver/barrier.hpp"
 #include "chicane/solver/evaluation.hpp"
+#include "chicane/solver/input_chains.hpp"
 #include "chicane/solver/iterate.hpp"
 #include "chicane/solver/pattern.hpp"
 #include "chicane/solver/problem.hpp"
@@ -41,8 +42,9 @@ class Linearisation {
   alignas(64) double adjoint[kNx][kStageStride<Capacity>]{};  ///< adjoint[i][k]: price of x_{k+1}
   alignas(64) double lower[kNu][kStageStride<Capacity>]{};    ///< bounds of the inputs
   alignas(64) double upper[kNu][kStageStride<Capacity>]{};
-  double merit = 0.0;          ///< cost with the barrier's smoothed penalties; when slacks were centred
-  double defect_excess = 0.0;  ///< largest defect beyond its tolerance; <= 0: all are small enough
+  InputChains<P, Capacity> chains;  ///< inputs whose changes are bounded, with all their bounds
+  double merit = 0.0;               ///< cost with the barrier's smoothed penalties; when slacks were centred
+  double defect_excess = 0.0;       ///< largest defect beyond its tolerance; <= 0: all are small enough
 
   /// Looks at `t`. With Order 2 the stages get exact Hessians of the Lagrangian, else Gauss–Newton's.
   /// `centre`: slacks are put on the central path first. `defect_share`: of 1 + |x| that defects may have.
@@ -56,6 +58,11 @@ class Linearisation {
     for (std::size_t k = (t.horizon - 1) / 8 * 8 + 8; k > 0; k -= 8)
       look_at<Order>(problem, t, k - 8, {centre, defect_share}, slacks, lambda, lq, sums);
     sums.finish(*this, report);
+    if constexpr (has_rate_bounds<P>) {  // measured by whole chains
+      chains.fold_first(lq);
+      if (std::isfinite(report.stationarity) && std::isfinite(report.defect))
+        report.stationarity = std::max(report.stationarity, chains.distance(t, slope));
+    }
   }
 
  private:
@@ -255,9 +262,15 @@ class Linearisation {
       const V high = V::load(upper[m] + k0) - u;
       low.store(lq.low[m] + k0);
       high.store(lq.high[m] + k0);
-      const V projected = select(live, abs(min(max(-sum, low), high)), V(0.0));
-      sums.stationarity = max(sums.stationarity, projected);
       sums.slopes += select(live, sum, V(0.0));
+      if constexpr (Pattern::kRateState[m] >= 0) {
+        const V change = u - V::load(t.x[Pattern::kRateState[m]] + k0);
+        (V::load(chains[m].rate_low + k0) - change).store(lq.rate_low[m] + k0);
+        (V::load(chains[m].rate_high + k0) - change).store(lq.rate_high[m] + k0);
+      } else {
+        const V projected = select(live, abs(min(max(-sum, low), high)), V(0.0));
+        sums.stationarity = max(sums.stationarity, projected);
+      }
     });
   }
 

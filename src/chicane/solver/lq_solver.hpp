@@ -48,6 +48,12 @@ class LqSolver {
   alignas(64) double dx[Capacity + 1][kLanes]{};  ///< step of the states
   double du[Capacity][kNu]{};                     ///< step of the inputs
 
+  /// Whether the change of input m is bounded, and the state that it starts from.
+  static constexpr bool has_rate(std::size_t m) noexcept { return Pattern::kRateState[m] >= 0; }
+  static constexpr std::size_t rate_state(std::size_t m) noexcept {
+    return Pattern::kRateState[m] < 0 ? 0 : static_cast<std::size_t>(Pattern::kRateState[m]);
+  }
+
   /// Factorises all stages with `shift` added to the input blocks. `choose`: take the working set of each
   /// stage from its own small box problem (that is control-limited differential dynamic programming; the step
   /// then descends). Returns the largest extra shift that an indefinite input block needed; 0 when none did.
@@ -116,17 +122,6 @@ class LqSolver {
     for (std::size_t i = 0; i < kNx; ++i) sum += feedback[k].row[m][i] * dx[k][i];
     return sum;
   }
-  /// Bounds of input m of stage k when its last value has moved by `last`.
-  [[nodiscard]] InputBounds bounds_at(std::size_t k, std::size_t m, double last) const noexcept {
-    InputBounds bounds{lq.low[m][k], lq.high[m][k]};
-    if (kHasRates && has_rate(m)) {
-      const double moved = k == 0 ? 0.0 : last + lq.stage[k - 1].defect(rate_state(m));
-      bounds.rate_low = lq.rate_low[m][k] + moved;
-      bounds.rate_high = lq.rate_high[m][k] + moved;
-    }
-    return bounds;
-  }
-
   /// How far du follows its input's own feedback: the gain that belongs to state i, 0 where it is held.
   [[nodiscard]] double gain(std::size_t k, std::size_t m, std::size_t i) const noexcept {
     if (hold[k][m] == Hold::kFree) return feedback[k].row[m][i];
@@ -319,9 +314,6 @@ class LqSolver {
       }
     }
   }
-  static constexpr std::size_t rate_state(std::size_t m) noexcept {
-    return Pattern::kRateState[m] < 0 ? 0 : static_cast<std::size_t>(Pattern::kRateState[m]);
-  }
   static Vector unit_of_rate_state(std::size_t m) noexcept {
     alignas(64) double lanes[kLanes]{};
     lanes[rate_state(m)] = 1.0;
@@ -375,7 +367,6 @@ class LqSolver {
       finding = Finding::kNone;
     }
   };
-  static constexpr bool has_rate(std::size_t m) noexcept { return Pattern::kRateState[m] >= 0; }
 
   void apply(const Contradictions& found) noexcept {
     if (found.finding == Finding::kNone) {

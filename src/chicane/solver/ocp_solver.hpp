@@ -13,6 +13,7 @@
 #include "chicane/solver/barrier.hpp"
 #include "chicane/solver/descent.hpp"
 #include "chicane/solver/evaluation.hpp"
+#include "chicane/solver/interior_point.hpp"
 #include "chicane/solver/iterate.hpp"
 #include "chicane/solver/linearisation.hpp"
 #include "chicane/solver/lq_solver.hpp"
@@ -74,9 +75,23 @@ class OcpSolver {
   }
 
   /// After a solve: the price of state i of x_{k+1}, i.e. d(cost)/dx of what follows; k < horizon.
-  [[nodiscard]] double adjoint(int k, int i) const noexcept { return now_.adjoint[i][k]; }
-  /// The multiplier of the bounds of input m of stage k: d(cost)/du, 0 (within the tolerance) between them.
-  [[nodiscard]] double bound_multiplier(int k, int m) const noexcept { return now_.slope[m][k]; }
+  [[nodiscard]] double adjoint(int k, int i) const noexcept {
+    double price = now_.adjoint[i][k];
+    for (std::size_t m = 0; m < kNu; ++m) {
+      if (previous_inputs<P>()[m] == i) price -= now_.chains.price(static_cast<std::size_t>(k + 1), m);
+    }
+    return price;
+  }
+  /// The multiplier of the bounds of input m of stage k: d(cost)/d(bound), 0 (within the tolerance) between
+  /// them.
+  [[nodiscard]] double bound_multiplier(int k, int m) const noexcept {
+    const auto stage = static_cast<std::size_t>(k);
+    return now_.slope[m][k] + now_.chains.price(stage, m) - now_.chains.price(stage + 1, m);
+  }
+  /// The same of the bounds on its change, u_k − u_{k−1}; 0 where that has none.
+  [[nodiscard]] double rate_multiplier(int k, int m) const noexcept {
+    return -now_.chains.price(static_cast<std::size_t>(k), m);
+  }
   /// The multiplier of soft constraint c of stage k: what a unit more room would save.
   [[nodiscard]] double constraint_multiplier(int k, int c) const noexcept {
     return barrier_.multiplier(static_cast<std::size_t>(c), static_cast<std::size_t>(k));
@@ -97,6 +112,12 @@ class OcpSolver {
   using Lq = LqSolver<Arch, ProblemPattern<P>, kSize>;
   using Repair = typename Lq::Repair;
   using V = Stages<Arch>;
+
+  static_assert(ConsistentRates<P>,
+                "kPreviousInput: a state of its own for each input, or -1; with input_rate_lower and "
+                "input_rate_upper");
+  static_assert(ProblemPattern<P>::keeps_previous_inputs(),
+                "dynamics() has to return input m as it is for the state kPreviousInput[m]");
 
   bool start(const P& problem, const State& x0, const Trajectory& trajectory) noexcept {
     full_steps_ = is_fresh_ = true;
@@ -120,9 +141,15 @@ class OcpSolver {
         t_.u[m][k] = nearest(trajectory.u[k][m], low[m], high[m]);
       }
     }
+    if (!now_.chains.set(problem, x0, target_)) return false;
+    admit_inputs();
     if (roll_out(problem)) return true;
     fill_inputs(0);
     return roll_out(problem);
+  }
+  /// Inputs whose changes are bounded become the nearest admissible ones.
+  void admit_inputs() noexcept {
+    now_.chains.admit(t_.horizon, [&](std::size_t k, std::size_t m) -> double& { return t_.u[m][k]; });
   }
   /// The admissible value nearest to `value`, or to zero when that is not a number.
   static double nearest(double value, double low, double high) noexcept {
@@ -134,6 +161,7 @@ class OcpSolver {
       for (std::size_t k = from; k < t_.horizon; ++k)
         t_.u[m][k] = nearest(0.0, now_.lower[m][k], now_.upper[m][k]);
     }
+    admit_inputs();
   }
   /// Simulates the inputs from x_0. True when every state is finite.
   bool roll_out(const P& problem) noexcept { return RollOut<P, Arch>::run(problem, t_); }
@@ -179,11 +207,39 @@ class OcpSolver {
         lq_.hold[k][m] = hold;
       }
     }
+    now_.chains.guess(now_.slope, t_.horizon, lq_);
   }
 
-  /// Solves the quadratic program: working-set turns, all corrections at once as long as that lowers their
-  /// number. False when the deadline came first.
+  /// Solves the quadratic program: by the working set, else stage by stage, or with bounds on changes by an
+  /// interior point. False when the deadline came first.
   bool solve_qp(const P& problem, const Deadline& deadline, SolveReport& report) noexcept {
+    const Outcome outcome = correct_working_set(problem, deadline, report);
+    if (outcome != Outcome::kCircles) return outcome == Outcome::kSolved;
+    if constexpr (has_rate_bounds<P>) {
+      if (is_exact_) take_gauss_newton(problem);
+      report.sweeps += interior_.solve(
+          lq_, t_.horizon, [&](std::size_t k, std::size_t m) { return now_.slope[m][k]; },
+          [&] { return deadline.spent(); });
+      const Outcome refined = correct_working_set(problem, deadline, report);
+      if (refined == Outcome::kCircles) interior_.put_step(lq_, t_.horizon);
+      return refined != Outcome::kSpent;
+    } else {
+      ++report.sweeps;
+      lq_.backward(t_.horizon, 0.0, true);
+      lq_.forward(t_.horizon, Repair::kClip);
+      return true;
+    }
+  }
+  /// Hessians of the present look become Gauss–Newton's.
+  void take_gauss_newton(const P& problem) noexcept {
+    is_exact_ = false;
+    SolveReport unused;
+    look(problem, unused);
+  }
+
+  /// Working-set turns: all corrections at once as long as that lowers their number, then one by one.
+  enum class Outcome { kSolved, kCircles, kSpent };
+  Outcome correct_working_set(const P& problem, const Deadline& deadline, SolveReport& report) noexcept {
     constexpr int kMaxSweeps = 20;
     int fewest = std::numeric_limits<int>::max();
     int chances = kChances;
@@ -191,24 +247,20 @@ class OcpSolver {
     double extra = lq_.backward(t_.horizon);
     for (int sweep = 1; sweep < kMaxSweeps; ++sweep) {
       if (extra > 0.0 && is_exact_) {  // indefinite: Gauss–Newton is not
-        is_exact_ = false;
-        SolveReport unused;
-        look(problem, unused);
+        take_gauss_newton(problem);
         ++report.sweeps;
         extra = lq_.backward(t_.horizon);
       }
       const int contradictions = lq_.forward(t_.horizon, chances > 0 ? Repair::kAll : Repair::kLast);
-      if (contradictions == 0) return true;
-      if (deadline.spent()) return false;
+      if (contradictions == 0) return Outcome::kSolved;
+      if (deadline.spent()) return Outcome::kSpent;
+      if (has_rate_bounds<P> && chances == 0) return Outcome::kCircles;
       chances = contradictions < fewest ? kChances : chances - 1;
       fewest = std::min(fewest, contradictions);
       ++report.sweeps;
       extra = lq_.backward_again();
     }
-    ++report.sweeps;
-    lq_.backward(t_.horizon, 0.0, true);
-    lq_.forward(t_.horizon, Repair::kClip);
-    return true;
+    return Outcome::kCircles;
   }
 
   /// Takes the whole step of the quadratic program. False when the deadline came first.
@@ -251,6 +303,7 @@ class OcpSolver {
         longest = std::max(longest, std::fabs(du));
       }
     }
+    now_.chains.cut(lq_, step_);
     return longest;
   }
   void take_step(double length) noexcept {
@@ -261,6 +314,7 @@ class OcpSolver {
       for (std::size_t i = 0; i < kNx; ++i) move(t_.x[i], step_.x[i]);
       for (std::size_t m = 0; m < kNu; ++m) move(t_.u[m], step_.u[m]);
     }
+    now_.chains.keep_previous(t_);
   }
 
   // ---- globalisation
@@ -291,7 +345,7 @@ class OcpSolver {
     t_ = best_;
     SolveReport unused;
     look(problem, unused);
-    return descent_.simulate(problem, lq_, barrier_, t_) || roll_out(problem);
+    return descent_.simulate(problem, now_, lq_, barrier_, t_) || roll_out(problem);
   }
 
   /// The second rung: solve a short horizon first and let it grow. Short problems are easy, and each is a
@@ -318,6 +372,7 @@ class OcpSolver {
       for (std::size_t k = known; k < t_.horizon; ++k)
         t_.u[m][k] = nearest(t_.u[m][known - 1], now_.lower[m][k], now_.upper[m][k]);
     }
+    admit_inputs();
     return restart(problem);
   }
   bool restart(const P& problem) noexcept {
@@ -330,7 +385,7 @@ class OcpSolver {
 
   /// The last rung: one step that lowers the cost. False when there is none.
   bool descend(const P& problem, const Deadline& deadline, SolveReport& report) noexcept {
-    if (!descent_.step(problem, lq_, barrier_, now_.merit, t_, deadline, report.sweeps)) return false;
+    if (!descent_.step(problem, now_, lq_, barrier_, t_, deadline, report.sweeps)) return false;
     is_exact_ = options_.second_order && descent_.is_under_way();
     if (!descent_.is_smooth()) return true;
     full_steps_ = true;
@@ -369,6 +424,9 @@ class OcpSolver {
       for (std::size_t m = 0; m < kNu; ++m)
         trajectory.u[k][m] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
     }
+    now_.chains.admit(t_.horizon,
+                      [&](std::size_t k, std::size_t m) -> double& { return trajectory.u[k][m]; });
+    now_.chains.tell(report);
     find_worst(report);
     report.status = status;
     return report;
@@ -392,6 +450,7 @@ class OcpSolver {
                       SolveReport report) noexcept {
     for (auto& u : trajectory.u) u.fill(0.0);
     trajectory.horizon = static_cast<int>(target_);
+    trajectory.x[0] = x0;
     clamp_inputs(problem, trajectory);
     for (auto& x : trajectory.x) {
       for (std::size_t i = 0; i < kNx; ++i) x[i] = std::isfinite(x0[i]) ? x0[i] : 0.0;
@@ -403,6 +462,7 @@ class OcpSolver {
   SolverOptions options_;
   Linearisation<P, kSize, Arch> now_;  ///< of the present iterate
   Lq lq_;                              ///< its quadratic program
+  std::conditional_t<has_rate_bounds<P>, InteriorPoint<Lq>, std::nullptr_t> interior_{};
   Barrier<P, kSize, Arch> barrier_;
   Descent<P, kSize, Arch> descent_;
   Progress progress_;

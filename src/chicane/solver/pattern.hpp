@@ -232,6 +232,12 @@ struct LqProblem {
     if (j < kNx && Layout::is_wide_cost(i)) s.wide[Layout::wide_cost(i)][j] = value;
     if (i < kNx && Layout::is_wide_cost(j)) s.wide[Layout::wide_cost(j)][i] = value;
   }
+  [[nodiscard]] double cost(std::size_t k, std::size_t i, std::size_t j) const noexcept {
+    const Stage& s = stage[k];
+    if (const std::size_t n = Layout::kNumber.l[i][j]; n != Layout::kNone) return s.number[n];
+    if (j < kNx && Layout::is_wide_cost(i)) return s.wide[Layout::wide_cost(i)][j];
+    return s.wide[Layout::wide_cost(j)][i];
+  }
 
  private:
   /// Where a line of eight numbers comes from: entries of F, of L, or constants.

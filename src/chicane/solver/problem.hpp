@@ -27,7 +27,17 @@ namespace chicane::solver {
 ///     std::string_view constraint_name(int constraint) const, constraint_unit(int constraint) const;  //
 ///     optional
 ///
-/// Costs on input changes: make the previous input part of the state.
+/// Costs on input changes: make the previous input part of the state. **Bounds on input changes** (rates)
+/// that must hold: say which state that is, for each input, -1 where there is no such bound:
+///
+///     static constexpr std::array<int, kNu> kPreviousInput;      // that state of x_{k+1} is u_k, in x_0 the
+///     last
+///                                                                // input before the horizon
+///     std::array<double, kNu> input_rate_lower(int k) const;     // of u_k − u_{k−1}; may be -infinity
+///     std::array<double, kNu> input_rate_upper(int k) const;
+///     std::string_view input_name(int input) const, input_unit(int input) const;  // optional
+///
+/// Where they contradict input_lower and input_upper, those count; the report says by how much.
 ///
 /// **Level 1, any model.** One scalar type for everything, branches allowed; derivatives are dense:
 ///
@@ -109,6 +119,51 @@ template <class P>
 concept StructuredProblem = OcpProblem<P> &&
     requires(const P& p, const StateJets<P, double, 1>& x, const InputJets<P, double, 1>& u) {
   p.dynamics(0, x, u);
+};
+
+/// Whether a problem has bounds on the changes of inputs.
+template <class P>
+inline constexpr bool has_rate_bounds = requires {
+  P::kPreviousInput;
+};
+
+/// The state that holds the previous value of each input whose change is bounded; -1 for the others.
+template <OcpProblem P>
+[[nodiscard]] constexpr std::array<int, P::kNu> previous_inputs() noexcept {
+  if constexpr (has_rate_bounds<P>) {
+    return P::kPreviousInput;
+  } else {
+    std::array<int, P::kNu> none{};
+    none.fill(-1);
+    return none;
+  }
+}
+
+namespace detail {
+/// Each is a state, and no two inputs share one.
+template <class P>
+constexpr bool names_states(const std::array<int, P::kNu>& previous) noexcept {
+  for (std::size_t m = 0; m < previous.size(); ++m) {
+    if (previous[m] < -1 || previous[m] >= P::kNx) return false;
+    for (std::size_t l = 0; l < m; ++l) {
+      if (previous[m] >= 0 && previous[m] == previous[l]) return false;
+    }
+  }
+  return true;
+}
+template <class P>
+concept NamesRates = requires(const P& p) {
+  p.input_rate_lower(0);
+};
+}  // namespace detail
+
+/// What a problem says of its inputs' changes makes sense. That the states named are indeed the previous
+/// inputs is checked for structured problems (problem_pattern.hpp).
+template <class P>
+concept ConsistentRates = (!has_rate_bounds<P> && !detail::NamesRates<P>) || requires(const P& p) {
+  { p.input_rate_lower(0) } -> std::same_as<std::array<double, P::kNu>>;
+  { p.input_rate_upper(0) } -> std::same_as<std::array<double, P::kNu>>;
+  requires detail::names_states<P>(P::kPreviousInput);
 };
 
 /// x_{k+1} of plain numbers (or any one scalar type), whatever the level.

@@ -77,6 +77,16 @@ class RateSet {
     }
   }
 
+  /// Holds stage k at a bound of its own, tied to the one before by a change at a bound, or both. Pre: the
+  /// stages before it are set.
+  void set(std::size_t k, Hold own, Hold tie) noexcept {
+    at(k) = tie;
+    if (own == Hold::kFree) return;
+    const bool has_free_chain = tie != Hold::kFree && !is_fixed_chain(k);
+    at(k) = own;
+    if (has_free_chain) fix_before(k, tie == Hold::kRateHigh);
+  }
+
   /// Members that no successor fixes any more are free.
   void tidy(std::size_t horizon) noexcept {
     for (std::size_t k = horizon; k-- > 0;) {

@@ -44,6 +44,10 @@ struct SolveReport {
   double violation = 0.0;        ///< largest soft-constraint violation, in the constraint's own unit
   int worst_stage = -1;          ///< where it is; -1 when nothing is violated
   int worst_constraint = -1;
+  double rate_excess = 0.0;  ///< largest amount by which an input's own bounds overrule one on its change, in
+                             ///< the input's unit
+  int rate_stage = -1;       ///< where that is; -1 when nothing is overruled
+  int rate_input = -1;
 };
 
 }  // namespace chicane::solver

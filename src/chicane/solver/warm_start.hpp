@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 
+#include "chicane/solver/input_chains.hpp"
 #include "chicane/solver/problem.hpp"
 
 namespace chicane::solver {
 
-/// Moves every input into its bounds; one that is not a number becomes the admissible value nearest to zero.
+/// Moves every input into its bounds, also those on its changes: trajectory.x[0] knows the last one before
+/// the horizon. One that is not a number becomes the admissible value nearest to zero.
 template <OcpProblem P, int Capacity>
 void clamp_inputs(const P& problem, Trajectory<P::kNx, P::kNu, Capacity>& trajectory) noexcept {
   for (int k = 0; k < trajectory.horizon; ++k) {
@@ -21,14 +24,20 @@ void clamp_inputs(const P& problem, Trajectory<P::kNx, P::kNu, Capacity>& trajec
       u = std::min(std::max(std::isfinite(u) ? u : 0.0, low[m]), high[m]);
     }
   }
+  if constexpr (has_rate_bounds<P>) {
+    InputChains<P, static_cast<std::size_t>(Capacity)> chains;
+    chains.set(problem, trajectory.x[0], static_cast<std::size_t>(trajectory.horizon));
+    chains.admit(static_cast<std::size_t>(trajectory.horizon),
+                 [&](std::size_t k, std::size_t m) -> double& { return trajectory.u[k][m]; });
+  }
 }
 
 /// Simulates the clamped inputs from x0 into trajectory.x. True when every state is finite.
 template <OcpProblem P, int Capacity>
 bool roll_out(const P& problem, const std::array<double, P::kNx>& x0,
               Trajectory<P::kNx, P::kNu, Capacity>& trajectory) noexcept {
-  clamp_inputs(problem, trajectory);
   trajectory.x[0] = x0;
+  clamp_inputs(problem, trajectory);
   bool finite = true;
   for (int k = 0; k < trajectory.horizon; ++k) {
     const auto stage = static_cast<std::size_t>(k);
