@@ -11,15 +11,14 @@
 #include <memory>
 
 #include "bench_solves.hpp"
-#include "chicane/solver/ocp_solver.hpp"
 #include "problems/cpu_time.hpp"
-#include "problems/described_problem.hpp"
+#include "problems/families.hpp"
 #include "problems/optimality.hpp"
+#include "problems/structured_solver.hpp"
 
 namespace chicane::apps {
 namespace {
 
-using bench::DescribedProblem;
 using Table = std::vector<std::vector<double>>;
 constexpr double kAgreement = 1e-8;
 
@@ -49,13 +48,13 @@ Result<Table> read_table(const std::filesystem::path& file, std::size_t columns)
   return table;
 }
 
-/// Solves each problem of one set.
-GoldenRow solve_set(const std::string& set, int nodes, const Table& cycles, const Table& optima,
-                    const std::atomic<bool>& stop) {
-  using Solver = solver::OcpSolver<DescribedProblem, kLongestHorizon>;
-  GoldenRow row{.set = set, .nodes = nodes};
-  const auto ocp = std::make_unique<Solver>(solver::SolverOptions{.max_iterations = 100});
-  const auto answer = std::make_unique<bench::DescribedTrajectory<kLongestHorizon>>();
+/// Solves each problem of one set from one kind of start.
+GoldenRow solve_set(const std::string& set, int nodes, bench::Start start, const Table& cycles,
+                    const Table& optima, const std::atomic<bool>& stop) {
+  const bool is_cold = start == bench::Start::kCold;
+  GoldenRow row{.set = set, .start = is_cold ? "cold0" : "coldP", .nodes = nodes};
+  const auto guess = std::make_unique<bench::DescribedTrajectory<kLongestHorizon>>();
+  bench::StructuredTrajectory answer;
   std::vector<double> times;
   std::vector<double> steer;
   row.worst_excess = -std::numeric_limits<double>::infinity();
@@ -63,23 +62,28 @@ GoldenRow solve_set(const std::string& set, int nodes, const Table& cycles, cons
     const auto cycle = static_cast<std::size_t>(golden[0]);
     if (stop || golden[1] != 1.0 || cycle >= cycles.size()) continue;
     const auto& now = cycles[cycle];
-    DescribedProblem problem;
-    problem.path = {now[6], now[7], now[8], now[9]};
-    problem.speed_reference = now[10];
-    const std::array<double, DescribedProblem::kNx> x0{now[0], now[1], now[2], now[3],
-                                                       now[4], now[5], 0.0,    0.0};
-    *answer = {};
-    answer->horizon = nodes - 1;
+    bench::DescribedInstance instance;
+    instance.start = {now[0], now[1], now[2], now[3], now[4], now[5], 0.0, 0.0};
+    instance.problem.path = {now[6], now[7], now[8], now[9]};
+    instance.problem.speed_reference = now[10];
+    *guess = {};
+    guess->horizon = answer.horizon = nodes - 1;
+    if (!is_cold) bench::guess_by_path_law(instance, *guess);
+    std::copy_n(guess->u.begin(), guess->horizon, answer.u.begin());
+    const bench::StructuredDescribedProblem problem(instance.problem, instance.start[4]);
+    const auto x0 = bench::StructuredDescribedProblem::without_cte(instance.start);
     const double begin = bench::cpu_time();
-    const solver::SolveReport report = ocp->solve(problem, x0, *answer);
+    const solver::SolveReport report = bench::solve_fast(problem, x0, answer);
     times.push_back((bench::cpu_time() - begin) * 1e6);
     ++row.problems;
     row.unsolved += report.status == solver::SolveStatus::kOptimal ? 0 : 1;
-    const double excess = bench::simulated_cost(problem, x0, *answer) / golden[2] - 1.0;
+    std::copy_n(answer.u.begin(), answer.horizon, guess->u.begin());
+    const double cost = bench::simulated_cost(instance.problem, instance.start, *guess);
+    const double excess = (cost - golden[2]) / std::max(1.0, golden[2]);
     row.worst_excess = std::max(row.worst_excess, excess);
     if (std::fabs(excess) <= kAgreement) {
       ++row.agree;
-      steer.push_back(std::fabs(answer->u[0][0] - golden[3]));
+      steer.push_back(std::fabs(answer.u[0][0] - golden[3]));
     } else {
       ++(excess < 0.0 ? row.better : row.worse);
     }
@@ -119,7 +123,8 @@ Result<std::vector<GoldenRow>> solve_golden(const std::string& folder, const std
     const auto cycles = read_table(file.parent_path() / ("lap_" + set.substr(0, split) + ".csv"), 11);
     if (!cycles) return fail(cycles.error());
     fmt::print(stderr, "golden optima {}, {} problems\n", set, optima->size());
-    rows.push_back(solve_set(set, nodes, *cycles, *optima, stop));
+    for (const auto start : {bench::Start::kCold, bench::Start::kPathLaw})
+      rows.push_back(solve_set(set, nodes, start, *cycles, *optima, stop));
   }
   return rows;
 }

@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 
 #include "bench_report.hpp"
 #include "bench_solves.hpp"
@@ -15,12 +17,14 @@
 #include "experiment.hpp"
 #include "interrupt.hpp"
 #include "problems/cpu_time.hpp"
+#include "problems/dense_reference.hpp"
 
 namespace chicane::apps {
 namespace {
 
 constexpr int kGrowthHorizons[] = {10, 20, 50, 100, 200};
 constexpr int kGrowthInstances = 64;
+constexpr int kDrives = 3;
 
 void measure_solves(const Options& options, chicane::bench::References& references,
                     const std::atomic<bool>& stop, BenchReport& report) {
@@ -60,7 +64,8 @@ void measure_growth(const std::atomic<bool>& stop, BenchReport& report) {
   report.growth_exponent = exponent(report.growth);
 }
 
-/// Two laps of what `chicane drive` does by default, in virtual time.
+/// Two laps of what `chicane drive` does by default, in virtual time, and again: every drive takes the same
+/// steps, and each counts with the least time it took.
 Result<void> measure_steps(const std::atomic<bool>& stop, BenchReport& report) {
   if (stop) return {};
   fmt::print(stderr, "control step of the default controller\n");
@@ -68,17 +73,25 @@ Result<void> measure_steps(const std::atomic<bool>& stop, BenchReport& report) {
   driving.settings = {{"laps", "2"}};
   const Result<scenario::Scenario> scenario = experiment(driving);
   if (!scenario) return fail(scenario.error());
-  const auto loop = runtime::ClosedLoop::create(*scenario);
-  if (!loop) return fail(loop.error());
   std::vector<double> cpu;
   std::vector<double> wall;
   std::vector<double> solves;
-  while (!(*loop)->is_over() && !stop) {
-    const double begin = chicane::bench::cpu_time();
-    if (!(*loop)->advance()) continue;
-    cpu.push_back((chicane::bench::cpu_time() - begin) * 1e6);
-    wall.push_back((*loop)->frame().step_time * 1e6);
-    solves.push_back((*loop)->frame().solve_time * 1e6);
+  for (int drive = 0; drive < kDrives && !stop; ++drive) {
+    const auto loop = runtime::ClosedLoop::create(*scenario);
+    if (!loop) return fail(loop.error());
+    std::size_t step = 0;
+    const auto keep_least = [&](std::vector<double>& times, double seconds) {
+      if (times.size() <= step) times.push_back(seconds * 1e6);
+      times[step] = std::min(times[step], seconds * 1e6);
+    };
+    while (!(*loop)->is_over() && !stop) {
+      const double begin = chicane::bench::cpu_time();
+      if (!(*loop)->advance()) continue;
+      keep_least(cpu, chicane::bench::cpu_time() - begin);
+      keep_least(wall, (*loop)->frame().step_time);
+      keep_least(solves, (*loop)->frame().solve_time);
+      ++step;
+    }
   }
   report.steps = cpu.size();
   report.step_cpu_us = spread_of(std::move(cpu));
@@ -100,6 +113,7 @@ std::string comparing_program() {
 ExitCode measure(const Options& options, chicane::bench::References& references) {
   static std::atomic<bool> stop{false};  // as long as signals may come
   catch_interrupts(stop);
+  references.described.push_back(std::make_unique<chicane::bench::DenseReference>());
   BenchReport result{.machine = this_machine(references)};
   measure_solves(options, references, stop, result);
   measure_growth(stop, result);

@@ -11,7 +11,8 @@ namespace chicane::bench {
 
 using StructuredTrajectory = solver::Trajectory<7, 2, 200>;
 
-/// OcpSolver on the structured problems, compiled for each instruction set.
+/// OcpSolver compiled for each instruction set: on the structured problems, and on the described one as any
+/// model is written (level 1).
 template <class Arch>
 solver::SolveReport solve_structured(const StructuredDescribedProblem& problem,
                                      const std::array<double, 7>& x0,
@@ -20,6 +21,10 @@ template <class Arch>
 solver::SolveReport solve_structured(const StructuredCorridorProblem& problem,
                                      const std::array<double, 7>& x0,
                                      StructuredTrajectory& trajectory) noexcept;
+template <class Arch>
+solver::SolveReport solve_dense(const DescribedProblem& problem,
+                                const std::array<double, DescribedProblem::kNx>& x0,
+                                DescribedTrajectory<200>& trajectory) noexcept;
 
 /// By the instruction set that is chosen.
 template <class Problem>
