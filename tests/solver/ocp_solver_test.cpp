@@ -118,6 +118,21 @@ TEST_F(OcpSolverTest, SolvesAtZeroSpeedWhereTheWheelHasNoEffect) {
   for (int k = 0; k < trajectory.horizon; ++k) EXPECT_NEAR(trajectory.u[k][0], 0.0, 1e-6);
 }
 
+TEST_F(OcpSolverTest, ATurnTakesABoundedNumberOfSweeps) {
+  Random random{31};
+  int most = 0;
+  for (int i = 0; i < 300; ++i) {
+    instance = bench::random_instance(random, kCapacity);
+    instance.problem.path[0] *= 5.0;
+    instance.place(instance.start[3]);
+    trajectory = {};
+    trajectory.horizon = kCapacity;
+    most = std::max(most, solve({.max_iterations = 1}).sweeps);
+  }
+  EXPECT_LE(most, 21);
+  EXPECT_GE(most, 15);  // some working sets are hard to find
+}
+
 TEST_F(OcpSolverTest, AMirroredProblemHasTheMirroredSolution) {
   ASSERT_EQ(solve().status, SolveStatus::kOptimal);
   const auto left = trajectory;

@@ -30,13 +30,16 @@ class Barrier {
   using V = Stages<Arch>;
   using Step = Iterate<P::kNx, P::kNu, Capacity>;
 
-  /// Begins with a barrier in proportion to the prices; it will end at `final_mu`.
-  void start(const P& problem, double final_mu) noexcept {
-    mu_ = start_mu(problem);
+  /// Begins with a barrier in proportion to the prices and to how far constraints are violated at the start;
+  /// it will end at `final_mu`.
+  void start(const P& problem, double final_mu, double violation) noexcept {
+    constexpr double kLeast = 0.002;  // a start that keeps all constraints is likely to be a good one
+    constexpr double kMost = 2.0;
     final_ = final_mu;
+    mu_ = std::max(final_, highest_price(problem) * std::min(std::max(0.5 * violation, kLeast), kMost));
   }
   /// Raises the barrier again: small slacks would leave a new start no room.
-  void lift(const P& problem) noexcept { mu_ = std::max(mu_, 0.01 * start_mu(problem)); }
+  void lift(const P& problem) noexcept { mu_ = std::max(mu_, 0.002 * highest_price(problem)); }
 
   [[nodiscard]] double mu() const noexcept { return mu_; }
   [[nodiscard]] bool is_final() const noexcept { return kNc == 0 || mu_ <= final_; }
@@ -80,10 +83,10 @@ class Barrier {
   }
 
   /// Moves slacks and multipliers along their Newton steps for a step of states and inputs, never beyond
-  /// 0.995 of the way to zero; returns the step length that the slacks allow.
+  /// 0.995 of the way to zero, or 1 − μ where that is more; returns the step length that the slacks allow.
   double step(const P& problem, const Step& step) noexcept {
-    constexpr double kFraction = 0.995;
     if constexpr (kNc == 0) return 1.0;
+    const double fraction = std::max(0.995, 1.0 - mu_);
     V primal(0.0);  // how often the longest change goes into its value
     V dual(0.0);
     each(problem, step,
@@ -91,8 +94,8 @@ class Barrier {
            primal = max(select(live, max(-d.s / soft.s, -d.t / soft.t), V(0.0)), primal);
            dual = max(select(live, max(-d.z / soft.z, -d.n / soft.n), V(0.0)), dual);
          });
-    const double length = std::min(1.0, kFraction / std::max(largest(primal), 1e-30));
-    const double dual_length = std::min(1.0, kFraction / std::max(largest(dual), 1e-30));
+    const double length = std::min(1.0, fraction / std::max(largest(primal), 1e-30));
+    const double dual_length = std::min(1.0, fraction / std::max(largest(dual), 1e-30));
     each(problem, step,
          [&](SoftConstraint<V> soft, const SoftConstraint<V>& d, auto, std::size_t c, std::size_t k) {
            soft.s += length * d.s;
@@ -104,9 +107,12 @@ class Barrier {
     return length;
   }
 
-  /// Lowers the barrier after a full step, the faster the longer the slacks let it be.
-  void lower(double length) noexcept {
-    const double share = length > 0.9 ? std::min(0.1, std::sqrt(mu_)) : (length > 0.5 ? 0.2 : 0.6);
+  /// Lowers the barrier after a full step, the faster the longer the slacks let it be, and the shorter the
+  /// longest move of an input was.
+  void lower(double length, double longest) noexcept {
+    constexpr double kNear = 0.1;
+    const double least = longest <= kNear ? 0.01 : 0.1;
+    const double share = length > 0.9 ? std::min(least, std::sqrt(mu_)) : (length > 0.5 ? 0.2 : 0.6);
     mu_ = std::max(final_, share * mu_);
   }
   /// Lowers it after a descent step once the promised gain is within the barrier's own gap.
@@ -127,12 +133,12 @@ class Barrier {
  private:
   static constexpr std::size_t kStride = kStageStride<Capacity>;
 
-  static double start_mu(const P& problem) noexcept {
+  static double highest_price(const P& problem) noexcept {
     double price = 0.0;
     for (std::size_t c = 0; c < kNc; ++c) {
       price = std::max({price, price_of(problem, c).linear, 0.1 * price_of(problem, c).quadratic});
     }
-    return 0.2 * price;
+    return price;
   }
 
   template <class Visit>

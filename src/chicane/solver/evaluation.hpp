@@ -58,6 +58,20 @@ class Evaluation {
     return to_array<One>(problem.dynamics(static_cast<int>(k), x, u));
   }
 
+  /// Largest violation of a soft constraint along `t`; 0 when all are kept.
+  template <class Point>
+  static double violation([[maybe_unused]] const P& problem, [[maybe_unused]] const Point& t) noexcept {
+    double worst = 0.0;
+    if constexpr (kNc > 0) {
+      for (std::size_t k = 0; k < t.horizon; ++k) {
+        const auto values = to_array<One>(
+            problem.constraint(static_cast<int>(k), t.template state<One>(k), t.template input<One>(k)));
+        for (const One& value : values) worst = number(value) > worst ? number(value) : worst;
+      }
+    }
+    return worst;
+  }
+
   /// Terminal residuals; their values through number() and slope_number().
   template <int Order, class Point>
   static auto end(const P& problem, const Point& t) noexcept {

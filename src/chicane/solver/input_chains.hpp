@@ -61,10 +61,17 @@ class InputChains {
     return kAny && is_bounded(m) ? chain_[m].multiplier(k) : 0.0;
   }
 
-  /// First guess of their working set: bounds that push, of inputs and of changes, where those stand at them.
+  /// First guess of a working set: bounds that push, of inputs and of changes, where those stand at them.
   template <class Slopes, class Lq>
   void guess(const Slopes& slope, std::size_t horizon, Lq& qp) const noexcept {
     using Set = RateSet<kNu>;
+    for (std::size_t m = 0; m < kNu; ++m) {
+      for (std::size_t k = 0; k < horizon; ++k) {
+        const bool is_low = qp.lq.low[m][k] >= 0.0 && slope[m][k] > 0.0;
+        const bool is_high = qp.lq.high[m][k] <= 0.0 && slope[m][k] < 0.0;
+        qp.hold[k][m] = is_low ? Hold::kLow : (is_high ? Hold::kHigh : Hold::kFree);
+      }
+    }
     each([&](std::size_t m) {
       for (std::size_t k = 0; k < horizon; ++k) {
         const double push = price(k, m);

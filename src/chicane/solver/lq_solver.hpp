@@ -62,7 +62,7 @@ class LqSolver {
     return choose ? sweep<true>(horizon, shift) : sweep<false>(horizon, shift);
   }
   /// The same after forward() has changed the working set: stages behind the last change are as they were.
-  /// Pre: backward() without `choose`, and the same problem.
+  /// Pre: the same problem.
   double backward_again(double shift = 0.0) noexcept { return sweep<false>(last_change_ + 1, shift); }
 
   /// What the forward sweep does with inputs that contradict the working set.

@@ -101,12 +101,14 @@ class OcpSolver {
   static constexpr std::size_t kNx = P::kNx;
   static constexpr std::size_t kNu = P::kNu;
   static constexpr std::size_t kSize = Capacity;
-  static constexpr int kChances = 3;               ///< sweeps that may correct the whole working set in vain
+  /// Sweeps that may correct the whole working set in vain.
+  static constexpr int kChances = has_rate_bounds<P> ? 3 : 5;
   static constexpr std::size_t kFirstHorizon = 5;  ///< of the growing horizons
   static constexpr std::size_t kMaxGrowth = 16;
   static constexpr double kGoodEnoughToGrow = 1e-1;
   static constexpr double kDefectShare = 1e-7;  ///< of the tolerance: Hessians amplify defects
-  static constexpr double kNear = 1e-2;         ///< steps this short: exact curvature from here on
+  /// Steps this short: exact curvature from here on. Dense problems pay for it.
+  static constexpr double kNear = StructuredProblem<P> ? 1e-1 : 1e-2;
 
   using Evaluate = Evaluation<P, Arch>;
   using Lq = LqSolver<Arch, ProblemPattern<P>, kSize>;
@@ -125,7 +127,6 @@ class OcpSolver {
     work_ = 0.0;
     progress_.restart();
     descent_.start();
-    barrier_.start(problem, options_.tolerance);
     target_ = t_.horizon = static_cast<std::size_t>(trajectory.horizon);
     for (std::size_t i = 0; i < kNx; ++i) {
       if (!std::isfinite(x0[i])) return false;
@@ -143,9 +144,13 @@ class OcpSolver {
     }
     if (!now_.chains.set(problem, x0, target_)) return false;
     admit_inputs();
-    if (roll_out(problem)) return true;
-    fill_inputs(0);
-    return roll_out(problem);
+    bool is_good = roll_out(problem);
+    if (!is_good) {
+      fill_inputs(0);
+      is_good = roll_out(problem);
+    }
+    barrier_.start(problem, options_.tolerance, Evaluate::violation(problem, t_));
+    return is_good;
   }
   /// Inputs whose changes are bounded become the nearest admissible ones.
   void admit_inputs() noexcept {
@@ -179,7 +184,10 @@ class OcpSolver {
     } else {
       look(std::integral_constant<int, 1>{});
     }
-    if (is_fresh_) guess_working_set();
+    if constexpr (has_rate_bounds<P>) {
+      if (is_fresh_) now_.chains.guess(now_.slope, t_.horizon, lq_);
+    }
+    chooses_ = is_fresh_ && !has_rate_bounds<P>;
     is_fresh_ = false;
   }
 
@@ -195,20 +203,6 @@ class OcpSolver {
   }
 
   // ---- full steps
-
-  /// First guess of the working set: inputs at a bound whose cost falls beyond it.
-  void guess_working_set() noexcept {
-    for (std::size_t m = 0; m < kNu; ++m) {
-      for (std::size_t k = 0; k < t_.horizon; ++k) {
-        const double slope = now_.slope[m][k];
-        Hold hold = Hold::kFree;
-        if (lq_.lq.low[m][k] >= 0.0 && slope > 0.0) hold = Hold::kLow;
-        if (lq_.lq.high[m][k] <= 0.0 && slope < 0.0) hold = Hold::kHigh;
-        lq_.hold[k][m] = hold;
-      }
-    }
-    now_.chains.guess(now_.slope, t_.horizon, lq_);
-  }
 
   /// Solves the quadratic program: by the working set, else stage by stage, or with bounds on changes by an
   /// interior point. False when the deadline came first.
@@ -237,14 +231,16 @@ class OcpSolver {
     look(problem, unused);
   }
 
-  /// Working-set turns: all corrections at once as long as that lowers their number, then one by one.
+  /// Working-set turns: all corrections at once as long as that lowers their number, then one by one if there
+  /// are few. The first set of all is the one of the stages' own box problems.
   enum class Outcome { kSolved, kCircles, kSpent };
   Outcome correct_working_set(const P& problem, const Deadline& deadline, SolveReport& report) noexcept {
     constexpr int kMaxSweeps = 20;
     int fewest = std::numeric_limits<int>::max();
     int chances = kChances;
     ++report.sweeps;
-    double extra = lq_.backward(t_.horizon);
+    double extra = lq_.backward(t_.horizon, 0.0, chooses_);
+    chooses_ = false;
     for (int sweep = 1; sweep < kMaxSweeps; ++sweep) {
       if (extra > 0.0 && is_exact_) {  // indefinite: Gauss–Newton is not
         take_gauss_newton(problem);
@@ -254,7 +250,8 @@ class OcpSolver {
       const int contradictions = lq_.forward(t_.horizon, chances > 0 ? Repair::kAll : Repair::kLast);
       if (contradictions == 0) return Outcome::kSolved;
       if (deadline.spent()) return Outcome::kSpent;
-      if (has_rate_bounds<P> && chances == 0) return Outcome::kCircles;
+      if (chances == 0 && contradictions > (has_rate_bounds<P> ? 0 : kMaxSweeps - sweep))
+        return Outcome::kCircles;
       chances = contradictions < fewest ? kChances : chances - 1;
       fewest = std::min(fewest, contradictions);
       ++report.sweeps;
@@ -268,7 +265,7 @@ class OcpSolver {
     if (!solve_qp(problem, deadline, report)) return false;
     const double longest = collect_step();
     const double length = barrier_.step(problem, step_);
-    if (!is_growing()) barrier_.lower(length);
+    if (!is_growing()) barrier_.lower(length, longest);
     take_step(length);
     progress_.note(longest, !barrier_.is_final() && !is_growing());
     is_exact_ = options_.second_order && longest <= kNear && curvature_pays();
@@ -362,8 +359,9 @@ class OcpSolver {
     t_ = best_;
     t_.horizon = kFirstHorizon;
     has_grown_ = true;
-    barrier_.start(problem, options_.tolerance);
-    return restart(problem);
+    const bool is_good = restart(problem);
+    barrier_.start(problem, options_.tolerance, Evaluate::violation(problem, t_));
+    return is_good;
   }
   bool grow(const P& problem) noexcept {
     const std::size_t known = t_.horizon;
@@ -475,6 +473,7 @@ class OcpSolver {
   bool is_exact_ = false;  ///< Hessians of the next look
   bool has_grown_ = false;
   bool is_fresh_ = true;    ///< slacks and working set are to be guessed anew
+  bool chooses_ = false;    ///< the next backward sweep chooses the working set
   std::size_t target_ = 0;  ///< horizon asked for
   double work_ = 0.0;       ///< turns so far, those of a shorter horizon by their share
 };
