@@ -9,6 +9,7 @@
 #include "chicane/solver/batch_solver.hpp"
 #include "chicane/solver/linearisation.hpp"
 #include "chicane/solver/lq_solver.hpp"
+#include "chicane/solver/problem_pattern.hpp"
 #include "chicane/solver/roll_out.hpp"
 #include "problems/described_batch.hpp"
 
@@ -155,7 +156,7 @@ template <class Arch>
 void run_kernel(Kernel kernel, Shape shape) noexcept {
   switch (shape) {
     case Shape::kDescribed:
-      return run<Arch, solver::GaussNewtonPattern<StructuredDescribedProblem>>(kernel);
+      return run<Arch, solver::ProblemPattern<StructuredDescribedProblem>>(kernel);
     case Shape::kFull4:
       return run<Arch, solver::FullPattern<4, 2>>(kernel);
     case Shape::kFull6:

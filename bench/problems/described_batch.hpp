@@ -6,7 +6,7 @@
 
 #include "chicane/base/math_pack.hpp"
 #include "chicane/solver/problem.hpp"
-#include "problems/described_problem.hpp"
+#include "problems/corridor_problem.hpp"
 
 namespace chicane::bench {
 
@@ -41,8 +41,7 @@ struct DescribedOver {
     const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
     const auto& [steer, a] = input;
     const auto change = select(solver::stage_number(k) > 0.0, 1.0, 0.0);
-    const auto next_cte = path[0] + x * (path[1] + x * (path[2] + x * path[3])) - y + v * sin(epsi) * kStep;
-    return std::make_tuple(weight(200.0) * next_cte, weight(200.0) * epsi,
+    return std::make_tuple(weight(200.0) * next_cte(s), weight(200.0) * epsi,
                            weight(0.1) * (v - speed_reference), weight(1.0) * steer, weight(1.0) * a,
                            change * weight(10.0) * (steer - last_steer), change * weight(1.0) * (a - last_a));
   }
@@ -51,6 +50,11 @@ struct DescribedOver {
     const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
     return std::make_tuple(weight(200.0) * first_cte, weight(200.0) * epsi,
                            weight(0.1) * (v - speed_reference));
+  }
+  template <class X>
+  auto next_cte(const X& s) const {
+    const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
+    return path[0] + x * (path[1] + x * (path[2] + x * path[3])) - y + v * sin(epsi) * kStep;
   }
   [[nodiscard]] std::array<Real, 2> input_lower(int) const { return {-steer_limit, -acceleration_limit}; }
   [[nodiscard]] std::array<Real, 2> input_upper(int) const { return {steer_limit, acceleration_limit}; }
@@ -63,13 +67,50 @@ struct DescribedOver {
   }
 };
 
-inline DescribedOver<double> for_batch(const DescribedProblem& plain, double cte) {
+/// The structured corridor problem likewise; its soft constraints are of one price for all.
+template <class Real>
+struct CorridorOver : DescribedOver<Real> {
+  static constexpr int kNc = 2;
+  static constexpr std::size_t kStages = 64;  ///< eight at a time never read beyond them up to N = 56
+  using Bounds = std::array<Real, kStages>;
+
+  Bounds low{};
+  Bounds high{};
+
+  template <class K, class X, class U>
+  auto constraint(K k, const X& s, const U&) const {
+    const auto cte = this->next_cte(s);
+    return std::make_tuple(cte - at(high, k), at(low, k) - cte);
+  }
+  [[nodiscard]] solver::SoftPenalty soft_penalty(int) const { return {.linear = 500.0, .quadratic = 100.0}; }
+
+ private:
+  static const Real& at(const Bounds& bounds, int k) { return bounds[static_cast<std::size_t>(k)]; }
+  template <class V>
+  static V at(const Bounds& bounds, solver::StageLanes<V> k) {
+    return V::load_unaligned(&bounds[static_cast<std::size_t>(k.first)]);
+  }
+};
+
+/// One of them for a batch, from the problem as it is written down, its first cross-track error and a
+/// horizon.
+inline DescribedOver<double> for_batch(const DescribedProblem& plain, double cte, int = 0) {
   DescribedOver<double> p;
   p.path = plain.path;
   p.speed_reference = plain.speed_reference;
   p.steer_limit = plain.steer_limit;
   p.acceleration_limit = plain.acceleration_limit;
   p.first_cte = cte;
+  return p;
+}
+inline CorridorOver<double> for_batch(const CorridorProblem& plain, double cte, int horizon) {
+  const StructuredCorridorProblem structured(plain, cte, horizon);
+  CorridorOver<double> p;
+  static_cast<DescribedOver<double>&>(p) = for_batch(static_cast<const DescribedProblem&>(plain), cte);
+  for (int k = 0; k < horizon; ++k) {
+    p.low[static_cast<std::size_t>(k)] = structured.low.at(k);
+    p.high[static_cast<std::size_t>(k)] = structured.high.at(k);
+  }
   return p;
 }
 

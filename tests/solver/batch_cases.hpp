@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <span>
 
 #include "chicane/solver/problem.hpp"
@@ -11,12 +10,24 @@
 
 namespace chicane::test {
 
-constexpr int kBatchCapacity = 30;
-using BatchProblem = bench::DescribedOver<double>;
-using BatchTrajectory = solver::Trajectory<BatchProblem::kNx, BatchProblem::kNu, kBatchCapacity>;
+/// The corridor problem where being half a metre outside is being infeasible.
+template <class Real>
+struct CappedCorridor : bench::CorridorOver<Real> {
+  [[nodiscard]] solver::SoftPenalty soft_penalty(int) const {
+    return {.linear = 500.0, .quadratic = 100.0, .cap = 0.5};
+  }
+};
 
-template <class Arch>
-void solve_batch(std::span<const BatchProblem> problems, std::span<const std::array<double, 7>> starts,
-                 std::span<BatchTrajectory> trajectories, std::span<solver::SolveReport> reports) noexcept;
+constexpr int kBatchCapacity = 30;
+using BatchState = std::array<double, 7>;
+using BatchTrajectory = solver::Trajectory<7, 2, kBatchCapacity>;
+template <class Problem>
+using BatchFallback = solver::SolveReport (*)(const Problem&, const BatchState&, BatchTrajectory&);
+
+/// A BatchSolver of each kind that lives as long as the program.
+template <class Arch, template <class> class Problem>
+void solve_batch(std::span<const Problem<double>> problems, std::span<const BatchState> starts,
+                 std::span<BatchTrajectory> trajectories, std::span<solver::SolveReport> reports,
+                 BatchFallback<Problem<double>> fallback) noexcept;
 
 }  // namespace chicane::test

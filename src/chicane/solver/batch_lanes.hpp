@@ -4,270 +4,310 @@
 #include <array>
 #include <cstddef>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "chicane/base/math_pack.hpp"
 #include "chicane/solver/pattern.hpp"
-#include "chicane/solver/problem.hpp"
+#include "chicane/solver/problem_pattern.hpp"
 
 namespace chicane::solver {
 
-/// The pattern of a structured problem whose Hessians are Gauss and Newton's: less than with second
-/// derivatives.
-template <class P>
-struct GaussNewtonPattern {
-  static constexpr std::size_t kNx = P::kNx;
-  static constexpr std::size_t kNu = P::kNu;
-  static constexpr std::size_t kNz = kNx + 1 + kNu;
-  using X = StateJets<P, double, 1>;
-  using U = InputJets<P, double, 1>;
-  using Next =
-      decltype(std::declval<const P&>().dynamics(0, std::declval<const X&>(), std::declval<const U&>()));
-  using Residual =
-      decltype(std::declval<const P&>().residual(0, std::declval<const X&>(), std::declval<const U&>()));
+/// Which entries of the cost to go of a structured problem can be other than zero, at any stage: the fixed
+/// point of eq. 9–11 for patterns. States that no input sees keep their zeros.
+template <StructuredProblem P>
+struct ValuePattern {
+  using Stage = ProblemPattern<P>;
+  using Terminal = decltype(std::declval<const P&>().terminal_residual(typename Stage::X{}));
+  static constexpr std::size_t kNx = Stage::kNx;
+  static constexpr std::size_t kNu = Stage::kNu;
+  static constexpr std::size_t kHead = kNx + 1;
 
-  static constexpr std::size_t in_z(int variable) noexcept {
-    const auto i = static_cast<std::size_t>(variable);
-    return i < kNx ? i : i + 1;
-  }
-  static constexpr std::array<std::array<Entry, kNz>, kNx> kF = [] {
-    std::array<std::array<Entry, kNz>, kNx> f{};
-    unroll<kNx>([&f](auto i) {
-      using Row = std::tuple_element_t<i, Next>;
-      for (int v = 0; v < static_cast<int>(kNx + kNu); ++v) {
-        if (!contains(jet::Traits<Row>::kFirst, v)) continue;
-        f[i][in_z(v)] = Entry::kValue;
-        if constexpr (AnyJet<Row>) {
-          if (contains(Row::kUnit, v)) f[i][in_z(v)] = Entry::kOne;
+  struct Tables {
+    std::array<std::array<bool, kNx>, kNx> value{};           ///< P
+    std::array<std::array<bool, kNx>, Stage::kNz> product{};  ///< [j][r]: (P F)_rj, without the defects
+    std::array<bool, kNx> gain{};                             ///< δu depends on δx_i
+
+    constexpr void multiply() noexcept {
+      for (std::size_t j = 0; j < Stage::kNz; ++j) {
+        for (std::size_t n = 0; n < kNx * kNx; ++n) {
+          if (j != kNx && Stage::kF[n % kNx][j] != Entry::kZero && value[n / kNx][n % kNx])
+            product[j][n / kNx] = true;
         }
       }
-    });
-    return f;
-  }();
-  static constexpr std::array<std::array<bool, kNz>, kNz> kL = [] {
-    std::array<std::array<bool, kNz>, kNz> l{};
-    unroll<std::tuple_size_v<Residual>>([&l](auto i) {
-      using Row = std::tuple_element_t<i, Residual>;
-      for (int a = 0; a < static_cast<int>(kNx + kNu); ++a) {
-        if (!contains(jet::Traits<Row>::kFirst, a)) continue;
-        l[in_z(a)][kNx] = l[kNx][in_z(a)] = true;
-        for (int b = 0; b < static_cast<int>(kNx + kNu); ++b) {
-          if (contains(jet::Traits<Row>::kFirst, b)) l[in_z(a)][in_z(b)] = true;
-        }
+    }
+    /// Q_ij = L_ij + f_iᵀ P f_j
+    [[nodiscard]] constexpr bool has_q(std::size_t i, std::size_t j) const noexcept {
+      bool is_there = Stage::kL[i][j];
+      for (std::size_t r = 0; r < kNx; ++r)
+        is_there = is_there || (Stage::kF[r][i] != Entry::kZero && product[j][r]);
+      return is_there;
+    }
+    /// One step of the recursion; true when it brought something new.
+    constexpr bool extend() noexcept {
+      multiply();
+      for (std::size_t n = 0; n < kNx * kNu; ++n)
+        gain[n % kNx] = gain[n % kNx] || has_q(n % kNx, kHead + n / kNx);
+      bool is_new = false;
+      for (std::size_t n = 0; n < kNx * kNx; ++n) {
+        const std::size_t i = n / kNx;
+        const std::size_t j = n % kNx;
+        if (value[i][j] || !(has_q(i, j) || has_q(j, i) || (gain[i] && gain[j]))) continue;
+        value[i][j] = value[j][i] = is_new = true;
       }
-    });
-    return l;
-  }();
-  static constexpr std::array<int, kNu> kRateState = [] {
-    std::array<int, kNu> none{};
-    none.fill(-1);
-    return none;
+      return is_new;
+    }
+  };
+  static constexpr Tables kTables = [] {
+    Tables tables;
+    const Pairs pairs = detail::RowSets<Terminal>::squares() | detail::RowSets<Terminal>::second();
+    for (std::size_t n = 0; n < kNx * kNx; ++n)
+      tables.value[n / kNx][n % kNx] = pairs.contains(static_cast<int>(n / kNx), static_cast<int>(n % kNx));
+    while (tables.extend()) {
+    }
+    tables.multiply();
+    return tables;
   }();
 };
 
-/// The linear-quadratic problems of several problems at once, one in each lane of V, and their sweeps: the
-/// recursion of docs/solver.md, eq. 9–11, number by number over the entries that the pattern has, with
-/// working sets as masks. All loops are unrolled, all matrices small.
-template <class V, class Pattern, std::size_t Capacity>
-class LqLanes {
+/// Some stages of several linear-quadratic problems at once, one in each lane of V: the recursion of
+/// docs/solver.md, eq. 9–11, number by number over the entries that there are. Everything is unrolled.
+template <class V, StructuredProblem Problem>
+class RiccatiLanes {
  public:
+  using Pattern = ProblemPattern<Problem>;
   using Layout = solver::Layout<Pattern>;
   using Lanes = typename V::MaskType;
   static constexpr std::size_t kNx = Layout::kNx;
   static constexpr std::size_t kNu = Layout::kNu;
+  static constexpr std::size_t kNz = Layout::kNz;
   static constexpr std::size_t kOne = Layout::kOne;
   static constexpr std::size_t kHead = Layout::kHead;
+  using State = std::array<V, kNx>;
+  using Input = std::array<V, kNu>;
+  using Jacobians = std::array<V, Layout::kFCount>;  ///< as numbered by Layout::kF
+  using Costs = std::array<V, Layout::kLCount>;      ///< as numbered by Layout::kL
 
+  /// What the forward sweep needs of a stage.
   struct Stage {
-    std::array<V, Layout::kFCount> F;  ///< as numbered by Layout::kF
-    std::array<V, Layout::kLCount> L;  ///< as numbered by Layout::kL
-    std::array<V, kNu> low, high;      ///< bounds on δu
-    std::array<V, kNu> hold;           ///< working set: -1, 0 or 1
-    std::array<V, kNu> du;
-    std::array<std::array<V, kNx>, kNu> gain;  ///< δu = gain δx + constant
-    std::array<V, kNu> constant;
-    std::array<std::array<V, kNx>, kNu> Qux;
-    std::array<std::array<V, kNu>, kNu> H;
-    std::array<V, kNu> g;
+    Jacobians F;
+    std::array<State, kNu> gain;  ///< δu = gain δx + constant; entries that are never there are not set
+    Input constant;
   };
-  std::array<Stage, Capacity> stage;
-  std::array<std::array<V, kNx>, Capacity + 1> dx;
-  std::array<std::array<V, kNx>, kNx> terminal;  ///< upper triangle of P_N
-  std::array<V, kNx> terminal_gradient;
 
-  /// Lanes whose input blocks are all positive definite.
-  [[nodiscard]] Lanes backward(std::size_t horizon) noexcept {
-    Lanes good = V(0.0) == V(0.0);
-    auto P = terminal;
-    auto p = terminal_gradient;
-    for (std::size_t k = horizon; k-- > 0;) eliminate(stage[k], P, p, good);
-    return good;
+  /// The cost to go, ½ δxᵀ P δx + pᵀ δx; the upper triangle of P.
+  struct Value {
+    std::array<State, kNx> P;
+    State p;
+  };
+
+  /// λ_k = g_x + Aᵀ λ_{k+1}; `slope` = g_u + Bᵀ λ_{k+1}. `L` needs its gradients only.
+  [[gnu::always_inline]] static void adjoint(const Jacobians& F, const Costs& L, State& lambda,
+                                             Input& slope) noexcept {
+    const State next = lambda;
+    const auto price = [&](auto i) __attribute__((always_inline)) { return next[i]; };
+    unroll<kNx>([&](auto j) __attribute__((always_inline)) {
+      lambda[j] = jet::number<V>(column_times<j>(F, entry_of_l<j, kOne>(L), price));
+    });
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+      slope[m] = jet::number<V>(column_times<kHead + m>(F, entry_of_l<kHead + m, kOne>(L), price));
+    });
   }
 
-  /// Lanes whose working set was contradicted, and is corrected.
-  [[nodiscard]] Lanes forward(std::size_t horizon) noexcept {
-    Lanes changed = V(0.0) < V(0.0);
-    for (auto& value : dx[0]) value = V(0.0);
-    for (std::size_t k = 0; k < horizon; ++k) {
-      Stage& s = stage[k];
-      const auto& x = dx[k];
-      unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-        V u = s.constant[m];
-        unroll<kNx>([&](auto i)
-                        __attribute__((always_inline)) { u = fused_multiply_add(s.gain[m][i], x[i], u); });
-        s.du[m] = u;
+  /// Eliminates the inputs of a stage, those that are not free held where they are: gains and constants into
+  /// `s`, the cost to go from stage k + 1 to that from stage k. Lanes whose input block is not positive
+  /// definite are taken out of `good`.
+  [[gnu::always_inline]] static void eliminate(Stage& s, const Costs& L,
+                                               const std::array<Lanes, kNu>& is_free, Value& value,
+                                               Lanes& good) noexcept {
+    const Jacobians& F = s.F;
+    std::array<State, kNz> w;  // columns of P F
+    unroll<kNz>([&](auto j) __attribute__((always_inline)) {
+      unroll<kNx>([&](auto r) __attribute__((always_inline)) {
+        const auto row = [&](auto i) __attribute__((always_inline)) { return entry_of_p<r, i>(value); };
+        if constexpr (j == kOne) w[j][r] = column_times<j>(F, value.p[r], row);
+        if constexpr (kTables.product[j][r]) w[j][r] = column_times<j>(F, jet::Zero{}, row);
       });
-      unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-        const V next = next_hold(s, m, x);
-        changed = changed | !(next == s.hold[m]);
-        s.hold[m] = next;
+    });
+    std::array<Input, kNu> H;
+    Input g;
+    std::array<State, kNu> Qux;
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+      unroll<m + 1>([&](auto l) __attribute__((always_inline)) {
+        H[m][l] = H[l][m] = jet::number<V>(entry_of_q<kHead + l, kHead + m>(F, L, w));
       });
       unroll<kNx>([&](auto i) __attribute__((always_inline)) {
-        V sum = s.F[Layout::kF[i][kOne]];
-        unroll<kNx>([&](auto j) __attribute__((always_inline)) { add_product<i, j>(s, x[j], sum); });
-        unroll<kNu>([&](auto m)
-                        __attribute__((always_inline)) { add_product<i, kHead + m>(s, s.du[m], sum); });
-        dx[k + 1][i] = sum;
+        if constexpr (kTables.gain[i]) Qux[m][i] = jet::number<V>(entry_of_q<i, kHead + m>(F, L, w));
       });
-    }
-    return changed;
+      g[m] = jet::number<V>(entry_of_q<kOne, kHead + m>(F, L, w));
+    });
+    good = good & solve_inputs(s, H, g, Qux, is_free);
+    unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+      auto& q = value.p[i];
+      q = jet::number<V>(entry_of_q<i, kOne>(F, L, w));
+      if constexpr (kTables.gain[i]) {
+        unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+          q = fused_multiply_add(Qux[m][i], s.constant[m], q);
+        });
+      }
+      unroll<kNx - i>([&](auto n) __attribute__((always_inline)) {
+        constexpr std::size_t kJ = i + n;
+        if constexpr (kTables.value[i][kJ]) {
+          const auto start = entry_of_q<i, kJ>(F, L, w);
+          if constexpr (kTables.gain[i] && kTables.gain[kJ]) {
+            V sum = fused(Qux[0][i], s.gain[0][kJ], start);
+            unroll<kNu - 1>([&](auto m) __attribute__((always_inline)) {
+              sum = fused_multiply_add(Qux[m + 1][i], s.gain[m + 1][kJ], sum);
+            });
+            value.P[i][kJ] = sum;
+          } else {
+            value.P[i][kJ] = jet::number<V>(start);
+          }
+        }
+      });
+    });
   }
 
-  /// λ_k = g_x + Aᵀ λ_{k+1}; `slope` = g_u + Bᵀ λ_{k+1}.
-  [[gnu::always_inline]] void adjoint(std::size_t k, std::array<V, kNx>& lambda,
-                                      std::array<V, kNu>& slope) const noexcept {
-    const Stage& s = stage[k];
-    std::array<V, kNx> next;
-    unroll<kNx + kNu>([&](auto n) __attribute__((always_inline)) {
-      constexpr std::size_t kJ = n < kNx ? n : n + 1;
-      V sum(0.0);
-      if constexpr (Layout::kL[kJ][kOne] != Layout::kNone) sum = s.L[Layout::kL[kJ][kOne]];
-      unroll<kNx>([&](auto i) __attribute__((always_inline)) { add_product<i, kJ>(s, lambda[i], sum); });
-      if constexpr (n < kNx) {
-        next[n] = sum;
-      } else {
-        slope[n - kNx] = sum;
-      }
+  /// δu of a stage.
+  [[gnu::always_inline]] static Input input_step(const Stage& s, const State& dx) noexcept {
+    Input du;
+    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+      du[m] = s.constant[m];
+      unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+        if constexpr (kTables.gain[i]) du[m] = fused_multiply_add(s.gain[m][i], dx[i], du[m]);
+      });
     });
-    lambda = next;
+    return du;
+  }
+  /// δx of the next stage.
+  [[gnu::always_inline]] static State next_step(const Stage& s, const State& dx, const Input& du) noexcept {
+    State next;
+    unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+      V sum = s.F[Layout::kF[i][kOne]];
+      unroll<kNx>([&](auto j)
+                      __attribute__((always_inline)) { sum = fused(entry_of_f<i, j>(s.F), dx[j], sum); });
+      unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+        sum = fused(entry_of_f<i, kHead + m>(s.F), du[m], sum);
+      });
+      next[i] = sum;
+    });
+    return next;
+  }
+
+  template <std::size_t I, std::size_t J>
+  [[gnu::always_inline]] static auto entry_of_f(const Jacobians& F) noexcept {
+    if constexpr (Layout::kF[I][J] != Layout::kNone) {
+      return F[Layout::kF[I][J]];
+    } else if constexpr (Pattern::kF[I][J] == Entry::kOne) {
+      return jet::One{};
+    } else {
+      return jet::Zero{};
+    }
   }
 
  private:
-  using Square = std::array<std::array<V, kNx>, kNx>;
+  static constexpr auto kTables = ValuePattern<Problem>::kTables;
 
-  /// sum += F[I][J] · value
   template <std::size_t I, std::size_t J>
-  [[gnu::always_inline]] static void add_product(const Stage& s, const V& value, V& sum) noexcept {
-    if constexpr (Layout::kF[I][J] != Layout::kNone) {
-      sum = fused_multiply_add(s.F[Layout::kF[I][J]], value, sum);
-    } else if constexpr (J != kOne && Pattern::kF[I][J] == Entry::kOne) {
-      sum += value;
+  [[gnu::always_inline]] static auto entry_of_l(const Costs& L) noexcept {
+    if constexpr (Layout::kL[I][J] != Layout::kNone) {
+      return L[Layout::kL[I][J]];
+    } else {
+      return jet::Zero{};
+    }
+  }
+  template <std::size_t R, std::size_t I>
+  [[gnu::always_inline]] static auto entry_of_p(const Value& value) noexcept {
+    if constexpr (kTables.value[R][I]) {
+      return value.P[R < I ? R : I][R < I ? I : R];
+    } else {
+      return jet::Zero{};
+    }
+  }
+
+  /// sum + a · b
+  template <class A, class B, class S>
+  [[gnu::always_inline]] static auto fused(const A& a, const B& b, const S& sum) noexcept {
+    if constexpr (jet::is_zero<A> || jet::is_zero<B>) {
+      return sum;
+    } else if constexpr (jet::is_zero<S>) {
+      return jet::times(a, b);
+    } else if constexpr (jet::is_one<A>) {
+      return sum + b;
+    } else {
+      return fused_multiply_add(a, b, sum);
+    }
+  }
+  /// sum + Σ_i F_iJ · value(i)
+  template <std::size_t J, std::size_t I = 0, class S, class F>
+  [[gnu::always_inline]] static auto column_times(const Jacobians& jacobians, const S& sum,
+                                                  const F& value) noexcept {
+    if constexpr (I == kNx) {
+      return sum;
+    } else {
+      return column_times<J, I + 1>(
+          jacobians, fused(entry_of_f<I, J>(jacobians), value(std::integral_constant<std::size_t, I>{}), sum),
+          value);
     }
   }
   static constexpr std::size_t column_size(std::size_t j) noexcept {
     std::size_t count = 0;
-    for (std::size_t i = 0; i < kNx; ++i) {
+    for (std::size_t i = 0; i < kNx; ++i)
       count += Layout::kF[i][j] != Layout::kNone || Pattern::kF[i][j] == Entry::kOne ? 1 : 0;
-    }
     return count;
   }
 
-  /// Q_IJ = L_IJ + f_Iᵀ P f_J by the shorter one of the two columns of F.
+  /// Q_IJ = L_IJ + f_Iᵀ P f_J by the shorter one of the two columns of F; the one of the defects, which also
+  /// carries p, always last.
   template <std::size_t I, std::size_t J, class W>
-  [[gnu::always_inline]] static V entry_of_q(const Stage& s, const W& w) noexcept {
-    constexpr bool kByI = column_size(I) <= column_size(J);
+  [[gnu::always_inline]] static auto entry_of_q(const Jacobians& F, const Costs& L, const W& w) noexcept {
+    constexpr bool kByI = J == kOne || (I != kOne && column_size(I) <= column_size(J));
     constexpr std::size_t kShort = kByI ? I : J;
     constexpr std::size_t kLong = kByI ? J : I;
-    V sum(0.0);
-    if constexpr (Layout::kL[I][J] != Layout::kNone) sum = s.L[Layout::kL[I][J]];
-    if constexpr (column_size(kShort) > 0)
-      unroll<kNx>([&](auto r)
-                      __attribute__((always_inline)) { add_product<r, kShort>(s, w[kLong][r], sum); });
-    return sum;
+    return column_times<kShort>(
+        F, entry_of_l<I, J>(L), [&](auto r) __attribute__((always_inline)) {
+          if constexpr (kLong == kOne || kTables.product[kLong][r]) {
+            return w[kLong][r];
+          } else {
+            return jet::Zero{};
+          }
+        });
   }
 
-  [[gnu::always_inline]] static void eliminate(Stage& s, Square& P, std::array<V, kNx>& p,
-                                               Lanes& good) noexcept {
-    std::array<std::array<V, kNx>, Layout::kNz> w;  // columns of P F
-    unroll<Layout::kNz>([&](auto j) __attribute__((always_inline)) {
-      if constexpr (column_size(j) > 0) {
-        unroll<kNx>([&](auto r) __attribute__((always_inline)) {
-          V sum(0.0);
-          if constexpr (j == kOne) sum = p[r];
-          unroll<kNx>([&](auto i) __attribute__((always_inline)) {
-            add_product<i, j>(s, P[r < i ? r : i][r < i ? i : r], sum);
-          });
-          w[j][r] = sum;
-        });
-      }
-    });
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-      unroll<m + 1>([&](auto l) __attribute__((always_inline)) {
-        s.H[m][l] = entry_of_q<kHead + l, kHead + m>(s, w);
-        s.H[l][m] = s.H[m][l];
-      });
-      unroll<kNx>([&](auto i)
-                      __attribute__((always_inline)) { s.Qux[m][i] = entry_of_q<i, kHead + m>(s, w); });
-      s.g[m] = entry_of_q<kOne, kHead + m>(s, w);
-    });
-    good = good & solve_inputs(s);
-    unroll<kNx>([&](auto i) __attribute__((always_inline)) {
-      V q = entry_of_q<i, kOne>(s, w);
-      unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-        q = fused_multiply_add(s.Qux[m][i], s.constant[m], q);
-      });
-      p[i] = q;
-      unroll<kNx - i>([&](auto n) __attribute__((always_inline)) {
-        constexpr std::size_t kJ = i + n;
-        V sum = entry_of_q<i, kJ>(s, w);
-        unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-          sum = fused_multiply_add(s.Qux[m][i], s.gain[m][kJ], sum);
-        });
-        P[i][kJ] = sum;
-      });
-    });
-  }
-
-  /// Gains and constants of the free inputs, bounds of the held ones.
-  [[gnu::always_inline]] static Lanes solve_inputs(Stage& s) noexcept {
-    std::array<Lanes, kNu> is_free;
-    std::array<std::array<V, kNu>, kNu> A;
-    std::array<V, kNu> g = s.g;
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-      is_free[m] = s.hold[m] == V(0.0);
-      s.constant[m] = select(s.hold[m] < V(0.0), s.low[m], s.high[m]);
-      const V b = select(is_free[m], V(0.0), s.constant[m]);
-      unroll<kNu>([&](auto l)
-                      __attribute__((always_inline)) { g[l] = fused_multiply_add(s.H[l][m], b, g[l]); });
-    });
+  /// Gains and constants of the free inputs; the others stay.
+  [[gnu::always_inline]] static Lanes solve_inputs(Stage& s, const std::array<Input, kNu>& H, const Input& g,
+                                                   const std::array<State, kNu>& Qux,
+                                                   const std::array<Lanes, kNu>& is_free) noexcept {
+    std::array<Input, kNu> A;
     unroll<kNu>([&](auto m) __attribute__((always_inline)) {
       unroll<kNu>([&](auto l) __attribute__((always_inline)) {
-        A[m][l] = select(is_free[m] & is_free[l], s.H[m][l], V(m == l ? 1.0 : 0.0));
+        A[m][l] = select(is_free[m] & is_free[l], H[m][l], V(m == l ? 1.0 : 0.0));
       });
     });
     const Lanes good = invert(A);
     unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-      std::array<V, kNu> row;
-      unroll<kNu>([&](auto l)
-                      __attribute__((always_inline)) { row[l] = select(is_free[l], -A[m][l], V(0.0)); });
-      V value = row[0] * g[0];
-      unroll<kNu - 1>([&](auto l) __attribute__((always_inline)) {
-        value = fused_multiply_add(row[l + 1], g[l + 1], value);
+      Input row;
+      unroll<kNu>([&](auto l) __attribute__((always_inline)) {
+        row[l] = select(is_free[m] & is_free[l], -A[m][l], V(0.0));
       });
-      s.constant[m] = select(is_free[m], value, s.constant[m]);
-      unroll<kNx>([&](auto i) __attribute__((always_inline)) {
-        V gain = row[0] * s.Qux[0][i];
+      const auto times_row = [&](const auto& column) __attribute__((always_inline)) {
+        V sum = row[0] * column(0);
         unroll<kNu - 1>([&](auto l) __attribute__((always_inline)) {
-          gain = fused_multiply_add(row[l + 1], s.Qux[l + 1][i], gain);
+          sum = fused_multiply_add(row[l + 1], column(l + 1), sum);
         });
-        s.gain[m][i] = select(is_free[m], gain, V(0.0));
+        return sum;
+      };
+      s.constant[m] = times_row([&](std::size_t l) __attribute__((always_inline)) { return g[l]; });
+      unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+        if constexpr (kTables.gain[i])
+          s.gain[m][i] = times_row([&](std::size_t l) __attribute__((always_inline)) { return Qux[l][i]; });
       });
     });
     return good;
   }
 
   /// The inverse in place; lanes where all pivots are positive.
-  [[gnu::always_inline]] static Lanes invert(std::array<std::array<V, kNu>, kNu>& A) noexcept {
+  [[gnu::always_inline]] static Lanes invert(std::array<Input, kNu>& A) noexcept {
     if constexpr (kNu == 2) {
       const V determinant = fused_negative_multiply_add(A[1][0], A[1][0], A[0][0] * A[1][1]);
       const V scale = 1.0 / determinant;
@@ -298,25 +338,6 @@ class LqLanes {
       });
       return good;
     }
-  }
-
-  /// The working-set rule (small_qp.hpp) in lanes.
-  [[gnu::always_inline]] static V next_hold(const Stage& s, std::size_t m,
-                                            const std::array<V, kNx>& x) noexcept {
-    constexpr double kTolerance = 1e-10;
-    const V now = s.hold[m];
-    const V beyond = select(s.du[m] > s.high[m] + kTolerance, V(1.0),
-                            select(s.du[m] < s.low[m] - kTolerance, V(-1.0), V(0.0)));
-    const Lanes is_free = now == V(0.0);
-    if (all(is_free)) return beyond;
-    V slope = s.g[m];
-    unroll<kNx>([&](auto i)
-                    __attribute__((always_inline)) { slope = fused_multiply_add(s.Qux[m][i], x[i], slope); });
-    unroll<kNu>([&](auto l) __attribute__((always_inline)) {
-      slope = fused_multiply_add(s.H[m][l], s.du[l], slope);
-    });
-    const Lanes let_go = (now * slope > kTolerance * (1.0 + abs(s.H[m][m]))) & (s.high[m] > s.low[m]);
-    return select(is_free, beyond, select(let_go, V(0.0), now));
   }
 };
 

@@ -12,7 +12,7 @@ namespace chicane::solver {
 ///
 ///     min  linear · s + ½ quadratic · s² − μ log s − μ log t   over s, t = s − c
 ///
-/// V is double, or a pack with one stage in each lane.
+/// V is double, or a pack with one stage, or one problem, in each lane; μ is one number, or a pack as well.
 template <class V = double>
 struct SoftConstraint {
   V value{0.0};  ///< c at the iterate
@@ -30,7 +30,7 @@ struct SoftConstraint {
   /// Puts (s, t, n, z) on the central path for the present value: an interior point always exists and needs
   /// no memory. Newton's method for linear + quadratic · s = μ/s + μ/t on the smaller slack, from the
   /// solution for quadratic = 0.
-  void centre(const SoftPenalty& price, double mu) noexcept {
+  void centre(const SoftPenalty& price, const auto& mu) noexcept {
     const auto is_violated = value > V(0.0);
     const V gap = abs(value);
     const V beyond = max(value, V(0.0));
@@ -52,7 +52,7 @@ struct SoftConstraint {
     z = mu / t;
   }
 
-  [[nodiscard]] Model model(const SoftPenalty& price, double mu) const noexcept {
+  [[nodiscard]] Model model(const SoftPenalty& price, const auto& mu) const noexcept {
     const V D = z / t;
     const V E = n / s + price.quadratic;
     const V miss = s - value - t;
@@ -62,14 +62,15 @@ struct SoftConstraint {
   }
 
   /// Largest residual of the constraint's own optimality conditions at barrier μ.
-  [[nodiscard]] V residual(const SoftPenalty& price, double mu) const noexcept {
+  [[nodiscard]] V residual(const SoftPenalty& price, const auto& mu) const noexcept {
     const V products = max(abs(t * z - mu), abs(s * n - mu));
     const V equations = max(abs(s - value - t), abs(price.linear + price.quadratic * s - z - n));
     return max(products, equations);
   }
 
   /// Newton step of the slacks and multipliers when the constraint moves by `change`.
-  [[nodiscard]] SoftConstraint step(const SoftPenalty& price, double mu, const V& change) const noexcept {
+  [[nodiscard]] SoftConstraint step(const SoftPenalty& price, const auto& mu,
+                                    const V& change) const noexcept {
     const V D = z / t;
     const V miss = s - value - t;
     SoftConstraint d;
@@ -82,7 +83,7 @@ struct SoftConstraint {
   }
 
   /// Smoothed penalty: the minimum above. Pre: centred at `mu`.
-  [[nodiscard]] V barrier(const SoftPenalty& price, double mu) const noexcept {
+  [[nodiscard]] V barrier(const SoftPenalty& price, const auto& mu) const noexcept {
     return s * (price.linear + 0.5 * price.quadratic * s) - mu * (log(s) + log(t));
   }
 
@@ -93,7 +94,7 @@ struct SoftConstraint {
   }
 
  private:
-  [[nodiscard]] V pull(const SoftPenalty& price, double mu, const V& miss) const noexcept {
+  [[nodiscard]] V pull(const SoftPenalty& price, const auto& mu, const V& miss) const noexcept {
     return mu / t + mu / s - z / t * miss - price.linear - price.quadratic * s;
   }
 };
