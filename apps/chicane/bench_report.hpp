@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bench_batches.hpp"
 #include "bench_golden.hpp"
 #include "bench_solves.hpp"
 
@@ -22,10 +23,11 @@ struct BenchReport {
   Machine machine;
   std::vector<SolveRow> solves{};
   std::vector<SolveRow> growth{};  ///< cost against horizon, own solver only
-  double growth_exponent = 0.0;    ///< of the median time over the horizon; NaN when not measured
-  Spread step_cpu_us{};            ///< CPU time of a control step and one physics step, default controller
-  Spread step_us{};                ///< whole control steps of the default controller, wall clock
-  Spread step_solve_us{};          ///< the optimisation in them
+  std::vector<BatchRow> batches{};
+  double growth_exponent = 0.0;  ///< of the median time over the horizon; NaN when not measured
+  Spread step_cpu_us{};          ///< CPU time of a control step and one physics step, default controller
+  Spread step_us{};              ///< whole control steps of the default controller, wall clock
+  Spread step_solve_us{};        ///< the optimisation in them
   std::size_t steps = 0;
   std::vector<GoldenRow> golden{};
   bool was_interrupted = false;

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "bench_batches.hpp"
 #include "bench_report.hpp"
 #include "bench_solves.hpp"
 #include "chicane/runtime/closed_loop.hpp"
@@ -25,6 +26,8 @@ namespace {
 constexpr int kGrowthHorizons[] = {10, 20, 50, 100, 200};
 constexpr int kGrowthInstances = 64;
 constexpr int kDrives = 3;
+constexpr int kBatchHorizons[] = {10, 20};
+constexpr int kBatchProblems = 192;
 
 void measure_solves(const Options& options, chicane::bench::References& references,
                     const std::atomic<bool>& stop, BenchReport& report) {
@@ -62,6 +65,16 @@ void measure_growth(const std::atomic<bool>& stop, BenchReport& report) {
     if (row.instances == kGrowthInstances) report.growth.push_back(row);
   }
   report.growth_exponent = exponent(report.growth);
+}
+
+void measure_batches(const std::atomic<bool>& stop, BenchReport& report) {
+  for (const std::string_view family : families()) {
+    for (const int horizon : kBatchHorizons) {
+      if (stop) return;
+      fmt::print(stderr, "{}, N = {}, {} problems in lanes\n", family, horizon, kBatchProblems);
+      report.batches.push_back(time_batch(family, horizon, kBatchProblems, stop));
+    }
+  }
 }
 
 /// Two laps of what `chicane drive` does by default, in virtual time, and again: every drive takes the same
@@ -117,6 +130,7 @@ ExitCode measure(const Options& options, chicane::bench::References& references)
   BenchReport result{.machine = this_machine(references)};
   measure_solves(options, references, stop, result);
   measure_growth(stop, result);
+  measure_batches(stop, result);
   if (!options.reference_folder.empty()) {
     Result<std::vector<GoldenRow>> golden = solve_golden(options.reference_folder, stop);
     if (!golden) return report(golden.error());
