@@ -223,7 +223,8 @@ TEST(Road, PlansTheLapAsSoonHoweverRarelyItIsAsked) {
     };
     for (int i = 0; i < 55; ++i) add(i);
     const double closed = time;
-    while (!road.line().is_closed() && time < closed + 20.0) add(55 + static_cast<int>((time - closed) * 3.0));
+    while (!road.line().is_closed() && time < closed + 20.0)
+      add(55 + static_cast<int>((time - closed) * 3.0));
     return time - closed;
   };
   const double often = seconds_until_closed(0.04);
