@@ -276,7 +276,7 @@ TEST(RosMessages, DiagnosticsSayInWordsWhoIsInControl) {
   };
   EXPECT_EQ(first(), std::pair(1, std::string("no answer: following the last plan")));
   frame.result.report.rung = controller::Rung::kBrake;
-  EXPECT_EQ(first(), std::pair(2, std::string("no answer: wheel held, full braking")));
+  EXPECT_EQ(first(), std::pair(2, std::string("no answer: steering along the last plan, full braking")));
   frame.result.report.rung = controller::Rung::kController;
   EXPECT_EQ(first(), std::pair(1, std::string("the command gate changed the command")));
   frame.result.report.gated = false;

@@ -7,6 +7,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/controller/doubt.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/fallback.hpp"
 #include "chicane/controller/option_range.hpp"
@@ -64,8 +65,9 @@ class Baseline final : public Controller, public Tunable<typename Law::Options> 
     reset();
   }
 
-  [[nodiscard]] const StepResult& step(const model::Measurement& now,
+  [[nodiscard]] const StepResult& step(const model::Measurement& told,
                                        Deadline /*unused: nothing is solved*/) noexcept override {
+    const model::Measurement& now = doubt_.judge(told);
     const double act_time = now.time + now.delay;
     if (!is_finite(now) || !line_.see(now)) return fall_back(act_time, now);
     const path::Path& line = line_.path();
@@ -86,6 +88,7 @@ class Baseline final : public Controller, public Tunable<typename Law::Options> 
   void reset() noexcept override {
     law_.reset();
     fallback_.reset();
+    doubt_.reset();
     last_time_ = 0.0;
     has_time_ = false;
     result_ = {};
@@ -157,6 +160,7 @@ class Baseline final : public Controller, public Tunable<typename Law::Options> 
   Law law_;
   SpeedHold speed_;
   Fallback fallback_;
+  Doubt doubt_;
   double steer_limit_;
   double lowest_throttle_;
   WaypointLine line_;

@@ -17,8 +17,8 @@ namespace chicane::controller {
 enum class Rung : signed char {
   kController = 0,    ///< the controller's own answer
   kShiftedPlan = 1,   ///< the last usable plan, at the time that has come
-  kHoldAndBrake = 2,  ///< wheel held, gentle braking
-  kBrake = 3,         ///< wheel held, full useful braking
+  kHoldAndBrake = 2,  ///< steering along the last plan's path, gentle braking
+  kBrake = 3,         ///< the same steering, all useful braking
 };
 
 /// How one step went.

@@ -287,9 +287,9 @@ Diagnosis diagnose_controller(const controller::StepReport& report) {
     case controller::Rung::kShiftedPlan:
       return {1, "no answer: following the last plan"};
     case controller::Rung::kHoldAndBrake:
-      return {2, "no answer: wheel held, gentle braking"};
+      return {2, "no answer: steering along the last plan, gentle braking"};
     case controller::Rung::kBrake:
-      return {2, "no answer: wheel held, full braking"};
+      return {2, "no answer: steering along the last plan, full braking"};
     case controller::Rung::kController:
       break;
   }

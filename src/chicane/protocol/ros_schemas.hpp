@@ -95,8 +95,8 @@ float64 throttle_applied
 # The control step
 uint8 RUNG_CONTROLLER=0                 # the controller's own answer
 uint8 RUNG_SHIFTED_PLAN=1               # the last usable plan, at the time that has come
-uint8 RUNG_HOLD_AND_BRAKE=2             # wheel held, gentle braking
-uint8 RUNG_BRAKE=3                      # wheel held, full useful braking
+uint8 RUNG_HOLD_AND_BRAKE=2             # steering along the last plan's path, gentle braking
+uint8 RUNG_BRAKE=3                      # the same steering, all useful braking
 uint8 rung
 int8 STATUS_OPTIMAL=0
 int8 STATUS_BUDGET_SPENT=1

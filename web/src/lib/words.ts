@@ -15,9 +15,9 @@ export function rungInWords(rung: number): Sentence {
     case 1:
       return { mood: 'warning', text: 'No new answer: following the last plan' };
     case 2:
-      return { mood: 'bad', text: 'No answer: wheel held, gentle braking' };
+      return { mood: 'bad', text: 'No answer: steering along the last plan, gentle braking' };
     case 3:
-      return { mood: 'bad', text: 'No answer: wheel held, full braking' };
+      return { mood: 'bad', text: 'No answer: steering along the last plan, full braking' };
     default:
       return { mood: 'bad', text: `Unknown rung ${rung}` };
   }
