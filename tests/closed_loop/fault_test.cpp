@@ -87,7 +87,6 @@ INSTANTIATE_TEST_SUITE_P(
 double beyond_edge(Fault fault, std::string_view driver) {
   if (fault == Fault::kHalfGrip && driver == "tracking_road") return 2.2;
   if (fault == Fault::kHalfGrip && driver == "cubic_road") return 9.0;
-  if (fault == Fault::kGpsNoise && driver == "tracking_road") return 12.0;  // it spins
   if (fault == Fault::kDelayDoubled && driver == "cubic_road") return 16.0;
   return 0.0;
 }

@@ -50,5 +50,16 @@ TEST(Latency, CostsTheDefaultControllerHardlyAnyTime) {
   EXPECT_LT(flying_lap("300", "320"), 1.03 * flying_lap("0", "20"));
 }
 
+TEST(Latency, DoesNotSpinAnOrdinaryCarThatBrakesFromTopSpeed) {
+  const auto run = drive({{"preset", "default"},
+                          {"car", "road-car"},
+                          {"track", "speedway"},
+                          {"laps", "2"},
+                          {"latency_ms", "300"},
+                          {"time_limit_s", "300"}});
+  EXPECT_TRUE(run.completed);
+  EXPECT_EQ(run.off_track_events, 0);
+}
+
 }  // namespace
 }  // namespace chicane::runtime

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "chicane/base/math.hpp"
+#include "chicane/base/random.hpp"
 
 namespace chicane::controller {
 namespace {
@@ -86,6 +87,62 @@ TEST_F(Estimating, CountsOnWithoutNumbersAndIgnoresWhatIsOutOfOrder) {
   estimator.correct({.time = -0.05, .x = 5.0, .speed = 10.0}, sent);
   EXPECT_EQ(estimator.state().x, before.x);
   EXPECT_TRUE(std::isfinite(estimator.predict(0.2, sent).state.x));
+}
+
+TEST(InnovationGains, FallWithNoiseAndNotWithAModelThatIsWrong) {
+  InnovationGains noisy{2.0};
+  InnovationGains wrong{2.0};
+  Random random{4};
+  for (int i = 0; i < 100; ++i) {
+    noisy.note(0.3 * random.normal(), 0.3 * random.normal(), 0.04);
+    wrong.note(0.3, -0.1, 0.04);
+  }
+  EXPECT_LT(noisy.position(), 0.25);
+  EXPECT_LT(noisy.velocity(), 0.03);
+  EXPECT_EQ(wrong.position(), InnovationGains::kMostPosition);
+  EXPECT_EQ(wrong.velocity(), InnovationGains::kMostVelocity);
+  noisy.note_after_gap(1.0, 0.0);
+  EXPECT_EQ(noisy.position(), InnovationGains::kMostPosition);
+  noisy.reset();
+  noisy.note(1e-3, 0.0, 0.04);
+  EXPECT_EQ(noisy.position(), InnovationGains::kMostPosition) << "a millimetre is no noise";
+}
+
+TEST_F(Estimating, IsNotKickedByANoisySensor) {
+  sent.add(-1.0, {.steer = 0.0, .throttle = 0.3});
+  StateEstimator truth(model);
+  truth.correct({.time = 0.0, .speed = 25.0}, sent);
+  estimator.correct({.time = 0.0, .speed = 25.0}, sent);
+  Random random{3};
+  double worst_slide = 0.0, worst_yaw_rate = 0.0, squares = 0.0;
+  for (int i = 1; i <= 100; ++i) {
+    const double time = 0.04 * i;
+    const model::State s = truth.predict(time, sent).state;
+    estimator.correct({.time = time,
+                       .x = s.x + 0.5 * random.normal(),
+                       .y = s.y + 0.5 * random.normal(),
+                       .psi = s.psi + 0.005 * random.normal(),
+                       .speed = s.vx},
+                      sent);
+    if (i <= 10) continue;
+    worst_slide = std::max(worst_slide, std::fabs(estimator.state().vy));
+    worst_yaw_rate = std::max(worst_yaw_rate, std::fabs(estimator.state().r));
+    squares += (estimator.state().y - s.y) * (estimator.state().y - s.y);
+  }
+  EXPECT_LT(worst_slide, 0.5) << "each measurement would move it by 2.5 m/s";
+  EXPECT_LT(worst_yaw_rate, 0.05);
+  EXPECT_LT(std::sqrt(squares / 90.0), 0.25);
+}
+
+TEST_F(Estimating, TakesWhatItMissedWhileBlindForADriftNotForAKick) {
+  sent.add(-1.0, {.steer = 0.0, .throttle = 0.3});
+  estimator.correct({.time = 0.0, .speed = 25.0}, sent);
+  for (int i = 1; i < 25; ++i)
+    estimator.correct({.time = 0.04 * i, .x = std::numeric_limits<double>::quiet_NaN()}, sent);
+  const model::State counted = estimator.predict(1.0, sent).state;
+  estimator.correct({.time = 1.0, .x = counted.x, .y = 1.0, .psi = counted.psi, .speed = counted.vx}, sent);
+  EXPECT_NEAR(estimator.state().y, 0.8, 1e-6);
+  EXPECT_NEAR(estimator.state().vy, 0.2, 1e-6);
 }
 
 }  // namespace

@@ -65,6 +65,20 @@ TEST(PredictionModel, StaysFiniteFromStandstillToTopSpeedForAnyStep) {
   }
 }
 
+TEST(PredictionModel, KnowsThatHardBrakingMakesAFastCarUnstable) {
+  const PredictionModel model(model::road_car_params());
+  const auto yaw_rate_after_a_second = [&](double acceleration) {
+    BodyMotion<double> motion{.vx = 50.0, .r = 0.01, .acceleration = acceleration};
+    for (int k = 0; k < 100; ++k) {
+      motion = model.advance(motion, 0.0, acceleration, 0.01, model.lags(0.01));
+      motion.vx = 50.0;
+    }
+    return std::fabs(motion.r);
+  };
+  EXPECT_LT(yaw_rate_after_a_second(0.0), 0.002);
+  EXPECT_GT(yaw_rate_after_a_second(-8.0), 0.01) << "the rear axle carries too little to lead";
+}
+
 TEST(PredictionModel, MirrorsLeftAndRightExactly) {
   const PredictionModel model(model::road_car_params());
   const BodyMotion<double> left =

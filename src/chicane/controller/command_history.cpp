@@ -9,12 +9,12 @@
 namespace chicane::controller {
 namespace {
 
-constexpr double kMaxStep = 0.01;      // [s] integration step of the estimator
-constexpr double kLongestGap = 1.0;    // [s] after a longer silence the estimate starts anew
-constexpr double kLostPosition = 3.0;  // [m] a measurement further from the prediction starts anew
-constexpr double kPositionGain = 0.8;  // share of the position and heading innovation taken over at once
-constexpr double kSlideGain = 0.2;     // share of the sideways innovation per second taken as sideslip error
-constexpr double kYawRateGain = 0.25;  // share of the heading innovation per second taken as yaw-rate error
+constexpr double kMaxStep = 0.01;       // [s] integration step of the estimator
+constexpr double kLongestGap = 1.0;     // [s] after a longer silence the estimate starts anew
+constexpr double kLostPosition = 3.0;   // [m] a measurement further from the prediction starts anew
+constexpr double kMostSlideGain = 0.2;  // share of the sideways innovation per second taken as sideslip error
+constexpr double kForgetting = 0.1;     // of the means over innovations, in each measurement
+constexpr double kLeastVariance = 1e-12;
 
 bool is_finite(const model::Measurement& m) {
   return std::isfinite(m.x) && std::isfinite(m.y) && std::isfinite(m.psi) && std::isfinite(m.speed);
@@ -44,6 +44,25 @@ double CommandHistory::next_change(double time, double limit) const noexcept {
     if (entry(i).time > time) return std::min(entry(i).time, limit);
   }
   return limit;
+}
+
+void InnovationGains::note(double x, double y, double elapsed) noexcept {
+  square_ += kForgetting * (x * x + y * y - square_);
+  product_ += kForgetting * (x * last_x_ + y * last_y_ - product_);
+  last_x_ = x;
+  last_y_ = y;
+  const double noise = std::sqrt(std::max((1.0 - position_) * square_ - product_, kLeastVariance));
+  const double index = acceleration_ * elapsed * elapsed / noise;
+  const double root = 0.25 * (4.0 + index - std::sqrt(index * (8.0 + index)));
+  position_ = std::min(1.0 - root * root, kMostPosition);
+  velocity_ = std::min(2.0 * (1.0 - root) * (1.0 - root), kMostVelocity);
+}
+
+void InnovationGains::note_after_gap(double x, double y) noexcept {
+  last_x_ = x;
+  last_y_ = y;
+  position_ = kMostPosition;
+  velocity_ = kMostVelocity;
 }
 
 void StateEstimator::advance(model::State& state, double& acceleration, double from, double to,
@@ -95,13 +114,7 @@ void StateEstimator::correct(const model::Measurement& now, const CommandHistory
     const double dy = now.y - state_.y;
     const double dpsi = angle_difference(now.psi, state_.psi);
     if (dx * dx + dy * dy < kLostPosition * kLostPosition && std::fabs(dpsi) < 0.5) {
-      state_.x += kPositionGain * dx;
-      state_.y += kPositionGain * dy;
-      state_.psi += kPositionGain * dpsi;
-      state_.r += kYawRateGain * dpsi / elapsed;
-      state_.vy += kSlideGain * (dy * cos(state_.psi) - dx * sin(state_.psi)) / elapsed;
-      state_.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state_.vy * state_.vy));
-      time_ = now.time;
+      take_over(now, dx, dy, dpsi, elapsed);
       return;
     }
   } else if (is_started_ && elapsed <= 0.0 && elapsed > -kLongestGap) {
@@ -116,8 +129,29 @@ void StateEstimator::correct(const model::Measurement& now, const CommandHistory
             .r = now.speed * tan(std::clamp(steer, -0.6, 0.6)) / model_.vehicle().wheelbase(),
             .steer = steer};
   acceleration_ = 0.0;
-  time_ = now.time;
+  time_ = measured_ = now.time;
   is_started_ = true;
+}
+
+/// The innovation of a measurement that is near what was expected: docs/tracking.md, eq. 21.
+void StateEstimator::take_over(const model::Measurement& now, double dx, double dy, double dpsi,
+                               double elapsed) noexcept {
+  const double unseen = now.time - measured_;
+  if (time_ > measured_) {
+    place_gains_.note_after_gap(dx, dy);
+    heading_gains_.note_after_gap(dpsi, 0.0);
+  } else {
+    place_gains_.note(dx, dy, elapsed);
+    heading_gains_.note(dpsi, 0.0, elapsed);
+  }
+  state_.x += place_gains_.position() * dx;
+  state_.y += place_gains_.position() * dy;
+  state_.psi += heading_gains_.position() * dpsi;
+  state_.r += heading_gains_.velocity() * dpsi / unseen;
+  const double slide = std::min(place_gains_.velocity(), kMostSlideGain);
+  state_.vy += slide * (dy * cos(state_.psi) - dx * sin(state_.psi)) / unseen;
+  state_.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state_.vy * state_.vy));
+  time_ = measured_ = now.time;
 }
 
 StateEstimator::Prediction StateEstimator::predict(double time, const CommandHistory& sent) const noexcept {

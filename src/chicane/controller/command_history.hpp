@@ -35,13 +35,48 @@ class CommandHistory {
   }
 };
 
+/// How much of an innovation, measured minus predicted, is taken over (docs/tracking.md, eq. 22 and 23): as
+/// much as a model that is a little wrong asks for, less the noisier the sensor is. That shows in the
+/// innovations themselves: a wrong model's agree from one to the next, noise does not.
+class InnovationGains {
+ public:
+  static constexpr double kMostPosition = 0.8;
+  static constexpr double kMostVelocity = 0.25;
+
+  /// `acceleration`: what the model may be wrong by [unit of the innovation per s²].
+  explicit InnovationGains(double acceleration) noexcept : acceleration_{acceleration} {}
+  void reset() noexcept { *this = InnovationGains{acceleration_}; }
+  /// Takes in the innovation (x, y), `elapsed` [s] after the one before.
+  void note(double x, double y, double elapsed) noexcept;
+  /// The same after a time without measurements: it says how well the model counts on, not how noisy the
+  /// sensor is.
+  void note_after_gap(double x, double y) noexcept;
+
+  /// Share taken over at once; (0, kMostPosition].
+  [[nodiscard]] double position() const noexcept { return position_; }
+  /// Share per `elapsed` taken as an error of the velocity; (0, kMostVelocity].
+  [[nodiscard]] double velocity() const noexcept { return velocity_; }
+
+ private:
+  double acceleration_;
+  double square_ = 0.0;   ///< mean of innovation²
+  double product_ = 0.0;  ///< mean of innovation times the one before
+  double last_x_ = 0.0, last_y_ = 0.0;
+  double position_ = kMostPosition;
+  double velocity_ = kMostVelocity;
+};
+
 /// Where the car is, and where it will be when the next command acts: the prediction model driven by the
 /// commands that are really in flight, corrected by each measurement. Yaw rate and sideslip, which telemetry
 /// does not hold, come from here.
 class StateEstimator {
  public:
   explicit StateEstimator(const PredictionModel& model) noexcept : model_{model} {}
-  void reset() noexcept { is_started_ = false; }
+  void reset() noexcept {
+    is_started_ = false;
+    place_gains_.reset();
+    heading_gains_.reset();
+  }
   /// Another model from now on; the estimate stays.
   void set_model(const PredictionModel& model) noexcept { model_ = model; }
 
@@ -61,12 +96,19 @@ class StateEstimator {
   [[nodiscard]] Prediction predict(double time, const CommandHistory& sent) const noexcept;
 
  private:
+  static constexpr double kPlaceAcceleration = 2.0;  ///< [m/s²] that the model may be wrong by
+  static constexpr double kYawAcceleration = 1.0;    ///< [rad/s²]
+
+  void take_over(const model::Measurement& now, double dx, double dy, double dpsi, double elapsed) noexcept;
   void advance(model::State& state, double& acceleration, double from, double to,
                const CommandHistory& sent) const noexcept;
 
   PredictionModel model_;
+  InnovationGains place_gains_{kPlaceAcceleration};
+  InnovationGains heading_gains_{kYawAcceleration};
   bool is_started_ = false;
   double time_ = 0.0;
+  double measured_ = 0.0;  ///< time of the last measurement with numbers [s]
   model::State state_;
   double acceleration_ = 0.0;
 };

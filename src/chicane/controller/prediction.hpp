@@ -150,12 +150,14 @@ class PredictionModel {
     t.inverse_speed = 1.0 / speed;
     const T slip_front = steer - (m.vy + p.front_axle * m.r) * t.inverse_speed;
     const T slip_rear = (p.rear_axle * m.r - m.vy) * t.inverse_speed;
-    t.use_front = p.cornering_front * slip_front / (peak * share_front);
-    t.use_rear = p.cornering_rear * slip_rear / (peak * share_rear);
-    // Load moves the peak, not the slope: cornering stiffness grows far less than in proportion to load.
-    t.stiffness_front =
-        (p.cornering_front * p.rear_axle * per_wheelbase) * load_now * saturation(t.use_front);
-    t.stiffness_rear = (p.cornering_rear * p.front_axle * per_wheelbase) * load_now * saturation(t.use_rear);
+    // Load moves the peak in proportion, the slope by less. Without that a braking car seems stable that is
+    // not.
+    const T cornering_front = p.cornering_front * (1.0 - (kSlopeFollowsLoad / p.rear_axle) * transfer);
+    const T cornering_rear = p.cornering_rear * (1.0 + (kSlopeFollowsLoad / p.front_axle) * transfer);
+    t.use_front = cornering_front * slip_front / (peak * share_front);
+    t.use_rear = cornering_rear * slip_rear / (peak * share_rear);
+    t.stiffness_front = (p.rear_axle * per_wheelbase) * load_now * cornering_front * saturation(t.use_front);
+    t.stiffness_rear = (p.front_axle * per_wheelbase) * load_now * cornering_rear * saturation(t.use_rear);
     return t;
   }
 
@@ -167,6 +169,7 @@ class PredictionModel {
   }
 
   static constexpr double kMostOfEllipse = 0.8;
+  static constexpr double kSlopeFollowsLoad = 0.7;  ///< change of cornering stiffness over that of load
   model::VehicleParams vehicle_;
 };
 

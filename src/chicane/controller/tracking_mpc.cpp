@@ -25,7 +25,9 @@ using Horizon = TrackingTrajectory;
 using StageState = std::array<double, Problem::kNx>;
 using StageInput = std::array<double, Problem::kNu>;
 
-constexpr int kTurns = 8;                   // of the solver in one step: docs/tracking.md, section 4
+constexpr int kTurns = 3;                   // of the solver in a step: docs/tracking.md, section 4
+constexpr int kMostTurns = 8;               // from a new guess, or with more time
+constexpr double kTimePerTurn = 0.04;       // [s] that a step must come later for one turn more
 constexpr double kFarFromLine = 15.0;       // [m] further away the car is lost
 constexpr double kLost = 60.0;              // [m] and further away still it does not look for its way back
 constexpr double kSlow = 6.0;               // [m/s] below which it may turn round
@@ -71,7 +73,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     if (start.state.vx < kCrawl && stopping_speed(0.0) < kCrawl) return fall_back(now, act_time);
     prepare(act_time);
     const double started = deadline.elapsed();
-    const solver::SolveReport report = solver_->solve(problem_, x0_, horizon_, deadline);
+    const solver::SolveReport report = solver_->solve(problem_, x0_, horizon_, turns_, deadline);
     result_.report.solve_time = deadline.elapsed() - started;
     result_.report.solve = report;
     // A guess that was never improved is no answer, however well it went before.
@@ -107,10 +109,11 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
 
  private:
   static std::unique_ptr<TrackingSolver> make_solver() {
-    const solver::SolverOptions options{.tolerance = 1e-3,
+    const solver::SolverOptions options{.tolerance = 1e-2,
                                         .loose_tolerance = 1e3,
-                                        .max_iterations = kTurns,
+                                        .max_iterations = kMostTurns,
                                         .may_start_short = false,
+                                        .start_from_states = true,
                                         .second_order = false};
     return with_instructions(chosen_instruction_set(), [&](auto instructions) {
       return make_tracking_solver<decltype(instructions)>(options);
@@ -218,7 +221,10 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     const double first = can_shift ? std::clamp(elapsed, step, kLongestHold) : step;
     problem_.first = first == step ? problem_.others : Problem::Step{first, model_.lags(first)};
     problem_.first_correction = {};
+    turns_ = kMostTurns;
     if (can_shift) {
+      const double more = std::min(elapsed / kTimePerTurn, static_cast<double>(kMostTurns));
+      turns_ = std::clamp(kTurns - 1 + static_cast<int>(more + 0.5), kTurns, kMostTurns);
       shift_answer(elapsed);
     } else {
       follow_line();
@@ -457,6 +463,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   double sent_time_ = 0.0;  ///< from which the last command acts [s]
   double old_first_ = 0.0;  ///< length of the first stage of the last answer [s]
   double old_step_ = 0.0;   ///< of its other stages [s]
+  int turns_ = kMostTurns;  ///< of the solver in this step
   unsigned revision_ = 0;
   bool has_place_ = false;
   bool has_horizon_ = false;

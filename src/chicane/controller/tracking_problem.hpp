@@ -12,7 +12,7 @@
 
 namespace chicane::controller {
 
-/// The optimal control problem of the default controller (docs/tracking.md, eq. 15–24): the prediction model
+/// The optimal control problem of the default controller (docs/tracking.md, eq. 15–20): the prediction model
 /// in coordinates along a reference line, squares of what should be small, one-sided squares of what must not
 /// be exceeded. In the solver's structured form (solver/problem.hpp).
 ///

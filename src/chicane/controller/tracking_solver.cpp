@@ -13,7 +13,8 @@ class ArchSolver final : public TrackingSolver {
   explicit ArchSolver(const solver::SolverOptions& options) : solver_{options} {}
 
   solver::SolveReport solve(const TrackingProblem& problem, const TrackingProblem::State& start,
-                            TrackingTrajectory& trajectory, Deadline deadline) noexcept override {
+                            TrackingTrajectory& trajectory, int turns, Deadline deadline) noexcept override {
+    solver_.allow_iterations(turns);
     return solver_.solve(problem, start, trajectory, deadline);
   }
 

@@ -18,9 +18,10 @@ using TrackingTrajectory =
 class TrackingSolver {
  public:
   virtual ~TrackingSolver() = default;
-  /// As OcpSolver::solve().
+  /// As OcpSolver::solve(), in at most `turns` of them.
   virtual solver::SolveReport solve(const TrackingProblem& problem, const TrackingProblem::State& start,
-                                    TrackingTrajectory& trajectory, Deadline deadline) noexcept = 0;
+                                    TrackingTrajectory& trajectory, int turns,
+                                    Deadline deadline) noexcept = 0;
 };
 
 /// For one instruction set; defined in tracking_solver.cpp, which is compiled for each.

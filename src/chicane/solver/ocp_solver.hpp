@@ -46,10 +46,13 @@ class OcpSolver {
 
   explicit OcpSolver(const SolverOptions& options = {}) noexcept : options_{options} {}
 
+  /// From the next solve on: SolverOptions::max_iterations.
+  void allow_iterations(int most) noexcept { options_.max_iterations = most; }
+
   /// Solves from x0. In: trajectory.horizon in [1, Capacity] and the inputs of the warm start (any values;
-  /// states are recomputed). Out: the solution, or the best iterate; its inputs are finite and inside their
-  /// bounds whatever the status. Data that are not finite, or bounds that cross, end with kNotFinite. The
-  /// deadline is asked before every sweep.
+  /// states are recomputed, but for SolverOptions::start_from_states). Out: the solution, or the best
+  /// iterate; its inputs are finite and inside their bounds whatever the status. Data that are not finite, or
+  /// bounds that cross, end with kNotFinite. The deadline is asked before every sweep.
   SolveReport solve(const P& problem, const State& x0, Trajectory& trajectory,
                     Deadline deadline = Deadline::never()) noexcept {
     CHICANE_ASSERT(trajectory.horizon >= 1 && trajectory.horizon <= Capacity);
@@ -144,7 +147,7 @@ class OcpSolver {
     }
     if (!now_.chains.set(problem, x0, target_)) return false;
     admit_inputs();
-    bool is_good = roll_out(problem);
+    bool is_good = (options_.start_from_states && take_states(trajectory)) || roll_out(problem);
     if (!is_good) {
       fill_inputs(0);
       is_good = roll_out(problem);
@@ -155,6 +158,17 @@ class OcpSolver {
   /// Inputs whose changes are bounded become the nearest admissible ones.
   void admit_inputs() noexcept {
     now_.chains.admit(t_.horizon, [&](std::size_t k, std::size_t m) -> double& { return t_.u[m][k]; });
+  }
+  /// The states of the warm start from x_1 on. False when one is not finite.
+  bool take_states(const Trajectory& trajectory) noexcept {
+    double sum = 0.0;
+    for (std::size_t k = 1; k <= t_.horizon; ++k) {
+      for (std::size_t i = 0; i < kNx; ++i) {
+        t_.x[i][k] = trajectory.x[k][i];
+        sum += 0.0 * t_.x[i][k];
+      }
+    }
+    return sum == 0.0;
   }
   /// The admissible value nearest to `value`, or to zero when that is not a number.
   static double nearest(double value, double low, double high) noexcept {

@@ -200,7 +200,10 @@ struct SolverOptions {
   bool may_start_short =
       true;  ///< when full steps fail, grow the horizon from its beginning: reaches optima from poor
              ///< guesses, at the price of tens of turns; off where the budget is a few turns
-  bool second_order = true;  ///< exact Hessians near the solution: fewer turns, costlier turns
+  bool start_from_states = false;  ///< a warm start's states count, too, where they are finite: the first
+                                   ///< steps close their gaps. For systems that are unstable, whose simulated
+                                   ///< guess would run away
+  bool second_order = true;        ///< exact Hessians near the solution: fewer turns, costlier turns
 };
 
 }  // namespace chicane::solver
