@@ -101,7 +101,10 @@ void add_drive(CLI::App& command, Options& options) {
   add_world(command, options);
   add_setting(command, options, "--latency-ms", "latency_ms", "X",
               "Actuation delay of the simulated car [ms], default 100");
-  command.add_flag("--fast", options.is_fast, "As fast as possible, deterministic, without sockets");
+  CLI::Option* const fast =
+      command.add_flag("--fast", options.is_fast, "As fast as possible, deterministic, without sockets");
+  command.add_flag("--limit", options.wants_limit, "Find the limit first, for the gap of each lap to it")
+      ->needs(fast);
   add_port(command, options);
   command
       .add_option("--pace", options.pace,
@@ -159,6 +162,19 @@ void add_simulate(CLI::App& command, Options& options) {
 
 void add_logs(CLI::App& command, Options& options, const std::string& help) {
   command.add_option("logs", options.log_files, help)->type_name("LOG")->required();
+}
+
+void add_limit(CLI::App& command, Options& options) {
+  add_setting(command, options, "--track", "track", "NAME|FILE", "Track (chicane list tracks)");
+  add_setting(command, options, "--car", "car", "NAME|FILE", "Car (chicane list cars)");
+  command.add_option("--csv", options.csv_file, "Keep the racing line in this file, a track to drive on")
+      ->type_name("FILE");
+  command.add_option("--spacing-m", options.spacing, "Between the places computed [m], default 2")
+      ->type_name("X")
+      ->check(CLI::Range(0.5, 5.0));
+  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  add_set(command, options);
+  command.footer("Example: chicane limit --track lakeside --car road-car --csv line.csv");
 }
 
 void add_replay(CLI::App& command, Options& options) {
@@ -285,6 +301,7 @@ std::variant<Options, Done> parse_command_line(int count, const char* const* wor
     if (command.name == "drive") add_drive(*sub, options);
     if (command.name == "serve") add_serve(*sub, options);
     if (command.name == "simulate") add_simulate(*sub, options);
+    if (command.name == "limit") add_limit(*sub, options);
     if (command.name == "replay") add_replay(*sub, options);
     if (command.name == "report") add_report(*sub, options);
     if (command.name == "check") add_check(*sub, options);

@@ -40,6 +40,10 @@ struct Options {
   std::string address = "127.0.0.1";
   std::uint16_t port = 4567;
 
+  bool wants_limit = false;       ///< drive --fast: the gaps of its laps to the limit
+  std::string csv_file;           ///< limit: the racing line; empty: not kept
+  std::optional<double> spacing;  ///< limit: of the places computed [m]
+
   std::string connect =
       "ws://127.0.0.1:4567/socket.io/?EIO=4&transport=websocket";  ///< simulate: the controller
   std::string server;                                              ///< simulate: command that starts it

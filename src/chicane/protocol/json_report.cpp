@@ -30,7 +30,17 @@ Json to_object(const LapSummary& lap) {
           {"steering_rate_rms_radps", number(lap.steering_rate_rms)},
           {"sector_times_s",
            {number(lap.sector_times[0]), number(lap.sector_times[1]), number(lap.sector_times[2])}},
-          {"gap_to_limit_percent", lap.gap_to_limit ? number(100.0 * *lap.gap_to_limit) : Json(nullptr)}};
+          {"gap_to_limit_percent", lap.gap_to_limit ? number(100.0 * *lap.gap_to_limit) : Json(nullptr)},
+          {"sector_gaps_to_limit_percent",
+           {number(100.0 * lap.sector_gaps[0]), number(100.0 * lap.sector_gaps[1]),
+            number(100.0 * lap.sector_gaps[2])}}};
+}
+
+Json to_object(const std::optional<lap_time::LapTimes>& limit) {
+  if (!limit) return nullptr;
+  return {{"lap_time_s", number(limit->lap)},
+          {"sector_times_s",
+           {number(limit->sectors[0]), number(limit->sectors[1]), number(limit->sectors[2])}}};
 }
 
 Json to_object(const TimeSummary& time) {
@@ -78,6 +88,7 @@ std::string to_json(const RunSummary& run) {
       {"out_of_track_time_s", number(run.out_of_track_time)},
       {"laps", laps},
       {"total", to_object(run.total)},
+      {"limit", to_object(run.limit)},
       {"step_time_us", to_object(run.step_time)},
       {"solve_time_us", to_object(run.solve_time)},
       {"solver", {{"mean_iterations", number(run.mean_iterations)}, {"not_usable", run.not_usable}}},

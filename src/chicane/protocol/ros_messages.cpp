@@ -188,13 +188,49 @@ std::string encode_run(const Frame&, const Run& run) {
       .bytes();
 }
 
-std::string encode_lap(const Frame& frame, const Run&) {
+/// Of a lap or a sector; not-a-number where there is no limit.
+double gap_percent(double time, double limit) {
+  return limit > 0.0 ? 100.0 * lap_time::gap(time, limit) : kNaN;
+}
+
+std::string encode_lap(const Frame& frame, const Run& run) {
   const telemetry::CompletedLap& lap = frame.completed_lap;
+  const lap_time::LapTimes limit = run.limit ? run.limit->times : lap_time::LapTimes{};
   return Writer{}
       .put(static_cast<std::uint32_t>(lap.lap), lap.lap_time)
       .put(lap.sector_times[0], lap.sector_times[1], lap.sector_times[2], lap.is_clean)
       .put(lap.mean_speed, lap.top_speed, lap.min_edge_distance, lap.rms_lateral_error)
+      .put(gap_percent(lap.lap_time, limit.lap))
+      .put(gap_percent(lap.sector_times[0], limit.sectors[0]),
+           gap_percent(lap.sector_times[1], limit.sectors[1]),
+           gap_percent(lap.sector_times[2], limit.sectors[2]))
       .bytes();
+}
+
+std::string encode_limit(const Frame&, const Run& run) {
+  static const lap_time::Limit nothing = [] {
+    lap_time::Limit limit;
+    limit.times = {kNaN, {kNaN, kNaN, kNaN}};
+    return limit;
+  }();
+  const lap_time::Limit& limit = run.limit ? *run.limit : nothing;
+  Writer writer{256 + 64 * limit.line.size()};
+  writer.put(run.limit != nullptr).put(limit.times.lap);
+  for (const double sector : limit.times.sectors) writer.put(sector);
+  const auto column = [&](auto value) {
+    writer.count(limit.line.size());
+    for (const lap_time::LimitPoint& point : limit.line) writer.put(value(point));
+  };
+  using Point = lap_time::LimitPoint;
+  column([](const Point& p) { return p.s; });
+  column([](const Point& p) { return p.position.x(); });
+  column([](const Point& p) { return p.position.y(); });
+  column([](const Point& p) { return p.n; });
+  column([](const Point& p) { return p.speed; });
+  column([](const Point& p) { return p.longitudinal_acceleration; });
+  column([](const Point& p) { return p.lateral_acceleration; });
+  column([](const Point& p) { return p.time; });
+  return writer.bytes();
 }
 
 std::string encode_odometry(const Frame& frame, const Run& run) {
@@ -329,6 +365,13 @@ std::string encode_diagnostics(const Frame& frame, const Run& run) {
 std::string encode_left(const Frame&, const Run& run) { return encode_line(0.0, run.road.left); }
 std::string encode_right(const Frame&, const Run& run) { return encode_line(0.0, run.road.right); }
 std::string encode_centre(const Frame&, const Run& run) { return encode_line(0.0, run.road.centre); }
+std::string encode_racing_line(const Frame&, const Run& run) {
+  std::vector<Vec2> line;
+  if (run.limit) {
+    for (const lap_time::LimitPoint& point : run.limit->line) line.push_back(point.position);
+  }
+  return encode_line(0.0, line);
+}
 
 /// "nav_msgs/msg/Odometry" → "nav_msgs/Odometry"
 std::string short_name(std::string_view type) {
@@ -398,6 +441,8 @@ const std::vector<RosTopic>& ros_topics() {
       topic("/track/centre", "nav_msgs/msg/Path", Cadence::kRoad, encode_centre),
       topic("/chicane/lap", "chicane_msgs/msg/Lap", Cadence::kLap, encode_lap),
       topic("/chicane/change", "chicane_msgs/msg/Change", Cadence::kEvent, nullptr),
+      topic("/chicane/limit", "chicane_msgs/msg/Limit", Cadence::kLimit, encode_limit),
+      topic("/track/racing_line", "nav_msgs/msg/Path", Cadence::kLimit, encode_racing_line),
   };
   return topics;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,6 +10,7 @@
 
 #include "chicane/base/types.hpp"
 #include "chicane/controller/controller.hpp"
+#include "chicane/lap_time/minimum_time.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -43,6 +45,7 @@ struct Run {
   std::vector<std::string> faults{};  ///< names of the bits of Frame::active_faults
   double kerb_width = 0.0;            ///< [m]
   RoadLines road;
+  std::shared_ptr<const lap_time::Limit> limit;  ///< null: not known
 };
 
 /// What a controller says about itself, copied into a run.
@@ -53,6 +56,7 @@ enum class Cadence {
   kFrame,  ///< with each control cycle
   kRun,    ///< with Run, road excepted
   kRoad,   ///< with Run::road
+  kLimit,  ///< with Run::limit
   kLap,    ///< when a lap completes: Frame::completed_lap has another number
   kEvent,  ///< when something happens that is in no frame; encode is null, see encode_change()
 };

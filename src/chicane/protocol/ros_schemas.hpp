@@ -194,6 +194,24 @@ float64 mean_speed_mps
 float64 top_speed_mps
 float64 min_edge_distance_m             # of the outermost tyre, negative = off the road
 float64 rms_lateral_error_m
+float64 gap_to_limit_percent            # lap time over the limit's, minus 100 %; not-a-number while unknown
+float64[3] sector_gaps_to_limit_percent # the same for the thirds
+)"},
+    RosDefinition{"chicane_msgs/Limit",
+                  R"(# The physical limit of this road for this car: the fastest lap of the model
+# in docs/limit.md and its line, arrays of the same length by rising time from the start
+# line, the last point the first one again.
+bool is_known                           # false: not computed (yet), an open road, or it failed; the rest is empty
+float64 lap_time_s
+float64[3] sector_times_s               # thirds of the lap, from the start line
+float64[] s_m                           # along the centre line from its beginning
+float64[] x_m                           # of the centre of mass
+float64[] y_m
+float64[] n_m                           # to the left of the centre line
+float64[] speed_mps
+float64[] longitudinal_acceleration_mps2
+float64[] lateral_acceleration_mps2     # positive to the left
+float64[] time_s                        # since the start line
 )"},
     RosDefinition{"chicane_msgs/Change",
                   R"(# A setting that changed during the run, before this control cycle.

@@ -81,6 +81,16 @@ void Recorder::record(std::unique_ptr<const RecordedRun> run) noexcept {
   commit();
 }
 
+void Recorder::record(std::shared_ptr<const lap_time::Limit> limit) noexcept {
+  Entry* const entry = next_entry(kCapacity + kReserve);
+  if (entry == nullptr) {
+    ++left_out_;
+    return;
+  }
+  entry->limit = std::move(limit);
+  commit();
+}
+
 Result<RecorderReport> Recorder::finish() {
   wants_end_ = true;
   if (thread_.joinable()) thread_.join();
@@ -139,12 +149,18 @@ void Recorder::describe() {
   keep(writer_->add_attachment(
       kRecordedScenario, "application/yaml",
       protocol::write_document(scenario, fmt::format("What was recorded by {}", kProgram), true)));
+  write(protocol::Cadence::kRun);
+  write(protocol::Cadence::kRoad);
+  if (options_.run.limit) write(protocol::Cadence::kLimit);
+}
+
+/// The topics of what stays the same from frame to frame.
+void Recorder::write(protocol::Cadence cadence) {
   const telemetry::Frame nothing;
   std::uint16_t channel = 0;
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
-    const bool is_constant =
-        topic.cadence == protocol::Cadence::kRun || topic.cadence == protocol::Cadence::kRoad;
-    if (is_constant) keep(writer_->write(channel, last_log_time_, 0, topic.encode(nothing, options_.run)));
+    if (topic.cadence == cadence)
+      keep(writer_->write(channel, last_log_time_, 0, topic.encode(nothing, options_.run)));
     ++channel;
   }
 }
@@ -152,6 +168,10 @@ void Recorder::describe() {
 void Recorder::write(Entry& entry) {
   if (std::exchange(entry.has_frame, false)) write(entry.frame);
   if (entry.change) write(*std::exchange(entry.change, std::nullopt));
+  if (auto limit = std::move(entry.limit)) {
+    options_.run.limit = std::move(limit);
+    write(protocol::Cadence::kLimit);
+  }
   if (const auto run = std::move(entry.run)) {
     options_.run = run->run;
     options_.scenario = run->scenario;

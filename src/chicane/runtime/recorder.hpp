@@ -65,6 +65,8 @@ class Recorder {
   /// The same thread: the next frame is the first of another run, with other settings; it begins at its cycle
   /// 0. A run that only starts anew needs no word.
   void record(std::unique_ptr<const RecordedRun> run) noexcept;
+  /// The same thread: the limit of the run became known.
+  void record(std::shared_ptr<const lap_time::Limit> limit) noexcept;
   /// Writes the rest and closes the file. kIo with the first thing that went wrong while recording.
   [[nodiscard]] Result<RecorderReport> finish();
 
@@ -72,12 +74,13 @@ class Recorder {
   static constexpr std::uint64_t kCapacity = 64;
   static constexpr std::uint64_t kReserve = 64;  ///< for what is too important to be left out: no frames
 
-  /// One of the three.
+  /// One of the four.
   struct Entry {
     bool has_frame = false;
     telemetry::Frame frame;
     std::optional<telemetry::Change> change;
     std::unique_ptr<const RecordedRun> run;
+    std::shared_ptr<const lap_time::Limit> limit;
   };
 
   Recorder(RecorderOptions options, std::unique_ptr<telemetry::McapWriter> writer);
@@ -90,6 +93,7 @@ class Recorder {
   void write(const telemetry::Change& change);
   void keep(Result<void> done);
   void write(const telemetry::Frame& frame);
+  void write(protocol::Cadence cadence);
   [[nodiscard]] Entry& slot(std::uint64_t number) { return ring_[number % (kCapacity + kReserve)]; }
 
   RecorderOptions options_;

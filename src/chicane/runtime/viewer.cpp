@@ -85,6 +85,14 @@ void ViewerEndpoint::set_run(protocol::Run run) {
     options_.run = run;
     send_cadence(Cadence::kRun);
     send_cadence(Cadence::kRoad);
+    send_cadence(Cadence::kLimit);
+  });
+}
+
+void ViewerEndpoint::set_limit(std::shared_ptr<const lap_time::Limit> limit) {
+  on_network([this, limit = std::move(limit)] {
+    options_.run.limit = limit;
+    send_cadence(Cadence::kLimit);
   });
 }
 

@@ -125,4 +125,13 @@ RunSummary Metrics::summary() const {
   return run;
 }
 
+void compare_with_limit(RunSummary& run, const lap_time::LapTimes& limit) {
+  run.limit = limit;
+  for (LapSummary& lap : run.laps) {
+    lap.gap_to_limit = lap_time::gap(lap.lap_time, limit.lap);
+    for (std::size_t i = 0; i < lap.sector_gaps.size(); ++i)
+      lap.sector_gaps[i] = lap_time::gap(lap.sector_times[i], limit.sectors[i]);
+  }
+}
+
 }  // namespace chicane::telemetry

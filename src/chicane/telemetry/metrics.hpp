@@ -10,6 +10,7 @@
 
 #include "chicane/base/durations.hpp"
 #include "chicane/base/fnv.hpp"
+#include "chicane/lap_time/lap_times.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/telemetry/frame.hpp"
 
@@ -40,6 +41,7 @@ struct LapSummary {
   std::array<double, 3> sector_times = {kNotMeasured, kNotMeasured, kNotMeasured};  ///< thirds of a lap [s]
   std::optional<double>
       gap_to_limit;  ///< lap time over the physical limit's, minus one; none when not computed
+  std::array<double, 3> sector_gaps = {kNotMeasured, kNotMeasured, kNotMeasured};  ///< the same of the thirds
 };
 
 /// Percentiles of durations [s]; bins are 4.4 % wide (base/durations.hpp), `max` is exact.
@@ -66,6 +68,7 @@ struct RunSummary {
   double duration = 0.0;           ///< of the run, in its own time [s]
   double wall_time = 0.0;          ///< of the run, on the wall [s]; filled by the run time
   std::vector<LapSummary> laps;    ///< completed laps
+  std::optional<lap_time::LapTimes> limit;  ///< the fastest lap the car can drive; none when not computed
   LapSummary total;                ///< the whole run, unfinished lap included; lap_time is its duration
   TimeSummary step_time;           ///< of whole control steps, wall clock
   TimeSummary solve_time;          ///< of the optimisation in them, wall clock
@@ -84,6 +87,9 @@ struct RunSummary {
 [[nodiscard]] inline bool kept_its_promises(const RunSummary& run) noexcept {
   return (run.completed || run.laps_wanted == 0) && run.off_track_events == 0;
 }
+
+/// Sets a run beside the limit: its times, and the gap of each lap (docs/limit.md, eq. 19).
+void compare_with_limit(RunSummary& run, const lap_time::LapTimes& limit);
 
 /// Counts and measures a run while it happens. No allocation after construction; one thread.
 ///

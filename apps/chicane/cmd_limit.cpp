@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "chicane/runtime/make.hpp"
+#include "commands.hpp"
+#include "experiment.hpp"
+#include "interrupt.hpp"
+#include "limit_of.hpp"
+#include "limit_report.hpp"
+
+namespace chicane::apps {
+namespace {
+
+Result<void> keep(const std::string& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (stream) return {};
+  return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
+}
+
+Result<void> run(const Options& options) {
+  static std::atomic<bool> wants_stop{false};  // as long as signals may come
+  catch_interrupts(wants_stop);
+  const Result<scenario::Scenario> scenario = experiment(options);
+  if (!scenario) return fail(scenario.error());
+  const Result<path::Track> track = runtime::make_track(*scenario);
+  if (!track) return fail(track.error());
+  LimitRun told{.track = track->name(), .car = scenario->car};
+  const auto limit = limit_of(*scenario, *track, options.spacing, wants_stop, told.wall_time);
+  if (!limit) return fail(limit.error());
+  if (!options.csv_file.empty()) {
+    if (Result<void> kept = keep(options.csv_file, to_csv(told, *track, **limit)); !kept) return kept;
+  }
+  fmt::print("{}", options.is_json ? to_json(told, **limit) : to_table(told, **limit));
+  return {};
+}
+
+}  // namespace
+
+ExitCode limit(const Options& options) {
+  const Result<void> done = run(options);
+  return done ? kSuccess : report(done.error());
+}
+
+}  // namespace chicane::apps

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include "limit_of.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <utility>
+
+#include "chicane/runtime/limit_search.hpp"
+
+namespace chicane::apps {
+
+Result<std::shared_ptr<const lap_time::Limit>> limit_of(const scenario::Scenario& scenario,
+                                                        const path::Track& track,
+                                                        std::optional<double> spacing,
+                                                        const std::atomic<bool>& wants_stop,
+                                                        double& wall_time) {
+  using Clock = std::chrono::steady_clock;
+  const bool is_terminal = isatty(STDERR_FILENO) == 1;
+  const auto start = Clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  double told = 0.0;
+  lap_time::LimitOptions options;
+  if (spacing) options.spacing = *spacing;
+  options.go_on = [&](int round, double lap_time) {
+    const double now = seconds();
+    if (now - told >= (is_terminal ? 0.1 : 10.0)) {
+      told = now;
+      fmt::print(stderr, "{}limit: round {}, {:.3f} s{}", is_terminal ? "\r" : "", round, lap_time,
+                 is_terminal ? "" : "\n");
+    }
+    return !wants_stop.load();
+  };
+  Result<lap_time::Limit> limit = lap_time::find_limit(track, runtime::limit_vehicle(scenario), options);
+  wall_time = seconds();
+  if (is_terminal && told > 0.0) fmt::print(stderr, "\r{:40}\r", "");
+  if (!limit) return fail(limit.error());
+  return std::make_shared<const lap_time::Limit>(std::move(*limit));
+}
+
+}  // namespace chicane::apps
