@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <deque>
 #include <memory>
 #include <mutex>
@@ -12,6 +13,7 @@
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/runtime/assets.hpp"
 #include "chicane/runtime/closed_loop.hpp"
+#include "chicane/runtime/limit_search.hpp"
 #include "chicane/runtime/live_settings.hpp"
 #include "chicane/runtime/pages.hpp"
 #include "chicane/runtime/realtime_loop.hpp"
@@ -19,11 +21,14 @@
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "interrupt.hpp"
+#include "limit_of.hpp"
 #include "progress.hpp"
 #include "record.hpp"
 
 namespace chicane::apps {
 namespace {
+
+using Limit = std::shared_ptr<const lap_time::Limit>;  // null: not known
 
 /// Somebody watches: the dashboard stays up after the last lap. Scripts, and whoever asked for a number of
 /// laps, get an end.
@@ -57,8 +62,11 @@ double step_budget(const Options& options, const scenario::Scenario& scenario) {
   return runtime::RealtimeOptions{}.budget_share * scenario.control_period;
 }
 
-Result<std::unique_ptr<KeptRun>> keep(const Options& options, const runtime::ClosedLoop& loop) {
-  return KeptRun::start(options, description(loop), loop.scenario(),
+Result<std::unique_ptr<KeptRun>> keep(const Options& options, const runtime::ClosedLoop& loop,
+                                      const Limit& limit = nullptr) {
+  protocol::Run run = description(loop);
+  run.limit = limit;
+  return KeptRun::start(options, std::move(run), loop.scenario(),
                         options.is_fast ? 0.0 : step_budget(options, loop.scenario()));
 }
 
@@ -95,7 +103,10 @@ class WatchedRun {
     if (!kept) return fail(kept.error());
     kept_ = std::move(*kept);
     fmt::print(stderr, "dashboard at http://localhost:{}/; Ctrl-C ends\n", (*server)->port());
+    search_limit();
     telemetry::RunSummary summary = drive();
+    search_.reset();
+    if (found_) telemetry::compare_with_limit(summary, found_->times);
     return Outcome{std::move(summary), kept_->finish()};
   }
 
@@ -108,11 +119,27 @@ class WatchedRun {
     return options_.is_manual ? settings_.set({"manual.is_on", true}) : Result<void>{};
   }
 
+  /// Beside the run, from its first moment on. An open road has no lap: nothing is searched, nothing said.
+  void search_limit() {
+    search_.reset();
+    found_.reset();
+    has_news_ = false;
+    if (!loop_->track().centre().is_closed()) return;
+    search_ = std::make_unique<runtime::LimitSearch>(
+        loop_->track(), loop_->scenario(), [this](Result<Limit> limit) {
+          if (!limit) return fmt::print(stderr, "no gap to the limit: {}\n", limit.error().message);
+          found_ = *limit;
+          has_news_.store(true, std::memory_order_release);
+          viewer_.set_limit(*limit);
+        });
+  }
+
   telemetry::RunSummary drive() {
     Progress progress;
     const runtime::RealtimeHooks hooks{
         .on_frame =
             [&](const telemetry::Frame& frame) {
+              if (has_news_.exchange(false, std::memory_order_acquire)) kept_->record(found_);
               kept_->record(frame);
               viewer_.publish(frame);
               note_faults(frame);
@@ -165,6 +192,7 @@ class WatchedRun {
     note(*next);
     controls_.wishes.pop();
     viewer_.set_run(description(*loop_));
+    search_limit();
     return true;
   }
 
@@ -193,11 +221,21 @@ class WatchedRun {
   std::uint32_t told_faults_ = 0;  ///< bits, as viewers know them
   std::mutex mutex_;
   std::deque<std::unique_ptr<runtime::ClosedLoop>> built_;  ///< one for each change that starts anew
+  Limit found_;                        ///< by the search; read after has_news_ was seen, or after its end
+  std::atomic<bool> has_news_{false};  ///< it is to be recorded
+  std::unique_ptr<runtime::LimitSearch> search_;  ///< ends before everything it tells
 };
 
 Result<Outcome> run_fast(const Options& options, runtime::ClosedLoop& loop,
                          const runtime::RunControls& controls) {
-  const auto kept = keep(options, loop);
+  Limit limit;
+  if (options.wants_limit) {
+    double wall_time = 0.0;
+    const auto found = limit_of(loop.scenario(), loop.track(), {}, controls.wants_stop, wall_time);
+    if (!found) return fail(found.error());
+    limit = *found;
+  }
+  const auto kept = keep(options, loop, limit);
   if (!kept) return fail(kept.error());
   telemetry::RunSummary summary;
   {
@@ -210,6 +248,7 @@ Result<Outcome> run_fast(const Options& options, runtime::ClosedLoop& loop,
         },
         [&] { return controls.wants_stop.load(); });
   }
+  if (limit) telemetry::compare_with_limit(summary, limit->times);
   return Outcome{std::move(summary), (*kept)->finish()};
 }
 

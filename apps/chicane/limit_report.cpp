@@ -11,12 +11,13 @@ namespace chicane::apps {
 
 std::string to_table(const LimitRun& run, const lap_time::Limit& limit) {
   const lap_time::LimitReport& report = limit.report;
-  std::string text = fmt::format("{} on {}: {:.3f} s ({:.3f} {:.3f} {:.3f} by thirds)\n", run.car, run.track,
-                                 limit.times.lap, limit.times.sectors[0], limit.times.sectors[1],
-                                 limit.times.sectors[2]);
-  text += fmt::format("speed {:.1f} mph on average, {:.1f} at least, {:.1f} at most; the line is {:.1f} m long\n",
-                      mps_to_mph(limit.mean_speed), mps_to_mph(limit.least_speed),
-                      mps_to_mph(limit.top_speed), limit.line_length);
+  std::string text =
+      fmt::format("{} on {}: {:.3f} s ({:.3f} {:.3f} {:.3f} by thirds)\n", run.car, run.track,
+                  limit.times.lap, limit.times.sectors[0], limit.times.sectors[1], limit.times.sectors[2]);
+  text +=
+      fmt::format("speed {:.1f} mph on average, {:.1f} at least, {:.1f} at most; the line is {:.1f} m long\n",
+                  mps_to_mph(limit.mean_speed), mps_to_mph(limit.least_speed), mps_to_mph(limit.top_speed),
+                  limit.line_length);
   text += fmt::format("found in {:.1f} s: {} stages of {:.2f} m, {} rounds, {} turns of the solver\n",
                       run.wall_time, report.stages, report.spacing, report.rounds, report.iterations);
   text += fmt::format(
@@ -59,9 +60,10 @@ std::string to_csv(const LimitRun& run, const path::Track& track, const lap_time
       run.car, run.track, limit.times.lap, track.kerb_width());
   for (std::size_t i = 0; i + 1 < limit.line.size(); ++i) {  // the last repeats the first
     const lap_time::LimitPoint& p = limit.line[i];
-    text += fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{:.3f},{:.4f},{:.4f},{:.5f},{:.6f},{:.4f},{:.4f},{:.4f}\n",
-                        p.position.x(), p.position.y(), p.right, p.left, p.s, p.n, p.time, p.heading,
-                        p.curvature, p.speed, p.longitudinal_acceleration, p.lateral_acceleration);
+    text +=
+        fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{:.3f},{:.4f},{:.4f},{:.5f},{:.6f},{:.4f},{:.4f},{:.4f}\n",
+                    p.position.x(), p.position.y(), p.right, p.left, p.s, p.n, p.time, p.heading, p.curvature,
+                    p.speed, p.longitudinal_acceleration, p.lateral_acceleration);
   }
   return text;
 }

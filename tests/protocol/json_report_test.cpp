@@ -44,10 +44,10 @@ TEST(JsonReport, HasEveryKeyThatIsPromised) {
         "fallbacks", "gate_interventions", "deadline_misses", "state_hash"}) {
     EXPECT_TRUE(report.contains(key)) << key;
   }
-  for (const char* key :
-       {"lap_time_s", "mean_speed_mps", "top_speed_mps", "top_speed_mph", "rms_lateral_error_m",
-        "max_abs_lateral_error_m", "min_edge_distance_m", "max_lateral_acceleration_mps2",
-        "steering_rate_rms_radps", "sector_times_s", "gap_to_limit_percent"}) {
+  for (const char* key : {"lap_time_s", "mean_speed_mps", "top_speed_mps", "top_speed_mph",
+                          "rms_lateral_error_m", "max_abs_lateral_error_m", "min_edge_distance_m",
+                          "max_lateral_acceleration_mps2", "steering_rate_rms_radps", "sector_times_s",
+                          "gap_to_limit_percent", "sector_gaps_to_limit_percent"}) {
     EXPECT_TRUE(report["laps"][0].contains(key)) << key;
   }
   for (const char* key : {"p50", "p99", "p999", "max"}) {
@@ -70,6 +70,17 @@ TEST(JsonReport, ConvertsUnits) {
 TEST(JsonReport, TellsTheSectorsOfALapInTheirOrder) {
   const Json report = Json::parse(to_json(example()));
   EXPECT_EQ(report["laps"][0]["sector_times_s"], Json::parse("[9.0, 9.5, 10.0]"));
+}
+
+TEST(JsonReport, TellsTheGapsToTheLimit) {
+  telemetry::RunSummary run = example();
+  EXPECT_TRUE(Json::parse(to_json(run))["limit"].is_null());
+  telemetry::compare_with_limit(run, {.lap = 25.0, .sectors = {8.0, 9.5, 7.5}});
+  const Json report = Json::parse(to_json(run));
+  EXPECT_EQ(report["limit"], Json::parse(R"({"lap_time_s": 25.0, "sector_times_s": [8.0, 9.5, 7.5]})"));
+  EXPECT_NEAR(report["laps"][0]["gap_to_limit_percent"].get<double>(), 14.0, 1e-9);
+  EXPECT_NEAR(report["laps"][0]["sector_gaps_to_limit_percent"][0].get<double>(), 12.5, 1e-9);
+  EXPECT_THAT(to_table(run), HasSubstr("limit              25.000 s, the best lap +14.00 %"));
 }
 
 TEST(JsonReport, WhatWasNotMeasuredIsNull) {

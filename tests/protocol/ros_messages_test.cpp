@@ -148,7 +148,46 @@ TEST(RosMessages, LapIsTheLastCompletedOne) {
   for (const double expected : {28.125, 9.25, 9.5, 9.375}) EXPECT_EQ(reader.number(), expected);
   EXPECT_EQ(reader.get<std::uint8_t>(), 1);
   for (const double expected : {47.5, 49.25, 1.625, 0.1875}) EXPECT_EQ(reader.number(), expected);
+  // 28.125 s over 25 s, and the thirds over 8, 9.5 and 7.5 s.
+  for (const double expected : {12.5, 15.625, 0.0, 25.0}) EXPECT_NEAR(reader.number(), expected, 1e-12);
   EXPECT_TRUE(reader.is_at_end());
+}
+
+TEST(RosMessages, LimitHasItsLineInColumnsOfTheSameLength) {
+  const std::string bytes = encode("/chicane/limit");
+  CdrReader reader{bytes};
+  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
+  for (const double expected : {25.0, 8.0, 9.5, 7.5}) EXPECT_EQ(reader.number(), expected);
+  const std::vector<std::pair<double, double>> columns{{258.0, 260.0}, {1.0, 3.0},   {2.0, 2.25},
+                                                       {0.5, 0.75},    {40.0, 40.5}, {0.0, 4.5},
+                                                       {-3.0, 0.0},    {0.0, 0.0625}};
+  for (const auto& [first, second] : columns) {
+    ASSERT_EQ(reader.get<std::uint32_t>(), 2U);
+    EXPECT_EQ(reader.number(), first);
+    EXPECT_EQ(reader.number(), second);
+  }
+  EXPECT_TRUE(reader.is_at_end());
+}
+
+TEST(RosMessages, ALimitThatIsNotKnownIsEmptyAndLapsHaveNoGap) {
+  Run run = samples::run();
+  run.limit = nullptr;
+  for (const RosTopic& each : ros_topics()) {
+    if (each.name == "/chicane/limit") {
+      const std::string bytes = each.encode(samples::frame(), run);
+      CdrReader reader{bytes};
+      EXPECT_EQ(reader.get<std::uint8_t>(), 0);
+      for (int i = 0; i < 4; ++i) EXPECT_TRUE(std::isnan(reader.number()));
+      for (int i = 0; i < 8; ++i) EXPECT_EQ(reader.get<std::uint32_t>(), 0U);
+      EXPECT_TRUE(reader.is_at_end());
+    }
+    if (each.name == "/chicane/lap") {
+      const std::string bytes = each.encode(samples::frame(), run);
+      double last = 0.0;
+      std::memcpy(&last, bytes.data() + bytes.size() - sizeof(last), sizeof(last));
+      EXPECT_TRUE(std::isnan(last));
+    }
+  }
 }
 
 TEST(RosMessages, ChangeNamesWhatGotWhichValue) {

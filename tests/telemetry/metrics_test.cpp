@@ -182,5 +182,17 @@ TEST(Metrics, AllocatesNothingWhileRunningAndKeepsCountingBeyondItsCapacity) {
   EXPECT_EQ(metrics.summary().laps.size(), 2u);
 }
 
+TEST(Metrics, ARunSetBesideTheLimitHasTheGapsOfItsLaps) {
+  RunSummary run;
+  run.laps.push_back({.lap_time = 30.0, .sector_times = {11.0, 9.0, kNotMeasured}});
+  compare_with_limit(run, {.lap = 25.0, .sectors = {10.0, 9.0, 6.0}});
+  ASSERT_TRUE(run.limit.has_value());
+  ASSERT_TRUE(run.laps[0].gap_to_limit.has_value());
+  EXPECT_NEAR(*run.laps[0].gap_to_limit, 0.2, 1e-12);
+  EXPECT_NEAR(run.laps[0].sector_gaps[0], 0.1, 1e-12);
+  EXPECT_EQ(run.laps[0].sector_gaps[1], 0.0);
+  EXPECT_TRUE(std::isnan(run.laps[0].sector_gaps[2]));
+}
+
 }  // namespace
 }  // namespace chicane::telemetry

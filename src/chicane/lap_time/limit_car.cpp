@@ -32,8 +32,8 @@ LimitCar::LimitCar(const model::VehicleParams& p) noexcept
       drag_0{p.drag_constant},
       drag_v{p.drag_linear},
       drag_vv{p.drag_quadratic},
-      slip_drag{stay * stay *
-                (p.rear_axle / p.cornering_front + p.front_axle / p.cornering_rear) / p.wheelbase()},
+      slip_drag{stay * stay * (p.rear_axle / p.cornering_front + p.front_axle / p.cornering_rear) /
+                p.wheelbase()},
       slip_heading{stay / p.cornering_rear},
       load_0{p.load_constant},
       load_v{p.load_per_speed},

@@ -49,10 +49,10 @@ struct LimitProblem {
 
   LimitCar car;
   int horizon = 0;
-  double step = 2.0;                    ///< length of a stage along the line [m]
-  double root_curvature_price = 0.01;   ///< of a change of curvature [√s]
-  double root_force_price = 0.005;      ///< of a change of force [√s]
-  double constraint_price = 0.05;       ///< [s] for each unit of violation and stage
+  double step = 2.0;                   ///< length of a stage along the line [m]
+  double root_curvature_price = 0.01;  ///< of a change of curvature [√s]
+  double root_force_price = 0.005;     ///< of a change of force [√s]
+  double constraint_price = 0.05;      ///< [s] for each unit of violation and stage
   Road road;
   Nearness near;
   struct Centre {
@@ -109,13 +109,11 @@ struct LimitProblem {
   [[nodiscard, gnu::always_inline]] inline auto residual(K k, const X& x, const U& u) const noexcept {
     const auto& [n, course, v, kappa, force] = x;
     const auto [bend, push] = changes(k, x, u);
-    return std::make_tuple(sqrt(2.0 * duration(x, path(k, x).first)), root_curvature_price * bend,
-                           root_force_price * push, near.n * (n - centre.n.at(k)),
-                           near.course * (course - centre.course.at(k)),
-                           near.speed * (v - centre.speed.at(k)),
-                           near.curvature * (kappa - centre.curvature.at(k)),
-                           near.force * (force - centre.force.at(k)),
-                           near.bend * (bend - centre.bend.at(k)));
+    return std::make_tuple(
+        sqrt(2.0 * duration(x, path(k, x).first)), root_curvature_price * bend, root_force_price * push,
+        near.n * (n - centre.n.at(k)), near.course * (course - centre.course.at(k)),
+        near.speed * (v - centre.speed.at(k)), near.curvature * (kappa - centre.curvature.at(k)),
+        near.force * (force - centre.force.at(k)), near.bend * (bend - centre.bend.at(k)));
   }
 
   template <class X>
@@ -145,7 +143,8 @@ struct LimitProblem {
                            tail - road.rear_left.at(k), road.rear_right.at(k) - tail,
                            (1.0 / car.drive) * force - 1.0, (1.0 / car.power) * (force * v) - 1.0,
                            (-1.0 / car.brake) * force - 1.0, -1.0 * along - 1.0, front * front + taken - 1.0,
-                           rear * rear + taken - 1.0, front - 1.0, -1.0 * front - 1.0, rear - 1.0, -1.0 * rear - 1.0, steer - 1.0, -1.0 * steer - 1.0,
+                           rear * rear + taken - 1.0, front - 1.0, -1.0 * front - 1.0, rear - 1.0,
+                           -1.0 * rear - 1.0, steer - 1.0, -1.0 * steer - 1.0,
                            (per_lock * per_lock) * (kappa * kappa) - 1.0, 1.0 - (1.0 / kLowestSpeed) * v);
   }
   [[nodiscard]] solver::SoftPenalty soft_penalty(int) const noexcept {

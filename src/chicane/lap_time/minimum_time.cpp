@@ -17,7 +17,7 @@ using Problem = LimitProblem;
 using State = Problem::State;
 using Input = Problem::Input;
 
-constexpr double kRunIn = 400.0;  // [m] before and behind the lap, but at most a lap
+constexpr double kRunIn = 600.0;  // [m] before and behind the lap, but at most a lap
 
 // Prices for leaving the round before (eq. 17), for each metre; times a common factor.
 constexpr double kNearOffset = 1e-4;
@@ -33,9 +33,9 @@ constexpr double kLooser = 0.75;  // after one that did not
 
 // A search has ended when so many rounds in succession changed the lap time by less, and the lap is closed.
 constexpr int kCalmRounds = 3;
-constexpr double kSameTime = 3e-5;    // relative
-constexpr double kSeamOffset = 0.05;  // [m]
-constexpr double kSeamSpeed = 0.02;   // [m/s]
+constexpr double kSameTime = 5e-5;   // relative
+constexpr double kSeamOffset = 0.3;  // [m]
+constexpr double kSeamSpeed = 0.02;  // [m/s]
 
 // Prices of changes (eq. 8), for each metre.
 constexpr double kCurvaturePrice = 1e-4;
@@ -91,16 +91,15 @@ class Search {
     }
     return fail(ErrorCode::kInvalidArgument,
                 text("limit: no optimum after %.0f rounds: lap time %.3f s, changed by %.1e in the last one",
-                     report_.rounds - 1, lap_time(now_), report_.last_change));
+                     report_.rounds - 1, lap_time(now_), report_.last_change) +
+                    text("; seam open by %.3f m and %.3f m/s", report_.seam_offset, report_.seam_speed));
   }
 
  private:
   static solver::SolverOptions solver_options() {
     return {.tolerance = 1e-6, .loose_tolerance = 1e-4, .max_iterations = 25, .may_start_short = false};
   }
-  [[nodiscard]] double place(std::size_t k) const {
-    return start_ + static_cast<double>(k) * problem_.step;
-  }
+  [[nodiscard]] double place(std::size_t k) const { return start_ + static_cast<double>(k) * problem_.step; }
 
   /// Where the middles of the axles may be; what the line's curvature adds at an axle is in the edges.
   Result<void> lay_road() {
@@ -136,7 +135,8 @@ class Search {
     for (std::size_t k = 0; k < leg_.lap; ++k) {
       double sharpest = 1e-4;
       for (std::size_t j = 0; j <= 4; ++j)
-        sharpest = std::max(sharpest, std::fabs(problem_.road.curvature[leg_.run + (k + leg_.lap + j - 2) % leg_.lap]));
+        sharpest = std::max(sharpest,
+                            std::fabs(problem_.road.curvature[leg_.run + (k + leg_.lap + j - 2) % leg_.lap]));
       speed[k] = std::min(kGuessSpeed, std::sqrt(kGuessShare * car.grip_0 / sharpest));
     }
     for (std::size_t k = 2 * leg_.lap; k-- > 0;)
@@ -155,13 +155,13 @@ class Search {
     }
   }
 
-  /// The line known so far becomes what the next round is near to, and its first guess. The stages before the
-  /// lap are those of a lap later: what is open at the seam closes here.
+  /// The line known so far becomes what the next round is near to, and its first guess. The stages before and
+  /// behind the lap are those of a lap later and earlier: what is open at the seam closes here.
   void centre() {
     next_.horizon = now_.horizon;
     Problem::Centre& to = problem_.centre;
     for (std::size_t k = 0; k <= leg_.all; ++k) {
-      const std::size_t from = k < leg_.run ? k + leg_.lap : k;
+      const std::size_t from = k < leg_.run ? k + leg_.lap : (k > leg_.run + leg_.lap ? k - leg_.lap : k);
       const State& x = now_.x[from];
       to.n[k] = x[Problem::kN];
       to.course[k] = x[Problem::kCourse];
@@ -178,7 +178,8 @@ class Search {
   bool round(double nearness) {
     centre();
     const auto root = [&](double price) { return std::sqrt(nearness * price * problem_.step); };
-    problem_.near = {root(kNearOffset), root(kNearCourse), root(kNearSpeed), root(kNearCurvature), root(kNearForce), root(kNearBend)};
+    problem_.near = {root(kNearOffset),    root(kNearCourse), root(kNearSpeed),
+                     root(kNearCurvature), root(kNearForce),  root(kNearBend)};
     const State begin = now_.x[leg_.lap];
     const solver::SolveReport solved = solver_.solve(problem_, begin, next_);
     report_.iterations += solved.iterations;
@@ -211,7 +212,8 @@ class Search {
 
   [[nodiscard]] double lap_time(const LimitTrajectory& t) const {
     double sum = 0.0;
-    for (std::size_t k = leg_.run; k < leg_.run + leg_.lap; ++k) sum += problem_.time(static_cast<int>(k), t.x[k]);
+    for (std::size_t k = leg_.run; k < leg_.run + leg_.lap; ++k)
+      sum += problem_.time(static_cast<int>(k), t.x[k]);
     return sum;
   }
 
@@ -271,8 +273,8 @@ class Search {
   static constexpr double kGuessShare = 0.5;    // of the grip at rest
   static constexpr double kGuessBraking = 8.0;  // twice an acceleration [m/s²]
   static constexpr double kGuessDrive = 4.0;
-  static constexpr double kReach = 8.0;   // of the feedback: to the line [m]
-  static constexpr double kSettle = 4.0;  // and of curvature and force [m]
+  static constexpr double kReach = 8.0;      // of the feedback: to the line [m]
+  static constexpr double kSettle = 4.0;     // and of curvature and force [m]
   static constexpr double kSpeedGain = 1.0;  // [1/s]
 
   const path::Track& track_;

@@ -28,26 +28,26 @@ struct LimitPoint {
 
 /// How good a limit is (docs/limit.md, section 5).
 struct LimitReport {
-  int rounds = 0;              ///< problems solved one after the other
-  int iterations = 0;          ///< turns of the solver in all of them
-  int stages = 0;              ///< of one problem
-  double spacing = 0.0;        ///< of the stages along the track's line [m]
-  double stationarity = 0.0;   ///< of the last problem (solver::SolveReport)
-  double last_offset = 0.0;    ///< how far the last round moved the line [m]
-  double last_change = 0.0;    ///< by how much it changed the lap time, relative
-  double seam_offset = 0.0;    ///< between the lap's end and its beginning: across [m]
-  double seam_speed = 0.0;     ///< and in speed [m/s]
-  double violation = 0.0;      ///< largest violation of a constraint: [m] of an edge, else relative
+  int rounds = 0;             ///< problems solved one after the other
+  int iterations = 0;         ///< turns of the solver in all of them
+  int stages = 0;             ///< of one problem
+  double spacing = 0.0;       ///< of the stages along the track's line [m]
+  double stationarity = 0.0;  ///< of the last problem (solver::SolveReport)
+  double last_offset = 0.0;   ///< how far the last round moved the line [m]
+  double last_change = 0.0;   ///< by how much it changed the lap time, relative
+  double seam_offset = 0.0;   ///< between the lap's end and its beginning: across [m]
+  double seam_speed = 0.0;    ///< and in speed [m/s]
+  double violation = 0.0;     ///< largest violation of a constraint: [m] of an edge, else relative
 };
 
 /// The fastest lap of a car on a closed road, by the model of docs/limit.md.
 struct Limit {
   LapTimes times;
-  double mean_speed = 0.0;               ///< length of the line over lap time [m/s]
-  double top_speed = 0.0;                ///< [m/s]
-  double least_speed = 0.0;              ///< [m/s]
-  double line_length = 0.0;              ///< of the racing line [m]
-  std::vector<LimitPoint> line;          ///< by rising time, from the start line; the last repeats the first
+  double mean_speed = 0.0;       ///< length of the line over lap time [m/s]
+  double top_speed = 0.0;        ///< [m/s]
+  double least_speed = 0.0;      ///< [m/s]
+  double line_length = 0.0;      ///< of the racing line [m]
+  std::vector<LimitPoint> line;  ///< by rising time, from the start line; the last repeats the first
   LimitReport report;
 };
 

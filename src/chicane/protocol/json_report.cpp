@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -38,9 +39,9 @@ Json to_object(const LapSummary& lap) {
 
 Json to_object(const std::optional<lap_time::LapTimes>& limit) {
   if (!limit) return nullptr;
-  return {{"lap_time_s", number(limit->lap)},
-          {"sector_times_s",
-           {number(limit->sectors[0]), number(limit->sectors[1]), number(limit->sectors[2])}}};
+  return {
+      {"lap_time_s", number(limit->lap)},
+      {"sector_times_s", {number(limit->sectors[0]), number(limit->sectors[1]), number(limit->sectors[2])}}};
 }
 
 Json to_object(const TimeSummary& time) {
@@ -112,6 +113,14 @@ std::string to_table(const RunSummary& run) {
   int lap = 0;
   for (const LapSummary& summary : run.laps) text += row(fmt::format("{}", ++lap), summary);
   text += row("all", run.total);
+  if (run.limit) {
+    const auto best =
+        std::min_element(run.laps.begin(), run.laps.end(),
+                         [](const LapSummary& a, const LapSummary& b) { return a.lap_time < b.lap_time; });
+    const double gap =
+        best == run.laps.end() ? telemetry::kNotMeasured : lap_time::gap(best->lap_time, run.limit->lap);
+    text += fmt::format("\nlimit              {:.3f} s, the best lap {:+.2f} %", run.limit->lap, 100.0 * gap);
+  }
   text +=
       fmt::format("\noff track          {} times, {:.2f} s\n", run.off_track_events, run.out_of_track_time);
   text += fmt::format("control step       {} µs (p50 / p99 / p99.9 / max), {} steps, {} late\n",

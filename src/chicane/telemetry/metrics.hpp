@@ -63,16 +63,16 @@ struct RunSummary {
   std::string end_reason;  ///< why it ended otherwise, one sentence; empty when completed
 
   int laps_completed = 0;
-  int off_track_events = 0;        ///< times a contact patch left the drivable surface
-  double out_of_track_time = 0.0;  ///< [s]
-  double duration = 0.0;           ///< of the run, in its own time [s]
-  double wall_time = 0.0;          ///< of the run, on the wall [s]; filled by the run time
-  std::vector<LapSummary> laps;    ///< completed laps
+  int off_track_events = 0;                 ///< times a contact patch left the drivable surface
+  double out_of_track_time = 0.0;           ///< [s]
+  double duration = 0.0;                    ///< of the run, in its own time [s]
+  double wall_time = 0.0;                   ///< of the run, on the wall [s]; filled by the run time
+  std::vector<LapSummary> laps;             ///< completed laps
   std::optional<lap_time::LapTimes> limit;  ///< the fastest lap the car can drive; none when not computed
-  LapSummary total;                ///< the whole run, unfinished lap included; lap_time is its duration
-  TimeSummary step_time;           ///< of whole control steps, wall clock
-  TimeSummary solve_time;          ///< of the optimisation in them, wall clock
-  std::uint64_t cycles = 0;        ///< control steps
+  LapSummary total;          ///< the whole run, unfinished lap included; lap_time is its duration
+  TimeSummary step_time;     ///< of whole control steps, wall clock
+  TimeSummary solve_time;    ///< of the optimisation in them, wall clock
+  std::uint64_t cycles = 0;  ///< control steps
   double mean_iterations = 0.0;
   std::uint64_t not_usable = 0;  ///< solves whose answer must not be used
   std::uint64_t fallbacks = 0;   ///< steps whose command came from a rung below the controller
