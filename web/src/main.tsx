@@ -74,6 +74,7 @@ addShortcuts(
   { keys: ['v'], label: 'V', does: 'Three dimensions, or the map', group: 'Camera', action: toggleDimension },
   { keys: ['+', '='], label: '+', does: 'Closer', group: 'Camera', action: () => zoom(0.8) },
   { keys: ['-'], label: '−', does: 'Farther', group: 'Camera', action: () => zoom(1.25) },
+  { keys: ['l'], label: 'L', does: 'The racing line', group: 'Camera', action: () => toggleLayer('racingLine') },
   { keys: ['o'], label: 'O', does: 'The plan of a second ago, and what came of it', group: 'Camera', action: () => toggleLayer('hindsight') },
   { keys: ['u'], label: 'U', does: 'Speeds in mph, km/h or m/s', group: 'Panels', action: nextSpeedUnit },
   ...TABS.map((name, i) => ({ keys: [String(i + 1)], label: String(i + 1), does: `${name[0]?.toUpperCase()}${name.slice(1)}`, group: 'Panels' as const, action: () => void (tab.value = name) })),

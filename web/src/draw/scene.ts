@@ -1,5 +1,5 @@
 import type { Point } from '../lib/math';
-import type { Plan } from '../protocol/topics';
+import type { Limit, Plan } from '../protocol/topics';
 import type { Hindsight, Pose } from '../state/hindsight';
 import type { Road } from '../state/app_state';
 import { groundGrid, transformOf, type Camera } from './camera';
@@ -10,6 +10,7 @@ import type { Theme } from './theme';
 /** Everything one picture of the map is made of; lengths in metres, angles in radians, in W. */
 export interface Scene {
   readonly road: RoadShape | null;
+  readonly racingLine: Limit | null; // of the fastest lap possible
   readonly reference: readonly Point[];
   readonly traceX: Float64Array;
   readonly traceY: Float64Array;
@@ -101,6 +102,16 @@ function line(xs: ArrayLike<number>, ys: ArrayLike<number>): Path2D {
   const path = new Path2D();
   for (let i = 0; i < xs.length; ++i) path.lineTo(xs[i] ?? NaN, ys[i] ?? NaN);
   return path;
+}
+
+let lastLine: { of: Limit; path: Path2D } | null = null;
+
+/** Dashed, for nobody drives it. The canvas keeps its shape. */
+function drawRacingLine(ctx: Context, limit: Limit, colours: Theme, px: number): void {
+  if (lastLine?.of !== limit) lastLine = { of: limit, path: line(limit.x_m, limit.y_m) };
+  ctx.setLineDash([4, 2]);
+  stroke(ctx, lastLine.path, colours.racingLine, Math.max(0.2, 2 * px));
+  ctx.setLineDash([]);
 }
 
 /** A plan as a broad band, and on it the way that was then driven. */
@@ -208,6 +219,7 @@ export function drawScene(ctx: Context, scene: Scene, camera: Camera, colours: T
 
   drawGround(ctx, camera, colours.groundLine, ratio);
   if (scene.road) drawRoad(ctx, scene.road, colours, px);
+  if (scene.racingLine) drawRacingLine(ctx, scene.racingLine, colours, px);
   drawTrace(ctx, scene.traceX, scene.traceY, colours.trace, Math.max(0.2, 2 * px));
   stroke(ctx, trail(scene.reference), scene.road ? colours.reference : colours.faint, Math.max(0.12, 1.5 * px));
   if (scene.hindsight) drawHindsight(ctx, scene.hindsight, colours, px);

@@ -7,6 +7,7 @@ export interface Theme {
   readonly centreLine: string;
   readonly reference: string;
   readonly trace: string;
+  readonly racingLine: string;
   readonly foreseen: string;
   readonly came: string;
   readonly carBody: string;
@@ -34,6 +35,7 @@ function read(): Theme {
     centreLine: colour('centre-line'),
     reference: colour('reference'),
     trace: colour('trace'),
+    racingLine: colour('racing-line'),
     foreseen: colour('foreseen'),
     came: colour('came'),
     carBody: colour('car-body'),

@@ -120,6 +120,23 @@ export interface Lap {
   top_speed_mps: number;
   min_edge_distance_m: number;
   rms_lateral_error_m: number;
+  gap_to_limit_percent: number;
+  sector_gaps_to_limit_percent: Float64Array;
+}
+
+/** chicane_msgs/msg/Limit: the fastest lap that is possible, and its line; columns of equal length, empty while it is not known */
+export interface Limit {
+  is_known: boolean;
+  lap_time_s: number;
+  sector_times_s: Float64Array;
+  s_m: Float64Array;
+  x_m: Float64Array;
+  y_m: Float64Array;
+  n_m: Float64Array;
+  speed_mps: Float64Array;
+  longitudinal_acceleration_mps2: Float64Array;
+  lateral_acceleration_mps2: Float64Array;
+  time_s: Float64Array;
 }
 
 /** chicane_msgs/msg/Change: a setting that changed during the run */
@@ -146,6 +163,7 @@ export interface Topics {
   '/track/centre': Path;
   '/chicane/lap': Lap;
   '/chicane/change': Change;
+  '/chicane/limit': Limit;
 }
 
 export type TopicName = keyof Topics;
@@ -160,4 +178,5 @@ export const TOPIC_NAMES: readonly TopicName[] = [
   '/track/centre',
   '/chicane/lap',
   '/chicane/change',
+  '/chicane/limit',
 ];

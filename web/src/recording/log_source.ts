@@ -17,7 +17,7 @@ export interface LogEvents extends SourceEvents {
   moved(time: number, isPlaying: boolean): void;
 }
 
-const STATIC: readonly TopicName[] = ['/chicane/run', '/track/left', '/track/right', '/track/centre', '/chicane/lap'];
+const STATIC: readonly TopicName[] = ['/chicane/run', '/track/left', '/track/right', '/track/centre', '/chicane/lap', '/chicane/limit'];
 const MOVING: readonly TopicName[] = ['/chicane/frame', '/chicane/plan', '/reference', '/chicane/change'];
 const SHORT: readonly TopicName[] = ['/chicane/plan', '/reference'];
 /** What is shown of the past: plots reach back so far [s]. */

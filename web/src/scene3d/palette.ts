@@ -15,6 +15,7 @@ export interface Palette {
   readonly road: RoadPaint;
   readonly reference: Colour;
   readonly trace: Colour;
+  readonly racingLine: Colour;
   readonly foreseen: Colour;
   readonly came: Colour;
   readonly ghost: Colour;
@@ -42,6 +43,7 @@ const DAY: Omit<Palette, 'isDark'> = {
   },
   reference: colourOf('#ffffff'),
   trace: colourOf('#c6d5f2'),
+  racingLine: colourOf('#4df0ff'),
   foreseen: colourOf('#f25fc4'),
   came: colourOf('#ffffff'),
   ghost: colourOf('#3f7cf0'),
@@ -69,6 +71,7 @@ const DUSK: Omit<Palette, 'isDark'> = {
   },
   reference: colourOf('#aab6c6'),
   trace: colourOf('#6283c0'),
+  racingLine: colourOf('#35b9c9'),
   foreseen: colourOf('#e05ab6'),
   came: colourOf('#e4ebf5'),
   ghost: colourOf('#7aa7ff'),

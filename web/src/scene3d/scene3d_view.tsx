@@ -1,6 +1,6 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { onThemeChange } from '../draw/theme';
-import { isPaused, link, live, run } from '../state/app_state';
+import { isPaused, limit, link, live, run } from '../state/app_state';
 import { hindsight } from '../state/hindsight';
 import { layers } from '../state/layers';
 import { everyFrame } from '../state/ticker';
@@ -22,6 +22,7 @@ function viewNow(): View {
     plan: live.plan,
     reference: live.reference,
     hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
+    racingLine: layers.racingLine.value ? limit.value : null,
     topSpeed: live.topSpeed,
     ghost: session.ghost,
     camera: camera.value,

@@ -2,7 +2,7 @@ import { Color, DirectionalLight, HemisphereLight, PerspectiveCamera, PMREMGener
 import { topOfScale } from '../draw/speed_colour';
 import type { Point } from '../lib/math';
 import { speedUnit } from '../lib/units';
-import type { Plan, Run } from '../protocol/topics';
+import type { Limit, Plan, Run } from '../protocol/topics';
 import type { Road } from '../state/app_state';
 import type { Hindsight } from '../state/hindsight';
 import { BodyMotion } from './body_motion';
@@ -29,6 +29,7 @@ export interface View {
   readonly plan: Plan | null;
   readonly reference: readonly Point[];
   readonly hindsight: Hindsight | null;
+  readonly racingLine: Limit | null;
   readonly topSpeed: number;
   readonly ghost: GhostSource | null;
   readonly camera: CameraName;
@@ -54,6 +55,7 @@ export class Stage {
   readonly #marks: RingView;
   readonly #brakes: RingView;
   readonly #reference: BandView;
+  readonly #racingLine: BandView;
   readonly #foreseen: BandView;
   readonly #came: BandView;
   readonly #plan: BandView;
@@ -69,6 +71,7 @@ export class Stage {
   #roadKey = '';
   #lineShown: Float32Array | null = null;
   #planShown: Plan | null = null;
+  #limitShown: Limit | null = null;
   #referenceShown: readonly Point[] | null = null;
   #jumps = -1;
   #runTime = NaN;
@@ -94,6 +97,7 @@ export class Stage {
     this.#marks = new RingView(this.#scene, session.marks.ring, 3, 0.75);
     this.#brakes = new RingView(this.#scene, session.brakes, 4, 0.8);
     this.#reference = new BandView(this.#scene, 512, 5);
+    this.#racingLine = new BandView(this.#scene, 8192, 1.5);
     this.#foreseen = new BandView(this.#scene, 512, 6);
     this.#came = new BandView(this.#scene, 512, 7);
     this.#plan = new BandView(this.#scene, 512, 8);
@@ -116,6 +120,7 @@ export class Stage {
     this.#marks.paint(this.#palette.rubber);
     this.#brakes.paint([0.75, 0.03, 0.02]);
     this.#reference.paint(this.#palette.reference);
+    this.#racingLine.paint(this.#palette.racingLine);
     this.#foreseen.paint(this.#palette.foreseen);
     this.#came.paint(this.#palette.came);
     this.#bestLine.paint(this.#palette.ghost);
@@ -162,7 +167,7 @@ export class Stage {
 
   #isWorth(now: number, view: View, motion: Motion | null, width: number, height: number): boolean {
     const { orbit } = view;
-    const key = [motion?.time, motion?.x, motion?.yaw, view.camera, orbit.azimuth, orbit.elevation, orbit.zoom, width, height, view.roadVersion, view.hindsight === null].join();
+    const key = [motion?.time, motion?.x, motion?.yaw, view.camera, orbit.azimuth, orbit.elevation, orbit.zoom, width, height, view.roadVersion, view.hindsight === null, view.racingLine === null].join();
     if (key !== this.#changeKey || view.plan !== this.#planShown) {
       this.#changeKey = key;
       this.#lastChange = now;
@@ -200,6 +205,10 @@ export class Stage {
       this.#lineShown = line;
       const every = (axis: number): Float32Array => (line ?? new Float32Array()).filter((_, i) => i % 2 === axis);
       this.#bestLine.show(every(0), every(1), 0.3, () => 0.55);
+    }
+    if (view.racingLine !== this.#limitShown) {
+      this.#limitShown = view.racingLine;
+      this.#racingLine.show(view.racingLine?.x_m ?? [], view.racingLine?.y_m ?? [], 0.22, () => 0.75);
     }
     if (view.reference !== this.#referenceShown) {
       this.#referenceShown = view.reference;
@@ -293,7 +302,7 @@ export class Stage {
     this.#car?.dispose();
     this.#ghost?.dispose();
     this.#landscape.plant([], this.#palette);
-    for (const part of [this.#landscape, this.#road, this.#bestLine, this.#trace, this.#marks, this.#brakes, this.#reference, this.#foreseen, this.#came, this.#plan]) part.dispose();
+    for (const part of [this.#landscape, this.#road, this.#bestLine, this.#trace, this.#marks, this.#brakes, this.#reference, this.#racingLine, this.#foreseen, this.#came, this.#plan]) part.dispose();
     this.#environment?.dispose();
     this.#sun.dispose();
     this.#slow?.dispose();

@@ -1,6 +1,6 @@
 import { computed, signal } from '@preact/signals';
 import type { Point } from '../lib/math';
-import type { Change, Frame, Lap, Path, Plan, Run, TopicName, Topics } from '../protocol/topics';
+import type { Change, Frame, Lap, Limit, Path, Plan, Run, TopicName, Topics } from '../protocol/topics';
 import { COLUMN_COUNT, plotRow } from './columns';
 import { forgetEvents, noteChange, noteEvents, setFaultNames } from './event_log';
 import { Histogram } from './histogram';
@@ -21,6 +21,8 @@ export const shown = signal<Frame | null>(null);
 export const bestLap = signal(NaN);
 /** Completed laps as the server tells them, rising. */
 export const laps = signal<readonly Lap[]>([]);
+/** The fastest lap possible on this road with this car; null while nobody has told. */
+export const limit = signal<Limit | null>(null);
 /** Whole seconds since the last frame of a run that is not paused. */
 export const silence = signal(0);
 /** The last sentence from the server; null when read. */
@@ -86,6 +88,7 @@ export function forget(): void {
 /** Another run: what belonged to the one before goes, its last frame included. */
 export function beginSession(): void {
   forget();
+  limit.value = null;
   live.frame = null;
   shown.value = null;
 }
@@ -165,6 +168,9 @@ export function receive<T extends TopicName>(topic: T, message: Topics[T], now: 
       return;
     case '/chicane/lap':
       return receiveLap(message as Lap);
+    case '/chicane/limit':
+      limit.value = (message as Limit).is_known ? (message as Limit) : null;
+      return;
     case '/chicane/change':
       return noteChange(message as Change);
     case '/reference':

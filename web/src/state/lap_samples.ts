@@ -60,6 +60,11 @@ export class LapSamples {
     return (this.#firstPoint + point) * this.#spacing - this.#line;
   }
 
+  /** Distance of a point along the road's own line [m]. */
+  place(point: number): number {
+    return index(this.#firstPoint + point) * this.#spacing;
+  }
+
   /** Numbers of the laps that are kept whole, rising. */
   get laps(): number[] {
     return this.#done.map((slot) => slot.lap).sort((a, b) => a - b);

@@ -12,6 +12,8 @@ const lap = (number: number, sectors: [number, number, number], more: Partial<La
   top_speed_mps: 45 + number,
   min_edge_distance_m: 1,
   rms_lateral_error_m: 0.2,
+  gap_to_limit_percent: 12.5,
+  sector_gaps_to_limit_percent: new Float64Array([10, 12, 15]),
   ...more,
 });
 
@@ -28,9 +30,9 @@ describe('the table of laps', () => {
   });
 
   it('is written as a file', () => {
-    const lines = lapsCsv([lap(1, [12, 9, 9])]).split('\n');
-    expect(lines[0]?.split(',')).toHaveLength(10);
-    expect(lines[1]).toBe('1,30,12,9,9,true,40,46,1,0.2');
+    const lines = lapsCsv([lap(1, [12, 9, 9])], null).split('\n');
+    expect(lines[0]?.split(',')).toHaveLength(11);
+    expect(lines[1]).toBe('1,30,12,9,9,true,40,46,1,0.2,12.5');
   });
 
   it('has a file for each lap along the road', () => {

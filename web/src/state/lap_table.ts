@@ -1,6 +1,7 @@
 import { csv } from '../lib/csv';
-import type { Lap } from '../protocol/topics';
+import type { Lap, Limit } from '../protocol/topics';
 import { LAP_CHANNELS, type LapSamples } from './lap_samples';
+import { gapsToLimit } from './limit';
 
 export interface LapBests {
   readonly lap: number; // fastest clean one, or fastest where none is clean; −1 without laps
@@ -25,9 +26,9 @@ export function bestsOf(laps: readonly Lap[]): LapBests {
 }
 
 /** The table of laps as a file; times in seconds, in SI units. */
-export const lapsCsv = (laps: readonly Lap[]): string =>
+export const lapsCsv = (laps: readonly Lap[], limit: Limit | null): string =>
   csv(
-    ['lap', 'lap_time_s', 'sector_1_s', 'sector_2_s', 'sector_3_s', 'is_clean', 'mean_speed_mps', 'top_speed_mps', 'min_edge_distance_m', 'rms_lateral_error_m'],
+    ['lap', 'lap_time_s', 'sector_1_s', 'sector_2_s', 'sector_3_s', 'is_clean', 'mean_speed_mps', 'top_speed_mps', 'min_edge_distance_m', 'rms_lateral_error_m', 'gap_to_limit_percent'],
     laps.map((lap) => [
       lap.lap,
       lap.lap_time_s,
@@ -37,6 +38,7 @@ export const lapsCsv = (laps: readonly Lap[]): string =>
       lap.top_speed_mps,
       lap.min_edge_distance_m,
       lap.rms_lateral_error_m,
+      gapsToLimit(lap, limit).lap,
     ]),
   );
 

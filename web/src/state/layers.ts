@@ -4,6 +4,8 @@ import { persisted } from '../lib/persisted';
 export const layers = {
   /** The plan of a second ago, beside what came of it. */
   hindsight: persisted<boolean>('layer.hindsight', false),
+  /** The line of the fastest lap possible. */
+  racingLine: persisted<boolean>('layer.racing-line', true),
 } as const;
 
 export type Layer = keyof typeof layers;

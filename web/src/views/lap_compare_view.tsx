@@ -6,8 +6,9 @@ import { rangeAboutZero, rangeInSteps } from '../draw/axis';
 import { onThemeChange } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { speedUnit } from '../lib/units';
-import { live } from '../state/app_state';
+import { limit, live } from '../state/app_state';
 import { timeGap, type LapChannel } from '../state/lap_samples';
+import { limitChannel } from '../state/limit';
 import { chartColours } from './plot_colours';
 
 interface Curve {
@@ -19,7 +20,12 @@ interface Curve {
   readonly range: (columns: readonly ArrayLike<number>[]) => [number, number];
 }
 
-const channel = (name: LapChannel, factor = 1) => (a: number, b: number): (Float64Array | null)[] => [a, b].map((lap) => live.lapSamples.channel(lap, name)?.map((value) => value * factor) ?? null);
+/** Laps count from 0; before them stands the fastest one possible. */
+const LIMIT = -1;
+const samplesOf = (lap: number, name: LapChannel): Float64Array | null => (lap !== LIMIT ? live.lapSamples.channel(lap, name) : limit.value && limitChannel(limit.value, live.lapSamples, name));
+const nameOf = (lap: number): string => (lap === LIMIT ? 'limit' : `lap ${lap + 1}`);
+
+const channel = (name: LapChannel, factor = 1) => (a: number, b: number): (Float64Array | null)[] => [a, b].map((lap) => samplesOf(lap, name)?.map((value) => value * factor) ?? null);
 
 const SPEED = computed<Curve>(() => {
   const { name, perMps, axisStep, axisLeast } = speedUnit();
@@ -120,10 +126,10 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
 
 /** Two laps over the distance along the road; `a` and `b` count from 0. */
 export function LapCompareView({ a, b }: { a: number; b: number }) {
-  const names = [`lap ${a + 1}`, `lap ${b + 1}`] as const;
-  const missing = [a, b].filter((lap) => !live.lapSamples.channel(lap, 'time_s'));
+  const names = [nameOf(a), nameOf(b)] as const;
+  const missing = [a, b].filter((lap) => !samplesOf(lap, 'time_s'));
   if (missing.length > 0) {
-    return <p class="empty">This page has not seen all of {missing.map((lap) => `lap ${lap + 1}`).join(' and ')}: there is nothing to compare.</p>;
+    return <p class="empty">This page has not seen all of {missing.map(nameOf).join(' and ')}: there is nothing to compare.</p>;
   }
   return (
     <div class="compare">

@@ -2,11 +2,15 @@ import { signal } from '@preact/signals';
 import { download, downloadPng, fileName } from '../lib/download';
 import { fixed, lapTime, UNKNOWN } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
-import type { Lap } from '../protocol/topics';
-import { bestLap, laps, live, run } from '../state/app_state';
+import type { Lap, Limit } from '../protocol/topics';
+import { bestLap, laps, limit, live, run } from '../state/app_state';
 import { bestsOf, lapSamplesCsv, lapsCsv, type LapBests } from '../state/lap_table';
+import { gapsToLimit } from '../state/limit';
 import { everyFrame } from '../state/ticker';
 import { LapCompareView } from './lap_compare_view';
+
+/** The fastest lap possible stands in the table as this one. */
+const LIMIT = 0;
 
 /** The laps to compare, by number; null follows: the best against the newest. */
 const chosen = signal<readonly [number | null, number | null]>([null, null]);
@@ -16,10 +20,46 @@ function gap(seconds: number): string {
   return seconds > 0 ? `+${fixed(seconds, 3)}` : fixed(seconds, 3);
 }
 
-function Row({ lap, bests }: { lap: Lap; bests: LapBests }) {
-  const [a, b] = compared(laps.value, bests);
-  const pick = (which: 0 | 1): void => void (chosen.value = which === 0 ? [lap.lap, chosen.value[1]] : [chosen.value[0], lap.lap]);
+const percent = (value: number): string => (Number.isFinite(value) ? `${value >= 0 ? '+' : ''}${fixed(value, 1)} %` : UNKNOWN);
+
+function Picks({ lap, pair, name }: { lap: number; pair: readonly [number, number]; name: string }) {
+  const pick = (which: 0 | 1): void => void (chosen.value = which === 0 ? [lap, chosen.value[1]] : [chosen.value[0], lap]);
+  return (
+    <div class="picks">
+      {([0, 1] as const).map((which) => (
+        <label key={which} title={`Compare as lap ${which === 0 ? 'A' : 'B'}`}>
+          <input type="radio" name={`compare-${which}`} aria-label={`Compare ${name} as ${which === 0 ? 'A' : 'B'}`} checked={pair[which] === lap} onChange={() => pick(which)} />
+          {which === 0 ? 'A' : 'B'}
+        </label>
+      ))}
+    </div>
+  );
+}
+
+/** What is possible, above all that was driven. */
+function LimitRow({ fastest, pair }: { fastest: Limit; pair: readonly [number, number] }) {
+  return (
+    <tr class="limit" data-testid="limit">
+      <th scope="row">limit</th>
+      <td class="time">{lapTime(fastest.lap_time_s)}</td>
+      <td>{UNKNOWN}</td>
+      <td>{UNKNOWN}</td>
+      {[0, 1, 2].map((sector) => (
+        <td key={sector}>{fixed(fastest.sector_times_s[sector] ?? NaN, 2)}</td>
+      ))}
+      <td>{fixed(inSpeedUnit(fastest.speed_mps.reduce((a, b) => Math.max(a, b), 0)), 1)}</td>
+      <td>{UNKNOWN}</td>
+      <td>{UNKNOWN}</td>
+      <td>
+        <Picks lap={LIMIT} pair={pair} name="the limit" />
+      </td>
+    </tr>
+  );
+}
+
+function Row({ lap, bests, pair }: { lap: Lap; bests: LapBests; pair: readonly [number, number] }) {
   const isBest = lap.lap === bests.lap;
+  const gaps = gapsToLimit(lap, limit.value);
   return (
     <tr class={isBest ? 'best' : ''}>
       <th scope="row">
@@ -29,11 +69,18 @@ function Row({ lap, bests }: { lap: Lap; bests: LapBests }) {
       </th>
       <td class="time">{lapTime(lap.lap_time_s)}</td>
       <td>{gap(lap.lap_time_s - bests.time)}</td>
+      {hasLimit() && <td data-testid="gap-to-limit">{percent(gaps.lap)}</td>}
       {[0, 1, 2].map((sector) => {
         const time = lap.sector_times_s[sector] ?? NaN;
         return (
           <td key={sector} class={lap.is_clean && time === bests.sectors[sector] ? 'best-sector' : ''}>
             {Number.isFinite(time) ? fixed(time, 2) : UNKNOWN}
+            {Number.isFinite(gaps.sectors[sector]) && (
+              <>
+                {' '}
+                <small title="Above the limit of this sector">{percent(gaps.sectors[sector] ?? NaN)}</small>
+              </>
+            )}
           </td>
         );
       })}
@@ -41,14 +88,7 @@ function Row({ lap, bests }: { lap: Lap; bests: LapBests }) {
       <td>{fixed(lap.min_edge_distance_m, 2)}</td>
       <td>{fixed(lap.rms_lateral_error_m, 2)}</td>
       <td>
-        <div class="picks">
-          {([0, 1] as const).map((which) => (
-            <label key={which} title={`Compare as lap ${which === 0 ? 'A' : 'B'}`}>
-              <input type="radio" name={`compare-${which}`} aria-label={`Compare lap ${lap.lap} as ${which === 0 ? 'A' : 'B'}`} checked={(which === 0 ? a : b) === lap.lap} onChange={() => pick(which)} />
-              {which === 0 ? 'A' : 'B'}
-            </label>
-          ))}
-        </div>
+        <Picks lap={lap.lap} pair={pair} name={`lap ${lap.lap}`} />
       </td>
     </tr>
   );
@@ -63,12 +103,15 @@ function rowsOf(all: readonly Lap[], bests: LapBests): Lap[] {
   return all.filter((lap, i) => i >= first || lap.lap === bests.lap).reverse();
 }
 
+/** Whether anything is known of the limit: of this road, or told with a lap. */
+const hasLimit = (): boolean => limit.value !== null || laps.value.some(({ gap_to_limit_percent: told }) => Number.isFinite(told));
+
 /** The pair shown: what was chosen, else the newest against the best, or against the one before it; of those seen whole. */
 function compared(all: readonly Lap[], bests: LapBests): [number, number] {
   const seen = all.filter(({ lap }) => live.lapSamples.laps.includes(lap - 1)).map(({ lap }) => lap);
   const newest = seen.at(-1) ?? all.at(-1)?.lap ?? -1;
   const other = bests.lap !== newest && seen.includes(bests.lap) ? bests.lap : (seen.at(-2) ?? all.at(-2)?.lap ?? newest);
-  const isKnown = (lap: number | null): lap is number => all.some((each) => each.lap === lap);
+  const isKnown = (lap: number | null): lap is number => (lap === LIMIT && limit.value !== null) || all.some((each) => each.lap === lap);
   return [isKnown(chosen.value[0]) ? chosen.value[0] : newest, isKnown(chosen.value[1]) ? chosen.value[1] : other];
 }
 
@@ -90,7 +133,7 @@ function Toolbar({ pair }: { pair: readonly [number, number] }) {
   const has = laps.value.length > 0;
   return (
     <div class="toolbar">
-      <button type="button" disabled={!has} onClick={() => download(fileName([...parts, 'laps'], 'csv'), lapsCsv(laps.value), 'text/csv')}>
+      <button type="button" disabled={!has} onClick={() => download(fileName([...parts, 'laps'], 'csv'), lapsCsv(laps.value, limit.value), 'text/csv')}>
         Table as CSV
       </button>
       <button
@@ -122,7 +165,7 @@ export function LapsView() {
           <table class="lap-table">
             <thead>
               <tr>
-                {['Lap', 'Time', 'Gap', 'S 1', 'S 2', 'S 3', `Top ${speedUnit().name}`, 'Edge', 'Error', 'Compare'].map((head) => (
+                {['Lap', 'Time', 'Gap', ...(hasLimit() ? ['To limit'] : []), 'S 1', 'S 2', 'S 3', `Top ${speedUnit().name}`, 'Edge', 'Error', 'Compare'].map((head) => (
                   <th key={head} scope="col">
                     {head}
                   </th>
@@ -130,8 +173,9 @@ export function LapsView() {
               </tr>
             </thead>
             <tbody>
+              {limit.value && <LimitRow fastest={limit.value} pair={pair} />}
               {rowsOf(all, bests).map((lap) => (
-                <Row key={lap.lap} lap={lap} bests={bests} />
+                <Row key={lap.lap} lap={lap} bests={bests} pair={pair} />
               ))}
             </tbody>
           </table>
@@ -142,7 +186,7 @@ export function LapsView() {
           )}
         </div>
       )}
-      {all.length > 1 && <LapCompareView a={pair[0] - 1} b={pair[1] - 1} />}
+      {(all.length > 1 || pair.includes(LIMIT)) && <LapCompareView a={pair[0] - 1} b={pair[1] - 1} />}
     </div>
   );
 }

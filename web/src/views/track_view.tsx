@@ -13,7 +13,7 @@ import { Scene3dView } from '../scene3d/scene3d_view';
 import type { GhostPose } from '../scene3d/ghost';
 import { session } from '../scene3d/session';
 import { camera, choose, dimension, isSpared, nextCamera, obstacle, shows3d, wants3d, zoomCamera, type Dimension } from '../scene3d/view_state';
-import { isPaused, link, live, run, shown } from '../state/app_state';
+import { isPaused, limit, link, live, run, shown } from '../state/app_state';
 import { hindsight } from '../state/hindsight';
 import { layers, toggleLayer, type Layer } from '../state/layers';
 import { everyFrame } from '../state/ticker';
@@ -86,6 +86,7 @@ class Painter {
 
     const scene: Scene = {
       road: this.#road,
+      racingLine: layers.racingLine.value ? limit.value : null,
       reference: live.reference,
       traceX: live.trace.column(0),
       traceY: live.trace.column(1),
@@ -196,6 +197,7 @@ function Legend() {
       )}
       <Swatch name="reference" label="reference" />
       <Swatch name="trace" label="driven" isMinor />
+      {limit.value && <Switch layer="racingLine" label="racing line" title="The line of the fastest lap possible (L)" />}
       <Switch layer="hindsight" label="plan 1 s ago" title="The plan of a second ago and the way driven since; the outline is where it saw the car now (O)" />
       {ghost !== null && <Swatch name="ghost" label={ghost} />}
       {shows3d.value && <Swatch name="rubber" label="tyres sliding" isMinor />}

@@ -1,0 +1,33 @@
+import { firstSince } from '../draw/axis';
+import { mix } from '../lib/math';
+import type { Lap, Limit } from '../protocol/topics';
+import type { LapChannel, LapSamples } from './lap_samples';
+
+/** Columns of the limit that can be laid beside those of a lap that was driven. */
+const COLUMNS: Partial<Record<LapChannel, 'time_s' | 'speed_mps' | 'n_m' | 'x_m' | 'y_m'>> = { time_s: 'time_s', speed_mps: 'speed_mps', lateral_error_m: 'n_m', x_m: 'x_m', y_m: 'y_m' };
+
+const gap = (time: number, limit: number | undefined): number => 100 * (time / (limit ?? NaN) - 1);
+
+/** How much slower a lap was than the limit, and each third of it [%]: as told, or computed where the limit came later. */
+export function gapsToLimit(lap: Lap, limit: Limit | null): { lap: number; sectors: readonly number[] } {
+  const known = (told: number | undefined, computed: number): number => (Number.isFinite(told) ? (told ?? NaN) : computed);
+  return {
+    lap: known(lap.gap_to_limit_percent, gap(lap.lap_time_s, limit?.lap_time_s)),
+    sectors: [0, 1, 2].map((i) => known(lap.sector_gaps_to_limit_percent?.[i], gap(lap.sector_times_s[i] ?? NaN, limit?.sector_times_s[i]))),
+  };
+}
+
+/** A column of the limit at the places where laps are sampled, from the start line on; null for what it does not tell. */
+export function limitChannel(limit: Limit, samples: LapSamples, name: LapChannel): Float64Array | null {
+  const column = COLUMNS[name];
+  if (!column || limit.s_m.length < 2 || !Number.isFinite(samples.place(0))) return null;
+  const [values, places, times] = [limit[column], limit.s_m, limit.time_s];
+  return Float64Array.from({ length: samples.points }, (_, point) => {
+    const s = samples.place(point);
+    const above = Math.min(Math.max(1, firstSince(places, s)), places.length - 1);
+    const at = (row: ArrayLike<number>, i: number): number => row[i] ?? NaN;
+    const isOverTheLine = at(times, above) < at(times, above - 1);
+    const share = (s - at(places, above - 1)) / (at(places, above) - at(places, above - 1));
+    return isOverTheLine && column === 'time_s' ? NaN : mix(at(values, above - 1), at(values, above), share);
+  });
+}
