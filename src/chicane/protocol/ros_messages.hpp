@@ -45,7 +45,7 @@ struct Run {
   std::vector<std::string> faults{};  ///< names of the bits of Frame::active_faults
   double kerb_width = 0.0;            ///< [m]
   RoadLines road;
-  std::shared_ptr<const lap_time::Limit> limit;  ///< null: not known
+  std::shared_ptr<const lap_time::Limit> limit{};  ///< null: not known
 };
 
 /// What a controller says about itself, copied into a run.
