@@ -77,8 +77,8 @@ std::string golden_table(const std::vector<GoldenRow>& rows) {
       "| set | start | problems | unsolved | agree to 1e-8 | ours lower | ours higher | worst excess | first "
       "steer, median / worst [rad] | median µs |\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const GoldenRow& row : rows) {
-    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} / {} | {:.1f} |\n", row.set,
-                        row.start, row.problems, row.unsolved, row.agree, row.better, row.worse, small(row.worst_excess),
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} / {} | {:.1f} |\n", row.set, row.start,
+                        row.problems, row.unsolved, row.agree, row.better, row.worse, small(row.worst_excess),
                         small(row.median_first_steer), small(row.worst_first_steer), row.median_us);
   }
   return text;
@@ -284,11 +284,13 @@ std::string to_markdown(const BenchReport& report) {
   }
   if (!report.golden.empty()) text += "\n" + golden_table(report.golden);
   if (report.steps > 0) {
-    text += fmt::format("\nControl step of `default` in closed loop, {} steps, each the least of three [µs]:\n\n", report.steps) +
-            "| | p50 | p99 | p99.9 |\n|---|---|---|---|\n" +
-            step_row("CPU time, one physics step included", report.step_cpu_us) +
-            step_row("wall clock", report.step_us) +
-            step_row("the optimisation in it, wall clock", report.step_solve_us);
+    text +=
+        fmt::format("\nControl step of `default` in closed loop, {} steps, each the least of three [µs]:\n\n",
+                    report.steps) +
+        "| | p50 | p99 | p99.9 |\n|---|---|---|---|\n" +
+        step_row("CPU time, one physics step included", report.step_cpu_us) +
+        step_row("wall clock", report.step_us) +
+        step_row("the optimisation in it, wall clock", report.step_solve_us);
   }
   text += "\n" + target_table(targets(report));
   return text;

@@ -22,10 +22,9 @@ class DenseReference final : public Reference<DescribedProblem> {
     for (int repeat = 0; repeat < kRepeats; ++repeat) {
       answer.horizon = now.guess.horizon;
       std::copy_n(now.guess.u.begin(), now.guess.horizon, answer.u.begin());
-      const solver::SolveReport report =
-          with_instructions(chosen_instruction_set(), [&](auto arch) {
-            return solve_dense<decltype(arch)>(now.problem, now.start, answer);
-          });
+      const solver::SolveReport report = with_instructions(chosen_instruction_set(), [&](auto arch) {
+        return solve_dense<decltype(arch)>(now.problem, now.start, answer);
+      });
       outcome.is_solved = report.status == solver::SolveStatus::kOptimal;
       outcome.turns = report.iterations;
     }

@@ -44,7 +44,8 @@ struct DescribedProblem : DescribedData {
   static constexpr int kNc = 0;
 
   template <class K, class T>
-  [[gnu::always_inline]] std::array<T, kNx> dynamics(K, const std::array<T, kNx>& s, const std::array<T, kNu>& u) const {
+  [[gnu::always_inline]] std::array<T, kNx> dynamics(K, const std::array<T, kNx>& s,
+                                                     const std::array<T, kNu>& u) const {
     const T f = path[0] + s[0] * (path[1] + s[0] * (path[2] + s[0] * path[3]));
     const T slope = path[1] + s[0] * (2.0 * path[2] + s[0] * (3.0 * path[3]));
     const T turn = s[3] * u[0] * (kStep / kLength);
@@ -58,7 +59,8 @@ struct DescribedProblem : DescribedData {
             u[1]};
   }
   template <class K, class T>
-  [[gnu::always_inline]] std::array<T, kNr> residual(K k, const std::array<T, kNx>& s, const std::array<T, kNu>& u) const {
+  [[gnu::always_inline]] std::array<T, kNr> residual(K k, const std::array<T, kNx>& s,
+                                                     const std::array<T, kNu>& u) const {
     const auto change = select(solver::stage_number(k) > 0.0, 1.0, 0.0);
     return {weight(200.0) * s[4],
             weight(200.0) * s[5],
