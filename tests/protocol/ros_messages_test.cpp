@@ -170,7 +170,7 @@ TEST(RosMessages, LimitHasItsLineInColumnsOfTheSameLength) {
 }
 
 TEST(RosMessages, ALimitThatIsNotKnownIsEmptyAndLapsHaveNoGap) {
-  Run run = samples::run();
+  protocol::Run run = samples::run();
   run.limit = nullptr;
   for (const RosTopic& each : ros_topics()) {
     if (each.name == "/chicane/limit") {

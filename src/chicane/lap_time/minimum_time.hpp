@@ -55,7 +55,7 @@ struct LimitOptions {
   double spacing = 2.0;  ///< of the stages along the track's line [m]; [0.5, 5]; raised on very long roads
   int most_rounds = 200;
   /// Told the round and the lap time after each round; false ends the search. May be empty.
-  std::function<bool(int round, double lap_time)> go_on;
+  std::function<bool(int round, double lap_time)> go_on{};
 };
 
 /// Finds the limit. Takes 1 to 30 s; about 100 MB while it does. Deterministic: the same road, car and

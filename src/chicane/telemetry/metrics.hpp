@@ -40,7 +40,7 @@ struct LapSummary {
   double steering_rate_rms = 0.0;  ///< road wheel, from control cycle to control cycle [rad/s]
   std::array<double, 3> sector_times = {kNotMeasured, kNotMeasured, kNotMeasured};  ///< thirds of a lap [s]
   std::optional<double>
-      gap_to_limit;  ///< lap time over the physical limit's, minus one; none when not computed
+      gap_to_limit{};  ///< lap time over the physical limit's, minus one; none when not computed
   std::array<double, 3> sector_gaps = {kNotMeasured, kNotMeasured, kNotMeasured};  ///< the same of the thirds
 };
 
