@@ -236,7 +236,8 @@ struct LqProblem {
     const Stage& s = stage[k];
     if (const std::size_t n = Layout::kNumber.l[i][j]; n != Layout::kNone) return s.number[n];
     if (j < kNx && Layout::is_wide_cost(i)) return s.wide[Layout::wide_cost(i)][j];
-    return s.wide[Layout::wide_cost(j)][i];
+    if (i < kNx && Layout::is_wide_cost(j)) return s.wide[Layout::wide_cost(j)][i];
+    return 0.0;
   }
 
  private:
