@@ -55,17 +55,17 @@ TEST_P(GoldenRun, HasTheBitsItHad) {
 INSTANTIATE_TEST_SUITE_P(
     Runs, GoldenRun,
     ::testing::Values(
-        Golden{"default_udacity", {{"track", "lakeside"}}, 0x4ba3ff55d9fdd94b, 0xca5b380934fe84d1},
+        Golden{"default_udacity", {{"track", "lakeside"}}, 0xda5da3ce9911cf4a, 0xc5e79dc580c130f0},
         Golden{"default_road_car",
                {{"track", "hairpins"}, {"car", "road-car"}},
-               0x950d9458b78578c5,
-               0x28cb21425f8c54ad},
+               0x5dda9fb6308a80db,
+               0x9e69e1446a668df3},
         Golden{"with_noise",
                {{"track", "oval"}, {"sensor.position_noise_m", "0.05"}, {"seed", "7"}},
-               0x3d3dcf6ed5d01044,
-               0xe71340054c0cfb6a},
-        Golden{"weighted", {{"preset", "weighted"}}, 0xf518e2648beb1f7a, 0x7a1a279cfb2d07b6},
-        Golden{"delay_in_model", {{"preset", "delay-in-model"}}, 0x729431f185b84bff, 0xa14519e718c637ab},
+               0xd0b2e3b5a727c606,
+               0xb690f94ad765742f},
+        Golden{"weighted", {{"preset", "weighted"}}, 0x2289abd6e0b12064, 0xb8e2970005c7aff6},
+        Golden{"delay_in_model", {{"preset", "delay-in-model"}}, 0xd30ef6e02d73d5c9, 0xa462655e2609913f},
         Golden{"pid", {{"preset", "pid"}, {"latency_ms", "37"}}, 0xdab4f526bb2d5617, 0xdab4f526bb2d5617}),
     [](const auto& run) { return std::string(run.param.name); });
 
