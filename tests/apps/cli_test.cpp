@@ -98,7 +98,7 @@ TEST(Cli, WrongUsageIsExplainedWithExitCodeTwo) {
       {"limit --track nowhere", "track: got \"nowhere\", expected a file or one of"},
       {"limit --car moped", "car: got \"moped\", expected a file or one of"},
       {"limit --spacing-m 50", "--spacing-m: Value 50 not in range"},
-      {"limit --car road-car --set vehicle.track_width_m=40", "the road is"},
+      {"limit --car road-car --set vehicle.track_width_m=10", "the road is"},
       {"drive --limit", "--limit requires --fast"},
   };
   for (const Case& one : cases) {

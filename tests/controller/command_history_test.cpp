@@ -115,7 +115,7 @@ TEST_F(Estimating, IsNotKickedByANoisySensor) {
   estimator.correct({.time = 0.0, .speed = 25.0}, sent);
   Random random{3};
   double worst_slide = 0.0, worst_yaw_rate = 0.0, squares = 0.0;
-  for (int i = 1; i <= 100; ++i) {
+  for (int i = 1; i <= 300; ++i) {
     const double time = 0.04 * i;
     const model::State s = truth.predict(time, sent).state;
     estimator.correct({.time = time,
@@ -124,14 +124,14 @@ TEST_F(Estimating, IsNotKickedByANoisySensor) {
                        .psi = s.psi + 0.005 * random.normal(),
                        .speed = s.vx},
                       sent);
-    if (i <= 10) continue;
+    if (i <= 100) continue;  // what the noise is has to be learned
     worst_slide = std::max(worst_slide, std::fabs(estimator.state().vy));
     worst_yaw_rate = std::max(worst_yaw_rate, std::fabs(estimator.state().r));
     squares += (estimator.state().y - s.y) * (estimator.state().y - s.y);
   }
   EXPECT_LT(worst_slide, 0.5) << "each measurement would move it by 2.5 m/s";
   EXPECT_LT(worst_yaw_rate, 0.05);
-  EXPECT_LT(std::sqrt(squares / 90.0), 0.25);
+  EXPECT_LT(std::sqrt(squares / 200.0), 0.25);
 }
 
 TEST_F(Estimating, TakesWhatItMissedWhileBlindForADriftNotForAKick) {
