@@ -52,8 +52,8 @@ describe('a recorded run', () => {
     assert.equal(reader.header.profile, 'ros2');
     const { library } = reader.header;
     assert.match(library, /^chicane \d/);
-    assert.equal(reader.channelsById.size, 16);
-    assert.equal(reader.statistics.channelCount, 16);
+    assert.equal(reader.channelsById.size, 18);
+    assert.equal(reader.statistics.channelCount, 18);
     assert.equal(reader.statistics.chunkCount, reader.chunkIndexes.length);
     assert.equal(reader.statistics.messageCount, BigInt(STEPS * 10 + 4));
     assert.equal((await collect(reader.readMessages())).length, STEPS * 10 + 4);

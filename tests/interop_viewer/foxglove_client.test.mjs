@@ -64,8 +64,9 @@ for (const subprotocol of ['foxglove.websocket.v1', 'foxglove.sdk.v1']) {
 
     it('sends every advertised topic, each decodable by its own schema', async () => {
       const { client, seen, next } = connection;
-      assert.equal(seen.channels.size, 15);
-      const onOccasion = ['/chicane/lap', '/chicane/change']; // a lap completed, a setting changed: not in this short run
+      assert.equal(seen.channels.size, 17);
+      // a lap completed, a setting changed, the limit found: not in this short run
+      const onOccasion = ['/chicane/lap', '/chicane/change', '/chicane/limit', '/track/racing_line'];
       for (const channel of seen.channels.values()) {
         assert.equal(channel.encoding, 'cdr');
         assert.equal(channel.schemaEncoding, 'ros2msg');

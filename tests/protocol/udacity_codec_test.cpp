@@ -63,6 +63,7 @@ TEST(UdacityTelemetry, OwnMessagesComeBackAsTheyWere) {
   sent.steer = 0.1;
   sent.throttle = -1.0;
   sent.waypoint_count = 2;
+  sent.waypoints[0] = Vec2{0.5, 3.0};
   sent.waypoints[1] = Vec2{1.0, -2.0};
   const auto message = parse_telemetry(encode_telemetry(sent));
   const auto& received = std::get<model::Measurement>(message);

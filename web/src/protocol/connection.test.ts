@@ -62,7 +62,7 @@ describe('connection', () => {
     expect(events.open).toHaveBeenCalledExactlyOnceWith('a1');
     const subscribed = last().sent.map((text) => (JSON.parse(text as string) as { subscriptions: { id: number; channelId: number }[] }).subscriptions[0]);
     expect(subscribed.map((s) => topics[s?.channelId ?? -1]?.topic).sort()).toEqual(
-      ['/chicane/change', '/chicane/frame', '/chicane/lap', '/chicane/plan', '/chicane/run', '/reference', '/track/centre', '/track/left', '/track/right'],
+      ['/chicane/change', '/chicane/frame', '/chicane/lap', '/chicane/limit', '/chicane/plan', '/chicane/run', '/reference', '/track/centre', '/track/left', '/track/right'],
     );
     const run = readFileSync(new URL('chicane_run.bin', folder));
     const channel = topics.findIndex(({ topic }) => topic === '/chicane/run');
