@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// The line of the fastest lap, as the page draws it: on the map and in three dimensions, for who wants it.
+import assert from 'node:assert/strict';
+import { after, before, it } from 'node:test';
+import { launch } from './browser.mjs';
+import { startDrive } from './chicane_drive.mjs';
+import { DashboardPage, PHONE } from './dashboard_page.mjs';
+
+let browser;
+let drive;
+before(async () => {
+  browser = await launch();
+  drive = await startDrive(['--track', 'hairpins']);
+});
+after(async () => {
+  await browser.close();
+  await drive.stop();
+});
+
+const line = (page) => page.locator('.legend button', { hasText: 'racing line' });
+const isOn = (page) => line(page).getAttribute('aria-pressed');
+
+/** The page with a run that stands still, once the program has found the line. */
+async function open(options) {
+  const dashboard = await DashboardPage.open(browser, drive.url, options);
+  const { page } = dashboard;
+  await line(page).waitFor();
+  await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 5, 'a car that drives');
+  await dashboard.button('Pause').click();
+  await page.getByText('Paused', { exact: true }).waitFor();
+  return dashboard;
+}
+
+async function close(dashboard) {
+  await dashboard.button('Resume').click();
+  // What drivers say of a canvas that is read back for a picture without a graphics card.
+  await dashboard.close((each) => each.includes('GL Driver Message'));
+}
+
+/** How many pixels of a canvas are cyan, and how many of its 16 × 16 fields have one: nothing else in the picture is of that colour. */
+const cyan = (page, selector) =>
+  page.locator(selector).evaluate(async (canvas) => {
+    const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });
+    const context = copy.getContext('2d', { willReadFrequently: true });
+    await new Promise(requestAnimationFrame);
+    context.drawImage(canvas, 0, 0);
+    const { data } = context.getImageData(0, 0, copy.width, copy.height);
+    const fields = new Set();
+    let pixels = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      const [red, green, blue] = [data[i], data[i + 1], data[i + 2]];
+      if (red > 140 || green < 165 || blue < 180) continue;
+      ++pixels;
+      const [x, y] = [(i / 4) % copy.width, Math.floor(i / 4 / copy.width)];
+      fields.add(Math.floor((16 * x) / copy.width) + 16 * Math.floor((16 * y) / copy.height));
+    }
+    return { pixels, fields: fields.size };
+  });
+
+/** Off by the key and on again by the legend, seen on a canvas each time. */
+async function toggles(dashboard, selector, fields) {
+  const { page } = dashboard;
+  const seen = () => cyan(page, selector);
+  assert.equal(await isOn(page), 'true');
+  await dashboard.until(seen, (now) => now.fields >= fields, 'the racing line');
+  await page.locator('body').press('l');
+  assert.equal(await isOn(page), 'false');
+  await dashboard.until(seen, ({ pixels }) => pixels === 0, 'the picture without it');
+  await line(page).click();
+  assert.equal(await isOn(page), 'true');
+  await dashboard.until(seen, (now) => now.fields >= fields, 'the racing line again');
+}
+
+it('is drawn on the map, round the whole track, and left away', async () => {
+  const dashboard = await open();
+  const { page } = dashboard;
+  await dashboard.button('Whole track').click();
+  await toggles(dashboard, 'canvas.map-2d', 40);
+  await page.locator('body').press('l');
+  await page.reload();
+  await line(page).waitFor();
+  assert.equal(await isOn(page), 'false', 'kept by the browser');
+  await line(page).click();
+  assert.deepEqual(await dashboard.accessibilityFindings(), []);
+  await close(dashboard);
+});
+
+it('is drawn in three dimensions, and left away', async () => {
+  const dashboard = await open();
+  const { page } = dashboard;
+  await dashboard.button('3D').click();
+  await page.locator('.map.has-3d').waitFor();
+  await dashboard.button('Top').click(); // no sky in the picture
+  await toggles(dashboard, 'canvas.map-3d', 5);
+  assert.deepEqual(await dashboard.accessibilityFindings(), []);
+  await close(dashboard);
+});
+
+for (const colorScheme of ['light', 'dark']) {
+  it(`leaves the car in sight on a phone, ${colorScheme}`, async () => {
+    const dashboard = await open({ ...PHONE, colorScheme });
+    const { page } = dashboard;
+    await dashboard.until(() => cyan(page, 'canvas.map-2d'), ({ fields }) => fields >= 5, 'the racing line');
+    const [map, legend] = await Promise.all(['.map', '.legend'].map((part) => page.locator(part).boundingBox()));
+    // The car stands in the middle of the picture, 84 px above its foot or higher; its ring reaches 15 px below.
+    assert.ok(legend.y > map.y + map.height - 84 + 15, `the legend begins ${map.y + map.height - legend.y} px above the foot of the map`);
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await close(dashboard);
+  });
+}
