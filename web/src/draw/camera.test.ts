@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { above, behind, fitting, groundGrid, project, scaleBar, zoomed } from './camera';
+import { above, behind, fitting, groundGrid, project, scaleBar, worldInView, zoomed } from './camera';
 
 describe('camera', () => {
   it('shows north up and east right', () => {
@@ -26,6 +26,21 @@ describe('camera', () => {
     expect(project(camera, { x: -100, y: 0 }).x).toBeCloseTo(20, 9);
     expect(project(camera, { x: 300, y: 100 }).x).toBeCloseTo(980, 9);
     expect(fitting({ minX: 1, minY: 1, maxX: 1, maxY: 1 }, 100, 100, 60).scale).toBeGreaterThan(0);
+  });
+
+  it.each([0, 0.7, 2, -3])('knows the box of the world in view, heading %f', (heading) => {
+    const camera = behind({ x: 1234, y: -567 }, heading, 800, 600, 100);
+    const { minX, minY, maxX, maxY } = worldInView(camera, 800, 600);
+    const corners = [[minX, minY], [maxX, minY], [maxX, maxY], [minX, maxY]].map(([x = 0, y = 0]) => project(camera, { x, y }));
+    // The box just holds the picture: turned back, its corners lie on or beyond the edges, and no edge is farther than it has to be.
+    const [xs, ys] = [corners.map(({ x }) => x), corners.map(({ y }) => y)];
+    expect(Math.min(...xs)).toBeLessThan(1e-9);
+    expect(Math.max(...xs)).toBeGreaterThan(800 - 1e-9);
+    expect(Math.min(...ys)).toBeLessThan(1e-9);
+    expect(Math.max(...ys)).toBeGreaterThan(600 - 1e-9);
+    const [c, s] = [Math.abs(Math.cos(camera.rotation)), Math.abs(Math.sin(camera.rotation))];
+    expect((maxX - minX) * camera.scale).toBeCloseTo(800 * c + 600 * s, 6);
+    expect((maxY - minY) * camera.scale).toBeCloseTo(800 * s + 600 * c, 6);
   });
 
   it('covers any view with a grid that is not too dense', () => {

@@ -23,6 +23,17 @@ export function project(camera: Camera, point: Point): Point {
   return { x: a * point.x + c * point.y + e, y: b * point.x + d * point.y + f };
 }
 
+/** A box of the world, along its axes, that holds all that a picture of this size shows. */
+export function worldInView(camera: Camera, width: number, height: number): Box {
+  // The transform mirrors and turns: but for its scale it is its own inverse.
+  const [cos, sin] = [Math.cos(camera.rotation) / camera.scale, Math.sin(camera.rotation) / camera.scale];
+  const [left, right, top, bottom] = [-camera.at.x, width - camera.at.x, -camera.at.y, height - camera.at.y];
+  const xs = [cos * left, cos * right].flatMap((x) => [x - sin * top, x - sin * bottom]);
+  const ys = [-sin * left, -sin * right].flatMap((y) => [y - cos * top, y - cos * bottom]);
+  const { x, y } = camera.centre;
+  return { minX: x + Math.min(...xs), maxX: x + Math.max(...xs), minY: y + Math.min(...ys), maxY: y + Math.max(...ys) };
+}
+
 /** The whole box in view with `margin` [px] around it. */
 export function fitting(box: Box, width: number, height: number, margin: number): Camera {
   const spanX = Math.max(box.maxX - box.minX, 1);
@@ -36,11 +47,13 @@ export function fitting(box: Box, width: number, height: number, margin: number)
   };
 }
 
-/** The car below the middle, looking up the screen; `heading` is a smoothed yaw. */
+const FOOT = 84; // of the picture, where its legend lies [px]
+
+/** The car below the middle and above the legend, looking up the screen; `heading` is a smoothed yaw. */
 export function behind(car: Point, heading: number, width: number, height: number, metresAcross: number): Camera {
   return {
     centre: car,
-    at: { x: width / 2, y: height * 0.72 },
+    at: { x: width / 2, y: Math.min(height * 0.72, Math.max(height / 2, height - FOOT)) },
     scale: Math.min(width, height) / metresAcross,
     rotation: Math.PI / 2 - heading,
   };

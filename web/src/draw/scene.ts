@@ -1,9 +1,10 @@
-import type { Point } from '../lib/math';
+import type { Box, Point } from '../lib/math';
 import type { Limit, Plan } from '../protocol/topics';
 import type { Hindsight, Pose } from '../state/hindsight';
 import type { Road } from '../state/app_state';
-import { groundGrid, transformOf, type Camera } from './camera';
+import { groundGrid, transformOf, worldInView, type Camera } from './camera';
 import type { CarShape } from './car';
+import { addLine, lengthsOf, lineOf, longestStep, stretchesInside, type Line } from './line';
 import { speedColour } from './speed_colour';
 import type { Theme } from './theme';
 
@@ -12,8 +13,7 @@ export interface Scene {
   readonly road: RoadShape | null;
   readonly racingLine: Limit | null; // of the fastest lap possible
   readonly reference: readonly Point[];
-  readonly traceX: Float64Array;
-  readonly traceY: Float64Array;
+  readonly trace: Line; // where the car has been
   readonly plan: Plan | null;
   readonly speedScale: number; // the speed that has the last colour [m/s]
   readonly hindsight: Hindsight | null; // what was predicted, beside what came
@@ -21,25 +21,23 @@ export interface Scene {
   readonly car: { x: number; y: number; yaw: number; isBraking: boolean; shape: CarShape } | null;
 }
 
-/** A road as shapes the canvas keeps. */
+/** A road's lines, with as many points each, across from one another. */
 export interface RoadShape {
-  readonly surface: Path2D;
-  readonly edges: Path2D;
-  readonly centre: Path2D;
-  readonly start: Path2D;
+  readonly left: Line;
+  readonly right: Line;
+  readonly centre: Line;
+  readonly lengths: Float64Array; // of the centre up to each point [m]
+  readonly reach: number; // what is farther from a point of the centre belongs to another one [m]
 }
 
-function trail(points: readonly Point[], into: Path2D = new Path2D()): Path2D {
-  points.forEach(({ x, y }, i) => (i === 0 ? into.moveTo(x, y) : into.lineTo(x, y)));
-  return into;
-}
-
-export function roadShape({ left, right, centre }: Road): RoadShape | null {
-  const [firstLeft, firstRight] = [left[0], right[0]];
-  if (!firstLeft || !firstRight) return null;
-  const surface = trail([...left, ...[...right].reverse()]);
-  surface.closePath();
-  return { surface, edges: trail(right, trail(left)), centre: trail(centre), start: trail([firstLeft, firstRight]) };
+export function roadShape(road: Road): RoadShape | null {
+  const count = Math.min(road.left.length, road.right.length, road.centre.length);
+  if (count < 2) return null;
+  const [left, right, centre] = [road.left, road.right, road.centre].map((points) => lineOf(points.slice(0, count))) as [Line, Line, Line];
+  const far = (edge: Line, i: number): number => Math.hypot((edge.x[i] ?? 0) - (centre.x[i] ?? 0), (edge.y[i] ?? 0) - (centre.y[i] ?? 0));
+  const halves = Array.from({ length: count }, (_, i) => Math.max(far(left, i), far(right, i)));
+  const steps = [left, right, centre].map((line) => longestStep(line));
+  return { left, right, centre, lengths: lengthsOf(centre), reach: Math.max(...steps) + halves.reduce((a, b) => Math.max(a, b), 0) };
 }
 
 type Context = CanvasRenderingContext2D;
@@ -50,40 +48,57 @@ function stroke(ctx: Context, path: Path2D, colour: string, width: number): void
   ctx.stroke(path);
 }
 
-/** A square grid on the ground, so that speed is seen where there is no road either. */
+/**
+ * A square grid on the ground, so that speed is seen where there is no road either. Line by line: as one path, whose pieces cross
+ * all over the picture, it took a tenth of a core where the processor draws.
+ */
 function drawGround(ctx: Context, camera: Camera, colour: string, ratio: number): void {
   const { spacing, from, to } = groundGrid(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
-  const lines = new Path2D();
-  for (let x = from.x; x <= to.x; x += spacing) {
-    lines.moveTo(x, from.y);
-    lines.lineTo(x, to.y);
-  }
-  for (let y = from.y; y <= to.y; y += spacing) {
-    lines.moveTo(from.x, y);
-    lines.lineTo(to.x, y);
-  }
-  stroke(ctx, lines, colour, 1 / camera.scale);
+  ctx.strokeStyle = colour;
+  ctx.lineWidth = 1 / camera.scale;
+  const draw = (x: number, y: number, toX: number, toY: number): void => {
+    ctx.beginPath();
+    ctx.moveTo(x, y);
+    ctx.lineTo(toX, toY);
+    ctx.stroke();
+  };
+  for (let x = from.x; x <= to.x; x += spacing) draw(x, from.y, x, to.y);
+  for (let y = from.y; y <= to.y; y += spacing) draw(from.x, y, to.x, y);
 }
 
-function drawRoad(ctx: Context, road: RoadShape, colours: Theme, px: number): void {
+function drawRoad(ctx: Context, { left, right, centre, lengths, reach }: RoadShape, view: Box, colours: Theme, px: number): void {
+  const stretches = stretchesInside(centre, view, reach);
+  const [surface, edges] = [new Path2D(), new Path2D()];
+  for (const [first, end] of stretches) {
+    addLine(surface, left, first, end);
+    for (let i = end - 1; i >= first; --i) surface.lineTo(right.x[i] ?? NaN, right.y[i] ?? NaN);
+    surface.closePath();
+    for (const edge of [left, right]) addLine(edges, edge, first, end);
+  }
   ctx.fillStyle = colours.road;
-  ctx.fill(road.surface);
-  stroke(ctx, road.edges, colours.edge, Math.max(0.15, 1.5 * px));
+  ctx.fill(surface);
+  stroke(ctx, edges, colours.edge, Math.max(0.15, 1.5 * px));
   ctx.setLineDash([3, 6]);
-  stroke(ctx, road.centre, colours.centreLine, Math.max(0.1, 0.75 * px));
+  for (const [first, end] of stretches) {
+    const dashes = new Path2D();
+    addLine(dashes, centre, first, end);
+    ctx.lineDashOffset = lengths[first] ?? 0; // dashes lie still on the road
+    stroke(ctx, dashes, colours.centreLine, Math.max(0.1, 0.75 * px));
+  }
+  ctx.lineDashOffset = 0;
   ctx.setLineDash([]);
-  stroke(ctx, road.start, colours.edge, Math.max(0.5, 2 * px));
+  const start = new Path2D();
+  start.moveTo(left.x[0] ?? NaN, left.y[0] ?? NaN);
+  start.lineTo(right.x[0] ?? NaN, right.y[0] ?? NaN);
+  stroke(ctx, start, colours.edge, Math.max(0.5, 2 * px));
 }
 
-function drawTrace(ctx: Context, xs: Float64Array, ys: Float64Array, colour: string, width: number): void {
+const JUMP_M = 20; // the car was put somewhere else: no line from there to here
+
+/** As much of a line as is in view; `reach` is its longest step that is none from one line to another [m]. */
+function drawInView(ctx: Context, points: Line, view: Box, reach: number, colour: string, width: number): void {
   const path = new Path2D();
-  for (let i = 0; i < xs.length; ++i) {
-    const [x, y] = [xs[i] ?? NaN, ys[i] ?? NaN];
-    // The car was put somewhere else: no line from there to here.
-    const jumped = i === 0 || Math.hypot(x - (xs[i - 1] ?? NaN), y - (ys[i - 1] ?? NaN)) > 20;
-    if (jumped) path.moveTo(x, y);
-    else path.lineTo(x, y);
-  }
+  for (const [first, end] of stretchesInside(points, view, reach)) addLine(path, points, first, end, reach);
   stroke(ctx, path, colour, width);
 }
 
@@ -98,18 +113,26 @@ function drawPlan(ctx: Context, plan: Plan, speedScale: number, width: number): 
   ctx.lineCap = 'butt';
 }
 
+function trail(points: readonly Point[]): Path2D {
+  const path = new Path2D();
+  for (const { x, y } of points) path.lineTo(x, y);
+  return path;
+}
+
 function line(xs: ArrayLike<number>, ys: ArrayLike<number>): Path2D {
   const path = new Path2D();
   for (let i = 0; i < xs.length; ++i) path.lineTo(xs[i] ?? NaN, ys[i] ?? NaN);
   return path;
 }
 
-let lastLine: { of: Limit; path: Path2D } | null = null;
+const reaches = new WeakMap<Limit, number>();
 
-/** Thin and solid: to dash a whole lap in each picture takes a tenth of the main thread. The canvas keeps its shape. */
-function drawRacingLine(ctx: Context, limit: Limit, colours: Theme, px: number): void {
-  if (lastLine?.of !== limit) lastLine = { of: limit, path: line(limit.x_m, limit.y_m) };
-  stroke(ctx, lastLine.path, colours.racingLine, Math.max(0.2, 1.5 * px));
+/** Thin and solid: dashes would cost as much again. */
+function drawRacingLine(ctx: Context, limit: Limit, view: Box, colours: Theme, px: number): void {
+  const points = { x: limit.x_m, y: limit.y_m };
+  const reach = reaches.get(limit) ?? longestStep(points);
+  reaches.set(limit, reach);
+  drawInView(ctx, points, view, reach, colours.racingLine, Math.max(0.2, 1.5 * px));
 }
 
 /** A plan as a broad band, and on it the way that was then driven. */
@@ -206,19 +229,27 @@ function drawGhost(ctx: Context, ghost: Pose, car: NonNullable<Scene['car']>, co
   ctx.restore();
 }
 
-/** Draws the picture on the whole canvas, which has `ratio` device pixels to a CSS pixel. */
-export function drawScene(ctx: Context, scene: Scene, camera: Camera, colours: Theme, ratio: number): void {
+/** What stands still in the world: ground, road, racing line. Covers the whole canvas, which has `ratio` device pixels to a CSS pixel. */
+export function drawWorld(ctx: Context, scene: Pick<Scene, 'road' | 'racingLine'>, camera: Camera, colours: Theme, ratio: number): void {
   ctx.setTransform(1, 0, 0, 1, 0, 0);
   ctx.fillStyle = colours.ground;
   ctx.fillRect(0, 0, ctx.canvas.width, ctx.canvas.height);
   ctx.setTransform(...transformOf(camera, ratio));
   ctx.lineJoin = 'round';
   const px = 1 / camera.scale; // one CSS pixel in metres
-
+  const view = worldInView(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
   drawGround(ctx, camera, colours.groundLine, ratio);
-  if (scene.road) drawRoad(ctx, scene.road, colours, px);
-  if (scene.racingLine) drawRacingLine(ctx, scene.racingLine, colours, px);
-  drawTrace(ctx, scene.traceX, scene.traceY, colours.trace, Math.max(0.2, 2 * px));
+  if (scene.road) drawRoad(ctx, scene.road, view, colours, px);
+  if (scene.racingLine) drawRacingLine(ctx, scene.racingLine, view, colours, px);
+}
+
+/** What moves, on a world that is drawn already. */
+export function drawMoving(ctx: Context, scene: Scene, camera: Camera, colours: Theme, ratio: number): void {
+  ctx.setTransform(...transformOf(camera, ratio));
+  ctx.lineJoin = 'round';
+  const px = 1 / camera.scale;
+  const view = worldInView(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
+  drawInView(ctx, scene.trace, view, JUMP_M, colours.trace, Math.max(0.2, 2 * px));
   stroke(ctx, trail(scene.reference), scene.road ? colours.reference : colours.faint, Math.max(0.12, 1.5 * px));
   if (scene.hindsight) drawHindsight(ctx, scene.hindsight, colours, px);
   if (scene.plan) drawPlan(ctx, scene.plan, scene.speedScale, Math.max(0.45, 4 * px));
@@ -227,14 +258,21 @@ export function drawScene(ctx: Context, scene: Scene, camera: Camera, colours: T
   if (scene.hindsight?.foreseen && scene.car) drawForeseen(ctx, scene.hindsight.foreseen, scene.car, colours, px);
 }
 
-/** The whole track in a corner, with the car as a dot. */
-export function drawInset(ctx: Context, road: RoadShape, car: Point | null, camera: Camera, colours: Theme, ratio: number): void {
+/** The whole track, small. */
+export function drawOutline(ctx: Context, { centre }: RoadShape, camera: Camera, colours: Theme, ratio: number): void {
   ctx.setTransform(...transformOf(camera, ratio));
   ctx.lineJoin = 'round';
   const px = 1 / camera.scale;
-  stroke(ctx, road.centre, colours.panel, 7 * px);
-  stroke(ctx, road.centre, colours.faint, 2.5 * px);
-  if (!car) return;
+  const path = new Path2D();
+  addLine(path, centre, 0, centre.x.length);
+  stroke(ctx, path, colours.panel, 7 * px);
+  stroke(ctx, path, colours.faint, 2.5 * px);
+}
+
+/** The car on it. */
+export function drawDot(ctx: Context, car: Point, camera: Camera, colours: Theme, ratio: number): void {
+  ctx.setTransform(...transformOf(camera, ratio));
+  const px = 1 / camera.scale;
   ctx.beginPath();
   ctx.arc(car.x, car.y, 5 * px, 0, 2 * Math.PI);
   ctx.fillStyle = colours.accent;

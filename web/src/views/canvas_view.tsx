@@ -1,5 +1,6 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { onThemeChange } from '../draw/theme';
+import { onScreen } from '../lib/on_screen';
 import { everyFrame } from '../state/ticker';
 import { fitCanvas } from './plot_colours';
 
@@ -17,21 +18,20 @@ export function CanvasView({ label, paint, version, interval = 50, tall }: { lab
     const canvas = element.current;
     if (!canvas) return undefined;
     let drawn: unknown = {};
-    const watcher = new ResizeObserver(() => (drawn = {}));
-    watcher.observe(canvas);
+    const box = onScreen(canvas, () => (drawn = {}));
     const unwatch = onThemeChange(() => (drawn = {}));
     const stop = everyFrame(() => {
       const now = latest.current.version();
-      if (Object.is(now, drawn) || canvas.offsetParent === null) return;
-      const fit = fitCanvas(canvas);
-      if (!fit) return;
+      if (Object.is(now, drawn) || !box.isSeen) return;
+      const context = fitCanvas(canvas, box.width, box.height);
+      if (!context) return;
       drawn = now;
-      latest.current.paint(fit.context, fit.width, fit.height);
+      latest.current.paint(context, box.width, box.height);
     }, interval);
     return () => {
       stop();
       unwatch();
-      watcher.disconnect();
+      box.end();
     };
   }, [interval]);
   return (

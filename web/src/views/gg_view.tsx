@@ -125,7 +125,7 @@ export function GgView() {
         label="Acceleration across against along the car, with the circle of grip"
         paint={paint}
         version={() => `${plotted().newest(Column.time)} ${timeRange().join()} ${isFrozen.value} ${cursorTime.value}`}
-        interval={66}
+        interval={100}
       />
     </section>
   );

@@ -94,8 +94,9 @@ function Bar({ label, share, marker, text, id }: { label: string; share: number;
     <div class="bar-row">
       <span class="label">{label}</span>
       <div class="bar" aria-hidden="true">
-        <span class={share < 0 ? 'fill negative' : 'fill'} style={{ left: `${from}%`, width: `${to - from}%` }} />
-        {marker !== undefined && <span class="marker" style={{ left: `${at(marker)}%` }} />}
+        {/* By transforms: other ways to move lay the page out anew in each repaint. */}
+        <span class="fill" style={{ transform: `translateX(${from}%) scaleX(${(to - from) / 100})` }} />
+        {marker !== undefined && <span class="marker" style={{ transform: `translateX(${at(marker)}%)` }} />}
       </div>
       <span class="bar-text" data-testid={id}>
         {text}

@@ -38,15 +38,14 @@ onThemeChange(() => (current = null));
 
 export const chartColours = (): ChartColours => (current ??= read());
 
-/** A canvas of the size of its box, sharp on this screen; null when there is nothing to draw on. */
-export function fitCanvas(canvas: HTMLCanvasElement): { context: CanvasRenderingContext2D; width: number; height: number } | null {
+/** A clear canvas of the size of its box [CSS pixels], sharp on this screen; null when there is nothing to draw on. */
+export function fitCanvas(canvas: HTMLCanvasElement, width: number, height: number): CanvasRenderingContext2D | null {
   const ratio = Math.min(devicePixelRatio, 2);
-  const { clientWidth: width, clientHeight: height } = canvas;
   const context = canvas.getContext('2d');
   if (!context || width === 0 || height === 0) return null;
   const [wide, high] = [Math.round(width * ratio), Math.round(height * ratio)];
   if (canvas.width !== wide || canvas.height !== high) [canvas.width, canvas.height] = [wide, high];
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, width, height);
-  return { context, width, height };
+  return context;
 }

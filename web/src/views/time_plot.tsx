@@ -5,6 +5,7 @@ import 'uplot/dist/uPlot.min.css';
 import { firstSince, secondsBack } from '../draw/axis';
 import { onThemeChange } from '../draw/theme';
 import { fixed } from '../lib/format';
+import { onScreen } from '../lib/on_screen';
 import { shown } from '../state/app_state';
 import { Column } from '../state/columns';
 import { cursorTime, isFrozen, plotted, thaw, timeRange, windowSeconds, zoomed, zoomTo } from '../state/plot_view';
@@ -105,6 +106,13 @@ export function readout(column: number): number {
   return history.column(column)[at] ?? NaN;
 }
 
+const PACE_MS = 100; // as often as text is renewed
+const PHASES = 6; // plots take turns, so that no repaint has to wait for all of them
+let made = 0;
+
+/** How long a plot may stand still [ms]: until its lines have moved by one pixel of the screen, but no longer than text does. */
+const paceOf = (plot: uPlot): number => (plot.bbox.width > 0 ? Math.min(PACE_MS, (1000 * windowSeconds.value) / plot.bbox.width) : 0);
+
 export function TimePlot({ spec }: { spec: PlotSpec }) {
   const host = useRef<HTMLDivElement>(null);
   useEffect(() => {
@@ -114,15 +122,17 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
     let plot = create();
     let drawn = NaN;
     const redraw = (): void => plot.setData(dataOf(spec) as unknown as uPlot.AlignedData);
-    const fit = (): void => plot.setSize({ width: element.clientWidth, height: element.clientHeight });
-    const watcher = new ResizeObserver(fit);
-    watcher.observe(element);
-    const stop = everyFrame(() => {
+    const fit = (): void => plot.setSize(box);
+    const box = onScreen(element, fit);
+    let last = performance.now() - (PACE_MS / PHASES) * (made++ % PHASES);
+    const stop = everyFrame((now) => {
       const newest = plotted().newest(Column.time);
-      if (Object.is(newest, drawn) || !isNearScreen(element)) return;
+      // Half a repaint of tolerance, as in everyFrame().
+      if (Object.is(newest, drawn) || !box.isSeen || now - last < paceOf(plot) - 8) return;
       drawn = newest;
+      last = now;
       redraw();
-    }, 66);
+    });
     const unwatch = onThemeChange(() => {
       plot.destroy();
       plot = create();
@@ -136,7 +146,7 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
       stop();
       unwatch();
       unfollow();
-      watcher.disconnect();
+      box.end();
       plot.destroy();
     };
   }, [spec]);
@@ -161,10 +171,4 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
       <div class="plot-area" ref={host} />
     </section>
   );
-}
-
-/** Plots that are scrolled away cost nothing. */
-function isNearScreen(element: Element): boolean {
-  const { top, bottom, width } = element.getBoundingClientRect();
-  return width > 0 && bottom > 0 && top < innerHeight;
 }

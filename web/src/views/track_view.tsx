@@ -2,10 +2,12 @@ import { signal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { above, behind, fitting, scaleBar, zoomed, type Camera } from '../draw/camera';
 import { carShape } from '../draw/car';
-import { drawInset, drawScene, roadShape, type RoadShape, type Scene } from '../draw/scene';
+import { drawDot, drawMoving, drawOutline, drawWorld, roadShape, type RoadShape, type Scene } from '../draw/scene';
 import { speedGradient, topOfScale } from '../draw/speed_colour';
+import { isSame, Still } from '../draw/still';
 import { onThemeChange, theme } from '../draw/theme';
 import { fixed } from '../lib/format';
+import { onScreen, type OnScreen } from '../lib/on_screen';
 import { boundsOf, extrapolate, wrapAngle, type Box, type Point } from '../lib/math';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import { CAMERAS } from '../scene3d/cameras';
@@ -55,23 +57,29 @@ export function zoom(factor: number): void {
 class Painter {
   readonly #canvas: HTMLCanvasElement;
   readonly #context: CanvasRenderingContext2D | null;
+  readonly #box: OnScreen;
   #road: RoadShape | null = null;
   #roadBox: Box | null = null;
   #roadVersion = -1;
   #heading = NaN; // smoothed yaw of the car [rad]
   #lastPaint = 0;
+  #shown: readonly unknown[] = [];
+  #worldKey: readonly unknown[] = [];
+  readonly #world = new Still();
+  readonly #outline = new Still();
   readonly #ghost: GhostPose = { x: 0, y: 0, yaw: 0, steer: 0 };
 
   constructor(canvas: HTMLCanvasElement) {
     this.#canvas = canvas;
     this.#context = canvas.getContext('2d', { alpha: false });
+    this.#box = onScreen(canvas);
   }
 
   paint(now: number): void {
     const isInset = shows3d.value;
     if (isInset && now - this.#lastPaint < INSET_INTERVAL_MS) return;
     const ratio = Math.min(devicePixelRatio, 2);
-    const { clientWidth: width, clientHeight: height } = this.#canvas;
+    const { width, height } = this.#box;
     if (!this.#context || width === 0 || height === 0) return;
     this.#resize(Math.round(width * ratio), Math.round(height * ratio));
     if (this.#roadVersion !== live.roadVersion) this.#renewRoad();
@@ -88,24 +96,53 @@ class Painter {
       road: this.#road,
       racingLine: layers.racingLine.value ? limit.value : null,
       reference: live.reference,
-      traceX: live.trace.column(0),
-      traceY: live.trace.column(1),
+      trace: { x: live.trace.column(0), y: live.trace.column(1) },
       plan: live.plan,
       speedScale: top,
       hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
       ghost: this.#ghostNow(),
       car,
     };
-    drawScene(this.#context, scene, camera, theme(), ratio);
+    const still = [camera.centre.x, camera.centre.y, camera.scale, camera.rotation, this.#canvas.width, this.#canvas.height, this.#road, scene.racingLine, theme()];
+    // A paused run is the same picture again and again.
+    const shown = [...still, live.frame, live.plan, live.reference, live.trace.newest(0), car?.x, car?.y, car?.yaw, scene.hindsight?.plan, scene.ghost?.x, scene.ghost?.y, top];
+    if (isSame(shown, this.#shown)) return;
+    this.#shown = shown;
+    this.#drawWorld(scene, camera, still, ratio);
+    drawMoving(this.#context, scene, camera, theme(), ratio);
     if (!isInset && view.value !== 'whole' && this.#road && this.#roadBox) this.#inset(car, width, ratio);
   }
 
+  /** Drawn anew while the camera moves, copied while it stands still. */
+  #drawWorld(scene: Scene, camera: Camera, key: readonly unknown[], ratio: number): void {
+    const context = this.#context as CanvasRenderingContext2D;
+    const isStill = isSame(key, this.#worldKey);
+    this.#worldKey = key;
+    if (!isStill) return drawWorld(context, scene, camera, theme(), ratio);
+    const { width, height } = this.#canvas;
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.drawImage(
+      this.#world.picture(key, width, height, (own) => drawWorld(own, scene, camera, theme(), ratio)),
+      0,
+      0,
+    );
+  }
+
   #inset(car: Point | null, width: number, ratio: number): void {
+    const [context, road] = [this.#context as CanvasRenderingContext2D, this.#road as RoadShape];
     const side = Math.min(170, width * 0.3);
-    const fit = fitting(this.#roadBox as Box, side, side, 8);
     const top = width < 560 ? 48 : 8; // below the buttons where both do not fit side by side
-    const camera: Camera = { ...fit, at: { x: width - 8 - side / 2, y: top + side / 2 } };
-    drawInset(this.#context as CanvasRenderingContext2D, this.#road as RoadShape, car, camera, theme(), ratio);
+    const fit = fitting(this.#roadBox as Box, side, side, 8);
+    const pixels = Math.round(side * ratio);
+    const picture = this.#outline.picture([road, ratio, theme()], pixels, pixels, (own) => drawOutline(own, road, fit, theme(), ratio));
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    const [left, above] = [Math.round((width - 8 - side) * ratio), Math.round(top * ratio)];
+    context.drawImage(picture, left, above);
+    if (car) drawDot(context, car, { ...fit, at: { x: left / ratio + side / 2, y: above / ratio + side / 2 } }, theme(), ratio);
+  }
+
+  end(): void {
+    this.#box.end();
   }
 
   #resize(width: number, height: number): void {
@@ -195,7 +232,7 @@ function Legend() {
           <span>{bar.value.metres} m</span>
         </div>
       )}
-      <Swatch name="reference" label="reference" />
+      <Swatch name="reference" label="reference" isMinor />
       <Swatch name="trace" label="driven" isMinor />
       {limit.value && <Switch layer="racingLine" label="racing line" title="The line of the fastest lap possible (L)" />}
       <Switch layer="hindsight" label="plan 1 s ago" title="The plan of a second ago and the way driven since; the outline is where it saw the car now (O)" />
@@ -286,6 +323,7 @@ function usePainter() {
     const unwatch = onThemeChange(() => painter.paint(performance.now()));
     return () => {
       stop();
+      painter.end();
       unwatch();
       element.removeEventListener('wheel', onWheel);
     };

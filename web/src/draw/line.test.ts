@@ -1,0 +1,47 @@
+import { describe, expect, it } from 'vitest';
+import { addLine, lengthsOf, lineOf, longestStep, stretchesInside, type Line } from './line';
+
+/** A wave of 400 points, about 1 m apart, that enters and leaves a box often. */
+const wave: Line = lineOf(Array.from({ length: 400 }, (_, i) => ({ x: i * 0.8, y: 30 * Math.sin(i / 12) })));
+const box = { minX: 100, minY: -10, maxX: 180, maxY: 12 };
+
+/** Whether a piece of a line touches the box, by walking along it in small steps. */
+function touches({ x, y }: Line, i: number): boolean {
+  for (let share = 0; share <= 1; share += 1 / 256) {
+    const px = (x[i] ?? NaN) + ((x[i + 1] ?? NaN) - (x[i] ?? NaN)) * share;
+    const py = (y[i] ?? NaN) + ((y[i + 1] ?? NaN) - (y[i] ?? NaN)) * share;
+    if (px >= box.minX && px <= box.maxX && py >= box.minY && py <= box.maxY) return true;
+  }
+  return false;
+}
+
+describe('a line', () => {
+  it('is left out where it is out of the picture, and nowhere else', () => {
+    const stretches = stretchesInside(wave, box, longestStep(wave));
+    expect(stretches.length).toBeGreaterThan(1);
+    const isDrawn = (i: number): boolean => stretches.some(([first, end]) => i >= first && i + 1 < end);
+    for (let i = 0; i + 1 < wave.x.length; ++i) if (touches(wave, i)) expect(isDrawn(i), `piece ${i}`).toBe(true);
+    const drawn = stretches.reduce((sum, [first, end]) => sum + end - first, 0);
+    expect(drawn).toBeLessThan(wave.x.length / 3);
+  });
+
+  it('is drawn whole where all of it is in the picture, and not at all where none is', () => {
+    expect(stretchesInside(wave, { minX: -1, minY: -99, maxX: 999, maxY: 99 }, 0)).toEqual([[0, 400]]);
+    expect(stretchesInside(wave, { minX: 500, minY: 500, maxX: 600, maxY: 600 }, 1)).toEqual([]);
+  });
+
+  it('knows its lengths, and its longest step that is no jump', () => {
+    const line = { x: [0, 3, 3, 100], y: [0, 4, 5, 5] };
+    expect([...lengthsOf(line)]).toEqual([0, 5, 6, 103]);
+    expect(longestStep(line)).toBe(97);
+    expect(longestStep(line, 20)).toBe(5);
+    expect(longestStep({ x: [], y: [] })).toBe(0);
+  });
+
+  it('has a gap where it jumps', () => {
+    const calls: string[] = [];
+    const path = { moveTo: (x: number) => calls.push(`move ${x}`), lineTo: (x: number) => calls.push(`line ${x}`) } as unknown as Path2D;
+    addLine(path, { x: [0, 1, 50, 51, 52], y: [0, 0, 0, 0, 0] }, 0, 5, 20);
+    expect(calls).toEqual(['move 0', 'line 1', 'move 50', 'line 51', 'line 52']);
+  });
+});

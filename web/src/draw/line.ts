@@ -1,0 +1,56 @@
+import type { Box, Point } from '../lib/math';
+
+/** A line as columns, in W [m]. */
+export interface Line {
+  readonly x: ArrayLike<number>;
+  readonly y: ArrayLike<number>;
+}
+
+export const lineOf = (points: readonly Point[]): Line => ({ x: Float64Array.from(points, ({ x }) => x), y: Float64Array.from(points, ({ y }) => y) });
+
+/** Length of a line from its start to each of its points [m]. */
+export function lengthsOf({ x, y }: Line): Float64Array {
+  const lengths = new Float64Array(x.length);
+  for (let i = 1; i < x.length; ++i) lengths[i] = (lengths[i - 1] ?? 0) + Math.hypot((x[i] ?? NaN) - (x[i - 1] ?? NaN), (y[i] ?? NaN) - (y[i - 1] ?? NaN));
+  return lengths;
+}
+
+/** The longest way from one point of a line to the next; a longer one than `most` is a jump and does not count [m]. */
+export function longestStep({ x, y }: Line, most = Infinity): number {
+  let longest = 0;
+  for (let i = 1; i < x.length; ++i) {
+    const step = Math.hypot((x[i] ?? NaN) - (x[i - 1] ?? NaN), (y[i] ?? NaN) - (y[i - 1] ?? NaN));
+    if (step > longest && step <= most) longest = step;
+  }
+  return longest;
+}
+
+/**
+ * The stretches [first, end) of a line that lie within `margin` of a box. With a margin of the line's longest step no piece
+ * that touches the box is missed.
+ */
+export function stretchesInside({ x, y }: Line, box: Box, margin: number): [number, number][] {
+  const [left, right, low, high] = [box.minX - margin, box.maxX + margin, box.minY - margin, box.maxY + margin];
+  const stretches: [number, number][] = [];
+  let first = -1;
+  for (let i = 0; i < x.length; ++i) {
+    const [px, py] = [x[i] ?? NaN, y[i] ?? NaN];
+    const isInside = px >= left && px <= right && py >= low && py <= high;
+    if (isInside && first < 0) first = i;
+    if (isInside || first < 0) continue;
+    stretches.push([first, i]);
+    first = -1;
+  }
+  if (first >= 0) stretches.push([first, x.length]);
+  return stretches;
+}
+
+/** Adds the points [first, end) of a line to a path; a step longer than `most` is a jump and leaves a gap. */
+export function addLine(path: Path2D, { x, y }: Line, first: number, end: number, most = Infinity): void {
+  for (let i = first; i < end; ++i) {
+    const [px, py] = [x[i] ?? NaN, y[i] ?? NaN];
+    const isJump = i === first || Math.abs(px - (x[i - 1] ?? NaN)) > most || Math.abs(py - (y[i - 1] ?? NaN)) > most;
+    if (isJump) path.moveTo(px, py);
+    else path.lineTo(px, py);
+  }
+}
