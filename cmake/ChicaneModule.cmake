@@ -33,8 +33,8 @@ function(chicane_test name)
   add_executable(${target} ${T_SOURCES})
   target_link_libraries(${target} PRIVATE ${T_DEPENDS} chicane_options chicane_test_support ${T_PRIVATE})
   target_compile_definitions(${target} PRIVATE CHICANE_ENABLE_ASSERT CHICANE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  # A list that passes through gtest_discover_tests loses all but its first element unless it is escaped.
-  string(REPLACE ";" "\\;" labels "${name};${T_LABELS}")
+  # One label with all words in it, which `ctest -L` and `-LE` find: gtest_discover_tests takes lists apart.
+  string(JOIN ":" labels ${name} ${T_LABELS})
   gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST
                        PROPERTIES LABELS "${labels}" TIMEOUT 300)
 endfunction()

@@ -17,7 +17,8 @@ struct GoldenRow {
   int problems = 0;
   int unsolved = 0;           ///< we did not say that it converged
   int agree = 0;              ///< objectives equal to 1e-8 of the golden one, or of 1 where that is less
-  int better = 0;             ///< ours is lower by more
+  int relaxed = 0;            ///< of ours, compared as if bounds were moved outwards like the golden one's
+  int better = 0;             ///< ours is lower by more: another local optimum
   int worse = 0;              ///< ours is higher by more
   double worst_excess = 0.0;  ///< of our objective over the golden one, by the same measure
   double median_first_steer = 0.0;  ///< difference of the first steering angle among those that agree [rad]

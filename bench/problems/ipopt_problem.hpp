@@ -323,7 +323,7 @@ class IpoptProblem : public Ipopt::TNLP {
 };
 
 /// The trajectory's inputs and states are the start; on success they are the optimum and its cost is
-/// returned, else NaN.
+/// returned, else NaN. What Ipopt calls acceptable is not enough: it may break constraints by 1e-2.
 template <solver::OcpProblem P, int Capacity>
 double solve_with_ipopt(const P& problem, const std::array<double, P::kNx>& x0,
                         solver::Trajectory<P::kNx, P::kNu, Capacity>& t) {
@@ -338,9 +338,10 @@ double solve_with_ipopt(const P& problem, const std::array<double, P::kNx>& x0,
   app->Options()->SetNumericValue("tol", 1e-9);
   app->Options()->SetNumericValue("bound_relax_factor", 0.0);
   app->Options()->SetIntegerValue("max_iter", 500);
+  app->Options()->SetIntegerValue("acceptable_iter", 0);
   if (app->Initialize() != Ipopt::Solve_Succeeded) return std::nan("");
   const auto status = app->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(Ipopt::GetRawPtr(nlp)));
-  if (status != Ipopt::Solve_Succeeded && status != Ipopt::Solved_To_Acceptable_Level) return std::nan("");
+  if (status != Ipopt::Solve_Succeeded) return std::nan("");
   nlp->give_solution(t);
   return nlp->cost;
 }

@@ -104,11 +104,24 @@ TEST_P(AgainstIpopt, AgreesOnTheOptimumWithASoftCorridor) {
   }
 }
 
+/// Slope of the simulated cost at the inputs `from` on the straight line to `to`.
+double slope_towards(const bench::RateInstance& instance, const bench::DescribedTrajectory<kCapacity>& from,
+                     const bench::DescribedTrajectory<kCapacity>& to) {
+  const auto gradient = bench::simulated_gradient(instance.problem, instance.start, from);
+  double slope = 0.0;
+  for (std::size_t k = 0; k < gradient.size(); ++k) {
+    for (std::size_t m = 0; m < gradient[k].size(); ++m)
+      slope += gradient[k][m] * (to.u[k][m] - from.u[k][m]);
+  }
+  return slope;
+}
+
 TEST_P(AgainstIpopt, AgreesOnTheOptimumWithBoundsOnChanges) {
   using bench::RateProblem;
   const auto ocp = std::make_unique<solver::OcpSolver<RateProblem, kCapacity>>(
       solver::SolverOptions{.max_iterations = 100});
   Random random{3000 + static_cast<std::uint64_t>(GetParam().horizon)};
+  int others = 0;
   for (int i = 0; i < GetParam().count; ++i) {
     const auto instance = bench::random_rates(random, GetParam().horizon);
     const bench::DescribedInstance plain{.problem = static_cast<const DescribedProblem&>(instance.problem),
@@ -120,11 +133,13 @@ TEST_P(AgainstIpopt, AgreesOnTheOptimumWithBoundsOnChanges) {
     const auto report = ocp->solve(instance.problem, instance.start, own);
     ASSERT_EQ(report.status, SolveStatus::kOptimal) << i;
     const double cost = bench::solve_with_ipopt(instance.problem, instance.start, reference);
-    // One in 40 of 20 stages differs by 7e-6 of a cost that is a thousand times the usual one, from every
-    // start; all others agree to 1e-6. Which of the two is nearer to the optimum is not known.
-    ASSERT_NEAR(report.cost, cost, 1e-5 * cost) << i;
     ASSERT_TRUE(bench::inputs_are_inside(instance.problem, own)) << i;
+    if (std::fabs(report.cost - cost) <= 1e-6 * cost) continue;
+    ++others;  // two local optima: between them lie admissible inputs only, and the cost rises from both ends
+    ASSERT_GE(slope_towards(instance, own, reference), 0.0) << i << ": " << report.cost << " and " << cost;
+    ASSERT_GE(slope_towards(instance, reference, own), 0.0) << i << ": " << report.cost << " and " << cost;
   }
+  EXPECT_LE(others, 1);
 }
 
 constexpr Family kFamilies[] = {

@@ -23,20 +23,42 @@ using solver::SolveStatus;
 
 constexpr int kCapacity = 60;
 
+/// First and second derivatives of one row, those that its type knows to be zero among them.
+template <std::size_t Nz>
+struct Derivatives {
+  std::array<double, Nz> first{};
+  std::array<std::array<double, Nz>, Nz> second{};
+};
+
+template <std::size_t Nz, class J>
+Derivatives<Nz> derivatives_of(const J& row) {
+  Derivatives<Nz> all;
+  jet::repeat<Nz>([&](auto i) { all.first[i] = jet::number<double>(jet::slope<i>(row)); });
+  jet::repeat<J::kSecond.size()>([&](auto n) {
+    constexpr Pair p = members<J::kSecond>()[n];
+    all.second[p.i][p.j] = all.second[p.j][p.i] = jet::number<double>(row.curvatures[n]);
+  });
+  return all;
+}
+
 /// Derivatives of each row of a structured problem, jets against duals of one type.
 template <class Row, class DualRow, int Nz>
 void expect_same_derivatives(const Row& jets, const DualRow& duals) {
-  jet::repeat<solver::row_size<Row>>([&](auto n) {
-    const auto& x = solver::as_jet<double, 2>(std::get<n>(jets));
-    const Dual<Nz, Dual<Nz>> y(std::get<n>(duals));
-    jet::repeat<Nz>([&](auto i) {
-      const double d = jet::number<double>(jet::slope<i>(x));
-      EXPECT_NEAR(d, y.d[i].v, 1e-12 * (1.0 + std::fabs(d))) << n << ' ' << i;
-      jet::repeat<Nz>([&](auto j) {
-        const double h = jet::number<double>(jet::curvature<i, j>(x));
+  constexpr auto count = static_cast<std::size_t>(Nz);
+  std::size_t n = 0;
+  const auto compare = [&n](const Derivatives<count>& x, const Dual<Nz, Dual<Nz>>& y) {
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_NEAR(x.first[i], y.d[i].v, 1e-12 * (1.0 + std::fabs(x.first[i]))) << n << ' ' << i;
+      for (std::size_t j = 0; j < count; ++j) {
+        const double h = x.second[i][j];
         EXPECT_NEAR(h, y.d[i].d[j], 1e-10 * (1.0 + std::fabs(h))) << n << ' ' << i << ' ' << j;
-      });
-    });
+      }
+    }
+    ++n;
+  };
+  jet::repeat<solver::row_size<Row>>([&](auto i) {
+    compare(derivatives_of<count>(solver::as_jet<double, 2>(std::get<i>(jets))),
+            Dual<Nz, Dual<Nz>>(std::get<i>(duals)));
   });
 }
 

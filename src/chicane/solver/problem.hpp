@@ -195,8 +195,8 @@ struct Trajectory {
 struct SolverOptions {
   double tolerance = 1e-6;        ///< stationarity accepted as optimal; (0, 1e-2]
   double loose_tolerance = 1e-2;  ///< stationarity accepted when the budget is spent; [tolerance, 1e3]
-  int max_iterations = 40;  ///< SQP turns, those of a shorter horizon by their share; worst-case time is
-                            ///< proportional to it; [1, 200]
+  int max_iterations = 100;  ///< SQP turns, those of a shorter horizon by their share; worst-case time is
+                             ///< proportional to it; [1, 200]. Controllers ask for fewer
   bool may_start_short =
       true;  ///< when full steps fail, grow the horizon from its beginning: reaches optima from poor
              ///< guesses, at the price of tens of turns; off where the budget is a few turns

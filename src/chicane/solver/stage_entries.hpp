@@ -60,12 +60,17 @@ struct StageEntries {
   static void add_gradient(std::size_t, const J& r, const V& weight, Gradient& gradient) noexcept {
     for (std::size_t i = 0; i < kVariables; ++i) gradient[i] += weight * r.slopes[i];
   }
-  /// l += weight · drᵀ dr
+  /// l += weight · drᵀ dr, over the variables that the row depends on in any of the eight stages.
   template <class Rows, class J>
   static void add_square(std::size_t, const J& r, const V& weight, Costs& l) noexcept {
+    std::size_t present[kVariables];
+    std::size_t count = 0;
     for (std::size_t j = 0; j < kVariables; ++j) {
+      if (all(r.slopes[j] == V(0.0))) continue;
+      present[count++] = j;
       const V scaled = weight * r.slopes[j];
-      for (std::size_t i = 0; i <= j; ++i) l[Layout::kL[z(i)][z(j)]] += scaled * r.slopes[i];
+      for (std::size_t n = 0; n < count; ++n)
+        l[Layout::kL[z(present[n])][z(j)]] += scaled * r.slopes[present[n]];
     }
   }
   static void set_gradient(const Gradient& gradient, Costs& l) noexcept {
