@@ -13,10 +13,10 @@
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/runtime/assets.hpp"
 #include "chicane/runtime/closed_loop.hpp"
-#include "chicane/runtime/limit_search.hpp"
 #include "chicane/runtime/live_settings.hpp"
 #include "chicane/runtime/pages.hpp"
 #include "chicane/runtime/realtime_loop.hpp"
+#include "chicane/runtime/run_limit.hpp"
 #include "chicane/runtime/viewer.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
@@ -27,8 +27,6 @@
 
 namespace chicane::apps {
 namespace {
-
-using Limit = std::shared_ptr<const lap_time::Limit>;  // null: not known
 
 /// Somebody watches: the dashboard stays up after the last lap. Scripts, and whoever asked for a number of
 /// laps, get an end.
@@ -63,11 +61,18 @@ double step_budget(const Options& options, const scenario::Scenario& scenario) {
 }
 
 Result<std::unique_ptr<KeptRun>> keep(const Options& options, const runtime::ClosedLoop& loop,
-                                      const Limit& limit = nullptr) {
+                                      const lap_time::LimitAnswer& limit) {
   protocol::Run run = description(loop);
   run.limit = limit;
   return KeptRun::start(options, std::move(run), loop.scenario(),
                         options.is_fast ? 0.0 : step_budget(options, loop.scenario()));
+}
+
+/// What viewers are told of a run that begins now.
+protocol::Run live_description(const runtime::ClosedLoop& loop) {
+  protocol::Run run = description(loop);
+  run.limit = runtime::RunLimit::first_answer(loop.track());
+  return run;
 }
 
 /// The results of a run, which are told even when its recording failed.
@@ -90,7 +95,7 @@ class WatchedRun {
                    .start_anew = [this](const scenario::Scenario& next) { return build(next); },
                    .on_accepted = [this](const scenario::Scenario& now) { describe_anew(now); }},
                   controls.wishes},
-        viewer_{{.run = description(*loop_), .services = services(controls), .parameters = &settings_}} {}
+        viewer_{{.run = live_description(*loop_), .services = services(controls), .parameters = &settings_}} {}
 
   Result<Outcome> go() {
     if (const Result<void> begun = begin(); !begun) return fail(begun.error());
@@ -99,14 +104,13 @@ class WatchedRun {
         net::Server::create({.address = options_.address, .port = options_.port},
                             router.handlers(runtime::live_pages(settings_)), runtime::embedded_assets());
     if (!server) return fail(server.error());
-    auto kept = keep(options_, *loop_);
+    auto kept = keep(options_, *loop_, runtime::RunLimit::first_answer(loop_->track()));
     if (!kept) return fail(kept.error());
     kept_ = std::move(*kept);
     fmt::print(stderr, "dashboard at http://localhost:{}/; Ctrl-C ends\n", (*server)->port());
-    search_limit();
+    limit_.search(loop_->track(), loop_->scenario());
     telemetry::RunSummary summary = drive();
-    search_.reset();
-    if (found_) telemetry::compare_with_limit(summary, found_->times);
+    compare_with_limit(limit_, summary, *kept_, controls_.wants_stop);
     return Outcome{std::move(summary), kept_->finish()};
   }
 
@@ -119,27 +123,12 @@ class WatchedRun {
     return options_.is_manual ? settings_.set({"manual.is_on", true}) : Result<void>{};
   }
 
-  /// Beside the run, from its first moment on. An open road has no lap: nothing is searched, nothing said.
-  void search_limit() {
-    search_.reset();
-    found_.reset();
-    has_news_ = false;
-    if (!loop_->track().centre().is_closed()) return;
-    search_ = std::make_unique<runtime::LimitSearch>(
-        loop_->track(), loop_->scenario(), [this](Result<Limit> limit) {
-          if (!limit) return fmt::print(stderr, "no gap to the limit: {}\n", limit.error().message);
-          found_ = *limit;
-          has_news_.store(true, std::memory_order_release);
-          viewer_.set_limit(*limit);
-        });
-  }
-
   telemetry::RunSummary drive() {
     Progress progress;
     const runtime::RealtimeHooks hooks{
         .on_frame =
             [&](const telemetry::Frame& frame) {
-              if (has_news_.exchange(false, std::memory_order_acquire)) kept_->record(found_);
+              if (auto news = limit_.news()) kept_->record(std::move(news));
               kept_->record(frame);
               viewer_.publish(frame);
               note_faults(frame);
@@ -188,11 +177,11 @@ class WatchedRun {
       built_.pop_front();
     }
     kept_->record(std::make_unique<const runtime::RecordedRun>(
-        runtime::RecordedRun{.run = description(*loop_), .scenario = loop_->scenario()}));
+        runtime::RecordedRun{.run = live_description(*loop_), .scenario = loop_->scenario()}));
     note(*next);
     controls_.wishes.pop();
-    viewer_.set_run(description(*loop_));
-    search_limit();
+    viewer_.set_run(live_description(*loop_));
+    limit_.search(loop_->track(), loop_->scenario());
     return true;
   }
 
@@ -221,19 +210,20 @@ class WatchedRun {
   std::uint32_t told_faults_ = 0;  ///< bits, as viewers know them
   std::mutex mutex_;
   std::deque<std::unique_ptr<runtime::ClosedLoop>> built_;  ///< one for each change that starts anew
-  Limit found_;                        ///< by the search; read after has_news_ was seen, or after its end
-  std::atomic<bool> has_news_{false};  ///< it is to be recorded
-  std::unique_ptr<runtime::LimitSearch> search_;  ///< ends before everything it tells
+  runtime::RunLimit limit_{[this](const lap_time::LimitAnswer& news) {
+    if (!news.found) fmt::print(stderr, "no gap to the limit: {}\n", news.why_not);
+    viewer_.set_limit(news);
+  }};  ///< ends before everything it tells
 };
 
 Result<Outcome> run_fast(const Options& options, runtime::ClosedLoop& loop,
                          const runtime::RunControls& controls) {
-  Limit limit;
+  lap_time::LimitAnswer limit{.why_not = "nobody asked for it (--limit)"};
   if (options.wants_limit) {
     double wall_time = 0.0;
     const auto found = limit_of(loop.scenario(), loop.track(), {}, controls.wants_stop, wall_time);
     if (!found) return fail(found.error());
-    limit = *found;
+    limit = {.found = *found};
   }
   const auto kept = keep(options, loop, limit);
   if (!kept) return fail(kept.error());
@@ -248,7 +238,8 @@ Result<Outcome> run_fast(const Options& options, runtime::ClosedLoop& loop,
         },
         [&] { return controls.wants_stop.load(); });
   }
-  if (limit) telemetry::compare_with_limit(summary, limit->times);
+  if (limit.found) telemetry::compare_with_limit(summary, limit.found->times);
+  summary.why_no_limit = limit.why_not;
   return Outcome{std::move(summary), (*kept)->finish()};
 }
 

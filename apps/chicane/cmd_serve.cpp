@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <optional>
+#include <utility>
 
+#include "chicane/protocol/json_report.hpp"
 #include "chicane/runtime/assets.hpp"
 #include "chicane/runtime/live_settings.hpp"
 #include "chicane/runtime/make.hpp"
+#include "chicane/runtime/run_limit.hpp"
 #include "chicane/runtime/serve.hpp"
 #include "chicane/runtime/viewer.hpp"
 #include "commands.hpp"
@@ -19,6 +24,18 @@
 namespace chicane::apps {
 namespace {
 
+/// The road of the simulator, where the command line says which; none where it does not.
+Result<std::optional<path::Track>> told_track(const Options& options, const scenario::Scenario& scenario) {
+  const bool is_told = std::any_of(options.settings.begin(), options.settings.end(),
+                                   [](const auto& setting) { return setting.first == "track"; });
+  if (!is_told) return std::optional<path::Track>{};
+  Result<path::Track> track = runtime::make_track(scenario);
+  if (!track) return fail(track.error());
+  return std::optional<path::Track>{std::move(*track)};
+}
+
+constexpr const char* kUntold = "nobody told on which road the simulator drives: --track does";
+
 Result<runtime::ServeSummary> run(const Options& options) {
   static std::atomic<bool> stop{false};  // as long as signals may come
   catch_interrupts(stop);
@@ -26,12 +43,15 @@ Result<runtime::ServeSummary> run(const Options& options) {
   if (!scenario) return fail(scenario.error());
   const Result<std::unique_ptr<controller::Controller>> controller = runtime::make_controller(*scenario);
   if (!controller) return fail(controller.error());
+  const Result<std::optional<path::Track>> track = told_track(options, *scenario);
+  if (!track) return fail(track.error());
 
   runtime::ServeOptions serving;
   serving.server.address = options.address;
   serving.server.port = options.port;
   serving.vehicle = scenario->vehicle;
   serving.scenario = *scenario;
+  if (*track) serving.track = &**track;
   serving.latency =
       std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(scenario->latency));
   runtime::ViewerOptions viewing;
@@ -41,6 +61,9 @@ Result<runtime::ServeSummary> run(const Options& options) {
   viewing.run.latency = scenario->latency;
   viewing.run.control_period = scenario->control_period;
   viewing.run.vehicle = scenario->vehicle;
+  if (*track) describe(**track, viewing.run);
+  viewing.run.limit =
+      *track ? runtime::RunLimit::first_answer(**track) : lap_time::LimitAnswer{.why_not = kUntold};
   const auto kept = KeptRun::start(options, viewing.run, *scenario,
                                    std::chrono::duration<double>(serving.step_budget).count());
   if (!kept) return fail(kept.error());
@@ -48,6 +71,8 @@ Result<runtime::ServeSummary> run(const Options& options) {
   runtime::LiveSettings settings({.scenario = *scenario, .has_world = false}, wishes);
   viewing.parameters = &settings;
   runtime::ViewerEndpoint viewer(std::move(viewing));
+  runtime::RunLimit limit([&](const lap_time::LimitAnswer& news) { viewer.set_limit(news); });
+  if (!*track) limit.give_up(kUntold);
   Progress progress;
   runtime::ServeHooks hooks;
   hooks.wishes = &wishes;
@@ -57,6 +82,7 @@ Result<runtime::ServeSummary> run(const Options& options) {
   };
   hooks.pages = runtime::live_pages(settings);
   hooks.on_frame = [&](const telemetry::Frame& frame) {
+    if (auto news = limit.news()) (*kept)->record(std::move(news));
     (*kept)->record(frame);
     viewer.publish(frame);
     progress.show(frame);
@@ -66,9 +92,12 @@ Result<runtime::ServeSummary> run(const Options& options) {
     progress.say(fmt::format(
         "{} ({}) waits for a simulator on port {}; dashboard at http://localhost:{}/; Ctrl-C ends",
         scenario->preset, scenario->controller, port, port));
+    if (*track) limit.search(**track, *scenario);
   };
+  hooks.on_end = [&] { limit.end(); };
   auto summary =
       runtime::serve(serving, **controller, std::move(hooks), &viewer, runtime::embedded_assets(), stop);
+  if (summary) compare_with_limit(limit, summary->run, **kept, stop);
   if (const Result<void> done = (*kept)->finish(); summary && !done) return fail(done.error());
   return summary;
 }
@@ -78,8 +107,9 @@ Result<runtime::ServeSummary> run(const Options& options) {
 ExitCode serve(const Options& options) {
   const Result<runtime::ServeSummary> summary = run(options);
   if (!summary) return report(summary.error());
-  fmt::print("{} answers to {} simulators; {} unusable messages, {} commands changed by the gate\n",
+  fmt::print(stderr, "{} answers to {} simulators; {} unusable messages, {} commands changed by the gate\n",
              summary->answers, summary->connections, summary->unusable, summary->interventions);
+  fmt::print("{}", options.is_json ? protocol::to_json(summary->run) : protocol::to_table(summary->run));
   return kSuccess;
 }
 

@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <utility>
 
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/runtime/make.hpp"
+#include "chicane/runtime/run_limit.hpp"
 #include "chicane/runtime/simulate.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
@@ -16,18 +18,14 @@ namespace chicane::apps {
 namespace {
 
 /// Our road and car; who drives is not known.
-Result<protocol::Run> description_of_external(const scenario::Scenario& scenario) {
-  const Result<path::Track> track = runtime::make_track(scenario);
-  if (!track) return fail(track.error());
-  return protocol::Run{.track = track->name(),
-                       .track_length = track->centre().length(),
-                       .is_closed = track->centre().is_closed(),
-                       .controller = "external",
-                       .preset = "external",
-                       .vehicle = scenario.vehicle,
-                       .mode = runtime::kSimulateMode,
-                       .kerb_width = track->kerb_width(),
-                       .road = protocol::road_lines(*track, kRoadSpacing)};
+protocol::Run description_of_external(const scenario::Scenario& scenario, const path::Track& track) {
+  protocol::Run run;
+  run.controller = run.preset = "external";
+  run.vehicle = scenario.vehicle;
+  run.mode = runtime::kSimulateMode;
+  run.limit = runtime::RunLimit::first_answer(track);
+  describe(track, run);
+  return run;
 }
 
 Result<runtime::SimulateReport> run(const Options& options) {
@@ -38,22 +36,26 @@ Result<runtime::SimulateReport> run(const Options& options) {
   runtime::SimulateOptions simulating;
   simulating.url = options.connect;
   simulating.server_command = options.server;
-  const Result<protocol::Run> described = description_of_external(*scenario);
-  if (!described) return fail(described.error());
-  const auto kept = KeptRun::start(options, *described, *scenario, 0.0);
+  const Result<path::Track> track = runtime::make_track(*scenario);
+  if (!track) return fail(track.error());
+  const auto kept = KeptRun::start(options, description_of_external(*scenario, *track), *scenario, 0.0);
   if (!kept) return fail(kept.error());
+  runtime::RunLimit limit;
+  limit.search(*track, *scenario);
   Result<runtime::SimulateReport> done;
   {
     Progress progress;
     done = runtime::simulate(simulating, *scenario,
                              {.on_frame =
                                   [&](const telemetry::Frame& frame) {
+                                    if (auto news = limit.news()) (*kept)->record(std::move(news));
                                     (*kept)->record(frame);
                                     progress.show(frame);
                                   },
                               .log = [&](std::string_view line) { progress.say(line); }},
                              stop);
   }
+  if (done) compare_with_limit(limit, done->run, **kept, stop);
   if (const Result<void> finished = (*kept)->finish(); done && !finished) return fail(finished.error());
   return done;
 }

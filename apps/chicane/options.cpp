@@ -138,10 +138,13 @@ void add_serve(CLI::App& command, Options& options) {
   add_controller(command, options);
   add_setting(command, options, "--latency-ms", "latency_ms", "X",
               "Sleep before each answer [ms], default 100 as the original");
+  add_setting(command, options, "--track", "track", "NAME|FILE",
+              "The simulator's road, where it is one of ours: for laps, and their gap to the limit");
   add_port(command, options);
   add_record(command, options);
+  command.add_flag("--json", options.is_json, "One JSON object on stdout at the end, all else on stderr");
   add_set(command, options);
-  command.footer("Example: chicane serve --preset weighted --port 4567");
+  command.footer("Example: chicane serve --preset weighted --track lakeside --port 4567");
 }
 
 void add_simulate(CLI::App& command, Options& options) {

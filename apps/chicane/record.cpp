@@ -13,19 +13,25 @@
 #include "chicane/runtime/html_report.hpp"
 
 namespace chicane::apps {
+
+void describe(const path::Track& track, protocol::Run& run) {
+  constexpr double kRoadSpacing = 2.0;  // [m] between the drawn points of the road
+  run.track = track.name();
+  run.track_length = track.centre().length();
+  run.is_closed = track.centre().is_closed();
+  run.kerb_width = track.kerb_width();
+  run.road = protocol::road_lines(track, kRoadSpacing);
+}
+
 protocol::Run description(const runtime::ClosedLoop& loop) {
   const scenario::Scenario& scenario = loop.scenario();
-  protocol::Run run{.track = loop.track().name(),
-                    .track_length = loop.track().centre().length(),
-                    .is_closed = loop.track().centre().is_closed(),
-                    .controller = scenario.controller,
-                    .preset = scenario.preset,
-                    .latency = scenario.latency,
-                    .control_period = scenario.control_period,
-                    .vehicle = scenario.vehicle,
-                    .mode = "drive",
-                    .kerb_width = loop.track().kerb_width(),
-                    .road = protocol::road_lines(loop.track(), kRoadSpacing)};
+  protocol::Run run;
+  run.preset = scenario.preset;
+  run.latency = scenario.latency;
+  run.control_period = scenario.control_period;
+  run.vehicle = scenario.vehicle;
+  run.mode = "drive";
+  describe(loop.track(), run);
   protocol::describe(loop.controller(), run);
   run.faults = protocol::fault_names();
   return run;
@@ -66,6 +72,14 @@ Result<std::unique_ptr<KeptRun>> KeptRun::start(const Options& options, protocol
   if (!recorder) return fail(recorder.error());
   kept->recorder_ = std::move(*recorder);
   return kept;
+}
+
+void compare_with_limit(runtime::RunLimit& limit, telemetry::RunSummary& run, KeptRun& kept,
+                        const std::atomic<bool>& wants_stop) {
+  if (limit.is_searching() && !run.laps.empty() && !wants_stop)
+    fmt::print(stderr, "the limit is still being computed; Ctrl-C does without\n");
+  limit.compare(run, wants_stop);
+  if (auto news = limit.news()) kept.record(std::move(news));
 }
 
 Result<void> KeptRun::finish() {

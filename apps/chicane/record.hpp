@@ -1,23 +1,34 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "chicane/path/track.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/runtime/closed_loop.hpp"
 #include "chicane/runtime/recorder.hpp"
+#include "chicane/runtime/run_limit.hpp"
 #include "chicane/runtime/temporary_file.hpp"
 #include "options.hpp"
 
 namespace chicane::apps {
 
-inline constexpr double kRoadSpacing = 2.0;  ///< [m] between the drawn points of the road
-
-/// What viewers and logs are told of a run with our simulator.
+/// What viewers and logs are told of a run with our simulator, its limit excepted.
 [[nodiscard]] protocol::Run description(const runtime::ClosedLoop& loop);
+
+class KeptRun;
+
+/// The road of a run, for viewers and logs: name, length, lines.
+void describe(const path::Track& track, protocol::Run& run);
+
+/// The end of a run: RunLimit::compare, saying on stderr what is waited for, and the last news for the
+/// recording.
+void compare_with_limit(runtime::RunLimit& limit, telemetry::RunSummary& run, KeptRun& kept,
+                        const std::atomic<bool>& wants_stop);
 
 /// What --record and --report keep of a run: every control step. Nothing is kept where neither is asked for.
 class KeptRun {

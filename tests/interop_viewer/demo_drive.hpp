@@ -79,6 +79,7 @@ class Drive {
     const model::Pose here = pose(s_);
     const double curvature = track_.centre().at(s_).curvature;
     frame_.has_truth = true;
+    frame_.is_judged = true;
     frame_.truth = {here.x, here.y, here.psi, speed_, 0.0, speed_ * curvature, steer(s_)};
     frame_.measurement = {};
     frame_.measurement.time = frame_.time;

@@ -74,7 +74,10 @@ TEST(JsonReport, TellsTheSectorsOfALapInTheirOrder) {
 
 TEST(JsonReport, TellsTheGapsToTheLimit) {
   telemetry::RunSummary run = example();
+  run.why_no_limit = "the road is open";
   EXPECT_TRUE(Json::parse(to_json(run))["limit"].is_null());
+  EXPECT_EQ(Json::parse(to_json(run))["why_no_limit"], "the road is open");
+  EXPECT_THAT(to_table(run), HasSubstr("limit              not known: the road is open\n"));
   telemetry::compare_with_limit(run, {.lap = 25.0, .sectors = {8.0, 9.5, 7.5}});
   const Json report = Json::parse(to_json(run));
   EXPECT_EQ(report["limit"], Json::parse(R"({"lap_time_s": 25.0, "sector_times_s": [8.0, 9.5, 7.5]})"));

@@ -166,12 +166,13 @@ TEST(RosMessages, LimitHasItsLineInColumnsOfTheSameLength) {
     EXPECT_EQ(reader.number(), first);
     EXPECT_EQ(reader.number(), second);
   }
+  EXPECT_EQ(reader.text(), "");
   EXPECT_TRUE(reader.is_at_end());
 }
 
-TEST(RosMessages, ALimitThatIsNotKnownIsEmptyAndLapsHaveNoGap) {
+TEST(RosMessages, ALimitThatIsNotKnownSaysWhyAndLapsHaveNoGap) {
   protocol::Run run = samples::run();
-  run.limit = nullptr;
+  run.limit = {.why_not = "the road is open"};
   for (const RosTopic& each : ros_topics()) {
     if (each.name == "/chicane/limit") {
       const std::string bytes = each.encode(samples::frame(), run);
@@ -179,6 +180,7 @@ TEST(RosMessages, ALimitThatIsNotKnownIsEmptyAndLapsHaveNoGap) {
       EXPECT_EQ(reader.get<std::uint8_t>(), 0);
       for (int i = 0; i < 4; ++i) EXPECT_TRUE(std::isnan(reader.number()));
       for (int i = 0; i < 8; ++i) EXPECT_EQ(reader.get<std::uint32_t>(), 0U);
+      EXPECT_EQ(reader.text(), "the road is open");
       EXPECT_TRUE(reader.is_at_end());
     }
     if (each.name == "/chicane/lap") {
@@ -203,6 +205,7 @@ TEST(RosMessages, ChangeNamesWhatGotWhichValue) {
 TEST(RosMessages, FrameWithoutTruthShowsWhatWasMeasuredAndLeavesTheRestUnknown) {
   telemetry::Frame frame = samples::frame();
   frame.has_truth = false;
+  frame.is_judged = false;
   const std::string bytes = encode("/chicane/frame", frame);
   CdrReader reader{bytes};
   reader.seconds();

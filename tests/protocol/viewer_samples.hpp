@@ -11,6 +11,7 @@ inline telemetry::Frame frame() {
   frame.cycle = 1234567890123ULL;
   frame.time = 12.25;
   frame.has_truth = true;
+  frame.is_judged = true;
   frame.truth = {.x = 10.0, .y = -20.0, .psi = 0.5, .vx = 30.0, .vy = -0.4, .r = 0.25, .steer = 0.03};
   frame.measurement.time = 12.25;
   frame.measurement.x = 10.1;
@@ -107,7 +108,7 @@ inline Run run() {
   limit.line = {{.s = 258.0, .n = 0.5, .position = {1.0, 2.0}, .speed = 40.0, .lateral_acceleration = -3.0},
                 {.s = 260.0, .time = 0.0625, .n = 0.75, .position = {3.0, 2.25}, .speed = 40.5}};
   limit.line[1].longitudinal_acceleration = 4.5;
-  run.limit = std::make_shared<const lap_time::Limit>(limit);
+  run.limit = {.found = std::make_shared<const lap_time::Limit>(limit)};
   return run;
 }
 

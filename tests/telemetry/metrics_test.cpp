@@ -139,7 +139,7 @@ TEST(Metrics, WithoutTruthItMeasuresWhatTheControllerWasTold) {
   auto f = frame(0.0, 0.0);
   f->has_truth = false;
   f->measurement.speed = 12.0;
-  f->result.report.lateral_error = -0.5;
+  f->lateral_error = -0.5;
   metrics.add(*f);
   f->time = 0.1;
   metrics.add(*f);

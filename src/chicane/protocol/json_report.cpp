@@ -90,6 +90,7 @@ std::string to_json(const RunSummary& run) {
       {"laps", laps},
       {"total", to_object(run.total)},
       {"limit", to_object(run.limit)},
+      {"why_no_limit", run.why_no_limit.empty() ? Json(nullptr) : Json(run.why_no_limit)},
       {"step_time_us", to_object(run.step_time)},
       {"solve_time_us", to_object(run.solve_time)},
       {"solver", {{"mean_iterations", number(run.mean_iterations)}, {"not_usable", run.not_usable}}},
@@ -120,6 +121,8 @@ std::string to_table(const RunSummary& run) {
     const double gap =
         best == run.laps.end() ? telemetry::kNotMeasured : lap_time::gap(best->lap_time, run.limit->lap);
     text += fmt::format("\nlimit              {:.3f} s, the best lap {:+.2f} %", run.limit->lap, 100.0 * gap);
+  } else if (!run.why_no_limit.empty()) {
+    text += fmt::format("\nlimit              not known: {}", run.why_no_limit);
   }
   text +=
       fmt::format("\noff track          {} times, {:.2f} s\n", run.off_track_events, run.out_of_track_time);

@@ -124,13 +124,14 @@ std::string encode_frame(const Frame& frame, const Run&) {
   const model::Measurement& seen = frame.measurement;
   const controller::StepReport& report = frame.result.report;
   // What only a judge of the road knows: an external simulator tells none of it.
-  const auto judged = [&](double value) { return frame.has_truth ? value : kNaN; };
+  const auto judged = [&](double value) { return frame.is_judged ? value : kNaN; };
   Writer writer{1024};
   writer.stamp(frame.time)
       .put(frame.cycle, frame.time, frame.has_truth)
       .put(now.x, now.y, now.psi, now.vx, now.vy, now.r)
       .put(frame.has_truth ? chicane::hypot(now.vx, now.vy) : seen.speed)
-      .put(judged(frame.longitudinal_acceleration), judged(frame.lateral_acceleration))
+      .put(frame.has_truth ? frame.longitudinal_acceleration : kNaN)
+      .put(frame.has_truth ? frame.lateral_acceleration : kNaN)
       .put(seen.x, seen.y, seen.psi, seen.speed)
       .put(judged(frame.s), frame.lateral_error, frame.heading_error, judged(frame.edge_distance))
       .put(frame.is_off_track, static_cast<std::uint32_t>(frame.off_track_events))
@@ -195,7 +196,7 @@ double gap_percent(double time, double limit) {
 
 std::string encode_lap(const Frame& frame, const Run& run) {
   const telemetry::CompletedLap& lap = frame.completed_lap;
-  const lap_time::LapTimes limit = run.limit ? run.limit->times : lap_time::LapTimes{};
+  const lap_time::LapTimes limit = run.limit.found ? run.limit.found->times : lap_time::LapTimes{};
   return Writer{}
       .put(static_cast<std::uint32_t>(lap.lap), lap.lap_time)
       .put(lap.sector_times[0], lap.sector_times[1], lap.sector_times[2], lap.is_clean)
@@ -213,9 +214,9 @@ std::string encode_limit(const Frame&, const Run& run) {
     limit.times = {kNaN, {kNaN, kNaN, kNaN}};
     return limit;
   }();
-  const lap_time::Limit& limit = run.limit ? *run.limit : nothing;
+  const lap_time::Limit& limit = run.limit.found ? *run.limit.found : nothing;
   Writer writer{256 + 64 * limit.line.size()};
-  writer.put(run.limit != nullptr).put(limit.times.lap);
+  writer.put(run.limit.found != nullptr).put(limit.times.lap);
   for (const double sector : limit.times.sectors) writer.put(sector);
   const auto column = [&](auto value) {
     writer.count(limit.line.size());
@@ -230,7 +231,7 @@ std::string encode_limit(const Frame&, const Run& run) {
   column([](const Point& p) { return p.longitudinal_acceleration; });
   column([](const Point& p) { return p.lateral_acceleration; });
   column([](const Point& p) { return p.time; });
-  return writer.bytes();
+  return writer.text(run.limit.found ? "" : run.limit.why_not).bytes();
 }
 
 std::string encode_odometry(const Frame& frame, const Run& run) {
@@ -334,7 +335,7 @@ Diagnosis diagnose_controller(const controller::StepReport& report) {
 }
 
 Diagnosis diagnose_road(const Frame& frame) {
-  if (!frame.has_truth) return {3, "nobody judges: external simulator"};
+  if (!frame.is_judged) return {3, "nobody judges: external simulator, track not told"};
   return frame.is_off_track ? Diagnosis{2, "off the road"} : Diagnosis{0, "on the road"};
 }
 
@@ -367,8 +368,8 @@ std::string encode_right(const Frame&, const Run& run) { return encode_line(0.0,
 std::string encode_centre(const Frame&, const Run& run) { return encode_line(0.0, run.road.centre); }
 std::string encode_racing_line(const Frame&, const Run& run) {
   std::vector<Vec2> line;
-  if (run.limit) {
-    for (const lap_time::LimitPoint& point : run.limit->line) line.push_back(point.position);
+  if (run.limit.found) {
+    for (const lap_time::LimitPoint& point : run.limit.found->line) line.push_back(point.position);
   }
   return encode_line(0.0, line);
 }

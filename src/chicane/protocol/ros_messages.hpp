@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,7 +9,7 @@
 
 #include "chicane/base/types.hpp"
 #include "chicane/controller/controller.hpp"
-#include "chicane/lap_time/minimum_time.hpp"
+#include "chicane/lap_time/limit_answer.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -45,7 +44,7 @@ struct Run {
   std::vector<std::string> faults{};  ///< names of the bits of Frame::active_faults
   double kerb_width = 0.0;            ///< [m]
   RoadLines road;
-  std::shared_ptr<const lap_time::Limit> limit{};  ///< null: not known
+  lap_time::LimitAnswer limit{};
 };
 
 /// What a controller says about itself, copied into a run.

@@ -75,7 +75,7 @@ float64 measured_y_m
 float64 measured_yaw_rad
 float64 measured_speed_mps
 
-# On the road, judged by the simulator
+# On the road, judged by our simulator, or from what was measured where the track was told; else not-a-number
 float64 s_m                             # along the centre line
 float64 lateral_error_m
 float64 heading_error_rad
@@ -201,7 +201,7 @@ float64[3] sector_gaps_to_limit_percent # the same for the thirds
                   R"(# The physical limit of this road for this car: the fastest lap of the model
 # in docs/limit.md and its line, arrays of the same length by rising time from the start
 # line, the last point the first one again.
-bool is_known                           # false: not computed (yet), an open road, or it failed; the rest is empty
+bool is_known                           # false: see why_not; the rest is empty
 float64 lap_time_s
 float64[3] sector_times_s               # thirds of the lap, from the start line
 float64[] s_m                           # along the centre line from its beginning
@@ -212,6 +212,7 @@ float64[] speed_mps
 float64[] longitudinal_acceleration_mps2
 float64[] lateral_acceleration_mps2     # positive to the left
 float64[] time_s                        # since the start line
+string why_not                          # in one sentence, while is_known is false
 )"},
     RosDefinition{"chicane_msgs/Change",
                   R"(# A setting that changed during the run, before this control cycle.

@@ -24,22 +24,32 @@ model::VehicleParams limit_vehicle(const scenario::Scenario& scenario) {
   return car;
 }
 
-LimitSearch::LimitSearch(path::Track track, const scenario::Scenario& scenario,
-                         std::function<void(Result<std::shared_ptr<const lap_time::Limit>>)> on_end)
-    : thread_{[this, track = std::move(track), car = limit_vehicle(scenario), on_end = std::move(on_end)] {
-        constexpr int kLowestPriority = 19;
-        static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowestPriority));  // of this thread, on Linux
-        lap_time::LimitOptions options;
-        options.go_on = [this](int, double) { return is_wanted_.load(); };
-        Result<lap_time::Limit> limit = lap_time::find_limit(track, car, options);
-        if (!is_wanted_) return;
-        if (!limit) return on_end(fail(limit.error()));
-        on_end(std::make_shared<const lap_time::Limit>(std::move(*limit)));
-      }} {}
+LimitSearch::LimitSearch(path::Track track, const scenario::Scenario& scenario, OnEnd on_end)
+    : on_end_{std::move(on_end)},
+      thread_{[this, track = std::move(track), car = limit_vehicle(scenario)] { work(track, car); }} {}
 
 LimitSearch::~LimitSearch() {
-  is_wanted_ = false;
+  cancel();
   thread_.join();
+}
+
+void LimitSearch::cancel() {
+  const std::lock_guard lock(telling_);
+  is_wanted_ = false;
+}
+
+void LimitSearch::work(const path::Track& track, const model::VehicleParams& car) {
+  constexpr int kLowestPriority = 19;
+  static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowestPriority));  // of this thread, on Linux
+  lap_time::LimitOptions options;
+  options.go_on = [this](int, double) { return is_wanted_.load(); };
+  Result<lap_time::Limit> limit = lap_time::find_limit(track, car, options);
+  {
+    const std::lock_guard lock(telling_);
+    if (is_wanted_ && !limit) on_end_(fail(limit.error()));
+    if (is_wanted_ && limit) on_end_(std::make_shared<const lap_time::Limit>(std::move(*limit)));
+  }
+  has_ended_.store(true, std::memory_order_release);
 }
 
 }  // namespace chicane::runtime

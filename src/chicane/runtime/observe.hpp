@@ -7,14 +7,9 @@
 
 namespace chicane::runtime {
 
-/// Writes what the world knows of the car into a frame: truth, accelerations, place, laps. The rest stays.
-inline void observe(const sim::World& world, telemetry::Frame& frame) noexcept {
-  const sim::WorldState& state = world.state();
-  frame.truth = world.plant().state();
-  frame.has_truth = true;
-  frame.lateral_acceleration = world.plant().output().ay;
-  frame.longitudinal_acceleration = world.plant().output().ax;
-  frame.tire_use = world.plant().output().tire_use;
+/// Writes what a judge says of the car into a frame: place, laps. The rest stays.
+inline void observe(const sim::WorldState& state, telemetry::Frame& frame) noexcept {
+  frame.is_judged = true;
   frame.s = state.s;
   frame.lateral_error = state.lateral_error;
   frame.heading_error = state.heading_error;
@@ -26,7 +21,17 @@ inline void observe(const sim::World& world, telemetry::Frame& frame) noexcept {
   frame.off_track_events = state.off_track_events;
 }
 
-/// The lap that the world has just timed, as metrics have measured it.
+/// Writes what the world knows of the car into a frame: truth, accelerations, place, laps. The rest stays.
+inline void observe(const sim::World& world, telemetry::Frame& frame) noexcept {
+  frame.truth = world.plant().state();
+  frame.has_truth = true;
+  frame.lateral_acceleration = world.plant().output().ay;
+  frame.longitudinal_acceleration = world.plant().output().ax;
+  frame.tire_use = world.plant().output().tire_use;
+  observe(world.state(), frame);
+}
+
+/// The lap that has just been timed, as metrics have measured it.
 [[nodiscard]] inline telemetry::CompletedLap completed_lap(const sim::WorldState& world,
                                                            const telemetry::LapSummary& measured) noexcept {
   return {.lap = world.lap,

@@ -81,7 +81,7 @@ void Recorder::record(std::unique_ptr<const RecordedRun> run) noexcept {
   commit();
 }
 
-void Recorder::record(std::shared_ptr<const lap_time::Limit> limit) noexcept {
+void Recorder::record(std::shared_ptr<const lap_time::LimitAnswer> limit) noexcept {
   Entry* const entry = next_entry(kCapacity + kReserve);
   if (entry == nullptr) {
     ++left_out_;
@@ -151,7 +151,7 @@ void Recorder::describe() {
       protocol::write_document(scenario, fmt::format("What was recorded by {}", kProgram), true)));
   write(protocol::Cadence::kRun);
   write(protocol::Cadence::kRoad);
-  if (options_.run.limit) write(protocol::Cadence::kLimit);
+  if (options_.run.limit.found || !options_.run.limit.why_not.empty()) write(protocol::Cadence::kLimit);
 }
 
 /// The topics of what stays the same from frame to frame.
@@ -168,8 +168,8 @@ void Recorder::write(protocol::Cadence cadence) {
 void Recorder::write(Entry& entry) {
   if (std::exchange(entry.has_frame, false)) write(entry.frame);
   if (entry.change) write(*std::exchange(entry.change, std::nullopt));
-  if (auto limit = std::move(entry.limit)) {
-    options_.run.limit = std::move(limit);
+  if (const auto limit = std::move(entry.limit)) {
+    options_.run.limit = *limit;
     write(protocol::Cadence::kLimit);
   }
   if (const auto run = std::move(entry.run)) {

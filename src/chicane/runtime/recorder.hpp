@@ -65,8 +65,8 @@ class Recorder {
   /// The same thread: the next frame is the first of another run, with other settings; it begins at its cycle
   /// 0. A run that only starts anew needs no word.
   void record(std::unique_ptr<const RecordedRun> run) noexcept;
-  /// The same thread: the limit of the run became known.
-  void record(std::shared_ptr<const lap_time::Limit> limit) noexcept;
+  /// The same thread: there are news of the run's limit.
+  void record(std::shared_ptr<const lap_time::LimitAnswer> limit) noexcept;
   /// Writes the rest and closes the file. kIo with the first thing that went wrong while recording.
   [[nodiscard]] Result<RecorderReport> finish();
 
@@ -80,7 +80,7 @@ class Recorder {
     telemetry::Frame frame;
     std::optional<telemetry::Change> change;
     std::unique_ptr<const RecordedRun> run;
-    std::shared_ptr<const lap_time::Limit> limit;
+    std::shared_ptr<const lap_time::LimitAnswer> limit;
   };
 
   Recorder(RecorderOptions options, std::unique_ptr<telemetry::McapWriter> writer);

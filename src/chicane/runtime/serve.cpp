@@ -16,6 +16,7 @@
 #include "chicane/protocol/schema.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/runtime/make.hpp"
+#include "chicane/runtime/roadside.hpp"
 #include "chicane/safety/command_gate.hpp"
 #include "chicane/telemetry/prediction_check.hpp"
 
@@ -85,7 +86,8 @@ class UdacityEndpoint::Control {
         scenario_{options.scenario},
         gate_{options.vehicle},
         delay_{seconds(options.latency) + kTypicalTurnAround},
-        thread_{[this] { run(); }} {}
+        roadside_{options.track, options.scenario},
+        thread_{[this] { work(); }} {}
   ~Control() { stop(); }
   Control(const Control&) = delete;
   Control& operator=(const Control&) = delete;
@@ -96,8 +98,12 @@ class UdacityEndpoint::Control {
       is_stopping_ = true;
     }
     changed_.notify_one();
-    if (thread_.joinable()) thread_.join();
+    if (!thread_.joinable()) return;
+    thread_.join();
+    run_ = roadside_.summary();
   }
+  /// Empty before stop().
+  [[nodiscard]] const telemetry::RunSummary& run() const { return run_; }
 
   void push(const Request& request) {
     {
@@ -113,7 +119,7 @@ class UdacityEndpoint::Control {
   [[nodiscard]] double measured_delay() const { return measured_delay_.load(); }
 
  private:
-  void run() {
+  void work() {
     for (;;) {
       Request request;
       {
@@ -143,6 +149,7 @@ class UdacityEndpoint::Control {
     delay_.reset();
     last_received_.reset();
     last_answered_.reset();
+    roadside_.restart();
     begins_ = true;
   }
 
@@ -186,6 +193,7 @@ class UdacityEndpoint::Control {
     frame_.solve_time = frame_.result.report.solve_time;
     frame_.lateral_error = frame_.result.report.lateral_error;
     frame_.heading_error = frame_.result.report.heading_error;
+    roadside_.judge(frame_);
     if (hooks_.on_frame) hooks_.on_frame(frame_);
   }
 
@@ -233,6 +241,8 @@ class UdacityEndpoint::Control {
   safety::CommandGate gate_;
   telemetry::PredictionCheck promises_;
   DelayMeter delay_;
+  Roadside roadside_;
+  telemetry::RunSummary run_;
   const Clock::time_point started_ = Clock::now();
   net::ConnectionId driven_ = 0;
   std::optional<Clock::time_point> last_received_;
@@ -276,7 +286,8 @@ ServeSummary UdacityEndpoint::summary() const {
           .connections = connections_,
           .refusals = refusals_,
           .interventions = control_->interventions(),
-          .delay = control_->measured_delay()};
+          .delay = control_->measured_delay(),
+          .run = control_->run()};
 }
 
 void UdacityEndpoint::on_start(net::Server& server) {
@@ -418,6 +429,7 @@ bool UdacityEndpoint::is_quiet() const {
 Result<ServeSummary> serve(const ServeOptions& options, controller::Controller& controller, ServeHooks hooks,
                            Endpoint* viewer, std::vector<net::Asset> assets, const std::atomic<bool>& stop) {
   const auto announce = hooks.on_listening;
+  const auto end = hooks.on_end;
   Pages pages = std::move(hooks.pages);
   UdacityEndpoint simulator(options, controller, std::move(hooks));
   Router router(&simulator, viewer);
@@ -426,6 +438,7 @@ Result<ServeSummary> serve(const ServeOptions& options, controller::Controller& 
   if (announce) announce((*server)->port());
   while (!stop) std::this_thread::sleep_for(milliseconds{20});
   simulator.stop();
+  if (end) end();
   server->reset();
   return simulator.summary();
 }

@@ -16,6 +16,7 @@
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/net/server.hpp"
+#include "chicane/path/track.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/runtime/change_queue.hpp"
 #include "chicane/runtime/endpoint.hpp"
@@ -24,6 +25,7 @@
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::runtime {
 
@@ -32,6 +34,9 @@ struct ServeOptions {
   net::ServerOptions server;
   model::VehicleParams vehicle;  ///< bounds of what is sent
   scenario::Scenario scenario;   ///< what the controller was made from: needed to change it while it drives
+  /// The road that the simulator drives on, where somebody told: laps are timed from the positions it sends.
+  /// Outlives the endpoint; null: not known.
+  const path::Track* track = nullptr;
   /// Artificial, between the end of a control step and its answer, as the original controller sleeps. [0, 0.5
   /// s]
   std::chrono::nanoseconds latency = std::chrono::milliseconds{100};
@@ -51,6 +56,7 @@ struct ServeHooks {
   std::function<void(const telemetry::Frame&)> on_frame{};  ///< after each answer, on the control thread
   std::function<void(std::string_view)> log{};  ///< one line about the connection, on the network thread
   std::function<void(std::uint16_t port)> on_listening{};  ///< once, when the port is ours
+  std::function<void()> on_end{};  ///< once: control has ended, the server still stands
   Pages pages = live_pages();                              ///< answered to GET, beside the assets
 };
 
@@ -63,6 +69,7 @@ struct ServeSummary {
   std::uint64_t refusals = 0;       ///< simulators that came while another one drove
   std::uint64_t interventions = 0;  ///< commands that the gate had to change
   double delay = 0.0;               ///< last measured, telemetry to actuation [s]
+  telemetry::RunSummary run{};      ///< of the simulator that drove last; empty until the control thread has ended
 };
 
 /// The original controller program's place: answers every telemetry of one simulator with exactly one
@@ -81,7 +88,7 @@ class UdacityEndpoint final : public Endpoint {
 
   /// Ends the control thread. Call it before the server is destroyed.
   void stop();
-  /// Any thread.
+  /// Any thread; complete after stop().
   [[nodiscard]] ServeSummary summary() const;
 
   void on_start(net::Server& server) override;

@@ -89,9 +89,9 @@ void ViewerEndpoint::set_run(protocol::Run run) {
   });
 }
 
-void ViewerEndpoint::set_limit(std::shared_ptr<const lap_time::Limit> limit) {
-  on_network([this, limit = std::move(limit)] {
-    options_.run.limit = limit;
+void ViewerEndpoint::set_limit(lap_time::LimitAnswer answer) {
+  on_network([this, answer = std::move(answer)] {
+    options_.run.limit = answer;
     send_cadence(Cadence::kLimit);
   });
 }

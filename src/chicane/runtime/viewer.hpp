@@ -49,8 +49,8 @@ class ViewerEndpoint final : public Endpoint {
   void publish(const telemetry::Frame& frame) noexcept { latest_.put(frame); }
   /// Another track, car or controller from now on. Any thread, but not while on_start runs.
   void set_run(protocol::Run run);
-  /// The run's limit is known. Any thread, but not while on_start runs.
-  void set_limit(std::shared_ptr<const lap_time::Limit> limit);
+  /// There are news of the run's limit. Any thread, but not while on_start runs.
+  void set_limit(lap_time::LimitAnswer answer);
   /// Part of it changes, the road excepted. Any thread, but not while on_start runs.
   void change_run(std::function<void(protocol::Run&)> change);
   /// For runs that are paused by others than viewers. Any thread, but not while on_start runs.

@@ -48,7 +48,8 @@ struct Frame {
   double pace = 1.0;                ///< run seconds per second of the clock
   std::uint32_t active_faults = 0;  ///< bits in the order of the fault registry (sim/fault.hpp)
 
-  // Where the car is on the track (world's judgement, not the controller's).
+  // Where the car is on the track: a judge's word, not the controller's.
+  bool is_judged = false;      ///< else of these only the errors mean something: from the controller's line
   double s = 0.0;              ///< along the track's line [m]
   double lateral_error = 0.0;  ///< from the track's line [m], left positive
   double heading_error = 0.0;  ///< [rad]

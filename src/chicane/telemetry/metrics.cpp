@@ -62,13 +62,18 @@ void Metrics::add_physics(const PhysicsSample& sample) noexcept {
   const double speed = std::sqrt(sample.state.vx * sample.state.vx + sample.state.vy * sample.state.vy);
   for (Stretch* stretch : {&lap_, &total_}) {
     stretch->add(sample.step, speed, sample.lateral_error);
-    stretch->min_edge_distance = std::min(stretch->min_edge_distance, sample.edge_distance);
     stretch->max_lateral_acceleration =
         std::max(stretch->max_lateral_acceleration, std::fabs(sample.lateral_acceleration));
   }
-  if (sample.edge_distance < 0.0) out_of_track_time_ += sample.step;
-  if (sample.is_off_track && !is_off_track_) ++off_track_events_;
-  is_off_track_ = sample.is_off_track;
+  judge(sample.step, sample.edge_distance, sample.is_off_track);
+}
+
+void Metrics::judge(double step, double edge_distance, bool is_off_track) noexcept {
+  for (Stretch* stretch : {&lap_, &total_})
+    stretch->min_edge_distance = std::min(stretch->min_edge_distance, edge_distance);
+  if (edge_distance < 0.0) out_of_track_time_ += step;
+  if (is_off_track && !is_off_track_) ++off_track_events_;
+  is_off_track_ = is_off_track;
 }
 
 void Metrics::add(const Frame& frame) noexcept {
@@ -81,9 +86,10 @@ void Metrics::add(const Frame& frame) noexcept {
   if (cycles_ > 0 && elapsed > 0.0) {
     for (Stretch* stretch : {&lap_, &total_}) {
       stretch->add_rate(elapsed, (steer - last_steer_) / elapsed);
-      if (!frame.has_truth) stretch->add(elapsed, frame.measurement.speed, report.lateral_error);
+      if (!frame.has_truth) stretch->add(elapsed, frame.measurement.speed, frame.lateral_error);
     }
   }
+  if (!frame.has_truth && frame.is_judged) judge(cycles_ > 0 ? std::max(elapsed, 0.0) : 0.0, frame.edge_distance, frame.is_off_track);
   last_time_ = frame.time;
   last_steer_ = steer;
 
@@ -127,6 +133,7 @@ RunSummary Metrics::summary() const {
 
 void compare_with_limit(RunSummary& run, const lap_time::LapTimes& limit) {
   run.limit = limit;
+  run.why_no_limit.clear();
   for (LapSummary& lap : run.laps) {
     lap.gap_to_limit = lap_time::gap(lap.lap_time, limit.lap);
     for (std::size_t i = 0; i < lap.sector_gaps.size(); ++i)

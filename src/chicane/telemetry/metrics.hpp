@@ -69,6 +69,7 @@ struct RunSummary {
   double wall_time = 0.0;                   ///< of the run, on the wall [s]; filled by the run time
   std::vector<LapSummary> laps;             ///< completed laps
   std::optional<lap_time::LapTimes> limit;  ///< the fastest lap the car can drive; none when not computed
+  std::string why_no_limit;                 ///< in one sentence; empty when there is one, or nobody asked
   LapSummary total;          ///< the whole run, unfinished lap included; lap_time is its duration
   TimeSummary step_time;     ///< of whole control steps, wall clock
   TimeSummary solve_time;    ///< of the optimisation in them, wall clock
@@ -94,7 +95,8 @@ void compare_with_limit(RunSummary& run, const lap_time::LapTimes& limit);
 /// Counts and measures a run while it happens. No allocation after construction; one thread.
 ///
 /// Call add_physics() after each physics step and add() once each control cycle. Where the plant is outside
-/// (a frame without truth) add() also measures speed and lateral error, from what the controller was told.
+/// (a frame without truth) add() also measures speed and lateral error, and where a judge knows the track the
+/// distance to the edge, from what the controller was told.
 class Metrics {
  public:
   /// Remembers up to `lap_capacity` laps one by one (more are only counted). `deadline` [s]: longer steps are
@@ -116,6 +118,8 @@ class Metrics {
   [[nodiscard]] RunSummary summary() const;
 
  private:
+  void judge(double step, double edge_distance, bool is_off_track) noexcept;
+
   /// Sums over a stretch of time.
   struct Stretch {
     double time = 0.0;

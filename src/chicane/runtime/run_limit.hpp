@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chicane/lap_time/limit_answer.hpp"
+#include "chicane/path/track.hpp"
+#include "chicane/runtime/limit_search.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/telemetry/metrics.hpp"
+
+namespace chicane::runtime {
+
+/// The limit of the run that goes on, whoever drives and whoever simulates: searched beside it, told to
+/// viewers and recordings when it is known, and set beside the laps at the end. One thread, the control
+/// thread, but for `on_news`.
+class RunLimit {
+ public:
+  /// `on_news` hears on another thread what a search has found; may be empty. It must stay callable as long
+  /// as this lives.
+  explicit RunLimit(std::function<void(const lap_time::LimitAnswer&)> on_news = {})
+      : on_news_{std::move(on_news)} {}
+  ~RunLimit();
+  RunLimit(const RunLimit&) = delete;
+  RunLimit& operator=(const RunLimit&) = delete;
+
+  /// What viewers are told of a run on this road until there are news. An open road has no laps, nor a limit.
+  [[nodiscard]] static lap_time::LimitAnswer first_answer(const path::Track& track);
+  /// Another run: forgets the one before, and begins to search where the road is closed. Does not wait.
+  void search(const path::Track& track, const scenario::Scenario& scenario);
+  /// A run whose limit cannot be known, because `why`.
+  void give_up(std::string why);
+
+  /// What the search has found, once; null when there is nothing new. Neither waits nor allocates.
+  [[nodiscard]] std::shared_ptr<const lap_time::LimitAnswer> news() noexcept;
+  /// A search goes on.
+  [[nodiscard]] bool is_searching() const noexcept { return search_ != nullptr && !search_->has_ended(); }
+
+  /// No more news: ends a search that goes on. Does not wait.
+  void end();
+  /// The run has ended: sets its laps beside the limit, or says why not. Waits for a search that goes on when
+  /// there are laps, until `wants_stop`.
+  void compare(telemetry::RunSummary& run, const std::atomic<bool>& wants_stop);
+
+ private:
+  void retire();
+
+  std::function<void(const lap_time::LimitAnswer&)> on_news_;
+  std::shared_ptr<const lap_time::LimitAnswer> answer_;  ///< while a search goes on: written by it
+  std::atomic<bool> has_news_{false};                    ///< it may be read
+  std::unique_ptr<LimitSearch> search_;
+  std::vector<std::unique_ptr<LimitSearch>> retired_;  ///< cancelled, and not ended yet
+};
+
+}  // namespace chicane::runtime
