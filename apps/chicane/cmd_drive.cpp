@@ -7,6 +7,7 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "chicane/protocol/fault_codec.hpp"
@@ -16,6 +17,7 @@
 #include "chicane/runtime/live_settings.hpp"
 #include "chicane/runtime/pages.hpp"
 #include "chicane/runtime/realtime_loop.hpp"
+#include "chicane/runtime/run_builder.hpp"
 #include "chicane/runtime/run_limit.hpp"
 #include "chicane/runtime/viewer.hpp"
 #include "commands.hpp"
@@ -82,7 +84,7 @@ struct Outcome {
 };
 
 /// A run that viewers change while it goes on. What cannot change in a run that goes on starts another one,
-/// built on the network thread and taken over by ours.
+/// built beside it on a thread of its own and taken over by ours.
 class WatchedRun {
  public:
   WatchedRun(const Options& options, std::unique_ptr<runtime::ClosedLoop> loop,
@@ -92,10 +94,13 @@ class WatchedRun {
         loop_{std::move(loop)},
         settings_{{.scenario = loop_->scenario(),
                    .faults = protocol::fault_controls(),
-                   .start_anew = [this](const scenario::Scenario& next) { return build(next); },
+                   .build = [this](runtime::ChosenRun next) { builder_.begin(std::move(next)); },
+                   .built = [this] { return built(); },
+                   .on_building = [this](const std::string& what) { tell_building(what); },
                    .on_accepted = [this](const scenario::Scenario& now) { describe_anew(now); }},
                   controls.wishes},
-        viewer_{{.run = live_description(*loop_), .services = services(controls), .parameters = &settings_}} {}
+        viewer_{{.run = live_description(*loop_), .services = services(controls), .parameters = &settings_}} {
+  }
 
   Result<Outcome> go() {
     if (const Result<void> begun = begin(); !begun) return fail(begun.error());
@@ -171,26 +176,34 @@ class WatchedRun {
   bool take_over() {
     const telemetry::Change* next = controls_.wishes.front();
     if (next == nullptr || !next->starts_anew || controls_.wants_stop) return false;
+    std::unique_ptr<runtime::BuiltRun> run;
     {
       const std::lock_guard lock(mutex_);
-      loop_ = std::move(built_.front());
+      run = std::move(built_.front());
       built_.pop_front();
     }
-    kept_->record(std::make_unique<const runtime::RecordedRun>(
-        runtime::RecordedRun{.run = live_description(*loop_), .scenario = loop_->scenario()}));
-    note(*next);
+    loop_ = std::move(run->loop);
+    limit_.end();  // or its news could come after the description of another road
+    viewer_.set_run(std::move(run->description));
+    kept_->record(std::move(run->recorded));
+    for (const telemetry::Change& choice : run->choices) note(choice);
     controls_.wishes.pop();
-    viewer_.set_run(live_description(*loop_));
     limit_.search(loop_->track(), loop_->scenario());
     return true;
   }
 
-  Result<void> build(const scenario::Scenario& scenario) {
-    auto loop = runtime::ClosedLoop::create(scenario);
-    if (!loop) return fail(loop.error());
+  /// The network thread: a run that was built is ours to take.
+  std::optional<Result<void>> built() {
+    auto result = builder_.take();
+    if (!result) return std::nullopt;
+    if (!*result) return fail(result->error());
     const std::lock_guard lock(mutex_);
-    built_.push_back(std::move(*loop));
-    return {};
+    built_.push_back(std::move(**result));
+    return Result<void>{};
+  }
+
+  void tell_building(const std::string& what) {
+    viewer_.change_run([what](protocol::Run& run) { run.building = what; });
   }
 
   void describe_anew(const scenario::Scenario& now) {
@@ -209,7 +222,8 @@ class WatchedRun {
   const std::vector<protocol::Control> faults_ = protocol::fault_controls();
   std::uint32_t told_faults_ = 0;  ///< bits, as viewers know them
   std::mutex mutex_;
-  std::deque<std::unique_ptr<runtime::ClosedLoop>> built_;  ///< one for each change that starts anew
+  std::deque<std::unique_ptr<runtime::BuiltRun>> built_;  ///< one for each change that starts anew
+  runtime::RunBuilder builder_{&live_description};        ///< the network thread's
   runtime::RunLimit limit_{[this](const lap_time::LimitAnswer& news) {
     if (!news.found) fmt::print(stderr, "no gap to the limit: {}\n", news.why_not);
     viewer_.set_limit(news);

@@ -8,8 +8,10 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -156,6 +158,62 @@ TEST(Cli, LapsAreComparedWithTheLimitAndDriveTheSame) {
               100.0 * (lap["lap_time_s"].get<double>() / limit - 1.0), 1e-9);
   EXPECT_GT(lap["gap_to_limit_percent"].get<double>(), 0.0);  // nothing that drives is faster
   EXPECT_GT(lap["sector_gaps_to_limit_percent"][0].get<double>(), 0.0);
+}
+
+/// The program's words for a shell that runs it in the background or under `timeout`.
+const std::string kProgram = std::string("'") + CHICANE_PROGRAM + "' ";
+
+TEST(Cli, BothEndsOfTheSimulatorsSocketSetTheLapsBesideTheSameLimit) {
+  const fs::path folder = fs::path(::testing::TempDir()) / ("chicane_ends_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  const std::string track = (folder / "circle.csv").string();
+  {
+    std::ofstream points(track);
+    points << "# x_m,y_m,w_tr_right_m,w_tr_left_m\n";
+    for (int i = 0; i < 40; ++i) {
+      const double angle = 6.283185307179586 * i / 40.0;
+      points << 20.0 * std::cos(angle) << ',' << 20.0 * std::sin(angle) << ",6,6\n";
+    }
+  }
+  const std::string port = std::to_string(20000 + ::getpid() % 20000);
+  const std::string told = (folder / "serve.json").string();
+  const std::string server = kProgram + "serve --port " + port + " --track '" + track + "' --json > '" +
+                             told + "' 2> /dev/null & server=$!; ";
+  const std::string simulator =
+      kProgram + "simulate --connect ws://127.0.0.1:" + port + " --track '" + track + "' --laps 2 --json ";
+  ASSERT_EQ(std::system((server + simulator + "> '" + (folder / "simulate.json").string() +
+                         "' 2> /dev/null; kill -INT $server; wait $server")
+                            .c_str()),
+            0);
+  const Json inside = Json::parse(read(folder / "simulate.json"));
+  const Json outside = Json::parse(read(told));
+  ASSERT_TRUE(inside["limit"].is_object()) << inside["why_no_limit"];
+  EXPECT_EQ(inside["limit"], outside["limit"]);  // to the last bit
+  ASSERT_EQ(inside["laps_completed"], 2);
+  ASSERT_GE(outside["laps_completed"], 1);  // the simulator ends at the line
+  EXPECT_TRUE(outside["why_no_limit"].is_null());
+  const auto gap = [](const Json& run) { return run["laps"][0]["gap_to_limit_percent"].get<double>(); };
+  const double limit = inside["limit"]["lap_time_s"];
+  for (const Json& run : {inside, outside}) {
+    EXPECT_NEAR(gap(run), 100.0 * (run["laps"][0]["lap_time_s"].get<double>() / limit - 1.0), 1e-9);
+    EXPECT_TRUE(run["laps"][0]["sector_gaps_to_limit_percent"][2].is_number());
+  }
+  // On one machine telemetry is some milliseconds on its way; 0.3 s is for machines with much else to do.
+  EXPECT_NEAR(inside["laps"][0]["lap_time_s"].get<double>(), outside["laps"][0]["lap_time_s"].get<double>(),
+              0.3);
+  fs::remove_all(folder);
+}
+
+TEST(Cli, ServeSaysThatNobodyToldItTheRoad) {
+  const fs::path told = fs::path(::testing::TempDir()) / ("chicane_untold_" + std::to_string(::getpid()));
+  const std::string command =
+      "timeout -s INT 1 " + kProgram + "serve --port 0 --json > '" + told.string() + "' 2> /dev/null";
+  EXPECT_NE(std::system(command.c_str()), 0);  // timeout says that it had to end it
+  const Json run = Json::parse(read(told));
+  EXPECT_TRUE(run["track"].is_null());
+  EXPECT_TRUE(run["limit"].is_null());
+  EXPECT_THAT(run["why_no_limit"].get<std::string>(), HasSubstr("--track"));
+  fs::remove(told);
 }
 
 TEST(Cli, TheSameSeedGivesTheSameRun) {

@@ -138,6 +138,7 @@ TEST(RosMessages, RunSaysWhatTheBitsAndTermsOfAFrameMean) {
     for (const std::string& name : names) EXPECT_EQ(reader.text(), name);
   }
   EXPECT_EQ(reader.number(), 0.75);
+  EXPECT_EQ(reader.text(), "track = oval");
   EXPECT_TRUE(reader.is_at_end());
 }
 

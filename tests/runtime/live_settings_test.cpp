@@ -8,7 +8,9 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chicane/protocol/library.hpp"
@@ -27,15 +29,21 @@ scenario::Scenario scenario_of(std::vector<std::pair<std::string, std::string>> 
   return scenario.value_or(scenario::Scenario{});
 }
 
-/// Settings of a default run that starts anew whenever it is asked to.
+/// Settings of a default run beside which another one is built whenever that is asked for.
 struct Live {
   explicit Live(const scenario::Scenario& scenario = scenario_of({}))
       : settings{{.scenario = scenario,
-                  .start_anew = [this](const scenario::Scenario& next) -> Result<void> {
-                    started.push_back(next);
-                    return {};
-                  }},
+                  .build = [this](const ChosenRun& next) { started.push_back(next); },
+                  .built = [this] { return std::exchange(outcome, std::nullopt); },
+                  .on_building = [this](const std::string& what) { building = what; },
+                  .on_accepted = [this](const scenario::Scenario& now) { accepted = now; }},
                  wishes} {}
+
+  /// The build has ended, and the network thread looks.
+  std::vector<std::string> end_of_build(Result<void> with = {}) {
+    outcome = std::move(with);
+    return settings.complaints();
+  }
 
   std::string refusal(const Parameter& wish) {
     const Result<void> done = settings.set(wish);
@@ -59,7 +67,10 @@ struct Live {
   }
 
   ChangeQueue wishes;
-  std::vector<scenario::Scenario> started;
+  std::vector<ChosenRun> started;
+  std::optional<Result<void>> outcome;
+  std::string building;
+  scenario::Scenario accepted;
   LiveSettings settings;
 };
 
@@ -157,8 +168,15 @@ TEST(LiveSettings, StartAnewWithAnotherTrackAndKeepWhatWasSet) {
   live.next();
   ASSERT_TRUE(live.settings.set({"track", std::string("oval")}));
   ASSERT_EQ(live.started.size(), 1U);
-  EXPECT_EQ(live.started[0].track, "oval");
-  EXPECT_EQ(live.started[0].tracking_mpc.grip_share, 0.5);
+  EXPECT_EQ(live.started[0].scenario.track, "oval");
+  EXPECT_EQ(live.started[0].scenario.tracking_mpc.grip_share, 0.5);
+  EXPECT_EQ(live.building, "track = oval");
+  EXPECT_TRUE(live.settings.complaints().empty());
+  EXPECT_EQ(live.wishes.front(), nullptr);  // the run before goes on
+  EXPECT_EQ(live.settings.scenario().track, "lakeside");
+  EXPECT_TRUE(live.end_of_build().empty());
+  EXPECT_EQ(live.building, "");
+  EXPECT_EQ(live.settings.scenario().track, "oval");
   const telemetry::Change change = live.next();
   EXPECT_EQ(change.name.view(), "track");
   EXPECT_TRUE(change.starts_anew);
@@ -173,6 +191,7 @@ TEST(LiveSettings, TakeAPresetsSettingsButKeepTheWorld) {
   ASSERT_TRUE(live.settings.set({"tracking_mpc.grip_share", 0.5}));
   EXPECT_EQ(live.settings.news().size(), 1U);
   ASSERT_TRUE(live.settings.set({"preset", std::string("sixty-mph")}));
+  live.end_of_build();
   const scenario::Scenario& now = live.settings.scenario();
   EXPECT_EQ(now.controller, "cubic-mpc");
   EXPECT_EQ(now.cubic_mpc.horizon_steps, 7);
@@ -190,22 +209,83 @@ TEST(LiveSettings, TakeAPresetsSettingsButKeepTheWorld) {
 TEST(LiveSettings, TakeACarsVehicleAndPlant) {
   Live live;
   ASSERT_TRUE(live.settings.set({"car", std::string("road-car")}));
+  live.end_of_build();
   EXPECT_EQ(live.settings.scenario().plant, "road-car");
   EXPECT_EQ(live.settings.scenario().vehicle.name, "road-car");
 }
 
-TEST(LiveSettings, ChangeNothingWhenTheRunCannotBeBuilt) {
-  ChangeQueue wishes;
-  LiveSettings settings({.scenario = scenario_of({}),
-                         .start_anew = [](const scenario::Scenario&) -> Result<void> {
-                           return fail(ErrorCode::kIo, "no room in the garage");
-                         }},
-                        wishes);
-  const Result<void> done = settings.set({"seed", 2.0});
-  ASSERT_FALSE(done);
-  EXPECT_EQ(done.error().message, "no room in the garage");
-  EXPECT_EQ(settings.scenario().seed, 1U);
-  EXPECT_EQ(wishes.front(), nullptr);
+TEST(LiveSettings, ChangeNothingWhenTheRunCannotBeBuiltAndSaySo) {
+  Live live;
+  ASSERT_TRUE(live.settings.set({"seed", 2.0}));
+  static_cast<void>(live.settings.news());
+  EXPECT_EQ(live.value("seed"), ParameterValue(2.0));  // what was wished for, while there is hope
+  const std::vector<std::string> said = live.end_of_build(fail(ErrorCode::kIo, "no room in the garage"));
+  EXPECT_EQ(said,
+            std::vector<std::string>{"no run with seed = 2: no room in the garage; the one before goes on"});
+  EXPECT_TRUE(live.settings.complaints().empty());
+  EXPECT_EQ(live.building, "");
+  EXPECT_EQ(live.settings.scenario().seed, 1U);
+  ASSERT_EQ(live.settings.news().size(), 1U);  // viewers hear that it is not so
+  EXPECT_EQ(live.value("seed"), ParameterValue(1.0));
+  EXPECT_EQ(live.wishes.front(), nullptr);
+}
+
+TEST(LiveSettings, TakeTheLastOfQuickChoicesWithThoseBefore) {
+  Live live;
+  ASSERT_TRUE(live.settings.set({"track", std::string("oval")}));
+  ASSERT_TRUE(live.settings.set({"car", std::string("road-car")}));
+  ASSERT_TRUE(live.settings.set({"track", std::string("hairpins")}));
+  EXPECT_EQ(live.building, "car = road-car, track = hairpins");
+  ASSERT_EQ(live.started.size(), 3U);
+  const ChosenRun& last = live.started.back();
+  EXPECT_EQ(last.scenario.track, "hairpins");
+  EXPECT_EQ(last.scenario.car, "road-car");
+  ASSERT_EQ(last.choices.size(), 2U);
+  EXPECT_EQ(last.choices[1].value.view(), "hairpins");
+  live.end_of_build();
+  const telemetry::Change change = live.next();  // one run begins, not three
+  EXPECT_EQ(change.name.view(), "track");
+  EXPECT_EQ(change.value.view(), "hairpins");
+  EXPECT_TRUE(change.starts_anew);
+  EXPECT_EQ(live.wishes.front(), nullptr);
+  EXPECT_EQ(live.settings.scenario().car, "road-car");
+}
+
+TEST(LiveSettings, CountForBothRunsWhileOneIsBuilt) {
+  Live live;
+  ASSERT_TRUE(live.settings.set({"track", std::string("oval")}));
+  ASSERT_TRUE(live.settings.set({"latency_ms", 40.0}));
+  ASSERT_TRUE(live.settings.set({"latency_ms", 50.0}));
+  EXPECT_EQ(live.next().value.view(), "40");  // the run that goes on
+  EXPECT_EQ(live.next().value.view(), "50");
+  EXPECT_EQ(live.wishes.front(), nullptr);
+  EXPECT_EQ(live.accepted.track, "lakeside");
+  EXPECT_EQ(live.accepted.latency, 0.05);
+  live.end_of_build();
+  EXPECT_TRUE(live.next().starts_anew);
+  const telemetry::Change again = live.next();  // what was built did not know of it
+  EXPECT_EQ(again.name.view(), "latency_ms");
+  EXPECT_EQ(again.value.view(), "50");
+  EXPECT_FALSE(again.starts_anew);
+  EXPECT_EQ(live.wishes.front(), nullptr);
+  EXPECT_EQ(live.settings.scenario().latency, 0.05);
+  live.settings.tell({.name = "track", .value = "oval", .starts_anew = true});
+  EXPECT_EQ(live.settings.applied().size(), 1U);
+  EXPECT_EQ(live.accepted.track, "oval");  // and its description hears of it
+  EXPECT_EQ(live.accepted.latency, 0.05);
+}
+
+TEST(LiveSettings, WaitWithARunThatIsReadyUntilTheQueueHasRoom) {
+  Live live;
+  ASSERT_TRUE(live.settings.set({"track", std::string("oval")}));
+  for (std::uint64_t i = 0; i < ChangeQueue::kCapacity; ++i)
+    ASSERT_TRUE(live.settings.set({"manual.steer", 0.001 * static_cast<double>(i)}));
+  live.end_of_build();
+  EXPECT_EQ(live.settings.scenario().track, "lakeside");
+  for (std::uint64_t i = 0; i < ChangeQueue::kCapacity; ++i) live.next();
+  static_cast<void>(live.settings.complaints());
+  EXPECT_TRUE(live.next().starts_anew);
+  EXPECT_EQ(live.settings.scenario().track, "oval");
 }
 
 TEST(LiveSettings, OfferControllerAndVehicleOnlyForAnExternalSimulator) {

@@ -18,7 +18,8 @@ constexpr double kSpeed = 12.0;
 constexpr double kLapTime = kTwoPi * kRadius / kSpeed;
 constexpr double kPeriod = 0.12;  // of telemetry with the original's latency [s]
 
-/// Circle about the origin, counter-clockwise, s = 0 at (kRadius, 0), 5 m to the left edge and 4 m to the right.
+/// Circle about the origin, counter-clockwise, s = 0 at (kRadius, 0), 5 m to the left edge and 4 m to the
+/// right.
 path::Track circle() {
   std::vector<path::TrackPoint> points;
   for (int i = 0; i < 120; ++i) {

@@ -306,8 +306,50 @@ class Store : public protocol::foxglove::ParameterStore {
     a = *value;
     return {};
   }
+  std::vector<std::string> complaints() override { return std::exchange(sentences, {}); }
   double a = 1.0;
+  std::vector<std::string> sentences;
 };
+
+TEST_F(Viewer, IsToldWhatFailedAfterItWasAcceptedWhoeverAsked) {
+  Store store;
+  ViewerOptions options;
+  options.parameters = &store;
+  start(std::move(options));
+  endpoint->on_open(2);
+  server.pass_time();
+  server.take();
+  store.sentences = {"no run with a = 2"};
+  server.pass_time();
+  const auto messages = server.take();
+  ASSERT_EQ(messages.size(), 2U);
+  for (const FakeServer::Sent& message : messages) {
+    const json status = json::parse(*message.bytes);
+    EXPECT_EQ(status["op"], "status");
+    EXPECT_EQ(status["message"], "no run with a = 2");
+  }
+  server.pass_time();
+  EXPECT_TRUE(server.take().empty());
+}
+
+TEST_F(Viewer, SeesAnotherRunPausedAndBuildingAsTheOneBeforeWas) {
+  start({});
+  say(subscribe(1, "/chicane/run"));
+  endpoint->set_paused(true);
+  endpoint->change_run([](protocol::Run& run) { run.building = "track = oval"; });
+  server.pass_time();
+  server.take();
+  protocol::Run next;
+  next.track = "hairpins";
+  endpoint->set_run(next);
+  server.pass_time();
+  const auto messages = server.take();
+  ASSERT_EQ(messages.size(), 1U);
+  next.is_paused = true;
+  next.building = "track = oval";
+  const protocol::RosTopic& topic = protocol::ros_topics()[channel_of("/chicane/run")];
+  EXPECT_EQ(messages[0].bytes->substr(1 + 4 + 8), topic.encode({}, next));
+}
 
 TEST_F(Viewer, SetsParametersAndOthersSeeIt) {
   Store store;

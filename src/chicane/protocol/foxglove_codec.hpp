@@ -35,6 +35,8 @@ class ParameterStore {
   [[nodiscard]] virtual Result<void> set(const Parameter& parameter) = 0;
   /// What has another value than at the last call, whoever changed it.
   [[nodiscard]] virtual std::vector<Parameter> news() { return {}; }
+  /// Sentences for all operators since the last call: what was accepted and failed afterwards.
+  [[nodiscard]] virtual std::vector<std::string> complaints() { return {}; }
   /// The changes that the run has taken up since the last call.
   [[nodiscard]] virtual std::vector<telemetry::Change> applied() { return {}; }
 };

@@ -76,7 +76,7 @@ std::string to_json(const RunSummary& run) {
   Json laps = Json::array();
   for (const LapSummary& lap : run.laps) laps.push_back(to_object(lap));
   const Json report{
-      {"track", run.track},
+      {"track", run.track.empty() ? Json(nullptr) : Json(run.track)},
       {"car", run.car},
       {"controller", run.controller},
       {"preset", run.preset},
@@ -105,8 +105,9 @@ std::string to_json(const RunSummary& run) {
 }
 
 std::string to_table(const RunSummary& run) {
-  std::string text = fmt::format("{} on {}, {} ({}), {:g} ms latency, seed {}\n", run.car, run.track,
-                                 run.preset, run.controller, 1e3 * run.latency, run.seed);
+  std::string text = fmt::format("{} on {}, {} ({}), {:g} ms latency, seed {}\n", run.car,
+                                 run.track.empty() ? "an unknown road" : run.track, run.preset,
+                                 run.controller, 1e3 * run.latency, run.seed);
   text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>20}\n", "lap", "time", "mean",
                       "top", "error rms", "error max", "to edge", "lateral", "sectors");
   text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>20}\n", "", "s", "mph", "mph", "m",

@@ -186,6 +186,7 @@ std::string encode_run(const Frame&, const Run& run) {
       .texts(run.constraints)
       .texts(run.faults)
       .put(run.kerb_width)
+      .text(run.building)
       .bytes();
 }
 

@@ -45,6 +45,7 @@ struct Run {
   double kerb_width = 0.0;            ///< [m]
   RoadLines road;
   lap_time::LimitAnswer limit{};
+  std::string building{};  ///< another run that is being built, in words: "track = oval"; empty: none
 };
 
 /// What a controller says about itself, copied into a run.

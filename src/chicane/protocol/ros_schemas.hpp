@@ -184,6 +184,7 @@ string[] cost_term_names                # of Frame.cost_terms
 string[] constraint_names               # of the bits of Frame.active_now and active_ahead, from the lowest
 string[] fault_names                    # of the bits of Frame.active_faults
 float64 kerb_width_m                    # drivable, outside each edge
+string building                         # another run that is being built: "track = oval"; empty: none
 )"},
     RosDefinition{"chicane_msgs/Lap", R"(# One completed lap, sent when it is.
 uint32 lap                              # its number, from 1

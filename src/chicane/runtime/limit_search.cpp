@@ -25,8 +25,9 @@ model::VehicleParams limit_vehicle(const scenario::Scenario& scenario) {
 }
 
 LimitSearch::LimitSearch(path::Track track, const scenario::Scenario& scenario, OnEnd on_end)
-    : on_end_{std::move(on_end)},
-      thread_{[this, track = std::move(track), car = limit_vehicle(scenario)] { work(track, car); }} {}
+    : on_end_{std::move(on_end)}, thread_{[this, track = std::move(track), car = limit_vehicle(scenario)] {
+        work(track, car);
+      }} {}
 
 LimitSearch::~LimitSearch() {
   cancel();

@@ -85,6 +85,21 @@ Result<Value> inside(const protocol::Parameter& row, const foxglove::ParameterVa
   return refuse(row.key, value, protocol::expectation(row));
 }
 
+Result<void> validated(const scenario::Scenario& scenario) {
+  if (Result<void> valid = model::validate(scenario.vehicle); !valid) return valid;
+  for (const protocol::Contradiction& found : protocol::contradictions(scenario))
+    return fail(ErrorCode::kInvalidArgument, fmt::format("{}: {}", found.key, found.message));
+  return {};
+}
+
+/// "track = oval, car = road-car"
+std::string words(const std::vector<telemetry::Change>& choices) {
+  std::string text;
+  for (const telemetry::Change& choice : choices)
+    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", choice.name.view(), choice.value.view());
+  return text;
+}
+
 }  // namespace
 
 LiveSettings::LiveSettings(LiveSettingsOptions options, ChangeQueue& wishes)
@@ -98,7 +113,7 @@ LiveSettings::LiveSettings(LiveSettingsOptions options, ChangeQueue& wishes)
 }
 
 bool LiveSettings::is_offered(const protocol::Parameter& row) const {
-  if (!protocol::is_live(row) && !options_.start_anew) return false;
+  if (!protocol::is_live(row) && !options_.build) return false;
   return options_.has_world || row.key.starts_with("vehicle.") ||
          row.key.starts_with(group_of(scenario_.controller));
 }
@@ -106,7 +121,7 @@ bool LiveSettings::is_offered(const protocol::Parameter& row) const {
 std::vector<foxglove::Parameter> LiveSettings::list() const {
   std::vector<foxglove::Parameter> all;
   for (const protocol::Parameter& row : protocol::list()) {
-    if (is_offered(row)) all.push_back({std::string(row.key), outside(protocol::get(scenario_, row))});
+    if (is_offered(row)) all.push_back({std::string(row.key), outside(protocol::get(shown_scenario(), row))});
   }
   for (const Control& control : controls_) {
     all.push_back({std::string(control.key), outside(control_values_.find(control.key)->second)});
@@ -119,7 +134,7 @@ std::optional<foxglove::Parameter> LiveSettings::get(std::string_view name) cons
     return foxglove::Parameter{std::string(name), outside(value->second)};
   const protocol::Parameter* row = protocol::find(name);
   if (row == nullptr || !is_offered(*row)) return std::nullopt;
-  return foxglove::Parameter{std::string(name), outside(protocol::get(scenario_, *row))};
+  return foxglove::Parameter{std::string(name), outside(protocol::get(shown_scenario(), *row))};
 }
 
 Result<void> LiveSettings::set(const foxglove::Parameter& parameter) {
@@ -165,20 +180,32 @@ Result<void> LiveSettings::set_control(const Control& control, const foxglove::P
 Result<void> LiveSettings::set_row(const protocol::Parameter& row, const foxglove::ParameterValue& value) {
   const Result<Value> wanted = inside(row, value);
   if (!wanted) return fail(wanted.error());
-  scenario::Scenario changed = scenario_;
+  scenario::Scenario changed = shown_scenario();
   if (Result<void> done = protocol::set(changed, row, *wanted); !done) return done;
   const std::string text = protocol::get_text(changed, row);
-  if (text == protocol::get_text(scenario_, row)) return {};
+  if (text == protocol::get_text(shown_scenario(), row)) return {};
   // The control thread reads the text: what is checked here is what it reads.
   if (Result<void> done = protocol::set_text(changed, row.key, text); !done) return done;
   if (!protocol::is_live(row)) return start_anew(row.key, text, std::move(changed));
-  if (Result<void> valid = model::validate(changed.vehicle); !valid) return valid;
-  for (const protocol::Contradiction& found : protocol::contradictions(changed))
-    return fail(ErrorCode::kInvalidArgument, fmt::format("{}: {}", found.key, found.message));
-  if (Result<void> sent = send(row.key, text, false); !sent) return sent;
-  scenario_ = std::move(changed);
+  if (Result<void> valid = validated(changed); !valid) return valid;
+  if (Result<void> sent = change_live(row, text); !sent) return sent;
+  if (building_) {
+    building_->run.scenario = std::move(changed);
+    building_->later[std::string(row.key)] = text;
+  }
   has_news_ = true;
   if (options_.on_accepted) options_.on_accepted(scenario_);
+  return {};
+}
+
+/// Of the run that goes on. What only the one that is being built can take waits for it.
+Result<void> LiveSettings::change_live(const protocol::Parameter& row, const std::string& text) {
+  scenario::Scenario changed = scenario_;
+  if (Result<void> done = protocol::set_text(changed, row.key, text); !done) return done;
+  if (text == protocol::get_text(scenario_, row)) return {};
+  if (Result<void> valid = validated(changed); !valid) return building_ ? Result<void>{} : valid;
+  if (Result<void> sent = send(row.key, text, false); !sent) return sent;
+  scenario_ = std::move(changed);
   return {};
 }
 
@@ -205,16 +232,43 @@ Result<void> LiveSettings::start_anew(std::string_view key, const std::string& v
     changed.vehicle = base->vehicle;
     changed.plant = base->plant;
   }
-  for (const protocol::Contradiction& found : protocol::contradictions(changed))
-    return fail(ErrorCode::kInvalidArgument, fmt::format("{}: {}", found.key, found.message));
-  if (Result<void> built = options_.start_anew(changed); !built) return built;
-  static_cast<void>(send(key, value, true));
-  scenario_ = std::move(changed);
-  base_ = *base;
-  hand_over_controls();
+  if (Result<void> valid = validated(changed); !valid) return valid;
+  ChosenRun run{.scenario = std::move(changed)};
+  if (building_) run.choices = std::move(building_->run.choices);
+  std::erase_if(run.choices, [&](const telemetry::Change& each) { return each.name.view() == key; });
+  run.choices.push_back({.name = key, .value = value, .starts_anew = true});
+  options_.build(run);
+  if (options_.on_building) options_.on_building(words(run.choices));
+  building_ = Building{.run = std::move(run), .base = *base, .later = {}};
   has_news_ = true;
-  if (options_.on_accepted) options_.on_accepted(scenario_);
   return {};
+}
+
+std::vector<std::string> LiveSettings::complaints() {
+  const bool has_room =
+      building_ && wishes_.room() >= 1 + building_->later.size() + controls_.size();  // else the next time
+  const auto built = has_room ? options_.built() : std::nullopt;
+  if (!built) return {};
+  Building building = std::move(*building_);
+  building_.reset();
+  has_news_ = true;
+  if (options_.on_building) options_.on_building("");
+  if (!*built) {
+    return {fmt::format("no run with {}: {}; the one before goes on", words(building.run.choices),
+                        built->error().message)};
+  }
+  hand_over(std::move(building));
+  return {};
+}
+
+/// The run that was built is the next one; what was changed meanwhile follows it.
+void LiveSettings::hand_over(Building building) {
+  const telemetry::Change& last = building.run.choices.back();
+  static_cast<void>(send(last.name.view(), last.value.view(), true));
+  for (const auto& [key, text] : building.later) static_cast<void>(send(key, text, false));
+  scenario_ = std::move(building.run.scenario);
+  base_ = std::move(building.base);
+  hand_over_controls();
 }
 
 /// The run that starts anew knows nothing of pace and hands; faults end with the old one.
@@ -242,6 +296,8 @@ std::vector<telemetry::Change> LiveSettings::applied() {
       value->second = change->value.view() == "true";
       has_news_ = true;
     }
+    // Its description is from when it was built.
+    if (change->starts_anew && options_.on_accepted) options_.on_accepted(scenario_);
     changes.push_back(*change);
     told_.pop();
   }

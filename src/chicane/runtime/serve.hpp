@@ -57,7 +57,7 @@ struct ServeHooks {
   std::function<void(std::string_view)> log{};  ///< one line about the connection, on the network thread
   std::function<void(std::uint16_t port)> on_listening{};  ///< once, when the port is ours
   std::function<void()> on_end{};  ///< once: control has ended, the server still stands
-  Pages pages = live_pages();                              ///< answered to GET, beside the assets
+  Pages pages = live_pages();      ///< answered to GET, beside the assets
 };
 
 /// What has been served so far.
@@ -69,7 +69,8 @@ struct ServeSummary {
   std::uint64_t refusals = 0;       ///< simulators that came while another one drove
   std::uint64_t interventions = 0;  ///< commands that the gate had to change
   double delay = 0.0;               ///< last measured, telemetry to actuation [s]
-  telemetry::RunSummary run{};      ///< of the simulator that drove last; empty until the control thread has ended
+  telemetry::RunSummary
+      run{};  ///< of the simulator that drove last; empty until the control thread has ended
 };
 
 /// The original controller program's place: answers every telemetry of one simulator with exactly one

@@ -82,7 +82,9 @@ void ViewerEndpoint::offer(std::string_view name, std::string_view type,
 
 void ViewerEndpoint::set_run(protocol::Run run) {
   on_network([this, run = std::move(run)] {
-    options_.run = run;
+    const protocol::Run before = std::exchange(options_.run, run);
+    options_.run.building = before.building;
+    options_.run.is_paused = before.is_paused;
     send_cadence(Cadence::kRun);
     send_cadence(Cadence::kRoad);
     send_cadence(Cadence::kLimit);
@@ -151,6 +153,9 @@ void ViewerEndpoint::tell_changes() {
       server_->send(
           id, foxglove::message_data(wanted->second, protocol::to_nanoseconds(change.time), payload), true);
     }
+  }
+  for (const std::string& sentence : options_.parameters->complaints()) {
+    for (const auto& [id, client] : clients_) warn(id, sentence);
   }
   send_parameters(options_.parameters->news());
 }

@@ -47,7 +47,8 @@ class ViewerEndpoint final : public Endpoint {
 
   /// One thread, the control thread: neither waits nor allocates.
   void publish(const telemetry::Frame& frame) noexcept { latest_.put(frame); }
-  /// Another track, car or controller from now on. Any thread, but not while on_start runs.
+  /// Another track, car or controller from now on; Run::building and is_paused stay as they are. Any thread,
+  /// but not while on_start runs.
   void set_run(protocol::Run run);
   /// There are news of the run's limit. Any thread, but not while on_start runs.
   void set_limit(lap_time::LimitAnswer answer);

@@ -12,7 +12,7 @@ namespace chicane::sim {
 
 namespace {
 
-constexpr double kSearch = 6.0;             // reach of a local projection [m]
+constexpr double kSearch = 6.0;           // reach of a local projection [m]
 constexpr double kLost = 8.0;             // farther off the road than this: look for the line everywhere [m]
 constexpr int kLostPatience = 10;         // sightings between such looks
 constexpr double kCoveredShare = 0.95;    // of the line that a lap has to cover
@@ -22,8 +22,7 @@ constexpr double kBackOnTrackTime = 0.2;  // ... once held so long [s]
 }  // namespace
 
 Judge::Judge(const path::Track& track) noexcept
-    : track_{track},
-      lap_length_{track.length() - (track.centre().is_closed() ? 0.0 : track.start_s())} {}
+    : track_{track}, lap_length_{track.length() - (track.centre().is_closed() ? 0.0 : track.start_s())} {}
 
 void Judge::reset(double time, const Sighting& car) noexcept {
   covered_ = off_track_at_lap_start_ = back_on_track_ = 0.0;

@@ -89,7 +89,8 @@ void Metrics::add(const Frame& frame) noexcept {
       if (!frame.has_truth) stretch->add(elapsed, frame.measurement.speed, frame.lateral_error);
     }
   }
-  if (!frame.has_truth && frame.is_judged) judge(cycles_ > 0 ? std::max(elapsed, 0.0) : 0.0, frame.edge_distance, frame.is_off_track);
+  if (!frame.has_truth && frame.is_judged)
+    judge(cycles_ > 0 ? std::max(elapsed, 0.0) : 0.0, frame.edge_distance, frame.is_off_track);
   last_time_ = frame.time;
   last_steer_ = steer;
 

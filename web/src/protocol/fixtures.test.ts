@@ -113,6 +113,7 @@ describe('messages of the C++ side', () => {
       constraint_names: ['steer_limit', 'throttle_max'],
       fault_names: ['link_lost', 'half_grip'],
       kerb_width_m: 0.75,
+      building: 'track = oval',
     });
   });
 

@@ -108,6 +108,8 @@ export interface Run {
   constraint_names: string[];
   fault_names: string[];
   kerb_width_m: number;
+  /** Another run that is being built, in words; empty: none. */
+  building: string;
 }
 
 /** chicane_msgs/msg/Lap: one completed lap */
@@ -137,6 +139,8 @@ export interface Limit {
   longitudinal_acceleration_mps2: Float64Array;
   lateral_acceleration_mps2: Float64Array;
   time_s: Float64Array;
+  /** In one sentence, while it is not known; older programs do not tell. */
+  why_not?: string;
 }
 
 /** chicane_msgs/msg/Change: a setting that changed during the run */

@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import type { Frame, Lap, Path, Plan, Run } from '../protocol/topics';
-import { beginSession, bestLap, forget, isPaused, laps, link, live, receive, refreshText, run, shown, silence } from './app_state';
+import type { Frame, Lap, Limit, Path, Plan, Run } from '../protocol/topics';
+import { beginSession, bestLap, forget, isPaused, laps, limit, link, live, receive, refreshText, run, shown, silence, whyNoLimit } from './app_state';
 import { Column, COST_TERMS, costColumn } from './columns';
 
 const frame = (change: Partial<Frame>): Frame =>
@@ -32,6 +32,18 @@ describe('app state', () => {
     expect(live.plots.newest(costColumn(0))).toBeNaN();
     receive('/chicane/run', {} as Run, 0);
     expect(run.value).toMatchObject({ constraint_names: [], mode: '' });
+  });
+
+  it('says why there is no limit until there is one, and forgets it with the run', () => {
+    receive('/chicane/limit', { is_known: false, why_not: 'the road is open' } as Limit, 0);
+    expect([limit.value, whyNoLimit.value]).toEqual([null, 'the road is open']);
+    receive('/chicane/limit', { is_known: true, lap_time_s: 20, why_not: '' } as Limit, 0);
+    expect([limit.value?.lap_time_s, whyNoLimit.value]).toEqual([20, '']);
+    receive('/chicane/limit', { is_known: false } as Limit, 0); // an older program
+    expect([limit.value, whyNoLimit.value]).toEqual([null, '']);
+    receive('/chicane/limit', { is_known: false, why_not: 'nobody told' } as Limit, 0);
+    beginSession();
+    expect(whyNoLimit.value).toBe('');
   });
 
   it('stacks the terms of the cost, the last layer taking what is too many', () => {

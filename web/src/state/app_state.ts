@@ -23,6 +23,8 @@ export const bestLap = signal(NaN);
 export const laps = signal<readonly Lap[]>([]);
 /** The fastest lap possible on this road with this car; null while nobody has told. */
 export const limit = signal<Limit | null>(null);
+/** Why nobody has, in one sentence; empty while that is not told either. */
+export const whyNoLimit = signal('');
 /** Whole seconds since the last frame of a run that is not paused. */
 export const silence = signal(0);
 /** The last sentence from the server; null when read. */
@@ -89,6 +91,7 @@ export function forget(): void {
 export function beginSession(): void {
   forget();
   limit.value = null;
+  whyNoLimit.value = '';
   live.frame = null;
   shown.value = null;
 }
@@ -170,6 +173,7 @@ export function receive<T extends TopicName>(topic: T, message: Topics[T], now: 
       return receiveLap(message as Lap);
     case '/chicane/limit':
       limit.value = (message as Limit).is_known ? (message as Limit) : null;
+      whyNoLimit.value = limit.value ? '' : ((message as Limit).why_not ?? '');
       return;
     case '/chicane/change':
       return noteChange(message as Change);

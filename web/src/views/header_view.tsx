@@ -26,6 +26,11 @@ function Marks() {
   const pace = frame?.pace ?? NaN;
   return (
     <>
+      {(run.value?.building ?? '') !== '' && (
+        <p class="pill accent" data-testid="building">
+          Next: {run.value?.building} …
+        </p>
+      )}
       {frame?.is_manual && <p class="pill accent">By hand</p>}
       {(frame?.active_faults ?? 0) !== 0 && <p class="pill bad">Fault</p>}
       {Number.isFinite(pace) && Math.abs(pace - 1) > 1e-6 && <p class="pill">{tidy(pace)}× speed</p>}

@@ -3,7 +3,7 @@ import { download, downloadPng, fileName } from '../lib/download';
 import { fixed, lapTime, UNKNOWN } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import type { Lap, Limit } from '../protocol/topics';
-import { bestLap, laps, limit, live, run } from '../state/app_state';
+import { bestLap, laps, limit, live, run, whyNoLimit } from '../state/app_state';
 import { bestsOf, lapSamplesCsv, lapsCsv, type LapBests } from '../state/lap_table';
 import { gapsToLimit } from '../state/limit';
 import { everyFrame } from '../state/ticker';
@@ -158,6 +158,11 @@ export function LapsView() {
   return (
     <div class="laps">
       <Toolbar pair={pair} />
+      {whyNoLimit.value !== '' && (
+        <p class="soft" data-testid="no-limit">
+          No gap to the limit: {whyNoLimit.value}.
+        </p>
+      )}
       {all.length === 0 ? (
         <p class="empty">{Number.isFinite(bestLap.value) ? `Last lap ${lapTime(bestLap.value)}; this run does not tell of laps.` : 'No lap is completed yet.'}</p>
       ) : (
