@@ -70,8 +70,12 @@ function play(canvas: HTMLCanvasElement): () => void {
       });
       ends.push(listenToPointers(canvas));
       ends.push(onThemeChange(() => stage.repaint()));
-      ends.push(everyFrame((now) => stage.paint(now, viewNow())));
-      isReady.value = true;
+      ends.push(
+        everyFrame((now) => {
+          stage.paint(now, viewNow());
+          if (stage.hasPicture && !isReady.value) isReady.value = true; // until then the map fills the place
+        }),
+      );
     },
     () => give('The 3D picture could not be loaded, so the track is drawn flat. Choose 3D to try again.'),
   );

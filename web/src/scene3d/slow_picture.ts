@@ -34,6 +34,19 @@ export class SlowPicture {
     return this.#time.isFree(now);
   }
 
+  /** Begins to compile what a picture needs. */
+  compile(scene: Scene, camera: Camera, now: number): void {
+    this.#renderer.setRenderTarget(this.#target); // shaders differ by where they draw
+    this.#renderer.compile(scene, camera);
+    this.#renderer.setRenderTarget(null);
+    this.#time.begin(now);
+  }
+
+  /** True once: it is compiled. To be called at every repaint until then. */
+  isCompiled(now: number): boolean {
+    return this.#time.isDrawn(now);
+  }
+
   /** Begins to draw a picture of this size. */
   draw(scene: Scene, camera: Camera, width: number, height: number, now: number): void {
     if (this.#target.width !== width || this.#target.height !== height) this.#resize(width, height);
@@ -59,9 +72,9 @@ export class SlowPicture {
     this.#renderer.state.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
-  /** Puts the picture on the canvas if it is finished. To be called at every repaint. */
-  show(now: number): void {
-    if (!this.#time.isDrawn(now)) return;
+  /** Puts the picture on the canvas if it is finished, and tells whether it was. To be called at every repaint. */
+  show(now: number): boolean {
+    if (!this.#time.isDrawn(now)) return false;
     const gl = this.#gl;
     const { width, height } = this.#target;
     if (gl.canvas.width !== width || gl.canvas.height !== height) this.#renderer.setSize(width, height, false);
@@ -69,6 +82,7 @@ export class SlowPicture {
     this.#renderer.state.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
     gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
     this.#renderer.state.bindFramebuffer(gl.READ_FRAMEBUFFER, null);
+    return true;
   }
 
   dispose(): void {

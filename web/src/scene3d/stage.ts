@@ -80,12 +80,15 @@ export class Stage {
   #lastChange = 0;
   #changeKey = '';
   #wasCamera: CameraName | null = null;
+  #shaders: 'none' | 'asked for' | 'there' = 'none';
+  #hasPicture = false;
 
   /** `isSoftware`: drawn by the processor, so smooth only when cheap. Throws where the browser gives no WebGL 2. */
   constructor(canvas: HTMLCanvasElement, session: Session, isSoftware: boolean) {
     this.#canvas = canvas;
     this.#renderer = new WebGLRenderer({ canvas, antialias: !isSoftware, preserveDrawingBuffer: isSoftware });
     this.#renderer.outputColorSpace = SRGBColorSpace;
+    this.#renderer.debug.checkShaderErrors = false; // the shaders are the library's own, and to ask waits for whoever compiles
     this.#governor = new QualityGovernor(isSoftware);
     this.#slow = isSoftware ? new SlowPicture(this.#renderer) : null;
     const anisotropy = Math.min(isSoftware ? 1 : 8, this.#renderer.capabilities.getMaxAnisotropy());
@@ -106,6 +109,11 @@ export class Stage {
     this.repaint();
   }
 
+  /** Whether there is something to see on the canvas. */
+  get hasPicture(): boolean {
+    return this.#hasPicture;
+  }
+
   /** The page turned light or dark. */
   repaint(): void {
     this.#palette = palette();
@@ -115,7 +123,7 @@ export class Stage {
     this.#sun.color = new Color(isDark ? '#b9cdf5' : '#fff3df');
     this.#skyLight.color = new Color().setRGB(...zenith).lerp(new Color('#ffffff'), isDark ? 0.25 : 0.6);
     this.#skyLight.groundColor = new Color().setRGB(...ground);
-    this.#skyLight.intensity = sky;
+    this.#skyLight.intensity = this.#slow ? 1.25 * sky : sky; // instead of what is mirrored
     this.#trace.paint(this.#palette.trace);
     this.#marks.paint(this.#palette.rubber);
     this.#brakes.paint([0.75, 0.03, 0.02]);
@@ -131,8 +139,9 @@ export class Stage {
     this.#lastChange = performance.now();
   }
 
-  /** The paint of the car mirrors this sky. */
+  /** The paint of the car mirrors this sky. Not where the processor draws: to blur the sky for it took five to eight seconds there. */
   #reflectSky(): void {
+    if (this.#slow) return;
     this.#environment?.dispose();
     const generator = new PMREMGenerator(this.#renderer);
     const empty = new Scene();
@@ -149,7 +158,8 @@ export class Stage {
   paint(now: number, view: View): void {
     const { clientWidth: width, clientHeight: height } = this.#canvas;
     if (width === 0 || height === 0 || this.#renderer.getContext().isContextLost()) return;
-    this.#slow?.show(now);
+    if (this.#shaders !== 'there') return this.#compile(now, view);
+    if (this.#slow?.show(now)) this.#hasPicture = true;
     const gap = now - this.#lastPicture;
     if (gap < this.#governor.quality.interval - 4 || this.#slow?.isFree(now) === false) return;
     const motion = view.session.playout.advance(now, view.isHeld);
@@ -165,6 +175,26 @@ export class Stage {
     if (this.#governor.picture(gap, performance.now() - begin)) this.#lastChange = now;
   }
 
+  /** Shaders are compiled beside the page; to draw before they are there would be to wait for them. */
+  #compile(now: number, view: View): void {
+    if (this.#shaders === 'asked for') {
+      if (this.#slow?.isCompiled(now)) this.#begin();
+      return;
+    }
+    if (!view.run) return; // the car's shaders are not known
+    this.#shaders = 'asked for';
+    this.#renew(view);
+    this.#setShadow();
+    if (this.#slow) this.#slow.compile(this.#scene, this.#camera, now);
+    else if (this.#renderer.extensions.has('KHR_parallel_shader_compile')) void this.#renderer.compileAsync(this.#scene, this.#camera).then(() => this.#begin());
+    else this.#begin();
+  }
+
+  #begin(): void {
+    this.#shaders = 'there';
+    this.#lastChange = performance.now();
+  }
+
   #isWorth(now: number, view: View, motion: Motion | null, width: number, height: number): boolean {
     const { orbit } = view;
     const key = [motion?.time, motion?.x, motion?.yaw, view.camera, orbit.azimuth, orbit.elevation, orbit.zoom, width, height, view.roadVersion, view.hindsight === null, view.racingLine === null].join();
@@ -176,14 +206,18 @@ export class Stage {
   }
 
   #draw(width: number, height: number, now: number): void {
-    const { pixelRatio, hasShadow } = this.#governor.quality;
+    const { pixelRatio } = this.#governor.quality;
     const ratio = Math.min(devicePixelRatio, pixelRatio);
     const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
-    this.#sun.castShadow = hasShadow;
-    this.#renderer.shadowMap.enabled = hasShadow;
+    this.#setShadow();
     if (this.#slow) return this.#slow.draw(this.#scene, this.#camera, w, h, now);
     if (this.#canvas.width !== w || this.#canvas.height !== h) this.#renderer.setSize(w, h, false);
     this.#renderer.render(this.#scene, this.#camera);
+    this.#hasPicture = true;
+  }
+
+  #setShadow(): void {
+    this.#sun.castShadow = this.#renderer.shadowMap.enabled = this.#governor.quality.hasShadow;
   }
 
   /** Builds what changes rarely: car, road, lines. */

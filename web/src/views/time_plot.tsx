@@ -56,9 +56,19 @@ function dataOf(spec: PlotSpec): Float64Array[] {
   return [part(Column.time), ...spec.series.map(({ column, factor = 1 }) => (factor === 1 ? part(column) : part(column).map((value) => value * factor)))];
 }
 
+const GAP_S = 1; // nothing was heard for so long: what was between nobody knows, so no line is drawn
+
+/** Where lines are interrupted, as pairs of pixels of the canvas. */
+function gapsOf(plot: uPlot, _series: number, first: number, last: number, found: uPlot.Series.Gaps): uPlot.Series.Gaps {
+  const times = plot.data[0];
+  const pixel = (i: number): number => Math.round(plot.valToPos(times[i] ?? NaN, 'x', true));
+  for (let i = first + 1; i <= last; ++i) if ((times[i] ?? NaN) - (times[i - 1] ?? NaN) > GAP_S) found.push([pixel(i - 1), pixel(i)]);
+  return found;
+}
+
 function seriesOptions({ label, colour, isDashed, isFilled }: Series, colours: ChartColours): uPlot.Series {
   const stroke = colours.series[colour] ?? colours.text;
-  return { label, stroke, width: isFilled ? 1 : 1.75, dash: isDashed ? [5, 4] : [], points: { show: false } };
+  return { label, stroke, width: isFilled ? 1 : 1.75, dash: isDashed ? [5, 4] : [], points: { show: false }, gaps: gapsOf };
 }
 
 function optionsOf(spec: PlotSpec, colours: ChartColours): uPlot.Options {
