@@ -46,5 +46,7 @@ describe('words', () => {
     expect(worstInWords({ ...frame, violation: NaN }, [])).toBeNull();
     expect(worstInWords({ ...frame, worst_constraint: -1 }, [])).toBeNull();
     expect(nameInWords('front_slip')).toBe('front slip');
+    expect(nameInWords('tracking_mpc')).toBe('tracking MPC');
+    expect(nameInWords('nan_measurement')).toBe('NaN measurement');
   });
 });

@@ -71,8 +71,13 @@ export const LIMITERS: readonly { readonly title: string; readonly why: string; 
 
 export const limiterInWords = (limiter: number): (typeof LIMITERS)[number] => LIMITERS[limiter] ?? { title: `Limit ${limiter}`, why: 'This page does not know this limit.', short: `${limiter}` };
 
-/** snake_case to words. */
-export const nameInWords = (name: string): string => name.replace(/[_.-]+/g, ' ').trim();
+/** snake_case to words, abbreviations as people write them. */
+export const nameInWords = (name: string): string =>
+  name
+    .replace(/[_.-]+/g, ' ')
+    .trim()
+    .replace(/\b(mpc|pid|gps)\b/g, (short) => short.toUpperCase())
+    .replace(/\bnan\b/g, 'NaN');
 
 /** The constraint that is violated most in an answer; null when all hold to `tolerance`. */
 export function worstInWords(frame: Pick<Frame, 'violation' | 'worst_stage' | 'worst_constraint'>, names: readonly string[], tolerance = 1e-6): string | null {

@@ -1,3 +1,4 @@
+import { lapTime } from '../lib/format';
 import { wrapAngle } from '../lib/math';
 import type { Frame } from '../protocol/topics';
 
@@ -67,8 +68,6 @@ export class RecordedLap implements GhostSource {
   }
 }
 
-const clock = (seconds: number): string => `${Math.floor(seconds / 60)}:${(seconds % 60).toFixed(2).padStart(5, '0')}`;
-
 /** Watches frames go by and keeps the best whole lap, in fixed memory. A lap that left the road is not kept. */
 export class LapRecorder {
   best: RecordedLap | null = null;
@@ -120,6 +119,6 @@ export class LapRecorder {
     const time = frame.last_lap_time_s;
     const isClean = frame.off_track_events === this.#offTrackEvents;
     if (!(time > 0) || !isClean || this.#count < 2 || (this.best && time >= this.best.lapTime)) return;
-    this.best = new RecordedLap(this.#rows.slice(0, this.#count * ROW), time, `best lap ${clock(time)}`);
+    this.best = new RecordedLap(this.#rows.slice(0, this.#count * ROW), time, `best lap ${lapTime(time)}`);
   }
 }

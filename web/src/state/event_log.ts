@@ -1,6 +1,6 @@
 import { signal } from '@preact/signals';
 import { hasBit } from '../lib/bits';
-import { rungInWords, statusInWords, type Mood } from '../lib/words';
+import { nameInWords, rungInWords, statusInWords, type Mood } from '../lib/words';
 import type { Change, Frame } from '../protocol/topics';
 
 /** Something worth a line: when it began, and, once it has ended, how long it took. */
@@ -74,7 +74,7 @@ export function noteEvents(frame: Frame, before: Frame | null): void {
   }
 }
 
-export const faultInWords = (name: string): string => name.replace(/^fault\./, '').replace(/_/g, ' ');
+export const faultInWords = (name: string): string => nameInWords(name.replace(/^fault\./, ''));
 
 export function noteChange({ stamp, name, value }: Change): void {
   if (/^(manual|fault|run)\./.test(name)) return; // told above, or by the page itself

@@ -109,7 +109,7 @@ export function GgView() {
     <section class="plot square" aria-label="Acceleration">
       <header>
         <h2>
-          Acceleration <span class="unit">g · left turns left, braking down</span>
+          Acceleration <span class="unit">g, braking down</span>
         </h2>
         <p>
           <span class="key">

@@ -43,7 +43,6 @@ function LimitRow({ fastest, pair }: { fastest: Limit; pair: readonly [number, n
       <th scope="row">limit</th>
       <td class="time">{lapTime(fastest.lap_time_s)}</td>
       <td>{UNKNOWN}</td>
-      <td>{UNKNOWN}</td>
       {[0, 1, 2].map((sector) => (
         <td key={sector}>{fixed(fastest.sector_times_s[sector] ?? NaN, 2)}</td>
       ))}
@@ -67,9 +66,18 @@ function Row({ lap, bests, pair }: { lap: Lap; bests: LapBests; pair: readonly [
         {isBest && <span class="badge good">best</span>}
         {!lap.is_clean && <span class="badge bad">off road</span>}
       </th>
-      <td class="time">{lapTime(lap.lap_time_s)}</td>
+      <td class="time">
+        {lapTime(lap.lap_time_s)}
+        {Number.isFinite(gaps.lap) && (
+          <>
+            {' '}
+            <small data-testid="gap-to-limit" title="Above the limit of the lap">
+              {percent(gaps.lap)}
+            </small>
+          </>
+        )}
+      </td>
       <td>{gap(lap.lap_time_s - bests.time)}</td>
-      {hasLimit() && <td data-testid="gap-to-limit">{percent(gaps.lap)}</td>}
       {[0, 1, 2].map((sector) => {
         const time = lap.sector_times_s[sector] ?? NaN;
         return (
@@ -102,9 +110,6 @@ function rowsOf(all: readonly Lap[], bests: LapBests): Lap[] {
   const first = showsAll.value ? 0 : all.length - ROWS;
   return all.filter((lap, i) => i >= first || lap.lap === bests.lap).reverse();
 }
-
-/** Whether anything is known of the limit: of this road, or told with a lap. */
-const hasLimit = (): boolean => limit.value !== null || laps.value.some(({ gap_to_limit_percent: told }) => Number.isFinite(told));
 
 /** The pair shown: what was chosen, else the newest against the best, or against the one before it; of those seen whole. */
 function compared(all: readonly Lap[], bests: LapBests): [number, number] {
@@ -170,7 +175,7 @@ export function LapsView() {
           <table class="lap-table">
             <thead>
               <tr>
-                {['Lap', 'Time', 'Gap', ...(hasLimit() ? ['To limit'] : []), 'S 1', 'S 2', 'S 3', `Top ${speedUnit().name}`, 'Edge', 'Error', 'Compare'].map((head) => (
+                {['Lap', 'Time', 'Gap', 'S 1', 'S 2', 'S 3', `Top ${speedUnit().name}`, 'Edge', 'Error', 'Compare'].map((head) => (
                   <th key={head} scope="col">
                     {head}
                   </th>

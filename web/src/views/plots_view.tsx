@@ -79,7 +79,7 @@ const BEFORE_COST: readonly PlotSpec[] = [
 const AFTER_COST: readonly PlotSpec[] = [
   {
     title: 'Iterations',
-    unit: 'with how each solve ended',
+    unit: 'of each solve',
     decimals: 0,
     series: [{ column: Column.iterations, label: 'iterations', colour: APPLIED }],
     range: (columns) => rangeFromZero(columns, 5),
