@@ -82,7 +82,11 @@ export class DashboardPage {
       .locator(selector)
       .first()
       .evaluate((canvas) => {
-        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+        // From a copy: browsers complain of a canvas that is read again and again.
+        const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });
+        const context = copy.getContext('2d', { willReadFrequently: true });
+        context.drawImage(canvas, 0, 0);
+        const { data } = context.getImageData(0, 0, copy.width, copy.height);
         return new Set(new Uint32Array(data.buffer)).size;
       });
   }
