@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { firstSince, rangeAboutZero, rangeFromZero, rangeInSteps, secondsBack } from './axis';
+import { firstSince, rangeAboutZero, rangeFromZero, rangeInSteps, secondsBack, silencesIn } from './axis';
 
 describe('axes', () => {
   it('start at zero and end at a round number', () => {
@@ -31,5 +31,15 @@ describe('axes', () => {
 
   it('count seconds back from now', () => {
     expect(secondsBack(33, 20, 5)).toEqual([13, 18, 23, 28, 33]);
+  });
+
+  it('know where nothing was heard', () => {
+    const times = [0, 0.04, 0.08, 2, 2.04, 9, 9.9];
+    expect(silencesIn(times, 0, 6, 1)).toEqual([
+      [0.08, 2],
+      [2.04, 9],
+    ]);
+    expect(silencesIn(times, 3, 4, 1)).toEqual([]);
+    expect(silencesIn([], 0, 0, 1)).toEqual([]);
   });
 });

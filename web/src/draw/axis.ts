@@ -38,6 +38,16 @@ export function firstSince(times: ArrayLike<number>, since: number): number {
   return low;
 }
 
+/** From when to when nothing was heard for more than `longest`, among the rising times first to last. */
+export function silencesIn(times: ArrayLike<number>, first: number, last: number, longest: number): [number, number][] {
+  const silences: [number, number][] = [];
+  for (let i = first + 1; i <= last; ++i) {
+    const [from, to] = [times[i - 1] ?? NaN, times[i] ?? NaN];
+    if (to - from > longest) silences.push([from, to]);
+  }
+  return silences;
+}
+
 /** The last `seconds` up to `now`, in whole steps back from now: grid lines that stand still while time runs. */
 export const secondsBack = (now: number, seconds: number, step: number): number[] =>
   Array.from({ length: Math.floor(seconds / step) + 1 }, (_, i) => now - seconds + i * step);

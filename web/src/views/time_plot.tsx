@@ -2,7 +2,7 @@ import { effect } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
-import { firstSince, secondsBack } from '../draw/axis';
+import { firstSince, secondsBack, silencesIn } from '../draw/axis';
 import { onThemeChange } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { onScreen } from '../lib/on_screen';
@@ -60,10 +60,9 @@ const GAP_S = 1; // nothing was heard for so long: what was between nobody knows
 
 /** Where lines are interrupted, as pairs of pixels of the canvas. */
 function gapsOf(plot: uPlot, _series: number, first: number, last: number, found: uPlot.Series.Gaps): uPlot.Series.Gaps {
-  const times = plot.data[0];
-  const pixel = (i: number): number => Math.round(plot.valToPos(times[i] ?? NaN, 'x', true));
-  for (let i = first + 1; i <= last; ++i) if ((times[i] ?? NaN) - (times[i - 1] ?? NaN) > GAP_S) found.push([pixel(i - 1), pixel(i)]);
-  return found;
+  const pixel = (time: number): number => Math.round(plot.valToPos(time, 'x', true));
+  const silences = silencesIn(plot.data[0], first, last, GAP_S).map(([from, to]): uPlot.Series.Gap => [pixel(from), pixel(to)]);
+  return [...found, ...silences];
 }
 
 function seriesOptions({ label, colour, isDashed, isFilled }: Series, colours: ChartColours): uPlot.Series {
