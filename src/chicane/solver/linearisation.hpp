@@ -119,10 +119,10 @@ class Linearisation {
   template <class R>
   [[gnu::always_inline]] static void add_end_row(const R& r, double value, Lq& lq) noexcept {
     each_state<R>([&](auto i) __attribute__((always_inline)) {
-      const double slope = Evaluate::slope_number(jet::slope<i>(r));
-      lq.terminal[kNx][i] += value * slope;
+      const double slope_i = Evaluate::slope_number(jet::slope<i>(r));
+      lq.terminal[kNx][i] += value * slope_i;
       each_state<R>([&](auto j) __attribute__((always_inline)) {
-        lq.terminal[i][j] += slope * Evaluate::slope_number(jet::slope<j>(r));
+        lq.terminal[i][j] += slope_i * Evaluate::slope_number(jet::slope<j>(r));
       });
     });
     jet::repeat<R::kSecond.size()>([&](auto n) __attribute__((always_inline)) {

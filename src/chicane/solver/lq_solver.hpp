@@ -359,11 +359,11 @@ class LqSolver {
     Finding finding = Finding::kNone;  ///< and with them
     InputBounds bounds{};
     double u = 0.0;
-    void add(std::size_t k, std::size_t m, Hold hold) noexcept {
+    void add(std::size_t k, std::size_t m, Hold wanted) noexcept {
       ++count;
       stage = k;
       input = m;
-      next = hold;
+      next = wanted;
       finding = Finding::kNone;
     }
   };
