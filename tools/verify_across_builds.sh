@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Records runs with each of several builds of the program and verifies each recording with all builds: compilers and build
-# types compute the same bits.
+# types compute the same bits. The last line counts.
 #
 #   tools/verify_across_builds.sh build/gcc/apps/chicane/chicane build/clang/apps/chicane/chicane ...
 #
-# Exit code 1 when any step of any recording differs in any build.
+# Exit code 1 when any step of any recording differs in any build, or was not computed again.
 set -euo pipefail
 if [ $# -lt 1 ]; then
   sed -n '2,7s/^# \{0,1\}//p' "$0" >&2
@@ -31,14 +31,21 @@ for i in "${!builds[@]}"; do
   done
 done
 
-status=0
+status=0 verifications=0 steps=0 identical=0
 for recorder in "${!builds[@]}"; do
   for verifier in "${!builds[@]}"; do
     for j in "${!runs[@]}"; do
       result=$("${builds[$verifier]}" replay "$folder/$recorder-$j.mcap" --verify) || status=1
       printf '%s, recorded by %s, verified by %s: %s\n' "${runs[$j]}" "${builds[$recorder]}" "${builds[$verifier]}" \
         "$(head -n 1 <<<"$result")"
+      if [[ $result =~ ([0-9]+)\ of\ ([0-9]+)\ commands ]]; then
+        identical=$((identical + BASH_REMATCH[1])) steps=$((steps + BASH_REMATCH[2]))
+      else
+        status=1
+      fi
+      verifications=$((verifications + 1))
     done
   done
 done
+printf '%d builds, %d runs, %d verifications: %d of %d steps identical\n' "${#builds[@]}" "${#runs[@]}" "$verifications" "$identical" "$steps"
 exit $status
