@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
 import { launch } from './browser.mjs';
 import { startDrive, watch } from './chicane_drive.mjs';
-import { DashboardPage, differentFrom } from './dashboard_page.mjs';
+import { DashboardPage, differentFrom, LAPTOP } from './dashboard_page.mjs';
 
 let browser;
 let drive;
@@ -240,6 +240,17 @@ describe('the workbench', () => {
     assert.deepEqual(await dashboard.accessibilityFindings(), []);
     await dashboard.show('drive');
     await dashboard.button('1×').click();
+  });
+
+  it('draws plots that are scrolled away for their picture', async () => {
+    await page.setViewportSize({ width: 1366, height: 420 });
+    await dashboard.show('plots');
+    const last = '.plot[aria-label="Step times"] canvas';
+    assert.equal(await dashboard.colours(last), 1, 'not drawn yet');
+    const picture = await download('PNG');
+    assert.match(picture.name, /plots\.png/);
+    assert.ok((await dashboard.colours(last)) > 2);
+    await page.setViewportSize(LAPTOP.viewport);
   });
 
   it('has nothing that axe objects to while everything is in use', async () => {

@@ -21,6 +21,8 @@ using solver::SolveStatus;
 
 constexpr int kCapacity = 50;
 
+#ifdef CHICANE_HAVE_IPOPT
+
 /// Where a solve starts from: inputs of zero, those of a path-following law, or the optimum of a slightly
 /// different problem.
 enum class Start { kCold, kPathLaw, kWarm };
@@ -55,8 +57,6 @@ void choose_start(Start start, const bench::DescribedInstance& plain, const Prob
   }
   solver::roll_out(problem, plain.start, trajectory);
 }
-
-#ifdef CHICANE_HAVE_IPOPT
 
 struct AgainstIpopt : testing::TestWithParam<Family> {};
 

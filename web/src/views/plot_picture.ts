@@ -1,3 +1,4 @@
+import { drawAll } from '../lib/on_screen';
 import { run } from '../state/app_state';
 import { timeRange } from '../state/plot_view';
 import { chartColours } from './plot_colours';
@@ -5,8 +6,9 @@ import { chartColours } from './plot_colours';
 const COLUMN = 560;
 const HEAD = 26;
 
-/** All plots of the page on one canvas, two beside each other, with their titles. */
-export function pictureOfPlots(): HTMLCanvasElement {
+/** All plots of the page on one canvas, two beside each other, with their titles; those scrolled away, too. */
+export async function pictureOfPlots(): Promise<HTMLCanvasElement> {
+  await drawAll();
   const colours = chartColours();
   const plots = [...document.querySelectorAll<HTMLElement>('.plots .plot')].flatMap((plot) => {
     const canvas = plot.querySelector('canvas');

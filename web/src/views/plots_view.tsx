@@ -108,6 +108,8 @@ function costSpec(names: readonly string[]): PlotSpec {
   };
 }
 
+const savePicture = async (): Promise<void> => downloadPng(fileName([run.value?.track ?? '', 'plots'], 'png'), await pictureOfPlots());
+
 function Toolbar() {
   return (
     <div class="toolbar" role="group" aria-label="Plots">
@@ -137,7 +139,7 @@ function Toolbar() {
         <span class="hint wide-only">Drag to zoom</span>
       )}
       <span class="spring" />
-      <button type="button" title="All plots as a picture" onClick={() => downloadPng(fileName([run.value?.track ?? '', 'plots'], 'png'), pictureOfPlots())}>
+      <button type="button" title="All plots as a picture" onClick={() => void savePicture()}>
         PNG
       </button>
     </div>
