@@ -14,6 +14,7 @@ import { McapIndexedReader, McapStreamReader } from '@mcap/core';
 const { MessageReader } = cdr; // these packages are CommonJS
 const { parse } = rosmsg;
 const STEPS = 250; // 10 s of 40 ms each
+const MESSAGES = STEPS * 10 + 6; // and once: the run, three lines of the road, the limit and its line
 
 let folder;
 let bytes;
@@ -55,8 +56,8 @@ describe('a recorded run', () => {
     assert.equal(reader.channelsById.size, 18);
     assert.equal(reader.statistics.channelCount, 18);
     assert.equal(reader.statistics.chunkCount, reader.chunkIndexes.length);
-    assert.equal(reader.statistics.messageCount, BigInt(STEPS * 10 + 4));
-    assert.equal((await collect(reader.readMessages())).length, STEPS * 10 + 4);
+    assert.equal(reader.statistics.messageCount, BigInt(MESSAGES));
+    assert.equal((await collect(reader.readMessages())).length, MESSAGES);
   });
 
   it('passes every CRC, from the first byte to the last', () => {
@@ -65,7 +66,7 @@ describe('a recorded run', () => {
     const counts = {};
     for (let record; (record = reader.nextRecord()); ) counts[record.type] = (counts[record.type] ?? 0) + 1;
     assert.ok(reader.done());
-    assert.equal(counts.Message, STEPS * 10 + 4);
+    assert.equal(counts.Message, MESSAGES);
     assert.equal(counts.Footer, 1);
   });
 
@@ -97,7 +98,9 @@ describe('a recorded run', () => {
     assert.equal(step.waypoints.length, 12);
     assert.ok(step.speed > 5);
     assert.equal(seen.get('/drive').drive.steering_angle, Math.fround(step.command_steer));
-    assert.equal(seen.size, 14);
+    assert.equal(seen.get('/chicane/limit').is_known, false);
+    assert.match(seen.get('/chicane/limit').why_not, /--limit/);
+    assert.equal(seen.size, 16);
   });
 
   it('holds the scenario and how it was built', async () => {
