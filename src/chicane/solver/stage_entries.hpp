@@ -44,11 +44,13 @@ struct StageEntries {
   using Gradient = std::array<V, kVariables>;  ///< of the stage cost, constraints' multipliers as they are
 
   static constexpr std::size_t z(std::size_t i) noexcept { return i < P::kNx ? i : i + 1; }
+  static_assert(Layout::kFCount == Layout::kNx * Layout::kNz, "every entry is stored, row after row");
 
   template <class J>
   static void set_jacobian(std::size_t i, const J& row, const V& defect, Jacobians& f) noexcept {
-    for (std::size_t j = 0; j < kVariables; ++j) f[Layout::kF[i][z(j)]] = row.slopes[j];
-    f[Layout::kF[i][Layout::kOne]] = defect;
+    V* const to = f.data() + i * Layout::kNz;
+    unroll<kVariables>([&](auto j) __attribute__((always_inline)) { to[z(j)] = row.slopes[j]; });
+    to[Layout::kOne] = defect;
   }
   template <class Rows>
   static void clear(Gradient& gradient, Costs& l) noexcept {
@@ -58,7 +60,7 @@ struct StageEntries {
   /// gradient += weight · dr
   template <class Rows, class J>
   static void add_gradient(std::size_t, const J& r, const V& weight, Gradient& gradient) noexcept {
-    for (std::size_t i = 0; i < kVariables; ++i) gradient[i] += weight * r.slopes[i];
+    unroll<kVariables>([&](auto i) __attribute__((always_inline)) { gradient[i] += weight * r.slopes[i]; });
   }
   /// l += weight · drᵀ dr, over the variables that the row depends on in any of the eight stages.
   template <class Rows, class J>
@@ -74,7 +76,9 @@ struct StageEntries {
     }
   }
   static void set_gradient(const Gradient& gradient, Costs& l) noexcept {
-    for (std::size_t i = 0; i < kVariables; ++i) l[Layout::kL[z(i)][Layout::kOne]] = gradient[i];
+    unroll<kVariables>([&](auto i) __attribute__((always_inline)) {
+      l[Layout::kL[z(i)][Layout::kOne]] = gradient[i];
+    });
   }
   template <class J>
   static void add_to_gradient(const J& r, const V& weight, Costs& l) noexcept {
