@@ -18,15 +18,17 @@ struct TaggedDense {
   const P* problem = nullptr;
 
   template <class K, class T>
-  std::array<T, kNx> dynamics(K k, const std::array<T, kNx>& x, const std::array<T, kNu>& u) const {
+  [[gnu::always_inline]] std::array<T, kNx> dynamics(K k, const std::array<T, kNx>& x,
+                                                     const std::array<T, kNu>& u) const {
     return problem->dynamics(k, x, u);
   }
   template <class K, class T>
-  std::array<T, kNr> residual(K k, const std::array<T, kNx>& x, const std::array<T, kNu>& u) const {
+  [[gnu::always_inline]] std::array<T, kNr> residual(K k, const std::array<T, kNx>& x,
+                                                     const std::array<T, kNu>& u) const {
     return problem->residual(k, x, u);
   }
   template <class T>
-  std::array<T, kNe> terminal_residual(const std::array<T, kNx>& x) const {
+  [[gnu::always_inline]] std::array<T, kNe> terminal_residual(const std::array<T, kNx>& x) const {
     return problem->terminal_residual(x);
   }
   [[nodiscard]] std::array<double, kNu> input_lower(int k) const { return problem->input_lower(k); }

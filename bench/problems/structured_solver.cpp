@@ -17,19 +17,19 @@ struct Tagged {
   const P* problem = nullptr;
 
   template <class K, class X, class U>
-  auto dynamics(K k, const X& x, const U& u) const {
+  [[gnu::always_inline]] auto dynamics(K k, const X& x, const U& u) const {
     return problem->dynamics(k, x, u);
   }
   template <class K, class X, class U>
-  auto residual(K k, const X& x, const U& u) const {
+  [[gnu::always_inline]] auto residual(K k, const X& x, const U& u) const {
     return problem->residual(k, x, u);
   }
   template <class X>
-  auto terminal_residual(const X& x) const {
+  [[gnu::always_inline]] auto terminal_residual(const X& x) const {
     return problem->terminal_residual(x);
   }
   template <class K, class X, class U>
-  auto constraint(K k, const X& x, const U& u) const {
+  [[gnu::always_inline]] auto constraint(K k, const X& x, const U& u) const {
     return problem->constraint(k, x, u);
   }
   [[nodiscard]] std::array<double, kNu> input_lower(int k) const { return problem->input_lower(k); }
