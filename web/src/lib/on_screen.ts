@@ -3,20 +3,9 @@ export interface OnScreen {
   /** Without border and padding, in whole CSS pixels; 0 while it is not shown at all. */
   readonly width: number;
   readonly height: number;
-  /** Some of it is in the window and not scrolled away; or drawAll() wants all. */
+  /** Some of it is in the window and not scrolled away. */
   readonly isSeen: boolean;
   end(): void;
-}
-
-let countsAll = false;
-const repaint = (): Promise<number> => new Promise((resolve) => requestAnimationFrame(resolve));
-
-/** Lets everything count as seen for two repaints, so that what is scrolled away is drawn as well. */
-export async function drawAll(): Promise<void> {
-  countsAll = true;
-  await repaint();
-  await repaint();
-  countsAll = false;
 }
 
 /** Follows an element; `resized` is called when it has another size. */
@@ -27,14 +16,11 @@ export function onScreen(element: Element, resized: () => void = () => undefined
     [state.width, state.height] = [Math.round(width), Math.round(height)];
     resized();
   });
-  let isInside = false;
-  const places = new IntersectionObserver((entries) => (isInside = entries.at(-1)?.isIntersecting ?? false));
+  const places = new IntersectionObserver((entries) => (state.isSeen = entries.at(-1)?.isIntersecting ?? false));
   const state = {
     width: 0,
     height: 0,
-    get isSeen() {
-      return isInside || countsAll;
-    },
+    isSeen: false,
     end(): void {
       sizes.disconnect();
       places.disconnect();

@@ -2,6 +2,7 @@ import { useEffect, useRef } from 'preact/hooks';
 import { onThemeChange } from '../draw/theme';
 import { onScreen } from '../lib/on_screen';
 import { everyFrame } from '../state/ticker';
+import { drawnForPictures } from './picture_drawings';
 import { fitCanvas } from './plot_colours';
 
 export type Paint = (context: CanvasRenderingContext2D, width: number, height: number) => void;
@@ -20,16 +21,19 @@ export function CanvasView({ label, paint, version, interval = 50, tall }: { lab
     let drawn: unknown = {};
     const box = onScreen(canvas, () => (drawn = {}));
     const unwatch = onThemeChange(() => (drawn = {}));
-    const stop = everyFrame(() => {
+    const draw = (): void => {
       const now = latest.current.version();
-      if (Object.is(now, drawn) || !box.isSeen) return;
+      if (Object.is(now, drawn)) return;
       const context = fitCanvas(canvas, box.width, box.height);
       if (!context) return;
       drawn = now;
       latest.current.paint(context, box.width, box.height);
-    }, interval);
+    };
+    const stop = everyFrame(() => box.isSeen && draw(), interval);
+    const forget = drawnForPictures(draw);
     return () => {
       stop();
+      forget();
       unwatch();
       box.end();
     };

@@ -1,6 +1,6 @@
-import { drawAll } from '../lib/on_screen';
 import { run } from '../state/app_state';
 import { timeRange } from '../state/plot_view';
+import { drawAll } from './picture_drawings';
 import { chartColours } from './plot_colours';
 
 const COLUMN = 560;

@@ -10,6 +10,7 @@ import { shown } from '../state/app_state';
 import { Column } from '../state/columns';
 import { cursorTime, isFrozen, plotted, thaw, timeRange, windowSeconds, zoomed, zoomTo } from '../state/plot_view';
 import { everyFrame } from '../state/ticker';
+import { drawnForPictures } from './picture_drawings';
 import { chartColours, type ChartColours } from './plot_colours';
 
 export interface Series {
@@ -142,6 +143,7 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
       last = now;
       redraw();
     });
+    const forget = drawnForPictures(redraw);
     const unwatch = onThemeChange(() => {
       plot.destroy();
       plot = create();
@@ -153,6 +155,7 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
     });
     return () => {
       stop();
+      forget();
       unwatch();
       unfollow();
       box.end();
