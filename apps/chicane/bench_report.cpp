@@ -61,12 +61,12 @@ std::string reference_table(const std::vector<SolveRow>& rows) {
       "gradient median / worst | our cost over its, worst |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const SolveRow& row : rows) {
     for (const SolverColumn& column : row.references) {
-      const double free = column.without_functions_us / row.own.time_us.median;
+      const double free = column.without_functions_us / row.own_shared.time_us.median;
       text += fmt::format("| {} | {} | {} | {:.0f} | {:.0f} | {:.0f} | {} | {:.1f} | {} | {} / {} | {} |\n",
                           row.family, row.horizon, column.name, column.time_us.median, column.time_us.p99,
-                          ratio(&column, row.own), free > 0.0 ? number(free, 0) : "–", column.mean_turns,
-                          column.unsolved, small(column.median_gradient), small(column.worst_gradient),
-                          small(column.worst_excess));
+                          ratio(&column, row.own_shared), free > 0.0 ? number(free, 0) : "–",
+                          column.mean_turns, column.unsolved, small(column.median_gradient),
+                          small(column.worst_gradient), small(column.worst_excess));
     }
   }
   return text;
@@ -143,7 +143,10 @@ void put(Json& row, const SolverColumn& column) {
 Json json_of(const std::vector<SolveRow>& rows) {
   Json list = Json::array();
   for (const SolveRow& solved : rows) {
-    Json row{{"family", solved.family}, {"horizon", solved.horizon}, {"instances", solved.instances}};
+    Json row{{"family", solved.family},
+             {"horizon", solved.horizon},
+             {"instances", solved.instances},
+             {"own_instances", solved.own_instances}};
     put(row, solved.own);
     for (const SolverColumn& column : solved.references) put(row, column);
     list.push_back(row);
@@ -218,7 +221,7 @@ std::vector<Target> targets(const BenchReport& report) {
   };
   const auto against = [&](std::string_view family, std::string_view reference) {
     const SolveRow* row = row_of(report.solves, family, 20);
-    return row == nullptr ? std::nan("") : ratio(row->reference(reference), row->own);
+    return row == nullptr ? std::nan("") : ratio(row->reference(reference), row->own_shared);
   };
   for (const std::string_view family : {"cold0", "coldP", "warm"}) {
     const bool is_warm = family == "warm";
@@ -270,7 +273,10 @@ std::string to_markdown(const BenchReport& report) {
       machine.references.empty() ? "nothing" : machine.references);
   if (report.was_interrupted) text += "Interrupted: the last row has fewer instances.\n";
   if (!report.solves.empty()) {
-    text += fmt::format("{} instances each.\n\n", report.solves.front().instances) + own_table(report.solves);
+    const SolveRow& first = report.solves.front();
+    text += fmt::format("{} instances each; all solvers have solved the first {} of them.\n\n",
+                        first.own_instances, first.instances) +
+            own_table(report.solves);
     text += "\n" + reference_table(report.solves);
   }
   if (!report.growth.empty()) {

@@ -140,16 +140,21 @@ void measure(Start start, int instances, bench::References& references, const st
   std::vector<std::vector<Sample>> theirs(others.size());
   if (stop) return;
   // One more than is measured: the cycle before the first.
-  const auto family = bench::make_family<Problem, kCapacity>(start, row.horizon, instances + 1, *ocp);
+  const int count = kOwnInstances * instances + 1;
+  const auto family = bench::make_family<Problem, kCapacity>(start, row.horizon, count, *ocp);
   for (std::size_t i = 1; i < family.size() && !stop; ++i) {
     own.push_back(solve_own(family[i], *answer));
+    if (i > static_cast<std::size_t>(instances)) continue;
+    row.instances = static_cast<int>(i);
     for (std::size_t other = 0; other < others.size(); ++other) {
       if (others[other]->is_hot() && start != Start::kWarm) continue;
       theirs[other].push_back(solve_reference(family[i], &family[i - 1], *others[other], *answer));
     }
   }
-  row.instances = static_cast<int>(own.size());
+  row.own_instances = static_cast<int>(own.size());
   row.own = summarize("own", own, own);
+  own.resize(static_cast<std::size_t>(row.instances));
+  row.own_shared = summarize("own", own, own);
   for (std::size_t other = 0; other < others.size(); ++other) {
     if (theirs[other].empty()) continue;
     row.references.push_back(summarize(others[other]->name(), theirs[other], own));

@@ -133,6 +133,7 @@ class WatchedRun {
     const runtime::RealtimeHooks hooks{
         .on_frame =
             [&](const telemetry::Frame& frame) {
+              limit_.follow(loop_->scenario(), frame);
               if (auto news = limit_.news()) kept_->record(std::move(news));
               kept_->record(frame);
               viewer_.publish(frame);

@@ -76,7 +76,7 @@ Result<std::unique_ptr<KeptRun>> KeptRun::start(const Options& options, protocol
 
 void compare_with_limit(runtime::RunLimit& limit, telemetry::RunSummary& run, KeptRun& kept,
                         const std::atomic<bool>& wants_stop) {
-  if (limit.is_searching() && !run.laps.empty() && !wants_stop)
+  if (limit.is_awaited(run) && !wants_stop)
     fmt::print(stderr, "the limit is still being computed; Ctrl-C does without\n");
   limit.compare(run, wants_stop);
   if (auto news = limit.news()) kept.record(std::move(news));

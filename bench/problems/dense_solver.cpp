@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // In a file of its own, as a user's model is: beside other problems the compiler would inline less of it.
+#include "chicane/base/inlining.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 #include "problems/structured_solver.hpp"
 
@@ -18,17 +19,17 @@ struct TaggedDense {
   const P* problem = nullptr;
 
   template <class K, class T>
-  [[gnu::always_inline]] std::array<T, kNx> dynamics(K k, const std::array<T, kNx>& x,
-                                                     const std::array<T, kNu>& u) const {
+  CHICANE_INLINE std::array<T, kNx> dynamics(K k, const std::array<T, kNx>& x,
+                                             const std::array<T, kNu>& u) const {
     return problem->dynamics(k, x, u);
   }
   template <class K, class T>
-  [[gnu::always_inline]] std::array<T, kNr> residual(K k, const std::array<T, kNx>& x,
-                                                     const std::array<T, kNu>& u) const {
+  CHICANE_INLINE std::array<T, kNr> residual(K k, const std::array<T, kNx>& x,
+                                             const std::array<T, kNu>& u) const {
     return problem->residual(k, x, u);
   }
   template <class T>
-  [[gnu::always_inline]] std::array<T, kNe> terminal_residual(const std::array<T, kNx>& x) const {
+  CHICANE_INLINE std::array<T, kNe> terminal_residual(const std::array<T, kNx>& x) const {
     return problem->terminal_residual(x);
   }
   [[nodiscard]] std::array<double, kNu> input_lower(int k) const { return problem->input_lower(k); }

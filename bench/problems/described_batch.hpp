@@ -4,6 +4,7 @@
 #include <array>
 #include <tuple>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/math_pack.hpp"
 #include "chicane/solver/problem.hpp"
 #include "problems/corridor_problem.hpp"
@@ -29,7 +30,7 @@ struct DescribedOver {
   Real first_cte{};
 
   template <class K, class X, class U>
-  [[gnu::always_inline]] auto dynamics(K, const X& s, const U& input) const {
+  CHICANE_INLINE auto dynamics(K, const X& s, const U& input) const {
     const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
     const auto& [steer, a] = input;
     const auto turn = v * steer * (kStep / kLength);
@@ -37,7 +38,7 @@ struct DescribedOver {
                            psi - atan(slope(x)) + turn, steer, a);
   }
   template <class K, class X, class U>
-  [[gnu::always_inline]] auto residual(K k, const X& s, const U& input) const {
+  CHICANE_INLINE auto residual(K k, const X& s, const U& input) const {
     const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
     const auto& [steer, a] = input;
     const auto change = select(solver::stage_number(k) > 0.0, 1.0, 0.0);
@@ -46,13 +47,13 @@ struct DescribedOver {
                            change * weight(10.0) * (steer - last_steer), change * weight(1.0) * (a - last_a));
   }
   template <class X>
-  [[gnu::always_inline]] auto terminal_residual(const X& s) const {
+  CHICANE_INLINE auto terminal_residual(const X& s) const {
     const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
     return std::make_tuple(weight(200.0) * first_cte, weight(200.0) * epsi,
                            weight(0.1) * (v - speed_reference));
   }
   template <class X>
-  [[gnu::always_inline]] auto next_cte(const X& s) const {
+  CHICANE_INLINE auto next_cte(const X& s) const {
     const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
     return path[0] + x * (path[1] + x * (path[2] + x * path[3])) - y + v * sin(epsi) * kStep;
   }
@@ -78,7 +79,7 @@ struct CorridorOver : DescribedOver<Real> {
   Bounds high{};
 
   template <class K, class X, class U>
-  [[gnu::always_inline]] auto constraint(K k, const X& s, const U&) const {
+  CHICANE_INLINE auto constraint(K k, const X& s, const U&) const {
     const auto cte = this->next_cte(s);
     return std::make_tuple(cte - at(high, k), at(low, k) - cte);
   }

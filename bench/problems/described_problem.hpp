@@ -8,6 +8,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/dual.hpp"
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/solver/problem.hpp"
@@ -44,8 +45,8 @@ struct DescribedProblem : DescribedData {
   static constexpr int kNc = 0;
 
   template <class K, class T>
-  [[gnu::always_inline]] std::array<T, kNx> dynamics(K, const std::array<T, kNx>& s,
-                                                     const std::array<T, kNu>& u) const {
+  CHICANE_INLINE std::array<T, kNx> dynamics(K, const std::array<T, kNx>& s,
+                                             const std::array<T, kNu>& u) const {
     const T f = path[0] + s[0] * (path[1] + s[0] * (path[2] + s[0] * path[3]));
     const T slope = path[1] + s[0] * (2.0 * path[2] + s[0] * (3.0 * path[3]));
     const T turn = s[3] * u[0] * (kStep / kLength);
@@ -59,8 +60,8 @@ struct DescribedProblem : DescribedData {
             u[1]};
   }
   template <class K, class T>
-  [[gnu::always_inline]] std::array<T, kNr> residual(K k, const std::array<T, kNx>& s,
-                                                     const std::array<T, kNu>& u) const {
+  CHICANE_INLINE std::array<T, kNr> residual(K k, const std::array<T, kNx>& s,
+                                             const std::array<T, kNu>& u) const {
     const auto change = select(solver::stage_number(k) > 0.0, 1.0, 0.0);
     return {weight(200.0) * s[4],
             weight(200.0) * s[5],
@@ -71,7 +72,7 @@ struct DescribedProblem : DescribedData {
             change * weight(1.0) * (u[1] - s[7])};
   }
   template <class T>
-  [[gnu::always_inline]] std::array<T, kNe> terminal_residual(const std::array<T, kNx>& s) const {
+  CHICANE_INLINE std::array<T, kNe> terminal_residual(const std::array<T, kNx>& s) const {
     return {weight(200.0) * s[4], weight(200.0) * s[5], weight(0.1) * (s[3] - speed_reference)};
   }
 };
@@ -96,7 +97,7 @@ struct StructuredDescribedProblem : DescribedData {
   }
 
   template <class K, class X, class U>
-  [[gnu::always_inline]] auto dynamics(K, const X& s, const U& input) const {
+  CHICANE_INLINE auto dynamics(K, const X& s, const U& input) const {
     const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
     const auto& [steer, a] = input;
     const auto turn = v * steer * (kStep / kLength);
@@ -104,7 +105,7 @@ struct StructuredDescribedProblem : DescribedData {
                            psi - atan(slope(x)) + turn, steer, a);
   }
   template <class K, class X, class U>
-  [[gnu::always_inline]] auto residual(K k, const X& s, const U& input) const {
+  CHICANE_INLINE auto residual(K k, const X& s, const U& input) const {
     const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
     const auto& [steer, a] = input;
     const auto change = select(solver::stage_number(k) > 0.0, 1.0, 0.0);
@@ -113,20 +114,20 @@ struct StructuredDescribedProblem : DescribedData {
                            change * weight(10.0) * (steer - last_steer), change * weight(1.0) * (a - last_a));
   }
   template <class X>
-  [[gnu::always_inline]] auto terminal_residual(const X& s) const {
+  CHICANE_INLINE auto terminal_residual(const X& s) const {
     const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
     return std::make_tuple(weight(200.0) * first_cte, weight(200.0) * epsi,
                            weight(0.1) * (v - speed_reference));
   }
   template <class X>
-  [[gnu::always_inline]] auto next_cte(const X& s) const {
+  CHICANE_INLINE auto next_cte(const X& s) const {
     const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
     return path[0] + x * (path[1] + x * (path[2] + x * path[3])) - y + v * sin(epsi) * kStep;
   }
 
  private:
   template <class T>
-  [[gnu::always_inline]] auto slope(const T& x) const {
+  CHICANE_INLINE auto slope(const T& x) const {
     return path[1] + x * (2.0 * path[2] + x * (3.0 * path[3]));
   }
 };

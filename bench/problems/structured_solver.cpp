@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "problems/structured_solver.hpp"
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 
 namespace chicane::bench {
@@ -17,19 +18,19 @@ struct Tagged {
   const P* problem = nullptr;
 
   template <class K, class X, class U>
-  [[gnu::always_inline]] auto dynamics(K k, const X& x, const U& u) const {
+  CHICANE_INLINE auto dynamics(K k, const X& x, const U& u) const {
     return problem->dynamics(k, x, u);
   }
   template <class K, class X, class U>
-  [[gnu::always_inline]] auto residual(K k, const X& x, const U& u) const {
+  CHICANE_INLINE auto residual(K k, const X& x, const U& u) const {
     return problem->residual(k, x, u);
   }
   template <class X>
-  [[gnu::always_inline]] auto terminal_residual(const X& x) const {
+  CHICANE_INLINE auto terminal_residual(const X& x) const {
     return problem->terminal_residual(x);
   }
   template <class K, class X, class U>
-  [[gnu::always_inline]] auto constraint(K k, const X& x, const U& u) const {
+  CHICANE_INLINE auto constraint(K k, const X& x, const U& u) const {
     return problem->constraint(k, x, u);
   }
   [[nodiscard]] std::array<double, kNu> input_lower(int k) const { return problem->input_lower(k); }

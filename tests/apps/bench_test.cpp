@@ -40,6 +40,7 @@ TEST(TimeSolves, SolvesEveryFamilyToTheOptimum) {
   for (const std::string_view family : families()) {
     const SolveRow row = time_solves(family, 6, 5, references, stop);
     EXPECT_EQ(row.instances, 5) << family;
+    EXPECT_EQ(row.own_instances, kOwnInstances * row.instances) << family;
     EXPECT_EQ(row.own.unsolved, 0) << family;
     EXPECT_GT(row.own.time_us.median, 0.0) << family;
     if (family.starts_with("corridor")) {

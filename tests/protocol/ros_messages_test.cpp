@@ -168,12 +168,13 @@ TEST(RosMessages, LimitHasItsLineInColumnsOfTheSameLength) {
     EXPECT_EQ(reader.number(), second);
   }
   EXPECT_EQ(reader.text(), "");
+  EXPECT_EQ(reader.get<std::uint32_t>(), 1U);
   EXPECT_TRUE(reader.is_at_end());
 }
 
 TEST(RosMessages, ALimitThatIsNotKnownSaysWhyAndLapsHaveNoGap) {
   protocol::Run run = samples::run();
-  run.limit = {.why_not = "the road is open"};
+  run.limit = {.why_not = "the road is open", .first_lap = 4};
   for (const RosTopic& each : ros_topics()) {
     if (each.name == "/chicane/limit") {
       const std::string bytes = each.encode(samples::frame(), run);
@@ -182,6 +183,7 @@ TEST(RosMessages, ALimitThatIsNotKnownSaysWhyAndLapsHaveNoGap) {
       for (int i = 0; i < 4; ++i) EXPECT_TRUE(std::isnan(reader.number()));
       for (int i = 0; i < 8; ++i) EXPECT_EQ(reader.get<std::uint32_t>(), 0U);
       EXPECT_EQ(reader.text(), "the road is open");
+      EXPECT_EQ(reader.get<std::uint32_t>(), 4U);
       EXPECT_TRUE(reader.is_at_end());
     }
     if (each.name == "/chicane/lap") {
@@ -191,6 +193,24 @@ TEST(RosMessages, ALimitThatIsNotKnownSaysWhyAndLapsHaveNoGap) {
       EXPECT_TRUE(std::isnan(last));
     }
   }
+}
+
+TEST(RosMessages, ALapBegunWithAnotherCarHasNoGap) {
+  protocol::Run run = samples::run();
+  ASSERT_TRUE(run.limit.found);
+  const auto gap = [&] {
+    const auto& topics = ros_topics();
+    const auto lap = std::find_if(topics.begin(), topics.end(),
+                                  [](const RosTopic& each) { return each.name == "/chicane/lap"; });
+    const std::string bytes = lap->encode(samples::frame(), run);
+    double last = 0.0;
+    std::memcpy(&last, bytes.data() + bytes.size() - sizeof(last), sizeof(last));
+    return last;
+  };
+  run.limit.first_lap = samples::frame().completed_lap.lap;
+  EXPECT_TRUE(std::isfinite(gap()));
+  ++run.limit.first_lap;
+  EXPECT_TRUE(std::isnan(gap()));
 }
 
 TEST(RosMessages, ChangeNamesWhatGotWhichValue) {

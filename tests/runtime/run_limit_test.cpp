@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <memory>
 #include <mutex>
+#include <thread>
 #include <vector>
 
 #include "chicane/protocol/library.hpp"
@@ -104,6 +107,82 @@ TEST(RunLimit, OfTheRunBeforeIsForgotten) {
   limit.compare(run, kGoOn);
   ASSERT_EQ(told.size(), 1U);
   EXPECT_NEAR(told[0], 13.27, 0.05);
+}
+
+/// What has been told since the last call, within ten seconds.
+std::shared_ptr<const lap_time::LimitAnswer> awaited_news(RunLimit& limit, const scenario::Scenario& now,
+                                                          const telemetry::Frame& frame) {
+  for (int i = 0; i < 1000; ++i) {
+    limit.follow(now, frame);
+    if (auto news = limit.news()) return news;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return std::make_shared<const lap_time::LimitAnswer>();
+}
+
+TEST(RunLimit, IsAnotherOneOnceTheCarHasOtherGripOrMass) {
+  RunLimit limit;
+  scenario::Scenario now = on("oval");
+  limit.search(*make_track(now), now);
+  telemetry::Frame frame;
+  const auto first = awaited_news(limit, now, frame);
+  ASSERT_TRUE(first->found);
+  EXPECT_EQ(first->first_lap, 1);
+
+  now.vehicle.friction *= 0.5;  // what the controller believes: the car is as it was
+  limit.follow(now, frame);
+  EXPECT_FALSE(limit.is_searching());
+
+  frame.lap = 3;  // in its fourth lap
+  now.plant_options.friction_scale = 0.5;
+  limit.follow(now, frame);
+  const auto changed = limit.news();
+  ASSERT_TRUE(changed);
+  EXPECT_FALSE(changed->found);
+  EXPECT_NE(changed->why_not.find("grip"), std::string::npos) << changed->why_not;
+  const auto second = awaited_news(limit, now, frame);
+  ASSERT_TRUE(second->found);
+  EXPECT_EQ(second->first_lap, 5);
+  // At half the grip a circle takes the square root of two as long; on the oval drive and top speed count,
+  // too.
+  EXPECT_GT(second->found->times.lap, 1.05 * first->found->times.lap);
+  EXPECT_LT(second->found->times.lap, 1.5 * first->found->times.lap);
+
+  telemetry::RunSummary run;
+  for (int lap = 1; lap <= 5; ++lap) run.laps.push_back({.lap_time = 20.0});
+  EXPECT_FALSE(limit.is_awaited(run));
+  limit.compare(run, kGoOn);
+  EXPECT_FALSE(run.laps[3].gap_to_limit);
+  EXPECT_DOUBLE_EQ(run.laps[4].gap_to_limit.value_or(0.0), 20.0 / second->found->times.lap - 1.0);
+}
+
+TEST(RunLimit, HoldsForAllLapsOfACountThatBeginsAnew) {
+  RunLimit limit;
+  scenario::Scenario now = on("oval");
+  limit.search(*make_track(now), now);
+  telemetry::Frame frame;
+  frame.lap = 7;
+  now.plant_options.mass_scale = 1.5;
+  limit.follow(now, frame);
+  frame.lap = 0;
+  frame.begins = true;
+  telemetry::RunSummary run = one_lap(20.0);
+  limit.follow(now, frame);
+  EXPECT_TRUE(limit.is_awaited(run));
+  limit.compare(run, kGoOn);
+  EXPECT_TRUE(run.laps[0].gap_to_limit) << run.why_no_limit;
+}
+
+TEST(RunLimit, OfACarThatHasJustChangedIsNotWaitedForInVain) {
+  RunLimit limit;
+  scenario::Scenario now = on("oval");
+  limit.search(*make_track(now), now);
+  now.plant_options.friction_scale = 0.7;
+  limit.follow(now, {});
+  telemetry::RunSummary run = one_lap(20.0);  // begun with the car of before
+  EXPECT_FALSE(limit.is_awaited(run));
+  limit.compare(run, kGoOn);
+  EXPECT_EQ(run.why_no_limit, "the run ended before it was computed");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::elementary {
@@ -14,11 +15,11 @@ namespace chicane::elementary {
 /// that a lane has the bits of the scalar call. After fdlibm (Sun Microsystems, 1993, freely distributable).
 /// Plain IEEE operations in a fixed order; never fused.
 
-[[nodiscard, gnu::always_inline]] inline std::uint64_t bits_of(double x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline std::uint64_t bits_of(double x) noexcept {
   return std::bit_cast<std::uint64_t>(x);
 }
-[[nodiscard, gnu::always_inline]] inline bool is_set(std::uint64_t bits) noexcept { return bits != 0; }
-[[nodiscard, gnu::always_inline]] inline double copysign(double magnitude, double sign) noexcept {
+[[nodiscard]] CHICANE_INLINE inline bool is_set(std::uint64_t bits) noexcept { return bits != 0; }
+[[nodiscard]] CHICANE_INLINE inline double copysign(double magnitude, double sign) noexcept {
   return std::copysign(magnitude, sign);
 }
 
@@ -26,12 +27,12 @@ namespace chicane::elementary {
 template <class V>
 struct Number {
   using Bits = typename V::BitsType;
-  [[gnu::always_inline]] static V from(const Bits& bits) noexcept { return V::from_bits(bits); }
+  CHICANE_INLINE static V from(const Bits& bits) noexcept { return V::from_bits(bits); }
 };
 template <>
 struct Number<double> {
   using Bits = std::uint64_t;
-  [[gnu::always_inline]] static double from(Bits bits) noexcept { return std::bit_cast<double>(bits); }
+  CHICANE_INLINE static double from(Bits bits) noexcept { return std::bit_cast<double>(bits); }
 };
 
 /// Added to a number below 2^51 this leaves its nearest integer in the last bits.
@@ -47,7 +48,7 @@ struct Reduced {
 };
 
 template <class V>
-[[nodiscard, gnu::always_inline]] inline Reduced<V> reduce(const V& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline Reduced<V> reduce(const V& x) noexcept {
   constexpr double kHalfPiHigh = 1.57079632673412561417e+00;    // first 33 bits of π/2
   constexpr double kHalfPiMiddle = 6.07710050630396597660e-11;  // second 33 bits of π/2
   constexpr double kHalfPiLow = 2.02226624879595063154e-21;     // the rest
@@ -63,7 +64,7 @@ template <class V>
 }
 
 template <class V>
-[[nodiscard, gnu::always_inline]] inline V sin_kernel(const V& x, const V& tail) noexcept {
+[[nodiscard]] CHICANE_INLINE inline V sin_kernel(const V& x, const V& tail) noexcept {
   constexpr double s1 = -1.66666666666666324348e-01, s2 = 8.33333333332248946124e-03,
                    s3 = -1.98412698298579493134e-04, s4 = 2.75573137070700676789e-06,
                    s5 = -2.50507602534068634195e-08, s6 = 1.58969099521155010221e-10;
@@ -74,7 +75,7 @@ template <class V>
 }
 
 template <class V>
-[[nodiscard, gnu::always_inline]] inline V cos_kernel(const V& x, const V& tail) noexcept {
+[[nodiscard]] CHICANE_INLINE inline V cos_kernel(const V& x, const V& tail) noexcept {
   constexpr double c1 = 4.16666666666666019037e-02, c2 = -1.38888888888741095749e-03,
                    c3 = 2.48015872894767294178e-05, c4 = -2.75573143513906633035e-07,
                    c5 = 2.08757232129817482790e-09, c6 = -1.13596475577881948265e-11;
@@ -87,7 +88,7 @@ template <class V>
 
 /// Sine and cosine share all their work: calls for both of one argument cost little more than one.
 template <class V>
-[[nodiscard, gnu::always_inline]] inline V sin(const V& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline V sin(const V& x) noexcept {
   using Bits = typename Number<V>::Bits;
   const Reduced<V> a = reduce(x);
   const V s = select(is_set(a.quadrant & Bits(1)), cos_kernel(a.r, a.tail), sin_kernel(a.r, a.tail));
@@ -95,7 +96,7 @@ template <class V>
   return select(abs(x) < V(1e9), turned, V(kNaN));
 }
 template <class V>
-[[nodiscard, gnu::always_inline]] inline V cos(const V& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline V cos(const V& x) noexcept {
   using Bits = typename Number<V>::Bits;
   const Reduced<V> a = reduce(x);
   const V c = select(is_set(a.quadrant & Bits(1)), sin_kernel(a.r, a.tail), cos_kernel(a.r, a.tail));
@@ -105,7 +106,7 @@ template <class V>
 
 /// |x| is folded to below 7/16 by one of four tangent differences.
 template <class V>
-[[nodiscard, gnu::always_inline]] inline V atan(const V& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline V atan(const V& x) noexcept {
   constexpr double high[] = {4.63647609000806093515e-01, 7.85398163397448278999e-01,
                              9.82793723247329054082e-01, 1.57079632679489655800e+00};
   constexpr double low[] = {2.26987774529616870924e-17, 3.06161699786838301793e-17,
@@ -117,8 +118,7 @@ template <class V>
       -3.65315727442169155270e-02, 1.62858201153657823623e-02};
   const V m = abs(x);
   const auto is_1 = m >= V(0.4375), is_2 = m >= V(0.6875), is_3 = m >= V(1.1875), is_4 = m >= V(2.4375);
-  const auto choose = [&](const V& a, const V& b, const V& c, const V& d, const V& e)
-      __attribute__((always_inline)) {
+  const auto choose = [&](const V& a, const V& b, const V& c, const V& d, const V& e) CHICANE_INLINE {
     return select(is_4, e, select(is_3, d, select(is_2, c, select(is_1, b, a))));
   };
   const V a = choose(m, 2.0 * m - 1.0, m - 1.0, m - 1.5, V(-1.0)) /
@@ -133,7 +133,7 @@ template <class V>
 }
 
 template <class V>
-[[nodiscard, gnu::always_inline]] inline V atan2(const V& y, const V& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline V atan2(const V& y, const V& x) noexcept {
   constexpr double pi = 3.14159265358979311600e+00, pi_low = 1.22464679914735317723e-16;
   const V zero(0.0);
   const auto on_x = (y == zero) & (x == x);
@@ -143,7 +143,7 @@ template <class V>
 }
 
 template <class V>
-[[nodiscard, gnu::always_inline]] inline V exp(const V& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline V exp(const V& x) noexcept {
   using Bits = typename Number<V>::Bits;
   constexpr double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
   constexpr double inverse_ln2 = 1.44269504088896338700e+00;
@@ -163,7 +163,7 @@ template <class V>
 }
 
 template <class V>
-[[nodiscard, gnu::always_inline]] inline V log(const V& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline V log(const V& x) noexcept {
   using Bits = typename Number<V>::Bits;
   constexpr double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
   constexpr double g1 = 6.666666666666735130e-01, g2 = 3.999999999940941908e-01,
@@ -194,7 +194,7 @@ template <class V>
 }
 
 template <class V>
-[[nodiscard, gnu::always_inline]] inline V tanh(const V& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline V tanh(const V& x) noexcept {
   const V a = abs(x);
   const V e = elementary::exp(-2.0 * a);
   const V large = copysign(select(a > V(22.0), V(1.0), (1.0 - e) / (1.0 + e)), x);

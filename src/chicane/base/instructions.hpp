@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/instruction_set.hpp"
 
 // Longer than other headers because every processor has its own names for the same dozen operations.
@@ -29,16 +30,16 @@ struct Lanes {
 
   /// A register's worth of doubles at a multiple of its size, and at any address. Not by memcpy: a variable
   /// whose address is taken stays in memory.
-  [[gnu::always_inline]] static Real load(const double* from) noexcept {
+  CHICANE_INLINE static Real load(const double* from) noexcept {
     return *static_cast<const Aligned*>(static_cast<const void*>(from));
   }
-  [[gnu::always_inline]] static Real load_unaligned(const double* from) noexcept {
+  CHICANE_INLINE static Real load_unaligned(const double* from) noexcept {
     return *static_cast<const Unaligned*>(static_cast<const void*>(from));
   }
-  [[gnu::always_inline]] static void store(double* to, Real value) noexcept {
+  CHICANE_INLINE static void store(double* to, Real value) noexcept {
     *static_cast<Aligned*>(static_cast<void*>(to)) = value;
   }
-  [[gnu::always_inline]] static void store_unaligned(double* to, Real value) noexcept {
+  CHICANE_INLINE static void store_unaligned(double* to, Real value) noexcept {
     *static_cast<Unaligned*>(static_cast<void*>(to)) = value;
   }
 
@@ -53,51 +54,51 @@ struct Portable {
   using Real = typename Lanes<W>::Real;
   using Integer = typename Lanes<W>::Integer;
   using Mask = Integer;
-  [[gnu::always_inline]] static Real add(Real a, Real b) noexcept { return a + b; }
-  [[gnu::always_inline]] static Real subtract(Real a, Real b) noexcept { return a - b; }
-  [[gnu::always_inline]] static Real multiply(Real a, Real b) noexcept { return a * b; }
-  [[gnu::always_inline]] static Real divide(Real a, Real b) noexcept { return a / b; }
-  [[gnu::always_inline]] static Real negate(Real a) noexcept { return -a; }
-  [[gnu::always_inline]] static Integer integer_and(Integer a, Integer b) noexcept { return a & b; }
-  [[gnu::always_inline]] static Integer integer_or(Integer a, Integer b) noexcept { return a | b; }
-  [[gnu::always_inline]] static Integer integer_xor(Integer a, Integer b) noexcept { return a ^ b; }
-  [[gnu::always_inline]] static Integer integer_add(Integer a, Integer b) noexcept { return a + b; }
-  [[gnu::always_inline]] static Integer integer_subtract(Integer a, Integer b) noexcept { return a - b; }
-  [[gnu::always_inline]] static Integer shift_left(Integer a, int count) noexcept { return a << count; }
-  [[gnu::always_inline]] static Integer shift_right(Integer a, int count) noexcept {
+  CHICANE_INLINE static Real add(Real a, Real b) noexcept { return a + b; }
+  CHICANE_INLINE static Real subtract(Real a, Real b) noexcept { return a - b; }
+  CHICANE_INLINE static Real multiply(Real a, Real b) noexcept { return a * b; }
+  CHICANE_INLINE static Real divide(Real a, Real b) noexcept { return a / b; }
+  CHICANE_INLINE static Real negate(Real a) noexcept { return -a; }
+  CHICANE_INLINE static Integer integer_and(Integer a, Integer b) noexcept { return a & b; }
+  CHICANE_INLINE static Integer integer_or(Integer a, Integer b) noexcept { return a | b; }
+  CHICANE_INLINE static Integer integer_xor(Integer a, Integer b) noexcept { return a ^ b; }
+  CHICANE_INLINE static Integer integer_add(Integer a, Integer b) noexcept { return a + b; }
+  CHICANE_INLINE static Integer integer_subtract(Integer a, Integer b) noexcept { return a - b; }
+  CHICANE_INLINE static Integer shift_left(Integer a, int count) noexcept { return a << count; }
+  CHICANE_INLINE static Integer shift_right(Integer a, int count) noexcept {
     using Unsigned = typename Lanes<W>::Unsigned;
     return std::bit_cast<Integer>(std::bit_cast<Unsigned>(a) >> static_cast<unsigned long long>(count));
   }
-  [[gnu::always_inline]] static Integer to_bits(Real a) noexcept { return std::bit_cast<Integer>(a); }
-  [[gnu::always_inline]] static Real to_real(Integer a) noexcept { return std::bit_cast<Real>(a); }
-  [[gnu::always_inline]] static Mask less(Real a, Real b) noexcept { return a < b; }
-  [[gnu::always_inline]] static Mask less_equal(Real a, Real b) noexcept { return a <= b; }
-  [[gnu::always_inline]] static Mask equal(Real a, Real b) noexcept { return a == b; }
-  [[gnu::always_inline]] static Mask from_bits(Integer a) noexcept { return a != Integer{}; }
-  [[gnu::always_inline]] static Real select(Mask m, Real a, Real b) noexcept { return m ? a : b; }
-  [[gnu::always_inline]] static Mask inverse(Mask m) noexcept { return ~m; }
-  [[gnu::always_inline]] static Mask both(Mask a, Mask b) noexcept { return a & b; }
-  [[gnu::always_inline]] static Mask either(Mask a, Mask b) noexcept { return a | b; }
-  [[gnu::always_inline]] static unsigned bits(Mask m) noexcept {
+  CHICANE_INLINE static Integer to_bits(Real a) noexcept { return std::bit_cast<Integer>(a); }
+  CHICANE_INLINE static Real to_real(Integer a) noexcept { return std::bit_cast<Real>(a); }
+  CHICANE_INLINE static Mask less(Real a, Real b) noexcept { return a < b; }
+  CHICANE_INLINE static Mask less_equal(Real a, Real b) noexcept { return a <= b; }
+  CHICANE_INLINE static Mask equal(Real a, Real b) noexcept { return a == b; }
+  CHICANE_INLINE static Mask from_bits(Integer a) noexcept { return a != Integer{}; }
+  CHICANE_INLINE static Real select(Mask m, Real a, Real b) noexcept { return m ? a : b; }
+  CHICANE_INLINE static Mask inverse(Mask m) noexcept { return ~m; }
+  CHICANE_INLINE static Mask both(Mask a, Mask b) noexcept { return a & b; }
+  CHICANE_INLINE static Mask either(Mask a, Mask b) noexcept { return a | b; }
+  CHICANE_INLINE static unsigned bits(Mask m) noexcept {
     unsigned result = 0;
     for (std::size_t i = 0; i < W; ++i) result |= (m[i] != 0 ? 1U : 0U) << i;
     return result;
   }
-  [[gnu::always_inline]] static Real min(Real a, Real b) noexcept { return a < b ? a : b; }
-  [[gnu::always_inline]] static Real max(Real a, Real b) noexcept { return a > b ? a : b; }
-  [[gnu::always_inline]] static Real sqrt(Real a) noexcept {
+  CHICANE_INLINE static Real min(Real a, Real b) noexcept { return a < b ? a : b; }
+  CHICANE_INLINE static Real max(Real a, Real b) noexcept { return a > b ? a : b; }
+  CHICANE_INLINE static Real sqrt(Real a) noexcept {
     for (std::size_t i = 0; i < W; ++i) a[i] = __builtin_sqrt(a[i]);
     return a;
   }
-  [[gnu::always_inline]] static Real round(Real a) noexcept {
+  CHICANE_INLINE static Real round(Real a) noexcept {
     constexpr double kBig = 4503599627370496.0;  // 2^52: no fraction from here on
     const Integer sign = std::bit_cast<Integer>(a) & (Integer{} + INT64_MIN);
     const Real magnitude = std::bit_cast<Real>(std::bit_cast<Integer>(a) ^ sign);
     const Real rounded = (magnitude + kBig) - kBig;
     return magnitude < kBig ? std::bit_cast<Real>(std::bit_cast<Integer>(rounded) | sign) : a;
   }
-  [[gnu::always_inline]] static Real fused_multiply_add(Real a, Real b, Real c) noexcept { return a * b + c; }
-  [[gnu::always_inline]] static Real fused_negative_multiply_add(Real a, Real b, Real c) noexcept {
+  CHICANE_INLINE static Real fused_multiply_add(Real a, Real b, Real c) noexcept { return a * b + c; }
+  CHICANE_INLINE static Real fused_negative_multiply_add(Real a, Real b, Real c) noexcept {
     return c - a * b;
   }
 };
@@ -110,10 +111,10 @@ struct Ops : Portable<W> {
 #if defined(__x86_64__)
 template <>
 struct Ops<arch::Baseline, 2> : Portable<2> {
-  [[gnu::always_inline]] static Real min(Real a, Real b) noexcept { return _mm_min_pd(a, b); }
-  [[gnu::always_inline]] static Real max(Real a, Real b) noexcept { return _mm_max_pd(a, b); }
-  [[gnu::always_inline]] static Real sqrt(Real a) noexcept { return _mm_sqrt_pd(a); }
-  [[gnu::always_inline]] static unsigned bits(Mask m) noexcept {
+  CHICANE_INLINE static Real min(Real a, Real b) noexcept { return _mm_min_pd(a, b); }
+  CHICANE_INLINE static Real max(Real a, Real b) noexcept { return _mm_max_pd(a, b); }
+  CHICANE_INLINE static Real sqrt(Real a) noexcept { return _mm_sqrt_pd(a); }
+  CHICANE_INLINE static unsigned bits(Mask m) noexcept {
     return static_cast<unsigned>(_mm_movemask_pd(std::bit_cast<Real>(m)));
   }
 };
@@ -122,30 +123,30 @@ struct Ops<arch::Baseline, 2> : Portable<2> {
 #if defined(__AVX2__) && defined(__FMA__)
 template <>
 struct Ops<arch::Avx2, 2> : Ops<arch::Baseline, 2> {
-  [[gnu::always_inline]] static Real round(Real a) noexcept { return _mm_round_pd(a, 8); }
-  [[gnu::always_inline]] static Real fused_multiply_add(Real a, Real b, Real c) noexcept {
+  CHICANE_INLINE static Real round(Real a) noexcept { return _mm_round_pd(a, 8); }
+  CHICANE_INLINE static Real fused_multiply_add(Real a, Real b, Real c) noexcept {
     return _mm_fmadd_pd(a, b, c);
   }
-  [[gnu::always_inline]] static Real fused_negative_multiply_add(Real a, Real b, Real c) noexcept {
+  CHICANE_INLINE static Real fused_negative_multiply_add(Real a, Real b, Real c) noexcept {
     return _mm_fnmadd_pd(a, b, c);
   }
 };
 template <>
 struct Ops<arch::Avx2, 4> : Portable<4> {
-  [[gnu::always_inline]] static Real select(Mask m, Real a, Real b) noexcept {
+  CHICANE_INLINE static Real select(Mask m, Real a, Real b) noexcept {
     return _mm256_blendv_pd(b, a, std::bit_cast<Real>(m));
   }
-  [[gnu::always_inline]] static unsigned bits(Mask m) noexcept {
+  CHICANE_INLINE static unsigned bits(Mask m) noexcept {
     return static_cast<unsigned>(_mm256_movemask_pd(std::bit_cast<Real>(m)));
   }
-  [[gnu::always_inline]] static Real min(Real a, Real b) noexcept { return _mm256_min_pd(a, b); }
-  [[gnu::always_inline]] static Real max(Real a, Real b) noexcept { return _mm256_max_pd(a, b); }
-  [[gnu::always_inline]] static Real sqrt(Real a) noexcept { return _mm256_sqrt_pd(a); }
-  [[gnu::always_inline]] static Real round(Real a) noexcept { return _mm256_round_pd(a, 8); }
-  [[gnu::always_inline]] static Real fused_multiply_add(Real a, Real b, Real c) noexcept {
+  CHICANE_INLINE static Real min(Real a, Real b) noexcept { return _mm256_min_pd(a, b); }
+  CHICANE_INLINE static Real max(Real a, Real b) noexcept { return _mm256_max_pd(a, b); }
+  CHICANE_INLINE static Real sqrt(Real a) noexcept { return _mm256_sqrt_pd(a); }
+  CHICANE_INLINE static Real round(Real a) noexcept { return _mm256_round_pd(a, 8); }
+  CHICANE_INLINE static Real fused_multiply_add(Real a, Real b, Real c) noexcept {
     return _mm256_fmadd_pd(a, b, c);
   }
-  [[gnu::always_inline]] static Real fused_negative_multiply_add(Real a, Real b, Real c) noexcept {
+  CHICANE_INLINE static Real fused_negative_multiply_add(Real a, Real b, Real c) noexcept {
     return _mm256_fnmadd_pd(a, b, c);
   }
 };
@@ -159,34 +160,28 @@ struct Ops<arch::Avx512, 4> : Ops<arch::Avx2, 4> {};
 template <>
 struct Ops<arch::Avx512, 8> : Portable<8> {
   using Mask = __mmask8;
-  [[gnu::always_inline]] static Mask less(Real a, Real b) noexcept {
-    return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ);
-  }
-  [[gnu::always_inline]] static Mask less_equal(Real a, Real b) noexcept {
+  CHICANE_INLINE static Mask less(Real a, Real b) noexcept { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
+  CHICANE_INLINE static Mask less_equal(Real a, Real b) noexcept {
     return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ);
   }
-  [[gnu::always_inline]] static Mask equal(Real a, Real b) noexcept {
-    return _mm512_cmp_pd_mask(a, b, _CMP_EQ_OQ);
-  }
-  [[gnu::always_inline]] static Mask from_bits(Integer a) noexcept {
+  CHICANE_INLINE static Mask equal(Real a, Real b) noexcept { return _mm512_cmp_pd_mask(a, b, _CMP_EQ_OQ); }
+  CHICANE_INLINE static Mask from_bits(Integer a) noexcept {
     const auto bits = std::bit_cast<__m512i>(a);
     return _mm512_test_epi64_mask(bits, bits);
   }
-  [[gnu::always_inline]] static Real select(Mask m, Real a, Real b) noexcept {
-    return _mm512_mask_blend_pd(m, b, a);
-  }
-  [[gnu::always_inline]] static Mask inverse(Mask m) noexcept { return static_cast<Mask>(~m); }
-  [[gnu::always_inline]] static Mask both(Mask a, Mask b) noexcept { return static_cast<Mask>(a & b); }
-  [[gnu::always_inline]] static Mask either(Mask a, Mask b) noexcept { return static_cast<Mask>(a | b); }
-  [[gnu::always_inline]] static unsigned bits(Mask m) noexcept { return m; }
-  [[gnu::always_inline]] static Real min(Real a, Real b) noexcept { return _mm512_min_pd(a, b); }
-  [[gnu::always_inline]] static Real max(Real a, Real b) noexcept { return _mm512_max_pd(a, b); }
-  [[gnu::always_inline]] static Real sqrt(Real a) noexcept { return _mm512_sqrt_pd(a); }
-  [[gnu::always_inline]] static Real round(Real a) noexcept { return _mm512_roundscale_pd(a, 8); }
-  [[gnu::always_inline]] static Real fused_multiply_add(Real a, Real b, Real c) noexcept {
+  CHICANE_INLINE static Real select(Mask m, Real a, Real b) noexcept { return _mm512_mask_blend_pd(m, b, a); }
+  CHICANE_INLINE static Mask inverse(Mask m) noexcept { return static_cast<Mask>(~m); }
+  CHICANE_INLINE static Mask both(Mask a, Mask b) noexcept { return static_cast<Mask>(a & b); }
+  CHICANE_INLINE static Mask either(Mask a, Mask b) noexcept { return static_cast<Mask>(a | b); }
+  CHICANE_INLINE static unsigned bits(Mask m) noexcept { return m; }
+  CHICANE_INLINE static Real min(Real a, Real b) noexcept { return _mm512_min_pd(a, b); }
+  CHICANE_INLINE static Real max(Real a, Real b) noexcept { return _mm512_max_pd(a, b); }
+  CHICANE_INLINE static Real sqrt(Real a) noexcept { return _mm512_sqrt_pd(a); }
+  CHICANE_INLINE static Real round(Real a) noexcept { return _mm512_roundscale_pd(a, 8); }
+  CHICANE_INLINE static Real fused_multiply_add(Real a, Real b, Real c) noexcept {
     return _mm512_fmadd_pd(a, b, c);
   }
-  [[gnu::always_inline]] static Real fused_negative_multiply_add(Real a, Real b, Real c) noexcept {
+  CHICANE_INLINE static Real fused_negative_multiply_add(Real a, Real b, Real c) noexcept {
     return _mm512_fnmadd_pd(a, b, c);
   }
 };
@@ -195,19 +190,19 @@ struct Ops<arch::Avx512, 8> : Portable<8> {
 #if defined(__aarch64__)
 template <>
 struct Ops<arch::Neon, 2> : Portable<2> {
-  [[gnu::always_inline]] static Real sqrt(Real a) noexcept { return cast(vsqrtq_f64(cast(a))); }
-  [[gnu::always_inline]] static Real round(Real a) noexcept { return cast(vrndnq_f64(cast(a))); }
-  [[gnu::always_inline]] static Real fused_multiply_add(Real a, Real b, Real c) noexcept {
+  CHICANE_INLINE static Real sqrt(Real a) noexcept { return cast(vsqrtq_f64(cast(a))); }
+  CHICANE_INLINE static Real round(Real a) noexcept { return cast(vrndnq_f64(cast(a))); }
+  CHICANE_INLINE static Real fused_multiply_add(Real a, Real b, Real c) noexcept {
     return cast(vfmaq_f64(cast(c), cast(a), cast(b)));
   }
-  [[gnu::always_inline]] static Real fused_negative_multiply_add(Real a, Real b, Real c) noexcept {
+  CHICANE_INLINE static Real fused_negative_multiply_add(Real a, Real b, Real c) noexcept {
     return cast(vfmsq_f64(cast(c), cast(a), cast(b)));
   }
 
  private:
-  [[gnu::always_inline]] static float64x2_t cast(Real a) noexcept { return std::bit_cast<float64x2_t>(a); }
+  CHICANE_INLINE static float64x2_t cast(Real a) noexcept { return std::bit_cast<float64x2_t>(a); }
   template <class T = float64x2_t>
-  requires(!std::is_same_v<T, Real>) [[gnu::always_inline]] static Real cast(T a) noexcept {
+  requires(!std::is_same_v<T, Real>) CHICANE_INLINE static Real cast(T a) noexcept {
     return std::bit_cast<Real>(a);
   }
 };
@@ -215,7 +210,7 @@ struct Ops<arch::Neon, 2> : Portable<2> {
 
 /// Rows of a W × W block become its columns.
 template <std::size_t W, class Real>
-[[gnu::always_inline]] inline void transpose_block(Real* r) noexcept {
+CHICANE_INLINE inline void transpose_block(Real* r) noexcept {
   if constexpr (W == 2) {
     const Real a = __builtin_shufflevector(r[0], r[1], 0, 2);
     r[1] = __builtin_shufflevector(r[0], r[1], 1, 3);
@@ -254,10 +249,10 @@ template <std::size_t W, class Real>
 
 /// result[p] = Op(operands[p]…) for every register p, always unrolled.
 template <auto Op, class Result, class... Operands>
-[[gnu::always_inline]] inline Result by_parts(const Operands&... operands) noexcept {
-  return [&]<std::size_t... P>(std::index_sequence<P...>) __attribute__((always_inline)) {
+CHICANE_INLINE inline Result by_parts(const Operands&... operands) noexcept {
+  return [&]<std::size_t... P>(std::index_sequence<P...>) CHICANE_INLINE {
     Result r;
-    const auto part = [&](auto p) __attribute__((always_inline)) { r.part[p] = Op(operands.part[p]...); };
+    const auto part = [&](auto p) CHICANE_INLINE { r.part[p] = Op(operands.part[p]...); };
     (part(std::integral_constant<std::size_t, P>{}), ...);
     return r;
   }

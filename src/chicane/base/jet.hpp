@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/jet_rules.hpp"
 
 namespace chicane {
@@ -13,22 +14,22 @@ namespace chicane {
 // ---- arithmetic
 
 template <AnyJet A, AnyJet B>
-[[nodiscard, gnu::always_inline]] inline constexpr auto operator+(const A& a, const B& b) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator+(const A& a, const B& b) {
   using namespace jet;
   return chain(a, b, a.v + b.v, Partials{One{}, One{}, Zero{}, Zero{}, Zero{}});
 }
 template <AnyJet A, AnyJet B>
-[[nodiscard, gnu::always_inline]] inline constexpr auto operator-(const A& a, const B& b) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator-(const A& a, const B& b) {
   using namespace jet;
   return chain(a, b, a.v - b.v, Partials{One{}, Minus{}, Zero{}, Zero{}, Zero{}});
 }
 template <AnyJet A, AnyJet B>
-[[nodiscard, gnu::always_inline]] inline constexpr auto operator*(const A& a, const B& b) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator*(const A& a, const B& b) {
   using namespace jet;
   return chain(a, b, a.v * b.v, Partials{b.v, a.v, Zero{}, One{}, Zero{}});
 }
 template <AnyJet A, AnyJet B>
-[[nodiscard, gnu::always_inline]] inline constexpr auto operator/(const A& a, const B& b) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator/(const A& a, const B& b) {
   using namespace jet;
   using V = typename A::Value;
   const V inverse = 1.0 / b.v;
@@ -38,44 +39,44 @@ template <AnyJet A, AnyJet B>
   return chain(a, b, value, Partials{inverse, by_b, Zero{}, by_ab, -2.0 * by_b * inverse});
 }
 template <AnyJet A>
-[[nodiscard, gnu::always_inline]] inline constexpr auto operator-(const A& a) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator-(const A& a) {
   return jet::chain(a, -a.v, jet::Minus{}, jet::Zero{});
 }
 template <AnyJet A>
-[[nodiscard, gnu::always_inline]] inline constexpr const A& operator+(const A& a) {
+[[nodiscard]] CHICANE_INLINE inline constexpr const A& operator+(const A& a) {
   return a;
 }
 
 template <AnyJet A, ConstantFor<A> S>
-[[nodiscard, gnu::always_inline]] inline constexpr auto operator+(const A& a, const S& b) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator+(const A& a, const S& b) {
   return jet::chain(a, a.v + b, jet::One{}, jet::Zero{});
 }
 template <AnyJet A, ConstantFor<A> S>
-[[nodiscard, gnu::always_inline]] inline constexpr auto operator+(const S& b, const A& a) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator+(const S& b, const A& a) {
   return a + b;
 }
 template <AnyJet A, ConstantFor<A> S>
-[[nodiscard, gnu::always_inline]] inline constexpr auto operator-(const A& a, const S& b) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator-(const A& a, const S& b) {
   return jet::chain(a, a.v - b, jet::One{}, jet::Zero{});
 }
 template <AnyJet A, ConstantFor<A> S>
-[[nodiscard, gnu::always_inline]] inline constexpr auto operator-(const S& b, const A& a) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator-(const S& b, const A& a) {
   return jet::chain(a, b - a.v, jet::Minus{}, jet::Zero{});
 }
 template <AnyJet A, ConstantFor<A> S>
-[[nodiscard, gnu::always_inline]] inline constexpr auto operator*(const A& a, const S& b) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator*(const A& a, const S& b) {
   return jet::chain(a, a.v * b, typename A::Value(b), jet::Zero{});
 }
 template <AnyJet A, ConstantFor<A> S>
-[[nodiscard, gnu::always_inline]] inline constexpr auto operator*(const S& b, const A& a) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator*(const S& b, const A& a) {
   return a * b;
 }
 template <AnyJet A, ConstantFor<A> S>
-[[nodiscard, gnu::always_inline]] inline constexpr auto operator/(const A& a, const S& b) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator/(const A& a, const S& b) {
   return a * (1.0 / b);
 }
 template <AnyJet A, ConstantFor<A> S>
-[[nodiscard, gnu::always_inline]] inline constexpr auto operator/(const S& b, const A& a) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto operator/(const S& b, const A& a) {
   using V = typename A::Value;
   const V inverse = 1.0 / a.v;
   const V value = b * inverse;
@@ -85,74 +86,74 @@ template <AnyJet A, ConstantFor<A> S>
 
 // Comparisons see values only.
 template <class A, class B>
-requires(AnyJet<A> || AnyJet<B>) [[nodiscard, gnu::always_inline]] inline constexpr auto operator<(
-    const A& a, const B& b) {
+requires(AnyJet<A> || AnyJet<B>) [[nodiscard]] CHICANE_INLINE inline constexpr auto operator<(const A& a,
+                                                                                              const B& b) {
   return jet::value(a) < jet::value(b);
 }
 template <class A, class B>
-requires(AnyJet<A> || AnyJet<B>) [[nodiscard, gnu::always_inline]] inline constexpr auto operator>(
-    const A& a, const B& b) {
+requires(AnyJet<A> || AnyJet<B>) [[nodiscard]] CHICANE_INLINE inline constexpr auto operator>(const A& a,
+                                                                                              const B& b) {
   return jet::value(a) > jet::value(b);
 }
 
 template <class A, class B>
-requires(AnyJet<A> || AnyJet<B>) [[nodiscard, gnu::always_inline]] inline constexpr auto operator<=(
-    const A& a, const B& b) {
+requires(AnyJet<A> || AnyJet<B>) [[nodiscard]] CHICANE_INLINE inline constexpr auto operator<=(const A& a,
+                                                                                               const B& b) {
   return jet::value(a) <= jet::value(b);
 }
 template <class A, class B>
-requires(AnyJet<A> || AnyJet<B>) [[nodiscard, gnu::always_inline]] inline constexpr auto operator>=(
-    const A& a, const B& b) {
+requires(AnyJet<A> || AnyJet<B>) [[nodiscard]] CHICANE_INLINE inline constexpr auto operator>=(const A& a,
+                                                                                               const B& b) {
   return jet::value(a) >= jet::value(b);
 }
 
 // ---- elementary functions
 
 template <AnyJet A>
-[[nodiscard, gnu::always_inline]] inline auto sin(const A& a) {
+[[nodiscard]] CHICANE_INLINE inline auto sin(const A& a) {
   const auto s = sin(a.v);
   return jet::chain(a, s, cos(a.v), -s);
 }
 template <AnyJet A>
-[[nodiscard, gnu::always_inline]] inline auto cos(const A& a) {
+[[nodiscard]] CHICANE_INLINE inline auto cos(const A& a) {
   const auto c = cos(a.v);
   return jet::chain(a, c, -sin(a.v), -c);
 }
 template <AnyJet A>
-[[nodiscard, gnu::always_inline]] inline auto tan(const A& a) {
+[[nodiscard]] CHICANE_INLINE inline auto tan(const A& a) {
   const auto t = tan(a.v);
   const auto slope = 1.0 + t * t;
   return jet::chain(a, t, slope, 2.0 * t * slope);
 }
 template <AnyJet A>
-[[nodiscard, gnu::always_inline]] inline auto atan(const A& a) {
+[[nodiscard]] CHICANE_INLINE inline auto atan(const A& a) {
   const auto slope = 1.0 / (1.0 + a.v * a.v);
   return jet::chain(a, atan(a.v), slope, -2.0 * a.v * slope * slope);
 }
 template <AnyJet A>
-[[nodiscard, gnu::always_inline]] inline auto sqrt(const A& a) {
+[[nodiscard]] CHICANE_INLINE inline auto sqrt(const A& a) {
   const auto root = sqrt(a.v);
   const auto slope = 0.5 / root;
   return jet::chain(a, root, slope, -0.5 * slope / a.v);
 }
 template <AnyJet A>
-[[nodiscard, gnu::always_inline]] inline auto exp(const A& a) {
+[[nodiscard]] CHICANE_INLINE inline auto exp(const A& a) {
   const auto e = exp(a.v);
   return jet::chain(a, e, e, e);
 }
 template <AnyJet A>
-[[nodiscard, gnu::always_inline]] inline auto log(const A& a) {
+[[nodiscard]] CHICANE_INLINE inline auto log(const A& a) {
   const auto slope = 1.0 / a.v;
   return jet::chain(a, log(a.v), slope, -slope * slope);
 }
 template <AnyJet A>
-[[nodiscard, gnu::always_inline]] inline auto tanh(const A& a) {
+[[nodiscard]] CHICANE_INLINE inline auto tanh(const A& a) {
   const auto t = tanh(a.v);
   const auto slope = 1.0 - t * t;
   return jet::chain(a, t, slope, -2.0 * t * slope);
 }
 template <AnyJet A, AnyJet B>
-[[nodiscard, gnu::always_inline]] inline auto atan2(const A& y, const B& x) {
+[[nodiscard]] CHICANE_INLINE inline auto atan2(const A& y, const B& x) {
   using namespace jet;
   const auto inverse = 1.0 / (x.v * x.v + y.v * y.v);
   const auto by_y = x.v * inverse;
@@ -165,7 +166,7 @@ template <AnyJet A, AnyJet B>
 
 /// `a` where the mask is set, else `b`, with the derivatives of the one chosen.
 template <class M, AnyJet A, AnyJet B>
-[[nodiscard, gnu::always_inline]] inline constexpr auto select(const M& mask, const A& a, const B& b) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto select(const M& mask, const A& a, const B& b) {
   using V = typename A::Value;
   Jet<V, A::kOrder, A::kFirst | B::kFirst, A::kUnit & B::kUnit, A::kSecond | B::kSecond> r;
   using R = decltype(r);
@@ -176,11 +177,11 @@ template <class M, AnyJet A, AnyJet B>
       r.curvatures[n] = select(mask, a.curvatures[n], b.curvatures[n]);
     return r;
   }
-  jet::repeat<static_cast<int>(R::kSlopes)>([&](auto n) __attribute__((always_inline)) {
+  jet::repeat<static_cast<int>(R::kSlopes)>([&](auto n) CHICANE_INLINE {
     constexpr int i = member_of(R::kFirst & ~R::kUnit, n);
     r.slopes[n] = select(mask, jet::number<V>(jet::slope<i>(a)), jet::number<V>(jet::slope<i>(b)));
   });
-  jet::repeat<static_cast<int>(R::kCurvatures)>([&](auto n) __attribute__((always_inline)) {
+  jet::repeat<static_cast<int>(R::kCurvatures)>([&](auto n) CHICANE_INLINE {
     constexpr Pair p = members<R::kSecond>()[n];
     r.curvatures[n] = select(mask, jet::number<V>(jet::curvature<p.i, p.j>(a)),
                              jet::number<V>(jet::curvature<p.i, p.j>(b)));
@@ -188,30 +189,30 @@ template <class M, AnyJet A, AnyJet B>
   return r;
 }
 template <class M, AnyJet A, ConstantFor<A> S>
-[[nodiscard, gnu::always_inline]] inline constexpr auto select(const M& mask, const A& a, const S& b) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto select(const M& mask, const A& a, const S& b) {
   return select(mask, a, Jet<typename A::Value, A::kOrder, 0>(b));
 }
 template <class M, AnyJet A, ConstantFor<A> S>
-[[nodiscard, gnu::always_inline]] inline constexpr auto select(const M& mask, const S& b, const A& a) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto select(const M& mask, const S& b, const A& a) {
   return select(mask, Jet<typename A::Value, A::kOrder, 0>(b), a);
 }
 template <class A, class B>
 requires(AnyJet<A> || AnyJet<B>)
-    [[nodiscard, gnu::always_inline]] inline constexpr auto max(const A& a, const B& b) {
+    [[nodiscard]] CHICANE_INLINE inline constexpr auto max(const A& a, const B& b) {
   return select(a > b, a, b);
 }
 template <class A, class B>
 requires(AnyJet<A> || AnyJet<B>)
-    [[nodiscard, gnu::always_inline]] inline constexpr auto min(const A& a, const B& b) {
+    [[nodiscard]] CHICANE_INLINE inline constexpr auto min(const A& a, const B& b) {
   return select(a < b, a, b);
 }
 /// max(a, 0): what exceeds a limit.
 template <AnyJet A>
-[[nodiscard, gnu::always_inline]] inline constexpr auto positive_part(const A& a) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto positive_part(const A& a) {
   return select(a.v > 0.0, a, 0.0);
 }
 template <AnyJet A>
-[[nodiscard, gnu::always_inline]] inline constexpr auto abs(const A& a) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto abs(const A& a) {
   return select(a.v < 0.0, -a, a);
 }
 

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/variable_sets.hpp"
 
@@ -86,7 +87,7 @@ template <class V, int O, Variables F, Variables U, Pairs S>
 namespace jet {
 
 template <class T>
-[[nodiscard, gnu::always_inline]] inline constexpr const auto& value(const T& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline constexpr const auto& value(const T& x) noexcept {
   if constexpr (AnyJet<T>)
     return x.v;
   else
@@ -104,7 +105,7 @@ template <class T>
 inline constexpr bool is_one = std::is_same_v<T, One>;
 
 template <class A, class B>
-[[nodiscard, gnu::always_inline]] inline constexpr auto times(const A& a, const B& b) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto times(const A& a, const B& b) {
   if constexpr (is_zero<A> || is_zero<B>)
     return Zero{};
   else if constexpr (is_one<A>)
@@ -121,7 +122,7 @@ template <class A, class B>
     return a * b;
 }
 template <class V, class A>
-[[nodiscard, gnu::always_inline]] inline constexpr V number(const A& a) {
+[[nodiscard]] CHICANE_INLINE inline constexpr V number(const A& a) {
   if constexpr (is_zero<A>)
     return V(0.0);
   else if constexpr (is_one<A>)
@@ -132,7 +133,7 @@ template <class V, class A>
     return a;
 }
 template <class V, class A, class B>
-[[nodiscard, gnu::always_inline]] inline constexpr auto plus(const A& a, const B& b) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto plus(const A& a, const B& b) {
   if constexpr (is_zero<A>)
     return b;
   else if constexpr (is_zero<B>)
@@ -143,7 +144,7 @@ template <class V, class A, class B>
 
 /// First derivative with respect to variable I, in the cheapest form.
 template <int I, AnyJet J>
-[[nodiscard, gnu::always_inline]] inline constexpr auto slope(const J& x) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto slope(const J& x) {
   if constexpr (!contains(J::kFirst, I))
     return Zero{};
   else if constexpr (contains(J::kUnit, I))
@@ -152,7 +153,7 @@ template <int I, AnyJet J>
     return x.slopes[rank_of(J::kFirst & ~J::kUnit, I)];
 }
 template <int I, int K, AnyJet J>
-[[nodiscard, gnu::always_inline]] inline constexpr auto curvature(const J& x) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto curvature(const J& x) {
   if constexpr (!J::kSecond.contains(I, K))
     return Zero{};
   else
@@ -160,8 +161,8 @@ template <int I, int K, AnyJet J>
 }
 
 template <int N, class Visit>
-[[gnu::always_inline]] inline constexpr void repeat(const Visit& visit) {
-  [&]<int... n>(std::integer_sequence<int, n...>) __attribute__((always_inline)) {
+CHICANE_INLINE inline constexpr void repeat(const Visit& visit) {
+  [&]<int... n>(std::integer_sequence<int, n...>) CHICANE_INLINE {
     (visit(std::integral_constant<int, n>{}), ...);
   }
   (std::make_integer_sequence<int, N>{});
@@ -200,9 +201,9 @@ constexpr Pairs second_of() noexcept {
 
 /// The chain rule for jets that store everything: plain loops, quick to compile.
 template <AnyJet A, class PA, class PB, class AA, class AB, class BB>
-[[nodiscard, gnu::always_inline]] inline constexpr A chain_dense(const A& a, const A& b,
-                                                                 const typename A::Value& value,
-                                                                 const Partials<PA, PB, AA, AB, BB>& f) {
+[[nodiscard]] CHICANE_INLINE inline constexpr A chain_dense(const A& a, const A& b,
+                                                            const typename A::Value& value,
+                                                            const Partials<PA, PB, AA, AB, BB>& f) {
   using V = typename A::Value;
   constexpr std::size_t count = A::kSlopes;
   A r;
@@ -225,9 +226,9 @@ template <AnyJet A, class PA, class PB, class AA, class AB, class BB>
 
 /// The chain rule for jets of any types: each entry on its own.
 template <AnyJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
-[[nodiscard, gnu::always_inline]] inline constexpr auto chain_sparse(const A& a, const B& b,
-                                                                     const typename A::Value& value,
-                                                                     const Partials<PA, PB, AA, AB, BB>& f) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto chain_sparse(const A& a, const B& b,
+                                                                const typename A::Value& value,
+                                                                const Partials<PA, PB, AA, AB, BB>& f) {
   using V = typename A::Value;
   constexpr Variables first = (is_zero<PA> ? 0 : A::kFirst) | (is_zero<PB> ? 0 : B::kFirst);
   constexpr Variables unit = unit_of<PA, PB, A, B>();
@@ -239,11 +240,11 @@ template <AnyJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
   }();
   Jet<V, A::kOrder, first, unit, second> r;
   r.v = value;
-  repeat<size_of(first & ~unit)>([&](auto n) __attribute__((always_inline)) {
+  repeat<size_of(first & ~unit)>([&](auto n) CHICANE_INLINE {
     constexpr int i = member_of(first & ~unit, n);
     r.slopes[n] = number<V>(plus<V>(times(f.a, slope<i>(a)), times(f.b, slope<i>(b))));
   });
-  repeat<second.size()>([&](auto n) __attribute__((always_inline)) {
+  repeat<second.size()>([&](auto n) CHICANE_INLINE {
     constexpr Pair p = members<second>()[n];
     const auto ai = slope<p.i>(a);
     const auto ak = slope<p.j>(a);
@@ -259,9 +260,9 @@ template <AnyJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
 
 /// The chain rule in two arguments.
 template <AnyJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
-[[nodiscard, gnu::always_inline]] inline constexpr auto chain(const A& a, const B& b,
-                                                              const typename A::Value& value,
-                                                              const Partials<PA, PB, AA, AB, BB>& f) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto chain(const A& a, const B& b,
+                                                         const typename A::Value& value,
+                                                         const Partials<PA, PB, AA, AB, BB>& f) {
   if constexpr (std::is_same_v<A, B> && A::kIsDense) {
     return chain_dense(a, b, value, f);
   } else {
@@ -271,9 +272,8 @@ template <AnyJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
 
 /// The chain rule in one argument: f(a) with its slope and curvature.
 template <AnyJet A, class Slope, class Curvature>
-[[nodiscard, gnu::always_inline]] inline constexpr auto chain(const A& a, const typename A::Value& value,
-                                                              const Slope& slope,
-                                                              const Curvature& curvature) {
+[[nodiscard]] CHICANE_INLINE inline constexpr auto chain(const A& a, const typename A::Value& value,
+                                                         const Slope& slope, const Curvature& curvature) {
   const Partials f{slope, Zero{}, curvature, Zero{}, Zero{}};
   if constexpr (A::kIsDense) {
     return chain_dense(a, a, value, f);
@@ -288,14 +288,13 @@ template <class V, int Order, Variables First, Variables Unit, Pairs Second>
 template <Variables F, Variables U, Pairs P>
 requires((F & ~First) == 0 && (Unit & ~U) == 0 && P.is_within(Second) &&
          !(F == First && U == Unit && P == Second))
-    [[gnu::always_inline]] constexpr Jet<V, Order, First, Unit, Second>::Jet(
-        const Jet<V, Order, F, U, P>& narrow)
+    CHICANE_INLINE constexpr Jet<V, Order, First, Unit, Second>::Jet(const Jet<V, Order, F, U, P>& narrow)
     : v(narrow.v) {
-  jet::repeat<size_of(First & ~Unit)>([&](auto n) __attribute__((always_inline)) {
+  jet::repeat<size_of(First & ~Unit)>([&](auto n) CHICANE_INLINE {
     constexpr int i = member_of(First & ~Unit, n);
     slopes[n] = jet::number<V>(jet::slope<i>(narrow));
   });
-  jet::repeat<Second.size()>([&](auto n) __attribute__((always_inline)) {
+  jet::repeat<Second.size()>([&](auto n) CHICANE_INLINE {
     constexpr Pair p = members<Second>()[n];
     curvatures[n] = jet::number<V>(jet::curvature<p.i, p.j>(narrow));
   });

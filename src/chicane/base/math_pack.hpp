@@ -2,51 +2,52 @@
 #pragma once
 
 #include "chicane/base/elementary.hpp"
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/pack.hpp"
 
 namespace chicane {
 
 /// The elementary functions of math.hpp on packs: every lane has the bits of the scalar call.
 template <class Arch, std::size_t N>
-[[nodiscard, gnu::always_inline]] inline Pack<Arch, N> sin(const Pack<Arch, N>& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> sin(const Pack<Arch, N>& x) noexcept {
   return elementary::sin(x);
 }
 template <class Arch, std::size_t N>
-[[nodiscard, gnu::always_inline]] inline Pack<Arch, N> cos(const Pack<Arch, N>& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> cos(const Pack<Arch, N>& x) noexcept {
   return elementary::cos(x);
 }
 template <class Arch, std::size_t N>
-[[nodiscard, gnu::always_inline]] inline Pack<Arch, N> tan(const Pack<Arch, N>& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> tan(const Pack<Arch, N>& x) noexcept {
   return elementary::sin(x) / elementary::cos(x);
 }
 template <class Arch, std::size_t N>
-[[nodiscard, gnu::always_inline]] inline Pack<Arch, N> atan(const Pack<Arch, N>& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> atan(const Pack<Arch, N>& x) noexcept {
   return elementary::atan(x);
 }
 template <class Arch, std::size_t N>
-[[nodiscard, gnu::always_inline]] inline Pack<Arch, N> atan2(const Pack<Arch, N>& y,
-                                                             const Pack<Arch, N>& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> atan2(const Pack<Arch, N>& y,
+                                                        const Pack<Arch, N>& x) noexcept {
   return elementary::atan2(y, x);
 }
 template <class Arch, std::size_t N>
-[[nodiscard, gnu::always_inline]] inline Pack<Arch, N> exp(const Pack<Arch, N>& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> exp(const Pack<Arch, N>& x) noexcept {
   return elementary::exp(x);
 }
 template <class Arch, std::size_t N>
-[[nodiscard, gnu::always_inline]] inline Pack<Arch, N> log(const Pack<Arch, N>& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> log(const Pack<Arch, N>& x) noexcept {
   return elementary::log(x);
 }
 template <class Arch, std::size_t N>
-[[nodiscard, gnu::always_inline]] inline Pack<Arch, N> tanh(const Pack<Arch, N>& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> tanh(const Pack<Arch, N>& x) noexcept {
   return elementary::tanh(x);
 }
 template <class Arch, std::size_t N>
-[[nodiscard, gnu::always_inline]] inline Pack<Arch, N> hypot(const Pack<Arch, N>& x,
-                                                             const Pack<Arch, N>& y) noexcept {
+[[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> hypot(const Pack<Arch, N>& x,
+                                                        const Pack<Arch, N>& y) noexcept {
   return sqrt(x * x + y * y);
 }
 template <class Arch, std::size_t N>
-[[nodiscard, gnu::always_inline]] inline Pack<Arch, N> positive_part(const Pack<Arch, N>& x) noexcept {
+[[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> positive_part(const Pack<Arch, N>& x) noexcept {
   return max(x, Pack<Arch, N>(0.0));
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/instructions.hpp"
 
 namespace chicane {
@@ -12,8 +13,8 @@ namespace chicane {
 /// Calls f(std::integral_constant<std::size_t, 0>) … f(…<N − 1>): a loop that is always unrolled, and whose
 /// index is a constant.
 template <std::size_t N, class F>
-[[gnu::always_inline]] inline constexpr void unroll(F&& f) noexcept {
-  [&]<std::size_t... I>(std::index_sequence<I...>) __attribute__((always_inline)) {
+CHICANE_INLINE inline constexpr void unroll(F&& f) noexcept {
+  [&]<std::size_t... I>(std::index_sequence<I...>) CHICANE_INLINE {
     (f(std::integral_constant<std::size_t, I>{}), ...);
   }
   (std::make_index_sequence<N>{});
@@ -28,7 +29,7 @@ struct Mask {
   typename Ops::Mask part[kParts];
 
   /// The first `count` lanes.
-  [[gnu::always_inline]] static Mask first(std::size_t count) noexcept {
+  CHICANE_INLINE static Mask first(std::size_t count) noexcept {
     struct {
       typename Ops::Integer part[kParts];
     } lane;
@@ -36,23 +37,23 @@ struct Mask {
     return pack_detail::by_parts<Ops::from_bits, Mask>(lane);
   }
   /// Lane i is bit i.
-  [[nodiscard, gnu::always_inline]] unsigned bits() const noexcept {
+  [[nodiscard]] CHICANE_INLINE unsigned bits() const noexcept {
     unsigned result = 0;
     for (std::size_t p = 0; p < kParts; ++p) result |= Ops::bits(part[p]) << (p * kWidth);
     return result;
   }
-  [[nodiscard, gnu::always_inline]] bool operator[](std::size_t lane) const noexcept {
+  [[nodiscard]] CHICANE_INLINE bool operator[](std::size_t lane) const noexcept {
     return ((bits() >> lane) & 1U) != 0;
   }
-  [[gnu::always_inline]] friend bool any(const Mask& m) noexcept { return m.bits() != 0; }
-  [[gnu::always_inline]] friend bool all(const Mask& m) noexcept { return m.bits() == (1U << N) - 1U; }
-  [[gnu::always_inline]] friend Mask operator&(const Mask& a, const Mask& b) noexcept {
+  CHICANE_INLINE friend bool any(const Mask& m) noexcept { return m.bits() != 0; }
+  CHICANE_INLINE friend bool all(const Mask& m) noexcept { return m.bits() == (1U << N) - 1U; }
+  CHICANE_INLINE friend Mask operator&(const Mask& a, const Mask& b) noexcept {
     return pack_detail::by_parts<Ops::both, Mask>(a, b);
   }
-  [[gnu::always_inline]] friend Mask operator|(const Mask& a, const Mask& b) noexcept {
+  CHICANE_INLINE friend Mask operator|(const Mask& a, const Mask& b) noexcept {
     return pack_detail::by_parts<Ops::either, Mask>(a, b);
   }
-  [[gnu::always_inline]] friend Mask operator!(const Mask& a) noexcept {
+  CHICANE_INLINE friend Mask operator!(const Mask& a) noexcept {
     return pack_detail::by_parts<Ops::inverse, Mask>(a);
   }
 };
@@ -66,43 +67,43 @@ struct Bits {
   typename Ops::Integer part[kParts];
 
   Bits() noexcept = default;
-  [[gnu::always_inline]] Bits(std::int64_t value) noexcept {  // NOLINT: constants mix freely, as in formulas
+  CHICANE_INLINE Bits(std::int64_t value) noexcept {  // NOLINT: constants mix freely, as in formulas
     for (auto& p : part) p = typename Ops::Integer{} + value;
   }
-  [[gnu::always_inline]] friend Bits operator&(const Bits& a, const Bits& b) noexcept {
+  CHICANE_INLINE friend Bits operator&(const Bits& a, const Bits& b) noexcept {
     return each<Ops::integer_and>(a, b);
   }
-  [[gnu::always_inline]] friend Bits operator|(const Bits& a, const Bits& b) noexcept {
+  CHICANE_INLINE friend Bits operator|(const Bits& a, const Bits& b) noexcept {
     return each<Ops::integer_or>(a, b);
   }
-  [[gnu::always_inline]] friend Bits operator^(const Bits& a, const Bits& b) noexcept {
+  CHICANE_INLINE friend Bits operator^(const Bits& a, const Bits& b) noexcept {
     return each<Ops::integer_xor>(a, b);
   }
-  [[gnu::always_inline]] friend Bits operator+(const Bits& a, const Bits& b) noexcept {
+  CHICANE_INLINE friend Bits operator+(const Bits& a, const Bits& b) noexcept {
     return each<Ops::integer_add>(a, b);
   }
-  [[gnu::always_inline]] friend Bits operator-(const Bits& a, const Bits& b) noexcept {
+  CHICANE_INLINE friend Bits operator-(const Bits& a, const Bits& b) noexcept {
     return each<Ops::integer_subtract>(a, b);
   }
-  [[gnu::always_inline]] friend Bits operator<<(const Bits& a, int count) noexcept {
+  CHICANE_INLINE friend Bits operator<<(const Bits& a, int count) noexcept {
     Bits r;
     for (std::size_t p = 0; p < kParts; ++p) r.part[p] = Ops::shift_left(a.part[p], count);
     return r;
   }
   /// Zeros come in from the left.
-  [[gnu::always_inline]] friend Bits operator>>(const Bits& a, int count) noexcept {
+  CHICANE_INLINE friend Bits operator>>(const Bits& a, int count) noexcept {
     Bits r;
     for (std::size_t p = 0; p < kParts; ++p) r.part[p] = Ops::shift_right(a.part[p], count);
     return r;
   }
   /// Lanes that are not zero.
-  [[gnu::always_inline]] friend Mask<Arch, N> is_set(const Bits& a) noexcept {
+  CHICANE_INLINE friend Mask<Arch, N> is_set(const Bits& a) noexcept {
     return pack_detail::by_parts<Ops::from_bits, Mask<Arch, N>>(a);
   }
 
  private:
   template <auto Op>
-  [[gnu::always_inline]] static Bits each(const Bits& a, const Bits& b) noexcept {
+  CHICANE_INLINE static Bits each(const Bits& a, const Bits& b) noexcept {
     return pack_detail::by_parts<Op, Bits>(a, b);
   }
 };
@@ -127,8 +128,7 @@ struct Pack {
   Real part[kParts];
 
   Pack() noexcept = default;
-  [[gnu::always_inline]] Pack(
-      double value) noexcept {  // NOLINT: constants mix freely with packs, as in formulas
+  CHICANE_INLINE Pack(double value) noexcept {  // NOLINT: constants mix freely with packs, as in formulas
     for (auto& p : part) {
       if constexpr (kWidth == 2) {
         p = Real{value, value};
@@ -140,122 +140,113 @@ struct Pack {
     }
   }
   /// From N doubles at an address that is a multiple of 8 N bytes.
-  [[gnu::always_inline]] static Pack load(const double* from) noexcept {
+  CHICANE_INLINE static Pack load(const double* from) noexcept {
     Pack r;
     for (std::size_t p = 0; p < kParts; ++p) r.part[p] = Memory::load(from + p * kWidth);
     return r;
   }
-  [[gnu::always_inline]] static Pack load_unaligned(const double* from) noexcept {
+  CHICANE_INLINE static Pack load_unaligned(const double* from) noexcept {
     Pack r;
     for (std::size_t p = 0; p < kParts; ++p) r.part[p] = Memory::load_unaligned(from + p * kWidth);
     return r;
   }
-  [[gnu::always_inline]] void store(double* to) const noexcept {
+  CHICANE_INLINE void store(double* to) const noexcept {
     for (std::size_t p = 0; p < kParts; ++p) Memory::store(to + p * kWidth, part[p]);
   }
-  [[gnu::always_inline]] void store_unaligned(double* to) const noexcept {
+  CHICANE_INLINE void store_unaligned(double* to) const noexcept {
     for (std::size_t p = 0; p < kParts; ++p) Memory::store_unaligned(to + p * kWidth, part[p]);
   }
   /// 0, 1, 2, …
-  [[gnu::always_inline]] static Pack iota() noexcept {
+  CHICANE_INLINE static Pack iota() noexcept {
     Pack r;
     for (std::size_t i = 0; i < N; ++i) r.set(i, static_cast<double>(i));
     return r;
   }
-  [[nodiscard, gnu::always_inline]] double operator[](std::size_t lane) const noexcept {
+  [[nodiscard]] CHICANE_INLINE double operator[](std::size_t lane) const noexcept {
     return part[lane / kWidth][lane % kWidth];
   }
-  [[gnu::always_inline]] void set(std::size_t lane, double value) noexcept {
+  CHICANE_INLINE void set(std::size_t lane, double value) noexcept {
     part[lane / kWidth][lane % kWidth] = value;
   }
 
-  [[gnu::always_inline]] friend Pack operator+(const Pack& a, const Pack& b) noexcept {
-    return each<Ops::add>(a, b);
-  }
-  [[gnu::always_inline]] friend Pack operator-(const Pack& a, const Pack& b) noexcept {
+  CHICANE_INLINE friend Pack operator+(const Pack& a, const Pack& b) noexcept { return each<Ops::add>(a, b); }
+  CHICANE_INLINE friend Pack operator-(const Pack& a, const Pack& b) noexcept {
     return each<Ops::subtract>(a, b);
   }
-  [[gnu::always_inline]] friend Pack operator*(const Pack& a, const Pack& b) noexcept {
+  CHICANE_INLINE friend Pack operator*(const Pack& a, const Pack& b) noexcept {
     return each<Ops::multiply>(a, b);
   }
-  [[gnu::always_inline]] friend Pack operator/(const Pack& a, const Pack& b) noexcept {
+  CHICANE_INLINE friend Pack operator/(const Pack& a, const Pack& b) noexcept {
     return each<Ops::divide>(a, b);
   }
-  [[gnu::always_inline]] friend Pack operator-(const Pack& a) noexcept { return each<Ops::negate>(a); }
-  [[gnu::always_inline]] Pack& operator+=(const Pack& o) noexcept { return *this = *this + o; }
-  [[gnu::always_inline]] Pack& operator-=(const Pack& o) noexcept { return *this = *this - o; }
-  [[gnu::always_inline]] Pack& operator*=(const Pack& o) noexcept { return *this = *this * o; }
-  [[gnu::always_inline]] Pack& operator/=(const Pack& o) noexcept { return *this = *this / o; }
+  CHICANE_INLINE friend Pack operator-(const Pack& a) noexcept { return each<Ops::negate>(a); }
+  CHICANE_INLINE Pack& operator+=(const Pack& o) noexcept { return *this = *this + o; }
+  CHICANE_INLINE Pack& operator-=(const Pack& o) noexcept { return *this = *this - o; }
+  CHICANE_INLINE Pack& operator*=(const Pack& o) noexcept { return *this = *this * o; }
+  CHICANE_INLINE Pack& operator/=(const Pack& o) noexcept { return *this = *this / o; }
 
-  [[gnu::always_inline]] friend MaskType operator<(const Pack& a, const Pack& b) noexcept {
+  CHICANE_INLINE friend MaskType operator<(const Pack& a, const Pack& b) noexcept {
     return compare<Ops::less>(a, b);
   }
-  [[gnu::always_inline]] friend MaskType operator<=(const Pack& a, const Pack& b) noexcept {
+  CHICANE_INLINE friend MaskType operator<=(const Pack& a, const Pack& b) noexcept {
     return compare<Ops::less_equal>(a, b);
   }
-  [[gnu::always_inline]] friend MaskType operator>(const Pack& a, const Pack& b) noexcept { return b < a; }
-  [[gnu::always_inline]] friend MaskType operator>=(const Pack& a, const Pack& b) noexcept { return b <= a; }
-  [[gnu::always_inline]] friend MaskType operator==(const Pack& a, const Pack& b) noexcept {
+  CHICANE_INLINE friend MaskType operator>(const Pack& a, const Pack& b) noexcept { return b < a; }
+  CHICANE_INLINE friend MaskType operator>=(const Pack& a, const Pack& b) noexcept { return b <= a; }
+  CHICANE_INLINE friend MaskType operator==(const Pack& a, const Pack& b) noexcept {
     return compare<Ops::equal>(a, b);
   }
 
   /// a · b + c; with one rounding where the instruction set has it.
-  [[gnu::always_inline]] friend Pack fused_multiply_add(const Pack& a, const Pack& b,
-                                                        const Pack& c) noexcept {
+  CHICANE_INLINE friend Pack fused_multiply_add(const Pack& a, const Pack& b, const Pack& c) noexcept {
     return each<Ops::fused_multiply_add>(a, b, c);
   }
   /// c − a · b, likewise.
-  [[gnu::always_inline]] friend Pack fused_negative_multiply_add(const Pack& a, const Pack& b,
-                                                                 const Pack& c) noexcept {
+  CHICANE_INLINE friend Pack fused_negative_multiply_add(const Pack& a, const Pack& b,
+                                                         const Pack& c) noexcept {
     return each<Ops::fused_negative_multiply_add>(a, b, c);
   }
-  [[gnu::always_inline]] friend Pack select(const MaskType& m, const Pack& a, const Pack& b) noexcept {
+  CHICANE_INLINE friend Pack select(const MaskType& m, const Pack& a, const Pack& b) noexcept {
     return each<Ops::select>(m, a, b);
   }
   /// a < b ? a : b, and a > b ? a : b: the second one where a lane is not a number.
-  [[gnu::always_inline]] friend Pack min(const Pack& a, const Pack& b) noexcept {
-    return each<Ops::min>(a, b);
-  }
-  [[gnu::always_inline]] friend Pack max(const Pack& a, const Pack& b) noexcept {
-    return each<Ops::max>(a, b);
-  }
-  [[gnu::always_inline]] friend Pack sqrt(const Pack& a) noexcept { return each<Ops::sqrt>(a); }
+  CHICANE_INLINE friend Pack min(const Pack& a, const Pack& b) noexcept { return each<Ops::min>(a, b); }
+  CHICANE_INLINE friend Pack max(const Pack& a, const Pack& b) noexcept { return each<Ops::max>(a, b); }
+  CHICANE_INLINE friend Pack sqrt(const Pack& a) noexcept { return each<Ops::sqrt>(a); }
   /// To the nearest integer, ties to even.
-  [[gnu::always_inline]] friend Pack round(const Pack& a) noexcept { return each<Ops::round>(a); }
-  [[gnu::always_inline]] friend BitsType bits_of(const Pack& a) noexcept {
+  CHICANE_INLINE friend Pack round(const Pack& a) noexcept { return each<Ops::round>(a); }
+  CHICANE_INLINE friend BitsType bits_of(const Pack& a) noexcept {
     return pack_detail::by_parts<Ops::to_bits, BitsType>(a);
   }
-  [[gnu::always_inline]] static Pack from_bits(const BitsType& a) noexcept { return each<Ops::to_real>(a); }
-  [[gnu::always_inline]] friend Pack abs(const Pack& a) noexcept {
+  CHICANE_INLINE static Pack from_bits(const BitsType& a) noexcept { return each<Ops::to_real>(a); }
+  CHICANE_INLINE friend Pack abs(const Pack& a) noexcept {
     return from_bits(bits_of(a) & BitsType(INT64_MAX));
   }
-  [[gnu::always_inline]] friend Pack copysign(const Pack& magnitude, const Pack& sign) noexcept {
+  CHICANE_INLINE friend Pack copysign(const Pack& magnitude, const Pack& sign) noexcept {
     return from_bits((bits_of(magnitude) & BitsType(INT64_MAX)) | (bits_of(sign) & BitsType(INT64_MIN)));
   }
   /// Lanes that are numbers.
-  [[gnu::always_inline]] friend MaskType is_finite(const Pack& a) noexcept { return a - a == Pack(0.0); }
+  CHICANE_INLINE friend MaskType is_finite(const Pack& a) noexcept { return a - a == Pack(0.0); }
   /// By halves, so that the order does not depend on registers.
-  [[gnu::always_inline]] friend double sum(const Pack& a) noexcept {
-    return reduce(
-        a, [](double x, double y) __attribute__((always_inline)) { return x + y; });
+  CHICANE_INLINE friend double sum(const Pack& a) noexcept {
+    return reduce(a, [](double x, double y) CHICANE_INLINE { return x + y; });
   }
-  [[gnu::always_inline]] friend double largest(const Pack& a) noexcept {
-    return reduce(
-        a, [](double x, double y) __attribute__((always_inline)) { return x > y ? x : y; });
+  CHICANE_INLINE friend double largest(const Pack& a) noexcept {
+    return reduce(a, [](double x, double y) CHICANE_INLINE { return x > y ? x : y; });
   }
 
  private:
   using Memory = pack_detail::Lanes<kWidth>;
   template <auto Op, class... Operands>
-  [[gnu::always_inline]] static Pack each(const Operands&... operands) noexcept {
+  CHICANE_INLINE static Pack each(const Operands&... operands) noexcept {
     return pack_detail::by_parts<Op, Pack>(operands...);
   }
   template <auto Op>
-  [[gnu::always_inline]] static MaskType compare(const Pack& a, const Pack& b) noexcept {
+  CHICANE_INLINE static MaskType compare(const Pack& a, const Pack& b) noexcept {
     return pack_detail::by_parts<Op, MaskType>(a, b);
   }
   template <class Op>
-  [[gnu::always_inline]] static double reduce(const Pack& a, Op op) noexcept {
+  CHICANE_INLINE static double reduce(const Pack& a, Op op) noexcept {
     double value[N];
     a.store_unaligned(value);
     for (std::size_t half = N / 2; half > 0; half /= 2) {
@@ -267,43 +258,39 @@ struct Pack {
 
 /// Rows become columns; N packs of N lanes.
 template <class Arch, std::size_t N>
-[[gnu::always_inline]] inline void transpose(Pack<Arch, N> (&row)[N]) noexcept {
+CHICANE_INLINE inline void transpose(Pack<Arch, N> (&row)[N]) noexcept {
   using P = Pack<Arch, N>;
   constexpr std::size_t kW = P::kWidth;
   typename P::Real block[P::kParts][P::kParts][kW];
-  unroll<P::kParts * P::kParts>([&](auto b) __attribute__((always_inline)) {
+  unroll<P::kParts * P::kParts>([&](auto b) CHICANE_INLINE {
     constexpr std::size_t kRow = b / P::kParts;
     constexpr std::size_t kColumn = b % P::kParts;
-    unroll<kW>([&](auto r) __attribute__((always_inline)) {
-      block[kRow][kColumn][r] = row[kRow * kW + r].part[kColumn];
-    });
+    unroll<kW>([&](auto r) CHICANE_INLINE { block[kRow][kColumn][r] = row[kRow * kW + r].part[kColumn]; });
     pack_detail::transpose_block<kW>(block[kRow][kColumn]);
   });
-  unroll<P::kParts * P::kParts>([&](auto b) __attribute__((always_inline)) {
+  unroll<P::kParts * P::kParts>([&](auto b) CHICANE_INLINE {
     constexpr std::size_t kRow = b / P::kParts;
     constexpr std::size_t kColumn = b % P::kParts;
-    unroll<kW>([&](auto r) __attribute__((always_inline)) {
-      row[kRow * kW + r].part[kColumn] = block[kColumn][kRow][r];
-    });
+    unroll<kW>([&](auto r) CHICANE_INLINE { row[kRow * kW + r].part[kColumn] = block[kColumn][kRow][r]; });
   });
 }
 
 /// The same for plain numbers, so that formulas can be written once.
 template <class Arch>
-[[nodiscard, gnu::always_inline]] inline double fused_multiply_add(double a, double b, double c) noexcept {
+[[nodiscard]] CHICANE_INLINE inline double fused_multiply_add(double a, double b, double c) noexcept {
   if constexpr (Arch::kFused) return __builtin_fma(a, b, c);
   return a * b + c;
 }
 template <class Arch>
-[[nodiscard, gnu::always_inline]] inline double fused_negative_multiply_add(double a, double b,
-                                                                            double c) noexcept {
+[[nodiscard]] CHICANE_INLINE inline double fused_negative_multiply_add(double a, double b,
+                                                                       double c) noexcept {
   if constexpr (Arch::kFused) return __builtin_fma(-a, b, c);
   return c - a * b;
 }
 /// One constant or another in each lane.
 template <class Arch, std::size_t N>
-[[nodiscard, gnu::always_inline]] inline Pack<Arch, N> select(const Mask<Arch, N>& m, double a,
-                                                              double b) noexcept {
+[[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> select(const Mask<Arch, N>& m, double a,
+                                                         double b) noexcept {
   return select(m, Pack<Arch, N>(a), Pack<Arch, N>(b));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/model/vehicle.hpp"
 
@@ -51,9 +52,9 @@ class PredictionModel {
   /// v_x, v_y and r after dt [s] with the given mean road-wheel angle and net acceleration. `dt` is a double,
   /// or one for each lane of T.
   template <class T, class D>
-  [[nodiscard, gnu::always_inline]] inline BodyMotion<T> advance(const BodyMotion<T>& from, const T& steer,
-                                                                 const T& acceleration,
-                                                                 const D& dt) const noexcept {
+  [[nodiscard]] CHICANE_INLINE inline BodyMotion<T> advance(const BodyMotion<T>& from, const T& steer,
+                                                            const T& acceleration,
+                                                            const D& dt) const noexcept {
     const model::VehicleParams& p = vehicle_;
     const Tires<T> tires = tire_state(from, steer);
     const T& kf = tires.stiffness_front;
@@ -102,8 +103,7 @@ class PredictionModel {
   /// Normalised lateral tyre use, front and rear: cornering · slip / friction. 1 is where the linear tyre
   /// would reach its peak; larger means sliding.
   template <class T>
-  [[nodiscard, gnu::always_inline]] inline std::array<T, 2> tire_use(
-      const BodyMotion<T>& motion) const noexcept {
+  [[nodiscard]] CHICANE_INLINE inline std::array<T, 2> tire_use(const BodyMotion<T>& motion) const noexcept {
     const Tires<T> tires = tire_state(motion, motion.steer);
     return {tires.use_front, tires.use_rear};
   }
@@ -132,8 +132,8 @@ class PredictionModel {
   }
 
   template <class T>
-  [[nodiscard, gnu::always_inline]] inline Tires<T> tire_state(const BodyMotion<T>& m,
-                                                               const T& steer) const noexcept {
+  [[nodiscard]] CHICANE_INLINE inline Tires<T> tire_state(const BodyMotion<T>& m,
+                                                          const T& steer) const noexcept {
     const model::VehicleParams& p = vehicle_;
     const double per_wheelbase = 1.0 / p.wheelbase();
     const T speed = sqrt(m.vx * m.vx + kSpeedFloor * kSpeedFloor);
@@ -163,7 +163,7 @@ class PredictionModel {
 
   /// Secant of the tyre curve over its initial slope: (1 + z⁴)^(−1/4); force tends to the peak, never falls.
   template <class T>
-  [[gnu::always_inline]] static inline T saturation(const T& z) noexcept {
+  CHICANE_INLINE static inline T saturation(const T& z) noexcept {
     const T z2 = z * z;
     return 1.0 / sqrt(sqrt(1.0 + z2 * z2));
   }

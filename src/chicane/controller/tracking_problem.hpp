@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <tuple>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/jet.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/controller/prediction.hpp"
@@ -136,11 +137,10 @@ struct TrackingProblem {
   }
 
   template <class K, class X, class U>
-  [[nodiscard, gnu::always_inline]] inline auto move(K k, const X& x, const U& u) const noexcept {
+  [[nodiscard]] CHICANE_INLINE inline auto move(K k, const X& x, const U& u) const noexcept {
     const auto is_first = solver::stage_number(k) < 0.5;
-    const auto either = [&](double of_first, double of_others) __attribute__((always_inline)) {
-      return select(is_first, of_first, of_others);
-    };
+    const auto either = [&](double of_first, double of_others)
+                            CHICANE_INLINE { return select(is_first, of_first, of_others); };
     using D = decltype(either(0.0, 0.0));
     struct {
       struct {
@@ -155,8 +155,8 @@ struct TrackingProblem {
 
   /// Motion over h [s] in coordinates along the line (eq. 15).
   template <class D, class Lags, class K, class X, class U>
-  [[nodiscard, gnu::always_inline]] inline auto move_by(const D& h, const Lags& lags, K k, const X& x,
-                                                        const U& u) const noexcept {
+  [[nodiscard]] CHICANE_INLINE inline auto move_by(const D& h, const Lags& lags, K k, const X& x,
+                                                   const U& u) const noexcept {
     const auto& [s, d, e, vx, vy, r, steer, a] = x;
     const auto& [steer_asked, a_asked] = u;
     const auto late_steer = steer - steer_asked;

@@ -12,6 +12,7 @@ namespace chicane::lap_time {
 struct LimitAnswer {
   std::shared_ptr<const Limit> found{};  ///< null: not known
   std::string why_not{};                 ///< empty when it is, or when nobody said
+  int first_lap = 1;  ///< it holds for laps from this one on; before, the car had other grip or mass
 };
 
 }  // namespace chicane::lap_time

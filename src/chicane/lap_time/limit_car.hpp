@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/model/vehicle.hpp"
 
 namespace chicane::lap_time {
@@ -28,16 +29,16 @@ struct LimitCar {
 
   /// Largest tyre force over mass at speed v [m/s²].
   template <class V>
-  [[nodiscard, gnu::always_inline]] inline auto grip(const V& v) const noexcept {
+  [[nodiscard]] CHICANE_INLINE inline auto grip(const V& v) const noexcept {
     return grip_0 + grip_v * v;
   }
   template <class V>
-  [[nodiscard, gnu::always_inline]] inline auto load(const V& v) const noexcept {
+  [[nodiscard]] CHICANE_INLINE inline auto load(const V& v) const noexcept {
     return load_0 + load_v * v;
   }
   /// Deceleration by drag at v > 0 [m/s²].
   template <class V>
-  [[nodiscard, gnu::always_inline]] inline auto drag(const V& v) const noexcept {
+  [[nodiscard]] CHICANE_INLINE inline auto drag(const V& v) const noexcept {
     return drag_0 + (drag_v + drag_vv * v) * v;
   }
 };

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <tuple>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/jet.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/lap_time/limit_car.hpp"
@@ -64,7 +65,7 @@ struct LimitProblem {
 
   /// Changes of κ and a over stage k, feedback included.
   template <class K, class X, class U>
-  [[nodiscard, gnu::always_inline]] inline auto changes(K k, const X& x, const U& u) const noexcept {
+  [[nodiscard]] CHICANE_INLINE inline auto changes(K k, const X& x, const U& u) const noexcept {
     const auto& [n, course, v, kappa, force] = x;
     const auto& [bend, push] = u;
     return std::make_pair(
@@ -74,7 +75,7 @@ struct LimitProblem {
   }
   /// Path over stage k: its length [m], and course and offset in its middle.
   template <class K, class X>
-  [[nodiscard, gnu::always_inline]] inline auto path(K k, const X& x) const noexcept {
+  [[nodiscard]] CHICANE_INLINE inline auto path(K k, const X& x) const noexcept {
     const auto& [n, course, v, kappa, force] = x;
     const auto middle = course + (0.5 * step) * (kappa - road.curvature.at(k));
     const auto offset = n + (0.5 * step) * sin(course);
@@ -83,14 +84,14 @@ struct LimitProblem {
   }
   /// Time over a stage whose path has this length [s].
   template <class X, class L>
-  [[nodiscard, gnu::always_inline]] inline auto duration(const X& x, const L& length) const noexcept {
+  [[nodiscard]] CHICANE_INLINE inline auto duration(const X& x, const L& length) const noexcept {
     const auto& [n, course, v, kappa, force] = x;
     return length / (v + length * ((0.5 * (force - car.drag(v))) / v));
   }
   [[nodiscard]] double time(int k, const State& x) const noexcept { return duration(x, path(k, x).first); }
 
   template <class K, class X, class U>
-  [[nodiscard, gnu::always_inline]] inline auto dynamics(K k, const X& x, const U& u) const noexcept {
+  [[nodiscard]] CHICANE_INLINE inline auto dynamics(K k, const X& x, const U& u) const noexcept {
     const auto& [n, course, v, kappa, force] = x;
     const auto [bend, push] = changes(k, x, u);
     const auto [length, middle] = path(k, x);
@@ -106,7 +107,7 @@ struct LimitProblem {
   }
 
   template <class K, class X, class U>
-  [[nodiscard, gnu::always_inline]] inline auto residual(K k, const X& x, const U& u) const noexcept {
+  [[nodiscard]] CHICANE_INLINE inline auto residual(K k, const X& x, const U& u) const noexcept {
     const auto& [n, course, v, kappa, force] = x;
     const auto [bend, push] = changes(k, x, u);
     return std::make_tuple(
@@ -122,7 +123,7 @@ struct LimitProblem {
   }
 
   template <class K, class X, class U>
-  [[nodiscard, gnu::always_inline]] inline auto constraint(K k, const X& x, const U& u) const noexcept {
+  [[nodiscard]] CHICANE_INLINE inline auto constraint(K k, const X& x, const U& u) const noexcept {
     const auto& [n, course, v, kappa, force] = x;
     const auto bend = changes(k, x, u).first;
     const auto v2 = v * v;

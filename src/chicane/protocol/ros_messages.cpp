@@ -197,7 +197,8 @@ double gap_percent(double time, double limit) {
 
 std::string encode_lap(const Frame& frame, const Run& run) {
   const telemetry::CompletedLap& lap = frame.completed_lap;
-  const lap_time::LapTimes limit = run.limit.found ? run.limit.found->times : lap_time::LapTimes{};
+  const bool has_limit = run.limit.found && lap.lap >= run.limit.first_lap;
+  const lap_time::LapTimes limit = has_limit ? run.limit.found->times : lap_time::LapTimes{};
   return Writer{}
       .put(static_cast<std::uint32_t>(lap.lap), lap.lap_time)
       .put(lap.sector_times[0], lap.sector_times[1], lap.sector_times[2], lap.is_clean)
@@ -232,7 +233,9 @@ std::string encode_limit(const Frame&, const Run& run) {
   column([](const Point& p) { return p.longitudinal_acceleration; });
   column([](const Point& p) { return p.lateral_acceleration; });
   column([](const Point& p) { return p.time; });
-  return writer.text(run.limit.found ? "" : run.limit.why_not).bytes();
+  return writer.text(run.limit.found ? "" : run.limit.why_not)
+      .put(static_cast<std::uint32_t>(run.limit.first_lap))
+      .bytes();
 }
 
 std::string encode_odometry(const Frame& frame, const Run& run) {

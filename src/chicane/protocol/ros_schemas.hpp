@@ -214,6 +214,7 @@ float64[] longitudinal_acceleration_mps2
 float64[] lateral_acceleration_mps2     # positive to the left
 float64[] time_s                        # since the start line
 string why_not                          # in one sentence, while is_known is false
+uint32 first_lap                        # it holds for laps from this one on: before, grip or mass were others
 )"},
     RosDefinition{"chicane_msgs/Change",
                   R"(# A setting that changed during the run, before this control cycle.

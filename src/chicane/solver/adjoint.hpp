@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/pack.hpp"
 #include "chicane/solver/stage_algebra.hpp"
 
@@ -30,15 +31,15 @@ struct Adjoint {
     for (std::size_t k = horizon; k-- > 0;) {
       const typename Lq::Stage& s = lq.stage[k];
       double g[kNx + kNu];
-      unroll<kNx + kNu>([&](auto j) __attribute__((always_inline)) {
+      unroll<kNx + kNu>([&](auto j) CHICANE_INLINE {
         constexpr std::size_t kColumn = j < kNx ? j : j + 1;
         g[j] = Algebra::template times_column<kColumn>(s, lambda, gradient[j][k]);
       });
-      unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+      unroll<kNx>([&](auto i) CHICANE_INLINE {
         price[i][k] = lambda[i];
         lambda[i] = g[i];
       });
-      unroll<kNu>([&](auto m) __attribute__((always_inline)) { slope[m][k] = g[kNx + m]; });
+      unroll<kNu>([&](auto m) CHICANE_INLINE { slope[m][k] = g[kNx + m]; });
     }
   }
 };

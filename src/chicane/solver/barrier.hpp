@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/solver/iterate.hpp"
 #include "chicane/solver/problem_pattern.hpp"
 #include "chicane/solver/soft_constraint.hpp"
@@ -45,11 +46,11 @@ class Barrier {
   [[nodiscard]] bool is_final() const noexcept { return kNc == 0 || mu_ <= final_; }
 
   // ---- constraint c of the eight stages from k on
-  [[nodiscard]] [[gnu::always_inline]] SoftConstraint<V> load(std::size_t c, std::size_t k) const noexcept {
+  [[nodiscard]] CHICANE_INLINE SoftConstraint<V> load(std::size_t c, std::size_t k) const noexcept {
     return {V::load(value_[c] + k), V::load(s_[c] + k), V::load(t_[c] + k), V::load(n_[c] + k),
             V::load(z_[c] + k)};
   }
-  [[gnu::always_inline]] void store(std::size_t c, std::size_t k, const SoftConstraint<V>& soft) noexcept {
+  CHICANE_INLINE void store(std::size_t c, std::size_t k, const SoftConstraint<V>& soft) noexcept {
     soft.value.store(value_[c] + k);
     soft.s.store(s_[c] + k);
     soft.t.store(t_[c] + k);
@@ -58,8 +59,8 @@ class Barrier {
   }
   /// Keeps its derivatives, for soft_change().
   template <class J>
-  [[gnu::always_inline]] void store_row(std::size_t c, std::size_t k, const J& constraint) noexcept {
-    jet::repeat<size_of(J::kFirst)>([&](auto n) __attribute__((always_inline)) {
+  CHICANE_INLINE void store_row(std::size_t c, std::size_t k, const J& constraint) noexcept {
+    jet::repeat<size_of(J::kFirst)>([&](auto n) CHICANE_INLINE {
       constexpr int j = member_of(J::kFirst, n);
       jet::number<V>(jet::slope<j>(constraint)).store(row_[c][j] + k);
     });

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/math_pack.hpp"
 #include "chicane/solver/pattern.hpp"
 #include "chicane/solver/problem_pattern.hpp"
@@ -102,14 +103,14 @@ class RiccatiLanes {
   };
 
   /// λ_k = g_x + Aᵀ λ_{k+1}; `slope` = g_u + Bᵀ λ_{k+1}. `L` needs its gradients only.
-  [[gnu::always_inline]] static void adjoint(const Jacobians& F, const Costs& L, State& lambda,
-                                             Input& slope) noexcept {
+  CHICANE_INLINE static void adjoint(const Jacobians& F, const Costs& L, State& lambda,
+                                     Input& slope) noexcept {
     const State next = lambda;
-    const auto price = [&](auto i) __attribute__((always_inline)) { return next[i]; };
-    unroll<kNx>([&](auto j) __attribute__((always_inline)) {
+    const auto price = [&](auto i) CHICANE_INLINE { return next[i]; };
+    unroll<kNx>([&](auto j) CHICANE_INLINE {
       lambda[j] = jet::number<V>(column_times<j>(F, entry_of_l<j, kOne>(L), price));
     });
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+    unroll<kNu>([&](auto m) CHICANE_INLINE {
       slope[m] = jet::number<V>(column_times<kHead + m>(F, entry_of_l<kHead + m, kOne>(L), price));
     });
   }
@@ -117,14 +118,13 @@ class RiccatiLanes {
   /// Eliminates the inputs of a stage, those that are not free held where they are: gains and constants into
   /// `s`, the cost to go from stage k + 1 to that from stage k. Lanes whose input block is not positive
   /// definite are taken out of `good`.
-  [[gnu::always_inline]] static void eliminate(Stage& s, const Costs& L,
-                                               const std::array<Lanes, kNu>& is_free, Value& value,
-                                               Lanes& good) noexcept {
+  CHICANE_INLINE static void eliminate(Stage& s, const Costs& L, const std::array<Lanes, kNu>& is_free,
+                                       Value& value, Lanes& good) noexcept {
     const Jacobians& F = s.F;
     std::array<State, kNz> w;  // columns of P F
-    unroll<kNz>([&](auto j) __attribute__((always_inline)) {
-      unroll<kNx>([&](auto r) __attribute__((always_inline)) {
-        const auto row = [&](auto i) __attribute__((always_inline)) { return entry_of_p<r, i>(value); };
+    unroll<kNz>([&](auto j) CHICANE_INLINE {
+      unroll<kNx>([&](auto r) CHICANE_INLINE {
+        const auto row = [&](auto i) CHICANE_INLINE { return entry_of_p<r, i>(value); };
         if constexpr (j == kOne) w[j][r] = column_times<j>(F, value.p[r], row);
         if constexpr (kTables.product[j][r]) w[j][r] = column_times<j>(F, jet::Zero{}, row);
       });
@@ -132,31 +132,29 @@ class RiccatiLanes {
     std::array<Input, kNu> H;
     Input g;
     std::array<State, kNu> Qux;
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-      unroll<m + 1>([&](auto l) __attribute__((always_inline)) {
+    unroll<kNu>([&](auto m) CHICANE_INLINE {
+      unroll<m + 1>([&](auto l) CHICANE_INLINE {
         H[m][l] = H[l][m] = jet::number<V>(entry_of_q<kHead + l, kHead + m>(F, L, w));
       });
-      unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+      unroll<kNx>([&](auto i) CHICANE_INLINE {
         if constexpr (kTables.gain[i]) Qux[m][i] = jet::number<V>(entry_of_q<i, kHead + m>(F, L, w));
       });
       g[m] = jet::number<V>(entry_of_q<kOne, kHead + m>(F, L, w));
     });
     good = good & solve_inputs(s, H, g, Qux, is_free);
-    unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+    unroll<kNx>([&](auto i) CHICANE_INLINE {
       auto& q = value.p[i];
       q = jet::number<V>(entry_of_q<i, kOne>(F, L, w));
       if constexpr (kTables.gain[i]) {
-        unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-          q = fused_multiply_add(Qux[m][i], s.constant[m], q);
-        });
+        unroll<kNu>([&](auto m) CHICANE_INLINE { q = fused_multiply_add(Qux[m][i], s.constant[m], q); });
       }
-      unroll<kNx - i>([&](auto n) __attribute__((always_inline)) {
+      unroll<kNx - i>([&](auto n) CHICANE_INLINE {
         constexpr std::size_t kJ = i + n;
         if constexpr (kTables.value[i][kJ]) {
           const auto start = entry_of_q<i, kJ>(F, L, w);
           if constexpr (kTables.gain[i] && kTables.gain[kJ]) {
             V sum = fused(Qux[0][i], s.gain[0][kJ], start);
-            unroll<kNu - 1>([&](auto m) __attribute__((always_inline)) {
+            unroll<kNu - 1>([&](auto m) CHICANE_INLINE {
               sum = fused_multiply_add(Qux[m + 1][i], s.gain[m + 1][kJ], sum);
             });
             value.P[i][kJ] = sum;
@@ -169,33 +167,30 @@ class RiccatiLanes {
   }
 
   /// δu of a stage.
-  [[gnu::always_inline]] static Input input_step(const Stage& s, const State& dx) noexcept {
+  CHICANE_INLINE static Input input_step(const Stage& s, const State& dx) noexcept {
     Input du;
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+    unroll<kNu>([&](auto m) CHICANE_INLINE {
       du[m] = s.constant[m];
-      unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+      unroll<kNx>([&](auto i) CHICANE_INLINE {
         if constexpr (kTables.gain[i]) du[m] = fused_multiply_add(s.gain[m][i], dx[i], du[m]);
       });
     });
     return du;
   }
   /// δx of the next stage.
-  [[gnu::always_inline]] static State next_step(const Stage& s, const State& dx, const Input& du) noexcept {
+  CHICANE_INLINE static State next_step(const Stage& s, const State& dx, const Input& du) noexcept {
     State next;
-    unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+    unroll<kNx>([&](auto i) CHICANE_INLINE {
       V sum = s.F[Layout::kF[i][kOne]];
-      unroll<kNx>([&](auto j)
-                      __attribute__((always_inline)) { sum = fused(entry_of_f<i, j>(s.F), dx[j], sum); });
-      unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-        sum = fused(entry_of_f<i, kHead + m>(s.F), du[m], sum);
-      });
+      unroll<kNx>([&](auto j) CHICANE_INLINE { sum = fused(entry_of_f<i, j>(s.F), dx[j], sum); });
+      unroll<kNu>([&](auto m) CHICANE_INLINE { sum = fused(entry_of_f<i, kHead + m>(s.F), du[m], sum); });
       next[i] = sum;
     });
     return next;
   }
 
   template <std::size_t I, std::size_t J>
-  [[gnu::always_inline]] static auto entry_of_f(const Jacobians& F) noexcept {
+  CHICANE_INLINE static auto entry_of_f(const Jacobians& F) noexcept {
     if constexpr (Layout::kF[I][J] != Layout::kNone) {
       return F[Layout::kF[I][J]];
     } else if constexpr (Pattern::kF[I][J] == Entry::kOne) {
@@ -209,7 +204,7 @@ class RiccatiLanes {
   static constexpr auto kTables = ValuePattern<Problem>::kTables;
 
   template <std::size_t I, std::size_t J>
-  [[gnu::always_inline]] static auto entry_of_l(const Costs& L) noexcept {
+  CHICANE_INLINE static auto entry_of_l(const Costs& L) noexcept {
     if constexpr (Layout::kL[I][J] != Layout::kNone) {
       return L[Layout::kL[I][J]];
     } else {
@@ -217,7 +212,7 @@ class RiccatiLanes {
     }
   }
   template <std::size_t R, std::size_t I>
-  [[gnu::always_inline]] static auto entry_of_p(const Value& value) noexcept {
+  CHICANE_INLINE static auto entry_of_p(const Value& value) noexcept {
     if constexpr (kTables.value[R][I]) {
       return value.P[R < I ? R : I][R < I ? I : R];
     } else {
@@ -227,7 +222,7 @@ class RiccatiLanes {
 
   /// sum + a · b
   template <class A, class B, class S>
-  [[gnu::always_inline]] static auto fused(const A& a, const B& b, const S& sum) noexcept {
+  CHICANE_INLINE static auto fused(const A& a, const B& b, const S& sum) noexcept {
     if constexpr (jet::is_zero<A> || jet::is_zero<B>) {
       return sum;
     } else if constexpr (jet::is_zero<S>) {
@@ -240,8 +235,7 @@ class RiccatiLanes {
   }
   /// sum + Σ_i F_iJ · value(i)
   template <std::size_t J, std::size_t I = 0, class S, class F>
-  [[gnu::always_inline]] static auto column_times(const Jacobians& jacobians, const S& sum,
-                                                  const F& value) noexcept {
+  CHICANE_INLINE static auto column_times(const Jacobians& jacobians, const S& sum, const F& value) noexcept {
     if constexpr (I == kNx) {
       return sum;
     } else {
@@ -260,54 +254,50 @@ class RiccatiLanes {
   /// Q_IJ = L_IJ + f_Iᵀ P f_J by the shorter one of the two columns of F; the one of the defects, which also
   /// carries p, always last.
   template <std::size_t I, std::size_t J, class W>
-  [[gnu::always_inline]] static auto entry_of_q(const Jacobians& F, const Costs& L, const W& w) noexcept {
+  CHICANE_INLINE static auto entry_of_q(const Jacobians& F, const Costs& L, const W& w) noexcept {
     constexpr bool kByI = J == kOne || (I != kOne && column_size(I) <= column_size(J));
     constexpr std::size_t kShort = kByI ? I : J;
     constexpr std::size_t kLong = kByI ? J : I;
-    return column_times<kShort>(
-        F, entry_of_l<I, J>(L), [&](auto r) __attribute__((always_inline)) {
-          if constexpr (kLong == kOne || kTables.product[kLong][r]) {
-            return w[kLong][r];
-          } else {
-            return jet::Zero{};
-          }
-        });
+    return column_times<kShort>(F, entry_of_l<I, J>(L), [&](auto r) CHICANE_INLINE {
+      if constexpr (kLong == kOne || kTables.product[kLong][r]) {
+        return w[kLong][r];
+      } else {
+        return jet::Zero{};
+      }
+    });
   }
 
   /// Gains and constants of the free inputs; the others stay.
-  [[gnu::always_inline]] static Lanes solve_inputs(Stage& s, const std::array<Input, kNu>& H, const Input& g,
-                                                   const std::array<State, kNu>& Qux,
-                                                   const std::array<Lanes, kNu>& is_free) noexcept {
+  CHICANE_INLINE static Lanes solve_inputs(Stage& s, const std::array<Input, kNu>& H, const Input& g,
+                                           const std::array<State, kNu>& Qux,
+                                           const std::array<Lanes, kNu>& is_free) noexcept {
     std::array<Input, kNu> A;
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-      unroll<kNu>([&](auto l) __attribute__((always_inline)) {
+    unroll<kNu>([&](auto m) CHICANE_INLINE {
+      unroll<kNu>([&](auto l) CHICANE_INLINE {
         A[m][l] = select(is_free[m] & is_free[l], H[m][l], V(m == l ? 1.0 : 0.0));
       });
     });
     const Lanes good = invert(A);
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+    unroll<kNu>([&](auto m) CHICANE_INLINE {
       Input row;
-      unroll<kNu>([&](auto l) __attribute__((always_inline)) {
-        row[l] = select(is_free[m] & is_free[l], -A[m][l], V(0.0));
-      });
-      const auto times_row = [&](const auto& column) __attribute__((always_inline)) {
+      unroll<kNu>([&](auto l) CHICANE_INLINE { row[l] = select(is_free[m] & is_free[l], -A[m][l], V(0.0)); });
+      const auto times_row = [&](const auto& column) CHICANE_INLINE {
         V sum = row[0] * column(0);
-        unroll<kNu - 1>([&](auto l) __attribute__((always_inline)) {
-          sum = fused_multiply_add(row[l + 1], column(l + 1), sum);
-        });
+        unroll<kNu - 1>([&](auto l)
+                            CHICANE_INLINE { sum = fused_multiply_add(row[l + 1], column(l + 1), sum); });
         return sum;
       };
-      s.constant[m] = times_row([&](std::size_t l) __attribute__((always_inline)) { return g[l]; });
-      unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+      s.constant[m] = times_row([&](std::size_t l) CHICANE_INLINE { return g[l]; });
+      unroll<kNx>([&](auto i) CHICANE_INLINE {
         if constexpr (kTables.gain[i])
-          s.gain[m][i] = times_row([&](std::size_t l) __attribute__((always_inline)) { return Qux[l][i]; });
+          s.gain[m][i] = times_row([&](std::size_t l) CHICANE_INLINE { return Qux[l][i]; });
       });
     });
     return good;
   }
 
   /// The inverse in place; lanes where all pivots are positive.
-  [[gnu::always_inline]] static Lanes invert(std::array<Input, kNu>& A) noexcept {
+  CHICANE_INLINE static Lanes invert(std::array<Input, kNu>& A) noexcept {
     if constexpr (kNu == 2) {
       const V determinant = fused_negative_multiply_add(A[1][0], A[1][0], A[0][0] * A[1][1]);
       const V scale = 1.0 / determinant;
@@ -319,19 +309,19 @@ class RiccatiLanes {
       return good;
     } else {
       Lanes good = V(0.0) == V(0.0);
-      unroll<kNu>([&](auto p) __attribute__((always_inline)) {
+      unroll<kNu>([&](auto p) CHICANE_INLINE {
         good = good & (A[p][p] > V(1e-12));
         const V pivot = 1.0 / A[p][p];
-        unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+        unroll<kNu>([&](auto m) CHICANE_INLINE {
           if constexpr (m != p) {
             const V factor = A[m][p] * pivot;
-            unroll<kNu>([&](auto l) __attribute__((always_inline)) {
+            unroll<kNu>([&](auto l) CHICANE_INLINE {
               if constexpr (l != p) A[m][l] = fused_negative_multiply_add(factor, A[p][l], A[m][l]);
             });
             A[m][p] = -factor;
           }
         });
-        unroll<kNu>([&](auto l) __attribute__((always_inline)) {
+        unroll<kNu>([&](auto l) CHICANE_INLINE {
           if constexpr (l != p) A[p][l] *= pivot;
         });
         A[p][p] = pivot;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/math_pack.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/soft_constraint.hpp"
@@ -46,7 +47,7 @@ struct BatchRoom {
 
   /// Simulates all lanes from inputs within their bounds; slacks start on the central path of the barrier
   /// `mu`.
-  [[gnu::flatten]] void simulate(std::size_t horizon, double mu) noexcept {
+  CHICANE_FLATTEN void simulate(std::size_t horizon, double mu) noexcept {
     for (std::size_t k = 0; k < horizon; ++k) {
       const int number = static_cast<int>(k);
       const auto low = many.input_lower(number);
@@ -68,16 +69,14 @@ struct BatchRoom {
 
   /// Moves what is in `lanes` of `other` into the same lanes.
   void move_in(const BatchRoom& other, const typename V::MaskType& lanes, std::size_t horizon) noexcept {
-    const auto move = [&](V & to, const V& from) __attribute__((always_inline)) {
-      to = select(lanes, from, to);
-    };
+    const auto move = [&](V& to, const V& from) CHICANE_INLINE { to = select(lanes, from, to); };
     auto* to = static_cast<V*>(static_cast<void*>(&many));
     const auto* from = static_cast<const V*>(static_cast<const void*>(&other.many));
     for (std::size_t n = 0; n < kNumbers; ++n) move(to[n], from[n]);
     for (std::size_t k = 0; k < horizon; ++k) {
-      unroll<kNx>([&](auto i) __attribute__((always_inline)) { move(x[k][i], other.x[k][i]); });
-      unroll<kNu>([&](auto m) __attribute__((always_inline)) { move(u[k][m], other.u[k][m]); });
-      unroll<kNc>([&](auto c) __attribute__((always_inline)) {
+      unroll<kNx>([&](auto i) CHICANE_INLINE { move(x[k][i], other.x[k][i]); });
+      unroll<kNu>([&](auto m) CHICANE_INLINE { move(u[k][m], other.u[k][m]); });
+      unroll<kNc>([&](auto c) CHICANE_INLINE {
         move(soft[k][c].s, other.soft[k][c].s);
         move(soft[k][c].t, other.soft[k][c].t);
         move(soft[k][c].n, other.soft[k][c].n);
@@ -88,7 +87,7 @@ struct BatchRoom {
   }
 
   /// Of soft constraint c.
-  [[nodiscard, gnu::always_inline]] SoftPenalty price([[maybe_unused]] std::size_t c) const noexcept {
+  [[nodiscard]] CHICANE_INLINE SoftPenalty price([[maybe_unused]] std::size_t c) const noexcept {
     if constexpr (kNc > 0) return many.soft_penalty(static_cast<int>(c));
     return {};
   }

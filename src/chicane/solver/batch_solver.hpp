@@ -9,6 +9,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/solver/batch_lanes.hpp"
 #include "chicane/solver/batch_room.hpp"
@@ -138,12 +139,12 @@ class BatchSolver {
 
   /// Looks at all lanes from the end of the horizon: linearises (eq. 4–6, 22), runs the adjoint, measures
   /// optimality (eq. 12, 13), and eliminates (eq. 9–11), one stage after the other.
-  [[gnu::flatten]] void look() noexcept {
+  CHICANE_FLATTEN void look() noexcept {
     Sums sums;  // in registers
     is_exact_ = lanes_of(exact_ & convex_);
     typename Riccati::Value value;
     StateJets<One, V, kOrder> end;
-    unroll<kNx>([&](auto i) __attribute__((always_inline)) { std::get<i>(end).v = now_.x[horizon_][i]; });
+    unroll<kNx>([&](auto i) CHICANE_INLINE { std::get<i>(end).v = now_.x[horizon_][i]; });
     Terms::add_terminal(now_.many.terminal_residual(end), select(is_exact_, V(1.0), V(0.0)), value,
                         sums.squares);
     typename Riccati::State lambda = value.p;
@@ -153,14 +154,14 @@ class BatchSolver {
     good_ = good.bits();
   }
 
-  [[gnu::always_inline]] void look_at(std::size_t k, typename Riccati::State& lambda,
-                                      typename Riccati::Value& value, Lanes& good, Sums& sums) noexcept {
+  CHICANE_INLINE void look_at(std::size_t k, typename Riccati::State& lambda, typename Riccati::Value& value,
+                              Lanes& good, Sums& sums) noexcept {
     auto& s = stage_[k];
     const int number = static_cast<int>(k);
     StateJets<One, V, kOrder> x;
     InputJets<One, V, kOrder> u;
-    unroll<kNx>([&](auto i) __attribute__((always_inline)) { std::get<i>(x).v = now_.x[k][i]; });
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) { std::get<m>(u).v = now_.u[k][m]; });
+    unroll<kNx>([&](auto i) CHICANE_INLINE { std::get<i>(x).v = now_.x[k][i]; });
+    unroll<kNu>([&](auto m) CHICANE_INLINE { std::get<m>(u).v = now_.u[k][m]; });
     const auto next = now_.many.dynamics(number, x, u);
     const auto residual = now_.many.residual(number, x, u);
     const auto constraint = soft_constraints(number, x, u);
@@ -172,25 +173,23 @@ class BatchSolver {
     const typename Riccati::State price = lambda;
     typename Riccati::Input slope;
     Riccati::adjoint(s.F, L, lambda, slope);
-    unroll<kNc>([&](auto c) __attribute__((always_inline)) {
+    unroll<kNc>([&](auto c) CHICANE_INLINE {
       Terms::template add_gradient<void, 0>(std::get<c>(constraint), pull[c], L);
     });
     if constexpr (kOrder == 2) {
-      const auto add = [&](const auto& row, const V& weight) __attribute__((always_inline)) {
+      const auto add = [&](const auto& row, const V& weight) CHICANE_INLINE {
         Terms::add_curvature(row, select(is_exact_, weight, V(0.0)), L);
       };
-      unroll<kNx>([&](auto i) __attribute__((always_inline)) { add(std::get<i>(next), price[i]); });
-      unroll<std::tuple_size_v<decltype(residual)>>([&](auto n) __attribute__((always_inline)) {
-        add(std::get<n>(residual), V(jet::value(std::get<n>(residual))));
-      });
-      unroll<kNc>([&](auto c)
-                      __attribute__((always_inline)) { add(std::get<c>(constraint), now_.soft[k][c].z); });
+      unroll<kNx>([&](auto i) CHICANE_INLINE { add(std::get<i>(next), price[i]); });
+      unroll<std::tuple_size_v<decltype(residual)>>(
+          [&](auto n) CHICANE_INLINE { add(std::get<n>(residual), V(jet::value(std::get<n>(residual)))); });
+      unroll<kNc>([&](auto c) CHICANE_INLINE { add(std::get<c>(constraint), now_.soft[k][c].z); });
     }
     Riccati::eliminate(s, L, measure(k, slope, sums), value, good);
   }
 
   template <class X, class U>
-  [[gnu::always_inline]] auto soft_constraints(int k, const X& x, const U& u) const noexcept {
+  CHICANE_INLINE auto soft_constraints(int k, const X& x, const U& u) const noexcept {
     if constexpr (kNc > 0) {
       return now_.many.constraint(k, x, u);
     } else {
@@ -200,10 +199,10 @@ class BatchSolver {
 
   /// Jacobians and defects.
   template <class Row>
-  [[gnu::always_inline]] void collect(const Row& next, std::size_t k, typename Riccati::Stage& s,
-                                      Sums& sums) noexcept {
+  CHICANE_INLINE void collect(const Row& next, std::size_t k, typename Riccati::Stage& s,
+                              Sums& sums) noexcept {
     const V allowed(kDefectShare * options_.tolerance);
-    unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+    unroll<kNx>([&](auto i) CHICANE_INLINE {
       const V& x = now_.x[k + 1][i];
       const V defect = V(jet::value(std::get<i>(next))) - x;
       const V size = abs(defect);
@@ -218,10 +217,10 @@ class BatchSolver {
   /// Soft constraints: multipliers as they are to the gradient, eliminated slacks to the Hessian (eq. 20,
   /// 21). Returns what the quadratic program's multipliers are beyond them.
   template <class Row>
-  [[gnu::always_inline]] std::array<V, kNc> add_soft(const Row& constraint, std::size_t k,
-                                                     typename Terms::Costs& L, Sums& sums) noexcept {
+  CHICANE_INLINE std::array<V, kNc> add_soft(const Row& constraint, std::size_t k, typename Terms::Costs& L,
+                                             Sums& sums) noexcept {
     std::array<V, kNc> pull;
-    unroll<kNc>([&](auto n) __attribute__((always_inline)) {
+    unroll<kNc>([&](auto n) CHICANE_INLINE {
       const auto& c = std::get<n>(constraint);
       auto& soft = now_.soft[k][n];
       const SoftPenalty price = now_.price(n);
@@ -230,10 +229,9 @@ class BatchSolver {
       pull[n] = model.slope - soft.z;
       Terms::template add_gradient<void, 0>(c, soft.z, L);
       Terms::template add_square<void, 0>(c, model.curvature, L);
-      Terms::for_slopes(
-          c, [&](auto i, const auto& slope) __attribute__((always_inline)) {
-            soft_row_[k][n][static_cast<std::size_t>(i)] = jet::number<V>(slope);
-          });
+      Terms::for_slopes(c, [&](auto i, const auto& slope) CHICANE_INLINE {
+        soft_row_[k][n][static_cast<std::size_t>(i)] = jet::number<V>(slope);
+      });
       sums.squares += 2.0 * soft.penalty(price);
       sums.complementarity = max(soft.residual(price, mu_), sums.complementarity);
       sums.violation = max(soft.value, sums.violation);
@@ -244,12 +242,12 @@ class BatchSolver {
 
   /// How far the inputs of stage k are from optimal; those that are free to move: not at a bound that the
   /// cost pulls them to.
-  [[gnu::always_inline]] std::array<Lanes, kNu> measure(std::size_t k, const typename Riccati::Input& slope,
-                                                        Sums& sums) const noexcept {
+  CHICANE_INLINE std::array<Lanes, kNu> measure(std::size_t k, const typename Riccati::Input& slope,
+                                                Sums& sums) const noexcept {
     const auto low = now_.many.input_lower(static_cast<int>(k));
     const auto high = now_.many.input_upper(static_cast<int>(k));
     std::array<Lanes, kNu> is_free;
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+    unroll<kNu>([&](auto m) CHICANE_INLINE {
       const V down = V(low[m]) - now_.u[k][m];
       const V up = V(high[m]) - now_.u[k][m];
       sums.stationarity = max(abs(min(max(-slope[m], down), up)), sums.stationarity);
@@ -333,13 +331,12 @@ class BatchSolver {
   };
 
   /// δu of stage k, no further than the bounds.
-  [[gnu::always_inline]] typename Riccati::Input bounded_step(std::size_t k,
-                                                              const typename Riccati::State& dx,
-                                                              Bent& bent) const noexcept {
+  CHICANE_INLINE typename Riccati::Input bounded_step(std::size_t k, const typename Riccati::State& dx,
+                                                      Bent& bent) const noexcept {
     const auto low = now_.many.input_lower(static_cast<int>(k));
     const auto high = now_.many.input_upper(static_cast<int>(k));
     auto du = Riccati::input_step(stage_[k], dx);
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+    unroll<kNu>([&](auto m) CHICANE_INLINE {
       const V free = du[m];
       bent.longest = max(abs(free), bent.longest);
       du[m] = min(max(free, V(low[m]) - now_.u[k][m]), V(high[m]) - now_.u[k][m]);
@@ -348,11 +345,11 @@ class BatchSolver {
     return du;
   }
   /// u + length · δu, exactly at a bound where it comes to stand there.
-  [[gnu::always_inline]] void move_input(std::size_t k, const Lanes& moves, const V& length,
-                                         const typename Riccati::Input& du) noexcept {
+  CHICANE_INLINE void move_input(std::size_t k, const Lanes& moves, const V& length,
+                                 const typename Riccati::Input& du) noexcept {
     const auto low = now_.many.input_lower(static_cast<int>(k));
     const auto high = now_.many.input_upper(static_cast<int>(k));
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+    unroll<kNu>([&](auto m) CHICANE_INLINE {
       V& u = now_.u[k][m];
       u = select(moves, min(max(fused_multiply_add(length, du[m], u), V(low[m])), V(high[m])), u);
     });
@@ -370,9 +367,9 @@ class BatchSolver {
       move_state(k + 1, moves, V(1.0), dx);
     }
   }
-  [[gnu::always_inline]] void move_state(std::size_t k, const Lanes& moves, const V& length,
-                                         const typename Riccati::State& dx) noexcept {
-    unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+  CHICANE_INLINE void move_state(std::size_t k, const Lanes& moves, const V& length,
+                                 const typename Riccati::State& dx) noexcept {
+    unroll<kNx>([&](auto i) CHICANE_INLINE {
       V& x = now_.x[k][i];
       x = select(moves, fused_multiply_add(length, dx[i], x), x);
     });
@@ -410,11 +407,11 @@ class BatchSolver {
   }
   /// visit(slacks, their Newton step) for the soft constraints of stage k.
   template <class Visit>
-  [[gnu::always_inline]] void each_slack(std::size_t k, const Visit& visit) noexcept {
-    unroll<kNc>([&](auto c) __attribute__((always_inline)) {
+  CHICANE_INLINE void each_slack(std::size_t k, const Visit& visit) noexcept {
+    unroll<kNc>([&](auto c) CHICANE_INLINE {
       using J = std::remove_cvref_t<std::tuple_element_t<c, ConstraintRow>>;
       V change(0.0);
-      jet::repeat<kVariables>([&](auto i) __attribute__((always_inline)) {
+      jet::repeat<kVariables>([&](auto i) CHICANE_INLINE {
         if constexpr (contains(jet::Traits<J>::kFirst, i)) {
           const V& dw = i < One::kNx ? dx_[k][i] : du_[k][i - One::kNx];
           change = fused_multiply_add(soft_row_[k][c][i], dw, change);

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/solver/iterate.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/problem_pattern.hpp"
@@ -40,7 +41,7 @@ class Evaluation {
 
   /// Functions of the stages k0 … k0 + 7 with derivatives up to Order.
   template <int Order, class Point>
-  [[gnu::always_inline]] static auto stages(const P& problem, const Point& t, std::size_t k0) noexcept {
+  CHICANE_INLINE static auto stages(const P& problem, const Point& t, std::size_t k0) noexcept {
     if constexpr (kIsStructured) {
       return evaluate<Order>(problem, StageLanes<V>{static_cast<int>(k0)}, seeds<Order, 0, kNx>(t.x, k0),
                              seeds<Order, kNx, kNu>(t.u, k0));
@@ -77,20 +78,19 @@ class Evaluation {
   static auto end(const P& problem, const Point& t) noexcept {
     if constexpr (kIsStructured) {
       StateJets<P, One, Order> x;
-      jet::repeat<kNx>([&](auto i)
-                           __attribute__((always_inline)) { std::get<i>(x).v = One(t.x[i][t.horizon]); });
+      jet::repeat<kNx>([&](auto i) CHICANE_INLINE { std::get<i>(x).v = One(t.x[i][t.horizon]); });
       return problem.terminal_residual(x);
     } else {
       return problem.terminal_residual(dense<One, Order, 0, kNx>(t.x, t.horizon));
     }
   }
-  [[gnu::always_inline]] static double number(double x) noexcept { return x; }
+  CHICANE_INLINE static double number(double x) noexcept { return x; }
   template <std::size_t N>
-  [[gnu::always_inline]] static double number(const Pack<Arch, N>& x) noexcept {
+  CHICANE_INLINE static double number(const Pack<Arch, N>& x) noexcept {
     return x[0];
   }
   template <class S>
-  [[gnu::always_inline]] static double slope_number(const S& s) noexcept {
+  CHICANE_INLINE static double slope_number(const S& s) noexcept {
     return number(jet::number<One>(s));
   }
 
@@ -106,7 +106,7 @@ class Evaluation {
   };
 
   template <int Order, class K, class X, class U>
-  [[gnu::always_inline]] static auto evaluate(const P& problem, K k, const X& x, const U& u) noexcept {
+  CHICANE_INLINE static auto evaluate(const P& problem, K k, const X& x, const U& u) noexcept {
     if constexpr (kNc > 0) {
       return StageRows{problem.dynamics(k, x, u), problem.residual(k, x, u), problem.constraint(k, x, u)};
     } else {
@@ -115,16 +115,14 @@ class Evaluation {
   }
 
   template <int Order, int Begin, int Count, class Values>
-  [[gnu::always_inline]] static auto seeds(const Values& values, std::size_t k0) noexcept {
+  CHICANE_INLINE static auto seeds(const Values& values, std::size_t k0) noexcept {
     detail::Seeds<V, Order, Begin, Count> result;
-    jet::repeat<Count>([&](auto n) __attribute__((always_inline)) {
-      std::get<n>(result).v = V::load(values[n] + k0);
-    });
+    jet::repeat<Count>([&](auto n) CHICANE_INLINE { std::get<n>(result).v = V::load(values[n] + k0); });
     return result;
   }
   /// Variables of one type that stores all derivatives.
   template <class T, int Order, int Begin, int Count, class Values>
-  [[gnu::always_inline]] static auto dense(const Values& values, std::size_t k0) noexcept {
+  CHICANE_INLINE static auto dense(const Values& values, std::size_t k0) noexcept {
     std::array<Dense<T, Order>, static_cast<std::size_t>(Count)> result;
     for (std::size_t n = 0; n < static_cast<std::size_t>(Count); ++n) {
       if constexpr (std::is_same_v<T, double>) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/pack.hpp"
 #include "chicane/solver/small_qp.hpp"
 
@@ -18,15 +19,15 @@ struct InputBounds {
   double rate_low = -std::numeric_limits<double>::infinity();
   double rate_high = std::numeric_limits<double>::infinity();
 
-  [[nodiscard, gnu::always_inline]] double low() const noexcept {
+  [[nodiscard]] CHICANE_INLINE double low() const noexcept {
     const double low = own_low > rate_low ? own_low : rate_low;
     return low < own_high ? low : own_high;
   }
-  [[nodiscard, gnu::always_inline]] double high() const noexcept {
+  [[nodiscard]] CHICANE_INLINE double high() const noexcept {
     const double high = own_high < rate_high ? own_high : rate_high;
     return high > own_low ? high : own_low;
   }
-  [[nodiscard, gnu::always_inline]] double at(Hold hold) const noexcept {
+  [[nodiscard]] CHICANE_INLINE double at(Hold hold) const noexcept {
     switch (hold) {
       case Hold::kRateLow:
         return rate_low;
@@ -48,8 +49,7 @@ struct InputBounds {
   /// The working-set rule of the primal-dual active set method: an input beyond a bound is held there, a held
   /// one whose cost falls towards the inside (`slope` = dJ/du) is let go, one held beyond the other kind of
   /// bound goes there. `curvature` scales the tolerance; an interval without width is always held.
-  [[nodiscard, gnu::always_inline]] Hold next(Hold hold, double u, double slope,
-                                              double curvature) const noexcept {
+  [[nodiscard]] CHICANE_INLINE Hold next(Hold hold, double u, double slope, double curvature) const noexcept {
     constexpr double kTolerance = 1e-10;
     if (!(high() > low())) return which(Hold::kLow);
     if (u > high() + kTolerance) return which(Hold::kHigh);
@@ -71,28 +71,24 @@ struct InputBlock {
   double scale;
 
   /// Inverts the free part. False, and no inverse, when that is not safely positive definite.
-  [[nodiscard, gnu::always_inline]] bool invert(const bool (&is_held)[Nu]) noexcept {
+  [[nodiscard]] CHICANE_INLINE bool invert(const bool (&is_held)[Nu]) noexcept {
     double A[Nu][Nu];
-    unroll<Nu>([&](auto m) __attribute__((always_inline)) {
-      unroll<Nu>([&](auto l) __attribute__((always_inline)) {
-        A[m][l] = is_held[m] || is_held[l] ? (m == l ? 1.0 : 0.0) : H[m][l];
-      });
+    unroll<Nu>([&](auto m) CHICANE_INLINE {
+      unroll<Nu>([&](auto l)
+                     CHICANE_INLINE { A[m][l] = is_held[m] || is_held[l] ? (m == l ? 1.0 : 0.0) : H[m][l]; });
     });
     const bool positive = invert_all(A);
-    unroll<Nu>([&](auto m)
-                   __attribute__((always_inline)) { adjugate[m][m] = is_held[m] ? 0.0 : adjugate[m][m]; });
+    unroll<Nu>([&](auto m) CHICANE_INLINE { adjugate[m][m] = is_held[m] ? 0.0 : adjugate[m][m]; });
     return positive;
   }
   /// The same where no input is held.
-  [[nodiscard, gnu::always_inline]] bool invert() noexcept { return invert_all(H); }
+  [[nodiscard]] CHICANE_INLINE bool invert() noexcept { return invert_all(H); }
 
   /// Row m of the adjugate times v.
-  [[nodiscard, gnu::always_inline]] double adjugate_times(std::size_t m,
-                                                          const double (&v)[Nu]) const noexcept {
+  [[nodiscard]] CHICANE_INLINE double adjugate_times(std::size_t m, const double (&v)[Nu]) const noexcept {
     double sum = adjugate[m][0] * v[0];
-    unroll<Nu - 1>([&](auto l) __attribute__((always_inline)) {
-      sum = fused_multiply_add<Arch>(adjugate[m][l + 1], v[l + 1], sum);
-    });
+    unroll<Nu - 1>([&](auto l)
+                       CHICANE_INLINE { sum = fused_multiply_add<Arch>(adjugate[m][l + 1], v[l + 1], sum); });
     return sum;
   }
 
@@ -114,15 +110,13 @@ struct InputBlock {
 
  private:
   /// A pivot this small beside its own entry is noise.
-  [[gnu::always_inline]] static double noise(double entry) noexcept {
-    return 1e-10 * std::fabs(entry) + 1e-12;
-  }
+  CHICANE_INLINE static double noise(double entry) noexcept { return 1e-10 * std::fabs(entry) + 1e-12; }
   /// a d − b c
-  [[gnu::always_inline]] static double cross(double a, double d, double b, double c) noexcept {
+  CHICANE_INLINE static double cross(double a, double d, double b, double c) noexcept {
     return fused_negative_multiply_add<Arch>(b, c, a * d);
   }
 
-  [[nodiscard, gnu::always_inline]] bool invert_all(const double (&A)[Nu][Nu]) noexcept {
+  [[nodiscard]] CHICANE_INLINE bool invert_all(const double (&A)[Nu][Nu]) noexcept {
     if constexpr (Nu == 1) {
       adjugate[0][0] = 1.0;
       scale = 1.0 / A[0][0];

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/solver/barrier.hpp"
 #include "chicane/solver/evaluation.hpp"
 #include "chicane/solver/input_chains.hpp"
@@ -105,27 +106,26 @@ class Linearisation {
     for (auto& row : lq.terminal) std::fill(std::begin(row), std::end(row), 0.0);
     const auto rows = Evaluate::template end<Order>(problem, t);
     double cost = 0.0;
-    each_row<typename Evaluate::One, Order>(
-        rows, [&](auto, const auto& r) __attribute__((always_inline)) {
-          const double value = Evaluate::number(r.v);
-          cost += 0.5 * value * value;
-          add_end_row(r, value, lq);
-        });
+    each_row<typename Evaluate::One, Order>(rows, [&](auto, const auto& r) CHICANE_INLINE {
+      const double value = Evaluate::number(r.v);
+      cost += 0.5 * value * value;
+      add_end_row(r, value, lq);
+    });
     std::copy(lq.terminal[kNx], lq.terminal[kNx] + kNx, lambda);
     return cost;
   }
 
   /// The share of one terminal residual: its gradient, Gauss–Newton's Hessian, and with Order 2 the rest.
   template <class R>
-  [[gnu::always_inline]] static void add_end_row(const R& r, double value, Lq& lq) noexcept {
-    each_state<R>([&](auto i) __attribute__((always_inline)) {
+  CHICANE_INLINE static void add_end_row(const R& r, double value, Lq& lq) noexcept {
+    each_state<R>([&](auto i) CHICANE_INLINE {
       const double slope_i = Evaluate::slope_number(jet::slope<i>(r));
       lq.terminal[kNx][i] += value * slope_i;
-      each_state<R>([&](auto j) __attribute__((always_inline)) {
+      each_state<R>([&](auto j) CHICANE_INLINE {
         lq.terminal[i][j] += slope_i * Evaluate::slope_number(jet::slope<j>(r));
       });
     });
-    jet::repeat<R::kSecond.size()>([&](auto n) __attribute__((always_inline)) {
+    jet::repeat<R::kSecond.size()>([&](auto n) CHICANE_INLINE {
       constexpr Pair p = members<R::kSecond>()[n];
       if constexpr (p.i < P::kNx && p.j < P::kNx) {
         const double share = value * Evaluate::number(r.curvatures[n]);
@@ -136,8 +136,8 @@ class Linearisation {
   }
   /// Calls visit(i) for every state that a row depends on.
   template <class R, class Visit>
-  [[gnu::always_inline]] static void each_state(const Visit& visit) noexcept {
-    jet::repeat<size_of(R::kFirst)>([&](auto n) __attribute__((always_inline)) {
+  CHICANE_INLINE static void each_state(const Visit& visit) noexcept {
+    jet::repeat<size_of(R::kFirst)>([&](auto n) CHICANE_INLINE {
       constexpr int i = member_of(R::kFirst, n);
       if constexpr (i < P::kNx) visit(std::integral_constant<int, i>{});
     });
@@ -164,32 +164,30 @@ class Linearisation {
   }
 
   template <int Order, class Row, class Mask>
-  [[gnu::always_inline]] static void collect_dynamics(const Row& next, const Point& t, std::size_t k0,
-                                                      const Mask& live, double defect_share, Jacobians& f,
-                                                      Sums& sums) noexcept {
-    each_row<V, Order>(
-        next, [&](auto i, const auto& row) __attribute__((always_inline)) {
-          const V defect = row.v - V::load_unaligned(t.x[i] + k0 + 1);
-          Entries::set_jacobian(i, row, defect, f);
-          const V size = select(live, abs(defect), V(0.0));
-          sums.defect = max(sums.defect, size);
-          sums.defects += size;
-          sums.defect_excess = max(sums.defect_excess, size - defect_share * (1.0 + abs(row.v)));
-        });
+  CHICANE_INLINE static void collect_dynamics(const Row& next, const Point& t, std::size_t k0,
+                                              const Mask& live, double defect_share, Jacobians& f,
+                                              Sums& sums) noexcept {
+    each_row<V, Order>(next, [&](auto i, const auto& row) CHICANE_INLINE {
+      const V defect = row.v - V::load_unaligned(t.x[i] + k0 + 1);
+      Entries::set_jacobian(i, row, defect, f);
+      const V size = select(live, abs(defect), V(0.0));
+      sums.defect = max(sums.defect, size);
+      sums.defects += size;
+      sums.defect_excess = max(sums.defect_excess, size - defect_share * (1.0 + abs(row.v)));
+    });
   }
 
   /// ½‖r‖² with gradient and Gauss–Newton Hessian.
   template <int Order, class Row, class Mask>
-  [[gnu::always_inline]] static void add_residuals(const Row& residual, const Mask& live, Gradient& gradient,
-                                                   Costs& l, Sums& sums) noexcept {
+  CHICANE_INLINE static void add_residuals(const Row& residual, const Mask& live, Gradient& gradient,
+                                           Costs& l, Sums& sums) noexcept {
     V squares(0.0);
     Entries::template clear<Row>(gradient, l);
-    each_row<V, Order>(
-        residual, [&](auto n, const auto& r) __attribute__((always_inline)) {
-          squares += r.v * r.v;
-          Entries::template add_gradient<Row>(n, r, r.v, gradient);
-          Entries::template add_square<Row>(n, r, V(1.0), l);
-        });
+    each_row<V, Order>(residual, [&](auto n, const auto& r) CHICANE_INLINE {
+      squares += r.v * r.v;
+      Entries::template add_gradient<Row>(n, r, r.v, gradient);
+      Entries::template add_square<Row>(n, r, V(1.0), l);
+    });
     Entries::set_gradient(gradient, l);
     sums.cost += select(live, 0.5 * squares, V(0.0));
   }
@@ -197,61 +195,60 @@ class Linearisation {
   /// Soft constraints: their multipliers to the gradient, their eliminated slacks to the quadratic program
   /// (eq. 20, 21).
   template <int Order, class Row, class Mask>
-  [[gnu::always_inline]] static void add_soft(const P& problem, const Row& constraint, std::size_t k0,
-                                              const Mask& live, bool centre, Slacks& slacks,
-                                              Gradient& gradient, Costs& l, Sums& sums) noexcept {
+  CHICANE_INLINE static void add_soft(const P& problem, const Row& constraint, std::size_t k0,
+                                      const Mask& live, bool centre, Slacks& slacks, Gradient& gradient,
+                                      Costs& l, Sums& sums) noexcept {
     const double mu = slacks.mu();
-    each_row<V, Order>(
-        constraint, [&](auto n, const auto& c) __attribute__((always_inline)) {
-          const SoftPenalty price = price_of(problem, n);
-          SoftConstraint<V> soft = slacks.load(n, k0);
-          soft.value = c.v;
-          if (centre) {
-            soft.centre(price, mu);
-            sums.smoothing += select(live, soft.barrier(price, mu) - soft.penalty(price), V(0.0));
-          }
-          slacks.store(n, k0, soft);
-          slacks.store_row(n, k0, c);
-          const auto model = soft.model(price, mu);
-          Entries::template add_gradient<void>(n, c, soft.z, gradient);
-          Entries::add_to_gradient(c, model.slope, l);
-          Entries::template add_square<void>(n, c, model.curvature, l);
-          sums.cost += select(live, soft.penalty(price), V(0.0));
-          sums.complementarity = max(sums.complementarity, select(live, soft.residual(price, mu), V(0.0)));
-          sums.violation = max(sums.violation, select(live, c.v, V(0.0)));
-        });
+    each_row<V, Order>(constraint, [&](auto n, const auto& c) CHICANE_INLINE {
+      const SoftPenalty price = price_of(problem, n);
+      SoftConstraint<V> soft = slacks.load(n, k0);
+      soft.value = c.v;
+      if (centre) {
+        soft.centre(price, mu);
+        sums.smoothing += select(live, soft.barrier(price, mu) - soft.penalty(price), V(0.0));
+      }
+      slacks.store(n, k0, soft);
+      slacks.store_row(n, k0, c);
+      const auto model = soft.model(price, mu);
+      Entries::template add_gradient<void>(n, c, soft.z, gradient);
+      Entries::add_to_gradient(c, model.slope, l);
+      Entries::template add_square<void>(n, c, model.curvature, l);
+      sums.cost += select(live, soft.penalty(price), V(0.0));
+      sums.complementarity = max(sums.complementarity, select(live, soft.residual(price, mu), V(0.0)));
+      sums.violation = max(sums.violation, select(live, c.v, V(0.0)));
+    });
   }
 
   /// λ_k = g_x + Aᵀ λ_{k+1} through the stages of the group, last first. The only sequential part.
-  [[gnu::always_inline]] void run_adjoint(std::size_t horizon, std::size_t k0, const Jacobians& f,
-                                          const Gradient& gradient, double (&lambda)[kNx]) noexcept {
+  CHICANE_INLINE void run_adjoint(std::size_t horizon, std::size_t k0, const Jacobians& f,
+                                  const Gradient& gradient, double (&lambda)[kNx]) noexcept {
     double now[kNx];  // in registers
-    unroll<kNx>([&](auto i) __attribute__((always_inline)) { now[i] = lambda[i]; });
+    unroll<kNx>([&](auto i) CHICANE_INLINE { now[i] = lambda[i]; });
     for (std::size_t lane = std::min<std::size_t>(8, horizon - k0); lane-- > 0;) {
       double before[kNx];
-      unroll<kNx>([&](auto j) __attribute__((always_inline)) {
+      unroll<kNx>([&](auto j) CHICANE_INLINE {
         adjoint[j][k0 + lane] = now[j];
         double sum = gradient[j][lane];
-        unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+        unroll<kNx>([&](auto i) CHICANE_INLINE {
           if constexpr (Pattern::kF[i][j] == Entry::kOne) sum += now[i];
           if constexpr (Pattern::kF[i][j] == Entry::kValue)
             sum = fused_multiply_add<Arch>(f[Layout::kF[i][j]][lane], now[i], sum);
         });
         before[j] = sum;
       });
-      unroll<kNx>([&](auto i) __attribute__((always_inline)) { now[i] = before[i]; });
+      unroll<kNx>([&](auto i) CHICANE_INLINE { now[i] = before[i]; });
     }
-    unroll<kNx>([&](auto i) __attribute__((always_inline)) { lambda[i] = now[i]; });
+    unroll<kNx>([&](auto i) CHICANE_INLINE { lambda[i] = now[i]; });
   }
 
   /// Slopes of the inputs, and how far they are from optimal (eq. 12); bounds on the step.
   template <class Mask>
-  [[gnu::always_inline]] void measure(const Point& t, std::size_t k0, const Mask& live, const Jacobians& f,
-                                      const Gradient& gradient, Lq& lq, Sums& sums) noexcept {
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+  CHICANE_INLINE void measure(const Point& t, std::size_t k0, const Mask& live, const Jacobians& f,
+                              const Gradient& gradient, Lq& lq, Sums& sums) noexcept {
+    unroll<kNu>([&](auto m) CHICANE_INLINE {
       constexpr std::size_t column = Layout::kHead + m;
       V sum = gradient[kNx + m];
-      unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+      unroll<kNx>([&](auto i) CHICANE_INLINE {
         if constexpr (Pattern::kF[i][column] == Entry::kOne) sum += V::load(adjoint[i] + k0);
         if constexpr (Pattern::kF[i][column] == Entry::kValue)
           sum = fused_multiply_add(f[Layout::kF[i][column]], V::load(adjoint[i] + k0), sum);
@@ -276,20 +273,16 @@ class Linearisation {
 
   /// What Gauss–Newton leaves out: Σ r ∇²r + λ ∇²f + z ∇²c (eq. 22).
   template <class StageRows>
-  [[gnu::always_inline]] void add_curvature(const StageRows& rows, std::size_t k0, const Slacks& slacks,
-                                            Costs& l) const noexcept {
-    each_row<V, 2>(
-        rows.next, [&](auto i, const auto& f) __attribute__((always_inline)) {
-          Entries::add_curvature(f, V::load(adjoint[i] + k0), l);
-        });
-    each_row<V, 2>(
-        rows.residual, [&](auto, const auto& r)
-                           __attribute__((always_inline)) { Entries::add_curvature(r, r.v, l); });
+  CHICANE_INLINE void add_curvature(const StageRows& rows, std::size_t k0, const Slacks& slacks,
+                                    Costs& l) const noexcept {
+    each_row<V, 2>(rows.next, [&](auto i, const auto& f)
+                                  CHICANE_INLINE { Entries::add_curvature(f, V::load(adjoint[i] + k0), l); });
+    each_row<V, 2>(rows.residual,
+                   [&](auto, const auto& r) CHICANE_INLINE { Entries::add_curvature(r, r.v, l); });
     if constexpr (kNc > 0) {
-      each_row<V, 2>(
-          rows.constraint, [&](auto n, const auto& c) __attribute__((always_inline)) {
-            Entries::add_curvature(c, slacks.load(n, k0).z, l);
-          });
+      each_row<V, 2>(rows.constraint, [&](auto n, const auto& c) CHICANE_INLINE {
+        Entries::add_curvature(c, slacks.load(n, k0).z, l);
+      });
     }
   }
 };

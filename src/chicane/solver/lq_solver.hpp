@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/pack.hpp"
 #include "chicane/solver/input_block.hpp"
 #include "chicane/solver/pattern.hpp"
@@ -74,10 +75,10 @@ class LqSolver {
     Contradictions found;
     double x[kNx] = {};
     double carried[kNu] = {};
-    unroll<kNx>([&](auto i) __attribute__((always_inline)) { dx[0][i] = 0.0; });
+    unroll<kNx>([&](auto i) CHICANE_INLINE { dx[0][i] = 0.0; });
     for (std::size_t k = 0; k < horizon; ++k) {
       double u[kNu];
-      unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+      unroll<kNu>([&](auto m) CHICANE_INLINE {
         const double value = dot_row(feedback[k].row[m], x, feedback[k].constant[m]);
         const InputBounds bounds = bounds_of(k, m, x);
         if constexpr (has_rate(m)) {
@@ -96,7 +97,7 @@ class LqSolver {
         du[k][m] = u[m];
       });
       advance(lq.stage[k], x, u);
-      unroll<kNx>([&](auto i) __attribute__((always_inline)) { dx[k + 1][i] = x[i]; });
+      unroll<kNx>([&](auto i) CHICANE_INLINE { dx[k + 1][i] = x[i]; });
     }
     if (found.count == 0) return 0;
     last_change_ = found.stage;
@@ -112,7 +113,7 @@ class LqSolver {
     double x[kNx] = {};
     for (std::size_t k = 0; k < horizon; ++k) {
       advance(lq.stage[k], x, du[k]);
-      unroll<kNx>([&](auto i) __attribute__((always_inline)) { dx[k + 1][i] = x[i]; });
+      unroll<kNx>([&](auto i) CHICANE_INLINE { dx[k + 1][i] = x[i]; });
     }
   }
 
@@ -148,25 +149,24 @@ class LqSolver {
   template <bool Choose>
   double sweep(std::size_t from, double shift) noexcept {
     Value P;
-    unroll<kNx + 1>([&](auto i)
-                        __attribute__((always_inline)) { P.column[i] = Vector::load(value_[from][i]); });
+    unroll<kNx + 1>([&](auto i) CHICANE_INLINE { P.column[i] = Vector::load(value_[from][i]); });
     double largest = 0.0;
     for (std::size_t k = from; k-- > 0;) {
       eliminate<Choose>(k, P, shift, largest);
       if (k % kSymmetryPeriod == 0) Algebra::make_symmetric(P);
-      unroll<kNx + 1>([&](auto i) __attribute__((always_inline)) { P.column[i].store(value_[k][i]); });
+      unroll<kNx + 1>([&](auto i) CHICANE_INLINE { P.column[i].store(value_[k][i]); });
     }
     return largest;
   }
 
   /// One stage backwards: the value function P of stage k + 1 becomes that of stage k (eq. 9–11).
   template <bool Choose>
-  [[gnu::always_inline]] void eliminate(std::size_t k, Value& P, double shift, double& largest) noexcept {
+  CHICANE_INLINE void eliminate(std::size_t k, Value& P, double shift, double& largest) noexcept {
     const Stage& s = lq.stage[k];
     Feedback& out = feedback[k];
     Vector W[1 + kNu];  // columns of P F: the defect's, then the inputs'
     alignas(64) double w[1 + kNu][kLanes];
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+    unroll<kNu>([&](auto m) CHICANE_INLINE {
       W[1 + m] = Algebra::template times_jacobian<kNx + 1 + m>(s, P);
       W[1 + m].store(w[1 + m]);
     });
@@ -174,8 +174,8 @@ class LqSolver {
     W[0].store(w[0]);
     Algebra::settle(w);
     Block block;
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-      unroll<m + 1>([&](auto l) __attribute__((always_inline)) {
+    unroll<kNu>([&](auto m) CHICANE_INLINE {
+      unroll<m + 1>([&](auto l) CHICANE_INLINE {
         const double own = Algebra::template cost<kNx + 1 + m, kNx + 1 + l>(s) + (m == l ? shift : 0.0);
         block.H[m][l] = Algebra::template times_column<kNx + 1 + m>(s, w[1 + l], own);
         block.H[l][m] = block.H[m][l];
@@ -185,7 +185,7 @@ class LqSolver {
     });
     Vector R[kNu];  // Q over inputs and states
     alignas(64) double r[kNu][kLanes];
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+    unroll<kNu>([&](auto m) CHICANE_INLINE {
       R[m] = Algebra::template row_of_q<kNx + 1 + m>(s, W[1 + m], w[1 + m]);
       R[m].store(r[m]);
     });
@@ -196,22 +196,21 @@ class LqSolver {
     const bool any_held = settle_inputs<Choose>(k, block, is_held, largest);
     double b[kNu] = {};  // where inputs are held
     double g[kNu];       // slopes with them there
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) { g[m] = block.g[m]; });
+    unroll<kNu>([&](auto m) CHICANE_INLINE { g[m] = block.g[m]; });
     if (any_held) substitute_held(k, block, is_held, R, b, g, q);
     Vector T[kNu];
-    unroll<kNu>([&](auto m)
-                    __attribute__((always_inline)) { T[m] = Algebra::combination(block.adjugate[m], R); });
+    unroll<kNu>([&](auto m) CHICANE_INLINE { T[m] = Algebra::combination(block.adjugate[m], R); });
 
     Vector Wx[kNx];
     alignas(64) double wx[kNx][kLanes];
-    unroll<kNx>([&](auto j) __attribute__((always_inline)) {
+    unroll<kNx>([&](auto j) CHICANE_INLINE {
       if constexpr (Algebra::has_column(j)) {
         Wx[j] = Algebra::template times_jacobian<j>(s, P);
         Wx[j].store(wx[j]);
       }
     });
     Algebra::settle(wx);
-    unroll<kNx>([&](auto j) __attribute__((always_inline)) {
+    unroll<kNx>([&](auto j) CHICANE_INLINE {
       if constexpr (Algebra::has_column(j)) {
         P.column[j] = Algebra::template row_of_q<j>(s, Wx[j], wx[j]);
       } else {
@@ -222,12 +221,12 @@ class LqSolver {
     P.column[kNx] = q;
     P.column[kNx].add(-block.scale, Algebra::combination(g, T));
 
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+    unroll<kNu>([&](auto m) CHICANE_INLINE {
       Vector::scaled(-block.scale, T[m]).store(out.row[m]);
       const double value = -block.scale * block.adjugate_times(m, g);
       out.constant[m] = any_held && is_held[m] ? b[m] : value;
       out.g[m] = block.g[m];
-      unroll<kNu>([&](auto l) __attribute__((always_inline)) { out.H[m][l] = block.H[m][l]; });
+      unroll<kNu>([&](auto l) CHICANE_INLINE { out.H[m][l] = block.H[m][l]; });
     });
     if (any_held) {
       if constexpr (kHasRates) {
@@ -244,15 +243,15 @@ class LqSolver {
   /// Reads (or with `Choose` chooses) which inputs are held, and inverts the free block, shifted until it is
   /// positive definite. True when any input is held.
   template <bool Choose>
-  [[gnu::always_inline]] bool settle_inputs(std::size_t k, Block& block, bool (&is_held)[kNu],
-                                            double& largest) noexcept {
+  CHICANE_INLINE bool settle_inputs(std::size_t k, Block& block, bool (&is_held)[kNu],
+                                    double& largest) noexcept {
     if constexpr (Choose) {
       Block chosen = block;
       largest = std::max(largest, choose_hold(k, chosen));
       block = chosen;
     }
     bool any_held = false;
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+    unroll<kNu>([&](auto m) CHICANE_INLINE {
       is_held[m] = hold[k][m] != Hold::kFree;
       any_held |= is_held[m];
     });
@@ -285,14 +284,12 @@ class LqSolver {
   }
 
   /// Where held inputs are, and the slopes of the cost with them there.
-  [[gnu::always_inline]] void substitute_held(std::size_t k, const Block& block, const bool (&is_held)[kNu],
-                                              const Vector (&R)[kNu], double (&b)[kNu], double (&g)[kNu],
-                                              Vector& q) const noexcept {
-    unroll<kNu>([&](auto h) __attribute__((always_inline)) {
+  CHICANE_INLINE void substitute_held(std::size_t k, const Block& block, const bool (&is_held)[kNu],
+                                      const Vector (&R)[kNu], double (&b)[kNu], double (&g)[kNu],
+                                      Vector& q) const noexcept {
+    unroll<kNu>([&](auto h) CHICANE_INLINE {
       b[h] = is_held[h] ? bound(k, h, hold[k][h]) : 0.0;
-      unroll<kNu>([&](auto m) __attribute__((always_inline)) {
-        g[m] = fused_multiply_add<Arch>(block.H[m][h], b[h], g[m]);
-      });
+      unroll<kNu>([&](auto m) CHICANE_INLINE { g[m] = fused_multiply_add<Arch>(block.H[m][h], b[h], g[m]); });
       q.add(b[h], R[h]);
     });
   }
@@ -415,8 +412,7 @@ class LqSolver {
         return lq.low[m][k];
     }
   }
-  [[gnu::always_inline]] InputBounds bounds_of(std::size_t k, std::size_t m,
-                                               const double (&x)[kNx]) const noexcept {
+  CHICANE_INLINE InputBounds bounds_of(std::size_t k, std::size_t m, const double (&x)[kNx]) const noexcept {
     InputBounds bounds{lq.low[m][k], lq.high[m][k]};
     if constexpr (kHasRates) {
       if (const int state = Pattern::kRateState[m]; state >= 0) {
@@ -430,11 +426,10 @@ class LqSolver {
   // ---- forward
 
   /// start + row · x
-  [[gnu::always_inline]] static double dot_row(const double* row, const double (&x)[kNx],
-                                               double start) noexcept {
+  CHICANE_INLINE static double dot_row(const double* row, const double (&x)[kNx], double start) noexcept {
     constexpr std::size_t kSums = kNx < 4 ? 1 : (kNx < 8 ? 2 : 4);
     double sum[kSums] = {start};
-    unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+    unroll<kNx>([&](auto i) CHICANE_INLINE {
       double& side = sum[i % kSums];
       side = i > 0 && i < kSums ? row[i] * x[i] : fused_multiply_add<Arch>(row[i], x[i], side);
     });
@@ -444,13 +439,12 @@ class LqSolver {
   }
 
   /// x becomes F z.
-  [[gnu::always_inline]] static void advance(const Stage& s, double (&x)[kNx],
-                                             const double (&u)[kNu]) noexcept {
+  CHICANE_INLINE static void advance(const Stage& s, double (&x)[kNx], const double (&u)[kNu]) noexcept {
     double next[kNx];
-    unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+    unroll<kNx>([&](auto i) CHICANE_INLINE {
       double sum = s.defect(i);
       double other = 0.0;
-      unroll<kNx>([&](auto j) __attribute__((always_inline)) {
+      unroll<kNx>([&](auto j) CHICANE_INLINE {
         if constexpr (Layout::kF[i][j] != Layout::kNone) {
           double& side = j % 2 == 0 ? sum : other;
           side = fused_multiply_add<Arch>(Algebra::template jacobian<i, j>(s), x[j], side);
@@ -459,7 +453,7 @@ class LqSolver {
         }
       });
       sum += other;
-      unroll<kNu>([&](auto m) __attribute__((always_inline)) {
+      unroll<kNu>([&](auto m) CHICANE_INLINE {
         constexpr std::size_t kU = kNx + 1 + m;
         if constexpr (Layout::kF[i][kU] != Layout::kNone) {
           sum = fused_multiply_add<Arch>(Algebra::template jacobian<i, kU>(s), u[m], sum);

@@ -10,6 +10,7 @@
 
 #include "chicane/base/assert.hpp"
 #include "chicane/base/deadline.hpp"
+#include "chicane/base/inlining.hpp"
 #include "chicane/solver/barrier.hpp"
 #include "chicane/solver/descent.hpp"
 #include "chicane/solver/evaluation.hpp"
@@ -297,11 +298,11 @@ class OcpSolver {
     for (std::size_t k0 = 0; k0 <= t_.horizon; k0 += 8) {
       for (std::size_t block = 0; block < Lq::kLanes; block += 8) {
         V rows[8];
-        unroll<8>([&](auto lane) __attribute__((always_inline)) {
+        unroll<8>([&](auto lane) CHICANE_INLINE {
           rows[lane] = V::load(lq_.dx[std::min(k0 + lane, t_.horizon)] + block);
         });
         transpose(rows);
-        unroll<8>([&](auto i) __attribute__((always_inline)) {
+        unroll<8>([&](auto i) CHICANE_INLINE {
           if (block + i < kNx) rows[i].store(step_.x[block + i] + k0);
         });
       }
@@ -319,7 +320,7 @@ class OcpSolver {
   }
   void take_step(double length) noexcept {
     for (std::size_t k = 0; k <= t_.horizon; k += 8) {
-      const auto move = [&](double* value, const double* change) __attribute__((always_inline)) {
+      const auto move = [&](double* value, const double* change) CHICANE_INLINE {
         (V::load(value + k) + length * V::load(change + k)).store(value + k);
       };
       for (std::size_t i = 0; i < kNx; ++i) move(t_.x[i], step_.x[i]);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/pack.hpp"
 
 namespace chicane::solver {
@@ -206,15 +207,15 @@ struct LqProblem {
   /// Sets Jacobians, defects and costs of the eight stages from `k` (a multiple of 8) on; entries as numbered
   /// by Layout::kF and Layout::kL. Any eight entries make eight stages' lines by one transposition.
   template <class Arch>
-  [[gnu::always_inline]] void set(std::size_t k, const std::array<Pack<Arch, 8>, Layout::kFCount>& f,
-                                  const std::array<Pack<Arch, 8>, Layout::kLCount>& l) noexcept {
-    unroll<Layout::kNumbers / 8>([&](auto line) __attribute__((always_inline)) {
+  CHICANE_INLINE void set(std::size_t k, const std::array<Pack<Arch, 8>, Layout::kFCount>& f,
+                          const std::array<Pack<Arch, 8>, Layout::kLCount>& l) noexcept {
+    unroll<Layout::kNumbers / 8>([&](auto line) CHICANE_INLINE {
       write<sources_of_numbers(line)>(k, f, l, [=](Stage& s) { return s.number + line * 8; });
     });
-    unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+    unroll<kNx>([&](auto i) CHICANE_INLINE {
       if constexpr (Layout::is_wide_state(i)) write_row<i, true>(k, f, l);
     });
-    unroll<Layout::kNz>([&](auto i) __attribute__((always_inline)) {
+    unroll<Layout::kNz>([&](auto i) CHICANE_INLINE {
       if constexpr (Layout::is_wide_cost(i)) write_row<i, false>(k, f, l);
     });
   }
@@ -282,17 +283,17 @@ struct LqProblem {
 
   /// Writes wide row I of F, or of L.
   template <std::size_t I, bool OfF, class F, class L>
-  [[gnu::always_inline]] void write_row(std::size_t k, const F& f, const L& l) noexcept {
+  CHICANE_INLINE void write_row(std::size_t k, const F& f, const L& l) noexcept {
     constexpr std::size_t kRow = OfF ? Layout::wide_state(I) : Layout::wide_cost(I);
-    unroll<kLanes / 8>([&](auto block) __attribute__((always_inline)) {
+    unroll<kLanes / 8>([&](auto block) CHICANE_INLINE {
       write<sources_of_row(I, OfF, block)>(k, f, l, [=](Stage& s) { return s.wide[kRow] + block * 8; });
     });
   }
   template <auto Line, class F, class L, class Place>
-  [[gnu::always_inline]] void write(std::size_t k, const F& f, const L& l, const Place& place) noexcept {
+  CHICANE_INLINE void write(std::size_t k, const F& f, const L& l, const Place& place) noexcept {
     using Stages = typename F::value_type;
     Stages rows[8];
-    unroll<8>([&](auto lane) __attribute__((always_inline)) {
+    unroll<8>([&](auto lane) CHICANE_INLINE {
       if constexpr (Line.f[lane] != Layout::kNone) {
         rows[lane] = f[Line.f[lane]];
       } else if constexpr (Line.l[lane] != Layout::kNone) {

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/jet.hpp"
 #include "chicane/solver/stage_data.hpp"
 
@@ -69,7 +70,7 @@ namespace chicane::solver {
 /// - model code over one type T (`struct Motion<T>`) runs on T = Common<A, B, …> of the variables it uses;
 /// - what is computed from x_k and u_k but needs no memory is an output, not a state: put it into residual();
 /// - the functions must also work on plain doubles: that is how they are simulated and tested;
-/// - they are called from several places: without [[gnu::always_inline]] on them and on what they call, jets
+/// - they are called from several places: without CHICANE_INLINE on them and on what they call, jets
 /// may go through memory.
 ///
 /// A stage may have at most 24 variables (states and inputs).

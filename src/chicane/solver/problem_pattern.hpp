@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/jet.hpp"
 #include "chicane/solver/pattern.hpp"
 #include "chicane/solver/problem.hpp"
@@ -26,7 +27,7 @@ using DenseJet =
 
 /// A result of a problem's functions as a jet: constants have no derivatives.
 template <class V, int Order, class T>
-[[nodiscard, gnu::always_inline]] inline decltype(auto) as_jet(const T& value) {
+[[nodiscard]] CHICANE_INLINE inline decltype(auto) as_jet(const T& value) {
   if constexpr (AnyJet<T>) {
     return (value);
   } else {

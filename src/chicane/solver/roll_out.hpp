@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/solver/evaluation.hpp"
 #include "chicane/solver/iterate.hpp"
 #include "chicane/solver/problem.hpp"
@@ -68,7 +69,7 @@ class RollOut {
     for (std::size_t i = 0; i < kNx; ++i) now[i] = t.x[i][0];
     for (std::size_t k = 0; k < t.horizon; k += 8) {
       const auto next = changes<Level>(problem, t, k);
-      unroll<kNx>([&](auto i) __attribute__((always_inline)) {
+      unroll<kNx>([&](auto i) CHICANE_INLINE {
         if constexpr (Order::kLevel[i] == Level && Order::is_sum(i)) {
           now[i] = running_sum(now[i], next[i], t.x[i] + k);
           t.x[i][k + 8] = now[i];
@@ -80,22 +81,21 @@ class RollOut {
   }
   /// x⁺ of the eight stages from k on, of sums without what they are added to.
   template <std::size_t Level, class Point>
-  [[gnu::always_inline]] static auto changes(const P& problem, const Point& t, std::size_t k) noexcept {
+  CHICANE_INLINE static auto changes(const P& problem, const Point& t, std::size_t k) noexcept {
     std::array<V, kNx> x;
-    unroll<kNx>([&](auto i) __attribute__((always_inline)) {
-      x[i] = Order::kLevel[i] < Level ? V::load(t.x[i] + k) : V(kNothing);
-    });
+    unroll<kNx>([&](auto i)
+                    CHICANE_INLINE { x[i] = Order::kLevel[i] < Level ? V::load(t.x[i] + k) : V(kNothing); });
     std::array<V, kNu> u;
-    unroll<kNu>([&](auto m) __attribute__((always_inline)) { u[m] = V::load(t.u[m] + k); });
+    unroll<kNu>([&](auto m) CHICANE_INLINE { u[m] = V::load(t.u[m] + k); });
     return to_array<V>(problem.dynamics(LanesOfLevel<Level>{{static_cast<int>(k)}}, x, u));
   }
   /// start, start + c_0, start + c_0 + c_1, … to `to`; returns the sum of all. Added one by one, so that the
   /// rounding is that of a simulation.
-  [[gnu::always_inline]] static double running_sum(double start, const V& change, double* to) noexcept {
+  CHICANE_INLINE static double running_sum(double start, const V& change, double* to) noexcept {
     alignas(64) double by_stage[8];
     change.store(by_stage);
     V sum(start);
-    unroll<7>([&](auto lane) __attribute__((always_inline)) {
+    unroll<7>([&](auto lane) CHICANE_INLINE {
       sum += select(V::iota() > V(static_cast<double>(lane)), V(by_stage[lane]), V(kNothing));
     });
     sum.store(to);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/pack.hpp"
 #include "chicane/solver/pattern.hpp"
 
@@ -25,34 +26,30 @@ class StageAlgebra {
   /// One vector over the states.
   struct Vector {
     V part[kBlocks];
-    [[gnu::always_inline]] static Vector load(const double* from) noexcept {
+    CHICANE_INLINE static Vector load(const double* from) noexcept {
       Vector v;
-      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) { v.part[b] = V::load(from + b * kBlock); });
+      unroll<kBlocks>([&](auto b) CHICANE_INLINE { v.part[b] = V::load(from + b * kBlock); });
       return v;
     }
-    [[gnu::always_inline]] static Vector zero() noexcept {
+    CHICANE_INLINE static Vector zero() noexcept {
       Vector v;
-      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) { v.part[b] = V(0.0); });
+      unroll<kBlocks>([&](auto b) CHICANE_INLINE { v.part[b] = V(0.0); });
       return v;
     }
-    [[gnu::always_inline]] void store(double* to) const noexcept {
-      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) { part[b].store(to + b * kBlock); });
+    CHICANE_INLINE void store(double* to) const noexcept {
+      unroll<kBlocks>([&](auto b) CHICANE_INLINE { part[b].store(to + b * kBlock); });
     }
-    [[gnu::always_inline]] void set(std::size_t i, double value) noexcept {
-      part[i / kBlock].set(i % kBlock, value);
+    CHICANE_INLINE void set(std::size_t i, double value) noexcept { part[i / kBlock].set(i % kBlock, value); }
+    CHICANE_INLINE void add(const Vector& o) noexcept {
+      unroll<kBlocks>([&](auto b) CHICANE_INLINE { part[b] += o.part[b]; });
     }
-    [[gnu::always_inline]] void add(const Vector& o) noexcept {
-      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) { part[b] += o.part[b]; });
-    }
-    [[gnu::always_inline]] void add(double factor, const Vector& o) noexcept {
+    CHICANE_INLINE void add(double factor, const Vector& o) noexcept {
       const V f(factor);
-      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) {
-        part[b] = fused_multiply_add(f, o.part[b], part[b]);
-      });
+      unroll<kBlocks>([&](auto b) CHICANE_INLINE { part[b] = fused_multiply_add(f, o.part[b], part[b]); });
     }
-    [[gnu::always_inline]] static Vector scaled(double factor, const Vector& o) noexcept {
+    CHICANE_INLINE static Vector scaled(double factor, const Vector& o) noexcept {
       Vector v;
-      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) { v.part[b] = V(factor) * o.part[b]; });
+      unroll<kBlocks>([&](auto b) CHICANE_INLINE { v.part[b] = V(factor) * o.part[b]; });
       return v;
     }
   };
@@ -90,7 +87,7 @@ class StageAlgebra {
 
   /// F[I][J].
   template <std::size_t I, std::size_t J>
-  [[gnu::always_inline]] static double jacobian(const Stage& s) noexcept {
+  CHICANE_INLINE static double jacobian(const Stage& s) noexcept {
     constexpr std::size_t kNumber = Layout::kNumber.f[I][J];
     if constexpr (kNumber != Layout::kNone) {
       return s.number[kNumber];
@@ -101,20 +98,20 @@ class StageAlgebra {
   }
   /// L[I][J], I and J inputs or the constant; zero where the pattern has no such entry.
   template <std::size_t I, std::size_t J>
-  [[gnu::always_inline]] static double cost(const Stage& s) noexcept {
+  CHICANE_INLINE static double cost(const Stage& s) noexcept {
     constexpr std::size_t kNumber = Layout::kNumber.l[I][J];
     if constexpr (kNumber != Layout::kNone) return s.number[kNumber];
     return 0.0;
   }
   /// Row I of F over the states, without the 1 of a sum.
   template <std::size_t I>
-  [[gnu::always_inline]] static Vector state_row(const Stage& s) noexcept {
+  CHICANE_INLINE static Vector state_row(const Stage& s) noexcept {
     if constexpr (Layout::is_wide_state(I)) {
       constexpr std::size_t kRow = Layout::wide_state(I);
       return Vector::load(s.wide[kRow]);
     } else {
       Vector row = Vector::zero();
-      unroll<kNx>([&](auto j) __attribute__((always_inline)) {
+      unroll<kNx>([&](auto j) CHICANE_INLINE {
         if constexpr (Layout::is_one(I, j)) row.set(j, 1.0);
         if constexpr (Layout::kF[I][j] != Layout::kNone) row.set(j, jacobian<I, j>(s));
       });
@@ -123,13 +120,13 @@ class StageAlgebra {
   }
   /// Row I of L over the states.
   template <std::size_t I>
-  [[gnu::always_inline]] static Vector cost_row(const Stage& s) noexcept {
+  CHICANE_INLINE static Vector cost_row(const Stage& s) noexcept {
     if constexpr (Layout::is_wide_cost(I)) {
       constexpr std::size_t kRow = Layout::wide_cost(I);
       return Vector::load(s.wide[kRow]);
     } else {
       Vector row = Vector::zero();
-      unroll<kNx>([&](auto j) __attribute__((always_inline)) {
+      unroll<kNx>([&](auto j) CHICANE_INLINE {
         if constexpr (Layout::kL[I][j] != Layout::kNone) row.set(j, s.number[Layout::kNumber.l[I][j]]);
       });
       return row;
@@ -139,15 +136,15 @@ class StageAlgebra {
   /// start + Σ_t factor(t) · vector(t) over `Count` terms; in two sums side by side when they are many, which
   /// halves the wait for one to finish.
   template <std::size_t Count, class Factor, class Operand>
-  [[gnu::always_inline]] static Vector combine(const Vector& start, const Factor& factor,
-                                               const Operand& operand) noexcept {
+  CHICANE_INLINE static Vector combine(const Vector& start, const Factor& factor,
+                                       const Operand& operand) noexcept {
     Vector sum = start;
     if constexpr (Count < 4) {
-      unroll<Count>([&](auto t) __attribute__((always_inline)) { sum.add(factor(t), operand(t)); });
+      unroll<Count>([&](auto t) CHICANE_INLINE { sum.add(factor(t), operand(t)); });
     } else {
       Vector other = Vector::scaled(factor(std::integral_constant<std::size_t, 0>{}),
                                     operand(std::integral_constant<std::size_t, 0>{}));
-      unroll<Count - 1>([&](auto t) __attribute__((always_inline)) {
+      unroll<Count - 1>([&](auto t) CHICANE_INLINE {
         constexpr std::integral_constant<std::size_t, t + 1> kTerm{};
         if constexpr (kTerm % 2 == 0) {
           other.add(factor(kTerm), operand(kTerm));
@@ -162,28 +159,24 @@ class StageAlgebra {
 
   /// P F, column j.
   template <std::size_t J>
-  [[gnu::always_inline]] static Vector times_jacobian(const Stage& s, const Value& P) noexcept {
+  CHICANE_INLINE static Vector times_jacobian(const Stage& s, const Value& P) noexcept {
     constexpr Terms kOnes = rows_of(J, true);
     constexpr Terms kValues = rows_of(J, false);
-    const auto factor = [&](auto t) __attribute__((always_inline)) {
-      return jacobian<kValues.index[t], J>(s);
-    };
-    const auto column = [&](auto t) __attribute__((always_inline)) { return P.column[kValues.index[t]]; };
+    const auto factor = [&](auto t) CHICANE_INLINE { return jacobian<kValues.index[t], J>(s); };
+    const auto column = [&](auto t) CHICANE_INLINE { return P.column[kValues.index[t]]; };
     if constexpr (J == kNx) {
       return combine<kValues.count>(P.column[kNx], factor, column);
     } else if constexpr (kOnes.count > 0) {
       Vector start = P.column[kOnes.index[0]];
-      unroll<kOnes.count - 1>([&](auto t) __attribute__((always_inline)) {
-        start.add(P.column[kOnes.index[t + 1]]);
-      });
+      unroll<kOnes.count - 1>([&](auto t) CHICANE_INLINE { start.add(P.column[kOnes.index[t + 1]]); });
       return combine<kValues.count>(start, factor, column);
     } else {
       const Vector start =
           Vector::scaled(factor(std::integral_constant<std::size_t, 0>{}), P.column[kValues.index[0]]);
-      const auto later_factor = [&](auto t) __attribute__((always_inline)) {
+      const auto later_factor = [&](auto t) CHICANE_INLINE {
         return factor(std::integral_constant<std::size_t, t + 1>{});
       };
-      const auto later_column = [&](auto t) __attribute__((always_inline)) {
+      const auto later_column = [&](auto t) CHICANE_INLINE {
         return column(std::integral_constant<std::size_t, t + 1>{});
       };
       return combine<kValues.count - 1>(start, later_factor, later_column);
@@ -203,9 +196,9 @@ class StageAlgebra {
     return false;
   }();
   /// sum + the lanes of w that belong to such states.
-  [[gnu::always_inline]] static void add_sums(Vector& sum, const Vector& w) noexcept {
+  CHICANE_INLINE static void add_sums(Vector& sum, const Vector& w) noexcept {
     if constexpr (kHasSums) {
-      unroll<kBlocks>([&](auto b) __attribute__((always_inline)) {
+      unroll<kBlocks>([&](auto b) CHICANE_INLINE {
         const auto is_sum = V::load(kSums.data() + b * kBlock) > V(0.0);
         sum.part[b] = select(is_sum, sum.part[b] + w.part[b], sum.part[b]);
       });
@@ -214,8 +207,7 @@ class StageAlgebra {
 
   /// Row i of Q over the states: L + Aᵀ w for a column w of P F, in registers and in memory.
   template <std::size_t I>
-  [[gnu::always_inline]] static Vector row_of_q(const Stage& s, const Vector& w,
-                                                const double* w_in_memory) noexcept {
+  CHICANE_INLINE static Vector row_of_q(const Stage& s, const Vector& w, const double* w_in_memory) noexcept {
     constexpr Terms kRows = state_rows();
     Vector start = cost_row<I>(s);
     add_sums(start, w);
@@ -223,26 +215,24 @@ class StageAlgebra {
       return start;
     } else {
       return combine<kRows.count>(
-          start, [&](auto t) __attribute__((always_inline)) { return w_in_memory[kRows.index[t]]; },
-          [&](auto t) __attribute__((always_inline)) { return state_row<kRows.index[t]>(s); });
+          start, [&](auto t) CHICANE_INLINE { return w_in_memory[kRows.index[t]]; },
+          [&](auto t) CHICANE_INLINE { return state_row<kRows.index[t]>(s); });
     }
   }
   /// Σ_m factor_m · v_m over the inputs.
-  [[gnu::always_inline]] static Vector combination(const double (&factor)[kNu],
-                                                   const Vector (&v)[kNu]) noexcept {
+  CHICANE_INLINE static Vector combination(const double (&factor)[kNu], const Vector (&v)[kNu]) noexcept {
     Vector sum = Vector::scaled(factor[0], v[0]);
-    unroll<kNu - 1>([&](auto m) __attribute__((always_inline)) { sum.add(factor[m + 1], v[m + 1]); });
+    unroll<kNu - 1>([&](auto m) CHICANE_INLINE { sum.add(factor[m + 1], v[m + 1]); });
     return sum;
   }
   /// column − scale · Σ_m r_mj T_m, over the inputs whose row of Q can have an entry at state J.
   template <std::size_t J>
-  [[gnu::always_inline]] static void eliminate_inputs(const Vector (&T)[kNu], double scale,
-                                                      const double (&r)[kNu][kLanes],
-                                                      Vector& column) noexcept {
+  CHICANE_INLINE static void eliminate_inputs(const Vector (&T)[kNu], double scale,
+                                              const double (&r)[kNu][kLanes], Vector& column) noexcept {
     constexpr Terms kInputs = inputs_with(J);
     if constexpr (kInputs.count > 0) {
       Vector sum = Vector::scaled(r[kInputs.index[0]][J], T[kInputs.index[0]]);
-      unroll<kInputs.count - 1>([&](auto n) __attribute__((always_inline)) {
+      unroll<kInputs.count - 1>([&](auto n) CHICANE_INLINE {
         constexpr std::size_t m = kInputs.index[n + 1];
         sum.add(r[m][J], T[m]);
       });
@@ -259,14 +249,14 @@ class StageAlgebra {
 
   /// start + column J of F times w, number by number.
   template <std::size_t J>
-  [[gnu::always_inline]] static double times_column(const Stage& s, const double* w, double start) noexcept {
+  CHICANE_INLINE static double times_column(const Stage& s, const double* w, double start) noexcept {
     constexpr Terms kOnes = rows_of(J, true);
     constexpr Terms kValues = rows_of(J, false);
     double sum = start;
-    unroll<kOnes.count>([&](auto t) __attribute__((always_inline)) { sum += w[kOnes.index[t]]; });
+    unroll<kOnes.count>([&](auto t) CHICANE_INLINE { sum += w[kOnes.index[t]]; });
     if constexpr (kValues.count == 0) return sum;
     double other = jacobian<kValues.index[0], J>(s) * w[kValues.index[0]];
-    unroll<kValues.count == 0 ? 0 : kValues.count - 1>([&](auto t) __attribute__((always_inline)) {
+    unroll<kValues.count == 0 ? 0 : kValues.count - 1>([&](auto t) CHICANE_INLINE {
       constexpr std::size_t kI = kValues.index[t + 1];
       double& side = t % 2 == 0 ? sum : other;
       side = fused_multiply_add<Arch>(jacobian<kI, J>(s), w[kI], side);
@@ -276,32 +266,31 @@ class StageAlgebra {
 
   /// Keeps the compiler from taking numbers out of registers that are cheaper to load from memory.
   template <class Memory>
-  [[gnu::always_inline]] static void settle(Memory& memory) noexcept {
+  CHICANE_INLINE static void settle(Memory& memory) noexcept {
     asm volatile("" : "+m"(memory));  // NOLINT: no instruction
   }
 
   /// Rounding errors that are not symmetric would grow like an uncontrolled system: averaged away every few
   /// stages.
-  [[gnu::always_inline]] static void make_symmetric(Value& P) noexcept {
-    unroll<kBlocks>([&](auto a) __attribute__((always_inline)) {
-      unroll<a + 1>([&](auto b) __attribute__((always_inline)) {
+  CHICANE_INLINE static void make_symmetric(Value& P) noexcept {
+    unroll<kBlocks>([&](auto a) CHICANE_INLINE {
+      unroll<a + 1>([&](auto b) CHICANE_INLINE {
         V upper[kBlock];
         V lower[kBlock];
-        unroll<kBlock>([&](auto i) __attribute__((always_inline)) {
+        unroll<kBlock>([&](auto i) CHICANE_INLINE {
           constexpr std::size_t kColumn = a * kBlock + i;
           constexpr std::size_t kRow = b * kBlock + i;
           upper[i] = kColumn < kNx ? P.column[kColumn < kNx ? kColumn : 0].part[b] : V(0.0);
           lower[i] = kRow < kNx ? P.column[kRow < kNx ? kRow : 0].part[a] : V(0.0);
         });
         transpose(lower);
-        unroll<kBlock>([&](auto i)
-                           __attribute__((always_inline)) { upper[i] = 0.5 * (upper[i] + lower[i]); });
-        unroll<kBlock>([&](auto i) __attribute__((always_inline)) {
+        unroll<kBlock>([&](auto i) CHICANE_INLINE { upper[i] = 0.5 * (upper[i] + lower[i]); });
+        unroll<kBlock>([&](auto i) CHICANE_INLINE {
           if constexpr (a * kBlock + i < kNx) P.column[a * kBlock + i].part[b] = upper[i];
         });
         if constexpr (a != b) {
           transpose(upper);
-          unroll<kBlock>([&](auto i) __attribute__((always_inline)) {
+          unroll<kBlock>([&](auto i) CHICANE_INLINE {
             if constexpr (b * kBlock + i < kNx) P.column[b * kBlock + i].part[a] = upper[i];
           });
         }

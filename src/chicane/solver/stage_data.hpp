@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 
+#include "chicane/base/inlining.hpp"
+
 namespace chicane::solver {
 
 /// Several consecutive stages at once, one in each lane of the pack V: stage `first` in lane 0. Functions of
@@ -35,7 +37,7 @@ struct StageData {
 /// The number of a stage as a value: k itself, or one in each lane.
 [[nodiscard]] inline double stage_number(int k) noexcept { return k; }
 template <class V>
-[[nodiscard]] [[gnu::always_inline]] inline V stage_number(StageLanes<V> k) noexcept {
+[[nodiscard]] CHICANE_INLINE inline V stage_number(StageLanes<V> k) noexcept {
   alignas(64) static constexpr std::array<double, kMostLanes> kCount{0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0};
   return V::load(kCount.data()) + static_cast<double>(k.first);
 }

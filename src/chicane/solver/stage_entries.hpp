@@ -7,6 +7,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/jet.hpp"
 #include "chicane/solver/pattern.hpp"
 #include "chicane/solver/problem_pattern.hpp"
@@ -21,15 +22,14 @@ inline constexpr bool is_dense_row<std::array<J, N>> = J::kIsDense;
 /// Calls visit(n, jet) for each result of a problem's function. Of a tuple, n is a constant; of an array
 /// whose jets store everything, a number: loops are quicker to compile.
 template <class V, int Order, class Row, class Visit>
-[[gnu::always_inline]] inline void each_row(const Row& row, const Visit& visit) noexcept {
+CHICANE_INLINE inline void each_row(const Row& row, const Visit& visit) noexcept {
   constexpr std::size_t count = std::tuple_size_v<Row>;
   if constexpr (count == 0) {
     return;
   } else if constexpr (is_dense_row<Row>) {
     for (std::size_t n = 0; n < count; ++n) visit(n, row[n]);
   } else {
-    unroll<count>([&](auto n)
-                      __attribute__((always_inline)) { visit(n, as_jet<V, Order>(std::get<n>(row))); });
+    unroll<count>([&](auto n) CHICANE_INLINE { visit(n, as_jet<V, Order>(std::get<n>(row))); });
   }
 }
 
@@ -49,7 +49,7 @@ struct StageEntries {
   template <class J>
   static void set_jacobian(std::size_t i, const J& row, const V& defect, Jacobians& f) noexcept {
     V* const to = f.data() + i * Layout::kNz;
-    unroll<kVariables>([&](auto j) __attribute__((always_inline)) { to[z(j)] = row.slopes[j]; });
+    unroll<kVariables>([&](auto j) CHICANE_INLINE { to[z(j)] = row.slopes[j]; });
     to[Layout::kOne] = defect;
   }
   template <class Rows>
@@ -60,7 +60,7 @@ struct StageEntries {
   /// gradient += weight · dr
   template <class Rows, class J>
   static void add_gradient(std::size_t, const J& r, const V& weight, Gradient& gradient) noexcept {
-    unroll<kVariables>([&](auto i) __attribute__((always_inline)) { gradient[i] += weight * r.slopes[i]; });
+    unroll<kVariables>([&](auto i) CHICANE_INLINE { gradient[i] += weight * r.slopes[i]; });
   }
   /// l += weight · drᵀ dr, over the variables that the row depends on in any of the eight stages.
   template <class Rows, class J>
@@ -76,9 +76,7 @@ struct StageEntries {
     }
   }
   static void set_gradient(const Gradient& gradient, Costs& l) noexcept {
-    unroll<kVariables>([&](auto i) __attribute__((always_inline)) {
-      l[Layout::kL[z(i)][Layout::kOne]] = gradient[i];
-    });
+    unroll<kVariables>([&](auto i) CHICANE_INLINE { l[Layout::kL[z(i)][Layout::kOne]] = gradient[i]; });
   }
   template <class J>
   static void add_to_gradient(const J& r, const V& weight, Costs& l) noexcept {
@@ -105,9 +103,9 @@ struct StageEntries<P, V> {
   using Gradient = std::array<V, static_cast<std::size_t>(kVariables)>;
 
   template <std::size_t I, class J>
-  [[gnu::always_inline]] static void set_jacobian(std::integral_constant<std::size_t, I>, const J& row,
-                                                  const V& defect, Jacobians& f) noexcept {
-    jet::repeat<kVariables>([&](auto j) __attribute__((always_inline)) {
+  CHICANE_INLINE static void set_jacobian(std::integral_constant<std::size_t, I>, const J& row,
+                                          const V& defect, Jacobians& f) noexcept {
+    jet::repeat<kVariables>([&](auto j) CHICANE_INLINE {
       constexpr std::size_t entry = Layout::kF[I][in_z<P>(j)];
       if constexpr (entry != Layout::kNone) f[entry] = jet::number<V>(jet::slope<j>(row));
     });
@@ -115,56 +113,51 @@ struct StageEntries<P, V> {
   }
   /// Sets to zero what no row of `Rows` has.
   template <class Rows>
-  [[gnu::always_inline]] static void clear(Gradient& gradient, Costs& l) noexcept {
+  CHICANE_INLINE static void clear(Gradient& gradient, Costs& l) noexcept {
     using Sets = detail::RowSets<Rows>;
-    jet::repeat<kVariables>([&](auto j) __attribute__((always_inline)) {
+    jet::repeat<kVariables>([&](auto j) CHICANE_INLINE {
       if constexpr (Sets::first_with(j) < 0) gradient[j] = V(0.0);
-      jet::repeat<j + 1>([&](auto i) __attribute__((always_inline)) {
+      jet::repeat<j + 1>([&](auto i) CHICANE_INLINE {
         constexpr std::size_t entry = Layout::kL[in_z<P>(i)][in_z<P>(j)];
         if constexpr (entry != Layout::kNone && Sets::first_with(i, j) < 0) l[entry] = V(0.0);
       });
     });
   }
   template <class Rows, class N, class J>
-  [[gnu::always_inline]] static void add_gradient(N, const J& r, const V& weight,
-                                                  Gradient& gradient) noexcept {
-    for_slopes(
-        r, [&](auto i, const auto& slope) __attribute__((always_inline)) {
-          const V share = jet::number<V>(jet::times(weight, slope));
-          gradient[i] = is_first<Rows, N>(i, i) ? share : gradient[i] + share;
-        });
+  CHICANE_INLINE static void add_gradient(N, const J& r, const V& weight, Gradient& gradient) noexcept {
+    for_slopes(r, [&](auto i, const auto& slope) CHICANE_INLINE {
+      const V share = jet::number<V>(jet::times(weight, slope));
+      gradient[i] = is_first<Rows, N>(i, i) ? share : gradient[i] + share;
+    });
   }
   template <class Rows, class N, class J>
-  [[gnu::always_inline]] static void add_square(N, const J& r, const V& weight, Costs& l) noexcept {
-    for_slopes(
-        r, [&](auto j, const auto& slope_j) __attribute__((always_inline)) {
-          const V scaled = jet::number<V>(jet::times(weight, slope_j));
-          for_slopes(
-              r, [&](auto i, const auto& slope_i) __attribute__((always_inline)) {
-                if constexpr (i <= j) {
-                  V& entry = l[Layout::kL[in_z<P>(i)][in_z<P>(j)]];
-                  const V share = jet::number<V>(jet::times(scaled, slope_i));
-                  entry = is_first<Rows, N>(i, j) ? share : entry + share;
-                }
-              });
-        });
+  CHICANE_INLINE static void add_square(N, const J& r, const V& weight, Costs& l) noexcept {
+    for_slopes(r, [&](auto j, const auto& slope_j) CHICANE_INLINE {
+      const V scaled = jet::number<V>(jet::times(weight, slope_j));
+      for_slopes(r, [&](auto i, const auto& slope_i) CHICANE_INLINE {
+        if constexpr (i <= j) {
+          V& entry = l[Layout::kL[in_z<P>(i)][in_z<P>(j)]];
+          const V share = jet::number<V>(jet::times(scaled, slope_i));
+          entry = is_first<Rows, N>(i, j) ? share : entry + share;
+        }
+      });
+    });
   }
-  [[gnu::always_inline]] static void set_gradient(const Gradient& gradient, Costs& l) noexcept {
-    jet::repeat<kVariables>([&](auto i) __attribute__((always_inline)) {
+  CHICANE_INLINE static void set_gradient(const Gradient& gradient, Costs& l) noexcept {
+    jet::repeat<kVariables>([&](auto i) CHICANE_INLINE {
       constexpr std::size_t entry = Layout::kL[in_z<P>(i)][Layout::kOne];
       if constexpr (entry != Layout::kNone) l[entry] = gradient[i];
     });
   }
   template <class J>
-  [[gnu::always_inline]] static void add_to_gradient(const J& r, const V& weight, Costs& l) noexcept {
-    for_slopes(
-        r, [&](auto i, const auto& slope) __attribute__((always_inline)) {
-          l[Layout::kL[in_z<P>(i)][Layout::kOne]] += jet::number<V>(jet::times(weight, slope));
-        });
+  CHICANE_INLINE static void add_to_gradient(const J& r, const V& weight, Costs& l) noexcept {
+    for_slopes(r, [&](auto i, const auto& slope) CHICANE_INLINE {
+      l[Layout::kL[in_z<P>(i)][Layout::kOne]] += jet::number<V>(jet::times(weight, slope));
+    });
   }
   template <class J>
-  [[gnu::always_inline]] static void add_curvature(const J& r, const V& weight, Costs& l) noexcept {
-    jet::repeat<J::kSecond.size()>([&](auto n) __attribute__((always_inline)) {
+  CHICANE_INLINE static void add_curvature(const J& r, const V& weight, Costs& l) noexcept {
+    jet::repeat<J::kSecond.size()>([&](auto n) CHICANE_INLINE {
       constexpr Pair p = members<J::kSecond>()[n];
       l[Layout::kL[in_z<P>(p.i)][in_z<P>(p.j)]] += weight * r.curvatures[n];
     });
@@ -172,8 +165,8 @@ struct StageEntries<P, V> {
 
  private:
   template <class J, class Visit>
-  [[gnu::always_inline]] static void for_slopes(const J& r, const Visit& visit) noexcept {
-    jet::repeat<size_of(J::kFirst)>([&](auto n) __attribute__((always_inline)) {
+  CHICANE_INLINE static void for_slopes(const J& r, const Visit& visit) noexcept {
+    jet::repeat<size_of(J::kFirst)>([&](auto n) CHICANE_INLINE {
       constexpr int i = member_of(J::kFirst, n);
       visit(std::integral_constant<int, i>{}, jet::slope<i>(r));
     });

@@ -132,10 +132,11 @@ RunSummary Metrics::summary() const {
   return run;
 }
 
-void compare_with_limit(RunSummary& run, const lap_time::LapTimes& limit) {
+void compare_with_limit(RunSummary& run, const lap_time::LapTimes& limit, int first_lap) {
   run.limit = limit;
   run.why_no_limit.clear();
-  for (LapSummary& lap : run.laps) {
+  for (std::size_t number = static_cast<std::size_t>(first_lap); number <= run.laps.size(); ++number) {
+    LapSummary& lap = run.laps[number - 1];
     lap.gap_to_limit = lap_time::gap(lap.lap_time, limit.lap);
     for (std::size_t i = 0; i < lap.sector_gaps.size(); ++i)
       lap.sector_gaps[i] = lap_time::gap(lap.sector_times[i], limit.sectors[i]);

@@ -141,6 +141,8 @@ export interface Limit {
   time_s: Float64Array;
   /** In one sentence, while it is not known; older programs do not tell. */
   why_not?: string;
+  /** It holds for laps from this one on: before, grip or mass of the car were others; older programs do not tell. */
+  first_lap?: number;
 }
 
 /** chicane_msgs/msg/Change: a setting that changed during the run */

@@ -26,9 +26,15 @@ function samples(): LapSamples {
 
 describe('the limit', () => {
   it('is computed for laps that were driven before it was known', () => {
-    const lap = { lap_time_s: 22, sector_times_s: Float64Array.of(5, 6, 11), gap_to_limit_percent: NaN, sector_gaps_to_limit_percent: Float64Array.of(NaN, NaN, NaN) } as unknown as Lap;
+    const lap = { lap: 1, lap_time_s: 22, sector_times_s: Float64Array.of(5, 6, 11), gap_to_limit_percent: NaN, sector_gaps_to_limit_percent: Float64Array.of(NaN, NaN, NaN) } as unknown as Lap;
     expect(gapsToLimit(lap, limit)).toEqual({ lap: expect.closeTo(10), sectors: [expect.closeTo(0), expect.closeTo(20), expect.closeTo(10)] });
     expect(gapsToLimit(lap, null)).toEqual({ lap: NaN, sectors: [NaN, NaN, NaN] });
+  });
+
+  it('holds for laps from the first one on that the car of today began', () => {
+    const lap = (number: number) => ({ lap: number, lap_time_s: 22, sector_times_s: Float64Array.of(5, 6, 11), gap_to_limit_percent: NaN }) as unknown as Lap;
+    expect(gapsToLimit(lap(4), { ...limit, first_lap: 5 }).lap).toBeNaN();
+    expect(gapsToLimit(lap(5), { ...limit, first_lap: 5 }).lap).toBeCloseTo(10);
   });
 
   it('is taken as told, and as unknown from older programs', () => {
