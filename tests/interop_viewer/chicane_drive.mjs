@@ -16,6 +16,7 @@ export async function startDrive(args = [], port = 0) {
       const found = /http:\/\/localhost:(\d+)\//.exec(said);
       if (found) resolve(Number(found[1]));
     });
+    child.on('error', reject);
     child.on('exit', (code) => reject(new Error(`chicane drive ended with ${code}: ${said}`)));
   });
   const listening = await address;
@@ -23,7 +24,7 @@ export async function startDrive(args = [], port = 0) {
     port: listening,
     url: `http://127.0.0.1:${listening}/`,
     async stop() {
-      if (child.exitCode !== null) return;
+      if (child.exitCode !== null || child.signalCode !== null) return;
       child.kill('SIGTERM');
       await once(child, 'exit');
     },

@@ -13,7 +13,7 @@ export async function startDemo(port = 0) {
     port: Number(new URL(url).port),
     /** Ends it politely: it leaves when its stdin closes. */
     async stop() {
-      if (child.exitCode !== null) return child.exitCode;
+      if (child.exitCode !== null || child.signalCode !== null) return child.exitCode;
       child.stdin.end();
       const [code] = await once(child, 'exit');
       return code;

@@ -242,6 +242,21 @@ describe('the workbench', () => {
     await dashboard.button('1×').click();
   });
 
+  it('finds the limit again for a car with another grip', async () => {
+    await dashboard.show('laps');
+    const limit = () => page.getByTestId('limit').locator('.time').innerText({ timeout: 20000 });
+    const before = await limit();
+    await dashboard.show('drive');
+    await type('plant_options.friction_scale', 0.8);
+    await dashboard.show('laps');
+    const seconds = (text) => text.split(':').reduce((sum, part) => 60 * sum + Number(part), 0);
+    await dashboard.until(limit, (now) => seconds(now) > seconds(before) + 0.1, 'the limit with less grip');
+    await dashboard.show('drive');
+    await type('plant_options.friction_scale', 1);
+    await dashboard.show('laps');
+    await dashboard.until(limit, (now) => now === before, 'the limit of before');
+  });
+
   it('draws plots that are scrolled away for their picture', async () => {
     await page.setViewportSize({ width: 1366, height: 420 });
     await dashboard.show('plots');
