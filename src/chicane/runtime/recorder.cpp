@@ -31,13 +31,15 @@ constexpr const char* kCompiler = "gcc " __VERSION__;
 Result<std::unique_ptr<Recorder>> Recorder::create(RecorderOptions options) {
   auto writer = telemetry::McapWriter::create(options.path, kProgram, options.is_compressed);
   if (!writer) return fail(writer.error());
-  return std::unique_ptr<Recorder>(new Recorder(std::move(options), std::move(*writer)));
+  std::unique_ptr<Recorder> recorder(new Recorder(std::move(options), std::move(*writer)));
+  recorder->begin();
+  if (!recorder->state_) return fail(recorder->state_.error());
+  recorder->thread_ = std::thread([it = recorder.get()] { it->work(); });
+  return recorder;
 }
 
 Recorder::Recorder(RecorderOptions options, std::unique_ptr<telemetry::McapWriter> writer)
-    : options_{std::move(options)}, writer_{std::move(writer)}, ring_(kCapacity + kReserve) {
-  thread_ = std::thread([this] { work(); });
-}
+    : options_{std::move(options)}, writer_{std::move(writer)}, ring_(kCapacity + kReserve) {}
 
 Recorder::~Recorder() { static_cast<void>(finish()); }
 
@@ -99,7 +101,6 @@ Result<RecorderReport> Recorder::finish() {
 }
 
 void Recorder::work() {
-  begin();
   Clock::time_point flushed = Clock::now();
   while (true) {
     const bool is_last = wants_end_.load(std::memory_order_acquire);  // asked before the ring is
@@ -124,12 +125,14 @@ void Recorder::keep(Result<void> done) {
   if (state_ && !done) state_ = std::move(done);
 }
 
+/// Before anything else is done: a run that is killed in its first moments still has its scenario.
 void Recorder::begin() {
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
     static_cast<void>(writer_->add_channel(topic.name, topic.type, topic.schema));
   }
   step_channel_ = writer_->add_channel(protocol::kStepTopic, protocol::kStepType, protocol::step_schema());
   describe();
+  keep(writer_->flush());
 }
 
 /// What stays the same during a run.

@@ -51,7 +51,8 @@ struct RecorderReport {
 /// frames and one chunk.
 class Recorder {
  public:
-  /// kIo as McapWriter::create does.
+  /// Hands what describes the run to the operating system before it returns. kIo as McapWriter::create does,
+  /// and when that cannot be written.
   [[nodiscard]] static Result<std::unique_ptr<Recorder>> create(RecorderOptions options);
   /// finish(), if nobody called it; what fails then is not told.
   ~Recorder();
