@@ -96,6 +96,7 @@ Sample solve_reference(const Instance<Problem>& instance, const Instance<Problem
 template <class Value>
 std::vector<double> column(const std::vector<Sample>& samples, const Value& value) {
   std::vector<double> values;
+  values.reserve(samples.size());
   for (const Sample& sample : samples) values.push_back(value(sample));
   return values;
 }

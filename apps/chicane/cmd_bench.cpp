@@ -150,6 +150,7 @@ ExitCode bench(const Options& options) {
     std::vector<std::string> words = options.words;
     words.front() = program;
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     execv(program.c_str(), arguments.data());

@@ -36,6 +36,21 @@ Result<std::optional<path::Track>> told_track(const Options& options, const scen
 
 constexpr const char* kUntold = "nobody told on which road the simulator drives: --track does";
 
+/// What viewers are told of the run.
+protocol::Run description(const scenario::Scenario& scenario, const controller::Controller& controller,
+                          const std::optional<path::Track>& track) {
+  protocol::Run run;
+  run.mode = "serve";
+  protocol::describe(controller, run);
+  run.preset = scenario.preset;
+  run.latency = scenario.latency;
+  run.control_period = scenario.control_period;
+  run.vehicle = scenario.vehicle;
+  if (track) describe(*track, run);
+  run.limit = track ? runtime::RunLimit::first_answer(*track) : lap_time::LimitAnswer{.why_not = kUntold};
+  return run;
+}
+
 Result<runtime::ServeSummary> run(const Options& options) {
   static std::atomic<bool> stop{false};  // as long as signals may come
   catch_interrupts(stop);
@@ -55,15 +70,7 @@ Result<runtime::ServeSummary> run(const Options& options) {
   serving.latency =
       std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(scenario->latency));
   runtime::ViewerOptions viewing;
-  viewing.run.mode = "serve";
-  protocol::describe(**controller, viewing.run);
-  viewing.run.preset = scenario->preset;
-  viewing.run.latency = scenario->latency;
-  viewing.run.control_period = scenario->control_period;
-  viewing.run.vehicle = scenario->vehicle;
-  if (*track) describe(**track, viewing.run);
-  viewing.run.limit =
-      *track ? runtime::RunLimit::first_answer(**track) : lap_time::LimitAnswer{.why_not = kUntold};
+  viewing.run = description(*scenario, **controller, *track);
   const auto kept = KeptRun::start(options, viewing.run, *scenario,
                                    std::chrono::duration<double>(serving.step_budget).count());
   if (!kept) return fail(kept.error());

@@ -97,7 +97,7 @@ std::vector<Instance<Problem, Capacity>> drive_a_loop(int horizon, int count,
     const double length = 1.1 * std::max(speed, now.problem.speed_reference) * horizon * dt;
     now.problem.path = detail::fit(road, x, y, psi, std::max(20.0, length));
     if constexpr (Problem::kNc > 0) detail::place_window(now.problem, cycle, horizon);
-    DescribedInstance plain{.problem = now.problem};
+    DescribedInstance plain{.problem = static_cast<const DescribedProblem&>(now.problem)};
     plain.place(speed);
     now.start = plain.start;
     now.guess.horizon = horizon;
@@ -134,7 +134,7 @@ std::vector<Instance<Problem, Capacity>> make_family(Start start, int horizon, i
     if constexpr (Problem::kNc > 0) {
       const CorridorInstance corridor = random_corridor(random, horizon);
       instance.problem = corridor.problem;
-      plain = {.problem = corridor.problem, .start = corridor.start};
+      plain = {.problem = static_cast<const DescribedProblem&>(corridor.problem), .start = corridor.start};
     } else {
       plain = random_instance(random, horizon);
       instance.problem = plain.problem;

@@ -33,7 +33,7 @@ class IpoptProblem : public Ipopt::TNLP {
   static constexpr int kNu = P::kNu;
   static constexpr int kNc = P::kNc;
   static constexpr int kNz = kNx + kNu;
-  static constexpr int kNd = solver::has_rate_bounds<P> ? kNu : 0;
+  static constexpr int kNd = solver::kHasRateBounds<P> ? kNu : 0;
 
   const P* problem = nullptr;
   std::array<double, kNx> x0{};

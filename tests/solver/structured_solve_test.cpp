@@ -56,7 +56,7 @@ void expect_same_derivatives(const Row& jets, const DualRow& duals) {
     }
     ++n;
   };
-  jet::repeat<solver::row_size<Row>>([&](auto i) {
+  jet::repeat<solver::kRowSize<Row>>([&](auto i) {
     compare(derivatives_of<count>(solver::as_jet<double, 2>(std::get<i>(jets))),
             Dual<Nz, Dual<Nz>>(std::get<i>(duals)));
   });

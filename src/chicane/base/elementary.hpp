@@ -136,7 +136,7 @@ template <class V>
 [[nodiscard]] CHICANE_INLINE inline V atan2(const V& y, const V& x) noexcept {
   constexpr double pi = 3.14159265358979311600e+00, pi_low = 1.22464679914735317723e-16;
   const V zero(0.0);
-  const auto on_x = (y == zero) & (x == x);
+  const auto on_x = (y == zero) & (x == x);  // NOLINT(misc-redundant-expression): a number
   const V a = elementary::atan(abs(select(on_x, zero, y / x)));
   const auto is_behind = (copysign(V(1.0), x) < zero) & (on_x | (x < zero));
   return copysign(select(is_behind, pi - (a - pi_low), a), y);

@@ -235,7 +235,7 @@ struct Common {
   static constexpr int kOrder = std::max({Traits<T>::kOrder...});
   static constexpr Pairs kPairs = kOrder == 2 ? Pairs::of(kAll, kAll) : Pairs{};
   using Value = std::common_type_t<typename Traits<T>::Value...>;
-  using type = std::conditional_t<kOrder == 0, Value, Jet<Value, kOrder, kAll, 0, kPairs>>;
+  using Type = std::conditional_t<kOrder == 0, Value, Jet<Value, kOrder, kAll, 0, kPairs>>;
 };
 
 }  // namespace jet
@@ -243,6 +243,6 @@ struct Common {
 /// A type that holds each of T… and is closed under arithmetic: what homogeneous code (struct Motion<T>) runs
 /// on.
 template <class... T>
-using Common = typename jet::Common<std::remove_cvref_t<T>...>::type;
+using Common = typename jet::Common<std::remove_cvref_t<T>...>::Type;
 
 }  // namespace chicane

@@ -70,11 +70,11 @@ template <int Order, int Index, class V>
 }
 
 template <class T>
-inline constexpr bool is_jet = false;
+inline constexpr bool kIsJet = false;
 template <class V, int O, Variables F, Variables U, Pairs S>
-inline constexpr bool is_jet<Jet<V, O, F, U, S>> = true;
+inline constexpr bool kIsJet<Jet<V, O, F, U, S>> = true;
 template <class T>
-concept AnyJet = is_jet<std::remove_cvref_t<T>>;
+concept AnyJet = kIsJet<std::remove_cvref_t<T>>;
 /// A constant beside a jet: double, or the pack of its values.
 template <class S, class J>
 concept ConstantFor = !AnyJet<S> && std::convertible_to<S, typename J::Value>;
@@ -100,17 +100,17 @@ struct One {};
 struct Minus {};
 
 template <class T>
-inline constexpr bool is_zero = std::is_same_v<T, Zero>;
+inline constexpr bool kIsZero = std::is_same_v<T, Zero>;
 template <class T>
-inline constexpr bool is_one = std::is_same_v<T, One>;
+inline constexpr bool kIsOne = std::is_same_v<T, One>;
 
 template <class A, class B>
 [[nodiscard]] CHICANE_INLINE inline constexpr auto times(const A& a, const B& b) {
-  if constexpr (is_zero<A> || is_zero<B>)
+  if constexpr (kIsZero<A> || kIsZero<B>)
     return Zero{};
-  else if constexpr (is_one<A>)
+  else if constexpr (kIsOne<A>)
     return b;
-  else if constexpr (is_one<B>)
+  else if constexpr (kIsOne<B>)
     return a;
   else if constexpr (std::is_same_v<A, Minus> && std::is_same_v<B, Minus>)
     return One{};
@@ -123,9 +123,9 @@ template <class A, class B>
 }
 template <class V, class A>
 [[nodiscard]] CHICANE_INLINE inline constexpr V number(const A& a) {
-  if constexpr (is_zero<A>)
+  if constexpr (kIsZero<A>)
     return V(0.0);
-  else if constexpr (is_one<A>)
+  else if constexpr (kIsOne<A>)
     return V(1.0);
   else if constexpr (std::is_same_v<A, Minus>)
     return V(-1.0);
@@ -134,9 +134,9 @@ template <class V, class A>
 }
 template <class V, class A, class B>
 [[nodiscard]] CHICANE_INLINE inline constexpr auto plus(const A& a, const B& b) {
-  if constexpr (is_zero<A>)
+  if constexpr (kIsZero<A>)
     return b;
-  else if constexpr (is_zero<B>)
+  else if constexpr (kIsZero<B>)
     return a;
   else
     return number<V>(a) + number<V>(b);
@@ -184,18 +184,18 @@ Partials(A, B, AA, AB, BB) -> Partials<A, B, AA, AB, BB>;
 /// other.
 template <class PA, class PB, AnyJet A, AnyJet B>
 constexpr Variables unit_of() noexcept {
-  const Variables in_a = is_zero<PA> ? 0 : A::kFirst;
-  const Variables in_b = is_zero<PB> ? 0 : B::kFirst;
-  return (is_one<PA> ? A::kUnit & ~in_b : 0) | (is_one<PB> ? B::kUnit & ~in_a : 0);
+  const Variables in_a = kIsZero<PA> ? 0 : A::kFirst;
+  const Variables in_b = kIsZero<PB> ? 0 : B::kFirst;
+  return (kIsOne<PA> ? A::kUnit & ~in_b : 0) | (kIsOne<PB> ? B::kUnit & ~in_a : 0);
 }
 template <class PA, class PB, class AA, class AB, class BB, AnyJet A, AnyJet B>
 constexpr Pairs second_of() noexcept {
   Pairs set;
-  if constexpr (!is_zero<PA>) set |= A::kSecond;
-  if constexpr (!is_zero<PB>) set |= B::kSecond;
-  if constexpr (!is_zero<AA>) set |= Pairs::of(A::kFirst, A::kFirst);
-  if constexpr (!is_zero<AB>) set |= Pairs::of(A::kFirst, B::kFirst);
-  if constexpr (!is_zero<BB>) set |= Pairs::of(B::kFirst, B::kFirst);
+  if constexpr (!kIsZero<PA>) set |= A::kSecond;
+  if constexpr (!kIsZero<PB>) set |= B::kSecond;
+  if constexpr (!kIsZero<AA>) set |= Pairs::of(A::kFirst, A::kFirst);
+  if constexpr (!kIsZero<AB>) set |= Pairs::of(A::kFirst, B::kFirst);
+  if constexpr (!kIsZero<BB>) set |= Pairs::of(B::kFirst, B::kFirst);
   return set;
 }
 
@@ -230,7 +230,7 @@ template <AnyJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
                                                                 const typename A::Value& value,
                                                                 const Partials<PA, PB, AA, AB, BB>& f) {
   using V = typename A::Value;
-  constexpr Variables first = (is_zero<PA> ? 0 : A::kFirst) | (is_zero<PB> ? 0 : B::kFirst);
+  constexpr Variables first = (kIsZero<PA> ? 0 : A::kFirst) | (kIsZero<PB> ? 0 : B::kFirst);
   constexpr Variables unit = unit_of<PA, PB, A, B>();
   constexpr Pairs second = [] {
     if constexpr (A::kOrder == 2)

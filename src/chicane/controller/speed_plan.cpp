@@ -74,7 +74,7 @@ bool SpeedPlan::advance(int& work, ReferenceLine& line) noexcept {
 void SpeedPlan::limit(ReferenceLine& line, int i) noexcept {
   const auto samples = line.samples();
   const int last = static_cast<int>(samples.size()) - 1;
-  const int reach = std::max(1, static_cast<int>(kSlopeReach / line.spacing() + 0.5));
+  const int reach = std::max(1, static_cast<int>(std::lround(kSlopeReach / line.spacing())));
   const auto curvature = [&](int at) {
     if (line.is_closed()) at = at < 0 ? at + last : (at > last ? at - last : at);
     return samples[static_cast<std::size_t>(std::clamp(at, 0, last))].curve.curvature;

@@ -224,7 +224,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     turns_ = kMostTurns;
     if (can_shift) {
       const double more = std::min(elapsed / kTimePerTurn, static_cast<double>(kMostTurns));
-      turns_ = std::clamp(kTurns - 1 + static_cast<int>(more + 0.5), kTurns, kMostTurns);
+      turns_ = std::clamp(kTurns - 1 + static_cast<int>(std::lround(more)), kTurns, kMostTurns);
       shift_answer(elapsed);
     } else {
       follow_line();

@@ -14,7 +14,7 @@
 namespace chicane::net {
 namespace {
 
-constexpr std::uint64_t kPiece = 64 * 1024;
+constexpr std::uint64_t kPiece = 64UL * 1024UL;
 constexpr std::string_view kNotModified = "304 Not Modified";
 constexpr std::string_view kSecurityHeaders =
     "Content-Security-Policy: default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' "

@@ -223,11 +223,11 @@ class RiccatiLanes {
   /// sum + a · b
   template <class A, class B, class S>
   CHICANE_INLINE static auto fused(const A& a, const B& b, const S& sum) noexcept {
-    if constexpr (jet::is_zero<A> || jet::is_zero<B>) {
+    if constexpr (jet::kIsZero<A> || jet::kIsZero<B>) {
       return sum;
-    } else if constexpr (jet::is_zero<S>) {
+    } else if constexpr (jet::kIsZero<S>) {
       return jet::times(a, b);
-    } else if constexpr (jet::is_one<A>) {
+    } else if constexpr (jet::kIsOne<A>) {
       return sum + b;
     } else {
       return fused_multiply_add(a, b, sum);

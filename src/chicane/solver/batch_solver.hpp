@@ -41,7 +41,7 @@ class BatchSolver {
   static constexpr std::size_t kNc = One::kNc;
   using State = std::array<double, kNx>;
   using Trajectory = solver::Trajectory<One::kNx, One::kNu, Capacity>;
-  static_assert(!has_rate_bounds<One>, "no bounds on the changes of inputs in a batch");
+  static_assert(!kHasRateBounds<One>, "no bounds on the changes of inputs in a batch");
 
   explicit BatchSolver(const SolverOptions& options = {}) noexcept : options_(options) {}
 

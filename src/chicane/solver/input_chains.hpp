@@ -20,7 +20,7 @@ namespace chicane::solver {
 template <OcpProblem P, std::size_t Capacity>
 class InputChains {
  public:
-  static constexpr bool kAny = has_rate_bounds<P>;
+  static constexpr bool kAny = kHasRateBounds<P>;
   static constexpr std::size_t kNu = P::kNu;
   static constexpr auto kState = previous_inputs<P>();
   static constexpr bool is_bounded(std::size_t m) noexcept { return kState[m] >= 0; }

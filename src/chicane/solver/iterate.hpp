@@ -30,6 +30,7 @@ struct Iterate {
   Iterate(const Iterate&) = delete;
   /// Copies the horizon, not the capacity.
   Iterate& operator=(const Iterate& o) noexcept {
+    if (&o == this) return *this;
     horizon = o.horizon;
     const std::size_t size = padded_stages(horizon + 1);
     for (std::size_t i = 0; i < Nx; ++i) std::copy(o.x[i], o.x[i] + size, x[i]);

@@ -59,7 +59,7 @@ class Linearisation {
     for (std::size_t k = (t.horizon - 1) / 8 * 8 + 8; k > 0; k -= 8)
       look_at<Order>(problem, t, k - 8, {centre, defect_share}, slacks, lambda, lq, sums);
     sums.finish(*this, report);
-    if constexpr (has_rate_bounds<P>) {  // measured by whole chains
+    if constexpr (kHasRateBounds<P>) {  // measured by whole chains
       chains.fold_first(lq);
       if (std::isfinite(report.stationarity) && std::isfinite(report.defect))
         report.stationarity = std::max(report.stationarity, chains.distance(t, slope));
@@ -194,7 +194,8 @@ class Linearisation {
 
   /// Soft constraints: their multipliers to the gradient, their eliminated slacks to the quadratic program
   /// (eq. 20, 21).
-  template <int Order, class Row, class Mask>
+  template <int Order, class Row,
+            class Mask>  // NOLINTNEXTLINE(readability-function-size): all sums of a look
   CHICANE_INLINE static void add_soft(const P& problem, const Row& constraint, std::size_t k0,
                                       const Mask& live, bool centre, Slacks& slacks, Gradient& gradient,
                                       Costs& l, Sums& sums) noexcept {

@@ -84,15 +84,7 @@ class LqSolver {
         if constexpr (has_rate(m)) {
           u[m] = with_rate(k, m, value, bounds, repair, carried[m], found);
         } else {
-          const Hold now = hold[k][m];
-          u[m] = now == Hold::kFree ? value : bounds.at(now);
-          if (repair == Repair::kClip) {
-            u[m] = std::min(std::max(u[m], bounds.low()), bounds.high());
-          } else if (const Hold next = bounds.next(now, u[m], value, feedback[k].H[m][m]); next != now)
-              [[unlikely]] {
-            if (repair == Repair::kAll) hold[k][m] = next;
-            found.add(k, m, next);
-          }
+          u[m] = without_rate(k, m, value, bounds, repair, found);
         }
         du[k][m] = u[m];
       });
@@ -160,7 +152,7 @@ class LqSolver {
   }
 
   /// One stage backwards: the value function P of stage k + 1 becomes that of stage k (eq. 9–11).
-  template <bool Choose>
+  template <bool Choose>  // NOLINTNEXTLINE(readability-function-size): one stage, in registers
   CHICANE_INLINE void eliminate(std::size_t k, Value& P, double shift, double& largest) noexcept {
     const Stage& s = lq.stage[k];
     Feedback& out = feedback[k];
@@ -371,6 +363,19 @@ class LqSolver {
     } else {
       RateSet<kNu>(hold, found.input).repair(found.stage, found.finding, found.bounds, found.u);
     }
+  }
+
+  /// An input in the forward sweep: free at `value`, or held where its slope is `value`.
+  CHICANE_INLINE double without_rate(std::size_t k, std::size_t m, double value, const InputBounds& bounds,
+                                     Repair repair, Contradictions& found) noexcept {
+    const Hold now = hold[k][m];
+    const double u = now == Hold::kFree ? value : bounds.at(now);
+    if (repair == Repair::kClip) return std::min(std::max(u, bounds.low()), bounds.high());
+    if (const Hold next = bounds.next(now, u, value, feedback[k].H[m][m]); next != now) [[unlikely]] {
+      if (repair == Repair::kAll) hold[k][m] = next;
+      found.add(k, m, next);
+    }
+    return u;
   }
 
   /// One input whose change is bounded: its step; `carried` is the slope of the members that it fixes.

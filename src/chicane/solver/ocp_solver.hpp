@@ -106,7 +106,7 @@ class OcpSolver {
   static constexpr std::size_t kNu = P::kNu;
   static constexpr std::size_t kSize = Capacity;
   /// Sweeps that may correct the whole working set in vain.
-  static constexpr int kChances = has_rate_bounds<P> ? 3 : 5;
+  static constexpr int kChances = kHasRateBounds<P> ? 3 : 5;
   static constexpr std::size_t kFirstHorizon = 5;  ///< of the growing horizons
   static constexpr std::size_t kMaxGrowth = 16;
   static constexpr double kGoodEnoughToGrow = 1e-1;
@@ -199,10 +199,10 @@ class OcpSolver {
     } else {
       look(std::integral_constant<int, 1>{});
     }
-    if constexpr (has_rate_bounds<P>) {
+    if constexpr (kHasRateBounds<P>) {
       if (is_fresh_) now_.chains.guess(now_.slope, t_.horizon, lq_);
     }
-    chooses_ = is_fresh_ && !has_rate_bounds<P>;
+    chooses_ = is_fresh_ && !kHasRateBounds<P>;
     is_fresh_ = false;
   }
 
@@ -224,7 +224,7 @@ class OcpSolver {
   bool solve_qp(const P& problem, const Deadline& deadline, SolveReport& report) noexcept {
     const Outcome outcome = correct_working_set(problem, deadline, report);
     if (outcome != Outcome::kCircles) return outcome == Outcome::kSolved;
-    if constexpr (has_rate_bounds<P>) {
+    if constexpr (kHasRateBounds<P>) {
       if (is_exact_) take_gauss_newton(problem);
       report.sweeps += interior_.solve(
           lq_, t_.horizon, [&](std::size_t k, std::size_t m) { return now_.slope[m][k]; },
@@ -265,7 +265,7 @@ class OcpSolver {
       const int contradictions = lq_.forward(t_.horizon, chances > 0 ? Repair::kAll : Repair::kLast);
       if (contradictions == 0) return Outcome::kSolved;
       if (deadline.spent()) return Outcome::kSpent;
-      if (chances == 0 && contradictions > (has_rate_bounds<P> ? 0 : kMaxSweeps - sweep))
+      if (chances == 0 && contradictions > (kHasRateBounds<P> ? 0 : kMaxSweeps - sweep))
         return Outcome::kCircles;
       chances = contradictions < fewest ? kChances : chances - 1;
       fewest = std::min(fewest, contradictions);
@@ -475,7 +475,7 @@ class OcpSolver {
   SolverOptions options_;
   Linearisation<P, kSize, Arch> now_;  ///< of the present iterate
   Lq lq_;                              ///< its quadratic program
-  std::conditional_t<has_rate_bounds<P>, InteriorPoint<Lq>, std::nullptr_t> interior_{};
+  std::conditional_t<kHasRateBounds<P>, InteriorPoint<Lq>, std::nullptr_t> interior_{};
   Barrier<P, kSize, Arch> barrier_;
   Descent<P, kSize, Arch> descent_;
   Progress progress_;

@@ -99,16 +99,16 @@ template <class T, class Row>
                     row);
 }
 template <class Row>
-inline constexpr int row_size = static_cast<int>(std::tuple_size_v<std::remove_cvref_t<Row>>);
+inline constexpr int kRowSize = static_cast<int>(std::tuple_size_v<std::remove_cvref_t<Row>>);
 
 template <class P>
 concept OcpProblem = requires(const P& p, const std::array<double, P::kNx>& x,
                               const std::array<double, P::kNu>& u) {
-  requires row_size<decltype(p.dynamics(0, x, u))>
+  requires kRowSize<decltype(p.dynamics(0, x, u))>
   == P::kNx;
-  requires row_size<decltype(p.residual(0, x, u))>
+  requires kRowSize<decltype(p.residual(0, x, u))>
   == P::kNr;
-  requires row_size<decltype(p.terminal_residual(x))>
+  requires kRowSize<decltype(p.terminal_residual(x))>
   == P::kNe;
   { p.input_lower(0) } -> std::same_as<std::array<double, P::kNu>>;
   { p.input_upper(0) } -> std::same_as<std::array<double, P::kNu>>;
@@ -124,14 +124,14 @@ concept StructuredProblem = OcpProblem<P> &&
 
 /// Whether a problem has bounds on the changes of inputs.
 template <class P>
-inline constexpr bool has_rate_bounds = requires {
+inline constexpr bool kHasRateBounds = requires {
   P::kPreviousInput;
 };
 
 /// The state that holds the previous value of each input whose change is bounded; -1 for the others.
 template <OcpProblem P>
 [[nodiscard]] constexpr std::array<int, P::kNu> previous_inputs() noexcept {
-  if constexpr (has_rate_bounds<P>) {
+  if constexpr (kHasRateBounds<P>) {
     return P::kPreviousInput;
   } else {
     std::array<int, P::kNu> none{};
@@ -161,7 +161,7 @@ concept NamesRates = requires(const P& p) {
 /// What a problem says of its inputs' changes makes sense. That the states named are indeed the previous
 /// inputs is checked for structured problems (problem_pattern.hpp).
 template <class P>
-concept ConsistentRates = (!has_rate_bounds<P> && !detail::NamesRates<P>) || requires(const P& p) {
+concept ConsistentRates = (!kHasRateBounds<P> && !detail::NamesRates<P>) || requires(const P& p) {
   { p.input_rate_lower(0) } -> std::same_as<std::array<double, P::kNu>>;
   { p.input_rate_upper(0) } -> std::same_as<std::array<double, P::kNu>>;
   requires detail::names_states<P>(P::kPreviousInput);

@@ -154,16 +154,16 @@ struct DensePattern : FullPattern<P::kNx, P::kNu> {
 namespace detail {
 template <class P>
 struct PatternOf {
-  using type = DensePattern<P>;
+  using Type = DensePattern<P>;
 };
 template <StructuredProblem P>
 struct PatternOf<P> {
-  using type = StructuredPattern<P>;
+  using Type = StructuredPattern<P>;
 };
 }  // namespace detail
 
 /// The pattern of any problem; a dense one for level 1.
 template <OcpProblem P>
-using ProblemPattern = typename detail::PatternOf<P>::type;
+using ProblemPattern = typename detail::PatternOf<P>::Type;
 
 }  // namespace chicane::solver

@@ -274,28 +274,31 @@ class StageAlgebra {
   /// stages.
   CHICANE_INLINE static void make_symmetric(Value& P) noexcept {
     unroll<kBlocks>([&](auto a) CHICANE_INLINE {
-      unroll<a + 1>([&](auto b) CHICANE_INLINE {
-        V upper[kBlock];
-        V lower[kBlock];
-        unroll<kBlock>([&](auto i) CHICANE_INLINE {
-          constexpr std::size_t kColumn = a * kBlock + i;
-          constexpr std::size_t kRow = b * kBlock + i;
-          upper[i] = kColumn < kNx ? P.column[kColumn < kNx ? kColumn : 0].part[b] : V(0.0);
-          lower[i] = kRow < kNx ? P.column[kRow < kNx ? kRow : 0].part[a] : V(0.0);
-        });
-        transpose(lower);
-        unroll<kBlock>([&](auto i) CHICANE_INLINE { upper[i] = 0.5 * (upper[i] + lower[i]); });
-        unroll<kBlock>([&](auto i) CHICANE_INLINE {
-          if constexpr (a * kBlock + i < kNx) P.column[a * kBlock + i].part[b] = upper[i];
-        });
-        if constexpr (a != b) {
-          transpose(upper);
-          unroll<kBlock>([&](auto i) CHICANE_INLINE {
-            if constexpr (b * kBlock + i < kNx) P.column[b * kBlock + i].part[a] = upper[i];
-          });
-        }
-      });
+      unroll<a + 1>([&](auto b) CHICANE_INLINE { average_blocks<a, b>(P); });
     });
+  }
+  /// The block in columns a and rows b, and the one across from it.
+  template <std::size_t A, std::size_t B>
+  CHICANE_INLINE static void average_blocks(Value& P) noexcept {
+    V upper[kBlock];
+    V lower[kBlock];
+    unroll<kBlock>([&](auto i) CHICANE_INLINE {
+      constexpr std::size_t kColumn = A * kBlock + i;
+      constexpr std::size_t kRow = B * kBlock + i;
+      upper[i] = kColumn < kNx ? P.column[kColumn < kNx ? kColumn : 0].part[B] : V(0.0);
+      lower[i] = kRow < kNx ? P.column[kRow < kNx ? kRow : 0].part[A] : V(0.0);
+    });
+    transpose(lower);
+    unroll<kBlock>([&](auto i) CHICANE_INLINE { upper[i] = 0.5 * (upper[i] + lower[i]); });
+    unroll<kBlock>([&](auto i) CHICANE_INLINE {
+      if constexpr (A * kBlock + i < kNx) P.column[A * kBlock + i].part[B] = upper[i];
+    });
+    if constexpr (A != B) {
+      transpose(upper);
+      unroll<kBlock>([&](auto i) CHICANE_INLINE {
+        if constexpr (B * kBlock + i < kNx) P.column[B * kBlock + i].part[A] = upper[i];
+      });
+    }
   }
 };
 

@@ -15,9 +15,9 @@
 namespace chicane::solver {
 
 template <class Row>
-inline constexpr bool is_dense_row = false;
+inline constexpr bool kIsDenseRow = false;
 template <AnyJet J, std::size_t N>
-inline constexpr bool is_dense_row<std::array<J, N>> = J::kIsDense;
+inline constexpr bool kIsDenseRow<std::array<J, N>> = J::kIsDense;
 
 /// Calls visit(n, jet) for each result of a problem's function. Of a tuple, n is a constant; of an array
 /// whose jets store everything, a number: loops are quicker to compile.
@@ -26,7 +26,7 @@ CHICANE_INLINE inline void each_row(const Row& row, const Visit& visit) noexcept
   constexpr std::size_t count = std::tuple_size_v<Row>;
   if constexpr (count == 0) {
     return;
-  } else if constexpr (is_dense_row<Row>) {
+  } else if constexpr (kIsDenseRow<Row>) {
     for (std::size_t n = 0; n < count; ++n) visit(n, row[n]);
   } else {
     unroll<count>([&](auto n) CHICANE_INLINE { visit(n, as_jet<V, Order>(std::get<n>(row))); });

@@ -24,7 +24,7 @@ void clamp_inputs(const P& problem, Trajectory<P::kNx, P::kNu, Capacity>& trajec
       u = std::min(std::max(std::isfinite(u) ? u : 0.0, low[m]), high[m]);
     }
   }
-  if constexpr (has_rate_bounds<P>) {
+  if constexpr (kHasRateBounds<P>) {
     InputChains<P, static_cast<std::size_t>(Capacity)> chains;
     chains.set(problem, trajectory.x[0], static_cast<std::size_t>(trajectory.horizon));
     chains.admit(static_cast<std::size_t>(trajectory.horizon),
