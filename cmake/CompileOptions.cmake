@@ -12,7 +12,8 @@ target_compile_options(chicane_options INTERFACE
 if(CHICANE_SANITIZE)
   target_compile_options(chicane_options INTERFACE -fsanitize=${CHICANE_SANITIZE} -fno-omit-frame-pointer
                          -fno-sanitize-recover=all
-                         -Wno-maybe-uninitialized)  # g++ 12, instrumented, sees a std::variant's text used that is not there
+                         # Instrumented code: g++ 12 sees the text of a std::variant used that is not there.
+                         $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(chicane_options INTERFACE -fsanitize=${CHICANE_SANITIZE})
   if(CHICANE_SANITIZE MATCHES "thread" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(chicane_options INTERFACE -Wno-tsan)  # Asio has fences beside its locks; the locks are seen
