@@ -102,8 +102,9 @@ bool RunLimit::is_awaited(const telemetry::RunSummary& run) const noexcept {
 void RunLimit::compare(telemetry::RunSummary& run, const std::atomic<bool>& wants_stop) {
   if (begins_at_ && is_awaited(run)) begin();
   while (is_awaited(run) && !wants_stop) std::this_thread::sleep_for(kNap);
+  const bool is_cut_short = is_searching();
   end();  // from here on nobody writes the answer
-  if (answer_ == nullptr || answer_->why_not == kChanged) {
+  if (is_cut_short || answer_ == nullptr) {
     run.why_no_limit = "the run ended before it was computed";
   } else if (answer_->found == nullptr) {
     run.why_no_limit = answer_->why_not;
