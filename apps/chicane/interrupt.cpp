@@ -2,16 +2,34 @@
 #include "interrupt.hpp"
 
 #include <csignal>
+#include <cstdint>
+#include <ctime>
 
 namespace chicane::apps {
 namespace {
 
-std::atomic<std::atomic<bool>*> wanted{nullptr};  // the one global: a signal handler can reach nothing else
-static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::atomic<bool>*>::is_always_lock_free);
+// The globals: a signal handler can reach nothing else.
+std::atomic<std::atomic<bool>*> wanted{nullptr};
+std::atomic<std::int64_t> first_ns{0};  // when the first signal came [ns]; 0: none yet
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free &&
+              std::atomic<std::atomic<bool>*>::is_always_lock_free);
+
+/// Time since the machine started [ns]; may be asked in a signal handler, which no clock of C++ promises.
+std::int64_t monotonic_ns() {
+  std::timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
 
 void interrupt(int signal) {
-  if (std::atomic<bool>* flag = wanted.load()) *flag = true;
-  std::signal(signal, SIG_DFL);
+  const std::int64_t now = monotonic_ns();
+  std::int64_t first = 0;
+  if (first_ns.compare_exchange_strong(first, now)) {
+    if (std::atomic<bool>* flag = wanted.load()) *flag = true;
+  } else if (now - first > std::chrono::nanoseconds(kOneInterrupt).count()) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);  // delivered when this handler returns
+  }
 }
 
 }  // namespace

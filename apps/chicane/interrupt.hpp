@@ -2,11 +2,17 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 
 namespace chicane::apps {
 
-/// From now on Ctrl-C and SIGTERM set `flag`, for a run that ends itself with what it has; the second one
-/// ends the process at once. `flag` must outlive the process's last signal: make it static, or one of main's.
+/// Signals closer to the first than this are the same wish: a terminal or a program like `timeout` may send
+/// one to the process and one to its group, and who presses Ctrl-C twice in anger takes longer.
+inline constexpr std::chrono::milliseconds kOneInterrupt{500};
+
+/// From now on Ctrl-C and SIGTERM set `flag`, for a run that ends itself with what it has; another one, more
+/// than `kOneInterrupt` after the first, ends the process at once. `flag` must outlive the process's last
+/// signal: make it static, or one of main's.
 void catch_interrupts(std::atomic<bool>& flag);
 
 }  // namespace chicane::apps
