@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
+import { PATIENCE } from './patience.mjs';
 
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
@@ -16,6 +17,7 @@ export class DashboardPage {
   /** Opens the page at a tab and waits until it is live. What the browser complains of is kept in `complaints`. */
   static async open(browser, url, { tab = 'drive', ...options } = {}) {
     const context = await browser.newContext({ ...LAPTOP, ...options });
+    context.setDefaultTimeout(PATIENCE);
     const page = await context.newPage();
     const complaints = [];
     page.on('console', (message) => {
@@ -65,9 +67,9 @@ export class DashboardPage {
     return this.page.getByRole('button', { name, exact: true });
   }
 
-  /** Waits until `read` gives something that `accept` accepts; long, for a busy machine is slow but not wrong. */
+  /** Waits until `read` gives something that `accept` accepts. */
   async until(read, accept, what) {
-    const end = Date.now() + 30_000;
+    const end = Date.now() + PATIENCE;
     for (;;) {
       const value = await read();
       if (accept(value)) return value;

@@ -6,6 +6,7 @@ import rosmsg from '@foxglove/rosmsg';
 import cdr from '@foxglove/rosmsg2-serialization';
 import foxglove from '@foxglove/ws-protocol';
 import WebSocket from 'ws';
+import { PATIENCE } from './patience.mjs';
 import { startDemo } from './viewer_demo.mjs';
 
 const { FoxgloveClient } = foxglove; // these packages are CommonJS
@@ -27,7 +28,7 @@ async function connect(subprotocol) {
   const seen = { info: null, channels: new Map(), services: new Map(), problems: [] };
   const next = (event, accept = () => true) =>
     new Promise((resolve, reject) => {
-      const timer = setTimeout(() => reject(new Error(`no ${event} within 5 s`)), 5000);
+      const timer = setTimeout(() => reject(new Error(`no ${event} within ${PATIENCE} ms`)), PATIENCE);
       const listener = (message) => {
         if (!accept(message)) return;
         clearTimeout(timer);

@@ -10,6 +10,7 @@ import { after, afterEach, before, describe, it } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { launch } from './browser.mjs';
 import { DashboardPage, PHONE } from './dashboard_page.mjs';
+import { PATIENCE } from './patience.mjs';
 
 const program = process.env.CHICANE ?? 'chicane';
 const folder = mkdtempSync(join(tmpdir(), 'chicane-recording-'));
@@ -50,6 +51,7 @@ after(async () => {
 /** The page once its recording is read to the end. */
 async function open(address, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1366, height: 768 }, ...options });
+  context.setDefaultTimeout(PATIENCE);
   const page = await context.newPage();
   const complaints = [];
   page.on('console', (message) => {
@@ -61,8 +63,8 @@ async function open(address, options = {}) {
   });
   await page.goto(`${address}#laps`);
   dashboard = new DashboardPage(page, complaints);
-  await page.getByText('Recording', { exact: true }).waitFor({ timeout: 30_000 });
-  await page.getByLabel('Looking for landmarks').waitFor({ state: 'detached', timeout: 30_000 });
+  await page.getByText('Recording', { exact: true }).waitFor();
+  await page.getByLabel('Looking for landmarks').waitFor({ state: 'detached' });
   return page;
 }
 /** 3D drawn by the processor is said to be slow. */

@@ -5,6 +5,7 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { after, before, describe, it } from 'node:test';
 import { launch } from './browser.mjs';
+import { PATIENCE } from './patience.mjs';
 import { startDemo } from './viewer_demo.mjs';
 
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
@@ -29,6 +30,7 @@ const countDrawing = () => {
 
 async function open(browser, { storage = {}, script, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 820, height: 560 }, colorScheme: 'light', ...options });
+  context.setDefaultTimeout(PATIENCE);
   const page = await context.newPage();
   const complaints = [];
   page.on('console', (message) => {
@@ -51,7 +53,7 @@ async function open(browser, { storage = {}, script, ...options } = {}) {
 }
 
 const in3d = { 'chicane.dimension': '3d' };
-const ready = (page) => page.locator('.map.has-3d canvas.map-3d').waitFor({ timeout: 30_000 });
+const ready = (page) => page.locator('.map.has-3d canvas.map-3d').waitFor();
 const button = (page, name) => page.getByRole('button', { name, exact: true });
 
 /** A small copy of the 3D picture, from the moment it is drawn: how many colours it has, and the copy itself. */

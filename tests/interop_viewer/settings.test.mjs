@@ -12,6 +12,7 @@ import rosmsg from '@foxglove/rosmsg';
 import cdr from '@foxglove/rosmsg2-serialization';
 import foxglove from '@foxglove/ws-protocol';
 import WebSocket from 'ws';
+import { PATIENCE } from './patience.mjs';
 
 const { FoxgloveClient } = foxglove; // these packages are CommonJS
 const { MessageReader } = cdr;
@@ -32,7 +33,7 @@ let listeners = [];
 /** The first thing that `accept` finds, looked for after every message. */
 function until(what, accept) {
   return new Promise((resolve, reject) => {
-    const timer = setTimeout(() => reject(new Error(`${what}: not within 10 s`)), 10_000);
+    const timer = setTimeout(() => reject(new Error(`${what}: not within ${PATIENCE} ms`)), PATIENCE);
     const look = () => {
       const found = accept();
       if (found === undefined || found === false) return;

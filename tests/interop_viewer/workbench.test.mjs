@@ -244,7 +244,7 @@ describe('the workbench', () => {
 
   it('finds the limit again for a car with another grip', async () => {
     await dashboard.show('laps');
-    const limit = () => page.getByTestId('limit').locator('.time').innerText({ timeout: 20000 });
+    const limit = () => page.getByTestId('limit').locator('.time').innerText();
     const before = await limit();
     await dashboard.show('drive');
     await type('plant_options.friction_scale', 0.8);

@@ -40,8 +40,9 @@ void LimitSearch::cancel() {
 }
 
 void LimitSearch::work(const path::Track& track, const model::VehicleParams& car) {
-  constexpr int kLowestPriority = 19;
-  static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowestPriority));  // of this thread, on Linux
+  // Behind everything else, yet not starved: on cores that others keep busy, a tenth of one thread's share.
+  constexpr int kLowPriority = 10;
+  static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // of this thread, on Linux
   lap_time::LimitOptions options;
   options.go_on = [this](int, double) { return is_wanted_.load(); };
   Result<lap_time::Limit> limit = lap_time::find_limit(track, car, options);

@@ -17,7 +17,7 @@ namespace chicane::runtime {
 /// The car of an experiment as its plant is: what is believed, with the plant's deviations in grip and mass.
 [[nodiscard]] model::VehicleParams limit_vehicle(const scenario::Scenario& scenario);
 
-/// Finds the limit of a run in a thread of its own, with the lowest priority: control never waits for it.
+/// Finds the limit of a run in a thread of its own, with low priority: control never waits for it.
 class LimitSearch {
  public:
   using OnEnd = std::function<void(Result<std::shared_ptr<const lap_time::Limit>>)>;

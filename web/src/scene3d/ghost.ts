@@ -1,6 +1,7 @@
 import { lapTime } from '../lib/format';
 import { wrapAngle } from '../lib/math';
 import type { Frame } from '../protocol/topics';
+import { LONGEST_SILENCE_S } from '../state/silence';
 
 /** Where another car was, and how its front wheels stood, at a time of the lap. */
 export interface GhostPose {
@@ -25,7 +26,6 @@ export interface GhostSource {
 const ROW = 5; // time, x, y, yaw, steer
 const CAPACITY = 30_000; // rows: 10 minutes at 50 frames a second
 const LINE_SPACING_M = 1;
-const LONGEST_GAP_S = 1; // between two frames of a lap worth keeping
 
 /** A lap kept as rows of numbers; poses between rows are interpolated. */
 export class RecordedLap implements GhostSource {
@@ -89,7 +89,7 @@ export class LapRecorder {
     if (frame.time_s === this.#time) return;
     // A reset: the lap begun is lost, the best one stays to be raced.
     if (frame.time_s < this.#time) this.#begin(NaN, false, 0);
-    if (frame.time_s - this.#time > LONGEST_GAP_S) this.#isWhole = false;
+    if (frame.time_s - this.#time > LONGEST_SILENCE_S) this.#isWhole = false;
     this.#time = frame.time_s;
     if (!Number.isFinite(frame.lap_time_s)) return;
     if (frame.lap !== this.#lap) {

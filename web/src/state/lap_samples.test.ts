@@ -26,6 +26,15 @@ function drive(samples: LapSamples, speeds: readonly number[], step = 0.37): voi
   samples.push(lap, moment(distance, time), last);
 }
 
+/** Drives a piece of a lap, from one moment to another. */
+function cover(samples: LapSamples, lap: number, [from, since]: [number, number], [to, until]: [number, number], lastLapTime = 0, step = 0.37): void {
+  const steps = Math.ceil((until - since) / step);
+  for (let i = 0; i <= steps; ++i) {
+    const share = i / steps;
+    samples.push(lap, moment(from + share * (to - from), since + share * (until - since)), lastLapTime);
+  }
+}
+
 // The line is found between two frames as if the speed were constant. Here it jumps by 5 m/s on the line, and a quarter of
 // that in 0.37 s is half a metre, or 20 ms.
 const DIGITS = 1;
@@ -75,9 +84,8 @@ describe('lap samples', () => {
   it('do not know what was not driven', () => {
     const samples = new LapSamples();
     samples.setLength(LENGTH);
-    samples.push(3, moment(600, 12), 0); // joined in the middle of a lap
-    samples.push(3, moment(900, 18), 0);
-    samples.push(4, moment(50, 1), 20);
+    cover(samples, 3, [600, 12], [990, 19.8]); // joined in the middle of a lap
+    samples.push(4, moment(10, 0.2), 20);
     const times = samples.channel(3, 'time_s') as Float64Array;
     expect(times[100]).toBeNaN();
     expect(times[samples.points - 1]).toBeCloseTo(samples.s(samples.points - 1) / 50, 1);
@@ -103,11 +111,43 @@ describe('lap samples', () => {
     samples.push(0, moment(NaN, 1), 0);
     samples.push(1, moment(1, 1), 30);
     expect(samples.laps).toEqual([]);
-    samples.push(1, moment(500, 20), 30);
-    samples.push(1, moment(480, 25), 30);
-    samples.push(1, moment(900, 40), 30);
-    samples.push(2, moment(10, 0.5), 45);
+    cover(samples, 1, [1, 1], [500, 20], 30);
+    cover(samples, 1, [500, 20], [480, 25], 30);
+    cover(samples, 1, [480, 25], [995, 40], 30);
+    samples.push(2, moment(10, 0.5), 40.2);
     expect(samples.channel(1, 'time_s')?.[300]).toBeCloseTo(12.4, 0); // 1 s + 299 m of 499 m in 19 s
-    expect(samples.channel(1, 'time_s')?.[690]).toBeCloseTo(32.5, 0);
+    expect(samples.channel(1, 'time_s')?.[690]).toBeCloseTo(31.1, 0);
+  });
+
+  it('do not guess what a page that was cut off has missed', () => {
+    const samples = new LapSamples();
+    drive(samples, [20, 20]);
+    cover(samples, 2, [20, 1], [300, 15], 50);
+    cover(samples, 2, [500, 25], [998, 49.9], 50);
+    samples.push(3, moment(4, 0.2), 50);
+    const speeds = samples.channel(2, 'speed_mps') as Float64Array;
+    expect(speeds[298]).toBeCloseTo(20);
+    for (const point of [300, 400, 499]) expect(speeds[point]).toBeNaN();
+    expect(speeds[502]).toBeCloseTo(20);
+    // Cut off over the line: the lap counts, its end and the next one's beginning are not known.
+    cover(samples, 3, [4, 0.2], [600, 30], 50);
+    cover(samples, 4, [300, 15], [999, 49.95], 50);
+    samples.push(5, moment(1, 0.05), 50);
+    expect(samples.laps).toEqual([0, 1, 2, 3, 4]);
+    expect(samples.channel(3, 'time_s')?.[598]).toBeCloseTo(samples.s(598) / 20, 6);
+    expect(samples.channel(3, 'time_s')?.[800]).toBeNaN();
+    expect(samples.channel(4, 'time_s')?.[100]).toBeNaN();
+    expect(samples.channel(4, 'time_s')?.[302]).toBeCloseTo(15.1, 0);
+  });
+
+  it('do not guess where the line is, either', () => {
+    const samples = new LapSamples();
+    samples.setLength(LENGTH);
+    cover(samples, 0, [0, 0], [600, 30]);
+    cover(samples, 1, [300, 15], [999, 49.95], 50);
+    expect(samples.laps).toEqual([]);
+    samples.push(2, moment(1, 0.05), 50);
+    expect(samples.laps).toEqual([1]);
+    expect(samples.place(0)).toBeCloseTo(LINE, -1);
   });
 });

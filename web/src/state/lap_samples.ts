@@ -1,4 +1,5 @@
 import { mix } from '../lib/math';
+import { LONGEST_SILENCE_S } from './silence';
 
 /** What is kept of a lap, at equal distances along the road. */
 export const LAP_CHANNELS = ['time_s', 'speed_mps', 'lateral_error_m', 'steer_rad', 'throttle', 'x_m', 'y_m'] as const;
@@ -26,7 +27,8 @@ function between(from: LapMoment, to: LapMoment, share: number): LapMoment {
 
 /**
  * Laps as functions of the distance along the road, in fixed memory: the newest ones and the fastest. Frames come at
- * equal times; between two of them everything is taken as linear in s. The start line is where the lap count changes.
+ * equal times; between two of them everything is taken as linear in s, unless some are missing in between: a page that was
+ * cut off does not know that stretch. The start line is where the lap count changes.
  */
 export class LapSamples {
   readonly points = POINTS;
@@ -102,10 +104,12 @@ export class LapSamples {
     if (!(this.#length > 0) || !Number.isFinite(moment.s_m)) return;
     const last = this.#last;
     this.#last = { ...moment, lap };
-    if (last?.lap === lap) return this.#fill(last, this.#after(last, moment));
+    if (last?.lap === lap) {
+      if (moment.time_s - last.time_s <= LONGEST_SILENCE_S) this.#fill(last, this.#after(last, moment));
+      return;
+    }
     if (last && this.#current && lap === last.lap + 1) return this.#cross(last, this.#after(last, moment), lap, lastLapTime);
-    if (this.#current && !this.#current.isComplete) this.#current.lap = -1;
-    this.#begin(lap);
+    this.#drop(lap);
   }
 
   get #done(): Slot[] {
@@ -130,15 +134,23 @@ export class LapSamples {
   /** The line lies between two frames: the old lap ends, and the new one begins, on it. */
   #cross(last: LapMoment, moment: LapMoment, lap: number, lastLapTime: number): void {
     const rest = lastLapTime - last.time_s; // of the old lap [s]
+    const isHeard = rest + moment.time_s <= LONGEST_SILENCE_S;
+    if (!isHeard && !Number.isFinite(this.#line)) return this.#drop(lap); // where the line lies would be a guess
     const line = between(last, moment, Math.min(1, Math.max(0, rest / (rest + moment.time_s))));
-    this.#fill(last, { ...line, time_s: lastLapTime });
+    if (isHeard) this.#fill(last, { ...line, time_s: lastLapTime });
     if (this.#current) {
       this.#current.isComplete = true;
       this.#current.time = lastLapTime;
     }
     if (!Number.isFinite(this.#line)) this.#line = line.s_m - this.#length * Math.floor(line.s_m / this.#length);
     this.#begin(lap);
-    this.#fill({ ...line, time_s: 0 }, moment);
+    if (isHeard) this.#fill({ ...line, time_s: 0 }, moment);
+  }
+
+  /** The lap that was begun is not seen to its end. */
+  #drop(next: number): void {
+    if (this.#current && !this.#current.isComplete) this.#current.lap = -1;
+    this.#begin(next);
   }
 
   #begin(lap: number): void {

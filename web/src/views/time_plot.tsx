@@ -9,6 +9,7 @@ import { onScreen } from '../lib/on_screen';
 import { shown } from '../state/app_state';
 import { Column } from '../state/columns';
 import { cursorTime, isFrozen, plotted, thaw, timeRange, windowSeconds, zoomed, zoomTo } from '../state/plot_view';
+import { LONGEST_SILENCE_S } from '../state/silence';
 import { everyFrame } from '../state/ticker';
 import { drawnForPictures } from './picture_drawings';
 import { chartColours, type ChartColours } from './plot_colours';
@@ -57,12 +58,10 @@ function dataOf(spec: PlotSpec): Float64Array[] {
   return [part(Column.time), ...spec.series.map(({ column, factor = 1 }) => (factor === 1 ? part(column) : part(column).map((value) => value * factor)))];
 }
 
-const GAP_S = 1; // nothing was heard for so long: what was between nobody knows, so no line is drawn
-
 /** Where lines are interrupted, as pairs of pixels of the canvas. */
 function gapsOf(plot: uPlot, _series: number, first: number, last: number, found: uPlot.Series.Gaps): uPlot.Series.Gaps {
   const pixel = (time: number): number => Math.round(plot.valToPos(time, 'x', true));
-  const silences = silencesIn(plot.data[0], first, last, GAP_S).map(([from, to]): uPlot.Series.Gap => [pixel(from), pixel(to)]);
+  const silences = silencesIn(plot.data[0], first, last, LONGEST_SILENCE_S).map(([from, to]): uPlot.Series.Gap => [pixel(from), pixel(to)]);
   return [...found, ...silences];
 }
 
