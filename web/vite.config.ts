@@ -16,5 +16,5 @@ export default defineConfig({
       '/viewer': { target: 'ws://127.0.0.1:4567', ws: true, changeOrigin: true, headers: { origin: 'http://127.0.0.1:4567' } },
     },
   },
-  test: { include: ['src/**/*.test.ts'] },
+  test: { include: ['src/**/*.test.ts'], testTimeout: 60_000 }, // a busy machine is slow but not wrong
 });

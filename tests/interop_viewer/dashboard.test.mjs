@@ -58,9 +58,7 @@ describe('the dashboard', () => {
   });
 
   it('pauses, steps, resumes and resets by its buttons', async () => {
-    await dashboard.button('Pause').click();
-    await page.getByText('Paused', { exact: true }).waitFor();
-    await page.waitForTimeout(300); // the last frame before the pause, and the text's own pace
+    await dashboard.pause();
     const paused = await dashboard.seconds();
     await page.waitForTimeout(300);
     assert.equal(await dashboard.seconds(), paused);
@@ -69,7 +67,7 @@ describe('the dashboard', () => {
     assert.equal(stepped.toFixed(2), (paused + 0.04).toFixed(2));
     await dashboard.button('Reset').click();
     await dashboard.until(() => dashboard.seconds(), (now) => now === 0, 'lap time after a reset');
-    await dashboard.button('Resume').click();
+    await dashboard.resume();
     await dashboard.until(() => dashboard.seconds(), (now) => now > 0.2, 'lap time after going on');
     assert.equal(await dashboard.button('Step').isDisabled(), true);
   });
@@ -79,8 +77,8 @@ describe('the dashboard', () => {
     const plot = page.locator('.plot[aria-label="Speed"]');
     const ticks = () => plot.locator('canvas').evaluate((canvas) => canvas.toDataURL());
     await dashboard.button('Hold plots').click();
-    await page.waitForTimeout(200);
-    const [still, time] = [await ticks(), await dashboard.seconds()];
+    const still = await dashboard.settled(ticks);
+    const time = await dashboard.seconds();
     await dashboard.until(() => dashboard.seconds(), differentFrom(time), 'the run');
     await page.waitForTimeout(300);
     assert.equal(await ticks(), still);
@@ -110,7 +108,7 @@ describe('the dashboard', () => {
     let back = 0; // where the other plot shows another value: two moments may have the same one
     const pointed = () => page.mouse.move(box.x + box.width - (back += 6), box.y + 20).then(values);
     await dashboard.until(pointed, (now) => back < box.width && now.at(-1) !== newest.at(-1), 'the other plot follows the cursor');
-    await dashboard.button('Resume').click();
+    await dashboard.resume();
   });
 
   it('can be used without a mouse', async () => {

@@ -67,6 +67,32 @@ export class DashboardPage {
     return this.page.getByRole('button', { name, exact: true });
   }
 
+  /** Stops the car and waits until the page has nothing new to show: the last frame may come after the answer. */
+  async pause() {
+    await this.button('Pause').click();
+    await this.page.getByText('Paused', { exact: true }).waitFor();
+    await this.settled(() => this.seconds());
+  }
+
+  /** Waits until `read` has given the same for half a second, and gives that. */
+  async settled(read) {
+    let last;
+    const isSame = async () => {
+      const before = last;
+      last = await read();
+      await this.page.waitForTimeout(500);
+      return last === before;
+    };
+    await this.until(isSame, Boolean, 'is it still?');
+    return last;
+  }
+
+  /** Lets the car drive on, and waits until the program says that it does: a page that closes at once may not have asked. */
+  async resume() {
+    await this.button('Resume').click();
+    await this.button('Pause').waitFor();
+  }
+
   /** Waits until `read` gives something that `accept` accepts. */
   async until(read, accept, what) {
     const end = Date.now() + PATIENCE;

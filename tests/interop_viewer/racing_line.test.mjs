@@ -26,8 +26,7 @@ async function open(options) {
   const { page } = dashboard;
   await line(page).waitFor();
   await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 35, 'a plan without the cyan of slow speeds');
-  await dashboard.button('Pause').click();
-  await page.getByText('Paused', { exact: true }).waitFor();
+  await dashboard.pause();
   return dashboard;
 }
 

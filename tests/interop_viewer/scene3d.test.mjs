@@ -5,6 +5,7 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { after, before, describe, it } from 'node:test';
 import { launch } from './browser.mjs';
+import { DashboardPage } from './dashboard_page.mjs';
 import { PATIENCE } from './patience.mjs';
 import { startDemo } from './viewer_demo.mjs';
 
@@ -55,6 +56,9 @@ async function open(browser, { storage = {}, script, ...options } = {}) {
 const in3d = { 'chicane.dimension': '3d' };
 const ready = (page) => page.locator('.map.has-3d canvas.map-3d').waitFor();
 const button = (page, name) => page.getByRole('button', { name, exact: true });
+
+/** Waits until nothing is drawn any more; how often it was until then. */
+const atRest = (page) => new DashboardPage(page).settled(() => page.evaluate(() => globalThis.drawn));
 
 /** A small copy of the 3D picture, from the moment it is drawn: how many colours it has, and the copy itself. */
 const picture = (page) =>
@@ -131,7 +135,7 @@ describe('the 3D picture', () => {
     await page.waitForTimeout(1000);
     const longest = await page.evaluate(() => globalThis.longest);
     test.diagnostic(`first picture after ${took.toFixed(0)} ms, the page answered at least every ${longest.toFixed(0)} ms`);
-    assert.ok(longest < 2000, `${longest} ms without an answer`); // measured: 200 to 550; 4600 to 8400 with a blurred sky and awaited shaders
+    assert.ok(longest < 4000, `${longest} ms without an answer`); // measured: 200 to 550; 4600 to 8400 with a blurred sky and awaited shaders
     assert.deepEqual(complaints, []);
     await context.close();
   });
@@ -139,23 +143,18 @@ describe('the 3D picture', () => {
   it('obeys the keyboard: cameras, map, and turning the free camera', async () => {
     const { context, page, complaints } = await open(browser, { storage: in3d });
     await ready(page);
-    const pressed = () => page.locator('[aria-label="View"] [aria-pressed="true"]').innerText();
-    const names = [];
-    for (let i = 0; i < 4; ++i) {
-      names.push(await pressed());
+    for (const name of ['Chase', 'Top', 'Cockpit', 'Free']) {
+      await page.waitForFunction((camera) => document.querySelector('[aria-label="View"] [aria-pressed="true"]')?.textContent === camera, name);
       await page.keyboard.press('c');
-      await page.waitForTimeout(120);
     }
-    assert.deepEqual(names, ['Chase', 'Top', 'Cockpit', 'Free']);
     await button(page, 'Free').click();
     await button(page, 'Pause').click();
     await page.getByText('Paused', { exact: true }).waitFor();
-    await page.waitForTimeout(1000);
+    await atRest(page);
     const before = await picture(page);
     await page.locator('canvas.map-3d').focus();
     for (let i = 0; i < 6; ++i) await page.keyboard.press('ArrowLeft');
-    await page.waitForTimeout(300);
-    assert.notEqual((await picture(page)).text, before.text);
+    await new DashboardPage(page).until(() => picture(page), ({ text }) => text !== before.text, 'another view');
     await page.keyboard.press('v');
     await page.locator('.map:not(.has-3d)').waitFor();
     await page.keyboard.press('v');
@@ -170,10 +169,7 @@ describe('the 3D picture', () => {
     await ready(page);
     await button(page, 'Pause').click();
     await page.getByText('Paused', { exact: true }).waitFor();
-    await page.waitForTimeout(2500);
-    const still = await page.evaluate(() => globalThis.drawn);
-    await page.waitForTimeout(600);
-    assert.equal(await page.evaluate(() => globalThis.drawn), still);
+    const still = await atRest(page);
     await button(page, 'Reset').click();
     await button(page, 'Resume').click();
     await page.getByText('Live', { exact: true }).waitFor();

@@ -34,6 +34,17 @@ async function type(key, value) {
   await box(key).fill(String(value));
   await box(key).press('Enter');
 }
+/** The last frame before a pause with much throttle. A busy machine may pause late, at full speed: again, then. */
+async function pauseWhileItGathersSpeed(other) {
+  for (;;) {
+    await dashboard.button('Reset').click();
+    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 15 && mph < 60, 'a car that gathers speed');
+    await dashboard.pause();
+    const last = await dashboard.settled(() => other.newest);
+    if (last.throttle_asked > 0.5) return last;
+    await dashboard.resume();
+  }
+}
 async function download(name) {
   const [file] = await Promise.all([page.waitForEvent('download'), page.getByText(name, { exact: true }).click()]);
   return { name: file.suggestedFilename(), content: readFileSync(await file.path()) };
@@ -45,13 +56,7 @@ describe('the workbench', () => {
 
   it('changes the command from the next control step on', async () => {
     const other = await watch(drive.url);
-    await dashboard.button('Reset').click();
-    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 15 && mph < 60, 'a car that gathers speed');
-    await dashboard.button('Pause').click();
-    await page.getByText('Paused', { exact: true }).waitFor();
-    await page.waitForTimeout(300);
-    const before = other.newest;
-    assert.ok(before.throttle_asked > 0.5, `throttle ${before.throttle_asked}`);
+    const before = await pauseWhileItGathersSpeed(other);
     await dashboard.show('tune');
     await type('tracking_mpc.speed_limit_mps', 3);
     await dashboard.button('Step').click();
@@ -63,7 +68,7 @@ describe('the workbench', () => {
     assert.match(await dashboard.text('changes'), /tracking_mpc\.speed_limit_mps.*3/s);
     await dashboard.button('Reset all').click();
     await page.getByText('As it started').waitFor();
-    await dashboard.button('Resume').click();
+    await dashboard.resume();
     other.close();
   });
 
@@ -128,10 +133,10 @@ describe('the workbench', () => {
   it('changes the pace of the run', async () => {
     await dashboard.button('4×').click();
     await page.getByText('4× speed').waitFor();
-    const first = await dashboard.seconds();
+    const [first, since] = [await dashboard.seconds(), performance.now()];
     await page.waitForTimeout(1500);
-    const passed = (await dashboard.seconds()) - first;
-    assert.ok(passed > 3 || passed < 0, `${passed} s of the run in 1.5 s`); // below 0: another lap
+    const [passed, seconds] = [(await dashboard.seconds()) - first, (performance.now() - since) / 1000];
+    assert.ok(passed > 2 * seconds || passed < 0, `${passed} s of the run in ${seconds} s`); // below 0: another lap
     await page.locator('body').press('[');
     await page.getByText('2× speed').waitFor();
     await dashboard.button('1×').click();
@@ -184,10 +189,9 @@ describe('the workbench', () => {
 
   it('tells speeds in the unit of the reader, and remembers it', async () => {
     const unit = page.locator('.speed .big .unit');
-    await dashboard.button('Pause').click();
-    await page.getByText('Paused', { exact: true }).waitFor();
     const metres = () => page.locator('.speed .beside b').first().innerText();
     await dashboard.until(metres, (text) => Number(text) > 1, 'a car that drives');
+    await dashboard.pause();
     const told = { mph: 0, 'km/h': 0, 'm/s': 0 };
     await dashboard.show('plots');
     for (const name of Object.keys(told)) {
@@ -203,7 +207,7 @@ describe('the workbench', () => {
     await page.reload();
     await dashboard.until(() => unit.innerText(), (text) => text === 'km/h', 'the same unit after a reload');
     await page.getByText('Paused', { exact: true }).waitFor();
-    await dashboard.button('Resume').click();
+    await dashboard.resume();
   });
 
   it('starts anew with another track, after asking once', async () => {
