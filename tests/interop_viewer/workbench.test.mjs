@@ -37,8 +37,11 @@ async function type(key, value) {
 /** The last frame before a pause with much throttle. A busy machine may pause late, at full speed: again, then. */
 async function pauseWhileItGathersSpeed(other) {
   for (;;) {
+    await dashboard.pause();
     await dashboard.button('Reset').click();
-    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 15 && mph < 60, 'a car that gathers speed');
+    await dashboard.until(() => dashboard.number('speed'), (mph) => mph === 0, 'a car at the start');
+    await dashboard.resume();
+    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 15, 'a car that gathers speed');
     await dashboard.pause();
     const last = await dashboard.settled(() => other.newest);
     if (last.throttle_asked > 0.5) return last;
@@ -64,7 +67,7 @@ describe('the workbench', () => {
     const change = other.changes.find(({ name }) => name === 'tracking_mpc.speed_limit_mps');
     assert.equal(change?.cycle, before.cycle + 1n, 'applied before the next step');
     assert.equal(other.frames.get(change.cycle).cycle, other.newest.cycle);
-    assert.ok(other.newest.throttle_asked < before.throttle_asked - 0.3, `throttle ${before.throttle_asked}, then ${other.newest.throttle_asked}`);
+    assert.ok(other.newest.throttle_asked < before.throttle_asked - 0.2, `throttle ${before.throttle_asked}, then ${other.newest.throttle_asked}`);
     assert.match(await dashboard.text('changes'), /tracking_mpc\.speed_limit_mps.*3/s);
     await dashboard.button('Reset all').click();
     await page.getByText('As it started').waitFor();

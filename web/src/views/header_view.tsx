@@ -12,9 +12,9 @@ function RunSummary() {
 }
 
 function LinkState() {
-  if (link.value === 'connecting') return <p class="pill">Connecting</p>;
   if (link.value === 'lost') return <p class="pill bad">Not connected</p>;
-  if (run.value?.mode === 'replay') return <p class="pill accent">{isPaused.value ? 'Recording' : 'Recording plays'}</p>;
+  if (link.value === 'connecting' || !run.value) return <p class="pill">Connecting</p>;
+  if (run.value.mode === 'replay') return <p class="pill accent">{isPaused.value ? 'Recording' : 'Recording plays'}</p>;
   if (isPaused.value) return <p class="pill warning">Paused</p>;
   if (silence.value > 0) return <p class="pill">No news for {silence.value} s</p>;
   return <p class="pill good">Live</p>;
