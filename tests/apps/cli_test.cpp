@@ -190,17 +190,20 @@ TEST(Cli, BothEndsOfTheSimulatorsSocketSetTheLapsBesideTheSameLimit) {
       points << 20.0 * std::cos(angle) << ',' << 20.0 * std::sin(angle) << ",6,6\n";
     }
   }
-  const std::string port = std::to_string(20000 + ::getpid() % 20000);
   const std::string told = (folder / "serve.json").string();
-  const std::string server = kProgram + "serve --port " + port + " --track '" + track + "' --json > '" +
-                             told + "' 2> /dev/null & server=$!; ";
-  const std::string simulator =
-      kProgram + "simulate --connect ws://127.0.0.1:" + port + " --track '" + track + "' --laps 2 --json ";
-  ASSERT_EQ(std::system((server + simulator + "> '" + (folder / "simulate.json").string() +
-                         "' 2> /dev/null; kill -INT $server; wait $server")
-                            .c_str()),
-            0);
-  const Json inside = Json::parse(read(folder / "simulate.json"));
+  const std::string said = (folder / "serve.txt").string();
+  const std::string serve = kProgram + "serve --port 0 --track '" + track + "' --json > '" + told + "' 2> '" +
+                            said + "' & server=$!; ";
+  const std::string look_for_port =
+      "port=; while kill -0 $server && [ -z \"$port\" ]; do sleep 0.05; "
+      "port=$(sed -n 's/.* on port \\([0-9]*\\);.*/\\1/p' '" +
+      said + "'); done; ";
+  const std::string simulate =
+      kProgram + "simulate --connect ws://127.0.0.1:$port --track '" + track + "' --laps 2 --json; code=$?; ";
+  const Outcome outcome =
+      shell(serve + look_for_port + simulate + "kill -INT $server; wait $server; exit $code");
+  ASSERT_EQ(outcome.code, 0) << outcome.err << read(said);
+  const Json inside = Json::parse(outcome.out);
   const Json outside = Json::parse(read(told));
   ASSERT_TRUE(inside["limit"].is_object()) << inside["why_no_limit"];
   EXPECT_EQ(inside["limit"], outside["limit"]);  // to the last bit
