@@ -76,6 +76,8 @@ class BranchRecorder {
             .on_change = [this](const telemetry::Change& change) { recorder_->record(change); },
             .on_frame = [this](const telemetry::Frame& frame) { recorder_->record(frame); }};
   }
+  /// The file is this branch's own.
+  [[nodiscard]] bool has_file() const { return recorder_ != nullptr; }
   Result<void> finish() {
     if (recorder_ == nullptr) return {};
     const Result<runtime::RecorderReport> report = recorder_->finish();
@@ -120,7 +122,7 @@ Result<ExitCode> branch(const Options& options) {
   if (const Result<void> kept = recorder.finish(); report && !kept) return fail(kept.error());
   if (!report) {
     std::error_code error;
-    std::filesystem::remove(file, error);  // half a branch is of no use
+    if (recorder.has_file()) std::filesystem::remove(file, error);  // half a branch is of no use
     return fail(report.error());
   }
   fmt::print("{}", options.is_json ? to_json(*report) : to_text(*report, options.settings));

@@ -12,6 +12,12 @@ ExitCode report_logs(const Options& options) {
   runtime::ReportOptions reporting{
       .output = options.output_file, .logs = {}, .bundle = runtime::report_bundle()};
   for (const std::string& file : options.log_files) {
+    std::error_code error;  // of a file that is not there: no reason to stop
+    if (std::filesystem::equivalent(file, options.output_file, error)) {
+      return report(Error{ErrorCode::kInvalidArgument,
+                          fmt::format("--output: got {}, expected another file than a recording that is read",
+                                      options.output_file)});
+    }
     reporting.logs.push_back({std::filesystem::path(file).filename().string(), file});
   }
   const Result<runtime::ReportSummary> written = runtime::write_report(reporting);

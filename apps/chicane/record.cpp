@@ -57,6 +57,11 @@ Result<std::unique_ptr<KeptRun>> KeptRun::start(const Options& options, protocol
                                                 const scenario::Scenario& scenario, double step_budget) {
   std::unique_ptr<KeptRun> kept(new KeptRun(options));
   if (options.record_file.empty() && options.report_file.empty()) return kept;
+  if (std::filesystem::weakly_canonical(options.record_file) ==
+      std::filesystem::weakly_canonical(options.report_file)) {
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("--report: got {}, expected another file than --record", options.report_file));
+  }
   if (!options.report_file.empty()) {
     if (const Result<void> possible = can_be_reported(options.report_file); !possible)
       return fail(possible.error());

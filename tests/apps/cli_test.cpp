@@ -264,6 +264,39 @@ TEST(Cli, ARecordedRunIsVerifiedBitForBit) {
   fs::remove(log);
 }
 
+TEST(Cli, NothingIsLostToAFileOfTheSameName) {
+  const fs::path folder = file_of_test("folder");
+  fs::create_directories(folder);
+  const std::string log = "'" + (folder / "run.mcap").string() + "'";
+  const std::string notes = (folder / "notes.txt").string();
+  std::ofstream(notes) << "mine";
+  const std::string run = "drive --fast --laps 1 --set time_limit_s=4 --record " + log;
+  EXPECT_THAT(chicane_program(run + " --report " + log).err,
+              HasSubstr("expected another file than --record"));
+  EXPECT_EQ(chicane_program(run + " --report " + log).code, 2);
+  EXPECT_THAT(chicane_program(run).err, HasSubstr("recorded 100 steps"));
+  const std::string recording = read(folder / "run.mcap");
+  for (const std::string& file : {notes, (folder / "run.mcap").string()}) {
+    const Outcome branch =
+        chicane_program("replay " + log + " --branch-at 2 --no-serve --output '" + file + "'");
+    EXPECT_EQ(branch.code, 3);
+    EXPECT_THAT(branch.err, HasSubstr("exists"));
+  }
+  const Outcome report = chicane_program("report " + log + " -o " + log);
+  EXPECT_EQ(report.code, 2);
+  EXPECT_THAT(report.err, HasSubstr("expected another file than a recording"));
+  EXPECT_EQ(read(notes), "mine");
+  EXPECT_EQ(read(folder / "run.mcap"), recording);
+
+  std::ofstream(folder / "cut.mcap", std::ios::binary) << recording.substr(0, 60);
+  const Outcome cut = chicane_program("report '" + (folder / "cut.mcap").string() + "' -o '" +
+                                      (folder / "cut.html").string() + "'");
+  EXPECT_EQ(cut.code, 2);
+  EXPECT_THAT(cut.err, HasSubstr("none of the topics"));
+  EXPECT_FALSE(fs::exists(folder / "cut.html"));
+  fs::remove_all(folder);
+}
+
 TEST(Cli, ARunWritesItsReport) {
   const fs::path folder = fs::path(::testing::TempDir()) / ("chicane_report_" + std::to_string(::getpid()));
   fs::create_directories(folder);

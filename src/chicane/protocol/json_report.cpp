@@ -119,9 +119,9 @@ std::string to_table(const RunSummary& run) {
     const auto best =
         std::min_element(run.laps.begin(), run.laps.end(),
                          [](const LapSummary& a, const LapSummary& b) { return a.lap_time < b.lap_time; });
-    const double gap =
-        best == run.laps.end() ? telemetry::kNotMeasured : lap_time::gap(best->lap_time, run.limit->lap);
-    text += fmt::format("\nlimit              {:.3f} s, the best lap {:+.2f} %", run.limit->lap, 100.0 * gap);
+    text += fmt::format("\nlimit              {:.3f} s", run.limit->lap);
+    if (best != run.laps.end())
+      text += fmt::format(", the best lap {:+.2f} %", 100.0 * lap_time::gap(best->lap_time, run.limit->lap));
   } else if (!run.why_no_limit.empty()) {
     text += fmt::format("\nlimit              not known: {}", run.why_no_limit);
   }

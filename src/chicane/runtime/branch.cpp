@@ -9,6 +9,7 @@
 #include <limits>
 #include <variant>
 
+#include "chicane/base/math.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/runtime/recorder.hpp"
@@ -43,7 +44,8 @@ class FutureMeter {
     }
     if (frame.completed_lap.lap > laps_) future_.lap_times.push_back(frame.completed_lap.lap_time);
     laps_ = frame.completed_lap.lap;
-    const double speed = frame.measurement.speed;
+    // What the car did, not what it was told: sensors may fail.
+    const double speed = frame.has_truth ? hypot(frame.truth.vx, frame.truth.vy) : frame.measurement.speed;
     future_.duration = frame.time - start_;
     future_.max_lateral_error = std::max(future_.max_lateral_error, std::fabs(frame.lateral_error));
     future_.min_edge_distance =

@@ -85,6 +85,10 @@ Result<std::string> logs_json(const ReportOptions& options, double rate) {
     const TemporaryFile thinned(".mcap");
     const auto read = excerpt(log.file, thinned.path(), {.topics = kTopics, .rate = rate});
     if (!read) return fail(read.error());
+    if (read->messages == 0) {
+      return fail(ErrorCode::kParse,
+                  fmt::format("{}: has none of the topics that chicane records", log.name));
+    }
     const Result<std::string> content = read_all(thinned.path());
     if (!content) return fail(content.error());
     bytes += content->size();

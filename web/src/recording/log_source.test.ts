@@ -8,11 +8,12 @@ import { McapLog } from './mcap_log';
 import { BytesReadable, HttpReadable } from './readable';
 import { RecordedDrive } from './recorded_drive';
 
-// A small recording of 10 s: frames at 10 Hz on a straight, a lap at 4 s, off the road at 6 s, a setting changed at 7 s.
-const FRAME = 'float64 time_s\nfloat64 x_m\nfloat64 y_m\nfloat64 yaw_rad\nfloat64 steer_applied_rad\nuint32 off_track_events\nuint8 rung\nbool is_gated\n';
+// A small recording of 10 s: frames at 10 Hz on a straight, a lap at 4 s, off the road at 6 s, a setting changed at 7 s, one fault from 8 s to 9 s
+// and another that begins where that ends. It was driven at 15 times its pace.
+const FRAME = 'float64 time_s\nfloat64 x_m\nfloat64 y_m\nfloat64 yaw_rad\nfloat64 steer_applied_rad\nuint32 off_track_events\nuint8 rung\nbool is_gated\nuint32 active_faults\nfloat64 pace\n';
 const LAP = 'uint32 lap\nfloat64 lap_time_s\n';
 const CHANGE = 'string name\nstring value\n';
-const RUN = 'string track\nbool is_paused\n';
+const RUN = 'string track\nbool is_paused\nstring[] fault_names\n';
 const HOUR_NS = 3_600_000_000_000n; // log times need not begin at zero
 
 class Bytes {
@@ -58,10 +59,10 @@ async function record(isClosed = true): Promise<Uint8Array> {
     const logTime = HOUR_NS + BigInt(Math.round(seconds * 1e9));
     await writer.addMessage({ channelId: channel.id, sequence: 0, logTime, publishTime: logTime, data: channel.writer.writeMessage(message) });
   };
-  await add('/chicane/run', 0, { track: 'straight', is_paused: false });
+  await add('/chicane/run', 0, { track: 'straight', is_paused: false, fault_names: ['link_lost', 'half_grip'] });
   for (let i = 0; i <= 100; ++i) {
     const time = i / 10;
-    await add('/chicane/frame', time, { time_s: time, x_m: 2 * time, y_m: 0, yaw_rad: 0, steer_applied_rad: 0.01 * i, off_track_events: time >= 6 ? 1 : 0, rung: 0, is_gated: false });
+    await add('/chicane/frame', time, { time_s: time, x_m: 2 * time, y_m: 0, yaw_rad: 0, steer_applied_rad: 0.01 * i, off_track_events: time >= 6 ? 1 : 0, rung: 0, is_gated: false, active_faults: time < 8 ? 0 : time < 9 ? 2 : 1, pace: 15 });
     if (i === 40) await add('/chicane/lap', time, { lap: 1, lap_time_s: 4 });
     if (i === 70) await add('/chicane/change', time, { name: 'latency_ms', value: '150' });
   }
@@ -116,10 +117,12 @@ describe('a recording', () => {
   it('shows its landmarks', async () => {
     const shares: number[] = [];
     const found = await landmarksOf(log, (share) => shares.push(share));
-    expect(found.map(({ kind, time }) => [kind, Math.round(time * 10) / 10])).toEqual([
-      ['lap', 4],
-      ['off-track', 6],
-      ['change', 7],
+    expect(found.map(({ kind, time, label }) => [kind, Math.round(time * 10) / 10, label])).toEqual([
+      ['lap', 4, 'lap 1: 4.00 s'],
+      ['off-track', 6, 'off the road'],
+      ['change', 7, 'latency_ms = 150'],
+      ['fault', 8, 'half grip'],
+      ['fault', 9, 'link lost'],
     ]);
     expect(shares.at(-1)).toBeCloseTo(1, 6);
   });
@@ -135,6 +138,7 @@ describe('playing a recording', () => {
     expect(page.frames().at(-1)).toBe(5);
     await source.seek(3);
     expect(page.frames().at(-1)).toBe(3);
+    expect(page.told.find(({ topic }) => topic === '/chicane/frame')?.message).toMatchObject({ pace: 1 }); // of playing
     expect(page.told.filter(({ topic }) => topic === '/chicane/lap')).toHaveLength(1); // all laps, also those to come
     expect(page.told.find(({ topic }) => topic === '/chicane/run')?.message).toMatchObject({ track: 'straight', mode: 'replay', is_paused: true });
   });

@@ -1,5 +1,6 @@
+import { nameInWords } from '../lib/words';
 import type { ServiceName, Setting, SetAnswer, Source, SourceEvents } from '../protocol/source';
-import type { Lap, Run, TopicName } from '../protocol/topics';
+import type { Frame, Lap, Run, TopicName } from '../protocol/topics';
 import type { LoggedMessage, McapLog } from './mcap_log';
 
 /** What a reader of a recording looks for. */
@@ -194,6 +195,7 @@ export class LogSource implements Source {
 
   #tell({ topic, message }: LoggedMessage): void {
     if (topic === '/chicane/run') this.#events.message(topic, { ...(message as Run), mode: 'replay', is_paused: !this.#isPlaying });
+    else if (topic === '/chicane/frame') this.#events.message(topic, { ...(message as Frame), pace: this.#pace });
     else this.#events.message(topic, message as never);
   }
 
@@ -206,9 +208,12 @@ export class LogSource implements Source {
 export async function landmarksOf(log: McapLog, progress: (share: number) => void = () => undefined): Promise<Landmark[]> {
   const found: Landmark[] = [];
   const was = { offTrack: 0, rung: 0, isGated: false, faults: 0, lap: -1 };
-  for await (const { topic, time, message } of log.messages(['/chicane/frame', '/chicane/lap', '/chicane/change'], 0, log.duration)) {
+  let faultNames: readonly string[] = [];
+  for await (const { topic, time, message } of log.messages(['/chicane/run', '/chicane/frame', '/chicane/lap', '/chicane/change'], 0, log.duration)) {
     progress(log.duration > 0 ? time / log.duration : 1);
-    if (topic === '/chicane/lap') {
+    if (topic === '/chicane/run') {
+      faultNames = (message as Run).fault_names ?? [];
+    } else if (topic === '/chicane/lap') {
       const { lap, lap_time_s: seconds } = message as Lap;
       found.push({ time, kind: 'lap', label: `lap ${lap}: ${seconds.toFixed(2)} s` });
     } else if (topic === '/chicane/change') {
@@ -220,7 +225,10 @@ export async function landmarksOf(log: McapLog, progress: (share: number) => voi
       if (frame.off_track_events > was.offTrack) found.push({ time, kind: 'off-track', label: 'off the road' });
       if (frame.rung > 0 && was.rung === 0) found.push({ time, kind: 'fallback', label: 'fallback took over' });
       if (frame.is_gated && !was.isGated) found.push({ time, kind: 'gate', label: 'command gate intervened' });
-      if (faults !== 0 && was.faults === 0) found.push({ time, kind: 'fault', label: 'fault' });
+      for (let bit = 0; bit < 32; ++bit) {
+        const begins = ((faults & ~was.faults) >>> bit) & 1;
+        if (begins) found.push({ time, kind: 'fault', label: nameInWords(faultNames[bit] ?? 'fault').toLowerCase() });
+      }
       Object.assign(was, { offTrack: frame.off_track_events, rung: frame.rung, isGated: frame.is_gated, faults });
     }
   }

@@ -1,6 +1,6 @@
 import { computed, signal } from '@preact/signals';
 import { session as drawing } from '../scene3d/session';
-import { beginSession, keepAllLaps, link, notice, receive, rewind, run, sampleLap, services } from '../state/app_state';
+import { beginSession, keepAllLaps, laps, link, live, notice, receive, rewind, run, sampleLap, services } from '../state/app_state';
 import { completeFrame } from '../state/message_fields';
 import type { Frame } from '../protocol/topics';
 import { schema } from '../state/settings';
@@ -87,6 +87,7 @@ async function look(source: LogSource): Promise<void> {
       if (player.value !== source) return;
       sampleLap(frame);
     }
+    for (const { lap, lap_time_s: time } of laps.value) live.lapSamples.complete(lap - 1, time);
   } catch (error) {
     notice.value = error instanceof Error ? error.message : String(error);
   }

@@ -140,6 +140,28 @@ describe('lap samples', () => {
     expect(samples.channel(4, 'time_s')?.[302]).toBeCloseTo(15.1, 0);
   });
 
+  it('end with a recording that ends on the line', () => {
+    const samples = new LapSamples();
+    drive(samples, [20]);
+    cover(samples, 1, [7.4, 0.296], [999.5, 39.98], 50);
+    expect(samples.laps).toEqual([0]);
+    samples.complete(1, 30); // of another run
+    samples.complete(0, 40);
+    expect(samples.laps).toEqual([0]);
+    samples.complete(1, 40);
+    expect(samples.laps).toEqual([0, 1]);
+    expect(samples.best).toBe(1);
+    expect(samples.channel(1, 'time_s')?.[samples.points - 1]).toBeCloseTo(samples.s(samples.points - 1) / 25, 2);
+
+    const only = new LapSamples();
+    only.setLength(LENGTH);
+    cover(only, 0, [0, 0], [999, 49.95]);
+    only.complete(0, 50);
+    expect(only.laps).toEqual([0]);
+    expect(only.place(0)).toBeCloseTo(LINE, -1);
+    expect(only.channel(0, 'time_s')?.[500]).toBeCloseTo(only.s(500) / 20, 2);
+  });
+
   it('do not guess where the line is, either', () => {
     const samples = new LapSamples();
     samples.setLength(LENGTH);

@@ -112,8 +112,26 @@ export class LapSamples {
     this.#drop(lap);
   }
 
+  /** A lap ended in `time` [s] behind its last frame: at the end of a recording none comes from beyond the line. */
+  complete(lap: number, time: number): void {
+    const slot = this.#current;
+    const last = this.#last;
+    if (slot?.lap !== lap || slot.isComplete || last?.lap !== lap) return;
+    const rest = time - last.time_s;
+    if (!(rest >= 0 && rest <= LONGEST_SILENCE_S)) return; // another run's lap of that number
+    if (!Number.isFinite(this.#line)) this.#line = this.#onRoad(last.s_m + last.speed_mps * rest);
+    this.#fill(last, this.#after(last, { ...last, s_m: this.#line, time_s: time }));
+    slot.isComplete = true;
+    slot.time = time;
+  }
+
   get #done(): Slot[] {
     return this.#slots.filter((slot) => slot.lap >= 0 && slot.isComplete);
+  }
+
+  /** A place along the road, however often it was gone round. */
+  #onRoad(s: number): number {
+    return s - this.#length * Math.floor(s / this.#length);
   }
 
   get #spacing(): number {
@@ -142,7 +160,7 @@ export class LapSamples {
       this.#current.isComplete = true;
       this.#current.time = lastLapTime;
     }
-    if (!Number.isFinite(this.#line)) this.#line = line.s_m - this.#length * Math.floor(line.s_m / this.#length);
+    if (!Number.isFinite(this.#line)) this.#line = this.#onRoad(line.s_m);
     this.#begin(lap);
     if (isHeard) this.#fill({ ...line, time_s: 0 }, moment);
   }

@@ -107,11 +107,12 @@ function Row({ label, sentence }: { label: string; sentence: Sentence | null }) 
 
 function Answer() {
   const frame = shown.value;
-  const worst = frame ? worstInWords(frame, run.value?.constraint_names ?? []) : null;
-  const solve = frame ? statusInWords(frame.solve_status) : null;
-  const [optimality, violation] = [frame?.stationarity ?? NaN, frame?.violation ?? NaN];
+  const solved = frame && (frame.iterations > 0 || /mpc$/.test(run.value?.controller ?? '')) ? frame : null; // PID and the like solve nothing
+  const worst = solved ? worstInWords(solved, run.value?.constraint_names ?? []) : null;
+  const solve = solved ? statusInWords(solved.solve_status) : null;
+  const [optimality, violation] = [solved?.stationarity ?? NaN, solved?.violation ?? NaN];
   const numbers = [
-    frame && frame.iterations > 0 ? plural(frame.iterations, 'iteration') : '',
+    solved && solved.iterations > 0 ? plural(solved.iterations, 'iteration') : '',
     Number.isFinite(optimality) ? `optimal to ${optimality.toExponential(1)}` : '',
     Number.isFinite(violation) ? `constraints ${violation === 0 ? 'exact' : `to ${violation.toExponential(1)}`}` : '',
   ];
@@ -120,7 +121,7 @@ function Answer() {
       <h2>The answer</h2>
       <dl class="rows">
         <Row label="Solver" sentence={solve} />
-        <Row label="Worst" sentence={frame ? (worst ? { mood: 'warning', text: worst } : { mood: 'good', text: 'All constraints hold' }) : null} />
+        <Row label="Worst" sentence={solved ? (worst ? { mood: 'warning', text: worst } : { mood: 'good', text: 'All constraints hold' }) : null} />
         <Row label="Driving" sentence={frame ? rungInWords(frame.rung) : null} />
         <Row label="Gate" sentence={frame ? gateInWords(frame.is_gated) : null} />
         <Row label="Sight" sentence={frame ? sightInWords(frame.has_map, frame.sight_m) : null} />

@@ -95,6 +95,13 @@ function Group({ name, entries }: { name: string; entries: readonly SchemaEntry[
 
 export function TuneView() {
   if (schema.value.length === 0) return <NothingToSet />;
+  if (run.value?.mode === 'replay') {
+    return (
+      <p class="empty">
+        A recording cannot be changed. <code>chicane replay LOG --branch-at T --set KEY=VALUE</code> drives on from any of its moments otherwise.
+      </p>
+    );
+  }
   return (
     <div class="tune">
       <div class="toolbar">
