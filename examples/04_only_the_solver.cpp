@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The solver knows no car. Here it swings up a pole on a cart: 2 s in 50 steps of 40 ms, pushes of at most 12
+// The solver knows no car. Here it swings up a pole on a cart: 2 s in 50 steps of 40 ms, pushes of at most 20
 // N, a rail of 0.6 m each way that it pays to leave. The first guess is to do nothing.
 
 // [solver]

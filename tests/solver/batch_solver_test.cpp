@@ -249,7 +249,8 @@ TEST(BatchSolver, AllocatesNothing) {
   }
 }
 
-/// What is not a number goes to the fallback, disturbs no neighbour, and leaves nothing behind.
+/// What is not a number, or has bounds that cross, goes to the fallback, disturbs no neighbour, and leaves
+/// nothing behind.
 TEST(BatchSolver, HandsOverWhatIsNotANumberAndLeavesTheRestAlone) {
   for (const InstructionSet set : available_sets()) {
     const Batch<DescribedOver> guesses(64, 29, 20);
@@ -258,9 +259,11 @@ TEST(BatchSolver, HandsOverWhatIsNotANumberAndLeavesTheRestAlone) {
     Batch<DescribedOver> batch = guesses;
     batch.problems[3].path[1] = std::numeric_limits<double>::quiet_NaN();
     batch.starts[5][3] = std::numeric_limits<double>::infinity();
+    batch.problems[7].steer_limit = -1.0;
+    batch.problems[8].steer_limit = std::numeric_limits<double>::quiet_NaN();
     batch.trajectories[9].u[4][1] = std::numeric_limits<double>::quiet_NaN();
     batch.solve(set);
-    EXPECT_EQ(given_up, 2) << to_string(set);
+    EXPECT_EQ(given_up, 4) << to_string(set);
     Batch<DescribedOver> after = guesses;
     after.solve(set);
     for (std::size_t i = 0; i < batch.problems.size(); ++i) {
@@ -269,7 +272,7 @@ TEST(BatchSolver, HandsOverWhatIsNotANumberAndLeavesTheRestAlone) {
                            sizeof whole.trajectories[i].u) == 0;
       };
       EXPECT_TRUE(same(after)) << to_string(set) << ", problem " << i;
-      if (i == 3 || i == 5) {
+      if (i == 3 || i == 5 || i == 7 || i == 8) {
         EXPECT_EQ(batch.reports[i].status, SolveStatus::kNotFinite) << to_string(set);
       } else if (i == 9) {  // only a guess: a zero takes its place
         EXPECT_EQ(batch.reports[i].status, SolveStatus::kOptimal) << to_string(set);

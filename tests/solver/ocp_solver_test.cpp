@@ -25,6 +25,14 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using Solver = solver::OcpSolver<DescribedProblem, kCapacity>;
 
+/// The described problem from its second stage on.
+struct Rest : DescribedProblem {
+  template <class K, class T>
+  std::array<T, kNr> residual(K, const std::array<T, kNx>& s, const std::array<T, kNu>& u) const {
+    return DescribedProblem::residual(1, s, u);  // in which changes cost, as in all but the first
+  }
+};
+
 struct OcpSolverTest : testing::Test {
   std::unique_ptr<Solver> ocp = std::make_unique<Solver>();
   DescribedTrajectory<kCapacity> trajectory;
@@ -229,6 +237,49 @@ TEST_F(OcpSolverTest, RefusesBoundsThatCrossOrAreNotNumbers) {
   for (const double limit : {-1.0, kNaN}) {
     instance.problem.acceleration_limit = limit;
     EXPECT_EQ(solve().status, SolveStatus::kNotFinite);
+  }
+}
+
+/// The described problem with an acceleration that no number is.
+struct BeyondAllNumbers : DescribedProblem {
+  double bound = kInfinity;
+  [[nodiscard]] std::array<double, 2> input_lower(int) const { return {-steer_limit, bound}; }
+  [[nodiscard]] std::array<double, 2> input_upper(int) const { return {steer_limit, bound}; }
+};
+
+TEST_F(OcpSolverTest, RefusesBoundsThatNoNumberKeepsAndLeavesFiniteInputs) {
+  const auto solver = std::make_unique<solver::OcpSolver<BeyondAllNumbers, kCapacity>>();
+  BeyondAllNumbers problem;
+  static_cast<DescribedProblem&>(problem) = instance.problem;
+  for (const double bound : {kInfinity, -kInfinity}) {
+    problem.bound = bound;
+    EXPECT_EQ(solver->solve(problem, instance.start, trajectory).status, SolveStatus::kNotFinite);
+    for (int k = 0; k < trajectory.horizon; ++k) EXPECT_TRUE(std::isfinite(trajectory.u[k][1]));
+  }
+  problem.bound = 0.5;
+  EXPECT_EQ(solver->solve(problem, instance.start, trajectory).status, SolveStatus::kOptimal);
+}
+
+/// λ_1 is what the rest of the horizon costs per unit of x_1.
+TEST_F(OcpSolverTest, KnowsThePriceOfAState) {
+  const SolverOptions exact{.tolerance = 1e-9};
+  ASSERT_EQ(solve(exact).status, SolveStatus::kOptimal);
+  const auto x = trajectory.x[1];
+  const auto rest = std::make_unique<solver::OcpSolver<Rest, kCapacity>>(exact);
+  for (int i = 0; i < DescribedProblem::kNx; ++i) {
+    const auto cost = [&](double change) {
+      auto start = x;
+      start[static_cast<std::size_t>(i)] += change;
+      auto tail = trajectory;
+      solver::shift(tail, 1.0);
+      tail.horizon = trajectory.horizon - 1;
+      const SolveReport report = rest->solve(Rest{instance.problem}, start, tail);
+      EXPECT_EQ(report.status, SolveStatus::kOptimal);
+      return report.cost;
+    };
+    constexpr double kStep = 1e-4;
+    const double slope = (cost(kStep) - cost(-kStep)) / (2.0 * kStep);
+    EXPECT_NEAR(ocp->adjoint(0, i), slope, 1e-4 * (1.0 + std::fabs(slope))) << "state " << i;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
 
 #include "chicane/solver/ocp_solver.hpp"
@@ -116,6 +117,83 @@ TEST_F(SoftOcp, ReportsTheWorstStageAndConstraintWhenACapIsExceeded) {
   EXPECT_NEAR(1.0 - trajectory.x[report.worst_stage][4], report.violation, 1e-12);
   problem.price.cap = 10.0;
   EXPECT_EQ(solve().status, SolveStatus::kOptimal);
+}
+
+/// Turns run out at any moment, after steps that were in vain too: what is told is of what is returned.
+TEST_F(SoftOcp, WhateverTheStatusTheReportIsOfTheAnswer) {
+  Random random{81};
+  int cut_short = 0;
+  for (int i = 0; i < 40; ++i) {
+    bench::CorridorInstance instance = bench::random_corridor(random, kCapacity);
+    instance.problem.price = {.linear = 3e4, .quadratic = 1e4};
+    for (int turns = 1; turns <= 40; ++turns) {
+      *ocp = Solver{{.max_iterations = turns}};
+      trajectory = {};
+      trajectory.horizon = kCapacity;
+      Random guess{static_cast<std::uint64_t>(i) + 5};
+      for (auto& u : trajectory.u) u = {guess.uniform(-0.43, 0.43), guess.uniform(-1.0, 1.0)};
+      const auto report = ocp->solve(instance.problem, instance.start, trajectory);
+      if (report.status != SolveStatus::kOptimal) ++cut_short;
+      double worst = 0.0;
+      int stage = -1;
+      int constraint = -1;
+      for (int k = 0; k < kCapacity; ++k) {
+        const auto values = instance.problem.constraint(k, trajectory.x[k], trajectory.u[k]);
+        for (int c = 0; c < 2; ++c) {
+          if (!(values[static_cast<std::size_t>(c)] > worst)) continue;
+          worst = values[static_cast<std::size_t>(c)];
+          stage = k;
+          constraint = c;
+        }
+      }
+      ASSERT_EQ(report.worst_stage, stage) << i << ", " << turns << " turns";
+      ASSERT_EQ(report.worst_constraint, constraint) << i << ", " << turns << " turns";
+      ASSERT_NEAR(report.violation, worst, 1e-12) << i << ", " << turns << " turns";
+    }
+  }
+  EXPECT_GT(cut_short, 400);
+}
+
+/// A unit more room saves the price of the violation, and nothing where there is room.
+TEST_F(SoftOcp, KnowsThePriceOfAConstraint) {
+  problem.window_begin = 2;
+  problem.window_end = 6;
+  problem.keep_out = 1.0;
+  *ocp = Solver{{.tolerance = 1e-9}};
+  ASSERT_EQ(solve().status, SolveStatus::kOptimal);
+  int violated = 0;
+  for (int k = 0; k < kCapacity; ++k) {
+    const auto values = problem.constraint(k, trajectory.x[k], trajectory.u[k]);
+    for (int c = 0; c < 2; ++c) {
+      const double value = values[static_cast<std::size_t>(c)];
+      if (value > 1e-3) {
+        const double price = problem.price.linear + problem.price.quadratic * value;
+        EXPECT_NEAR(ocp->constraint_multiplier(k, c), price, 1e-3) << k;
+        ++violated;
+      } else if (value < -1e-3) {
+        EXPECT_NEAR(ocp->constraint_multiplier(k, c), 0.0, 1e-4) << k;
+      }
+    }
+  }
+  EXPECT_GT(violated, 1);
+}
+
+TEST(WorstViolation, IsTheLargestButOneAboveItsCapBeforeAll) {
+  solver::WorstViolation worst;
+  solver::SolveReport report;
+  worst.tell(report);
+  EXPECT_EQ(report.worst_stage, -1);
+  worst.consider(-0.5, 1e30, 0, 0);
+  worst.consider(0.5, 1e30, 1, 0);  // metres, of no matter
+  worst.consider(0.2, 0.1, 2, 1);   // a share of the grip, above its cap
+  worst.consider(0.7, 1e30, 3, 0);
+  worst.consider(0.15, 0.1, 4, 1);
+  worst.consider(std::nan(""), 0.1, 5, 1);
+  worst.tell(report);
+  EXPECT_EQ(report.worst_stage, 2);
+  EXPECT_EQ(report.worst_constraint, 1);
+  EXPECT_EQ(report.violation, 0.2);
+  EXPECT_TRUE(worst.is_above_a_cap());
 }
 
 TEST_F(SoftOcp, AHigherPriceLeavesLessToPay) {

@@ -167,6 +167,26 @@ TEST(StructuredSolve, AgreesWithTheDensePathInACorridor) {
   }
 }
 
+/// At the first stage a constraint on the states alone reaches no slope of an input.
+TEST(StructuredSolve, RefusesAConstraintThatIsNotANumberAtAnyStage) {
+  using Own = solver::OcpSolver<StructuredCorridorProblem, kCapacity>;
+  const auto own = std::make_unique<Own>();
+  Random random{80};
+  const auto instance = bench::random_corridor(random, 20);
+  const StructuredCorridorProblem good{instance.problem, instance.start[4], 20};
+  for (const std::size_t stage : {0, 1, 7, 8, 19}) {
+    for (const bool is_high : {true, false}) {
+      StructuredCorridorProblem problem = good;
+      (is_high ? problem.high : problem.low)[stage] = std::nan("");
+      Own::Trajectory answer;
+      answer.horizon = 20;
+      const auto start = problem.without_cte(instance.start);
+      EXPECT_EQ(own->solve(problem, start, answer).status, SolveStatus::kNotFinite) << stage;
+      EXPECT_EQ(own->solve(good, start, answer).status, SolveStatus::kOptimal) << stage;
+    }
+  }
+}
+
 TEST(StructuredSolve, SolvesARacingProblemAndSaysWhatBinds) {
   using Own = solver::OcpSolver<RacingProblem, kCapacity>;
   const auto own = std::make_unique<Own>(solver::SolverOptions{.max_iterations = 100});

@@ -48,7 +48,8 @@ TEST(Shift, BeyondTheHorizonRepeatsTheLastInput) {
 }
 
 TEST(Shift, IgnoresTimesThatMakeNoSense) {
-  for (const double steps : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+  using Limits = std::numeric_limits<double>;
+  for (const double steps : {0.0, -1.0, Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()}) {
     auto t = counting(4);
     solver::shift(t, steps);
     EXPECT_EQ(t.u[1][1], 1.0);

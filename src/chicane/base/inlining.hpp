@@ -4,14 +4,14 @@
 /// Kernels are written as many small functions that have to become one, whatever the compiler thinks:
 /// CHICANE_INLINE puts a function or lambda (after its parameters) into its callers, CHICANE_FLATTEN
 /// everything a function calls into it. Not in Debug nor for sanitizers, which would need minutes for one
-/// file; the bits are the same.
+/// file, nor where CHICANE_NO_FORCED_INLINE is defined; the bits are the same.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define CHICANE_IS_SANITIZED
 #endif
 #endif
-#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
-    !defined(CHICANE_IS_SANITIZED)
+#if defined(__OPTIMIZE__) && !defined(CHICANE_NO_FORCED_INLINE) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__) && !defined(CHICANE_IS_SANITIZED)
 #define CHICANE_INLINE __attribute__((always_inline))
 #define CHICANE_FLATTEN __attribute__((flatten))
 #else

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/math_pack.hpp"
@@ -45,8 +46,8 @@ struct BatchRoom {
     owner[lane] = i;
   }
 
-  /// Simulates all lanes from inputs within their bounds; slacks start on the central path of the barrier
-  /// `mu`.
+  /// Simulates all lanes from inputs within their bounds, not-a-number where those cross; slacks start on the
+  /// central path of the barrier `mu`.
   CHICANE_FLATTEN void simulate(std::size_t horizon, double mu) noexcept {
     for (std::size_t k = 0; k < horizon; ++k) {
       const int number = static_cast<int>(k);
@@ -54,7 +55,8 @@ struct BatchRoom {
       const auto high = many.input_upper(number);
       for (std::size_t m = 0; m < kNu; ++m) {
         const V wanted = select(is_finite(u[k][m]), u[k][m], V(0.0));
-        u[k][m] = min(max(wanted, V(low[m])), V(high[m]));
+        const V within = min(max(wanted, V(low[m])), V(high[m]));
+        u[k][m] = select(V(low[m]) <= V(high[m]), within, V(std::numeric_limits<double>::quiet_NaN()));
       }
       x[k + 1] = to_array<V>(many.dynamics(number, x[k], u[k]));
       if constexpr (kNc > 0) {
@@ -91,7 +93,8 @@ struct BatchRoom {
     if constexpr (kNc > 0) return many.soft_penalty(static_cast<int>(c));
     return {};
   }
-  /// Where the barrier starts for such prices: as OcpSolver's.
+  /// Where the barrier starts for such prices: one height for all lanes, OcpSolver's for a start that
+  /// violates its constraints by 0.4.
   [[nodiscard]] double start_mu() const noexcept {
     double most = 0.0;
     for (std::size_t c = 0; c < kNc; ++c) most = std::max({most, price(c).linear, 0.1 * price(c).quadratic});

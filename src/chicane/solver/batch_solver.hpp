@@ -251,7 +251,7 @@ class BatchSolver {
       const V down = V(low[m]) - now_.u[k][m];
       const V up = V(high[m]) - now_.u[k][m];
       sums.stationarity = max(abs(min(max(-slope[m], down), up)), sums.stationarity);
-      sums.poison += slope[m];
+      sums.poison += slope[m] + now_.u[k][m];
       is_free[m] = ((down < V(0.0)) | (slope[m] < V(0.0))) & ((up > V(0.0)) | (slope[m] > V(0.0)));
     });
     return is_free;
@@ -300,17 +300,13 @@ class BatchSolver {
   }
   /// Where the largest violation is, and whether one is above its cap.
   void find_worst(std::size_t lane, SolveReport& report) const noexcept {
-    double worst = 0.0;
+    WorstViolation worst;
     for (std::size_t k = 0; k < horizon_; ++k) {
-      for (std::size_t c = 0; c < kNc; ++c) {
-        const double value = now_.soft[k][c].value[lane];
-        if (value > now_.price(c).cap) report.status = SolveStatus::kInfeasible;
-        if (value <= worst) continue;
-        worst = value;
-        report.worst_stage = static_cast<int>(k);
-        report.worst_constraint = static_cast<int>(c);
-      }
+      for (std::size_t c = 0; c < kNc; ++c)
+        worst.consider(now_.soft[k][c].value[lane], now_.price(c).cap, k, c);
     }
+    worst.tell(report);
+    if (worst.is_above_a_cap()) report.status = SolveStatus::kInfeasible;
   }
 
   /// The step of the quadratic program in `moving` lanes. Lanes whose exact Hessian was indefinite stay where
@@ -375,7 +371,8 @@ class BatchSolver {
     });
   }
 
-  /// The same with slacks (eq. 18–20), and then a lower barrier: as OcpSolver's, where no bound cut the step.
+  /// The same with slacks (eq. 18–20), and then a lower barrier: as OcpSolver's for long moves, but not less
+  /// than `kCutShare` of it where a bound cut the step.
   void move_with_slacks(const Lanes& moves, Bent& bent) noexcept {
     constexpr double kFraction = 0.995;
     V primal(0.0);  // how often the longest change goes into its value

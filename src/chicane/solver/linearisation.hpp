@@ -84,7 +84,7 @@ class Linearisation {
     V cost{0.0}, smoothing{0.0};
     V defect{0.0}, defects{0.0}, defect_excess{-1.0};
     V stationarity{0.0}, slopes{0.0};
-    V complementarity{0.0}, violation{0.0};
+    V complementarity{0.0}, violation{0.0}, values{0.0};
 
     void finish(Linearisation& now, SolveReport& report) const noexcept {
       report.cost = end_cost + sum(cost);
@@ -93,8 +93,9 @@ class Linearisation {
       // A maximum may lose what is not a number, a sum does not.
       report.defect = is_number(sum(defects)) ? largest(defect) : kNotANumber;
       report.stationarity = is_number(sum(slopes)) ? largest(stationarity) : kNotANumber;
-      report.complementarity = largest(complementarity);
-      report.violation = largest(violation);
+      const bool has_values = is_number(sum(values));
+      report.complementarity = has_values ? largest(complementarity) : kNotANumber;
+      report.violation = has_values ? largest(violation) : kNotANumber;
     }
     static bool is_number(double x) noexcept { return !std::isnan(x); }
     static constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
@@ -217,6 +218,7 @@ class Linearisation {
       sums.cost += select(live, soft.penalty(price), V(0.0));
       sums.complementarity = max(sums.complementarity, select(live, soft.residual(price, mu), V(0.0)));
       sums.violation = max(sums.violation, select(live, c.v, V(0.0)));
+      sums.values += select(live, c.v, V(0.0));
     });
   }
 

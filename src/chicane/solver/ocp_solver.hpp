@@ -53,7 +53,8 @@ class OcpSolver {
   /// Solves from x0. In: trajectory.horizon in [1, Capacity] and the inputs of the warm start (any values;
   /// states are recomputed, but for SolverOptions::start_from_states). Out: the solution, or the best
   /// iterate; its inputs are finite and inside their bounds whatever the status. Data that are not finite, or
-  /// bounds that cross, end with kNotFinite. The deadline is asked before every sweep.
+  /// bounds that cross, end with kNotFinite. The deadline is asked in every turn and before every correction
+  /// of the working set; what is under way when it comes is finished.
   SolveReport solve(const P& problem, const State& x0, Trajectory& trajectory,
                     Deadline deadline = Deadline::never()) noexcept {
     CHICANE_ASSERT(trajectory.horizon >= 1 && trajectory.horizon <= Capacity);
@@ -68,7 +69,8 @@ class OcpSolver {
       }
       if (has_converged(report)) return finish(SolveStatus::kOptimal, problem, trajectory, report);
       const bool budget_spent = work_ >= options_.max_iterations || deadline.spent();
-      if (!keep_best(report) && !budget_spent && has_lost_its_way(report)) {
+      shows_best_ = keep_best(report);
+      if (!shows_best_ && !budget_spent && has_lost_its_way(report)) {
         if (!(may_grow() ? start_short(problem) : go_back(problem))) break;
         continue;
       }
@@ -110,6 +112,7 @@ class OcpSolver {
   static constexpr std::size_t kFirstHorizon = 5;  ///< of the growing horizons
   static constexpr std::size_t kMaxGrowth = 16;
   static constexpr double kGoodEnoughToGrow = 1e-1;
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr double kDefectShare = 1e-7;  ///< of the tolerance: Hessians amplify defects
   /// Steps this short: exact curvature from here on. Dense problems pay for it.
   static constexpr double kNear = StructuredProblem<P> ? 1e-1 : 1e-2;
@@ -127,7 +130,7 @@ class OcpSolver {
 
   bool start(const P& problem, const State& x0, const Trajectory& trajectory) noexcept {
     full_steps_ = is_fresh_ = true;
-    has_best_ = is_exact_ = has_grown_ = false;
+    has_best_ = shows_best_ = is_exact_ = has_grown_ = false;
     work_ = 0.0;
     progress_.restart();
     descent_.start();
@@ -140,7 +143,7 @@ class OcpSolver {
       const auto low = problem.input_lower(static_cast<int>(k));
       const auto high = problem.input_upper(static_cast<int>(k));
       for (std::size_t m = 0; m < kNu; ++m) {
-        if (!(low[m] <= high[m])) return false;
+        if (!(low[m] <= high[m] && low[m] < kInfinity && high[m] > -kInfinity)) return false;
         now_.lower[m][k] = low[m];
         now_.upper[m][k] = high[m];
         t_.u[m][k] = nearest(trajectory.u[k][m], low[m], high[m]);
@@ -207,7 +210,7 @@ class OcpSolver {
   }
 
   static bool is_finite(const SolveReport& report) noexcept {
-    return std::isfinite(report.cost) && std::isfinite(report.defect) && std::isfinite(report.stationarity);
+    return std::isfinite(report.cost + report.defect + report.stationarity + report.complementarity);
   }
   [[nodiscard]] bool has_converged(const SolveReport& report) const noexcept {
     return report.stationarity <= options_.tolerance && now_.defect_excess <= 0.0 &&
@@ -419,6 +422,11 @@ class OcpSolver {
       if (has_best_) {
         t_ = best_;
         report = best_report_;
+        if (!shows_best_) {  // constraints and prices are to be of the answer; slacks were not kept
+          full_steps_ = is_exact_ = false;
+          SolveReport unused;
+          look(problem, unused);
+        }
       }
       if (is_growing() || !has_best_) {
         while (is_growing()) grow(problem);
@@ -440,22 +448,14 @@ class OcpSolver {
     now_.chains.admit(t_.horizon,
                       [&](std::size_t k, std::size_t m) -> double& { return trajectory.u[k][m]; });
     now_.chains.tell(report);
-    find_worst(report);
+    WorstViolation worst;
+    for (std::size_t k = 0; k < t_.horizon; ++k) {
+      for (std::size_t c = 0; c < static_cast<std::size_t>(P::kNc); ++c)
+        worst.consider(barrier_.value(c, k), price_of(problem, c).cap, k, c);
+    }
+    worst.tell(report);
     report.status = status;
     return report;
-  }
-  /// Where the largest violation is.
-  void find_worst(SolveReport& report) const noexcept {
-    report.worst_stage = report.worst_constraint = -1;
-    double worst = 0.0;
-    for (std::size_t k = 0; k < t_.horizon; ++k) {
-      for (std::size_t c = 0; c < static_cast<std::size_t>(P::kNc); ++c) {
-        if (barrier_.value(c, k) <= worst) continue;
-        worst = barrier_.value(c, k);
-        report.worst_stage = static_cast<int>(k);
-        report.worst_constraint = static_cast<int>(c);
-      }
-    }
   }
 
   /// The data are not finite: leaves admissible inputs and finite states behind.
@@ -465,6 +465,9 @@ class OcpSolver {
     trajectory.horizon = static_cast<int>(target_);
     trajectory.x[0] = x0;
     clamp_inputs(problem, trajectory);
+    for (auto& u : trajectory.u) {  // of bounds that no number keeps
+      for (double& value : u) value = std::isfinite(value) ? value : 0.0;
+    }
     for (auto& x : trajectory.x) {
       for (std::size_t i = 0; i < kNx; ++i) x[i] = std::isfinite(x0[i]) ? x0[i] : 0.0;
     }
@@ -484,6 +487,7 @@ class OcpSolver {
   Iterate<kNx, kNu, kSize> best_;
   SolveReport best_report_{};
   bool has_best_ = false;
+  bool shows_best_ = false;  ///< the last look was at the best iterate
   bool full_steps_ = true;
   bool is_exact_ = false;  ///< Hessians of the next look
   bool has_grown_ = false;

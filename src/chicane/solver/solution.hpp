@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
+
+#include "chicane/base/inlining.hpp"
 
 namespace chicane::solver {
 
@@ -41,13 +44,41 @@ struct SolveReport {
   double stationarity = 0.0;     ///< ‖u − Proj(u − ∇L)‖∞ from the exact adjoint
   double defect = 0.0;           ///< ‖x_{k+1} − f(x_k, u_k)‖∞
   double complementarity = 0.0;  ///< largest residual of the soft constraints' KKT block
-  double violation = 0.0;        ///< largest soft-constraint violation, in the constraint's own unit
-  int worst_stage = -1;          ///< where it is; -1 when nothing is violated
+  double violation = 0.0;  ///< largest soft-constraint violation, in the constraint's own unit; of those
+                           ///< above their caps, where one is
+  int worst_stage = -1;    ///< where it is; -1 when nothing is violated
   int worst_constraint = -1;
   double rate_excess = 0.0;  ///< largest amount by which an input's own bounds overrule one on its change, in
                              ///< the input's unit
   int rate_stage = -1;       ///< where that is; -1 when nothing is overruled
   int rate_input = -1;
+};
+
+/// Finds the violation that a report tells: the largest, but one above its cap before all others, which may
+/// be in other units.
+class WorstViolation {
+ public:
+  CHICANE_INLINE void consider(double value, double cap, std::size_t stage, std::size_t constraint) noexcept {
+    const bool is_above = value > cap;
+    const bool is_worse = is_above == is_above_ ? value > value_ : is_above;
+    if (!is_worse) return;
+    value_ = value;
+    is_above_ = is_above;
+    stage_ = static_cast<int>(stage);
+    constraint_ = static_cast<int>(constraint);
+  }
+  [[nodiscard]] CHICANE_INLINE bool is_above_a_cap() const noexcept { return is_above_; }
+  CHICANE_INLINE void tell(SolveReport& report) const noexcept {
+    report.worst_stage = stage_;
+    report.worst_constraint = constraint_;
+    if (stage_ >= 0) report.violation = value_;
+  }
+
+ private:
+  double value_ = 0.0;
+  bool is_above_ = false;
+  int stage_ = -1;
+  int constraint_ = -1;
 };
 
 }  // namespace chicane::solver

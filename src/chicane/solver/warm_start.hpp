@@ -74,7 +74,7 @@ void resample(Trajectory<Nx, Nu, Capacity>& trajectory, int horizon, double rati
 /// count as 0.
 template <int Nx, int Nu, int Capacity>
 void shift(Trajectory<Nx, Nu, Capacity>& trajectory, double steps) noexcept {
-  if (trajectory.horizon < 1 || !(steps > 0.0)) return;
+  if (trajectory.horizon < 1 || !(steps > 0.0) || !std::isfinite(steps)) return;
   const double whole = std::floor(std::min(steps, static_cast<double>(trajectory.horizon)));
   const double part = std::min(steps - whole, 1.0);
   const int offset = static_cast<int>(whole);
