@@ -88,6 +88,7 @@ async function look(source: LogSource): Promise<void> {
       sampleLap(frame);
     }
     for (const { lap, lap_time_s: time } of laps.value) live.lapSamples.complete(lap - 1, time);
+    laps.value = [...laps.value]; // now they can be compared: the page looks again
   } catch (error) {
     notice.value = error instanceof Error ? error.message : String(error);
   }
