@@ -297,6 +297,21 @@ TEST(Cli, NothingIsLostToAFileOfTheSameName) {
   fs::remove_all(folder);
 }
 
+TEST(Cli, ABranchTellsTheCarsSpeedNotTheSensors) {
+  const std::string log = "'" + file_of_test("run.mcap").string() + "'";
+  EXPECT_THAT(chicane_program("drive --fast --laps 1 --set time_limit_s=4 --record " + log).err,
+              HasSubstr("recorded 100 steps"));
+  const Outcome outcome =
+      chicane_program("replay " + log + " --branch-at 2 --set fault.nan_measurement=true --json");
+  const Json report = Json::parse(outcome.out, nullptr, false);
+  ASSERT_FALSE(report.is_discarded()) << outcome.out << outcome.err;
+  for (const char* future : {"recorded", "branch"}) {
+    ASSERT_TRUE(report[future]["mean_speed_mps"].is_number()) << outcome.out;
+    EXPECT_GT(report[future]["mean_speed_mps"].get<double>(), 1.0);
+  }
+  EXPECT_EQ(shell("rm " + log).code, 0);
+}
+
 TEST(Cli, ARunWritesItsReport) {
   const fs::path folder = fs::path(::testing::TempDir()) / ("chicane_report_" + std::to_string(::getpid()));
   fs::create_directories(folder);

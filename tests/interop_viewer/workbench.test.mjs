@@ -146,9 +146,8 @@ describe('the workbench', () => {
     await page.getByText('2× speed').waitFor({ state: 'detached' });
   });
 
-  it('injects a fault and clears it', async (test) => {
+  it('injects a fault and clears it', async () => {
     await dashboard.show('faults');
-    if ((await page.getByText('This run has no faults to inject.').count()) > 0) return test.skip('this program offers no faults');
     const fault = page.locator('.fault').first();
     await fault.click();
     await page.locator('.fault[aria-pressed="true"]').first().waitFor();

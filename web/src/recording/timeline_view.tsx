@@ -40,7 +40,7 @@ function Marks() {
   return (
     <div class="timeline-marks" aria-hidden="true">
       {landmarks.value.map(({ time, kind, label }) => (
-        <i key={`${kind}${time}`} class={`is-${kind}`} style={{ left: `${(100 * time) / length}%` }} title={`${lapTime(time)}: ${label}`} />
+        <i key={`${kind}${time}${label}`} class={`is-${kind}`} style={{ left: `${(100 * time) / length}%` }} title={`${lapTime(time)}: ${label}`} />
       ))}
     </div>
   );
