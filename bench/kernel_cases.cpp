@@ -5,12 +5,12 @@
 #include <memory>
 
 #include "chicane/base/random.hpp"
-#include "chicane/solver/adjoint.hpp"
 #include "chicane/solver/batch_solver.hpp"
-#include "chicane/solver/linearisation.hpp"
-#include "chicane/solver/lq_solver.hpp"
-#include "chicane/solver/problem_pattern.hpp"
-#include "chicane/solver/roll_out.hpp"
+#include "chicane/solver/detail/adjoint.hpp"
+#include "chicane/solver/detail/linearisation.hpp"
+#include "chicane/solver/detail/lq_solver.hpp"
+#include "chicane/solver/detail/problem_pattern.hpp"
+#include "chicane/solver/detail/roll_out.hpp"
 #include "problems/described_batch.hpp"
 
 namespace chicane::bench {

@@ -71,6 +71,8 @@ def check_folder(root, folder, module, table):
                 continue
             if target not in allowed and header not in allowed:
                 yield f"{where}: {module} must not include {header}"
+            elif parts[2] == "detail":
+                yield f"{where}: {module} must not include {header}: it is an implementation detail of {target}"
             elif linked is not None and target not in linked:
                 yield f"{where}: {module} includes {header} but does not list {target} in DEPENDS"
 

@@ -69,7 +69,7 @@ def check_library_file(root, source):
     if source.suffix == ".hpp":
         for number, name in includes:
             is_standard = "." not in name and "/" not in name
-            if path == "base/instructions.hpp" and name in ("immintrin.h", "arm_neon.h"):
+            if path == "base/detail/instructions.hpp" and name in ("immintrin.h", "arm_neon.h"):
                 continue  # the processor's own
             if not is_standard and not name.startswith("chicane/") and not PUBLIC_THIRD_PARTY.fullmatch(name):
                 yield f"src/chicane/{path}:{number}: got <{name}>: headers show Eigen and tl/expected.hpp only"

@@ -56,6 +56,7 @@ class Checks(unittest.TestCase):
             ("src/chicane/solver/CMakeLists.txt", ("chicane_module(solver DEPENDS base sim)",), "solver must not link sim"),
             ("src/chicane/solver/CMakeLists.txt", ("chicane_module(solver)",), "does not list base in DEPENDS"),
             ("src/chicane/solver/solve.cpp", '#include "math.hpp"\n', 'expected "chicane/module/file.hpp"'),
+            ("src/chicane/solver/solve.cpp", '#include "chicane/base/detail/jet.hpp"\n', "an implementation detail of base"),
             ("src/chicane/helpers/misc.hpp", "\n", "helpers is not in tools/layers.txt"),
             ("tools/layers.txt", ("base:\nsolver: base model\nmodel: base\napps: base solver model\n",), "listed above it"),
         ):

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/lap_time/limit_car.hpp"
+#include "chicane/lap_time/detail/limit_car.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chicane/base/angle.hpp"
-#include "chicane/lap_time/limit_car.hpp"
+#include "chicane/lap_time/detail/limit_car.hpp"
 
 namespace chicane::lap_time {
 namespace {

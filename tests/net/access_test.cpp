@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/net/access.hpp"
+#include "chicane/net/detail/access.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "chicane/solver/detail/small_qp.hpp"
 #include "chicane/solver/ocp_solver.hpp"
-#include "chicane/solver/small_qp.hpp"
 #include "problems/optimality.hpp"
 #include "support/linear_problem.hpp"
 

@@ -4,9 +4,9 @@
 #include <cstring>
 #include <memory>
 
-#include "chicane/solver/adjoint.hpp"
-#include "chicane/solver/interior_point.hpp"
-#include "chicane/solver/lq_solver.hpp"
+#include "chicane/solver/detail/adjoint.hpp"
+#include "chicane/solver/detail/interior_point.hpp"
+#include "chicane/solver/detail/lq_solver.hpp"
 
 namespace chicane::test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/solver/lq_solver.hpp"
+#include "chicane/solver/detail/lq_solver.hpp"
 
 #include <gtest/gtest.h>
 

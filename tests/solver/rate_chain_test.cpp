@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/solver/rate_chain.hpp"
+#include "chicane/solver/detail/rate_chain.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/solver/roll_out.hpp"
+#include "chicane/solver/detail/roll_out.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/solver/soft_constraint.hpp"
+#include "chicane/solver/detail/soft_constraint.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "chicane/telemetry/zstd.hpp"
+#include "chicane/telemetry/detail/zstd.hpp"
 #include "sample_mcap.hpp"
 
 namespace chicane::telemetry {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "chicane/base/detail/jet_rules.hpp"
 #include "chicane/base/inlining.hpp"
-#include "chicane/base/jet_rules.hpp"
 
 namespace chicane {
 

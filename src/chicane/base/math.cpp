@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/math.hpp"
 
-#include "chicane/base/elementary.hpp"
+#include "chicane/base/detail/elementary.hpp"
 
 namespace chicane {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "chicane/base/elementary.hpp"
+#include "chicane/base/detail/elementary.hpp"
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/pack.hpp"
 

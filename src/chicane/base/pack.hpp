@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "chicane/base/detail/instructions.hpp"
 #include "chicane/base/inlining.hpp"
-#include "chicane/base/instructions.hpp"
 
 namespace chicane {
 

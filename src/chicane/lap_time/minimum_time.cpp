@@ -8,7 +8,7 @@
 #include <string>
 
 #include "chicane/base/math.hpp"
-#include "chicane/lap_time/limit_solver.hpp"
+#include "chicane/lap_time/detail/limit_solver.hpp"
 
 namespace chicane::lap_time {
 namespace {

@@ -24,9 +24,9 @@
 
 #include <fmt/format.h>
 
-#include "chicane/net/access.hpp"
+#include "chicane/net/detail/access.hpp"
+#include "chicane/net/detail/port_holder.hpp"
 #include "chicane/net/http_response.hpp"
-#include "chicane/net/port_holder.hpp"
 
 namespace chicane::net {
 namespace {

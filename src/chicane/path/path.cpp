@@ -10,7 +10,7 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/base/assert.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/path/point_text.hpp"
+#include "chicane/path/detail/point_text.hpp"
 
 namespace chicane::path {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "chicane/base/math.hpp"
-#include "chicane/path/point_text.hpp"
+#include "chicane/path/detail/point_text.hpp"
 
 namespace chicane::path {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include "chicane/path/crossing.hpp"
-#include "chicane/path/point_text.hpp"
+#include "chicane/path/detail/crossing.hpp"
+#include "chicane/path/detail/point_text.hpp"
 #include "chicane/path/smooth_line.hpp"
 
 namespace chicane::path {

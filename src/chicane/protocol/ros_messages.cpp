@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "chicane/base/math.hpp"
-#include "chicane/protocol/ros_schemas.hpp"
+#include "chicane/protocol/detail/ros_schemas.hpp"
 #include "chicane/solver/solution.hpp"
 
 namespace chicane::protocol {

@@ -11,9 +11,9 @@
 
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/instruction_set.hpp"
-#include "chicane/solver/batch_lanes.hpp"
-#include "chicane/solver/batch_room.hpp"
-#include "chicane/solver/batch_terms.hpp"
+#include "chicane/solver/detail/batch_lanes.hpp"
+#include "chicane/solver/detail/batch_room.hpp"
+#include "chicane/solver/detail/batch_terms.hpp"
 #include "chicane/solver/solution.hpp"
 
 namespace chicane::solver {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "chicane/solver/input_chains.hpp"
+#include "chicane/solver/detail/input_chains.hpp"
 #include "chicane/solver/problem.hpp"
 
 namespace chicane::solver {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "chicane/telemetry/detail/zstd.hpp"
 #include "chicane/telemetry/mcap_format.hpp"
-#include "chicane/telemetry/zstd.hpp"
 
 namespace chicane::telemetry {
 namespace {

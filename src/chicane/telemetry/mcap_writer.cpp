@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "chicane/telemetry/zstd.hpp"
+#include "chicane/telemetry/detail/zstd.hpp"
 
 namespace chicane::telemetry {
 namespace {

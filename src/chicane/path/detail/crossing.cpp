@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/path/crossing.hpp"
+#include "chicane/path/detail/crossing.hpp"
 
 #include <algorithm>
 #include <cmath>

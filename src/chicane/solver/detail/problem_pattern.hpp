@@ -8,7 +8,7 @@
 
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/jet.hpp"
-#include "chicane/solver/pattern.hpp"
+#include "chicane/solver/detail/pattern.hpp"
 #include "chicane/solver/problem.hpp"
 
 namespace chicane::solver {

@@ -7,9 +7,9 @@
 #include <cstddef>
 
 #include "chicane/base/inlining.hpp"
-#include "chicane/solver/iterate.hpp"
-#include "chicane/solver/problem_pattern.hpp"
-#include "chicane/solver/soft_constraint.hpp"
+#include "chicane/solver/detail/iterate.hpp"
+#include "chicane/solver/detail/problem_pattern.hpp"
+#include "chicane/solver/detail/soft_constraint.hpp"
 
 namespace chicane::solver {
 

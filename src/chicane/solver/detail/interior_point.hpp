@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "chicane/solver/lq_solver.hpp"
-#include "chicane/solver/rate_set.hpp"
+#include "chicane/solver/detail/lq_solver.hpp"
+#include "chicane/solver/detail/rate_set.hpp"
 
 namespace chicane::solver {
 

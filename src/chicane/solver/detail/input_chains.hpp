@@ -6,11 +6,11 @@
 #include <cstddef>
 #include <limits>
 
-#include "chicane/solver/input_block.hpp"
-#include "chicane/solver/iterate.hpp"
+#include "chicane/solver/detail/input_block.hpp"
+#include "chicane/solver/detail/iterate.hpp"
+#include "chicane/solver/detail/rate_chain.hpp"
+#include "chicane/solver/detail/rate_set.hpp"
 #include "chicane/solver/problem.hpp"
-#include "chicane/solver/rate_chain.hpp"
-#include "chicane/solver/rate_set.hpp"
 #include "chicane/solver/solution.hpp"
 
 namespace chicane::solver {

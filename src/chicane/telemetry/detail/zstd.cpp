@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/telemetry/zstd.hpp"
+#include "chicane/telemetry/detail/zstd.hpp"
 
 #include "chicane/base/assert.hpp"
 

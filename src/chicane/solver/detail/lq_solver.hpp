@@ -7,11 +7,11 @@
 
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/pack.hpp"
-#include "chicane/solver/input_block.hpp"
-#include "chicane/solver/pattern.hpp"
-#include "chicane/solver/rate_set.hpp"
-#include "chicane/solver/small_qp.hpp"
-#include "chicane/solver/stage_algebra.hpp"
+#include "chicane/solver/detail/input_block.hpp"
+#include "chicane/solver/detail/pattern.hpp"
+#include "chicane/solver/detail/rate_set.hpp"
+#include "chicane/solver/detail/small_qp.hpp"
+#include "chicane/solver/detail/stage_algebra.hpp"
 
 namespace chicane::solver {
 

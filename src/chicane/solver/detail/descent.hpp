@@ -7,11 +7,11 @@
 #include <cstddef>
 
 #include "chicane/base/deadline.hpp"
-#include "chicane/solver/barrier.hpp"
-#include "chicane/solver/evaluation.hpp"
-#include "chicane/solver/iterate.hpp"
-#include "chicane/solver/linearisation.hpp"
-#include "chicane/solver/lq_solver.hpp"
+#include "chicane/solver/detail/barrier.hpp"
+#include "chicane/solver/detail/evaluation.hpp"
+#include "chicane/solver/detail/iterate.hpp"
+#include "chicane/solver/detail/linearisation.hpp"
+#include "chicane/solver/detail/lq_solver.hpp"
 #include "chicane/solver/problem.hpp"
 
 namespace chicane::solver {

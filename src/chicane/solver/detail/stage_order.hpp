@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "chicane/solver/pattern.hpp"
+#include "chicane/solver/detail/pattern.hpp"
 
 namespace chicane::solver {
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "chicane/base/deadline.hpp"
-#include "chicane/lap_time/limit_problem.hpp"
+#include "chicane/lap_time/detail/limit_problem.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/solution.hpp"
 

@@ -5,11 +5,11 @@
 #include <cstddef>
 
 #include "chicane/base/inlining.hpp"
-#include "chicane/solver/evaluation.hpp"
-#include "chicane/solver/iterate.hpp"
+#include "chicane/solver/detail/evaluation.hpp"
+#include "chicane/solver/detail/iterate.hpp"
+#include "chicane/solver/detail/problem_pattern.hpp"
+#include "chicane/solver/detail/stage_order.hpp"
 #include "chicane/solver/problem.hpp"
-#include "chicane/solver/problem_pattern.hpp"
-#include "chicane/solver/stage_order.hpp"
 
 namespace chicane::solver {
 

@@ -6,7 +6,7 @@
 
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/pack.hpp"
-#include "chicane/solver/pattern.hpp"
+#include "chicane/solver/detail/pattern.hpp"
 
 namespace chicane::solver {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "chicane/solver/input_block.hpp"
+#include "chicane/solver/detail/input_block.hpp"
 
 namespace chicane::solver {
 

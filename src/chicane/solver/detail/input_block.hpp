@@ -7,7 +7,7 @@
 
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/pack.hpp"
-#include "chicane/solver/small_qp.hpp"
+#include "chicane/solver/detail/small_qp.hpp"
 
 namespace chicane::solver {
 

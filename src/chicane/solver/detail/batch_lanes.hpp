@@ -9,8 +9,8 @@
 
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/math_pack.hpp"
-#include "chicane/solver/pattern.hpp"
-#include "chicane/solver/problem_pattern.hpp"
+#include "chicane/solver/detail/pattern.hpp"
+#include "chicane/solver/detail/problem_pattern.hpp"
 
 namespace chicane::solver {
 

@@ -8,7 +8,7 @@
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/jet.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/lap_time/limit_car.hpp"
+#include "chicane/lap_time/detail/limit_car.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/stage_data.hpp"
 

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "chicane/base/inlining.hpp"
-#include "chicane/solver/iterate.hpp"
+#include "chicane/solver/detail/iterate.hpp"
+#include "chicane/solver/detail/problem_pattern.hpp"
 #include "chicane/solver/problem.hpp"
-#include "chicane/solver/problem_pattern.hpp"
 
 namespace chicane::solver {
 

@@ -8,8 +8,8 @@
 
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/math_pack.hpp"
+#include "chicane/solver/detail/soft_constraint.hpp"
 #include "chicane/solver/problem.hpp"
-#include "chicane/solver/soft_constraint.hpp"
 
 namespace chicane::solver {
 

@@ -10,15 +10,15 @@
 #include <type_traits>
 
 #include "chicane/base/inlining.hpp"
-#include "chicane/solver/barrier.hpp"
-#include "chicane/solver/evaluation.hpp"
-#include "chicane/solver/input_chains.hpp"
-#include "chicane/solver/iterate.hpp"
-#include "chicane/solver/pattern.hpp"
+#include "chicane/solver/detail/barrier.hpp"
+#include "chicane/solver/detail/evaluation.hpp"
+#include "chicane/solver/detail/input_chains.hpp"
+#include "chicane/solver/detail/iterate.hpp"
+#include "chicane/solver/detail/pattern.hpp"
+#include "chicane/solver/detail/problem_pattern.hpp"
+#include "chicane/solver/detail/stage_entries.hpp"
 #include "chicane/solver/problem.hpp"
-#include "chicane/solver/problem_pattern.hpp"
 #include "chicane/solver/solution.hpp"
-#include "chicane/solver/stage_entries.hpp"
 
 namespace chicane::solver {
 

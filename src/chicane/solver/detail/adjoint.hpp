@@ -5,7 +5,7 @@
 
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/pack.hpp"
-#include "chicane/solver/stage_algebra.hpp"
+#include "chicane/solver/detail/stage_algebra.hpp"
 
 namespace chicane::solver {
 

@@ -8,9 +8,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "chicane/base/detail/variable_sets.hpp"
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/base/variable_sets.hpp"
 
 namespace chicane {
 

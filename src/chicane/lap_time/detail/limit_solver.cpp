@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/lap_time/limit_solver.hpp"
+#include "chicane/lap_time/detail/limit_solver.hpp"
 
 #include "chicane/solver/ocp_solver.hpp"
 

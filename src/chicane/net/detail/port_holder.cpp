@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/net/port_holder.hpp"
+#include "chicane/net/detail/port_holder.hpp"
 
 #include <algorithm>
 #include <charconv>
