@@ -5,7 +5,11 @@ export default defineConfig({
   base: './',
   esbuild: { jsx: 'automatic', jsxImportSource: 'preact' },
   build: {
-    target: 'es2022', assetsInlineLimit: 0, reportCompressedSize: false, modulePreload: false, chunkSizeWarningLimit: 700,
+    target: 'es2022',
+    assetsInlineLimit: 0,
+    reportCompressedSize: false,
+    modulePreload: false,
+    chunkSizeWarningLimit: 700,
     // One script for `chicane report`, whose page stands alone.
     rollupOptions: process.env['CHICANE_REPORT'] ? { output: { inlineDynamicImports: true } } : {},
   },
@@ -13,7 +17,12 @@ export default defineConfig({
     // `npm run dev` beside `chicane drive`: the page is Vite's, the data the program's.
     proxy: {
       '^/(schema.json|preset.yaml|mode.json|log/)': 'http://127.0.0.1:4567',
-      '/viewer': { target: 'ws://127.0.0.1:4567', ws: true, changeOrigin: true, headers: { origin: 'http://127.0.0.1:4567' } },
+      '/viewer': {
+        target: 'ws://127.0.0.1:4567',
+        ws: true,
+        changeOrigin: true,
+        headers: { origin: 'http://127.0.0.1:4567' },
+      },
     },
   },
   test: { include: ['src/**/*.test.ts'], testTimeout: 60_000 }, // a busy machine is slow but not wrong

@@ -28,7 +28,10 @@ after(() => rmSync(folder, { recursive: true }));
 /** The last second that viewers were told of, and the file. */
 async function recordUntilKilled(number, seconds) {
   const file = join(folder, `${number}.mcap`);
-  const child = spawn(CHICANE, ['drive', '--port', '0', '--laps', '1000', '--record', file], { ...options, stdio: ['ignore', 'ignore', 'pipe'] });
+  const child = spawn(CHICANE, ['drive', '--port', '0', '--laps', '1000', '--record', file], {
+    ...options,
+    stdio: ['ignore', 'ignore', 'pipe'],
+  });
   const exit = once(child, 'exit');
   try {
     let said = '';

@@ -6,7 +6,8 @@ import { connect } from 'node:net';
 /** A masked text frame of a client, up to 65535 bytes. */
 function textFrame(text) {
   const payload = Buffer.from(text);
-  const head = payload.length < 126 ? [0x81, 0x80 | payload.length] : [0x81, 0xfe, payload.length >> 8, payload.length & 255];
+  const head =
+    payload.length < 126 ? [0x81, 0x80 | payload.length] : [0x81, 0xfe, payload.length >> 8, payload.length & 255];
   return Buffer.concat([Buffer.from([...head, 0, 0, 0, 0]), payload]); // a mask of zeros
 }
 
@@ -25,7 +26,8 @@ export async function listen(port) {
     if (opcode === 1) {
       const message = JSON.parse(payload.toString());
       const clock = message.op === 'advertise' && message.channels.find(({ topic }) => topic === '/clock');
-      if (clock) socket.write(textFrame(JSON.stringify({ op: 'subscribe', subscriptions: [{ id: 1, channelId: clock.id }] })));
+      if (clock)
+        socket.write(textFrame(JSON.stringify({ op: 'subscribe', subscriptions: [{ id: 1, channelId: clock.id }] })));
     } else if (opcode === 2 && payload[0] === 2) {
       newest = Number(payload.readBigUInt64LE(1)) / 1e9;
     }

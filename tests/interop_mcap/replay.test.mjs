@@ -102,7 +102,10 @@ describe('chicane replay', () => {
     const kept = join(folder, 'branch.mcap');
     const program = await start('replay', log, '--branch-at', '5', '--set', 'latency_ms=50', '--output', kept);
     const { logs, start_s } = await (await get(`${program.url}/mode.json`)).json();
-    assert.deepEqual(logs.map(({ name }) => name), ['run.mcap', 'branch at 5.0 s']);
+    assert.deepEqual(
+      logs.map(({ name }) => name),
+      ['run.mcap', 'branch at 5.0 s'],
+    );
     assert.equal(start_s, 5);
     const reader = await openByRange(`${program.url}/log/1.mcap`);
     assert.equal((await steps(reader)).length, 250);
@@ -131,7 +134,9 @@ describe('chicane report', () => {
     const written = await chicane('report', log, '-o', page);
     if (/without its dashboard/.test(written.stderr)) return;
     assert.equal(written.code, 0, written.stderr);
-    const [, json] = /<script type="application\/json" id="chicane-report">(.*?)<\/script>/s.exec(readFileSync(page, 'utf8'));
+    const [, json] = /<script type="application\/json" id="chicane-report">(.*?)<\/script>/s.exec(
+      readFileSync(page, 'utf8'),
+    );
     const [{ name, mcap_base64 }] = JSON.parse(json).logs;
     assert.equal(name, 'run.mcap');
     const bytes = Buffer.from(mcap_base64, 'base64');
@@ -142,7 +147,14 @@ describe('chicane report', () => {
       },
     });
     const topics = [...reader.channelsById.values()].map(({ topic }) => topic).sort();
-    assert.deepEqual(topics, ['/chicane/frame', '/chicane/plan', '/chicane/run', '/track/centre', '/track/left', '/track/right']);
+    assert.deepEqual(topics, [
+      '/chicane/frame',
+      '/chicane/plan',
+      '/chicane/run',
+      '/track/centre',
+      '/track/left',
+      '/track/right',
+    ]);
   });
 });
 
@@ -151,7 +163,18 @@ describe('a session with an external simulator', () => {
     const [served, simulated] = [join(folder, 'served.mcap'), join(folder, 'simulated.mcap')];
     const server = await start('serve', '--record', served);
     const url = `ws://127.0.0.1:${server.port}/socket.io/?EIO=4&transport=websocket`;
-    await chicane('simulate', '--connect', url, '--laps', '1', '--set', 'time_limit_s=4', '--record', simulated, '--compress');
+    await chicane(
+      'simulate',
+      '--connect',
+      url,
+      '--laps',
+      '1',
+      '--set',
+      'time_limit_s=4',
+      '--record',
+      simulated,
+      '--compress',
+    );
     assert.equal(await server.end(), 0);
     const verified = await chicane('replay', served, '--verify', '--json');
     assert.equal(verified.code, 0, verified.stdout);

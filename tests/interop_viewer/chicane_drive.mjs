@@ -8,7 +8,9 @@ import foxglove from '@foxglove/ws-protocol';
 import WebSocket from 'ws';
 
 export async function startDrive(args = [], port = 0) {
-  const child = spawn(process.env.CHICANE ?? 'chicane', ['drive', '--port', String(port), '--laps', '10000', ...args], { stdio: ['ignore', 'ignore', 'pipe'] });
+  const child = spawn(process.env.CHICANE ?? 'chicane', ['drive', '--port', String(port), '--laps', '10000', ...args], {
+    stdio: ['ignore', 'ignore', 'pipe'],
+  });
   let said = '';
   const address = new Promise((resolve, reject) => {
     child.stderr.on('data', (data) => {
@@ -52,5 +54,11 @@ export async function watch(url) {
     if (seen.frames.size > 2000) seen.frames.delete(seen.frames.keys().next().value);
   });
   await once(socket, 'open');
-  return { ...seen, get newest() { return seen.newest; }, close: () => socket.terminate() };
+  return {
+    ...seen,
+    get newest() {
+      return seen.newest;
+    },
+    close: () => socket.terminate(),
+  };
 }

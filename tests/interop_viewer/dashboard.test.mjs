@@ -33,7 +33,10 @@ describe('the dashboard', () => {
     assert.equal(await page.locator('html').getAttribute('lang'), 'en');
     assert.equal(await page.locator('main').count(), 1);
     assert.match(await page.locator('h1').innerText(), /chicane/);
-    assert.match(await page.locator('.summary').innerText(), /tracking-mpc · default · udacity · demo road · 100 ms latency/);
+    assert.match(
+      await page.locator('.summary').innerText(),
+      /tracking-mpc · default · udacity · demo road · 100 ms latency/,
+    );
     assert.equal(await dashboard.text('rung'), 'The controller drives');
     assert.equal(await dashboard.text('status'), 'Optimal, 3 iterations');
     assert.equal(await dashboard.text('gate'), 'Passed the command unchanged');
@@ -42,12 +45,28 @@ describe('the dashboard', () => {
 
   it('shows a car that moves and numbers that change', async () => {
     await dashboard.show('plots');
-    const picture = () => page.locator('.map canvas').first().evaluate((canvas) => canvas.toDataURL());
-    const [firstPicture, firstTime, firstError] = [await picture(), await dashboard.seconds(), await dashboard.text('lateral-error')];
-    await dashboard.until(() => dashboard.seconds(), (now) => now > firstTime + 0.5, 'lap time');
+    const picture = () =>
+      page
+        .locator('.map canvas')
+        .first()
+        .evaluate((canvas) => canvas.toDataURL());
+    const [firstPicture, firstTime, firstError] = [
+      await picture(),
+      await dashboard.seconds(),
+      await dashboard.text('lateral-error'),
+    ];
+    await dashboard.until(
+      () => dashboard.seconds(),
+      (now) => now > firstTime + 0.5,
+      'lap time',
+    );
     await dashboard.until(picture, differentFrom(firstPicture), 'map');
     await dashboard.until(() => dashboard.text('lateral-error'), differentFrom(firstError), 'lateral error');
-    await dashboard.until(() => dashboard.number('speed'), (speed) => speed > 5, 'speed in mph');
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (speed) => speed > 5,
+      'speed in mph',
+    );
     assert.ok((await dashboard.colours('.map canvas')) > 20, 'the map shows road, car and plan');
     assert.equal(await page.locator('.plot').count(), 11);
     for (const title of ['Speed', 'Steering', 'Drive', 'Acceleration', 'Iterations', 'Control step', 'Step times']) {
@@ -66,9 +85,17 @@ describe('the dashboard', () => {
     const stepped = await dashboard.until(() => dashboard.seconds(), differentFrom(paused), 'lap time after a step');
     assert.equal(stepped.toFixed(2), (paused + 0.04).toFixed(2));
     await dashboard.button('Reset').click();
-    await dashboard.until(() => dashboard.seconds(), (now) => now === 0, 'lap time after a reset');
+    await dashboard.until(
+      () => dashboard.seconds(),
+      (now) => now === 0,
+      'lap time after a reset',
+    );
     await dashboard.resume();
-    await dashboard.until(() => dashboard.seconds(), (now) => now > 0.2, 'lap time after going on');
+    await dashboard.until(
+      () => dashboard.seconds(),
+      (now) => now > 0.2,
+      'lap time after going on',
+    );
     assert.equal(await dashboard.button('Step').isDisabled(), true);
   });
 
@@ -98,16 +125,25 @@ describe('the dashboard', () => {
 
   it('shows the value under the cursor in all plots', async () => {
     await dashboard.show('plots');
-    await dashboard.until(() => dashboard.seconds(), (now) => now > 1, 'some data');
+    await dashboard.until(
+      () => dashboard.seconds(),
+      (now) => now > 1,
+      'some data',
+    );
     await dashboard.button('Pause').click();
     await page.getByText('Paused', { exact: true }).waitFor();
     await page.waitForTimeout(300);
-    const values = () => page.locator('.plot[aria-label="Lateral error"] .key b, .plot[aria-label="Speed"] .key b').allInnerTexts();
+    const values = () =>
+      page.locator('.plot[aria-label="Lateral error"] .key b, .plot[aria-label="Speed"] .key b').allInnerTexts();
     const newest = await values();
     const box = await page.locator('.plot[aria-label="Speed"] .u-over').boundingBox();
     let back = 0; // where the other plot shows another value: two moments may have the same one
     const pointed = () => page.mouse.move(box.x + box.width - (back += 6), box.y + 20).then(values);
-    await dashboard.until(pointed, (now) => back < box.width && now.at(-1) !== newest.at(-1), 'the other plot follows the cursor');
+    await dashboard.until(
+      pointed,
+      (now) => back < box.width && now.at(-1) !== newest.at(-1),
+      'the other plot follows the cursor',
+    );
     await dashboard.resume();
   });
 
@@ -123,7 +159,11 @@ describe('the dashboard', () => {
     await page.keyboard.press('End');
     assert.equal(await chosen(), 'Faults');
 
-    const view = () => page.locator('[aria-label="View"] [aria-pressed="true"], [aria-label="Camera"] [aria-pressed="true"]').first().innerText();
+    const view = () =>
+      page
+        .locator('[aria-label="View"] [aria-pressed="true"], [aria-label="Camera"] [aria-pressed="true"]')
+        .first()
+        .innerText();
     await page.evaluate(() => document.activeElement.blur());
     const first = await view();
     await page.keyboard.press('c');
@@ -203,7 +243,9 @@ it('fits a phone', async () => {
   for (const tab of TABS) {
     await dashboard.show(tab);
     assert.deepEqual(await dashboard.overflow(), { across: 0, down: 0 }, tab);
-    const sizes = await page.locator('p, dd, dt, button, td, th, label').evaluateAll((all) => all.map((each) => parseFloat(getComputedStyle(each).fontSize)));
+    const sizes = await page
+      .locator('p, dd, dt, button, td, th, label')
+      .evaluateAll((all) => all.map((each) => parseFloat(getComputedStyle(each).fontSize)));
     assert.ok(Math.min(...sizes) >= 12, `smallest text ${Math.min(...sizes)} px`);
     assert.deepEqual(await dashboard.accessibilityFindings(), [], tab);
   }

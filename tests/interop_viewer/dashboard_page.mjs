@@ -8,7 +8,13 @@ import { PATIENCE } from './patience.mjs';
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
 export const LAPTOP = { viewport: { width: 1366, height: 768 }, colorScheme: 'light' };
-export const PHONE = { viewport: { width: 390, height: 844 }, colorScheme: 'light', deviceScaleFactor: 2, isMobile: true, hasTouch: true };
+export const PHONE = {
+  viewport: { width: 390, height: 844 },
+  colorScheme: 'light',
+  deviceScaleFactor: 2,
+  isMobile: true,
+  hasTouch: true,
+};
 export const TABS = ['drive', 'plots', 'explain', 'tune', 'laps', 'faults'];
 
 export const differentFrom = (before) => (now) => now !== before;
@@ -122,7 +128,10 @@ export class DashboardPage {
   async accessibilityFindings() {
     if (!(await this.page.evaluate(() => 'axe' in globalThis))) await this.page.evaluate(axe);
     const { violations } = await this.page.evaluate(() => globalThis.axe.run());
-    return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target} ${failureSummary}`).join(', ')}`);
+    return violations.map(
+      ({ id, nodes }) =>
+        `${id}: ${nodes.map(({ target, failureSummary }) => `${target} ${failureSummary}`).join(', ')}`,
+    );
   }
 
   /** What lies beyond the window's right and lower edge [px]. */

@@ -106,7 +106,10 @@ for (const subprotocol of ['foxglove.websocket.v1', 'foxglove.sdk.v1']) {
       const { client, next } = connection;
       client.getParameters([], 'all');
       const { parameters } = await next('parameterValues', ({ id }) => id === 'all');
-      assert.deepEqual(parameters.map(({ name }) => name), ['demo.gain', 'demo.name']);
+      assert.deepEqual(
+        parameters.map(({ name }) => name),
+        ['demo.gain', 'demo.name'],
+      );
       client.subscribeParameterUpdates(['demo.gain']);
       client.setParameters([{ name: 'demo.gain', value: 3 }], 'set');
       const answer = await next('parameterValues', ({ id }) => id === 'set');
@@ -122,13 +125,21 @@ for (const subprotocol of ['foxglove.websocket.v1', 'foxglove.sdk.v1']) {
       const { client, seen, next } = connection;
       const call = async (name, data) => {
         const service = seen.services.get(name);
-        client.sendServiceCallRequest({ serviceId: service.id, callId: 77, encoding: 'cdr', data: new Uint8Array([0, 1, 0, 0, ...data]) });
+        client.sendServiceCallRequest({
+          serviceId: service.id,
+          callId: 77,
+          encoding: 'cdr',
+          data: new Uint8Array([0, 1, 0, 0, ...data]),
+        });
         const response = await next('serviceCallResponse', ({ callId }) => callId === 77);
         return decode(service.response.schema, response.data);
       };
       const runChannel = seen.channels.get('/chicane/run');
       const id = client.subscribe(runChannel.id);
-      const paused = next('message', ({ subscriptionId, data }) => subscriptionId === id && decode(runChannel.schema, data).is_paused);
+      const paused = next(
+        'message',
+        ({ subscriptionId, data }) => subscriptionId === id && decode(runChannel.schema, data).is_paused,
+      );
       assert.deepEqual(await call('/step', []), { success: false, message: '/step: pause first' });
       assert.deepEqual(await call('/pause', [1]), { success: true, message: 'paused' });
       await paused;
@@ -143,7 +154,12 @@ for (const subprotocol of ['foxglove.websocket.v1', 'foxglove.sdk.v1']) {
 
     it('answers nonsense in words and goes on', async () => {
       const { client, socket, next } = connection;
-      for (const nonsense of ['{', '{"op":"fly"}', '{"op":"subscribe","subscriptions":[{"id":1,"channelId":999}]}', Buffer.from([9])]) {
+      for (const nonsense of [
+        '{',
+        '{"op":"fly"}',
+        '{"op":"subscribe","subscriptions":[{"id":1,"channelId":999}]}',
+        Buffer.from([9]),
+      ]) {
         const status = next('status');
         socket.send(nonsense);
         assert.equal((await status).level, 2);

@@ -4,7 +4,7 @@
 // The program drives the hour in virtual time and records it; the recording is sent over a socket as the program would
 // send it live. Every ten minutes of the run, after a forced collection, memory and nodes of the page are counted.
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, openSync, closeSync, readSync, fstatSync, rmSync } from 'node:fs';
+import { closeSync, fstatSync, mkdtempSync, openSync, readSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { argv, exit } from 'node:process';
@@ -23,9 +23,18 @@ const MOST_GROWTH_MB = 1; // from the first sample to the last
 const folder = mkdtempSync(join(tmpdir(), 'chicane-hour-'));
 const log = join(folder, 'hour.mcap');
 console.error(`driving ${MINUTES} minutes …`);
-const settings = ['car=road-car', `time_limit_s=${60 * MINUTES}`, 'control_period_ms=16', 'tracking_mpc.horizon_steps=20'];
+const settings = [
+  'car=road-car',
+  `time_limit_s=${60 * MINUTES}`,
+  'control_period_ms=16',
+  'tracking_mpc.horizon_steps=20',
+];
 try {
-  execFileSync(process.env.CHICANE ?? 'chicane', ['drive', '--fast', '--laps', '10000', '--record', log, ...settings.flatMap((each) => ['--set', each])], { stdio: 'ignore' });
+  execFileSync(
+    process.env.CHICANE ?? 'chicane',
+    ['drive', '--fast', '--laps', '10000', '--record', log, ...settings.flatMap((each) => ['--set', each])],
+    { stdio: 'ignore' },
+  );
 } catch {
   // Not all of ten thousand laps: it says so by its exit code.
 }
@@ -41,7 +50,8 @@ const reader = await McapIndexedReader.Initialize({
     },
   },
 });
-const isShown = ({ topic, messageEncoding }) => messageEncoding === 'cdr' && (topic.startsWith('/chicane/') || topic.startsWith('/track/') || topic === '/reference');
+const isShown = ({ topic, messageEncoding }) =>
+  messageEncoding === 'cdr' && (topic.startsWith('/chicane/') || topic.startsWith('/track/') || topic === '/reference');
 const channels = [...reader.channelsById.values()].filter(isShown);
 
 /** Speaks as much of the protocol as a viewer needs. */
@@ -49,10 +59,26 @@ const server = new WebSocketServer({ port: 0, host: '127.0.0.1', handleProtocols
 const subscribed = new Map(); // subscription by channel
 const viewer = new Promise((resolve) => {
   server.on('connection', (socket) => {
-    socket.send(JSON.stringify({ op: 'serverInfo', name: 'one hour', capabilities: [], supportedEncodings: ['cdr'], metadata: {}, sessionId: 'hour' }));
+    socket.send(
+      JSON.stringify({
+        op: 'serverInfo',
+        name: 'one hour',
+        capabilities: [],
+        supportedEncodings: ['cdr'],
+        metadata: {},
+        sessionId: 'hour',
+      }),
+    );
     const advertised = channels.map(({ id, topic, schemaId }) => {
       const { name, data } = reader.schemasById.get(schemaId);
-      return { id, topic, encoding: 'cdr', schemaName: name, schemaEncoding: 'ros2msg', schema: new TextDecoder().decode(data) };
+      return {
+        id,
+        topic,
+        encoding: 'cdr',
+        schemaName: name,
+        schemaEncoding: 'ros2msg',
+        schema: new TextDecoder().decode(data),
+      };
     });
     socket.send(JSON.stringify({ op: 'advertise', channels: advertised }));
     socket.on('message', (text) => {
@@ -103,12 +129,22 @@ async function sample(minute, frames, wall) {
   for (let i = 0; i < 3; ++i) await session.send('HeapProfiler.collectGarbage');
   const heap = await session.send('Runtime.getHeapUsage');
   const { nodes, jsEventListeners } = await session.send('Memory.getDOMCounters');
-  return { minute, frames, heap: heap.usedSize / 1e6, buffers: (heap.backingStorageSize ?? NaN) / 1e6, nodes, listeners: jsEventListeners, wall };
+  return {
+    minute,
+    frames,
+    heap: heap.usedSize / 1e6,
+    buffers: (heap.backingStorageSize ?? NaN) / 1e6,
+    nodes,
+    listeners: jsEventListeners,
+    wall,
+  };
 }
 
 const row = ({ minute, frames, heap, buffers, nodes, listeners, wall }) =>
   `| ${Number(minute.toFixed(1))} | ${frames} | ${heap.toFixed(2)} | ${buffers.toFixed(2)} | ${nodes} | ${listeners} | ${wall.toFixed(0)} |`;
-console.log('| minutes | frames | heap [MB] | arrays [MB] | nodes | listeners | after [s] |\n|--:|--:|--:|--:|--:|--:|--:|');
+console.log(
+  '| minutes | frames | heap [MB] | arrays [MB] | nodes | listeners | after [s] |\n|--:|--:|--:|--:|--:|--:|--:|',
+);
 
 const begin = performance.now();
 const samples = [];

@@ -62,7 +62,8 @@ async function arrivals(url) {
   return { times, close: () => socket.terminate() };
 }
 
-const quantile = (values, share) => values.sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))];
+const quantile = (values, share) =>
+  values.sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))];
 
 for (const tab of ['plots', 'explain']) {
   it(`shows 60 frames a second within bounds, ${tab}`, async (test) => {
@@ -73,7 +74,11 @@ for (const tab of ['plots', 'explain']) {
     await page.goto(`${drive.url}#${tab}`);
     await page.getByText('Live', { exact: true }).waitFor();
     const dashboard = new DashboardPage(page, []);
-    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 5, 'a car that drives');
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph > 5,
+      'a car that drives',
+    );
     const other = await arrivals(drive.url);
     const session = await context.newCDPSession(page);
     await session.send('Performance.enable', { timeDomain: 'threadTicks' });
@@ -94,7 +99,9 @@ for (const tab of ['plots', 'explain']) {
 
     const share = (last.TaskDuration - first.TaskDuration) / elapsed;
     const frames = other.times.size / (elapsed + 3);
-    const ages = [...other.times].flatMap(([stamp, arrived]) => (paints.has(stamp) ? [paints.get(stamp) - arrived] : []));
+    const ages = [...other.times].flatMap(([stamp, arrived]) =>
+      paints.has(stamp) ? [paints.get(stamp) - arrived] : [],
+    );
     const growth = (last.JSHeapUsedSize - first.JSHeapUsedSize) / 1e6;
     test.diagnostic(
       `${tab}: ${frames.toFixed(0)} frames/s arrive, ${((paints.size - paintsBefore) / elapsed).toFixed(0)}/s painted, main thread ${(share * 100).toFixed(0)} %, ` +

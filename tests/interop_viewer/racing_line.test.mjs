@@ -25,7 +25,11 @@ async function open(options) {
   const dashboard = await DashboardPage.open(browser, drive.url, options);
   const { page } = dashboard;
   await line(page).waitFor();
-  await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 35, 'a plan without the cyan of slow speeds');
+  await dashboard.until(
+    () => dashboard.number('speed'),
+    (mph) => mph > 35,
+    'a plan without the cyan of slow speeds',
+  );
   await dashboard.pause();
   return dashboard;
 }
@@ -58,13 +62,25 @@ async function toggles(dashboard, selector, fields) {
   const { page } = dashboard;
   const seen = () => cyan(page, selector);
   assert.equal(await isOn(page), 'true');
-  await dashboard.until(async () => (await seen()).fields, (now) => now >= fields, 'the racing line');
+  await dashboard.until(
+    async () => (await seen()).fields,
+    (now) => now >= fields,
+    'the racing line',
+  );
   await page.locator('body').press('l');
   assert.equal(await isOn(page), 'false');
-  await dashboard.until(async () => (await seen()).pixels, (pixels) => pixels === 0, 'the picture without it');
+  await dashboard.until(
+    async () => (await seen()).pixels,
+    (pixels) => pixels === 0,
+    'the picture without it',
+  );
   await line(page).click();
   assert.equal(await isOn(page), 'true');
-  await dashboard.until(async () => (await seen()).fields, (now) => now >= fields, 'the racing line again');
+  await dashboard.until(
+    async () => (await seen()).fields,
+    (now) => now >= fields,
+    'the racing line again',
+  );
 }
 
 it('is drawn on the map, round the whole track, and left away', async () => {
@@ -96,10 +112,17 @@ for (const colorScheme of ['light', 'dark']) {
   it(`leaves the car in sight on a phone, ${colorScheme}`, async () => {
     const dashboard = await open({ ...PHONE, colorScheme });
     const { page } = dashboard;
-    await dashboard.until(() => cyan(page, 'canvas.map-2d'), ({ fields }) => fields >= 5, 'the racing line');
+    await dashboard.until(
+      () => cyan(page, 'canvas.map-2d'),
+      ({ fields }) => fields >= 5,
+      'the racing line',
+    );
     const [map, legend] = await Promise.all(['.map', '.legend'].map((part) => page.locator(part).boundingBox()));
     // The car stands in the middle of the picture, 84 px above its foot or higher; its ring reaches 15 px below.
-    assert.ok(legend.y > map.y + map.height - 84 + 15, `the legend begins ${map.y + map.height - legend.y} px above the foot of the map`);
+    assert.ok(
+      legend.y > map.y + map.height - 84 + 15,
+      `the legend begins ${map.y + map.height - legend.y} px above the foot of the map`,
+    );
     assert.deepEqual(await dashboard.accessibilityFindings(), []);
     await close(dashboard);
   });

@@ -59,7 +59,8 @@ async function open(address, options = {}) {
   });
   page.on('pageerror', (error) => complaints.push(String(error)));
   page.on('request', (request) => {
-    if (!request.url().startsWith(new URL(address).origin) && /^(https?|wss?):/.test(request.url())) complaints.push(`asked for ${request.url()}`);
+    if (!request.url().startsWith(new URL(address).origin) && /^(https?|wss?):/.test(request.url()))
+      complaints.push(`asked for ${request.url()}`);
   });
   await page.goto(`${address}#laps`);
   dashboard = new DashboardPage(page, complaints);
@@ -83,30 +84,62 @@ describe('a recording in the page', () => {
     const page = await open(url);
     await page.locator('tbody tr').nth(1).waitFor(); // both laps, though we stand at the start
     await scrub(page, 30);
-    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 50, 'the speed of that moment');
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph > 50,
+      'the speed of that moment',
+    );
     assert.match(await time(page), /^0:30\.00/);
     const there = await dashboard.number('speed');
     await scrub(page, 0);
-    await dashboard.until(() => dashboard.number('speed'), (mph) => mph < 1, 'standstill at the start');
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph < 1,
+      'standstill at the start',
+    );
     await scrub(page, 30);
-    await dashboard.until(() => dashboard.number('speed'), (mph) => mph === there, 'the same moment again');
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph === there,
+      'the same moment again',
+    );
     await dashboard.button('Step').click();
-    await dashboard.until(() => time(page), (text) => /^0:30\.0[1-9]/.test(text), 'the next control step');
+    await dashboard.until(
+      () => time(page),
+      (text) => /^0:30\.0[1-9]/.test(text),
+      'the next control step',
+    );
     await dashboard.button('Play').click();
-    await dashboard.until(() => time(page), (text) => /^0:3[2-9]/.test(text), 'it plays');
+    await dashboard.until(
+      () => time(page),
+      (text) => /^0:3[2-9]/.test(text),
+      'it plays',
+    );
     await page.keyboard.press('Space');
     await page.getByText('Recording', { exact: true }).waitFor();
     await dashboard.button('Next landmark').click();
-    await dashboard.until(() => time(page), (text) => /^0:3[4-9]|^1:/.test(text), 'the end of a lap');
+    await dashboard.until(
+      () => time(page),
+      (text) => /^0:3[4-9]|^1:/.test(text),
+      'the end of a lap',
+    );
   });
 
   it('shows both futures, each in turn', async () => {
     const page = await open(url);
     await scrub(page, 55);
-    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 60, 'as it was driven');
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph > 60,
+      'as it was driven',
+    );
     await page.getByText('branch.mcap', { exact: true }).first().waitFor({ state: 'attached' });
     await page.getByLabel('Recording that is played').selectOption({ label: 'branch.mcap' });
-    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 20 && mph < 50, 'slower since the branch');
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph > 20 && mph < 50,
+      'slower since the branch',
+    );
     assert.match(await time(page), /^0:55/);
   });
 
@@ -129,7 +162,11 @@ describe('a report', () => {
   it('opens from disk, alone', async () => {
     const page = await open(pathToFileURL(report).href);
     await scrub(page, 30);
-    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 50, 'the speed of that moment');
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph > 50,
+      'the speed of that moment',
+    );
     assert.equal(await page.locator('tbody tr').count(), 2);
     assert.ok((await page.pdf()).length > 10_000, 'it prints');
     assert.deepEqual(await dashboard.accessibilityFindings(), []);

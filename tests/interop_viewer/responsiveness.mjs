@@ -32,7 +32,8 @@ function count({ timer, dimension }) {
   }, timer);
 }
 
-const quantile = (values, share) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))];
+const quantile = (values, share) =>
+  [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))];
 
 async function measure(browser, url, dimension) {
   const context = await browser.newContext({ viewport: { width: 1366, height: 768 } });
@@ -43,7 +44,8 @@ async function measure(browser, url, dimension) {
   await page.waitForTimeout(8000); // shaders are compiled, a level of quality is found
   const session = await context.newCDPSession(page);
   await session.send('Performance.enable', { timeDomain: 'threadTicks' });
-  const busy = async () => (await session.send('Performance.getMetrics')).metrics.find(({ name }) => name === 'TaskDuration').value;
+  const busy = async () =>
+    (await session.send('Performance.getMetrics')).metrics.find(({ name }) => name === 'TaskDuration').value;
   const [first, begin] = [await busy(), performance.now()];
   await page.evaluate(() => Object.assign(globalThis.counts, { repaints: 0, pictures: 0, late: [] }));
   await page.waitForTimeout(SECONDS * 1000);
@@ -51,13 +53,22 @@ async function measure(browser, url, dimension) {
   const elapsed = (performance.now() - begin) / 1000;
   const share = ((await busy()) - first) / elapsed;
   await context.close();
-  const columns = [dimension, pictures / elapsed, repaints / elapsed, quantile(late, 0.5), quantile(late, 0.95), 100 * share];
+  const columns = [
+    dimension,
+    pictures / elapsed,
+    repaints / elapsed,
+    quantile(late, 0.5),
+    quantile(late, 0.95),
+    100 * share,
+  ];
   console.log(`| ${columns.map((each) => (typeof each === 'number' ? each.toFixed(0) : each)).join(' | ')} |`);
 }
 
 const browser = await launch();
 const drive = await startDrive();
-console.log('| shown | 3D pictures a second | repaints a second | timers late, median [ms] | 95 of 100 [ms] | main thread, of one core [%] |\n|---|--:|--:|--:|--:|--:|');
+console.log(
+  '| shown | 3D pictures a second | repaints a second | timers late, median [ms] | 95 of 100 [ms] | main thread, of one core [%] |\n|---|--:|--:|--:|--:|--:|',
+);
 for (let i = 0; i < TIMES; ++i) for (const dimension of ['2d', '3d']) await measure(browser, drive.url, dimension);
 await browser.close();
 await drive.stop();

@@ -36,14 +36,16 @@ async function open(browser, { storage = {}, script, ...options } = {}) {
   const complaints = [];
   page.on('console', (message) => {
     // What drivers say of a canvas that is read back for a picture without a graphics card.
-    if (['error', 'warning'].includes(message.type()) && !message.text().includes('GL Driver Message')) complaints.push(message.text());
+    if (['error', 'warning'].includes(message.type()) && !message.text().includes('GL Driver Message'))
+      complaints.push(message.text());
   });
   page.on('pageerror', (error) => complaints.push(String(error)));
   if (script) await page.addInitScript(script);
   await page.addInitScript(countDrawing);
   await page.addInitScript((entries) => {
     try {
-      if (localStorage.length === 0) for (const [key, value] of entries) localStorage.setItem(key, JSON.stringify(value));
+      if (localStorage.length === 0)
+        for (const [key, value] of entries) localStorage.setItem(key, JSON.stringify(value));
     } catch {
       // A test without storage.
     }
@@ -134,7 +136,9 @@ describe('the 3D picture', () => {
     assert.ok((await picture(page)).colours >= 30, 'there is something to see as soon as the map has made room');
     await page.waitForTimeout(1000);
     const longest = await page.evaluate(() => globalThis.longest);
-    test.diagnostic(`first picture after ${took.toFixed(0)} ms, the page answered at least every ${longest.toFixed(0)} ms`);
+    test.diagnostic(
+      `first picture after ${took.toFixed(0)} ms, the page answered at least every ${longest.toFixed(0)} ms`,
+    );
     assert.ok(longest < 4000, `${longest} ms without an answer`); // measured: 200 to 550; 4600 to 8400 with a blurred sky and awaited shaders
     assert.deepEqual(complaints, []);
     await context.close();
@@ -144,7 +148,10 @@ describe('the 3D picture', () => {
     const { context, page, complaints } = await open(browser, { storage: in3d });
     await ready(page);
     for (const name of ['Chase', 'Top', 'Cockpit', 'Free']) {
-      await page.waitForFunction((camera) => document.querySelector('[aria-label="View"] [aria-pressed="true"]')?.textContent === camera, name);
+      await page.waitForFunction(
+        (camera) => document.querySelector('[aria-label="View"] [aria-pressed="true"]')?.textContent === camera,
+        name,
+      );
       await page.keyboard.press('c');
     }
     await button(page, 'Free').click();
@@ -154,7 +161,11 @@ describe('the 3D picture', () => {
     const before = await picture(page);
     await page.locator('canvas.map-3d').focus();
     for (let i = 0; i < 6; ++i) await page.keyboard.press('ArrowLeft');
-    await new DashboardPage(page).until(() => picture(page), ({ text }) => text !== before.text, 'another view');
+    await new DashboardPage(page).until(
+      () => picture(page),
+      ({ text }) => text !== before.text,
+      'another view',
+    );
     await page.keyboard.press('v');
     await page.locator('.map:not(.has-3d)').waitFor();
     await page.keyboard.press('v');
@@ -182,7 +193,9 @@ describe('the 3D picture', () => {
   it('gives way to the map when the browser takes the context, and comes back when asked', async () => {
     const { context, page } = await open(browser, { storage: in3d });
     await ready(page);
-    await page.evaluate(() => document.querySelector('canvas.map-3d').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext());
+    await page.evaluate(() =>
+      document.querySelector('canvas.map-3d').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext(),
+    );
     await page.getByText('The browser stopped the 3D picture').waitFor();
     assert.ok((await page.locator('canvas.map-2d').boundingBox()).width > 300, 'the map fills the place');
     await button(page, '3D').click();
@@ -198,11 +211,17 @@ describe('the 3D picture', () => {
     ['for readers who want little motion', { reducedMotion: 'reduce' }],
   ]) {
     it(`has nothing that axe objects to ${name}`, async () => {
-      const { context, page, complaints } = await open(browser, { storage: { ...in3d, 'chicane.camera': 'free' }, ...options });
+      const { context, page, complaints } = await open(browser, {
+        storage: { ...in3d, 'chicane.camera': 'free' },
+        ...options,
+      });
       await ready(page);
       assert.ok((await picture(page)).colours >= 30);
       assert.deepEqual(await accessibilityFindings(page), []);
-      const { width, content } = await page.evaluate(() => ({ width: innerWidth, content: document.documentElement.scrollWidth }));
+      const { width, content } = await page.evaluate(() => ({
+        width: innerWidth,
+        content: document.documentElement.scrollWidth,
+      }));
       assert.ok(content <= width, `${content} px of content on ${width} px`);
       assert.deepEqual(complaints, []);
       await context.close();
@@ -233,7 +252,12 @@ it('is replaced by the map, with a note, where there is no WebGL', async () => {
 
 it('works where the browser keeps nothing', async () => {
   const browser = await launch();
-  const script = () => Object.defineProperty(window, 'localStorage', { get: () => { throw new DOMException('denied', 'SecurityError'); } });
+  const script = () =>
+    Object.defineProperty(window, 'localStorage', {
+      get: () => {
+        throw new DOMException('denied', 'SecurityError');
+      },
+    });
   const { context, page, complaints } = await open(browser, { script });
   await button(page, '3D').click();
   await ready(page);

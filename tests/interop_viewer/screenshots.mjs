@@ -13,10 +13,44 @@ const PICTURES = [
   { name: 'dashboard', tab: 'plots', size: LAPTOP, colorScheme: 'light' },
   { name: 'dashboard_explain', tab: 'explain', size: LAPTOP, colorScheme: 'dark' },
   { name: 'dashboard_laps', tab: 'laps', size: LAPTOP, colorScheme: 'light' },
-  { name: 'dashboard_plots', tab: 'plots', size: [1600, 900], colorScheme: 'dark', prepare: (page) => page.keyboard.press('f') },
-  { name: 'dashboard_tune', tab: 'tune', size: LAPTOP, colorScheme: 'light', prepare: tune, undo: (page) => page.getByRole('button', { name: 'Reset all' }).click() },
-  { name: 'dashboard_faults', tab: 'faults', size: LAPTOP, colorScheme: 'dark', prepare: (page) => page.locator('[data-key="fault.half_grip"]').click(), undo: (page) => page.locator('[data-key="fault.half_grip"][aria-pressed="true"]').click({ timeout: 1000 }).catch(() => undefined) },
-  { name: 'dashboard_phone', tab: 'drive', size: [390, 844], colorScheme: 'light', deviceScaleFactor: 2, isMobile: true, hasTouch: true, prepare: (page) => page.keyboard.press('m'), undo: (page) => page.keyboard.press('Escape') },
+  {
+    name: 'dashboard_plots',
+    tab: 'plots',
+    size: [1600, 900],
+    colorScheme: 'dark',
+    prepare: (page) => page.keyboard.press('f'),
+  },
+  {
+    name: 'dashboard_tune',
+    tab: 'tune',
+    size: LAPTOP,
+    colorScheme: 'light',
+    prepare: tune,
+    undo: (page) => page.getByRole('button', { name: 'Reset all' }).click(),
+  },
+  {
+    name: 'dashboard_faults',
+    tab: 'faults',
+    size: LAPTOP,
+    colorScheme: 'dark',
+    prepare: (page) => page.locator('[data-key="fault.half_grip"]').click(),
+    undo: (page) =>
+      page
+        .locator('[data-key="fault.half_grip"][aria-pressed="true"]')
+        .click({ timeout: 1000 })
+        .catch(() => undefined),
+  },
+  {
+    name: 'dashboard_phone',
+    tab: 'drive',
+    size: [390, 844],
+    colorScheme: 'light',
+    deviceScaleFactor: 2,
+    isMobile: true,
+    hasTouch: true,
+    prepare: (page) => page.keyboard.press('m'),
+    undo: (page) => page.keyboard.press('Escape'),
+  },
 ];
 
 async function tune(page) {

@@ -152,7 +152,10 @@ describe('a run that goes on', () => {
     await until('the fault', () => latest.get('/chicane/frame').active_faults !== 0);
     assert.equal(values.get('fault.half_grip'), true);
     set('run.pace', 20);
-    await until('its end', () => values.get('fault.half_grip') === false && latest.get('/chicane/frame').active_faults === 0);
+    await until(
+      'its end',
+      () => values.get('fault.half_grip') === false && latest.get('/chicane/frame').active_faults === 0,
+    );
     set('fault.link_lost', true);
     await until('another', () => latest.get('/chicane/frame').active_faults !== 0);
     set('fault.link_lost', false);

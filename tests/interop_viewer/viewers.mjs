@@ -18,7 +18,9 @@ const PAGE = 4096; // [bytes]
 setPriority(19); // the clients' work is not what is measured
 
 async function start() {
-  const child = spawn(process.env.CHICANE ?? 'chicane', ['drive', '--port', '0', '--laps', '10000', '--json'], { stdio: ['ignore', 'pipe', 'pipe'] });
+  const child = spawn(process.env.CHICANE ?? 'chicane', ['drive', '--port', '0', '--laps', '10000', '--json'], {
+    stdio: ['ignore', 'pipe', 'pipe'],
+  });
   let [said, out] = ['', ''];
   child.stdout.on('data', (data) => (out += data));
   const port = await new Promise((resolve, reject) => {
@@ -62,17 +64,22 @@ async function view(port, reads) {
     if (op !== 'advertise') return;
     const wanted = channels.filter(({ topic }) => TOPICS.includes(topic));
     frame = wanted.findIndex(({ topic }) => topic === '/chicane/frame');
-    socket.send(JSON.stringify({ op: 'subscribe', subscriptions: wanted.map(({ id }, i) => ({ id: i, channelId: id })) }), () => {
-      if (!reads) socket.pause();
-    });
+    socket.send(
+      JSON.stringify({ op: 'subscribe', subscriptions: wanted.map(({ id }, i) => ({ id: i, channelId: id })) }),
+      () => {
+        if (!reads) socket.pause();
+      },
+    );
   });
   await once(socket, 'open');
   return viewer;
 }
 
 /** TCP buffers of the whole machine [MB]. */
-const kernelMemory = () => (Number(/^TCP:.* mem (\d+)/m.exec(readFileSync('/proc/net/sockstat', 'utf8'))[1]) * PAGE) / 1e6;
-const quantile = (values, share) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))];
+const kernelMemory = () =>
+  (Number(/^TCP:.* mem (\d+)/m.exec(readFileSync('/proc/net/sockstat', 'utf8'))[1]) * PAGE) / 1e6;
+const quantile = (values, share) =>
+  [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))];
 
 async function measure(count) {
   const before = kernelMemory();
@@ -89,12 +96,26 @@ async function measure(count) {
   const dropped = readers.filter(({ isDropped }) => isDropped).length;
   const { step_time_us: step, deadline_misses: misses } = await drive.stop();
   for (const { close } of viewers) close();
-  const told = readers.length === 0 ? ['', ''] : [quantile(readers.map(({ frames }) => frames / SECONDS), 0).toFixed(0), Math.max(...readers.map(({ longest }) => longest)).toFixed(0)];
-  console.log(`| ${count} | ${[step.p50, step.p99, step.p999, step.max].map((each) => each.toFixed(0)).join(' | ')} | ${misses} | ${told.join(' | ')} | ${memory.toFixed(0)} | ${kernel.toFixed(0)} | ${dropped} |`);
+  const told =
+    readers.length === 0
+      ? ['', '']
+      : [
+          quantile(
+            readers.map(({ frames }) => frames / SECONDS),
+            0,
+          ).toFixed(0),
+          Math.max(...readers.map(({ longest }) => longest)).toFixed(0),
+        ];
+  console.log(
+    `| ${count} | ${[step.p50, step.p99, step.p999, step.max].map((each) => each.toFixed(0)).join(' | ')} | ${misses} | ${told.join(' | ')} | ${memory.toFixed(0)} | ${kernel.toFixed(0)} | ${dropped} |`,
+  );
   return { isSteady: dropped === 0 };
 }
 
-console.log('| viewers | step p50 [µs] | p99 | p99.9 | max | late | fewest frames a second | longest gap [ms] | memory [MB] | sockets [MB] | readers dropped |\n|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|');
+console.log(
+  '| viewers | step p50 [µs] | p99 | p99.9 | max | late | fewest frames a second | longest gap [ms] | memory [MB] | sockets [MB] | readers dropped |\n|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|',
+);
 let isSteady = true;
-for (let i = 0; i < TIMES; ++i) for (const count of [0, VIEWERS]) isSteady = (await measure(count)).isSteady && isSteady;
+for (let i = 0; i < TIMES; ++i)
+  for (const count of [0, VIEWERS]) isSteady = (await measure(count)).isSteady && isSteady;
 exit(isSteady ? 0 : 1);

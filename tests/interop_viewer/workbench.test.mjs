@@ -39,9 +39,17 @@ async function pauseWhileItGathersSpeed(other) {
   for (;;) {
     await dashboard.pause();
     await dashboard.button('Reset').click();
-    await dashboard.until(() => dashboard.number('speed'), (mph) => mph === 0, 'a car at the start');
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph === 0,
+      'a car at the start',
+    );
     await dashboard.resume();
-    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 15, 'a car that gathers speed');
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph > 15,
+      'a car that gathers speed',
+    );
     await dashboard.pause();
     const last = await dashboard.settled(() => other.newest);
     if (last.throttle_asked > 0.5) return last;
@@ -63,11 +71,18 @@ describe('the workbench', () => {
     await dashboard.show('tune');
     await type('tracking_mpc.speed_limit_mps', 3);
     await dashboard.button('Step').click();
-    await dashboard.until(() => other.newest.cycle, (cycle) => cycle > before.cycle, 'one control step');
+    await dashboard.until(
+      () => other.newest.cycle,
+      (cycle) => cycle > before.cycle,
+      'one control step',
+    );
     const change = other.changes.find(({ name }) => name === 'tracking_mpc.speed_limit_mps');
     assert.equal(change?.cycle, before.cycle + 1n, 'applied before the next step');
     assert.equal(other.frames.get(change.cycle).cycle, other.newest.cycle);
-    assert.ok(other.newest.throttle_asked < before.throttle_asked - 0.2, `throttle ${before.throttle_asked}, then ${other.newest.throttle_asked}`);
+    assert.ok(
+      other.newest.throttle_asked < before.throttle_asked - 0.2,
+      `throttle ${before.throttle_asked}, then ${other.newest.throttle_asked}`,
+    );
     assert.match(await dashboard.text('changes'), /tracking_mpc\.speed_limit_mps.*3/s);
     await dashboard.button('Reset all').click();
     await page.getByText('As it started').waitFor();
@@ -91,7 +106,10 @@ describe('the workbench', () => {
     const first = await box('latency_ms').inputValue();
     await type('latency_ms', 9999);
     await setting('latency_ms').getByRole('alert').waitFor();
-    assert.match(await setting('latency_ms').getByRole('alert').innerText(), /latency_ms: got 9999, expected a number in \[0, 500\] ms/);
+    assert.match(
+      await setting('latency_ms').getByRole('alert').innerText(),
+      /latency_ms: got 9999, expected a number in \[0, 500\] ms/,
+    );
     assert.equal(await box('latency_ms').inputValue(), first);
     await type('latency_ms', Number(first) + 1);
     await setting('latency_ms').getByRole('alert').waitFor({ state: 'detached' });
@@ -106,7 +124,11 @@ describe('the workbench', () => {
     assert.ok(found.includes('tracking_mpc.weight_lateral') && found.every((key) => /weight/.test(key)), found.join());
     const before = await box('tracking_mpc.weight_lateral').inputValue();
     await type('tracking_mpc.weight_lateral', 7);
-    await dashboard.until(() => dashboard.text('changes'), (text) => /1 change/.test(text), 'the list of changes');
+    await dashboard.until(
+      () => dashboard.text('changes'),
+      (text) => /1 change/.test(text),
+      'the list of changes',
+    );
     const preset = await download('Save as preset');
     assert.match(preset.content.toString(), /weight_lateral: 7/);
     await type('tracking_mpc.weight_lateral', before);
@@ -118,15 +140,27 @@ describe('the workbench', () => {
     await page.locator('body').press('m');
     await page.getByText('By hand', { exact: true }).waitFor();
     await page.keyboard.down('ArrowLeft');
-    await dashboard.until(() => dashboard.text('wheels'), (text) => /left/.test(text) && parseFloat(text) > 0.5, 'wheels to the left');
+    await dashboard.until(
+      () => dashboard.text('wheels'),
+      (text) => /left/.test(text) && parseFloat(text) > 0.5,
+      'wheels to the left',
+    );
     await page.keyboard.up('ArrowLeft');
     await page.keyboard.down('ArrowDown');
-    await dashboard.until(() => dashboard.text('pedal'), (text) => /brake/.test(text), 'the brake');
+    await dashboard.until(
+      () => dashboard.text('pedal'),
+      (text) => /brake/.test(text),
+      'the brake',
+    );
     await page.keyboard.up('ArrowDown');
     const pad = await page.locator('.pad').boundingBox();
     await page.mouse.move(pad.x + pad.width * 0.9, pad.y + pad.height * 0.1);
     await page.mouse.down();
-    await dashboard.until(() => dashboard.text('pedal'), (text) => /drive [1-9]/.test(text), 'the throttle');
+    await dashboard.until(
+      () => dashboard.text('pedal'),
+      (text) => /drive [1-9]/.test(text),
+      'the throttle',
+    );
     await page.mouse.up();
     await page.keyboard.press('Escape');
     await page.getByText('By hand', { exact: true }).waitFor({ state: 'detached' });
@@ -161,24 +195,27 @@ describe('the workbench', () => {
   it('explains what limits the speed', async () => {
     await dashboard.show('explain');
     const titles = ['The speed asked for', 'Grip in the bend', 'Braking for a bend', 'Power', 'Sight'];
-    await dashboard.until(() => dashboard.text('limiter'), (title) => titles.includes(title), 'a known limit');
+    await dashboard.until(
+      () => dashboard.text('limiter'),
+      (title) => titles.includes(title),
+      'a known limit',
+    );
     assert.ok((await page.locator('.constraints tbody tr').count()) > 3);
     await dashboard.until(() => dashboard.number('prediction-error'), Number.isFinite, 'prediction error');
   });
 
   it('shows the plan of a second ago beside what came of it, for who wants it', async () => {
     const pink = () =>
-      page
-        .locator('canvas.map-2d')
-        .evaluate((canvas) => {
-          const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });
-          const context = copy.getContext('2d', { willReadFrequently: true });
-          context.drawImage(canvas, 0, 0);
-          const { data } = context.getImageData(0, 0, copy.width, copy.height);
-          let count = 0;
-          for (let i = 0; i < data.length; i += 4) count += data[i] - data[i + 1] > 60 && data[i + 2] - data[i + 1] > 40 ? 1 : 0;
-          return count;
-        });
+      page.locator('canvas.map-2d').evaluate((canvas) => {
+        const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });
+        const context = copy.getContext('2d', { willReadFrequently: true });
+        context.drawImage(canvas, 0, 0);
+        const { data } = context.getImageData(0, 0, copy.width, copy.height);
+        let count = 0;
+        for (let i = 0; i < data.length; i += 4)
+          count += data[i] - data[i + 1] > 60 && data[i + 2] - data[i + 1] > 40 ? 1 : 0;
+        return count;
+      });
     const line = page.locator('.legend button', { hasText: 'plan 1 s ago' });
     assert.equal(await line.getAttribute('aria-pressed'), 'false');
     await page.locator('body').press('o');
@@ -197,7 +234,11 @@ describe('the workbench', () => {
     const told = { mph: 0, 'km/h': 0, 'm/s': 0 };
     await dashboard.show('plots');
     for (const name of Object.keys(told)) {
-      await dashboard.until(() => unit.innerText(), (text) => text === name, name);
+      await dashboard.until(
+        () => unit.innerText(),
+        (text) => text === name,
+        name,
+      );
       told[name] = await dashboard.number('speed');
       assert.match(await page.locator('.plot[aria-label="Speed"] h2').innerText(), new RegExp(name));
       assert.ok((await page.locator('.legend').innerText()).includes(name));
@@ -207,7 +248,11 @@ describe('the workbench', () => {
     assert.ok(Math.abs(told['km/h'] - 3.6 * told['m/s']) <= 2.5, JSON.stringify(told));
     await unit.click();
     await page.reload();
-    await dashboard.until(() => unit.innerText(), (text) => text === 'km/h', 'the same unit after a reload');
+    await dashboard.until(
+      () => unit.innerText(),
+      (text) => text === 'km/h',
+      'the same unit after a reload',
+    );
     await page.getByText('Paused', { exact: true }).waitFor();
     await dashboard.resume();
   });
@@ -225,17 +270,29 @@ describe('the workbench', () => {
     await dashboard.until(summary, (text) => /stanley/.test(text), 'the other controller');
     await choice('Preset').selectOption('weighted');
     await dashboard.until(summary, (text) => /cubic-mpc · weighted/.test(text), 'the preset');
-    await dashboard.until(() => dashboard.number('speed'), (mph) => mph > 10, 'a car that drives');
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph > 10,
+      'a car that drives',
+    );
   });
 
   it('counts laps, compares two of them and exports', async () => {
     await dashboard.show('drive');
     await type('run.pace', 20);
     await dashboard.show('laps');
-    await dashboard.until(() => page.locator('.lap-table tbody tr').count(), (count) => count >= 3, 'laps');
+    await dashboard.until(
+      () => page.locator('.lap-table tbody tr').count(),
+      (count) => count >= 3,
+      'laps',
+    );
     assert.ok((await page.locator('.lap-table tbody tr.best').count()) === 1);
     assert.ok((await page.locator('.best-sector').count()) >= 3);
-    await dashboard.until(() => page.locator('.compare canvas').count(), (count) => count === 3, 'curves');
+    await dashboard.until(
+      () => page.locator('.compare canvas').count(),
+      (count) => count === 3,
+      'curves',
+    );
     const table = await download('Table as CSV');
     assert.match(table.name, /oval.*laps\.csv/);
     assert.match(table.content.toString(), /^lap,lap_time_s,sector_1_s/);
@@ -284,13 +341,21 @@ describe('the workbench', () => {
 
 it('takes another run of a restarted server for another run', async () => {
   await open('plots');
-  await dashboard.until(() => dashboard.seconds(), (now) => now > 1, 'a run');
+  await dashboard.until(
+    () => dashboard.seconds(),
+    (now) => now > 1,
+    'a run',
+  );
   const { port } = drive;
   await drive.stop();
   await page.getByTestId('banner').waitFor();
   drive = await startDrive(['--track', 'hairpins', '--controller', 'pid'], port);
   await page.getByTestId('banner').waitFor({ state: 'detached' });
-  await dashboard.until(() => page.locator('.summary').innerText(), (text) => /pid.*hairpins/.test(text), 'the other run');
+  await dashboard.until(
+    () => page.locator('.summary').innerText(),
+    (text) => /pid.*hairpins/.test(text),
+    'the other run',
+  );
   const first = await dashboard.seconds();
   await dashboard.until(() => dashboard.seconds(), differentFrom(first), 'the lap clock');
   await dashboard.show('tune');

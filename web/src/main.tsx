@@ -1,16 +1,16 @@
 import { render } from 'preact';
 import { addShortcuts, shortcutFor } from './lib/keys';
+import { nextSpeedUnit } from './lib/units';
 import { Connection, SUBPROTOCOLS } from './protocol/connection';
 import { readSchema } from './protocol/schema';
 import type { Source } from './protocol/source';
-import { attempt, beginSession, isPaused, link, notice, receive, refreshText, services } from './state/app_state';
 import { begin, timeline } from './recording/begin';
+import { attempt, beginSession, isPaused, link, notice, receive, refreshText, services } from './state/app_state';
 import { toggleLayer } from './state/layers';
-import { nextSpeedUnit } from './lib/units';
 import { call, refresh } from './state/operate';
 import { toggleFrozen } from './state/plot_view';
-import { beginSettings, refreshWhenChosenAnew, takeSettings } from './state/settings_session';
 import { schema } from './state/settings';
+import { beginSettings, refreshWhenChosenAnew, takeSettings } from './state/settings_session';
 import { everyFrame } from './state/ticker';
 import { AnewView } from './views/anew_view';
 import { changePace } from './views/drive_view';
@@ -19,7 +19,7 @@ import { HelpView, isHelpOpen } from './views/help_view';
 import { handBack, listenToDriver, toggleManual } from './views/manual_view';
 import { nextView, toggleDimension, zoom } from './views/track_view';
 import { focusSearch } from './views/tune_view';
-import { isPanelAlone, tab, TABS, toggleDock, WorkbenchView } from './views/workbench_view';
+import { isPanelAlone, TABS, tab, toggleDock, WorkbenchView } from './views/workbench_view';
 
 let session: string | null = null;
 
@@ -75,9 +75,21 @@ addShortcuts(
   { keys: ['+', '='], label: '+', does: 'Closer', group: 'Camera', action: () => zoom(0.8) },
   { keys: ['-'], label: '−', does: 'Farther', group: 'Camera', action: () => zoom(1.25) },
   { keys: ['l'], label: 'L', does: 'The racing line', group: 'Camera', action: () => toggleLayer('racingLine') },
-  { keys: ['o'], label: 'O', does: 'The plan of a second ago, and what came of it', group: 'Camera', action: () => toggleLayer('hindsight') },
+  {
+    keys: ['o'],
+    label: 'O',
+    does: 'The plan of a second ago, and what came of it',
+    group: 'Camera',
+    action: () => toggleLayer('hindsight'),
+  },
   { keys: ['u'], label: 'U', does: 'Speeds in mph, km/h or m/s', group: 'Panels', action: nextSpeedUnit },
-  ...TABS.map((name, i) => ({ keys: [String(i + 1)], label: String(i + 1), does: `${name[0]?.toUpperCase()}${name.slice(1)}`, group: 'Panels' as const, action: () => void (tab.value = name) })),
+  ...TABS.map((name, i) => ({
+    keys: [String(i + 1)],
+    label: String(i + 1),
+    does: `${name[0]?.toUpperCase()}${name.slice(1)}`,
+    group: 'Panels' as const,
+    action: () => void (tab.value = name),
+  })),
   {
     keys: ['/'],
     label: '/',
@@ -90,7 +102,13 @@ addShortcuts(
   },
   { keys: ['p'], label: 'P', does: 'Hold the plots, follow again', group: 'Panels', action: toggleFrozen },
   { keys: ['d'], label: 'D', does: 'Panel below or on the right', group: 'Panels', action: toggleDock },
-  { keys: ['f'], label: 'F', does: 'Panel alone', group: 'Panels', action: () => void (isPanelAlone.value = !isPanelAlone.value) },
+  {
+    keys: ['f'],
+    label: 'F',
+    does: 'Panel alone',
+    group: 'Panels',
+    action: () => void (isPanelAlone.value = !isPanelAlone.value),
+  },
   { keys: ['?'], label: '?', does: 'These keys', group: 'Panels', action: () => void (isHelpOpen.value = true) },
   { keys: ['m'], label: 'M', does: 'Take the wheel, hand it back', group: 'Driving by hand', action: toggleManual },
   { keys: ['escape'], label: 'Esc', does: 'Hand the car back', group: 'Driving by hand', action: handBack },

@@ -31,7 +31,12 @@ describe('camera', () => {
   it.each([0, 0.7, 2, -3])('knows the box of the world in view, heading %f', (heading) => {
     const camera = behind({ x: 1234, y: -567 }, heading, 800, 600, 100);
     const { minX, minY, maxX, maxY } = worldInView(camera, 800, 600);
-    const corners = [[minX, minY], [maxX, minY], [maxX, maxY], [minX, maxY]].map(([x = 0, y = 0]) => project(camera, { x, y }));
+    const corners = [
+      [minX, minY],
+      [maxX, minY],
+      [maxX, maxY],
+      [minX, maxY],
+    ].map(([x = 0, y = 0]) => project(camera, { x, y }));
     // The box just holds the picture: turned back, its corners lie on or beyond the edges, and no edge is farther than it has to be.
     const [xs, ys] = [corners.map(({ x }) => x), corners.map(({ y }) => y)];
     expect(Math.min(...xs)).toBeLessThan(1e-9);
@@ -49,9 +54,19 @@ describe('camera', () => {
       const { spacing, from, to } = groundGrid(camera, 800, 600);
       expect(spacing * camera.scale).toBeGreaterThanOrEqual(40);
       expect(Math.abs(from.x % spacing)).toBe(0);
-      const corners = [[from.x, from.y], [to.x, from.y], [to.x, to.y], [from.x, to.y]].map(([x = 0, y = 0]) => project(camera, { x, y }));
+      const corners = [
+        [from.x, from.y],
+        [to.x, from.y],
+        [to.x, to.y],
+        [from.x, to.y],
+      ].map(([x = 0, y = 0]) => project(camera, { x, y }));
       // Each corner of the screen lies on the same side of all four edges of the grid.
-      for (const [px, py] of [[0, 0], [800, 0], [800, 600], [0, 600]] as const) {
+      for (const [px, py] of [
+        [0, 0],
+        [800, 0],
+        [800, 600],
+        [0, 600],
+      ] as const) {
         const sides = corners.map((a, i) => {
           const b = corners[(i + 1) % 4] ?? a;
           return Math.sign((b.x - a.x) * (py - a.y) - (b.y - a.y) * (px - a.x));

@@ -1,4 +1,4 @@
-import { clamp, type Box, type Point } from '../lib/math';
+import { type Box, clamp, type Point } from '../lib/math';
 
 /** World to screen: x right, y up in W; pixels right and down on the screen. CSS pixels. */
 export interface Camera {
@@ -61,17 +61,27 @@ export function behind(car: Point, heading: number, width: number, height: numbe
 
 /** The car in the middle, north up. */
 export function above(car: Point, width: number, height: number, metresAcross: number): Camera {
-  return { centre: car, at: { x: width / 2, y: height / 2 }, scale: Math.min(width, height) / metresAcross, rotation: 0 };
+  return {
+    centre: car,
+    at: { x: width / 2, y: height / 2 },
+    scale: Math.min(width, height) / metresAcross,
+    rotation: 0,
+  };
 }
 
 /** Lines of a square grid that cover the view: 40 px apart or more, at multiples of 5, 10, 20, 40 … metres. */
 export function groundGrid(camera: Camera, width: number, height: number): { spacing: number; from: Point; to: Point } {
   const spacing = 5 * 2 ** Math.max(0, Math.ceil(Math.log2(40 / camera.scale / 5)));
   // However the view is turned, it lies within this distance of the point that the camera looks at.
-  const reach = Math.hypot(Math.max(camera.at.x, width - camera.at.x), Math.max(camera.at.y, height - camera.at.y)) / camera.scale;
+  const reach =
+    Math.hypot(Math.max(camera.at.x, width - camera.at.x), Math.max(camera.at.y, height - camera.at.y)) / camera.scale;
   const { x, y } = camera.centre;
   const snap = (value: number): number => Math.floor(value / spacing) * spacing;
-  return { spacing, from: { x: snap(x - reach), y: snap(y - reach) }, to: { x: snap(x + reach) + spacing, y: snap(y + reach) + spacing } };
+  return {
+    spacing,
+    from: { x: snap(x - reach), y: snap(y - reach) },
+    to: { x: snap(x + reach) + spacing, y: snap(y + reach) + spacing },
+  };
 }
 
 /** A length of 1, 2 or 5 · 10ⁿ metres that is at most `limit` pixels long. */

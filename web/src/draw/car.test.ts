@@ -1,7 +1,14 @@
 import { describe, expect, it } from 'vitest';
 import { carShape } from './car';
 
-const size = { front_axle_m: 1.2, rear_axle_m: 1.6, track_width_m: 2, tire_width_m: 0.25, body_length_m: 4.4, body_width_m: 2 };
+const size = {
+  front_axle_m: 1.2,
+  rear_axle_m: 1.6,
+  track_width_m: 2,
+  tire_width_m: 0.25,
+  body_length_m: 4.4,
+  body_width_m: 2,
+};
 
 describe('car shape', () => {
   it('is as long as the car and holds all axles', () => {

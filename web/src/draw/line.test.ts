@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { addLine, lengthsOf, lineOf, longestStep, stretchesInside, type Line } from './line';
+import { addLine, type Line, lengthsOf, lineOf, longestStep, stretchesInside } from './line';
 
 /** A wave of 400 points, about 1 m apart, that enters and leaves a box often. */
 const wave: Line = lineOf(Array.from({ length: 400 }, (_, i) => ({ x: i * 0.8, y: 30 * Math.sin(i / 12) })));
@@ -40,7 +40,10 @@ describe('a line', () => {
 
   it('has a gap where it jumps', () => {
     const calls: string[] = [];
-    const path = { moveTo: (x: number) => calls.push(`move ${x}`), lineTo: (x: number) => calls.push(`line ${x}`) } as unknown as Path2D;
+    const path = {
+      moveTo: (x: number) => calls.push(`move ${x}`),
+      lineTo: (x: number) => calls.push(`line ${x}`),
+    } as unknown as Path2D;
     addLine(path, { x: [0, 1, 50, 51, 52], y: [0, 0, 0, 0, 0] }, 0, 5, 20);
     expect(calls).toEqual(['move 0', 'line 1', 'move 50', 'line 51', 'line 52']);
   });

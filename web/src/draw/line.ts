@@ -6,12 +6,17 @@ export interface Line {
   readonly y: ArrayLike<number>;
 }
 
-export const lineOf = (points: readonly Point[]): Line => ({ x: Float64Array.from(points, ({ x }) => x), y: Float64Array.from(points, ({ y }) => y) });
+export const lineOf = (points: readonly Point[]): Line => ({
+  x: Float64Array.from(points, ({ x }) => x),
+  y: Float64Array.from(points, ({ y }) => y),
+});
 
 /** Length of a line from its start to each of its points [m]. */
 export function lengthsOf({ x, y }: Line): Float64Array {
   const lengths = new Float64Array(x.length);
-  for (let i = 1; i < x.length; ++i) lengths[i] = (lengths[i - 1] ?? 0) + Math.hypot((x[i] ?? NaN) - (x[i - 1] ?? NaN), (y[i] ?? NaN) - (y[i - 1] ?? NaN));
+  for (let i = 1; i < x.length; ++i)
+    lengths[i] =
+      (lengths[i - 1] ?? 0) + Math.hypot((x[i] ?? NaN) - (x[i - 1] ?? NaN), (y[i] ?? NaN) - (y[i - 1] ?? NaN));
   return lengths;
 }
 

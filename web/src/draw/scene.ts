@@ -1,10 +1,10 @@
 import type { Box, Point } from '../lib/math';
 import type { Limit, Plan } from '../protocol/topics';
-import type { Hindsight, Pose } from '../state/hindsight';
 import type { Road } from '../state/app_state';
-import { groundGrid, transformOf, worldInView, type Camera } from './camera';
+import type { Hindsight, Pose } from '../state/hindsight';
+import { type Camera, groundGrid, transformOf, worldInView } from './camera';
 import type { CarShape } from './car';
-import { addLine, lengthsOf, lineOf, longestStep, stretchesInside, type Line } from './line';
+import { addLine, type Line, lengthsOf, lineOf, longestStep, stretchesInside } from './line';
 import { speedColour } from './speed_colour';
 import type { Theme } from './theme';
 
@@ -33,11 +33,20 @@ export interface RoadShape {
 export function roadShape(road: Road): RoadShape | null {
   const count = Math.min(road.left.length, road.right.length, road.centre.length);
   if (count < 2) return null;
-  const [left, right, centre] = [road.left, road.right, road.centre].map((points) => lineOf(points.slice(0, count))) as [Line, Line, Line];
-  const far = (edge: Line, i: number): number => Math.hypot((edge.x[i] ?? 0) - (centre.x[i] ?? 0), (edge.y[i] ?? 0) - (centre.y[i] ?? 0));
+  const [left, right, centre] = [road.left, road.right, road.centre].map((points) =>
+    lineOf(points.slice(0, count)),
+  ) as [Line, Line, Line];
+  const far = (edge: Line, i: number): number =>
+    Math.hypot((edge.x[i] ?? 0) - (centre.x[i] ?? 0), (edge.y[i] ?? 0) - (centre.y[i] ?? 0));
   const halves = Array.from({ length: count }, (_, i) => Math.max(far(left, i), far(right, i)));
   const steps = [left, right, centre].map((line) => longestStep(line));
-  return { left, right, centre, lengths: lengthsOf(centre), reach: Math.max(...steps) + halves.reduce((a, b) => Math.max(a, b), 0) };
+  return {
+    left,
+    right,
+    centre,
+    lengths: lengthsOf(centre),
+    reach: Math.max(...steps) + halves.reduce((a, b) => Math.max(a, b), 0),
+  };
 }
 
 type Context = CanvasRenderingContext2D;
@@ -66,7 +75,13 @@ function drawGround(ctx: Context, camera: Camera, colour: string, ratio: number)
   for (let y = from.y; y <= to.y; y += spacing) draw(from.x, y, to.x, y);
 }
 
-function drawRoad(ctx: Context, { left, right, centre, lengths, reach }: RoadShape, view: Box, colours: Theme, px: number): void {
+function drawRoad(
+  ctx: Context,
+  { left, right, centre, lengths, reach }: RoadShape,
+  view: Box,
+  colours: Theme,
+  px: number,
+): void {
   const stretches = stretchesInside(centre, view, reach);
   const [surface, edges] = [new Path2D(), new Path2D()];
   for (const [first, end] of stretches) {
@@ -204,7 +219,13 @@ function outline(ctx: Context, pose: Pose, { shape }: NonNullable<Scene['car']>,
   ctx.rotate(pose.yaw);
   ctx.scale(grown, grown);
   ctx.beginPath();
-  ctx.roundRect(shape.rear, -0.84 * shape.halfWidth, shape.front - shape.rear, 1.68 * shape.halfWidth, [0.5, 0.9, 0.9, 0.5]);
+  ctx.roundRect(
+    shape.rear,
+    -0.84 * shape.halfWidth,
+    shape.front - shape.rear,
+    1.68 * shape.halfWidth,
+    [0.5, 0.9, 0.9, 0.5],
+  );
 }
 
 /** Where the car was to be now, by the plan of a second ago. */
@@ -230,7 +251,13 @@ function drawGhost(ctx: Context, ghost: Pose, car: NonNullable<Scene['car']>, co
 }
 
 /** What stands still in the world: ground, road, racing line. Covers the whole canvas, which has `ratio` device pixels to a CSS pixel. */
-export function drawWorld(ctx: Context, scene: Pick<Scene, 'road' | 'racingLine'>, camera: Camera, colours: Theme, ratio: number): void {
+export function drawWorld(
+  ctx: Context,
+  scene: Pick<Scene, 'road' | 'racingLine'>,
+  camera: Camera,
+  colours: Theme,
+  ratio: number,
+): void {
   ctx.setTransform(1, 0, 0, 1, 0, 0);
   ctx.fillStyle = colours.ground;
   ctx.fillRect(0, 0, ctx.canvas.width, ctx.canvas.height);

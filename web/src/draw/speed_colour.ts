@@ -25,7 +25,9 @@ export function speedRgb(share: number): readonly [number, number, number] {
 export const speedColour = (share: number): string => `rgb(${speedRgb(share).join(' ')})`;
 
 /** The upper end of the colour scale: round in the reader's unit [m/s]. */
-export const topOfScale = (topSpeed: number, { perMps, scaleStep }: SpeedUnit): number => (Math.ceil(Math.max(scaleStep, topSpeed * perMps) / scaleStep - 1e-9) * scaleStep) / perMps;
+export const topOfScale = (topSpeed: number, { perMps, scaleStep }: SpeedUnit): number =>
+  (Math.ceil(Math.max(scaleStep, topSpeed * perMps) / scaleStep - 1e-9) * scaleStep) / perMps;
 
 /** The scale as a CSS gradient, for the legend. */
-export const speedGradient = (): string => `linear-gradient(to right, ${STOPS.map((c) => `rgb(${c.join(' ')})`).join(', ')})`;
+export const speedGradient = (): string =>
+  `linear-gradient(to right, ${STOPS.map((c) => `rgb(${c.join(' ')})`).join(', ')})`;

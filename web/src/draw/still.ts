@@ -4,7 +4,12 @@ export class Still {
   #key: readonly unknown[] = [];
 
   /** The part in `width` × `height` device pixels. `paint` is called with a clear canvas where the key is another one. */
-  picture(key: readonly unknown[], width: number, height: number, paint: (context: CanvasRenderingContext2D) => void): HTMLCanvasElement {
+  picture(
+    key: readonly unknown[],
+    width: number,
+    height: number,
+    paint: (context: CanvasRenderingContext2D) => void,
+  ): HTMLCanvasElement {
     const canvas = (this.#canvas ??= document.createElement('canvas'));
     if (canvas.width === width && canvas.height === height && isSame(key, this.#key)) return canvas;
     [canvas.width, canvas.height] = [width, height]; // clears it too
@@ -16,4 +21,5 @@ export class Still {
 }
 
 /** Whether two lists hold the same values, one by one. */
-export const isSame = (a: readonly unknown[], b: readonly unknown[]): boolean => a.length === b.length && a.every((each, i) => Object.is(each, b[i]));
+export const isSame = (a: readonly unknown[], b: readonly unknown[]): boolean =>
+  a.length === b.length && a.every((each, i) => Object.is(each, b[i]));

@@ -16,6 +16,11 @@ export function downloadPng(name: string, canvas: HTMLCanvasElement): void {
 /** A name for files of a run: "lakeside_tracking-mpc_laps.csv". */
 export const fileName = (parts: readonly string[], ending: string): string =>
   `${parts
-    .map((part) => part.replace(/.*\//, '').replace(/\.\w+$/, '').replace(/[^\w-]+/g, '-'))
+    .map((part) =>
+      part
+        .replace(/.*\//, '')
+        .replace(/\.\w+$/, '')
+        .replace(/[^\w-]+/g, '-'),
+    )
     .filter((part) => part !== '')
     .join('_')}.${ending}`;

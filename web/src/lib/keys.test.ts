@@ -1,7 +1,14 @@
 import { describe, expect, it, vi } from 'vitest';
 import { addShortcuts, allShortcuts, isTakenBy, shortcutFor } from './keys';
 
-const press = (key: string, more: object = {}) => ({ key, ctrlKey: false, metaKey: false, altKey: false, repeat: false, ...more });
+const press = (key: string, more: object = {}) => ({
+  key,
+  ctrlKey: false,
+  metaKey: false,
+  altKey: false,
+  repeat: false,
+  ...more,
+});
 const input = (type: string) => ({ tagName: 'INPUT', type });
 
 describe('keys', () => {
@@ -22,7 +29,8 @@ describe('keys', () => {
 
   it('leaves the browser its own keys, and does not repeat', () => {
     const end = addShortcuts({ keys: ['s'], label: 'S', does: '', group: 'Run', action: () => undefined });
-    for (const more of [{ ctrlKey: true }, { metaKey: true }, { altKey: true }, { repeat: true }]) expect(shortcutFor(press('s', more), null)).toBeNull();
+    for (const more of [{ ctrlKey: true }, { metaKey: true }, { altKey: true }, { repeat: true }])
+      expect(shortcutFor(press('s', more), null)).toBeNull();
     expect(shortcutFor(press('s'), null)).not.toBeNull();
     end();
   });

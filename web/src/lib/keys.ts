@@ -37,7 +37,8 @@ export function isTakenBy(target: KeyTarget | null, key: string): boolean {
   const tag = target?.tagName?.toLowerCase();
   if (key === 'escape' || !tag || !target) return false;
   if (target.isContentEditable || tag === 'textarea' || tag === 'select') return true;
-  if (target.getAttribute?.('role') === 'separator' || target.getAttribute?.('role') === 'tab') return ON_SLIDER.has(key) || ON_BUTTON.has(key);
+  if (target.getAttribute?.('role') === 'separator' || target.getAttribute?.('role') === 'tab')
+    return ON_SLIDER.has(key) || ON_BUTTON.has(key);
   if (tag === 'input') {
     if (target.type === 'range') return ON_SLIDER.has(key);
     if (target.type === 'checkbox' || target.type === 'radio') return ON_BUTTON.has(key) || ON_SLIDER.has(key);
@@ -47,7 +48,10 @@ export function isTakenBy(target: KeyTarget | null, key: string): boolean {
 }
 
 /** The shortcut that a key press means; null when there is none, or the focused element wants the key for itself. */
-export function shortcutFor(event: Pick<KeyboardEvent, 'key' | 'ctrlKey' | 'metaKey' | 'altKey' | 'repeat'>, target: KeyTarget | null): Shortcut | null {
+export function shortcutFor(
+  event: Pick<KeyboardEvent, 'key' | 'ctrlKey' | 'metaKey' | 'altKey' | 'repeat'>,
+  target: KeyTarget | null,
+): Shortcut | null {
   const key = event.key.toLowerCase();
   if (event.ctrlKey || event.metaKey || event.altKey || event.repeat || isTakenBy(target, key)) return null;
   return shortcuts.filter(({ keys }) => keys.includes(key)).at(-1) ?? null;

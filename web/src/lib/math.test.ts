@@ -11,7 +11,13 @@ describe('math', () => {
   });
 
   it('bounds points and passes over what is not a number', () => {
-    expect(boundsOf([{ x: 1, y: 2 }, { x: NaN, y: 9 }, { x: -3, y: 5 }])).toEqual({ minX: -3, minY: 2, maxX: 1, maxY: 5 });
+    expect(
+      boundsOf([
+        { x: 1, y: 2 },
+        { x: NaN, y: 9 },
+        { x: -3, y: 5 },
+      ]),
+    ).toEqual({ minX: -3, minY: 2, maxX: 1, maxY: 5 });
     expect(boundsOf([])).toBeNull();
     expect(boundsOf([{ x: Infinity, y: 0 }])).toBeNull();
   });

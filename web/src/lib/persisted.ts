@@ -1,7 +1,11 @@
-import { effect, signal, type Signal } from '@preact/signals';
+import { effect, type Signal, signal } from '@preact/signals';
 
 /** A signal that outlives the page, in the browser's own storage; where that is refused, it just starts anew. */
-export function persisted<T extends string | number | boolean>(name: string, initial: T, isValid: (value: unknown) => boolean = (value) => typeof value === typeof initial): Signal<T> {
+export function persisted<T extends string | number | boolean>(
+  name: string,
+  initial: T,
+  isValid: (value: unknown) => boolean = (value) => typeof value === typeof initial,
+): Signal<T> {
   const state = signal<T>(read(name, initial, isValid));
   effect(() => {
     const { value } = state;

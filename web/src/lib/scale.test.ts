@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { scaleOf, shareOf, tidy, valueAt, type Range } from './scale';
+import { type Range, scaleOf, shareOf, tidy, valueAt } from './scale';
 
 const RANGES: readonly Range[] = [
   { minimum: 0, maximum: 500, scale: 'linear', isInteger: false },
@@ -47,6 +47,13 @@ describe('scales', () => {
 
 describe('numbers for people', () => {
   it('are short', () => {
-    expect([0.1 + 0.2, 1e6, -4, 123456.789, Infinity, NaN].map(tidy)).toEqual(['0.3', '1000000', '−4', '123457', '∞', '–']);
+    expect([0.1 + 0.2, 1e6, -4, 123456.789, Infinity, NaN].map(tidy)).toEqual([
+      '0.3',
+      '1000000',
+      '−4',
+      '123457',
+      '∞',
+      '–',
+    ]);
   });
 });

@@ -18,7 +18,8 @@ const DECADES = 7;
  * more; cubic where what is usual lies within the first 5 % of the range; else linear.
  */
 export function scaleOf(minimum: number, maximum: number, usual: number): Scale {
-  if (minimum > 0 ? maximum / minimum > 300 && usual < 0.2 * maximum : minimum === 0 && maximum >= 1000) return 'logarithmic';
+  if (minimum > 0 ? maximum / minimum > 300 && usual < 0.2 * maximum : minimum === 0 && maximum >= 1000)
+    return 'logarithmic';
   return usual - minimum < 0.05 * (maximum - minimum) ? 'cubic' : 'linear';
 }
 

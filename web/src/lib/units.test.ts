@@ -1,5 +1,5 @@
 import { afterEach, describe, expect, it } from 'vitest';
-import { inSpeedUnit, MPH, nextSpeedUnit, speedUnit, SPEED_UNITS } from './units';
+import { inSpeedUnit, MPH, nextSpeedUnit, SPEED_UNITS, speedUnit } from './units';
 
 afterEach(() => {
   while (speedUnit().name !== 'mph') nextSpeedUnit();
@@ -15,7 +15,11 @@ describe('the unit of speeds', () => {
       nextSpeedUnit();
       return [name, Number(shown.toFixed(3))];
     });
-    expect(seen).toEqual([['mph', 22.369], ['km/h', 36], ['m/s', 10]]);
+    expect(seen).toEqual([
+      ['mph', 22.369],
+      ['km/h', 36],
+      ['m/s', 10],
+    ]);
     expect(speedUnit().name).toBe('mph');
   });
 });

@@ -19,10 +19,13 @@ export const SPEED_UNITS: readonly SpeedUnit[] = [
   { name: 'm/s', spoken: 'metres per second', perMps: 1, axisStep: 5, axisLeast: 20, scaleStep: 10 },
 ];
 
-const chosen = persisted<SpeedUnit['name']>('speed-unit', 'mph', (value) => SPEED_UNITS.some(({ name }) => name === value));
+const chosen = persisted<SpeedUnit['name']>('speed-unit', 'mph', (value) =>
+  SPEED_UNITS.some(({ name }) => name === value),
+);
 
 /** The reader's unit; who reads it while drawing text follows its changes. */
-export const speedUnit = (): SpeedUnit => SPEED_UNITS.find(({ name }) => name === chosen.value) ?? (SPEED_UNITS[0] as SpeedUnit);
+export const speedUnit = (): SpeedUnit =>
+  SPEED_UNITS.find(({ name }) => name === chosen.value) ?? (SPEED_UNITS[0] as SpeedUnit);
 
 /** A speed [m/s] as a number in the reader's unit. */
 export const inSpeedUnit = (mps: number): number => mps * speedUnit().perMps;

@@ -1,6 +1,16 @@
 import { describe, expect, it } from 'vitest';
 import { SPEED_LIMITER } from '../protocol/topics';
-import { gateInWords, limiterInWords, LIMITERS, nameInWords, roadInWords, rungInWords, sightInWords, statusInWords, worstInWords } from './words';
+import {
+  gateInWords,
+  LIMITERS,
+  limiterInWords,
+  nameInWords,
+  roadInWords,
+  rungInWords,
+  sightInWords,
+  statusInWords,
+  worstInWords,
+} from './words';
 
 describe('words', () => {
   it('gets graver with each rung', () => {
@@ -9,7 +19,14 @@ describe('words', () => {
   });
 
   it('calls no unusable answer good', () => {
-    expect([0, 1, -1, -2, -3, 7].map((status) => statusInWords(status).mood)).toEqual(['good', 'warning', 'bad', 'bad', 'bad', 'bad']);
+    expect([0, 1, -1, -2, -3, 7].map((status) => statusInWords(status).mood)).toEqual([
+      'good',
+      'warning',
+      'bad',
+      'bad',
+      'bad',
+      'bad',
+    ]);
   });
 
   it('tells of the gate', () => {

@@ -42,14 +42,17 @@ export function statusInWords(status: number): Sentence {
 }
 
 export const gateInWords = (isGated: boolean): Sentence =>
-  isGated ? { mood: 'warning', text: 'Had to change the command' } : { mood: 'good', text: 'Passed the command unchanged' };
+  isGated
+    ? { mood: 'warning', text: 'Had to change the command' }
+    : { mood: 'good', text: 'Passed the command unchanged' };
 
 /** Where the car is on the road. With an external simulator nobody judges, and the distance is unknown. */
 export function roadInWords(frame: Pick<Frame, 'is_off_track' | 'edge_distance_m' | 'off_track_events'>): Sentence {
   if (Number.isNaN(frame.edge_distance_m)) return { mood: 'unknown', text: 'Nobody judges: external simulator' };
   if (frame.is_off_track) return { mood: 'bad', text: 'Off the road' };
   const events = frame.off_track_events;
-  if (events > 0) return { mood: 'warning', text: `On the road, was off it ${events === 1 ? 'once' : `${events} times`}` };
+  if (events > 0)
+    return { mood: 'warning', text: `On the road, was off it ${events === 1 ? 'once' : `${events} times`}` };
   return { mood: 'good', text: 'On the road, never off it' };
 }
 
@@ -64,12 +67,17 @@ export const LIMITERS: readonly { readonly title: string; readonly why: string; 
   { title: 'Not known', why: 'No plan tells what limits the speed.', short: 'unknown' },
   { title: 'The speed asked for', why: 'The car drives as fast as it may.', short: 'asked' },
   { title: 'Grip in the bend', why: 'Faster than this the tyres would not hold the curve.', short: 'grip' },
-  { title: 'Braking for a bend', why: 'Faster than this it would not be slow enough when the bend comes.', short: 'braking' },
+  {
+    title: 'Braking for a bend',
+    why: 'Faster than this it would not be slow enough when the bend comes.',
+    short: 'braking',
+  },
   { title: 'Power', why: 'Full throttle is all there is.', short: 'power' },
   { title: 'Sight', why: 'The road ahead is not known far enough to go faster.', short: 'sight' },
 ];
 
-export const limiterInWords = (limiter: number): (typeof LIMITERS)[number] => LIMITERS[limiter] ?? { title: `Limit ${limiter}`, why: 'This page does not know this limit.', short: `${limiter}` };
+export const limiterInWords = (limiter: number): (typeof LIMITERS)[number] =>
+  LIMITERS[limiter] ?? { title: `Limit ${limiter}`, why: 'This page does not know this limit.', short: `${limiter}` };
 
 /** snake_case to words, abbreviations as people write them. */
 export const nameInWords = (name: string): string =>
@@ -80,7 +88,11 @@ export const nameInWords = (name: string): string =>
     .replace(/\bnan\b/g, 'NaN');
 
 /** The constraint that is violated most in an answer; null when all hold to `tolerance`. */
-export function worstInWords(frame: Pick<Frame, 'violation' | 'worst_stage' | 'worst_constraint'>, names: readonly string[], tolerance = 1e-6): string | null {
+export function worstInWords(
+  frame: Pick<Frame, 'violation' | 'worst_stage' | 'worst_constraint'>,
+  names: readonly string[],
+  tolerance = 1e-6,
+): string | null {
   const { violation, worst_stage: stage, worst_constraint: index } = frame;
   if (!(violation > tolerance) || index < 0) return null;
   return `${nameInWords(names[index] ?? `constraint ${index + 1}`)} exceeded by ${violation.toPrecision(2)} at step ${stage} of the plan`;

@@ -5,7 +5,11 @@ import { Connection, retryDelay } from './connection';
 import type { SourceEvents } from './source';
 
 const folder = new URL('../../../tests/protocol/fixtures/ros/', import.meta.url);
-const topics = JSON.parse(readFileSync(new URL('topics.json', folder), 'utf8')) as { topic: string; type: string; schema: string }[];
+const topics = JSON.parse(readFileSync(new URL('topics.json', folder), 'utf8')) as {
+  topic: string;
+  type: string;
+  schema: string;
+}[];
 
 /** A server on the other end of no network. */
 class FakeSocket implements IWebSocket {
@@ -36,14 +40,26 @@ class FakeSocket implements IWebSocket {
     });
     this.say({
       op: 'advertiseServices',
-      services: ['/pause', '/step'].map((name, id) => ({ id, name, type: 'x', responseSchema: 'bool success\nstring message\n' })),
+      services: ['/pause', '/step'].map((name, id) => ({
+        id,
+        name,
+        type: 'x',
+        responseSchema: 'bool success\nstring message\n',
+      })),
     });
   }
 }
 
 function start() {
   const sockets: FakeSocket[] = [];
-  const events = { open: vi.fn(), lost: vi.fn(), message: vi.fn(), services: vi.fn(), settings: vi.fn(), notice: vi.fn() };
+  const events = {
+    open: vi.fn(),
+    lost: vi.fn(),
+    message: vi.fn(),
+    services: vi.fn(),
+    settings: vi.fn(),
+    notice: vi.fn(),
+  };
   const connection = new Connection(() => {
     const socket = new FakeSocket();
     sockets.push(socket);
@@ -60,10 +76,21 @@ describe('connection', () => {
     const { events, last } = start();
     last().introduce();
     expect(events.open).toHaveBeenCalledExactlyOnceWith('a1');
-    const subscribed = last().sent.map((text) => (JSON.parse(text as string) as { subscriptions: { id: number; channelId: number }[] }).subscriptions[0]);
-    expect(subscribed.map((s) => topics[s?.channelId ?? -1]?.topic).sort()).toEqual(
-      ['/chicane/change', '/chicane/frame', '/chicane/lap', '/chicane/limit', '/chicane/plan', '/chicane/run', '/reference', '/track/centre', '/track/left', '/track/right'],
+    const subscribed = last().sent.map(
+      (text) => (JSON.parse(text as string) as { subscriptions: { id: number; channelId: number }[] }).subscriptions[0],
     );
+    expect(subscribed.map((s) => topics[s?.channelId ?? -1]?.topic).sort()).toEqual([
+      '/chicane/change',
+      '/chicane/frame',
+      '/chicane/lap',
+      '/chicane/limit',
+      '/chicane/plan',
+      '/chicane/run',
+      '/reference',
+      '/track/centre',
+      '/track/left',
+      '/track/right',
+    ]);
     const run = readFileSync(new URL('chicane_run.bin', folder));
     const channel = topics.findIndex(({ topic }) => topic === '/chicane/run');
     const id = subscribed.find((s) => s?.channelId === channel)?.id ?? -1;
@@ -102,7 +129,9 @@ describe('connection', () => {
     const done = connection.call('/pause', true);
     const bytes = last().sent.at(-1) as Uint8Array;
     expect([...bytes]).toEqual([2, 0, 0, 0, 0, 1, 0, 0, 0, 3, 0, 0, 0, 99, 100, 114, 0, 1, 0, 0, 1]);
-    last().sayBytes(new Uint8Array([3, 0, 0, 0, 0, 1, 0, 0, 0, 3, 0, 0, 0, 99, 100, 114, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0]));
+    last().sayBytes(
+      new Uint8Array([3, 0, 0, 0, 0, 1, 0, 0, 0, 3, 0, 0, 0, 99, 100, 114, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0]),
+    );
     expect(await done).toBeNull();
     const refused = connection.call('/step');
     last().say({ op: 'serviceCallFailure', serviceId: 1, callId: 2, message: 'the run is over' });
@@ -113,7 +142,10 @@ describe('connection', () => {
   });
 
   const saidAs = (socket: FakeSocket, op: string) =>
-    socket.sent.filter((each) => typeof each === 'string').map((each) => JSON.parse(each as string) as { op: string; id?: string }).filter((each) => each.op === op);
+    socket.sent
+      .filter((each) => typeof each === 'string')
+      .map((each) => JSON.parse(each as string) as { op: string; id?: string })
+      .filter((each) => each.op === op);
 
   it('asks for all parameters and to be told of changes, where there are any', () => {
     const { events, connection, last } = start();
@@ -124,8 +156,18 @@ describe('connection', () => {
     last().introduce(['parameters', 'parametersSubscribe']);
     expect(saidAs(last(), 'getParameters')).toEqual([{ op: 'getParameters', parameterNames: [], id: 'all' }]);
     expect(saidAs(last(), 'subscribeParameterUpdates')).toHaveLength(1);
-    last().say({ op: 'parameterValues', id: 'all', parameters: [{ name: 'a', value: 1 }, { name: 'b', value: 'x' }, { name: 'c' }] });
-    expect(events.settings).toHaveBeenLastCalledWith(new Map<string, unknown>([['a', 1], ['b', 'x']]), true);
+    last().say({
+      op: 'parameterValues',
+      id: 'all',
+      parameters: [{ name: 'a', value: 1 }, { name: 'b', value: 'x' }, { name: 'c' }],
+    });
+    expect(events.settings).toHaveBeenLastCalledWith(
+      new Map<string, unknown>([
+        ['a', 1],
+        ['b', 'x'],
+      ]),
+      true,
+    );
     last().say({ op: 'parameterValues', parameters: [{ name: 'a', value: 2 }] });
     expect(events.settings).toHaveBeenLastCalledWith(new Map([['a', 2]]), false);
     connection.refresh();

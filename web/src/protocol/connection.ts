@@ -1,4 +1,4 @@
-import { FoxgloveClient, type Channel, type IWebSocket, type Parameter, type Service } from '@foxglove/ws-protocol';
+import { type Channel, FoxgloveClient, type IWebSocket, type Parameter, type Service } from '@foxglove/ws-protocol';
 import { decoder, encodeBool, encodeNothing } from './decoder';
 import type { ServiceName, SetAnswer, Setting, Source, SourceEvents } from './source';
 import { TOPIC_NAMES, type Topics } from './topics';
@@ -12,7 +12,8 @@ export const retryDelay = (attempt: number): number => Math.min(2000, 250 * 2 **
 const ALL = 'all'; // request id
 const LOST = 'the connection was lost';
 
-const isSetting = (value: Parameter['value']): value is Setting => ['number', 'boolean', 'string'].includes(typeof value);
+const isSetting = (value: Parameter['value']): value is Setting =>
+  ['number', 'boolean', 'string'].includes(typeof value);
 
 interface PendingSet {
   readonly name: string;
@@ -65,7 +66,8 @@ export class Connection implements Source {
   }
 
   set(name: string, value: Setting): Promise<SetAnswer> {
-    if (!this.#client || !this.#hasParameters) return Promise.resolve({ value: null, sentence: `${name} cannot be changed in this run` });
+    if (!this.#client || !this.#hasParameters)
+      return Promise.resolve({ value: null, sentence: `${name} cannot be changed in this run` });
     const id = `set ${this.#nextCall++}`;
     // JSON does not tell 3 from 3.0: the type does.
     const parameter: Parameter = typeof value === 'number' ? { name, value, type: 'float64' } : { name, value };

@@ -142,7 +142,11 @@ describe('messages of the C++ side', () => {
 
   it('carry lines', () => {
     const positions = read<Path>('/track/right').poses.map(({ pose }) => pose.position);
-    expect(positions).toEqual([{ x: 0, y: -2, z: 0 }, { x: 4, y: -2, z: 0 }, { x: 0, y: -2, z: 0 }]);
+    expect(positions).toEqual([
+      { x: 0, y: -2, z: 0 },
+      { x: 4, y: -2, z: 0 },
+      { x: 0, y: -2, z: 0 },
+    ]);
     expect(read<Path>('/reference').poses).toHaveLength(2);
   });
 
@@ -155,7 +159,10 @@ describe('messages of the C++ side', () => {
     expect(read('/tf')).toMatchObject({ transforms: [{ child_frame_id: 'odom' }, { child_frame_id: 'base_link' }] });
     expect(read('/clock')).toMatchObject({ clock: { sec: 12, nsec: 250_000_000 } });
     expect(read('/diagnostics')).toMatchObject({
-      status: [{ level: 1, name: 'chicane: controller', hardware_id: 'tracking-mpc' }, { level: 2, message: 'off the road' }],
+      status: [
+        { level: 1, name: 'chicane: controller', hardware_id: 'tracking-mpc' },
+        { level: 2, message: 'off the road' },
+      ],
     });
     const { drive } = read<{ drive: { steering_angle: number; speed: number } }>('/drive');
     expect(drive.steering_angle).toBeCloseTo(0.01, 7);

@@ -26,13 +26,19 @@ describe('the layout for Foxglove and Lichtblick', () => {
   });
 
   it('draws topics that exist', () => {
-    const drawn = panels.flatMap((panel) => [...Object.keys(panel.topics ?? {}), ...(panel.topicToRender ? [panel.topicToRender] : [])]);
+    const drawn = panels.flatMap((panel) => [
+      ...Object.keys(panel.topics ?? {}),
+      ...(panel.topicToRender ? [panel.topicToRender] : []),
+    ]);
     expect(drawn.length).toBeGreaterThan(4);
     for (const topic of drawn) expect(fieldsOf(topic).length).toBeGreaterThan(0);
   });
 
   it('shows each of its panels once', () => {
-    const shown = JSON.stringify(layout.layout).match(/"[A-Za-z0-9]+![a-z]+"/g)?.map((name) => name.slice(1, -1)) ?? [];
+    const shown =
+      JSON.stringify(layout.layout)
+        .match(/"[A-Za-z0-9]+![a-z]+"/g)
+        ?.map((name) => name.slice(1, -1)) ?? [];
     expect(shown.sort()).toEqual(Object.keys(layout.configById).sort());
   });
 });

@@ -15,7 +15,8 @@ export interface SchemaEntry {
 
 const KINDS: readonly string[] = ['number', 'integer', 'bool', 'choice', 'text'] satisfies SchemaEntry['kind'][];
 
-const numberOr = (value: unknown): number | null => (typeof value === 'number' && Number.isFinite(value) ? value : null);
+const numberOr = (value: unknown): number | null =>
+  typeof value === 'number' && Number.isFinite(value) ? value : null;
 
 /** Takes what is well formed out of a parsed /schema.json: a page may be older or newer than its server. */
 export function readSchema(json: unknown): SchemaEntry[] {

@@ -13,7 +13,10 @@ type Definitions = ReturnType<typeof parse>;
 function fieldsOf(definitions: Definitions): Map<string, string[]> {
   const named = new Map<string, string[]>();
   for (const { name, definitions: fields } of definitions) {
-    const lines = fields.map((f) => `${f.type}${f.isArray ? `[${f.arrayLength ?? ''}]` : ''} ${f.name}${f.isConstant ? `=${String(f.value)}` : ''}`);
+    const lines = fields.map(
+      (f) =>
+        `${f.type}${f.isArray ? `[${f.arrayLength ?? ''}]` : ''} ${f.name}${f.isConstant ? `=${String(f.value)}` : ''}`,
+    );
     named.set((name ?? '').replace('/msg/', '/'), lines);
   }
   return named;

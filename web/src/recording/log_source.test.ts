@@ -1,16 +1,17 @@
-import { McapWriter } from '@mcap/core';
-import { MessageWriter } from '@foxglove/rosmsg2-serialization';
 import { parse } from '@foxglove/rosmsg';
+import { MessageWriter } from '@foxglove/rosmsg2-serialization';
+import { McapWriter } from '@mcap/core';
 import { beforeAll, describe, expect, it } from 'vitest';
 import type { Frame, TopicName } from '../protocol/topics';
-import { landmarksOf, LogSource, type LogEvents } from './log_source';
+import { type LogEvents, LogSource, landmarksOf } from './log_source';
 import { McapLog } from './mcap_log';
 import { BytesReadable, HttpReadable } from './readable';
 import { RecordedDrive } from './recorded_drive';
 
 // A small recording of 10 s: frames at 10 Hz on a straight, a lap at 4 s, off the road at 6 s, a setting changed at 7 s, one fault from 8 s to 9 s
 // and another that begins where that ends. It was driven at 15 times its pace.
-const FRAME = 'float64 time_s\nfloat64 x_m\nfloat64 y_m\nfloat64 yaw_rad\nfloat64 steer_applied_rad\nuint32 off_track_events\nuint8 rung\nbool is_gated\nuint32 active_faults\nfloat64 pace\n';
+const FRAME =
+  'float64 time_s\nfloat64 x_m\nfloat64 y_m\nfloat64 yaw_rad\nfloat64 steer_applied_rad\nuint32 off_track_events\nuint8 rung\nbool is_gated\nuint32 active_faults\nfloat64 pace\n';
 const LAP = 'uint32 lap\nfloat64 lap_time_s\n';
 const CHANGE = 'string name\nstring value\n';
 const RUN = 'string track\nbool is_paused\nstring[] fault_names\n';
@@ -49,7 +50,11 @@ async function record(isClosed = true): Promise<Uint8Array> {
     ['/chicane/lap', LAP],
     ['/chicane/change', CHANGE],
   ] as const) {
-    const schemaId = await writer.registerSchema({ name: topic, encoding: 'ros2msg', data: new TextEncoder().encode(text) });
+    const schemaId = await writer.registerSchema({
+      name: topic,
+      encoding: 'ros2msg',
+      data: new TextEncoder().encode(text),
+    });
     const id = await writer.registerChannel({ schemaId, topic, messageEncoding: 'cdr', metadata: new Map() });
     channels.set(topic, { id, writer: new MessageWriter(parse(text, { ros2: true })) });
   }
@@ -57,12 +62,29 @@ async function record(isClosed = true): Promise<Uint8Array> {
     const channel = channels.get(topic);
     if (!channel) throw new Error(topic);
     const logTime = HOUR_NS + BigInt(Math.round(seconds * 1e9));
-    await writer.addMessage({ channelId: channel.id, sequence: 0, logTime, publishTime: logTime, data: channel.writer.writeMessage(message) });
+    await writer.addMessage({
+      channelId: channel.id,
+      sequence: 0,
+      logTime,
+      publishTime: logTime,
+      data: channel.writer.writeMessage(message),
+    });
   };
   await add('/chicane/run', 0, { track: 'straight', is_paused: false, fault_names: ['link_lost', 'half_grip'] });
   for (let i = 0; i <= 100; ++i) {
     const time = i / 10;
-    await add('/chicane/frame', time, { time_s: time, x_m: 2 * time, y_m: 0, yaw_rad: 0, steer_applied_rad: 0.01 * i, off_track_events: time >= 6 ? 1 : 0, rung: 0, is_gated: false, active_faults: time < 8 ? 0 : time < 9 ? 2 : 1, pace: 15 });
+    await add('/chicane/frame', time, {
+      time_s: time,
+      x_m: 2 * time,
+      y_m: 0,
+      yaw_rad: 0,
+      steer_applied_rad: 0.01 * i,
+      off_track_events: time >= 6 ? 1 : 0,
+      rung: 0,
+      is_gated: false,
+      active_faults: time < 8 ? 0 : time < 9 ? 2 : 1,
+      pace: 15,
+    });
     if (i === 40) await add('/chicane/lap', time, { lap: 1, lap_time_s: 4 });
     if (i === 70) await add('/chicane/change', time, { name: 'latency_ms', value: '150' });
   }
@@ -110,7 +132,9 @@ describe('a recording', () => {
   it('counts its time from its first message', () => expect(log.duration).toBeCloseTo(10, 6));
 
   it('names what cannot be read, and what helps', async () => {
-    await expect(McapLog.open('cut.mcap', new BytesReadable((await record(false)).slice(0, 3000)))).rejects.toThrow(/cut\.mcap.*chicane replay/);
+    await expect(McapLog.open('cut.mcap', new BytesReadable((await record(false)).slice(0, 3000)))).rejects.toThrow(
+      /cut\.mcap.*chicane replay/,
+    );
     await expect(McapLog.open('text', new BytesReadable(new Uint8Array(40)))).rejects.toThrow('text');
   });
 
@@ -140,7 +164,11 @@ describe('playing a recording', () => {
     expect(page.frames().at(-1)).toBe(3);
     expect(page.told.find(({ topic }) => topic === '/chicane/frame')?.message).toMatchObject({ pace: 1 }); // of playing
     expect(page.told.filter(({ topic }) => topic === '/chicane/lap')).toHaveLength(1); // all laps, also those to come
-    expect(page.told.find(({ topic }) => topic === '/chicane/run')?.message).toMatchObject({ track: 'straight', mode: 'replay', is_paused: true });
+    expect(page.told.find(({ topic }) => topic === '/chicane/run')?.message).toMatchObject({
+      track: 'straight',
+      mode: 'replay',
+      is_paused: true,
+    });
   });
 
   it('plays at its pace, in order, each message once, to the end', async () => {
@@ -193,7 +221,10 @@ describe('playing a recording', () => {
 
 describe('another drive beside it', () => {
   it('is where it was at the time shown', async () => {
-    const frames = (await log.read(['/chicane/frame'], 0, 10)).map(({ time, message }) => ({ time, frame: message as Frame }));
+    const frames = (await log.read(['/chicane/frame'], 0, 10)).map(({ time, message }) => ({
+      time,
+      frame: message as Frame,
+    }));
     let now = 2.05;
     const drive = RecordedDrive.from('other', frames, () => now);
     const pose = { x: 0, y: 0, yaw: 0, steer: 0 };
@@ -211,7 +242,9 @@ describe('a recording on a server', () => {
       asked.push(init.headers.range);
       const [from = 0, to = 0] = init.headers.range.slice('bytes='.length).split('-').map(Number);
       const body = bytes.slice(from, to + 1);
-      return Promise.resolve(new Response(body, { status: 206, headers: { 'content-range': `bytes ${from}-${to}/${bytes.length}` } }));
+      return Promise.resolve(
+        new Response(body, { status: 206, headers: { 'content-range': `bytes ${from}-${to}/${bytes.length}` } }),
+      );
     }) as unknown as typeof fetch;
 
   it('is read by ranges, each block once', async () => {

@@ -1,5 +1,5 @@
 import { nameInWords } from '../lib/words';
-import type { ServiceName, Setting, SetAnswer, Source, SourceEvents } from '../protocol/source';
+import type { ServiceName, SetAnswer, Setting, Source, SourceEvents } from '../protocol/source';
 import type { Frame, Lap, Run, TopicName } from '../protocol/topics';
 import type { LoggedMessage, McapLog } from './mcap_log';
 
@@ -18,7 +18,14 @@ export interface LogEvents extends SourceEvents {
   moved(time: number, isPlaying: boolean): void;
 }
 
-const STATIC: readonly TopicName[] = ['/chicane/run', '/track/left', '/track/right', '/track/centre', '/chicane/lap', '/chicane/limit'];
+const STATIC: readonly TopicName[] = [
+  '/chicane/run',
+  '/track/left',
+  '/track/right',
+  '/track/centre',
+  '/chicane/lap',
+  '/chicane/limit',
+];
 const MOVING: readonly TopicName[] = ['/chicane/frame', '/chicane/plan', '/reference', '/chicane/change'];
 const SHORT: readonly TopicName[] = ['/chicane/plan', '/reference'];
 /** What is shown of the past: plots reach back so far [s]. */
@@ -80,11 +87,15 @@ export class LogSource implements Source {
   }
 
   set(name: string, value: Setting): Promise<SetAnswer> {
-    if (name !== 'run.pace' || typeof value !== 'number') return Promise.resolve({ value: null, sentence: `${name} belongs to the recording and cannot be changed` });
+    if (name !== 'run.pace' || typeof value !== 'number')
+      return Promise.resolve({ value: null, sentence: `${name} belongs to the recording and cannot be changed` });
     const isInRange = value >= LEAST_PACE && value <= MOST_PACE;
     if (isInRange) this.#pace = value;
     this.#tellPace(false);
-    return Promise.resolve({ value: this.#pace, sentence: isInRange ? null : `run.pace: got ${value}, expected ${LEAST_PACE} to ${MOST_PACE}` });
+    return Promise.resolve({
+      value: this.#pace,
+      sentence: isInRange ? null : `run.pace: got ${value}, expected ${LEAST_PACE} to ${MOST_PACE}`,
+    });
   }
 
   refresh(): void {
@@ -178,7 +189,9 @@ export class LogSource implements Source {
       this.#readTo = to;
     } catch (error) {
       this.#isPlaying = false;
-      this.#events.notice(`the recording cannot be read further: ${error instanceof Error ? error.message : String(error)}`);
+      this.#events.notice(
+        `the recording cannot be read further: ${error instanceof Error ? error.message : String(error)}`,
+      );
     } finally {
       this.#isReading = false;
     }
@@ -194,7 +207,8 @@ export class LogSource implements Source {
   }
 
   #tell({ topic, message }: LoggedMessage): void {
-    if (topic === '/chicane/run') this.#events.message(topic, { ...(message as Run), mode: 'replay', is_paused: !this.#isPlaying });
+    if (topic === '/chicane/run')
+      this.#events.message(topic, { ...(message as Run), mode: 'replay', is_paused: !this.#isPlaying });
     else if (topic === '/chicane/frame') this.#events.message(topic, { ...(message as Frame), pace: this.#pace });
     else this.#events.message(topic, message as never);
   }
@@ -205,11 +219,18 @@ export class LogSource implements Source {
 }
 
 /** The moments of a recording that one wants to find again. `progress` in [0, 1] as it is read. */
-export async function landmarksOf(log: McapLog, progress: (share: number) => void = () => undefined): Promise<Landmark[]> {
+export async function landmarksOf(
+  log: McapLog,
+  progress: (share: number) => void = () => undefined,
+): Promise<Landmark[]> {
   const found: Landmark[] = [];
   const was = { offTrack: 0, rung: 0, isGated: false, faults: 0, lap: -1 };
   let faultNames: readonly string[] = [];
-  for await (const { topic, time, message } of log.messages(['/chicane/run', '/chicane/frame', '/chicane/lap', '/chicane/change'], 0, log.duration)) {
+  for await (const { topic, time, message } of log.messages(
+    ['/chicane/run', '/chicane/frame', '/chicane/lap', '/chicane/change'],
+    0,
+    log.duration,
+  )) {
     progress(log.duration > 0 ? time / log.duration : 1);
     if (topic === '/chicane/run') {
       faultNames = (message as Run).fault_names ?? [];

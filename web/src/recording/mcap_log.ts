@@ -47,7 +47,9 @@ export class McapLog {
       });
     } catch (error) {
       const why = error instanceof Error ? error.message : String(error);
-      throw new Error(`${name} cannot be read as a closed MCAP file (${why}); \`chicane replay ${name}\` also opens one that was cut short`);
+      throw new Error(
+        `${name} cannot be read as a closed MCAP file (${why}); \`chicane replay ${name}\` also opens one that was cut short`,
+      );
     }
     const log = new McapLog(name, reader);
     if (log.#decoders.size === 0) throw new Error(`${name} has none of the topics that chicane records`);
@@ -56,12 +58,17 @@ export class McapLog {
 
   /** Messages with from <= time <= to [s]. */
   async *messages(topics: readonly TopicName[], from: number, to: number): AsyncGenerator<LoggedMessage> {
-    const nanoseconds = (seconds: number): bigint => this.#start + BigInt(Math.round(Math.max(0, seconds) * NANOSECONDS));
+    const nanoseconds = (seconds: number): bigint =>
+      this.#start + BigInt(Math.round(Math.max(0, seconds) * NANOSECONDS));
     const range = { topics, startTime: nanoseconds(from), endTime: nanoseconds(Math.min(to, this.duration)) };
     for await (const { channelId, logTime, data } of this.#reader.readMessages(range)) {
       const known = this.#decoders.get(channelId);
       if (!known) continue;
-      yield { topic: known.topic, time: Number(logTime - this.#start) / NANOSECONDS, message: known.decode(data) as Topics[TopicName] };
+      yield {
+        topic: known.topic,
+        time: Number(logTime - this.#start) / NANOSECONDS,
+        message: known.decode(data) as Topics[TopicName],
+      };
     }
   }
 

@@ -3,7 +3,11 @@ import { modeOf } from './mode';
 
 describe('what the page was opened to show', () => {
   it('reads the recordings of a replay, and where to begin', () => {
-    const mode = modeOf({ mode: 'replay', logs: [{ name: 'run.mcap', url: '/log/0.mcap' }, { name: 'no url' }], start_s: 12 });
+    const mode = modeOf({
+      mode: 'replay',
+      logs: [{ name: 'run.mcap', url: '/log/0.mcap' }, { name: 'no url' }],
+      start_s: 12,
+    });
     expect(mode).toEqual({ name: 'replay', logs: [{ name: 'run.mcap', url: '/log/0.mcap' }], start: 12 });
   });
 

@@ -1,5 +1,8 @@
 /** What the page was opened to show: a run that goes on, recordings that `chicane replay` serves, or those inside a report. */
-export type Mode = { readonly name: 'live' } | { readonly name: 'replay'; readonly logs: readonly ListedLog[]; readonly start: number } | { readonly name: 'report'; readonly text: string };
+export type Mode =
+  | { readonly name: 'live' }
+  | { readonly name: 'replay'; readonly logs: readonly ListedLog[]; readonly start: number }
+  | { readonly name: 'report'; readonly text: string };
 
 export interface ListedLog {
   readonly name: string;
@@ -7,7 +10,8 @@ export interface ListedLog {
 }
 
 const isRecord = (value: unknown): value is Record<string, unknown> => typeof value === 'object' && value !== null;
-const isListed = (value: unknown): value is ListedLog => isRecord(value) && typeof value['name'] === 'string' && typeof value['url'] === 'string';
+const isListed = (value: unknown): value is ListedLog =>
+  isRecord(value) && typeof value['name'] === 'string' && typeof value['url'] === 'string';
 
 /** GET mode.json, as the server writes it; anything else means a live run. */
 export function modeOf(answer: unknown): Mode {

@@ -18,7 +18,10 @@ function bytesOf(base64: string): Uint8Array {
 /** Rejects with a sentence when a recording cannot be read. */
 export async function openShelf(mode: Exclude<Mode, { name: 'live' }>): Promise<Shelf> {
   if (mode.name === 'replay') {
-    return { logs: await Promise.all(mode.logs.map(({ name, url }) => McapLog.open(name, new HttpReadable(url)))), start: mode.start };
+    return {
+      logs: await Promise.all(mode.logs.map(({ name, url }) => McapLog.open(name, new HttpReadable(url)))),
+      start: mode.start,
+    };
   }
   const report = JSON.parse(mode.text) as { logs: { name: string; mcap_base64: string }[] };
   const logs = report.logs.map(({ name, mcap_base64 }) => McapLog.open(name, new BytesReadable(bytesOf(mcap_base64))));
@@ -27,6 +30,8 @@ export async function openShelf(mode: Exclude<Mode, { name: 'live' }>): Promise<
 
 /** Recordings dropped on the page. */
 export async function openFiles(files: readonly File[]): Promise<Shelf> {
-  const logs = files.map(async (file) => McapLog.open(file.name, new BytesReadable(new Uint8Array(await file.arrayBuffer()))));
+  const logs = files.map(async (file) =>
+    McapLog.open(file.name, new BytesReadable(new Uint8Array(await file.arrayBuffer()))),
+  );
   return { logs: await Promise.all(logs), start: 0 };
 }

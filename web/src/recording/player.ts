@@ -1,13 +1,25 @@
 import { computed, signal } from '@preact/signals';
-import { session as drawing } from '../scene3d/session';
-import { beginSession, keepAllLaps, laps, link, live, notice, receive, rewind, run, sampleLap, services } from '../state/app_state';
-import { completeFrame } from '../state/message_fields';
-import type { Frame } from '../protocol/topics';
-import { schema } from '../state/settings';
 import { readSchema } from '../protocol/schema';
+import type { Frame } from '../protocol/topics';
+import { session as drawing } from '../scene3d/session';
+import {
+  beginSession,
+  keepAllLaps,
+  laps,
+  link,
+  live,
+  notice,
+  receive,
+  rewind,
+  run,
+  sampleLap,
+  services,
+} from '../state/app_state';
+import { completeFrame } from '../state/message_fields';
+import { schema } from '../state/settings';
 import { beginSettings, takeSettings } from '../state/settings_session';
 import { everyFrame } from '../state/ticker';
-import { landmarksOf, LogSource, type Landmark } from './log_source';
+import { type Landmark, LogSource, landmarksOf } from './log_source';
 import type { McapLog } from './mcap_log';
 import type { Mode } from './mode';
 import { openFiles, openShelf, type Shelf } from './open';
@@ -28,7 +40,18 @@ export const duration = computed(() => player.value?.log.duration ?? 0);
 
 /** The pace is the only thing that can be set: in the schema's form, so that the page's own control serves. */
 const PACE = readSchema([
-  { key: 'run.pace', group: 'run', kind: 'number', unit: '', minimum: 0.05, maximum: 20, choices: [], default: 1, meaning: 'How fast the recording plays.', is_live: true },
+  {
+    key: 'run.pace',
+    group: 'run',
+    kind: 'number',
+    unit: '',
+    minimum: 0.05,
+    maximum: 20,
+    choices: [],
+    default: 1,
+    meaning: 'How fast the recording plays.',
+    is_live: true,
+  },
 ]);
 
 async function framesOf(log: McapLog): Promise<{ time: number; frame: Frame }[]> {
@@ -66,11 +89,13 @@ export async function play(shelf: Shelf, which = 0, start = shelf.start): Promis
   await source.seek(start);
   void look(source);
   const rival = shelf.logs[which === 0 ? 1 : 0];
-  drawing.rival = rival && rival !== log ? RecordedDrive.from(rival.name, await framesOf(rival), () => position.value) : null;
+  drawing.rival =
+    rival && rival !== log ? RecordedDrive.from(rival.name, await framesOf(rival), () => position.value) : null;
   return source;
 }
 
-export const playMode = async (mode: Exclude<Mode, { name: 'live' }>): Promise<LogSource> => play(await openShelf(mode));
+export const playMode = async (mode: Exclude<Mode, { name: 'live' }>): Promise<LogSource> =>
+  play(await openShelf(mode));
 export const playFiles = async (files: readonly File[]): Promise<LogSource> => play(await openFiles(files));
 
 /** Reads the recording once, beside playing it: landmarks, and all laps for comparison. */

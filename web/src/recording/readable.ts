@@ -61,7 +61,8 @@ export class HttpReadable implements IReadable {
   async #askSize(): Promise<bigint> {
     const answer = await this.#fetch(this.#url, { headers: { range: 'bytes=0-0' } });
     const total = /\/(\d+)$/.exec(answer.headers.get('content-range') ?? '')?.[1];
-    if (answer.status !== 206 || total === undefined) throw new Error(`${this.#url}: got HTTP ${answer.status} without a range, expected 206`);
+    if (answer.status !== 206 || total === undefined)
+      throw new Error(`${this.#url}: got HTTP ${answer.status} without a range, expected 206`);
     return BigInt(total);
   }
 

@@ -28,7 +28,9 @@ export class RecordedDrive implements GhostSource {
 
   static from(label: string, frames: readonly { time: number; frame: Frame }[], clock: () => number): RecordedDrive {
     const rows = new Float64Array(frames.length * ROW);
-    frames.forEach(({ time, frame }, i) => rows.set([time, frame.x_m, frame.y_m, frame.yaw_rad, frame.steer_applied_rad], i * ROW));
+    frames.forEach(({ time, frame }, i) =>
+      rows.set([time, frame.x_m, frame.y_m, frame.yaw_rad, frame.steer_applied_rad], i * ROW),
+    );
     return new RecordedDrive(label, rows, clock);
   }
 

@@ -5,12 +5,14 @@ import { attach } from '../state/operate';
 import type { Landmark } from './log_source';
 import { duration, isPlaying, landmarks, logs, play, played, player, position, searched } from './player';
 
-const seek = (time: number): void => void player.value?.seek(time).catch((error: unknown) => (notice.value = String(error)));
+const seek = (time: number): void =>
+  void player.value?.seek(time).catch((error: unknown) => (notice.value = String(error)));
 
 /** The next landmark in a direction, from a moment. */
 export function neighbour(all: readonly Landmark[], time: number, direction: 1 | -1): Landmark | null {
   const margin = 0.05; // a landmark one stands on is not the next one [s]
-  const onward = direction > 0 ? all.filter((each) => each.time > time + margin) : all.filter((each) => each.time < time - margin);
+  const onward =
+    direction > 0 ? all.filter((each) => each.time > time + margin) : all.filter((each) => each.time < time - margin);
   return (direction > 0 ? onward[0] : onward.at(-1)) ?? null;
 }
 
@@ -40,7 +42,12 @@ function Marks() {
   return (
     <div class="timeline-marks" aria-hidden="true">
       {landmarks.value.map(({ time, kind, label }) => (
-        <i key={`${kind}${time}${label}`} class={`is-${kind}`} style={{ left: `${(100 * time) / length}%` }} title={`${lapTime(time)}: ${label}`} />
+        <i
+          key={`${kind}${time}${label}`}
+          class={`is-${kind}`}
+          style={{ left: `${(100 * time) / length}%` }}
+          title={`${lapTime(time)}: ${label}`}
+        />
       ))}
     </div>
   );
@@ -54,10 +61,22 @@ export function TimelineView() {
   const playing = isPlaying.value;
   return (
     <section class="timeline" aria-label="Time line of the recording">
-      <button type="button" class="primary" aria-keyshortcuts="Space" onClick={() => void source.call('/pause', playing)}>
+      <button
+        type="button"
+        class="primary"
+        aria-keyshortcuts="Space"
+        onClick={() => void source.call('/pause', playing)}
+      >
         {playing ? 'Pause' : 'Play'}
       </button>
-      <button type="button" class="icon" aria-label="Landmark before" title="Landmark before" disabled={!neighbour(landmarks.value, position.value, -1)} onClick={() => jump(-1)}>
+      <button
+        type="button"
+        class="icon"
+        aria-label="Landmark before"
+        title="Landmark before"
+        disabled={!neighbour(landmarks.value, position.value, -1)}
+        onClick={() => jump(-1)}
+      >
         <Arrow direction={-1} />
       </button>
       <div class="timeline-track">
@@ -73,14 +92,25 @@ export function TimelineView() {
           onInput={(event) => seek(event.currentTarget.valueAsNumber)}
         />
       </div>
-      <button type="button" class="icon" aria-label="Next landmark" title="Next landmark" disabled={!neighbour(landmarks.value, position.value, 1)} onClick={() => jump(1)}>
+      <button
+        type="button"
+        class="icon"
+        aria-label="Next landmark"
+        title="Next landmark"
+        disabled={!neighbour(landmarks.value, position.value, 1)}
+        onClick={() => jump(1)}
+      >
         <Arrow direction={1} />
       </button>
       <output class="timeline-time">
         {lapTime(position.value)} <span>/ {lapTime(length)}</span>
       </output>
       {logs.value.length > 1 ? (
-        <select aria-label="Recording that is played" value={played.value} onChange={(event) => void choose(Number(event.currentTarget.value))}>
+        <select
+          aria-label="Recording that is played"
+          value={played.value}
+          onChange={(event) => void choose(Number(event.currentTarget.value))}
+        >
           {logs.value.map((log, i) => (
             <option key={log.name} value={i}>
               {log.name}

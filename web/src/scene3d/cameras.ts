@@ -43,10 +43,14 @@ export const orbited = (orbit: Orbit, azimuth: number, elevation: number): Orbit
   elevation: clamp(orbit.elevation + elevation, 0.04, 1.5),
 });
 
-export const zoomedOrbit = (orbit: Orbit, factor: number): Orbit => ({ ...orbit, zoom: clamp(orbit.zoom * factor, 0.3, 6) });
+export const zoomedOrbit = (orbit: Orbit, factor: number): Orbit => ({
+  ...orbit,
+  zoom: clamp(orbit.zoom * factor, 0.3, 6),
+});
 
 /** A lens that keeps its width on tall screens. */
-const lens = (wide: number, aspect: number): number => (aspect >= 1.2 ? wide : 2 * Math.atan(Math.tan(wide / 2) * Math.min(1.7, 1.2 / aspect)));
+const lens = (wide: number, aspect: number): number =>
+  aspect >= 1.2 ? wide : 2 * Math.atan(Math.tan(wide / 2) * Math.min(1.7, 1.2 / aspect));
 
 /** Follows the car from shot to shot; heading and speed are smoothed, so that corners turn the world and bumps do not. */
 export class CameraMan {
@@ -64,7 +68,9 @@ export class CameraMan {
     const from = Number.isNaN(this.#heading) ? car.yaw : this.#heading;
     this.#heading = wrapAngle(from + wrapAngle(car.yaw - from) * share);
     const slow = Number.isNaN(this.#speed) ? 1 : 1 - Math.exp(-seconds / 0.6);
-    this.#speed = (Number.isNaN(this.#speed) ? car.speed : this.#speed) + (car.speed - (Number.isNaN(this.#speed) ? car.speed : this.#speed)) * slow;
+    this.#speed =
+      (Number.isNaN(this.#speed) ? car.speed : this.#speed) +
+      (car.speed - (Number.isNaN(this.#speed) ? car.speed : this.#speed)) * slow;
     switch (name) {
       case 'chase':
         return this.#chase(car, orbit, aspect, isCalm);
@@ -104,7 +110,11 @@ export class CameraMan {
 
   #cockpit(car: Subject, { zoom }: Orbit, aspect: number): Shot {
     const [cos, sin] = [Math.cos(car.yaw), Math.sin(car.yaw)];
-    const place = (x: number, y: number, z: number): Vector => [car.x + x * cos - y * sin, car.y + x * sin + y * cos, z];
+    const place = (x: number, y: number, z: number): Vector => [
+      car.x + x * cos - y * sin,
+      car.y + x * sin + y * cos,
+      z,
+    ];
     const [x, y, z] = car.eye;
     return {
       position: place(x, y, z),
@@ -120,7 +130,11 @@ export class CameraMan {
     const flat = distance * Math.cos(elevation);
     const height = 0.12 * car.length;
     return {
-      position: [car.x + flat * Math.cos(angle), car.y + flat * Math.sin(angle), height + distance * Math.sin(elevation)],
+      position: [
+        car.x + flat * Math.cos(angle),
+        car.y + flat * Math.sin(angle),
+        height + distance * Math.sin(elevation),
+      ],
       target: [car.x, car.y, height],
       up: [0, 0, 1],
       fieldOfView: lens(0.85, aspect),

@@ -2,12 +2,20 @@ import { describe, expect, it } from 'vitest';
 import { carModel } from './car_mesh';
 import type { MeshData } from './mesh';
 
-const SIZE = { front_axle_m: 1.25, rear_axle_m: 1.45, track_width_m: 1.6, tire_width_m: 0.205, body_length_m: 4.3, body_width_m: 1.8 };
+const SIZE = {
+  front_axle_m: 1.25,
+  rear_axle_m: 1.45,
+  track_width_m: 1.6,
+  tire_width_m: 0.205,
+  body_length_m: 4.3,
+  body_width_m: 1.8,
+};
 const model = carModel(SIZE);
 
 function corners({ positions }: MeshData): number[][] {
   const all: number[][] = [];
-  for (let i = 0; i < positions.length; i += 3) all.push([positions[i] ?? NaN, positions[i + 1] ?? NaN, positions[i + 2] ?? NaN]);
+  for (let i = 0; i < positions.length; i += 3)
+    all.push([positions[i] ?? NaN, positions[i + 1] ?? NaN, positions[i + 2] ?? NaN]);
   return all;
 }
 
@@ -38,7 +46,8 @@ describe('the car', () => {
 
   it('looks the same in a mirror', () => {
     for (const part of [model.paint, model.dark, model.lamps, model.headlamps]) {
-      const key = ([x, y, z]: number[], side: number): string => [x, (y ?? 0) * side || 0, z].map((v) => (v ?? 0).toFixed(4).replace('-0.0000', '0.0000')).join();
+      const key = ([x, y, z]: number[], side: number): string =>
+        [x, (y ?? 0) * side || 0, z].map((v) => (v ?? 0).toFixed(4).replace('-0.0000', '0.0000')).join();
       const here = new Set(corners(part).map((corner) => key(corner, 1)));
       const there = new Set(corners(part).map((corner) => key(corner, -1)));
       expect([...there].filter((corner) => !here.has(corner))).toEqual([]);
@@ -46,7 +55,8 @@ describe('the car', () => {
   });
 
   it('turns its skin outwards', () => {
-    for (const part of ['paint', 'dark', 'lamps', 'headlamps', 'helmet', 'hand', 'wheel'] as const) expect(volume(model[part]), part).toBeGreaterThan(0);
+    for (const part of ['paint', 'dark', 'lamps', 'headlamps', 'helmet', 'hand', 'wheel'] as const)
+      expect(volume(model[part]), part).toBeGreaterThan(0);
     // A wheel of radius r and width w lies within a cylinder.
     expect(volume(model.wheel)).toBeLessThan(Math.PI * model.wheelRadius ** 2 * 0.24);
   });
@@ -54,13 +64,23 @@ describe('the car', () => {
   it('has finite normals of length one', () => {
     for (const part of [model.paint, model.wheel, model.hand]) {
       for (let i = 0; i < part.normals.length; i += 3) {
-        expect(Math.hypot(part.normals[i] ?? NaN, part.normals[i + 1] ?? NaN, part.normals[i + 2] ?? NaN)).toBeCloseTo(1, 5);
+        expect(Math.hypot(part.normals[i] ?? NaN, part.normals[i + 1] ?? NaN, part.normals[i + 2] ?? NaN)).toBeCloseTo(
+          1,
+          5,
+        );
       }
     }
   });
 
   it('can be small', () => {
-    const toy = carModel({ front_axle_m: 0.16, rear_axle_m: 0.16, track_width_m: 0.2, tire_width_m: 0.03, body_length_m: 0.5, body_width_m: 0.27 });
+    const toy = carModel({
+      front_axle_m: 0.16,
+      rear_axle_m: 0.16,
+      track_width_m: 0.2,
+      tire_width_m: 0.03,
+      body_length_m: 0.5,
+      body_width_m: 0.27,
+    });
     expect(toy.wheelRadius).toBeLessThan(0.06);
     expect(Math.max(...corners(toy.paint).map(([, , z]) => z ?? NaN))).toBeLessThan(0.15);
   });

@@ -1,5 +1,5 @@
 import type { CarSize } from '../draw/car';
-import { colourOf, MeshBuilder, mirroredRing, type Colour, type MeshData, type Vector } from './mesh';
+import { type Colour, colourOf, MeshBuilder, type MeshData, mirroredRing, type Vector } from './mesh';
 
 /** A car as parts in its own axes: x forward, y left, z up, from the centre of mass, on the road [m]. */
 export interface CarModel {
@@ -58,8 +58,17 @@ function wheelMesh(radius: number, width: number): MeshData {
   ];
   for (let k = 0; k < SIDES; ++k) {
     for (let i = 0; i + 1 < profile.length; ++i) {
-      const [[r, y], [q, z, colour]] = [profile[i] as (typeof profile)[number], profile[i + 1] as (typeof profile)[number]];
-      mesh.quad(point(r * radius, y, k), point(q * radius, z, k), point(q * radius, z, k + 1), point(r * radius, y, k + 1), colour);
+      const [[r, y], [q, z, colour]] = [
+        profile[i] as (typeof profile)[number],
+        profile[i + 1] as (typeof profile)[number],
+      ];
+      mesh.quad(
+        point(r * radius, y, k),
+        point(q * radius, z, k),
+        point(q * radius, z, k + 1),
+        point(r * radius, y, k + 1),
+        colour,
+      );
     }
     // Ten spokes outside, with the dark between them; a plain disc inside.
     const isSpoke = k % 4 < 2;
@@ -70,7 +79,12 @@ function wheelMesh(radius: number, width: number): MeshData {
       point(0.66 * radius, half * (isSpoke ? 0.8 : 0.3), k + 1),
       isSpoke ? RIM : SOOT,
     );
-    mesh.triangle(point(0.16 * radius, half * 0.9, k), [0, half * 0.9, 0], point(0.16 * radius, half * 0.9, k + 1), CARBON);
+    mesh.triangle(
+      point(0.16 * radius, half * 0.9, k),
+      [0, half * 0.9, 0],
+      point(0.16 * radius, half * 0.9, k + 1),
+      CARBON,
+    );
     mesh.triangle([0, -half, 0], point(0.94 * radius, -half, k), point(0.94 * radius, -half, k + 1), SOOT);
   }
   return mesh.data();
@@ -97,7 +111,11 @@ function helmetMesh(centre: Vector, radius: number): MeshData {
   const [ROWS, SIDES] = [6, 12];
   const point = (row: number, side: number): Vector => {
     const [v, u] = [(Math.PI * row) / ROWS, (2 * Math.PI * side) / SIDES];
-    return [centre[0] + radius * 1.1 * Math.sin(v) * Math.cos(u), centre[1] + radius * Math.sin(v) * Math.sin(u), centre[2] + radius * Math.cos(v)];
+    return [
+      centre[0] + radius * 1.1 * Math.sin(v) * Math.cos(u),
+      centre[1] + radius * Math.sin(v) * Math.sin(u),
+      centre[2] + radius * Math.cos(v),
+    ];
   };
   for (let row = 0; row < ROWS; ++row) {
     for (let side = 0; side < SIDES; ++side) {
@@ -174,11 +192,21 @@ function addTub({ paint, dark }: Parts, { k, front, rear, nose, tail, tub, at }:
 
   // The seat: a dark opening with its rim, and the hoop with its intake behind the head.
   const [wide, narrow, high] = [tub * 0.72, tub * 0.58, 0.665 * k];
-  dark.quad([at(0.375), -wide, high], [at(0.625), -narrow, high], [at(0.625), narrow, high], [at(0.375), wide, high], SOOT);
+  dark.quad(
+    [at(0.375), -wide, high],
+    [at(0.625), -narrow, high],
+    [at(0.625), narrow, high],
+    [at(0.375), wide, high],
+    SOOT,
+  );
   for (const side of [-1, 1]) {
     paint.rod([at(0.37), side * tub * 0.9, 0.68 * k], [at(0.62), side * tub * 0.8, 0.64 * k], 0.055 * k, WHITE);
   }
-  dark.hull(mirroredRing(at(0.3), section(0.13 * k, 0.84 * k, 1.0 * k)), mirroredRing(at(0.345), section(0.12 * k, 0.84 * k, 1.02 * k)), SOOT);
+  dark.hull(
+    mirroredRing(at(0.3), section(0.13 * k, 0.84 * k, 1.0 * k)),
+    mirroredRing(at(0.345), section(0.12 * k, 0.84 * k, 1.02 * k)),
+    SOOT,
+  );
   paint.loft(
     [
       mirroredRing(at(0.06), section(0.03 * k, 0.62 * k, 0.72 * k)),
@@ -188,7 +216,11 @@ function addTub({ paint, dark }: Parts, { k, front, rear, nose, tail, tub, at }:
     ACCENT,
   );
   // Windscreen: a low dark wedge.
-  dark.hull(mirroredRing(at(0.6), section(tub * 0.66, 0.6 * k, 0.75 * k)), mirroredRing(at(0.71), section(tub * 0.6, 0.6 * k, 0.64 * k)), CARBON);
+  dark.hull(
+    mirroredRing(at(0.6), section(tub * 0.66, 0.6 * k, 0.75 * k)),
+    mirroredRing(at(0.71), section(tub * 0.6, 0.6 * k, 0.64 * k)),
+    CARBON,
+  );
 }
 
 /** Side pods with their intakes, mirrors, and the floor. */
@@ -214,7 +246,13 @@ function addPods({ paint, dark }: Parts, { k, inner, tub, pod, at }: Measures): 
       ],
       (_x, face) => (face === (side > 0 ? 3 : 1) ? ACCENT : face === (side > 0 ? 0 : 4) ? CARBON : WHITE),
     );
-    dark.loft([ring(at(0.615), tub * 0.9, pod * 0.9, 0.2 * k, 0.46 * k), ring(at(0.627), tub * 0.9, pod * 0.88, 0.22 * k, 0.44 * k)], SOOT);
+    dark.loft(
+      [
+        ring(at(0.615), tub * 0.9, pod * 0.9, 0.2 * k, 0.46 * k),
+        ring(at(0.627), tub * 0.9, pod * 0.88, 0.22 * k, 0.44 * k),
+      ],
+      SOOT,
+    );
     // Mirrors.
     dark.rod([at(0.68), side * tub * 0.9, 0.6 * k], [at(0.705), side * (tub + 0.24 * k), 0.69 * k], 0.018 * k, CARBON);
     const [m0, m1] = [side * (tub + 0.2 * k), side * (tub + 0.33 * k)];
@@ -257,7 +295,11 @@ function addWings({ paint, dark, lamps, headlamps }: Parts, { k, rear, nose, tai
   lamps.box([tail + 0.08 * k, -0.07 * k, 0.34 * k], [tail + 0.13 * k, 0.07 * k, 0.42 * k], LAMP);
   for (const side of [-1, 1]) {
     const y = side * 0.115 * k;
-    headlamps.box([nose - 0.26 * k, y - 0.03 * k, 0.31 * k], [nose - 0.2 * k, y + 0.03 * k, 0.35 * k], colourOf('#fff4d8'));
+    headlamps.box(
+      [nose - 0.26 * k, y - 0.03 * k, 0.31 * k],
+      [nose - 0.2 * k, y + 0.03 * k, 0.35 * k],
+      colourOf('#fff4d8'),
+    );
   }
 }
 
@@ -284,7 +326,12 @@ function addWishbones({ dark }: Parts, { k, front, rear, radius, tyre, halfTrack
 export function carModel(size: CarSize): CarModel {
   const measures = measure(size);
   const { k, front, rear, radius, tyre, halfTrack, halfWidth, length, at } = measures;
-  const parts: Parts = { paint: new MeshBuilder(), dark: new MeshBuilder(), lamps: new MeshBuilder(), headlamps: new MeshBuilder() };
+  const parts: Parts = {
+    paint: new MeshBuilder(),
+    dark: new MeshBuilder(),
+    lamps: new MeshBuilder(),
+    headlamps: new MeshBuilder(),
+  };
   for (const add of [addTub, addPods, addWings, addWishbones]) add(parts, measures);
   return {
     paint: parts.paint.data(),

@@ -15,8 +15,8 @@ import {
   type Scene,
   ShadowMaterial,
 } from 'three';
-import { carShape, type CarSize } from '../draw/car';
-import { carModel, type CarModel } from './car_mesh';
+import { type CarSize, carShape } from '../draw/car';
+import { type CarModel, carModel } from './car_mesh';
 import { geometryOf } from './geometry';
 import type { MeshData } from './mesh';
 import type { Palette } from './palette';
@@ -83,7 +83,8 @@ function softTexture(grey: number, strength: (u: number, v: number) => number): 
 const soft = (edge: number): number => Math.max(0, Math.min(1, edge)) ** 2 * (3 - 2 * Math.max(0, Math.min(1, edge)));
 
 /** Where the sky does not reach under the car. */
-const spotTexture = (): DataTexture => softTexture(0, (u, v) => 0.75 * soft((1 - Math.abs(u)) / 0.45) * soft((1 - Math.abs(v)) / 0.45));
+const spotTexture = (): DataTexture =>
+  softTexture(0, (u, v) => 0.75 * soft((1 - Math.abs(u)) / 0.45) * soft((1 - Math.abs(v)) / 0.45));
 
 /** What two headlamps light of the road: a fan that opens and fades. */
 const beamTexture = (): DataTexture =>
@@ -123,7 +124,11 @@ export class CarView {
     this.#helmet = this.#mesh(model.helmet, paint);
     this.#hand = this.#mesh(model.hand, dark);
     this.#hand.position.set(...model.steeringWheel);
-    this.#body.add(this.#mesh(model.paint, paint), this.#mesh(model.dark, dark), this.#mesh(model.lamps, this.#lamps, false));
+    this.#body.add(
+      this.#mesh(model.paint, paint),
+      this.#mesh(model.dark, dark),
+      this.#mesh(model.lamps, this.#lamps, false),
+    );
     this.#body.add(this.#mesh(model.headlamps, this.#headlamps, false), this.#helmet, this.#hand);
     const wheel = this.#keep(geometryOf(model.wheel));
     this.#wheels = new Wheels(model, size, () => {
@@ -143,7 +148,15 @@ export class CarView {
 
   #headlight(): Mesh {
     const [ahead, wide] = [8 * this.model.length, 3.2 * this.model.length];
-    const material = this.#keep(new MeshBasicMaterial({ color: 0xfff0d0, map: this.#keep(beamTexture()), transparent: true, depthWrite: false, blending: AdditiveBlending }));
+    const material = this.#keep(
+      new MeshBasicMaterial({
+        color: 0xfff0d0,
+        map: this.#keep(beamTexture()),
+        transparent: true,
+        depthWrite: false,
+        blending: AdditiveBlending,
+      }),
+    );
     const beam = new Mesh(this.#keep(new PlaneGeometry(ahead, wide)), material);
     beam.position.x = (this.model.wheels[0]?.x ?? 0) + ahead / 2;
     beam.renderOrder = 0;
@@ -158,7 +171,9 @@ export class CarView {
 
   #spot(): Mesh {
     const { length, width } = this.model;
-    const material = this.#keep(new MeshBasicMaterial({ color: 0x000000, map: this.#keep(spotTexture()), transparent: true, depthWrite: false }));
+    const material = this.#keep(
+      new MeshBasicMaterial({ color: 0x000000, map: this.#keep(spotTexture()), transparent: true, depthWrite: false }),
+    );
     const spot = new Mesh(this.#keep(new PlaneGeometry(length * 1.16, width * 1.2)), material);
     spot.position.x = ((this.model.wheels[0]?.x ?? 0) + (this.model.wheels[2]?.x ?? 0)) / 2;
     spot.renderOrder = 8;
@@ -229,7 +244,12 @@ export class GhostView {
   }
 
   /** `away`: metres from the driven car. */
-  pose(pose: { x: number; y: number; yaw: number; steer: number }, wheelAngle: number, away: number, carLength: number): void {
+  pose(
+    pose: { x: number; y: number; yaw: number; steer: number },
+    wheelAngle: number,
+    away: number,
+    carLength: number,
+  ): void {
     const share = Math.min(1, Math.max(0, (away / carLength - 0.25) / 1.2));
     this.#veil.opacity = 0.5 * share;
     this.#group.visible = share > 0;

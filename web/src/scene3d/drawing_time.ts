@@ -1,5 +1,8 @@
 /** The part of a WebGL 2 context that tells when it is done. */
-export type Fences = Pick<WebGL2RenderingContext, 'fenceSync' | 'deleteSync' | 'getSyncParameter' | 'flush' | 'SYNC_GPU_COMMANDS_COMPLETE' | 'SYNC_STATUS' | 'SIGNALED'>;
+export type Fences = Pick<
+  WebGL2RenderingContext,
+  'fenceSync' | 'deleteSync' | 'getSyncParameter' | 'flush' | 'SYNC_GPU_COMMANDS_COMPLETE' | 'SYNC_STATUS' | 'SIGNALED'
+>;
 
 /** Of the time that passes, pictures may take this share of whoever draws them. */
 const SHARE = 2 / 3;

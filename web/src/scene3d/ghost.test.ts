@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Frame } from '../protocol/topics';
-import { LapRecorder, type GhostPose } from './ghost';
+import { type GhostPose, LapRecorder } from './ghost';
 
 const PERIOD = 0.05;
 
@@ -87,7 +87,8 @@ describe('the ghost', () => {
     drive(recorder, [10, 1]);
     const line = recorder.best?.line ?? new Float32Array();
     let length = 0;
-    for (let i = 2; i < line.length; i += 2) length += Math.hypot((line[i] ?? 0) - (line[i - 2] ?? 0), (line[i + 1] ?? 0) - (line[i - 1] ?? 0));
+    for (let i = 2; i < line.length; i += 2)
+      length += Math.hypot((line[i] ?? 0) - (line[i - 2] ?? 0), (line[i + 1] ?? 0) - (line[i - 1] ?? 0));
     expect(length).toBeGreaterThan(0.98 * 2 * Math.PI * 50);
     expect(length).toBeLessThan(2 * Math.PI * 50);
   });

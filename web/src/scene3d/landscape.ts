@@ -4,11 +4,11 @@ import {
   Color,
   DataTexture,
   DoubleSide,
-  Fog,
   Float32BufferAttribute,
+  Fog,
   Group,
-  LinearMipmapLinearFilter,
   LinearFilter,
+  LinearMipmapLinearFilter,
   Mesh,
   MeshBasicMaterial,
   MeshLambertMaterial,
@@ -20,7 +20,7 @@ import {
 } from 'three';
 import { mix } from '../lib/math';
 import { geometryOf } from './geometry';
-import { MeshBuilder, type Colour, type Vector } from './mesh';
+import { type Colour, MeshBuilder, type Vector } from './mesh';
 import { noiseTile } from './noise';
 import type { Palette } from './palette';
 import type { Tree } from './trees';
@@ -53,7 +53,11 @@ export function greyTexture(values: Float32Array, size: number, anisotropy: numb
 /** A material's colour such that a grey texture of mean 200/255 leaves `colour`. */
 export const underTexture = (colour: Colour): Color => new Color().setRGB(...colour).multiplyScalar(255 / 200);
 
-const mixed = (a: Colour, b: Colour, share: number): Colour => [mix(a[0], b[0], share), mix(a[1], b[1], share), mix(a[2], b[2], share)];
+const mixed = (a: Colour, b: Colour, share: number): Colour => [
+  mix(a[0], b[0], share),
+  mix(a[1], b[1], share),
+  mix(a[2], b[2], share),
+];
 
 /** Sky, hills, ground and trees. */
 export class Landscape {
@@ -68,10 +72,16 @@ export class Landscape {
 
   constructor(scene: Scene, anisotropy: number) {
     this.#scene = scene;
-    this.#sky = new Mesh(new SphereGeometry(1000, 24, 12, 0, 2 * Math.PI, 0, 0.52 * Math.PI), new MeshBasicMaterial({ vertexColors: true, side: BackSide, depthWrite: false, fog: false }));
+    this.#sky = new Mesh(
+      new SphereGeometry(1000, 24, 12, 0, 2 * Math.PI, 0, 0.52 * Math.PI),
+      new MeshBasicMaterial({ vertexColors: true, side: BackSide, depthWrite: false, fog: false }),
+    );
     this.#sky.geometry.rotateX(Math.PI / 2);
     this.#sky.renderOrder = Order.sky;
-    this.#hills = new Mesh(hillsGeometry(), new MeshBasicMaterial({ vertexColors: true, side: DoubleSide, depthWrite: false, fog: false }));
+    this.#hills = new Mesh(
+      hillsGeometry(),
+      new MeshBasicMaterial({ vertexColors: true, side: DoubleSide, depthWrite: false, fog: false }),
+    );
     this.#hills.renderOrder = Order.hills;
     this.#around.add(this.#sky, this.#hills);
 
@@ -82,7 +92,10 @@ export class Landscape {
     }
     this.#picture = greyTexture(values, size, anisotropy);
     this.#picture.repeat.set(GROUND_M / TILE_M, GROUND_M / TILE_M);
-    this.#ground = new Mesh(new PlaneGeometry(GROUND_M, GROUND_M), new MeshBasicMaterial({ map: this.#picture, depthWrite: false }));
+    this.#ground = new Mesh(
+      new PlaneGeometry(GROUND_M, GROUND_M),
+      new MeshBasicMaterial({ map: this.#picture, depthWrite: false }),
+    );
     this.#ground.renderOrder = Order.ground;
     for (const each of [this.#sky, this.#hills, this.#ground]) each.frustumCulled = false;
     scene.add(this.#around, this.#ground, this.#forest);
@@ -151,7 +164,8 @@ function addTree(mesh: MeshBuilder, { x, y, height, width, kind }: Tree, colours
       const angle = (2 * Math.PI * k) / sides + x;
       return [x + r * Math.cos(angle), y + r * Math.sin(angle), z];
     };
-    for (let k = 0; k < sides; ++k) mesh.quad(point(k, radius, low), point(k + 1, radius, low), point(k + 1, top, high), point(k, top, high), colour);
+    for (let k = 0; k < sides; ++k)
+      mesh.quad(point(k, radius, low), point(k + 1, radius, low), point(k + 1, top, high), point(k, top, high), colour);
   };
   const leaves = colours.leaves[kind] ?? colours.ground;
   cone(4, 0, 0.25 * height, 0.08 * width, 0.08 * width, colours.trunk);
@@ -169,7 +183,11 @@ function hillsGeometry(): BufferGeometry {
   ] as const) {
     const crest = (k: number): number => {
       const angle = (2 * Math.PI * k) / SIDES;
-      const wave = 0.5 + 0.22 * Math.sin(3 * angle + shift) + 0.16 * Math.sin(7 * angle + 2 * shift) + 0.12 * Math.sin(17 * angle + 3 * shift);
+      const wave =
+        0.5 +
+        0.22 * Math.sin(3 * angle + shift) +
+        0.16 * Math.sin(7 * angle + 2 * shift) +
+        0.12 * Math.sin(17 * angle + 3 * shift);
       return height * Math.max(0.12, wave);
     };
     const corner = (k: number, z: number): [number, number, number] => {

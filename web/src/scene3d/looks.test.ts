@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { BodyMotion } from './body_motion';
-import { CameraMan, CAMERAS, DEFAULT_ORBIT, orbited, zoomedOrbit, type Subject } from './cameras';
+import { CAMERAS, CameraMan, DEFAULT_ORBIT, orbited, type Subject, zoomedOrbit } from './cameras';
 import { noiseTile } from './noise';
 import { LEVELS, QualityGovernor, SOFTWARE_LEVEL } from './quality';
 import { plantTrees } from './trees';
@@ -36,7 +36,7 @@ describe('cameras', () => {
     for (const { view } of CAMERAS) {
       const shot = new CameraMan().shoot(view, car, DEFAULT_ORBIT, 1.6, 0.016, false);
       const look = shot.target.map((value, i) => value - (shot.position[i] ?? 0));
-      const ahead = look[0] as number * Math.cos(car.yaw) + (look[1] as number) * Math.sin(car.yaw);
+      const ahead = (look[0] as number) * Math.cos(car.yaw) + (look[1] as number) * Math.sin(car.yaw);
       expect([...shot.position, ...shot.target, shot.fieldOfView].every(Number.isFinite), view).toBe(true);
       expect(shot.position[2], view).toBeGreaterThan(0);
       if (view === 'chase' || view === 'cockpit') expect(ahead, view).toBeGreaterThan(0);
@@ -112,16 +112,19 @@ describe('the landscape', () => {
   });
 
   it('plants no tree near a road, not even near another part of it', () => {
-    const line = (half: number) => Array.from({ length: 300 }, (_, i) => {
-      const angle = (2 * Math.PI * i) / 300;
-      const radius = 90 + 50 * Math.cos(2 * angle) + half;
-      return { x: radius * Math.cos(angle), y: radius * Math.sin(angle) };
-    });
+    const line = (half: number) =>
+      Array.from({ length: 300 }, (_, i) => {
+        const angle = (2 * Math.PI * i) / 300;
+        const radius = 90 + 50 * Math.cos(2 * angle) + half;
+        return { x: radius * Math.cos(angle), y: radius * Math.sin(angle) };
+      });
     const lines = { left: line(-5), right: line(5), centre: line(0) };
     const trees = plantTrees(lines);
     expect(trees.length).toBeGreaterThan(100);
     for (const tree of trees) {
-      const near = Math.min(...[...lines.left, ...lines.right].map((point) => Math.hypot(point.x - tree.x, point.y - tree.y)));
+      const near = Math.min(
+        ...[...lines.left, ...lines.right].map((point) => Math.hypot(point.x - tree.x, point.y - tree.y)),
+      );
       expect(near).toBeGreaterThan(9);
     }
     expect(plantTrees(lines)).toEqual(trees);

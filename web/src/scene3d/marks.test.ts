@@ -51,7 +51,23 @@ describe('a band along a line', () => {
 describe('tyre marks', () => {
   const car = { front: 1.2, rear: 1.5, halfTrack: 0.8, tyreWidth: 0.25 };
   const at = (x: number, rest: Partial<Motion>): Motion => ({
-    ...{ time: x / 20, x, y: 0, yaw: 0, vx: 20, vy: 0, yawRate: 0, speed: 20, steer: 0, throttle: 0, ax: 0, ay: 0, lapTime: 0, frontUse: 0.5, rearUse: 0.5 },
+    ...{
+      time: x / 20,
+      x,
+      y: 0,
+      yaw: 0,
+      vx: 20,
+      vy: 0,
+      yawRate: 0,
+      speed: 20,
+      steer: 0,
+      throttle: 0,
+      ax: 0,
+      ay: 0,
+      lapTime: 0,
+      frontUse: 0.5,
+      rearUse: 0.5,
+    },
     ...rest,
   });
 

@@ -106,7 +106,11 @@ export class MeshBuilder {
     const w = cross(u, along);
     const m = width / 2 / Math.hypot(...w);
     const v: Vector = [w[0] * m, w[1] * m, w[2] * m];
-    const corner = (p: Vector, i: number, j: number): Vector => [p[0] + i * u[0] + j * v[0], p[1] + i * u[1] + j * v[1], p[2] + i * u[2] + j * v[2]];
+    const corner = (p: Vector, i: number, j: number): Vector => [
+      p[0] + i * u[0] + j * v[0],
+      p[1] + i * u[1] + j * v[1],
+      p[2] + i * u[2] + j * v[2],
+    ];
     const ring = (p: Vector): Vector[] => [corner(p, -1, -1), corner(p, 1, -1), corner(p, 1, 1), corner(p, -1, 1)];
     const [a, b] = [ring(from), ring(to)];
     for (let i = 0; i < 4; ++i) {
@@ -127,6 +131,9 @@ export class MeshBuilder {
 /** The same section on the other side as well: half a ring from the bottom to the top at y ≥ 0, mirrored. */
 export function mirroredRing(x: number, half: readonly (readonly [y: number, z: number])[]): Vector[] {
   const left = half.map(([y, z]): Vector => [x, y, z]);
-  const right = [...half].reverse().filter(([y]) => y > 0).map(([y, z]): Vector => [x, -y, z]);
+  const right = [...half]
+    .reverse()
+    .filter(([y]) => y > 0)
+    .map(([y, z]): Vector => [x, -y, z]);
   return [...left, ...right];
 }

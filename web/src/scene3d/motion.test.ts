@@ -1,12 +1,24 @@
 import { describe, expect, it } from 'vitest';
-import { interpolate, isJump, Playout, type Motion } from './motion';
+import { interpolate, isJump, type Motion, Playout } from './motion';
 
 /** A car on a circle of 50 m at 20 m/s, to the left. */
 function circling(time: number): Motion {
   const [radius, speed] = [50, 20];
   const angle = (speed / radius) * time;
   const at = { x: radius * Math.cos(angle), y: radius * Math.sin(angle), yaw: angle + Math.PI / 2 };
-  const rest = { vx: speed, vy: 0, yawRate: speed / radius, speed, steer: 0.05, throttle: 0.2, ax: 0, ay: 8, lapTime: time, frontUse: NaN, rearUse: NaN };
+  const rest = {
+    vx: speed,
+    vy: 0,
+    yawRate: speed / radius,
+    speed,
+    steer: 0.05,
+    throttle: 0.2,
+    ax: 0,
+    ay: 8,
+    lapTime: time,
+    frontUse: NaN,
+    rearUse: NaN,
+  };
   return { time, ...at, ...rest };
 }
 const far = (a: { x: number; y: number }, b: { x: number; y: number }): number => Math.hypot(a.x - b.x, a.y - b.y);
@@ -23,12 +35,18 @@ describe('interpolation', () => {
 
   it('turns the short way past half a turn', () => {
     const [a, b] = [circling(1), circling(1.1)];
-    const [from, to] = [{ ...a, yaw: Math.PI - 0.02, yawRate: NaN }, { ...b, yaw: -Math.PI + 0.02, yawRate: NaN }];
+    const [from, to] = [
+      { ...a, yaw: Math.PI - 0.02, yawRate: NaN },
+      { ...b, yaw: -Math.PI + 0.02, yawRate: NaN },
+    ];
     expect(interpolate(from, to, 1.05).yaw).toBeCloseTo(Math.PI, 9);
   });
 
   it('counts the lap time on across the line', () => {
-    const [a, b] = [{ ...circling(1), lapTime: 29.98 }, { ...circling(1.05), lapTime: 0.02 }];
+    const [a, b] = [
+      { ...circling(1), lapTime: 29.98 },
+      { ...circling(1.05), lapTime: 0.02 },
+    ];
     expect(interpolate(a, b, 1.04).lapTime).toBeCloseTo(0.01, 9);
   });
 
@@ -67,7 +85,7 @@ describe('playout', () => {
     const pictures = play(20);
     for (let i = 1; i < pictures.length; ++i) {
       const step = (pictures[i]?.motion.time ?? 0) - (pictures[i - 1]?.motion.time ?? 0);
-      expect(step).toBeGreaterThan(0.010);
+      expect(step).toBeGreaterThan(0.01);
       expect(step).toBeLessThan(0.022); // 16 ms, and a little to catch up
     }
   });
@@ -83,10 +101,12 @@ describe('playout', () => {
     for (const pace of [0.1, 5]) {
       const pictures = play(0, pace);
       const [first, last] = [pictures[0], pictures.at(-1)];
-      const rate = ((last?.motion.time ?? 0) - (first?.motion.time ?? 0)) / (((last?.now ?? 0) - (first?.now ?? 0)) / 1000);
+      const rate =
+        ((last?.motion.time ?? 0) - (first?.motion.time ?? 0)) / (((last?.now ?? 0) - (first?.now ?? 0)) / 1000);
       expect(rate).toBeGreaterThan(0.97 * pace);
       expect(rate).toBeLessThan(1.03 * pace);
-      for (const { now, motion } of pictures) expect(((now / 1000) * pace - motion.time) / pace).toBeLessThan(0.1 + 1e-6);
+      for (const { now, motion } of pictures)
+        expect(((now / 1000) * pace - motion.time) / pace).toBeLessThan(0.1 + 1e-6);
     }
   });
 

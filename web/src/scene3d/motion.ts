@@ -157,7 +157,9 @@ export class Playout {
     this.#at = now;
     const pace = this.pace();
     const age = (now - (this.#arrivals.at(-1) ?? now)) / 1000;
-    const aim = isHeld ? newest.time : Math.min(newest.time + (age - this.#delay() / 1000) * pace, newest.time + LONGEST_LEAD_S);
+    const aim = isHeld
+      ? newest.time
+      : Math.min(newest.time + (age - this.#delay() / 1000) * pace, newest.time + LONGEST_LEAD_S);
     const steady = this.#shown + elapsed * pace;
     const off = aim - steady;
     if (!Number.isFinite(this.#shown) || Math.abs(off) > Math.max(0.3, 0.6 * pace)) this.#shown = aim;

@@ -15,7 +15,8 @@ export function noiseTile(size: number, amplitude: number, cells: readonly numbe
   const random = randomNumbers(seed);
   for (const count of cells) {
     const knots = Float32Array.from({ length: count * count }, () => (2 * random() - 1) * (amplitude / cells.length));
-    const knot = (i: number, j: number): number => knots[(((j % count) + count) % count) * count + (((i % count) + count) % count)] ?? 0;
+    const knot = (i: number, j: number): number =>
+      knots[(((j % count) + count) % count) * count + (((i % count) + count) % count)] ?? 0;
     const smooth = (u: number): number => u * u * (3 - 2 * u);
     for (let y = 0; y < size; ++y) {
       for (let x = 0; x < size; ++x) {

@@ -1,5 +1,5 @@
 import { theme } from '../draw/theme';
-import { colourOf, type Colour } from './mesh';
+import { type Colour, colourOf } from './mesh';
 import type { RoadPaint } from './road_mesh';
 
 /** What the world looks like by day and at dusk; colours as light. */

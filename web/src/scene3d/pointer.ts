@@ -55,7 +55,8 @@ export function listenToPointers(canvas: HTMLCanvasElement): () => void {
   const key = (event: KeyboardEvent): void => {
     const turn = ARROWS[event.key];
     // While somebody drives by hand the arrows are the car's.
-    if (!turn || camera.value !== 'free' || live.frame?.is_manual || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (!turn || camera.value !== 'free' || live.frame?.is_manual || event.ctrlKey || event.metaKey || event.altKey)
+      return;
     event.preventDefault();
     event.stopPropagation();
     orbit.value = orbited(orbit.value, turn[0], turn[1]);

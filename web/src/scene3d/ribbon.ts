@@ -27,7 +27,11 @@ export class RibbonRing {
     this.positions = new Float32Array(capacity * 12);
     this.colours = new Uint8Array(capacity * 16).fill(255);
     this.indices = new Uint32Array(capacity * 6);
-    for (let i = 0; i < capacity; ++i) this.indices.set([0, 1, 2, 0, 2, 3].map((corner) => 4 * i + corner), 6 * i);
+    for (let i = 0; i < capacity; ++i)
+      this.indices.set(
+        [0, 1, 2, 0, 2, 3].map((corner) => 4 * i + corner),
+        6 * i,
+      );
     this.#ends = Array.from({ length: tracks }, () => null);
   }
 
@@ -66,7 +70,13 @@ export class RibbonRing {
  * Left and right corners of a band of `width` along a line: x, y, z of two corners for each of `count` points, written into
  * `positions` from its start. `px`, `py` hold the points.
  */
-export function writeRibbon(px: ArrayLike<number>, py: ArrayLike<number>, count: number, width: number, positions: Float32Array): void {
+export function writeRibbon(
+  px: ArrayLike<number>,
+  py: ArrayLike<number>,
+  count: number,
+  width: number,
+  positions: Float32Array,
+): void {
   for (let i = 0; i < count; ++i) {
     const [a, b] = [Math.max(0, i - 1), Math.min(count - 1, i + 1)];
     const [dx, dy] = [(px[b] ?? 0) - (px[a] ?? 0), (py[b] ?? 0) - (py[a] ?? 0)];

@@ -2,9 +2,10 @@ import { BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, Mesh, MeshBas
 import { speedRgb } from '../draw/speed_colour';
 import type { Plan } from '../protocol/topics';
 import type { Colour } from './mesh';
-import { ribbonIndices, type RibbonRing, writeRibbon } from './ribbon';
+import { type RibbonRing, ribbonIndices, writeRibbon } from './ribbon';
 
-const flatMaterial = (): MeshBasicMaterial => new MeshBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false });
+const flatMaterial = (): MeshBasicMaterial =>
+  new MeshBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false });
 
 /** Shows a ring of bands; uploads only what was written since the last picture. */
 export class RingView {
@@ -107,7 +108,12 @@ export class BandView {
     for (let i = 0; i < count; ++i) {
       const [r, g, b] = speedRgb((plan.speed_mps[i] ?? NaN) / speedScale);
       // Vertex colours are light, the scale is of the screen.
-      const rgba = [255 * (r / 255) ** 2.2, 255 * (g / 255) ** 2.2, 255 * (b / 255) ** 2.2, i > 0.75 * count ? 225 * 4 * (1 - i / count) : 225];
+      const rgba = [
+        255 * (r / 255) ** 2.2,
+        255 * (g / 255) ** 2.2,
+        255 * (b / 255) ** 2.2,
+        i > 0.75 * count ? 225 * 4 * (1 - i / count) : 225,
+      ];
       for (let k = 0; k < 4; ++k) colours[8 * i + k] = colours[8 * i + 4 + k] = rgba[k] ?? 0;
     }
   }

@@ -1,14 +1,26 @@
 import { describe, expect, it } from 'vitest';
 import type { Point } from '../lib/math';
 import { colourOf } from './mesh';
-import { curvatures, KERB_RADIUS_M, roadMeshes, tidyLines, type FlatMesh, type RoadLines } from './road_mesh';
+import { curvatures, type FlatMesh, KERB_RADIUS_M, type RoadLines, roadMeshes, tidyLines } from './road_mesh';
 
 const grey = colourOf('#808080');
-const PAINT = { road: grey, edge: colourOf('#ffffff'), centreLine: grey, verge: grey, concrete: colourOf('#b9bcb8'), kerbRed: colourOf('#c8342c'), kerbWhite: colourOf('#f2f2ee') };
+const PAINT = {
+  road: grey,
+  edge: colourOf('#ffffff'),
+  centreLine: grey,
+  verge: grey,
+  concrete: colourOf('#b9bcb8'),
+  kerbRed: colourOf('#c8342c'),
+  kerbWhite: colourOf('#f2f2ee'),
+};
 
 /** A ring road of mean radius `radius`, `half` to each side, driven to the left; the first point once more at its end. */
 function ring(radius: number, half: number, count = 60): RoadLines {
-  const line = (r: number): Point[] => Array.from({ length: count + 1 }, (_, i) => ({ x: r * Math.cos((2 * Math.PI * i) / count), y: r * Math.sin((2 * Math.PI * i) / count) }));
+  const line = (r: number): Point[] =>
+    Array.from({ length: count + 1 }, (_, i) => ({
+      x: r * Math.cos((2 * Math.PI * i) / count),
+      y: r * Math.sin((2 * Math.PI * i) / count),
+    }));
   return { left: line(radius - half), right: line(radius + half), centre: line(radius) };
 }
 
@@ -37,7 +49,11 @@ describe('the road', () => {
 
   it('closes its seam where the first point is not repeated, and where the last nearly repeats it', () => {
     const whole = ring(50, 5);
-    const open: RoadLines = { left: whole.left.slice(0, -1), right: whole.right.slice(0, -1), centre: whole.centre.slice(0, -1) };
+    const open: RoadLines = {
+      left: whole.left.slice(0, -1),
+      right: whole.right.slice(0, -1),
+      centre: whole.centre.slice(0, -1),
+    };
     const [a, b] = [tidyLines(whole, true), tidyLines(open, true)];
     expect(a?.centre.length).toBe(61);
     expect(b?.centre.length).toBe(61);
@@ -66,7 +82,8 @@ describe('the road', () => {
     const lines = ring(50, 5, 120);
     const radii = (flat: FlatMesh): number[] => {
       const all: number[] = [];
-      for (let i = 0; i < flat.positions.length; i += 3) all.push(Math.hypot(flat.positions[i] ?? 0, flat.positions[i + 1] ?? 0));
+      for (let i = 0; i < flat.positions.length; i += 3)
+        all.push(Math.hypot(flat.positions[i] ?? 0, flat.positions[i + 1] ?? 0));
       return all;
     };
     const { kerbs } = roadMeshes(lines, true, 0.8, PAINT);

@@ -1,5 +1,5 @@
 import type { Point } from '../lib/math';
-import { colourOf, type Colour } from './mesh';
+import { type Colour, colourOf } from './mesh';
 
 /** Edges and centre of a road as the server sends them: as many points each, across from one another, in W [m]. */
 export interface RoadLines {
@@ -51,7 +51,10 @@ class Flat {
 }
 
 const distance = (a: Point, b: Point): number => Math.hypot(b.x - a.x, b.y - a.y);
-const between = (a: Point, b: Point, share: number): Point => ({ x: a.x + (b.x - a.x) * share, y: a.y + (b.y - a.y) * share });
+const between = (a: Point, b: Point, share: number): Point => ({
+  x: a.x + (b.x - a.x) * share,
+  y: a.y + (b.y - a.y) * share,
+});
 
 /** `metres` from `from` towards `to`, or away from it when negative. */
 function towards(from: Point, to: Point, metres: number): Point {
@@ -106,7 +109,8 @@ export function curvatures(centre: readonly Point[], isClosed: boolean): Float64
   const result = new Float64Array(count);
   const reach = 3; // points: noise of single points does not make a bend
   const distinct = isClosed ? count - 1 : count;
-  const at = (i: number): Point => centre[isClosed ? ((i % distinct) + distinct) % distinct : Math.min(Math.max(i, 0), count - 1)] as Point;
+  const at = (i: number): Point =>
+    centre[isClosed ? ((i % distinct) + distinct) % distinct : Math.min(Math.max(i, 0), count - 1)] as Point;
   for (let i = 0; i < count; ++i) {
     const [a, b, c] = [at(i - reach), at(i), at(i + reach)];
     const cross = (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);
@@ -129,7 +133,13 @@ function addDashes(flat: Flat, lines: RoadLines, dash: number, gap: number, widt
       const [p, q] = [(low - from) / (to - from), (high - from) / (to - from)];
       const [here, next, side, nextSide] = [between(a, b, p), between(a, b, q), between(k, m, p), between(k, m, q)];
       const half = width / 2;
-      flat.quad(towards(here, side, half), towards(here, side, -half), towards(next, nextSide, -half), towards(next, nextSide, half), colour);
+      flat.quad(
+        towards(here, side, half),
+        towards(here, side, -half),
+        towards(next, nextSide, -half),
+        towards(next, nextSide, half),
+        colour,
+      );
     }
   }
 }
@@ -146,7 +156,13 @@ function addStart(flat: Flat, lines: RoadLines, white: Colour): void {
   };
   for (let row = -1; row < 1; ++row) {
     for (let i = 0; i < columns; ++i) {
-      flat.quad(place(i, row), place(i + 1, row), place(i + 1, row + 1), place(i, row + 1), (i + row) % 2 === 0 ? white : BLACK);
+      flat.quad(
+        place(i, row),
+        place(i + 1, row),
+        place(i + 1, row + 1),
+        place(i, row + 1),
+        (i + row) % 2 === 0 ? white : BLACK,
+      );
     }
   }
 }
@@ -160,7 +176,15 @@ function isPainted(bend: Float64Array, isClosed: boolean): boolean[] {
 }
 
 /** The kerb outside one edge, in blocks of equal length. `side` is the edge, `other` the one across. */
-function addKerb(flat: Flat, side: readonly Point[], other: readonly Point[], painted: readonly boolean[], width: number, isLeft: boolean, paint: RoadPaint): void {
+function addKerb(
+  flat: Flat,
+  side: readonly Point[],
+  other: readonly Point[],
+  painted: readonly boolean[],
+  width: number,
+  isLeft: boolean,
+  paint: RoadPaint,
+): void {
   const s = stations(side);
   for (let i = 0; i + 1 < side.length; ++i) {
     const [a, b] = [side[i] as Point, side[i + 1] as Point];
@@ -171,7 +195,12 @@ function addKerb(flat: Flat, side: readonly Point[], other: readonly Point[], pa
       const end = painted[i] ? Math.min(to, (block + 1) * KERB_BLOCK_M) : to;
       const colour = !painted[i] ? paint.concrete : block % 2 === 0 ? paint.kerbRed : paint.kerbWhite;
       const [p, q] = [(start - from) / (to - from), (end - from) / (to - from)];
-      const [inner, innerNext, outer, outerNext] = [between(a, b, p), between(a, b, q), between(outerA, outerB, p), between(outerA, outerB, q)];
+      const [inner, innerNext, outer, outerNext] = [
+        between(a, b, p),
+        between(a, b, q),
+        between(outerA, outerB, p),
+        between(outerA, outerB, q),
+      ];
       if (isLeft) flat.quad(outer, inner, innerNext, outerNext, colour);
       else flat.quad(inner, outer, outerNext, innerNext, colour);
       start = end;
@@ -190,7 +219,8 @@ export interface RoadMeshes {
 /** `lines` as tidyLines() returns them; `kerb` is the width of the kerbs, none at 0 [m]. */
 export function roadMeshes(lines: RoadLines, isClosed: boolean, kerb: number, paint: RoadPaint): RoadMeshes {
   const { left, right, centre } = lines;
-  const offset = (from: readonly Point[], to: readonly Point[], metres: number): Point[] => from.map((point, i) => towards(point, to[i] as Point, metres));
+  const offset = (from: readonly Point[], to: readonly Point[], metres: number): Point[] =>
+    from.map((point, i) => towards(point, to[i] as Point, metres));
   const kerbs = new Flat();
   if (kerb > 0) {
     const painted = isPainted(curvatures(centre, isClosed), isClosed);

@@ -2,7 +2,7 @@ import { BufferAttribute, BufferGeometry, type DataTexture, Group, Mesh, MeshBas
 import { greyTexture, Order, underTexture } from './landscape';
 import { noiseTile } from './noise';
 import type { Palette } from './palette';
-import { roadMeshes, type FlatMesh, type RoadLines } from './road_mesh';
+import { type FlatMesh, type RoadLines, roadMeshes } from './road_mesh';
 
 const GRAIN_M = 5; // one picture of the asphalt
 const PIECE = 120 * 18; // numbers for 120 quads
@@ -27,7 +27,12 @@ export class RoadView {
   constructor(scene: Scene, anisotropy: number) {
     this.#scene = scene;
     this.#grain = greyTexture(noiseTile(128, 0.3, [9, 31, 64, 64], 5), 128, anisotropy);
-    this.#rough = new MeshBasicMaterial({ vertexColors: true, depthWrite: false, map: this.#grain, color: underTexture([1, 1, 1]) });
+    this.#rough = new MeshBasicMaterial({
+      vertexColors: true,
+      depthWrite: false,
+      map: this.#grain,
+      color: underTexture([1, 1, 1]),
+    });
   }
 
   show(lines: RoadLines | null, isClosed: boolean, kerb: number, colours: Palette): void {

@@ -1,7 +1,7 @@
 import type { Frame } from '../protocol/topics';
 import { frameListeners, run } from '../state/app_state';
-import { LapRecorder, type GhostSource } from './ghost';
-import { motionOf, Playout, type Motion } from './motion';
+import { type GhostSource, LapRecorder } from './ghost';
+import { type Motion, motionOf, Playout } from './motion';
 import { RibbonRing } from './ribbon';
 import { TyreMarks } from './tyre_marks';
 
@@ -43,7 +43,12 @@ export class Session {
     this.#trace(motion);
     const car = run.value;
     if (car) {
-      const wheels = { front: car.front_axle_m, rear: car.rear_axle_m, halfTrack: car.track_width_m / 2, tyreWidth: Math.max(car.tire_width_m, 0.2) };
+      const wheels = {
+        front: car.front_axle_m,
+        rear: car.rear_axle_m,
+        halfTrack: car.track_width_m / 2,
+        tyreWidth: Math.max(car.tire_width_m, 0.2),
+      };
       this.marks.push(motion, wheels);
     }
     const wasBraking = (this.#last?.throttle ?? 0) < -0.05;

@@ -2,7 +2,9 @@ import { type Camera, type Scene, SRGBColorSpace, type WebGLRenderer, WebGLRende
 import { DrawingTime } from './drawing_time';
 
 /** What the types of three.js leave out. */
-type Renderer = WebGLRenderer & { setRenderTargetFramebuffer(target: WebGLRenderTarget, framebuffer: WebGLFramebuffer): void };
+type Renderer = WebGLRenderer & {
+  setRenderTargetFramebuffer(target: WebGLRenderTarget, framebuffer: WebGLFramebuffer): void;
+};
 
 /**
  * Pictures where the processor draws. A browser without a graphics card fetches what is on the canvas back from whoever draws,
@@ -22,7 +24,11 @@ export class SlowPicture {
     this.#renderer = renderer;
     const gl = (this.#gl = renderer.getContext() as WebGL2RenderingContext);
     this.#time = new DrawingTime(gl);
-    [this.#framebuffer, this.#colour, this.#depth] = [gl.createFramebuffer(), gl.createRenderbuffer(), gl.createRenderbuffer()];
+    [this.#framebuffer, this.#colour, this.#depth] = [
+      gl.createFramebuffer(),
+      gl.createRenderbuffer(),
+      gl.createRenderbuffer(),
+    ];
     // What is drawn here goes to the screen as it is: with the colours of screens, as three.js draws for headsets.
     Object.assign(this.#target, { isXRRenderTarget: true });
     this.#target.texture.colorSpace = SRGBColorSpace;

@@ -1,4 +1,14 @@
-import { Color, DirectionalLight, HemisphereLight, PerspectiveCamera, PMREMGenerator, Scene, SRGBColorSpace, type WebGLRenderTarget, WebGLRenderer } from 'three';
+import {
+  Color,
+  DirectionalLight,
+  HemisphereLight,
+  PerspectiveCamera,
+  PMREMGenerator,
+  Scene,
+  SRGBColorSpace,
+  WebGLRenderer,
+  type WebGLRenderTarget,
+} from 'three';
 import { topOfScale } from '../draw/speed_colour';
 import type { Point } from '../lib/math';
 import { speedUnit } from '../lib/units';
@@ -11,7 +21,7 @@ import { CarView, GhostView } from './car_view';
 import type { GhostPose, GhostSource } from './ghost';
 import { Landscape } from './landscape';
 import type { Motion } from './motion';
-import { palette, type Palette } from './palette';
+import { type Palette, palette } from './palette';
 import { QualityGovernor } from './quality';
 import { BandView, RingView } from './ribbon_view';
 import { tidyLines } from './road_mesh';
@@ -186,7 +196,8 @@ export class Stage {
     this.#renew(view);
     this.#setShadow();
     if (this.#slow) this.#slow.compile(this.#scene, this.#camera, now);
-    else if (this.#renderer.extensions.has('KHR_parallel_shader_compile')) void this.#renderer.compileAsync(this.#scene, this.#camera).then(() => this.#begin());
+    else if (this.#renderer.extensions.has('KHR_parallel_shader_compile'))
+      void this.#renderer.compileAsync(this.#scene, this.#camera).then(() => this.#begin());
     else this.#begin();
   }
 
@@ -197,7 +208,20 @@ export class Stage {
 
   #isWorth(now: number, view: View, motion: Motion | null, width: number, height: number): boolean {
     const { orbit } = view;
-    const key = [motion?.time, motion?.x, motion?.yaw, view.camera, orbit.azimuth, orbit.elevation, orbit.zoom, width, height, view.roadVersion, view.hindsight === null, view.racingLine === null].join();
+    const key = [
+      motion?.time,
+      motion?.x,
+      motion?.yaw,
+      view.camera,
+      orbit.azimuth,
+      orbit.elevation,
+      orbit.zoom,
+      width,
+      height,
+      view.roadVersion,
+      view.hindsight === null,
+      view.racingLine === null,
+    ].join();
     if (key !== this.#changeKey || view.plan !== this.#planShown) {
       this.#changeKey = key;
       this.#lastChange = now;
@@ -224,7 +248,14 @@ export class Stage {
   #renew(view: View): void {
     const { run } = view;
     if (run) {
-      const carKey = [run.front_axle_m, run.rear_axle_m, run.track_width_m, run.tire_width_m, run.body_length_m, run.body_width_m].join();
+      const carKey = [
+        run.front_axle_m,
+        run.rear_axle_m,
+        run.track_width_m,
+        run.tire_width_m,
+        run.body_length_m,
+        run.body_width_m,
+      ].join();
       if (carKey !== this.#carKey) this.#renewCar(run, carKey);
       const roadKey = [view.roadVersion, run.is_closed, run.kerb_width_m].join();
       if (roadKey !== this.#roadKey) {
@@ -269,7 +300,14 @@ export class Stage {
     this.#ghost.paint(this.#palette);
     const reach = this.#car.model.length;
     const shadow = this.#sun.shadow.camera;
-    [shadow.left, shadow.right, shadow.bottom, shadow.top, shadow.near, shadow.far] = [-reach, reach, -reach, reach, 1, 10 * reach];
+    [shadow.left, shadow.right, shadow.bottom, shadow.top, shadow.near, shadow.far] = [
+      -reach,
+      reach,
+      -reach,
+      reach,
+      1,
+      10 * reach,
+    ];
     shadow.updateProjectionMatrix();
     this.#sun.shadow.bias = -0.002;
   }
@@ -291,7 +329,16 @@ export class Stage {
     if (view.isCalm) this.#body.rest();
     else this.#body.advance(passed, motion.ax, motion.ay);
     const { roll, pitch } = this.#body;
-    const pose = { x: motion.x, y: motion.y, yaw: motion.yaw, steer: motion.steer, roll, pitch, wheelAngle: this.#wheelAngle, isBraking: motion.throttle < -0.02 };
+    const pose = {
+      x: motion.x,
+      y: motion.y,
+      yaw: motion.yaw,
+      steer: motion.steer,
+      roll,
+      pitch,
+      wheelAngle: this.#wheelAngle,
+      isBraking: motion.throttle < -0.02,
+    };
     car.pose(pose, view.camera !== 'cockpit');
     const away = 6 * car.model.length;
     this.#sun.target.position.set(motion.x, motion.y, 0);
@@ -336,7 +383,20 @@ export class Stage {
     this.#car?.dispose();
     this.#ghost?.dispose();
     this.#landscape.plant([], this.#palette);
-    for (const part of [this.#landscape, this.#road, this.#bestLine, this.#trace, this.#marks, this.#brakes, this.#reference, this.#racingLine, this.#foreseen, this.#came, this.#plan]) part.dispose();
+    for (const part of [
+      this.#landscape,
+      this.#road,
+      this.#bestLine,
+      this.#trace,
+      this.#marks,
+      this.#brakes,
+      this.#reference,
+      this.#racingLine,
+      this.#foreseen,
+      this.#came,
+      this.#plan,
+    ])
+      part.dispose();
     this.#environment?.dispose();
     this.#sun.dispose();
     this.#slow?.dispose();

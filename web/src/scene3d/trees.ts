@@ -39,7 +39,10 @@ export function plantTrees(lines: RoadLines, limit = 420): Tree[] {
     if (!edge || !other) continue;
     const width = Math.hypot(edge.x - other.x, edge.y - other.y) || 1;
     const away = (CLEAR_M + 60 * random() ** 1.6) / width;
-    const spot = { x: edge.x + (edge.x - other.x) * away + 6 * (random() - 0.5), y: edge.y + (edge.y - other.y) * away + 6 * (random() - 0.5) };
+    const spot = {
+      x: edge.x + (edge.x - other.x) * away + 6 * (random() - 0.5),
+      y: edge.y + (edge.y - other.y) * away + 6 * (random() - 0.5),
+    };
     if (!isFree(spot, CLEAR_M - 3)) continue;
     const height = 4 + 5 * random();
     trees.push({ ...spot, height, width: height * (0.42 + 0.16 * random()), kind: Math.floor(random() * 3) });

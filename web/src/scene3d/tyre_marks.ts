@@ -41,7 +41,8 @@ export class TyreMarks {
     [this.#x, this.#y] = [motion.x, motion.y];
     const [cos, sin] = [Math.cos(motion.yaw), Math.sin(motion.yaw)];
     const isMoving = motion.vx > 3;
-    const slip = (x: number, steer: number): number => (isMoving ? Math.atan2(motion.vy + x * motion.yawRate, motion.vx) - steer : 0);
+    const slip = (x: number, steer: number): number =>
+      isMoving ? Math.atan2(motion.vy + x * motion.yawRate, motion.vx) - steer : 0;
     const axles = [
       { x: car.front, strength: markStrength(motion.frontUse, slip(car.front, motion.steer)) },
       { x: -car.rear, strength: markStrength(motion.rearUse, slip(-car.rear, 0)) },

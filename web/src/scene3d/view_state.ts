@@ -1,7 +1,7 @@
 import { computed, signal } from '@preact/signals';
 import { persisted } from '../lib/persisted';
+import { CAMERAS, type CameraName, DEFAULT_ORBIT, type Orbit, zoomedOrbit } from './cameras';
 import { renderer } from './renderer';
-import { CAMERAS, DEFAULT_ORBIT, zoomedOrbit, type CameraName, type Orbit } from './cameras';
 
 export type Dimension = '3d' | '2d';
 

@@ -1,12 +1,40 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import type { Frame, Lap, Limit, Path, Plan, Run } from '../protocol/topics';
-import { beginSession, bestLap, forget, isPaused, laps, limit, link, live, receive, refreshText, run, shown, silence, whyNoLimit } from './app_state';
-import { Column, COST_TERMS, costColumn } from './columns';
+import {
+  beginSession,
+  bestLap,
+  forget,
+  isPaused,
+  laps,
+  limit,
+  link,
+  live,
+  receive,
+  refreshText,
+  run,
+  shown,
+  silence,
+  whyNoLimit,
+} from './app_state';
+import { COST_TERMS, Column, costColumn } from './columns';
 
 const frame = (change: Partial<Frame>): Frame =>
-  ({ time_s: 0, x_m: 0, y_m: 0, speed_mps: 10, speed_reference_mps: 12, lateral_error_m: 0.5, steer_asked_rad: 0.1,
-     steer_applied_rad: -0.1, step_time_us: 1500, last_lap_time_s: 0, ...change }) as Frame;
-const path = (...points: [number, number][]): Path => ({ poses: points.map(([x, y]) => ({ pose: { position: { x, y } } })) });
+  ({
+    time_s: 0,
+    x_m: 0,
+    y_m: 0,
+    speed_mps: 10,
+    speed_reference_mps: 12,
+    lateral_error_m: 0.5,
+    steer_asked_rad: 0.1,
+    steer_applied_rad: -0.1,
+    step_time_us: 1500,
+    last_lap_time_s: 0,
+    ...change,
+  }) as Frame;
+const path = (...points: [number, number][]): Path => ({
+  poses: points.map(([x, y]) => ({ pose: { position: { x, y } } })),
+});
 
 beforeEach(() => {
   forget();
@@ -27,7 +55,12 @@ describe('app state', () => {
 
   it('knows nothing of what an older program does not tell', () => {
     receive('/chicane/frame', frame({}), 0);
-    expect(live.frame).toMatchObject({ steer_sent_rad: NaN, cost_terms: new Float64Array(), active_now: 0, is_manual: false });
+    expect(live.frame).toMatchObject({
+      steer_sent_rad: NaN,
+      cost_terms: new Float64Array(),
+      active_now: 0,
+      is_manual: false,
+    });
     expect(live.plots.newest(Column.speedLimit)).toBeNaN();
     expect(live.plots.newest(costColumn(0))).toBeNaN();
     receive('/chicane/run', {} as Run, 0);
@@ -64,7 +97,8 @@ describe('app state', () => {
   });
 
   it('keeps about a second of plans', () => {
-    for (let i = 0; i < 1000; ++i) receive('/chicane/plan', { speed_mps: [], stamp: { sec: i, nsec: 0 } } as unknown as Plan, 0);
+    for (let i = 0; i < 1000; ++i)
+      receive('/chicane/plan', { speed_mps: [], stamp: { sec: i, nsec: 0 } } as unknown as Plan, 0);
     expect(live.pastPlans.length).toBe(96);
     expect(live.pastPlans.at(-1)).toBe(live.plan);
   });
@@ -83,7 +117,8 @@ describe('app state', () => {
   });
 
   it('remembers the best lap', () => {
-    for (const [i, time] of [0, 30, 28, 29].entries()) receive('/chicane/frame', frame({ time_s: i, last_lap_time_s: time }), 0);
+    for (const [i, time] of [0, 30, 28, 29].entries())
+      receive('/chicane/frame', frame({ time_s: i, last_lap_time_s: time }), 0);
     expect(bestLap.value).toBe(28);
   });
 

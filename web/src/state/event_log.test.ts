@@ -1,9 +1,18 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import { events, forgetEvents, noteChange, noteEvents, setFaultNames } from './event_log';
 import type { Frame } from '../protocol/topics';
+import { events, forgetEvents, noteChange, noteEvents, setFaultNames } from './event_log';
 
 const frame = (change: Partial<Frame>): Frame =>
-  ({ time_s: 0, rung: 0, solve_status: 0, is_gated: false, is_off_track: false, is_manual: false, active_faults: 0, ...change }) as Frame;
+  ({
+    time_s: 0,
+    rung: 0,
+    solve_status: 0,
+    is_gated: false,
+    is_off_track: false,
+    is_manual: false,
+    active_faults: 0,
+    ...change,
+  }) as Frame;
 
 let before: Frame | null = null;
 function see(change: Partial<Frame>): void {
@@ -31,7 +40,10 @@ describe('event log', () => {
     see({ time_s: 1, rung: 1 });
     see({ time_s: 2, rung: 3 });
     see({ time_s: 3 });
-    expect(events.value.map(({ time, duration, mood }) => [time, duration, mood])).toEqual([[2, 1, 'bad'], [1, 1, 'warning']]);
+    expect(events.value.map(({ time, duration, mood }) => [time, duration, mood])).toEqual([
+      [2, 1, 'bad'],
+      [1, 1, 'warning'],
+    ]);
   });
 
   it('names faults that come and go', () => {

@@ -1,6 +1,6 @@
 import { signal } from '@preact/signals';
 import { hasBit } from '../lib/bits';
-import { nameInWords, rungInWords, statusInWords, type Mood } from '../lib/words';
+import { type Mood, nameInWords, rungInWords, statusInWords } from '../lib/words';
 import type { Change, Frame } from '../protocol/topics';
 
 /** Something worth a line: when it began, and, once it has ended, how long it took. */
@@ -26,7 +26,10 @@ interface Watch {
 const WATCHES: readonly Watch[] = [
   { name: 'rung', look: ({ rung }) => (rung === 0 ? null : rungInWords(rung)) },
   { name: 'status', look: ({ solve_status }) => (solve_status >= 0 ? null : statusInWords(solve_status)) },
-  { name: 'gate', look: ({ is_gated }) => (is_gated ? { mood: 'warning', text: 'The gate changed the command' } : null) },
+  {
+    name: 'gate',
+    look: ({ is_gated }) => (is_gated ? { mood: 'warning', text: 'The gate changed the command' } : null),
+  },
   { name: 'road', look: ({ is_off_track }) => (is_off_track ? { mood: 'bad', text: 'Off the road' } : null) },
   { name: 'manual', look: ({ is_manual }) => (is_manual ? { mood: 'good', text: 'Driven by hand' } : null) },
 ];
@@ -70,7 +73,11 @@ export function noteEvents(frame: Frame, before: Frame | null): void {
   for (let i = 0; i < 32; ++i) {
     if (!hasBit(changed, i)) continue;
     const isOn = hasBit(frame.active_faults, i);
-    follow(`fault ${i}`, isOn ? { mood: 'warning', text: `Fault: ${faultInWords(faultNames[i] ?? `#${i + 1}`)}` } : null, frame.time_s);
+    follow(
+      `fault ${i}`,
+      isOn ? { mood: 'warning', text: `Fault: ${faultInWords(faultNames[i] ?? `#${i + 1}`)}` } : null,
+      frame.time_s,
+    );
   }
 }
 
@@ -78,5 +85,11 @@ export const faultInWords = (name: string): string => nameInWords(name.replace(/
 
 export function noteChange({ stamp, name, value }: Change): void {
   if (/^(manual|fault|run)\./.test(name)) return; // told above, or by the page itself
-  add({ id: nextId++, mood: 'unknown', text: `${name} set to ${value}`, time: stamp.sec + stamp.nsec / 1e9, duration: null });
+  add({
+    id: nextId++,
+    mood: 'unknown',
+    text: `${name} set to ${value}`,
+    time: stamp.sec + stamp.nsec / 1e9,
+    duration: null,
+  });
 }

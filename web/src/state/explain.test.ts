@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { hasBit, namesOf } from '../lib/bits';
 import type { Plan } from '../protocol/topics';
-import { Column, COLUMN_COUNT } from './columns';
+import { COLUMN_COUNT, Column } from './columns';
 import { bitSharesOf, planOf, rmsOf, sharesOf, toLocal } from './explain';
 import { History } from './history';
 
@@ -21,22 +21,45 @@ function history(rows: { time: number; limiter?: number; activeNow?: number; pre
 describe('explaining', () => {
   it('tells for how much of the time the speed was limited by what', () => {
     const rows = [0, 1, 2, 3, 4].map((time) => ({ time, limiter: time < 3 ? 2 : 4 }));
-    expect(sharesOf(history(rows), Column.limiter, 6, 100)).toEqual([0, 0, expect.closeTo(0.6), 0, expect.closeTo(0.4), 0]);
+    expect(sharesOf(history(rows), Column.limiter, 6, 100)).toEqual([
+      0,
+      0,
+      expect.closeTo(0.6),
+      0,
+      expect.closeTo(0.4),
+      0,
+    ]);
     expect(sharesOf(history(rows), Column.limiter, 6, 1)).toEqual([0, 0, 0, 0, 1, 0]);
   });
 
   it('tells for how much of the time each constraint was active', () => {
-    const shares = bitSharesOf(history([{ time: 0, activeNow: 1 }, { time: 1, activeNow: 0b101 }]), Column.activeNow, 3, 10);
+    const shares = bitSharesOf(
+      history([
+        { time: 0, activeNow: 1 },
+        { time: 1, activeNow: 0b101 },
+      ]),
+      Column.activeNow,
+      3,
+      10,
+    );
     expect(shares).toEqual([1, 0, 0.5]);
   });
 
   it('takes the mean of what is known', () => {
-    expect(rmsOf(history([{ time: 0, predictionError: 3 }, { time: 1 }, { time: 2, predictionError: 4 }]), Column.predictionError, 10)).toBeCloseTo(Math.sqrt(12.5), 12);
+    expect(
+      rmsOf(
+        history([{ time: 0, predictionError: 3 }, { time: 1 }, { time: 2, predictionError: 4 }]),
+        Column.predictionError,
+        10,
+      ),
+    ).toBeCloseTo(Math.sqrt(12.5), 12);
     expect(rmsOf(history([{ time: 0 }]), Column.predictionError, 10)).toBeNaN();
   });
 
   it('finds the plan of a second ago', () => {
-    const plans = [1, 1.5, 2, 2.5].map((time) => ({ stamp: { sec: Math.floor(time), nsec: (time % 1) * 1e9 } }) as Plan);
+    const plans = [1, 1.5, 2, 2.5].map(
+      (time) => ({ stamp: { sec: Math.floor(time), nsec: (time % 1) * 1e9 } }) as Plan,
+    );
     expect(planOf(plans, 2.5, 1)).toBe(plans[1]);
     expect(planOf(plans, 2.4, 1)).toBe(plans[0]);
     expect(planOf(plans, 1.2, 1)).toBe(plans[0]);

@@ -1,5 +1,5 @@
-import { hasBit } from '../lib/bits';
 import { firstSince } from '../draw/axis';
+import { hasBit } from '../lib/bits';
 import type { Plan } from '../protocol/topics';
 import { Column } from './columns';
 import type { History } from './history';
@@ -61,7 +61,11 @@ export interface LocalLine {
   readonly left: number[];
 }
 
-export function toLocal(xs: ArrayLike<number>, ys: ArrayLike<number>, pose: { x: number; y: number; yaw: number }): LocalLine {
+export function toLocal(
+  xs: ArrayLike<number>,
+  ys: ArrayLike<number>,
+  pose: { x: number; y: number; yaw: number },
+): LocalLine {
   const [cos, sin] = [Math.cos(pose.yaw), Math.sin(pose.yaw)];
   const line: LocalLine = { ahead: [], left: [] };
   for (let i = 0; i < xs.length; ++i) {

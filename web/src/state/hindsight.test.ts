@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Plan } from '../protocol/topics';
-import { Column, COLUMN_COUNT } from './columns';
+import { COLUMN_COUNT, Column } from './columns';
 import { hindsight, poseOf } from './hindsight';
 import { History } from './history';
 

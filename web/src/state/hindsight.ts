@@ -44,5 +44,10 @@ export function hindsight(plans: readonly Plan[], plots: History, now: number): 
   const plan = planOf(plans, now, HINDSIGHT_S);
   if (!plan || plan.x_m.length < 2) return null;
   const from = Math.max(0, firstSince(plots.column(Column.time), plan.time_s[0] ?? NaN) - 1);
-  return { plan, drivenX: plots.column(Column.x).subarray(from), drivenY: plots.column(Column.y).subarray(from), foreseen: poseOf(plan, now) };
+  return {
+    plan,
+    drivenX: plots.column(Column.x).subarray(from),
+    drivenY: plots.column(Column.y).subarray(from),
+    foreseen: poseOf(plan, now),
+  };
 }

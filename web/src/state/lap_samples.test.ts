@@ -1,11 +1,18 @@
 import { describe, expect, it } from 'vitest';
-import { LapSamples, timeGap, type LapMoment } from './lap_samples';
+import { type LapMoment, LapSamples, timeGap } from './lap_samples';
 
 const LENGTH = 1000;
 const LINE = 270.4; // where laps begin along the road's line [m]
 
 const moment = (distance: number, time: number, speed = 20): LapMoment => ({
-  s_m: (LINE + distance) % LENGTH, time_s: time, speed_mps: speed, lateral_error_m: distance / 1000, steer_rad: 0, throttle: 0, x_m: 0, y_m: 0,
+  s_m: (LINE + distance) % LENGTH,
+  time_s: time,
+  speed_mps: speed,
+  lateral_error_m: distance / 1000,
+  steer_rad: 0,
+  throttle: 0,
+  x_m: 0,
+  y_m: 0,
 });
 
 /** Drives laps at one speed each, a frame every `step` seconds. */
@@ -27,7 +34,14 @@ function drive(samples: LapSamples, speeds: readonly number[], step = 0.37): voi
 }
 
 /** Drives a piece of a lap, from one moment to another. */
-function cover(samples: LapSamples, lap: number, [from, since]: [number, number], [to, until]: [number, number], lastLapTime = 0, step = 0.37): void {
+function cover(
+  samples: LapSamples,
+  lap: number,
+  [from, since]: [number, number],
+  [to, until]: [number, number],
+  lastLapTime = 0,
+  step = 0.37,
+): void {
   const steps = Math.ceil((until - since) / step);
   for (let i = 0; i <= steps; ++i) {
     const share = i / steps;
@@ -48,7 +62,8 @@ describe('lap samples', () => {
     expect(times).toHaveLength(samples.points);
     expect(samples.s(0)).toBeGreaterThanOrEqual(0);
     expect(samples.s(0)).toBeLessThan(1);
-    for (const point of [0, 1, 250, 777, samples.points - 1]) expect(times[point]).toBeCloseTo(samples.s(point) / 25, DIGITS);
+    for (const point of [0, 1, 250, 777, samples.points - 1])
+      expect(times[point]).toBeCloseTo(samples.s(point) / 25, DIGITS);
     expect(samples.channel(1, 'lateral_error_m')?.[500]).toBeCloseTo(samples.s(500) / 1000, DIGITS);
     expect(samples.channel(2, 'time_s')).toBeNull();
   });
@@ -67,7 +82,8 @@ describe('lap samples', () => {
     expect(samples.best).toBe(-1);
     drive(samples, [20, 25, 24]);
     expect(samples.best).toBe(1);
-    for (const distance of [1.7, 123.4, 800, 998]) expect(samples.at(1, 'time_s', (LINE + distance) % LENGTH)).toBeCloseTo(distance / 25, DIGITS);
+    for (const distance of [1.7, 123.4, 800, 998])
+      expect(samples.at(1, 'time_s', (LINE + distance) % LENGTH)).toBeCloseTo(distance / 25, DIGITS);
     expect(samples.at(1, 'time_s', LINE)).toBeNaN(); // the clock starts anew here
     expect(samples.at(9, 'time_s', 10)).toBeNaN();
     expect(samples.at(1, 'time_s', NaN)).toBeNaN();

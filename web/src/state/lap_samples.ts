@@ -39,8 +39,14 @@ export class LapSamples {
   #last: (LapMoment & { lap: number }) | null = null;
 
   constructor(kept = KEPT) {
-    const channels = () => Object.fromEntries(LAP_CHANNELS.map((name) => [name, new Float64Array(POINTS)])) as Slot['channels'];
-    this.#slots = Array.from({ length: kept + 2 }, () => ({ lap: -1, isComplete: false, time: NaN, channels: channels() }));
+    const channels = () =>
+      Object.fromEntries(LAP_CHANNELS.map((name) => [name, new Float64Array(POINTS)])) as Slot['channels'];
+    this.#slots = Array.from({ length: kept + 2 }, () => ({
+      lap: -1,
+      isComplete: false,
+      time: NaN,
+      channels: channels(),
+    }));
   }
 
   clear(): void {
@@ -108,7 +114,8 @@ export class LapSamples {
       if (moment.time_s - last.time_s <= LONGEST_SILENCE_S) this.#fill(last, this.#after(last, moment));
       return;
     }
-    if (last && this.#current && lap === last.lap + 1) return this.#cross(last, this.#after(last, moment), lap, lastLapTime);
+    if (last && this.#current && lap === last.lap + 1)
+      return this.#cross(last, this.#after(last, moment), lap, lastLapTime);
     this.#drop(lap);
   }
 

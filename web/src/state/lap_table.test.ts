@@ -38,8 +38,22 @@ describe('the table of laps', () => {
   it('has a file for each lap along the road', () => {
     const samples = new LapSamples();
     samples.setLength(100);
-    const moment = (s: number, time: number) => ({ s_m: s, time_s: time, speed_mps: 10, lateral_error_m: 0, steer_rad: 0, throttle: 0.5, x_m: 7, y_m: 1 });
-    for (const [number, s, time] of [[0, 0, 0], [0, 99, 9.9], [1, 1, 0.1]] as const) samples.push(number, moment(s, time), number * 10);
+    const moment = (s: number, time: number) => ({
+      s_m: s,
+      time_s: time,
+      speed_mps: 10,
+      lateral_error_m: 0,
+      steer_rad: 0,
+      throttle: 0.5,
+      x_m: 7,
+      y_m: 1,
+    });
+    for (const [number, s, time] of [
+      [0, 0, 0],
+      [0, 99, 9.9],
+      [1, 1, 0.1],
+    ] as const)
+      samples.push(number, moment(s, time), number * 10);
     const lines = lapSamplesCsv(samples, 0).trim().split('\n');
     expect(lines[0]).toBe('s_m,time_s,speed_mps,lateral_error_m,steer_rad,throttle,x_m,y_m');
     expect(lines).toHaveLength(samples.points + 1);

@@ -28,7 +28,19 @@ export function bestsOf(laps: readonly Lap[]): LapBests {
 /** The table of laps as a file; times in seconds, in SI units. */
 export const lapsCsv = (laps: readonly Lap[], limit: Limit | null): string =>
   csv(
-    ['lap', 'lap_time_s', 'sector_1_s', 'sector_2_s', 'sector_3_s', 'is_clean', 'mean_speed_mps', 'top_speed_mps', 'min_edge_distance_m', 'rms_lateral_error_m', 'gap_to_limit_percent'],
+    [
+      'lap',
+      'lap_time_s',
+      'sector_1_s',
+      'sector_2_s',
+      'sector_3_s',
+      'is_clean',
+      'mean_speed_mps',
+      'top_speed_mps',
+      'min_edge_distance_m',
+      'rms_lateral_error_m',
+      'gap_to_limit_percent',
+    ],
     laps.map((lap) => [
       lap.lap,
       lap.lap_time_s,
@@ -45,6 +57,9 @@ export const lapsCsv = (laps: readonly Lap[], limit: Limit | null): string =>
 /** A lap along the road as a file; `index` counts from 0 as the samples do. */
 export function lapSamplesCsv(samples: LapSamples, index: number): string {
   const channels = LAP_CHANNELS.map((name) => samples.channel(index, name) ?? new Float64Array());
-  const rows = Array.from({ length: samples.points }, (_, point) => [samples.s(point), ...channels.map((channel) => channel[point] ?? NaN)]);
+  const rows = Array.from({ length: samples.points }, (_, point) => [
+    samples.s(point),
+    ...channels.map((channel) => channel[point] ?? NaN),
+  ]);
   return csv(['s_m', ...LAP_CHANNELS], rows);
 }

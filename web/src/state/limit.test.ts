@@ -19,26 +19,59 @@ function samples(): LapSamples {
   all.setLength(1000);
   for (let i = -1; i <= 101; ++i) {
     const since = ((i + 100) % 100) / 5;
-    all.push(i < 0 ? 0 : i < 100 ? 1 : 2, { s_m: (500 + 10 * (i + 100)) % 1000, time_s: since, speed_mps: 50, lateral_error_m: 0, steer_rad: 0, throttle: 0, x_m: 0, y_m: 0 }, 20);
+    all.push(
+      i < 0 ? 0 : i < 100 ? 1 : 2,
+      {
+        s_m: (500 + 10 * (i + 100)) % 1000,
+        time_s: since,
+        speed_mps: 50,
+        lateral_error_m: 0,
+        steer_rad: 0,
+        throttle: 0,
+        x_m: 0,
+        y_m: 0,
+      },
+      20,
+    );
   }
   return all;
 }
 
 describe('the limit', () => {
   it('is computed for laps that were driven before it was known', () => {
-    const lap = { lap: 1, lap_time_s: 22, sector_times_s: Float64Array.of(5, 6, 11), gap_to_limit_percent: NaN, sector_gaps_to_limit_percent: Float64Array.of(NaN, NaN, NaN) } as unknown as Lap;
-    expect(gapsToLimit(lap, limit)).toEqual({ lap: expect.closeTo(10), sectors: [expect.closeTo(0), expect.closeTo(20), expect.closeTo(10)] });
+    const lap = {
+      lap: 1,
+      lap_time_s: 22,
+      sector_times_s: Float64Array.of(5, 6, 11),
+      gap_to_limit_percent: NaN,
+      sector_gaps_to_limit_percent: Float64Array.of(NaN, NaN, NaN),
+    } as unknown as Lap;
+    expect(gapsToLimit(lap, limit)).toEqual({
+      lap: expect.closeTo(10),
+      sectors: [expect.closeTo(0), expect.closeTo(20), expect.closeTo(10)],
+    });
     expect(gapsToLimit(lap, null)).toEqual({ lap: NaN, sectors: [NaN, NaN, NaN] });
   });
 
   it('holds for laps from the first one on that the car of today began', () => {
-    const lap = (number: number) => ({ lap: number, lap_time_s: 22, sector_times_s: Float64Array.of(5, 6, 11), gap_to_limit_percent: NaN }) as unknown as Lap;
+    const lap = (number: number) =>
+      ({
+        lap: number,
+        lap_time_s: 22,
+        sector_times_s: Float64Array.of(5, 6, 11),
+        gap_to_limit_percent: NaN,
+      }) as unknown as Lap;
     expect(gapsToLimit(lap(4), { ...limit, first_lap: 5 }).lap).toBeNaN();
     expect(gapsToLimit(lap(5), { ...limit, first_lap: 5 }).lap).toBeCloseTo(10);
   });
 
   it('is taken as told, and as unknown from older programs', () => {
-    const told = { lap_time_s: 22, sector_times_s: Float64Array.of(5, 6, 11), gap_to_limit_percent: 7, sector_gaps_to_limit_percent: Float64Array.of(1, 2, 3) } as unknown as Lap;
+    const told = {
+      lap_time_s: 22,
+      sector_times_s: Float64Array.of(5, 6, 11),
+      gap_to_limit_percent: 7,
+      sector_gaps_to_limit_percent: Float64Array.of(1, 2, 3),
+    } as unknown as Lap;
     expect(gapsToLimit(told, limit)).toEqual({ lap: 7, sectors: [1, 2, 3] });
     expect(gapsToLimit({ lap_time_s: 22, sector_times_s: new Float64Array(0) } as unknown as Lap, null).lap).toBeNaN();
   });
@@ -48,7 +81,9 @@ describe('the limit', () => {
     const speed = limitChannel(limit, all, 'speed_mps');
     const time = limitChannel(limit, all, 'time_s');
     expect(all.place(0)).toBeCloseTo(500, 9);
-    expect([speed?.[0], speed?.[250], speed?.[500], speed?.[625]]).toEqual([60, 50, 40, 45].map((each) => expect.closeTo(each, 9)));
+    expect([speed?.[0], speed?.[250], speed?.[500], speed?.[625]]).toEqual(
+      [60, 50, 40, 45].map((each) => expect.closeTo(each, 9)),
+    );
     expect([time?.[1], time?.[250], time?.[625]]).toEqual([0.02, 5, 12.5].map((each) => expect.closeTo(each, 9)));
     expect(limitChannel(limit, all, 'throttle')).toBeNull();
     expect(limitChannel(limit, new LapSamples(), 'speed_mps')).toBeNull();

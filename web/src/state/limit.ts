@@ -4,17 +4,26 @@ import type { Lap, Limit } from '../protocol/topics';
 import type { LapChannel, LapSamples } from './lap_samples';
 
 /** Columns of the limit that can be laid beside those of a lap that was driven. */
-const COLUMNS: Partial<Record<LapChannel, 'time_s' | 'speed_mps' | 'n_m' | 'x_m' | 'y_m'>> = { time_s: 'time_s', speed_mps: 'speed_mps', lateral_error_m: 'n_m', x_m: 'x_m', y_m: 'y_m' };
+const COLUMNS: Partial<Record<LapChannel, 'time_s' | 'speed_mps' | 'n_m' | 'x_m' | 'y_m'>> = {
+  time_s: 'time_s',
+  speed_mps: 'speed_mps',
+  lateral_error_m: 'n_m',
+  x_m: 'x_m',
+  y_m: 'y_m',
+};
 
 const gap = (time: number, limit: number | undefined): number => 100 * (time / (limit ?? NaN) - 1);
 
 /** How much slower a lap was than the limit, and each third of it [%]: as told, or computed where the limit came later. */
 export function gapsToLimit(lap: Lap, limit: Limit | null): { lap: number; sectors: readonly number[] } {
   const of = limit && lap.lap >= (limit.first_lap ?? 1) ? limit : null;
-  const known = (told: number | undefined, computed: number): number => (Number.isFinite(told) ? (told ?? NaN) : computed);
+  const known = (told: number | undefined, computed: number): number =>
+    Number.isFinite(told) ? (told ?? NaN) : computed;
   return {
     lap: known(lap.gap_to_limit_percent, gap(lap.lap_time_s, of?.lap_time_s)),
-    sectors: [0, 1, 2].map((i) => known(lap.sector_gaps_to_limit_percent?.[i], gap(lap.sector_times_s[i] ?? NaN, of?.sector_times_s[i]))),
+    sectors: [0, 1, 2].map((i) =>
+      known(lap.sector_gaps_to_limit_percent?.[i], gap(lap.sector_times_s[i] ?? NaN, of?.sector_times_s[i])),
+    ),
   };
 }
 

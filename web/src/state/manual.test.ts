@@ -1,5 +1,5 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import { held, holdKey, keyLock, letGo, ramp, stick, type Stick } from './manual';
+import { held, holdKey, keyLock, letGo, ramp, type Stick, stick } from './manual';
 
 const CENTRE: Stick = { steer: 0, throttle: 0 };
 const DT = 1 / 30;

@@ -21,11 +21,30 @@ it('what the page keeps stops growing', () => {
     for (let i = from; i < to; ++i) {
       const distance = (i * SPEED) / 60;
       const lap = Math.floor(distance / 1000);
-      receive('/chicane/frame', {
-        cycle: BigInt(i), time_s: i / 60, s_m: distance % 1000, lap, lap_time_s: (distance % 1000) / SPEED, last_lap_time_s: lap > 0 ? 1000 / SPEED : 0,
-        x_m: distance, y_m: 0, speed_mps: SPEED, step_time_us: 200 + (i % 997), is_gated: i % 200 === 0, cost_terms: [1, 2, 3], active_faults: i % 300 === 0 ? 1 : 0,
-      } as unknown as Frame, i);
-      receive('/chicane/plan', { stamp: { sec: Math.floor(i / 60), nsec: 0 }, speed_mps: [SPEED] } as unknown as Plan, i);
+      receive(
+        '/chicane/frame',
+        {
+          cycle: BigInt(i),
+          time_s: i / 60,
+          s_m: distance % 1000,
+          lap,
+          lap_time_s: (distance % 1000) / SPEED,
+          last_lap_time_s: lap > 0 ? 1000 / SPEED : 0,
+          x_m: distance,
+          y_m: 0,
+          speed_mps: SPEED,
+          step_time_us: 200 + (i % 997),
+          is_gated: i % 200 === 0,
+          cost_terms: [1, 2, 3],
+          active_faults: i % 300 === 0 ? 1 : 0,
+        } as unknown as Frame,
+        i,
+      );
+      receive(
+        '/chicane/plan',
+        { stamp: { sec: Math.floor(i / 60), nsec: 0 }, speed_mps: [SPEED] } as unknown as Plan,
+        i,
+      );
     }
   };
   drive(0, FRAMES);
@@ -37,7 +56,18 @@ it('what the page keeps stops growing', () => {
 
 it('keeps the newest thousand laps, and the best', () => {
   forget();
-  for (let lap = 1; lap <= 2000; ++lap) receive('/chicane/lap', { lap, lap_time_s: lap === 7 ? 20 : 30, sector_times_s: Float64Array.of(1, 2, 3), is_clean: true, top_speed_mps: 40 } as unknown as Lap, 0);
+  for (let lap = 1; lap <= 2000; ++lap)
+    receive(
+      '/chicane/lap',
+      {
+        lap,
+        lap_time_s: lap === 7 ? 20 : 30,
+        sector_times_s: Float64Array.of(1, 2, 3),
+        is_clean: true,
+        top_speed_mps: 40,
+      } as unknown as Lap,
+      0,
+    );
   expect(laps.value.map(({ lap }) => lap).slice(0, 3)).toEqual([7, 1001, 1002]);
   expect(laps.value).toHaveLength(1001);
 });

@@ -22,7 +22,14 @@ const UNKNOWN_FRAME: Partial<Frame> = {
   prediction_error_m: NaN,
 };
 
-const UNKNOWN_RUN: Partial<Run> = { mode: '', cost_term_names: [], constraint_names: [], fault_names: [], kerb_width_m: 0, building: '' };
+const UNKNOWN_RUN: Partial<Run> = {
+  mode: '',
+  cost_term_names: [],
+  constraint_names: [],
+  fault_names: [],
+  kerb_width_m: 0,
+  building: '',
+};
 
 /** A frame with every field; unknown where the sender does not tell. */
 export const completeFrame = (frame: Frame): Frame => ({ ...UNKNOWN_FRAME, ...frame });

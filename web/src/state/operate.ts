@@ -10,7 +10,10 @@ let source: Source | null = null;
 export const asking = signal<{ readonly key: string; readonly value: Setting } | null>(null);
 let wasAsked = false;
 
-export const wishes = new Wishes((key, value) => source?.set?.(key, value) ?? Promise.resolve({ value: null, sentence: `${key} cannot be changed here` }));
+export const wishes = new Wishes(
+  (key, value) =>
+    source?.set?.(key, value) ?? Promise.resolve({ value: null, sentence: `${key} cannot be changed here` }),
+);
 
 export function attach(to: Source): void {
   source = to;

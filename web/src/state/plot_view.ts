@@ -1,13 +1,15 @@
 import { signal } from '@preact/signals';
 import { persisted } from '../lib/persisted';
-import { live, LONGEST_WINDOW_S } from './app_state';
-import { Column, COLUMN_COUNT } from './columns';
+import { LONGEST_WINDOW_S, live } from './app_state';
+import { COLUMN_COUNT, Column } from './columns';
 import { History } from './history';
 
 export const WINDOWS_S = [10, 20, 60] as const;
 
 /** How far back plots reach while they follow the run [s]. */
-export const windowSeconds = persisted<number>('plots.window', 20, (value) => (WINDOWS_S as readonly unknown[]).includes(value));
+export const windowSeconds = persisted<number>('plots.window', 20, (value) =>
+  (WINDOWS_S as readonly unknown[]).includes(value),
+);
 /** Plots stand still, while the run goes on. */
 export const isFrozen = signal(false);
 /** A stretch of time somebody has zoomed into [s]; plots are then frozen. */

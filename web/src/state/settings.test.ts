@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import type { SetAnswer, Setting } from '../protocol/source';
 import { readSchema } from '../protocol/schema';
+import type { SetAnswer, Setting } from '../protocol/source';
 import { refusals, settingChanges, settings, startSettings, Wishes } from './settings';
 
 /** A server that answers when told to. */
@@ -23,7 +23,10 @@ function server() {
 }
 
 beforeEach(() => {
-  settings.value = new Map<string, Setting>([['latency_ms', 100], ['run.pace', 1]]);
+  settings.value = new Map<string, Setting>([
+    ['latency_ms', 100],
+    ['run.pace', 1],
+  ]);
   startSettings.value = settings.value;
   refusals.value = new Map();
 });
@@ -77,7 +80,10 @@ describe('wishes', () => {
 
 describe('changes', () => {
   it('list what differs from the start, without the controls of the page', () => {
-    settings.value = new Map<string, Setting>([['latency_ms', 150], ['run.pace', 4]]);
+    settings.value = new Map<string, Setting>([
+      ['latency_ms', 150],
+      ['run.pace', 4],
+    ]);
     expect(settingChanges.value).toEqual([{ key: 'latency_ms', from: 100, to: 150 }]);
     settings.value = startSettings.value;
     expect(settingChanges.value).toEqual([]);
@@ -86,10 +92,32 @@ describe('changes', () => {
 
 describe('the schema', () => {
   it('is read with care', () => {
-    const good = { key: 'a.b', group: 'a', kind: 'number', unit: 'm', minimum: 0, maximum: 1, choices: [], default: 0.5, meaning: 'x', is_live: true };
+    const good = {
+      key: 'a.b',
+      group: 'a',
+      kind: 'number',
+      unit: 'm',
+      minimum: 0,
+      maximum: 1,
+      choices: [],
+      default: 0.5,
+      meaning: 'x',
+      is_live: true,
+    };
     expect(readSchema([good, null, 7, { key: 'x' }, { ...good, kind: 'matrix' }])).toEqual([good]);
     expect(readSchema([{ key: 'a.b', kind: 'bool' }])).toEqual([
-      { key: 'a.b', group: 'a', kind: 'bool', unit: '', minimum: null, maximum: null, choices: [], default: null, meaning: '', is_live: true },
+      {
+        key: 'a.b',
+        group: 'a',
+        kind: 'bool',
+        unit: '',
+        minimum: null,
+        maximum: null,
+        choices: [],
+        default: null,
+        meaning: '',
+        is_live: true,
+      },
     ]);
     expect(readSchema({})).toEqual([]);
   });

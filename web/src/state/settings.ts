@@ -27,7 +27,10 @@ export const settingChanges = computed<readonly SettingChange[]>(() =>
   changesBetween(startSettings.value, settings.value).filter(({ key }) => !isControl(key)),
 );
 
-export function changesBetween(start: ReadonlyMap<string, Setting>, now: ReadonlyMap<string, Setting>): SettingChange[] {
+export function changesBetween(
+  start: ReadonlyMap<string, Setting>,
+  now: ReadonlyMap<string, Setting>,
+): SettingChange[] {
   return [...start].flatMap(([key, from]) => {
     const to = now.get(key);
     return to === undefined || Object.is(to, from) ? [] : [{ key, from, to }];
@@ -71,7 +74,8 @@ export class Wishes {
     }
     this.#open.delete(key);
     if (inForce !== null) settings.value = withEntry(settings.value, key, inForce);
-    if (sentence !== (refusals.value.get(key) ?? null)) refusals.value = withEntry(refusals.value, key, sentence ?? undefined);
+    if (sentence !== (refusals.value.get(key) ?? null))
+      refusals.value = withEntry(refusals.value, key, sentence ?? undefined);
   }
 
   /** Values the server tells of its own accord; wishes on their way win. */

@@ -7,7 +7,8 @@ export function AnewView() {
   return (
     <Dialog isOpen={wish !== null} title="Start the run anew?" onClose={() => answer(false)}>
       <p>
-        <code>{wish?.key}</code> cannot change while the car drives. The run starts anew from standstill; laps and plots so far are cleared.
+        <code>{wish?.key}</code> cannot change while the car drives. The run starts anew from standstill; laps and plots
+        so far are cleared.
       </p>
       <p class="soft">You will not be asked again.</p>
       <div class="buttons end">

@@ -11,7 +11,19 @@ export type Paint = (context: CanvasRenderingContext2D, width: number, height: n
  * A canvas that repaints itself while it is on the screen: when `version` gives another value, at most every `interval`
  * milliseconds, and when its size or the colours change.
  */
-export function CanvasView({ label, paint, version, interval = 50, tall }: { label: string; paint: Paint; version: () => unknown; interval?: number; tall?: string }) {
+export function CanvasView({
+  label,
+  paint,
+  version,
+  interval = 50,
+  tall,
+}: {
+  label: string;
+  paint: Paint;
+  version: () => unknown;
+  interval?: number;
+  tall?: string;
+}) {
   const element = useRef<HTMLCanvasElement>(null);
   const latest = useRef({ paint, version });
   latest.current = { paint, version };

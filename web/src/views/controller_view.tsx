@@ -1,5 +1,5 @@
 import { plural, UNKNOWN } from '../lib/format';
-import { gateInWords, roadInWords, rungInWords, sightInWords, statusInWords, type Sentence } from '../lib/words';
+import { gateInWords, roadInWords, rungInWords, type Sentence, sightInWords, statusInWords } from '../lib/words';
 import { run, shown } from '../state/app_state';
 
 function Row({ label, sentence, id }: { label: string; sentence: Sentence | null; id: string }) {

@@ -1,7 +1,7 @@
 import type { SchemaEntry } from '../protocol/schema';
 import { link, run } from '../state/app_state';
-import { entryOf, schema, settings } from '../state/settings';
 import { canSet, set } from '../state/operate';
+import { entryOf, schema, settings } from '../state/settings';
 import { ControllerView } from './controller_view';
 import { ManualView } from './manual_view';
 import { ChoiceBox, SettingRow } from './setting_row';
@@ -38,7 +38,13 @@ function Pace() {
         <SettingRow entry={{ ...PACE, unit: '×' }} name="speed of time" />
         <div class="segments" role="group" aria-label="Usual paces">
           {PACES.map((each) => (
-            <button key={each} type="button" aria-pressed={pace === each} disabled={!canSet('run.pace')} onClick={() => set('run.pace', each)}>
+            <button
+              key={each}
+              type="button"
+              aria-pressed={pace === each}
+              disabled={!canSet('run.pace')}
+              onClick={() => set('run.pace', each)}
+            >
               {each}×
             </button>
           ))}
@@ -109,7 +115,11 @@ function World() {
 export function NothingToSet() {
   if (settings.value.size > 0 || schema.value.length > 0) return null;
   if (link.value !== 'live') return <p class="empty">Waiting for the connection.</p>;
-  return <p class="empty">This run can be watched, not changed{run.value?.mode === 'replay' ? ': it is a recording' : ''}.</p>;
+  return (
+    <p class="empty">
+      This run can be watched, not changed{run.value?.mode === 'replay' ? ': it is a recording' : ''}.
+    </p>
+  );
 }
 
 export function DriveView() {

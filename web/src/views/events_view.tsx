@@ -15,7 +15,11 @@ export function EventsView() {
               <span class="event-time">{fixed(time, 2)} s</span>
               <span class={`mood ${mood}`} aria-hidden="true" />
               <span>{text}</span>
-              {duration !== null && <span class="unit">for {duration < 1 ? `${fixed(duration * 1000, 0)} ms` : `${fixed(duration, 1)} s`}</span>}
+              {duration !== null && (
+                <span class="unit">
+                  for {duration < 1 ? `${fixed(duration * 1000, 0)} ms` : `${fixed(duration, 1)} s`}
+                </span>
+              )}
             </li>
           ))}
         </ol>

@@ -1,7 +1,17 @@
 import { hasBit } from '../lib/bits';
 import { fixed, plural } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
-import { gateInWords, LIMITERS, limiterInWords, nameInWords, rungInWords, sightInWords, statusInWords, worstInWords, type Sentence } from '../lib/words';
+import {
+  gateInWords,
+  LIMITERS,
+  limiterInWords,
+  nameInWords,
+  rungInWords,
+  type Sentence,
+  sightInWords,
+  statusInWords,
+  worstInWords,
+} from '../lib/words';
 import { live, run, shown } from '../state/app_state';
 import { Column } from '../state/columns';
 import { bitSharesOf, rmsOf, sharesOf } from '../state/explain';
@@ -29,12 +39,19 @@ function Limiter() {
           <p class="soft">{why}</p>
         </div>
         <p class="allowed">
-          <b data-testid="speed-limit">{fixed(inSpeedUnit(frame?.speed_limit_mps ?? NaN), 0)}</b> <span class="unit">{speedUnit().name} allowed here</span>
+          <b data-testid="speed-limit">{fixed(inSpeedUnit(frame?.speed_limit_mps ?? NaN), 0)}</b>{' '}
+          <span class="unit">{speedUnit().name} allowed here</span>
           <br />
           <b>{fixed(inSpeedUnit(frame?.speed_mps ?? NaN), 0)}</b> <span class="unit">{speedUnit().name} driven</span>
         </p>
       </div>
-      <CanvasView label="What limited the speed in the last 20 seconds" paint={paintLimiterStrip(WINDOW_S)} version={() => live.plots.newest(Column.time)} interval={100} tall="22px" />
+      <CanvasView
+        label="What limited the speed in the last 20 seconds"
+        paint={paintLimiterStrip(WINDOW_S)}
+        version={() => live.plots.newest(Column.time)}
+        interval={100}
+        tall="22px"
+      />
       <ul class="shares" aria-label="Shares of the last 20 seconds">
         {LIMITERS.map(({ short }, i) =>
           (shares[i] ?? 0) > 0.005 ? (
@@ -121,7 +138,12 @@ function Answer() {
       <h2>The answer</h2>
       <dl class="rows">
         <Row label="Solver" sentence={solve} />
-        <Row label="Worst" sentence={solved ? (worst ? { mood: 'warning', text: worst } : { mood: 'good', text: 'All constraints hold' }) : null} />
+        <Row
+          label="Worst"
+          sentence={
+            solved ? (worst ? { mood: 'warning', text: worst } : { mood: 'good', text: 'All constraints hold' }) : null
+          }
+        />
         <Row label="Driving" sentence={frame ? rungInWords(frame.rung) : null} />
         <Row label="Gate" sentence={frame ? gateInWords(frame.is_gated) : null} />
         <Row label="Sight" sentence={frame ? sightInWords(frame.has_map, frame.sight_m) : null} />
@@ -140,14 +162,26 @@ function Prediction() {
       <div class="prediction">
         <div>
           <p class="soft">The plan of a second ago, and the way the car then took, seen from where it was:</p>
-          <CanvasView label="The plan of one second ago and the way driven since" paint={paintPrediction} version={() => live.plots.newest(Column.time)} tall="96px" />
+          <CanvasView
+            label="The plan of one second ago and the way driven since"
+            paint={paintPrediction}
+            version={() => live.plots.newest(Column.time)}
+            tall="96px"
+          />
         </div>
         <div>
           <p class="soft">
-            Car from its plan, one delay and one step later: <b data-testid="prediction-error">{fixed(error * 100, 1)}</b> cm, in the mean{' '}
+            Car from its plan, one delay and one step later:{' '}
+            <b data-testid="prediction-error">{fixed(error * 100, 1)}</b> cm, in the mean{' '}
             {fixed(rmsOf(live.plots, Column.predictionError, WINDOW_S) * 100, 1)} cm
           </p>
-          <CanvasView label="Prediction error in the last 20 seconds" paint={paintSparkline(Column.predictionError, WINDOW_S)} version={() => live.plots.newest(Column.time)} interval={100} tall="56px" />
+          <CanvasView
+            label="Prediction error in the last 20 seconds"
+            paint={paintSparkline(Column.predictionError, WINDOW_S)}
+            version={() => live.plots.newest(Column.time)}
+            interval={100}
+            tall="56px"
+          />
         </div>
       </div>
     </section>

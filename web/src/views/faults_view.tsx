@@ -1,7 +1,7 @@
 import { computed } from '@preact/signals';
 import { hasBit } from '../lib/bits';
-import { faultInWords } from '../state/event_log';
 import { run, shown } from '../state/app_state';
+import { faultInWords } from '../state/event_log';
 import { canSet, set } from '../state/operate';
 import { schema, settings } from '../state/settings';
 import { EventsView } from './events_view';
@@ -17,9 +17,13 @@ interface Fault {
 const faults = computed<readonly Fault[]>(() => {
   const names = run.value?.fault_names ?? [];
   const active = shown.value?.active_faults ?? 0;
-  const isActive = (key: string): boolean => settings.value.get(key) === true || hasBit(active, names.indexOf(key.replace(/^fault\./, '')));
+  const isActive = (key: string): boolean =>
+    settings.value.get(key) === true || hasBit(active, names.indexOf(key.replace(/^fault\./, '')));
   const described = schema.value.filter(({ key }) => key.startsWith('fault.'));
-  const keys = described.length > 0 ? described.map(({ key }) => key) : [...settings.value.keys()].filter((key) => key.startsWith('fault.'));
+  const keys =
+    described.length > 0
+      ? described.map(({ key }) => key)
+      : [...settings.value.keys()].filter((key) => key.startsWith('fault.'));
   return keys.map((key) => ({
     key,
     name: faultInWords(key),
@@ -35,15 +39,28 @@ export function FaultsView() {
   return (
     <div class="blocks">
       <div class="toolbar">
-        <p class="soft">Click a fault into the running car; click again to clear it. Each ends by itself after its usual time.</p>
-        <button type="button" disabled={active.length === 0} onClick={() => active.forEach(({ key }) => set(key, false))}>
+        <p class="soft">
+          Click a fault into the running car; click again to clear it. Each ends by itself after its usual time.
+        </p>
+        <button
+          type="button"
+          disabled={active.length === 0}
+          onClick={() => active.forEach(({ key }) => set(key, false))}
+        >
           Clear all
         </button>
       </div>
       <ul class="faults">
         {all.map(({ key, name, meaning, isActive }) => (
           <li key={key}>
-            <button type="button" class="fault" data-key={key} aria-pressed={isActive} disabled={!canSet(key)} onClick={() => set(key, !isActive)}>
+            <button
+              type="button"
+              class="fault"
+              data-key={key}
+              aria-pressed={isActive}
+              disabled={!canSet(key)}
+              onClick={() => set(key, !isActive)}
+            >
               <span class="fault-name">
                 {name}
                 {isActive && <span class="badge bad">active</span>}

@@ -1,6 +1,6 @@
 import { firstSince } from '../draw/axis';
-import { extent, niceCeil } from '../lib/math';
 import { fixed } from '../lib/format';
+import { extent, niceCeil } from '../lib/math';
 import { shown } from '../state/app_state';
 import { Column } from '../state/columns';
 import { cursorTime, isFrozen, plotted, timeRange } from '../state/plot_view';
@@ -46,7 +46,10 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number)
     context.fillText(`${ring} g`, middleX + 4, middleY - ring * pixels - 3);
   }
   context.beginPath();
-  for (const [dx, dy] of [[1, 0], [0, 1]] as const) {
+  for (const [dx, dy] of [
+    [1, 0],
+    [0, 1],
+  ] as const) {
     context.moveTo(middleX - dx * scale * pixels, middleY - dy * scale * pixels);
     context.lineTo(middleX + dx * scale * pixels, middleY + dy * scale * pixels);
   }
@@ -71,7 +74,12 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number)
 }
 
 /** Old moments pale, new ones strong; in sixteen strokes, not thousands. */
-function drawTrail(context: CanvasRenderingContext2D, x: (i: number) => number, y: (i: number) => number, count: number): void {
+function drawTrail(
+  context: CanvasRenderingContext2D,
+  x: (i: number) => number,
+  y: (i: number) => number,
+  count: number,
+): void {
   const colours = chartColours();
   context.lineWidth = 1.75;
   context.lineJoin = 'round';
@@ -104,7 +112,10 @@ function drawGrip(context: CanvasRenderingContext2D, x: number, y: number, pixel
 /** Acceleration across and along: where on the friction circle the car is, and has been. */
 export function GgView() {
   const frame = shown.value;
-  const [across, along] = [(frame?.lateral_acceleration_mps2 ?? NaN) / G, (frame?.longitudinal_acceleration_mps2 ?? NaN) / G];
+  const [across, along] = [
+    (frame?.lateral_acceleration_mps2 ?? NaN) / G,
+    (frame?.longitudinal_acceleration_mps2 ?? NaN) / G,
+  ];
   return (
     <section class="plot square" aria-label="Acceleration">
       <header>

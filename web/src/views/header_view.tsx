@@ -7,7 +7,13 @@ import { isHelpOpen } from './help_view';
 function RunSummary() {
   const now = run.value;
   if (!now) return <p class="summary">Waiting for a run</p>;
-  const parts = [now.controller, now.preset !== now.controller ? now.preset : '', now.car, now.track, `${fixed(now.latency_s * 1000, 0)} ms latency`];
+  const parts = [
+    now.controller,
+    now.preset !== now.controller ? now.preset : '',
+    now.car,
+    now.track,
+    `${fixed(now.latency_s * 1000, 0)} ms latency`,
+  ];
   return <p class="summary">{parts.filter((part) => part !== '').join(' · ')}</p>;
 }
 
@@ -43,17 +49,36 @@ function Buttons() {
   return (
     <div class="buttons">
       {services.value.has('/pause') && run.value?.mode !== 'replay' && (
-        <button type="button" class="primary" disabled={!can('/pause')} aria-keyshortcuts="Space" title="Space" onClick={() => call('/pause', !isPaused.value)}>
+        <button
+          type="button"
+          class="primary"
+          disabled={!can('/pause')}
+          aria-keyshortcuts="Space"
+          title="Space"
+          onClick={() => call('/pause', !isPaused.value)}
+        >
           {isPaused.value ? 'Resume' : 'Pause'}
         </button>
       )}
       {services.value.has('/step') && (
-        <button type="button" disabled={!can('/step') || !isPaused.value} aria-keyshortcuts="S" title="One control step while paused (S)" onClick={() => call('/step')}>
+        <button
+          type="button"
+          disabled={!can('/step') || !isPaused.value}
+          aria-keyshortcuts="S"
+          title="One control step while paused (S)"
+          onClick={() => call('/step')}
+        >
           Step
         </button>
       )}
       {services.value.has('/reset') && (
-        <button type="button" disabled={!can('/reset')} aria-keyshortcuts="R" title="Back to the start (R)" onClick={() => call('/reset')}>
+        <button
+          type="button"
+          disabled={!can('/reset')}
+          aria-keyshortcuts="R"
+          title="Back to the start (R)"
+          onClick={() => call('/reset')}
+        >
           Reset
         </button>
       )}
@@ -68,7 +93,8 @@ function Banner() {
       {link.value === 'lost' && (
         <div class="banner bad" data-testid="banner">
           <p>
-            <b>Connection lost.</b> The numbers below are the last that came. Trying again{attempt.value > 1 ? ` (attempt ${attempt.value})` : ''} …
+            <b>Connection lost.</b> The numbers below are the last that came. Trying again
+            {attempt.value > 1 ? ` (attempt ${attempt.value})` : ''} …
           </p>
           <button type="button" onClick={retry}>
             Try now
@@ -93,7 +119,9 @@ export function HeaderView() {
       <div class="top-row">
         <h1>
           <svg viewBox="0 0 32 32" width="22" height="22" aria-hidden="true">
-            <rect width="32" height="32" rx="8" fill="#2563d9"/><path d="M9 27C9 17 23 17 23 5" fill="none" stroke="#fff" stroke-width="5" stroke-linecap="round"/><path d="M9 27C9 17 23 17 23 5" fill="none" stroke="#2563d9" stroke-width="1" stroke-dasharray="2.5 3"/>
+            <rect width="32" height="32" rx="8" fill="#2563d9" />
+            <path d="M9 27C9 17 23 17 23 5" fill="none" stroke="#fff" stroke-width="5" stroke-linecap="round" />
+            <path d="M9 27C9 17 23 17 23 5" fill="none" stroke="#2563d9" stroke-width="1" stroke-dasharray="2.5 3" />
           </svg>
           <span>chicane</span>
         </h1>
@@ -103,7 +131,14 @@ export function HeaderView() {
           <LinkState />
         </div>
         <Buttons />
-        <button type="button" class="icon help" aria-label="Keys and help" title="Keys and help (?)" aria-keyshortcuts="?" onClick={() => (isHelpOpen.value = true)}>
+        <button
+          type="button"
+          class="icon help"
+          aria-label="Keys and help"
+          title="Keys and help (?)"
+          aria-keyshortcuts="?"
+          onClick={() => (isHelpOpen.value = true)}
+        >
           ?
         </button>
       </div>

@@ -7,7 +7,17 @@ export const isHelpOpen = signal(false);
 const GROUPS: readonly Shortcut['group'][] = ['Run', 'Camera', 'Panels', 'Driving by hand'];
 
 /** A dialog over the page: the browser's own, with its focus handling and Escape. */
-export function Dialog({ isOpen, title, onClose, children }: { isOpen: boolean; title: string; onClose: () => void; children: preact.ComponentChildren }) {
+export function Dialog({
+  isOpen,
+  title,
+  onClose,
+  children,
+}: {
+  isOpen: boolean;
+  title: string;
+  onClose: () => void;
+  children: preact.ComponentChildren;
+}) {
   const element = useRef<HTMLDialogElement>(null);
   useEffect(() => {
     const dialog = element.current;
@@ -16,7 +26,12 @@ export function Dialog({ isOpen, title, onClose, children }: { isOpen: boolean; 
     if (!isOpen && dialog.open) dialog.close();
   }, [isOpen]);
   return (
-    <dialog ref={element} aria-label={title} onClose={onClose} onClick={(event) => event.target === element.current && onClose()}>
+    <dialog
+      ref={element}
+      aria-label={title}
+      onClose={onClose}
+      onClick={(event) => event.target === element.current && onClose()}
+    >
       {isOpen && (
         <div class="dialog-body">
           <h2>{title}</h2>
@@ -54,7 +69,8 @@ export function HelpView() {
       </div>
       <p class="soft">On plots: drag to zoom, double-click to come back. On the map: the wheel zooms.</p>
       <p class="soft">
-        The data comes over the Foxglove WebSocket protocol; Foxglove, Lichtblick and scripts can watch the same run at <code>{location.host}</code>.
+        The data comes over the Foxglove WebSocket protocol; Foxglove, Lichtblick and scripts can watch the same run at{' '}
+        <code>{location.host}</code>.
       </p>
       <div class="buttons end">
         <button type="button" class="primary" onClick={close}>

@@ -10,7 +10,8 @@ const QUANTILES = [
 ] as const;
 
 /** A power of ten of microseconds, for the axis. */
-const decadeLabel = (power: number): string => (power < 3 ? `${10 ** power} µs` : power < 6 ? `${10 ** (power - 3)} ms` : `${10 ** (power - 6)} s`);
+const decadeLabel = (power: number): string =>
+  power < 3 ? `${10 ** power} µs` : power < 6 ? `${10 ** (power - 3)} ms` : `${10 ** (power - 6)} s`;
 
 const micros = (value: number): string => {
   const { value: number, unit } = duration(value);
@@ -92,7 +93,12 @@ export function HistogramView() {
           )}
         </p>
       </header>
-      <CanvasView label="Histogram of the times of control steps" paint={paint} version={() => live.stepTimes.total} interval={250} />
+      <CanvasView
+        label="Histogram of the times of control steps"
+        paint={paint}
+        version={() => live.stepTimes.total}
+        interval={250}
+      />
     </section>
   );
 }

@@ -1,6 +1,6 @@
 import { duration, fixed, lapTime, side, UNKNOWN } from '../lib/format';
 import { clamp, degrees } from '../lib/math';
-import { inSpeedUnit, nextSpeedUnit, speedUnit, SPEED_UNITS, type SpeedUnit } from '../lib/units';
+import { inSpeedUnit, nextSpeedUnit, SPEED_UNITS, type SpeedUnit, speedUnit } from '../lib/units';
 import { bestLap, live, run, shown } from '../state/app_state';
 
 /** Time lost to the best lap up to here [s]; not-a-number without one. */
@@ -12,7 +12,8 @@ function delta(): number {
 }
 
 /** In m/s too, or in km/h where that is the reader's unit. */
-const beside = (unit: SpeedUnit): SpeedUnit => SPEED_UNITS.find(({ name }) => name === (unit.name === 'm/s' ? 'km/h' : 'm/s')) ?? unit;
+const beside = (unit: SpeedUnit): SpeedUnit =>
+  SPEED_UNITS.find(({ name }) => name === (unit.name === 'm/s' ? 'km/h' : 'm/s')) ?? unit;
 
 function Speed() {
   const frame = shown.value;
@@ -26,7 +27,14 @@ function Speed() {
         <span class="value" data-testid="speed">
           {fixed(inSpeedUnit(speed), 0)}
         </span>
-        <button type="button" class="unit" aria-label={`Speeds in ${unit.spoken}: change the unit`} aria-keyshortcuts="U" title="Another unit for speeds (U)" onClick={nextSpeedUnit}>
+        <button
+          type="button"
+          class="unit"
+          aria-label={`Speeds in ${unit.spoken}: change the unit`}
+          aria-keyshortcuts="U"
+          title="Another unit for speeds (U)"
+          onClick={nextSpeedUnit}
+        >
           {unit.name}
         </button>
       </p>
@@ -50,7 +58,11 @@ function Lap() {
       <p class="label">
         Lap <b data-testid="lap">{frame && Number.isFinite(frame.lap_time_s) ? frame.lap + 1 : UNKNOWN}</b>
         {Number.isFinite(gap) && (
-          <span class={gap >= 0.005 ? 'delta slower' : 'delta faster'} data-testid="delta" title="Against the best lap, at this place">
+          <span
+            class={gap >= 0.005 ? 'delta slower' : 'delta faster'}
+            data-testid="delta"
+            title="Against the best lap, at this place"
+          >
             {gap >= 0.005 ? '+' : ''}
             {fixed(gap, 2)}
           </span>
@@ -71,7 +83,19 @@ function Lap() {
   );
 }
 
-function Reading({ label, value, unit, note = '', id }: { label: string; value: string; unit: string; note?: string; id: string }) {
+function Reading({
+  label,
+  value,
+  unit,
+  note = '',
+  id,
+}: {
+  label: string;
+  value: string;
+  unit: string;
+  note?: string;
+  id: string;
+}) {
   return (
     <div class="number">
       <p class="label">{label}</p>
@@ -87,7 +111,19 @@ function Reading({ label, value, unit, note = '', id }: { label: string; value: 
 }
 
 /** A bar that grows from its middle: steering to its side, the pedal to the right for drive and to the left for brake. */
-function Bar({ label, share, marker, text, id }: { label: string; share: number; marker?: number; text: string; id: string }) {
+function Bar({
+  label,
+  share,
+  marker,
+  text,
+  id,
+}: {
+  label: string;
+  share: number;
+  marker?: number;
+  text: string;
+  id: string;
+}) {
   const at = (value: number): number => 50 + 50 * clamp(Number.isFinite(value) ? value : 0, -1, 1);
   const [from, to] = [Math.min(50, at(share)), Math.max(50, at(share))];
   return (
@@ -148,7 +184,13 @@ export function InstrumentsView() {
       <Lap />
       <Controls />
       <div class="numbers">
-        <Reading id="lateral-error" label="Lateral error" value={fixed(Math.abs(error), 2)} unit="m" note={side(error)} />
+        <Reading
+          id="lateral-error"
+          label="Lateral error"
+          value={fixed(Math.abs(error), 2)}
+          unit="m"
+          note={side(error)}
+        />
         <Reading id="edge-distance" label="To the edge" value={fixed(frame?.edge_distance_m ?? NaN, 2)} unit="m" />
         <Reading id="step-time" label="Control step" value={step.value} unit={step.unit} />
         <Reading id="delay" label="Delay foreseen" value={fixed((frame?.delay_s ?? NaN) * 1000, 0)} unit="ms" />

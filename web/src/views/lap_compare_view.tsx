@@ -7,7 +7,7 @@ import { onThemeChange } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { speedUnit } from '../lib/units';
 import { limit, live } from '../state/app_state';
-import { timeGap, type LapChannel } from '../state/lap_samples';
+import { type LapChannel, timeGap } from '../state/lap_samples';
 import { limitChannel } from '../state/limit';
 import { chartColours } from './plot_colours';
 
@@ -22,18 +22,34 @@ interface Curve {
 
 /** Laps count from 0; before them stands the fastest one possible. */
 const LIMIT = -1;
-const samplesOf = (lap: number, name: LapChannel): Float64Array | null => (lap !== LIMIT ? live.lapSamples.channel(lap, name) : limit.value && limitChannel(limit.value, live.lapSamples, name));
+const samplesOf = (lap: number, name: LapChannel): Float64Array | null =>
+  lap !== LIMIT ? live.lapSamples.channel(lap, name) : limit.value && limitChannel(limit.value, live.lapSamples, name);
 const nameOf = (lap: number): string => (lap === LIMIT ? 'limit' : `lap ${lap + 1}`);
 
-const channel = (name: LapChannel, factor = 1) => (a: number, b: number): (Float64Array | null)[] => [a, b].map((lap) => samplesOf(lap, name)?.map((value) => value * factor) ?? null);
+const channel =
+  (name: LapChannel, factor = 1) =>
+  (a: number, b: number): (Float64Array | null)[] =>
+    [a, b].map((lap) => samplesOf(lap, name)?.map((value) => value * factor) ?? null);
 
 const SPEED = computed<Curve>(() => {
   const { name, perMps, axisStep, axisLeast } = speedUnit();
-  return { title: 'Speed', unit: name, decimals: 1, data: channel('speed_mps', perMps), range: (columns) => rangeInSteps(columns, axisStep, axisLeast) };
+  return {
+    title: 'Speed',
+    unit: name,
+    decimals: 1,
+    data: channel('speed_mps', perMps),
+    range: (columns) => rangeInSteps(columns, axisStep, axisLeast),
+  };
 });
 
 const OTHERS: readonly Curve[] = [
-  { title: 'Lateral error', unit: 'm, + left', decimals: 2, data: channel('lateral_error_m'), range: (columns) => rangeAboutZero(columns, 0.5) },
+  {
+    title: 'Lateral error',
+    unit: 'm, + left',
+    decimals: 2,
+    data: channel('lateral_error_m'),
+    range: (columns) => rangeAboutZero(columns, 0.5),
+  },
   {
     title: 'Time gap',
     unit: 's, + first lap behind',
@@ -47,7 +63,8 @@ const OTHERS: readonly Curve[] = [
 ];
 
 /** uPlot draws gaps where a value is null, not where it is not-a-number. */
-const withGaps = (values: Float64Array): (number | null)[] => Array.from(values, (value) => (Number.isFinite(value) ? value : null));
+const withGaps = (values: Float64Array): (number | null)[] =>
+  Array.from(values, (value) => (Number.isFinite(value) ? value : null));
 
 function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number; names: readonly [string, string] }) {
   const host = useRef<HTMLDivElement>(null);
@@ -60,7 +77,12 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
     const places = Float64Array.from({ length: live.lapSamples.points }, (_, point) => live.lapSamples.s(point));
     const create = (): uPlot => {
       const colours = chartColours();
-      const axis = { stroke: colours.faint, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, font: `11px ${colours.font}` };
+      const axis = {
+        stroke: colours.faint,
+        grid: { stroke: colours.grid, width: 1 },
+        ticks: { show: false },
+        font: `11px ${colours.font}`,
+      };
       const stroke = columns.length === 1 ? [colours.series[3] ?? ''] : colours.series;
       const options: uPlot.Options = {
         width: element.clientWidth,
@@ -71,7 +93,12 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
         scales: { x: { time: false }, y: { range: () => curve.range(columns) } },
         axes: [
           { ...axis, size: 22, values: (_plot, ticks) => ticks.map((tick) => `${tick} m`) },
-          { ...axis, size: 44, space: 24, values: (_plot, ticks) => ticks.map((tick) => String(Number(tick.toPrecision(6))).replace('-', '−')) },
+          {
+            ...axis,
+            size: 44,
+            space: 24,
+            values: (_plot, ticks) => ticks.map((tick) => String(Number(tick.toPrecision(6))).replace('-', '−')),
+          },
         ],
         series: [{}, ...columns.map((_, i) => ({ stroke: stroke[i] ?? '', width: 1.75, points: { show: false } }))],
         hooks: {
@@ -79,8 +106,12 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
             (plot) => {
               if (!reading.current) return;
               const at = plot.cursor.idx;
-              const values = at === null || at === undefined ? [] : columns.map((column) => fixed(column[at] ?? NaN, curve.decimals));
-              reading.current.textContent = at === null || at === undefined ? '' : `${fixed(places[at] ?? NaN, 0)} m: ${values.join(' / ')}`;
+              const values =
+                at === null || at === undefined
+                  ? []
+                  : columns.map((column) => fixed(column[at] ?? NaN, curve.decimals));
+              reading.current.textContent =
+                at === null || at === undefined ? '' : `${fixed(places[at] ?? NaN, 0)} m: ${values.join(' / ')}`;
             },
           ],
         },
@@ -88,7 +119,9 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
       return new uPlot(options, [places, ...columns.map(withGaps)] as uPlot.AlignedData, element);
     };
     let plot = create();
-    const watcher = new ResizeObserver(() => plot.setSize({ width: element.clientWidth, height: element.clientHeight }));
+    const watcher = new ResizeObserver(() =>
+      plot.setSize({ width: element.clientWidth, height: element.clientHeight }),
+    );
     watcher.observe(element);
     const unwatch = onThemeChange(() => {
       plot.destroy();
@@ -129,7 +162,11 @@ export function LapCompareView({ a, b }: { a: number; b: number }) {
   const names = [nameOf(a), nameOf(b)] as const;
   const missing = [a, b].filter((lap) => !samplesOf(lap, 'time_s'));
   if (missing.length > 0) {
-    return <p class="empty">This page has not seen all of {missing.map(nameOf).join(' and ')}: there is nothing to compare.</p>;
+    return (
+      <p class="empty">
+        This page has not seen all of {missing.map(nameOf).join(' and ')}: there is nothing to compare.
+      </p>
+    );
   }
   return (
     <div class="compare">

@@ -4,7 +4,7 @@ import { fixed, lapTime, UNKNOWN } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import type { Lap, Limit } from '../protocol/topics';
 import { bestLap, laps, limit, live, run, whyNoLimit } from '../state/app_state';
-import { bestsOf, lapSamplesCsv, lapsCsv, type LapBests } from '../state/lap_table';
+import { bestsOf, type LapBests, lapSamplesCsv, lapsCsv } from '../state/lap_table';
 import { gapsToLimit } from '../state/limit';
 import { everyFrame } from '../state/ticker';
 import { LapCompareView } from './lap_compare_view';
@@ -20,15 +20,23 @@ function gap(seconds: number): string {
   return seconds > 0 ? `+${fixed(seconds, 3)}` : fixed(seconds, 3);
 }
 
-const percent = (value: number): string => (Number.isFinite(value) ? `${value >= 0 ? '+' : ''}${fixed(value, 1)} %` : UNKNOWN);
+const percent = (value: number): string =>
+  Number.isFinite(value) ? `${value >= 0 ? '+' : ''}${fixed(value, 1)} %` : UNKNOWN;
 
 function Picks({ lap, pair, name }: { lap: number; pair: readonly [number, number]; name: string }) {
-  const pick = (which: 0 | 1): void => void (chosen.value = which === 0 ? [lap, chosen.value[1]] : [chosen.value[0], lap]);
+  const pick = (which: 0 | 1): void =>
+    void (chosen.value = which === 0 ? [lap, chosen.value[1]] : [chosen.value[0], lap]);
   return (
     <div class="picks">
       {([0, 1] as const).map((which) => (
         <label key={which} title={`Compare as lap ${which === 0 ? 'A' : 'B'}`}>
-          <input type="radio" name={`compare-${which}`} aria-label={`Compare ${name} as ${which === 0 ? 'A' : 'B'}`} checked={pair[which] === lap} onChange={() => pick(which)} />
+          <input
+            type="radio"
+            name={`compare-${which}`}
+            aria-label={`Compare ${name} as ${which === 0 ? 'A' : 'B'}`}
+            checked={pair[which] === lap}
+            onChange={() => pick(which)}
+          />
           {which === 0 ? 'A' : 'B'}
         </label>
       ))}
@@ -115,8 +123,10 @@ function rowsOf(all: readonly Lap[], bests: LapBests): Lap[] {
 function compared(all: readonly Lap[], bests: LapBests): [number, number] {
   const seen = all.filter(({ lap }) => live.lapSamples.laps.includes(lap - 1)).map(({ lap }) => lap);
   const newest = seen.at(-1) ?? all.at(-1)?.lap ?? -1;
-  const other = bests.lap !== newest && seen.includes(bests.lap) ? bests.lap : (seen.at(-2) ?? all.at(-2)?.lap ?? newest);
-  const isKnown = (lap: number | null): lap is number => (lap === LIMIT && limit.value !== null) || all.some((each) => each.lap === lap);
+  const other =
+    bests.lap !== newest && seen.includes(bests.lap) ? bests.lap : (seen.at(-2) ?? all.at(-2)?.lap ?? newest);
+  const isKnown = (lap: number | null): lap is number =>
+    (lap === LIMIT && limit.value !== null) || all.some((each) => each.lap === lap);
   return [isKnown(chosen.value[0]) ? chosen.value[0] : newest, isKnown(chosen.value[1]) ? chosen.value[1] : other];
 }
 
@@ -138,14 +148,24 @@ function Toolbar({ pair }: { pair: readonly [number, number] }) {
   const has = laps.value.length > 0;
   return (
     <div class="toolbar">
-      <button type="button" disabled={!has} onClick={() => download(fileName([...parts, 'laps'], 'csv'), lapsCsv(laps.value, limit.value), 'text/csv')}>
+      <button
+        type="button"
+        disabled={!has}
+        onClick={() => download(fileName([...parts, 'laps'], 'csv'), lapsCsv(laps.value, limit.value), 'text/csv')}
+      >
         Table as CSV
       </button>
       <button
         type="button"
         disabled={!has || !live.lapSamples.laps.includes(pair[0] - 1)}
         title="Time, speed, error and commands of lap A along the track"
-        onClick={() => download(fileName([...parts, `lap-${pair[0]}`], 'csv'), lapSamplesCsv(live.lapSamples, pair[0] - 1), 'text/csv')}
+        onClick={() =>
+          download(
+            fileName([...parts, `lap-${pair[0]}`], 'csv'),
+            lapSamplesCsv(live.lapSamples, pair[0] - 1),
+            'text/csv',
+          )
+        }
       >
         Lap A as CSV
       </button>
@@ -169,17 +189,23 @@ export function LapsView() {
         </p>
       )}
       {all.length === 0 ? (
-        <p class="empty">{Number.isFinite(bestLap.value) ? `Last lap ${lapTime(bestLap.value)}; this run does not tell of laps.` : 'No lap is completed yet.'}</p>
+        <p class="empty">
+          {Number.isFinite(bestLap.value)
+            ? `Last lap ${lapTime(bestLap.value)}; this run does not tell of laps.`
+            : 'No lap is completed yet.'}
+        </p>
       ) : (
         <div class="table-scroll" tabIndex={0} role="region" aria-label="Laps">
           <table class="lap-table">
             <thead>
               <tr>
-                {['Lap', 'Time', 'Gap', 'S 1', 'S 2', 'S 3', `Top ${speedUnit().name}`, 'Edge', 'Error', 'Compare'].map((head) => (
-                  <th key={head} scope="col">
-                    {head}
-                  </th>
-                ))}
+                {['Lap', 'Time', 'Gap', 'S 1', 'S 2', 'S 3', `Top ${speedUnit().name}`, 'Edge', 'Error', 'Compare'].map(
+                  (head) => (
+                    <th key={head} scope="col">
+                      {head}
+                    </th>
+                  ),
+                )}
               </tr>
             </thead>
             <tbody>

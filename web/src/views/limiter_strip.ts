@@ -1,5 +1,5 @@
-import { Column } from '../state/columns';
 import { live } from '../state/app_state';
+import { Column } from '../state/columns';
 import { rowsSince } from '../state/explain';
 import type { Paint } from './canvas_view';
 import { chartColours } from './plot_colours';

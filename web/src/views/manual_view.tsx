@@ -1,8 +1,8 @@
 import { effect } from '@preact/signals';
 import { useRef } from 'preact/hooks';
-import { clamp } from '../lib/math';
 import { fixed } from '../lib/format';
 import { isTakenBy } from '../lib/keys';
+import { clamp } from '../lib/math';
 import { link, live } from '../state/app_state';
 import { held, holdKey, letGo, ramp, stick } from '../state/manual';
 import { canSet, set } from '../state/operate';
@@ -74,7 +74,10 @@ function Pad() {
     const box = element.current?.getBoundingClientRect();
     if (!box || !element.current?.hasPointerCapture(event.pointerId)) return;
     const share = (at: number, from: number, size: number): number => clamp((2 * (at - from)) / size - 1, -1, 1);
-    held.pad = { steer: -share(event.clientX, box.left, box.width), throttle: -share(event.clientY, box.top, box.height) };
+    held.pad = {
+      steer: -share(event.clientX, box.left, box.width),
+      throttle: -share(event.clientY, box.top, box.height),
+    };
   };
   const end = (): void => void (held.pad = null);
   return (
@@ -103,7 +106,14 @@ export function ManualView() {
     <section class={isOn ? 'block manual on' : 'block manual'} aria-label="Driving by hand">
       <h2>Drive by hand</h2>
       <div class="manual-row">
-        <button type="button" class={isOn ? 'danger' : ''} aria-pressed={isOn} aria-keyshortcuts="M" disabled={!canSet('manual.is_on')} onClick={toggleManual}>
+        <button
+          type="button"
+          class={isOn ? 'danger' : ''}
+          aria-pressed={isOn}
+          aria-keyshortcuts="M"
+          disabled={!canSet('manual.is_on')}
+          onClick={toggleManual}
+        >
           {isOn ? 'Hand back (Esc)' : 'Take the wheel (M)'}
         </button>
         {isOn ? (

@@ -12,9 +12,14 @@ export async function pictureOfPlots(): Promise<HTMLCanvasElement> {
   const colours = chartColours();
   const plots = [...document.querySelectorAll<HTMLElement>('.plots .plot')].flatMap((plot) => {
     const canvas = plot.querySelector('canvas');
-    return canvas && canvas.width > 0 ? [{ canvas, title: plot.querySelector('h2')?.innerText ?? '', keys: keysOf(plot) }] : [];
+    return canvas && canvas.width > 0
+      ? [{ canvas, title: plot.querySelector('h2')?.innerText ?? '', keys: keysOf(plot) }]
+      : [];
   });
-  const tall = Math.max(120, ...plots.map(({ canvas }) => (canvas.height / canvas.width) * COLUMN).filter((height) => height < COLUMN * 0.6));
+  const tall = Math.max(
+    120,
+    ...plots.map(({ canvas }) => (canvas.height / canvas.width) * COLUMN).filter((height) => height < COLUMN * 0.6),
+  );
   const rows = Math.ceil(plots.length / 2);
   const picture = document.createElement('canvas');
   picture.width = 2 * COLUMN + 48;
@@ -55,5 +60,7 @@ function keysOf(plot: HTMLElement): { text: string; colour: string }[] {
 
 function caption(): string {
   const [from, to] = timeRange();
-  return [run.value?.controller, run.value?.car, run.value?.track, `${from.toFixed(1)} s to ${to.toFixed(1)} s`].filter(Boolean).join(' · ');
+  return [run.value?.controller, run.value?.car, run.value?.track, `${from.toFixed(1)} s to ${to.toFixed(1)} s`]
+    .filter(Boolean)
+    .join(' · ');
 }

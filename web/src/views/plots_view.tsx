@@ -1,16 +1,16 @@
 import { useComputed } from '@preact/signals';
 import { rangeAboutZero, rangeFromZero, rangeInSteps } from '../draw/axis';
 import { downloadPng, fileName } from '../lib/download';
-import { speedUnit, type SpeedUnit } from '../lib/units';
+import { type SpeedUnit, speedUnit } from '../lib/units';
 import { nameInWords } from '../lib/words';
 import { run } from '../state/app_state';
-import { Column, COST_TERMS, costColumn } from '../state/columns';
-import { isFrozen, thaw, toggleFrozen, windowSeconds, WINDOWS_S, zoomed } from '../state/plot_view';
+import { COST_TERMS, Column, costColumn } from '../state/columns';
+import { isFrozen, thaw, toggleFrozen, WINDOWS_S, windowSeconds, zoomed } from '../state/plot_view';
 import { GgView } from './gg_view';
 import { HistogramView } from './histogram_view';
 import { pictureOfPlots } from './plot_picture';
 import { drawStatusStrip } from './status_strip';
-import { TimePlot, type PlotSpec } from './time_plot';
+import { type PlotSpec, TimePlot } from './time_plot';
 
 /** One meaning, one colour in all plots: applied blue, asked orange, sent green. */
 const [APPLIED, ASKED, SENT, LIMIT] = [0, 1, 2, 4];
@@ -102,18 +102,30 @@ function costSpec(names: readonly string[]): PlotSpec {
     decimals: 1,
     series:
       names.length > 0
-        ? shownNames.map((name, term) => ({ column: costColumn(term), label: nameInWords(name), colour: term, isFilled: true }))
+        ? shownNames.map((name, term) => ({
+            column: costColumn(term),
+            label: nameInWords(name),
+            colour: term,
+            isFilled: true,
+          }))
         : [{ column: Column.cost, label: 'all', colour: APPLIED }],
     range: (columns) => rangeFromZero(columns.slice(-1), 1e-3),
   };
 }
 
-const savePicture = async (): Promise<void> => downloadPng(fileName([run.value?.track ?? '', 'plots'], 'png'), await pictureOfPlots());
+const savePicture = async (): Promise<void> =>
+  downloadPng(fileName([run.value?.track ?? '', 'plots'], 'png'), await pictureOfPlots());
 
 function Toolbar() {
   return (
     <div class="toolbar" role="group" aria-label="Plots">
-      <button type="button" aria-pressed={isFrozen.value} aria-keyshortcuts="P" title="The run goes on (P)" onClick={toggleFrozen}>
+      <button
+        type="button"
+        aria-pressed={isFrozen.value}
+        aria-keyshortcuts="P"
+        title="The run goes on (P)"
+        onClick={toggleFrozen}
+      >
         {isFrozen.value ? 'Follow' : 'Hold plots'}
       </button>
       <div class="segments" role="group" aria-label="Time shown">

@@ -1,7 +1,7 @@
 import { extent, niceCeil } from '../lib/math';
 import { live } from '../state/app_state';
 import { Column } from '../state/columns';
-import { rowsSince, toLocal, type LocalLine } from '../state/explain';
+import { type LocalLine, rowsSince, toLocal } from '../state/explain';
 import { hindsight } from '../state/hindsight';
 import type { Paint } from './canvas_view';
 import { chartColours } from './plot_colours';
@@ -36,7 +36,12 @@ export const paintSparkline =
     context.stroke();
   };
 
-function strokeLine(context: CanvasRenderingContext2D, line: LocalLine, x: (ahead: number) => number, y: (left: number) => number): void {
+function strokeLine(
+  context: CanvasRenderingContext2D,
+  line: LocalLine,
+  x: (ahead: number) => number,
+  y: (left: number) => number,
+): void {
   context.beginPath();
   line.ahead.forEach((ahead, i) => context.lineTo(x(ahead), y(line.left[i] ?? 0)));
   context.stroke();

@@ -3,7 +3,17 @@ import type { SchemaEntry } from '../protocol/schema';
 import { labelOf, rangeOf } from './setting_row';
 
 const entry = (change: Partial<SchemaEntry>): SchemaEntry => ({
-  key: 'a.b', group: 'a', kind: 'number', unit: '', minimum: 0, maximum: 1, choices: [], default: 0, meaning: '', is_live: true, ...change,
+  key: 'a.b',
+  group: 'a',
+  kind: 'number',
+  unit: '',
+  minimum: 0,
+  maximum: 1,
+  choices: [],
+  default: 0,
+  meaning: '',
+  is_live: true,
+  ...change,
 });
 
 describe('the row of a tunable', () => {
@@ -15,7 +25,12 @@ describe('the row of a tunable', () => {
   });
 
   it('has a slider where a range means something', () => {
-    expect(rangeOf(entry({ maximum: 500 }), 100)).toEqual({ minimum: 0, maximum: 500, scale: 'linear', isInteger: false });
+    expect(rangeOf(entry({ maximum: 500 }), 100)).toEqual({
+      minimum: 0,
+      maximum: 500,
+      scale: 'linear',
+      isInteger: false,
+    });
     expect(rangeOf(entry({ kind: 'integer', minimum: 5, maximum: 100 }), 40)?.isInteger).toBe(true);
     expect(rangeOf(entry({ maximum: 9007199254740992 }), 1)).toBeNull(); // seed
     expect(rangeOf(entry({ minimum: null }), 1)).toBeNull();

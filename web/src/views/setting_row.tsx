@@ -1,8 +1,8 @@
 import { useState } from 'preact/hooks';
+import { type Range, scaleOf, shareOf, tidy, valueAt } from '../lib/scale';
+import { nameInWords } from '../lib/words';
 import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
-import { scaleOf, shareOf, tidy, valueAt, type Range } from '../lib/scale';
-import { nameInWords } from '../lib/words';
 import { canSet, set } from '../state/operate';
 import { refusals, settings, startSettings } from '../state/settings';
 
@@ -11,7 +11,18 @@ const STEPS = 1000; // of a slider's way
 /** The part of a key that tells it from others of its group, in words and without the unit that stands beside it. */
 export function labelOf({ key, unit }: Pick<SchemaEntry, 'key' | 'unit'>): string {
   const name = key.split('.').at(-1) ?? key;
-  const suffix = { 'm/s': 'mps', 'm/s²': 'mps2', deg: 'deg', 'deg/s': 'degps', ms: 'ms', s: 's', m: 'm', kg: 'kg', 'kg m²': 'kgm2', 'W/kg': 'wpkg' }[unit];
+  const suffix = {
+    'm/s': 'mps',
+    'm/s²': 'mps2',
+    deg: 'deg',
+    'deg/s': 'degps',
+    ms: 'ms',
+    s: 's',
+    m: 'm',
+    kg: 'kg',
+    'kg m²': 'kgm2',
+    'W/kg': 'wpkg',
+  }[unit];
   const bare = suffix !== undefined && name.endsWith(`_${suffix}`) ? name.slice(0, -suffix.length - 1) : name;
   return nameInWords(bare);
 }
@@ -30,7 +41,8 @@ function typed(text: string): Setting | null {
   return plain === '' || Number.isNaN(value) ? null : value;
 }
 
-const asText = (value: Setting | undefined): string => (typeof value === 'number' ? tidy(value).replace('−', '-') : value === undefined ? '' : String(value));
+const asText = (value: Setting | undefined): string =>
+  typeof value === 'number' ? tidy(value).replace('−', '-') : value === undefined ? '' : String(value);
 
 function NumberBox({ entry, id }: { entry: SchemaEntry; id: string }) {
   const [draft, setDraft] = useState<string | null>(null);
@@ -64,7 +76,9 @@ function Slider({ entry, range, label }: { entry: SchemaEntry; range: Range; lab
   const share = shareOf(typeof value === 'number' ? value : value === 'inf' ? Infinity : NaN, range);
   return (
     <div class="slider">
-      {typeof start === 'number' && <span class="start-mark" style={{ left: `calc(8px + (100% - 16px) * ${shareOf(start, range)})` }} />}
+      {typeof start === 'number' && (
+        <span class="start-mark" style={{ left: `calc(8px + (100% - 16px) * ${shareOf(start, range)})` }} />
+      )}
       <input
         type="range"
         min={0}
@@ -76,7 +90,9 @@ function Slider({ entry, range, label }: { entry: SchemaEntry; range: Range; lab
         disabled={!canSet(entry.key)}
         // What starts the run anew waits for the hand to let go.
         onInput={(event) => entry.is_live && set(entry.key, valueAt(Number(event.currentTarget.value) / STEPS, range))}
-        onChange={(event) => !entry.is_live && set(entry.key, valueAt(Number(event.currentTarget.value) / STEPS, range))}
+        onChange={(event) =>
+          !entry.is_live && set(entry.key, valueAt(Number(event.currentTarget.value) / STEPS, range))
+        }
       />
     </div>
   );
@@ -86,7 +102,12 @@ export function ChoiceBox({ entry, label }: { entry: SchemaEntry; label: string 
   const value = String(settings.value.get(entry.key) ?? '');
   const choices = entry.choices.includes(value) || value === '' ? entry.choices : [value, ...entry.choices];
   return (
-    <select aria-label={label} value={value} disabled={!canSet(entry.key)} onChange={(event) => set(entry.key, event.currentTarget.value)}>
+    <select
+      aria-label={label}
+      value={value}
+      disabled={!canSet(entry.key)}
+      onChange={(event) => set(entry.key, event.currentTarget.value)}
+    >
       {choices.map((choice) => (
         <option key={choice} value={choice} selected={choice === value}>
           {choice}
@@ -99,7 +120,17 @@ export function ChoiceBox({ entry, label }: { entry: SchemaEntry; label: string 
 function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
   const value = settings.value.get(entry.key);
   if (entry.kind === 'bool') {
-    return <input type="checkbox" class="switch" role="switch" aria-label={label} checked={value === true} disabled={!canSet(entry.key)} onChange={(event) => set(entry.key, event.currentTarget.checked)} />;
+    return (
+      <input
+        type="checkbox"
+        class="switch"
+        role="switch"
+        aria-label={label}
+        checked={value === true}
+        disabled={!canSet(entry.key)}
+        onChange={(event) => set(entry.key, event.currentTarget.checked)}
+      />
+    );
   }
   if (entry.kind === 'choice' || entry.choices.length > 0) return <ChoiceBox entry={entry} label={label} />;
   if (entry.kind === 'text') return <NumberBoxForText entry={entry} label={label} />;
@@ -133,8 +164,13 @@ export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string 
   const start = startSettings.value.get(entry.key);
   const isChanged = start !== undefined && !Object.is(value, start);
   const refusal = refusals.value.get(entry.key);
-  const bounds = entry.minimum !== null && entry.maximum !== null && entry.maximum > entry.minimum ? `${tidy(entry.minimum)} to ${tidy(entry.maximum)} ${entry.unit}` : '';
-  const about = [entry.meaning, bounds, entry.is_live ? '' : 'Starts the run anew.', entry.key].filter(Boolean).join('\n');
+  const bounds =
+    entry.minimum !== null && entry.maximum !== null && entry.maximum > entry.minimum
+      ? `${tidy(entry.minimum)} to ${tidy(entry.maximum)} ${entry.unit}`
+      : '';
+  const about = [entry.meaning, bounds, entry.is_live ? '' : 'Starts the run anew.', entry.key]
+    .filter(Boolean)
+    .join('\n');
   return (
     <div class={`setting kind-${entry.kind}${isChanged ? ' changed' : ''}`} data-key={entry.key} title={about}>
       <span class="setting-name">

@@ -28,7 +28,12 @@ export function drawStatusStrip(plot: uPlot, colours: ChartColours): void {
     let end = i + 1;
     while (end < times.length && at(end) === value) ++end;
     plot.ctx.fillStyle = look[value] ?? colours.text;
-    plot.ctx.fillRect(pixel(i), top + height - tall, Math.max(devicePixelRatio, pixel(Math.min(end, times.length - 1)) - pixel(i)), tall);
+    plot.ctx.fillRect(
+      pixel(i),
+      top + height - tall,
+      Math.max(devicePixelRatio, pixel(Math.min(end, times.length - 1)) - pixel(i)),
+      tall,
+    );
     i = end;
   }
 }

@@ -12,7 +12,7 @@ import { cursorTime, isFrozen, plotted, thaw, timeRange, windowSeconds, zoomed, 
 import { LONGEST_SILENCE_S } from '../state/silence';
 import { everyFrame } from '../state/ticker';
 import { drawnForPictures } from './picture_drawings';
-import { chartColours, type ChartColours } from './plot_colours';
+import { type ChartColours, chartColours } from './plot_colours';
 
 export interface Series {
   readonly column: number;
@@ -45,7 +45,13 @@ function timeAxis(low: number, high: number): number[] {
 
 /** Back from now while the plot follows the run; the time of the run where somebody has zoomed in. */
 const timeLabel = (time: number, last: number): string =>
-  zoomed.value ? `${axisNumber(time)} s` : time === last ? (isFrozen.value ? `${fixed(time, 1)} s` : 'now') : `−${axisNumber(Math.round((last - time) * 10) / 10)} s`;
+  zoomed.value
+    ? `${axisNumber(time)} s`
+    : time === last
+      ? isFrozen.value
+        ? `${fixed(time, 1)} s`
+        : 'now'
+      : `−${axisNumber(Math.round((last - time) * 10) / 10)} s`;
 
 /** Time and the columns of a plot, over the time its axis shows and one point more on each side. */
 function dataOf(spec: PlotSpec): Float64Array[] {
@@ -55,37 +61,81 @@ function dataOf(spec: PlotSpec): Float64Array[] {
   const first = Math.max(0, firstSince(times, from) - 1);
   const end = firstSince(times, to) + 2;
   const part = (column: number): Float64Array => history.column(column).subarray(first, end);
-  return [part(Column.time), ...spec.series.map(({ column, factor = 1 }) => (factor === 1 ? part(column) : part(column).map((value) => value * factor)))];
+  return [
+    part(Column.time),
+    ...spec.series.map(({ column, factor = 1 }) =>
+      factor === 1 ? part(column) : part(column).map((value) => value * factor),
+    ),
+  ];
 }
 
 /** Where lines are interrupted, as pairs of pixels of the canvas. */
-function gapsOf(plot: uPlot, _series: number, first: number, last: number, found: uPlot.Series.Gaps): uPlot.Series.Gaps {
+function gapsOf(
+  plot: uPlot,
+  _series: number,
+  first: number,
+  last: number,
+  found: uPlot.Series.Gaps,
+): uPlot.Series.Gaps {
   const pixel = (time: number): number => Math.round(plot.valToPos(time, 'x', true));
-  const silences = silencesIn(plot.data[0], first, last, LONGEST_SILENCE_S).map(([from, to]): uPlot.Series.Gap => [pixel(from), pixel(to)]);
+  const silences = silencesIn(plot.data[0], first, last, LONGEST_SILENCE_S).map(
+    ([from, to]): uPlot.Series.Gap => [pixel(from), pixel(to)],
+  );
   return [...found, ...silences];
 }
 
 function seriesOptions({ label, colour, isDashed, isFilled }: Series, colours: ChartColours): uPlot.Series {
   const stroke = colours.series[colour] ?? colours.text;
-  return { label, stroke, width: isFilled ? 1 : 1.75, dash: isDashed ? [5, 4] : [], points: { show: false }, gaps: gapsOf };
+  return {
+    label,
+    stroke,
+    width: isFilled ? 1 : 1.75,
+    dash: isDashed ? [5, 4] : [],
+    points: { show: false },
+    gaps: gapsOf,
+  };
 }
 
 function optionsOf(spec: PlotSpec, colours: ChartColours): uPlot.Options {
-  const axis = { stroke: colours.faint, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, font: `11px ${colours.font}` };
-  const fill = (colour: number): string => `color-mix(in srgb, ${colours.series[colour] ?? colours.text} 55%, ${colours.panel})`;
+  const axis = {
+    stroke: colours.faint,
+    grid: { stroke: colours.grid, width: 1 },
+    ticks: { show: false },
+    font: `11px ${colours.font}`,
+  };
+  const fill = (colour: number): string =>
+    `color-mix(in srgb, ${colours.series[colour] ?? colours.text} 55%, ${colours.panel})`;
   return {
     width: 300,
     height: 120,
     legend: { show: false },
-    cursor: { sync: { key: 'plots', setSeries: false }, drag: { x: true, y: false, setScale: false, dist: 5 }, points: { size: 7 }, bind: { dblclick: () => () => (thaw(), null) } },
+    cursor: {
+      sync: { key: 'plots', setSeries: false },
+      drag: { x: true, y: false, setScale: false, dist: 5 },
+      points: { size: 7 },
+      bind: { dblclick: () => () => (thaw(), null) },
+    },
     padding: [8, 18, 0, 0],
     scales: { x: { time: false, range: () => timeRange() }, y: { range: () => spec.range(dataOf(spec).slice(1)) } },
     axes: [
-      { ...axis, size: 22, splits: (_plot, _axis, low, high) => timeAxis(low, high), values: (_plot, ticks) => ticks.map((tick) => timeLabel(tick, ticks.at(-1) ?? 0)) },
+      {
+        ...axis,
+        size: 22,
+        splits: (_plot, _axis, low, high) => timeAxis(low, high),
+        values: (_plot, ticks) => ticks.map((tick) => timeLabel(tick, ticks.at(-1) ?? 0)),
+      },
       { ...axis, size: 44, space: 24, values: (_plot, ticks) => ticks.map(axisNumber) },
     ],
-    series: [{}, ...spec.series.map((each) => ({ ...seriesOptions(each, colours), ...(each.isFilled && each === spec.series[0] ? { fill: fill(each.colour) } : {}) }))],
-    bands: spec.series.flatMap((each, i) => (each.isFilled && i > 0 ? [{ series: [i + 1, i] as [number, number], fill: fill(each.colour) }] : [])),
+    series: [
+      {},
+      ...spec.series.map((each) => ({
+        ...seriesOptions(each, colours),
+        ...(each.isFilled && each === spec.series[0] ? { fill: fill(each.colour) } : {}),
+      })),
+    ],
+    bands: spec.series.flatMap((each, i) =>
+      each.isFilled && i > 0 ? [{ series: [i + 1, i] as [number, number], fill: fill(each.colour) }] : [],
+    ),
     hooks: {
       drawAxes: [(plot) => spec.under?.(plot, colours)],
       setSelect: [
@@ -120,14 +170,16 @@ const PHASES = 6; // plots take turns, so that no repaint has to wait for all of
 let made = 0;
 
 /** How long a plot may stand still [ms]: until its lines have moved by one pixel of the screen, but no longer than text does. */
-const paceOf = (plot: uPlot): number => (plot.bbox.width > 0 ? Math.min(PACE_MS, (1000 * windowSeconds.value) / plot.bbox.width) : 0);
+const paceOf = (plot: uPlot): number =>
+  plot.bbox.width > 0 ? Math.min(PACE_MS, (1000 * windowSeconds.value) / plot.bbox.width) : 0;
 
 export function TimePlot({ spec }: { spec: PlotSpec }) {
   const host = useRef<HTMLDivElement>(null);
   useEffect(() => {
     const element = host.current;
     if (!element) return undefined;
-    const create = (): uPlot => new uPlot(optionsOf(spec, chartColours()), dataOf(spec) as unknown as uPlot.AlignedData, element);
+    const create = (): uPlot =>
+      new uPlot(optionsOf(spec, chartColours()), dataOf(spec) as unknown as uPlot.AlignedData, element);
     let plot = create();
     let drawn = NaN;
     const redraw = (): void => plot.setData(dataOf(spec) as unknown as uPlot.AlignedData);
@@ -172,9 +224,14 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
         <p>
           {spec.series.map(({ column, label, colour, isDashed, factor = 1 }) => (
             <span key={label} class="key">
-              <span class={isDashed ? 'stroke dashed' : 'stroke'} style={{ borderColor: `var(--series-${colour + 1})` }} />
+              <span
+                class={isDashed ? 'stroke dashed' : 'stroke'}
+                style={{ borderColor: `var(--series-${colour + 1})` }}
+              />
               {spec.series.length > 1 ? `${label} ` : ''}
-              {spec.series.some(({ isFilled }) => isFilled) ? null : <b>{fixed(readout(column) * factor, spec.decimals)}</b>}
+              {spec.series.some(({ isFilled }) => isFilled) ? null : (
+                <b>{fixed(readout(column) * factor, spec.decimals)}</b>
+              )}
             </span>
           ))}
         </p>

@@ -1,23 +1,34 @@
 import { signal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
-import { above, behind, fitting, scaleBar, zoomed, type Camera } from '../draw/camera';
+import { above, behind, type Camera, fitting, scaleBar, zoomed } from '../draw/camera';
 import { carShape } from '../draw/car';
-import { drawDot, drawMoving, drawOutline, drawWorld, roadShape, type RoadShape, type Scene } from '../draw/scene';
+import { drawDot, drawMoving, drawOutline, drawWorld, type RoadShape, roadShape, type Scene } from '../draw/scene';
 import { speedGradient, topOfScale } from '../draw/speed_colour';
 import { isSame, Still } from '../draw/still';
 import { onThemeChange, theme } from '../draw/theme';
 import { fixed } from '../lib/format';
-import { onScreen, type OnScreen } from '../lib/on_screen';
-import { boundsOf, extrapolate, wrapAngle, type Box, type Point } from '../lib/math';
+import { type Box, boundsOf, extrapolate, type Point, wrapAngle } from '../lib/math';
+import { type OnScreen, onScreen } from '../lib/on_screen';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import { CAMERAS } from '../scene3d/cameras';
-import { Scene3dView } from '../scene3d/scene3d_view';
 import type { GhostPose } from '../scene3d/ghost';
+import { Scene3dView } from '../scene3d/scene3d_view';
 import { session } from '../scene3d/session';
-import { camera, choose, dimension, isSpared, nextCamera, obstacle, shows3d, wants3d, zoomCamera, type Dimension } from '../scene3d/view_state';
+import {
+  camera,
+  choose,
+  type Dimension,
+  dimension,
+  isSpared,
+  nextCamera,
+  obstacle,
+  shows3d,
+  wants3d,
+  zoomCamera,
+} from '../scene3d/view_state';
 import { isPaused, limit, link, live, run, shown } from '../state/app_state';
 import { hindsight } from '../state/hindsight';
-import { layers, toggleLayer, type Layer } from '../state/layers';
+import { type Layer, layers, toggleLayer } from '../state/layers';
 import { everyFrame } from '../state/ticker';
 
 export type View = 'behind' | 'above' | 'whole';
@@ -103,9 +114,32 @@ class Painter {
       ghost: this.#ghostNow(),
       car,
     };
-    const still = [camera.centre.x, camera.centre.y, camera.scale, camera.rotation, this.#canvas.width, this.#canvas.height, this.#road, scene.racingLine, theme()];
+    const still = [
+      camera.centre.x,
+      camera.centre.y,
+      camera.scale,
+      camera.rotation,
+      this.#canvas.width,
+      this.#canvas.height,
+      this.#road,
+      scene.racingLine,
+      theme(),
+    ];
     // A paused run is the same picture again and again.
-    const shown = [...still, live.frame, live.plan, live.reference, live.trace.newest(0), car?.x, car?.y, car?.yaw, scene.hindsight?.plan, scene.ghost?.x, scene.ghost?.y, top];
+    const shown = [
+      ...still,
+      live.frame,
+      live.plan,
+      live.reference,
+      live.trace.newest(0),
+      car?.x,
+      car?.y,
+      car?.yaw,
+      scene.hindsight?.plan,
+      scene.ghost?.x,
+      scene.ghost?.y,
+      top,
+    ];
     if (isSame(shown, this.#shown)) return;
     this.#shown = shown;
     this.#drawWorld(scene, camera, still, ratio);
@@ -134,11 +168,20 @@ class Painter {
     const top = width < 560 ? 48 : 8; // below the buttons where both do not fit side by side
     const fit = fitting(this.#roadBox as Box, side, side, 8);
     const pixels = Math.round(side * ratio);
-    const picture = this.#outline.picture([road, ratio, theme()], pixels, pixels, (own) => drawOutline(own, road, fit, theme(), ratio));
+    const picture = this.#outline.picture([road, ratio, theme()], pixels, pixels, (own) =>
+      drawOutline(own, road, fit, theme(), ratio),
+    );
     context.setTransform(1, 0, 0, 1, 0, 0);
     const [left, above] = [Math.round((width - 8 - side) * ratio), Math.round(top * ratio)];
     context.drawImage(picture, left, above);
-    if (car) drawDot(context, car, { ...fit, at: { x: left / ratio + side / 2, y: above / ratio + side / 2 } }, theme(), ratio);
+    if (car)
+      drawDot(
+        context,
+        car,
+        { ...fit, at: { x: left / ratio + side / 2, y: above / ratio + side / 2 } },
+        theme(),
+        ratio,
+      );
   }
 
   end(): void {
@@ -176,7 +219,16 @@ class Painter {
   #camera(car: Scene['car'], now: number, width: number, height: number, isInset: boolean): Camera {
     const box = this.#roadBox;
     if (isInset || view.value === 'whole' || !car) {
-      const all = box ?? boundsOf(car ? [car, ...live.reference] : [{ x: 0, y: 0 }, { x: 100, y: 60 }]);
+      const all =
+        box ??
+        boundsOf(
+          car
+            ? [car, ...live.reference]
+            : [
+                { x: 0, y: 0 },
+                { x: 100, y: 60 },
+              ],
+        );
       return fitting(all as Box, width, height, isInset ? 10 : 52);
     }
     if (view.value === 'above') return above(car, width, height, metresAcross.value);
@@ -234,15 +286,23 @@ function Legend() {
       )}
       <Swatch name="reference" label="reference" isMinor />
       <Swatch name="trace" label="driven" isMinor />
-      {limit.value && <Switch layer="racingLine" label="racing line" title="The line of the fastest lap possible (L)" />}
-      <Switch layer="hindsight" label="plan 1 s ago" title="The plan of a second ago and the way driven since; the outline is where it saw the car now (O)" />
+      {limit.value && (
+        <Switch layer="racingLine" label="racing line" title="The line of the fastest lap possible (L)" />
+      )}
+      <Switch
+        layer="hindsight"
+        label="plan 1 s ago"
+        title="The plan of a second ago and the way driven since; the outline is where it saw the car now (O)"
+      />
       {ghost !== null && <Swatch name="ghost" label={ghost} />}
       {shows3d.value && <Swatch name="rubber" label="tyres sliding" isMinor />}
       {shows3d.value && <Swatch name="brake" label="braking begins" isMinor />}
       <div class="legend-item">
         <span>plan 0</span>
         <span class="gradient" style={{ background: speedGradient() }} />
-        <span>{fixed(top, 0)} {speedUnit().name}</span>
+        <span>
+          {fixed(top, 0)} {speedUnit().name}
+        </span>
       </div>
     </div>
   );
@@ -261,11 +321,27 @@ interface Choice<T> {
   readonly title: string;
 }
 
-function Segments<T extends string>({ name, choices, chosen, choose: pick }: { name: string; choices: readonly Choice<T>[]; chosen: T; choose: (view: T) => void }) {
+function Segments<T extends string>({
+  name,
+  choices,
+  chosen,
+  choose: pick,
+}: {
+  name: string;
+  choices: readonly Choice<T>[];
+  chosen: T;
+  choose: (view: T) => void;
+}) {
   return (
     <div class="segments" role="group" aria-label={name}>
       {choices.map((each) => (
-        <button key={each.view} type="button" title={each.title} aria-pressed={chosen === each.view} onClick={() => pick(each.view)}>
+        <button
+          key={each.view}
+          type="button"
+          title={each.title}
+          aria-pressed={chosen === each.view}
+          onClick={() => pick(each.view)}
+        >
           {each.label}
         </button>
       ))}

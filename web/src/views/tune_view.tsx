@@ -1,7 +1,7 @@
 import { computed, signal } from '@preact/signals';
-import type { SchemaEntry } from '../protocol/schema';
 import { tidy } from '../lib/scale';
 import { nameInWords } from '../lib/words';
+import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
 import { run } from '../state/app_state';
 import { set } from '../state/operate';
@@ -21,7 +21,10 @@ const prefixOf = (key: string): string => (key.includes('.') ? (key.split('.')[0
 /** Every word of the search must be in the name, meaning or unit. */
 export function isFound(entry: Pick<SchemaEntry, 'key' | 'meaning' | 'group'>, words: string): boolean {
   const text = `${entry.key} ${nameInWords(entry.key)} ${entry.meaning} ${entry.group}`.toLowerCase();
-  return words.toLowerCase().split(/\s+/).every((word) => text.includes(word));
+  return words
+    .toLowerCase()
+    .split(/\s+/)
+    .every((word) => text.includes(word));
 }
 
 const groups = computed(() => {
@@ -50,12 +53,23 @@ function Changes() {
   return (
     <section class={changes.length > 0 ? 'changes some' : 'changes'} aria-label="Changes" data-testid="changes">
       <header>
-        <h2>{changes.length === 0 ? 'As it started' : changes.length === 1 ? '1 change' : `${changes.length} changes`}</h2>
+        <h2>
+          {changes.length === 0 ? 'As it started' : changes.length === 1 ? '1 change' : `${changes.length} changes`}
+        </h2>
         <div class="buttons">
-          <button type="button" disabled={changes.length === 0} onClick={() => changes.forEach(({ key, from }) => set(key, from))}>
+          <button
+            type="button"
+            disabled={changes.length === 0}
+            onClick={() => changes.forEach(({ key, from }) => set(key, from))}
+          >
             Reset all
           </button>
-          <a class="button" href="preset.yaml" download="my-preset.yaml" title="All that differs from the defaults, for chicane drive FILE">
+          <a
+            class="button"
+            href="preset.yaml"
+            download="my-preset.yaml"
+            title="All that differs from the defaults, for chicane drive FILE"
+          >
             Save as preset
           </a>
         </div>
@@ -64,7 +78,8 @@ function Changes() {
         <ul>
           {changes.map(({ key, from, to }) => (
             <li key={key}>
-              <code>{key}</code> <span class="was">{asText(from)}</span> <span aria-label="to">→</span> <b>{asText(to)}</b>
+              <code>{key}</code> <span class="was">{asText(from)}</span> <span aria-label="to">→</span>{' '}
+              <b>{asText(to)}</b>
               <button type="button" class="icon small" aria-label={`Reset ${key}`} onClick={() => set(key, from)}>
                 ↺
               </button>
@@ -83,8 +98,14 @@ function Group({ name, entries }: { name: string; entries: readonly SchemaEntry[
   return (
     <section class="group" aria-label={nameInWords(name)}>
       <h2>
-        <button type="button" class="disclosure" aria-expanded={open} onClick={() => (isOpen.value = new Map([...isOpen.value, [name, !open]]))}>
-          <span aria-hidden="true">{open ? '▾' : '▸'}</span> {nameInWords(name)} <span class="unit">{entries.length}</span>
+        <button
+          type="button"
+          class="disclosure"
+          aria-expanded={open}
+          onClick={() => (isOpen.value = new Map([...isOpen.value, [name, !open]]))}
+        >
+          <span aria-hidden="true">{open ? '▾' : '▸'}</span> {nameInWords(name)}{' '}
+          <span class="unit">{entries.length}</span>
           {changed > 0 && <span class="badge">{changed} changed</span>}
         </button>
       </h2>
@@ -98,7 +119,8 @@ export function TuneView() {
   if (run.value?.mode === 'replay') {
     return (
       <p class="empty">
-        A recording cannot be changed. <code>chicane replay LOG --branch-at T --set KEY=VALUE</code> drives on from any of its moments otherwise.
+        A recording cannot be changed. <code>chicane replay LOG --branch-at T --set KEY=VALUE</code> drives on from any
+        of its moments otherwise.
       </p>
     );
   }

@@ -1,7 +1,7 @@
 import { signal } from '@preact/signals';
 import type { ComponentType } from 'preact';
-import { persisted } from '../lib/persisted';
 import { clamp } from '../lib/math';
+import { persisted } from '../lib/persisted';
 import { link } from '../state/app_state';
 import { DriveView } from './drive_view';
 import { ExplainView } from './explain_view';
@@ -115,7 +115,11 @@ function Tabs() {
       >
         <svg viewBox="0 0 16 16" width="16" height="16" aria-hidden="true">
           <rect x="1.5" y="2.5" width="13" height="11" rx="1.5" fill="none" stroke="currentColor" />
-          {dock.value === 'right' ? <path d="M2 9.5h12v3.5H2z" fill="currentColor" /> : <path d="M9.5 3h4.5v10H9.5z" fill="currentColor" />}
+          {dock.value === 'right' ? (
+            <path d="M2 9.5h12v3.5H2z" fill="currentColor" />
+          ) : (
+            <path d="M9.5 3h4.5v10H9.5z" fill="currentColor" />
+          )}
         </svg>
       </button>
       <button
@@ -127,7 +131,16 @@ function Tabs() {
         onClick={() => (isPanelAlone.value = !isPanelAlone.value)}
       >
         <svg viewBox="0 0 16 16" width="16" height="16" aria-hidden="true">
-          <path d={isPanelAlone.value ? 'M6.5 2v4.5H2M9.5 2v4.5H14M6.5 14V9.5H2M9.5 14V9.5H14' : 'M2 6.5V2h4.5M14 6.5V2H9.5M2 9.5V14h4.5M14 9.5V14H9.5'} fill="none" stroke="currentColor" stroke-width="1.5" />
+          <path
+            d={
+              isPanelAlone.value
+                ? 'M6.5 2v4.5H2M9.5 2v4.5H14M6.5 14V9.5H2M9.5 14V9.5H14'
+                : 'M2 6.5V2h4.5M14 6.5V2H9.5M2 9.5V14h4.5M14 9.5V14H9.5'
+            }
+            fill="none"
+            stroke="currentColor"
+            stroke-width="1.5"
+          />
         </svg>
       </button>
     </div>
@@ -137,7 +150,12 @@ function Tabs() {
 export function WorkbenchView() {
   const { View } = PANELS[tab.value];
   const share = dock.value === 'right' ? shareRight.value : shareBottom.value;
-  const classes = ['workbench', `dock-${dock.value}`, isPanelAlone.value ? 'panel-alone' : '', link.value === 'lost' ? 'stale' : ''];
+  const classes = [
+    'workbench',
+    `dock-${dock.value}`,
+    isPanelAlone.value ? 'panel-alone' : '',
+    link.value === 'lost' ? 'stale' : '',
+  ];
   return (
     <main class={classes.filter(Boolean).join(' ')} style={{ '--panel-share': String(share) }}>
       {!isPanelAlone.value && (
@@ -149,7 +167,13 @@ export function WorkbenchView() {
       {!isPanelAlone.value && <Splitter />}
       <div class="panel side">
         <Tabs />
-        <div class={`panel-body show-${tab.value}`} id="panel" role="tabpanel" aria-labelledby={`tab-${tab.value}`} tabIndex={0}>
+        <div
+          class={`panel-body show-${tab.value}`}
+          id="panel"
+          role="tabpanel"
+          aria-labelledby={`tab-${tab.value}`}
+          tabIndex={0}
+        >
           <View key={tab.value} />
         </div>
       </div>
