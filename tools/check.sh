@@ -2,6 +2,7 @@
 # Everything that has to hold before a change is taken. Each part also runs alone: tools/check.sh tidy
 #
 #   format   clang-format has nothing to change
+#   web      Biome finds nothing to change or to mend in the dashboard and its tests
 #   layers   arrows between modules, rules of tools/check_sources.py
 #   tidy     clang-tidy: names, function lengths, bug patterns
 #   release  ./test.sh --all: every test, with the dashboard's, the installed package's and the documents'
@@ -15,6 +16,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
 source tools/install_packages.sh
 
 check_format() { tools/check_format.sh; }
+check_web() { tools/check_web.sh; }
 check_layers() { tools/check_layers.py && tools/check_sources.py; }
 check_tidy() {
   cmake --preset release >/dev/null &&
@@ -46,7 +48,7 @@ check_bits() {
 }
 
 parts=("$@")
-[ $# -gt 0 ] || parts=(format layers tidy release dev clang asan tsan bits)
+[ $# -gt 0 ] || parts=(format web layers tidy release dev clang asan tsan bits)
 mapfile -t others < <(node_packages; browser_packages)
 install_packages "${run_packages[@]}" "${test_packages[@]}" "${check_packages[@]}" "${others[@]}" || exit 3
 failed=()

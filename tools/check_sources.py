@@ -4,6 +4,7 @@
     tools/check_sources.py [ROOT]            prints file:line: what is wrong; exit code 1 when anything is
     tools/check_sources.py --lengths [ROOT]  lists the longest files instead
 """
+import os
 import re
 import sys
 from pathlib import Path
@@ -86,6 +87,20 @@ def sources(root):
         yield from sorted(p for p in (root / folder).rglob("*") if p.suffix in (".hpp", ".cpp"))
 
 
+def web_sources(root):
+    for top in ("web", "tests"):
+        for folder, inner, names in os.walk(root / top):
+            inner[:] = sorted(set(inner) - {"node_modules", "dist"})
+            yield from (Path(folder) / name for name in sorted(names) if name.endswith((".ts", ".tsx", ".mjs", ".css", ".html")))
+
+
+def check_web_file(path, lines):
+    """What the formatter does not break: comments and strings."""
+    for number, line in enumerate(lines, 1):
+        if len(line) > 120:
+            yield f"{path}:{number}: got {len(line)} characters, expected at most 120"
+
+
 def check(root):
     for source in sources(root):
         path = source.relative_to(root)
@@ -96,6 +111,8 @@ def check(root):
             yield f"{path}:1: got {len(lines)} lines, expected at most 500: it is two files"
         if path.parts[0] == "src":
             yield from check_library_file(root, source)
+    for source in web_sources(root):
+        yield from check_web_file(source.relative_to(root), source.read_text(encoding="utf-8").splitlines())
 
 
 def lengths(root):

@@ -1,6 +1,7 @@
 import { defineConfig } from 'vitest/config';
 
-// The dashboard's files are embedded in the program, so few and small ones are better than many; three.js comes in a file of its own, when 3D is shown.
+// The dashboard's files are embedded in the program, so few and small ones are better than many; three.js comes in a
+// file of its own, when 3D is shown.
 export default defineConfig({
   base: './',
   esbuild: { jsx: 'automatic', jsxImportSource: 'preact' },
@@ -11,7 +12,7 @@ export default defineConfig({
     modulePreload: false,
     chunkSizeWarningLimit: 700,
     // One script for `chicane report`, whose page stands alone.
-    rollupOptions: process.env['CHICANE_REPORT'] ? { output: { inlineDynamicImports: true } } : {},
+    rollupOptions: process.env.CHICANE_REPORT ? { output: { inlineDynamicImports: true } } : {},
   },
   server: {
     // `npm run dev` beside `chicane drive`: the page is Vite's, the data the program's.

@@ -85,13 +85,15 @@ class Checks(unittest.TestCase):
             (source, (SPDX + '#include <cmath>\n#include "chicane/solver/solve.hpp"\n',), "expected its own header"),
             ("tests/solver/solve_test.cpp", ("int x;\n",), "expected // SPDX"),
             ("tests/solver/solve_test.cpp", "\n" * 600, "expected at most 500"),
+            ("web/src/main.tsx", (f"// {'ä' * 118}\n",), "got 121 characters, expected at most 120"),
         ):
             with self.subTest(text[:50]):
                 self.expect(check_sources.check, path, text, reason)
 
     def test_comments_strings_and_other_names_are_no_violation(self):
         text = '// std::sin(x), the car\n/* throw */ const char* s = "throw std::mutex"; int scar; char c = \'"\'; // throw\n'
-        self.assertEqual(self.violations(check_sources.check, files={"src/chicane/solver/solve.cpp": text}), [])
+        files = {"src/chicane/solver/solve.cpp": text, "web/src/main.ts": (f"// {'ä' * 117}\n",), "web/node_modules/a/b.ts": " " * 999}
+        self.assertEqual(self.violations(check_sources.check, files=files), [])
 
 
 if __name__ == "__main__":

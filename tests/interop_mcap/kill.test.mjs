@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The whole program is killed (SIGKILL) at random moments while it records in real time: each recording must open without a
-// repair step, with our reader and with @mcap/core, and must hold all but the last 100 ms of what viewers had been told.
+// The whole program is killed (SIGKILL) at random moments while it records in real time: each recording must open
+// without a repair step, with our reader and with @mcap/core, and must hold all but the last 100 ms of what viewers had
+// been told.
 import assert from 'node:assert/strict';
 import { execFile, spawn } from 'node:child_process';
 import { once } from 'node:events';
@@ -62,7 +63,7 @@ function readByReference(file) {
   reader.append(readFileSync(file));
   const topics = new Map();
   const seen = { steps: 0, last: 0, hasEnd: false };
-  for (let record; (record = reader.nextRecord()); ) {
+  for (let record = reader.nextRecord(); record; record = reader.nextRecord()) {
     if (record.type === 'Channel') topics.set(record.id, record.topic);
     if (record.type === 'Footer') seen.hasEnd = true;
     if (record.type !== 'Message' || topics.get(record.channelId) !== '/chicane/step') continue;

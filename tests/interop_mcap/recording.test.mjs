@@ -64,7 +64,8 @@ describe('a recorded run', () => {
     const reader = new McapStreamReader({ validateCrcs: true });
     reader.append(bytes);
     const counts = {};
-    for (let record; (record = reader.nextRecord()); ) counts[record.type] = (counts[record.type] ?? 0) + 1;
+    for (let record = reader.nextRecord(); record; record = reader.nextRecord())
+      counts[record.type] = (counts[record.type] ?? 0) + 1;
     assert.ok(reader.done());
     assert.equal(counts.Message, MESSAGES);
     assert.equal(counts.Footer, 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What `chicane replay` serves to a browser, read as a browser does: by range, with the reference reader; and recordings of
-// both ends of a session with an external simulator.
+// What `chicane replay` serves to a browser, read as a browser does: by range, with the reference reader; and
+// recordings of both ends of a session with an external simulator.
 import assert from 'node:assert/strict';
 import { execFile, spawn } from 'node:child_process';
 import { once } from 'node:events';

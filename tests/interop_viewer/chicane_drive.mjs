@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Starts `chicane drive` (its path in CHICANE) and listens to it as a second viewer, by the protocol's reference client.
+// Starts `chicane drive` (its path in CHICANE) and listens to it as a second viewer, by the protocol's reference
+// client.
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
 import rosmsg from '@foxglove/rosmsg';

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a choice that starts the run anew costs whoever watches: how long until the new run is seen, and the longest gap between two
-// frames meanwhile, beside as much time in which nothing is chosen. The limit of the run before is still being searched at each choice.
+// What a choice that starts the run anew costs whoever watches: how long until the new run is seen, and the longest gap
+// between two frames meanwhile, beside as much time in which nothing is chosen. The limit of the run before is still
+// being searched at each choice.
 //   CHICANE=/path/to/chicane node choices.mjs [rounds, 10] [seconds, 1]
 import { argv } from 'node:process';
 import { setTimeout as sleep } from 'node:timers/promises';
@@ -47,7 +48,10 @@ const drive = await startDrive();
 const seen = await watch(drive.url);
 await sleep(1000);
 
-/** The longest gap [ms] of some time, at the beginning of which `act` happens, and how long it took the new run to be seen. */
+/**
+ * The longest gap [ms] of some time, at the beginning of which `act` happens, and how long it took the new run to be
+ * seen.
+ */
 async function observe(act) {
   seen.gaps = [];
   const begin = performance.now();

@@ -138,7 +138,10 @@ describe('the dashboard', () => {
     const newest = await values();
     const box = await page.locator('.plot[aria-label="Speed"] .u-over').boundingBox();
     let back = 0; // where the other plot shows another value: two moments may have the same one
-    const pointed = () => page.mouse.move(box.x + box.width - (back += 6), box.y + 20).then(values);
+    const pointed = () => {
+      back += 6;
+      return page.mouse.move(box.x + box.width - back, box.y + 20).then(values);
+    };
     await dashboard.until(
       pointed,
       (now) => back < box.width && now.at(-1) !== newest.at(-1),

@@ -93,7 +93,10 @@ export class DashboardPage {
     return last;
   }
 
-  /** Lets the car drive on, and waits until the program says that it does: a page that closes at once may not have asked. */
+  /**
+   * Lets the car drive on, and waits until the program says that it does: a page that closes at once may not have
+   * asked.
+   */
   async resume() {
     await this.button('Resume').click();
     await this.button('Pause').waitFor();

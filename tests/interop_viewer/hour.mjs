@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One hour of a run at 60 frames a second, sent to a dashboard as fast as it takes it: does what the page keeps stop growing?
+// One hour of a run at 60 frames a second, sent to a dashboard as fast as it takes it: does what the page keeps stop
+// growing?
 //   CHICANE=/path/to/chicane node hour.mjs [minutes, 60] [2d or 3d]
 // The program drives the hour in virtual time and records it; the recording is sent over a socket as the program would
 // send it live. Every ten minutes of the run, after a forced collection, memory and nodes of the page are counted.
@@ -43,10 +44,10 @@ const file = openSync(log);
 const reader = await McapIndexedReader.Initialize({
   readable: {
     size: async () => BigInt(fstatSync(file).size),
-    async read(offset, size) {
+    read(offset, size) {
       const bytes = new Uint8Array(Number(size));
       readSync(file, bytes, 0, bytes.length, offset);
-      return bytes;
+      return Promise.resolve(bytes);
     },
   },
 });
@@ -141,7 +142,8 @@ async function sample(minute, frames, wall) {
 }
 
 const row = ({ minute, frames, heap, buffers, nodes, listeners, wall }) =>
-  `| ${Number(minute.toFixed(1))} | ${frames} | ${heap.toFixed(2)} | ${buffers.toFixed(2)} | ${nodes} | ${listeners} | ${wall.toFixed(0)} |`;
+  `| ${Number(minute.toFixed(1))} | ${frames} | ${heap.toFixed(2)} | ${buffers.toFixed(2)} | ${nodes} ` +
+  `| ${listeners} | ${wall.toFixed(0)} |`;
 console.log(
   '| minutes | frames | heap [MB] | arrays [MB] | nodes | listeners | after [s] |\n|--:|--:|--:|--:|--:|--:|--:|',
 );

@@ -104,12 +104,15 @@ for (const tab of ['plots', 'explain']) {
     );
     const growth = (last.JSHeapUsedSize - first.JSHeapUsedSize) / 1e6;
     test.diagnostic(
-      `${tab}: ${frames.toFixed(0)} frames/s arrive, ${((paints.size - paintsBefore) / elapsed).toFixed(0)}/s painted, main thread ${(share * 100).toFixed(0)} %, ` +
-        `message to screen p50 ${quantile(ages, 0.5)?.toFixed(0)} ms, p95 ${quantile(ages, 0.95)?.toFixed(0)} ms, heap ${(last.JSHeapUsedSize / 1e6).toFixed(1)} MB ${growth >= 0 ? '+' : ''}${growth.toFixed(2)} MB`,
+      `${tab}: ${frames.toFixed(0)} frames/s arrive, ${((paints.size - paintsBefore) / elapsed).toFixed(0)}/s painted` +
+        `, main thread ${(share * 100).toFixed(0)} %, message to screen p50 ${quantile(ages, 0.5)?.toFixed(0)} ms, ` +
+        `p95 ${quantile(ages, 0.95)?.toFixed(0)} ms, heap ${(last.JSHeapUsedSize / 1e6).toFixed(1)} MB ` +
+        `${growth >= 0 ? '+' : ''}${growth.toFixed(2)} MB`,
     );
     assert.ok(frames > 30, `${frames} frames/s`);
     assert.ok(share < MAIN_THREAD_SHARE, `main thread ${share}`);
     assert.ok(quantile(ages, 0.5) < MESSAGE_TO_SCREEN_MS, `message to screen ${quantile(ages, 0.5)} ms`);
-    assert.ok(growth < 3, `${growth} MB more after ${elapsed} s`); // the samples of laps and plots are there from the start
+    // The samples of laps and plots are there from the start.
+    assert.ok(growth < 3, `${growth} MB more after ${elapsed} s`);
   });
 }

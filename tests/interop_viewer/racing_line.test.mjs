@@ -37,7 +37,10 @@ async function open(options) {
 /** What drivers say of a canvas that is read back for a picture without a graphics card is the only complaint. */
 const close = (dashboard) => dashboard.close((each) => each.includes('GL Driver Message'));
 
-/** How many pixels of a canvas are cyan, and how many of its 16 × 16 fields have one: nothing else in the picture is of that colour. */
+/**
+ * How many pixels of a canvas are cyan, and how many of its 16 × 16 fields have one: nothing else in the picture is of
+ * that colour.
+ */
 const cyan = (page, selector) =>
   page.locator(selector).evaluate(async (canvas) => {
     const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });

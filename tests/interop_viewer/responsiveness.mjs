@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How soon the page answers while it shows a run: how late its timers come, beside repaints, pictures in three dimensions, and the
-// processor time of its thread.
+// How soon the page answers while it shows a run: how late its timers come, beside repaints, pictures in three
+// dimensions, and the processor time of its thread.
 //   CHICANE=/path/to/chicane node responsiveness.mjs [seconds, 10] [times, 3]
 import { argv } from 'node:process';
 import { launch } from './browser.mjs';
@@ -67,7 +67,8 @@ async function measure(browser, url, dimension) {
 const browser = await launch();
 const drive = await startDrive();
 console.log(
-  '| shown | 3D pictures a second | repaints a second | timers late, median [ms] | 95 of 100 [ms] | main thread, of one core [%] |\n|---|--:|--:|--:|--:|--:|',
+  '| shown | 3D pictures a second | repaints a second | timers late, median [ms] | 95 of 100 [ms] ' +
+    '| main thread, of one core [%] |\n|---|--:|--:|--:|--:|--:|',
 );
 for (let i = 0; i < TIMES; ++i) for (const dimension of ['2d', '3d']) await measure(browser, drive.url, dimension);
 await browser.close();

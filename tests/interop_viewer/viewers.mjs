@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What many viewers cost the car: the control step of a run in real time, with and without them. Half of them never read.
+// What many viewers cost the car: the control step of a run in real time, with and without them. Half of them never
+// read.
 //   CHICANE=/path/to/chicane node viewers.mjs [viewers, 200] [seconds, 20] [times, 3]
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
@@ -12,7 +13,8 @@ import WebSocket from 'ws';
 const VIEWERS = Number(argv[2] ?? 200);
 const SECONDS = Number(argv[3] ?? 20);
 const TIMES = Number(argv[4] ?? 3);
-const TOPICS = ['/chicane/frame', '/chicane/plan', '/chicane/run', '/chicane/lap', '/chicane/change', '/reference']; // of a dashboard
+/** What a dashboard subscribes to. */
+const TOPICS = ['/chicane/frame', '/chicane/plan', '/chicane/run', '/chicane/lap', '/chicane/change', '/reference'];
 const PAGE = 4096; // [bytes]
 
 setPriority(19); // the clients' work is not what is measured
@@ -107,13 +109,15 @@ async function measure(count) {
           Math.max(...readers.map(({ longest }) => longest)).toFixed(0),
         ];
   console.log(
-    `| ${count} | ${[step.p50, step.p99, step.p999, step.max].map((each) => each.toFixed(0)).join(' | ')} | ${misses} | ${told.join(' | ')} | ${memory.toFixed(0)} | ${kernel.toFixed(0)} | ${dropped} |`,
+    `| ${count} | ${[step.p50, step.p99, step.p999, step.max].map((each) => each.toFixed(0)).join(' | ')} ` +
+      `| ${misses} | ${told.join(' | ')} | ${memory.toFixed(0)} | ${kernel.toFixed(0)} | ${dropped} |`,
   );
   return { isSteady: dropped === 0 };
 }
 
 console.log(
-  '| viewers | step p50 [µs] | p99 | p99.9 | max | late | fewest frames a second | longest gap [ms] | memory [MB] | sockets [MB] | readers dropped |\n|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|',
+  '| viewers | step p50 [µs] | p99 | p99.9 | max | late | fewest frames a second | longest gap [ms] | memory [MB] ' +
+    '| sockets [MB] | readers dropped |\n|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|',
 );
 let isSteady = true;
 for (let i = 0; i < TIMES; ++i)

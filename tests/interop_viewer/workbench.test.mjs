@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The workbench on a real run: chicane drive with its controller and simulator, changed, driven and broken from the page.
+// The workbench on a real run: chicane drive with its controller and simulator, changed, driven and broken from the
+// page.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
@@ -136,7 +137,8 @@ describe('the workbench', () => {
   });
 
   it('drives by hand, and hands back', async () => {
-    await page.getByRole('button', { name: /Take the wheel/ }).waitFor(); // before the settings are there, the key does nothing
+    // Before the settings are there, the key does nothing.
+    await page.getByRole('button', { name: /Take the wheel/ }).waitFor();
     await page.locator('body').press('m');
     await page.getByText('By hand', { exact: true }).waitFor();
     await page.keyboard.down('ArrowLeft');

@@ -88,7 +88,9 @@ addShortcuts(
     label: String(i + 1),
     does: `${name[0]?.toUpperCase()}${name.slice(1)}`,
     group: 'Panels' as const,
-    action: () => void (tab.value = name),
+    action: () => {
+      tab.value = name;
+    },
   })),
   {
     keys: ['/'],
@@ -107,9 +109,19 @@ addShortcuts(
     label: 'F',
     does: 'Panel alone',
     group: 'Panels',
-    action: () => void (isPanelAlone.value = !isPanelAlone.value),
+    action: () => {
+      isPanelAlone.value = !isPanelAlone.value;
+    },
   },
-  { keys: ['?'], label: '?', does: 'These keys', group: 'Panels', action: () => void (isHelpOpen.value = true) },
+  {
+    keys: ['?'],
+    label: '?',
+    does: 'These keys',
+    group: 'Panels',
+    action: () => {
+      isHelpOpen.value = true;
+    },
+  },
   { keys: ['m'], label: 'M', does: 'Take the wheel, hand it back', group: 'Driving by hand', action: toggleManual },
   { keys: ['escape'], label: 'Esc', does: 'Hand the car back', group: 'Driving by hand', action: handBack },
   { keys: [], label: '← → ↑ ↓', does: 'Steer, drive, brake', group: 'Driving by hand', action: () => undefined },

@@ -37,7 +37,8 @@ describe('camera', () => {
       [maxX, maxY],
       [minX, maxY],
     ].map(([x = 0, y = 0]) => project(camera, { x, y }));
-    // The box just holds the picture: turned back, its corners lie on or beyond the edges, and no edge is farther than it has to be.
+    // The box just holds the picture: turned back, its corners lie on or beyond the edges, and no edge is farther than
+    // it has to be.
     const [xs, ys] = [corners.map(({ x }) => x), corners.map(({ y }) => y)];
     expect(Math.min(...xs)).toBeLessThan(1e-9);
     expect(Math.max(...xs)).toBeGreaterThan(800 - 1e-9);

@@ -31,8 +31,8 @@ export function longestStep({ x, y }: Line, most = Infinity): number {
 }
 
 /**
- * The stretches [first, end) of a line that lie within `margin` of a box. With a margin of the line's longest step no piece
- * that touches the box is missed.
+ * The stretches [first, end) of a line that lie within `margin` of a box. With a margin of the line's longest step no
+ * piece that touches the box is missed.
  */
 export function stretchesInside({ x, y }: Line, box: Box, margin: number): [number, number][] {
   const [left, right, low, high] = [box.minX - margin, box.maxX + margin, box.minY - margin, box.maxY + margin];

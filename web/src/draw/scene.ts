@@ -58,8 +58,8 @@ function stroke(ctx: Context, path: Path2D, colour: string, width: number): void
 }
 
 /**
- * A square grid on the ground, so that speed is seen where there is no road either. Line by line: as one path, whose pieces cross
- * all over the picture, it took a tenth of a core where the processor draws.
+ * A square grid on the ground, so that speed is seen where there is no road either. Line by line: as one path, whose
+ * pieces cross all over the picture, it took a tenth of a core where the processor draws.
  */
 function drawGround(ctx: Context, camera: Camera, colour: string, ratio: number): void {
   const { spacing, from, to } = groundGrid(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
@@ -250,7 +250,10 @@ function drawGhost(ctx: Context, ghost: Pose, car: NonNullable<Scene['car']>, co
   ctx.restore();
 }
 
-/** What stands still in the world: ground, road, racing line. Covers the whole canvas, which has `ratio` device pixels to a CSS pixel. */
+/**
+ * What stands still in the world: ground, road, racing line. Covers the whole canvas, which has `ratio` device pixels
+ * to a CSS pixel.
+ */
 export function drawWorld(
   ctx: Context,
   scene: Pick<Scene, 'road' | 'racingLine'>,

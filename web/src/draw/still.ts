@@ -3,14 +3,17 @@ export class Still {
   #canvas: HTMLCanvasElement | null = null;
   #key: readonly unknown[] = [];
 
-  /** The part in `width` × `height` device pixels. `paint` is called with a clear canvas where the key is another one. */
+  /**
+   * The part in `width` × `height` device pixels. `paint` is called with a clear canvas where the key is another one.
+   */
   picture(
     key: readonly unknown[],
     width: number,
     height: number,
     paint: (context: CanvasRenderingContext2D) => void,
   ): HTMLCanvasElement {
-    const canvas = (this.#canvas ??= document.createElement('canvas'));
+    this.#canvas ??= document.createElement('canvas');
+    const canvas = this.#canvas;
     if (canvas.width === width && canvas.height === height && isSame(key, this.#key)) return canvas;
     [canvas.width, canvas.height] = [width, height]; // clears it too
     this.#key = key;

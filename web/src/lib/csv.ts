@@ -1,4 +1,6 @@
-/** Tables as comma-separated text: a header, a row for each record, numbers with full precision, nothing for unknown. */
+/**
+ * Tables as comma-separated text: a header, a row for each record, numbers with full precision, nothing for unknown.
+ */
 export function csv(header: readonly string[], rows: Iterable<readonly (string | number | boolean)[]>): string {
   const lines = [header.map(cell).join(',')];
   for (const row of rows) lines.push(row.map(cell).join(','));

@@ -1,4 +1,6 @@
-/** What the browser tells of an element's box of its own accord: asking for it would make it lay out the page at once. */
+/**
+ * What the browser tells of an element's box of its own accord: asking for it would make it lay out the page at once.
+ */
 export interface OnScreen {
   /** Without border and padding, in whole CSS pixels; 0 while it is not shown at all. */
   readonly width: number;

@@ -95,5 +95,6 @@ export function worstInWords(
 ): string | null {
   const { violation, worst_stage: stage, worst_constraint: index } = frame;
   if (!(violation > tolerance) || index < 0) return null;
-  return `${nameInWords(names[index] ?? `constraint ${index + 1}`)} exceeded by ${violation.toPrecision(2)} at step ${stage} of the plan`;
+  const name = nameInWords(names[index] ?? `constraint ${index + 1}`);
+  return `${name} exceeded by ${violation.toPrecision(2)} at step ${stage} of the plan`;
 }

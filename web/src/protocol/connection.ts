@@ -22,8 +22,8 @@ interface PendingSet {
 }
 
 /**
- * One lasting connection to a server of the Foxglove WebSocket protocol: subscribes to the topics this page draws and to all
- * parameters, and connects again, for ever, whenever it is lost.
+ * One lasting connection to a server of the Foxglove WebSocket protocol: subscribes to the topics this page draws and
+ * to all parameters, and connects again, for ever, whenever it is lost.
  */
 export class Connection implements Source {
   readonly #open: () => IWebSocket;

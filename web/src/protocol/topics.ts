@@ -126,7 +126,10 @@ export interface Lap {
   sector_gaps_to_limit_percent: Float64Array;
 }
 
-/** chicane_msgs/msg/Limit: the fastest lap that is possible, and its line; columns of equal length, empty while it is not known */
+/**
+ * chicane_msgs/msg/Limit: the fastest lap that is possible, and its line; columns of equal length, empty while it is
+ * not known
+ */
 export interface Limit {
   is_known: boolean;
   lap_time_s: number;

@@ -8,10 +8,11 @@ import { McapLog } from './mcap_log';
 import { BytesReadable, HttpReadable } from './readable';
 import { RecordedDrive } from './recorded_drive';
 
-// A small recording of 10 s: frames at 10 Hz on a straight, a lap at 4 s, off the road at 6 s, a setting changed at 7 s, one fault from 8 s to 9 s
-// and another that begins where that ends. It was driven at 15 times its pace.
+// A small recording of 10 s: frames at 10 Hz on a straight, a lap at 4 s, off the road at 6 s, a setting changed at 7
+// s, one fault from 8 s to 9 s and another that begins where that ends. It was driven at 15 times its pace.
 const FRAME =
-  'float64 time_s\nfloat64 x_m\nfloat64 y_m\nfloat64 yaw_rad\nfloat64 steer_applied_rad\nuint32 off_track_events\nuint8 rung\nbool is_gated\nuint32 active_faults\nfloat64 pace\n';
+  'float64 time_s\nfloat64 x_m\nfloat64 y_m\nfloat64 yaw_rad\nfloat64 steer_applied_rad\n' +
+  'uint32 off_track_events\nuint8 rung\nbool is_gated\nuint32 active_faults\nfloat64 pace\n';
 const LAP = 'uint32 lap\nfloat64 lap_time_s\n';
 const CHANGE = 'string name\nstring value\n';
 const RUN = 'string track\nbool is_paused\nstring[] fault_names\n';
@@ -110,7 +111,9 @@ class Page implements LogEvents {
     ++this.rewinds;
     this.told = [];
   };
-  moved = (time: number, isPlaying: boolean): void => void (this.where = { time, isPlaying });
+  moved = (time: number, isPlaying: boolean): void => {
+    this.where = { time, isPlaying };
+  };
   frames(): number[] {
     return this.told.filter(({ topic }) => topic === '/chicane/frame').map(({ message }) => (message as Frame).time_s);
   }
@@ -180,11 +183,16 @@ describe('playing a recording', () => {
     let now = 1000;
     source.advance(now);
     await settle();
-    for (let i = 0; i < 10; ++i) source.advance((now += 100)); // one second at twice the pace
+    // One second at twice the pace.
+    for (let i = 0; i < 10; ++i) {
+      now += 100;
+      source.advance(now);
+    }
     expect(page.where.time).toBeCloseTo(2, 6);
     expect(page.frames().at(-1)).toBeCloseTo(2, 6);
     for (let i = 0; i < 100 && source.isPlaying; ++i) {
-      source.advance((now += 100));
+      now += 100;
+      source.advance(now);
       await settle();
     }
     expect(source.isPlaying).toBe(false);

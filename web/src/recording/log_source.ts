@@ -37,8 +37,8 @@ const LEAST_PACE = 0.05;
 const MOST_PACE = 20;
 
 /**
- * Plays a recording as if it happened: same messages, same page. Pausing, stepping and going back to the start are what a live run
- * offers; seek() goes anywhere. Time is read from the clock it is given; advance() must be called often.
+ * Plays a recording as if it happened: same messages, same page. Pausing, stepping and going back to the start are what
+ * a live run offers; seek() goes anywhere. Time is read from the clock it is given; advance() must be called often.
  */
 export class LogSource implements Source {
   readonly log: McapLog;

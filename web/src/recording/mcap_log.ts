@@ -48,7 +48,8 @@ export class McapLog {
     } catch (error) {
       const why = error instanceof Error ? error.message : String(error);
       throw new Error(
-        `${name} cannot be read as a closed MCAP file (${why}); \`chicane replay ${name}\` also opens one that was cut short`,
+        `${name} cannot be read as a closed MCAP file (${why}); ` +
+          `\`chicane replay ${name}\` also opens one that was cut short`,
       );
     }
     const log = new McapLog(name, reader);

@@ -1,4 +1,7 @@
-/** What the page was opened to show: a run that goes on, recordings that `chicane replay` serves, or those inside a report. */
+/**
+ * What the page was opened to show: a run that goes on, recordings that `chicane replay` serves, or those inside a
+ * report.
+ */
 export type Mode =
   | { readonly name: 'live' }
   | { readonly name: 'replay'; readonly logs: readonly ListedLog[]; readonly start: number }
@@ -11,13 +14,13 @@ export interface ListedLog {
 
 const isRecord = (value: unknown): value is Record<string, unknown> => typeof value === 'object' && value !== null;
 const isListed = (value: unknown): value is ListedLog =>
-  isRecord(value) && typeof value['name'] === 'string' && typeof value['url'] === 'string';
+  isRecord(value) && typeof value.name === 'string' && typeof value.url === 'string';
 
 /** GET mode.json, as the server writes it; anything else means a live run. */
 export function modeOf(answer: unknown): Mode {
-  if (!isRecord(answer) || answer['mode'] !== 'replay') return { name: 'live' };
-  const logs = Array.isArray(answer['logs']) ? answer['logs'].filter(isListed) : [];
-  return { name: 'replay', logs, start: typeof answer['start_s'] === 'number' ? answer['start_s'] : 0 };
+  if (!isRecord(answer) || answer.mode !== 'replay') return { name: 'live' };
+  const logs = Array.isArray(answer.logs) ? answer.logs.filter(isListed) : [];
+  return { name: 'replay', logs, start: typeof answer.start_s === 'number' ? answer.start_s : 0 };
 }
 
 export async function findMode(): Promise<Mode> {

@@ -45,7 +45,7 @@ export class HttpReadable implements IReadable {
     const [from, to] = [Number(offset), Number(offset + size)];
     if (to > Number(await this.size())) throw new RangeError('the recording ends too early');
     const result = new Uint8Array(to - from);
-    const numbers = [];
+    const numbers: number[] = [];
     for (let block = Math.floor(from / BLOCK); block * BLOCK < to; ++block) numbers.push(block);
     await Promise.all(
       numbers.map(async (number) => {

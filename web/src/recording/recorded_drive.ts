@@ -5,7 +5,10 @@ import type { GhostPose, GhostSource } from '../scene3d/ghost';
 const ROW = 5; // time, x, y, yaw, steer
 const LINE_SPACING_M = 2;
 
-/** A whole recorded drive as numbers, by the time of its recording: another future, or another controller, beside this one. */
+/**
+ * A whole recorded drive as numbers, by the time of its recording: another future, or another controller, beside this
+ * one.
+ */
 export class RecordedDrive implements GhostSource {
   readonly label: string;
   readonly lapTime = Infinity;

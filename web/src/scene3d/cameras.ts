@@ -52,7 +52,9 @@ export const zoomedOrbit = (orbit: Orbit, factor: number): Orbit => ({
 const lens = (wide: number, aspect: number): number =>
   aspect >= 1.2 ? wide : 2 * Math.atan(Math.tan(wide / 2) * Math.min(1.7, 1.2 / aspect));
 
-/** Follows the car from shot to shot; heading and speed are smoothed, so that corners turn the world and bumps do not. */
+/**
+ * Follows the car from shot to shot; heading and speed are smoothed, so that corners turn the world and bumps do not.
+ */
 export class CameraMan {
   #heading = NaN;
   #speed = NaN;
@@ -62,7 +64,9 @@ export class CameraMan {
     this.#heading = NaN;
   }
 
-  /** `seconds` since the last shot. With `isCalm` nothing is smoothed and the lens stays: no motion but the car's own. */
+  /**
+   * `seconds` since the last shot. With `isCalm` nothing is smoothed and the lens stays: no motion but the car's own.
+   */
   shoot(name: CameraName, car: Subject, orbit: Orbit, aspect: number, seconds: number, isCalm: boolean): Shot {
     const share = Number.isNaN(this.#heading) || isCalm ? 1 : 1 - Math.exp(-seconds / (name === 'top' ? 0.35 : 0.22));
     const from = Number.isNaN(this.#heading) ? car.yaw : this.#heading;

@@ -10,7 +10,8 @@ export interface CarModel {
   readonly helmet: MeshData; // the driver, not seen from his own eyes
   readonly hand: MeshData; // the steering wheel about its own centre; it turns round its x axis
   readonly wheel: MeshData; // about its hub, its axis along y, its better side to the left
-  readonly wheels: readonly { x: number; y: number; radius: number }[]; // front left, front right, rear left, rear right
+  /** Front left, front right, rear left, rear right. */
+  readonly wheels: readonly { x: number; y: number; radius: number }[];
   readonly wheelRadius: number;
   readonly steeringWheel: Vector; // its centre
   readonly eye: Vector; // of the driver
@@ -320,8 +321,8 @@ function addWishbones({ dark }: Parts, { k, front, rear, radius, tyre, halfTrack
 }
 
 /**
- * An open single-seater: nothing hides the front wheels, whichever way one looks. Axles, track, tyres, length and width are
- * those of the car; the rest of its shape is ours.
+ * An open single-seater: nothing hides the front wheels, whichever way one looks. Axles, track, tyres, length and width
+ * are those of the car; the rest of its shape is ours.
  */
 export function carModel(size: CarSize): CarModel {
   const measures = measure(size);

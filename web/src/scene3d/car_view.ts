@@ -216,7 +216,8 @@ export class GhostView {
   readonly #group = new Group();
   readonly #wheels: Wheels;
   readonly #veil = new MeshLambertMaterial({ transparent: true, fog: true });
-  readonly #mould = new MeshBasicMaterial({ colorWrite: false, transparent: true }); // hides what lies behind its own skin
+  /** Hides what lies behind its own surface. */
+  readonly #mould = new MeshBasicMaterial({ colorWrite: false, transparent: true });
   readonly #geometries: BufferGeometry[];
 
   constructor(scene: Scene, size: CarSize, model: CarModel) {

@@ -9,7 +9,10 @@ class Drawer {
   readonly SYNC_GPU_COMMANDS_COMPLETE = 1;
   readonly SYNC_STATUS = 2;
   readonly SIGNALED = 3;
-  fenceSync = (): WebGLSync => (++this.open, {}) as WebGLSync;
+  fenceSync = (): WebGLSync => {
+    ++this.open;
+    return {} as WebGLSync;
+  };
   deleteSync = (): void => void --this.open;
   getSyncParameter = (): number => (this.isDone ? this.SIGNALED : 0);
   flush = (): void => void ++this.flushed;

@@ -9,7 +9,10 @@ const SHARE = 2 / 3;
 /** No rest is longer [ms]: the first picture takes seconds, in which shaders are compiled. */
 const LONGEST_REST = 250;
 
-/** When a picture that was asked for is drawn, and when the next may be asked for; one at a time. Looks, and never waits. */
+/**
+ * When a picture that was asked for is drawn, and when the next may be asked for; one at a time. Looks, and never
+ * waits.
+ */
 export class DrawingTime {
   readonly #fences: Fences;
   #fence: WebGLSync | null = null;

@@ -11,7 +11,9 @@ export interface GhostPose {
   steer: number;
 }
 
-/** Another drive round the same track, by lap time: the best lap of this session, a lap of a log, another controller's. */
+/**
+ * Another drive round the same track, by lap time: the best lap of this session, a lap of a log, another controller's.
+ */
 export interface GhostSource {
   /** For people, e.g. "best lap 0:26.60". */
   readonly label: string;

@@ -69,7 +69,9 @@ export class MeshBuilder {
     );
   }
 
-  /** The body between two equal-cornered polygons; `near` lies at smaller x, corners counter-clockwise seen from ahead. */
+  /**
+   * The body between two equal-cornered polygons; `near` lies at smaller x, corners counter-clockwise seen from ahead.
+   */
   hull(near: readonly Vector[], far: readonly Vector[], colour: Colour): void {
     this.loft([near, far], colour);
   }

@@ -95,9 +95,9 @@ const LONGEST_LEAD_S = 0.12; // run time shown beyond the newest frame
 const SLEW_S = 0.25;
 
 /**
- * Turns frames that arrive now and then into motion at every repaint. It plays the run about one frame late, at the pace at
- * which frames arrive, so that there is nearly always a frame before and one after the moment shown. The delay is bounded:
- * where frames are rarer than that the car is led on from the newest with constant speed and yaw rate.
+ * Turns frames that arrive now and then into motion at every repaint. It plays the run about one frame late, at the
+ * pace at which frames arrive, so that there is nearly always a frame before and one after the moment shown. The delay
+ * is bounded: where frames are rarer than that the car is led on from the newest with constant speed and yaw rate.
  */
 export class Playout {
   #frames: Motion[] = [];
@@ -149,7 +149,10 @@ export class Playout {
     return Math.min(apart, LONGEST_DELAY_MS);
   }
 
-  /** The motion to show at `now` [ms]; null before the first frame. While the run is held the newest frame is shown as it is. */
+  /**
+   * The motion to show at `now` [ms]; null before the first frame. While the run is held the newest frame is shown as
+   * it is.
+   */
   advance(now: number, isHeld: boolean): Motion | null {
     const newest = this.#frames.at(-1);
     if (!newest) return null;

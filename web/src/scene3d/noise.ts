@@ -9,7 +9,10 @@ export function randomNumbers(seed: number): () => number {
   };
 }
 
-/** A square of grey noise that can be laid edge to edge: `size` × `size` values around 1, ± `amplitude`, over several scales. */
+/**
+ * A square of grey noise that can be laid edge to edge: `size` × `size` values around 1, ± `amplitude`, over several
+ * scales.
+ */
 export function noiseTile(size: number, amplitude: number, cells: readonly number[], seed: number): Float32Array {
   const tile = new Float32Array(size * size).fill(1);
   const random = randomNumbers(seed);

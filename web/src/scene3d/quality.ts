@@ -41,7 +41,10 @@ export class QualityGovernor {
     return LEVELS[this.level] as Quality;
   }
 
-  /** Takes the time since the last picture and what drawing took of the page's own thread [ms]; true when the level changed. */
+  /**
+   * Takes the time since the last picture and what drawing took of the page's own thread [ms]; true when the level
+   * changed.
+   */
   picture(gap: number, cost: number): boolean {
     if (!(gap > 0) || gap > 500) return false; // hidden, or just begun
     this.#gaps.push(Math.max(gap, cost * 2)); // never more than half of the page's thread

@@ -8,8 +8,8 @@ interface End {
 }
 
 /**
- * Bands on the ground in fixed memory, piece by piece: several tracks (one for each wheel, say) share it, and when it is full
- * the oldest pieces go. A piece is a quad of four corners, x, y, z each, in a slot of its own.
+ * Bands on the ground in fixed memory, piece by piece: several tracks (one for each wheel, say) share it, and when it
+ * is full the oldest pieces go. A piece is a quad of four corners, x, y, z each, in a slot of its own.
  */
 export class RibbonRing {
   readonly capacity: number;
@@ -67,8 +67,8 @@ export class RibbonRing {
 }
 
 /**
- * Left and right corners of a band of `width` along a line: x, y, z of two corners for each of `count` points, written into
- * `positions` from its start. `px`, `py` hold the points.
+ * Left and right corners of a band of `width` along a line: x, y, z of two corners for each of `count` points, written
+ * into `positions` from its start. `px`, `py` hold the points.
  */
 export function writeRibbon(
   px: ArrayLike<number>,

@@ -14,7 +14,9 @@ const PAINT = {
   kerbWhite: colourOf('#f2f2ee'),
 };
 
-/** A ring road of mean radius `radius`, `half` to each side, driven to the left; the first point once more at its end. */
+/**
+ * A ring road of mean radius `radius`, `half` to each side, driven to the left; the first point once more at its end.
+ */
 function ring(radius: number, half: number, count = 60): RoadLines {
   const line = (r: number): Point[] =>
     Array.from({ length: count + 1 }, (_, i) => ({

@@ -63,8 +63,8 @@ function towards(from: Point, to: Point, metres: number): Point {
 }
 
 /**
- * Lines of equal length without repeated points, the first point once more at the end when the road is closed: there is no
- * gap at the seam, whether or not the server repeats the point. Null when there is no road.
+ * Lines of equal length without repeated points, the first point once more at the end when the road is closed: there is
+ * no gap at the seam, whether or not the server repeats the point. Null when there is no road.
  */
 export function tidyLines(lines: RoadLines, isClosed: boolean): RoadLines | null {
   const count = Math.min(lines.left.length, lines.right.length, lines.centre.length);

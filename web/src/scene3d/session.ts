@@ -10,8 +10,8 @@ const BRAKE_MARK_M = 0.35;
 const TRACE_WIDTH_M = 0.16;
 
 /**
- * What drawing the run needs to remember, in fixed memory: the last frames, the best lap, rubber, the driven line, and where
- * the brakes came on. It listens to frames also while nothing is drawn.
+ * What drawing the run needs to remember, in fixed memory: the last frames, the best lap, rubber, the driven line, and
+ * where the brakes came on. It listens to frames also while nothing is drawn.
  */
 export class Session {
   readonly playout = new Playout();

@@ -7,9 +7,9 @@ type Renderer = WebGLRenderer & {
 };
 
 /**
- * Pictures where the processor draws. A browser without a graphics card fetches what is on the canvas back from whoever draws,
- * and the page stands still until it is there. So a picture is drawn beside the canvas, and copied onto it when it is finished: then
- * there is only the copy to wait for.
+ * Pictures where the processor draws. A browser without a graphics card fetches what is on the canvas back from whoever
+ * draws, and the page stands still until it is there. So a picture is drawn beside the canvas, and copied onto it when
+ * it is finished: then there is only the copy to wait for.
  */
 export class SlowPicture {
   readonly #renderer: WebGLRenderer;
@@ -22,7 +22,8 @@ export class SlowPicture {
 
   constructor(renderer: WebGLRenderer) {
     this.#renderer = renderer;
-    const gl = (this.#gl = renderer.getContext() as WebGL2RenderingContext);
+    const gl = renderer.getContext() as WebGL2RenderingContext;
+    this.#gl = gl;
     this.#time = new DrawingTime(gl);
     [this.#framebuffer, this.#colour, this.#depth] = [
       gl.createFramebuffer(),

@@ -98,7 +98,8 @@ export class Stage {
     this.#canvas = canvas;
     this.#renderer = new WebGLRenderer({ canvas, antialias: !isSoftware, preserveDrawingBuffer: isSoftware });
     this.#renderer.outputColorSpace = SRGBColorSpace;
-    this.#renderer.debug.checkShaderErrors = false; // the shaders are the library's own, and to ask waits for whoever compiles
+    // The shaders are the library's own, and asking for errors waits until they are compiled.
+    this.#renderer.debug.checkShaderErrors = false;
     this.#governor = new QualityGovernor(isSoftware);
     this.#slow = isSoftware ? new SlowPicture(this.#renderer) : null;
     const anisotropy = Math.min(isSoftware ? 1 : 8, this.#renderer.capabilities.getMaxAnisotropy());
@@ -149,7 +150,10 @@ export class Stage {
     this.#lastChange = performance.now();
   }
 
-  /** The paint of the car mirrors this sky. Not where the processor draws: to blur the sky for it took five to eight seconds there. */
+  /**
+   * The paint of the car mirrors this sky. Not where the processor draws: to blur the sky for it took five to eight
+   * seconds there.
+   */
   #reflectSky(): void {
     if (this.#slow) return;
     this.#environment?.dispose();
@@ -168,7 +172,10 @@ export class Stage {
   paint(now: number, view: View): void {
     const { clientWidth: width, clientHeight: height } = this.#canvas;
     if (width === 0 || height === 0 || this.#renderer.getContext().isContextLost()) return;
-    if (this.#shaders !== 'there') return this.#compile(now, view);
+    if (this.#shaders !== 'there') {
+      this.#compile(now, view);
+      return;
+    }
     if (this.#slow?.show(now)) this.#hasPicture = true;
     const gap = now - this.#lastPicture;
     if (gap < this.#governor.quality.interval - 4 || this.#slow?.isFree(now) === false) return;
@@ -234,7 +241,10 @@ export class Stage {
     const ratio = Math.min(devicePixelRatio, pixelRatio);
     const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
     this.#setShadow();
-    if (this.#slow) return this.#slow.draw(this.#scene, this.#camera, w, h, now);
+    if (this.#slow) {
+      this.#slow.draw(this.#scene, this.#camera, w, h, now);
+      return;
+    }
     if (this.#canvas.width !== w || this.#canvas.height !== h) this.#renderer.setSize(w, h, false);
     this.#renderer.render(this.#scene, this.#camera);
     this.#hasPicture = true;

@@ -162,21 +162,25 @@ const pointsOf = (path: Path): Point[] => path.poses.map(({ pose }) => pose.posi
 export function receive<T extends TopicName>(topic: T, message: Topics[T], now: number): void {
   switch (topic) {
     case '/chicane/frame':
-      return receiveFrame(message as Frame, now);
+      receiveFrame(message as Frame, now);
+      return;
     case '/chicane/plan':
-      return receivePlan(message as Plan);
+      receivePlan(message as Plan);
+      return;
     case '/chicane/run':
       run.value = completeRun(message as Run);
       setFaultNames(run.value.fault_names);
       return;
     case '/chicane/lap':
-      return receiveLap(message as Lap);
+      receiveLap(message as Lap);
+      return;
     case '/chicane/limit':
       limit.value = (message as Limit).is_known ? (message as Limit) : null;
       whyNoLimit.value = limit.value ? '' : ((message as Limit).why_not ?? '');
       return;
     case '/chicane/change':
-      return noteChange(message as Change);
+      noteChange(message as Change);
+      return;
     case '/reference':
       live.reference = pointsOf(message as Path);
       return;

@@ -48,7 +48,10 @@ export const costColumn = (term: number): number => NAMES.length + Math.min(term
 
 const percent = (share: number): number => share * 100;
 
-/** One row of the history for a frame, in the units of the axes but for speeds [m/s]. Written into `row`, which is returned. */
+/**
+ * One row of the history for a frame, in the units of the axes but for speeds [m/s]. Written into `row`, which is
+ * returned.
+ */
 export function plotRow(frame: Frame, row: number[]): number[] {
   row[Column.time] = frame.time_s;
   row[Column.speed] = frame.speed_mps;

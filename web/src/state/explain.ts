@@ -35,7 +35,9 @@ export function bitSharesOf(history: History, column: number, bits: number, seco
   return shares;
 }
 
-/** Root of the mean square of the finite values of a column over the last `seconds`; not-a-number when there are none. */
+/**
+ * Root of the mean square of the finite values of a column over the last `seconds`; not-a-number when there are none.
+ */
 export function rmsOf(history: History, column: number, seconds: number): number {
   const values = history.column(column);
   let [sum, count] = [0, 0];
@@ -50,7 +52,9 @@ export function rmsOf(history: History, column: number, seconds: number): number
 
 const timeOf = ({ stamp }: Plan): number => stamp.sec + stamp.nsec / 1e9;
 
-/** The newest plan that is at least `age` seconds older than `now`; the oldest when all are younger; null without plans. */
+/**
+ * The newest plan that is at least `age` seconds older than `now`; the oldest when all are younger; null without plans.
+ */
 export function planOf(plans: readonly Plan[], now: number, age: number): Plan | null {
   return plans.filter((plan) => timeOf(plan) <= now - age + 1e-9).at(-1) ?? plans[0] ?? null;
 }

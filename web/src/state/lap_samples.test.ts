@@ -49,8 +49,8 @@ function cover(
   }
 }
 
-// The line is found between two frames as if the speed were constant. Here it jumps by 5 m/s on the line, and a quarter of
-// that in 0.37 s is half a metre, or 20 ms.
+// The line is found between two frames as if the speed were constant. Here it jumps by 5 m/s on the line, and a quarter
+// of that in 0.37 s is half a metre, or 20 ms.
 const DIGITS = 1;
 
 describe('lap samples', () => {

@@ -27,8 +27,8 @@ function between(from: LapMoment, to: LapMoment, share: number): LapMoment {
 
 /**
  * Laps as functions of the distance along the road, in fixed memory: the newest ones and the fastest. Frames come at
- * equal times; between two of them everything is taken as linear in s, unless some are missing in between: a page that was
- * cut off does not know that stretch. The start line is where the lap count changes.
+ * equal times; between two of them everything is taken as linear in s, unless some are missing in between: a page that
+ * was cut off does not know that stretch. The start line is where the lap count changes.
  */
 export class LapSamples {
   readonly points = POINTS;
@@ -94,7 +94,9 @@ export class LapSamples {
     return isOverTheLine ? NaN : mix(values[name][below] ?? NaN, values[name][above] ?? NaN, place - Math.floor(place));
   }
 
-  /** A channel of a lap from the start line on; null when that lap is not kept. Places it did not pass are not-a-number. */
+  /**
+   * A channel of a lap from the start line on; null when that lap is not kept. Places it did not pass are not-a-number.
+   */
   channel(lap: number, name: LapChannel): Float64Array | null {
     const values = this.#done.find((slot) => slot.lap === lap)?.channels[name];
     if (!values) return null;
@@ -114,9 +116,8 @@ export class LapSamples {
       if (moment.time_s - last.time_s <= LONGEST_SILENCE_S) this.#fill(last, this.#after(last, moment));
       return;
     }
-    if (last && this.#current && lap === last.lap + 1)
-      return this.#cross(last, this.#after(last, moment), lap, lastLapTime);
-    this.#drop(lap);
+    if (last && this.#current && lap === last.lap + 1) this.#cross(last, this.#after(last, moment), lap, lastLapTime);
+    else this.#drop(lap);
   }
 
   /** A lap ended in `time` [s] behind its last frame: at the end of a recording none comes from beyond the line. */
@@ -160,7 +161,10 @@ export class LapSamples {
   #cross(last: LapMoment, moment: LapMoment, lap: number, lastLapTime: number): void {
     const rest = lastLapTime - last.time_s; // of the old lap [s]
     const isHeard = rest + moment.time_s <= LONGEST_SILENCE_S;
-    if (!isHeard && !Number.isFinite(this.#line)) return this.#drop(lap); // where the line lies would be a guess
+    if (!isHeard && !Number.isFinite(this.#line)) {
+      this.#drop(lap); // where the line lies would be a guess
+      return;
+    }
     const line = between(last, moment, Math.min(1, Math.max(0, rest / (rest + moment.time_s))));
     if (isHeard) this.#fill(last, { ...line, time_s: lastLapTime });
     if (this.#current) {

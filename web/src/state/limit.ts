@@ -14,7 +14,9 @@ const COLUMNS: Partial<Record<LapChannel, 'time_s' | 'speed_mps' | 'n_m' | 'x_m'
 
 const gap = (time: number, limit: number | undefined): number => 100 * (time / (limit ?? NaN) - 1);
 
-/** How much slower a lap was than the limit, and each third of it [%]: as told, or computed where the limit came later. */
+/**
+ * How much slower a lap was than the limit, and each third of it [%]: as told, or computed where the limit came later.
+ */
 export function gapsToLimit(lap: Lap, limit: Limit | null): { lap: number; sectors: readonly number[] } {
   const of = limit && lap.lap >= (limit.first_lap ?? 1) ? limit : null;
   const known = (told: number | undefined, computed: number): number =>
@@ -27,7 +29,9 @@ export function gapsToLimit(lap: Lap, limit: Limit | null): { lap: number; secto
   };
 }
 
-/** A column of the limit at the places where laps are sampled, from the start line on; null for what it does not tell. */
+/**
+ * A column of the limit at the places where laps are sampled, from the start line on; null for what it does not tell.
+ */
 export function limitChannel(limit: Limit, samples: LapSamples, name: LapChannel): Float64Array | null {
   const column = COLUMNS[name];
   if (!column || limit.s_m.length < 2 || !Number.isFinite(samples.place(0))) return null;

@@ -17,8 +17,9 @@ const RETURN_RATE = 4; // when it is let go
 const PEDAL_RATE = 3;
 
 /**
- * The share of the steering lock that a held key goes to. Keys know only all or nothing, and all of the lock at speed spins
- * any car: full lock up to 8 m/s, then falling with the square of the speed, as the curvature does that tyres can hold.
+ * The share of the steering lock that a held key goes to. Keys know only all or nothing, and all of the lock at speed
+ * spins any car: full lock up to 8 m/s, then falling with the square of the speed, as the curvature does that tyres can
+ * hold.
  */
 export const keyLock = (speed: number): number =>
   clamp((8 / Math.max(8, Number.isFinite(speed) ? speed : 0)) ** 2, 0.03, 1);

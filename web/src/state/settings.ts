@@ -45,8 +45,8 @@ function withEntry<T>(map: ReadonlyMap<string, T>, key: string, value: T | undef
 }
 
 /**
- * Sends wishes for tunables. The page shows a wish at once; for each tunable only one is on its way, and of those that come
- * meanwhile only the newest follows it, so that a dragged slider never builds a queue. A refused wish snaps back.
+ * Sends wishes for tunables. The page shows a wish at once; for each tunable only one is on its way, and of those that
+ * come meanwhile only the newest follows it, so that a dragged slider never builds a queue. A refused wish snaps back.
  */
 export class Wishes {
   readonly #send: (key: string, value: Setting) => Promise<SetAnswer>;

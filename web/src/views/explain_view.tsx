@@ -124,7 +124,8 @@ function Row({ label, sentence }: { label: string; sentence: Sentence | null }) 
 
 function Answer() {
   const frame = shown.value;
-  const solved = frame && (frame.iterations > 0 || /mpc$/.test(run.value?.controller ?? '')) ? frame : null; // PID and the like solve nothing
+  // PID and the like solve nothing.
+  const solved = frame && (frame.iterations > 0 || /mpc$/.test(run.value?.controller ?? '')) ? frame : null;
   const worst = solved ? worstInWords(solved, run.value?.constraint_names ?? []) : null;
   const solve = solved ? statusInWords(solved.solve_status) : null;
   const [optimality, violation] = [solved?.stationarity ?? NaN, solved?.violation ?? NaN];

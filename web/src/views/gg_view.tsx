@@ -10,9 +10,9 @@ import { chartColours } from './plot_colours';
 const G = 9.80665; // standard gravity [m/s²]
 
 /**
- * The radius of the circle that the tyres' grip would allow [m/s²]: the acceleration at which the axle that uses more of its
- * grip would use all of it, by proportion. Told in fast bends only, where the tyres' force is what accelerates the car; on a
- * straight most of it balances the drag. Not-a-number elsewhere, and where the use is not known.
+ * The radius of the circle that the tyres' grip would allow [m/s²]: the acceleration at which the axle that uses more
+ * of its grip would use all of it, by proportion. Told in fast bends only, where the tyres' force is what accelerates
+ * the car; on a straight most of it balances the drag. Not-a-number elsewhere, and where the use is not known.
  */
 export function gripRadius(lateral: number, frontUse: number, rearUse: number): number {
   const use = Math.max(frontUse, rearUse) / 100;

@@ -26,6 +26,7 @@ export function Dialog({
     if (!isOpen && dialog.open) dialog.close();
   }, [isOpen]);
   return (
+    // biome-ignore lint/a11y/useKeyWithClickEvents: the browser closes a dialog on Escape
     <dialog
       ref={element}
       aria-label={title}
@@ -43,7 +44,9 @@ export function Dialog({
 }
 
 export function HelpView() {
-  const close = (): void => void (isHelpOpen.value = false);
+  const close = (): void => {
+    isHelpOpen.value = false;
+  };
   return (
     <Dialog isOpen={isHelpOpen.value} title="Keys" onClose={close}>
       <div class="help-groups">
@@ -69,8 +72,8 @@ export function HelpView() {
       </div>
       <p class="soft">On plots: drag to zoom, double-click to come back. On the map: the wheel zooms.</p>
       <p class="soft">
-        The data comes over the Foxglove WebSocket protocol; Foxglove, Lichtblick and scripts can watch the same run at{' '}
-        <code>{location.host}</code>.
+        The data comes over the Foxglove WebSocket protocol. Other viewers connect to <code>{location.host}</code>:
+        Foxglove, Lichtblick, your own scripts.
       </p>
       <div class="buttons end">
         <button type="button" class="primary" onClick={close}>

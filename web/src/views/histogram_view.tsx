@@ -24,7 +24,10 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number)
   const span = histogram.span;
   context.font = `11px ${colours.font}`;
   context.fillStyle = colours.faint;
-  if (!span) return context.fillText('No control step yet', 12, 24);
+  if (!span) {
+    context.fillText('No control step yet', 12, 24);
+    return;
+  }
   // Whole decades around what there is.
   const decade = Math.log10;
   const low = Math.floor(decade(histogram.edge(span[0])) + 1e-9);

@@ -110,7 +110,9 @@ function Reading({
   );
 }
 
-/** A bar that grows from its middle: steering to its side, the pedal to the right for drive and to the left for brake. */
+/**
+ * A bar that grows from its middle: steering to its side, the pedal to the right for drive and to the left for brake.
+ */
 function Bar({
   label,
   share,

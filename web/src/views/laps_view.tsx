@@ -24,8 +24,9 @@ const percent = (value: number): string =>
   Number.isFinite(value) ? `${value >= 0 ? '+' : ''}${fixed(value, 1)} %` : UNKNOWN;
 
 function Picks({ lap, pair, name }: { lap: number; pair: readonly [number, number]; name: string }) {
-  const pick = (which: 0 | 1): void =>
-    void (chosen.value = which === 0 ? [lap, chosen.value[1]] : [chosen.value[0], lap]);
+  const pick = (which: 0 | 1): void => {
+    chosen.value = which === 0 ? [lap, chosen.value[1]] : [chosen.value[0], lap];
+  };
   return (
     <div class="picks">
       {([0, 1] as const).map((which) => (
@@ -119,7 +120,9 @@ function rowsOf(all: readonly Lap[], bests: LapBests): Lap[] {
   return all.filter((lap, i) => i >= first || lap.lap === bests.lap).reverse();
 }
 
-/** The pair shown: what was chosen, else the newest against the best, or against the one before it; of those seen whole. */
+/**
+ * The pair shown: what was chosen, else the newest against the best, or against the one before it; of those seen whole.
+ */
 function compared(all: readonly Lap[], bests: LapBests): [number, number] {
   const seen = all.filter(({ lap }) => live.lapSamples.laps.includes(lap - 1)).map(({ lap }) => lap);
   const newest = seen.at(-1) ?? all.at(-1)?.lap ?? -1;

@@ -79,7 +79,9 @@ function Pad() {
       throttle: -share(event.clientY, box.top, box.height),
     };
   };
-  const end = (): void => void (held.pad = null);
+  const end = (): void => {
+    held.pad = null;
+  };
   return (
     <div
       ref={element}

@@ -6,7 +6,10 @@ export function drawnForPictures(draw: () => void): () => void {
   return () => void drawings.delete(draw);
 }
 
-/** Draws everything as it is now, also what is scrolled away and so stands still. Done at the next microtask, as uPlot draws there. */
+/**
+ * Draws everything as it is now, also what is scrolled away and so stands still. Done at the next microtask, as uPlot
+ * draws there.
+ */
 export async function drawAll(): Promise<void> {
   for (const draw of drawings) draw();
   await Promise.resolve();

@@ -47,7 +47,9 @@ function strokeLine(
   context.stroke();
 }
 
-/** The plan of a second ago in its own axes, the way driven since over it; sideways stretched, for centimetres matter. */
+/**
+ * The plan of a second ago in its own axes, the way driven since over it; sideways stretched, for centimetres matter.
+ */
 export const paintPrediction: Paint = (context, width, height) => {
   const colours = chartColours();
   const seen = hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN);

@@ -124,6 +124,7 @@ function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
       <input
         type="checkbox"
         class="switch"
+        // biome-ignore lint/a11y/useAriaPropsForRole: the checkbox itself tells whether it is checked
         role="switch"
         aria-label={label}
         checked={value === true}
@@ -176,7 +177,7 @@ export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string 
       <span class="setting-name">
         {label}
         {!entry.is_live && (
-          <span class="anew" title="Starts the run anew" aria-label="starts the run anew">
+          <span class="anew" role="img" title="Starts the run anew" aria-label="starts the run anew">
             ↻
           </span>
         )}

@@ -113,7 +113,12 @@ function optionsOf(spec: PlotSpec, colours: ChartColours): uPlot.Options {
       sync: { key: 'plots', setSeries: false },
       drag: { x: true, y: false, setScale: false, dist: 5 },
       points: { size: 7 },
-      bind: { dblclick: () => () => (thaw(), null) },
+      bind: {
+        dblclick: () => () => {
+          thaw();
+          return null;
+        },
+      },
     },
     padding: [8, 18, 0, 0],
     scales: { x: { time: false, range: () => timeRange() }, y: { range: () => spec.range(dataOf(spec).slice(1)) } },
@@ -169,7 +174,10 @@ const PACE_MS = 100; // as often as text is renewed
 const PHASES = 6; // plots take turns, so that no repaint has to wait for all of them
 let made = 0;
 
-/** How long a plot may stand still [ms]: until its lines have moved by one pixel of the screen, but no longer than text does. */
+/**
+ * How long a plot may stand still [ms]: until its lines have moved by one pixel of the screen, but no longer than text
+ * does.
+ */
 const paceOf = (plot: uPlot): number =>
   plot.bbox.width > 0 ? Math.min(PACE_MS, (1000 * windowSeconds.value) / plot.bbox.width) : 0;
 

@@ -49,7 +49,10 @@ const ghostLabel = signal<string | null>(null);
 
 /** The next camera, or the next cut of the map where that is what one sees. */
 export function nextView(): void {
-  if (shows3d.value) return nextCamera();
+  if (shows3d.value) {
+    nextCamera();
+    return;
+  }
   const at = VIEWS.findIndex((each) => each.view === view.value);
   view.value = VIEWS[(at + 1) % VIEWS.length]?.view ?? 'behind';
 }
@@ -60,8 +63,8 @@ export function toggleDimension(): void {
 }
 
 export function zoom(factor: number): void {
-  if (shows3d.value) return zoomCamera(factor);
-  metresAcross.value = zoomed(metresAcross.value, factor);
+  if (shows3d.value) zoomCamera(factor);
+  else metresAcross.value = zoomed(metresAcross.value, factor);
 }
 
 /** Keeps what has to be kept from one picture to the next. */
@@ -152,7 +155,10 @@ class Painter {
     const context = this.#context as CanvasRenderingContext2D;
     const isStill = isSame(key, this.#worldKey);
     this.#worldKey = key;
-    if (!isStill) return drawWorld(context, scene, camera, theme(), ratio);
+    if (!isStill) {
+      drawWorld(context, scene, camera, theme(), ratio);
+      return;
+    }
     const { width, height } = this.#canvas;
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.drawImage(

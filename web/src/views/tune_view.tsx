@@ -78,7 +78,10 @@ function Changes() {
         <ul>
           {changes.map(({ key, from, to }) => (
             <li key={key}>
-              <code>{key}</code> <span class="was">{asText(from)}</span> <span aria-label="to">→</span>{' '}
+              <code>{key}</code> <span class="was">{asText(from)}</span>{' '}
+              <span role="img" aria-label="to">
+                →
+              </span>{' '}
               <b>{asText(to)}</b>
               <button type="button" class="icon small" aria-label={`Reset ${key}`} onClick={() => set(key, from)}>
                 ↺

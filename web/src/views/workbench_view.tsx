@@ -37,7 +37,9 @@ const shareBottom = persisted<number>('dock.bottom', 0.44);
 /** The panel alone, without stage and instruments. */
 export const isPanelAlone = signal(false);
 
-export const toggleDock = (): void => void (dock.value = dock.value === 'right' ? 'bottom' : 'right');
+export function toggleDock(): void {
+  dock.value = dock.value === 'right' ? 'bottom' : 'right';
+}
 
 function moveSplit(share: number): void {
   const limited = clamp(share, 0.2, 0.8);
