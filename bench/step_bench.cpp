@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "chicane/controller/command_history.hpp"
-#include "chicane/controller/road.hpp"
 #include "chicane/protocol/library.hpp"
-#include "chicane/runtime/closed_loop.hpp"
-#include "chicane/runtime/make.hpp"
+#include "chicane/road/road.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "chicane/run/make.hpp"
 #include "problems/cpu_time.hpp"
 
 namespace chicane::bench {
@@ -37,7 +37,7 @@ double now_us() { return 1e6 * cpu_time(); }
 
 std::vector<Cycle> record(const scenario::Scenario& scenario) {
   std::vector<Cycle> cycles;
-  const auto loop = runtime::ClosedLoop::create(scenario);
+  const auto loop = run::ClosedLoop::create(scenario);
   if (!loop) return cycles;
   while (!(*loop)->is_over()) {
     if ((*loop)->advance()) cycles.push_back({(*loop)->frame().measurement, (*loop)->frame().result.command});
@@ -66,7 +66,7 @@ void print_row(const char* name, Times times) {
 }
 
 Times time_whole_step(const scenario::Scenario& scenario, const std::vector<Cycle>& cycles, Times& solve) {
-  const auto controller = std::move(*runtime::make_controller(scenario));
+  const auto controller = std::move(*run::make_controller(scenario));
   safety::CommandGate gate(scenario.vehicle);
   solve.assign(cycles.size(), 1e9);
   return least(
@@ -87,13 +87,13 @@ Times time_whole_step(const scenario::Scenario& scenario, const std::vector<Cycl
 
 Times time_road(const scenario::Scenario& scenario, const std::vector<Cycle>& cycles) {
   const controller::TrackingMpcOptions& options = scenario.tracking_mpc;
-  controller::Road road({.half_width = options.assumed_half_width,
-                         .smoothing_width = options.smoothing_width,
-                         .remember_waypoints = options.remember_waypoints,
-                         .speed = {.speed_limit = options.speed_limit,
-                                   .grip_share = options.grip_share,
-                                   .brake_share = options.brake_share}},
-                        scenario.vehicle);
+  road::Road road({.half_width = options.assumed_half_width,
+                   .smoothing_width = options.smoothing_width,
+                   .remember_waypoints = options.remember_waypoints,
+                   .speed = {.speed_limit = options.speed_limit,
+                             .grip_share = options.grip_share,
+                             .brake_share = options.brake_share}},
+                  scenario.vehicle);
   return least(
       cycles.size(), [&] { road.reset(); },
       [&](std::size_t i) {
@@ -104,7 +104,7 @@ Times time_road(const scenario::Scenario& scenario, const std::vector<Cycle>& cy
 }
 
 Times time_estimator(const scenario::Scenario& scenario, const std::vector<Cycle>& cycles) {
-  const controller::PredictionModel model(scenario.vehicle);
+  const model::PredictionModel model(scenario.vehicle);
   controller::StateEstimator estimator(model);
   controller::CommandHistory sent;
   return least(

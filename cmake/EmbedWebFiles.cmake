@@ -90,9 +90,9 @@ function(write_source)
     set(bundle "view(kReportScript), view(kReportStyle)")
   endif()
   file(WRITE ${BUILD}/web_assets.cpp "// Generated from web/ by cmake/EmbedWebFiles.cmake: do not edit.
-#include \"chicane/runtime/assets.hpp\"
+#include \"chicane/live/assets.hpp\"
 
-namespace chicane::runtime {
+namespace chicane::live {
 namespace {
 
 ${arrays}
@@ -108,9 +108,9 @@ std::vector<net::Asset> embedded_assets() {
 ${table}  };
 }
 
-ReportBundle report_bundle() { return {${bundle}}; }
+recording::ReportBundle report_bundle() { return {${bundle}}; }
 
-}  // namespace chicane::runtime
+}  // namespace chicane::live
 ")
 endfunction()
 

@@ -7,14 +7,14 @@
 
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/protocol/library.hpp"
-#include "chicane/runtime/closed_loop.hpp"
+#include "chicane/run/closed_loop.hpp"
 
 int main() {
   using namespace chicane;
   const auto scenario = protocol::compose({.scenario_file = "first-lap", .settings = {{"laps", "1"}}});
-  const auto loop = scenario.and_then(runtime::ClosedLoop::create);
+  const auto loop = scenario.and_then(run::ClosedLoop::create);
   if (!loop) return std::puts(loop.error().message.c_str()), 2;
-  const telemetry::RunSummary run = runtime::run_closed_loop(**loop);
+  const telemetry::RunSummary run = run::run_closed_loop(**loop);
   std::fputs(protocol::to_table(run).c_str(), stdout);
   return telemetry::kept_its_promises(run) ? 0 : 1;
 }

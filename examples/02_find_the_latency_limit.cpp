@@ -5,7 +5,7 @@
 #include <string>
 
 #include "chicane/protocol/library.hpp"
-#include "chicane/runtime/closed_loop.hpp"
+#include "chicane/run/closed_loop.hpp"
 
 namespace {
 
@@ -15,9 +15,9 @@ std::string flying_lap(const std::string& latency_ms, const std::string& compens
       {.scenario_file = "first-lap",
        .settings = {{"latency_ms", latency_ms}, {"tracking_mpc.compensate_delay", compensate}}});
   if (!scenario) return scenario.error().message;
-  const auto loop = chicane::runtime::ClosedLoop::create(*scenario);
+  const auto loop = chicane::run::ClosedLoop::create(*scenario);
   if (!loop) return loop.error().message;
-  const auto run = chicane::runtime::run_closed_loop(**loop);
+  const auto run = chicane::run::run_closed_loop(**loop);
   if (!chicane::telemetry::kept_its_promises(run)) return "left the road";
   return std::to_string(run.laps.back().lap_time).substr(0, 5) + " s";
 }

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "chicane/protocol/library.hpp"
-#include "chicane/runtime/make.hpp"
+#include "chicane/run/make.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
 
@@ -48,8 +48,8 @@ int drive(controller::Controller& controller, sim::Plant& plant, const path::Tra
 
 int main() {
   const auto scenario = protocol::compose({.scenario_file = "first-lap", .settings = {}});
-  const auto plant = scenario.and_then(runtime::make_plant);
-  const auto track = scenario.and_then(runtime::make_track);
+  const auto plant = scenario.and_then(run::make_plant);
+  const auto track = scenario.and_then(run::make_track);
   if (!plant || !track) return std::puts((plant ? track.error() : plant.error()).message.c_str()), 2;
   ChaseThirdWaypoint controller;
   return drive(controller, **plant, *track);

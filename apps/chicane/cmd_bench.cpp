@@ -13,7 +13,7 @@
 #include "bench_batches.hpp"
 #include "bench_report.hpp"
 #include "bench_solves.hpp"
-#include "chicane/runtime/closed_loop.hpp"
+#include "chicane/run/closed_loop.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "interrupt.hpp"
@@ -90,7 +90,7 @@ Result<void> measure_steps(const std::atomic<bool>& stop, BenchReport& report) {
   std::vector<double> wall;
   std::vector<double> solves;
   for (int drive = 0; drive < kDrives && !stop; ++drive) {
-    const auto loop = runtime::ClosedLoop::create(*scenario);
+    const auto loop = run::ClosedLoop::create(*scenario);
     if (!loop) return fail(loop.error());
     std::size_t step = 0;
     const auto keep_least = [&](std::vector<double>& times, double seconds) {

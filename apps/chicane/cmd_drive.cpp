@@ -10,16 +10,16 @@
 #include <optional>
 #include <utility>
 
+#include "chicane/live/assets.hpp"
+#include "chicane/live/live_settings.hpp"
+#include "chicane/live/pages.hpp"
+#include "chicane/live/run_builder.hpp"
+#include "chicane/live/run_limit.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/json_report.hpp"
-#include "chicane/runtime/assets.hpp"
-#include "chicane/runtime/closed_loop.hpp"
-#include "chicane/runtime/live_settings.hpp"
-#include "chicane/runtime/pages.hpp"
-#include "chicane/runtime/realtime_loop.hpp"
-#include "chicane/runtime/run_builder.hpp"
-#include "chicane/runtime/run_limit.hpp"
-#include "chicane/runtime/viewer.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "chicane/run/realtime_loop.hpp"
+#include "chicane/wire/viewer.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "interrupt.hpp"
@@ -39,8 +39,8 @@ bool stays_up(const Options& options) {
   return is_watched && !has_laps && !options.is_fast && !options.is_json;
 }
 
-runtime::ViewerServices services(runtime::RunControls& controls) {
-  runtime::ViewerServices services;
+wire::ViewerServices services(run::RunControls& controls) {
+  wire::ViewerServices services;
   services.pause = [&controls](bool is_paused) -> Result<void> {
     controls.is_paused = is_paused;
     return {};
@@ -59,10 +59,10 @@ runtime::ViewerServices services(runtime::RunControls& controls) {
 
 double step_budget(const Options& options, const scenario::Scenario& scenario) {
   if (options.step_budget_ms) return 1e-3 * *options.step_budget_ms;
-  return runtime::RealtimeOptions{}.budget_share * scenario.control_period;
+  return run::RealtimeOptions{}.budget_share * scenario.control_period;
 }
 
-Result<std::unique_ptr<KeptRun>> keep(const Options& options, const runtime::ClosedLoop& loop,
+Result<std::unique_ptr<KeptRun>> keep(const Options& options, const run::ClosedLoop& loop,
                                       const lap_time::LimitAnswer& limit) {
   protocol::Run run = description(loop);
   run.limit = limit;
@@ -71,9 +71,9 @@ Result<std::unique_ptr<KeptRun>> keep(const Options& options, const runtime::Clo
 }
 
 /// What viewers are told of a run that begins now.
-protocol::Run live_description(const runtime::ClosedLoop& loop) {
+protocol::Run live_description(const run::ClosedLoop& loop) {
   protocol::Run run = description(loop);
-  run.limit = runtime::RunLimit::first_answer(loop.track());
+  run.limit = live::RunLimit::first_answer(loop.track());
   return run;
 }
 
@@ -87,14 +87,13 @@ struct Outcome {
 /// built beside it on a thread of its own and taken over by ours.
 class WatchedRun {
  public:
-  WatchedRun(const Options& options, std::unique_ptr<runtime::ClosedLoop> loop,
-             runtime::RunControls& controls)
+  WatchedRun(const Options& options, std::unique_ptr<run::ClosedLoop> loop, run::RunControls& controls)
       : options_{options},
         controls_{controls},
         loop_{std::move(loop)},
         settings_{{.scenario = loop_->scenario(),
                    .faults = protocol::fault_controls(),
-                   .build = [this](runtime::ChosenRun next) { builder_.begin(std::move(next)); },
+                   .build = [this](live::ChosenRun next) { builder_.begin(std::move(next)); },
                    .built = [this] { return built(); },
                    .on_building = [this](const std::string& what) { tell_building(what); },
                    .on_accepted = [this](const scenario::Scenario& now) { describe_anew(now); }},
@@ -104,12 +103,12 @@ class WatchedRun {
 
   Result<Outcome> go() {
     if (const Result<void> begun = begin(); !begun) return fail(begun.error());
-    runtime::Router router(nullptr, &viewer_);
+    wire::Router router(nullptr, &viewer_);
     const auto server =
         net::Server::create({.address = options_.address, .port = options_.port},
-                            router.handlers(runtime::live_pages(settings_)), runtime::embedded_assets());
+                            router.handlers(live::live_pages(settings_)), live::embedded_assets());
     if (!server) return fail(server.error());
-    auto kept = keep(options_, *loop_, runtime::RunLimit::first_answer(loop_->track()));
+    auto kept = keep(options_, *loop_, live::RunLimit::first_answer(loop_->track()));
     if (!kept) return fail(kept.error());
     kept_ = std::move(*kept);
     fmt::print(stderr, "dashboard at http://localhost:{}/; Ctrl-C ends\n", (*server)->port());
@@ -130,19 +129,18 @@ class WatchedRun {
 
   telemetry::RunSummary drive() {
     Progress progress;
-    const runtime::RealtimeHooks hooks{
-        .on_frame =
-            [&](const telemetry::Frame& frame) {
-              limit_.follow(loop_->scenario(), frame);
-              if (auto news = limit_.news()) kept_->record(std::move(news));
-              kept_->record(frame);
-              viewer_.publish(frame);
-              note_faults(frame);
-              progress.show(frame);
-            },
-        .on_change = [this](const telemetry::Change& change) { note(change); }};
+    const run::RealtimeHooks hooks{.on_frame =
+                                       [&](const telemetry::Frame& frame) {
+                                         limit_.follow(loop_->scenario(), frame);
+                                         if (auto news = limit_.news()) kept_->record(std::move(news));
+                                         kept_->record(frame);
+                                         viewer_.publish(frame);
+                                         note_faults(frame);
+                                         progress.show(frame);
+                                       },
+                                   .on_change = [this](const telemetry::Change& change) { note(change); }};
     for (;;) {
-      telemetry::RunSummary summary = runtime::run_realtime(
+      telemetry::RunSummary summary = run::run_realtime(
           *loop_,
           {.step_budget = step_budget(options_, loop_->scenario()), .stay_at_end = stays_up(options_)},
           controls_, hooks);
@@ -177,7 +175,7 @@ class WatchedRun {
   bool take_over() {
     const telemetry::Change* next = controls_.wishes.front();
     if (next == nullptr || !next->starts_anew || controls_.wants_stop) return false;
-    std::unique_ptr<runtime::BuiltRun> run;
+    std::unique_ptr<live::BuiltRun> run;
     {
       const std::lock_guard lock(mutex_);
       run = std::move(built_.front());
@@ -215,24 +213,23 @@ class WatchedRun {
   }
 
   const Options& options_;
-  runtime::RunControls& controls_;
-  std::unique_ptr<runtime::ClosedLoop> loop_;
-  runtime::LiveSettings settings_;
-  runtime::ViewerEndpoint viewer_;
+  run::RunControls& controls_;
+  std::unique_ptr<run::ClosedLoop> loop_;
+  live::LiveSettings settings_;
+  wire::ViewerEndpoint viewer_;
   std::unique_ptr<KeptRun> kept_;
   const std::vector<protocol::Control> faults_ = protocol::fault_controls();
   std::uint32_t told_faults_ = 0;  ///< bits, as viewers know them
   std::mutex mutex_;
-  std::deque<std::unique_ptr<runtime::BuiltRun>> built_;  ///< one for each change that starts anew
-  runtime::RunBuilder builder_{&live_description};        ///< the network thread's
-  runtime::RunLimit limit_{[this](const lap_time::LimitAnswer& news) {
+  std::deque<std::unique_ptr<live::BuiltRun>> built_;  ///< one for each change that starts anew
+  live::RunBuilder builder_{&live_description};        ///< the network thread's
+  live::RunLimit limit_{[this](const lap_time::LimitAnswer& news) {
     if (!news.found) fmt::print(stderr, "no gap to the limit: {}\n", news.why_not);
     viewer_.set_limit(news);
   }};  ///< ends before everything it tells
 };
 
-Result<Outcome> run_fast(const Options& options, runtime::ClosedLoop& loop,
-                         const runtime::RunControls& controls) {
+Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const run::RunControls& controls) {
   lap_time::LimitAnswer limit{.why_not = "nobody asked for it (--limit)"};
   if (options.wants_limit) {
     double wall_time = 0.0;
@@ -245,7 +242,7 @@ Result<Outcome> run_fast(const Options& options, runtime::ClosedLoop& loop,
   telemetry::RunSummary summary;
   {
     Progress progress;
-    summary = runtime::run_closed_loop(
+    summary = run::run_closed_loop(
         loop,
         [&](const telemetry::Frame& frame) {
           (*kept)->record(frame);
@@ -259,11 +256,11 @@ Result<Outcome> run_fast(const Options& options, runtime::ClosedLoop& loop,
 }
 
 Result<Outcome> run(const Options& options) {
-  static runtime::RunControls controls;  // as long as signals may come
+  static run::RunControls controls;  // as long as signals may come
   catch_interrupts(controls.wants_stop);
   const Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
-  Result<std::unique_ptr<runtime::ClosedLoop>> loop = runtime::ClosedLoop::create(*scenario);
+  Result<std::unique_ptr<run::ClosedLoop>> loop = run::ClosedLoop::create(*scenario);
   if (!loop) return fail(loop.error());
   if (options.is_fast) return run_fast(options, **loop, controls);
   return WatchedRun(options, std::move(*loop), controls).go();

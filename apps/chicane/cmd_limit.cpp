@@ -7,7 +7,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "chicane/runtime/make.hpp"
+#include "chicane/run/make.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "interrupt.hpp"
@@ -30,7 +30,7 @@ Result<void> run(const Options& options) {
   catch_interrupts(wants_stop);
   const Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
-  const Result<path::Track> track = runtime::make_track(*scenario);
+  const Result<path::Track> track = run::make_track(*scenario);
   if (!track) return fail(track.error());
   LimitRun told{.track = track->name(), .car = scenario->car};
   const auto limit = limit_of(*scenario, *track, options.spacing, wants_stop, told.wall_time);

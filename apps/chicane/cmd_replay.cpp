@@ -12,12 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include "chicane/runtime/assets.hpp"
-#include "chicane/runtime/endpoint.hpp"
-#include "chicane/runtime/excerpt.hpp"
-#include "chicane/runtime/pages.hpp"
-#include "chicane/runtime/recorder.hpp"
-#include "chicane/runtime/temporary_file.hpp"
+#include "chicane/live/assets.hpp"
+#include "chicane/live/pages.hpp"
+#include "chicane/recording/excerpt.hpp"
+#include "chicane/recording/recorder.hpp"
+#include "chicane/recording/temporary_file.hpp"
+#include "chicane/wire/endpoint.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "record.hpp"
@@ -41,25 +41,25 @@ class Shown {
     if (!read->is_complete || read->is_compressed || read->damaged > 0) {
       copies_.emplace_back(".mcap");
       served = copies_.back().path();
-      if (const auto copied = runtime::excerpt(file, served, {}); !copied) return fail(copied.error());
+      if (const auto copied = recording::excerpt(file, served, {}); !copied) return fail(copied.error());
     }
     logs_.push_back({std::move(name), std::move(served)});
     return {};
   }
-  [[nodiscard]] const std::vector<runtime::ServedLog>& logs() const { return logs_; }
+  [[nodiscard]] const std::vector<live::ServedLog>& logs() const { return logs_; }
 
  private:
-  std::list<runtime::TemporaryFile> copies_;
-  std::vector<runtime::ServedLog> logs_;
+  std::list<recording::TemporaryFile> copies_;
+  std::vector<live::ServedLog> logs_;
 };
 
 Result<void> show(const Options& options, const Shown& shown, double start) {
   static std::atomic<bool> stop{false};  // as long as signals may come
   catch_interrupts(stop);
-  runtime::Router router(nullptr, nullptr);
-  const auto server = net::Server::create({.address = options.address, .port = options.port},
-                                          router.handlers(runtime::replay_pages(shown.logs(), start)),
-                                          runtime::embedded_assets());
+  wire::Router router(nullptr, nullptr);
+  const auto server =
+      net::Server::create({.address = options.address, .port = options.port},
+                          router.handlers(live::replay_pages(shown.logs(), start)), live::embedded_assets());
   if (!server) return fail(server.error());
   fmt::print(stderr, "recordings at http://localhost:{}/; Ctrl-C ends\n", (*server)->port());
   while (!stop) std::this_thread::sleep_for(std::chrono::milliseconds{20});
@@ -71,8 +71,8 @@ class BranchRecorder {
  public:
   explicit BranchRecorder(std::string file) : file_{std::move(file)} {}
 
-  runtime::BranchHooks hooks() {
-    return {.on_begin = [this](const runtime::ClosedLoop& loop) { return begin(loop); },
+  recording::BranchHooks hooks() {
+    return {.on_begin = [this](const run::ClosedLoop& loop) { return begin(loop); },
             .on_change = [this](const telemetry::Change& change) { recorder_->record(change); },
             .on_frame = [this](const telemetry::Frame& frame) { recorder_->record(frame); }};
   }
@@ -80,18 +80,18 @@ class BranchRecorder {
   [[nodiscard]] bool has_file() const { return recorder_ != nullptr; }
   Result<void> finish() {
     if (recorder_ == nullptr) return {};
-    const Result<runtime::RecorderReport> report = recorder_->finish();
+    const Result<recording::RecorderReport> report = recorder_->finish();
     return report ? Result<void>{} : fail(report.error());
   }
 
  private:
-  Result<void> begin(const runtime::ClosedLoop& loop) {
+  Result<void> begin(const run::ClosedLoop& loop) {
     if (recorder_) {
-      recorder_->record(std::make_unique<const runtime::RecordedRun>(
-          runtime::RecordedRun{.run = description(loop), .scenario = loop.scenario()}));
+      recorder_->record(std::make_unique<const recording::RecordedRun>(
+          recording::RecordedRun{.run = description(loop), .scenario = loop.scenario()}));
       return {};
     }
-    auto recorder = runtime::Recorder::create(
+    auto recorder = recording::Recorder::create(
         {.path = file_, .run = description(loop), .scenario = loop.scenario(), .may_wait = true});
     if (!recorder) return fail(recorder.error());
     recorder_ = std::move(*recorder);
@@ -99,7 +99,7 @@ class BranchRecorder {
   }
 
   std::string file_;
-  std::unique_ptr<runtime::Recorder> recorder_;
+  std::unique_ptr<recording::Recorder> recorder_;
 };
 
 bool has_page(const Options& options) { return options.is_served && !options.is_json; }
@@ -110,15 +110,15 @@ Result<ExitCode> branch(const Options& options) {
     return fail(ErrorCode::kInvalidArgument,
                 fmt::format("logs: got {}, expected one to branch from", options.log_files.size()));
   }
-  const runtime::TemporaryFile temporary(".mcap");
+  const recording::TemporaryFile temporary(".mcap");
   const std::string& file = options.output_file.empty() ? temporary.path() : options.output_file;
   BranchRecorder recorder(file);
-  const runtime::BranchOptions branching{.log = log,
-                                         .at = *options.branch_at,
-                                         .settings = options.settings,
-                                         .duration = options.for_s,
-                                         .laps = options.branch_laps};
-  const Result<runtime::BranchReport> report = runtime::branch_recording(branching, recorder.hooks());
+  const recording::BranchOptions branching{.log = log,
+                                           .at = *options.branch_at,
+                                           .settings = options.settings,
+                                           .duration = options.for_s,
+                                           .laps = options.branch_laps};
+  const Result<recording::BranchReport> report = recording::branch_recording(branching, recorder.hooks());
   if (const Result<void> kept = recorder.finish(); report && !kept) return fail(kept.error());
   if (!report) {
     std::error_code error;
@@ -141,7 +141,7 @@ Result<ExitCode> branch(const Options& options) {
 Result<ExitCode> verify(const Options& options) {
   bool is_verified = true;
   for (const std::string& log : options.log_files) {
-    const Result<runtime::ReplayReport> result = runtime::verify_recording(log);
+    const Result<recording::ReplayReport> result = recording::verify_recording(log);
     if (!result) return fail(result.error());
     fmt::print("{}", options.is_json ? to_json(*result) : to_text(*result));
     is_verified = is_verified && result->is_verified();

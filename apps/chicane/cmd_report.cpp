@@ -3,14 +3,15 @@
 
 #include <filesystem>
 
-#include "chicane/runtime/html_report.hpp"
+#include "chicane/live/assets.hpp"
+#include "chicane/recording/html_report.hpp"
 #include "commands.hpp"
 
 namespace chicane::apps {
 
 ExitCode report_logs(const Options& options) {
-  runtime::ReportOptions reporting{
-      .output = options.output_file, .logs = {}, .bundle = runtime::report_bundle()};
+  recording::ReportOptions reporting{
+      .output = options.output_file, .logs = {}, .bundle = live::report_bundle()};
   for (const std::string& file : options.log_files) {
     std::error_code error;  // of a file that is not there: no reason to stop
     if (std::filesystem::equivalent(file, options.output_file, error)) {
@@ -20,7 +21,7 @@ ExitCode report_logs(const Options& options) {
     }
     reporting.logs.push_back({std::filesystem::path(file).filename().string(), file});
   }
-  const Result<runtime::ReportSummary> written = runtime::write_report(reporting);
+  const Result<recording::ReportSummary> written = recording::write_report(reporting);
   if (!written) return report(written.error());
   fmt::print("{}: {:.1f} MB, {:g} messages a second; open it in a browser\n", options.output_file,
              1e-6 * static_cast<double>(written->bytes), written->rate);

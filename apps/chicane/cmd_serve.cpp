@@ -8,13 +8,14 @@
 #include <optional>
 #include <utility>
 
+#include "chicane/live/assets.hpp"
+#include "chicane/live/live_settings.hpp"
+#include "chicane/live/pages.hpp"
+#include "chicane/live/run_limit.hpp"
 #include "chicane/protocol/json_report.hpp"
-#include "chicane/runtime/assets.hpp"
-#include "chicane/runtime/live_settings.hpp"
-#include "chicane/runtime/make.hpp"
-#include "chicane/runtime/run_limit.hpp"
-#include "chicane/runtime/serve.hpp"
-#include "chicane/runtime/viewer.hpp"
+#include "chicane/run/make.hpp"
+#include "chicane/wire/serve.hpp"
+#include "chicane/wire/viewer.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "interrupt.hpp"
@@ -29,7 +30,7 @@ Result<std::optional<path::Track>> told_track(const Options& options, const scen
   const bool is_told = std::any_of(options.settings.begin(), options.settings.end(),
                                    [](const auto& setting) { return setting.first == "track"; });
   if (!is_told) return std::optional<path::Track>{};
-  Result<path::Track> track = runtime::make_track(scenario);
+  Result<path::Track> track = run::make_track(scenario);
   if (!track) return fail(track.error());
   return std::optional<path::Track>{std::move(*track)};
 }
@@ -47,21 +48,21 @@ protocol::Run description(const scenario::Scenario& scenario, const controller::
   run.control_period = scenario.control_period;
   run.vehicle = scenario.vehicle;
   if (track) describe(*track, run);
-  run.limit = track ? runtime::RunLimit::first_answer(*track) : lap_time::LimitAnswer{.why_not = kUntold};
+  run.limit = track ? live::RunLimit::first_answer(*track) : lap_time::LimitAnswer{.why_not = kUntold};
   return run;
 }
 
-Result<runtime::ServeSummary> run(const Options& options) {
+Result<wire::ServeSummary> run(const Options& options) {
   static std::atomic<bool> stop{false};  // as long as signals may come
   catch_interrupts(stop);
   const Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
-  const Result<std::unique_ptr<controller::Controller>> controller = runtime::make_controller(*scenario);
+  const Result<std::unique_ptr<controller::Controller>> controller = run::make_controller(*scenario);
   if (!controller) return fail(controller.error());
   const Result<std::optional<path::Track>> track = told_track(options, *scenario);
   if (!track) return fail(track.error());
 
-  runtime::ServeOptions serving;
+  wire::ServeOptions serving;
   serving.server.address = options.address;
   serving.server.port = options.port;
   serving.vehicle = scenario->vehicle;
@@ -69,25 +70,25 @@ Result<runtime::ServeSummary> run(const Options& options) {
   if (*track) serving.track = &**track;
   serving.latency =
       std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(scenario->latency));
-  runtime::ViewerOptions viewing;
+  wire::ViewerOptions viewing;
   viewing.run = description(*scenario, **controller, *track);
   const auto kept = KeptRun::start(options, viewing.run, *scenario,
                                    std::chrono::duration<double>(serving.step_budget).count());
   if (!kept) return fail(kept.error());
-  runtime::ChangeQueue wishes;
-  runtime::LiveSettings settings({.scenario = *scenario, .has_world = false}, wishes);
+  run::ChangeQueue wishes;
+  live::LiveSettings settings({.scenario = *scenario, .has_world = false}, wishes);
   viewing.parameters = &settings;
-  runtime::ViewerEndpoint viewer(std::move(viewing));
-  runtime::RunLimit limit([&](const lap_time::LimitAnswer& news) { viewer.set_limit(news); });
+  wire::ViewerEndpoint viewer(std::move(viewing));
+  live::RunLimit limit([&](const lap_time::LimitAnswer& news) { viewer.set_limit(news); });
   if (!*track) limit.give_up(kUntold);
   Progress progress;
-  runtime::ServeHooks hooks;
+  wire::ServeHooks hooks;
   hooks.wishes = &wishes;
   hooks.on_change = [&](const telemetry::Change& change) {
     (*kept)->record(change);
     settings.tell(change);
   };
-  hooks.pages = runtime::live_pages(settings);
+  hooks.pages = live::live_pages(settings);
   hooks.on_frame = [&](const telemetry::Frame& frame) {
     if (auto news = limit.news()) (*kept)->record(std::move(news));
     (*kept)->record(frame);
@@ -102,8 +103,7 @@ Result<runtime::ServeSummary> run(const Options& options) {
     if (*track) limit.search(**track, *scenario);
   };
   hooks.on_end = [&] { limit.end(); };
-  auto summary =
-      runtime::serve(serving, **controller, std::move(hooks), &viewer, runtime::embedded_assets(), stop);
+  auto summary = wire::serve(serving, **controller, std::move(hooks), &viewer, live::embedded_assets(), stop);
   if (summary) compare_with_limit(limit, summary->run, **kept, stop);
   if (const Result<void> done = (*kept)->finish(); summary && !done) return fail(done.error());
   return summary;
@@ -112,7 +112,7 @@ Result<runtime::ServeSummary> run(const Options& options) {
 }  // namespace
 
 ExitCode serve(const Options& options) {
-  const Result<runtime::ServeSummary> summary = run(options);
+  const Result<wire::ServeSummary> summary = run(options);
   if (!summary) return report(summary.error());
   fmt::print(stderr, "{} answers to {} simulators; {} unusable messages, {} commands changed by the gate\n",
              summary->answers, summary->connections, summary->unusable, summary->interventions);

@@ -4,10 +4,10 @@
 #include <atomic>
 #include <utility>
 
+#include "chicane/live/run_limit.hpp"
 #include "chicane/protocol/json_report.hpp"
-#include "chicane/runtime/make.hpp"
-#include "chicane/runtime/run_limit.hpp"
-#include "chicane/runtime/simulate.hpp"
+#include "chicane/run/make.hpp"
+#include "chicane/wire/simulate.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "interrupt.hpp"
@@ -22,38 +22,38 @@ protocol::Run description_of_external(const scenario::Scenario& scenario, const 
   protocol::Run run;
   run.controller = run.preset = "external";
   run.vehicle = scenario.vehicle;
-  run.mode = runtime::kSimulateMode;
-  run.limit = runtime::RunLimit::first_answer(track);
+  run.mode = recording::kSimulateMode;
+  run.limit = live::RunLimit::first_answer(track);
   describe(track, run);
   return run;
 }
 
-Result<runtime::SimulateReport> run(const Options& options) {
+Result<wire::SimulateReport> run(const Options& options) {
   static std::atomic<bool> stop{false};  // as long as signals may come
   catch_interrupts(stop);
   const Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
-  runtime::SimulateOptions simulating;
+  wire::SimulateOptions simulating;
   simulating.url = options.connect;
   simulating.server_command = options.server;
-  const Result<path::Track> track = runtime::make_track(*scenario);
+  const Result<path::Track> track = run::make_track(*scenario);
   if (!track) return fail(track.error());
   const auto kept = KeptRun::start(options, description_of_external(*scenario, *track), *scenario, 0.0);
   if (!kept) return fail(kept.error());
-  runtime::RunLimit limit;
+  live::RunLimit limit;
   limit.search(*track, *scenario);
-  Result<runtime::SimulateReport> done;
+  Result<wire::SimulateReport> done;
   {
     Progress progress;
-    done = runtime::simulate(simulating, *scenario,
-                             {.on_frame =
-                                  [&](const telemetry::Frame& frame) {
-                                    if (auto news = limit.news()) (*kept)->record(std::move(news));
-                                    (*kept)->record(frame);
-                                    progress.show(frame);
-                                  },
-                              .log = [&](std::string_view line) { progress.say(line); }},
-                             stop);
+    done = wire::simulate(simulating, *scenario,
+                          {.on_frame =
+                               [&](const telemetry::Frame& frame) {
+                                 if (auto news = limit.news()) (*kept)->record(std::move(news));
+                                 (*kept)->record(frame);
+                                 progress.show(frame);
+                               },
+                           .log = [&](std::string_view line) { progress.say(line); }},
+                          stop);
   }
   if (done) compare_with_limit(limit, done->run, **kept, stop);
   if (const Result<void> finished = (*kept)->finish(); done && !finished) return fail(finished.error());
@@ -63,7 +63,7 @@ Result<runtime::SimulateReport> run(const Options& options) {
 }  // namespace
 
 ExitCode simulate(const Options& options) {
-  const Result<runtime::SimulateReport> done = run(options);
+  const Result<wire::SimulateReport> done = run(options);
   if (!done) return report(done.error());
   fmt::print("{}", options.is_json ? protocol::to_json(done->run) : protocol::to_table(done->run));
   fmt::print(stderr, "{} answers in {} connections; {} broken, {} unasked for, {} missing\n", done->answers,

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <utility>
 
-#include "chicane/runtime/limit_search.hpp"
+#include "chicane/live/limit_search.hpp"
 
 namespace chicane::apps {
 
@@ -32,7 +32,7 @@ Result<std::shared_ptr<const lap_time::Limit>> limit_of(const scenario::Scenario
     }
     return !wants_stop.load();
   };
-  Result<lap_time::Limit> limit = lap_time::find_limit(track, runtime::limit_vehicle(scenario), options);
+  Result<lap_time::Limit> limit = lap_time::find_limit(track, live::limit_vehicle(scenario), options);
   wall_time = seconds();
   if (is_terminal && told > 0.0) fmt::print(stderr, "\r{:40}\r", "");
   if (!limit) return fail(limit.error());

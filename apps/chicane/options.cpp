@@ -11,7 +11,7 @@
 #include "bench_solves.hpp"
 #include "chicane/base/angle.hpp"
 #include "chicane/protocol/schema.hpp"
-#include "chicane/runtime/closed_loop.hpp"
+#include "chicane/run/closed_loop.hpp"
 #include "commands.hpp"
 
 namespace chicane::apps {
@@ -110,7 +110,7 @@ void add_drive(CLI::App& command, Options& options) {
       .add_option("--pace", options.pace,
                   "Seconds of the run in a second of the clock; viewers can change it")
       ->type_name("X")
-      ->check(CLI::Range(runtime::kSlowestPace, runtime::kFastestPace))
+      ->check(CLI::Range(run::kSlowestPace, run::kFastestPace))
       ->excludes("--fast");
   command
       .add_option("--step-budget-ms", options.step_budget_ms,

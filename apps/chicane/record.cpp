@@ -9,8 +9,9 @@
 #include <filesystem>
 #include <utility>
 
+#include "chicane/live/assets.hpp"
 #include "chicane/protocol/fault_codec.hpp"
-#include "chicane/runtime/html_report.hpp"
+#include "chicane/recording/html_report.hpp"
 
 namespace chicane::apps {
 
@@ -23,7 +24,7 @@ void describe(const path::Track& track, protocol::Run& run) {
   run.road = protocol::road_lines(track, kRoadSpacing);
 }
 
-protocol::Run description(const runtime::ClosedLoop& loop) {
+protocol::Run description(const run::ClosedLoop& loop) {
   const scenario::Scenario& scenario = loop.scenario();
   protocol::Run run;
   run.preset = scenario.preset;
@@ -41,7 +42,7 @@ namespace {
 
 /// Better told before the run than after it.
 Result<void> can_be_reported(const std::string& file) {
-  if (runtime::report_bundle().script.empty()) {
+  if (live::report_bundle().script.empty()) {
     return fail(
         ErrorCode::kNotFound,
         "--report: this program was built without its dashboard: install Node.js and npm, and build again");
@@ -68,18 +69,18 @@ Result<std::unique_ptr<KeptRun>> KeptRun::start(const Options& options, protocol
     if (options.record_file.empty()) kept->temporary_.emplace(".mcap");
   }
   auto recorder =
-      runtime::Recorder::create({.path = kept->temporary_ ? kept->temporary_->path() : options.record_file,
-                                 .run = std::move(run),
-                                 .scenario = scenario,
-                                 .is_compressed = options.is_compressed,
-                                 .step_budget = step_budget,
-                                 .may_wait = options.is_fast});
+      recording::Recorder::create({.path = kept->temporary_ ? kept->temporary_->path() : options.record_file,
+                                   .run = std::move(run),
+                                   .scenario = scenario,
+                                   .is_compressed = options.is_compressed,
+                                   .step_budget = step_budget,
+                                   .may_wait = options.is_fast});
   if (!recorder) return fail(recorder.error());
   kept->recorder_ = std::move(*recorder);
   return kept;
 }
 
-void compare_with_limit(runtime::RunLimit& limit, telemetry::RunSummary& run, KeptRun& kept,
+void compare_with_limit(live::RunLimit& limit, telemetry::RunSummary& run, KeptRun& kept,
                         const std::atomic<bool>& wants_stop) {
   if (limit.is_awaited(run) && !wants_stop)
     fmt::print(stderr, "the limit is still being computed; Ctrl-C does without\n");
@@ -89,7 +90,7 @@ void compare_with_limit(runtime::RunLimit& limit, telemetry::RunSummary& run, Ke
 
 Result<void> KeptRun::finish() {
   if (!recorder_) return {};
-  const Result<runtime::RecorderReport> report = recorder_->finish();
+  const Result<recording::RecorderReport> report = recorder_->finish();
   if (!report) return fail(report.error());
   const std::string& told = temporary_ ? report_file_ : record_file_;
   if (!temporary_)
@@ -103,8 +104,8 @@ Result<void> KeptRun::finish() {
 Result<void> KeptRun::write_report() const {
   const std::string& log = temporary_ ? temporary_->path() : record_file_;
   const std::string name = std::filesystem::path(temporary_ ? report_file_ : record_file_).filename();
-  const Result<runtime::ReportSummary> written = runtime::write_report(
-      {.output = report_file_, .logs = {{name, log}}, .bundle = runtime::report_bundle()});
+  const Result<recording::ReportSummary> written = recording::write_report(
+      {.output = report_file_, .logs = {{name, log}}, .bundle = live::report_bundle()});
   if (!written) return fail(written.error());
   fmt::print(stderr, "{}: {:.1f} MB, {:g} messages a second; open it in a browser\n", report_file_,
              1e-6 * static_cast<double>(written->bytes), written->rate);

@@ -7,18 +7,18 @@
 #include <string>
 #include <utility>
 
+#include "chicane/live/run_limit.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/protocol/ros_messages.hpp"
-#include "chicane/runtime/closed_loop.hpp"
-#include "chicane/runtime/recorder.hpp"
-#include "chicane/runtime/run_limit.hpp"
-#include "chicane/runtime/temporary_file.hpp"
+#include "chicane/recording/recorder.hpp"
+#include "chicane/recording/temporary_file.hpp"
+#include "chicane/run/closed_loop.hpp"
 #include "options.hpp"
 
 namespace chicane::apps {
 
 /// What viewers and logs are told of a run with our simulator, its limit excepted.
-[[nodiscard]] protocol::Run description(const runtime::ClosedLoop& loop);
+[[nodiscard]] protocol::Run description(const run::ClosedLoop& loop);
 
 class KeptRun;
 
@@ -27,7 +27,7 @@ void describe(const path::Track& track, protocol::Run& run);
 
 /// The end of a run: RunLimit::compare, saying on stderr what is waited for, and the last news for the
 /// recording.
-void compare_with_limit(runtime::RunLimit& limit, telemetry::RunSummary& run, KeptRun& kept,
+void compare_with_limit(live::RunLimit& limit, telemetry::RunSummary& run, KeptRun& kept,
                         const std::atomic<bool>& wants_stop);
 
 /// What --record and --report keep of a run: every control step. Nothing is kept where neither is asked for.
@@ -55,8 +55,9 @@ class KeptRun {
 
   std::string record_file_;
   std::string report_file_;
-  std::optional<runtime::TemporaryFile> temporary_;  ///< what a report is made of, where nothing is recorded
-  std::unique_ptr<runtime::Recorder> recorder_;
+  std::optional<recording::TemporaryFile>
+      temporary_;  ///< what a report is made of, where nothing is recorded
+  std::unique_ptr<recording::Recorder> recorder_;
 };
 
 }  // namespace chicane::apps

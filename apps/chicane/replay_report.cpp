@@ -20,7 +20,7 @@ std::string dump(const Json& object) {
   return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Json json_of(const runtime::Future& future) {
+Json json_of(const recording::Future& future) {
   return {{"duration_s", number(future.duration)},
           {"lap_times_s", future.lap_times},
           {"max_abs_lateral_error_m", number(future.max_lateral_error)},
@@ -37,7 +37,7 @@ std::string cell(double value) {
 
 }  // namespace
 
-std::string to_json(const runtime::ReplayReport& report) {
+std::string to_json(const recording::ReplayReport& report) {
   return dump({{"recorded_by", report.recorded_by},
                {"controller", report.controller},
                {"track", report.track},
@@ -52,7 +52,7 @@ std::string to_json(const runtime::ReplayReport& report) {
                {"closed", report.is_complete}});
 }
 
-std::string to_text(const runtime::ReplayReport& report) {
+std::string to_text(const recording::ReplayReport& report) {
   const double share =
       report.steps == 0 ? 0.0
                         : 100.0 * static_cast<double>(report.identical) / static_cast<double>(report.steps);
@@ -73,7 +73,7 @@ std::string to_text(const runtime::ReplayReport& report) {
   return text;
 }
 
-std::string to_json(const runtime::BranchReport& report) {
+std::string to_json(const recording::BranchReport& report) {
   return dump({{"branch_at_s", report.at},
                {"cycle", report.cycle},
                {"steps_before", report.steps_before},
@@ -83,7 +83,7 @@ std::string to_json(const runtime::BranchReport& report) {
                {"branch", json_of(report.branched)}});
 }
 
-std::string to_text(const runtime::BranchReport& report,
+std::string to_text(const recording::BranchReport& report,
                     const std::vector<std::pair<std::string, std::string>>& settings) {
   std::string changes;
   for (const auto& [key, value] : settings) {
@@ -94,10 +94,10 @@ std::string to_text(const runtime::BranchReport& report,
   const auto row = [&](std::string_view name, double was, double is) {
     text += fmt::format("{:24}{}{}\n", name, cell(was), cell(is));
   };
-  const runtime::Future &was = report.recorded, &is = report.branched;
+  const recording::Future &was = report.recorded, &is = report.branched;
   row("duration [s]", was.duration, is.duration);
   for (std::size_t i = 0; i < std::max(was.lap_times.size(), is.lap_times.size()); ++i) {
-    const auto lap = [&](const runtime::Future& future) {
+    const auto lap = [&](const recording::Future& future) {
       return i < future.lap_times.size() ? future.lap_times[i] : std::nan("");
     };
     row(fmt::format("lap time {} [s]", i + 1), lap(was), lap(is));

@@ -5,18 +5,18 @@
 #include <utility>
 #include <vector>
 
-#include "chicane/runtime/branch.hpp"
-#include "chicane/runtime/replay.hpp"
+#include "chicane/recording/branch.hpp"
+#include "chicane/recording/replay.hpp"
 
 /// What `chicane replay` says; the keys of the JSON are a contract (docs/recording.md).
 namespace chicane::apps {
 
-[[nodiscard]] std::string to_json(const runtime::ReplayReport& report);
-[[nodiscard]] std::string to_text(const runtime::ReplayReport& report);
+[[nodiscard]] std::string to_json(const recording::ReplayReport& report);
+[[nodiscard]] std::string to_text(const recording::ReplayReport& report);
 
-[[nodiscard]] std::string to_json(const runtime::BranchReport& report);
+[[nodiscard]] std::string to_json(const recording::BranchReport& report);
 /// Two columns: what was, and what comes of `settings`.
-[[nodiscard]] std::string to_text(const runtime::BranchReport& report,
+[[nodiscard]] std::string to_text(const recording::BranchReport& report,
                                   const std::vector<std::pair<std::string, std::string>>& settings);
 
 }  // namespace chicane::apps

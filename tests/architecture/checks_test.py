@@ -74,7 +74,7 @@ class Checks(unittest.TestCase):
             (source, "double a = ::atan2(1.0, 2.0);\n", "bits differ"),
             (source, "std::normal_distribution<> d;\n", "not the same on every machine"),
             (source, "void f() { throw 1; }\n", "throws nothing"),
-            (source, 'void f() { std::printf("x"); }\n', "only runtime and apps print"),
+            (source, 'void f() { std::printf("x"); }\n', "only live, wire and apps print"),
             (source, "auto t = std::chrono::steady_clock::now();\n", "a Deadline"),
             (source, "std::mutex m;\n", "threads and locks"),
             (source, "boost::asio::io_context c;\n", "sockets live in net"),

@@ -7,7 +7,7 @@
 #include "closed_loop/drive.hpp"
 #include "support/alloc_guard.hpp"
 
-namespace chicane::runtime {
+namespace chicane::run {
 namespace {
 
 TEST(WholeLoop, AllocatesNothingInTwoLapsOfTheDefaultController) {
@@ -15,7 +15,7 @@ TEST(WholeLoop, AllocatesNothingInTwoLapsOfTheDefaultController) {
     const auto scenario = protocol::compose(
         {.scenario_file = "", .settings = {{"car", car}, {"track", "lakeside"}, {"laps", "2"}}});
     ASSERT_TRUE(scenario) << scenario.error().message;
-    const auto loop = ClosedLoop::create(*scenario);
+    const auto loop = run::ClosedLoop::create(*scenario);
     ASSERT_TRUE(loop) << loop.error().message;
     int cycles = 0;
     const test::AllocationGuard guard;
@@ -27,4 +27,4 @@ TEST(WholeLoop, AllocatesNothingInTwoLapsOfTheDefaultController) {
 }
 
 }  // namespace
-}  // namespace chicane::runtime
+}  // namespace chicane::run

@@ -9,9 +9,9 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/protocol/library.hpp"
-#include "chicane/runtime/closed_loop.hpp"
+#include "chicane/run/closed_loop.hpp"
 
-namespace chicane::runtime {
+namespace chicane::run {
 
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
@@ -22,14 +22,14 @@ inline telemetry::RunSummary drive(const Settings& settings) {
     ADD_FAILURE() << scenario.error().message;
     return {};
   }
-  auto loop = ClosedLoop::create(*scenario);
+  auto loop = run::ClosedLoop::create(*scenario);
   if (!loop) {
     ADD_FAILURE() << loop.error().message;
     return {};
   }
-  return run_closed_loop(**loop);
+  return run::run_closed_loop(**loop);
 }
 
 inline double top_mph(const telemetry::RunSummary& run) { return mps_to_mph(run.total.top_speed); }
 
-}  // namespace chicane::runtime
+}  // namespace chicane::run

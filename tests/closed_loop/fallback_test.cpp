@@ -7,13 +7,13 @@
 
 #include "chicane/controller/cubic_mpc.hpp"
 #include "chicane/path/track.hpp"
-#include "chicane/runtime/make.hpp"
+#include "chicane/run/make.hpp"
 #include "chicane/sim/actuation_delay.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
 #include "closed_loop/drive.hpp"
 
-namespace chicane::runtime {
+namespace chicane::run {
 namespace {
 
 using controller::Rung;
@@ -32,9 +32,9 @@ struct BlindRun {
 
 BlindRun drive_blind(double blind_from, double sees_at, double end) {
   const auto scenario = protocol::compose({"", {{"preset", "weighted"}, {"track", "lakeside"}}});
-  const auto track = make_track(*scenario);
-  const auto plant = std::move(*make_plant(*scenario));
-  const auto mpc = std::move(*make_controller(*scenario));
+  const auto track = run::make_track(*scenario);
+  const auto plant = std::move(*run::make_plant(*scenario));
+  const auto mpc = std::move(*run::make_controller(*scenario));
   sim::World world{*plant, *track};
   sim::Sensor sensor{{}, 1};
   sim::ActuationDelay in_flight;
@@ -89,4 +89,4 @@ TEST(FallbackOnTheRoad, DrivesOnOnceTheWaypointsAreBack) {
 }
 
 }  // namespace
-}  // namespace chicane::runtime
+}  // namespace chicane::run

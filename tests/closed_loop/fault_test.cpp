@@ -13,7 +13,7 @@
 
 #include "closed_loop/drive.hpp"
 
-namespace chicane::runtime {
+namespace chicane::run {
 namespace {
 
 using sim::Fault;
@@ -36,7 +36,7 @@ Outcome drive_through(const Settings& settings, Fault fault) {
   EXPECT_TRUE(scenario);
   scenario->laps = 0;
   scenario->faults = {sim::default_event(fault, kBegins)};
-  const auto loop = std::move(*ClosedLoop::create(*scenario));
+  const auto loop = std::move(*run::ClosedLoop::create(*scenario));
   const model::VehicleParams& car = loop->scenario().vehicle;
   Outcome outcome;
   while (loop->time() < kEnds && !loop->is_over()) {
@@ -119,7 +119,7 @@ TEST(Faults, SameSeedSameBits) {
 
 TEST(Faults, AreSwitchedWhileTheRunGoesOn) {
   const auto scenario = protocol::compose({.scenario_file = "", .settings = {}});
-  const auto loop = std::move(*ClosedLoop::create(*scenario));
+  const auto loop = std::move(*run::ClosedLoop::create(*scenario));
   while (loop->time() < 1.0) loop->advance();
   EXPECT_EQ(loop->frame().active_faults, 0U);
   EXPECT_TRUE(loop->set_fault("half_grip", true));
@@ -132,4 +132,4 @@ TEST(Faults, AreSwitchedWhileTheRunGoesOn) {
 }
 
 }  // namespace
-}  // namespace chicane::runtime
+}  // namespace chicane::run

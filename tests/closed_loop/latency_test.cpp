@@ -3,7 +3,7 @@
 
 #include "closed_loop/drive.hpp"
 
-namespace chicane::runtime {
+namespace chicane::run {
 namespace {
 
 /// `preset` on the lakeside with 100 ms, its own compensation replaced by `handling`.
@@ -62,4 +62,4 @@ TEST(Latency, DoesNotSpinAnOrdinaryCarThatBrakesFromTopSpeed) {
 }
 
 }  // namespace
-}  // namespace chicane::runtime
+}  // namespace chicane::run

@@ -6,7 +6,7 @@
 
 #include "closed_loop/drive.hpp"
 
-namespace chicane::runtime {
+namespace chicane::run {
 namespace {
 
 /// What a write-up claims for its preset.
@@ -100,4 +100,4 @@ TEST(Presets, WeightedSlowsInCurvesAndDelayInModelForThem) {
 }
 
 }  // namespace
-}  // namespace chicane::runtime
+}  // namespace chicane::run

@@ -43,7 +43,7 @@ TEST(CommandHistory, ForgetsTheOldestWhenFull) {
 
 class Estimating : public ::testing::Test {
  protected:
-  const PredictionModel model{model::udacity_params()};
+  const model::PredictionModel model{model::udacity_params()};
   CommandHistory sent;
   StateEstimator estimator{model};
 };

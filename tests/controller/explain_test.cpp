@@ -9,8 +9,8 @@
 
 #include "chicane/controller/baselines.hpp"
 #include "chicane/controller/cubic_mpc.hpp"
-#include "chicane/controller/speed_plan.hpp"
 #include "chicane/controller/tracking_mpc.hpp"
+#include "chicane/road/speed_plan.hpp"
 #include "controller/sample_road.hpp"
 
 namespace chicane::controller {
@@ -133,22 +133,22 @@ TEST(Explanation, IsEmptyOnARungBelowTheController) {
 
 /// A straight of 300 m, a bend of 40 m radius, a straight of 300 m, open. For a speed plan only: no
 /// positions.
-ReferenceLine straight_bend_straight() {
+road::ReferenceLine straight_bend_straight() {
   constexpr int kIntervals = 442;
-  ReferenceLine line(kIntervals + 1);
+  road::ReferenceLine line(kIntervals + 1);
   EXPECT_TRUE(line.shape(663.0, kIntervals, false));
   for (std::size_t i = 200; i <= 242; ++i) line.samples()[i].curve.curvature = 1.0 / 40.0;
   return line;
 }
 
 TEST(SpeedPlan, KnowsWhichPassBoundIt) {
-  ReferenceLine line = straight_bend_straight();
-  SpeedPlan plan(static_cast<int>(line.samples().size()));
+  road::ReferenceLine line = straight_bend_straight();
+  road::SpeedPlan plan(static_cast<int>(line.samples().size()));
   plan.begin(model::road_car_params(), {.speed_limit = 35.0});
   int work = 1'000'000;
   ASSERT_TRUE(plan.advance(work, line));
   std::vector<SpeedLimiter> met;
-  for (const ReferenceLine::Sample& sample : line.samples()) {
+  for (const road::ReferenceLine::Sample& sample : line.samples()) {
     if (met.empty() || met.back() != sample.limiter) met.push_back(sample.limiter);
   }
   const std::vector expected{SpeedLimiter::kAsked, SpeedLimiter::kBraking, SpeedLimiter::kCurvature,

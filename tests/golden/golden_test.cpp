@@ -12,7 +12,7 @@
 
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/protocol/library.hpp"
-#include "chicane/runtime/closed_loop.hpp"
+#include "chicane/run/closed_loop.hpp"
 
 namespace chicane {
 namespace {
@@ -33,13 +33,13 @@ std::uint64_t hash_of(const Golden& golden, InstructionSet set) {
   auto settings = golden.settings;
   settings.emplace_back("time_limit_s", "20");
   const auto scenario = protocol::compose({.scenario_file = {}, .settings = settings});
-  const auto loop = scenario ? runtime::ClosedLoop::create(*scenario) : fail(scenario.error());
+  const auto loop = scenario ? run::ClosedLoop::create(*scenario) : fail(scenario.error());
   choose_instruction_set(detect_instruction_set());
   if (!loop) {
     ADD_FAILURE() << loop.error().message;
     return 0;
   }
-  return runtime::run_closed_loop(**loop).state_hash;
+  return run::run_closed_loop(**loop).state_hash;
 }
 
 TEST_P(GoldenRun, HasTheBitsItHad) {

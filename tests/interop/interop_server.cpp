@@ -6,22 +6,22 @@
 #include <string>
 #include <string_view>
 
-#include "chicane/runtime/make.hpp"
-#include "chicane/runtime/serve.hpp"
+#include "chicane/run/make.hpp"
+#include "chicane/wire/serve.hpp"
 
 int main() {
   using namespace chicane;
   const scenario::Scenario scenario;
-  auto controller = runtime::make_controller(scenario);
+  auto controller = run::make_controller(scenario);
   if (!controller) {
     std::cerr << controller.error().message << '\n';
     return 2;
   }
-  runtime::ServeOptions options;
+  wire::ServeOptions options;
   options.vehicle = scenario.vehicle;
-  runtime::UdacityEndpoint endpoint(options, **controller,
-                                    {.log = [](std::string_view line) { std::cerr << line << std::endl; }});
-  runtime::Router router(&endpoint, nullptr);
+  wire::UdacityEndpoint endpoint(options, **controller,
+                                 {.log = [](std::string_view line) { std::cerr << line << std::endl; }});
+  wire::Router router(&endpoint, nullptr);
   options.server.port = 0;
   auto server = net::Server::create(options.server, router.handlers(), {});
   if (!server) {

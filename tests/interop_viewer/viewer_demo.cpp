@@ -12,8 +12,9 @@
 #include <string_view>
 #include <thread>
 
-#include "chicane/runtime/assets.hpp"
-#include "chicane/runtime/viewer.hpp"
+#include "chicane/live/assets.hpp"
+#include "chicane/live/pages.hpp"
+#include "chicane/wire/viewer.hpp"
 #include "interop_viewer/demo_drive.hpp"
 
 namespace {
@@ -90,7 +91,7 @@ int main(int argc, char** argv) {
 
   Wishes wishes;
   DemoParameters parameters;
-  runtime::ViewerOptions options;
+  wire::ViewerOptions options;
   options.run = run_of(*track, kPeriod);
   options.parameters = &parameters;
   options.services.pause = [&](bool paused) -> Result<void> {
@@ -106,14 +107,14 @@ int main(int argc, char** argv) {
     wishes.reset = true;
     return {};
   };
-  runtime::ViewerEndpoint viewer{std::move(options)};
-  runtime::Router router{nullptr, &viewer};
-  runtime::Pages pages = runtime::live_pages();
+  wire::ViewerEndpoint viewer{std::move(options)};
+  wire::Router router{nullptr, &viewer};
+  wire::Pages pages = live::live_pages();
   pages["/schema.json"] = [] {
     return net::Content{.content_type = "application/json", .bytes = std::string{kSchema}};
   };
   const auto server =
-      net::Server::create(server_options, router.handlers(std::move(pages)), runtime::embedded_assets());
+      net::Server::create(server_options, router.handlers(std::move(pages)), live::embedded_assets());
   if (!server) return fmt::print(stderr, "{}\n", server.error().message), 3;
   fmt::print("listening on http://127.0.0.1:{}/\n", (*server)->port());
   std::fflush(stdout);

@@ -70,7 +70,7 @@ void StateEstimator::advance(model::State& state, double& acceleration, double f
   const model::VehicleParams& p = model_.vehicle();
   double now = from;
   double lags_for = 0.0;  // [s]
-  PredictionModel::Lags lags;
+  model::PredictionModel::Lags lags;
   while (now < to - 1e-9) {
     const double dt = std::min(sent.next_change(now + 1e-9, to) - now, kMaxStep);
     const model::Command command = sent.at(now + 1e-9);
@@ -81,7 +81,7 @@ void StateEstimator::advance(model::State& state, double& acceleration, double f
     const double reach = p.steer_rate_limit * dt;
     const double steer = std::clamp(command.steer, state.steer - reach, state.steer + reach);
     const double asked = longitudinal_acceleration(p, command.throttle, state.vx);
-    const BodyMotion<double> body =
+    const model::BodyMotion<double> body =
         model_.advance({state.vx, state.vy, state.r, state.steer, acceleration}, steer, asked, dt, lags);
     const double psi = state.psi + 0.5 * dt * (state.r + body.r);
     const double mean_psi = 0.5 * (state.psi + psi);

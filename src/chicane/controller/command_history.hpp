@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "chicane/controller/prediction.hpp"
 #include "chicane/model/measurement.hpp"
+#include "chicane/model/prediction.hpp"
 #include "chicane/model/state.hpp"
 
 namespace chicane::controller {
@@ -71,14 +71,14 @@ class InnovationGains {
 /// does not hold, come from here.
 class StateEstimator {
  public:
-  explicit StateEstimator(const PredictionModel& model) noexcept : model_{model} {}
+  explicit StateEstimator(const model::PredictionModel& model) noexcept : model_{model} {}
   void reset() noexcept {
     is_started_ = false;
     place_gains_.reset();
     heading_gains_.reset();
   }
   /// Another model from now on; the estimate stays.
-  void set_model(const PredictionModel& model) noexcept { model_ = model; }
+  void set_model(const model::PredictionModel& model) noexcept { model_ = model; }
 
   /// Takes in a measurement. Afterwards state() is the estimate at now.time; one that is not finite is
   /// replaced by what the model expects.
@@ -103,7 +103,7 @@ class StateEstimator {
   void advance(model::State& state, double& acceleration, double from, double to,
                const CommandHistory& sent) const noexcept;
 
-  PredictionModel model_;
+  model::PredictionModel model_;
   InnovationGains place_gains_{kPlaceAcceleration};
   InnovationGains heading_gains_{kYawAcceleration};
   bool is_started_ = false;

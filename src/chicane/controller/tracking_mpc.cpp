@@ -11,11 +11,11 @@
 #include "chicane/controller/doubt.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/fallback.hpp"
-#include "chicane/controller/prediction.hpp"
-#include "chicane/controller/road.hpp"
 #include "chicane/controller/tracking_problem.hpp"
 #include "chicane/controller/tracking_solver.hpp"
 #include "chicane/controller/tunable.hpp"
+#include "chicane/model/prediction.hpp"
+#include "chicane/road/road.hpp"
 
 namespace chicane::controller {
 namespace {
@@ -120,7 +120,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     });
   }
 
-  static RoadOptions road_options(const TrackingMpcOptions& options) noexcept {
+  static road::RoadOptions road_options(const TrackingMpcOptions& options) noexcept {
     return {.half_width = options.assumed_half_width,
             .smoothing_width = options.smoothing_width,
             .remember_waypoints = options.remember_waypoints,
@@ -167,7 +167,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   /// counts on [m/s].
   [[nodiscard]] double stopping_speed(double s) const noexcept {
     const model::VehicleParams& car = model_.vehicle();
-    const ReferenceLine& line = road_.line();
+    const road::ReferenceLine& line = road_.line();
     const double v = std::max(x0_[Problem::kVx], 0.0);
     const double braking =
         -options_.brake_share * longitudinal_acceleration(car, -car.brake_throttle_limit, v);
@@ -183,16 +183,16 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     StepReport& report = result_.report;
     report = {};
     report.delay = now.delay;
-    const ReferenceLine& line = road_.line();
+    const road::ReferenceLine& line = road_.line();
     if (line.is_empty() || !std::isfinite(start.state.x + start.state.y + start.state.psi + start.state.vx))
       return false;
     const Vec2 position{start.state.x, start.state.y};
     if (revision_ != road_.revision()) has_place_ = false;
-    ReferenceLine::Projection place =
+    road::ReferenceLine::Projection place =
         has_place_ ? line.project(position, s_, kProjectionWindow) : line.project(position);
     if (has_place_ && place.distance > 0.5 * kFarFromLine) place = line.project(position);
     if (!(place.distance < kFarFromLine)) return false;
-    const CurvePoint at = line.at(place.s);
+    const road::CurvePoint at = line.at(place.s);
     const double heading_error = angle_difference(start.state.psi, at.heading);
     const double most = start.state.vx < kSlow ? 0.25 * kPi : 0.5 * kPi;
     if (std::fabs(heading_error) > most) return false;
@@ -202,7 +202,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     x0_ = {0.0,           place.d,           heading_error,     start.state.vx, start.state.vy,
            start.state.r, start.state.steer, start.acceleration};
 
-    const ReferenceLine::Projection measured = line.project({now.x, now.y}, s_, kProjectionWindow);
+    const road::ReferenceLine::Projection measured = line.project({now.x, now.y}, s_, kProjectionWindow);
     report.lateral_error = measured.d;
     report.heading_error = angle_difference(now.psi, line.at(measured.s).heading);
     report.speed_reference = line.demand(s_).speed;
@@ -324,12 +324,12 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   /// What the road asks at stage k where the car is about to be in state x.
   void ask_road(int k, const StageState& x) noexcept {
     const double s = x[Problem::kS];
-    ReferenceLine::Demand demand = road_.line().demand(s_ + s);
+    road::ReferenceLine::Demand demand = road_.line().demand(s_ + s);
     if (const double stop = stopping_speed(s); stop < demand.speed) {
       demand.speed = stop;
       demand.speed_slope = 0.0;
     }
-    const Road::Room room = road_.room(demand.offset);
+    const road::Road::Room room = road_.room(demand.offset);
     const model::VehicleParams& car = model_.vehicle();
     const double v = std::max(x[Problem::kVx], 0.0);
     // Asking for far more than the car can do would only drown the other prices (and Gauss–Newton with them).
@@ -363,7 +363,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   void explain_answer(double speed) noexcept {
     Explanation& explanation = result_.report.explanation;
     explain<TrackingTerms>(problem_, horizon_, explanation);
-    const ReferenceLine::Demand planned = road_.line().demand(s_);
+    const road::ReferenceLine::Demand planned = road_.line().demand(s_);
     explanation.speed_limit = planned.speed;
     explanation.speed_limiter = limiter_of(speed, planned.speed, planned.limiter, explanation.active_now);
   }
@@ -388,13 +388,13 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   /// that leads back.
   const StepResult& find_back(const model::Measurement& now, const StateEstimator::Prediction& start,
                               double act_time) noexcept {
-    const ReferenceLine& line = road_.line();
+    const road::ReferenceLine& line = road_.line();
     const model::State& car = start.state;
     const bool is_known = std::isfinite(car.x + car.y + car.psi + car.vx + now.time + now.delay);
     const bool must_stop = blind_.is_long || roadless_.is_long;
     if (line.is_empty() || !is_known || must_stop || !(std::fabs(car.vx) < kSlow))
       return fall_back(now, act_time);
-    const ReferenceLine::Projection place = line.project({car.x, car.y});
+    const road::ReferenceLine::Projection place = line.project({car.x, car.y});
     if (!(place.distance < kLost)) return fall_back(now, act_time);
     const double course = line.at(place.s).heading - atan(place.d / kApproach);
     const double turn = std::clamp(2.0 * angle_difference(course, car.psi), -1.0, 1.0);
@@ -426,7 +426,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   }
 
   void fill_plan(double act_time) noexcept {
-    const ReferenceLine& line = road_.line();
+    const road::ReferenceLine& line = road_.line();
     Plan& plan = result_.plan;
     const int n = options_.horizon_steps;
     plan.size = n + 1;
@@ -435,7 +435,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
       const auto i = static_cast<std::size_t>(k);
       const StageState& x = horizon_.x[i];
       const StageInput& u = horizon_.u[static_cast<std::size_t>(std::min(k, n - 1))];
-      const CurvePoint at = line.at(s_ + x[Problem::kS]);
+      const road::CurvePoint at = line.at(s_ + x[Problem::kS]);
       plan.reference[i] = at.position;
       plan.points[i] = {.time = act_time + problem_.time(k),
                         .x = at.position.x() - x[Problem::kD] * at.tangent.y(),
@@ -447,8 +447,8 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   }
 
   TrackingMpcOptions options_;
-  PredictionModel model_;
-  Road road_;
+  model::PredictionModel model_;
+  road::Road road_;
   StateEstimator estimator_;
   CommandHistory sent_;
   Fallback fallback_;

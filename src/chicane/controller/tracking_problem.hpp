@@ -8,7 +8,7 @@
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/jet.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/controller/prediction.hpp"
+#include "chicane/model/prediction.hpp"
 #include "chicane/solver/stage_data.hpp"
 
 namespace chicane::controller {
@@ -56,10 +56,10 @@ struct TrackingProblem {
   /// A kind of stage by its length.
   struct Step {
     double length = 0.05;  ///< [s]
-    PredictionModel::Lags lags;
+    model::PredictionModel::Lags lags;
   };
 
-  const PredictionModel* model = nullptr;
+  const model::PredictionModel* model = nullptr;
   int horizon = 0;
   Step first;   ///< of stage 0: its command is held until the next one comes
   Step others;  ///< of all other stages
@@ -93,7 +93,7 @@ struct TrackingProblem {
     const auto per_length = select(solver::stage_number(k) < 0.5, 1.0 / first.length, 1.0 / others.length);
     const auto rate = (steer_asked - steer) * per_length;
     using T = Common<decltype(vx), decltype(vy), decltype(r), decltype(steer), decltype(a)>;
-    const auto use = model->tire_use(BodyMotion<T>{T(vx), T(vy), T(r), T(steer), T(a)});
+    const auto use = model->tire_use(model::BodyMotion<T>{T(vx), T(vy), T(r), T(steer), T(a)});
     const model::VehicleParams& car = model->vehicle();
     // Share of the friction ellipse, for tyres that have one: asked longitudinal over load, and lateral use.
     const auto load = car.load_constant + car.load_per_speed * vx;
@@ -163,9 +163,9 @@ struct TrackingProblem {
     const auto late_a = a - a_asked;
     using T = Common<decltype(vx), decltype(vy), decltype(r), decltype(steer), decltype(a),
                      decltype(steer_asked), decltype(a_asked)>;
-    const BodyMotion<T> from{T(vx), T(vy), T(r), T(steer), T(a)};
-    const BodyMotion<T> to = model->advance(from, T(steer_asked + late_steer * lags.steer.mean),
-                                            T(a_asked + late_a * lags.drive.mean), h);
+    const model::BodyMotion<T> from{T(vx), T(vy), T(r), T(steer), T(a)};
+    const model::BodyMotion<T> to = model->advance(from, T(steer_asked + late_steer * lags.steer.mean),
+                                                   T(a_asked + late_a * lags.drive.mean), h);
     // Means over the interval carry the car along the line: second order in h.
     const auto mean_vx = 0.5 * (vx + to.vx);
     const auto mean_vy = 0.5 * (vy + to.vy);
@@ -187,7 +187,7 @@ struct TrackingProblem {
   /// The motion over stage k in `parts` steps, without first_correction.
   [[nodiscard]] State move_in_parts(int k, const State& x, const Input& u, int parts) const noexcept {
     const double h = step(k).length / parts;
-    const PredictionModel::Lags lags = model->lags(h);
+    const model::PredictionModel::Lags lags = model->lags(h);
     State to = x;
     for (int i = 0; i < parts; ++i) to = to_state(move_by(h, lags, k, to, u));
     return to;

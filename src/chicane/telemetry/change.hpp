@@ -30,7 +30,7 @@ class ShortText {
   std::size_t size_ = 0;
 };
 
-/// One setting that changed while a run went on (runtime/live_settings.hpp).
+/// One setting that changed while a run went on (live/live_settings.hpp).
 struct Change {
   std::uint64_t cycle = 0;   ///< the first control cycle that follows it
   double time = 0.0;         ///< of the run [s]

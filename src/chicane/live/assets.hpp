@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "chicane/net/server.hpp"
+#include "chicane/recording/html_report.hpp"
+
+namespace chicane::live {
+
+/// The files of the dashboard, gzip-compressed inside the program (target chicane_web_assets,
+/// cmake/EmbedWeb.cmake). A program built without Node holds one plain page that says so.
+[[nodiscard]] std::vector<net::Asset> embedded_assets();
+
+/// The dashboard once more, for reports.
+[[nodiscard]] recording::ReportBundle report_bundle();
+
+}  // namespace chicane::live

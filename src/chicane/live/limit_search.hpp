@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "chicane/base/result.hpp"
+#include "chicane/lap_time/minimum_time.hpp"
+#include "chicane/path/track.hpp"
+#include "chicane/scenario/scenario.hpp"
+
+namespace chicane::live {
+
+/// The car of an experiment as its plant is: what is believed, with the plant's deviations in grip and mass.
+[[nodiscard]] model::VehicleParams limit_vehicle(const scenario::Scenario& scenario);
+
+/// Finds the limit of a run in a thread of its own, with low priority: control never waits for it.
+class LimitSearch {
+ public:
+  using OnEnd = std::function<void(Result<std::shared_ptr<const lap_time::Limit>>)>;
+
+  /// Begins. `on_end` is called once, on the other thread, unless the search was cancelled before.
+  LimitSearch(path::Track track, const scenario::Scenario& scenario, OnEnd on_end);
+  /// Cancels, and waits for the thread: for the time of one round, some 10 ms on an idle machine, but as long
+  /// as others keep it from running on a busy one.
+  ~LimitSearch();
+  LimitSearch(const LimitSearch&) = delete;
+  LimitSearch& operator=(const LimitSearch&) = delete;
+
+  /// `on_end` is not called any more once this has returned. Waits for no more than a call under way.
+  void cancel();
+  /// The thread has nothing left to do: the destructor does not wait.
+  [[nodiscard]] bool has_ended() const noexcept { return has_ended_.load(std::memory_order_acquire); }
+
+ private:
+  void work(const path::Track& track, const model::VehicleParams& car);
+
+  OnEnd on_end_;
+  std::mutex telling_;
+  std::atomic<bool> is_wanted_{true};
+  std::atomic<bool> has_ended_{false};
+  std::thread thread_;  // last: it starts when everything else is there
+};
+
+}  // namespace chicane::live

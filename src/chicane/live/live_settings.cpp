@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/live/live_settings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include "chicane/model/vehicle.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/protocol/yaml_codec.hpp"
+#include "chicane/run/closed_loop.hpp"
+
+namespace chicane::live {
+namespace {
+
+namespace foxglove = protocol::foxglove;
+using protocol::Control;
+using protocol::Kind;
+using protocol::Value;
+
+/// Settings of a preset say nothing of the world: those of the run that goes on stay.
+constexpr std::array<std::string_view, 6> kOfTheWorld{"laps",         "seed",           "latency_ms",
+                                                      "time_limit_s", "turn_around_ms", "waypoints_sent"};
+
+bool is_of_the_world(std::string_view key) {
+  return key.starts_with("plant_options.") || key.starts_with("sensor.") ||
+         std::find(kOfTheWorld.begin(), kOfTheWorld.end(), key) != kOfTheWorld.end();
+}
+
+std::string group_of(std::string_view controller) {
+  std::string group(controller);
+  std::replace(group.begin(), group.end(), '-', '_');
+  return group + ".";
+}
+
+/// What a preset gives with a car, on the track that is driven.
+Result<scenario::Scenario> composed(const scenario::Scenario& of) {
+  return protocol::compose(
+      {.scenario_file = {}, .settings = {{"preset", of.preset}, {"car", of.car}, {"track", of.track}}});
+}
+
+std::vector<Control> run_controls(bool has_world, const std::vector<Control>& faults) {
+  if (!has_world) return {};
+  std::vector<Control> controls{
+      {"run.pace", Kind::kNumber, "", run::kSlowestPace, run::kFastestPace, 1.0,
+       "Seconds of the run in a second of the clock."},
+      {"manual.is_on", Kind::kBool, "", 0.0, 0.0, false, "A person drives instead of the controller."},
+      {"manual.steer", Kind::kNumber, "", -1.0, 1.0, 0.0, "Share of the steering lock, left positive."},
+      {"manual.throttle", Kind::kNumber, "", -1.0, 1.0, 0.0,
+       "1 is full throttle, -1 all the useful braking; near standstill the reverse gear."}};
+  controls.insert(controls.end(), faults.begin(), faults.end());
+  return controls;
+}
+
+/// JSON has no infinity: its name stands for it.
+foxglove::ParameterValue outside(const Value& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag;
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  const double number = std::get<double>(value);
+  if (std::isfinite(number)) return number;
+  return std::string("inf");
+}
+
+tl::unexpected<Error> refuse(std::string_view name, const foxglove::ParameterValue& got,
+                             std::string_view expected) {
+  struct Words {
+    std::string operator()(std::monostate) const { return "nothing"; }
+    std::string operator()(bool flag) const { return flag ? "true" : "false"; }
+    std::string operator()(double number) const { return fmt::format("{}", number); }
+    std::string operator()(const std::string& text) const { return protocol::quoted(text); }
+    std::string operator()(const std::vector<double>&) const { return "a list"; }
+  };
+  return fail(ErrorCode::kInvalidArgument,
+              fmt::format("{}: got {}, expected {}", name, std::visit(Words{}, got), expected));
+}
+
+Result<Value> inside(const protocol::Parameter& row, const foxglove::ParameterValue& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return Value(*flag);
+  if (const auto* number = std::get_if<double>(&value)) return Value(*number);
+  if (const auto* text = std::get_if<std::string>(&value)) return protocol::parse(row, *text);
+  return refuse(row.key, value, protocol::expectation(row));
+}
+
+Result<void> validated(const scenario::Scenario& scenario) {
+  if (Result<void> valid = model::validate(scenario.vehicle); !valid) return valid;
+  for (const protocol::Contradiction& found : protocol::contradictions(scenario))
+    return fail(ErrorCode::kInvalidArgument, fmt::format("{}: {}", found.key, found.message));
+  return {};
+}
+
+/// "track = oval, car = road-car"
+std::string words(const std::vector<telemetry::Change>& choices) {
+  std::string text;
+  for (const telemetry::Change& choice : choices)
+    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", choice.name.view(), choice.value.view());
+  return text;
+}
+
+}  // namespace
+
+LiveSettings::LiveSettings(LiveSettingsOptions options, run::ChangeQueue& wishes)
+    : options_{std::move(options)},
+      wishes_{wishes},
+      scenario_{options_.scenario},
+      base_{composed(scenario_).value_or(scenario_)},
+      controls_{run_controls(options_.has_world, options_.faults)} {
+  for (const Control& control : controls_) control_values_.emplace(control.key, control.initial);
+  shown_ = list();
+}
+
+bool LiveSettings::is_offered(const protocol::Parameter& row) const {
+  if (!protocol::is_live(row) && !options_.build) return false;
+  return options_.has_world || row.key.starts_with("vehicle.") ||
+         row.key.starts_with(group_of(scenario_.controller));
+}
+
+std::vector<foxglove::Parameter> LiveSettings::list() const {
+  std::vector<foxglove::Parameter> all;
+  for (const protocol::Parameter& row : protocol::list()) {
+    if (is_offered(row)) all.push_back({std::string(row.key), outside(protocol::get(shown_scenario(), row))});
+  }
+  for (const Control& control : controls_) {
+    all.push_back({std::string(control.key), outside(control_values_.find(control.key)->second)});
+  }
+  return all;
+}
+
+std::optional<foxglove::Parameter> LiveSettings::get(std::string_view name) const {
+  if (const auto value = control_values_.find(name); value != control_values_.end())
+    return foxglove::Parameter{std::string(name), outside(value->second)};
+  const protocol::Parameter* row = protocol::find(name);
+  if (row == nullptr || !is_offered(*row)) return std::nullopt;
+  return foxglove::Parameter{std::string(name), outside(protocol::get(shown_scenario(), *row))};
+}
+
+Result<void> LiveSettings::set(const foxglove::Parameter& parameter) {
+  const auto control = std::find_if(controls_.begin(), controls_.end(),
+                                    [&](const Control& each) { return each.key == parameter.name; });
+  if (control != controls_.end()) return set_control(*control, parameter.value);
+  const protocol::Parameter* row = protocol::find(parameter.name);
+  if (row != nullptr && is_offered(*row)) return set_row(*row, parameter.value);
+  const std::string shown = protocol::quoted(parameter.name);
+  if (row != nullptr) {
+    return fail(ErrorCode::kInvalidArgument, fmt::format("{}: cannot be set while this run goes on", shown));
+  }
+  std::vector<std::string_view> names;
+  for (const Control& each : controls_) names.push_back(each.key);
+  const std::string_view best = protocol::nearest(parameter.name, names);
+  return fail(ErrorCode::kNotFound,
+              best.empty() ? fmt::format("{}: {}", shown, protocol::unknown_key(parameter.name))
+                           : fmt::format("{}: got an unknown key (did you mean {}?)", shown, best));
+}
+
+Result<void> LiveSettings::set_control(const Control& control, const foxglove::ParameterValue& value) {
+  std::string text;
+  if (control.kind == Kind::kBool) {
+    const bool* flag = std::get_if<bool>(&value);
+    if (flag == nullptr) return refuse(control.key, value, "true or false");
+    text = *flag ? "true" : "false";
+  } else {
+    const double* number = std::get_if<double>(&value);
+    const bool is_in_range = number != nullptr && *number >= control.minimum && *number <= control.maximum;
+    if (!is_in_range) {
+      return refuse(control.key, value,
+                    fmt::format("a number in [{}, {}]", control.minimum, control.maximum));
+    }
+    text = fmt::format("{}", *number);
+  }
+  if (Result<void> sent = send(control.key, text, false); !sent) return sent;
+  Value accepted = control.kind == Kind::kBool ? Value(text == "true") : Value(std::get<double>(value));
+  control_values_.find(control.key)->second = std::move(accepted);
+  has_news_ = true;
+  return {};
+}
+
+Result<void> LiveSettings::set_row(const protocol::Parameter& row, const foxglove::ParameterValue& value) {
+  const Result<Value> wanted = inside(row, value);
+  if (!wanted) return fail(wanted.error());
+  scenario::Scenario changed = shown_scenario();
+  if (Result<void> done = protocol::set(changed, row, *wanted); !done) return done;
+  const std::string text = protocol::get_text(changed, row);
+  if (text == protocol::get_text(shown_scenario(), row)) return {};
+  // The control thread reads the text: what is checked here is what it reads.
+  if (Result<void> done = protocol::set_text(changed, row.key, text); !done) return done;
+  if (!protocol::is_live(row)) return start_anew(row.key, text, std::move(changed));
+  if (Result<void> valid = validated(changed); !valid) return valid;
+  if (Result<void> sent = change_live(row, text); !sent) return sent;
+  if (building_) {
+    building_->run.scenario = std::move(changed);
+    building_->later[std::string(row.key)] = text;
+  }
+  has_news_ = true;
+  if (options_.on_accepted) options_.on_accepted(scenario_);
+  return {};
+}
+
+/// Of the run that goes on. What only the one that is being built can take waits for it.
+Result<void> LiveSettings::change_live(const protocol::Parameter& row, const std::string& text) {
+  scenario::Scenario changed = scenario_;
+  if (Result<void> done = protocol::set_text(changed, row.key, text); !done) return done;
+  if (text == protocol::get_text(scenario_, row)) return {};
+  if (Result<void> valid = validated(changed); !valid) return building_ ? Result<void>{} : valid;
+  if (Result<void> sent = send(row.key, text, false); !sent) return sent;
+  scenario_ = std::move(changed);
+  return {};
+}
+
+Result<void> LiveSettings::start_anew(std::string_view key, const std::string& value,
+                                      scenario::Scenario changed) {
+  if (!telemetry::ShortText<256>::fits(value)) {
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("{}: got {} bytes, expected at most 256", key, value.size()));
+  }
+  // A queue with room for the change and for what a person holds in his hands now.
+  if (wishes_.room() < 1 + controls_.size())
+    return fail(ErrorCode::kInvalidArgument, fmt::format("{}: too many changes wait; try again", key));
+  const Result<scenario::Scenario> base = composed(changed);
+  if (!base) return fail(base.error());
+  if (key == "preset") {
+    scenario::Scenario fresh = *base;
+    fresh.faults = changed.faults;
+    for (const protocol::Parameter& row : protocol::list()) {
+      if (!is_of_the_world(row.key)) continue;
+      if (Result<void> kept = protocol::set(fresh, row, protocol::get(changed, row)); !kept) return kept;
+    }
+    changed = std::move(fresh);
+  } else if (key == "car") {
+    changed.vehicle = base->vehicle;
+    changed.plant = base->plant;
+  }
+  if (Result<void> valid = validated(changed); !valid) return valid;
+  ChosenRun run{.scenario = std::move(changed)};
+  if (building_) run.choices = std::move(building_->run.choices);
+  std::erase_if(run.choices, [&](const telemetry::Change& each) { return each.name.view() == key; });
+  run.choices.push_back({.name = key, .value = value, .starts_anew = true});
+  options_.build(run);
+  if (options_.on_building) options_.on_building(words(run.choices));
+  building_ = Building{.run = std::move(run), .base = *base, .later = {}};
+  has_news_ = true;
+  return {};
+}
+
+std::vector<std::string> LiveSettings::complaints() {
+  const bool has_room =
+      building_ && wishes_.room() >= 1 + building_->later.size() + controls_.size();  // else the next time
+  const auto built = has_room ? options_.built() : std::nullopt;
+  if (!built) return {};
+  Building building = std::move(*building_);
+  building_.reset();
+  has_news_ = true;
+  if (options_.on_building) options_.on_building("");
+  if (!*built) {
+    return {fmt::format("no run with {}: {}; the one before goes on", words(building.run.choices),
+                        built->error().message)};
+  }
+  hand_over(std::move(building));
+  return {};
+}
+
+/// The run that was built is the next one; what was changed meanwhile follows it.
+void LiveSettings::hand_over(Building building) {
+  const telemetry::Change& last = building.run.choices.back();
+  static_cast<void>(send(last.name.view(), last.value.view(), true));
+  for (const auto& [key, text] : building.later) static_cast<void>(send(key, text, false));
+  scenario_ = std::move(building.run.scenario);
+  base_ = std::move(building.base);
+  hand_over_controls();
+}
+
+/// The run that starts anew knows nothing of pace and hands; faults end with the old one.
+void LiveSettings::hand_over_controls() {
+  for (const Control& control : controls_) {
+    Value& value = control_values_.find(control.key)->second;
+    if (control.key.starts_with("fault.")) value = false;
+    if (value == control.initial) continue;
+    const auto* number = std::get_if<double>(&value);
+    static_cast<void>(send(control.key, number != nullptr ? fmt::format("{}", *number) : "true", false));
+  }
+}
+
+Result<void> LiveSettings::send(std::string_view name, std::string_view value, bool starts_anew) {
+  if (wishes_.push({.name = name, .value = value, .starts_anew = starts_anew})) return {};
+  return fail(ErrorCode::kInvalidArgument, fmt::format("{}: too many changes wait; try again", name));
+}
+
+std::vector<telemetry::Change> LiveSettings::applied() {
+  std::vector<telemetry::Change> changes;
+  while (const telemetry::Change* change = told_.front()) {
+    // Faults end by themselves; everything else was asked for here.
+    const auto value = control_values_.find(change->name.view());
+    if (value != control_values_.end() && value->first.starts_with("fault.")) {
+      value->second = change->value.view() == "true";
+      has_news_ = true;
+    }
+    // Its description is from when it was built.
+    if (change->starts_anew && options_.on_accepted) options_.on_accepted(scenario_);
+    changes.push_back(*change);
+    told_.pop();
+  }
+  return changes;
+}
+
+std::vector<foxglove::Parameter> LiveSettings::news() {
+  std::vector<foxglove::Parameter> changed;
+  if (!std::exchange(has_news_, false)) return changed;
+  std::vector<foxglove::Parameter> now = list();
+  for (const foxglove::Parameter& parameter : now) {
+    const auto before = std::find_if(shown_.begin(), shown_.end(), [&](const foxglove::Parameter& each) {
+      return each.name == parameter.name;
+    });
+    if (before == shown_.end() || before->value != parameter.value) changed.push_back(parameter);
+  }
+  shown_ = std::move(now);
+  return changed;
+}
+
+std::string LiveSettings::schema_json() const {
+  return protocol::schema_json(
+      base_, [this](const protocol::Parameter& row) { return is_offered(row); }, controls_);
+}
+
+std::string LiveSettings::preset_yaml() const {
+  return protocol::write_preset(
+      scenario_, base_, fmt::format("Settings of a run of {} on {}", scenario_.controller, scenario_.track));
+}
+
+}  // namespace chicane::live

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/live/run_builder.hpp"
+#include "chicane/protocol/foxglove_codec.hpp"
+#include "chicane/protocol/schema.hpp"
+#include "chicane/protocol/schema_json.hpp"
+#include "chicane/run/change_queue.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/telemetry/change.hpp"
+
+namespace chicane::live {
+
+struct LiveSettingsOptions {
+  scenario::Scenario scenario;  ///< what runs
+  /// Whether we simulate: offers what concerns the world, its pace and a person's hands, too. Otherwise only
+  /// controller and vehicle.
+  bool has_world = true;
+  /// Faults to switch, beside the rest: "fault.…".
+  std::vector<protocol::Control> faults{};
+  /// Begins to build another run beside the one that goes on, in place of one that is being built. Does not
+  /// wait. Null: what cannot change while the run goes on is not offered.
+  std::function<void(ChosenRun)> build{};
+  /// What became of the newest build; none while it goes on. A run that was built is handed over to the
+  /// control thread before this returns: it takes it when it meets the change that `starts_anew`.
+  std::function<std::optional<Result<void>>()> built{};
+  /// What is being built, in words: "track = oval"; empty: nothing any more.
+  std::function<void(const std::string&)> on_building{};
+  /// After each accepted change of the scenario that runs, and when another one has begun.
+  std::function<void(const scenario::Scenario&)> on_accepted{};
+};
+
+/// The settings of a run that goes on, for viewers to read and set: every tunable of the schema under its own
+/// key, "run.pace", "manual.is_on", "manual.steer", "manual.throttle" and the faults (docs/viewer.md).
+///
+/// A value is checked here, on the network thread, and then waits in a queue until the control thread applies
+/// it between two cycles. get() and list() show what was accepted last: what holds from the next control step
+/// on, or, for what starts the run anew, when the other run has been built. Until then the old one goes on,
+/// changes count for both, and another choice takes the place of the one before. All member functions but
+/// tell() are the network thread's.
+class LiveSettings final : public protocol::foxglove::ParameterStore {
+ public:
+  /// `wishes` is drained by the control thread and outlives this.
+  LiveSettings(LiveSettingsOptions options, run::ChangeQueue& wishes);
+
+  [[nodiscard]] std::vector<protocol::foxglove::Parameter> list() const override;
+  [[nodiscard]] std::optional<protocol::foxglove::Parameter> get(std::string_view name) const override;
+  /// Fails with a sentence for unknown names, wrong types, values out of range, settings that exclude each
+  /// other, and when too many changes wait.
+  [[nodiscard]] Result<void> set(const protocol::foxglove::Parameter& parameter) override;
+
+  /// The control thread: a change was applied, or happened by itself. Never waits; when nobody has listened
+  /// for long, viewers do not hear of it.
+  void tell(const telemetry::Change& change) noexcept { static_cast<void>(told_.push(change)); }
+  [[nodiscard]] std::vector<telemetry::Change> applied() override;
+  [[nodiscard]] std::vector<protocol::foxglove::Parameter> news() override;
+  /// Looks after the run that is being built, too.
+  [[nodiscard]] std::vector<std::string> complaints() override;
+
+  /// GET /schema.json; "default" is what the chosen preset gives with the chosen car.
+  [[nodiscard]] std::string schema_json() const;
+  /// GET /preset.yaml: what runs, as a preset.
+  [[nodiscard]] std::string preset_yaml() const;
+  /// What runs, or has been handed over to run.
+  [[nodiscard]] const scenario::Scenario& scenario() const { return scenario_; }
+
+ private:
+  /// Another run that is on its way.
+  struct Building {
+    ChosenRun run;                             ///< changes since it was begun included
+    scenario::Scenario base{};                 ///< what its preset gives with its car
+    std::map<std::string, std::string> later;  ///< live changes since then: key and text
+  };
+
+  [[nodiscard]] const scenario::Scenario& shown_scenario() const {
+    return building_ ? building_->run.scenario : scenario_;
+  }
+  [[nodiscard]] bool is_offered(const protocol::Parameter& row) const;
+  [[nodiscard]] Result<void> set_control(const protocol::Control& control,
+                                         const protocol::foxglove::ParameterValue& value);
+  [[nodiscard]] Result<void> set_row(const protocol::Parameter& row,
+                                     const protocol::foxglove::ParameterValue& value);
+  [[nodiscard]] Result<void> change_live(const protocol::Parameter& row, const std::string& text);
+  [[nodiscard]] Result<void> start_anew(std::string_view key, const std::string& value,
+                                        scenario::Scenario changed);
+  void hand_over(Building building);
+  void hand_over_controls();
+  [[nodiscard]] Result<void> send(std::string_view name, std::string_view value, bool starts_anew);
+
+  LiveSettingsOptions options_;
+  run::ChangeQueue& wishes_;
+  run::ChangeQueue told_;
+  scenario::Scenario scenario_;
+  scenario::Scenario base_;  ///< what its preset gives with its car
+  std::optional<Building> building_;
+  std::vector<protocol::Control> controls_;
+  std::map<std::string, protocol::Value, std::less<>> control_values_;
+  std::vector<protocol::foxglove::Parameter> shown_;  ///< as news() told last
+  bool has_news_ = false;
+};
+
+}  // namespace chicane::live

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/live/pages.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace chicane::live {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::function<net::Content()> mode_page(const Json& mode) {
+  return [text = mode.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"] {
+    return net::Content{.content_type = "application/json", .bytes = text};
+  };
+}
+
+}  // namespace
+
+wire::Pages live_pages() { return {{"/mode.json", mode_page({{"mode", "live"}})}}; }
+
+wire::Pages live_pages(const LiveSettings& settings) {
+  wire::Pages pages = live_pages();
+  pages["/schema.json"] = [&settings] {
+    return net::Content{.content_type = "application/json", .bytes = settings.schema_json()};
+  };
+  pages["/preset.yaml"] = [&settings] {
+    return net::Content{
+        .content_type = "application/yaml", .bytes = settings.preset_yaml(), .save_as = "preset.yaml"};
+  };
+  return pages;
+}
+
+wire::Pages replay_pages(const std::vector<ServedLog>& logs, double start) {
+  wire::Pages pages;
+  Json list = Json::array();
+  for (const ServedLog& log : logs) {
+    std::string url = fmt::format("/log/{}.mcap", list.size());
+    list.push_back({{"name", log.name}, {"url", url}});
+    pages[std::move(url)] = [file = log.file] {
+      return net::Content{.content_type = "application/octet-stream", .file = file};
+    };
+  }
+  pages["/mode.json"] = mode_page({{"mode", "replay"}, {"logs", std::move(list)}, {"start_s", start}});
+  return pages;
+}
+
+}  // namespace chicane::live

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "chicane/live/live_settings.hpp"
+#include "chicane/wire/endpoint.hpp"
+
+namespace chicane::live {
+
+/// A recording for the dashboard to open.
+struct ServedLog {
+  std::string name;  ///< for people: "run.mcap", "branch at 12.0 s"
+  std::string file;
+};
+
+/// GET /mode.json of a run that is going on: {"mode":"live"}.
+[[nodiscard]] wire::Pages live_pages();
+/// The same, /schema.json and /preset.yaml of its settings, which must outlive the server.
+[[nodiscard]] wire::Pages live_pages(const LiveSettings& settings);
+/// GET /mode.json that names the logs, and each of them as /log/0.mcap, /log/1.mcap, ...; `start` is where
+/// the dashboard's time line begins [s].
+[[nodiscard]] wire::Pages replay_pages(const std::vector<ServedLog>& logs, double start);
+
+}  // namespace chicane::live

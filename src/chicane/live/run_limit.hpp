@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chicane/lap_time/limit_answer.hpp"
+#include "chicane/live/limit_search.hpp"
+#include "chicane/path/track.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/metrics.hpp"
+
+namespace chicane::live {
+
+/// The limit of the run that goes on, whoever drives and whoever simulates: searched beside it, told to
+/// viewers and recordings when it is known, and set beside the laps at the end. One thread, the control
+/// thread, but for `on_news`.
+class RunLimit {
+ public:
+  /// `on_news` hears, mostly on another thread, what a search has found and what no longer holds; may be
+  /// empty. It must stay callable as long as this lives.
+  explicit RunLimit(std::function<void(const lap_time::LimitAnswer&)> on_news = {})
+      : on_news_{std::move(on_news)} {}
+  ~RunLimit();
+  RunLimit(const RunLimit&) = delete;
+  RunLimit& operator=(const RunLimit&) = delete;
+
+  /// What viewers are told of a run on this road until there are news. An open road has no laps, nor a limit.
+  [[nodiscard]] static lap_time::LimitAnswer first_answer(const path::Track& track);
+  /// Another run: forgets the one before, and begins to search where the road is closed. Does not wait.
+  void search(const path::Track& track, const scenario::Scenario& scenario);
+  /// After each control cycle of a run whose settings change while it goes on: with another grip or mass of
+  /// the car, what was found no longer holds. Says so, and searches again for the laps that begin from then
+  /// on, once they have stood still for a moment. Does not wait.
+  void follow(const scenario::Scenario& now, const telemetry::Frame& frame);
+  /// A run whose limit cannot be known, because `why`.
+  void give_up(std::string why);
+
+  /// What is known now, once; null when there is nothing new. Neither waits nor allocates.
+  [[nodiscard]] std::shared_ptr<const lap_time::LimitAnswer> news() noexcept;
+  /// A search goes on.
+  [[nodiscard]] bool is_searching() const noexcept {
+    return begins_at_ || (search_ != nullptr && !search_->has_ended());
+  }
+
+  /// A search goes on, and there are laps to set beside what it will find.
+  [[nodiscard]] bool is_awaited(const telemetry::RunSummary& run) const noexcept;
+
+  /// No more news: ends a search that goes on. Does not wait.
+  void end();
+  /// The run has ended: sets its laps beside the limit, or says why not. Waits while is_awaited(), until
+  /// `wants_stop`.
+  void compare(telemetry::RunSummary& run, const std::atomic<bool>& wants_stop);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void begin();
+  void retire();
+  void tell(lap_time::LimitAnswer answer);
+
+  std::function<void(const lap_time::LimitAnswer&)> on_news_;
+  std::shared_ptr<const lap_time::LimitAnswer> answer_;  ///< while a search goes on: written by it
+  std::atomic<bool> has_news_{false};                    ///< it may be read
+  std::optional<path::Track> track_;            ///< of the run; none where there is nothing to search
+  scenario::Scenario scenario_;                 ///< its car, with the grip and mass of the newest search
+  int first_lap_ = 1;                           ///< LimitAnswer::first_lap
+  std::optional<Clock::time_point> begins_at_;  ///< the next search, when nothing changes until then
+  std::unique_ptr<LimitSearch> search_;
+  std::vector<std::unique_ptr<LimitSearch>> retired_;  ///< cancelled, and not ended yet
+};
+
+}  // namespace chicane::live

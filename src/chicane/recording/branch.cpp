@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/recording/branch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <variant>
+
+#include "chicane/base/math.hpp"
+#include "chicane/protocol/fault_codec.hpp"
+#include "chicane/protocol/schema.hpp"
+#include "chicane/recording/reader.hpp"
+#include "chicane/recording/recorder.hpp"
+
+namespace chicane::recording {
+namespace {
+
+bool is_same(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+/// What was measured and sent tells of everything before it, plant and controller: a difference anywhere
+/// shows up here.
+bool is_same(const telemetry::Frame& frame, const protocol::Step& step) {
+  const model::Measurement &now = frame.measurement, &then = step.measurement;
+  const model::Command &sent = frame.result.command, &sent_then = step.command;
+  return is_same(now.x, then.x) && is_same(now.y, then.y) && is_same(now.psi, then.psi) &&
+         is_same(now.speed, then.speed) && is_same(now.steer, then.steer) &&
+         is_same(now.throttle, then.throttle) && is_same(sent.steer, sent_then.steer) &&
+         is_same(sent.throttle, sent_then.throttle);
+}
+
+/// What a future comes to, from its frames.
+class FutureMeter {
+ public:
+  void add(const telemetry::Frame& frame) {
+    if (count_ == 0) {
+      start_ = frame.time;
+      laps_ = frame.completed_lap.lap;
+      events_ = frame.off_track_events;
+    }
+    if (frame.completed_lap.lap > laps_) future_.lap_times.push_back(frame.completed_lap.lap_time);
+    laps_ = frame.completed_lap.lap;
+    // What the car did, not what it was told: sensors may fail.
+    const double speed = frame.has_truth ? hypot(frame.truth.vx, frame.truth.vy) : frame.measurement.speed;
+    future_.duration = frame.time - start_;
+    future_.max_lateral_error = std::max(future_.max_lateral_error, std::fabs(frame.lateral_error));
+    future_.min_edge_distance =
+        count_ == 0 ? frame.edge_distance : std::min(future_.min_edge_distance, frame.edge_distance);
+    future_.top_speed = std::max(future_.top_speed, speed);
+    future_.off_track_events = frame.off_track_events - events_;
+    ++count_;
+    speed_sum_ += speed;
+    future_.mean_speed = speed_sum_ / static_cast<double>(count_);
+  }
+  [[nodiscard]] Future future() const {
+    Future future = future_;
+    if (count_ == 0) future.min_edge_distance = std::numeric_limits<double>::quiet_NaN();
+    return future;
+  }
+
+ private:
+  Future future_;
+  std::uint64_t count_ = 0;
+  double start_ = 0.0;
+  double speed_sum_ = 0.0;
+  int laps_ = 0;
+  int events_ = 0;
+};
+
+/// A run that is computed again, step by recorded step.
+class Rebuilt {
+ public:
+  Result<void> begin(const scenario::Scenario& scenario) {
+    auto loop = run::ClosedLoop::create(scenario);
+    if (!loop) return fail(loop.error());
+    loop_ = std::move(*loop);
+    loop_->drive_on();
+    return {};
+  }
+  /// A fault that begins or ends by itself is in the recording too, after the step that showed it: the run
+  /// that is computed again has it already.
+  void apply(const telemetry::Change& change) {
+    const std::vector<protocol::Control> faults = protocol::fault_controls();
+    for (std::size_t i = 0; i < faults.size(); ++i) {
+      const bool is_on = (loop_->frame().active_faults >> i & 1U) != 0U;
+      if (faults[i].key == change.name.view() && is_on == (change.value.view() == "true")) return;
+    }
+    while (!loop_->is_control_due()) static_cast<void>(loop_->advance());  // changes come between two cycles
+    loop_->apply(change);
+  }
+  const telemetry::Frame& follow(const protocol::Step& step) {
+    if (step.begins && loop_->cycle() > 0) loop_->restart();
+    const run::GivenStep given{.delay = step.measurement.delay, .deadline_spent_at = step.deadline_spent_at};
+    while (!loop_->advance(given)) {
+    }
+    return loop_->frame();
+  }
+  [[nodiscard]] run::ClosedLoop& loop() { return *loop_; }
+
+ private:
+  std::unique_ptr<run::ClosedLoop> loop_;
+};
+
+class Branching {
+ public:
+  Branching(const BranchOptions& options, const BranchHooks& hooks) : options_{options}, hooks_{hooks} {}
+
+  Result<BranchReport> run() {
+    RecordingHead head;
+    const auto read = read_recording(options_.log, head, [&](const RecordedEvent& event) -> Result<void> {
+      if (head["mode"] == "serve") {
+        return fail(ErrorCode::kInvalidArgument,
+                    options_.log +
+                        ": mode: got serve, expected drive: the car of an external simulator is not "
+                        "here to drive on");
+      }
+      return std::visit([this](const auto& one) { return take(one); }, event);
+    });
+    if (!read) return fail(read.error());
+    if (!has_branched_) {
+      return fail(ErrorCode::kInvalidArgument,
+                  fmt::format("--branch-at: got {}, expected a moment in [0, {:.2f}] s, which was recorded",
+                              options_.at, last_log_time_));
+    }
+    if (Result<void> done = drive_on(); !done) return fail(done.error());
+    report_.recorded = recorded_.future();
+    report_.branched = branched_.future();
+    return report_;
+  }
+
+ private:
+  Result<void> take(const scenario::Scenario& scenario) {
+    if (Result<void> begun = first_.begin(scenario); !begun) return begun;
+    if (has_branched_) return {};
+    if (Result<void> begun = second_.begin(scenario); !begun) return begun;
+    return hooks_.on_begin ? hooks_.on_begin(second_.loop()) : Result<void>{};
+  }
+
+  Result<void> take(const telemetry::Change& change) {
+    first_.apply(change);
+    if (!has_branched_) change_second(change);
+    return {};
+  }
+
+  Result<void> take(const RecordedStep& recorded) {
+    last_log_time_ = recorded.log_time;
+    if (!has_branched_ && recorded.log_time >= options_.at - 1e-9) {
+      if (Result<void> branched = branch(recorded); !branched) return branched;
+    }
+    const telemetry::Frame& frame = first_.follow(recorded.step);
+    if (!report_.first_difference && !is_same(frame, recorded.step)) {
+      report_.first_difference = recorded.step.cycle;
+    }
+    if (has_branched_) {
+      const double limit = options_.duration > 0.0 ? options_.duration : kForever;
+      if (recorded.log_time - report_.at <= limit + 1e-9) recorded_.add(frame);
+      return {};
+    }
+    ++report_.steps_before;
+    static_cast<void>(second_.follow(recorded.step));
+    if (hooks_.on_frame) hooks_.on_frame(second_.loop().frame());
+    return {};
+  }
+
+  Result<void> branch(const RecordedStep& recorded) {
+    has_branched_ = true;
+    report_.at = recorded.log_time;
+    report_.cycle = recorded.step.cycle;
+    run::ClosedLoop& loop = second_.loop();
+    if (recorded.step.begins && loop.cycle() > 0) loop.restart();
+    scenario::Scenario changed = loop.scenario();
+    for (const auto& [key, text] : options_.settings) {
+      if (Result<void> set = check(key, text, changed); !set) return set;
+      change_second({.cycle = loop.cycle(),
+                     .time = loop.time(),
+                     .name = std::string_view(key),
+                     .value = std::string_view(text)});
+    }
+    for (const protocol::Contradiction& found : protocol::contradictions(changed)) {
+      return fail(ErrorCode::kInvalidArgument, fmt::format("{}: {}", found.key, found.message));
+    }
+    return {};
+  }
+
+  /// May this change while a run goes on? Settings are set in `scenario`, too.
+  static Result<void> check(const std::string& key, const std::string& text, scenario::Scenario& scenario) {
+    const std::vector<protocol::Control> faults = protocol::fault_controls();
+    const bool is_fault = std::any_of(faults.begin(), faults.end(),
+                                      [&](const protocol::Control& fault) { return fault.key == key; });
+    if (is_fault && (text == "true" || text == "false")) return {};
+    if (is_fault) {
+      return fail(ErrorCode::kInvalidArgument,
+                  fmt::format("{}: got {}, expected true or false", key, protocol::quoted(text)));
+    }
+    const protocol::Parameter* row = protocol::find(key);
+    if (row != nullptr && !protocol::is_live(*row)) {
+      return fail(ErrorCode::kInvalidArgument,
+                  key +
+                      ": got a change while the run goes on, expected a setting that can change then "
+                      "(docs/viewer.md)");
+    }
+    if (!decltype(telemetry::Change::value)::fits(text))
+      return fail(ErrorCode::kInvalidArgument, key + ": is too long");
+    return protocol::set_text(scenario, key, text);
+  }
+
+  void change_second(const telemetry::Change& change) {
+    second_.apply(change);
+    if (hooks_.on_change) hooks_.on_change(change);
+  }
+
+  /// The second future, in virtual time.
+  Result<void> drive_on() {
+    run::ClosedLoop& loop = second_.loop();
+    const double rest = last_log_time_ - report_.at;
+    const bool has_laps_only = options_.laps > 0 && options_.duration == 0.0;
+    const double duration = options_.duration > 0.0 ? options_.duration : has_laps_only ? kForever : rest;
+    while (!loop.is_control_due()) static_cast<void>(loop.advance());
+    const double start = loop.time();
+    while (true) {
+      if (loop.is_over()) {
+        report_.end_reason = "the car left the road and did not come back";
+        return {};
+      }
+      if (options_.laps > 0 && loop.world().lap >= options_.laps) return {};
+      if (loop.is_control_due() && loop.time() - start > duration + 1e-6) return {};
+      if (!loop.advance()) continue;
+      branched_.add(loop.frame());
+      if (hooks_.on_frame) hooks_.on_frame(loop.frame());
+      if (loop.time() - start > kLongest) {
+        report_.end_reason = "the laps were not driven within an hour";
+        return {};
+      }
+    }
+  }
+
+  static constexpr double kForever = std::numeric_limits<double>::infinity();
+  static constexpr double kLongest = 3600.0;  // [s] without a given duration
+
+  const BranchOptions& options_;
+  const BranchHooks& hooks_;
+  Rebuilt first_, second_;
+  FutureMeter recorded_, branched_;
+  BranchReport report_;
+  bool has_branched_ = false;
+  double last_log_time_ = 0.0;  // [s]
+};
+
+}  // namespace
+
+Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks) {
+  return Branching(options, hooks).run();
+}
+
+}  // namespace chicane::recording

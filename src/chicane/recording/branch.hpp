@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "chicane/telemetry/frame.hpp"
+
+namespace chicane::recording {
+
+/// A recorded run that goes on otherwise from a moment on.
+struct BranchOptions {
+  std::string log{};
+  double at = 0.0;                                              ///< on the recording's time line [s]
+  std::vector<std::pair<std::string, std::string>> settings{};  ///< as --set takes them; empty: no change
+  double duration = 0.0;  ///< from `at` on [s]; 0: to the end of the recording, or `laps`
+  int laps = 0;           ///< until so many laps of the run are completed; 0: no matter
+};
+
+/// One future, from the moment of the branch on.
+struct Future {
+  double duration = 0.0;            ///< [s]
+  std::vector<double> lap_times{};  ///< of laps completed in it [s]
+  double max_lateral_error = 0.0;   ///< [m]
+  double min_edge_distance = 0.0;   ///< signed, of the outermost tyre [m]; NaN without a control step
+  double mean_speed = 0.0;          ///< [m/s]
+  double top_speed = 0.0;           ///< [m/s]
+  int off_track_events = 0;
+};
+
+struct BranchReport {
+  double at = 0.0;                 ///< where it begins: the first control step from there on [s]
+  std::uint64_t cycle = 0;         ///< that control step, in its run
+  std::uint64_t steps_before = 0;  ///< computed again on the way to it
+  /// The first of all recorded steps that did not come out bit for bit as recorded: from there on the first
+  /// future is what this program computes, not what was.
+  std::optional<std::uint64_t> first_difference{};
+  Future recorded{};
+  Future branched{};
+  std::string end_reason{};  ///< why the branch ended before its time; empty when it did not
+};
+
+/// What listens to the second future, whole: the recorded run up to the branch, and what comes then.
+struct BranchHooks {
+  std::function<Result<void>(const run::ClosedLoop&)> on_begin{};  ///< of each run in the recording
+  std::function<void(const telemetry::Change&)> on_change{};
+  std::function<void(const telemetry::Frame&)> on_frame{};
+};
+
+/// Computes a recorded run of `drive` again from its start, controller and plant, and drives on from
+/// `options.at` with other settings, in virtual time. Fails with kInvalidArgument when the moment is not in
+/// the recording, a setting is unknown, out of range or cannot change in a run that goes on, or when the
+/// recording is not of our simulator.
+[[nodiscard]] Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks);
+
+}  // namespace chicane::recording

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/recording/html_report.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "chicane/recording/excerpt.hpp"
+#include "chicane/recording/temporary_file.hpp"
+
+namespace chicane::recording {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// What the dashboard draws of a log. The standard messages beside them say the same to other viewers.
+const std::vector<std::string> kTopics{"/chicane/frame",  "/chicane/plan", "/chicane/run", "/chicane/lap",
+                                       "/chicane/change", "/track/left",   "/track/right", "/track/centre"};
+constexpr std::array kRates{10.0, 5.0, 2.0, 1.0};  // [Hz]
+
+// The dashboard's files are gzip-compressed in the program, and stay so in the page: every browser unpacks
+// them. Base64 has no character that means anything in HTML.
+constexpr std::string_view kHead = R"(<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; style-src 'unsafe-inline'; img-src data: blob:; worker-src blob:; connect-src data: blob:; font-src data:">
+<title>chicane report</title>
+<link rel="icon" href="data:,">
+</head>
+<body>
+<div id="app"></div>
+<noscript>This report draws recorded runs with JavaScript.</noscript>
+)";
+constexpr std::string_view kStart = R"(<script>
+(async () => {
+  try {
+    const text = async (id) => {
+      const bytes = Uint8Array.from(atob(document.getElementById(id).textContent.trim()), (c) => c.charCodeAt(0));
+      const plain = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
+      return new Response(plain).text();
+    };
+    const add = (name, content, type) => {
+      const element = document.createElement(name);
+      if (type) element.type = type;
+      element.textContent = content;
+      document.head.append(element);
+    };
+    add('style', await text('chicane-style'));
+    add('script', await text('chicane-program'), 'module');
+  } catch (fault) {
+    document.getElementById('app').textContent =
+      'This report needs a browser of 2023 or later: Chrome 80, Firefox 113, Safari 16.4. (' + fault + ')';
+  }
+})();
+</script>
+</body>
+</html>
+)";
+
+Result<std::string> read_all(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << stream.rdbuf();
+  if (!stream) return fail(ErrorCode::kIo, file + ": cannot be read: " + std::strerror(errno));
+  return std::move(bytes).str();
+}
+
+/// {"logs":[{"name":…,"mcap_base64":…}]}, safe inside a script element.
+Result<std::string> logs_json(const ReportOptions& options, double rate) {
+  Json logs = Json::array();
+  std::size_t bytes = 0;
+  for (const ReportedLog& log : options.logs) {
+    const TemporaryFile thinned(".mcap");
+    const auto read = excerpt(log.file, thinned.path(), {.topics = kTopics, .rate = rate});
+    if (!read) return fail(read.error());
+    if (read->messages == 0) {
+      return fail(ErrorCode::kParse,
+                  fmt::format("{}: has none of the topics that chicane records", log.name));
+    }
+    const Result<std::string> content = read_all(thinned.path());
+    if (!content) return fail(content.error());
+    bytes += content->size();
+    if (bytes > options.most_bytes) return std::string{};
+    logs.push_back({{"name", log.name}, {"mcap_base64", base64(*content)}});
+  }
+  const Json object{{"logs", std::move(logs)}};
+  std::string text = object.dump(-1, ' ', false, Json::error_handler_t::replace);
+  // The one way out of a script element, or into a comment that hides its end, begins with this character.
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += 6) {
+    text.replace(at, 1, "\\u003c");
+  }
+  return text;
+}
+
+Result<void> write_all(const std::string& file, std::initializer_list<std::string_view> parts) {
+  const std::string unfinished = fmt::format("{}.{}", file, ::getpid());
+  std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
+  for (const std::string_view part : parts) {
+    stream.write(part.data(), static_cast<std::streamsize>(part.size()));
+  }
+  stream.close();
+  std::error_code error;
+  if (stream) std::filesystem::rename(unfinished, file, error);
+  if (stream && !error) return {};
+  const std::string why = error ? error.message() : std::strerror(errno);
+  std::filesystem::remove(unfinished, error);
+  return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, why));
+}
+
+}  // namespace
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](std::size_t at) -> std::uint32_t {
+      return at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0U;
+    };
+    const std::uint32_t three = byte(i) << 16U | byte(i + 1) << 8U | byte(i + 2);
+    for (unsigned digit = 0; digit < 4; ++digit) {
+      const bool is_padding = i + digit > bytes.size();
+      text.push_back(is_padding ? '=' : kDigits[three >> (18U - 6U * digit) & 63U]);
+    }
+  }
+  return text;
+}
+
+Result<ReportSummary> write_report(const ReportOptions& options) {
+  if (options.bundle.script.empty()) {
+    return fail(
+        ErrorCode::kNotFound,
+        "report: this program was built without its dashboard: install Node.js and npm, and build again");
+  }
+  for (const double rate : kRates) {
+    const Result<std::string> logs = logs_json(options, rate);
+    if (!logs) return fail(logs.error());
+    if (logs->empty()) continue;
+    const std::string program = base64(options.bundle.script), style = base64(options.bundle.style);
+    const Result<void> written =
+        write_all(options.output, {kHead, "<script type=\"application/json\" id=\"chicane-report\">", *logs,
+                                   "</script>\n<script type=\"text/plain\" id=\"chicane-style\">", style,
+                                   "</script>\n<script type=\"text/plain\" id=\"chicane-program\">", program,
+                                   "</script>\n", kStart});
+    if (!written) return fail(written.error());
+    return ReportSummary{.bytes = kHead.size() + logs->size() + program.size() + style.size() + kStart.size(),
+                         .rate = rate};
+  }
+  return fail(ErrorCode::kInvalidArgument,
+              fmt::format("report: got more than {} MiB of logs at one message a second, expected shorter or "
+                          "fewer recordings",
+                          options.most_bytes >> 20U));
+}
+
+}  // namespace chicane::recording

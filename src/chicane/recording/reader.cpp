@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/recording/reader.hpp"
+
+#include <array>
+#include <utility>
+
+#include "chicane/base/instruction_set.hpp"
+#include "chicane/protocol/yaml_codec.hpp"
+#include "chicane/recording/recorder.hpp"
+
+namespace chicane::recording {
+namespace {
+
+/// From now on controllers round as they did in the recording.
+Result<void> choose_arithmetic(const std::string& wanted, const std::string& path) {
+  if (wanted.empty() || arithmetic(chosen_instruction_set()) == wanted) return {};
+  using enum InstructionSet;
+  for (const InstructionSet set : {kAvx512, kAvx2, kNeon, kBaseline}) {
+    if (!is_available(set) || arithmetic(set) != wanted) continue;
+    choose_instruction_set(set);
+    return {};
+  }
+  return fail(ErrorCode::kInvalidArgument,
+              path + ": arithmetic: got \"" + wanted + "\", expected \"" +
+                  std::string(arithmetic(chosen_instruction_set())) +
+                  "\", which is all that this processor has: use one like that it was recorded on");
+}
+
+Result<scenario::Scenario> parse_scenario(std::string_view yaml, const std::string& file) {
+  const Result<protocol::Document> document = protocol::parse_document(yaml, file);
+  if (!document) return fail(document.error());
+  scenario::Scenario scenario;
+  const std::array layers{*document};
+  if (Result<void> applied = protocol::apply_layers(layers, scenario); !applied) return fail(applied.error());
+  return scenario;
+}
+
+class RecordingReader {
+ public:
+  RecordingReader(const std::string& path, RecordingHead& head,
+                  const std::function<Result<void>(const RecordedEvent&)>& visit)
+      : path_{path}, head_{head}, visit_{visit} {}
+
+  Result<telemetry::McapReport> read() {
+    Result<telemetry::McapReport> report = telemetry::read_mcap(
+        path_,
+        {.on_message = [this](const telemetry::McapMessage& message) { take(message); },
+         .on_attachment = [this](std::string_view name, std::string_view bytes) { take(name, bytes); },
+         .on_metadata = [this](std::string_view name,
+                               const std::map<std::string, std::string>& entries) { take(name, entries); }});
+    if (!report) return report;
+    if (!state_) return fail(state_.error());
+    if (!has_scenario_) {
+      return fail(ErrorCode::kParse,
+                  path_ + ": " + kRecordedScenario + ": got none, expected a recording of chicane");
+    }
+    report->damaged += damaged_;
+    return report;
+  }
+
+ private:
+  void take(const telemetry::McapMessage& message) {
+    if (!state_ || !has_scenario_) return;
+    if (message.channel.topic == protocol::kChangeTopic) {
+      const auto change = protocol::decode_change(message.bytes);
+      if (!change) ++damaged_;
+      if (change) state_ = visit_(*change);
+    } else if (message.channel.topic == protocol::kStepTopic) {
+      const auto step = protocol::decode_step(message.bytes);
+      if (!step) ++damaged_;
+      if (step) state_ = visit_(RecordedStep{*step, 1e-9 * static_cast<double>(message.log_time)});
+    }
+  }
+
+  void take(std::string_view name, std::string_view bytes) {
+    if (name != kRecordedScenario || !state_) return;
+    const Result<scenario::Scenario> scenario = parse_scenario(bytes, path_ + ":" + kRecordedScenario);
+    has_scenario_ = true;
+    state_ = scenario ? visit_(*scenario) : fail(scenario.error());
+  }
+
+  void take(std::string_view name, const std::map<std::string, std::string>& entries) {
+    if (name != kRecordedRun || !state_) return;
+    head_.entries.clear();
+    head_.entries.insert(entries.begin(), entries.end());
+    state_ = choose_arithmetic(head_["arithmetic"], path_);
+    if (head_["mode"] == kSimulateMode) {
+      state_ = fail(ErrorCode::kInvalidArgument,
+                    path_ +
+                        ": mode: got simulate, expected drive or serve: the commands came from another "
+                        "program, and are not ours to compute");
+    }
+  }
+
+  const std::string& path_;
+  RecordingHead& head_;
+  const std::function<Result<void>(const RecordedEvent&)>& visit_;
+  Result<void> state_;
+  bool has_scenario_ = false;
+  std::uint64_t damaged_ = 0;
+};
+
+}  // namespace
+
+Result<telemetry::McapReport> read_recording(const std::string& path, RecordingHead& head,
+                                             const std::function<Result<void>(const RecordedEvent&)>& visit) {
+  return RecordingReader(path, head, visit).read();
+}
+
+}  // namespace chicane::recording

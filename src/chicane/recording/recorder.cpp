@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/recording/recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <utility>
+
+#include "chicane/base/instruction_set.hpp"
+#include "chicane/protocol/step_codec.hpp"
+#include "chicane/protocol/yaml_codec.hpp"
+
+namespace chicane::recording {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto kFlushEvery = std::chrono::milliseconds(50);
+constexpr auto kNap = std::chrono::milliseconds(2);
+constexpr auto kWait = std::chrono::microseconds(200);
+constexpr const char* kProgram = "chicane " CHICANE_VERSION;
+#ifdef __clang__
+constexpr const char* kCompiler = "clang " __VERSION__;
+#else
+constexpr const char* kCompiler = "gcc " __VERSION__;
+#endif
+
+}  // namespace
+
+Result<std::unique_ptr<Recorder>> Recorder::create(RecorderOptions options) {
+  auto writer = telemetry::McapWriter::create(options.path, kProgram, options.is_compressed);
+  if (!writer) return fail(writer.error());
+  std::unique_ptr<Recorder> recorder(new Recorder(std::move(options), std::move(*writer)));
+  recorder->begin();
+  if (!recorder->state_) return fail(recorder->state_.error());
+  recorder->thread_ = std::thread([it = recorder.get()] { it->work(); });
+  return recorder;
+}
+
+Recorder::Recorder(RecorderOptions options, std::unique_ptr<telemetry::McapWriter> writer)
+    : options_{std::move(options)}, writer_{std::move(writer)}, ring_(kCapacity + kReserve) {}
+
+Recorder::~Recorder() { static_cast<void>(finish()); }
+
+Recorder::Entry* Recorder::next_entry(std::uint64_t capacity) noexcept {
+  const std::uint64_t number = put_.load(std::memory_order_relaxed);
+  while (number - taken_.load(std::memory_order_acquire) >= capacity) {
+    if (!options_.may_wait) return nullptr;
+    std::this_thread::sleep_for(kWait);
+  }
+  return &slot(number);
+}
+
+void Recorder::record(const telemetry::Frame& frame) noexcept {
+  Entry* const entry = next_entry(kCapacity);
+  if (entry == nullptr) {
+    ++left_out_;
+    return;
+  }
+  entry->frame = frame;
+  entry->has_frame = true;
+  commit();
+}
+
+void Recorder::record(const telemetry::Change& change) noexcept {
+  Entry* const entry = next_entry(kCapacity + kReserve);
+  if (entry == nullptr) {
+    ++left_out_;
+    return;
+  }
+  entry->change = change;
+  commit();
+}
+
+void Recorder::record(std::unique_ptr<const RecordedRun> run) noexcept {
+  Entry* const entry = next_entry(kCapacity + kReserve);
+  if (entry == nullptr) {
+    ++left_out_;
+    return;
+  }
+  entry->run = std::move(run);
+  commit();
+}
+
+void Recorder::record(std::shared_ptr<const lap_time::LimitAnswer> limit) noexcept {
+  Entry* const entry = next_entry(kCapacity + kReserve);
+  if (entry == nullptr) {
+    ++left_out_;
+    return;
+  }
+  entry->limit = std::move(limit);
+  commit();
+}
+
+Result<RecorderReport> Recorder::finish() {
+  wants_end_ = true;
+  if (thread_.joinable()) thread_.join();
+  if (!state_) return fail(state_.error());
+  return RecorderReport{.frames = frames_, .left_out = left_out_, .bytes = writer_->bytes_written()};
+}
+
+void Recorder::work() {
+  Clock::time_point flushed = Clock::now();
+  while (true) {
+    const bool is_last = wants_end_.load(std::memory_order_acquire);  // asked before the ring is
+    const std::uint64_t number = taken_.load(std::memory_order_relaxed);
+    const bool has_entry = number != put_.load(std::memory_order_acquire);
+    if (has_entry) {
+      write(slot(number));
+      taken_.store(number + 1, std::memory_order_release);
+    }
+    if (Clock::now() - flushed >= kFlushEvery) {
+      keep(writer_->flush());
+      flushed = Clock::now();
+    }
+    if (has_entry) continue;
+    if (is_last) break;
+    std::this_thread::sleep_for(kNap);
+  }
+  keep(writer_->close());
+}
+
+void Recorder::keep(Result<void> done) {
+  if (state_ && !done) state_ = std::move(done);
+}
+
+/// Before anything else is done: a run that is killed in its first moments still has its scenario.
+void Recorder::begin() {
+  for (const protocol::RosTopic& topic : protocol::ros_topics()) {
+    static_cast<void>(writer_->add_channel(topic.name, topic.type, topic.schema));
+  }
+  step_channel_ = writer_->add_channel(protocol::kStepTopic, protocol::kStepType, protocol::step_schema());
+  describe();
+  keep(writer_->flush());
+}
+
+/// What stays the same during a run.
+void Recorder::describe() {
+  const scenario::Scenario& scenario = options_.scenario;
+  const InstructionSet set = chosen_instruction_set();
+  keep(writer_->add_metadata(kRecordedRun, {{"program", kProgram},
+                                            {"compiler", kCompiler},
+                                            {"instruction_set", std::string(to_string(set))},
+                                            {"arithmetic", std::string(arithmetic(set))},
+                                            {"mode", options_.run.mode},
+                                            {"track", options_.run.track},
+                                            {"controller", scenario.controller},
+                                            {"preset", scenario.preset},
+                                            {"seed", fmt::format("{}", scenario.seed)},
+                                            {"step_budget_s", fmt::format("{}", options_.step_budget)}}));
+  keep(writer_->add_attachment(
+      kRecordedScenario, "application/yaml",
+      protocol::write_document(scenario, fmt::format("What was recorded by {}", kProgram), true)));
+  write(protocol::Cadence::kRun);
+  write(protocol::Cadence::kRoad);
+  if (options_.run.limit.found || !options_.run.limit.why_not.empty()) write(protocol::Cadence::kLimit);
+}
+
+/// The topics of what stays the same from frame to frame.
+void Recorder::write(protocol::Cadence cadence) {
+  const telemetry::Frame nothing;
+  std::uint16_t channel = 0;
+  for (const protocol::RosTopic& topic : protocol::ros_topics()) {
+    if (topic.cadence == cadence)
+      keep(writer_->write(channel, last_log_time_, 0, topic.encode(nothing, options_.run)));
+    ++channel;
+  }
+}
+
+void Recorder::write(Entry& entry) {
+  if (std::exchange(entry.has_frame, false)) write(entry.frame);
+  if (entry.change) write(*std::exchange(entry.change, std::nullopt));
+  if (const auto limit = std::move(entry.limit)) {
+    options_.run.limit = *limit;
+    write(protocol::Cadence::kLimit);
+  }
+  if (const auto run = std::move(entry.run)) {
+    options_.run = run->run;
+    options_.scenario = run->scenario;
+    keep(writer_->flush());  // so that all is in the file in its order
+    describe();
+  }
+}
+
+void Recorder::write(const telemetry::Change& change) {
+  const std::uint64_t time = protocol::to_nanoseconds(change.time);
+  const std::uint64_t log_time = std::max(last_log_time_, time + earlier_runs_);
+  std::uint16_t channel = 0;
+  for (const protocol::RosTopic& topic : protocol::ros_topics()) {
+    if (topic.name == protocol::kChangeTopic) {
+      keep(writer_->write(
+          channel, log_time, time,
+          protocol::encode_change(change.time, change.cycle, change.name.view(), change.value.view())));
+    }
+    ++channel;
+  }
+}
+
+void Recorder::write(const telemetry::Frame& frame) {
+  const std::uint64_t time = protocol::to_nanoseconds(frame.time);
+  if (time + earlier_runs_ < last_log_time_) {  // the run was started anew
+    earlier_runs_ = last_log_time_ + protocol::to_nanoseconds(options_.scenario.control_period) - time;
+  }
+  last_log_time_ = time + earlier_runs_;
+  std::uint16_t channel = 0;
+  for (const protocol::RosTopic& topic : protocol::ros_topics()) {
+    const bool is_lap = topic.cadence == protocol::Cadence::kLap && frame.completed_lap.lap != laps_ &&
+                        frame.completed_lap.lap > 0;
+    if (topic.cadence == protocol::Cadence::kFrame || is_lap) {
+      keep(writer_->write(channel, last_log_time_, time, topic.encode(frame, options_.run)));
+    }
+    ++channel;
+  }
+  laps_ = frame.completed_lap.lap;
+  keep(writer_->write(step_channel_, last_log_time_, time, protocol::encode_step(frame)));
+  if (state_) ++frames_;
+}
+
+}  // namespace chicane::recording

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/protocol/ros_messages.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/telemetry/change.hpp"
+#include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/mcap_writer.hpp"
+
+namespace chicane::recording {
+
+/// The names in a recording beside its channels (docs/recording.md).
+inline constexpr const char* kRecordedScenario = "scenario.yaml";  ///< attachment
+inline constexpr const char* kRecordedRun = "run";                 ///< metadata
+inline constexpr const char* kSimulateMode = "simulate";  ///< Run::mode: the controller was another's
+
+/// What stays the same from step to step.
+struct RecordedRun {
+  protocol::Run run;
+  scenario::Scenario scenario;
+};
+
+struct RecorderOptions {
+  std::string path;
+  protocol::Run run;
+  scenario::Scenario scenario;
+  bool is_compressed = false;  ///< by Zstandard: kInvalidArgument where the program was built without it
+  double step_budget = 0.0;    ///< deadline of each control step [s]; 0 = none
+  /// In virtual time a full buffer holds the run up; otherwise the newest frames are left out and counted.
+  bool may_wait = false;
+};
+
+struct RecorderReport {
+  std::uint64_t frames = 0;    ///< in the file
+  std::uint64_t left_out = 0;  ///< the disk was too slow
+  std::uint64_t bytes = 0;
+};
+
+/// Records a run as an MCAP file: all topics of protocol::ros_topics(), and every control step to the last
+/// bit (protocol/step_codec.hpp), so that verify_recording() can compute it again. What is recorded is handed
+/// to the operating system within 100 ms. A thread of its own encodes and writes; memory is bounded by 128
+/// frames and one chunk.
+class Recorder {
+ public:
+  /// Hands what describes the run to the operating system before it returns. kIo as McapWriter::create does,
+  /// and when that cannot be written.
+  [[nodiscard]] static Result<std::unique_ptr<Recorder>> create(RecorderOptions options);
+  /// finish(), if nobody called it; what fails then is not told.
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// One thread, the control thread: copies the frame, allocates nothing, and waits only with may_wait.
+  void record(const telemetry::Frame& frame) noexcept;
+  /// The same thread: a setting changed, or a fault began or ended, before the next frame.
+  void record(const telemetry::Change& change) noexcept;
+  /// The same thread: the next frame is the first of another run, with other settings; it begins at its cycle
+  /// 0. A run that only starts anew needs no word.
+  void record(std::unique_ptr<const RecordedRun> run) noexcept;
+  /// The same thread: there are news of the run's limit.
+  void record(std::shared_ptr<const lap_time::LimitAnswer> limit) noexcept;
+  /// Writes the rest and closes the file. kIo with the first thing that went wrong while recording.
+  [[nodiscard]] Result<RecorderReport> finish();
+
+ private:
+  static constexpr std::uint64_t kCapacity = 64;
+  static constexpr std::uint64_t kReserve = 64;  ///< for what is too important to be left out: no frames
+
+  /// One of the four.
+  struct Entry {
+    bool has_frame = false;
+    telemetry::Frame frame;
+    std::optional<telemetry::Change> change;
+    std::unique_ptr<const RecordedRun> run;
+    std::shared_ptr<const lap_time::LimitAnswer> limit;
+  };
+
+  Recorder(RecorderOptions options, std::unique_ptr<telemetry::McapWriter> writer);
+  [[nodiscard]] Entry* next_entry(std::uint64_t capacity) noexcept;
+  void commit() noexcept { put_.store(put_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
+  void work();
+  void begin();
+  void describe();
+  void write(Entry& entry);
+  void write(const telemetry::Change& change);
+  void keep(Result<void> done);
+  void write(const telemetry::Frame& frame);
+  void write(protocol::Cadence cadence);
+  [[nodiscard]] Entry& slot(std::uint64_t number) { return ring_[number % (kCapacity + kReserve)]; }
+
+  RecorderOptions options_;
+  std::unique_ptr<telemetry::McapWriter> writer_;
+  std::vector<Entry> ring_;
+  std::atomic<std::uint64_t> put_{0};    ///< entries put in so far; the control thread's
+  std::atomic<std::uint64_t> taken_{0};  ///< and taken out; the writing thread's
+  std::atomic<bool> wants_end_{false};
+  std::uint64_t left_out_ = 0;  ///< the control thread's
+
+  // The writing thread's, until it has ended.
+  std::uint16_t step_channel_ = 0;
+  std::uint64_t frames_ = 0;
+  int laps_ = 0;                     ///< recorded of this run
+  std::uint64_t last_log_time_ = 0;  ///< [ns]
+  std::uint64_t earlier_runs_ = 0;   ///< what log times are ahead of the run's own time [ns]
+  Result<void> state_;
+  std::thread thread_;
+};
+
+}  // namespace chicane::recording

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "chicane/base/types.hpp"
+#include "chicane/road/speed_limiter.hpp"
+
+namespace chicane::road {
+
+/// A place of a plane curve.
+struct CurvePoint {
+  Vec2 position = Vec2::Zero();  ///< in W [m]
+  Vec2 tangent = Vec2::UnitX();  ///< of length 1
+  double heading = 0.0;          ///< of the tangent [rad], continuous along the curve
+  double curvature = 0.0;        ///< [1/m], left positive
+};
+
+/// The curve between two of its places, `share` of the way along the `length` [m] between them: cubic Hermite
+/// in position and heading, linear in curvature. Error O(length⁴).
+[[nodiscard]] CurvePoint between(const CurvePoint& from, const CurvePoint& to, double length,
+                                 double share) noexcept;
+
+/// The line a controller drives by, as a table of equally spaced samples: where it is, how fast, and how far
+/// it has moved away from the line through the waypoints. Looking something up takes a division and one place
+/// of the table.
+///
+/// Memory is reserved at construction. Whoever fills it (line_planner.hpp) begins with shape().
+class ReferenceLine {
+ public:
+  struct Sample {
+    CurvePoint curve;
+    double offset = 0.0;  ///< of the line from the waypoint line, to the left [m]
+    double speed = 0.0;   ///< planned [m/s]
+    SpeedLimiter limiter = SpeedLimiter::kNone;
+  };
+  /// What the line asks at a place. Beyond an open end: straight on, everything else as at the end.
+  struct Demand {
+    double curvature = 0.0;        ///< [1/m]
+    double curvature_slope = 0.0;  ///< [1/m²]
+    double speed = 0.0;            ///< [m/s]
+    double speed_slope = 0.0;      ///< [1/s]
+    double offset = 0.0;           ///< [m]
+    SpeedLimiter limiter = SpeedLimiter::kNone;
+  };
+  /// Nearest place to a point.
+  struct Projection {
+    double s = 0.0;
+    double d = 0.0;         ///< signed distance, left positive [m]
+    double distance = 0.0;  ///< |point − nearest place| [m]: more than |d| beyond an open end
+  };
+
+  explicit ReferenceLine(int capacity) { samples_.resize(static_cast<std::size_t>(capacity)); }
+
+  void clear() noexcept { count_ = 0; }
+  /// Makes room for samples 0..intervals at s = i · length / intervals. A closed line has its first sample
+  /// once more as its last, a lap later. False, and cleared, beyond the capacity.
+  [[nodiscard]] bool shape(double length, int intervals, bool is_closed) noexcept;
+  [[nodiscard]] std::span<Sample> samples() noexcept { return {samples_.data(), count_}; }
+  [[nodiscard]] std::span<const Sample> samples() const noexcept { return {samples_.data(), count_}; }
+
+  [[nodiscard]] bool is_empty() const noexcept { return count_ < 2; }
+  [[nodiscard]] bool is_closed() const noexcept { return is_closed_; }
+  [[nodiscard]] double length() const noexcept { return length_; }
+  [[nodiscard]] double spacing() const noexcept { return spacing_; }
+
+  /// Any s: wrapped when closed, straight on beyond open ends. The heading goes on beyond the first lap. Pre:
+  /// not empty.
+  [[nodiscard]] CurvePoint at(double s) const noexcept;
+  [[nodiscard]] Demand demand(double s) const noexcept;
+  /// Among all samples, O(n); pre: not empty, finite.
+  [[nodiscard]] Projection project(const Vec2& point) const noexcept;
+  /// Within `window` [m] before and after `guess`.
+  [[nodiscard]] Projection project(const Vec2& point, double guess, double window) const noexcept;
+
+ private:
+  struct Place {
+    std::size_t index = 0;  ///< of the sample before
+    double share = 0.0;     ///< of the way to the next
+    double beyond = 0.0;    ///< open end [m], or whole laps [m]
+  };
+  [[nodiscard]] Place place(double s) const noexcept;
+  [[nodiscard]] Projection refine(const Vec2& point, std::size_t nearest) const noexcept;
+
+  std::vector<Sample> samples_;
+  std::size_t count_ = 0;
+  double length_ = 0.0;
+  double spacing_ = 1.0;
+  bool is_closed_ = false;
+};
+
+}  // namespace chicane::road

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/road/road.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace chicane::road {
+namespace {
+
+constexpr int kRoundTheSeam = 90;                  // knots are enough until the lap is planned
+constexpr int kSeam = WaypointLine::kSettled + 1;  // waypoint where laps begin: drawn with others before it
+
+}  // namespace
+
+Road::Road(const RoadOptions& options, const model::VehicleParams& vehicle)
+    : options_{options},
+      vehicle_{vehicle},
+      stretch_planner_{kStretchKnots},
+      lap_planner_{WaypointLine::kCapacity},
+      stretch_{LinePlanner::samples_for(kStretchKnots)},
+      laps_{ReferenceLine{LinePlanner::samples_for(WaypointLine::kCapacity)},
+            ReferenceLine{LinePlanner::samples_for(WaypointLine::kCapacity)}} {
+  configure_planners();
+}
+
+void Road::configure_planners() noexcept {
+  const LinePlannerOptions line{.smoothing_width = options_.smoothing_width, .speed = options_.speed};
+  stretch_planner_.configure(line, vehicle_);
+  lap_planner_.configure(line, vehicle_);
+}
+
+void Road::reset() noexcept {
+  map_.clear();
+  generation_ = map_.generation();
+  waypoints_.clear();
+  stretch_.clear();
+  is_lap_ = is_lap_begun_ = false;
+  ++revision_;
+}
+
+void Road::configure(const RoadOptions& options, const model::VehicleParams& vehicle) noexcept {
+  if (options == options_ && vehicle == vehicle_) return;
+  options_ = options;
+  vehicle_ = vehicle;
+  configure_planners();
+  is_lap_begun_ = false;
+  if (is_lap_) {
+    plan_lap(1);
+  } else if (waypoints_.newest() >= 0) {
+    plan_stretch();
+  }
+}
+
+void Road::add(const model::Measurement& now) noexcept {
+  if (!options_.remember_waypoints && !map_.points().empty()) {
+    const bool is_new =
+        now.waypoint_count > 0 && (map_.points().front() - now.waypoints[0]).norm() > WaypointMap::kSame;
+    if (is_new) map_.clear();
+  }
+  if (!is_lap_ && waypoints_.is_full()) map_.clear();
+  const bool has_grown = map_.add(now);
+  const int shares = shares_until(now.time);
+  if (map_.generation() != generation_) {
+    generation_ = map_.generation();
+    waypoints_.clear();
+    is_lap_ = is_lap_begun_ = false;
+  }
+  if (!map_.is_closed()) {
+    if (has_grown && waypoints_.extend(map_, static_cast<int>(map_.points().size()) - 1)) plan_stretch();
+  } else if (!is_lap_ && waypoints_.newest() < newest_needed(now)) {
+    go_round(newest_needed(now), shares);
+  } else if (!is_lap_ || is_lap_begun_) {
+    plan_lap(shares);
+  }
+}
+
+/// Shares of planning due at a measurement: who is asked rarely has the more time for each answer.
+int Road::shares_until(double time) noexcept {
+  const double shares = std::round((time - time_) / kShare);
+  time_ = time;
+  return shares >= 1.0 ? static_cast<int>(std::min(shares, static_cast<double>(kMostShares))) : 1;
+}
+
+/// The waypoint up to which the line of a closed map is drawn: on into the second lap as far as the first
+/// piece of it is settled, and as far as the car sees.
+int Road::newest_needed(const model::Measurement& now) const noexcept {
+  const int count = static_cast<int>(map_.points().size());
+  const int first = map_.first_seen() < count / 2 ? map_.first_seen() + count : map_.first_seen();
+  return std::max(count + kSeam + WaypointLine::kSettled, first + now.waypoint_count - 1);
+}
+
+/// Draws a closed map's line on round the seam, a few waypoints in each share, then the stretch anew.
+void Road::go_round(int newest, int shares) noexcept {
+  constexpr int kAtOnce = 3;
+  for (int share = 0; share < shares && waypoints_.newest() < newest; ++share) {
+    const int to = std::min(newest, waypoints_.newest() + kAtOnce);
+    if (waypoints_.extend(map_, to) && to == newest) plan_stretch();
+  }
+}
+
+void Road::plan_stretch() noexcept {
+  const int count = static_cast<int>(map_.points().size());
+  int first = map_.first_seen();
+  if (first + count <= waypoints_.newest()) first += count;
+  const double from = std::max(0.0, waypoints_.along(first) - kBehind);
+  // From one of the waypoint line's own knots: what is settled stays as it was.
+  const double knot = std::floor(from / WaypointLine::kSpacing) * WaypointLine::kSpacing;
+  const double most = (map_.is_closed() ? kRoundTheSeam : kStretchKnots - 2) * WaypointLine::kSpacing;
+  const double to = std::min(waypoints_.along(waypoints_.newest()), knot + most);
+  stretch_.clear();
+  ++revision_;
+  if (!stretch_planner_.begin(waypoints_, knot, to, false)) return;
+  (void)stretch_planner_.advance(std::numeric_limits<int>::max(), stretch_);
+}
+
+void Road::plan_lap(int shares) noexcept {
+  const std::size_t other = 1 - current_lap_;
+  if (!is_lap_begun_) {
+    const int count = static_cast<int>(map_.points().size());
+    is_lap_begun_ = true;
+    if (!lap_planner_.begin(waypoints_, waypoints_.along(kSeam), waypoints_.along(kSeam + count), true)) {
+      is_lap_begun_ = false;
+      return;
+    }
+  }
+  if (!lap_planner_.advance(shares * kLapWork, laps_[other])) return;
+  is_lap_begun_ = false;
+  if (laps_[other].is_empty()) return;
+  current_lap_ = other;
+  is_lap_ = true;
+  ++revision_;
+}
+
+}  // namespace chicane::road

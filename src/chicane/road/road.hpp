@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+
+#include "chicane/model/measurement.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/road/line_planner.hpp"
+#include "chicane/road/reference_line.hpp"
+#include "chicane/road/waypoint_line.hpp"
+#include "chicane/road/waypoint_map.hpp"
+
+namespace chicane::road {
+
+/// How a controller turns waypoints into the road it drives on.
+struct RoadOptions {
+  double half_width = 3.0;  ///< room for the centre of mass each side of the waypoint line [m]
+  double smoothing_width =
+      1.5;  ///< the reference line may leave the waypoint line by this much [m]; 0 = none
+  bool remember_waypoints = true;  ///< false: only what the last measurement shows
+  SpeedPlanOptions speed{};
+
+  friend bool operator==(const RoadOptions&, const RoadOptions&) = default;
+};
+
+/// What a controller knows of the road: waypoints remembered, a smooth reference line along them with its
+/// speeds, and the room left and right of it. All memory is reserved at construction.
+///
+/// Until a lap is known the line reaches from a little behind the car to the last waypoint seen, and is
+/// planned anew with each new one. When the loop closes, the lap is planned beside the driving, kLapWork for
+/// each kShare that has passed, and takes over when it is ready: 3 to 5 s for a lap of 1.3 km, however rarely
+/// measurements come. So add() is bounded, by about 30 µs when it is called every kShare (docs/tracking.md),
+/// and does the same work for the same measurements.
+class Road {
+ public:
+  Road(const RoadOptions& options, const model::VehicleParams& vehicle);
+  void reset() noexcept;
+  /// Other settings for the same road: what is known of it is planned anew when they differ.
+  void configure(const RoadOptions& options, const model::VehicleParams& vehicle) noexcept;
+
+  /// Takes in the waypoints of a measurement, and does this cycle's share of the planning.
+  void add(const model::Measurement& now) noexcept;
+
+  /// The reference line in W; empty while nothing is known.
+  [[nodiscard]] const ReferenceLine& line() const noexcept {
+    return is_lap_ ? laps_[current_lap_] : stretch_;
+  }
+  struct Room {
+    double left = 0.0;   ///< [m]
+    double right = 0.0;  ///< [m]
+  };
+  /// Room for the centre of mass beside the reference line where it has moved sideways by `offset` [m].
+  [[nodiscard]] Room room(double offset) const noexcept {
+    return {options_.half_width - offset, options_.half_width + offset};
+  }
+  /// Increases with every new line: positions along an older one mean nothing any more.
+  [[nodiscard]] unsigned revision() const noexcept { return revision_; }
+
+ private:
+  static constexpr double kShare = 0.04;     ///< [s] of driving that pay for one share of planning
+  static constexpr int kMostShares = 8;      ///< in one measurement, however long ago the last one is
+  static constexpr int kLapWork = 1500;      ///< units of LinePlanner in each share
+  static constexpr int kStretchKnots = 128;  ///< 380 m
+  static constexpr double kBehind = 60.0;    ///< [m] the line begins so far behind the first waypoint seen
+
+  void configure_planners() noexcept;
+  [[nodiscard]] int shares_until(double time) noexcept;
+  void go_round(int newest, int shares) noexcept;
+  void plan_stretch() noexcept;
+  void plan_lap(int shares) noexcept;
+  [[nodiscard]] int newest_needed(const model::Measurement& now) const noexcept;
+
+  RoadOptions options_;
+  model::VehicleParams vehicle_;
+  WaypointMap map_;
+  WaypointLine waypoints_;
+  LinePlanner stretch_planner_;
+  LinePlanner lap_planner_;
+  ReferenceLine stretch_;
+  std::array<ReferenceLine, 2> laps_;  ///< one to drive by, one to be planned
+  std::size_t current_lap_ = 0;
+  unsigned generation_ = 0;  ///< of the map the lines belong to
+  unsigned revision_ = 0;
+  double time_ = 0.0;          ///< of the last measurement [s]
+  bool is_lap_ = false;        ///< the current lap is driven by
+  bool is_lap_begun_ = false;  ///< the other one is being planned
+};
+
+}  // namespace chicane::road

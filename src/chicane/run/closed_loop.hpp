@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "chicane/base/result.hpp"
+#include "chicane/controller/controller.hpp"
+#include "chicane/path/track.hpp"
+#include "chicane/run/manual_drive.hpp"
+#include "chicane/safety/arrival_watch.hpp"
+#include "chicane/safety/command_gate.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/sim/actuation_delay.hpp"
+#include "chicane/sim/fault.hpp"
+#include "chicane/sim/plant.hpp"
+#include "chicane/sim/sensor.hpp"
+#include "chicane/sim/world.hpp"
+#include "chicane/telemetry/change.hpp"
+#include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/metrics.hpp"
+#include "chicane/telemetry/prediction_check.hpp"
+
+namespace chicane::run {
+
+/// Run seconds per second of the clock.
+inline constexpr double kSlowestPace = 0.05;
+inline constexpr double kFastestPace = 20.0;
+
+/// What the clock did to a recorded control step: with it, a run in real time is computed again bit for bit.
+struct GivenStep {
+  double delay = 0.0;                   ///< that was measured [s]
+  std::uint32_t deadline_spent_at = 0;  ///< DeadlineLog::spent_at
+};
+
+/// One experiment: controller against plant, in virtual time. The same object is run flat out
+/// (run_closed_loop) and paced by the clock (realtime_loop.hpp); given the same scenario it does the same,
+/// bit for bit, as long as no deadline is spent.
+///
+/// Time advances by physics steps. Every control period the plant is measured, the controller asked, its
+/// command gated and sent to act `latency` later. advance() allocates nothing. One thread.
+class ClosedLoop {
+ public:
+  /// Builds track, plant and controller. Fails as make.hpp does.
+  [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(const scenario::Scenario& scenario);
+
+  /// One physics step, preceded by a control step when one is due. True when there was a control step:
+  /// frame() is new. `budget` [s] bounds the control step; 0 = no bound.
+  bool advance(double budget = 0.0) noexcept;
+  /// The same, with the clock of a recording: `given` is what holds in the control step when one is due.
+  bool advance(const GivenStep& given) noexcept;
+  /// The next advance() begins with the control step number cycle().
+  [[nodiscard]] bool is_control_due() const noexcept { return time() >= next_control_ - 1e-9; }
+  [[nodiscard]] std::uint64_t cycle() const noexcept { return cycle_; }
+  /// A setting changes before the next control step: a key of the schema that is_live(), "run.pace",
+  /// "manual.…" or "fault.…". What was learned and what is under way stay. A change that --set would refuse
+  /// changes nothing. Allocates nothing; call it between two advance().
+  void apply(const telemetry::Change& change) noexcept;
+  /// Run seconds that were asked for per second of the clock.
+  [[nodiscard]] double pace() const noexcept { return pace_; }
+  /// Switches a fault (sim/fault.hpp) on, for its own duration and with its own strength, or off. False, and
+  /// nothing changes, for a name that is none. Call it between two advance(). What is on is in
+  /// Frame::active_faults.
+  bool set_fault(std::string_view name, bool on) noexcept;
+  /// All laps driven, the car lost, or time up.
+  [[nodiscard]] bool is_over() const noexcept { return over_; }
+  /// More laps than were asked for: is_over() only when the car is lost. Their laps are counted and
+  /// remembered like the others.
+  void drive_on();
+  /// Stands the car at the start; the controller forgets everything, the count begins anew. Allocates.
+  void restart();
+
+  [[nodiscard]] double time() const noexcept { return world_.time(); }
+  [[nodiscard]] const telemetry::Frame& frame() const noexcept { return frame_; }
+  [[nodiscard]] const path::Track& track() const noexcept { return track_; }
+  [[nodiscard]] const sim::WorldState& world() const noexcept { return world_.state(); }
+  [[nodiscard]] const scenario::Scenario& scenario() const noexcept { return scenario_; }
+  [[nodiscard]] const controller::Controller& controller() const noexcept { return *controller_; }
+  [[nodiscard]] telemetry::RunSummary summary() const;
+
+ private:
+  ClosedLoop(const scenario::Scenario& scenario, path::Track track, path::Track waypoints,
+             std::unique_ptr<sim::Plant> plant, std::unique_ptr<controller::Controller> controller);
+  void control(double budget, const GivenStep* given) noexcept;
+  void watch_faults() noexcept;
+  [[nodiscard]] model::Command acting() noexcept;
+  void fill_frame(const model::Measurement& now, double step_time) noexcept;
+  void judge() noexcept;
+
+  scenario::Scenario scenario_;
+  path::Track track_;
+  path::Track waypoints_;
+  std::unique_ptr<sim::Plant> plant_;
+  std::unique_ptr<controller::Controller> controller_;
+  sim::World world_;
+  sim::Sensor sensor_;
+  sim::ActuationDelay in_flight_;
+  safety::CommandGate gate_;
+  ManualDrive hands_;
+  double pace_ = 1.0;
+  sim::FaultLab faults_;
+  safety::ArrivalWatch arrivals_;
+  telemetry::Metrics metrics_;
+  telemetry::PredictionCheck promises_;
+  telemetry::Frame frame_;
+  std::uint64_t cycle_ = 0;
+  double next_control_ = 0.0;
+  double step_time_ = 0.0;  ///< of the control step, smoothed; 0 in virtual time [s]
+  double off_for_ = 0.0;    ///< far from the road for this long [s]
+  bool is_endless_ = false;
+  bool over_ = false;
+  std::string end_reason_;
+};
+
+/// Runs to the end as fast as the machine can. `on_frame` sees every control cycle; `stop` is asked once per
+/// cycle and ends the run with what there is.
+[[nodiscard]] telemetry::RunSummary run_closed_loop(
+    ClosedLoop& loop, const std::function<void(const telemetry::Frame&)>& on_frame = {},
+    const std::function<bool()>& stop = {});
+
+}  // namespace chicane::run

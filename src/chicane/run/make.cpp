@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/run/make.hpp"
+
+#include <string>
+#include <vector>
+
+#include "chicane/controller/tunable.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/protocol/track_codec.hpp"
+#include "chicane/sim/plant_factory.hpp"
+
+namespace chicane::run {
+namespace {
+
+constexpr double kWaypointSpacing = 12.0;  // [m] the median of the original's waypoints
+
+template <class Options>
+void configure_as(controller::Controller& controller, const Options& options,
+                  const model::VehicleParams& vehicle) noexcept {
+  if (auto* tunable = dynamic_cast<controller::Tunable<Options>*>(&controller))
+    tunable->configure(options, vehicle);
+}
+
+}  // namespace
+
+void configure(controller::Controller& controller, const scenario::Scenario& scenario) noexcept {
+  configure_as(controller, scenario.tracking_mpc, scenario.vehicle);
+  configure_as(controller, scenario.cubic_mpc, scenario.vehicle);
+  configure_as(controller, scenario.pid, scenario.vehicle);
+  configure_as(controller, scenario.pure_pursuit, scenario.vehicle);
+  configure_as(controller, scenario.stanley, scenario.vehicle);
+}
+
+Result<std::unique_ptr<controller::Controller>> make_controller(const scenario::Scenario& scenario) {
+  const model::VehicleParams& vehicle = scenario.vehicle;
+  if (scenario.controller == "tracking-mpc")
+    return controller::make_tracking_mpc(scenario.tracking_mpc, vehicle);
+  if (scenario.controller == "cubic-mpc") return controller::make_cubic_mpc(scenario.cubic_mpc, vehicle);
+  if (scenario.controller == "pid") return controller::make_pid(scenario.pid, vehicle);
+  if (scenario.controller == "pure-pursuit")
+    return controller::make_pure_pursuit(scenario.pure_pursuit, vehicle);
+  if (scenario.controller == "stanley") return controller::make_stanley(scenario.stanley, vehicle);
+  return fail(ErrorCode::kInvalidArgument,
+              "controller: got \"" + scenario.controller +
+                  "\", expected tracking-mpc, cubic-mpc, pid, pure-pursuit or stanley");
+}
+
+Result<std::unique_ptr<sim::Plant>> make_plant(const scenario::Scenario& scenario) {
+  return sim::make_plant(scenario.plant, {.friction_scale = scenario.plant_options.friction_scale,
+                                          .mass_scale = scenario.plant_options.mass_scale});
+}
+
+Result<path::Track> make_track(const scenario::Scenario& scenario) {
+  Result<std::string> file = protocol::locate(protocol::Shelf::kTrack, scenario.track);
+  if (!file) return fail(file.error());
+  return protocol::read_track(*file);
+}
+
+Result<path::Track> make_waypoints(const path::Track& track) {
+  const std::vector<path::TrackPoint>& raw = track.raw_points();
+  const double mean_spacing = track.centre().length() / static_cast<double>(raw.size());
+  if (mean_spacing > 0.6 * kWaypointSpacing) return track;
+  std::vector<path::TrackPoint> sparse{raw.front()};
+  double since = 0.0;
+  for (std::size_t i = 1; i < raw.size(); ++i) {
+    since += (raw[i].position - raw[i - 1].position).norm();
+    const bool near_end =
+        (raw[i].position - raw.front().position).norm() < 0.5 * kWaypointSpacing && i > raw.size() / 2;
+    if (since < kWaypointSpacing || near_end) continue;
+    sparse.push_back(raw[i]);
+    since = 0.0;
+  }
+  return path::Track::create(track.name(), sparse, track.centre().is_closed());
+}
+
+}  // namespace chicane::run

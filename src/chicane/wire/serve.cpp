@@ -1,0 +1,446 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/wire/serve.hpp"
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "chicane/protocol/schema.hpp"
+#include "chicane/protocol/udacity_codec.hpp"
+#include "chicane/run/make.hpp"
+#include "chicane/run/roadside.hpp"
+#include "chicane/safety/command_gate.hpp"
+#include "chicane/telemetry/prediction_check.hpp"
+
+namespace chicane::wire {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr int kMaxUnanswered = 16;           // a client in lock-step has one
+constexpr std::size_t kMaxAccepted = 16;     // upgrades that have not completed
+constexpr double kTypicalTurnAround = 0.02;  // of the original simulator [s]
+constexpr milliseconds kWatchPeriod{250};
+constexpr std::chrono::seconds kPingInterval{25};  // Engine.IO's default
+constexpr const char* kOpenPacket =
+    R"(0{"sid":"chicane","upgrades":[],"pingInterval":25000,"pingTimeout":60000,"maxPayload":65536})";
+
+double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+/// Median over the last cycles of the time from telemetry to telemetry: the control step, artificial latency,
+/// both ways through the sockets and the simulator's turn-around. A command takes effect when the next
+/// telemetry is sampled.
+class DelayMeter {
+ public:
+  explicit DelayMeter(double expected) : expected_{expected} {}
+  void reset() noexcept { count_ = 0; }
+  void add(double sample) noexcept { samples_[static_cast<std::size_t>(count_++) % kWindow] = sample; }
+  [[nodiscard]] double value() const noexcept {
+    if (count_ == 0) return expected_;
+    std::array<double, kWindow> sorted = samples_;
+    const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(
+                                          std::min<std::size_t>(static_cast<std::size_t>(count_), kWindow));
+    const auto middle = sorted.begin() + (end - sorted.begin()) / 2;
+    std::nth_element(sorted.begin(), middle, end);
+    return *middle;
+  }
+
+ private:
+  static constexpr std::size_t kWindow = 9;
+  double expected_;
+  std::array<double, kWindow> samples_{};
+  int count_ = 0;
+};
+
+/// One thing to be answered, in the order of arrival.
+struct Request {
+  enum class Kind : signed char { kTelemetry, kManual, kUnusable };
+  Kind kind = Kind::kTelemetry;
+  net::ConnectionId from = 0;
+  Clock::time_point received{};
+  model::Measurement measurement{};
+};
+
+}  // namespace
+
+/// The control thread and everything it owns.
+class UdacityEndpoint::Control {
+ public:
+  using Answer = std::function<void(const Request&, std::string text, std::chrono::nanoseconds after)>;
+
+  Control(const ServeOptions& options, controller::Controller& controller, const ServeHooks& hooks,
+          Answer answer)
+      : options_{options},
+        controller_{controller},
+        hooks_{hooks},
+        answer_{std::move(answer)},
+        scenario_{options.scenario},
+        gate_{options.vehicle},
+        delay_{seconds(options.latency) + kTypicalTurnAround},
+        roadside_{options.track, options.scenario},
+        thread_{[this] { work(); }} {}
+  ~Control() { stop(); }
+  Control(const Control&) = delete;
+  Control& operator=(const Control&) = delete;
+
+  void stop() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_stopping_ = true;
+    }
+    changed_.notify_one();
+    if (!thread_.joinable()) return;
+    thread_.join();
+    run_ = roadside_.summary();
+  }
+  /// Empty before stop().
+  [[nodiscard]] const telemetry::RunSummary& run() const { return run_; }
+
+  void push(const Request& request) {
+    {
+      const std::lock_guard lock(mutex_);
+      waiting_.push_back(request);
+    }
+    changed_.notify_one();
+  }
+
+  [[nodiscard]] std::uint64_t answers() const { return answers_.load(); }
+  [[nodiscard]] std::uint64_t manual() const { return manual_.load(); }
+  [[nodiscard]] std::uint64_t interventions() const { return interventions_.load(); }
+  [[nodiscard]] double measured_delay() const { return measured_delay_.load(); }
+
+ private:
+  void work() {
+    for (;;) {
+      Request request;
+      {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [this] { return is_stopping_ || !waiting_.empty(); });
+        if (is_stopping_) return;
+        request = waiting_.front();
+        waiting_.pop_front();
+      }
+      if (request.from != driven_) begin(request.from);
+      if (request.kind == Request::Kind::kManual) {
+        ++manual_;
+        last_received_.reset();
+        answer_(request, protocol::encode_manual(), std::chrono::nanoseconds{0});
+      } else {
+        drive(request);
+      }
+    }
+  }
+
+  /// Another simulator, or the same one again: nothing learned is trusted.
+  void begin(net::ConnectionId from) {
+    driven_ = from;
+    controller_.reset();
+    gate_.reset();
+    promises_.reset();
+    delay_.reset();
+    last_received_.reset();
+    last_answered_.reset();
+    roadside_.restart();
+    begins_ = true;
+  }
+
+  void drive(const Request& request) {
+    if (last_received_) {
+      delay_.add(seconds(request.received - *last_received_));
+      measured_delay_ = delay_.value();
+    }
+    last_received_ = request.received;
+    const Clock::time_point begin = Clock::now();
+    ++frame_.cycle;
+    frame_.time = seconds(request.received - started_);
+    take_up_changes();
+    frame_.applied = last_sent_;
+    frame_.begins = std::exchange(begins_, false);
+    frame_.has_measurement = request.kind == Request::Kind::kTelemetry;
+    DeadlineLog questions;
+    if (frame_.has_measurement) {
+      frame_.measurement = request.measurement;
+      frame_.measurement.time = frame_.time;
+      frame_.measurement.delay = delay_.value();
+      frame_.result = controller_.step(frame_.measurement, deadline().counted_in(questions));
+    } else {
+      constexpr double kNothing =
+          std::numeric_limits<double>::quiet_NaN();  // the gate holds the wheel and brakes
+      frame_.result.command = {.steer = kNothing, .throttle = kNothing};
+      frame_.result.plan.size = 0;
+      frame_.result.plan.reference_size = 0;
+      frame_.result.report.rung = controller::Rung::kHoldAndBrake;
+      frame_.result.report.explanation = {};
+    }
+    frame_.asked = frame_.result.command;
+    frame_.prediction_error = promises_.error(frame_.time, {frame_.measurement.x, frame_.measurement.y});
+    promises_.add(frame_.result.plan, delay_.value());
+    frame_.deadline_spent_at = questions.spent_at;
+    pass_gate();
+    frame_.step_time = seconds(Clock::now() - begin);
+    answer_(request, protocol::encode_steer(frame_.result.command, frame_.result.plan, pose_at_receipt()),
+            options_.latency);
+    ++answers_;
+    frame_.solve_time = frame_.result.report.solve_time;
+    frame_.lateral_error = frame_.result.report.lateral_error;
+    frame_.heading_error = frame_.result.report.heading_error;
+    roadside_.judge(frame_);
+    if (hooks_.on_frame) hooks_.on_frame(frame_);
+  }
+
+  void take_up_changes() {
+    while (const telemetry::Change* next = hooks_.wishes == nullptr ? nullptr : hooks_.wishes->front()) {
+      telemetry::Change change = *next;
+      hooks_.wishes->pop();
+      change.cycle = frame_.cycle;
+      change.time = frame_.time;
+      if (protocol::set_text(scenario_, change.name.view(), change.value.view())) {
+        run::configure(controller_, scenario_);
+        gate_.set_vehicle(scenario_.vehicle);
+      }
+      if (hooks_.on_change) hooks_.on_change(change);
+    }
+  }
+
+  void pass_gate() {
+    const Clock::time_point now = Clock::now();
+    frame_.gate_interval = last_answered_ ? seconds(now - *last_answered_) : 0.0;
+    last_answered_ = now;
+    const safety::GateResult gated = gate_.pass(frame_.result.command, frame_.gate_interval);
+    frame_.result.report.gated = gated.reason != safety::GateReason::kNone;
+    if (frame_.result.report.gated) ++interventions_;
+    frame_.result.command = gated.command;
+    last_sent_ = gated.command;
+  }
+
+  /// Where the car will be when the answer arrives: where the plan begins.
+  [[nodiscard]] model::Pose pose_at_receipt() const {
+    const controller::Plan& plan = frame_.result.plan;
+    if (plan.size > 0) return {.x = plan.points[0].x, .y = plan.points[0].y, .psi = plan.points[0].psi};
+    return {.x = frame_.measurement.x, .y = frame_.measurement.y, .psi = frame_.measurement.psi};
+  }
+
+  [[nodiscard]] Deadline deadline() const {
+    return options_.step_budget.count() > 0 ? Deadline::after(options_.step_budget) : Deadline::stopwatch();
+  }
+
+  const ServeOptions& options_;
+  controller::Controller& controller_;
+  const ServeHooks& hooks_;
+  Answer answer_;
+  scenario::Scenario scenario_;
+  safety::CommandGate gate_;
+  telemetry::PredictionCheck promises_;
+  DelayMeter delay_;
+  run::Roadside roadside_;
+  telemetry::RunSummary run_;
+  const Clock::time_point started_ = Clock::now();
+  net::ConnectionId driven_ = 0;
+  std::optional<Clock::time_point> last_received_;
+  std::optional<Clock::time_point> last_answered_;
+  bool begins_ = true;
+  model::Command last_sent_;
+  telemetry::Frame frame_;
+  std::atomic<std::uint64_t> answers_{0};
+  std::atomic<std::uint64_t> manual_{0};
+  std::atomic<std::uint64_t> interventions_{0};
+  std::atomic<double> measured_delay_{0.0};
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Request> waiting_;
+  bool is_stopping_ = false;
+  std::thread thread_;  // last: it starts when everything else is there
+};
+
+UdacityEndpoint::UdacityEndpoint(const ServeOptions& options, controller::Controller& controller,
+                                 ServeHooks hooks)
+    : options_{options}, hooks_{std::move(hooks)}, log_{hooks_.log} {
+  const auto answer = [this](const Request& request, std::string text, std::chrono::nanoseconds after) {
+    server_->run_after(after, [this, id = request.from, text = std::move(text)]() mutable {
+      if (id != session_.id) return;  // another simulator drives now
+      --session_.unanswered;
+      send(id, std::move(text));
+    });
+  };
+  control_ = std::make_unique<Control>(options_, controller, hooks_, answer);
+}
+
+UdacityEndpoint::~UdacityEndpoint() = default;
+
+void UdacityEndpoint::stop() { control_->stop(); }
+
+ServeSummary UdacityEndpoint::summary() const {
+  return {.answers = control_->answers(),
+          .manual = control_->manual(),
+          .unusable = unusable_,
+          .connections = connections_,
+          .refusals = refusals_,
+          .interventions = control_->interventions(),
+          .delay = control_->measured_delay(),
+          .run = control_->run()};
+}
+
+void UdacityEndpoint::on_start(net::Server& server) {
+  server_ = &server;
+  server_->run_after(kWatchPeriod, [this] { watch(); });
+}
+
+net::UpgradeAnswer UdacityEndpoint::on_upgrade(const net::UpgradeRequest& request) {
+  if (session_.id != 0 && !is_quiet()) {
+    ++refusals_;
+    const std::string why =
+        fmt::format("another simulator ({}) is being driven; end it first", session_.name);
+    log_.complain(fmt::format("refused {}: {}", request.peer, why));
+    return {.accept = false, .status = 503, .reason = why};
+  }
+  Session session{.id = request.id, .name = request.peer};
+  session.is_version_3 = request.target.find("EIO=3") != std::string::npos;
+  if (accepted_.size() >= kMaxAccepted) accepted_.erase(accepted_.begin());
+  accepted_[request.id] = session;
+  return {.accept = true};
+}
+
+void UdacityEndpoint::on_open(net::ConnectionId id) {
+  const auto accepted = accepted_.extract(id);
+  if (accepted.empty() || (session_.id != 0 && !is_quiet())) {
+    return server_->close(id, 1013, "another simulator is being driven");
+  }
+  if (session_.id != 0) {
+    log_.say(fmt::format("{} has gone quiet, {} takes over", session_.name, accepted.mapped().name));
+    server_->close(session_.id, 1000, "another simulator took over");
+  }
+  session_ = accepted.mapped();
+  session_.last_word = Clock::now();
+  ++connections_;
+  log_.say(fmt::format("simulator connected from {}", session_.name));
+  server_->run_after(options_.open_after, [this, id] {
+    if (session_.id == id && !session_.has_spoken) send_open_packet(id);
+  });
+}
+
+void UdacityEndpoint::on_message(net::ConnectionId id, std::string_view bytes, bool) {
+  if (id != session_.id) return;
+  session_.has_spoken = true;
+  session_.last_word = Clock::now();
+  hear_telemetry(bytes);
+}
+
+void UdacityEndpoint::on_close(net::ConnectionId id, std::string_view why) {
+  accepted_.erase(id);
+  if (id != session_.id) return;
+  log_.say(fmt::format("simulator {} is gone: {}", session_.name, why));
+  session_ = {};
+}
+
+void UdacityEndpoint::hear_telemetry(std::string_view bytes) {
+  Request request{.from = session_.id, .received = session_.last_word};
+  const protocol::UdacityTelemetry message = protocol::parse_telemetry(bytes);
+  if (const auto* packet = std::get_if<protocol::UdacityPacket>(&message)) return hear_packet(*packet);
+  if (const auto* measurement = std::get_if<model::Measurement>(&message)) {
+    request.measurement = *measurement;
+  } else if (std::holds_alternative<protocol::UdacityManual>(message)) {
+    request.kind = Request::Kind::kManual;
+  } else {
+    ++unusable_;
+    if (!complain_about(message)) return;
+    request.kind = Request::Kind::kUnusable;
+  }
+  if (session_.is_reported_silent) log_.say(fmt::format("telemetry from {} again", session_.name));
+  session_.has_told = true;
+  session_.is_reported_silent = false;
+  if (++session_.unanswered > kMaxUnanswered) {
+    return server_->close(session_.id, 1008, fmt::format("more than {} unanswered messages", kMaxUnanswered));
+  }
+  control_->push(request);
+}
+
+/// Says what is wrong with a message; true when its sender waits for an answer.
+bool UdacityEndpoint::complain_about(const protocol::UdacityTelemetry& message) {
+  if (const auto* foreign = std::get_if<protocol::UdacityForeign>(&message)) {
+    log_.complain(fmt::format("this is {}{}", foreign->what, foreign->is_telemetry ? "; braking" : ""));
+    return foreign->is_telemetry;
+  }
+  const auto& broken = std::get<protocol::UdacityBroken>(message);
+  log_.complain(broken.is_event ? fmt::format("broken telemetry: {}; braking", broken.reason)
+                                : fmt::format("ignored a message: {}", broken.reason));
+  return broken.is_event;
+}
+
+void UdacityEndpoint::hear_packet(protocol::UdacityPacket packet) {
+  using enum protocol::UdacityPacket;
+  session_.has_left |= packet == kDisconnect || packet == kClose;
+  if (!session_.is_stock) return;  // the original pings once and would, if answered, ping on
+  switch (packet) {
+    case kPing:
+      return send(session_.id, "3");
+    case kConnect:
+      return send(session_.id, R"(40{"sid":"chicane"})");
+    default:
+      return;
+  }
+}
+
+void UdacityEndpoint::send(net::ConnectionId id, std::string text) {
+  session_.last_word = Clock::now();
+  server_->send(id, std::move(text), false);
+}
+
+void UdacityEndpoint::send_open_packet(net::ConnectionId id) {
+  session_.is_stock = true;
+  send(id, kOpenPacket);
+  if (session_.is_version_3) return send(id, "40");
+  server_->run_after(kPingInterval, [this, id] { ping(id); });
+}
+
+void UdacityEndpoint::ping(net::ConnectionId id) {
+  if (session_.id != id) return;
+  server_->send(id, std::string("2"), false);  // Engine.IO 4: the server pings
+  server_->run_after(kPingInterval, [this, id] { ping(id); });
+}
+
+void UdacityEndpoint::watch() {
+  server_->run_after(kWatchPeriod, [this] { watch(); });
+  const bool is_waiting =
+      session_.id != 0 && !session_.has_left && session_.unanswered == 0 && !session_.is_reported_silent;
+  if (!is_waiting || Clock::now() - session_.last_word < options_.silent_after) return;
+  session_.is_reported_silent = true;
+  log_.say(session_.has_told
+               ? fmt::format("no telemetry from {} for {:.0f} s: is it paused, or in its menu?",
+                             session_.name, seconds(options_.silent_after))
+               : fmt::format("{} is connected but sends no telemetry: leave the scene and enter it again",
+                             session_.name));
+}
+
+bool UdacityEndpoint::is_quiet() const {
+  return session_.has_left ||
+         (session_.unanswered == 0 && Clock::now() - session_.last_word >= options_.quiet_after);
+}
+
+Result<ServeSummary> serve(const ServeOptions& options, controller::Controller& controller, ServeHooks hooks,
+                           Endpoint* viewer, std::vector<net::Asset> assets, const std::atomic<bool>& stop) {
+  const auto announce = hooks.on_listening;
+  const auto end = hooks.on_end;
+  Pages pages = std::move(hooks.pages);
+  UdacityEndpoint simulator(options, controller, std::move(hooks));
+  Router router(&simulator, viewer);
+  auto server = net::Server::create(options.server, router.handlers(std::move(pages)), std::move(assets));
+  if (!server) return fail(server.error());
+  if (announce) announce((*server)->port());
+  while (!stop) std::this_thread::sleep_for(milliseconds{20});
+  simulator.stop();
+  if (end) end();
+  server->reset();
+  return simulator.summary();
+}
+
+}  // namespace chicane::wire

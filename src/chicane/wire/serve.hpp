@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/controller/controller.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/net/server.hpp"
+#include "chicane/path/track.hpp"
+#include "chicane/protocol/udacity_codec.hpp"
+#include "chicane/run/change_queue.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/telemetry/change.hpp"
+#include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/metrics.hpp"
+#include "chicane/wire/endpoint.hpp"
+#include "chicane/wire/sparse_log.hpp"
+
+namespace chicane::wire {
+
+/// How simulators are answered.
+struct ServeOptions {
+  net::ServerOptions server;
+  model::VehicleParams vehicle;  ///< bounds of what is sent
+  scenario::Scenario scenario;   ///< what the controller was made from: needed to change it while it drives
+  /// The road that the simulator drives on, where somebody told: laps are timed from the positions it sends.
+  /// Outlives the endpoint; null: not known.
+  const path::Track* track = nullptr;
+  /// Artificial, between the end of a control step and its answer, as the original controller sleeps. [0, 0.5
+  /// s]
+  std::chrono::nanoseconds latency = std::chrono::milliseconds{100};
+  std::chrono::nanoseconds step_budget =
+      std::chrono::milliseconds{50};  ///< deadline of a control step; 0 = none
+  /// A client that has said nothing for so long gets the Engine.IO open packet: stock clients wait for it,
+  /// the original speaks first (and would double its loop if it got one).
+  std::chrono::nanoseconds open_after = std::chrono::seconds{1};
+  std::chrono::nanoseconds quiet_after = std::chrono::seconds{1};   ///< then another connection may take over
+  std::chrono::nanoseconds silent_after = std::chrono::seconds{3};  ///< then missing telemetry is reported
+};
+
+struct ServeHooks {
+  run::ChangeQueue* wishes = nullptr;  ///< settings to change before the next answer; outlives the endpoint
+  std::function<void(const telemetry::Change&)>
+      on_change{};                                          ///< when one was taken up, on the control thread
+  std::function<void(const telemetry::Frame&)> on_frame{};  ///< after each answer, on the control thread
+  std::function<void(std::string_view)> log{};  ///< one line about the connection, on the network thread
+  std::function<void(std::uint16_t port)> on_listening{};  ///< once, when the port is ours
+  std::function<void()> on_end{};  ///< once: control has ended, the server still stands
+  Pages pages{};                   ///< answered to GET, beside the assets
+};
+
+/// What has been served so far.
+struct ServeSummary {
+  std::uint64_t answers = 0;        ///< to telemetry, broken ones included
+  std::uint64_t manual = 0;         ///< answers while a person drove
+  std::uint64_t unusable = 0;       ///< telemetry that was broken or of another scene
+  std::uint64_t connections = 0;    ///< simulators that were accepted
+  std::uint64_t refusals = 0;       ///< simulators that came while another one drove
+  std::uint64_t interventions = 0;  ///< commands that the gate had to change
+  double delay = 0.0;               ///< last measured, telemetry to actuation [s]
+  telemetry::RunSummary
+      run{};  ///< of the simulator that drove last; empty until the control thread has ended
+};
+
+/// The original controller program's place: answers every telemetry of one simulator with exactly one
+/// complete, finite command, and says nothing unasked (docs/protocol.md). Its control thread owns the
+/// controller; the network thread only reads, queues and sends.
+///
+/// Broken telemetry and that of other scenes is answered too, by the wheel as it was and gentle braking. The
+/// controller is reset for each new connection.
+class UdacityEndpoint final : public Endpoint {
+ public:
+  /// `controller` must outlive the endpoint and belongs to its control thread.
+  UdacityEndpoint(const ServeOptions& options, controller::Controller& controller, ServeHooks hooks);
+  ~UdacityEndpoint() override;
+  UdacityEndpoint(const UdacityEndpoint&) = delete;
+  UdacityEndpoint& operator=(const UdacityEndpoint&) = delete;
+
+  /// Ends the control thread. Call it before the server is destroyed.
+  void stop();
+  /// Any thread; complete after stop().
+  [[nodiscard]] ServeSummary summary() const;
+
+  void on_start(net::Server& server) override;
+  [[nodiscard]] net::UpgradeAnswer on_upgrade(const net::UpgradeRequest& request) override;
+  void on_open(net::ConnectionId id) override;
+  void on_message(net::ConnectionId id, std::string_view bytes, bool binary) override;
+  void on_close(net::ConnectionId id, std::string_view why) override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  class Control;
+
+  /// The one simulator that is driven. Network thread only.
+  struct Session {
+    net::ConnectionId id = 0;   ///< 0 = nobody
+    std::string name{};         ///< for the log: its address
+    bool is_stock = false;      ///< got our open packet: an Engine.IO client that expects pings and pongs
+    bool is_version_3 = false;  ///< EIO=3: the server connects the namespace, the client pings
+    bool has_spoken = false;
+    bool has_left = false;  ///< said goodbye, though the connection still stands
+    bool has_told = false;  ///< telemetry has come
+    bool is_reported_silent = false;
+    int unanswered = 0;             ///< telemetry that waits for its answer
+    Clock::time_point last_word{};  ///< heard or said
+  };
+
+  void hear_telemetry(std::string_view bytes);
+  void hear_packet(protocol::UdacityPacket packet);
+  [[nodiscard]] bool complain_about(const protocol::UdacityTelemetry& message);
+  void send(net::ConnectionId id, std::string text);
+  void send_open_packet(net::ConnectionId id);
+  void ping(net::ConnectionId id);
+  void watch();
+  [[nodiscard]] bool is_quiet() const;
+
+  ServeOptions options_;
+  ServeHooks hooks_;
+  SparseLog log_;
+  net::Server* server_ = nullptr;
+  Session session_;
+  std::map<net::ConnectionId, Session> accepted_;  ///< between on_upgrade and on_open
+  std::atomic<std::uint64_t> connections_{0};
+  std::atomic<std::uint64_t> refusals_{0};
+  std::atomic<std::uint64_t> unusable_{0};
+  std::unique_ptr<Control> control_;
+};
+
+/// `chicane serve`: binds the port and answers simulators until `stop`. `viewer` (may be null) and `assets`
+/// share the port. kIo with the sentence that helps when the port is taken.
+[[nodiscard]] Result<ServeSummary> serve(const ServeOptions& options, controller::Controller& controller,
+                                         ServeHooks hooks, Endpoint* viewer, std::vector<net::Asset> assets,
+                                         const std::atomic<bool>& stop);
+
+}  // namespace chicane::wire

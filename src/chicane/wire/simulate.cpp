@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/wire/simulate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "chicane/base/math.hpp"
+#include "chicane/net/client.hpp"
+#include "chicane/protocol/udacity_codec.hpp"
+#include "chicane/run/make.hpp"
+#include "chicane/run/observe.hpp"
+#include "chicane/sim/sensor.hpp"
+#include "chicane/sim/world.hpp"
+#include "chicane/wire/server_process.hpp"
+#include "chicane/wire/sparse_log.hpp"
+
+namespace chicane::wire {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr double kCatchUp = 1.0 / 3.0;  // physics forgets time it cannot catch up, as the original [s]
+constexpr double kLostDistance = 25.0;  // off the line [m] ...
+constexpr double kLostTime = 3.0;       // ... for so long: the run is over [s]
+constexpr double kTimePerLap = 600.0;   // when no limit was given [s]
+constexpr milliseconds kConnectTimeout{1000};
+constexpr milliseconds kNap{5};
+
+Clock::duration duration(double seconds) {
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+/// The physical side: plant, road and what is measured of them.
+class Scene {
+ public:
+  Scene(const scenario::Scenario& scenario, path::Track track, path::Track waypoints,
+        std::unique_ptr<sim::Plant> plant)
+      : scenario_{scenario},
+        track_{std::move(track)},
+        waypoints_{std::move(waypoints)},
+        plant_{std::move(plant)},
+        world_{*plant_, track_},
+        sensor_{scenario.sensor, scenario.seed},
+        metrics_{std::max(scenario.laps, 1), kTimePerLap} {
+    world_.place(track_.start_s(), track_.start_d());
+  }
+
+  /// Physics up to the moment `elapsed` [s] after the run began; what it cannot catch up is returned.
+  double advance_to(double elapsed, const model::Command& command) {
+    const double step = plant_->step_length();
+    const double forgotten = std::max(0.0, elapsed - world_.time() - kCatchUp);
+    while (world_.time() + step <= elapsed - forgotten && !is_over()) {
+      world_.advance(command);
+      judge(step);
+    }
+    return forgotten;
+  }
+
+  /// Telemetry's content now; `frame` is filled with what the world knows and the controller has not answered
+  /// yet.
+  void sample(const model::Command& acting, telemetry::Frame& frame) {
+    const model::State& state = plant_->state();
+    model::Measurement now = sensor_.sample(world_.time(), *plant_);
+    sim::select_waypoints(waypoints_, {.x = state.x, .y = state.y, .psi = state.psi},
+                          scenario_.waypoints_sent, now);
+    run::observe(world_, frame);
+    frame.completed_lap = completed_lap_;
+    frame.time = now.time;
+    frame.measurement = now;
+    frame.applied = acting;
+  }
+
+  [[nodiscard]] bool is_over() const {
+    const sim::WorldState& world = world_.state();
+    if (scenario_.laps > 0 && (world.lap >= scenario_.laps || world.is_finished)) return true;
+    return off_for_ > kLostTime || world_.time() >= time_limit();
+  }
+
+  [[nodiscard]] telemetry::RunSummary summary() const {
+    telemetry::RunSummary run = metrics_.summary();
+    run.track = track_.name();
+    run.car = scenario_.car;
+    run.controller = "external";
+    run.preset = "external";
+    run.seed = scenario_.seed;
+    run.laps_wanted = scenario_.laps;
+    run.duration = world_.time();
+    run.completed = scenario_.laps > 0 && run.laps_completed >= scenario_.laps;
+    if (off_for_ > kLostTime) run.end_reason = "the car left the road and did not come back";
+    if (world_.time() >= time_limit()) run.end_reason = "time limit reached";
+    return run;
+  }
+
+  [[nodiscard]] double time() const { return world_.time(); }
+  [[nodiscard]] double next_step() const { return world_.time() + plant_->step_length(); }
+  [[nodiscard]] const model::State& car() const { return plant_->state(); }
+  void add(const telemetry::Frame& frame) { metrics_.add(frame); }
+
+ private:
+  void judge(double step) {
+    const sim::WorldState& world = world_.state();
+    metrics_.add_physics(run::physics_sample(world_));
+    if (world.lap > metrics_.laps_completed()) {
+      metrics_.lap_completed(world.last_lap_time, world.last_sector_times);
+      completed_lap_ = run::completed_lap(world, metrics_.last_lap());
+    }
+    off_for_ = std::fabs(world.lateral_error) > kLostDistance ? off_for_ + step : 0.0;
+  }
+
+  [[nodiscard]] double time_limit() const {
+    return scenario_.time_limit > 0.0 ? scenario_.time_limit : kTimePerLap * std::max(scenario_.laps, 1);
+  }
+
+  const scenario::Scenario& scenario_;
+  path::Track track_;
+  path::Track waypoints_;
+  std::unique_ptr<sim::Plant> plant_;
+  sim::World world_;
+  sim::Sensor sensor_;
+  telemetry::Metrics metrics_;
+  telemetry::CompletedLap completed_lap_;
+  double off_for_ = 0.0;
+};
+
+/// The lines of a reply, from the car's frame to W.
+void place_lines(const protocol::UdacitySteer& reply, const model::State& car, controller::Plan& plan) {
+  const double c = cos(car.psi);
+  const double s = sin(car.psi);
+  const auto to_world = [&](const Vec2& p) {
+    return Vec2{car.x + c * p.x() - s * p.y(), car.y + s * p.x() + c * p.y()};
+  };
+  constexpr auto kCapacity = static_cast<std::size_t>(controller::Plan::kCapacity);
+  plan.size = static_cast<int>(std::min(reply.plan.size(), kCapacity));
+  plan.reference_size = static_cast<int>(std::min(reply.reference.size(), kCapacity));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(plan.size); ++i) {
+    const Vec2 point = to_world(reply.plan[i]);
+    plan.points[i] = {};
+    plan.points[i].x = point.x();
+    plan.points[i].y = point.y();
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(plan.reference_size); ++i) {
+    plan.reference[i] = to_world(reply.reference[i]);
+  }
+}
+
+/// One run: the scene and the token that goes round between it and the controller.
+class Simulation {
+ public:
+  Simulation(const SimulateOptions& options, const scenario::Scenario& scenario, const SimulateHooks& hooks,
+             Scene& scene)
+      : options_{options},
+        turn_around_{duration(scenario.turn_around)},
+        hooks_{hooks},
+        log_{hooks.log},
+        server_{options.server_command, log_},
+        scene_{scene} {}
+
+  Result<SimulateReport> run(const std::atomic<bool>& stop) {
+    began_ = last_connected_ = Clock::now();
+    const Clock::time_point wall_start = began_;
+    while (!stop && !scene_.is_over() && why_.empty()) {
+      const Clock::time_point now = Clock::now();
+      server_.keep_running(now);
+      if (report_.connections > 0) began_ += duration(scene_.advance_to(seconds(now - began_), acting_));
+      if (client_ == nullptr) {
+        connect(now);
+      } else {
+        turn(now);
+      }
+    }
+    if (report_.connections == 0 && !stop) return fail(ErrorCode::kIo, why_);
+    report_.server_starts = server_.starts();
+    report_.run = scene_.summary();
+    report_.run.wall_time = seconds(Clock::now() - wall_start);
+    if (!report_.run.completed && report_.run.end_reason.empty())
+      report_.run.end_reason = why_.empty() ? "stopped" : why_;
+    return report_;
+  }
+
+ private:
+  /// Attempts run beside the physics, politely spaced.
+  void connect(Clock::time_point now) {
+    if (attempt_.valid()) {
+      if (attempt_.wait_for(kNap) != std::future_status::ready) return;
+      auto result = attempt_.get();
+      next_attempt_ = now + options_.retry_after;
+      if (result) return begin(std::move(*result));
+      if (result.error().message != last_failure_)
+        log_.complain(fmt::format("no controller yet: {}; trying again", result.error().message));
+      last_failure_ = result.error().message;
+      if (now - last_connected_ >= options_.lost_after) why_ = "no controller: " + last_failure_;
+      return;
+    }
+    if (now < next_attempt_) return std::this_thread::sleep_for(kNap);
+    attempt_ = std::async(std::launch::async,
+                          [url = options_.url] { return net::Client::connect(url, kConnectTimeout); });
+  }
+
+  void begin(std::unique_ptr<net::Client> client) {
+    client_ = std::move(client);
+    last_failure_.clear();
+    if (report_.connections++ == 0) began_ = Clock::now();  // the clock starts with the first controller
+    log_.say(fmt::format("connected to {}", options_.url));
+    asked_.reset();
+    due_ = Clock::now();
+    pending_.reset();
+    deliver("2");  // the original pings once, because its time-out is a thousand times too long
+  }
+
+  void lose(const std::string& why) {
+    log_.say(fmt::format("connection lost: {}", why));
+    client_.reset();
+    last_connected_ = Clock::now();
+    next_attempt_ = last_connected_ + options_.retry_after;
+  }
+
+  void deliver(const std::string& text) {
+    if (auto sent = client_->send_text(text); !sent) lose(sent.error().message);
+  }
+
+  /// Sends what is due, then listens until the next physics step.
+  void turn(Clock::time_point now) {
+    if (due_ && now >= *due_) {
+      ask(now);
+      if (client_ == nullptr) return;
+    }
+    Clock::time_point wake = began_ + duration(scene_.next_step());
+    if (due_) wake = std::min(wake, *due_);
+    const auto patience = std::chrono::ceil<milliseconds>(std::max(wake - now, Clock::duration::zero()));
+    auto received = client_->receive(std::max(patience, milliseconds{1}));
+    if (!received) return lose(received.error().message);
+    if (*received) {
+      hear(**received);
+    } else if (asked_) {
+      watch(Clock::now() - *asked_);
+    }
+  }
+
+  /// Telemetry, and with it the command of the last answer reaches the wheels.
+  void ask(Clock::time_point now) {
+    due_.reset();
+    asked_ = now;
+    is_reported_silent_ = false;
+    scene_.sample(acting_, frame_);
+    is_manual_ = frame_.time < options_.manual_time;
+    if (pending_) acting_ = *pending_;
+    pending_.reset();
+    deliver(is_manual_ ? protocol::encode_manual_telemetry()
+                       : protocol::encode_telemetry(frame_.measurement));
+  }
+
+  void watch(Clock::duration silence) {
+    if (silence >= options_.give_up_after) {
+      ++report_.silences;
+      return lose("the controller does not answer");
+    }
+    if (silence < options_.complain_after || is_reported_silent_) return;
+    is_reported_silent_ = true;
+    log_.say(fmt::format("no answer for {} ms: the original simulator would wait for ever",
+                         options_.complain_after.count()));
+  }
+
+  void hear(const std::string& text) {
+    const protocol::UdacityReply reply = protocol::parse_reply(text);
+    if (const auto* packet = std::get_if<protocol::UdacityPacket>(&reply)) return hear_packet(*packet);
+    if (!asked_) {
+      ++report_.extra_answers;
+      return log_.complain(
+          "an answer that nobody asked for: the original simulator would now run two loops at once");
+    }
+    const Clock::time_point now = Clock::now();
+    const double waited = seconds(now - *asked_);
+    asked_.reset();
+    due_ = now + turn_around_;
+    if (const auto* steer = std::get_if<protocol::UdacitySteer>(&reply)) return accept(*steer, waited);
+    if (const auto* broken = std::get_if<protocol::UdacityBroken>(&reply)) {
+      ++report_.broken_answers;
+      return log_.complain(
+          fmt::format("broken answer: {} (the original simulator would stall)", broken->reason));
+    }
+    if (!is_manual_)
+      log_.complain("the controller answered telemetry with \"manual\": it did not understand it");
+  }
+
+  void accept(const protocol::UdacitySteer& steer, double waited) {
+    ++report_.answers;
+    pending_ = steer.command;
+    ++frame_.cycle;
+    frame_.step_time = waited;
+    frame_.result.command = frame_.asked = steer.command;  // its own gate is unknown
+    frame_.result.report.solve.status =
+        solver::SolveStatus::kOptimal;  // of an external solver nothing is known
+    place_lines(steer, scene_.car(), frame_.result.plan);
+    scene_.add(frame_);
+    if (hooks_.on_frame) hooks_.on_frame(frame_);
+  }
+
+  void hear_packet(protocol::UdacityPacket packet) {
+    if (packet == protocol::UdacityPacket::kPing) deliver("3");
+    if (packet == protocol::UdacityPacket::kOpen) {
+      log_.complain(
+          "the controller sent an Engine.IO open packet: the original simulator would now run two loops at "
+          "once");
+    }
+  }
+
+  const SimulateOptions& options_;
+  const Clock::duration turn_around_;
+  const SimulateHooks& hooks_;
+  SparseLog log_;
+  ServerProcess server_;
+  Scene& scene_;
+  SimulateReport report_;
+  std::string why_;  ///< the run is over
+
+  std::future<Result<std::unique_ptr<net::Client>>> attempt_;
+  Clock::time_point next_attempt_{};
+  Clock::time_point last_connected_{};
+  std::string last_failure_;
+  std::unique_ptr<net::Client> client_;
+
+  Clock::time_point began_{};               ///< wall time of physics time 0
+  std::optional<Clock::time_point> due_;    ///< of the next telemetry
+  std::optional<Clock::time_point> asked_;  ///< telemetry is out since then
+  bool is_reported_silent_ = false;
+  bool is_manual_ = false;
+  model::Command acting_;                  ///< held until the next answer has been picked up
+  std::optional<model::Command> pending_;  ///< of the last answer
+  telemetry::Frame frame_;
+};
+
+}  // namespace
+
+Result<SimulateReport> simulate(const SimulateOptions& options, const scenario::Scenario& scenario,
+                                const SimulateHooks& hooks, const std::atomic<bool>& stop) {
+  if (auto url = net::parse_url(options.url); !url) return fail(url.error());
+  Result<path::Track> track = run::make_track(scenario);
+  if (!track) return fail(track.error());
+  Result<path::Track> waypoints = run::make_waypoints(*track);
+  if (!waypoints) return fail(waypoints.error());
+  Result<std::unique_ptr<sim::Plant>> plant = run::make_plant(scenario);
+  if (!plant) return fail(plant.error());
+  Scene scene(scenario, std::move(*track), std::move(*waypoints), std::move(*plant));
+  return Simulation(options, scenario, hooks, scene).run(stop);
+}
+
+}  // namespace chicane::wire

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "chicane/base/latest.hpp"
+#include "chicane/base/result.hpp"
+#include "chicane/protocol/foxglove_codec.hpp"
+#include "chicane/protocol/ros_messages.hpp"
+#include "chicane/telemetry/frame.hpp"
+#include "chicane/wire/endpoint.hpp"
+
+namespace chicane::wire {
+
+/// What viewers may ask of the run. Called on the network thread: hand the wish over and return. An empty
+/// function is not offered. A failure's sentence is shown to the operator.
+struct ViewerServices {
+  std::function<Result<void>(bool paused)> pause;  ///< "/pause", std_srvs/srv/SetBool
+  std::function<Result<void>()> step;   ///< "/step", std_srvs/srv/Trigger: one control cycle while paused
+  std::function<Result<void>()> reset;  ///< "/reset", std_srvs/srv/Trigger: the run starts anew
+};
+
+struct ViewerOptions {
+  double rate_limit = 60.0;  ///< frames per second sent at most [Hz]; (0, 1000]
+  protocol::Run run;
+  ViewerServices services;
+  protocol::foxglove::ParameterStore* parameters =
+      nullptr;  ///< outlives the endpoint; null: none are offered
+};
+
+/// Shows a run to viewers: our dashboard, Foxglove, Lichtblick, PlotJuggler or a script, all by the Foxglove
+/// WebSocket protocol (docs/viewer.md). The newest frame wins on its way from the control thread, and again
+/// on its way to each viewer: slow ones see fewer frames and hold nothing up.
+///
+/// Must outlive the server it is started with.
+class ViewerEndpoint final : public Endpoint {
+ public:
+  explicit ViewerEndpoint(ViewerOptions options);
+
+  /// One thread, the control thread: neither waits nor allocates.
+  void publish(const telemetry::Frame& frame) noexcept { latest_.put(frame); }
+  /// Another track, car or controller from now on; Run::building and is_paused stay as they are. Any thread,
+  /// but not while on_start runs.
+  void set_run(protocol::Run run);
+  /// There are news of the run's limit. Any thread, but not while on_start runs.
+  void set_limit(lap_time::LimitAnswer answer);
+  /// Part of it changes, the road excepted. Any thread, but not while on_start runs.
+  void change_run(std::function<void(protocol::Run&)> change);
+  /// For runs that are paused by others than viewers. Any thread, but not while on_start runs.
+  void set_paused(bool paused);
+
+  void on_start(net::Server& server) override;
+  [[nodiscard]] net::UpgradeAnswer on_upgrade(const net::UpgradeRequest& request) override;
+  void on_open(net::ConnectionId id) override;
+  void on_message(net::ConnectionId id, std::string_view bytes, bool binary) override;
+  void on_close(net::ConnectionId id, std::string_view why) override;
+
+ private:
+  struct Client {
+    std::map<std::uint32_t, std::uint32_t> subscriptions;  ///< channel → subscription
+    bool wants_all_parameters = false;
+    std::set<std::string, std::less<>> wanted_parameters;
+  };
+  struct ServiceEntry {
+    protocol::foxglove::Service description;
+    std::function<Result<std::string>(std::string_view request)> call;  ///< the sentence of its success
+  };
+
+  void offer(std::string_view name, std::string_view type,
+             std::function<Result<std::string>(std::string_view)> call);
+  void schedule();
+  void tick();
+  void tell_changes();
+  void send_parameters(const std::vector<protocol::foxglove::Parameter>& values);
+  void note_lap();
+  void send_cadence(protocol::Cadence cadence);
+  void send_channel(std::uint32_t channel);
+  void send_text(net::ConnectionId id, std::string text);
+  void warn(net::ConnectionId id, std::string_view sentence);
+  void on_network(std::function<void()> task);
+
+  void handle(net::ConnectionId id, const protocol::foxglove::Subscribe& message);
+  void handle(net::ConnectionId id, const protocol::foxglove::Unsubscribe& message);
+  void handle(net::ConnectionId id, const protocol::foxglove::GetParameters& message);
+  void handle(net::ConnectionId id, const protocol::foxglove::SetParameters& message);
+  void handle(net::ConnectionId id, const protocol::foxglove::SubscribeParameters& message);
+  void handle(net::ConnectionId id, const protocol::foxglove::UnsubscribeParameters& message);
+  void handle(net::ConnectionId id, const protocol::foxglove::CallService& message);
+
+  ViewerOptions options_;
+  std::vector<ServiceEntry> services_;
+  std::string session_;
+  Latest<telemetry::Frame> latest_;
+  telemetry::Frame frame_;
+  bool has_frame_ = false;
+  std::vector<std::pair<double, std::string>> laps_;  ///< of this run: time [s] and message
+  int lap_ = 0;                                       ///< completed so far
+  net::Server* server_ = nullptr;
+  std::map<net::ConnectionId, Client> clients_;
+};
+
+}  // namespace chicane::wire

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: MIT
+// Settings that change while a run goes on: what the car and its controller make of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "chicane/live/live_settings.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "chicane/run/realtime_loop.hpp"
+#include "support/alloc_guard.hpp"
+
+namespace chicane::run {
+namespace {
+
+using telemetry::Change;
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+std::unique_ptr<ClosedLoop> loop_of(Settings settings) {
+  settings.emplace_back("laps", "0");
+  const auto scenario = protocol::compose({.scenario_file = {}, .settings = std::move(settings)});
+  EXPECT_TRUE(scenario) << (scenario ? "" : scenario.error().message);
+  return std::move(*ClosedLoop::create(*scenario));
+}
+
+/// Control cycles one after another; the frame of the last one.
+const telemetry::Frame& drive(ClosedLoop& loop, int cycles) {
+  for (int done = 0; done < cycles;) done += loop.advance() ? 1 : 0;
+  while (!loop.is_control_due()) loop.advance();
+  return loop.frame();
+}
+
+const telemetry::Frame& drive_to_map(ClosedLoop& loop) {
+  for (int i = 0; i < 3000 && !loop.frame().result.report.has_map; ++i) drive(loop, 1);
+  EXPECT_TRUE(loop.frame().result.report.has_map);
+  return loop.frame();
+}
+
+TEST(LiveChange, HoldsFromTheNextControlStepOn) {
+  const auto loop = loop_of({{"track", "oval"}});
+  drive(*loop, 200);
+  EXPECT_EQ(loop->frame().result.plan.size, 41);
+  loop->apply({.name = "tracking_mpc.horizon_steps", .value = "20"});
+  EXPECT_EQ(drive(*loop, 1).result.plan.size, 21);
+  loop->apply({.name = "latency_ms", .value = "250"});
+  EXPECT_DOUBLE_EQ(drive(*loop, 1).measurement.delay, 0.25);
+  loop->apply({.name = "sensor.position_quantum_m", .value = "10"});
+  const model::Measurement seen = drive(*loop, 1).measurement;
+  EXPECT_EQ(std::fmod(seen.x, 10.0), 0.0);
+  loop->apply({.name = "run.pace", .value = "0.5"});
+  EXPECT_EQ(drive(*loop, 1).pace, 0.5);
+  loop->apply({.name = "laps", .value = "17"});
+  EXPECT_EQ(loop->summary().laps_wanted, 17);
+}
+
+TEST(LiveChange, IsRefusedWhereSetWouldRefuseIt) {
+  const auto loop = loop_of({{"track", "oval"}});
+  for (const auto& [name, value] : Settings{{"latency_ms", "900"}, {"track", "lakeside"}, {"nonsense", "1"}})
+    loop->apply({.name = name, .value = value});
+  EXPECT_EQ(loop->scenario().latency, 0.1);
+  EXPECT_EQ(loop->scenario().track, "oval");
+}
+
+TEST(LiveChange, OfPricesHorizonAndSpeedKeepsTheMapAndTheCarOnTheRoad) {
+  const auto loop = loop_of({{"track", "oval"}});
+  drive_to_map(*loop);
+  const Settings changes{{"tracking_mpc.weight_lateral", "4"},
+                         {"tracking_mpc.horizon_steps", "60"},
+                         {"tracking_mpc.step_length_s", "0.04"},
+                         {"tracking_mpc.speed_limit_mps", "25"},
+                         {"tracking_mpc.grip_share", "0.6"},
+                         {"tracking_mpc.smoothing_width_m", "0.5"},
+                         {"tracking_mpc.assumed_half_width_m", "2"},
+                         {"tracking_mpc.horizon_steps", "25"},
+                         {"vehicle.mass_kg", "1100"},
+                         {"plant_options.mass_scale", "1.1"},
+                         {"latency_ms", "40"},
+                         {"latency_ms", "160"}};
+  for (const auto& [name, value] : changes) {
+    SCOPED_TRACE(name + "=" + value);
+    loop->apply({.name = name, .value = value});
+    for (int i = 0; i < 50; ++i) {
+      const telemetry::Frame& frame = drive(*loop, 1);
+      ASSERT_TRUE(frame.result.report.has_map);
+      ASSERT_EQ(frame.result.report.rung, controller::Rung::kController) << frame.cycle;
+    }
+  }
+  EXPECT_EQ(loop->summary().off_track_events, 0);
+  EXPECT_LT(loop->frame().truth.vx, 27.0);  // the limit of 25 m/s, set above, has been reached
+}
+
+TEST(LiveChange, ReachesEveryController) {
+  for (const auto& [preset, key, value] :
+       std::vector<std::array<std::string, 3>>{{"sixty-mph", "cubic_mpc.speed_reference_mps", "8"},
+                                               {"sixty-mph", "cubic_mpc.horizon_steps", "14"},
+                                               {"pid", "pid.speed_reference_mps", "8"},
+                                               {"pure-pursuit", "pure_pursuit.speed_reference_mps", "8"},
+                                               {"stanley", "stanley.speed_reference_mps", "8"}}) {
+    SCOPED_TRACE(preset + " " + key);
+    const auto one = loop_of({{"preset", preset}, {"track", "oval"}});
+    const auto other = loop_of({{"preset", preset}, {"track", "oval"}});
+    drive(*one, 100);
+    drive(*other, 100);
+    one->apply({.name = key, .value = value});
+    const model::Command changed = drive(*one, 1).result.command;
+    const model::Command same = drive(*other, 1).result.command;
+    EXPECT_NE(std::pair(changed.steer, changed.throttle), std::pair(same.steer, same.throttle));
+    EXPECT_EQ(one->frame().result.report.rung, controller::Rung::kController);
+  }
+}
+
+TEST(LiveChange, AllocatesNothing) {
+  const auto loop = loop_of({{"track", "oval"}});
+  drive_to_map(*loop);
+  const std::vector<Change> changes{{.name = "tracking_mpc.weight_lateral", .value = "4"},
+                                    {.name = "tracking_mpc.horizon_steps", .value = "60"},
+                                    {.name = "tracking_mpc.speed_limit_mps", .value = "25"},
+                                    {.name = "tracking_mpc.smoothing_width_m", .value = "0.5"},
+                                    {.name = "cubic_mpc.latency_handling", .value = "position-only"},
+                                    {.name = "vehicle.mass_kg", .value = "1100"},
+                                    {.name = "manual.is_on", .value = "true"}};
+  const test::AllocationGuard guard;
+  for (const Change& change : changes) {
+    loop->apply(change);
+    drive(*loop, 2);
+  }
+  EXPECT_EQ(guard.count(), 0);
+}
+
+TEST(LiveChange, SurvivesARestart) {
+  const auto loop = loop_of({{"track", "oval"}});
+  drive(*loop, 50);
+  loop->apply({.name = "tracking_mpc.horizon_steps", .value = "20"});
+  drive(*loop, 5);
+  loop->restart();
+  EXPECT_EQ(drive(*loop, 1).result.plan.reference_size, 21);
+  // As if it had been set from the beginning.
+  const auto fresh = loop_of({{"track", "oval"}, {"tracking_mpc.horizon_steps", "20"}});
+  drive(*loop, 199);
+  drive(*fresh, 200);
+  EXPECT_EQ(loop->summary().state_hash, fresh->summary().state_hash);
+}
+
+TEST(LiveChange, ComesOutTheSameFromTheQueueAndFromAScript) {
+  const Settings settings{{"track", "oval"}, {"sensor.position_noise_m", "0.02"}};
+  const std::vector<std::pair<std::uint64_t, Change>> wishes{
+      {20, {.name = "tracking_mpc.weight_lateral", .value = "3"}},
+      {40, {.name = "latency_ms", .value = "220"}},
+      {60, {.name = "latency_ms", .value = "20"}},
+      {61, {.name = "tracking_mpc.horizon_steps", .value = "30"}},
+      {80, {.name = "plant_options.friction_scale", .value = "0.9"}},
+      {81, {.name = "sensor.heading_noise_deg", .value = "0.1"}},
+      {100, {.name = "manual.is_on", .value = "true"}},
+      {100, {.name = "manual.steer", .value = "0.03"}},
+      {110, {.name = "manual.throttle", .value = "-1"}},
+      {120, {.name = "manual.is_on", .value = "false"}},
+      {130, {.name = "tracking_mpc.speed_limit_mps", .value = "20"}}};
+  const auto live = loop_of(settings);
+  live->apply({.name = "run.pace", .value = "20"});
+  RunControls controls;
+  std::vector<Change> script;
+  std::size_t next = 0;
+  static_cast<void>(run_realtime(*live, {.step_budget = 0.0}, controls,
+                                 {.on_frame =
+                                      [&](const telemetry::Frame& frame) {
+                                        for (; next < wishes.size() && wishes[next].first == frame.cycle;
+                                             ++next)
+                                          EXPECT_TRUE(controls.wishes.push(wishes[next].second));
+                                        controls.wants_stop = frame.cycle == 200;
+                                      },
+                                  .on_change = [&](const Change& change) { script.push_back(change); }}));
+  ASSERT_EQ(script.size(), wishes.size());
+  EXPECT_EQ(script.front().cycle, 21U);
+
+  const auto scripted = loop_of(settings);
+  next = 0;
+  while (scripted->cycle() < live->cycle() || scripted->time() < live->time() - 1e-9) {
+    if (scripted->is_control_due()) {
+      for (; next < script.size() && script[next].cycle == scripted->cycle(); ++next)
+        scripted->apply(script[next]);
+    }
+    scripted->advance();
+  }
+  EXPECT_EQ(scripted->summary().state_hash, live->summary().state_hash);
+  EXPECT_EQ(scripted->cycle(), live->cycle());
+}
+
+TEST(LiveChange, OfFrictionAndMassIsThatOfACarBuiltSo) {
+  for (const std::string car : {"udacity", "road-car"}) {
+    SCOPED_TRACE(car);
+    const auto built = loop_of({{"track", "oval"},
+                                {"car", car},
+                                {"plant_options.friction_scale", "0.7"},
+                                {"plant_options.mass_scale", "1.2"}});
+    const auto changed = loop_of({{"track", "oval"}, {"car", car}});
+    changed->apply({.name = "plant_options.friction_scale", .value = "0.7"});
+    changed->apply({.name = "plant_options.mass_scale", .value = "1.2"});
+    changed->restart();
+    drive(*built, 150);
+    drive(*changed, 150);
+    EXPECT_EQ(built->summary().state_hash, changed->summary().state_hash);
+  }
+}
+
+TEST(ManualDriving, ReplacesTheControllersWishThroughGateAndDelay) {
+  const auto loop = loop_of({{"track", "oval"}});
+  drive(*loop, 100);
+  loop->apply({.name = "manual.is_on", .value = "true"});
+  loop->apply({.name = "manual.steer", .value = "0.1"});
+  loop->apply({.name = "manual.throttle", .value = "0.25"});
+  const telemetry::Frame first = drive(*loop, 1);
+  EXPECT_TRUE(first.is_manual);
+  EXPECT_DOUBLE_EQ(first.result.command.steer, 0.1 * loop->scenario().vehicle.steer_limit);
+  EXPECT_DOUBLE_EQ(first.result.command.throttle, 0.25);
+  EXPECT_NE(first.asked.steer, first.result.command.steer);  // the controller's own
+  EXPECT_GT(first.result.plan.size, 0);
+  EXPECT_NE(first.applied.steer, first.result.command.steer);
+  const telemetry::Frame& later = drive(*loop, 4);  // 160 ms
+  EXPECT_DOUBLE_EQ(later.applied.steer, first.result.command.steer);
+}
+
+TEST(ManualDriving, BrakesGentlyToAStandWithoutAWordForASecond) {
+  const auto loop = loop_of({{"track", "oval"}});
+  drive(*loop, 150);
+  const double speed = loop->frame().truth.vx;
+  loop->apply({.name = "manual.is_on", .value = "true"});
+  loop->apply({.name = "manual.throttle", .value = "1"});
+  drive(*loop, 24);
+  EXPECT_DOUBLE_EQ(loop->frame().result.command.throttle, 1.0);
+  EXPECT_GT(loop->frame().truth.vx, speed);
+  drive(*loop, 3);
+  EXPECT_LT(loop->frame().result.command.throttle, 0.0);
+  EXPECT_GE(loop->frame().result.command.throttle, -loop->scenario().vehicle.brake_throttle_limit);
+  loop->apply({.name = "manual.throttle", .value = "1"});  // a word, the same one
+  EXPECT_DOUBLE_EQ(drive(*loop, 1).result.command.throttle, 1.0);
+  drive(*loop, 25 * 40);
+  EXPECT_NEAR(loop->frame().truth.vx, 0.0, 0.3);  // stands, and does not reverse
+}
+
+TEST(ManualDriving, BrakesNoHarderThanIsUsefulAndReversesNearStandstill) {
+  const auto loop = loop_of({{"track", "oval"}});
+  drive(*loop, 150);
+  loop->apply({.name = "manual.is_on", .value = "true"});
+  loop->apply({.name = "manual.throttle", .value = "-1"});
+  EXPECT_DOUBLE_EQ(drive(*loop, 1).result.command.throttle, -loop->scenario().vehicle.brake_throttle_limit);
+  for (int i = 0; i < 400; ++i) {
+    loop->apply({.name = "manual.throttle", .value = "-1"});
+    drive(*loop, 1);
+  }
+  EXPECT_LT(loop->frame().truth.vx, -1.0);
+}
+
+TEST(ManualDriving, HandsBackToAControllerThatKnowsWhereItIs) {
+  const auto loop = loop_of({{"track", "oval"}});
+  drive_to_map(*loop);
+  loop->apply({.name = "manual.is_on", .value = "true"});
+  loop->apply({.name = "manual.steer", .value = "0.05"});
+  drive(*loop, 8);  // a third of a second towards the left edge
+  loop->apply({.name = "manual.is_on", .value = "false"});
+  for (int i = 0; i < 100; ++i) {
+    const telemetry::Frame& frame = drive(*loop, 1);
+    ASSERT_FALSE(frame.is_manual);
+    ASSERT_EQ(frame.result.report.rung, controller::Rung::kController);
+    // Commands in flight, the person's too, are known: plans come true.
+    if (i > 5 && std::isfinite(frame.prediction_error)) {
+      ASSERT_LT(frame.prediction_error, 0.5) << i;
+    }
+  }
+  EXPECT_EQ(loop->summary().off_track_events, 0);
+}
+
+TEST(RealtimeLoop, TakesUpChangesWhilePausedAndComesBackToStartAnew) {
+  const auto loop = loop_of({{"track", "oval"}});
+  RunControls controls;
+  controls.is_paused = true;
+  ASSERT_TRUE(controls.wishes.push({.name = "latency_ms", .value = "30"}));
+  ASSERT_TRUE(controls.wishes.push({.name = "track", .value = "lakeside", .starts_anew = true}));
+  int changes = 0;
+  const telemetry::RunSummary run =
+      run_realtime(*loop, {}, controls, {.on_change = [&](const Change&) { ++changes; }});
+  EXPECT_EQ(run.cycles, 0U);
+  EXPECT_EQ(changes, 1);
+  EXPECT_EQ(loop->scenario().latency, 0.03);
+  ASSERT_NE(controls.wishes.front(), nullptr);
+  EXPECT_TRUE(controls.wishes.front()->starts_anew);
+}
+
+TEST(RealtimeLoop, GoesAtThePaceThatIsAskedFor) {
+  const auto loop = loop_of({{"track", "oval"}, {"time_limit_s", "0.2"}});
+  loop->apply({.name = "run.pace", .value = "0.5"});
+  RunControls controls;
+  // Slow motion can only take longer than asked for; an upper bound would test the machine.
+  EXPECT_GE(run_realtime(*loop, {}, controls).wall_time, 0.39);
+}
+
+/// For the thread sanitizer: settings on one thread, the run on another.
+TEST(LiveSettings, MayBeSetWhileTheRunGoesOn) {
+  const auto loop = loop_of({{"track", "oval"}});
+  RunControls controls;
+  live::LiveSettings settings({.scenario = loop->scenario()}, controls.wishes);
+  std::atomic<int> applied{0};
+  std::thread control([&] {
+    static_cast<void>(run_realtime(*loop, {}, controls, {.on_change = [&](const Change& change) {
+      settings.tell(change);
+      ++applied;
+    }}));
+  });
+  EXPECT_TRUE(settings.set({"run.pace", 20.0}));
+  int accepted = 1;
+  std::size_t told = 0;
+  for (int i = 0; i < 200; ++i) {
+    accepted += settings.set({"tracking_mpc.weight_lateral", 1.0 + 0.01 * i}) ? 1 : 0;
+    accepted += settings.set({"manual.steer", 0.001 * i}) ? 1 : 0;
+    told += settings.applied().size();
+    static_cast<void>(settings.news());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  const int sent = accepted - 1;  // weight 1 holds already: nothing to send
+  while (applied < sent) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  controls.wants_stop = true;
+  control.join();
+  told += settings.applied().size();
+  EXPECT_EQ(static_cast<int>(told), sent);
+  EXPECT_DOUBLE_EQ(loop->scenario().tracking_mpc.weight_lateral,
+                   settings.scenario().tracking_mpc.weight_lateral);
+}
+
+}  // namespace
+}  // namespace chicane::run

@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/live/live_settings.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chicane/protocol/library.hpp"
+
+namespace chicane::live {
+namespace {
+
+using protocol::foxglove::Parameter;
+using protocol::foxglove::ParameterValue;
+using testing::HasSubstr;
+
+scenario::Scenario scenario_of(std::vector<std::pair<std::string, std::string>> settings) {
+  Result<scenario::Scenario> scenario =
+      protocol::compose({.scenario_file = {}, .settings = std::move(settings)});
+  EXPECT_TRUE(scenario) << (scenario ? "" : scenario.error().message);
+  return scenario.value_or(scenario::Scenario{});
+}
+
+/// Settings of a default run beside which another one is built whenever that is asked for.
+struct Live {
+  explicit Live(const scenario::Scenario& scenario = scenario_of({}))
+      : settings{{.scenario = scenario,
+                  .build = [this](const ChosenRun& next) { started.push_back(next); },
+                  .built = [this] { return std::exchange(outcome, std::nullopt); },
+                  .on_building = [this](const std::string& what) { building = what; },
+                  .on_accepted = [this](const scenario::Scenario& now) { accepted = now; }},
+                 wishes} {}
+
+  /// The build has ended, and the network thread looks.
+  std::vector<std::string> end_of_build(Result<void> with = {}) {
+    outcome = std::move(with);
+    return settings.complaints();
+  }
+
+  std::string refusal(const Parameter& wish) {
+    const Result<void> done = settings.set(wish);
+    EXPECT_FALSE(done) << wish.name;
+    EXPECT_EQ(wishes.front(), nullptr) << wish.name;
+    return done ? "" : done.error().message;
+  }
+  telemetry::Change next() {
+    const telemetry::Change* front = wishes.front();
+    if (front == nullptr) {
+      ADD_FAILURE() << "no change waits";
+      return {};
+    }
+    const telemetry::Change change = *front;
+    wishes.pop();
+    return change;
+  }
+  ParameterValue value(std::string_view name) {
+    const auto parameter = settings.get(name);
+    return parameter ? parameter->value : ParameterValue{};
+  }
+
+  run::ChangeQueue wishes;
+  std::vector<ChosenRun> started;
+  std::optional<Result<void>> outcome;
+  std::string building;
+  scenario::Scenario accepted;
+  LiveSettings settings;
+};
+
+TEST(LiveSettings, OfferEveryTunableOfTheSchemaAndTheControlsOfTheRun) {
+  Live live;
+  const std::vector<Parameter> all = live.settings.list();
+  EXPECT_EQ(all.size(), protocol::list().size() + 4);
+  for (const protocol::Parameter& row : protocol::list()) EXPECT_TRUE(live.settings.get(row.key)) << row.key;
+  EXPECT_EQ(live.value("tracking_mpc.horizon_steps"), ParameterValue(40.0));
+  EXPECT_EQ(live.value("latency_ms"), ParameterValue(100.0));
+  EXPECT_EQ(live.value("track"), ParameterValue(std::string("lakeside")));
+  EXPECT_EQ(live.value("run.pace"), ParameterValue(1.0));
+  EXPECT_EQ(live.value("vehicle.steer_rate_limit_degps"), ParameterValue(std::string("inf")));
+}
+
+TEST(LiveSettings, HandOverEachKindOfValueAsTheTextThatSetTakes) {
+  Live live;
+  const std::vector<std::pair<Parameter, std::string>> wishes{
+      {{"tracking_mpc.weight_lateral", 2.5}, "2.5"},
+      {{"tracking_mpc.horizon_steps", 20.0}, "20"},
+      {{"tracking_mpc.compensate_delay", false}, "false"},
+      {{"cubic_mpc.latency_handling", std::string("measured")}, "measured"},
+      {{"latency_ms", 33.3}, "33.3"},
+      {{"sensor.heading_noise_deg", 0.2}, "0.2"},
+      {{"vehicle.steer_rate_limit_degps", 90.0}, "90"},
+      {{"vehicle.drive_power_per_mass_wpkg", 100.0}, "100"},
+      {{"run.pace", 0.25}, "0.25"},
+      {{"manual.is_on", true}, "true"},
+      {{"manual.steer", -0.5}, "-0.5"}};
+  for (const auto& [wish, text] : wishes) {
+    ASSERT_TRUE(live.settings.set(wish)) << wish.name;
+    const telemetry::Change change = live.next();
+    EXPECT_EQ(change.name.view(), wish.name);
+    EXPECT_EQ(change.value.view(), text);
+    EXPECT_FALSE(change.starts_anew);
+    EXPECT_EQ(live.value(wish.name), wish.value) << wish.name;
+  }
+  ASSERT_TRUE(live.settings.set({"vehicle.steer_rate_limit_degps", std::string("inf")}));
+  EXPECT_EQ(live.next().value.view(), "inf");
+}
+
+TEST(LiveSettings, RefuseWhatSetWouldRefuseInOneSentence) {
+  Live live;
+  EXPECT_EQ(live.refusal({"latency_ms", 900.0}), "latency_ms: got 900, expected a number in [0, 500] ms");
+  EXPECT_EQ(live.refusal({"tracking_mpc.horizon_steps", 7.5}),
+            "tracking_mpc.horizon_steps: got 7.5, expected an integer in [5, 100]");
+  EXPECT_THAT(live.refusal({"tracking_mpc.horizon_step", 20.0}),
+              HasSubstr("did you mean tracking_mpc.horizon_steps?"));
+  EXPECT_THAT(live.refusal({"manual.ste", 0.0}), HasSubstr("did you mean manual.steer?"));
+  EXPECT_EQ(live.refusal({"tracking_mpc.compensate_delay", 1.0}),
+            "tracking_mpc.compensate_delay: got 1, expected true or false");
+  EXPECT_THAT(live.refusal({"cubic_mpc.latency_handling", std::string("magic")}),
+              HasSubstr("expected one of"));
+  EXPECT_EQ(live.refusal({"latency_ms", {}}), "latency_ms: got nothing, expected a number in [0, 500] ms");
+  EXPECT_EQ(live.refusal({"latency_ms", std::vector<double>{1.0}}),
+            "latency_ms: got a list, expected a number in [0, 500] ms");
+  EXPECT_EQ(live.refusal({"run.pace", 21.0}), "run.pace: got 21, expected a number in [0.05, 20]");
+  EXPECT_EQ(live.refusal({"manual.steer", std::numeric_limits<double>::quiet_NaN()}),
+            "manual.steer: got nan, expected a number in [-1, 1]");
+  EXPECT_EQ(live.refusal({"manual.is_on", 1.0}), "manual.is_on: got 1, expected true or false");
+  EXPECT_EQ(live.value("latency_ms"), ParameterValue(100.0));
+}
+
+TEST(LiveSettings, RefuseSettingsThatExcludeEachOther) {
+  Live live(scenario_of({{"preset", "delay-in-model"}}));
+  EXPECT_THAT(live.refusal({"cubic_mpc.latency_ms", 50.0}), HasSubstr("expected cubic_mpc.step_length_s"));
+}
+
+TEST(LiveSettings, SayWhenTooManyChangesWait) {
+  Live live;
+  for (std::uint64_t i = 0; i < run::ChangeQueue::kCapacity; ++i)
+    ASSERT_TRUE(live.settings.set({"manual.steer", 0.001 * static_cast<double>(i)}));
+  const Result<void> one_more = live.settings.set({"latency_ms", 10.0});
+  ASSERT_FALSE(one_more);
+  EXPECT_EQ(one_more.error().message, "latency_ms: too many changes wait; try again");
+  EXPECT_FALSE(live.settings.set({"track", std::string("oval")}));
+  EXPECT_TRUE(live.started.empty());
+}
+
+TEST(LiveSettings, SendNothingForAValueThatHoldsAlreadyButEveryWordOfAPerson) {
+  Live live;
+  ASSERT_TRUE(live.settings.set({"latency_ms", 100.0}));
+  EXPECT_EQ(live.wishes.front(), nullptr);
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(live.settings.set({"manual.throttle", 0.5}));
+    EXPECT_EQ(live.next().value.view(), "0.5");
+  }
+}
+
+TEST(LiveSettings, StartAnewWithAnotherTrackAndKeepWhatWasSet) {
+  Live live;
+  ASSERT_TRUE(live.settings.set({"tracking_mpc.grip_share", 0.5}));
+  ASSERT_TRUE(live.settings.set({"run.pace", 2.0}));
+  live.next();
+  live.next();
+  ASSERT_TRUE(live.settings.set({"track", std::string("oval")}));
+  ASSERT_EQ(live.started.size(), 1U);
+  EXPECT_EQ(live.started[0].scenario.track, "oval");
+  EXPECT_EQ(live.started[0].scenario.tracking_mpc.grip_share, 0.5);
+  EXPECT_EQ(live.building, "track = oval");
+  EXPECT_TRUE(live.settings.complaints().empty());
+  EXPECT_EQ(live.wishes.front(), nullptr);  // the run before goes on
+  EXPECT_EQ(live.settings.scenario().track, "lakeside");
+  EXPECT_TRUE(live.end_of_build().empty());
+  EXPECT_EQ(live.building, "");
+  EXPECT_EQ(live.settings.scenario().track, "oval");
+  const telemetry::Change change = live.next();
+  EXPECT_EQ(change.name.view(), "track");
+  EXPECT_TRUE(change.starts_anew);
+  EXPECT_EQ(live.next().name.view(), "run.pace");  // the new run hears of it again
+  EXPECT_EQ(live.wishes.front(), nullptr);
+  EXPECT_THAT(live.refusal({"track", std::string("ovall")}), HasSubstr("did you mean oval?"));
+  EXPECT_EQ(live.value("track"), ParameterValue(std::string("oval")));
+}
+
+TEST(LiveSettings, TakeAPresetsSettingsButKeepTheWorld) {
+  Live live(scenario_of({{"latency_ms", "50"}, {"track", "oval"}, {"seed", "7"}}));
+  ASSERT_TRUE(live.settings.set({"tracking_mpc.grip_share", 0.5}));
+  EXPECT_EQ(live.settings.news().size(), 1U);
+  ASSERT_TRUE(live.settings.set({"preset", std::string("sixty-mph")}));
+  live.end_of_build();
+  const scenario::Scenario& now = live.settings.scenario();
+  EXPECT_EQ(now.controller, "cubic-mpc");
+  EXPECT_EQ(now.cubic_mpc.horizon_steps, 7);
+  EXPECT_EQ(now.tracking_mpc.grip_share, scenario::Scenario{}.tracking_mpc.grip_share);
+  EXPECT_EQ(now.latency, 0.05);
+  EXPECT_EQ(now.track, "oval");
+  EXPECT_EQ(now.seed, 7U);
+  std::vector<std::string> names;
+  for (const Parameter& parameter : live.settings.news()) names.push_back(parameter.name);
+  EXPECT_THAT(names, testing::IsSupersetOf({"preset", "controller", "cubic_mpc.horizon_steps",
+                                            "tracking_mpc.grip_share", "control_period_ms"}));
+  EXPECT_TRUE(live.settings.news().empty());
+}
+
+TEST(LiveSettings, TakeACarsVehicleAndPlant) {
+  Live live;
+  ASSERT_TRUE(live.settings.set({"car", std::string("road-car")}));
+  live.end_of_build();
+  EXPECT_EQ(live.settings.scenario().plant, "road-car");
+  EXPECT_EQ(live.settings.scenario().vehicle.name, "road-car");
+}
+
+TEST(LiveSettings, ChangeNothingWhenTheRunCannotBeBuiltAndSaySo) {
+  Live live;
+  ASSERT_TRUE(live.settings.set({"seed", 2.0}));
+  static_cast<void>(live.settings.news());
+  EXPECT_EQ(live.value("seed"), ParameterValue(2.0));  // what was wished for, while there is hope
+  const std::vector<std::string> said = live.end_of_build(fail(ErrorCode::kIo, "no room in the garage"));
+  EXPECT_EQ(said,
+            std::vector<std::string>{"no run with seed = 2: no room in the garage; the one before goes on"});
+  EXPECT_TRUE(live.settings.complaints().empty());
+  EXPECT_EQ(live.building, "");
+  EXPECT_EQ(live.settings.scenario().seed, 1U);
+  ASSERT_EQ(live.settings.news().size(), 1U);  // viewers hear that it is not so
+  EXPECT_EQ(live.value("seed"), ParameterValue(1.0));
+  EXPECT_EQ(live.wishes.front(), nullptr);
+}
+
+TEST(LiveSettings, TakeTheLastOfQuickChoicesWithThoseBefore) {
+  Live live;
+  ASSERT_TRUE(live.settings.set({"track", std::string("oval")}));
+  ASSERT_TRUE(live.settings.set({"car", std::string("road-car")}));
+  ASSERT_TRUE(live.settings.set({"track", std::string("hairpins")}));
+  EXPECT_EQ(live.building, "car = road-car, track = hairpins");
+  ASSERT_EQ(live.started.size(), 3U);
+  const ChosenRun& last = live.started.back();
+  EXPECT_EQ(last.scenario.track, "hairpins");
+  EXPECT_EQ(last.scenario.car, "road-car");
+  ASSERT_EQ(last.choices.size(), 2U);
+  EXPECT_EQ(last.choices[1].value.view(), "hairpins");
+  live.end_of_build();
+  const telemetry::Change change = live.next();  // one run begins, not three
+  EXPECT_EQ(change.name.view(), "track");
+  EXPECT_EQ(change.value.view(), "hairpins");
+  EXPECT_TRUE(change.starts_anew);
+  EXPECT_EQ(live.wishes.front(), nullptr);
+  EXPECT_EQ(live.settings.scenario().car, "road-car");
+}
+
+TEST(LiveSettings, CountForBothRunsWhileOneIsBuilt) {
+  Live live;
+  ASSERT_TRUE(live.settings.set({"track", std::string("oval")}));
+  ASSERT_TRUE(live.settings.set({"latency_ms", 40.0}));
+  ASSERT_TRUE(live.settings.set({"latency_ms", 50.0}));
+  EXPECT_EQ(live.next().value.view(), "40");  // the run that goes on
+  EXPECT_EQ(live.next().value.view(), "50");
+  EXPECT_EQ(live.wishes.front(), nullptr);
+  EXPECT_EQ(live.accepted.track, "lakeside");
+  EXPECT_EQ(live.accepted.latency, 0.05);
+  live.end_of_build();
+  EXPECT_TRUE(live.next().starts_anew);
+  const telemetry::Change again = live.next();  // what was built did not know of it
+  EXPECT_EQ(again.name.view(), "latency_ms");
+  EXPECT_EQ(again.value.view(), "50");
+  EXPECT_FALSE(again.starts_anew);
+  EXPECT_EQ(live.wishes.front(), nullptr);
+  EXPECT_EQ(live.settings.scenario().latency, 0.05);
+  live.settings.tell({.name = "track", .value = "oval", .starts_anew = true});
+  EXPECT_EQ(live.settings.applied().size(), 1U);
+  EXPECT_EQ(live.accepted.track, "oval");  // and its description hears of it
+  EXPECT_EQ(live.accepted.latency, 0.05);
+}
+
+TEST(LiveSettings, WaitWithARunThatIsReadyUntilTheQueueHasRoom) {
+  Live live;
+  ASSERT_TRUE(live.settings.set({"track", std::string("oval")}));
+  for (std::uint64_t i = 0; i < run::ChangeQueue::kCapacity; ++i)
+    ASSERT_TRUE(live.settings.set({"manual.steer", 0.001 * static_cast<double>(i)}));
+  live.end_of_build();
+  EXPECT_EQ(live.settings.scenario().track, "lakeside");
+  for (std::uint64_t i = 0; i < run::ChangeQueue::kCapacity; ++i) live.next();
+  static_cast<void>(live.settings.complaints());
+  EXPECT_TRUE(live.next().starts_anew);
+  EXPECT_EQ(live.settings.scenario().track, "oval");
+}
+
+TEST(LiveSettings, OfferControllerAndVehicleOnlyForAnExternalSimulator) {
+  run::ChangeQueue wishes;
+  LiveSettings settings({.scenario = scenario_of({{"preset", "weighted"}}), .has_world = false}, wishes);
+  for (const Parameter& parameter : settings.list()) {
+    EXPECT_TRUE(parameter.name.starts_with("cubic_mpc.") || parameter.name.starts_with("vehicle."))
+        << parameter.name;
+  }
+  EXPECT_TRUE(settings.get("cubic_mpc.weight_lateral"));
+  EXPECT_TRUE(settings.set({"cubic_mpc.weight_lateral", 10.0}));
+  const Result<void> world = settings.set({"latency_ms", 10.0});
+  ASSERT_FALSE(world);
+  EXPECT_EQ(world.error().message, "latency_ms: cannot be set while this run goes on");
+}
+
+TEST(LiveSettings, TellWhatTheRunHasTakenUpAndFaultsThatEndByThemselves) {
+  run::ChangeQueue wishes;
+  LiveSettings settings(
+      {.scenario = scenario_of({}),
+       .faults = {{"fault.link_lost", protocol::Kind::kBool, "", 0.0, 0.0, false, "Silence."}}},
+      wishes);
+  ASSERT_TRUE(settings.set({"fault.link_lost", true}));
+  EXPECT_EQ(settings.get("fault.link_lost")->value, ParameterValue(true));
+  EXPECT_EQ(settings.news().size(), 1U);
+  settings.tell({.cycle = 9, .time = 0.36, .name = "fault.link_lost", .value = "false"});
+  const std::vector<telemetry::Change> changes = settings.applied();
+  ASSERT_EQ(changes.size(), 1U);
+  EXPECT_EQ(changes[0].cycle, 9U);
+  ASSERT_EQ(settings.news().size(), 1U);
+  EXPECT_EQ(settings.get("fault.link_lost")->value, ParameterValue(false));
+}
+
+TEST(LiveSettings, DescribeThemselvesInJson) {
+  Live live(scenario_of({{"preset", "sixty-mph"}, {"cubic_mpc.horizon_steps", "9"}}));
+  const auto schema = nlohmann::json::parse(live.settings.schema_json());
+  ASSERT_EQ(schema.size(), live.settings.list().size());
+  const auto entry = [&](const std::string& key) {
+    for (const auto& each : schema) {
+      if (each["key"] == key) return each;
+    }
+    return nlohmann::json();
+  };
+  const auto horizon = entry("cubic_mpc.horizon_steps");
+  EXPECT_EQ(horizon["kind"], "integer");
+  EXPECT_EQ(horizon["group"], "cubic_mpc");
+  EXPECT_EQ(horizon["minimum"], 2);
+  EXPECT_EQ(horizon["maximum"], 200);
+  EXPECT_EQ(horizon["default"], 7);  // the preset's, not what is set now
+  EXPECT_EQ(horizon["is_live"], true);
+  EXPECT_EQ(entry("latency_ms")["unit"], "ms");
+  EXPECT_EQ(entry("latency_ms")["group"], "run");
+  EXPECT_EQ(entry("track")["is_live"], false);
+  EXPECT_THAT(entry("track")["choices"].dump(), HasSubstr("lakeside"));
+  EXPECT_EQ(entry("cubic_mpc.latency_handling")["kind"], "choice");
+  EXPECT_EQ(entry("vehicle.drive_power_per_mass_wpkg")["default"], "inf");
+  EXPECT_EQ(entry("manual.is_on")["kind"], "bool");
+  EXPECT_EQ(entry("run.pace")["maximum"], 20);
+}
+
+/// Another value than the one that holds, which may stand beside the others.
+std::string another_value(const protocol::Parameter& row, const scenario::Scenario& scenario) {
+  if (row.key == "preset") return "sixty-mph";
+  if (row.key == "track") return "oval";
+  if (row.key == "car") return "road-car";
+  const protocol::Value now = protocol::get(scenario, row);
+  if (const auto* flag = std::get_if<bool>(&now)) return *flag ? "false" : "true";
+  if (row.kind() == protocol::Kind::kText) return "something else";
+  if (row.kind() == protocol::Kind::kChoice)
+    return std::string(row.choices[std::get<std::string>(now) == row.choices[1] ? 0 : 1]);
+  if (row.kind() == protocol::Kind::kInteger)
+    return std::get<double>(now) == row.minimum + 1.0 ? std::to_string(static_cast<int>(row.minimum) + 2)
+                                                      : std::to_string(static_cast<int>(row.minimum) + 1);
+  scenario::Scenario other = scenario;
+  EXPECT_TRUE(protocol::set(other, row, row.minimum + (row.maximum - row.minimum) / 7.0)) << row.key;
+  return protocol::get_text(other, row);
+}
+
+TEST(LiveSettings, BecomeAPresetFileThatGivesThemBackForEveryRow) {
+  const std::string file = testing::TempDir() + "live_settings_preset.yaml";
+  for (const protocol::Parameter& row : protocol::list()) {
+    SCOPED_TRACE(row.key);
+    const scenario::Scenario plain = scenario_of({});
+    const Live live(scenario_of({{std::string(row.key), another_value(row, plain)}}));
+    std::ofstream(file) << live.settings.preset_yaml();
+    const Result<scenario::Scenario> again = protocol::compose({.scenario_file = file, .settings = {}});
+    ASSERT_TRUE(again) << again.error().message;
+    for (const protocol::Parameter& each : protocol::list()) {
+      EXPECT_EQ(protocol::get_text(*again, each), protocol::get_text(live.settings.scenario(), each))
+          << each.key;
+    }
+  }
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace chicane::live

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/live/pages.hpp"
+
+#include <gtest/gtest.h>
+
+#include "chicane/wire/endpoint.hpp"
+
+namespace chicane::live {
+namespace {
+
+TEST(Pages, OfALiveRunSaySo) {
+  wire::Router router(nullptr, nullptr);
+  const net::ServerHandlers handlers = router.handlers();
+  const auto mode = handlers.on_get("/mode.json");
+  ASSERT_TRUE(mode);
+  EXPECT_EQ(mode->content_type, "application/json");
+  EXPECT_EQ(mode->bytes, "{\"mode\":\"live\"}\n");
+  EXPECT_FALSE(handlers.on_get("/log/0.mcap"));
+}
+
+TEST(Pages, OfAReplayNameItsLogsAndServeNoOtherFile) {
+  wire::Router router(nullptr, nullptr);
+  const auto handlers = router.handlers(
+      replay_pages({{"run \"1\".mcap", "/tmp/run.mcap"}, {"branch at 12.0 s", "/tmp/b"}}, 12.0));
+  EXPECT_EQ(handlers.on_get("/mode.json")->bytes,
+            "{\"mode\":\"replay\",\"logs\":[{\"name\":\"run \\\"1\\\".mcap\",\"url\":\"/log/0.mcap\"},"
+            "{\"name\":\"branch at 12.0 s\",\"url\":\"/log/1.mcap\"}],\"start_s\":12.0}\n");
+  EXPECT_EQ(handlers.on_get("/log/1.mcap")->file, "/tmp/b");
+  for (const char* path : {"/log/2.mcap", "/log/", "/log/../tmp/b", "/tmp/b", "/log/01.mcap", ""}) {
+    EXPECT_FALSE(handlers.on_get(path)) << path;
+  }
+}
+
+}  // namespace
+}  // namespace chicane::live

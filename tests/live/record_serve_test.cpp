@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// Sessions with an external simulator, recorded as received and computed again.
+#include <gtest/gtest.h>
+
+#include "chicane/protocol/library.hpp"
+#include "chicane/recording/recorder.hpp"
+#include "chicane/recording/replay.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "chicane/run/make.hpp"
+#include "chicane/wire/serve.hpp"
+#include "net/raw_socket.hpp"
+#include "protocol/hostile_telemetry.hpp"
+#include "telemetry/sample_mcap.hpp"
+
+namespace chicane::wire {
+namespace {
+
+using telemetry::TemporaryFile;
+using test::RawSocket;
+
+scenario::Scenario short_run(const std::string& controller) {
+  const auto scenario = protocol::compose(
+      {.scenario_file = {}, .settings = {{"controller", controller}, {"time_limit_s", "6"}}});
+  EXPECT_TRUE(scenario);
+  return *scenario;
+}
+
+/// What a simulator sends during a short drive.
+std::vector<std::string> telemetry_of_a_drive() {
+  auto loop = run::ClosedLoop::create(short_run("pid"));
+  EXPECT_TRUE(loop);
+  std::vector<std::string> messages;
+  static_cast<void>(run::run_closed_loop(**loop, [&](const telemetry::Frame& frame) {
+    messages.push_back(protocol::encode_telemetry(frame.measurement));
+  }));
+  return messages;
+}
+
+/// One client's session: telemetry, some of it broken, a person at the wheel for a moment.
+void drive(std::uint16_t port, const std::vector<std::string>& messages) {
+  RawSocket client(port);
+  client.send(test::unity_handshake(port));
+  client.until("\r\n\r\n");
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    client.send(RawSocket::masked(messages[i]));
+    ASSERT_TRUE(client.frame());
+    if (i == 20) client.send(RawSocket::masked(test::with("\"speed\":2.995219E-06", "\"speed\":\"fast\"")));
+    if (i == 30) client.send(RawSocket::masked(R"(42["telemetry",null])"));
+    if (i == 20 || i == 30) {
+      ASSERT_TRUE(client.frame());
+    }
+  }
+}
+
+recording::ReplayReport record_and_verify(const std::string& name, std::chrono::nanoseconds step_budget) {
+  const telemetry::TemporaryFile file;
+  const scenario::Scenario scenario = short_run(name);
+  const auto controller = run::make_controller(scenario);
+  recording::RecorderOptions recording;
+  recording.path = file.path();
+  recording.scenario = scenario;
+  recording.may_wait = true;
+  auto recorder = recording::Recorder::create(recording);
+  EXPECT_TRUE(recorder);
+  ServeOptions options;
+  options.server.port = 0;
+  options.latency = std::chrono::nanoseconds{0};
+  options.quiet_after = std::chrono::milliseconds{10};
+  options.vehicle = scenario.vehicle;
+  options.step_budget = step_budget;
+  options.scenario = scenario;
+  run::ChangeQueue wishes;
+  UdacityEndpoint endpoint(
+      options, **controller,
+      {.wishes = &wishes,
+       .on_change = [&](const telemetry::Change& change) { (*recorder)->record(change); },
+       .on_frame = [&](const telemetry::Frame& frame) { (*recorder)->record(frame); }});
+  Router router(&endpoint, nullptr);
+  auto server = net::Server::create(options.server, router.handlers(), {});
+  EXPECT_TRUE(server);
+  const std::vector<std::string> messages = telemetry_of_a_drive();
+  for (int session = 0; session < 2; ++session) {
+    EXPECT_TRUE(wishes.push({.name = "vehicle.steer_limit_deg", .value = session == 0 ? "3" : "20"}));
+    drive((*server)->port(), messages);
+    std::this_thread::sleep_for(2 * options.quiet_after);
+  }
+  endpoint.stop();
+  server->reset();
+  EXPECT_TRUE((*recorder)->finish());
+  const Result<recording::ReplayReport> report = recording::verify_recording(file.path());
+  EXPECT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->steps, 2 * (messages.size() + 1));
+  return report.value_or(recording::ReplayReport{});
+}
+
+TEST(RecordedSession, ComesOutTheSameWithBrokenTelemetryAPersonAndASecondClient) {
+  for (const char* controller : {"tracking-mpc", "cubic-mpc", "pid", "stanley"}) {
+    const recording::ReplayReport report = record_and_verify(controller, std::chrono::seconds{10});
+    EXPECT_EQ(report.identical, report.steps) << controller << " " << report.first_difference.value_or(0);
+    EXPECT_EQ(report.late, 0U);
+  }
+}
+
+TEST(RecordedSession, ComesOutTheSameWhenDeadlinesAreSpentSomewhere) {
+  for (const char* controller : {"tracking-mpc", "cubic-mpc"}) {
+    for (const std::chrono::microseconds budget :
+         {std::chrono::microseconds{15}, std::chrono::microseconds{60}}) {
+      const recording::ReplayReport report = record_and_verify(controller, budget);
+      EXPECT_EQ(report.identical, report.steps) << controller << ", " << report.late << " late";
+    }
+  }
+}
+
+TEST(RecordedSession, ComesOutTheSameWhenEveryDeadlineIsSpent) {
+  const recording::ReplayReport report = record_and_verify("cubic-mpc", std::chrono::nanoseconds{1});
+  EXPECT_EQ(report.identical, report.steps);
+  EXPECT_EQ(report.late, report.steps - 2) << "all but the two that were unusable";
+}
+
+}  // namespace
+}  // namespace chicane::wire

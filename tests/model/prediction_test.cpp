@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/model/prediction.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "chicane/base/random.hpp"
+
+namespace chicane::model {
+namespace {
+
+VehicleParams car_number(int i) { return i == 0 ? udacity_params() : road_car_params(); }
+
+BodyMotion<double> settle(const PredictionModel& model, double speed, double steer, double seconds,
+                          double dt) {
+  BodyMotion<double> motion{.vx = speed};
+  for (double t = 0.0; t < seconds; t += dt) {
+    motion = model.advance(motion, steer, 0.0, dt, model.lags(dt));
+    motion.vx = speed;
+  }
+  return motion;
+}
+
+TEST(PredictionModel, TurnsAsTheWheelbaseSaysWhenSlow) {
+  for (int i = 0; i < 2; ++i) {
+    const VehicleParams car = car_number(i);
+    const BodyMotion<double> motion = settle(PredictionModel(car), 3.0, 0.1, 5.0, 0.02);
+    // Tyres slip a little even at walking pace; the speed floor of the slip angles adds its share.
+    EXPECT_NEAR(motion.r, 3.0 * std::tan(0.1) / car.wheelbase(), 0.06 * motion.r) << car.name;
+  }
+}
+
+TEST(PredictionModel, HasTheYawGainOfTheOriginalCar) {
+  // udacity/self-driving-car-sim v1.45, fitted to published logs: ψ'/δ = 7.1, 10.9 and 17 1/s at 20, 30 and
+  // 45 m/s.
+  const PredictionModel model(udacity_params());
+  EXPECT_NEAR(settle(model, 20.0, 0.01, 10.0, 0.01).r / 0.01, 7.1, 0.4);
+  EXPECT_NEAR(settle(model, 30.0, 0.01, 10.0, 0.01).r / 0.01, 10.9, 0.6);
+  EXPECT_NEAR(settle(model, 45.0, 0.01, 15.0, 0.01).r / 0.01, 17.0, 1.2);
+}
+
+TEST(PredictionModel, StaysFiniteFromStandstillToTopSpeedForAnyStep) {
+  Random random(11);
+  for (int i = 0; i < 2000; ++i) {
+    const PredictionModel model(car_number(i % 2));
+    BodyMotion<double> motion{
+        .vx = random.uniform(0.0, 60.0), .vy = random.uniform(-2.0, 2.0), .r = random.uniform(-1.5, 1.5)};
+    for (int k = 0; k < 20; ++k) {
+      const double steer = random.uniform(-0.43, 0.43);
+      const double acceleration = random.uniform(-9.0, 5.0);
+      const double dt = random.uniform(0.001, 0.1);
+      motion = model.advance(motion, steer, acceleration, dt, model.lags(dt));
+      motion.vx = std::max(motion.vx, 0.0);
+    }
+    EXPECT_TRUE(std::isfinite(motion.vx + motion.vy + motion.r));
+    EXPECT_LT(std::fabs(motion.r), 20.0);
+  }
+}
+
+TEST(PredictionModel, KnowsThatHardBrakingMakesAFastCarUnstable) {
+  const PredictionModel model(road_car_params());
+  const auto yaw_rate_after_a_second = [&](double acceleration) {
+    BodyMotion<double> motion{.vx = 50.0, .r = 0.01, .acceleration = acceleration};
+    for (int k = 0; k < 100; ++k) {
+      motion = model.advance(motion, 0.0, acceleration, 0.01, model.lags(0.01));
+      motion.vx = 50.0;
+    }
+    return std::fabs(motion.r);
+  };
+  EXPECT_LT(yaw_rate_after_a_second(0.0), 0.002);
+  EXPECT_GT(yaw_rate_after_a_second(-8.0), 0.01) << "the rear axle carries too little to lead";
+}
+
+TEST(PredictionModel, MirrorsLeftAndRightExactly) {
+  const PredictionModel model(road_car_params());
+  const BodyMotion<double> left =
+      model.advance({25.0, -0.4, 0.3, 0.05, -2.0}, 0.08, -3.0, 0.05, model.lags(0.05));
+  const BodyMotion<double> right =
+      model.advance({25.0, 0.4, -0.3, -0.05, -2.0}, -0.08, -3.0, 0.05, model.lags(0.05));
+  EXPECT_EQ(left.vx, right.vx);
+  EXPECT_EQ(left.vy, -right.vy);
+  EXPECT_EQ(left.r, -right.r);
+  EXPECT_EQ(left.steer, -right.steer);
+}
+
+}  // namespace
+}  // namespace chicane::model

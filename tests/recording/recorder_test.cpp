@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/recording/recorder.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <csignal>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "chicane/protocol/library.hpp"
+#include "chicane/recording/replay.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "chicane/telemetry/mcap_reader.hpp"
+#include "telemetry/sample_mcap.hpp"
+
+namespace chicane::recording {
+namespace {
+
+using telemetry::TemporaryFile;
+
+std::unique_ptr<run::ClosedLoop> short_run(std::vector<std::pair<std::string, std::string>> settings) {
+  settings.insert(settings.begin(), {{"laps", "1"}, {"time_limit_s", "12"}});
+  const auto scenario = protocol::compose({.scenario_file = {}, .settings = settings});
+  EXPECT_TRUE(scenario) << (scenario ? "" : scenario.error().message);
+  auto loop = run::ClosedLoop::create(scenario.value_or(scenario::Scenario{}));
+  EXPECT_TRUE(loop);
+  return std::move(*loop);
+}
+
+RecorderOptions recording(const run::ClosedLoop& loop, const std::string& path) {
+  RecorderOptions options;
+  options.path = path;
+  options.run.track = loop.track().name();
+  options.scenario = loop.scenario();
+  options.may_wait = true;
+  return options;
+}
+
+RecorderReport record(run::ClosedLoop& loop, const std::string& path) {
+  auto recorder = Recorder::create(recording(loop, path));
+  EXPECT_TRUE(recorder);
+  static_cast<void>(
+      run::run_closed_loop(loop, [&](const telemetry::Frame& frame) { (*recorder)->record(frame); }));
+  const Result<RecorderReport> report = (*recorder)->finish();
+  EXPECT_TRUE(report);
+  return report.value_or(RecorderReport{});
+}
+
+class RecordedController : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(RecordedController, ComesOutTheSameToTheLastBit) {
+  for (const char* car : {"udacity", "road-car"}) {
+    const TemporaryFile file;
+    const auto loop = short_run({{"car", car},
+                                 {"controller", GetParam()},
+                                 {"sensor.position_noise_m", "0.05"},
+                                 {"vehicle.steer_limit_deg", "23.3"}});
+    const RecorderReport recorded = record(*loop, file.path());
+    EXPECT_GT(recorded.frames, 100U);
+    EXPECT_EQ(recorded.left_out, 0U);
+    const Result<ReplayReport> replayed = verify_recording(file.path());
+    ASSERT_TRUE(replayed) << replayed.error().message;
+    EXPECT_TRUE(replayed->is_verified()) << car << " " << replayed->first_difference.value_or(0);
+    EXPECT_EQ(replayed->steps, recorded.frames);
+    EXPECT_TRUE(replayed->is_complete);
+    EXPECT_EQ(replayed->controller, GetParam());
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Controllers, RecordedController,
+                         ::testing::Values("tracking-mpc", "cubic-mpc", "pid", "pure-pursuit", "stanley"),
+                         [](const auto& parameter) {
+                           std::string name = parameter.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+TEST(Recorder, KeepsAScenarioThatIsAllDefaultsWhole) {
+  const TemporaryFile file;
+  RecorderOptions options;
+  options.path = file.path();
+  ASSERT_TRUE((*Recorder::create(options))->finish());
+  std::string scenario;
+  ASSERT_TRUE(telemetry::read_mcap(
+      file.path(), {.on_attachment = [&](std::string_view, std::string_view bytes) { scenario = bytes; }}));
+  EXPECT_NE(scenario.find("control_period_ms: 40\n"), std::string::npos) << scenario;
+  const Result<ReplayReport> replayed = verify_recording(file.path());
+  ASSERT_TRUE(replayed) << replayed.error().message;
+  EXPECT_EQ(replayed->steps, 0U);
+  EXPECT_FALSE(replayed->is_verified());
+}
+
+/// Writes the recording anew, with the step messages as `change` leaves them; it may return false: left out.
+template <class Change>
+void rewrite(const std::string& from, const std::string& to, Change change) {
+  const auto writer = telemetry::McapWriter::create(to, "test");
+  ASSERT_TRUE(writer);
+  const std::uint16_t channel = (*writer)->add_channel("/chicane/step", "chicane_msgs/msg/Step", "");
+  const auto read = telemetry::read_mcap(
+      from, {.on_message =
+                 [&](const telemetry::McapMessage& message) {
+                   if (message.channel.topic != "/chicane/step") return;
+                   std::string bytes(message.bytes);
+                   if (change(message.sequence, bytes)) {
+                     EXPECT_TRUE((*writer)->write(channel, message.log_time, message.publish_time, bytes));
+                   }
+                 },
+             .on_attachment =
+                 [&](std::string_view name, std::string_view bytes) {
+                   EXPECT_TRUE((*writer)->add_attachment(name, "application/yaml", bytes));
+                 }});
+  ASSERT_TRUE(read);
+}
+
+TEST(Replay, DetectsOneFlippedBitOfACommandAndNamesItsCycle) {
+  const TemporaryFile file;
+  record(*short_run({{"controller", "tracking-mpc"}}), file.path());
+  const std::string changed = file.path() + ".changed";
+  rewrite(file.path(), changed, [](std::uint32_t cycle, std::string& bytes) {
+    if (cycle == 77) bytes[4 + 9 * 8] = static_cast<char>(bytes[4 + 9 * 8] ^ 1);  // the command's steering
+    return true;
+  });
+  const Result<ReplayReport> replayed = verify_recording(changed);
+  std::filesystem::remove(changed);
+  ASSERT_TRUE(replayed) << replayed.error().message;
+  EXPECT_FALSE(replayed->is_verified());
+  EXPECT_EQ(replayed->different, 1U);
+  EXPECT_EQ(replayed->first_difference, 77U);
+}
+
+TEST(Replay, CallsStepsBehindAMissingOneUnknownNotIdentical) {
+  const TemporaryFile file;
+  record(*short_run({{"controller", "pid"}}), file.path());
+  const std::string changed = file.path() + ".changed";
+  rewrite(file.path(), changed, [](std::uint32_t cycle, std::string&) { return cycle != 50; });
+  const Result<ReplayReport> replayed = verify_recording(changed);
+  std::filesystem::remove(changed);
+  ASSERT_TRUE(replayed) << replayed.error().message;
+  EXPECT_FALSE(replayed->is_verified());
+  EXPECT_EQ(replayed->identical, 50U);
+  EXPECT_EQ(replayed->unknown, replayed->steps - 50U);
+  EXPECT_FALSE(replayed->first_difference);
+}
+
+TEST(Replay, RefusesARecordingOfOthersInWords) {
+  const TemporaryFile file;
+  telemetry::write_sample(file.path());
+  const Result<ReplayReport> replayed = verify_recording(file.path());
+  ASSERT_FALSE(replayed);
+  EXPECT_EQ(replayed.error().code, ErrorCode::kParse);
+  EXPECT_NE(replayed.error().message.find("expected a recording of chicane"), std::string::npos);
+}
+
+TEST(Recorder, HoldsEveryTopicAndTimesThatNeverGoBackWhenTheRunStartsAnew) {
+  const TemporaryFile file;
+  const auto loop = short_run({{"controller", "pid"}});
+  auto recorder = Recorder::create(recording(*loop, file.path()));
+  ASSERT_TRUE(recorder);
+  for (int run = 0; run < 2; ++run) {
+    for (int cycle = 0; cycle < 30;) {
+      if (!loop->advance()) continue;
+      (*recorder)->record(loop->frame());
+      ++cycle;
+    }
+    loop->restart();
+  }
+  ASSERT_TRUE((*recorder)->finish());
+  std::map<std::string, int> counts;
+  std::uint64_t last = 0;
+  const auto read = telemetry::read_mcap(file.path(), {.on_message = [&](const auto& message) {
+                                           ++counts[message.channel.topic];
+                                           EXPECT_GE(message.log_time, last);
+                                           last = message.log_time;
+                                         }});
+  ASSERT_TRUE(read);
+  for (const protocol::RosTopic& topic : protocol::ros_topics()) {
+    using enum protocol::Cadence;
+    const bool is_unknown =
+        topic.name == "/chicane/limit" || topic.name == "/track/racing_line";  // nobody said anything of it
+    const bool is_rare =
+        topic.cadence == kLap || topic.cadence == kEvent || is_unknown;  // none in this second
+    EXPECT_EQ(counts[std::string(topic.name)], topic.cadence == kFrame ? 60 : is_rare ? 0 : 1) << topic.name;
+  }
+  EXPECT_EQ(counts["/chicane/step"], 60);
+  const Result<ReplayReport> replayed = verify_recording(file.path());
+  ASSERT_TRUE(replayed);
+  EXPECT_TRUE(replayed->is_verified());
+}
+
+TEST(Recorder, RecordsFaultsSoThatTheyComeOutTheSame) {
+  const TemporaryFile file;
+  auto scenario = protocol::compose({.scenario_file = "", .settings = {}});
+  ASSERT_TRUE(scenario);
+  for (const sim::Fault fault : {sim::Fault::kGpsNoise, sim::Fault::kSlowSolver, sim::Fault::kLinkLost}) {
+    scenario->faults.push_back(sim::default_event(fault, 0.5 + static_cast<double>(scenario->faults.size())));
+  }
+  const auto loop = std::move(*run::ClosedLoop::create(*scenario));
+  auto recorder = Recorder::create(recording(*loop, file.path()));
+  ASSERT_TRUE(recorder);
+  while (loop->time() < 4.0) {
+    if (loop->advance()) (*recorder)->record(loop->frame());
+  }
+  ASSERT_TRUE((*recorder)->finish());
+  const Result<ReplayReport> replayed = verify_recording(file.path());
+  ASSERT_TRUE(replayed) << replayed.error().message;
+  EXPECT_TRUE(replayed->is_verified()) << replayed->different << " differ";
+}
+
+TEST(Recorder, WritesEachLapOnce) {
+  const TemporaryFile file;
+  const auto loop = short_run({{"controller", "pid"}});
+  auto recorder = Recorder::create(recording(*loop, file.path()));
+  ASSERT_TRUE(recorder);
+  while (!loop->advance()) {
+  }
+  telemetry::Frame frame = loop->frame();
+  for (const int lap : {0, 0, 1, 1, 2, 2, 0, 1}) {  // started anew after the second
+    frame.completed_lap.lap = lap;
+    (*recorder)->record(frame);
+  }
+  ASSERT_TRUE((*recorder)->finish());
+  int laps = 0;
+  ASSERT_TRUE(telemetry::read_mcap(file.path(), {.on_message = [&](const auto& message) {
+                                     if (message.channel.topic == "/chicane/lap") ++laps;
+                                   }}));
+  EXPECT_EQ(laps, 3);
+}
+
+TEST(Recorder, LeavesFramesOutRatherThanLetTheRunWait) {
+  const TemporaryFile file;
+  const auto loop = short_run({{"controller", "pid"}});
+  RecorderOptions options = recording(*loop, file.path());
+  options.may_wait = false;
+  auto recorder = Recorder::create(std::move(options));
+  ASSERT_TRUE(recorder);
+  while (!loop->advance()) {
+  }
+  constexpr std::uint64_t kFrames = 5000;
+  for (std::uint64_t i = 0; i < kFrames; ++i) (*recorder)->record(loop->frame());
+  const Result<RecorderReport> report = (*recorder)->finish();
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->frames + report->left_out, kFrames);
+}
+
+TEST(Recorder, LeavesAFileThatVerifiesWhenItIsKilled) {
+  for (int round = 0; round < 5; ++round) {
+    const TemporaryFile file;
+    const auto loop = short_run({{"controller", "pid"}});
+    std::array<int, 2> ends{};
+    ASSERT_EQ(::pipe(ends.data()), 0);
+    const ::pid_t child = ::fork();
+    if (child == 0) {
+      auto recorder = Recorder::create(recording(*loop, file.path()));
+      loop->drive_on();
+      while (true) {
+        if (!loop->advance()) continue;
+        (*recorder)->record(loop->frame());
+        if (::write(ends[1], "x", 1) < 0) ::_exit(1);
+      }
+    }
+    ::close(ends[1]);
+    std::array<char, 100> steps{};
+    for (int i = 0; i < 20 * (round + 1); ++i) ASSERT_GT(::read(ends[0], steps.data(), steps.size()), 0);
+    ::kill(child, SIGKILL);
+    ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+    ::close(ends[0]);
+    const Result<ReplayReport> replayed = verify_recording(file.path());
+    ASSERT_TRUE(replayed) << replayed.error().message;
+    EXPECT_EQ(replayed->identical, replayed->steps);
+    EXPECT_EQ(replayed->damaged, 0U);
+    EXPECT_FALSE(replayed->is_complete);
+  }
+}
+
+}  // namespace
+}  // namespace chicane::recording

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// What a recording does to a run when the disk stalls or is full: nothing.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <filesystem>
+#include <thread>
+
+#include "chicane/protocol/library.hpp"
+#include "chicane/recording/recorder.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "telemetry/sample_mcap.hpp"
+
+namespace chicane::recording {
+namespace {
+
+using telemetry::TemporaryFile;
+
+/// From now on whatever is open as `path` in this process writes to `target` instead.
+void redirect(const std::string& path, int target) {
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code error;
+    if (std::filesystem::read_symlink(entry.path(), error) != path || error) continue;
+    ASSERT_GE(::dup2(target, std::stoi(entry.path().filename())), 0);
+    return;
+  }
+  FAIL() << path << " is not open";
+}
+
+class SlowDisk : public testing::Test {
+ protected:
+  SlowDisk() {
+    const auto scenario = protocol::compose({.scenario_file = {}, .settings = {{"controller", "pid"}}});
+    auto loop = run::ClosedLoop::create(scenario.value_or(scenario::Scenario{}));
+    EXPECT_TRUE(loop);
+    loop_ = std::move(*loop);
+    RecorderOptions options;
+    options.path = std::filesystem::weakly_canonical(file_.path()).string();
+    options.scenario = loop_->scenario();
+    auto recorder = Recorder::create(options);
+    EXPECT_TRUE(recorder);
+    recorder_ = std::move(*recorder);
+    path_ = options.path;
+  }
+  void drive(int cycles) {
+    while (cycles > 0) {
+      if (!loop_->advance()) continue;
+      recorder_->record(loop_->frame());
+      --cycles;
+    }
+  }
+
+  TemporaryFile file_;
+  std::string path_;
+  std::unique_ptr<run::ClosedLoop> loop_;
+  std::unique_ptr<Recorder> recorder_;
+};
+
+TEST_F(SlowDisk, ThatStandsStillHoldsNobodyUpAndIsReported) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  redirect(path_, ends[1]);
+  ::close(ends[1]);
+  // Nobody reads the pipe: the writing thread stands still in write() after 64 KiB. If the run waited for it,
+  // the next line would never end.
+  drive(2000);
+  std::uint64_t bytes = 0;
+  std::thread reader([&] {  // the disk works again
+    std::array<char, 65536> some{};
+    for (::ssize_t count = 0; (count = ::read(ends[0], some.data(), some.size())) > 0;) {
+      bytes += static_cast<std::uint64_t>(count);
+    }
+  });
+  const Result<RecorderReport> report = recorder_->finish();
+  reader.join();
+  ::close(ends[0]);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->frames + report->left_out, 2000U);
+  EXPECT_GT(report->left_out, 1000U);
+  EXPECT_GT(report->frames, 60U) << "what was buffered is written when the disk works again";
+  EXPECT_GT(bytes, 64U * 1024U);
+}
+
+TEST_F(SlowDisk, ThatIsFullHoldsNobodyUpAndIsNamedAtTheEnd) {
+  const int full = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
+  ASSERT_GE(full, 0);
+  redirect(path_, full);
+  ::close(full);
+  drive(2000);
+  const Result<RecorderReport> report = recorder_->finish();
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().code, ErrorCode::kIo);
+  EXPECT_THAT(report.error().message, testing::HasSubstr("No space left on device"));
+}
+
+TEST_F(SlowDisk, LosesFramesBeforeItLosesAChange) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  redirect(path_, ends[1]);
+  ::close(ends[1]);
+  drive(2000);
+  recorder_->record(telemetry::Change{.cycle = 2000, .time = 80.0, .name = "latency_ms", .value = "50"});
+  std::string bytes;
+  std::thread reader([&] {
+    std::array<char, 65536> some{};
+    for (::ssize_t count = 0; (count = ::read(ends[0], some.data(), some.size())) > 0;) {
+      bytes.append(some.data(), static_cast<std::size_t>(count));
+    }
+  });
+  ASSERT_TRUE(recorder_->finish());
+  reader.join();
+  ::close(ends[0]);
+  EXPECT_THAT(bytes, testing::HasSubstr("latency_ms"));
+}
+
+}  // namespace
+}  // namespace chicane::recording

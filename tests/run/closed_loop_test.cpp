@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/run/closed_loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "chicane/protocol/library.hpp"
+#include "chicane/run/realtime_loop.hpp"
+
+namespace chicane::run {
+namespace {
+
+scenario::Scenario scenario_of(const std::string& car, const std::string& track, int laps) {
+  Result<scenario::Scenario> scenario = protocol::compose(
+      {.scenario_file = {}, .settings = {{"car", car}, {"track", track}, {"laps", std::to_string(laps)}}});
+  EXPECT_TRUE(scenario) << (scenario ? "" : scenario.error().message);
+  return scenario.value_or(scenario::Scenario{});
+}
+
+telemetry::RunSummary run(const scenario::Scenario& scenario) {
+  Result<std::unique_ptr<ClosedLoop>> loop = ClosedLoop::create(scenario);
+  EXPECT_TRUE(loop) << (loop ? "" : loop.error().message);
+  return loop ? run_closed_loop(**loop) : telemetry::RunSummary{};
+}
+
+void expect_clean(const telemetry::RunSummary& summary) {
+  EXPECT_TRUE(summary.completed) << summary.end_reason;
+  EXPECT_EQ(summary.off_track_events, 0);
+  EXPECT_EQ(summary.fallbacks, 0U);
+  for (const auto& lap : summary.laps)
+    EXPECT_NEAR(lap.sector_times[0] + lap.sector_times[1] + lap.sector_times[2], lap.lap_time, 1e-9);
+}
+
+TEST(DefaultPreset, LapsLakesideFastAndClean) {
+  const telemetry::RunSummary summary = run(scenario_of("udacity", "lakeside", 3));
+  expect_clean(summary);
+  ASSERT_EQ(summary.laps.size(), 3U);
+  EXPECT_LE(summary.laps.back().lap_time, 29.0);
+  EXPECT_GE(summary.laps.back().top_speed, 100.0 * 0.44704);
+}
+
+TEST(DefaultPreset, LapsTheOriginalWaypointsFastAndClean) {
+  const std::string file = CHICANE_SOURCE_DIR "/../shared/tracks/udacity/lake_scene.csv";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
+  const telemetry::RunSummary summary = run(scenario_of("udacity", file, 3));
+  expect_clean(summary);
+  ASSERT_EQ(summary.laps.size(), 3U);
+  EXPECT_LE(summary.laps.back().lap_time, 29.0);
+  EXPECT_GE(summary.laps.back().top_speed, 100.0 * 0.44704);
+}
+
+class ShippedTrack : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ShippedTrack, IsDrivenCleanlyByBothCarsWithTheSameTuning) {
+  for (const char* car : {"udacity", "road-car"}) {
+    SCOPED_TRACE(car);
+    expect_clean(run(scenario_of(car, GetParam(), 2)));
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Tracks, ShippedTrack, ::testing::Values("lakeside", "oval", "hairpins", "speedway"),
+                         [](const auto& track) { return std::string(track.param); });
+
+TEST(ClosedLoop, DoesTheSameTwice) {
+  const scenario::Scenario scenario = scenario_of("udacity", "lakeside", 1);
+  const telemetry::RunSummary first = run(scenario);
+  EXPECT_EQ(first.state_hash, run(scenario).state_hash);
+  scenario::Scenario other = scenario;
+  other.latency = 0.1001;
+  EXPECT_NE(first.state_hash, run(other).state_hash) << "the hash sees what happens";
+}
+
+TEST(ClosedLoop, SeesTheSeedOnlyWhereThereIsNoise) {
+  scenario::Scenario scenario = scenario_of("udacity", "oval", 1);
+  const std::uint64_t quiet = run(scenario).state_hash;
+  scenario.seed = 2;
+  EXPECT_EQ(quiet, run(scenario).state_hash);
+  scenario.sensor.position_noise = 0.05;
+  const std::uint64_t noisy = run(scenario).state_hash;
+  scenario.seed = 3;
+  EXPECT_NE(noisy, run(scenario).state_hash);
+}
+
+TEST(ClosedLoop, RestartsAsIfItWereNew) {
+  const scenario::Scenario scenario = scenario_of("udacity", "oval", 1);
+  std::unique_ptr<ClosedLoop> loop = std::move(*ClosedLoop::create(scenario));
+  for (int i = 0; i < 500; ++i) loop->advance();
+  loop->restart();
+  EXPECT_EQ(run_closed_loop(*loop).state_hash, run(scenario).state_hash);
+}
+
+TEST(ClosedLoop, SaysWhyItEnded) {
+  scenario::Scenario scenario = scenario_of("udacity", "lakeside", 3);
+  scenario.time_limit = 2.0;
+  const telemetry::RunSummary late = run(scenario);
+  EXPECT_FALSE(late.completed);
+  EXPECT_EQ(late.end_reason, "time limit reached");
+  std::unique_ptr<ClosedLoop> loop = std::move(*ClosedLoop::create(scenario));
+  EXPECT_EQ(run_closed_loop(*loop, {}, [] { return true; }).end_reason, "stopped");
+}
+
+TEST(ClosedLoop, RefusesWhatItCannotBuildAndNamesIt) {
+  scenario::Scenario scenario = scenario_of("udacity", "lakeside", 1);
+  scenario.controller = "crystal-ball";
+  const auto controller = ClosedLoop::create(scenario);
+  ASSERT_FALSE(controller);
+  EXPECT_NE(controller.error().message.find("controller: got \"crystal-ball\""), std::string::npos);
+  scenario = scenario_of("udacity", "lakeside", 1);
+  scenario.track = "nowhere";
+  const auto track = ClosedLoop::create(scenario);
+  ASSERT_FALSE(track);
+  EXPECT_NE(track.error().message.find("nowhere"), std::string::npos);
+}
+
+TEST(RealtimeLoop, DoesWhatTheFastLoopDoesAndObeysItsControls) {
+  scenario::Scenario scenario = scenario_of("udacity", "oval", 1);
+  scenario.time_limit = 2.0;
+  std::unique_ptr<ClosedLoop> loop = std::move(*ClosedLoop::create(scenario));
+  loop->apply({.name = "run.pace", .value = "20"});
+  RunControls controls;
+  controls.is_paused = true;
+  controls.steps = 3;
+  int frames = 0;
+  const telemetry::RunSummary summary =
+      run_realtime(*loop, {}, controls, {.on_frame = [&](const telemetry::Frame& frame) {
+        ++frames;
+        if (frame.cycle == 3) controls.is_paused = false;  // where it begins, then three single steps
+      }});
+  EXPECT_EQ(controls.steps, 0);
+  EXPECT_EQ(summary.end_reason, "time limit reached");
+  EXPECT_EQ(static_cast<int>(summary.cycles), frames);
+  EXPECT_NEAR(summary.duration, 2.0, 0.05);
+}
+
+TEST(RealtimeLoop, ShowsWhereAPausedRunBegins) {
+  std::unique_ptr<ClosedLoop> loop = std::move(*ClosedLoop::create(scenario_of("udacity", "oval", 1)));
+  RunControls controls;
+  controls.is_paused = true;
+  std::vector<double> times;
+  static_cast<void>(run_realtime(*loop, {}, controls, {.on_frame = [&](const telemetry::Frame& frame) {
+    times.push_back(frame.time);
+    controls.wants_restart = times.size() == 1;
+    controls.wants_stop = times.size() == 2;
+  }}));
+  EXPECT_EQ(times, (std::vector<double>{0.0, 0.0}));
+}
+
+}  // namespace
+}  // namespace chicane::run

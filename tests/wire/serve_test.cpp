@@ -1,0 +1,413 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/wire/serve.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <condition_variable>
+#include <limits>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "net/raw_socket.hpp"
+#include "protocol/hostile_telemetry.hpp"
+
+namespace chicane::wire {
+namespace {
+
+using nlohmann::json;
+using test::kRealTelemetry;
+using test::RawSocket;
+using testing::AnyOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+using namespace std::chrono_literals;
+
+/// Always the same command; remembers what it was told.
+class FixedController final : public controller::Controller {
+ public:
+  const controller::StepResult& step(const model::Measurement& now, Deadline) noexcept override {
+    const std::lock_guard lock(mutex_);
+    result_.command = command_;
+    last_ = now;
+    ++steps_;
+    return result_;
+  }
+  void reset() noexcept override {
+    const std::lock_guard lock(mutex_);
+    ++resets_;
+  }
+  [[nodiscard]] std::string_view name() const noexcept override { return "fixed"; }
+
+  void answer(const model::Command& command) {
+    const std::lock_guard lock(mutex_);
+    command_ = command;
+  }
+  [[nodiscard]] model::Measurement last() {
+    const std::lock_guard lock(mutex_);
+    return last_;
+  }
+  [[nodiscard]] int resets() {
+    const std::lock_guard lock(mutex_);
+    return resets_;
+  }
+  [[nodiscard]] int steps() {
+    const std::lock_guard lock(mutex_);
+    return steps_;
+  }
+
+ private:
+  std::mutex mutex_;
+  model::Command command_{.steer = 0.1, .throttle = 0.5};
+  model::Measurement last_;
+  int resets_ = 0;
+  int steps_ = 0;
+  controller::StepResult result_;
+};
+
+/// A served endpoint with a page beside it, and the lines it logs.
+class Served {
+ public:
+  explicit Served(ServeOptions options = immediate()) {
+    options.server.port = 0;
+    endpoint_ = std::make_unique<UdacityEndpoint>(
+        options, controller, ServeHooks{.log = [this](std::string_view line) { note(line); }});
+    router_ = std::make_unique<Router>(endpoint_.get(), nullptr);
+    auto created =
+        net::Server::create(options.server, router_->handlers(),
+                            {{.path = "/index.html", .content_type = "text/html", .content = "the page"}});
+    if (created) server_ = std::move(*created);
+  }
+  ~Served() {
+    endpoint_->stop();
+    server_.reset();
+  }
+  Served(const Served&) = delete;
+  Served& operator=(const Served&) = delete;
+
+  static ServeOptions immediate() {
+    ServeOptions options;
+    options.latency = 0ns;
+    options.open_after = 60s;
+    options.quiet_after = 60s;
+    options.silent_after = 60s;
+    return options;
+  }
+
+  [[nodiscard]] std::uint16_t port() const { return server_->port(); }
+  [[nodiscard]] ServeSummary summary() const { return endpoint_->summary(); }
+
+  /// A client that has sent the original's upgrade request and got its 101.
+  [[nodiscard]] RawSocket connect() const {
+    RawSocket socket(port());
+    socket.send(test::unity_handshake(port()));
+    EXPECT_THAT(socket.until("\r\n\r\n"), StartsWith("HTTP/1.1 101"));
+    return socket;
+  }
+
+  /// Waits for a logged line that contains `words`.
+  [[nodiscard]] bool has_logged(std::string_view words) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, 10s, [&] { return log_.find(words) != std::string::npos; });
+  }
+
+  FixedController controller;
+
+ private:
+  void note(std::string_view line) {
+    const std::lock_guard lock(mutex_);
+    log_ += std::string(line) + "\n";
+    changed_.notify_all();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::string log_;
+  std::unique_ptr<UdacityEndpoint> endpoint_;
+  std::unique_ptr<Router> router_;
+  std::unique_ptr<net::Server> server_;
+};
+
+/// The data of a complete, finite steer reply; a failure otherwise.
+json steer_of(const std::optional<RawSocket::Frame>& frame) {
+  if (!frame || frame->opcode != 1 || !frame->payload.starts_with("42[\"steer\",")) {
+    ADD_FAILURE() << (frame ? frame->payload : "no answer");
+    return {};
+  }
+  json data = json::parse(frame->payload.substr(2))[1];
+  for (const char* key : {"mpc_x", "mpc_y", "next_x", "next_y"}) {
+    EXPECT_TRUE(data.at(key).is_array()) << frame->payload;
+  }
+  for (const char* key : {"steering_angle", "throttle"}) {
+    EXPECT_TRUE(data.at(key).is_number()) << frame->payload;
+    EXPECT_LE(std::abs(data.at(key).get<double>()), 1.0) << frame->payload;
+  }
+  return data;
+}
+
+constexpr double kFullLock = 0.4363323129985824;  // 25° in rad
+
+TEST(Serve, AnswersTheOriginalClientWithExactlyOneCompleteReply) {
+  Served served;
+  RawSocket unity = served.connect();
+  unity.send(RawSocket::masked("2"));
+  for (int i = 0; i < 3; ++i) {
+    unity.send(RawSocket::masked(kRealTelemetry));
+    const json data = steer_of(unity.frame());
+    EXPECT_DOUBLE_EQ(data["steering_angle"].get<double>(), -0.1 / kFullLock);
+    EXPECT_DOUBLE_EQ(data["throttle"].get<double>(), 0.5);
+  }
+  EXPECT_FALSE(unity.frame(100ms)) << "nothing unasked: no open packet, no pong, no second reply";
+  EXPECT_EQ(served.summary().answers, 3U);
+  EXPECT_EQ(served.controller.last().waypoint_count, 6);
+}
+
+TEST(Serve, AnswersEachOfSeveralPipelinedTelemetries) {
+  Served served;
+  RawSocket client = served.connect();
+  const std::string one = RawSocket::masked(kRealTelemetry);
+  client.send(one + one + one);
+  for (int i = 0; i < 3; ++i) steer_of(client.frame());
+  EXPECT_FALSE(client.frame(50ms));
+}
+
+TEST(Serve, ManualDrivingIsAnsweredAtOnceWithoutTheLatency) {
+  ServeOptions options = Served::immediate();
+  options.latency = 1h;
+  Served served(options);
+  RawSocket client = served.connect();
+  client.send(RawSocket::masked(R"(42["telemetry",null])"));
+  EXPECT_EQ(client.frame()->payload, R"(42["manual",{}])");
+  EXPECT_EQ(served.controller.steps(), 0);
+}
+
+TEST(Serve, TheLatencyDelaysTheAnswerAndNothingElse) {
+  ServeOptions options = Served::immediate();
+  options.latency = 300ms;
+  Served served(options);
+  RawSocket client = served.connect();
+  const auto sent = std::chrono::steady_clock::now();
+  client.send(RawSocket::masked(kRealTelemetry));
+  RawSocket page(served.port());
+  page.send("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+  EXPECT_THAT(page.rest(), HasSubstr("the page"));
+  EXPECT_FALSE(client.frame(0ms)) << "the page came while the answer waited";
+  steer_of(client.frame());
+  EXPECT_GE(std::chrono::steady_clock::now() - sent, 300ms);
+}
+
+TEST(Serve, TellsTheControllerHowLongItsCommandsTake) {
+  ServeOptions options = Served::immediate();
+  options.latency = 20ms;
+  Served served(options);
+  RawSocket client = served.connect();
+  client.send(RawSocket::masked(kRealTelemetry));
+  steer_of(client.frame());
+  EXPECT_DOUBLE_EQ(served.controller.last().delay,
+                   0.04);  // nothing measured yet: the latency and a typical turn-around
+  double last_time = served.controller.last().time;
+  for (int i = 0; i < 12; ++i) {
+    std::this_thread::sleep_for(15ms);  // the client's turn-around
+    client.send(RawSocket::masked(kRealTelemetry));
+    steer_of(client.frame());
+    EXPECT_GE(served.controller.last().time, last_time + 0.035);
+    last_time = served.controller.last().time;
+  }
+  EXPECT_GE(served.controller.last().delay, 0.035 - 0.005);  // without the control step
+  EXPECT_GE(served.summary().delay, 0.035 - 0.005);
+}
+
+TEST(Serve, EveryHostileMessageIsSafe) {
+  ServeOptions options = Served::immediate();
+  options.quiet_after = 0ns;  // each message comes over a connection of its own
+  Served served(options);
+  for (const test::Hostile& hostile : test::hostile_messages()) {
+    const std::string shown = hostile.text.substr(0, 100);
+    RawSocket client = served.connect();
+    client.send(RawSocket::masked(hostile.text));
+    client.send(RawSocket::masked(R"(42["telemetry",null])"));  // answered after it, and marks the end
+    if (hostile.text.starts_with("42")) {                       // its sender waits for an answer
+      const auto frame = client.frame();
+      if (frame && frame->opcode == 8) {
+        EXPECT_THAT(frame->payload, AnyOf(StartsWith("\x03\xef"), StartsWith("\x03\xf1")))
+            << shown;  // 1007, 1009
+        continue;
+      }
+      steer_of(frame);
+    }
+    const auto last = client.frame();
+    ASSERT_TRUE(last) << shown;
+    EXPECT_TRUE(last->opcode == 8 || last->payload == R"(42["manual",{}])") << shown;
+  }
+}
+
+TEST(Serve, BrokenTelemetryHoldsTheWheelAndBrakesGently) {
+  Served served;
+  RawSocket client = served.connect();
+  client.send(RawSocket::masked(kRealTelemetry));
+  const json driving = steer_of(client.frame());
+  client.send(RawSocket::masked(test::with("\"x\":-40.62008", "\"x\":-40,62008")));
+  const json braking = steer_of(client.frame());
+  EXPECT_EQ(braking["steering_angle"], driving["steering_angle"]);
+  EXPECT_LT(braking["throttle"].get<double>(), 0.0);
+  EXPECT_TRUE(braking["mpc_x"].empty());
+  EXPECT_TRUE(served.has_logged("broken telemetry: decimal comma"));
+}
+
+TEST(Serve, NamesTheSceneThatIsNotOurs) {
+  Served served;
+  RawSocket client = served.connect();
+  client.send(
+      RawSocket::masked(R"(42["telemetry",{"cte":"0.7","speed":"0","steering_angle":"0","image":""}])"));
+  EXPECT_LT(steer_of(client.frame())["throttle"].get<double>(), 0.0);
+  EXPECT_TRUE(served.has_logged("PID Controller"));
+}
+
+TEST(Serve, WhateverTheControllerSaysTheAnswerIsFinite) {
+  Served served;
+  served.controller.answer({.steer = std::numeric_limits<double>::quiet_NaN(),
+                            .throttle = std::numeric_limits<double>::infinity()});
+  RawSocket client = served.connect();
+  client.send(RawSocket::masked(kRealTelemetry));
+  steer_of(client.frame());
+  EXPECT_EQ(served.summary().interventions, 1U);
+}
+
+TEST(Serve, ASecondSimulatorIsRefusedInWordsWhileTheFirstIsDriven) {
+  Served served;
+  RawSocket first = served.connect();
+  first.send(RawSocket::masked(kRealTelemetry));
+  steer_of(first.frame());
+  RawSocket second(served.port());
+  second.send(test::unity_handshake(served.port()));
+  const std::string answer = second.rest();
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 503"));
+  EXPECT_THAT(answer, HasSubstr("another simulator (127.0.0.1:"));
+  first.send(RawSocket::masked(kRealTelemetry));
+  steer_of(first.frame());
+}
+
+TEST(Serve, ASecondSimulatorTakesOverWhenTheFirstIsQuiet) {
+  ServeOptions options = Served::immediate();
+  options.quiet_after = 0ns;
+  Served served(options);
+  RawSocket first = served.connect();
+  first.send(RawSocket::masked(kRealTelemetry));
+  steer_of(first.frame());
+  EXPECT_EQ(served.controller.resets(), 1);
+  RawSocket second = served.connect();
+  second.send(RawSocket::masked(kRealTelemetry));
+  steer_of(second.frame());
+  EXPECT_EQ(served.controller.resets(), 2);
+  const auto goodbye = first.frame();
+  ASSERT_TRUE(goodbye);
+  EXPECT_EQ(goodbye->opcode, 8);
+  EXPECT_THAT(goodbye->payload, HasSubstr("another simulator took over"));
+}
+
+TEST(Serve, ASimulatorThatWaitsForItsAnswerIsNotQuiet) {
+  ServeOptions options = Served::immediate();
+  options.quiet_after = 0ns;
+  options.latency = 1h;
+  Served served(options);
+  RawSocket first = served.connect();
+  first.send(RawSocket::masked(kRealTelemetry));
+  while (served.summary().answers == 0) std::this_thread::yield();
+  RawSocket second(served.port());
+  second.send(test::unity_handshake(served.port()));
+  EXPECT_THAT(second.rest(), StartsWith("HTTP/1.1 503"));
+}
+
+TEST(Serve, AGoodbyeMakesRoomBeforeTheConnectionEnds) {
+  Served served;
+  RawSocket first = served.connect();
+  first.send(RawSocket::masked("41") + RawSocket::masked(R"(42["telemetry",null])"));
+  EXPECT_EQ(first.frame()->payload, R"(42["manual",{}])");  // so the goodbye has been heard
+  RawSocket second = served.connect();
+  second.send(RawSocket::masked(kRealTelemetry));
+  steer_of(second.frame());
+}
+
+TEST(Serve, AfterADisconnectionTheNextSimulatorIsServedAfresh) {
+  Served served;
+  {
+    RawSocket first = served.connect();
+    first.send(RawSocket::masked(kRealTelemetry));
+    steer_of(first.frame());
+  }
+  EXPECT_TRUE(served.has_logged("is gone"));
+  RawSocket second = served.connect();
+  second.send(RawSocket::masked(kRealTelemetry));
+  steer_of(second.frame());
+  EXPECT_EQ(served.controller.resets(), 2);
+}
+
+TEST(Serve, AStockClientThatStaysSilentIsGreeted) {
+  ServeOptions options = Served::immediate();
+  options.open_after = 10ms;
+  Served served(options);
+  RawSocket stock = served.connect();
+  const auto open = stock.frame();
+  ASSERT_TRUE(open);
+  EXPECT_THAT(open->payload, StartsWith("0{\"sid\":"));
+  EXPECT_EQ(json::parse(open->payload.substr(1))["pingInterval"], 25000);
+  stock.send(RawSocket::masked("40"));
+  EXPECT_THAT(stock.frame()->payload, StartsWith("40{\"sid\":"));
+  stock.send(RawSocket::masked("2"));
+  EXPECT_EQ(stock.frame()->payload, "3");
+  stock.send(RawSocket::masked(kRealTelemetry));
+  steer_of(stock.frame());
+}
+
+TEST(Serve, AnOldStockClientIsConnectedByTheServer) {
+  ServeOptions options = Served::immediate();
+  options.open_after = 10ms;
+  Served served(options);
+  RawSocket stock(served.port());
+  std::string request = test::unity_handshake(served.port());
+  request.replace(request.find("EIO=4"), 5, "EIO=3");
+  stock.send(request);
+  stock.until("\r\n\r\n");
+  EXPECT_THAT(stock.frame()->payload, StartsWith("0{"));
+  EXPECT_EQ(stock.frame()->payload, "40");
+}
+
+TEST(Serve, SilenceIsReportedAndItsEndToo) {
+  ServeOptions options = Served::immediate();
+  options.silent_after = 10ms;
+  Served served(options);
+  RawSocket client = served.connect();
+  EXPECT_TRUE(served.has_logged("is connected but sends no telemetry"));
+  client.send(RawSocket::masked(kRealTelemetry));
+  steer_of(client.frame());
+  EXPECT_TRUE(served.has_logged("again"));
+  EXPECT_TRUE(served.has_logged("is it paused"));
+}
+
+TEST(Serve, AFloodWithoutWaitingIsEndedInWords) {
+  ServeOptions options = Served::immediate();
+  options.latency = 1h;
+  Served served(options);
+  RawSocket client = served.connect();
+  for (int i = 0; i < 20; ++i) client.send(RawSocket::masked(kRealTelemetry));
+  const auto frame = client.frame();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->opcode, 8);
+  EXPECT_THAT(frame->payload, HasSubstr("unanswered"));
+}
+
+TEST(Serve, EndsWhenAskedAndReportsABusyPort) {
+  Served first;
+  FixedController controller;
+  ServeOptions options = Served::immediate();
+  options.server.port = first.port();
+  const std::atomic<bool> stop{true};
+  EXPECT_THAT(serve(options, controller, {}, nullptr, {}, stop).error().message, HasSubstr("is in use by"));
+  options.server.port = 0;
+  EXPECT_EQ(serve(options, controller, {}, nullptr, {}, stop)->answers, 0U);
+}
+
+}  // namespace
+}  // namespace chicane::wire

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/wire/simulate.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "chicane/net/server.hpp"
+#include "chicane/protocol/udacity_codec.hpp"
+#include "chicane/run/make.hpp"
+#include "chicane/wire/serve.hpp"
+
+namespace chicane::wire {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using namespace std::chrono_literals;
+
+const std::string kStraight =
+    R"(42["steer",{"mpc_x":[1,2],"mpc_y":[0,0],"next_x":[],"next_y":[],"steering_angle":0,"throttle":1}])";
+
+/// A controller program that answers the n-th message with what `script` says; empty = not at all.
+class ScriptedServer {
+ public:
+  using Script = std::function<std::vector<std::string>(int n, const std::string& message)>;
+  explicit ScriptedServer(Script script, std::chrono::milliseconds latency = 0ms)
+      : script_{std::move(script)} {
+    auto created = net::Server::create(
+        {.port = 0},
+        {.on_start = [this](net::Server& server) { server_ = &server; },
+         .on_upgrade = [](const net::UpgradeRequest&) { return net::UpgradeAnswer{.accept = true}; },
+         .on_open = [](net::ConnectionId, int) {},
+         .on_message =
+             [this, latency](net::ConnectionId id, int, std::string_view bytes, bool) {
+               if (bytes == "2") return;
+               const std::lock_guard lock(mutex_);
+               messages_.emplace_back(bytes);
+               if (is_answering_) ++pipelined_;
+               is_answering_ = true;
+               server_->run_after(latency, [this, id, n = static_cast<int>(messages_.size()) - 1,
+                                            text = std::string(bytes)] {
+                 is_answering_ = false;
+                 for (const std::string& answer : script_(n, text)) server_->send(id, answer, false);
+               });
+             },
+         .on_close = [](net::ConnectionId, int, std::string_view) {}},
+        {});
+    if (created) owner_ = std::move(*created);
+  }
+  ~ScriptedServer() { owner_.reset(); }
+  ScriptedServer(const ScriptedServer&) = delete;
+  ScriptedServer& operator=(const ScriptedServer&) = delete;
+
+  [[nodiscard]] std::string url() const {
+    return "ws://127.0.0.1:" + std::to_string(owner_->port()) + "/socket.io/?EIO=4";
+  }
+  [[nodiscard]] std::vector<std::string> messages() {
+    const std::lock_guard lock(mutex_);
+    return messages_;
+  }
+  /// Telemetry that came before the last one was answered.
+  [[nodiscard]] int pipelined() const { return pipelined_; }
+
+ private:
+  Script script_;
+  std::mutex mutex_;
+  std::vector<std::string> messages_;
+  bool is_answering_ = false;
+  std::atomic<int> pipelined_{0};
+  net::Server* server_ = nullptr;
+  std::unique_ptr<net::Server> owner_;
+};
+
+scenario::Scenario short_run(double time_limit) {
+  scenario::Scenario scenario;
+  scenario.time_limit = time_limit;
+  return scenario;
+}
+
+/// Runs and collects the log.
+struct Outcome {
+  Result<SimulateReport> report = fail(ErrorCode::kIo, "not run");
+  std::string log;
+};
+
+Outcome run(const SimulateOptions& options, const scenario::Scenario& scenario, bool stop_at_once = false) {
+  Outcome outcome;
+  const std::atomic<bool> stop{stop_at_once};
+  outcome.report =
+      simulate(options, scenario,
+               {.log = [&](std::string_view line) { outcome.log += std::string(line) + "\n"; }}, stop);
+  return outcome;
+}
+
+TEST(Simulate, PassesTheTokenInLockStepAndDrivesByTheAnswers) {
+  ScriptedServer server([](int, const std::string&) { return std::vector{kStraight}; }, 50ms);
+  const Outcome outcome = run({.url = server.url()}, short_run(1.5));
+  ASSERT_TRUE(outcome.report) << outcome.report.error().message;
+  EXPECT_EQ(server.pipelined(), 0);
+  EXPECT_EQ(outcome.report->broken_answers, 0U);
+  EXPECT_EQ(outcome.report->connections, 1U);
+  // A cycle is 50 ms of latency and 20 ms of turn-around, so that 1.5 s hold at most 22.
+  EXPECT_GE(outcome.report->answers, 5U);
+  EXPECT_LE(outcome.report->answers, 22U);
+  EXPECT_GT(outcome.report->run.total.top_speed, 0.5);  // full throttle, as soon as it was picked up
+  EXPECT_EQ(outcome.report->run.end_reason, "time limit reached");
+}
+
+TEST(Simulate, SendsWhatTheOriginalSends) {
+  ScriptedServer server([](int, const std::string&) { return std::vector{kStraight}; });
+  static_cast<void>(run({.url = server.url()}, short_run(0.3)));
+  ASSERT_FALSE(server.messages().empty());
+  EXPECT_THAT(
+      server.messages()[0],
+      testing::MatchesRegex(
+          R"re(42\["telemetry",\{"ptsx":\[[-0-9.,]+\],"ptsy":\[[-0-9.,]+\],"psi_unity":[0-9.]+,)re"
+          R"re("psi":[0-9.]+,"x":[-0-9.]+,"y":[-0-9.]+,"steering_angle":0,"throttle":0,"speed":0\}\])re"));
+  const auto first = protocol::parse_telemetry(server.messages()[0]);
+  EXPECT_EQ(std::get<model::Measurement>(first).waypoint_count, 6);
+}
+
+TEST(Simulate, TheEchoIsOneCycleOld) {
+  ScriptedServer server([](int, const std::string&) { return std::vector{kStraight}; });
+  static_cast<void>(run({.url = server.url()}, short_run(0.5)));
+  const std::vector<std::string> messages = server.messages();
+  ASSERT_GE(messages.size(), 3U);
+  // The first answer is picked up when the second telemetry is sampled, and acts before the third.
+  EXPECT_THAT(messages[1], HasSubstr("\"throttle\":0,"));
+  EXPECT_THAT(messages[2], HasSubstr("\"throttle\":1,"));
+}
+
+TEST(Simulate, SaysInWordsWhatABrokenAnswerWasAndDrivesOn) {
+  ScriptedServer server([](int n, const std::string&) {
+    return std::vector<std::string>{n == 0 ? R"(42["steer",{"steering_angle":0.1,"throttle":null}])"
+                                           : kStraight};
+  });
+  const Outcome outcome = run({.url = server.url()}, short_run(0.5));
+  ASSERT_TRUE(outcome.report);
+  EXPECT_EQ(outcome.report->broken_answers, 1U);
+  EXPECT_GE(outcome.report->answers, 2U);
+  EXPECT_THAT(outcome.log, HasSubstr("broken answer: throttle: got null, expected a number (the original"));
+}
+
+TEST(Simulate, CountsAnswersThatNobodyAskedFor) {
+  ScriptedServer server([](int, const std::string&) { return std::vector{kStraight, kStraight}; });
+  const Outcome outcome = run({.url = server.url()}, short_run(0.3));
+  ASSERT_TRUE(outcome.report);
+  EXPECT_GE(outcome.report->extra_answers, 1U);
+  EXPECT_THAT(outcome.log, HasSubstr("two loops"));
+}
+
+TEST(Simulate, NoticesASilentControllerAndConnectsAnew) {
+  ScriptedServer server(
+      [](int n, const std::string&) { return n == 1 ? std::vector<std::string>{} : std::vector{kStraight}; });
+  const Outcome outcome =
+      run({.url = server.url(), .retry_after = 20ms, .complain_after = 50ms, .give_up_after = 150ms},
+          short_run(1.0));
+  ASSERT_TRUE(outcome.report);
+  EXPECT_EQ(outcome.report->silences, 1U);
+  EXPECT_EQ(outcome.report->connections, 2U);
+  EXPECT_GE(outcome.report->answers, 2U);
+  EXPECT_THAT(outcome.log, HasSubstr("no answer for 50 ms: the original simulator would wait for ever"));
+}
+
+TEST(Simulate, ManualDrivingSendsNull) {
+  ScriptedServer server([](int, const std::string& message) {
+    return std::vector{message == R"(42["telemetry",null])" ? protocol::encode_manual() : kStraight};
+  });
+  const Outcome outcome = run({.url = server.url(), .manual_time = 0.2}, short_run(0.6));
+  ASSERT_TRUE(outcome.report);
+  EXPECT_EQ(server.messages().at(0), R"(42["telemetry",null])");
+  EXPECT_THAT(server.messages().back(), HasSubstr("ptsx"));
+  EXPECT_GE(outcome.report->answers, 1U);
+  EXPECT_THAT(outcome.log, Not(HasSubstr("did not understand")));
+}
+
+TEST(Simulate, WarnsOfAnOpenPacketAndAnswersAPing) {
+  ScriptedServer server([](int n, const std::string& message) {
+    if (message == "3") return std::vector<std::string>{};
+    return n == 0 ? std::vector<std::string>{"0{\"sid\":\"x\"}", "2", kStraight} : std::vector{kStraight};
+  });
+  const Outcome outcome = run({.url = server.url()}, short_run(0.3));
+  EXPECT_THAT(outcome.log, HasSubstr("open packet"));
+  EXPECT_THAT(server.messages(), testing::Contains("3"));
+}
+
+TEST(Simulate, SaysThatNobodyAnswers) {
+  const Outcome outcome =
+      run({.url = "ws://127.0.0.1:1/", .retry_after = 20ms, .lost_after = 100ms}, short_run(1.0));
+  EXPECT_EQ(outcome.log,
+            "no controller yet: 127.0.0.1:1: Connection refused; trying again\n");  // and only once
+  ASSERT_FALSE(outcome.report);
+  EXPECT_EQ(outcome.report.error().code, ErrorCode::kIo);
+  EXPECT_THAT(outcome.report.error().message, HasSubstr("no controller: 127.0.0.1:1: Connection refused"));
+  EXPECT_EQ(run({.url = "http://x"}, short_run(1.0)).report.error().code, ErrorCode::kInvalidArgument);
+}
+
+TEST(Simulate, StartsTheControllerAndSurvivesItsDeath) {
+  const Outcome outcome = run(
+      {.url = "ws://127.0.0.1:1/", .server_command = "kill -SEGV $$", .lost_after = 300ms}, short_run(1.0));
+  ASSERT_FALSE(outcome.report);
+  EXPECT_THAT(outcome.log, HasSubstr("the controller was ended by signal 11"));
+}
+
+TEST(Simulate, EndsWithTheResultsSoFarWhenStopped) {
+  const Outcome outcome = run({}, short_run(1.0), true);
+  ASSERT_TRUE(outcome.report);
+  EXPECT_EQ(outcome.report->run.end_reason, "stopped");
+  EXPECT_FALSE(outcome.report->run.completed);
+}
+
+TEST(ServeAndSimulate, DriveTheLakesideTogetherOverRealSockets) {
+  scenario::Scenario scenario = short_run(4.0);
+  auto controller = run::make_controller(scenario);
+  ASSERT_TRUE(controller) << controller.error().message;
+  ServeOptions options;
+  options.server.port = 0;
+  options.vehicle = scenario.vehicle;
+  std::string log;
+  UdacityEndpoint endpoint(options, **controller,
+                           {.log = [&](std::string_view line) { log += std::string(line) + "\n"; }});
+  Router router(&endpoint, nullptr);
+  auto server = net::Server::create(options.server, router.handlers(), {});
+  ASSERT_TRUE(server) << server.error().message;
+  const std::string url =
+      "ws://127.0.0.1:" + std::to_string((*server)->port()) + "/socket.io/?EIO=4&transport=websocket";
+  const Outcome outcome = run({.url = url}, scenario);
+  endpoint.stop();
+  server->reset();
+  ASSERT_TRUE(outcome.report) << outcome.report.error().message;
+  EXPECT_EQ(outcome.report->broken_answers, 0U);
+  EXPECT_EQ(outcome.report->extra_answers, 0U);
+  EXPECT_EQ(endpoint.summary().unusable, 0U);
+  EXPECT_EQ(outcome.report->run.off_track_events, 0) << log << outcome.log;
+  EXPECT_GT(outcome.report->run.total.top_speed, 5.0);
+  // Measured telemetry to actuation: 100 ms of artificial latency, 20 ms of turn-around and what the machine
+  // adds.
+  EXPECT_GE(endpoint.summary().delay, 0.119);
+}
+
+}  // namespace
+}  // namespace chicane::wire
