@@ -12,7 +12,7 @@
 #include "protocol/hostile_telemetry.hpp"
 #include "telemetry/sample_mcap.hpp"
 
-namespace chicane::wire {
+namespace chicane::live {
 namespace {
 
 using telemetry::TemporaryFile;
@@ -118,4 +118,4 @@ TEST(RecordedSession, ComesOutTheSameWhenEveryDeadlineIsSpent) {
 }
 
 }  // namespace
-}  // namespace chicane::wire
+}  // namespace chicane::live
