@@ -13,7 +13,7 @@ struct DeadlineLog {
   std::uint32_t spent_at = 0;  ///< the first one answered with "spent", from 1; 0 = none so far
 };
 
-/// A time budget that can be asked "spent?". Built at the rim (runtime) and handed down, so that nothing
+/// A time budget that can be asked "spent?". Built at the rim (run) and handed down, so that nothing
 /// below reads a clock unless it was given one. `Deadline::never()` and `Deadline::stopwatch()` make a run
 /// deterministic.
 class Deadline {
