@@ -10,7 +10,7 @@ namespace {
 
 TEST(Pages, OfALiveRunSaySo) {
   wire::Router router(nullptr, nullptr);
-  const net::ServerHandlers handlers = router.handlers();
+  const net::ServerHandlers handlers = router.handlers(live_pages());
   const auto mode = handlers.on_get("/mode.json");
   ASSERT_TRUE(mode);
   EXPECT_EQ(mode->content_type, "application/json");
