@@ -1,7 +1,7 @@
 import type { Box, Point } from '../lib/math';
 import type { Limit, Plan } from '../protocol/topics';
-import type { Road } from '../state/app_state';
 import type { Hindsight, Pose } from '../state/hindsight';
+import type { RoadLines } from '../state/road';
 import { type Camera, groundGrid, transformOf, worldInView } from './camera';
 import type { CarShape } from './car';
 import { addLine, type Line, lengthsOf, lineOf, longestStep, stretchesInside } from './line';
@@ -30,7 +30,7 @@ export interface RoadShape {
   readonly reach: number; // what is farther from a point of the centre belongs to another one [m]
 }
 
-export function roadShape(road: Road): RoadShape | null {
+export function roadShape(road: RoadLines): RoadShape | null {
   const count = Math.min(road.left.length, road.right.length, road.centre.length);
   if (count < 2) return null;
   const [left, right, centre] = [road.left, road.right, road.centre].map((points) =>

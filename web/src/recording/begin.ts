@@ -1,7 +1,7 @@
 import { signal } from '@preact/signals';
 import type { FunctionComponent } from 'preact';
 import type { Source } from '../protocol/source';
-import { notice } from '../state/app_state';
+import { notice } from '../state/link';
 import { attach } from '../state/operate';
 import { findMode } from './mode';
 

@@ -2,20 +2,11 @@ import { computed, signal } from '@preact/signals';
 import { readSchema } from '../protocol/schema';
 import type { Frame } from '../protocol/topics';
 import { session as drawing } from '../scene3d/session';
-import {
-  beginSession,
-  keepAllLaps,
-  laps,
-  link,
-  live,
-  notice,
-  receive,
-  rewind,
-  run,
-  sampleLap,
-  services,
-} from '../state/app_state';
+import { beginSession, receive, rewind } from '../state/demultiplexer';
+import { keepAllLaps, lapSamples, laps, sampleLap } from '../state/laps';
+import { link, notice, services } from '../state/link';
 import { completeFrame } from '../state/message_fields';
+import { run } from '../state/run';
 import { schema } from '../state/settings';
 import { beginSettings, takeSettings } from '../state/settings_session';
 import { everyFrame } from '../state/ticker';
@@ -112,7 +103,7 @@ async function look(source: LogSource): Promise<void> {
       if (player.value !== source) return;
       sampleLap(frame);
     }
-    for (const { lap, lap_time_s: time } of laps.value) live.lapSamples.complete(lap - 1, time);
+    for (const { lap, lap_time_s: time } of laps.value) lapSamples.complete(lap - 1, time);
     laps.value = [...laps.value]; // now they can be compared: the page looks again
   } catch (error) {
     notice.value = error instanceof Error ? error.message : String(error);

@@ -1,6 +1,6 @@
 import './timeline.css';
 import { lapTime } from '../lib/format';
-import { notice } from '../state/app_state';
+import { notice } from '../state/link';
 import { attach } from '../state/operate';
 import type { Landmark } from './log_source';
 import { duration, isPlaying, landmarks, logs, play, played, player, position, searched } from './player';

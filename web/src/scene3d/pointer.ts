@@ -1,4 +1,4 @@
-import { live } from '../state/app_state';
+import { live } from '../state/live';
 import { orbited } from './cameras';
 import { camera, orbit, zoomCamera } from './view_state';
 

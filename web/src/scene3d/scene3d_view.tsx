@@ -1,8 +1,12 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { onThemeChange } from '../draw/theme';
-import { isPaused, limit, link, live, run } from '../state/app_state';
 import { hindsight } from '../state/hindsight';
 import { layers } from '../state/layers';
+import { limit } from '../state/limit';
+import { link } from '../state/link';
+import { live } from '../state/live';
+import { road } from '../state/road';
+import { isPaused, run } from '../state/run';
 import { everyFrame } from '../state/ticker';
 import { listenToPointers } from './pointer';
 import './scene3d.css';
@@ -17,10 +21,10 @@ function viewNow(): View {
   return {
     session,
     run: run.value,
-    road: live.road,
-    roadVersion: live.roadVersion,
+    road: road.lines,
+    roadVersion: road.version,
     plan: live.plan,
-    reference: live.reference,
+    reference: road.reference,
     hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
     racingLine: layers.racingLine.value ? limit.value : null,
     topSpeed: live.topSpeed,

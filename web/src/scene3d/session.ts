@@ -1,5 +1,6 @@
 import type { Frame } from '../protocol/topics';
-import { frameListeners, run } from '../state/app_state';
+import { frameListeners } from '../state/demultiplexer';
+import { run } from '../state/run';
 import { type GhostSource, LapRecorder } from './ghost';
 import { type Motion, motionOf, Playout } from './motion';
 import { RibbonRing } from './ribbon';

@@ -13,8 +13,8 @@ import { topOfScale } from '../draw/speed_colour';
 import type { Point } from '../lib/math';
 import { speedUnit } from '../lib/units';
 import type { Limit, Plan, Run } from '../protocol/topics';
-import type { Road } from '../state/app_state';
 import type { Hindsight } from '../state/hindsight';
+import type { RoadLines } from '../state/road';
 import { BodyMotion } from './body_motion';
 import { CameraMan, type CameraName, type Orbit, type Shot } from './cameras';
 import { CarView, GhostView } from './car_view';
@@ -34,7 +34,7 @@ import { plantTrees } from './trees';
 export interface View {
   readonly session: Session;
   readonly run: Run | null;
-  readonly road: Road;
+  readonly road: RoadLines;
   readonly roadVersion: number;
   readonly plan: Plan | null;
   readonly reference: readonly Point[];

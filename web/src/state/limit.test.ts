@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { Lap, Limit } from '../protocol/topics';
 import { LapSamples } from './lap_samples';
-import { gapsToLimit, limitChannel } from './limit';
+import { forgetLimit, gapsToLimit, limitChannel, limit as limitOfThePage, receiveLimit, whyNoLimit } from './limit';
 
 const limit = {
   is_known: true,
@@ -38,6 +38,19 @@ function samples(): LapSamples {
 }
 
 describe('the limit', () => {
+  it('has a reason while it is not known, which is forgotten with it', () => {
+    const now = () => [limitOfThePage.value?.lap_time_s ?? null, whyNoLimit.value];
+    receiveLimit({ is_known: false, why_not: 'the road is open' } as Limit);
+    expect(now()).toEqual([null, 'the road is open']);
+    receiveLimit({ ...limit, why_not: '' });
+    expect(now()).toEqual([20, '']);
+    receiveLimit({ is_known: false } as Limit); // an older program
+    expect(now()).toEqual([null, '']);
+    receiveLimit({ is_known: false, why_not: 'too early' } as Limit);
+    forgetLimit();
+    expect(now()).toEqual([null, '']);
+  });
+
   it('is computed for laps that were driven before it was known', () => {
     const lap = {
       lap: 1,

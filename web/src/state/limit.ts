@@ -1,7 +1,23 @@
+import { signal } from '@preact/signals';
 import { firstSince } from '../draw/axis';
 import { mix } from '../lib/math';
 import type { Lap, Limit } from '../protocol/topics';
 import type { LapChannel, LapSamples } from './lap_samples';
+
+/** The fastest lap possible on this road with this car; null while it is not known. */
+export const limit = signal<Limit | null>(null);
+/** Why it is not known, in one sentence; empty while the program gives no reason. */
+export const whyNoLimit = signal('');
+
+export function receiveLimit(message: Limit): void {
+  limit.value = message.is_known ? message : null;
+  whyNoLimit.value = message.is_known ? '' : (message.why_not ?? '');
+}
+
+export function forgetLimit(): void {
+  limit.value = null;
+  whyNoLimit.value = '';
+}
 
 /** Columns of the limit that can be laid beside those of a lap that was driven. */
 const COLUMNS: Partial<Record<LapChannel, 'time_s' | 'speed_mps' | 'n_m' | 'x_m' | 'y_m'>> = {

@@ -1,7 +1,9 @@
 import { expect, it } from 'vitest';
-import type { Frame, Lap, Plan, Run } from '../protocol/topics';
-import { forget, laps, live, receive } from './app_state';
+import type { Frame, Plan, Run } from '../protocol/topics';
+import { forget, receive } from './demultiplexer';
 import { events } from './event_log';
+import { lapSamples } from './laps';
+import { live } from './live';
 
 const FRAMES = 30_000; // eight minutes at sixty a second: longer than anything the page keeps
 const SPEED = 45; // [m/s]
@@ -14,7 +16,7 @@ it('what the page keeps stops growing', () => {
     live.trace.length,
     live.pastPlans.length,
     live.stepTimes.counts.length,
-    live.lapSamples.laps.length,
+    lapSamples.laps.length,
     events.value.length,
   ];
   const drive = (from: number, to: number): void => {
@@ -52,22 +54,4 @@ it('what the page keeps stops growing', () => {
   expect(full).toEqual([3600, 4000, 96, 120, 17, 60]);
   drive(FRAMES, 1.5 * FRAMES);
   expect(sizes()).toEqual(full);
-});
-
-it('keeps the newest thousand laps, and the best', () => {
-  forget();
-  for (let lap = 1; lap <= 2000; ++lap)
-    receive(
-      '/chicane/lap',
-      {
-        lap,
-        lap_time_s: lap === 7 ? 20 : 30,
-        sector_times_s: Float64Array.of(1, 2, 3),
-        is_clean: true,
-        top_speed_mps: 40,
-      } as unknown as Lap,
-      0,
-    );
-  expect(laps.value.map(({ lap }) => lap).slice(0, 3)).toEqual([7, 1001, 1002]);
-  expect(laps.value).toHaveLength(1001);
 });

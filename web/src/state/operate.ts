@@ -1,6 +1,6 @@
 import { signal } from '@preact/signals';
 import type { ServiceName, Setting, Source } from '../protocol/source';
-import { link, notice, services } from './app_state';
+import { link, notice, services } from './link';
 import { entryOf, settings, Wishes } from './settings';
 
 /** What the page can do to the run; everything goes through here, whoever asks. */

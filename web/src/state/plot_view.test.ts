@@ -1,10 +1,11 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import type { Frame } from '../protocol/topics';
-import { forget, live, receive } from './app_state';
 import { Column } from './columns';
+import { forget, receive } from './demultiplexer';
+import { live } from './live';
 import { isFrozen, plotted, thaw, timeRange, toggleFrozen, windowSeconds, zoomed, zoomTo } from './plot_view';
+import { frameWith } from './test_messages';
 
-const see = (time: number): void => receive('/chicane/frame', { time_s: time, cost_terms: [] } as unknown as Frame, 0);
+const see = (time: number): void => receive('/chicane/frame', frameWith({ time_s: time }), 0);
 
 beforeEach(() => {
   forget();

@@ -1,8 +1,8 @@
 import { signal } from '@preact/signals';
 import { persisted } from '../lib/persisted';
-import { LONGEST_WINDOW_S, live } from './app_state';
 import { COLUMN_COUNT, Column } from './columns';
 import { History } from './history';
+import { LONGEST_WINDOW_S, live } from './live';
 
 export const WINDOWS_S = [10, 20, 60] as const;
 

@@ -1,7 +1,7 @@
 import { effect } from '@preact/signals';
 import type { Setting } from '../protocol/source';
-import { run } from './app_state';
 import { wishes } from './operate';
+import { run } from './run';
 import { refusals, settings, startSettings } from './settings';
 
 // What a run started with outlives a reload of the page, in the storage of the browser's tab.

@@ -1,6 +1,7 @@
 import { plural, UNKNOWN } from '../lib/format';
 import { gateInWords, roadInWords, rungInWords, type Sentence, sightInWords, statusInWords } from '../lib/words';
-import { run, shown } from '../state/app_state';
+import { run } from '../state/run';
+import { shown } from '../state/shown';
 
 function Row({ label, sentence, id }: { label: string; sentence: Sentence | null; id: string }) {
   return (

@@ -1,6 +1,7 @@
 import type { SchemaEntry } from '../protocol/schema';
-import { link, run } from '../state/app_state';
+import { link } from '../state/link';
 import { canSet, set } from '../state/operate';
+import { run } from '../state/run';
 import { entryOf, schema, settings } from '../state/settings';
 import { ControllerView } from './controller_view';
 import { ManualView } from './manual_view';

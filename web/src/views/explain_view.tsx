@@ -12,9 +12,11 @@ import {
   statusInWords,
   worstInWords,
 } from '../lib/words';
-import { live, run, shown } from '../state/app_state';
 import { Column } from '../state/columns';
 import { bitSharesOf, rmsOf, sharesOf } from '../state/explain';
+import { live } from '../state/live';
+import { run } from '../state/run';
+import { shown } from '../state/shown';
 import { CanvasView } from './canvas_view';
 import { EventsView } from './events_view';
 import { paintLimiterStrip } from './limiter_strip';

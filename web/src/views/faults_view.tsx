@@ -1,9 +1,10 @@
 import { computed } from '@preact/signals';
 import { hasBit } from '../lib/bits';
-import { run, shown } from '../state/app_state';
 import { faultInWords } from '../state/event_log';
 import { canSet, set } from '../state/operate';
+import { run } from '../state/run';
 import { schema, settings } from '../state/settings';
+import { shown } from '../state/shown';
 import { EventsView } from './events_view';
 
 interface Fault {

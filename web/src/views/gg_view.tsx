@@ -1,9 +1,9 @@
 import { firstSince } from '../draw/axis';
 import { fixed } from '../lib/format';
 import { extent, niceCeil } from '../lib/math';
-import { shown } from '../state/app_state';
 import { Column } from '../state/columns';
 import { cursorTime, isFrozen, plotted, timeRange } from '../state/plot_view';
+import { shown } from '../state/shown';
 import { CanvasView } from './canvas_view';
 import { chartColours } from './plot_colours';
 

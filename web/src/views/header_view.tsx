@@ -1,7 +1,9 @@
 import { fixed } from '../lib/format';
 import { tidy } from '../lib/scale';
-import { attempt, isPaused, link, notice, run, services, shown, silence } from '../state/app_state';
+import { attempt, link, notice, services } from '../state/link';
 import { call, can, retry } from '../state/operate';
+import { isPaused, run } from '../state/run';
+import { shown, silence } from '../state/shown';
 import { isHelpOpen } from './help_view';
 
 function RunSummary() {

@@ -1,5 +1,7 @@
 import { duration } from '../lib/format';
-import { live, run, shown } from '../state/app_state';
+import { live } from '../state/live';
+import { run } from '../state/run';
+import { shown } from '../state/shown';
 import { CanvasView } from './canvas_view';
 import { chartColours } from './plot_colours';
 

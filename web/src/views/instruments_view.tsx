@@ -1,12 +1,13 @@
 import { duration, fixed, lapTime, side, UNKNOWN } from '../lib/format';
 import { clamp, degrees } from '../lib/math';
 import { inSpeedUnit, nextSpeedUnit, SPEED_UNITS, type SpeedUnit, speedUnit } from '../lib/units';
-import { bestLap, live, run, shown } from '../state/app_state';
+import { bestLap, lapSamples } from '../state/laps';
+import { run } from '../state/run';
+import { shown } from '../state/shown';
 
 /** Time lost to the best lap up to here [s]; not-a-number without one. */
 function delta(): number {
   const frame = shown.value;
-  const { lapSamples } = live;
   if (!frame || lapSamples.best < 0) return NaN;
   return frame.lap_time_s - lapSamples.at(lapSamples.best, 'time_s', frame.s_m);
 }

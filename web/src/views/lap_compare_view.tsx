@@ -6,9 +6,9 @@ import { rangeAboutZero, rangeInSteps } from '../draw/axis';
 import { onThemeChange } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { speedUnit } from '../lib/units';
-import { limit, live } from '../state/app_state';
 import { type LapChannel, timeGap } from '../state/lap_samples';
-import { limitChannel } from '../state/limit';
+import { lapSamples } from '../state/laps';
+import { limit, limitChannel } from '../state/limit';
 import { chartColours } from './plot_colours';
 
 interface Curve {
@@ -23,7 +23,7 @@ interface Curve {
 /** Laps count from 0; before them stands the fastest one possible. */
 const LIMIT = -1;
 const samplesOf = (lap: number, name: LapChannel): Float64Array | null =>
-  lap !== LIMIT ? live.lapSamples.channel(lap, name) : limit.value && limitChannel(limit.value, live.lapSamples, name);
+  lap !== LIMIT ? lapSamples.channel(lap, name) : limit.value && limitChannel(limit.value, lapSamples, name);
 const nameOf = (lap: number): string => (lap === LIMIT ? 'limit' : `lap ${lap + 1}`);
 
 const channel =
@@ -74,7 +74,7 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
     const element = host.current;
     if (!element) return undefined;
     const columns = [first, second].filter((each): each is Float64Array => each !== null && each !== undefined);
-    const places = Float64Array.from({ length: live.lapSamples.points }, (_, point) => live.lapSamples.s(point));
+    const places = Float64Array.from({ length: lapSamples.points }, (_, point) => lapSamples.s(point));
     const create = (): uPlot => {
       const colours = chartColours();
       const axis = {

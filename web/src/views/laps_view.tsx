@@ -3,9 +3,10 @@ import { download, downloadPng, fileName } from '../lib/download';
 import { fixed, lapTime, UNKNOWN } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import type { Lap, Limit } from '../protocol/topics';
-import { bestLap, laps, limit, live, run, whyNoLimit } from '../state/app_state';
 import { bestsOf, type LapBests, lapSamplesCsv, lapsCsv } from '../state/lap_table';
-import { gapsToLimit } from '../state/limit';
+import { bestLap, lapSamples, laps } from '../state/laps';
+import { gapsToLimit, limit, whyNoLimit } from '../state/limit';
+import { run } from '../state/run';
 import { everyFrame } from '../state/ticker';
 import { LapCompareView } from './lap_compare_view';
 
@@ -124,7 +125,7 @@ function rowsOf(all: readonly Lap[], bests: LapBests): Lap[] {
  * The pair shown: what was chosen, else the newest against the best, or against the one before it; of those seen whole.
  */
 function compared(all: readonly Lap[], bests: LapBests): [number, number] {
-  const seen = all.filter(({ lap }) => live.lapSamples.laps.includes(lap - 1)).map(({ lap }) => lap);
+  const seen = all.filter(({ lap }) => lapSamples.laps.includes(lap - 1)).map(({ lap }) => lap);
   const newest = seen.at(-1) ?? all.at(-1)?.lap ?? -1;
   const other =
     bests.lap !== newest && seen.includes(bests.lap) ? bests.lap : (seen.at(-2) ?? all.at(-2)?.lap ?? newest);
@@ -160,14 +161,10 @@ function Toolbar({ pair }: { pair: readonly [number, number] }) {
       </button>
       <button
         type="button"
-        disabled={!has || !live.lapSamples.laps.includes(pair[0] - 1)}
+        disabled={!has || !lapSamples.laps.includes(pair[0] - 1)}
         title="Time, speed, error and commands of lap A along the track"
         onClick={() =>
-          download(
-            fileName([...parts, `lap-${pair[0]}`], 'csv'),
-            lapSamplesCsv(live.lapSamples, pair[0] - 1),
-            'text/csv',
-          )
+          download(fileName([...parts, `lap-${pair[0]}`], 'csv'), lapSamplesCsv(lapSamples, pair[0] - 1), 'text/csv')
         }
       >
         Lap A as CSV

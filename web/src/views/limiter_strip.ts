@@ -1,6 +1,6 @@
-import { live } from '../state/app_state';
 import { Column } from '../state/columns';
 import { rowsSince } from '../state/explain';
+import { live } from '../state/live';
 import type { Paint } from './canvas_view';
 import { chartColours } from './plot_colours';
 

@@ -1,5 +1,5 @@
-import { run } from '../state/app_state';
 import { timeRange } from '../state/plot_view';
+import { run } from '../state/run';
 import { drawAll } from './picture_drawings';
 import { chartColours } from './plot_colours';
 

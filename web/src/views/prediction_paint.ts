@@ -1,8 +1,8 @@
 import { extent, niceCeil } from '../lib/math';
-import { live } from '../state/app_state';
 import { Column } from '../state/columns';
 import { type LocalLine, rowsSince, toLocal } from '../state/explain';
 import { hindsight } from '../state/hindsight';
+import { live } from '../state/live';
 import type { Paint } from './canvas_view';
 import { chartColours } from './plot_colours';
 

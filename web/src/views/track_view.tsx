@@ -26,9 +26,14 @@ import {
   wants3d,
   zoomCamera,
 } from '../scene3d/view_state';
-import { isPaused, limit, link, live, run, shown } from '../state/app_state';
 import { hindsight } from '../state/hindsight';
 import { type Layer, layers, toggleLayer } from '../state/layers';
+import { limit } from '../state/limit';
+import { link } from '../state/link';
+import { live } from '../state/live';
+import { road } from '../state/road';
+import { isPaused, run } from '../state/run';
+import { shown } from '../state/shown';
 import { everyFrame } from '../state/ticker';
 
 export type View = 'behind' | 'above' | 'whole';
@@ -96,7 +101,7 @@ class Painter {
     const { width, height } = this.#box;
     if (!this.#context || width === 0 || height === 0) return;
     this.#resize(Math.round(width * ratio), Math.round(height * ratio));
-    if (this.#roadVersion !== live.roadVersion) this.#renewRoad();
+    if (this.#roadVersion !== road.version) this.#renewRoad();
 
     const car = this.#carNow(now);
     const camera = this.#camera(car, now, width, height, isInset);
@@ -109,7 +114,7 @@ class Painter {
     const scene: Scene = {
       road: this.#road,
       racingLine: layers.racingLine.value ? limit.value : null,
-      reference: live.reference,
+      reference: road.reference,
       trace: { x: live.trace.column(0), y: live.trace.column(1) },
       plan: live.plan,
       speedScale: top,
@@ -133,7 +138,7 @@ class Painter {
       ...still,
       live.frame,
       live.plan,
-      live.reference,
+      road.reference,
       live.trace.newest(0),
       car?.x,
       car?.y,
@@ -201,9 +206,9 @@ class Painter {
   }
 
   #renewRoad(): void {
-    this.#roadVersion = live.roadVersion;
-    this.#road = roadShape(live.road);
-    this.#roadBox = boundsOf([...live.road.left, ...live.road.right]);
+    this.#roadVersion = road.version;
+    this.#road = roadShape(road.lines);
+    this.#roadBox = boundsOf([...road.lines.left, ...road.lines.right]);
   }
 
   /** Where the car is at this very moment: frames come less often than repaints. */
@@ -229,7 +234,7 @@ class Painter {
         box ??
         boundsOf(
           car
-            ? [car, ...live.reference]
+            ? [car, ...road.reference]
             : [
                 { x: 0, y: 0 },
                 { x: 100, y: 60 },

@@ -2,7 +2,7 @@ import { signal } from '@preact/signals';
 import type { ComponentType } from 'preact';
 import { clamp } from '../lib/math';
 import { persisted } from '../lib/persisted';
-import { link } from '../state/app_state';
+import { link } from '../state/link';
 import { DriveView } from './drive_view';
 import { ExplainView } from './explain_view';
 import { FaultsView } from './faults_view';

@@ -1,0 +1,104 @@
+import { beforeEach, describe, expect, it } from 'vitest';
+import type { Change, Frame, Limit } from '../protocol/topics';
+import { Column, costColumn } from './columns';
+import { beginSession, forget, frameListeners, receive, rewind } from './demultiplexer';
+import { events } from './event_log';
+import { bestLap, laps } from './laps';
+import { limit, whyNoLimit } from './limit';
+import { live } from './live';
+import { road } from './road';
+import { run } from './run';
+import { shown } from './shown';
+import { frameWith, lapWith, pathOf, planWith, runWith } from './test_messages';
+
+const see = (change: Partial<Frame>): void => receive('/chicane/frame', frameWith(change), 0);
+
+beforeEach(() => {
+  beginSession();
+  run.value = null;
+});
+
+describe('a message', () => {
+  it('goes where its topic is kept', () => {
+    receive('/chicane/run', runWith({ track: 'lakeside', fault_names: ['fault.half_grip'] }), 0);
+    receive('/chicane/plan', planWith({ speed_mps: Float64Array.of(44) }), 0);
+    receive('/chicane/lap', lapWith(1, 30), 0);
+    receive('/chicane/limit', { is_known: false, why_not: 'the road is open' } as Limit, 0);
+    receive('/reference', pathOf([5, 5]), 0);
+    receive('/track/left', pathOf([0, 1]), 0);
+    receive('/track/right', pathOf([0, -1]), 0);
+    receive('/track/centre', pathOf([0, 0]), 0);
+    const stamp = { sec: 1, nsec: 0 };
+    receive('/chicane/change', { stamp, name: 'latency_ms', value: '150' } as Change, 0);
+    see({ time_s: 2, active_faults: 1 });
+    expect(run.value?.track).toBe('lakeside');
+    expect(live.topSpeed).toBe(44);
+    expect(laps.value).toHaveLength(1);
+    expect(whyNoLimit.value).toBe('the road is open');
+    expect(road.reference).toEqual([{ x: 5, y: 5 }]);
+    expect([road.lines.left, road.lines.right, road.lines.centre].map(([first]) => first?.y)).toEqual([1, -1, 0]);
+    expect(events.value.map(({ text }) => text)).toEqual(['Fault: half grip', 'latency_ms set to 150']);
+  });
+
+  it('has unknown values for fields that an older program does not send', () => {
+    see({});
+    expect(live.frame).toMatchObject({
+      steer_sent_rad: NaN,
+      cost_terms: new Float64Array(),
+      active_now: 0,
+      is_manual: false,
+    });
+    expect(live.plots.newest(Column.speedLimit)).toBeNaN();
+    expect(live.plots.newest(costColumn(0))).toBeNaN();
+  });
+});
+
+describe('a frame', () => {
+  it('counts once, however often a paused run repeats it; who listens hears each', () => {
+    const heard: number[] = [];
+    const listener = (_: Frame, now: number): void => void heard.push(now);
+    frameListeners.add(listener);
+    receive('/chicane/frame', frameWith({ time_s: 3, is_gated: true }), 0);
+    receive('/chicane/frame', frameWith({ time_s: 3, is_gated: true }), 5);
+    frameListeners.delete(listener);
+    expect([live.plots.length, events.value.length]).toEqual([1, 1]);
+    expect(heard).toEqual([0, 5]);
+  });
+
+  it('from before the last one begins everything again', () => {
+    see({ time_s: 30, last_lap_time_s: 28, is_gated: true });
+    expect(bestLap.value).toBe(28);
+    see({ time_s: 0.04, last_lap_time_s: 0 });
+    expect(live.plots.length).toBe(1);
+    expect(events.value).toEqual([]);
+    expect(bestLap.value).toBeNaN();
+  });
+});
+
+describe('what is forgotten', () => {
+  beforeEach(() => {
+    receive('/chicane/limit', { is_known: true, lap_time_s: 20 } as Limit, 0);
+    receive('/chicane/lap', lapWith(1, 30), 0);
+    see({ time_s: 3, is_gated: true });
+    shown.value = live.frame;
+  });
+  const lengths = () => [live.plots.length, laps.value.length, events.value.length];
+
+  it('within a run: what was plotted, laps and events; not the frame that is shown', () => {
+    forget();
+    expect(lengths()).toEqual([0, 0, 0]);
+    expect([live.frame?.time_s, limit.value?.lap_time_s]).toEqual([3, 20]);
+  });
+
+  it('at another moment of a recording: the frame too, so that an earlier one is not taken for a new run', () => {
+    rewind();
+    expect(lengths()).toEqual([0, 0, 0]);
+    expect([live.frame, shown.value?.time_s, limit.value?.lap_time_s]).toEqual([null, 3, 20]);
+  });
+
+  it('at another run: the limit and all that is shown', () => {
+    beginSession();
+    expect(lengths()).toEqual([0, 0, 0]);
+    expect([live.frame, shown.value, limit.value]).toEqual([null, null, null]);
+  });
+});

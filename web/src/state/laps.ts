@@ -1,0 +1,57 @@
+import { signal } from '@preact/signals';
+import type { Frame, Lap } from '../protocol/topics';
+import { LapSamples } from './lap_samples';
+import { bestsOf } from './lap_table';
+import { run } from './run';
+
+const LAPS_KEPT = 1000;
+
+/** Completed laps as the server sends them, by number: the newest ones and the best. */
+export const laps = signal<readonly Lap[]>([]);
+/** The fastest lap time that a frame has reported since the page was opened [s]; not-a-number before the first lap. */
+export const bestLap = signal(NaN);
+/** Laps as functions of the distance, sampled from frames. */
+export const lapSamples = new LapSamples();
+
+/** A recording's laps are all sampled when it is opened: none of its moments adds to them or removes any. */
+let hasAllLaps = false;
+export function keepAllLaps(): void {
+  hasAllLaps = true;
+}
+
+export function forgetLaps(): void {
+  laps.value = [];
+  bestLap.value = NaN;
+  if (!hasAllLaps) lapSamples.clear();
+}
+
+export function receiveLap(lap: Lap): void {
+  const all = [...laps.value.filter((each) => each.lap !== lap.lap), lap].sort((a, b) => a.lap - b.lap);
+  const best = all.length > LAPS_KEPT ? bestsOf(all).lap : NaN;
+  laps.value = all.filter((each, i) => i >= all.length - LAPS_KEPT || each.lap === best);
+}
+
+/** Adds a frame to the samples of its lap. */
+export function sampleLap(frame: Frame): void {
+  lapSamples.setLength(run.value?.track_length_m ?? NaN);
+  lapSamples.push(
+    frame.lap,
+    {
+      s_m: frame.s_m,
+      time_s: frame.lap_time_s,
+      speed_mps: frame.speed_mps,
+      lateral_error_m: frame.lateral_error_m,
+      steer_rad: frame.steer_applied_rad,
+      throttle: frame.throttle_applied,
+      x_m: frame.x_m,
+      y_m: frame.y_m,
+    },
+    frame.last_lap_time_s,
+  );
+}
+
+/** Takes from a frame what it says about laps. */
+export function noteLap(frame: Frame): void {
+  if (!hasAllLaps) sampleLap(frame);
+  if (frame.last_lap_time_s > 0 && !(frame.last_lap_time_s >= bestLap.value)) bestLap.value = frame.last_lap_time_s;
+}

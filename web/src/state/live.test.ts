@@ -1,0 +1,64 @@
+import { beforeEach, describe, expect, it } from 'vitest';
+import { COST_TERMS, Column, costColumn } from './columns';
+import { forgetHistory, keepFrame, keepPlan, live } from './live';
+import { completeFrame } from './message_fields';
+import { frameWith, planWith } from './test_messages';
+
+const keep = (change: Parameters<typeof frameWith>[0], now = 0, isNew = true): void =>
+  keepFrame(completeFrame(frameWith(change)), now, isNew);
+
+beforeEach(forgetHistory);
+
+describe('the history', () => {
+  it('plots a frame in the units of the axes', () => {
+    keep({ time_s: 3 });
+    expect(live.plots.newest(Column.time)).toBe(3);
+    expect(live.plots.newest(Column.speed)).toBe(10);
+    expect(live.plots.newest(Column.lateralError)).toBe(0.5);
+    expect(live.plots.newest(Column.steerAsked)).toBeCloseTo(5.7296, 4);
+    expect(live.plots.newest(Column.steerApplied)).toBeCloseTo(-5.7296, 4);
+    expect(live.plots.newest(Column.stepTime)).toBe(1.5);
+  });
+
+  it('stacks the terms of the cost, the last layer taking the surplus', () => {
+    const terms = new Float64Array(COST_TERMS + 2).fill(1);
+    terms[1] = -5; // no layer
+    keep({ cost_terms: terms });
+    expect([0, 1, 2].map((term) => live.plots.newest(costColumn(term)))).toEqual([1, 1, 2]);
+    expect(live.plots.newest(costColumn(COST_TERMS - 1))).toBe(COST_TERMS + 1);
+  });
+
+  it('leaves out a frame that is no new one, and notes when it came', () => {
+    keep({ time_s: 3 }, 100);
+    keep({ time_s: 3 }, 200, false);
+    expect([live.plots.length, live.stepTimes.total]).toEqual([1, 1]);
+    expect(live.receivedAt).toBe(200);
+  });
+
+  it('traces the driven line at a fixed spacing', () => {
+    for (let i = 0; i <= 100; ++i) keep({ time_s: i, x_m: i * 0.1 });
+    expect(live.trace.length).toBe(13); // 0, 0.8, 1.6 … 9.6
+  });
+
+  it('keeps about a second of plans', () => {
+    for (let i = 0; i < 1000; ++i) keepPlan(planWith({ stamp: { sec: i, nsec: 0 } }));
+    expect(live.pastPlans.length).toBe(96);
+    expect(live.pastPlans.at(-1)).toBe(live.plan);
+  });
+
+  it('takes the top speed from frames and plans', () => {
+    keep({ speed_mps: 30 });
+    expect(live.topSpeed).toBe(30);
+    keepPlan(planWith({ speed_mps: new Float64Array([20, NaN, 44]) }));
+    expect(live.topSpeed).toBe(44);
+  });
+
+  it('is cleared but for the newest frame', () => {
+    keep({ time_s: 3 });
+    keepPlan(planWith());
+    forgetHistory();
+    expect([live.plots.length, live.trace.length, live.stepTimes.total, live.topSpeed]).toEqual([0, 0, 0, 0]);
+    expect([live.plan, live.pastPlans]).toEqual([null, []]);
+    expect(live.frame?.time_s).toBe(3);
+  });
+});

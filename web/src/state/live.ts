@@ -1,0 +1,53 @@
+import type { Frame, Plan } from '../protocol/topics';
+import { COLUMN_COUNT, plotRow } from './columns';
+import { Histogram } from './histogram';
+import { History } from './history';
+
+/** How far back plots can reach [s]. */
+export const LONGEST_WINDOW_S = 60;
+const FRAMES_PER_SECOND = 60; // the server sends no more
+const TRACE_SPACING_M = 0.75;
+const PLANS_KEPT = 96; // more than one second of them at 60 a second
+
+/** The newest frame and plan, and their history in fixed memory: plain data, read by the drawing loop at its own pace. */
+export const live = {
+  frame: null as Frame | null,
+  receivedAt: 0, // performance.now() of the newest frame [ms]
+  plan: null as Plan | null,
+  pastPlans: [] as Plan[], // oldest first
+  topSpeed: 0, // fastest driven or planned [m/s]
+  plots: new History(COLUMN_COUNT, LONGEST_WINDOW_S * FRAMES_PER_SECOND),
+  trace: new History(2, 4000),
+  stepTimes: new Histogram(1, 6), // [µs], to 1 s
+};
+
+const row: number[] = new Array<number>(COLUMN_COUNT).fill(NaN);
+
+/** Clears the history. The newest frame stays, so that what is shown does not blink while the next one is on its way. */
+export function forgetHistory(): void {
+  live.plots.clear();
+  live.trace.clear();
+  live.stepTimes.clear();
+  live.topSpeed = 0;
+  live.plan = null;
+  live.pastPlans = [];
+}
+
+/** Makes a frame the newest one. `isNew` when time has gone on since the one before: only then it enters the history. */
+export function keepFrame(frame: Frame, now: number, isNew: boolean): void {
+  live.frame = frame;
+  live.receivedAt = now;
+  if (frame.speed_mps > live.topSpeed) live.topSpeed = frame.speed_mps;
+  if (!isNew) return;
+  live.plots.push(plotRow(frame, row));
+  live.stepTimes.push(frame.step_time_us);
+  const [x, y] = [live.trace.newest(0), live.trace.newest(1)];
+  if (!(Math.hypot(frame.x_m - x, frame.y_m - y) < TRACE_SPACING_M)) live.trace.push([frame.x_m, frame.y_m]);
+}
+
+export function keepPlan(plan: Plan): void {
+  live.plan = plan;
+  live.pastPlans.push(plan);
+  if (live.pastPlans.length > PLANS_KEPT) live.pastPlans.shift();
+  for (const speed of plan.speed_mps) if (speed > live.topSpeed) live.topSpeed = speed;
+}
