@@ -4,16 +4,23 @@
 #   ./run.sh                                      drive, with the dashboard at http://localhost:4567/
 #   ./run.sh --laps 1                             options alone mean `drive`
 #   ./run.sh drive --fast --laps 2 --json         any command of `chicane`; stdout carries its results only
+#   ./run.sh bench                                builds the benchmark, too, with Ipopt to compare with
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 source "$root/tools/install_packages.sh"
 source "$root/tools/build.sh"
 
+target=chicane_app
+extra=()
+case " $* " in
+  *' -h '* | *' --help '*) ;;
+  ' bench '*) target=chicane_bench extra=("${bench_packages[@]}") ;;
+esac
 mapfile -t node < <(node_packages)
-install_packages "${run_packages[@]}" "${node[@]}"
+install_packages "${run_packages[@]}" "${extra[@]}" "${node[@]}"
 tests=()
 is_configured "$root" || tests=(CHICANE_BUILD_TESTS=OFF CHICANE_BUILD_EXAMPLES=OFF)
-build_release "$root" chicane_app "${tests[@]}"
+build_release "$root" "$target" "${tests[@]}"
 
 case "${1:-}" in
   -h | --help | --version) ;;

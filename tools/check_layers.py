@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the arrows between modules: every #include and every DEPENDS in a CMakeLists.txt against tools/layers.txt.
+"""Checks the arrows between modules, and between the folders above them, against tools/layers.txt: every #include, every
+DEPENDS of a module, every file and target of another folder that a CMakeLists.txt compiles or links.
 
     tools/check_layers.py [ROOT]        prints file:line: what is wrong; exit code 1 when anything is
 """
@@ -8,8 +9,15 @@ import sys
 from pathlib import Path
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"(?P<path>[^"]+)"')
-MODULE_CALL = re.compile(r"chicane_module\((?P<name>\w+)(?P<arguments>[^)]*)\)", re.DOTALL)
+CALL = re.compile(r"(?P<command>\w+)\s*\((?P<arguments>[^()]*(?:\([^()]*\)[^()]*)*)\)")
 KEYWORDS = {"HEADERS", "SOURCES", "DEPENDS", "PRIVATE"}
+# Folders above the library, and where their quoted includes start.
+ABOVE = {"apps": "apps/chicane", "bench": "bench", "tests": "tests", "tools": "tools", "examples": "examples"}
+USERS = {"apps", "examples"}  # written as a user of the library would
+DEFINES = {"add_library", "add_executable"}
+# Commands through which one target gets code of another.
+USES = {"target_link_libraries", "target_sources", "target_include_directories", "chicane_simd_sources", "chicane_test"}
+GENERATED = {"bench_commit.hpp"}
 
 
 def read_table(path):
@@ -33,57 +41,115 @@ def check_acyclic(table):
         seen.add(module)
 
 
+def calls(cmake_file):
+    """(line, command, words) of each call in a CMakeLists.txt."""
+    text = re.sub(r"#.*", "", cmake_file.read_text(encoding="utf-8"))
+    for call in CALL.finditer(text):
+        yield text.count("\n", 0, call.start()) + 1, call["command"], call["arguments"].split()
+
+
 def depends_of(cmake_file):
     """The DEPENDS of the chicane_module() call in a CMakeLists.txt."""
-    call = MODULE_CALL.search(re.sub(r"#.*", "", cmake_file.read_text(encoding="utf-8")))
     keyword, depends = None, set()
-    for word in call["arguments"].split() if call else []:
-        keyword = word if word in KEYWORDS else keyword
-        if keyword == "DEPENDS" and word != keyword:
-            depends.add(word)
+    for _, command, words in calls(cmake_file):
+        for word in words if command == "chicane_module" else ():
+            keyword = word if word in KEYWORDS else keyword
+            if keyword == "DEPENDS" and word != keyword:
+                depends.add(word)
     return depends
 
 
-def check_folder(root, folder, module, table):
-    """Violations in one folder: includes that climb, links that climb, includes that are not linked."""
+def includes(folder):
+    """(file, line, included path) of each #include "..." below a folder."""
+    for source in sorted(p for p in folder.rglob("*") if p.suffix in (".hpp", ".cpp")):
+        for number, line in enumerate(source.read_text(encoding="utf-8").splitlines(), 1):
+            if include := INCLUDE.match(line):
+                yield source, number, include["path"]
+
+
+def library_header(path):
+    """("module", "module/file.hpp") of "chicane/module/file.hpp", else nothing."""
+    parts = path.split("/")
+    return (parts[1], "/".join(parts[1:])) if parts[0] == "chicane" and len(parts) > 2 else None
+
+
+def check_module(root, folder, table):
+    """Violations in one folder of src/chicane: includes that climb, links that climb, includes that are not linked."""
+    module = folder.name
     if module not in table:
         yield f"{folder.relative_to(root)}:1: module {module} is not in tools/layers.txt"
         return
     allowed = table[module]
     cmake_file = folder / "CMakeLists.txt"
-    linked = depends_of(cmake_file) if cmake_file.exists() and module != "apps" else None
+    linked = depends_of(cmake_file) if cmake_file.exists() else None
     for name in sorted(linked or ()):
         if not any(entry.split("/")[0] == name for entry in allowed):
             yield f"{cmake_file.relative_to(root)}:1: {module} must not link {name}"
-    for source in sorted(p for p in folder.rglob("*") if p.suffix in (".hpp", ".cpp")):
-        for number, line in enumerate(source.read_text(encoding="utf-8").splitlines(), 1):
-            include = INCLUDE.match(line)
-            if not include:
-                continue
-            where = f"{source.relative_to(root)}:{number}"
-            parts = include["path"].split("/")
-            if parts[0] != "chicane" or len(parts) < 3:
-                if module != "apps" and not (source.parent / include["path"]).exists():
-                    yield f'{where}: got "{include["path"]}", expected "chicane/module/file.hpp"'
-                continue
-            target, header = parts[1], "/".join(parts[1:])
-            if target == module:
-                continue
-            if target not in allowed and header not in allowed:
-                yield f"{where}: {module} must not include {header}"
-            elif parts[2] == "detail":
-                yield f"{where}: {module} must not include {header}: it is an implementation detail of {target}"
-            elif linked is not None and target not in linked:
-                yield f"{where}: {module} includes {header} but does not list {target} in DEPENDS"
+    for source, number, path in includes(folder):
+        where = f"{source.relative_to(root)}:{number}"
+        if not (included := library_header(path)):
+            if not (source.parent / path).exists():
+                yield f'{where}: got "{path}", expected "chicane/module/file.hpp"'
+            continue
+        target, header = included
+        if target == module:
+            continue
+        if target not in allowed and header not in allowed:
+            yield f"{where}: {module} must not include {header}"
+        elif header.startswith(f"{target}/detail/"):
+            yield f"{where}: {module} must not include {header}: it is an implementation detail of {target}"
+        elif linked is not None and target not in linked:
+            yield f"{where}: {module} includes {header} but does not list {target} in DEPENDS"
+
+
+def check_includes_above(root, name, table):
+    """Violations in the includes of one folder above the library."""
+    for source, number, path in includes(root / name):
+        where = f"{source.relative_to(root)}:{number}"
+        if included := library_header(path):
+            if included[0] not in table[name]:
+                yield f"{where}: {name} must not include {included[1]}"
+            elif name in USERS and included[1].startswith(f"{included[0]}/detail/"):
+                yield f"{where}: {name} must not include {included[1]}: it is an implementation detail of {included[0]}"
+        elif not (source.parent / path).exists() and not (root / ABOVE[name] / path).exists():
+            owners = [other for other, start in ABOVE.items() if (root / start / path).exists()]
+            if not owners and path not in GENERATED:
+                yield f'{where}: got "{path}", expected a header of {name} or "chicane/module/file.hpp"'
+            if owners and not table[name].intersection(owners):
+                yield f"{where}: {name} must not include {path} of {owners[0]}"
+
+
+def targets_above(root):
+    """{target: the folder above the library that defines it}"""
+    targets = {}
+    for name in ABOVE:
+        for cmake_file in (root / name).rglob("CMakeLists.txt"):
+            for _, command, words in calls(cmake_file):
+                if command in DEFINES and words:
+                    targets[words[0]] = name
+    return targets
+
+
+def check_cmake_above(root, name, table, targets):
+    """Violations in what one folder above the library compiles and links."""
+    for cmake_file in sorted((root / name).rglob("CMakeLists.txt")):
+        for line, command, words in calls(cmake_file):
+            for word in words if command in USES | DEFINES else ():
+                path = re.match(r"\$\{PROJECT_SOURCE_DIR\}/(\w+)", word)
+                owner = path[1] if path else targets.get(word, targets.get("chicane_" + word))
+                if owner in ABOVE and owner != name and owner not in table[name]:
+                    yield f"{cmake_file.relative_to(root)}:{line}: {name} must not use {word} of {owner}"
 
 
 def check(root):
     table = read_table(root / "tools/layers.txt")
     yield from check_acyclic(table)
     for folder in sorted(p for p in (root / "src/chicane").iterdir() if p.is_dir()):
-        yield from check_folder(root, folder, folder.name, table)
-    for folder in sorted(p for p in (root / "apps").glob("*") if p.is_dir()):
-        yield from check_folder(root, folder, "apps", table)
+        yield from check_module(root, folder, table)
+    targets = targets_above(root)
+    for name in ABOVE:
+        yield from check_includes_above(root, name, table)
+        yield from check_cmake_above(root, name, table, targets)
 
 
 def main():

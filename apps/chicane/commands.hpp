@@ -7,10 +7,6 @@
 #include "chicane/base/result.hpp"
 #include "options.hpp"
 
-namespace chicane::bench {
-struct References;
-}
-
 namespace chicane::apps {
 
 struct Command {
@@ -30,11 +26,8 @@ struct Command {
 [[nodiscard]] ExitCode report_logs(const Options& options);
 [[nodiscard]] ExitCode check(const Options& options);
 [[nodiscard]] ExitCode list(const Options& options);
-/// Hands over to the program chicane-bench beside this one, which knows other solvers; without it, our own
-/// times alone.
+/// Becomes the program chicane-bench (bench/program); kEnvironment where that is not built.
 [[nodiscard]] ExitCode bench(const Options& options);
-/// What `chicane bench` measures, beside these solvers.
-[[nodiscard]] ExitCode measure(const Options& options, chicane::bench::References& references);
 
 /// Says the error on stderr; which exit code it is.
 [[nodiscard]] ExitCode report(const Error& error);

@@ -8,7 +8,6 @@
 #include <charconv>
 #include <string_view>
 
-#include "bench_solves.hpp"
 #include "chicane/base/angle.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/run/closed_loop.hpp"
@@ -16,6 +15,9 @@
 
 namespace chicane::apps {
 namespace {
+
+constexpr int kLongestHorizon =
+    200;  ///< that of bench/problems/reference.hpp, which is not part of this program
 
 /// One option that is another name for a setting of the schema.
 void add_setting(CLI::App& command, Options& options, const std::string& name, const std::string& key,
@@ -323,7 +325,6 @@ std::variant<Options, Done> parse_command_line(int count, const char* const* wor
     return explain(app, error);
   }
   options.command = app.get_subcommands().front()->get_name();
-  options.words.assign(words, words + count);
   return options;
 }
 

@@ -16,12 +16,11 @@ enum ExitCode : int {
   kSuccess = 0,
   kBrokenPromise = 1,  ///< the run left the road, or did not do all its laps
   kUsage = 2,          ///< wrong usage or a bad input file
-  kEnvironment = 3,    ///< port in use, no permission
+  kEnvironment = 3,    ///< port in use, no permission, chicane-bench not built
 };
 
 struct Options {
   std::string command;
-  std::vector<std::string> words;  ///< the command line itself, the program first
 
   std::string scenario_file;  ///< empty: none
   std::vector<std::pair<std::string, std::string>>

@@ -18,7 +18,12 @@ CLEAN = {
     "src/chicane/solver/solve.cpp": SPDX + '#include "chicane/solver/solve.hpp"\n// It knows no car.\n',
     "src/chicane/solver/CMakeLists.txt": "chicane_module(solver HEADERS solve.hpp SOURCES solve.cpp DEPENDS base)\n",
     "apps/chicane/main.cpp": SPDX + '#include "chicane/solver/solve.hpp"\nint main() { std::puts("car"); }\n',
-    "tests/solver/solve_test.cpp": SPDX,
+    "apps/chicane/CMakeLists.txt": "add_library(chicane_cli STATIC main.cpp)\n",
+    "bench/CMakeLists.txt": "add_executable(bench main.cpp)\ntarget_link_libraries(bench PRIVATE chicane_solver)\n",
+    "bench/main.cpp": SPDX + '#include "problems/hard.hpp"\n#include "chicane/solver/solve.hpp"\n',
+    "bench/problems/hard.hpp": SPDX + "#pragma once\n",
+    "tests/solver/solve_test.cpp": SPDX + '#include "problems/hard.hpp"\n',
+    "tests/solver/CMakeLists.txt": "chicane_test(solver SOURCES solve_test.cpp PRIVATE chicane_cli)\n",
 }
 
 
@@ -34,7 +39,7 @@ class Checks(unittest.TestCase):
                 (root / path).parent.mkdir(parents=True, exist_ok=True)
                 (root / path).write_text(text, encoding="utf-8")
             for name in ("examples", "bench"):
-                (root / name).mkdir()
+                (root / name).mkdir(exist_ok=True)
             return list(check(root))
 
     def expect(self, check, path, text, reason):
@@ -58,7 +63,17 @@ class Checks(unittest.TestCase):
             ("src/chicane/solver/solve.cpp", '#include "math.hpp"\n', 'expected "chicane/module/file.hpp"'),
             ("src/chicane/solver/solve.cpp", '#include "chicane/base/detail/jet.hpp"\n', "an implementation detail of base"),
             ("src/chicane/helpers/misc.hpp", "\n", "helpers is not in tools/layers.txt"),
-            ("tools/layers.txt", ("base:\nsolver: base model\nmodel: base\napps: base solver model\n",), "listed above it"),
+            ("tools/layers.txt", ("base:\nsolver: base model\nmodel: base\napps: base solver model\nbench: solver\nexamples:\n"
+                                  "tests: apps bench\ntools:\n",), "listed above it"),
+            ("src/chicane/solver/solve.cpp", '#include "problems/hard.hpp"\n', 'expected "chicane/module/file.hpp"'),
+            ("apps/chicane/main.cpp", '#include "problems/hard.hpp"\n', "apps must not include problems/hard.hpp of bench"),
+            ("bench/main.cpp", '#include "solver/solve_test.cpp"\n', "bench must not include solver/solve_test.cpp of tests"),
+            ("bench/main.cpp", '#include "main.hpp"\n', "expected a header of bench"),
+            ("examples/one.cpp", '#include "chicane/helpers/misc.hpp"\n', "examples must not include helpers/misc.hpp"),
+            ("tools/report.cpp", '#include "problems/hard.hpp"\n', "tools must not include problems/hard.hpp of bench"),
+            ("bench/CMakeLists.txt", "target_link_libraries(bench PRIVATE chicane_cli)\n", "bench must not use chicane_cli"),
+            ("apps/chicane/CMakeLists.txt", "target_sources(chicane_cli PRIVATE ${PROJECT_SOURCE_DIR}/bench/main.cpp)\n",
+             "apps must not use ${PROJECT_SOURCE_DIR}/bench/main.cpp of bench"),
         ):
             with self.subTest(reason):
                 self.expect(check_layers.check, path, text, reason)

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "bench_batches.hpp"
-#include "bench_golden.hpp"
-#include "bench_solves.hpp"
+#include "program/batches.hpp"
+#include "program/golden.hpp"
+#include "program/solves.hpp"
 
-namespace chicane::apps {
+namespace chicane::bench {
 
 /// What a benchmark ran on, in the words of the report.
 struct Machine {
@@ -16,7 +16,7 @@ struct Machine {
   std::string references;                      ///< what is compared with; empty without
   double load_before = 0.0, load_after = 0.0;  ///< jobs that want a core, mean over the last minute
 };
-[[nodiscard]] Machine this_machine(const bench::References& references);
+[[nodiscard]] Machine this_machine(const References& references);
 [[nodiscard]] double load();
 
 struct BenchReport {
@@ -48,4 +48,4 @@ struct Target {
 [[nodiscard]] std::string to_markdown(const BenchReport& report);
 [[nodiscard]] std::string to_json(const BenchReport& report);
 
-}  // namespace chicane::apps
+}  // namespace chicane::bench

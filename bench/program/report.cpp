@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "bench_report.hpp"
+#include "program/report.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 
 #include "bench_commit.hpp"
 
-namespace chicane::apps {
+namespace chicane::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -255,7 +255,7 @@ std::vector<Target> targets(const BenchReport& report) {
   return list;
 }
 
-Machine this_machine(const bench::References& references) {
+Machine this_machine(const References& references) {
   return {.processor = processor(),
           .compiler = CHICANE_COMPILER,
           .flags = CHICANE_FLAGS,
@@ -329,4 +329,4 @@ std::string to_json(const BenchReport& report) {
   return json.dump(2) + "\n";
 }
 
-}  // namespace chicane::apps
+}  // namespace chicane::bench

@@ -7,7 +7,7 @@
 
 #include "chicane/base/result.hpp"
 
-namespace chicane::apps {
+namespace chicane::bench {
 
 /// Problems of a recorded closed loop whose optima another solver found to 1e-10.
 struct GoldenRow {
@@ -32,4 +32,4 @@ struct GoldenRow {
 [[nodiscard]] Result<std::vector<GoldenRow>> solve_golden(const std::string& folder,
                                                           const std::atomic<bool>& stop);
 
-}  // namespace chicane::apps
+}  // namespace chicane::bench

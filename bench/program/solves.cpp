@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "bench_solves.hpp"
+#include "program/solves.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,20 +11,17 @@
 #include "problems/optimality.hpp"
 #include "problems/structured_solver.hpp"
 
-namespace chicane::apps {
+namespace chicane::bench {
 namespace {
-
-using bench::Outcome;
-using bench::Start;
 
 constexpr int kCapacity = kLongestHorizon;
 constexpr int kTrials = 3;
 constexpr double kLeastTime = 50e-6;  ///< of one trial: the clock itself takes some 0.2 µs [s]
 constexpr double kMicroseconds = 1e6;
 
-using Trajectory = bench::DescribedTrajectory<kCapacity>;
+using Trajectory = DescribedTrajectory<kCapacity>;
 template <class Problem>
-using Instance = bench::Instance<Problem, kCapacity>;
+using Case = Instance<Problem, kCapacity>;
 
 /// What one solver did with one instance.
 struct Sample {
@@ -35,41 +32,41 @@ struct Sample {
 };
 
 template <class Problem>
-void judge(const Instance<Problem>& instance, const Trajectory& answer, Sample& sample) {
-  sample.cost = bench::simulated_cost(instance.problem, instance.start, answer);
+void judge(const Case<Problem>& instance, const Trajectory& answer, Sample& sample) {
+  sample.cost = simulated_cost(instance.problem, instance.start, answer);
   if constexpr (Problem::kNc == 0) {
-    sample.gradient = bench::projected_gradient(instance.problem, instance.start, answer);
+    sample.gradient = projected_gradient(instance.problem, instance.start, answer);
   }
 }
 
-bench::StructuredDescribedProblem structured(const Instance<bench::DescribedProblem>& instance) {
-  return bench::StructuredDescribedProblem{instance.problem, instance.start[4]};
+StructuredDescribedProblem structured(const Case<DescribedProblem>& instance) {
+  return StructuredDescribedProblem{instance.problem, instance.start[4]};
 }
-bench::StructuredCorridorProblem structured(const Instance<bench::CorridorProblem>& instance) {
+StructuredCorridorProblem structured(const Case<CorridorProblem>& instance) {
   return {instance.problem, instance.start[4], instance.guess.horizon};
 }
 
 /// Our solver on the structured form of the problem, with the instruction set that is chosen: the best of
 /// some trials, each long enough for the clock.
 template <class Problem>
-Sample solve_own(const Instance<Problem>& instance, Trajectory& answer) {
+Sample solve_own(const Case<Problem>& instance, Trajectory& answer) {
   Sample sample;
   const auto problem = structured(instance);
-  const auto start = bench::StructuredDescribedProblem::without_cte(instance.start);
-  bench::StructuredTrajectory own;
+  const auto start = StructuredDescribedProblem::without_cte(instance.start);
+  StructuredTrajectory own;
   own.horizon = instance.guess.horizon;
   const auto solve = [&] {
     std::copy_n(instance.guess.u.begin(), instance.guess.horizon, own.u.begin());
-    return bench::solve_fast(problem, start, own);
+    return solve_fast(problem, start, own);
   };
-  double begin = bench::cpu_time();
+  double begin = cpu_time();
   const solver::SolveReport report = solve();
-  const int repeats = static_cast<int>(kLeastTime / std::max(bench::cpu_time() - begin, 1e-6)) + 1;
+  const int repeats = static_cast<int>(kLeastTime / std::max(cpu_time() - begin, 1e-6)) + 1;
   sample.outcome.time = std::numeric_limits<double>::infinity();
   for (int trial = 0; trial < kTrials; ++trial) {
-    begin = bench::cpu_time();
+    begin = cpu_time();
     for (int repeat = 0; repeat < repeats; ++repeat) solve();
-    sample.outcome.time = std::min(sample.outcome.time, (bench::cpu_time() - begin) / repeats);
+    sample.outcome.time = std::min(sample.outcome.time, (cpu_time() - begin) / repeats);
   }
   sample.outcome.is_solved = report.status == solver::SolveStatus::kOptimal;
   sample.outcome.turns = report.iterations;
@@ -81,8 +78,8 @@ Sample solve_own(const Instance<Problem>& instance, Trajectory& answer) {
 }
 
 template <class Problem>
-Sample solve_reference(const Instance<Problem>& instance, const Instance<Problem>* before,
-                       bench::Reference<Problem>& reference, Trajectory& answer) {
+Sample solve_reference(const Case<Problem>& instance, const Case<Problem>* before,
+                       Reference<Problem>& reference, Trajectory& answer) {
   Sample sample;
   sample.outcome = reference.solve(instance, before, answer);
   for (int trial = 1; trial < kTrials; ++trial) {
@@ -132,7 +129,7 @@ SolverColumn summarize(std::string_view name, const std::vector<Sample>& samples
 }
 
 template <class Problem>
-void measure(Start start, int instances, bench::References& references, const std::atomic<bool>& stop,
+void measure(Start start, int instances, References& references, const std::atomic<bool>& stop,
              SolveRow& row) {
   const auto ocp = std::make_unique<solver::OcpSolver<Problem, kCapacity>>();
   const auto answer = std::make_unique<Trajectory>();
@@ -142,7 +139,7 @@ void measure(Start start, int instances, bench::References& references, const st
   if (stop) return;
   // One more than is measured: the cycle before the first.
   const int count = kOwnInstances * instances + 1;
-  const auto family = bench::make_family<Problem, kCapacity>(start, row.horizon, count, *ocp);
+  const auto family = make_family<Problem, kCapacity>(start, row.horizon, count, *ocp);
   for (std::size_t i = 1; i < family.size() && !stop; ++i) {
     own.push_back(solve_own(family[i], *answer));
     if (i > static_cast<std::size_t>(instances)) continue;
@@ -186,19 +183,19 @@ const std::vector<std::string_view>& families() {
   return names;
 }
 
-SolveRow time_solves(std::string_view family, int horizon, int instances, bench::References& references,
+SolveRow time_solves(std::string_view family, int horizon, int instances, References& references,
                      const std::atomic<bool>& stop) {
   SolveRow row{.family = family, .horizon = horizon};
-  if (family == "cold0") measure<bench::DescribedProblem>(Start::kCold, instances, references, stop, row);
-  if (family == "coldP") measure<bench::DescribedProblem>(Start::kPathLaw, instances, references, stop, row);
-  if (family == "warm") measure<bench::DescribedProblem>(Start::kWarm, instances, references, stop, row);
+  if (family == "cold0") measure<DescribedProblem>(Start::kCold, instances, references, stop, row);
+  if (family == "coldP") measure<DescribedProblem>(Start::kPathLaw, instances, references, stop, row);
+  if (family == "warm") measure<DescribedProblem>(Start::kWarm, instances, references, stop, row);
   if (family == "corridor") {
-    measure<bench::CorridorProblem>(Start::kPathLaw, instances, references, stop, row);
+    measure<CorridorProblem>(Start::kPathLaw, instances, references, stop, row);
   }
   if (family == "corridor-warm") {
-    measure<bench::CorridorProblem>(Start::kWarm, instances, references, stop, row);
+    measure<CorridorProblem>(Start::kWarm, instances, references, stop, row);
   }
   return row;
 }
 
-}  // namespace chicane::apps
+}  // namespace chicane::bench

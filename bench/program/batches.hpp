@@ -4,7 +4,7 @@
 #include <atomic>
 #include <string_view>
 
-namespace chicane::apps {
+namespace chicane::bench {
 
 /// Throughput of one family's problems solved in lanes, and one after the other by the single solver, on one
 /// core, in turns.
@@ -27,4 +27,4 @@ struct BatchRow {
 [[nodiscard]] BatchRow time_batch(std::string_view family, int horizon, int problems,
                                   const std::atomic<bool>& stop);
 
-}  // namespace chicane::apps
+}  // namespace chicane::bench

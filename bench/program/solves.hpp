@@ -8,7 +8,7 @@
 
 #include "problems/reference.hpp"
 
-namespace chicane::apps {
+namespace chicane::bench {
 
 /// Of a set of times.
 struct Spread {
@@ -51,14 +51,12 @@ struct SolveRow {
 /// cold0, coldP, warm, corridor, corridor-warm (docs/benchmarks.md).
 [[nodiscard]] const std::vector<std::string_view>& families();
 
-using bench::kLongestHorizon;
-
 /// How many times as many problems our own solver gets: it takes no time.
 inline constexpr int kOwnInstances = 10;
 
 /// Times `instances` seeded problems, the solvers taking turns on each, and then our own on more of them.
 /// Ends early, with what there is, when `stop` is set.
 [[nodiscard]] SolveRow time_solves(std::string_view family, int horizon, int instances,
-                                   bench::References& references, const std::atomic<bool>& stop);
+                                   References& references, const std::atomic<bool>& stop);
 
-}  // namespace chicane::apps
+}  // namespace chicane::bench

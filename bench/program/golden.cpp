@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "bench_golden.hpp"
+#include "program/golden.hpp"
 
 #include <fmt/format.h>
 
@@ -10,13 +10,13 @@
 #include <fstream>
 #include <memory>
 
-#include "bench_solves.hpp"
 #include "problems/cpu_time.hpp"
 #include "problems/families.hpp"
 #include "problems/optimality.hpp"
 #include "problems/structured_solver.hpp"
+#include "program/solves.hpp"
 
-namespace chicane::apps {
+namespace chicane::bench {
 namespace {
 
 using Table = std::vector<std::vector<double>>;
@@ -49,12 +49,12 @@ Result<Table> read_table(const std::filesystem::path& file, std::size_t columns)
 }
 
 /// Solves each problem of one set from one kind of start.
-GoldenRow solve_set(const std::string& set, int nodes, bench::Start start, const Table& cycles,
-                    const Table& optima, const std::atomic<bool>& stop) {
-  const bool is_cold = start == bench::Start::kCold;
+GoldenRow solve_set(const std::string& set, int nodes, Start start, const Table& cycles, const Table& optima,
+                    const std::atomic<bool>& stop) {
+  const bool is_cold = start == Start::kCold;
   GoldenRow row{.set = set, .start = is_cold ? "cold0" : "coldP", .nodes = nodes};
-  const auto guess = std::make_unique<bench::DescribedTrajectory<kLongestHorizon>>();
-  bench::StructuredTrajectory answer;
+  const auto guess = std::make_unique<DescribedTrajectory<kLongestHorizon>>();
+  StructuredTrajectory answer;
   std::vector<double> times;
   std::vector<double> steer;
   row.worst_excess = -std::numeric_limits<double>::infinity();
@@ -62,28 +62,28 @@ GoldenRow solve_set(const std::string& set, int nodes, bench::Start start, const
     const auto cycle = static_cast<std::size_t>(golden[0]);
     if (stop || golden[1] != 1.0 || cycle >= cycles.size()) continue;
     const auto& now = cycles[cycle];
-    bench::DescribedInstance instance;
+    DescribedInstance instance;
     instance.start = {now[0], now[1], now[2], now[3], now[4], now[5], 0.0, 0.0};
     instance.problem.path = {now[6], now[7], now[8], now[9]};
     instance.problem.speed_reference = now[10];
     *guess = {};
     guess->horizon = answer.horizon = nodes - 1;
-    if (!is_cold) bench::guess_by_path_law(instance, *guess);
+    if (!is_cold) guess_by_path_law(instance, *guess);
     std::copy_n(guess->u.begin(), guess->horizon, answer.u.begin());
-    const bench::StructuredDescribedProblem problem(instance.problem, instance.start[4]);
-    const auto x0 = bench::StructuredDescribedProblem::without_cte(instance.start);
-    const double begin = bench::cpu_time();
-    const solver::SolveReport report = bench::solve_fast(problem, x0, answer);
-    times.push_back((bench::cpu_time() - begin) * 1e6);
+    const StructuredDescribedProblem problem(instance.problem, instance.start[4]);
+    const auto x0 = StructuredDescribedProblem::without_cte(instance.start);
+    const double begin = cpu_time();
+    const solver::SolveReport report = solve_fast(problem, x0, answer);
+    times.push_back((cpu_time() - begin) * 1e6);
     ++row.problems;
     row.unsolved += report.status == solver::SolveStatus::kOptimal ? 0 : 1;
     std::copy_n(answer.u.begin(), answer.horizon, guess->u.begin());
-    const double cost = bench::simulated_cost(instance.problem, instance.start, *guess);
+    const double cost = simulated_cost(instance.problem, instance.start, *guess);
     const double scale = std::max(1.0, golden[2]);
     double excess = (cost - golden[2]) / scale;
     const bool is_higher = excess > kAgreement;
     if (is_higher)  // the golden optimum is one with bounds moved outwards
-      excess -= bench::gain_of_relaxed_bounds(instance.problem, instance.start, *guess) / scale;
+      excess -= gain_of_relaxed_bounds(instance.problem, instance.start, *guess) / scale;
     row.worst_excess = std::max(row.worst_excess, excess);
     if (std::fabs(excess) <= kAgreement) {
       ++row.agree;
@@ -128,10 +128,10 @@ Result<std::vector<GoldenRow>> solve_golden(const std::string& folder, const std
     const auto cycles = read_table(file.parent_path() / ("lap_" + set.substr(0, split) + ".csv"), 11);
     if (!cycles) return fail(cycles.error());
     fmt::print(stderr, "golden optima {}, {} problems\n", set, optima->size());
-    for (const auto start : {bench::Start::kCold, bench::Start::kPathLaw})
+    for (const auto start : {Start::kCold, Start::kPathLaw})
       rows.push_back(solve_set(set, nodes, start, *cycles, *optima, stop));
   }
   return rows;
 }
 
-}  // namespace chicane::apps
+}  // namespace chicane::bench

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-// chicane bench: what it reports, never how fast.
+// chicane-bench: what it reports, never how fast.
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <cmath>
 #include <vector>
 
-#include "bench_batches.hpp"
-#include "bench_golden.hpp"
-#include "bench_solves.hpp"
+#include "program/batches.hpp"
+#include "program/golden.hpp"
+#include "program/solves.hpp"
 #ifdef CHICANE_HAVE_IPOPT
 #include "references/ipopt_reference.hpp"
 #endif
 
-namespace chicane::apps {
+namespace chicane::bench {
 namespace {
 
 TEST(Spread, TakesTheNearestRank) {
@@ -26,17 +26,17 @@ TEST(Spread, TakesTheNearestRank) {
   EXPECT_EQ(spread_of({}).median, 0.0);
 }
 
-bench::References all_references() {
-  bench::References references;
+References all_references() {
+  References references;
 #ifdef CHICANE_HAVE_IPOPT
-  bench::add_ipopt(references);
+  add_ipopt(references);
 #endif
   return references;
 }
 
 TEST(TimeSolves, SolvesEveryFamilyToTheOptimum) {
   const std::atomic<bool> stop{false};
-  bench::References references = all_references();
+  References references = all_references();
   for (const std::string_view family : families()) {
     const SolveRow row = time_solves(family, 6, 5, references, stop);
     EXPECT_EQ(row.instances, 5) << family;
@@ -63,7 +63,7 @@ TEST(TimeSolves, SolvesEveryFamilyToTheOptimum) {
 
 TEST(TimeSolves, StopsWhenAsked) {
   const std::atomic<bool> stop{true};
-  bench::References references = all_references();
+  References references = all_references();
   EXPECT_EQ(time_solves("cold0", 6, 5, references, stop).instances, 0);
 }
 
@@ -89,4 +89,4 @@ TEST(Golden, RefusesAFolderWithoutProblems) {
 }
 
 }  // namespace
-}  // namespace chicane::apps
+}  // namespace chicane::bench

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "program/measure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "chicane/protocol/library.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "problems/cpu_time.hpp"
+#include "problems/dense_reference.hpp"
+
+namespace chicane::bench {
+namespace {
+
+constexpr int kGrowthHorizons[] = {10, 20, 50, 100, 200};
+constexpr int kGrowthInstances = 64;
+constexpr int kDrives = 3;
+constexpr int kBatchHorizons[] = {10, 20};
+constexpr int kBatchProblems = 192;
+
+void measure_solves(const Request& request, References& references, const std::atomic<bool>& stop,
+                    BenchReport& report) {
+  for (const std::string_view family : families()) {
+    for (const int horizon : request.horizons) {
+      if (stop) return;
+      fmt::print(stderr, "{}, N = {}, {} instances\n", family, horizon, request.instances);
+      const SolveRow row = time_solves(family, horizon, request.instances, references, stop);
+      if (row.instances > 0) report.solves.push_back(row);
+    }
+  }
+}
+
+/// Exponent of the least-squares line through (log N, log time).
+double exponent(const std::vector<SolveRow>& rows) {
+  double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
+  for (const SolveRow& row : rows) {
+    const double x = std::log(row.horizon);
+    const double y = std::log(row.own.time_us.median);
+    n += 1.0;
+    sx += x;
+    sy += y;
+    sxx += x * x;
+    sxy += x * y;
+  }
+  return n < 2.0 ? std::nan("") : (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+void measure_growth(const std::atomic<bool>& stop, BenchReport& report) {
+  References none;
+  for (const int horizon : kGrowthHorizons) {
+    if (stop) break;
+    fmt::print(stderr, "cost against horizon, N = {}\n", horizon);
+    const SolveRow row = time_solves("warm", horizon, kGrowthInstances, none, stop);
+    if (row.instances == kGrowthInstances) report.growth.push_back(row);
+  }
+  report.growth_exponent = exponent(report.growth);
+}
+
+void measure_batches(const std::atomic<bool>& stop, BenchReport& report) {
+  for (const std::string_view family : families()) {
+    for (const int horizon : kBatchHorizons) {
+      if (stop) return;
+      fmt::print(stderr, "{}, N = {}, {} problems in lanes\n", family, horizon, kBatchProblems);
+      report.batches.push_back(time_batch(family, horizon, kBatchProblems, stop));
+    }
+  }
+}
+
+/// Two laps of what `chicane drive` does by default, in virtual time, and again: every drive takes the same
+/// steps, and each counts with the least time it took.
+Result<void> measure_steps(const std::atomic<bool>& stop, BenchReport& report) {
+  if (stop) return {};
+  fmt::print(stderr, "control step of the default controller\n");
+  const Result<scenario::Scenario> scenario = protocol::compose({"", {{"laps", "2"}}});
+  if (!scenario) return fail(scenario.error());
+  std::vector<double> cpu;
+  std::vector<double> wall;
+  std::vector<double> solves;
+  for (int drive = 0; drive < kDrives && !stop; ++drive) {
+    const auto loop = run::ClosedLoop::create(*scenario);
+    if (!loop) return fail(loop.error());
+    std::size_t step = 0;
+    const auto keep_least = [&](std::vector<double>& times, double seconds) {
+      if (times.size() <= step) times.push_back(seconds * 1e6);
+      times[step] = std::min(times[step], seconds * 1e6);
+    };
+    while (!(*loop)->is_over() && !stop) {
+      const double begin = cpu_time();
+      if (!(*loop)->advance()) continue;
+      keep_least(cpu, cpu_time() - begin);
+      keep_least(wall, (*loop)->frame().step_time);
+      keep_least(solves, (*loop)->frame().solve_time);
+      ++step;
+    }
+  }
+  report.steps = cpu.size();
+  report.step_cpu_us = spread_of(std::move(cpu));
+  report.step_us = spread_of(std::move(wall));
+  report.step_solve_us = spread_of(std::move(solves));
+  return {};
+}
+
+}  // namespace
+
+Result<BenchReport> measure(const Request& request, References& references, const std::atomic<bool>& stop) {
+  references.described.push_back(std::make_unique<DenseReference>());
+  BenchReport report{.machine = this_machine(references)};
+  measure_solves(request, references, stop, report);
+  measure_growth(stop, report);
+  measure_batches(stop, report);
+  if (!request.reference_folder.empty()) {
+    Result<std::vector<GoldenRow>> golden = solve_golden(request.reference_folder, stop);
+    if (!golden) return fail(golden.error());
+    report.golden = std::move(*golden);
+  }
+  const Result<void> done = measure_steps(stop, report);
+  if (!done) return fail(done.error());
+  report.machine.load_after = load();
+  report.was_interrupted = stop;
+  return report;
+}
+
+}  // namespace chicane::bench
