@@ -34,11 +34,13 @@ endif()
 file(GLOB_RECURSE web_files CONFIGURE_DEPENDS ${web_source}/src/* ${web_source}/public/*)
 add_custom_command(
   OUTPUT ${web_build}/web_assets.cpp
-  COMMAND ${CMAKE_COMMAND} -DSOURCE=${web_source} -DBUILD=${web_build} "-DMISSING=${web_missing}" -DNODE=${CHICANE_NODE}
+  COMMAND ${PROJECT_SOURCE_DIR}/tools/note_time.sh -o web/web_assets.cpp
+          ${CMAKE_COMMAND} -DSOURCE=${web_source} -DBUILD=${web_build} "-DMISSING=${web_missing}" -DNODE=${CHICANE_NODE}
           -DNPM=${CHICANE_NPM} -P ${CMAKE_CURRENT_LIST_DIR}/EmbedWebFiles.cmake
   DEPENDS ${CMAKE_CURRENT_LIST_DIR}/EmbedWebFiles.cmake ${CMAKE_CURRENT_LIST_DIR}/NpmCi.cmake ${web_files} ${web_source}/index.html ${web_source}/style.css
           ${web_source}/package.json ${web_source}/package-lock.json ${web_source}/vite.config.ts
           ${web_source}/tsconfig.json
+  WORKING_DIRECTORY ${CMAKE_BINARY_DIR}
   COMMENT "Building and embedding the dashboard"
   VERBATIM)
 add_library(chicane_web_assets STATIC ${web_build}/web_assets.cpp)

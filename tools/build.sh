@@ -40,3 +40,14 @@ build_release() {
   fi
   ninja -C "$build" -j "$(build_jobs)" "${quiet[@]}" "$target" </dev/null >&2
 }
+
+# Processor time, user and system, of all that this shell has started and waited for, in seconds.
+processor_seconds() {
+  local file
+  file=$(mktemp)
+  times >"$file"  # not through a pipe, whose shell has started nothing
+  awk 'NR == 2 { split($1, u, "[ms]"); split($2, s, "[ms]"); printf "%.0f\n", 60 * (u[1] + s[1]) + u[2] + s[2] }' "$file"
+  rm -f "$file"
+}
+
+kilobytes() { printf '%s kB' $(($(wc -c) / 1000)); }
