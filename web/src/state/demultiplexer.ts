@@ -62,7 +62,9 @@ function receiveFrame(message: Frame, now: number): void {
   for (const listener of frameListeners) listener(frame, now);
 }
 
-/** Forgets where the car has been and what was plotted: it belongs to an earlier run, or to a later moment of this one. */
+/**
+ * Forgets where the car has been and what was plotted: it belongs to an earlier run, or to a later moment of this one.
+ */
 export function forget(): void {
   forgetHistory();
   forgetLaps();

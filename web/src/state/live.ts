@@ -9,7 +9,9 @@ const FRAMES_PER_SECOND = 60; // the server sends no more
 const TRACE_SPACING_M = 0.75;
 const PLANS_KEPT = 96; // more than one second of them at 60 a second
 
-/** The newest frame and plan, and their history in fixed memory: plain data, read by the drawing loop at its own pace. */
+/**
+ * The newest frame and plan, and their history in fixed memory: plain data, read by the drawing loop at its own pace.
+ */
 export const live = {
   frame: null as Frame | null,
   receivedAt: 0, // performance.now() of the newest frame [ms]
@@ -23,7 +25,9 @@ export const live = {
 
 const row: number[] = new Array<number>(COLUMN_COUNT).fill(NaN);
 
-/** Clears the history. The newest frame stays, so that what is shown does not blink while the next one is on its way. */
+/**
+ * Clears the history. The newest frame stays, so that what is shown does not blink while the next one is on its way.
+ */
 export function forgetHistory(): void {
   live.plots.clear();
   live.trace.clear();
@@ -33,7 +37,9 @@ export function forgetHistory(): void {
   live.pastPlans = [];
 }
 
-/** Makes a frame the newest one. `isNew` when time has gone on since the one before: only then it enters the history. */
+/**
+ * Makes a frame the newest one. `isNew` when time has gone on since the one before: only then it enters the history.
+ */
 export function keepFrame(frame: Frame, now: number, isNew: boolean): void {
   live.frame = frame;
   live.receivedAt = now;
