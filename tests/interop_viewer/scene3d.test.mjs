@@ -103,12 +103,13 @@ describe('the 3D picture', () => {
     for (const camera of ['Chase', 'Top', 'Cockpit', 'Free']) {
       await button(page, camera).click();
       assert.equal(await button(page, camera).getAttribute('aria-pressed'), 'true');
-      await page.waitForTimeout(150);
-      const { colours, text } = await picture(page);
-      assert.ok(colours >= 30, `${camera}: ${colours} colours`);
+      const { text } = await new DashboardPage(page).until(
+        () => picture(page),
+        (now) => now.colours >= 30 && !seen.has(now.text),
+        `a picture from another camera: ${camera}`,
+      );
       seen.add(text);
     }
-    assert.equal(seen.size, 4);
     await page.reload();
     await ready(page);
     assert.equal(await button(page, 'Free').getAttribute('aria-pressed'), 'true');
@@ -119,7 +120,12 @@ describe('the 3D picture', () => {
 
   it('comes without the page standing still for it', async (test) => {
     const { context, page, complaints } = await open(browser, { storage: { 'chicane.dimension': '2d' } });
-    await page.waitForTimeout(1500);
+    const dashboard = new DashboardPage(page, complaints);
+    await dashboard.until(
+      () => dashboard.colours('canvas.map-2d'),
+      (count) => count > 20,
+      'the map',
+    );
     await page.evaluate(() => {
       let last = performance.now();
       globalThis.longest = 0;
@@ -134,13 +140,15 @@ describe('the 3D picture', () => {
     await ready(page);
     const took = performance.now() - begin;
     assert.ok((await picture(page)).colours >= 30, 'there is something to see as soon as the map has made room');
-    await page.waitForTimeout(1000);
+    const drawn = await page.evaluate(() => globalThis.drawn);
+    await page.waitForFunction((before) => globalThis.drawn > before, drawn);
     const longest = await page.evaluate(() => globalThis.longest);
     test.diagnostic(
       `first picture after ${took.toFixed(0)} ms, the page answered at least every ${longest.toFixed(0)} ms`,
     );
-    // Measured: 200 to 550; 4600 to 8400 with a blurred sky and awaited shaders.
-    assert.ok(longest < 4000, `${longest} ms without an answer`);
+    // Measured: 200 to 550 ms; 4600 to 8400, nearly all of the wait, with a blurred sky and awaited shaders. A share of
+    // the wait holds on a busy machine too.
+    assert.ok(longest < Math.max(1000, took / 2), `${longest} ms without an answer, of ${took} ms`);
     assert.deepEqual(complaints, []);
     await context.close();
   });

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// The dashboard keeps up with sixty frames a second. What that costs is measured by performance.mjs, not asserted here.
+import assert from 'node:assert/strict';
+import { after, before, it } from 'node:test';
+import { launch } from './browser.mjs';
+import { startDrive } from './chicane_drive.mjs';
+import { DashboardPage } from './dashboard_page.mjs';
+import { arrivals, meter, notePaints, SIXTY_A_SECOND } from './paints.mjs';
+
+const FRAMES = 300;
+
+let browser;
+let drive;
+before(async () => {
+  browser = await launch();
+  drive = await startDrive(SIXTY_A_SECOND);
+});
+after(async () => {
+  await browser.close();
+  await drive.stop();
+});
+
+for (const tab of ['plots', 'explain']) {
+  it(`paints the newest of many frames, in bounded memory: ${tab}`, async () => {
+    const context = await browser.newContext({ viewport: { width: 1366, height: 768 } });
+    const page = await context.newPage();
+    await page.addInitScript(() => localStorage.setItem('chicane.dimension', '"2d"'));
+    await page.addInitScript(notePaints);
+    await page.goto(`${drive.url}#${tab}`);
+    await page.getByText('Live', { exact: true }).waitFor();
+    const dashboard = new DashboardPage(page, []);
+    const paints = () => page.evaluate(() => [...globalThis.paints.keys()]);
+    const read = await meter(page);
+    await dashboard.until(paints, ({ length }) => length > 100, 'first pictures'); // code is compiled
+    const { heap } = await read();
+
+    const other = await arrivals(drive.url);
+    await dashboard.until(
+      () => other.times.size,
+      (count) => count >= FRAMES,
+      'frames at another viewer',
+    );
+    const newest = BigInt([...other.times.keys()].at(-1));
+    const painted = await dashboard.until(
+      paints,
+      (stamps) => stamps.some((stamp) => BigInt(stamp) >= newest),
+      'the picture of the newest frame',
+    );
+    assert.ok(
+      painted.some((stamp) => other.times.has(stamp)),
+      'the page paints what the other viewer gets',
+    );
+    const growth = ((await read()).heap - heap) / 1e6;
+    other.close();
+    await context.close();
+    assert.ok(growth < 3, `${growth} MB more after ${FRAMES} frames`); // what is kept has its memory from the start
+  });
+}
