@@ -14,51 +14,13 @@
 #include <set>
 #include <sstream>
 
+#include "protocol/cdr_reader.hpp"
 #include "protocol/viewer_samples.hpp"
 
 namespace chicane::protocol {
 namespace {
 
-/// XCDR1, little endian, written from the specification (OMG DDSI-RTPS 2.3, chapter 10; CORBA 3.4 part
-/// 2, 9.3): each primitive is aligned to its size, counted from the end of the four-byte header.
-class CdrReader {
- public:
-  explicit CdrReader(std::string_view bytes) : bytes_{bytes} {
-    EXPECT_EQ(bytes.substr(0, 4), std::string_view("\0\1\0\0", 4));
-  }
-  template <class T>
-  T get() {
-    at_ += (sizeof(T) - (at_ - 4) % sizeof(T)) % sizeof(T);
-    T value{};
-    if (at_ + sizeof(T) > bytes_.size()) {
-      ADD_FAILURE() << "message ends at " << bytes_.size() << ", field at " << at_;
-      return value;
-    }
-    std::memcpy(&value, bytes_.data() + at_, sizeof(T));
-    at_ += sizeof(T);
-    return value;
-  }
-  std::string text() {
-    const auto size = get<std::uint32_t>();
-    const std::string value{bytes_.substr(at_, size - 1)};
-    EXPECT_EQ(bytes_.at(at_ + size - 1), '\0');
-    at_ += size;
-    return value;
-  }
-  double number() { return get<double>(); }
-  double seconds() {
-    const auto whole = get<std::int32_t>();
-    return whole + 1e-9 * get<std::uint32_t>();
-  }
-  void skip_numbers(int count) {
-    for (int i = 0; i < count; ++i) EXPECT_EQ(number(), 0.0);
-  }
-  [[nodiscard]] bool is_at_end() const { return at_ == bytes_.size(); }
-
- private:
-  std::string_view bytes_;
-  std::size_t at_ = 4;
-};
+using test::CdrReader;
 
 const RosTopic& topic(std::string_view name) {
   const auto& topics = ros_topics();
@@ -72,49 +34,6 @@ std::string encode(std::string_view name, const telemetry::Frame& frame = sample
                    const Run& run = samples::run()) {
   auto* const encode = topic(name).encode;
   return encode != nullptr ? encode(frame, run) : samples::change();
-}
-
-TEST(RosMessages, FrameCarriesEveryFieldInTheOrderOfItsSchema) {
-  const std::string bytes = encode("/chicane/frame");
-  CdrReader reader{bytes};
-  EXPECT_EQ(reader.seconds(), 12.25);
-  EXPECT_EQ(reader.get<std::uint64_t>(), 1234567890123ULL);
-  EXPECT_EQ(reader.number(), 12.25);
-  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
-  for (const double expected : {10.0, -20.0, 0.5, 30.0, -0.4, 0.25, std::sqrt(30.0 * 30.0 + 0.4 * 0.4), -1.25,
-                                7.5, 10.1, -20.2, 0.51, 29.5, 456.5, 0.3, -0.03, 1.875}) {
-    EXPECT_DOUBLE_EQ(reader.number(), expected);
-  }
-  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
-  EXPECT_EQ(reader.get<std::uint32_t>(), 3U);
-  EXPECT_EQ(reader.get<std::uint32_t>(), 2U);
-  for (const double expected : {4.5, 28.125, 0.02, 0.015, 0.75, -0.5})
-    EXPECT_DOUBLE_EQ(reader.number(), expected);
-  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
-  EXPECT_EQ(reader.get<std::int8_t>(), 1);
-  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
-  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
-  EXPECT_EQ(reader.get<std::uint32_t>(), 7U);
-  EXPECT_EQ(reader.get<std::uint32_t>(), 9U);
-  for (const double expected : {123.5, 456.0, 0.118, 33.0, 140.0, 0.31, -0.02})
-    EXPECT_DOUBLE_EQ(reader.number(), expected);
-  for (const double expected : {0.01, 0.625, 0.25}) EXPECT_DOUBLE_EQ(reader.number(), expected);
-  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
-  ASSERT_EQ(reader.get<std::uint32_t>(), 3U);
-  for (const double expected : {0.5, 1.5, 121.5}) EXPECT_DOUBLE_EQ(reader.number(), expected);
-  EXPECT_EQ(reader.get<std::uint8_t>(), 3);
-  EXPECT_DOUBLE_EQ(reader.number(), 34.5);
-  EXPECT_EQ(reader.get<std::uint32_t>(), 2U);
-  EXPECT_EQ(reader.get<std::uint32_t>(), 42U);
-  EXPECT_DOUBLE_EQ(reader.number(), 0.875);
-  EXPECT_DOUBLE_EQ(reader.number(), 1.0625);
-  EXPECT_EQ(reader.get<std::uint32_t>(), 36U);
-  EXPECT_DOUBLE_EQ(reader.number(), 0.0009765625);
-  EXPECT_DOUBLE_EQ(reader.number(), 0.0625);
-  EXPECT_EQ(reader.get<std::int32_t>(), 17);
-  EXPECT_EQ(reader.get<std::int32_t>(), 4);
-  EXPECT_DOUBLE_EQ(reader.number(), 0.03125);
-  EXPECT_TRUE(reader.is_at_end());
 }
 
 TEST(RosMessages, RunSaysWhatTheBitsAndTermsOfAFrameMean) {
@@ -221,29 +140,6 @@ TEST(RosMessages, ChangeNamesWhatGotWhichValue) {
   EXPECT_EQ(reader.text(), "latency_ms");
   EXPECT_EQ(reader.text(), "150");
   EXPECT_TRUE(reader.is_at_end());
-}
-
-TEST(RosMessages, FrameWithoutTruthShowsWhatWasMeasuredAndLeavesTheRestUnknown) {
-  telemetry::Frame frame = samples::frame();
-  frame.has_truth = false;
-  frame.is_judged = false;
-  const std::string bytes = encode("/chicane/frame", frame);
-  CdrReader reader{bytes};
-  reader.seconds();
-  reader.get<std::uint64_t>();
-  reader.number();
-  EXPECT_EQ(reader.get<std::uint8_t>(), 0);
-  for (const double expected : {10.1, -20.2, 0.51, 29.5}) EXPECT_DOUBLE_EQ(reader.number(), expected);
-  EXPECT_TRUE(std::isnan(reader.number()));  // vy
-  EXPECT_TRUE(std::isnan(reader.number()));  // yaw rate
-  EXPECT_DOUBLE_EQ(reader.number(), 29.5);
-  EXPECT_TRUE(std::isnan(reader.number()));  // accelerations
-  EXPECT_TRUE(std::isnan(reader.number()));
-  for (const double expected : {10.1, -20.2, 0.51, 29.5}) EXPECT_DOUBLE_EQ(reader.number(), expected);
-  EXPECT_TRUE(std::isnan(reader.number()));  // s
-  EXPECT_DOUBLE_EQ(reader.number(), 0.3);
-  EXPECT_DOUBLE_EQ(reader.number(), -0.03);
-  EXPECT_TRUE(std::isnan(reader.number()));  // to the edge
 }
 
 TEST(RosMessages, OdometryStandsAtTheRearAxleAndMovesWithIt) {

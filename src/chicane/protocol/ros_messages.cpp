@@ -12,9 +12,11 @@
 #include <span>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/detail/ros_schemas.hpp"
+#include "chicane/protocol/frame_fields.hpp"
 #include "chicane/solver/solution.hpp"
 
 namespace chicane::protocol {
@@ -48,16 +50,7 @@ class Writer {
     for (const std::string& value : values) text(value);
     return *this;
   }
-  Writer& numbers(std::span<const double> values) {
-    count(values.size());
-    for (const double value : values) append(value);
-    return *this;
-  }
-  Writer& stamp(double seconds) {
-    const std::uint64_t ns = to_nanoseconds(seconds);
-    return put(static_cast<std::int32_t>(ns / 1'000'000'000U),
-               static_cast<std::uint32_t>(ns % 1'000'000'000U));
-  }
+  Writer& stamp(double seconds) { return put(Stamp{seconds}); }
   Writer& header(double seconds, std::string_view frame_id) { return stamp(seconds).text(frame_id); }
   Writer& orientation(double yaw) { return put(0.0, 0.0, chicane::sin(0.5 * yaw), chicane::cos(0.5 * yaw)); }
   Writer& zeros(int number) {
@@ -75,22 +68,18 @@ class Writer {
     while ((bytes_.size() - kHeader) % sizeof(T) != 0) bytes_.push_back('\0');
     bytes_.append(std::bit_cast<std::array<char, sizeof(T)>>(value).data(), sizeof(T));
   }
+  void append(Stamp stamp) {
+    const std::uint64_t ns = to_nanoseconds(stamp.seconds);
+    append(static_cast<std::int32_t>(ns / 1'000'000'000U));
+    append(static_cast<std::uint32_t>(ns % 1'000'000'000U));
+  }
+  void append(std::span<const double> values) {
+    count(values.size());
+    for (const double value : values) append(value);
+  }
 
   std::string bytes_{'\0', '\1', '\0', '\0'};
 };
-
-/// What is known of the car's motion: the truth, or what was measured.
-model::State motion(const Frame& frame) {
-  if (frame.has_truth) return frame.truth;
-  const model::Measurement& seen = frame.measurement;
-  return {.x = seen.x,
-          .y = seen.y,
-          .psi = seen.psi,
-          .vx = seen.speed,
-          .vy = kNaN,
-          .r = kNaN,
-          .steer = seen.steer};
-}
 
 double or_zero(double value) { return std::isfinite(value) ? value : 0.0; }
 
@@ -100,50 +89,13 @@ model::Pose base_link(const model::State& state, const Run& run) {
   return {state.x - b * chicane::cos(state.psi), state.y - b * chicane::sin(state.psi), state.psi};
 }
 
-std::span<const double> cost_terms_of(const controller::Explanation& explanation) {
-  return std::span{explanation.cost_terms}.first(static_cast<std::size_t>(
-      std::clamp(explanation.cost_term_count, 0, controller::Explanation::kMaxCostTerms)));
-}
-
-/// The second half of a frame: what was sent, and why.
-void put_reasons(Writer& writer, const Frame& frame) {
-  const controller::StepReport& report = frame.result.report;
-  const controller::Explanation& why = report.explanation;
-  const model::Command& sent = frame.result.command;
-  writer.put(sent.steer, sent.throttle, frame.pace, frame.is_manual)
-      .numbers(cost_terms_of(why))
-      .put(static_cast<std::uint8_t>(why.speed_limiter), why.speed_limit)
-      .put(why.active_now, why.active_ahead, frame.tire_use[0], frame.tire_use[1], frame.active_faults)
-      .put(report.solve.stationarity, report.solve.violation)
-      .put(static_cast<std::int32_t>(report.solve.worst_stage),
-           static_cast<std::int32_t>(report.solve.worst_constraint), frame.prediction_error);
-}
-
 std::string encode_frame(const Frame& frame, const Run&) {
-  const model::State now = motion(frame);
-  const model::Measurement& seen = frame.measurement;
-  const controller::StepReport& report = frame.result.report;
-  // What only a judge of the road knows: an external simulator tells none of it.
-  const auto judged = [&](double value) { return frame.is_judged ? value : kNaN; };
   Writer writer{1024};
-  writer.stamp(frame.time)
-      .put(frame.cycle, frame.time, frame.has_truth)
-      .put(now.x, now.y, now.psi, now.vx, now.vy, now.r)
-      .put(frame.has_truth ? chicane::hypot(now.vx, now.vy) : seen.speed)
-      .put(frame.has_truth ? frame.longitudinal_acceleration : kNaN)
-      .put(frame.has_truth ? frame.lateral_acceleration : kNaN)
-      .put(seen.x, seen.y, seen.psi, seen.speed)
-      .put(judged(frame.s), frame.lateral_error, frame.heading_error, judged(frame.edge_distance))
-      .put(frame.is_off_track, static_cast<std::uint32_t>(frame.off_track_events))
-      .put(static_cast<std::uint32_t>(frame.lap), judged(frame.lap_time), frame.last_lap_time)
-      .put(frame.asked.steer, frame.applied.steer, frame.asked.throttle, frame.applied.throttle)
-      .put(static_cast<std::uint8_t>(report.rung), static_cast<std::int8_t>(report.solve.status))
-      .put(report.gated, report.has_map)
-      .put(static_cast<std::uint32_t>(report.solve.iterations),
-           static_cast<std::uint32_t>(report.solve.sweeps))
-      .put(report.solve.cost, 1e6 * frame.step_time, report.delay, report.speed_reference, report.sight)
-      .put(report.lateral_error, report.heading_error);
-  put_reasons(writer, frame);
+  for (const FrameGroup& group : frame_groups()) {
+    for (const FrameField& field : group.fields) {
+      std::visit([&](auto value) { writer.put(value); }, field.value(frame));
+    }
+  }
   return writer.bytes();
 }
 
@@ -239,7 +191,7 @@ std::string encode_limit(const Frame&, const Run& run) {
 }
 
 std::string encode_odometry(const Frame& frame, const Run& run) {
-  const model::State now = motion(frame);
+  const model::State now = known_motion(frame);
   const model::Pose pose = base_link(now, run);
   const double r = or_zero(now.r);
   return Writer{}
@@ -291,7 +243,7 @@ std::string encode_reference(const Frame& frame, const Run&) {
 }
 
 std::string encode_transforms(const Frame& frame, const Run& run) {
-  const model::Pose pose = base_link(motion(frame), run);
+  const model::Pose pose = base_link(known_motion(frame), run);
   return Writer{}
       .count(2)
       .header(frame.time, "map")
@@ -385,7 +337,30 @@ std::string short_name(std::string_view type) {
   return name;
 }
 
+/// The definition of chicane_msgs/Frame: constants in front of their field, meanings in one column.
+std::string frame_definition() {
+  std::string text =
+      "# One control cycle. SI units and radians; left, counter-clockwise and\n"
+      "# forward are positive. Not-a-number: unknown.\n";
+  const auto line = [&](const std::string& declaration, std::string_view meaning) {
+    text += meaning.empty() ? declaration : fmt::format("{:<39} # {}", declaration, meaning);
+    text += '\n';
+  };
+  for (const FrameGroup& group : frame_groups()) {
+    if (!group.title.empty()) text += fmt::format("\n# {}\n", group.title);
+    for (const FrameField& field : group.fields) {
+      for (const FrameConstant& each : field.constants)
+        line(fmt::format("{} {}={}", field.type, each.name, each.value), each.meaning);
+      line(fmt::format("{} {}", field.type, field.name), field.meaning);
+    }
+  }
+  return text;
+}
+
 const RosDefinition* find_definition(std::string_view name) {
+  static const std::string frame_text = frame_definition();
+  static const RosDefinition frame{"chicane_msgs/Frame", frame_text};
+  if (name == frame.name) return &frame;
   const auto* found = std::find_if(kRosDefinitions.begin(), kRosDefinitions.end(),
                                    [&](const RosDefinition& definition) { return definition.name == name; });
   return found == kRosDefinitions.end() ? nullptr : found;

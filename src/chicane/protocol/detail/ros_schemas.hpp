@@ -14,7 +14,8 @@ struct RosDefinition {
 
 /// Fields of the standard types as in ROS 2 Jazzy (common_interfaces 5.3, rcl_interfaces 2.0, geometry2 0.36,
 /// ackermann_msgs 2.0), comments shortened; web/src/protocol/schemas.test.ts compares them with
-/// @foxglove/rosmsg-msgs-common. Those of chicane_msgs are ours.
+/// @foxglove/rosmsg-msgs-common. Those of chicane_msgs are ours; chicane_msgs/Frame is not among them,
+/// because it follows from its table (frame_fields.hpp).
 inline constexpr std::array kRosDefinitions{
     RosDefinition{"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
     RosDefinition{"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
@@ -50,103 +51,6 @@ inline constexpr std::array kRosDefinitions{
                   "float32 acceleration\nfloat32 jerk\n"},
     RosDefinition{"ackermann_msgs/AckermannDriveStamped",
                   "std_msgs/Header header\nackermann_msgs/AckermannDrive drive\n"},
-    RosDefinition{"chicane_msgs/Frame",
-                  R"(# One control cycle. SI units and radians; left, counter-clockwise and
-# forward are positive. Not-a-number: unknown.
-builtin_interfaces/Time stamp
-uint64 cycle
-float64 time_s                          # of the measurement, from the start of the run
-bool has_truth                          # the motion below is the simulator's truth; else as measured
-
-# Motion of the centre of mass
-float64 x_m
-float64 y_m
-float64 yaw_rad
-float64 vx_mps                          # along the car
-float64 vy_mps                          # to its left
-float64 yaw_rate_radps
-float64 speed_mps
-float64 longitudinal_acceleration_mps2
-float64 lateral_acceleration_mps2
-
-# What the controller was told
-float64 measured_x_m
-float64 measured_y_m
-float64 measured_yaw_rad
-float64 measured_speed_mps
-
-# On the road, judged by our simulator, or from what was measured where the track was told; else not-a-number
-float64 s_m                             # along the centre line
-float64 lateral_error_m
-float64 heading_error_rad
-float64 edge_distance_m                 # of the outermost tyre to the edge, negative = off the road
-bool is_off_track
-uint32 off_track_events
-uint32 lap                              # laps completed
-float64 lap_time_s                      # of the running lap
-float64 last_lap_time_s                 # 0 before the first completed lap
-
-# Commands: asked by the controller now, before the gate, and acting on the car after the delay
-float64 steer_asked_rad
-float64 steer_applied_rad
-float64 throttle_asked                  # [-1, 1], negative brakes
-float64 throttle_applied
-
-# The control step
-uint8 RUNG_CONTROLLER=0                 # the controller's own answer
-uint8 RUNG_SHIFTED_PLAN=1               # the last usable plan, at the time that has come
-uint8 RUNG_HOLD_AND_BRAKE=2             # steering along the last plan's path, gentle braking
-uint8 RUNG_BRAKE=3                      # the same steering, all useful braking
-uint8 rung
-int8 STATUS_OPTIMAL=0
-int8 STATUS_BUDGET_SPENT=1
-int8 STATUS_STALLED=-1
-int8 STATUS_INFEASIBLE=-2
-int8 STATUS_NOT_FINITE=-3
-int8 solve_status
-bool is_gated                           # the command gate had to change the command
-bool has_map                            # the lap is closed in the controller's memory
-uint32 iterations
-uint32 sweeps
-float64 cost
-float64 step_time_us                    # of the whole control step, wall clock
-float64 delay_s                         # compensated: from measurement to actuation
-float64 speed_reference_mps
-float64 sight_m                         # length of known road ahead
-float64 tracked_lateral_error_m         # from the line the controller follows
-float64 tracked_heading_error_rad
-
-# Commands as sent, after the gate
-float64 steer_sent_rad
-float64 throttle_sent
-float64 pace                            # run seconds per second of the clock
-bool is_manual                          # a person drives
-
-# Why: price of the plan by term (names: Run.cost_term_names), summed over its stages
-float64[] cost_terms
-uint8 SPEED_LIMITER_NONE=0              # nothing that is known
-uint8 SPEED_LIMITER_ASKED=1             # the speed asked for is reached
-uint8 SPEED_LIMITER_CURVATURE=2         # tyre grip in the bend
-uint8 SPEED_LIMITER_BRAKING=3           # braking for a slower place ahead
-uint8 SPEED_LIMITER_POWER=4             # throttle at its bound, or the drive out of the last bend
-uint8 SPEED_LIMITER_SIGHT=5             # road known too short
-uint8 speed_limiter
-float64 speed_limit_mps                 # what the speed plan allows where the command acts
-uint32 active_now                       # constraints (bits: Run.constraint_names) in the plan's first stage
-uint32 active_ahead                     # and anywhere in it
-
-# The simulated car: share of the grip each axle uses, more than 1 slides
-float64 front_tire_use
-float64 rear_tire_use
-uint32 active_faults                    # bits: Run.fault_names
-
-# The solver's own judgement
-float64 stationarity                    # largest step a projected gradient would still take
-float64 violation                       # largest violation of a soft constraint
-int32 worst_stage                       # where it is, -1 nowhere
-int32 worst_constraint
-float64 prediction_error_m              # of the car now from where plans said, one delay and one period ago
-)"},
     RosDefinition{"chicane_msgs/Plan",
                   R"(# What the controller intends: predicted motion of the centre of mass with
 # its commands, all arrays of the same length; element 0 is where the first command acts.

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/frame_fields.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <type_traits>
+
+#include "chicane/base/math.hpp"
+#include "chicane/controller/controller.hpp"
+#include "chicane/solver/solution.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+using controller::Rung;
+using controller::SpeedLimiter;
+using solver::SolveStatus;
+using telemetry::Frame;
+using Numbers = std::span<const double>;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+template <class T>
+consteval std::string_view type_name() {
+  if constexpr (std::is_same_v<T, Stamp>) return "builtin_interfaces/Time";
+  if constexpr (std::is_same_v<T, bool>) return "bool";
+  if constexpr (std::is_same_v<T, std::int8_t>) return "int8";
+  if constexpr (std::is_same_v<T, std::uint8_t>) return "uint8";
+  if constexpr (std::is_same_v<T, std::int32_t>) return "int32";
+  if constexpr (std::is_same_v<T, std::uint32_t>) return "uint32";
+  if constexpr (std::is_same_v<T, std::uint64_t>) return "uint64";
+  if constexpr (std::is_same_v<T, double>) return "float64";
+  if constexpr (std::is_same_v<T, Numbers>) return "float64[]";
+}
+
+/// A row of the table: T is the type on the wire, `value` a lambda without captures from a frame.
+template <class T, class Value>
+consteval FrameField field(std::string_view name, std::string_view meaning, Value /*value*/,
+                           std::span<const FrameConstant> constants = {}) {
+  return {.type = type_name<T>(),
+          .name = name,
+          .meaning = meaning,
+          .value = [](const Frame& frame) noexcept { return FrameValue{static_cast<T>(Value{}(frame))}; },
+          .constants = constants};
+}
+
+template <class Enum>
+consteval FrameConstant constant(std::string_view name, Enum value, std::string_view meaning = {}) {
+  return {name, static_cast<int>(value), meaning};
+}
+
+/// What only a judge of the road knows: an external simulator tells none of it.
+double judged(const Frame& frame, double value) { return frame.is_judged ? value : kNaN; }
+/// What only the simulated car knows.
+double simulated(const Frame& frame, double value) { return frame.has_truth ? value : kNaN; }
+
+double speed(const Frame& frame) {
+  return frame.has_truth ? chicane::hypot(frame.truth.vx, frame.truth.vy) : frame.measurement.speed;
+}
+
+Numbers cost_terms(const Frame& frame) {
+  const controller::Explanation& why = frame.result.report.explanation;
+  return Numbers{why.cost_terms}.first(
+      static_cast<std::size_t>(std::clamp(why.cost_term_count, 0, controller::Explanation::kMaxCostTerms)));
+}
+
+const controller::StepReport& report(const Frame& frame) { return frame.result.report; }
+const controller::Explanation& why(const Frame& frame) { return frame.result.report.explanation; }
+const solver::SolveReport& solve(const Frame& frame) { return frame.result.report.solve; }
+
+constexpr std::array kTime{
+    field<Stamp>("stamp", "", [](const Frame& f) { return Stamp{f.time}; }),
+    field<std::uint64_t>("cycle", "", [](const Frame& f) { return f.cycle; }),
+    field<double>("time_s", "of the measurement, from the start of the run",
+                  [](const Frame& f) { return f.time; }),
+    field<bool>("has_truth", "the motion below is the simulator's truth; else as measured",
+                [](const Frame& f) { return f.has_truth; }),
+};
+
+constexpr std::array kMotion{
+    field<double>("x_m", "", [](const Frame& f) { return known_motion(f).x; }),
+    field<double>("y_m", "", [](const Frame& f) { return known_motion(f).y; }),
+    field<double>("yaw_rad", "", [](const Frame& f) { return known_motion(f).psi; }),
+    field<double>("vx_mps", "along the car", [](const Frame& f) { return known_motion(f).vx; }),
+    field<double>("vy_mps", "to its left", [](const Frame& f) { return known_motion(f).vy; }),
+    field<double>("yaw_rate_radps", "", [](const Frame& f) { return known_motion(f).r; }),
+    field<double>("speed_mps", "", [](const Frame& f) { return speed(f); }),
+    field<double>("longitudinal_acceleration_mps2", "",
+                  [](const Frame& f) { return simulated(f, f.longitudinal_acceleration); }),
+    field<double>("lateral_acceleration_mps2", "",
+                  [](const Frame& f) { return simulated(f, f.lateral_acceleration); }),
+};
+
+constexpr std::array kMeasured{
+    field<double>("measured_x_m", "", [](const Frame& f) { return f.measurement.x; }),
+    field<double>("measured_y_m", "", [](const Frame& f) { return f.measurement.y; }),
+    field<double>("measured_yaw_rad", "", [](const Frame& f) { return f.measurement.psi; }),
+    field<double>("measured_speed_mps", "", [](const Frame& f) { return f.measurement.speed; }),
+};
+
+constexpr std::array kRoad{
+    field<double>("s_m", "along the centre line", [](const Frame& f) { return judged(f, f.s); }),
+    field<double>("lateral_error_m", "", [](const Frame& f) { return f.lateral_error; }),
+    field<double>("heading_error_rad", "", [](const Frame& f) { return f.heading_error; }),
+    field<double>("edge_distance_m", "of the outermost tyre to the edge, negative = off the road",
+                  [](const Frame& f) { return judged(f, f.edge_distance); }),
+    field<bool>("is_off_track", "", [](const Frame& f) { return f.is_off_track; }),
+    field<std::uint32_t>("off_track_events", "", [](const Frame& f) { return f.off_track_events; }),
+    field<std::uint32_t>("lap", "laps completed", [](const Frame& f) { return f.lap; }),
+    field<double>("lap_time_s", "of the running lap", [](const Frame& f) { return judged(f, f.lap_time); }),
+    field<double>("last_lap_time_s", "0 before the first completed lap",
+                  [](const Frame& f) { return f.last_lap_time; }),
+};
+
+constexpr std::array kCommands{
+    field<double>("steer_asked_rad", "", [](const Frame& f) { return f.asked.steer; }),
+    field<double>("steer_applied_rad", "", [](const Frame& f) { return f.applied.steer; }),
+    field<double>("throttle_asked", "[-1, 1], negative brakes",
+                  [](const Frame& f) { return f.asked.throttle; }),
+    field<double>("throttle_applied", "", [](const Frame& f) { return f.applied.throttle; }),
+};
+
+constexpr std::array kRungs{
+    constant("RUNG_CONTROLLER", Rung::kController, "the controller's own answer"),
+    constant("RUNG_SHIFTED_PLAN", Rung::kShiftedPlan, "the last usable plan, at the time that has come"),
+    constant("RUNG_HOLD_AND_BRAKE", Rung::kHoldAndBrake,
+             "steering along the last plan's path, gentle braking"),
+    constant("RUNG_BRAKE", Rung::kBrake, "the same steering, all useful braking"),
+};
+
+constexpr std::array kStatuses{
+    constant("STATUS_OPTIMAL", SolveStatus::kOptimal),
+    constant("STATUS_BUDGET_SPENT", SolveStatus::kBudgetSpent),
+    constant("STATUS_STALLED", SolveStatus::kStalled),
+    constant("STATUS_INFEASIBLE", SolveStatus::kInfeasible),
+    constant("STATUS_NOT_FINITE", SolveStatus::kNotFinite),
+};
+
+constexpr std::array kStep{
+    field<std::uint8_t>(
+        "rung", "", [](const Frame& f) { return report(f).rung; }, kRungs),
+    field<std::int8_t>(
+        "solve_status", "", [](const Frame& f) { return solve(f).status; }, kStatuses),
+    field<bool>("is_gated", "the command gate had to change the command",
+                [](const Frame& f) { return report(f).gated; }),
+    field<bool>("has_map", "the lap is closed in the controller's memory",
+                [](const Frame& f) { return report(f).has_map; }),
+    field<std::uint32_t>("iterations", "", [](const Frame& f) { return solve(f).iterations; }),
+    field<std::uint32_t>("sweeps", "", [](const Frame& f) { return solve(f).sweeps; }),
+    field<double>("cost", "", [](const Frame& f) { return solve(f).cost; }),
+    field<double>("step_time_us", "of the whole control step, wall clock",
+                  [](const Frame& f) { return 1e6 * f.step_time; }),
+    field<double>("delay_s", "compensated: from measurement to actuation",
+                  [](const Frame& f) { return report(f).delay; }),
+    field<double>("speed_reference_mps", "", [](const Frame& f) { return report(f).speed_reference; }),
+    field<double>("sight_m", "length of known road ahead", [](const Frame& f) { return report(f).sight; }),
+    field<double>("tracked_lateral_error_m", "from the line the controller follows",
+                  [](const Frame& f) { return report(f).lateral_error; }),
+    field<double>("tracked_heading_error_rad", "", [](const Frame& f) { return report(f).heading_error; }),
+};
+
+constexpr std::array kSent{
+    field<double>("steer_sent_rad", "", [](const Frame& f) { return f.result.command.steer; }),
+    field<double>("throttle_sent", "", [](const Frame& f) { return f.result.command.throttle; }),
+    field<double>("pace", "run seconds per second of the clock", [](const Frame& f) { return f.pace; }),
+    field<bool>("is_manual", "a person drives", [](const Frame& f) { return f.is_manual; }),
+};
+
+constexpr std::array kSpeedLimiters{
+    constant("SPEED_LIMITER_NONE", SpeedLimiter::kNone, "nothing that is known"),
+    constant("SPEED_LIMITER_ASKED", SpeedLimiter::kAsked, "the speed asked for is reached"),
+    constant("SPEED_LIMITER_CURVATURE", SpeedLimiter::kCurvature, "tyre grip in the bend"),
+    constant("SPEED_LIMITER_BRAKING", SpeedLimiter::kBraking, "braking for a slower place ahead"),
+    constant("SPEED_LIMITER_POWER", SpeedLimiter::kPower,
+             "throttle at its bound, or the drive out of the last bend"),
+    constant("SPEED_LIMITER_SIGHT", SpeedLimiter::kSight, "road known too short"),
+};
+
+constexpr std::array kReasons{
+    field<Numbers>("cost_terms", "", [](const Frame& f) { return cost_terms(f); }),
+    field<std::uint8_t>(
+        "speed_limiter", "", [](const Frame& f) { return why(f).speed_limiter; }, kSpeedLimiters),
+    field<double>("speed_limit_mps", "what the speed plan allows where the command acts",
+                  [](const Frame& f) { return why(f).speed_limit; }),
+    field<std::uint32_t>("active_now", "constraints (bits: Run.constraint_names) in the plan's first stage",
+                         [](const Frame& f) { return why(f).active_now; }),
+    field<std::uint32_t>("active_ahead", "and anywhere in it",
+                         [](const Frame& f) { return why(f).active_ahead; }),
+};
+
+constexpr std::array kCar{
+    field<double>("front_tire_use", "", [](const Frame& f) { return f.tire_use[0]; }),
+    field<double>("rear_tire_use", "", [](const Frame& f) { return f.tire_use[1]; }),
+    field<std::uint32_t>("active_faults", "bits: Run.fault_names",
+                         [](const Frame& f) { return f.active_faults; }),
+};
+
+constexpr std::array kSolver{
+    field<double>("stationarity", "largest step a projected gradient would still take",
+                  [](const Frame& f) { return solve(f).stationarity; }),
+    field<double>("violation", "largest violation of a soft constraint",
+                  [](const Frame& f) { return solve(f).violation; }),
+    field<std::int32_t>("worst_stage", "where it is, -1 nowhere",
+                        [](const Frame& f) { return solve(f).worst_stage; }),
+    field<std::int32_t>("worst_constraint", "", [](const Frame& f) { return solve(f).worst_constraint; }),
+    field<double>("prediction_error_m", "of the car now from where plans said, one delay and one period ago",
+                  [](const Frame& f) { return f.prediction_error; }),
+};
+
+constexpr std::array kGroups{
+    FrameGroup{"", kTime},
+    FrameGroup{"Motion of the centre of mass", kMotion},
+    FrameGroup{"What the controller was told", kMeasured},
+    FrameGroup{"On the road, judged by our simulator, or from what was measured where the track was told; "
+               "else not-a-number",
+               kRoad},
+    FrameGroup{
+        "Commands: asked by the controller now, before the gate, and acting on the car after the delay",
+        kCommands},
+    FrameGroup{"The control step", kStep},
+    FrameGroup{"Commands as sent, after the gate", kSent},
+    FrameGroup{"Why: price of the plan by term (names: Run.cost_term_names), summed over its stages",
+               kReasons},
+    FrameGroup{"The simulated car: share of the grip each axle uses, more than 1 slides", kCar},
+    FrameGroup{"The solver's own judgement", kSolver},
+};
+
+}  // namespace
+
+std::span<const FrameGroup> frame_groups() noexcept { return kGroups; }
+
+model::State known_motion(const Frame& frame) noexcept {
+  if (frame.has_truth) return frame.truth;
+  const model::Measurement& seen = frame.measurement;
+  return {.x = seen.x,
+          .y = seen.y,
+          .psi = seen.psi,
+          .vx = seen.speed,
+          .vy = kNaN,
+          .r = kNaN,
+          .steer = seen.steer};
+}
+
+}  // namespace chicane::protocol
