@@ -40,7 +40,7 @@ describe('the dashboard', () => {
     assert.equal(await dashboard.text('rung'), 'The controller drives');
     assert.equal(await dashboard.text('status'), 'Optimal, 3 iterations');
     assert.equal(await dashboard.text('gate'), 'Passed the command unchanged');
-    assert.equal(await dashboard.text('road'), 'On the road, never off it');
+    assert.equal(await dashboard.text('road'), 'On the road, never left it');
   });
 
   it('shows a car that moves and numbers that change', async () => {

@@ -71,7 +71,7 @@ async function open(address, options = {}) {
 /** 3D drawn by the processor is said to be slow. */
 const isAboutGraphics = (text) => /GPU|WebGL|GL Driver/i.test(text);
 const scrub = (page, seconds) =>
-  page.getByLabel('Moment of the recording').evaluate((slider, value) => {
+  page.getByLabel('Position in the recording').evaluate((slider, value) => {
     slider.value = String(value);
     slider.dispatchEvent(new Event('input', { bubbles: true }));
   }, seconds);
@@ -134,7 +134,7 @@ describe('a recording in the page', () => {
       'as it was driven',
     );
     await page.getByText('branch.mcap', { exact: true }).first().waitFor({ state: 'attached' });
-    await page.getByLabel('Recording that is played').selectOption({ label: 'branch.mcap' });
+    await page.getByLabel('Recording shown').selectOption({ label: 'branch.mcap' });
     await dashboard.until(
       () => dashboard.number('speed'),
       (mph) => mph > 20 && mph < 50,

@@ -86,7 +86,7 @@ describe('the workbench', () => {
     );
     assert.match(await dashboard.text('changes'), /tracking_mpc\.speed_limit_mps.*3/s);
     await dashboard.button('Reset all').click();
-    await page.getByText('As it started').waitFor();
+    await page.getByText('No changes').waitFor();
     await dashboard.resume();
     other.close();
   });
@@ -133,7 +133,7 @@ describe('the workbench', () => {
     const preset = await download('Save as preset');
     assert.match(preset.content.toString(), /weight_lateral: 7/);
     await type('tracking_mpc.weight_lateral', before);
-    await page.getByText('As it started').waitFor();
+    await page.getByText('No changes').waitFor();
   });
 
   it('drives by hand, and hands back', async () => {
@@ -202,7 +202,7 @@ describe('the workbench', () => {
 
   it('explains what limits the speed', async () => {
     await dashboard.show('explain');
-    const titles = ['The speed asked for', 'Grip in the bend', 'Braking for a bend', 'Power', 'Sight'];
+    const titles = ['Reference speed', 'Grip in the bend', 'Braking for a bend', 'Power', 'Sight'];
     await dashboard.until(
       () => dashboard.text('limiter'),
       (title) => titles.includes(title),
@@ -272,7 +272,7 @@ describe('the workbench', () => {
     assert.match(await summary(), /lakeside/);
     assert.equal(await choice('Track').inputValue(), 'lakeside');
     await choice('Track').selectOption('oval');
-    await page.getByRole('dialog').getByText('Start anew').click();
+    await page.getByRole('dialog').getByText('Restart', { exact: true }).click();
     await dashboard.until(summary, (text) => /oval/.test(text), 'the other track');
     await choice('Controller').selectOption('stanley');
     await dashboard.until(summary, (text) => /stanley/.test(text), 'the other controller');
@@ -367,6 +367,6 @@ it('takes another run of a restarted server for another run', async () => {
   const first = await dashboard.seconds();
   await dashboard.until(() => dashboard.seconds(), differentFrom(first), 'the lap clock');
   await dashboard.show('tune');
-  await page.getByText('As it started').waitFor();
+  await page.getByText('No changes').waitFor();
   await dashboard.close((each) => each.startsWith('WebSocket connection to'));
 });

@@ -70,22 +70,28 @@ listenToDriver();
 addShortcuts(
   { keys: [' '], label: 'Space', does: 'Pause, resume', group: 'Run', action: () => call('/pause', !isPaused.value) },
   { keys: ['s'], label: 'S', does: 'One control step while paused', group: 'Run', action: () => call('/step') },
-  { keys: ['r'], label: 'R', does: 'Back to the start', group: 'Run', action: () => call('/reset') },
-  { keys: ['[', ','], label: '[ ,', does: 'Half the pace', group: 'Run', action: () => changePace(0.5) },
-  { keys: [']', '.'], label: '] .', does: 'Twice the pace', group: 'Run', action: () => changePace(2) },
+  { keys: ['r'], label: 'R', does: 'Back to the start of the run', group: 'Run', action: () => call('/reset') },
+  { keys: ['[', ','], label: '[ ,', does: 'Halve the pace', group: 'Run', action: () => changePace(0.5) },
+  { keys: [']', '.'], label: '] .', does: 'Double the pace', group: 'Run', action: () => changePace(2) },
   { keys: ['c'], label: 'C', does: 'Next camera', group: 'Camera', action: nextView },
-  { keys: ['v'], label: 'V', does: 'Three dimensions, or the map', group: 'Camera', action: toggleDimension },
-  { keys: ['+', '='], label: '+', does: 'Closer', group: 'Camera', action: () => zoom(0.8) },
-  { keys: ['-'], label: '−', does: 'Farther', group: 'Camera', action: () => zoom(1.25) },
-  { keys: ['l'], label: 'L', does: 'The racing line', group: 'Camera', action: () => toggleLayer('racingLine') },
+  { keys: ['v'], label: 'V', does: '3D view or map', group: 'Camera', action: toggleDimension },
+  { keys: ['+', '='], label: '+', does: 'Zoom in', group: 'Camera', action: () => zoom(0.8) },
+  { keys: ['-'], label: '−', does: 'Zoom out', group: 'Camera', action: () => zoom(1.25) },
+  {
+    keys: ['l'],
+    label: 'L',
+    does: 'Show or hide the racing line',
+    group: 'Camera',
+    action: () => toggleLayer('racingLine'),
+  },
   {
     keys: ['o'],
     label: 'O',
-    does: 'The plan of a second ago, and what came of it',
+    does: 'Show or hide the plan of a second ago and the path driven since',
     group: 'Camera',
     action: () => toggleLayer('hindsight'),
   },
-  { keys: ['u'], label: 'U', does: 'Speeds in mph, km/h or m/s', group: 'Panels', action: nextSpeedUnit },
+  { keys: ['u'], label: 'U', does: 'Next unit for speeds: mph, km/h, m/s', group: 'Panels', action: nextSpeedUnit },
   ...TABS.map((name, i) => ({
     keys: [String(i + 1)],
     label: String(i + 1),
@@ -98,19 +104,19 @@ addShortcuts(
   {
     keys: ['/'],
     label: '/',
-    does: 'Search tunables',
+    does: 'Search settings',
     group: 'Panels',
     action: () => {
       tab.value = 'tune';
       requestAnimationFrame(focusSearch);
     },
   },
-  { keys: ['p'], label: 'P', does: 'Hold the plots, follow again', group: 'Panels', action: toggleFrozen },
-  { keys: ['d'], label: 'D', does: 'Panel below or on the right', group: 'Panels', action: toggleDock },
+  { keys: ['p'], label: 'P', does: 'Hold the plots, or follow again', group: 'Panels', action: toggleFrozen },
+  { keys: ['d'], label: 'D', does: 'Panel below or on the right of the picture', group: 'Panels', action: toggleDock },
   {
     keys: ['f'],
     label: 'F',
-    does: 'Panel alone',
+    does: 'Panel only',
     group: 'Panels',
     action: () => {
       isPanelAlone.value = !isPanelAlone.value;
@@ -119,14 +125,20 @@ addShortcuts(
   {
     keys: ['?'],
     label: '?',
-    does: 'These keys',
+    does: 'This list',
     group: 'Panels',
     action: () => {
       isHelpOpen.value = true;
     },
   },
-  { keys: ['m'], label: 'M', does: 'Take the wheel, hand it back', group: 'Driving by hand', action: toggleManual },
-  { keys: ['escape'], label: 'Esc', does: 'Hand the car back', group: 'Driving by hand', action: handBack },
+  {
+    keys: ['m'],
+    label: 'M',
+    does: 'Take the wheel, or hand back to the controller',
+    group: 'Driving by hand',
+    action: toggleManual,
+  },
+  { keys: ['escape'], label: 'Esc', does: 'Hand back to the controller', group: 'Driving by hand', action: handBack },
   { keys: [], label: '← → ↑ ↓', does: 'Steer, drive, brake', group: 'Driving by hand', action: () => undefined },
 );
 

@@ -36,7 +36,7 @@ describe('words', () => {
 
   it('tells what road is known', () => {
     expect(sightInWords(false, 139.6).text).toBe('Sees 140 m ahead');
-    expect(sightInWords(true, 300).text).toBe('Knows the lap, uses 300 m');
+    expect(sightInWords(true, 300).text).toBe('Track known, uses 300 m of it');
     expect(sightInWords(false, NaN).text).toBe('Sees no road ahead');
   });
 

@@ -15,9 +15,9 @@ export function rungInWords(rung: number): Sentence {
     case 1:
       return { mood: 'warning', text: 'No new answer: following the last plan' };
     case 2:
-      return { mood: 'bad', text: 'No answer: steering along the last plan, gentle braking' };
+      return { mood: 'bad', text: 'No answer: following the last plan, braking gently' };
     case 3:
-      return { mood: 'bad', text: 'No answer: steering along the last plan, full braking' };
+      return { mood: 'bad', text: 'No answer: following the last plan, braking fully' };
     default:
       return { mood: 'bad', text: `Unknown rung ${rung}` };
   }
@@ -29,55 +29,57 @@ export function statusInWords(status: number): Sentence {
     case 0:
       return { mood: 'good', text: 'Optimal' };
     case 1:
-      return { mood: 'warning', text: 'Good enough when time was up' };
+      return { mood: 'warning', text: 'Time or iteration limit reached, answer usable' };
     case -1:
-      return { mood: 'bad', text: 'Stalled before an answer' };
+      return { mood: 'bad', text: 'Did not converge' };
     case -2:
-      return { mood: 'bad', text: 'No way inside the limits' };
+      return { mood: 'bad', text: 'Infeasible: not all constraints can hold' };
     case -3:
-      return { mood: 'bad', text: 'Not a number in the problem' };
+      return { mood: 'bad', text: 'Invalid number (NaN) in the problem' };
     default:
       return { mood: 'bad', text: `Unknown status ${status}` };
   }
 }
 
 export const gateInWords = (isGated: boolean): Sentence =>
-  isGated
-    ? { mood: 'warning', text: 'Had to change the command' }
-    : { mood: 'good', text: 'Passed the command unchanged' };
+  isGated ? { mood: 'warning', text: 'Changed the command' } : { mood: 'good', text: 'Passed the command unchanged' };
 
 /** Where the car is on the road. With an external simulator nobody judges, and the distance is unknown. */
 export function roadInWords(frame: Pick<Frame, 'is_off_track' | 'edge_distance_m' | 'off_track_events'>): Sentence {
-  if (Number.isNaN(frame.edge_distance_m)) return { mood: 'unknown', text: 'Nobody judges: external simulator' };
+  if (Number.isNaN(frame.edge_distance_m))
+    return { mood: 'unknown', text: 'Unknown: the simulator does not report it' };
   if (frame.is_off_track) return { mood: 'bad', text: 'Off the road' };
   const events = frame.off_track_events;
-  if (events > 0)
-    return { mood: 'warning', text: `On the road, was off it ${events === 1 ? 'once' : `${events} times`}` };
-  return { mood: 'good', text: 'On the road, never off it' };
+  if (events > 0) return { mood: 'warning', text: `On the road, left it ${events === 1 ? 'once' : `${events} times`}` };
+  return { mood: 'good', text: 'On the road, never left it' };
 }
 
 /** How much road the controller knows: from its memory, or only what it is told. */
 export function sightInWords(hasMap: boolean, metres: number): Sentence {
   const sight = metres > 0 ? `${Math.round(metres)} m` : 'no road';
-  return { mood: 'good', text: hasMap ? `Knows the lap, uses ${sight}` : `Sees ${sight} ahead` };
+  return { mood: 'good', text: hasMap ? `Track known, uses ${sight} of it` : `Sees ${sight} ahead` };
 }
 
 /** What holds the speed where it is, by Frame.speed_limiter: a headline, why, and a short name for charts. */
 export const LIMITERS: readonly { readonly title: string; readonly why: string; readonly short: string }[] = [
-  { title: 'Not known', why: 'No plan tells what limits the speed.', short: 'unknown' },
-  { title: 'The speed asked for', why: 'The car drives as fast as it may.', short: 'asked' },
-  { title: 'Grip in the bend', why: 'Faster than this the tyres would not hold the curve.', short: 'grip' },
+  { title: 'Not known', why: 'The controller does not report what limits the speed.', short: 'unknown' },
+  { title: 'Reference speed', why: 'The car may drive no faster than its speed reference.', short: 'reference' },
+  { title: 'Grip in the bend', why: 'Any faster, and the tyres could not hold the bend.', short: 'grip' },
   {
     title: 'Braking for a bend',
-    why: 'Faster than this it would not be slow enough when the bend comes.',
+    why: 'Any faster, and the car could not brake in time for the bend.',
     short: 'braking',
   },
-  { title: 'Power', why: 'Full throttle is all there is.', short: 'power' },
-  { title: 'Sight', why: 'The road ahead is not known far enough to go faster.', short: 'sight' },
+  { title: 'Power', why: 'Full throttle gives no more.', short: 'power' },
+  { title: 'Sight', why: 'The road is not known far enough ahead to drive faster.', short: 'sight' },
 ];
 
 export const limiterInWords = (limiter: number): (typeof LIMITERS)[number] =>
-  LIMITERS[limiter] ?? { title: `Limit ${limiter}`, why: 'This page does not know this limit.', short: `${limiter}` };
+  LIMITERS[limiter] ?? {
+    title: `Limit ${limiter}`,
+    why: 'This version of the dashboard does not know this limit.',
+    short: `${limiter}`,
+  };
 
 /** snake_case to words, abbreviations as people write them. */
 export const nameInWords = (name: string): string =>

@@ -72,8 +72,8 @@ export function TimelineView() {
       <button
         type="button"
         class="icon"
-        aria-label="Landmark before"
-        title="Landmark before"
+        aria-label="Previous landmark"
+        title="Previous landmark"
         disabled={!neighbour(landmarks.value, position.value, -1)}
         onClick={() => jump(-1)}
       >
@@ -87,7 +87,7 @@ export function TimelineView() {
           max={length}
           step={0.01}
           value={position.value}
-          aria-label="Moment of the recording"
+          aria-label="Position in the recording"
           aria-valuetext={`${lapTime(position.value)} of ${lapTime(length)}`}
           onInput={(event) => seek(event.currentTarget.valueAsNumber)}
         />
@@ -107,7 +107,7 @@ export function TimelineView() {
       </output>
       {logs.value.length > 1 ? (
         <select
-          aria-label="Recording that is played"
+          aria-label="Recording shown"
           value={played.value}
           onChange={(event) => void choose(Number(event.currentTarget.value))}
         >

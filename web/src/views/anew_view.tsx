@@ -5,10 +5,10 @@ import { Dialog } from './help_view';
 export function AnewView() {
   const wish = asking.value;
   return (
-    <Dialog isOpen={wish !== null} title="Start the run anew?" onClose={() => answer(false)}>
+    <Dialog isOpen={wish !== null} title="Restart the run?" onClose={() => answer(false)}>
       <p>
-        <code>{wish?.key}</code> cannot change while the car drives. The run starts anew from standstill; laps and plots
-        so far are cleared.
+        <code>{wish?.key}</code> cannot change while the car drives. The run restarts from standstill; its laps and
+        plots are cleared.
       </p>
       <p class="soft">You will not be asked again.</p>
       <div class="buttons end">
@@ -16,7 +16,7 @@ export function AnewView() {
           Keep driving
         </button>
         <button type="button" class="primary" onClick={() => answer(true)}>
-          Start anew
+          Restart
         </button>
       </div>
     </Dialog>

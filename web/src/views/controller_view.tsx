@@ -25,7 +25,7 @@ export function ControllerView() {
       <h2>{run.value?.controller ?? 'Controller'}</h2>
       <dl class="rows">
         <Row id="rung" label="Driving" sentence={frame ? rungInWords(frame.rung) : null} />
-        <Row id="status" label="Answer" sentence={solve ? { ...solve, text: solve.text + turns } : null} />
+        <Row id="status" label="Solver" sentence={solve ? { ...solve, text: solve.text + turns } : null} />
         <Row id="gate" label="Gate" sentence={frame ? gateInWords(frame.is_gated) : null} />
         <Row id="road" label="Road" sentence={frame ? roadInWords(frame) : null} />
         <Row id="sight" label="Sight" sentence={frame ? sightInWords(frame.has_map, frame.sight_m) : null} />

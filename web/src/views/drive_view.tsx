@@ -19,7 +19,7 @@ const PACE: SchemaEntry = {
   maximum: 20,
   choices: [],
   default: 1,
-  meaning: 'Seconds of the run for each second of the clock, as far as the machine can follow.',
+  meaning: 'Simulated seconds per second of real time, as far as the machine keeps up.',
   is_live: true,
 };
 
@@ -36,8 +36,8 @@ function Pace() {
     <section class="block" aria-label="Pace">
       <h2>Pace</h2>
       <div class="pace">
-        <SettingRow entry={{ ...PACE, unit: '×' }} name="speed of time" />
-        <div class="segments" role="group" aria-label="Usual paces">
+        <SettingRow entry={{ ...PACE, unit: '×' }} name="real-time factor" />
+        <div class="segments" role="group" aria-label="Common values">
           {PACES.map((each) => (
             <button
               key={each}
@@ -71,7 +71,7 @@ function Choices() {
   return (
     <section class="block" aria-label="Choose">
       <h2>
-        Choose <span class="unit">starts the run anew</span>
+        Choose <span class="unit">restarts the run</span>
       </h2>
       <div class="choices">
         {entries.map(({ entry, label }) => (
@@ -103,7 +103,7 @@ function World() {
   return (
     <section class="block" aria-label="World">
       <h2>
-        The world <span class="unit">what the controller is not told</span>
+        World <span class="unit">not known to the controller</span>
       </h2>
       {entries.map(({ entry, name }) => (
         <SettingRow key={entry.key} entry={entry} name={name} />
@@ -118,7 +118,7 @@ export function NothingToSet() {
   if (link.value !== 'live') return <p class="empty">Waiting for the connection.</p>;
   return (
     <p class="empty">
-      This run can be watched, not changed{run.value?.mode === 'replay' ? ': it is a recording' : ''}.
+      This run can be viewed but not changed{run.value?.mode === 'replay' ? ': it is a recording' : ''}.
     </p>
   );
 }

@@ -4,10 +4,10 @@ import { events } from '../state/event_log';
 /** What happened, newest first. */
 export function EventsView() {
   return (
-    <section class="block" aria-label="What happened">
-      <h2>What happened</h2>
+    <section class="block" aria-label="Events">
+      <h2>Events</h2>
       {events.value.length === 0 ? (
-        <p class="soft">Nothing out of the ordinary so far.</p>
+        <p class="soft">No events so far.</p>
       ) : (
         <ol class="events" tabIndex={0}>
           {events.value.map(({ id, mood, text, time, duration }) => (

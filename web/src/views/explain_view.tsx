@@ -79,7 +79,7 @@ function Constraints() {
       <table class="constraints">
         <thead>
           <tr>
-            <th scope="col">at its limit</th>
+            <th scope="col">at the limit</th>
             <th scope="col">now</th>
             <th scope="col">ahead</th>
             <th scope="col" class="wide">
@@ -137,12 +137,12 @@ function Answer() {
     Number.isFinite(violation) ? `constraints ${violation === 0 ? 'exact' : `to ${violation.toExponential(1)}`}` : '',
   ];
   return (
-    <section class="block" aria-label="The answer">
-      <h2>The answer</h2>
+    <section class="block" aria-label="Solution">
+      <h2>Solution</h2>
       <dl class="rows">
         <Row label="Solver" sentence={solve} />
         <Row
-          label="Worst"
+          label="Constraints"
           sentence={
             solved ? (worst ? { mood: 'warning', text: worst } : { mood: 'good', text: 'All constraints hold' }) : null
           }
@@ -161,12 +161,12 @@ function Prediction() {
   const error = frame?.prediction_error_m ?? NaN;
   return (
     <section class="block" aria-label="Prediction">
-      <h2>Prediction against what came</h2>
+      <h2>Prediction and outcome</h2>
       <div class="prediction">
         <div>
-          <p class="soft">The plan of a second ago, and the way the car then took, seen from where it was:</p>
+          <p class="soft">The plan of one second ago and the path driven since, seen from the car at that time:</p>
           <CanvasView
-            label="The plan of one second ago and the way driven since"
+            label="The plan of one second ago and the path driven since"
             paint={paintPrediction}
             version={() => live.plots.newest(Column.time)}
             tall="96px"
@@ -174,8 +174,8 @@ function Prediction() {
         </div>
         <div>
           <p class="soft">
-            Car from its plan, one delay and one step later:{' '}
-            <b data-testid="prediction-error">{fixed(error * 100, 1)}</b> cm, in the mean{' '}
+            Distance of the car from its predicted position, one delay and one step later:{' '}
+            <b data-testid="prediction-error">{fixed(error * 100, 1)}</b> cm, RMS{' '}
             {fixed(rmsOf(live.plots, Column.predictionError, WINDOW_S) * 100, 1)} cm
           </p>
           <CanvasView

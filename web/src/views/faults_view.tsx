@@ -41,7 +41,8 @@ export function FaultsView() {
     <div class="blocks">
       <div class="toolbar">
         <p class="soft">
-          Click a fault into the running car; click again to clear it. Each ends by itself after its usual time.
+          Click to inject a fault into the running car, click again to clear it. Each ends by itself after its usual
+          time.
         </p>
         <button
           type="button"

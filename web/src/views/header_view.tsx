@@ -24,7 +24,7 @@ function LinkState() {
   if (link.value === 'connecting' || !run.value) return <p class="pill">Connecting</p>;
   if (run.value.mode === 'replay') return <p class="pill accent">{isPaused.value ? 'Recording' : 'Recording plays'}</p>;
   if (isPaused.value) return <p class="pill warning">Paused</p>;
-  if (silence.value > 0) return <p class="pill">No news for {silence.value} s</p>;
+  if (silence.value > 0) return <p class="pill">No data for {silence.value} s</p>;
   return <p class="pill good">Live</p>;
 }
 
@@ -78,7 +78,7 @@ function Buttons() {
           type="button"
           disabled={!can('/reset')}
           aria-keyshortcuts="R"
-          title="Back to the start (R)"
+          title="Back to the start of the run (R)"
           onClick={() => call('/reset')}
         >
           Reset
@@ -95,7 +95,7 @@ function Banner() {
       {link.value === 'lost' && (
         <div class="banner bad" data-testid="banner">
           <p>
-            <b>Connection lost.</b> The numbers below are the last that came. Trying again
+            <b>Connection lost.</b> The numbers below are the last ones received. Reconnecting
             {attempt.value > 1 ? ` (attempt ${attempt.value})` : ''} …
           </p>
           <button type="button" onClick={retry}>

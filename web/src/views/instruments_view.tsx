@@ -33,7 +33,7 @@ function Speed() {
           class="unit"
           aria-label={`Speeds in ${unit.spoken}: change the unit`}
           aria-keyshortcuts="U"
-          title="Another unit for speeds (U)"
+          title="Next unit for speeds (U)"
           onClick={nextSpeedUnit}
         >
           {unit.name}
@@ -62,7 +62,7 @@ function Lap() {
           <span
             class={gap >= 0.005 ? 'delta slower' : 'delta faster'}
             data-testid="delta"
-            title="Against the best lap, at this place"
+            title="Against the best lap, at the same place"
           >
             {gap >= 0.005 ? '+' : ''}
             {fixed(gap, 2)}
@@ -156,7 +156,7 @@ function Controls() {
   const steer = frame?.steer_applied_rad ?? NaN;
   const name = side(degrees(steer) / 10);
   return (
-    <div class="bars" title="Filled: what acts on the car now. Marked: what is asked for.">
+    <div class="bars" title="Bar: what acts on the car now. Mark: what the controller asks for.">
       {/* Left is positive in the data and on the left on the screen. */}
       <Bar
         id="wheels"

@@ -81,7 +81,7 @@ function Row({ lap, bests, pair }: { lap: Lap; bests: LapBests; pair: readonly [
         {Number.isFinite(gaps.lap) && (
           <>
             {' '}
-            <small data-testid="gap-to-limit" title="Above the limit of the lap">
+            <small data-testid="gap-to-limit" title="Above the fastest possible lap">
               {percent(gaps.lap)}
             </small>
           </>
@@ -96,7 +96,9 @@ function Row({ lap, bests, pair }: { lap: Lap; bests: LapBests; pair: readonly [
             {Number.isFinite(gaps.sectors[sector]) && (
               <>
                 {' '}
-                <small title="Above the limit of this sector">{percent(gaps.sectors[sector] ?? NaN)}</small>
+                <small title="Above the same sector of the fastest possible lap">
+                  {percent(gaps.sectors[sector] ?? NaN)}
+                </small>
               </>
             )}
           </td>
@@ -191,8 +193,8 @@ export function LapsView() {
       {all.length === 0 ? (
         <p class="empty">
           {Number.isFinite(bestLap.value)
-            ? `Last lap ${lapTime(bestLap.value)}; this run does not tell of laps.`
-            : 'No lap is completed yet.'}
+            ? `Best lap ${lapTime(bestLap.value)}; this run reports no details of its laps.`
+            : 'No lap completed yet.'}
         </p>
       ) : (
         <div class="table-scroll" tabIndex={0} role="region" aria-label="Laps">

@@ -124,7 +124,7 @@ export function ManualView() {
             wheel {fixed(stick.value.steer * 100, 0)} % · pedal {fixed(stick.value.throttle * 100, 0)} %
           </p>
         ) : (
-          <p class="soft">Arrow keys steer, drive and brake. The controller keeps thinking along.</p>
+          <p class="soft">Arrow keys steer, drive and brake. The controller keeps computing in the background.</p>
         )}
       </div>
       {isOn && <Pad />}

@@ -123,7 +123,7 @@ function Toolbar() {
         type="button"
         aria-pressed={isFrozen.value}
         aria-keyshortcuts="P"
-        title="The run goes on (P)"
+        title="Hold the plots while the run goes on (P)"
         onClick={toggleFrozen}
       >
         {isFrozen.value ? 'Follow' : 'Hold plots'}

@@ -169,7 +169,7 @@ export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string 
     entry.minimum !== null && entry.maximum !== null && entry.maximum > entry.minimum
       ? `${tidy(entry.minimum)} to ${tidy(entry.maximum)} ${entry.unit}`
       : '';
-  const about = [entry.meaning, bounds, entry.is_live ? '' : 'Starts the run anew.', entry.key]
+  const about = [entry.meaning, bounds, entry.is_live ? '' : 'A change restarts the run.', entry.key]
     .filter(Boolean)
     .join('\n');
   return (
@@ -177,7 +177,7 @@ export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string 
       <span class="setting-name">
         {label}
         {!entry.is_live && (
-          <span class="anew" role="img" title="Starts the run anew" aria-label="starts the run anew">
+          <span class="anew" role="img" title="A change restarts the run" aria-label="restarts the run">
             ↻
           </span>
         )}

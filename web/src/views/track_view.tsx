@@ -303,7 +303,7 @@ function Legend() {
       <Switch
         layer="hindsight"
         label="plan 1 s ago"
-        title="The plan of a second ago and the way driven since; the outline is where it saw the car now (O)"
+        title="The plan of a second ago and the path driven since; the outline is the position it predicted for now (O)"
       />
       {ghost !== null && <Swatch name="ghost" label={ghost} />}
       {shows3d.value && <Swatch name="rubber" label="tyres sliding" isMinor />}
@@ -361,8 +361,8 @@ function Segments<T extends string>({
 }
 
 const DIMENSIONS: readonly Choice<Dimension>[] = [
-  { view: '3d', label: '3D', title: 'The road as one stands on it (V)' },
-  { view: '2d', label: '2D', title: 'The map (V)' },
+  { view: '3d', label: '3D', title: 'Three-dimensional view (V)' },
+  { view: '2d', label: '2D', title: 'Map (V)' },
 ];
 
 function MapControls() {

@@ -53,9 +53,7 @@ function Changes() {
   return (
     <section class={changes.length > 0 ? 'changes some' : 'changes'} aria-label="Changes" data-testid="changes">
       <header>
-        <h2>
-          {changes.length === 0 ? 'As it started' : changes.length === 1 ? '1 change' : `${changes.length} changes`}
-        </h2>
+        <h2>{changes.length === 0 ? 'No changes' : changes.length === 1 ? '1 change' : `${changes.length} changes`}</h2>
         <div class="buttons">
           <button
             type="button"
@@ -68,7 +66,7 @@ function Changes() {
             class="button"
             href="preset.yaml"
             download="my-preset.yaml"
-            title="All that differs from the defaults, for chicane drive FILE"
+            title="All settings that differ from the defaults, for chicane drive FILE"
           >
             Save as preset
           </a>
@@ -122,8 +120,8 @@ export function TuneView() {
   if (run.value?.mode === 'replay') {
     return (
       <p class="empty">
-        A recording cannot be changed. <code>chicane replay LOG --branch-at T --set KEY=VALUE</code> drives on from any
-        of its moments otherwise.
+        A recording cannot be changed. <code>chicane replay LOG --branch-at T --set KEY=VALUE</code> drives on from time
+        T with other settings.
       </p>
     );
   }
@@ -134,7 +132,7 @@ export function TuneView() {
           id="tune-search"
           type="search"
           placeholder="Search: weight, delay, friction …"
-          aria-label="Search tunables"
+          aria-label="Search settings"
           value={search.value}
           onInput={(event) => (search.value = event.currentTarget.value)}
         />

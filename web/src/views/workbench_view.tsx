@@ -128,8 +128,8 @@ function Tabs() {
         type="button"
         class="icon"
         aria-pressed={isPanelAlone.value}
-        aria-label="Panel alone"
-        title="Panel alone, without the stage (F)"
+        aria-label="Panel only"
+        title="Panel only, without the picture (F)"
         onClick={() => (isPanelAlone.value = !isPanelAlone.value)}
       >
         <svg viewBox="0 0 16 16" width="16" height="16" aria-hidden="true">
