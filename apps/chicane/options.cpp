@@ -11,6 +11,7 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "chicane/version.hpp"
 #include "commands.hpp"
 
 namespace chicane::apps {

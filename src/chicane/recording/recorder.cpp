@@ -11,6 +11,7 @@
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/protocol/step_codec.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
+#include "chicane/version.hpp"
 
 namespace chicane::recording {
 namespace {

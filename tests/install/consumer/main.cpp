@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <chicane/base/math.hpp>
 #include <chicane/path/path.hpp>
+#include <chicane/version.hpp>
 #include <cstdio>
 #include <vector>
+
+static_assert(chicane::kVersionMajor == 0 && chicane::kVersionMinor >= 2);
 
 /// Uses a header and a compiled part of two modules: a path through three points knows its length.
 int main() {
