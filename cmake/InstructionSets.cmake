@@ -1,10 +1,21 @@
+# chicane_simd_sources(TARGET FILE... [CHECK_SYMBOLS])
+#
+# Compiles each file once for every instruction set of CHICANE_INSTRUCTION_SETS and adds the objects to the target, as if they were its
+# own sources: with its libraries (so call it after target_link_libraries()), include folders and options. The program chooses when it
+# runs; how such a file is written is said in chicane/base/instruction_set.hpp. The files belong in no other list of sources.
+#
+#   find_package(chicane REQUIRED COMPONENTS solver)
+#   add_executable(my_program main.cpp)
+#   target_link_libraries(my_program PRIVATE chicane::solver)
+#   chicane_simd_sources(my_program my_solver.cpp)
+#
+# CHECK_SYMBOLS adds a test for each file and instruction set (needs python3 and nm): its object defines no code that the linker could
+# take for another's. In chicane's own build, where a target may leave out its `chicane_`, that is always so.
+
 # What sources with a BatchSolver gain from: a stage of it is one block of 700 operations, which GCC by default schedules
 # only after registers are given out. 12 % of a batch; nothing elsewhere.
 set(CHICANE_BATCH_OPTIONS $<$<CXX_COMPILER_ID:GNU>:-fschedule-insns> $<$<CXX_COMPILER_ID:GNU>:-fsched-pressure>)
 
-# chicane_simd_sources(controller fast_solver.cpp): compiles the file once for every instruction set of the processor
-# family and adds the objects to the module (or the test of that name); how such a file is written is said in base/instruction_set.hpp. For each a
-# test with label architecture proves that the object defines no code that other objects could share.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
   set(CHICANE_INSTRUCTION_SETS Baseline Avx2 Avx512)
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
@@ -14,6 +25,10 @@ else()
 endif()
 set(CHICANE_FLAGS_Avx2 -mavx2 -mfma)
 set(CHICANE_FLAGS_Avx512 -mavx2 -mfma -mavx512f -mavx512dq -mavx512vl -mprefer-vector-width=512)
+set(CHICANE_FLAGS_FLOAT -ffp-contract=off -fno-math-errno)  # same bits from every compiler and build type
+
+find_file(CHICANE_CHECK_SYMBOLS check_symbols.py NO_DEFAULT_PATH NO_CACHE
+          PATHS ${CMAKE_CURRENT_LIST_DIR} ${CMAKE_CURRENT_LIST_DIR}/../tools)
 
 # chicane_simd_options(TARGET Avx2): what compiling for an instruction set takes.
 function(chicane_simd_options target set)
@@ -24,28 +39,38 @@ function(chicane_simd_options target set)
     $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized -Wno-maybe-uninitialized>)  # GCC bug 105593, in its own intrinsics
 endfunction()
 
-function(chicane_simd_sources module)
-  set(module_target chicane_${module})
-  if(TARGET ${module})
-    set(module_target ${module})
+function(chicane_simd_sources name)
+  cmake_parse_arguments(S "CHECK_SYMBOLS" "" "" ${ARGN})
+  set(target chicane_${name})
+  if(TARGET ${name})
+    set(target ${name})
   endif()
-  get_target_property(libraries ${module_target} LINK_LIBRARIES)
-  foreach(source IN LISTS ARGN)
+  get_target_property(libraries ${target} LINK_LIBRARIES)
+  if(NOT libraries)
+    set(libraries "")
+  endif()
+  foreach(source IN LISTS S_UNPARSED_ARGUMENTS)
     get_filename_component(stem ${source} NAME_WE)
     foreach(set IN LISTS CHICANE_INSTRUCTION_SETS)
       string(TOLOWER ${set} suffix)
-      set(object ${module_target}_${stem}_${suffix})
+      set(object ${target}_${stem}_${suffix})
       add_library(${object} OBJECT ${source})
       set_target_properties(${object} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-      target_include_directories(${object} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests
-                                 ${PROJECT_SOURCE_DIR}/bench)
-      target_link_libraries(${object} PRIVATE chicane_options ${libraries})
+      target_link_libraries(${object} PRIVATE ${libraries})
+      target_include_directories(${object} PRIVATE $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
+      if(TARGET chicane_options)
+        target_link_libraries(${object} PRIVATE chicane_options)
+      else()
+        target_compile_definitions(${object} PRIVATE $<TARGET_PROPERTY:${target},COMPILE_DEFINITIONS>)
+        target_compile_options(${object} PRIVATE $<TARGET_PROPERTY:${target},COMPILE_OPTIONS> ${CHICANE_FLAGS_FLOAT})
+        target_compile_features(${object} PRIVATE cxx_std_20)
+      endif()
       chicane_simd_options(${object} ${set})
-      target_sources(${module_target} PRIVATE $<TARGET_OBJECTS:${object}>)
-      if(CHICANE_BUILD_TESTS AND NOT set STREQUAL "Baseline")
-        add_test(NAME architecture.symbols_${module}_${stem}_${suffix}
-                 COMMAND python3 ${PROJECT_SOURCE_DIR}/tools/check_symbols.py arch::${set} $<TARGET_OBJECTS:${object}>)
-        set_tests_properties(architecture.symbols_${module}_${stem}_${suffix} PROPERTIES LABELS architecture)
+      target_sources(${target} PRIVATE $<TARGET_OBJECTS:${object}>)
+      if((S_CHECK_SYMBOLS OR CHICANE_BUILD_TESTS) AND NOT set STREQUAL "Baseline")
+        add_test(NAME architecture.symbols_${name}_${stem}_${suffix}
+                 COMMAND python3 ${CHICANE_CHECK_SYMBOLS} arch::${set} $<TARGET_OBJECTS:${object}>)
+        set_tests_properties(architecture.symbols_${name}_${stem}_${suffix} PROPERTIES LABELS architecture)
       endif()
     endforeach()
   endforeach()

@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# Builds and runs a program against an installation with CMake and with pkg-config.
+#   consumers.sh SOURCE_FOLDER PREFIX WORK_FOLDER COMPILER BUILD_FOLDER
+set -euo pipefail
+source=$1 prefix=$2 work=$3 compiler=$4 build=$5
+rm -rf "$work/consumer"
+cmake -G Ninja -S "$source" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
+cmake --build "$work/consumer" >/dev/null
+"$work/consumer/consumer"
+
+PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name chicane.pc)")
+export PKG_CONFIG_PATH
+flags=$(pkg-config --cflags --libs chicane)
+if grep -qF "$build/" <<<"$flags"; then [[ $prefix == "$build"/* ]] || { echo "chicane.pc points into the build: $flags"; exit 1; }; fi
+# shellcheck disable=SC2086
+"$compiler" "$source/main.cpp" -o "$work/pkg_config_consumer" $flags
+"$work/pkg_config_consumer"
+[ -f "$(pkg-config --variable=datadir chicane)/presets/default.yaml" ] || { echo "chicane.pc: no presets/default.yaml in datadir"; exit 1; }
