@@ -124,8 +124,13 @@ write_basic_package_version_file(chicaneConfigVersion.cmake COMPATIBILITY SameMi
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/chicaneConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/chicaneConfigVersion.cmake
         cmake/InstructionSets.cmake tools/check_symbols.py DESTINATION ${config_dir})
 
-# What the program can be told by name, and views for others' viewers.
+# What the program can be told by name, and views for others' viewers. Programs in the build tree find the files by links that lie where
+# an installed program looks or one folder further up (protocol/library.hpp): no binary knows the source tree.
 if(TARGET chicane_protocol)
   install(DIRECTORY presets cars tracks scenarios layouts DESTINATION ${data_dir})
+  file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/share/chicane)
+  foreach(folder presets cars tracks scenarios)
+    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${CMAKE_BINARY_DIR}/share/chicane/${folder} SYMBOLIC)
+  endforeach()
 endif()
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

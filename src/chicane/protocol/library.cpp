@@ -39,14 +39,26 @@ ShelfNames names(Shelf shelf) {
   return {"scenario", "scenarios", ".yaml"};
 }
 
+/// The folder of the running program; empty where the system does not tell.
+fs::path program_folder() {
+  std::error_code ignored;
+  return fs::read_symlink("/proc/self/exe", ignored).parent_path();
+}
+
 std::vector<fs::path> folders(Shelf shelf) {
-  std::vector<fs::path> roots{"."};
+  const std::string_view folder = names(shelf).folder;
+  std::vector<fs::path> found{fs::path(".") / folder};
   if (const char* data = std::getenv("CHICANE_DATA_DIR"); data != nullptr && *data != '\0')
-    roots.emplace_back(data);
-  roots.emplace_back(CHICANE_SOURCE_DATA_DIR);
-  roots.emplace_back(CHICANE_INSTALL_DATA_DIR);
-  for (fs::path& root : roots) root /= names(shelf).folder;
-  return roots;
+    found.push_back(fs::path(data) / folder);
+  if (const fs::path program = program_folder(); !program.empty()) {
+    for (const fs::path& from : {program, program / ".."}) {
+      std::error_code missing;
+      const fs::path place = fs::canonical(from / CHICANE_DATA_FROM_PROGRAM / folder, missing);
+      if (!missing) found.push_back(place);
+    }
+  }
+  found.push_back(fs::path(CHICANE_INSTALL_DATA_DIR) / folder);
+  return found;
 }
 
 /// The first comment line that speaks to people: no licence, no CSV header.

@@ -9,9 +9,16 @@
 #include "chicane/base/result.hpp"
 #include "chicane/scenario/scenario.hpp"
 
-/// The files that ship: presets, cars, tracks and scenarios, found by name. Looked for in ./presets (cars,
-/// tracks, scenarios), in $CHICANE_DATA_DIR/presets, in the source tree this was built from, and where `cmake
-/// --install` puts them; the first hit wins.
+/// The files that ship: presets, cars, tracks and scenarios, found by name. Looked for, the first hit wins:
+///
+///   1. in ./presets (cars, tracks, scenarios);
+///   2. in $CHICANE_DATA_DIR/presets;
+///   3. in ../share/chicane/presets seen from the folder of the running program, where `cmake --install` puts
+///      them, wherever the installation was moved to; or one folder further up, as in a build tree;
+///   4. in share/chicane/presets of the prefix that the library was configured for.
+///
+/// A program of your own that uses a moved installation sets CHICANE_DATA_DIR (CMake: chicane_DATA_DIR;
+/// pkg-config: the variable datadir).
 namespace chicane::protocol {
 
 enum class Shelf { kPreset, kCar, kTrack, kScenario };

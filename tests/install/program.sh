@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# The installed program, moved: it finds its data beside itself and nothing of the source tree or the build.
+#   program.sh PREFIX SOURCE_FOLDER BUILD_FOLDER
+set -euo pipefail
+prefix=$1 source=$2 build=$3
+fail() { echo "$1"; exit 1; }
+unset CHICANE_DATA_DIR
+cd /
+
+for folder in "$source" "$build"; do
+  if found=$(grep -rlF "$folder/" "$prefix"); then fail "these know $folder: $found"; fi
+done
+
+program=$prefix/bin/chicane
+tracks() { "$program" list tracks | cut -d' ' -f1 | sort | tr '\n' ' '; }
+before=$(tracks)
+[[ $before == *lakeside* && $before == *oval* ]] || fail "got the tracks $before"
+mv "$prefix/share/chicane/tracks/oval.csv" "$prefix/share/chicane/tracks/ellipse.csv"
+after=$(tracks)
+mv "$prefix/share/chicane/tracks/ellipse.csv" "$prefix/share/chicane/tracks/oval.csv"
+[[ $after == *ellipse* && $after != *oval* ]] || fail "got the tracks $after after one was renamed"
+"$program" drive --fast --laps 1
