@@ -16,6 +16,8 @@ constexpr Command kCommands[] = {
     {"check", "Validate scenarios, presets, cars and tracks, and explain what is wrong", check},
     {"list", "Presets, tracks, cars, scenarios, controllers and parameters", list},
     {"bench", "Times of solver and control step on this machine, beside Ipopt's", bench},
+    {"completion", "Script that completes command lines, for bash, zsh or fish", completion},
+    {"manual", "Manual page, as roff", manual},
 };
 
 }  // namespace

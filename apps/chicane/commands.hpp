@@ -28,6 +28,8 @@ struct Command {
 [[nodiscard]] ExitCode list(const Options& options);
 /// Becomes the program chicane-bench (bench/program); kEnvironment where that is not built.
 [[nodiscard]] ExitCode bench(const Options& options);
+[[nodiscard]] ExitCode completion(const Options& options);
+[[nodiscard]] ExitCode manual(const Options& options);
 
 /// Says the error on stderr; which exit code it is.
 [[nodiscard]] ExitCode report(const Error& error);

@@ -12,6 +12,7 @@
 #include "chicane/protocol/schema.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/version.hpp"
+#include "command_text.hpp"
 #include "commands.hpp"
 
 namespace chicane::apps {
@@ -98,7 +99,8 @@ void add_record(CLI::App& command, Options& options) {
 
 void add_drive(CLI::App& command, Options& options) {
   command
-      .add_option("scenario", options.scenario_file, "Scenario by name or file; other options win over it")
+      .add_option("scenario", options.scenario_file,
+                  "Scenario by name or file (chicane list scenarios); other options win over it")
       ->type_name("SCENARIO");
   add_controller(command, options);
   add_world(command, options);
@@ -260,6 +262,55 @@ void add_bench(CLI::App& command, Options& options) {
   command.footer("Example: chicane bench --instances 200 --horizons 10,20");
 }
 
+void add_completion(CLI::App& command, Options& options) {
+  command.add_option("shell", options.shell, "The shell")
+      ->type_name("SHELL")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  command.footer("Example: source <(chicane completion bash)");
+}
+
+void add_commands(CLI::App& app, Options& options) {
+  for (const Command& command : commands()) {
+    CLI::App* const sub = app.add_subcommand(std::string(command.name), std::string(command.summary));
+    if (command.name == "drive") add_drive(*sub, options);
+    if (command.name == "serve") add_serve(*sub, options);
+    if (command.name == "simulate") add_simulate(*sub, options);
+    if (command.name == "limit") add_limit(*sub, options);
+    if (command.name == "replay") add_replay(*sub, options);
+    if (command.name == "report") add_report(*sub, options);
+    if (command.name == "check") add_check(*sub, options);
+    if (command.name == "list") add_list(*sub, options);
+    if (command.name == "bench") add_bench(*sub, options);
+    if (command.name == "completion") add_completion(*sub, options);
+    if (command.name == "manual") sub->footer("Example: chicane manual | man -l -");
+  }
+}
+
+/// "NAME|FILE:{a,b}", as the parser shows it: the value's name, and the words it takes.
+void read_type(const CLI::Option& option, OptionText& text) {
+  const std::string type = option.get_type_name();
+  const std::size_t open = type.find('{');
+  text.value = type.substr(0, type.find(':'));
+  for (std::size_t at = open; at != std::string::npos && at + 1 < type.size();) {
+    const std::size_t end = type.find_first_of(",}", at + 1);
+    text.choices.push_back(type.substr(at + 1, end - at - 1));
+    at = end == std::string::npos || type[end] == '}' ? std::string::npos : end;
+  }
+}
+
+OptionText text_of(const CLI::Option& option) {
+  OptionText text;
+  text.help = option.get_description();
+  text.is_required = option.get_required();
+  text.takes_several = option.get_items_expected_max() > 1;
+  for (const std::string& name : option.get_snames()) text.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) text.names.push_back("--" + name);
+  text.default_value = option.get_default_str();
+  if (option.get_items_expected_max() > 0) read_type(option, text);
+  return text;
+}
+
 /// What was meant by the first word that nobody understood.
 std::string correction(const CLI::App& app, const std::vector<std::string>& unknown) {
   if (unknown.empty()) return "";
@@ -304,18 +355,7 @@ std::variant<Options, Done> parse_command_line(int count, const char* const* wor
   app.set_version_flag("--version", "chicane " CHICANE_VERSION);
   app.require_subcommand(1);
   app.footer("Example: chicane drive");
-  for (const Command& command : commands()) {
-    CLI::App* const sub = app.add_subcommand(std::string(command.name), std::string(command.summary));
-    if (command.name == "drive") add_drive(*sub, options);
-    if (command.name == "serve") add_serve(*sub, options);
-    if (command.name == "simulate") add_simulate(*sub, options);
-    if (command.name == "limit") add_limit(*sub, options);
-    if (command.name == "replay") add_replay(*sub, options);
-    if (command.name == "report") add_report(*sub, options);
-    if (command.name == "check") add_check(*sub, options);
-    if (command.name == "list") add_list(*sub, options);
-    if (command.name == "bench") add_bench(*sub, options);
-  }
+  add_commands(app, options);
   if (const std::string fault = command_fault(count, words); !fault.empty()) {
     fmt::print(stderr, "{}\nSee `chicane --help`.\n", fault);
     return Done{kUsage};
@@ -327,6 +367,34 @@ std::variant<Options, Done> parse_command_line(int count, const char* const* wor
   }
   options.command = app.get_subcommands().front()->get_name();
   return options;
+}
+
+std::vector<CommandText> command_texts() {
+  Options options;
+  CLI::App app;
+  add_commands(app, options);
+  std::vector<CommandText> texts;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    CommandText text{command->get_name(), command->get_description(), {}, command->get_footer()};
+    const std::string_view example = "Example: ";
+    if (text.example.starts_with(example)) text.example.erase(0, example.size());
+    for (const CLI::Option* option : command->get_options()) {
+      if (option != command->get_help_ptr()) text.options.push_back(text_of(*option));
+    }
+    std::stable_partition(text.options.begin(), text.options.end(),
+                          [](const OptionText& option) { return option.is_positional(); });
+    texts.push_back(std::move(text));
+  }
+  return texts;
+}
+
+std::string shelf_of(const OptionText& option) {
+  const std::string_view words = "chicane list ";
+  const std::size_t at = option.help.find(words);
+  if (at == std::string::npos) return "";
+  const std::size_t begin = at + words.size();
+  return option.help.substr(begin,
+                            option.help.find_first_not_of("abcdefghijklmnopqrstuvwxyz", begin) - begin);
 }
 
 }  // namespace chicane::apps

@@ -57,6 +57,7 @@ struct Options {
   bool is_served = true;               ///< replay
   std::string shelf;                   ///< list; empty: an overview
   bool is_markdown = false;            ///< list parameters, list faults
+  std::string shell;                   ///< completion
 
   int instances = 100;                    ///< bench: of each family
   std::vector<int> horizons{10, 20, 50};  ///< bench

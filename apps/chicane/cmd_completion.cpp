@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <string>
+
+#include "command_text.hpp"
+#include "commands.hpp"
+
+namespace chicane::apps {
+namespace {
+
+/// What stands for the value of an option in all three shells.
+struct Value {
+  std::string words;  ///< fixed ones
+  std::string shelf;  ///< of `chicane list`
+  bool is_file = false;
+  bool is_assignment = false;  ///< KEY=VALUE: more is typed behind the word
+};
+
+Value value_of(const OptionText& option) {
+  Value value;
+  value.words = fmt::format("{}", fmt::join(option.choices, " "));
+  value.shelf = shelf_of(option);
+  for (const char* kind : {"FILE", "LOG", "FOLDER", "SCENARIO"})
+    value.is_file = value.is_file || option.value.find(kind) != std::string::npos;
+  value.is_assignment = option.value.find('=') != std::string::npos;
+  return value;
+}
+
+/// Within '...' of a shell.
+std::string quoted(std::string_view text, std::string_view quote) {
+  std::string result;
+  for (const char c : text) result += c == '\'' ? std::string(quote) : std::string(1, c);
+  return "'" + result + "'";
+}
+
+std::string option_names(const CommandText& command) {
+  std::string names = "--help";
+  for (const OptionText& option : command.options) {
+    if (option.is_positional()) continue;
+    for (const std::string& name : option.names) names += " " + name;
+  }
+  return names;
+}
+
+// bash ----------------------------------------------------------------------------------------------------
+
+constexpr std::string_view kBashHead = R"(# bash completion for chicane, made by `chicane completion bash`.
+_chicane_names() { "${COMP_WORDS[0]}" list "$1" 2>/dev/null | cut -d' ' -f1; }
+_chicane_words() { mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W "$1" -- "$current"); }
+_chicane_files() { compopt -o filenames 2>/dev/null; mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -- "$current"); }
+_chicane() {
+  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
+  COMPREPLY=()
+)";
+
+std::string bash_action(const Value& value) {
+  std::string action;
+  if (!value.words.empty()) action += fmt::format("_chicane_words '{}'; ", value.words);
+  if (!value.shelf.empty()) action += fmt::format("_chicane_words \"$(_chicane_names {})\"; ", value.shelf);
+  if (value.is_assignment) action += "compopt -o nospace 2>/dev/null; COMPREPLY=(\"${COMPREPLY[@]/%/=}\"); ";
+  if (value.is_file) action += "_chicane_files; ";
+  return action;
+}
+
+std::string bash_script(const std::vector<CommandText>& commands) {
+  std::string script(kBashHead);
+  std::string names = "--help --version";
+  for (const CommandText& command : commands) names += " " + command.name;
+  script += fmt::format("  if ((COMP_CWORD == 1)); then _chicane_words '{}'; return; fi\n", names);
+  script += "  case ${COMP_WORDS[1]} in\n";
+  for (const CommandText& command : commands) {
+    std::string positional;
+    script += fmt::format("    {})\n      case $previous in\n", command.name);
+    for (const OptionText& option : command.options) {
+      if (option.is_positional()) positional += bash_action(value_of(option));
+      if (option.is_positional() || option.value.empty()) continue;
+      script += fmt::format("        {}) {}return ;;\n", fmt::join(option.names, " | "),
+                            bash_action(value_of(option)));
+    }
+    script += fmt::format("      esac\n      if [[ $current == -* ]]; then _chicane_words '{}'; return; fi\n",
+                          option_names(command));
+    script += fmt::format("      {};;\n", positional);
+  }
+  return script + "  esac\n}\ncomplete -F _chicane chicane\n";
+}
+
+// zsh -----------------------------------------------------------------------------------------------------
+
+std::string zsh_action(const Value& value) {
+  std::string action;
+  if (value.is_assignment) return fmt::format("{{_chicane_names {} -S =}}", value.shelf);
+  if (!value.words.empty()) return fmt::format("({})", value.words);
+  if (!value.shelf.empty()) action = fmt::format("_chicane_names {}", value.shelf);
+  if (value.is_file) action += action.empty() ? "_files" : "; _files";
+  return action.empty() ? " " : "{" + action + "}";
+}
+
+/// In the words of _arguments, where brackets and colons mean something.
+std::string zsh_text(std::string_view text) {
+  std::string result;
+  for (const char c : text) result += (c == '[' || c == ']' || c == ':' ? "\\" : "") + std::string(1, c);
+  return result;
+}
+
+std::string zsh_script(const std::vector<CommandText>& commands) {
+  const std::string_view quote = R"('\'')";
+  std::string script =
+      "#compdef chicane\n# zsh completion for chicane, made by `chicane completion zsh`.\n"
+      "_chicane_names() { local shelf=$1; shift; compadd \"$@\" -- ${(f)\"$(chicane list $shelf 2>/dev/null "
+      "| "
+      "cut -d' ' -f1)\"} }\n_chicane() {\n  if (( CURRENT == 2 )); then\n    local -a commands=(\n";
+  for (const CommandText& command : commands)
+    script += fmt::format("      {}\n", quoted(command.name + ":" + zsh_text(command.summary), quote));
+  script +=
+      "    )\n    _describe command commands\n    return\n  fi\n  shift words; (( CURRENT-- ))\n  case "
+      "$words[1] "
+      "in\n";
+  for (const CommandText& command : commands) {
+    script +=
+        fmt::format("    {})\n      _arguments '--help[Print this help message and exit]'", command.name);
+    for (const OptionText& option : command.options) {
+      const std::string action = zsh_action(value_of(option));
+      const std::string value = ":" + zsh_text(option.value) + ":" + action;
+      if (option.is_positional()) {
+        script += " \\\n        " + quoted("*" + value, quote);
+        continue;
+      }
+      for (const std::string& name : option.names) {
+        script += " \\\n        " + quoted(fmt::format("*{}[{}]{}", name, zsh_text(option.help),
+                                                       option.value.empty() ? "" : value),
+                                           quote);
+      }
+    }
+    script += " ;;\n";
+  }
+  return script +
+         "  esac\n}\nif [[ $funcstack[1] == _chicane ]]; then _chicane \"$@\"; else compdef _chicane "
+         "chicane; fi\n";
+}
+
+// fish ----------------------------------------------------------------------------------------------------
+
+std::string fish_values(const Value& value) {
+  std::string words = value.words;
+  if (!value.shelf.empty()) {
+    words += fmt::format("(chicane list {} 2>/dev/null | string split -f1 \" \"{})", value.shelf,
+                         value.is_assignment ? " | string replace -r '$' =" : "");
+  }
+  return words.empty() ? "" : " -a " + quoted(words, R"(\')");
+}
+
+std::string fish_script(const std::vector<CommandText>& commands) {
+  const std::string_view quote = R"(\')";
+  std::string script =
+      "# fish completion for chicane, made by `chicane completion fish`.\ncomplete -c chicane -f\n"
+      "complete -c chicane -n __fish_use_subcommand -l help\ncomplete -c chicane -n __fish_use_subcommand -l "
+      "version\n";
+  for (const CommandText& command : commands) {
+    script += fmt::format("complete -c chicane -n __fish_use_subcommand -a {} -d {}\n", command.name,
+                          quoted(command.summary, quote));
+    const std::string line =
+        fmt::format("complete -c chicane -n '__fish_seen_subcommand_from {}'", command.name);
+    for (const OptionText& option : command.options) {
+      const Value value = value_of(option);
+      script += line;
+      if (!option.is_positional()) {
+        for (const std::string& name : option.names)
+          script += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+        if (!option.value.empty()) script += " -r";
+      }
+      script += fmt::format(" {}{} -d {}\n", value.is_file ? "-F" : "-f", fish_values(value),
+                            quoted(option.help, quote));
+    }
+    script += line + " -l help\n";
+  }
+  return script;
+}
+
+}  // namespace
+
+std::string completion_script(std::string_view shell) {
+  const std::vector<CommandText> commands = command_texts();
+  if (shell == "zsh") return zsh_script(commands);
+  if (shell == "fish") return fish_script(commands);
+  return bash_script(commands);
+}
+
+ExitCode completion(const Options& options) {
+  fmt::print("{}", completion_script(options.shell));
+  return kSuccess;
+}
+
+}  // namespace chicane::apps

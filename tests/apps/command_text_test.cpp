@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// The manual page and the shells' completion name what the program's own help names.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace chicane {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+
+const std::string kProgram = std::string("'") + CHICANE_PROGRAM + "'";
+
+/// What bash says in the root of the source tree.
+std::string bash(const std::string& words) {
+  const std::string line = "bash 2>&1 <<'END'\ncd '" CHICANE_SOURCE_DIR "'\n" + words + "\nEND";
+  FILE* pipe = ::popen(line.c_str(), "r");
+  std::string text;
+  std::array<char, 4096> part{};
+  for (std::size_t n = 0; (n = std::fread(part.data(), 1, part.size(), pipe)) > 0;)
+    text.append(part.data(), n);
+  ::pclose(pipe);
+  return text;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::vector<std::string> commands() {
+  std::vector<std::string> names;
+  bool is_list = false;
+  for (const std::string& line : lines_of(bash(kProgram + " --help"))) {
+    if (is_list && line.starts_with("  ")) names.push_back(line.substr(2, line.find(' ', 2) - 2));
+    is_list = is_list || line == "Subcommands:";
+  }
+  return names;
+}
+
+/// "--preset", ... of the help of a command.
+std::set<std::string> options_of(const std::string& command) {
+  std::set<std::string> options;
+  const std::regex entry("^  (?:-\\w,)?(--[a-z-]+)");
+  for (const std::string& line : lines_of(bash(kProgram + " " + command + " --help"))) {
+    if (std::smatch match; std::regex_search(line, match, entry)) options.insert(match[1]);
+  }
+  options.erase("--help");
+  return options;
+}
+
+/// What bash completes the last word to.
+std::vector<std::string> completed(const std::vector<std::string>& words) {
+  std::string line = "eval \"$(" + kProgram + " completion bash)\"; COMP_WORDS=(" + kProgram;
+  for (const std::string& word : words) line += " '" + word + "'";
+  line += "); COMP_CWORD=" + std::to_string(words.size()) + "; _chicane; printf '%s\\n' \"${COMPREPLY[@]}\"";
+  return lines_of(bash(line));
+}
+
+std::string without_dashes_of_roff(std::string page) {
+  for (std::size_t at = 0; (at = page.find("\\-", at)) != std::string::npos;) page.erase(at, 1);
+  return page;
+}
+
+TEST(CommandText, TheHelpIsRead) {
+  EXPECT_THAT(commands(), IsSupersetOf({"drive", "serve", "replay", "list", "completion", "manual"}));
+  EXPECT_THAT(options_of("drive"), IsSupersetOf({"--preset", "--laps", "--fast", "--set"}));
+  EXPECT_THAT(options_of("report"), ElementsAre("--output"));
+}
+
+TEST(CommandText, TheManualNamesEveryCommandAndOption) {
+  const std::string page = without_dashes_of_roff(bash(kProgram + " manual"));
+  for (const std::string& command : commands()) {
+    const std::size_t begin = page.find(".SS chicane " + command + "\n");
+    ASSERT_NE(begin, std::string::npos) << command;
+    const std::string section = page.substr(begin, page.find("\n.S", begin + 1) - begin);
+    for (const std::string& option : options_of(command))
+      EXPECT_THAT(section, HasSubstr("\\fB" + option + "\\fR")) << command;
+  }
+}
+
+TEST(CommandText, TheManualIsCorrectRoff) {
+  if (!bash("command -v groff").starts_with("/")) GTEST_SKIP() << "groff is not installed";
+  EXPECT_EQ(bash(kProgram + " manual | groff -man -Kutf8 -Tutf8 -ww -z"), "");
+}
+
+TEST(CommandText, BashCompletesEveryOption) {
+  EXPECT_THAT(completed({""}), IsSupersetOf(commands()));
+  for (const std::string& command : commands()) {
+    const std::set<std::string> expected = options_of(command);
+    const std::vector<std::string> offered = completed({command, "--"});
+    EXPECT_THAT(offered, IsSupersetOf(expected)) << command;
+    EXPECT_EQ(offered.size(), expected.size() + 1) << command << ": and --help";
+  }
+}
+
+TEST(CommandText, BashCompletesValues) {
+  EXPECT_THAT(completed({"dr"}), ElementsAre("drive"));
+  EXPECT_THAT(completed({"drive", "--pre"}), ElementsAre("--preset"));
+  EXPECT_THAT(completed({"drive", "--preset", "sixty"}), ElementsAre("sixty-mph"));
+  EXPECT_THAT(completed({"drive", "--track", "lakes"}), ElementsAre("lakeside"));
+  EXPECT_THAT(completed({"drive", "--set", "latency"}), ElementsAre("latency_ms="));
+  EXPECT_THAT(completed({"drive", "first"}), ElementsAre("first-lap"));
+  EXPECT_THAT(completed({"list", "para"}), ElementsAre("parameters"));
+  EXPECT_THAT(completed({"completion", ""}), ElementsAre("bash", "zsh", "fish"));
+  EXPECT_THAT(completed({"check", "READ"}), Contains("README.md"));
+}
+
+TEST(CommandText, FishCompletesValues) {
+  if (!bash("command -v fish").starts_with("/")) GTEST_SKIP() << "fish is not installed";
+  const auto complete = [](const std::string& line) {
+    return bash("PATH=$(dirname " + kProgram + "):$PATH fish -c \"source (" + kProgram +
+                " completion fish | psub); complete -C 'chicane " + line + "' | string split -f1 \\t\"");
+  };
+  EXPECT_EQ(complete("drive --pres"), "--preset\n");
+  EXPECT_EQ(complete("list para"), "parameters\n");
+  EXPECT_EQ(complete("check READ"), "README.md\n");
+}
+
+TEST(CommandText, OtherShellsAcceptTheirScripts) {
+  for (const std::string shell : {"bash", "zsh", "fish"}) {
+    if (!bash("command -v " + shell).starts_with("/")) continue;
+    EXPECT_EQ(bash(shell + " -n <(" + kProgram + " completion " + shell + ")"), "") << shell;
+  }
+  const std::string script = bash(kProgram + " completion zsh") + bash(kProgram + " completion fish");
+  for (const std::string& option : options_of("drive")) {
+    EXPECT_THAT(script, HasSubstr("'*" + option + "[")) << "zsh";
+    EXPECT_THAT(script, HasSubstr(" -l " + option.substr(2) + " ")) << "fish";
+  }
+}
+
+}  // namespace
+}  // namespace chicane
