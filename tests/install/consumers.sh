@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds and runs a program against an installation with CMake and with pkg-config.
+# Builds and runs programs against an installation: one with CMake and with pkg-config, and an installed example.
 #   consumers.sh SOURCE_FOLDER PREFIX WORK_FOLDER COMPILER BUILD_FOLDER
 set -euo pipefail
 source=$1 prefix=$2 work=$3 compiler=$4 build=$5
@@ -16,3 +16,9 @@ if grep -qF "$build/" <<<"$flags"; then [[ $prefix == "$build"/* ]] || { echo "c
 "$compiler" "$source/main.cpp" -o "$work/pkg_config_consumer" $flags
 "$work/pkg_config_consumer"
 [ -f "$(pkg-config --variable=datadir chicane)/presets/default.yaml" ] || { echo "chicane.pc: no presets/default.yaml in datadir"; exit 1; }
+
+examples=$(dirname "$(find "$prefix" -name 01_drive_a_lap.cpp)")
+rm -rf "$work/examples"
+cmake -G Ninja -S "$examples" -B "$work/examples" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
+cmake --build "$work/examples" --target 01_drive_a_lap >/dev/null
+(cd / && CHICANE_DATA_DIR=$(pkg-config --variable=datadir chicane) "$work/examples/01_drive_a_lap")

@@ -20,3 +20,10 @@ after=$(tracks)
 mv "$prefix/share/chicane/tracks/ellipse.csv" "$prefix/share/chicane/tracks/oval.csv"
 [[ $after == *ellipse* && $after != *oval* ]] || fail "got the tracks $after after one was renamed"
 "$program" drive --fast --laps 1
+
+# What is installed about the program is what the program says now.
+man=$prefix/share/man/man1/chicane.1
+cmp "$man" <("$program" manual) || fail "the installed manual page is not the program's"
+cmp "$prefix/share/bash-completion/completions/chicane.bash" <("$program" completion bash)
+cmp "$prefix/share/zsh/site-functions/_chicane" <("$program" completion zsh)
+cmp "$prefix/share/fish/vendor_completions.d/chicane.fish" <("$program" completion fish)
