@@ -31,7 +31,7 @@ class CdrReader {
   }
   std::string text() {
     const auto size = get<std::uint32_t>();
-    const std::string value{bytes_.substr(at_, size - 1)};
+    std::string value{bytes_.substr(at_, size - 1)};
     EXPECT_EQ(bytes_.at(at_ + size - 1), '\0');
     at_ += size;
     return value;

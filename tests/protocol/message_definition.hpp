@@ -38,7 +38,10 @@ inline std::vector<MessageLine> message_lines(std::string_view text) {
     const std::string meaning =
         comment == std::string::npos ? "" : trimmed(std::string_view{line}.substr(comment + 1));
     if (code.empty()) {
-      title = meaning.empty() || title.empty() ? meaning : title + " " + meaning;
+      // A title is of one or more lines; an empty line ends it.
+      if (meaning.empty()) title.clear();
+      if (!title.empty()) title += ' ';
+      title += meaning;
       continue;
     }
     const std::size_t space = code.find(' '), bracket = code.find('['), equals = code.find('=');

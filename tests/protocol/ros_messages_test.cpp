@@ -295,11 +295,11 @@ TEST(RosMessages, SchemasHoldEveryTypeTheyReferToOnce) {
 }
 
 /// The same bytes are decoded by web/src/protocol/fixtures.test.ts. CHICANE_WRITE_FIXTURES=1 renews them
-/// after a wanted change: CHICANE_WRITE_FIXTURES=1 build/release/tests/protocol/protocol_test
-/// --gtest_filter='RosMessages.*Fixtures*'
+/// after a wanted change: cmake --build --preset release --target renew_fixtures
 TEST(RosMessages, BytesEqualTheFixturesTheBrowserReads) {
   const std::filesystem::path folder =
       std::filesystem::path(CHICANE_SOURCE_DIR) / "tests/protocol/fixtures/ros";
+  constexpr std::string_view kRenew = "; wanted? cmake --build --preset release --target renew_fixtures";
   const bool renew = std::getenv("CHICANE_WRITE_FIXTURES") != nullptr;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const RosTopic& each : ros_topics()) {
@@ -311,11 +311,11 @@ TEST(RosMessages, BytesEqualTheFixturesTheBrowserReads) {
     if (renew) std::ofstream(folder / file, std::ios::binary) << bytes;
     std::ifstream stream(folder / file, std::ios::binary);
     const std::string expected{std::istreambuf_iterator<char>(stream), {}};
-    EXPECT_EQ(bytes, expected) << each.name;
+    EXPECT_EQ(bytes, expected) << each.name << kRenew;
   }
   if (renew) std::ofstream(folder / "topics.json") << list.dump(1) << '\n';
   std::ifstream stream(folder / "topics.json");
-  EXPECT_EQ(nlohmann::ordered_json::parse(stream, nullptr, false), list);
+  EXPECT_EQ(nlohmann::ordered_json::parse(stream, nullptr, false), list) << kRenew;
 }
 
 TEST(RosMessages, RoadLinesCloseAndKeepTheirWidths) {

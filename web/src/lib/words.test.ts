@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { SPEED_LIMITER } from '../protocol/topics';
+import { RUNG, SPEED_LIMITER, STATUS } from '../protocol/messages';
 import {
   gateInWords,
   LIMITERS,
@@ -16,6 +16,11 @@ describe('words', () => {
   it('gets graver with each rung', () => {
     expect([0, 1, 2, 3].map((rung) => rungInWords(rung).mood)).toEqual(['good', 'warning', 'bad', 'bad']);
     expect(rungInWords(9).text).toContain('9');
+  });
+
+  it('know every rung and every status that is sent', () => {
+    for (const rung of Object.values(RUNG)) expect(rungInWords(rung).text).not.toMatch(/^Unknown/);
+    for (const status of Object.values(STATUS)) expect(statusInWords(status).text).not.toMatch(/^Unknown/);
   });
 
   it('calls no unusable answer good', () => {

@@ -1,3 +1,4 @@
+import { RUNG, STATUS } from '../protocol/messages';
 import type { Frame } from '../protocol/topics';
 
 export type Mood = 'good' | 'warning' | 'bad' | 'unknown';
@@ -7,34 +8,34 @@ export interface Sentence {
   readonly text: string;
 }
 
-/** Who chose the command, by controller::Rung. */
+/** Who chose the command, by Frame.rung. */
 export function rungInWords(rung: number): Sentence {
   switch (rung) {
-    case 0:
+    case RUNG.CONTROLLER:
       return { mood: 'good', text: 'The controller drives' };
-    case 1:
+    case RUNG.SHIFTED_PLAN:
       return { mood: 'warning', text: 'No new answer: following the last plan' };
-    case 2:
+    case RUNG.HOLD_AND_BRAKE:
       return { mood: 'bad', text: 'No answer: following the last plan, braking gently' };
-    case 3:
+    case RUNG.BRAKE:
       return { mood: 'bad', text: 'No answer: following the last plan, braking fully' };
     default:
       return { mood: 'bad', text: `Unknown rung ${rung}` };
   }
 }
 
-/** How the solve ended, by solver::SolveStatus. */
+/** How the solve ended, by Frame.solve_status. */
 export function statusInWords(status: number): Sentence {
   switch (status) {
-    case 0:
+    case STATUS.OPTIMAL:
       return { mood: 'good', text: 'Optimal' };
-    case 1:
+    case STATUS.BUDGET_SPENT:
       return { mood: 'warning', text: 'Time or iteration limit reached, answer usable' };
-    case -1:
+    case STATUS.STALLED:
       return { mood: 'bad', text: 'Did not converge' };
-    case -2:
+    case STATUS.INFEASIBLE:
       return { mood: 'bad', text: 'Infeasible: not all constraints can hold' };
-    case -3:
+    case STATUS.NOT_FINITE:
       return { mood: 'bad', text: 'Invalid number (NaN) in the problem' };
     default:
       return { mood: 'bad', text: `Unknown status ${status}` };

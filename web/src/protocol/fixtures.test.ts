@@ -1,8 +1,9 @@
 import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
 import { decoder } from './decoder';
+import { SPEED_LIMITER } from './messages';
 import type { Change, Frame, Lap, Path, Plan, Run } from './topics';
-import { SPEED_LIMITER, TOPIC_NAMES } from './topics';
+import { TOPIC_NAMES } from './topics';
 
 // Written by tests/protocol/ros_messages_test.cpp; the numbers are those of tests/protocol/viewer_samples.hpp.
 const folder = new URL('../../../tests/protocol/fixtures/ros/', import.meta.url);

@@ -5,7 +5,7 @@ import { session as drawing } from '../scene3d/session';
 import { beginSession, receive, rewind } from '../state/demultiplexer';
 import { keepAllLaps, lapSamples, laps, sampleLap } from '../state/laps';
 import { link, notice, services } from '../state/link';
-import { completeFrame } from '../state/message_fields';
+import { complete } from '../state/message_fields';
 import { run } from '../state/run';
 import { schema } from '../state/settings';
 import { beginSettings, takeSettings } from '../state/settings_session';
@@ -47,7 +47,7 @@ const PACE = readSchema([
 
 async function framesOf(log: McapLog): Promise<{ time: number; frame: Frame }[]> {
   const frames = await log.read(['/chicane/frame'], 0, log.duration);
-  return frames.map(({ time, message }) => ({ time, frame: completeFrame(message as Frame) }));
+  return frames.map(({ time, message }) => ({ time, frame: complete('/chicane/frame', message as Frame) }));
 }
 
 /** Plays one recording of a shelf; another one, the second future, drives beside it. */

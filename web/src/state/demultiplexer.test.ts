@@ -1,10 +1,10 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import type { Change, Frame, Limit } from '../protocol/topics';
+import type { Change, Frame, Lap, Limit, Run } from '../protocol/topics';
 import { Column, costColumn } from './columns';
 import { beginSession, forget, frameListeners, receive, rewind } from './demultiplexer';
 import { events } from './event_log';
 import { bestLap, laps } from './laps';
-import { limit, whyNoLimit } from './limit';
+import { gapsToLimit, limit, whyNoLimit } from './limit';
 import { live } from './live';
 import { road } from './road';
 import { run } from './run';
@@ -41,15 +41,24 @@ describe('a message', () => {
   });
 
   it('has unknown values for fields that an older program does not send', () => {
-    see({});
+    receive('/chicane/frame', { time_s: 1 } as Frame, 0);
     expect(live.frame).toMatchObject({
+      time_s: 1,
       steer_sent_rad: NaN,
       cost_terms: new Float64Array(),
       active_now: 0,
       is_manual: false,
     });
-    expect(live.plots.newest(Column.speedLimit)).toBeNaN();
+    expect(live.plots.newest(Column.speed_limit_mps)).toBeNaN();
     expect(live.plots.newest(costColumn(0))).toBeNaN();
+    receive('/chicane/run', { track: 'oval' } as Run, 0);
+    const names = { cost_term_names: [], constraint_names: [], fault_names: [] };
+    expect(run.value).toMatchObject({ ...names, track: 'oval', mode: '', kerb_width_m: 0 });
+    receive('/chicane/limit', { is_known: false } as Limit, 0);
+    expect(whyNoLimit.value).toBe('');
+    receive('/chicane/limit', { is_known: true, lap_time_s: 20 } as Limit, 0);
+    receive('/chicane/lap', { lap: 1, lap_time_s: 22, sector_times_s: Float64Array.of(5, 6, 11) } as Lap, 0);
+    expect(laps.value.map((lap) => gapsToLimit(lap, limit.value).lap)).toEqual([expect.closeTo(10)]);
   });
 });
 

@@ -3,7 +3,7 @@ import { forgetEvents, noteChange, noteEvents, setFaultNames } from './event_log
 import { forgetLaps, noteLap, receiveLap } from './laps';
 import { forgetLimit, receiveLimit } from './limit';
 import { forgetHistory, keepFrame, keepPlan, live } from './live';
-import { completeFrame } from './message_fields';
+import { complete } from './message_fields';
 import { type RoadLines, receiveReference, receiveRoadLine } from './road';
 import { receiveRun, run } from './run';
 import { shown } from './shown';
@@ -14,8 +14,9 @@ import { shown } from './shown';
 /** Called with each frame as it comes, also while the page is hidden; `now` as of performance.now(). */
 export const frameListeners = new Set<(frame: Frame, now: number) => void>();
 
-/** Takes one message in. `now` as of performance.now(). */
-export function receive<T extends TopicName>(topic: T, message: Topics[T], now: number): void {
+/** Takes one message in, of a program of any age. `now` as of performance.now(). */
+export function receive<T extends TopicName>(topic: T, told: Topics[T], now: number): void {
+  const message = complete(topic, told);
   switch (topic) {
     case '/chicane/frame':
       receiveFrame(message as Frame, now);
@@ -46,8 +47,7 @@ export function receive<T extends TopicName>(topic: T, message: Topics[T], now: 
   }
 }
 
-function receiveFrame(message: Frame, now: number): void {
-  const frame = completeFrame(message);
+function receiveFrame(frame: Frame, now: number): void {
   let before = live.frame;
   if (before && frame.time_s < before.time_s) {
     forget();

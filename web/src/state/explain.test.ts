@@ -9,10 +9,10 @@ function history(rows: { time: number; limiter?: number; activeNow?: number; pre
   const all = new History(COLUMN_COUNT, 100);
   for (const each of rows) {
     const row = new Array<number>(COLUMN_COUNT).fill(NaN);
-    row[Column.time] = each.time;
-    row[Column.limiter] = each.limiter ?? 0;
-    row[Column.activeNow] = each.activeNow ?? 0;
-    row[Column.predictionError] = each.predictionError ?? NaN;
+    row[Column.time_s] = each.time;
+    row[Column.speed_limiter] = each.limiter ?? 0;
+    row[Column.active_now] = each.activeNow ?? 0;
+    row[Column.prediction_error_m] = each.predictionError ?? NaN;
     all.push(row);
   }
   return all;
@@ -21,7 +21,7 @@ function history(rows: { time: number; limiter?: number; activeNow?: number; pre
 describe('explaining', () => {
   it('tells for how much of the time the speed was limited by what', () => {
     const rows = [0, 1, 2, 3, 4].map((time) => ({ time, limiter: time < 3 ? 2 : 4 }));
-    expect(sharesOf(history(rows), Column.limiter, 6, 100)).toEqual([
+    expect(sharesOf(history(rows), Column.speed_limiter, 6, 100)).toEqual([
       0,
       0,
       expect.closeTo(0.6),
@@ -29,7 +29,7 @@ describe('explaining', () => {
       expect.closeTo(0.4),
       0,
     ]);
-    expect(sharesOf(history(rows), Column.limiter, 6, 1)).toEqual([0, 0, 0, 0, 1, 0]);
+    expect(sharesOf(history(rows), Column.speed_limiter, 6, 1)).toEqual([0, 0, 0, 0, 1, 0]);
   });
 
   it('tells for how much of the time each constraint was active', () => {
@@ -38,7 +38,7 @@ describe('explaining', () => {
         { time: 0, activeNow: 1 },
         { time: 1, activeNow: 0b101 },
       ]),
-      Column.activeNow,
+      Column.active_now,
       3,
       10,
     );
@@ -49,11 +49,11 @@ describe('explaining', () => {
     expect(
       rmsOf(
         history([{ time: 0, predictionError: 3 }, { time: 1 }, { time: 2, predictionError: 4 }]),
-        Column.predictionError,
+        Column.prediction_error_m,
         10,
       ),
     ).toBeCloseTo(Math.sqrt(12.5), 12);
-    expect(rmsOf(history([{ time: 0 }]), Column.predictionError, 10)).toBeNaN();
+    expect(rmsOf(history([{ time: 0 }]), Column.prediction_error_m, 10)).toBeNaN();
   });
 
   it('finds the plan of a second ago', () => {

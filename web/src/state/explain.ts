@@ -6,7 +6,7 @@ import type { History } from './history';
 
 /** Index of the first row that is not older than `seconds`. */
 export const rowsSince = (history: History, seconds: number): number => {
-  const times = history.column(Column.time);
+  const times = history.column(Column.time_s);
   return firstSince(times, (times.at(-1) ?? 0) - seconds);
 };
 

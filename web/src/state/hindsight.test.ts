@@ -20,7 +20,7 @@ function driven(until: number): History {
   const all = new History(COLUMN_COUNT, 100);
   for (let i = 0; i <= Math.round(until * 10); ++i) {
     const row = new Array<number>(COLUMN_COUNT).fill(NaN);
-    [row[Column.time], row[Column.x], row[Column.y]] = [i / 10, i, 0.5];
+    [row[Column.time_s], row[Column.x_m], row[Column.y_m]] = [i / 10, i, 0.5];
     all.push(row);
   }
   return all;

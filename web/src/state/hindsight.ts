@@ -43,11 +43,11 @@ export function poseOf(plan: Plan, time: number): Pose | null {
 export function hindsight(plans: readonly Plan[], plots: History, now: number): Hindsight | null {
   const plan = planOf(plans, now, HINDSIGHT_S);
   if (!plan || plan.x_m.length < 2) return null;
-  const from = Math.max(0, firstSince(plots.column(Column.time), plan.time_s[0] ?? NaN) - 1);
+  const from = Math.max(0, firstSince(plots.column(Column.time_s), plan.time_s[0] ?? NaN) - 1);
   return {
     plan,
-    drivenX: plots.column(Column.x).subarray(from),
-    drivenY: plots.column(Column.y).subarray(from),
+    drivenX: plots.column(Column.x_m).subarray(from),
+    drivenY: plots.column(Column.y_m).subarray(from),
     foreseen: poseOf(plan, now),
   };
 }

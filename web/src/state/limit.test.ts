@@ -1,9 +1,12 @@
 import { describe, expect, it } from 'vitest';
-import type { Lap, Limit } from '../protocol/topics';
+import { UNKNOWN_LIMIT } from '../protocol/messages';
+import type { Limit } from '../protocol/topics';
 import { LapSamples } from './lap_samples';
 import { forgetLimit, gapsToLimit, limitChannel, limit as limitOfThePage, receiveLimit, whyNoLimit } from './limit';
+import { lapWith } from './test_messages';
 
-const limit = {
+const limit: Limit = {
+  ...UNKNOWN_LIMIT,
   is_known: true,
   lap_time_s: 20,
   sector_times_s: Float64Array.of(5, 5, 10),
@@ -11,7 +14,7 @@ const limit = {
   n_m: Float64Array.of(0, 1, 2, 1, 0),
   speed_mps: Float64Array.of(40, 50, 60, 50, 40),
   time_s: Float64Array.of(10, 15, 0, 5, 10), // the start line is at 500 m
-} as unknown as Limit;
+};
 
 /** One lap at 50 m/s round 1 km, seen from 500 m on, where laps begin. */
 function samples(): LapSamples {
@@ -40,25 +43,19 @@ function samples(): LapSamples {
 describe('the limit', () => {
   it('has a reason while it is not known, which is forgotten with it', () => {
     const now = () => [limitOfThePage.value?.lap_time_s ?? null, whyNoLimit.value];
-    receiveLimit({ is_known: false, why_not: 'the road is open' } as Limit);
+    receiveLimit({ ...UNKNOWN_LIMIT, why_not: 'the road is open' });
     expect(now()).toEqual([null, 'the road is open']);
     receiveLimit({ ...limit, why_not: '' });
     expect(now()).toEqual([20, '']);
-    receiveLimit({ is_known: false } as Limit); // an older program
+    receiveLimit(UNKNOWN_LIMIT);
     expect(now()).toEqual([null, '']);
-    receiveLimit({ is_known: false, why_not: 'too early' } as Limit);
+    receiveLimit({ ...UNKNOWN_LIMIT, why_not: 'too early' });
     forgetLimit();
     expect(now()).toEqual([null, '']);
   });
 
   it('is computed for laps that were driven before it was known', () => {
-    const lap = {
-      lap: 1,
-      lap_time_s: 22,
-      sector_times_s: Float64Array.of(5, 6, 11),
-      gap_to_limit_percent: NaN,
-      sector_gaps_to_limit_percent: Float64Array.of(NaN, NaN, NaN),
-    } as unknown as Lap;
+    const lap = lapWith(1, 22, { sector_times_s: Float64Array.of(5, 6, 11) });
     expect(gapsToLimit(lap, limit)).toEqual({
       lap: expect.closeTo(10),
       sectors: [expect.closeTo(0), expect.closeTo(20), expect.closeTo(10)],
@@ -67,26 +64,17 @@ describe('the limit', () => {
   });
 
   it('holds for laps from the first one on that the car of today began', () => {
-    const lap = (number: number) =>
-      ({
-        lap: number,
-        lap_time_s: 22,
-        sector_times_s: Float64Array.of(5, 6, 11),
-        gap_to_limit_percent: NaN,
-      }) as unknown as Lap;
-    expect(gapsToLimit(lap(4), { ...limit, first_lap: 5 }).lap).toBeNaN();
-    expect(gapsToLimit(lap(5), { ...limit, first_lap: 5 }).lap).toBeCloseTo(10);
+    expect(gapsToLimit(lapWith(4, 22), { ...limit, first_lap: 5 }).lap).toBeNaN();
+    expect(gapsToLimit(lapWith(5, 22), { ...limit, first_lap: 5 }).lap).toBeCloseTo(10);
   });
 
-  it('is taken as told, and as unknown from older programs', () => {
-    const told = {
-      lap_time_s: 22,
-      sector_times_s: Float64Array.of(5, 6, 11),
+  it('is taken as told', () => {
+    const told = lapWith(1, 22, {
       gap_to_limit_percent: 7,
       sector_gaps_to_limit_percent: Float64Array.of(1, 2, 3),
-    } as unknown as Lap;
+    });
     expect(gapsToLimit(told, limit)).toEqual({ lap: 7, sectors: [1, 2, 3] });
-    expect(gapsToLimit({ lap_time_s: 22, sector_times_s: new Float64Array(0) } as unknown as Lap, null).lap).toBeNaN();
+    expect(gapsToLimit(lapWith(1, 22), null).lap).toBeNaN();
   });
 
   it('lies beside a lap that was driven, place for place', () => {

@@ -11,7 +11,7 @@ export const whyNoLimit = signal('');
 
 export function receiveLimit(message: Limit): void {
   limit.value = message.is_known ? message : null;
-  whyNoLimit.value = message.is_known ? '' : (message.why_not ?? '');
+  whyNoLimit.value = message.is_known ? '' : message.why_not;
 }
 
 export function forgetLimit(): void {
@@ -34,13 +34,13 @@ const gap = (time: number, limit: number | undefined): number => 100 * (time / (
  * How much slower a lap was than the limit, and each third of it [%]: as told, or computed where the limit came later.
  */
 export function gapsToLimit(lap: Lap, limit: Limit | null): { lap: number; sectors: readonly number[] } {
-  const of = limit && lap.lap >= (limit.first_lap ?? 1) ? limit : null;
+  const of = limit && lap.lap >= limit.first_lap ? limit : null;
   const known = (told: number | undefined, computed: number): number =>
     Number.isFinite(told) ? (told ?? NaN) : computed;
   return {
     lap: known(lap.gap_to_limit_percent, gap(lap.lap_time_s, of?.lap_time_s)),
     sectors: [0, 1, 2].map((i) =>
-      known(lap.sector_gaps_to_limit_percent?.[i], gap(lap.sector_times_s[i] ?? NaN, of?.sector_times_s[i])),
+      known(lap.sector_gaps_to_limit_percent[i], gap(lap.sector_times_s[i] ?? NaN, of?.sector_times_s[i])),
     ),
   };
 }

@@ -1,23 +1,23 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import { COST_TERMS, Column, costColumn } from './columns';
 import { forgetHistory, keepFrame, keepPlan, live } from './live';
-import { completeFrame } from './message_fields';
 import { frameWith, planWith } from './test_messages';
 
 const keep = (change: Parameters<typeof frameWith>[0], now = 0, isNew = true): void =>
-  keepFrame(completeFrame(frameWith(change)), now, isNew);
+  keepFrame(frameWith(change), now, isNew);
 
 beforeEach(forgetHistory);
 
 describe('the history', () => {
-  it('plots a frame in the units of the axes', () => {
+  it('holds the numbers of a frame under their names, in their units', () => {
     keep({ time_s: 3 });
-    expect(live.plots.newest(Column.time)).toBe(3);
-    expect(live.plots.newest(Column.speed)).toBe(10);
-    expect(live.plots.newest(Column.lateralError)).toBe(0.5);
-    expect(live.plots.newest(Column.steerAsked)).toBeCloseTo(5.7296, 4);
-    expect(live.plots.newest(Column.steerApplied)).toBeCloseTo(-5.7296, 4);
-    expect(live.plots.newest(Column.stepTime)).toBe(1.5);
+    expect(live.plots.newest(Column.time_s)).toBe(3);
+    expect(live.plots.newest(Column.speed_mps)).toBe(10);
+    expect(live.plots.newest(Column.lateral_error_m)).toBe(0.5);
+    expect(live.plots.newest(Column.steer_asked_rad)).toBe(0.1);
+    expect(live.plots.newest(Column.steer_applied_rad)).toBe(-0.1);
+    expect(live.plots.newest(Column.step_time_us)).toBe(1500);
+    expect(live.plots.newest(Column.is_gated)).toBe(0);
   });
 
   it('stacks the terms of the cost, the last layer taking the surplus', () => {

@@ -1,37 +1,23 @@
-import type { Frame, Run } from '../protocol/topics';
+import {
+  UNKNOWN_CHANGE,
+  UNKNOWN_FRAME,
+  UNKNOWN_LAP,
+  UNKNOWN_LIMIT,
+  UNKNOWN_PLAN,
+  UNKNOWN_RUN,
+} from '../protocol/messages';
+import type { TopicName, Topics } from '../protocol/topics';
 
-// What older programs, and their recordings, do not tell.
-
-const UNKNOWN_FRAME: Partial<Frame> = {
-  steer_sent_rad: NaN,
-  throttle_sent: NaN,
-  pace: NaN,
-  is_manual: false,
-  cost_terms: new Float64Array(),
-  speed_limiter: 0,
-  speed_limit_mps: NaN,
-  active_now: 0,
-  active_ahead: 0,
-  front_tire_use: NaN,
-  rear_tire_use: NaN,
-  active_faults: 0,
-  stationarity: NaN,
-  violation: NaN,
-  worst_stage: -1,
-  worst_constraint: -1,
-  prediction_error_m: NaN,
+/** What a message says where its sender does not tell. */
+const UNKNOWN: { readonly [T in TopicName]?: Topics[T] } = {
+  '/chicane/frame': UNKNOWN_FRAME,
+  '/chicane/plan': UNKNOWN_PLAN,
+  '/chicane/run': { ...UNKNOWN_RUN, kerb_width_m: 0 }, // roads had no kerbs before they had a width
+  '/chicane/lap': UNKNOWN_LAP,
+  '/chicane/limit': UNKNOWN_LIMIT,
+  '/chicane/change': UNKNOWN_CHANGE,
 };
 
-const UNKNOWN_RUN: Partial<Run> = {
-  mode: '',
-  cost_term_names: [],
-  constraint_names: [],
-  fault_names: [],
-  kerb_width_m: 0,
-  building: '',
-};
-
-/** A frame with every field; unknown where the sender does not tell. */
-export const completeFrame = (frame: Frame): Frame => ({ ...UNKNOWN_FRAME, ...frame });
-
-export const completeRun = (run: Run): Run => ({ ...UNKNOWN_RUN, ...run });
+/** A message with every field, unknown where the sender does not tell: older programs, and their recordings. */
+export const complete = <T extends TopicName>(topic: T, message: Partial<Topics[T]>): Topics[T] =>
+  ({ ...UNKNOWN[topic], ...message }) as Topics[T];

@@ -28,8 +28,8 @@ describe('the view of the plots', () => {
     toggleFrozen();
     see(31);
     expect(timeRange()).toEqual([10, 30]);
-    expect(plotted().newest(Column.time)).toBe(30);
-    expect(live.plots.newest(Column.time)).toBe(31);
+    expect(plotted().newest(Column.time_s)).toBe(30);
+    expect(live.plots.newest(Column.time_s)).toBe(31);
     toggleFrozen();
     expect(timeRange()).toEqual([11, 31]);
   });

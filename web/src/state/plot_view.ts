@@ -46,7 +46,7 @@ export function zoomTo(from: number, to: number): void {
 /** First and last time of the axis [s]. */
 export function timeRange(): [number, number] {
   if (zoomed.value) return [zoomed.value[0], zoomed.value[1]];
-  const newest = plotted().newest(Column.time);
+  const newest = plotted().newest(Column.time_s);
   const end = Number.isFinite(newest) ? newest : 0;
   return [end - Math.min(windowSeconds.value, LONGEST_WINDOW_S), end];
 }

@@ -1,6 +1,5 @@
 import { computed, signal } from '@preact/signals';
 import type { Run } from '../protocol/topics';
-import { completeRun } from './message_fields';
 
 /** Track, car, controller and state of the run; null until the program has sent it. */
 export const run = signal<Run | null>(null);
@@ -8,5 +7,5 @@ export const run = signal<Run | null>(null);
 export const isPaused = computed(() => run.value?.is_paused ?? false);
 
 export function receiveRun(message: Run): void {
-  run.value = completeRun(message);
+  run.value = message;
 }

@@ -1,7 +1,6 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import { link } from './link';
 import { keepFrame, live } from './live';
-import { completeFrame } from './message_fields';
 import { receiveRun } from './run';
 import { refreshText, shown, silence } from './shown';
 import { frameWith, runWith } from './test_messages';
@@ -9,14 +8,14 @@ import { frameWith, runWith } from './test_messages';
 beforeEach(() => {
   link.value = 'live';
   receiveRun(runWith({ is_paused: false }));
-  keepFrame(completeFrame(frameWith()), 1000, true);
+  keepFrame(frameWith(), 1000, true);
 });
 
 describe('the text', () => {
   it('shows the newest frame when it is refreshed', () => {
     refreshText(1100);
     expect(shown.value).toBe(live.frame);
-    keepFrame(completeFrame(frameWith({ time_s: 1 })), 1150, true);
+    keepFrame(frameWith({ time_s: 1 }), 1150, true);
     expect(shown.value?.time_s).toBe(0);
     refreshText(1200);
     expect(shown.value?.time_s).toBe(1);

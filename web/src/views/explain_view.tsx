@@ -28,7 +28,7 @@ function Limiter() {
   const frame = shown.value;
   const limiter = frame?.speed_limiter ?? 0;
   const { title, why } = limiterInWords(limiter);
-  const shares = sharesOf(live.plots, Column.limiter, LIMITERS.length, WINDOW_S);
+  const shares = sharesOf(live.plots, Column.speed_limiter, LIMITERS.length, WINDOW_S);
   return (
     <section class="block limiter" aria-label="What limits the speed">
       <h2>What limits the speed</h2>
@@ -50,7 +50,7 @@ function Limiter() {
       <CanvasView
         label="What limited the speed in the last 20 seconds"
         paint={paintLimiterStrip(WINDOW_S)}
-        version={() => live.plots.newest(Column.time)}
+        version={() => live.plots.newest(Column.time_s)}
         interval={100}
         tall="22px"
       />
@@ -72,7 +72,7 @@ function Constraints() {
   const names = run.value?.constraint_names ?? [];
   const frame = shown.value;
   if (names.length === 0) return null;
-  const shares = bitSharesOf(live.plots, Column.activeNow, names.length, WINDOW_S);
+  const shares = bitSharesOf(live.plots, Column.active_now, names.length, WINDOW_S);
   return (
     <section class="block" aria-label="Constraints">
       <h2>Constraints</h2>
@@ -168,7 +168,7 @@ function Prediction() {
           <CanvasView
             label="The plan of one second ago and the path driven since"
             paint={paintPrediction}
-            version={() => live.plots.newest(Column.time)}
+            version={() => live.plots.newest(Column.time_s)}
             tall="96px"
           />
         </div>
@@ -176,12 +176,12 @@ function Prediction() {
           <p class="soft">
             Distance of the car from its predicted position, one delay and one step later:{' '}
             <b data-testid="prediction-error">{fixed(error * 100, 1)}</b> cm, RMS{' '}
-            {fixed(rmsOf(live.plots, Column.predictionError, WINDOW_S) * 100, 1)} cm
+            {fixed(rmsOf(live.plots, Column.prediction_error_m, WINDOW_S) * 100, 1)} cm
           </p>
           <CanvasView
             label="Prediction error in the last 20 seconds"
-            paint={paintSparkline(Column.predictionError, WINDOW_S)}
-            version={() => live.plots.newest(Column.time)}
+            paint={paintSparkline(Column.prediction_error_m, WINDOW_S)}
+            version={() => live.plots.newest(Column.time_s)}
             interval={100}
             tall="56px"
           />

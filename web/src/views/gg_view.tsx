@@ -15,7 +15,7 @@ const G = 9.80665; // standard gravity [m/s²]
  * the car; on a straight most of it balances the drag. Not-a-number elsewhere, and where the use is not known.
  */
 export function gripRadius(lateral: number, frontUse: number, rearUse: number): number {
-  const use = Math.max(frontUse, rearUse) / 100;
+  const use = Math.max(frontUse, rearUse);
   return use > 0.5 && Math.abs(lateral) > 3 ? Math.abs(lateral) / use : NaN;
 }
 
@@ -24,11 +24,11 @@ let radius = NaN; // smoothed [g]
 function paint(context: CanvasRenderingContext2D, width: number, height: number): void {
   const colours = chartColours();
   const history = plotted();
-  const times = history.column(Column.time);
+  const times = history.column(Column.time_s);
   const [from, to] = timeRange();
   const [first, end] = [firstSince(times, from), firstSince(times, to + 1e-9)];
-  const across = history.column(Column.lateralAcceleration).subarray(first, end);
-  const along = history.column(Column.longitudinalAcceleration).subarray(first, end);
+  const across = history.column(Column.lateral_acceleration_mps2).subarray(first, end);
+  const along = history.column(Column.longitudinal_acceleration_mps2).subarray(first, end);
   const reach = Math.max(...[across, along].flatMap((values) => (extent(values) ?? [0, 0]).map(Math.abs))) / G;
   const scale = niceCeil(Math.max(0.5, reach * 1.08));
   const [middleX, middleY] = [width / 2, height / 2];
@@ -97,7 +97,8 @@ function drawTrail(
 function drawGrip(context: CanvasRenderingContext2D, x: number, y: number, pixels: number, row: number): void {
   const history = plotted();
   const value = (column: number): number => history.column(column)[row] ?? NaN;
-  const now = gripRadius(value(Column.lateralAcceleration), value(Column.frontTireUse), value(Column.rearTireUse)) / G;
+  const now =
+    gripRadius(value(Column.lateral_acceleration_mps2), value(Column.front_tire_use), value(Column.rear_tire_use)) / G;
   if (Number.isFinite(now)) radius = Number.isFinite(radius) ? radius + (now - radius) * 0.2 : now;
   if (!Number.isFinite(radius)) return;
   context.beginPath();
@@ -135,7 +136,7 @@ export function GgView() {
       <CanvasView
         label="Acceleration across against along the car, with the circle of grip"
         paint={paint}
-        version={() => `${plotted().newest(Column.time)} ${timeRange().join()} ${isFrozen.value} ${cursorTime.value}`}
+        version={() => `${plotted().newest(Column.time_s)} ${timeRange().join()} ${isFrozen.value} ${cursorTime.value}`}
         interval={100}
       />
     </section>

@@ -9,8 +9,8 @@ export const paintLimiterStrip =
   (seconds: number): Paint =>
   (context, width, height) => {
     const colours = chartColours();
-    const times = live.plots.column(Column.time);
-    const limiters = live.plots.column(Column.limiter);
+    const times = live.plots.column(Column.time_s);
+    const limiters = live.plots.column(Column.speed_limiter);
     const end = times.at(-1) ?? 0;
     const x = (time: number): number => width * (1 - (end - time) / seconds);
     for (let i = rowsSince(live.plots, seconds); i < times.length; ) {

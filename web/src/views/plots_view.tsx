@@ -15,14 +15,17 @@ import { type PlotSpec, TimePlot } from './time_plot';
 /** One meaning, one colour in all plots: applied blue, asked orange, sent green. */
 const [APPLIED, ASKED, SENT, LIMIT] = [0, 1, 2, 4];
 
+/** From the units of a frame. */
+const [DEGREES, PERCENT] = [180 / Math.PI, 100];
+
 const speedSpec = ({ name, perMps, axisStep, axisLeast }: SpeedUnit): PlotSpec => ({
   title: 'Speed',
   unit: name,
   decimals: 1,
   series: [
-    { column: Column.speedLimit, label: 'limit', colour: LIMIT, factor: perMps },
-    { column: Column.speedReference, label: 'ref.', colour: ASKED, isDashed: true, factor: perMps },
-    { column: Column.speed, label: 'driven', colour: APPLIED, factor: perMps },
+    { column: Column.speed_limit_mps, label: 'limit', colour: LIMIT, factor: perMps },
+    { column: Column.speed_reference_mps, label: 'ref.', colour: ASKED, isDashed: true, factor: perMps },
+    { column: Column.speed_mps, label: 'driven', colour: APPLIED, factor: perMps },
   ],
   range: (columns) => rangeInSteps(columns.slice(1), axisStep, axisLeast),
 });
@@ -32,14 +35,14 @@ const BEFORE_COST: readonly PlotSpec[] = [
     title: 'Lateral error',
     unit: 'm, + left',
     decimals: 2,
-    series: [{ column: Column.lateralError, label: 'car', colour: APPLIED }],
+    series: [{ column: Column.lateral_error_m, label: 'car', colour: APPLIED }],
     range: (columns) => rangeAboutZero(columns, 0.5),
   },
   {
     title: 'Heading error',
     unit: '°, + left',
     decimals: 1,
-    series: [{ column: Column.headingError, label: 'car', colour: APPLIED }],
+    series: [{ column: Column.heading_error_rad, label: 'car', colour: APPLIED, factor: DEGREES }],
     range: (columns) => rangeAboutZero(columns, 2),
   },
   {
@@ -47,9 +50,9 @@ const BEFORE_COST: readonly PlotSpec[] = [
     unit: '°, + left',
     decimals: 1,
     series: [
-      { column: Column.steerSent, label: 'sent', colour: SENT },
-      { column: Column.steerAsked, label: 'asked', colour: ASKED, isDashed: true },
-      { column: Column.steerApplied, label: 'applied', colour: APPLIED },
+      { column: Column.steer_sent_rad, label: 'sent', colour: SENT, factor: DEGREES },
+      { column: Column.steer_asked_rad, label: 'asked', colour: ASKED, isDashed: true, factor: DEGREES },
+      { column: Column.steer_applied_rad, label: 'applied', colour: APPLIED, factor: DEGREES },
     ],
     range: (columns) => rangeAboutZero(columns, 2),
   },
@@ -58,9 +61,9 @@ const BEFORE_COST: readonly PlotSpec[] = [
     unit: '%, − brakes',
     decimals: 0,
     series: [
-      { column: Column.driveSent, label: 'sent', colour: SENT },
-      { column: Column.driveAsked, label: 'asked', colour: ASKED, isDashed: true },
-      { column: Column.driveApplied, label: 'applied', colour: APPLIED },
+      { column: Column.throttle_sent, label: 'sent', colour: SENT, factor: PERCENT },
+      { column: Column.throttle_asked, label: 'asked', colour: ASKED, isDashed: true, factor: PERCENT },
+      { column: Column.throttle_applied, label: 'applied', colour: APPLIED, factor: PERCENT },
     ],
     range: () => [-105, 105],
   },
@@ -69,8 +72,8 @@ const BEFORE_COST: readonly PlotSpec[] = [
     unit: '%, over 100 slides',
     decimals: 0,
     series: [
-      { column: Column.frontTireUse, label: 'front', colour: APPLIED },
-      { column: Column.rearTireUse, label: 'rear', colour: ASKED },
+      { column: Column.front_tire_use, label: 'front', colour: APPLIED, factor: PERCENT },
+      { column: Column.rear_tire_use, label: 'rear', colour: ASKED, factor: PERCENT },
     ],
     range: (columns) => rangeFromZero(columns, 110),
   },
@@ -89,7 +92,7 @@ const AFTER_COST: readonly PlotSpec[] = [
     title: 'Control step',
     unit: 'ms',
     decimals: 2,
-    series: [{ column: Column.stepTime, label: 'taken', colour: APPLIED }],
+    series: [{ column: Column.step_time_us, label: 'taken', colour: APPLIED, factor: 1e-3 }],
     range: (columns) => rangeFromZero(columns, 0.5),
   },
 ];

@@ -15,8 +15,10 @@ export function gravity(status: number, rung: number, isGated: number): 0 | 1 | 
 /** A band at the foot of a plot: green while the controller's answer was optimal and went through unchanged. */
 export function drawStatusStrip(plot: uPlot, colours: ChartColours): void {
   const history = plotted();
-  const times = history.column(Column.time);
-  const [statuses, rungs, gated] = [Column.status, Column.rung, Column.isGated].map((column) => history.column(column));
+  const times = history.column(Column.time_s);
+  const [statuses, rungs, gated] = [Column.solve_status, Column.rung, Column.is_gated].map((column) =>
+    history.column(column),
+  );
   const { left, top, width, height } = plot.bbox;
   const tall = HEIGHT * devicePixelRatio;
   const look = [colours.good, colours.warning, colours.bad];

@@ -56,13 +56,13 @@ const timeLabel = (time: number, last: number): string =>
 /** Time and the columns of a plot, over the time its axis shows and one point more on each side. */
 function dataOf(spec: PlotSpec): Float64Array[] {
   const history = plotted();
-  const times = history.column(Column.time);
+  const times = history.column(Column.time_s);
   const [from, to] = timeRange();
   const first = Math.max(0, firstSince(times, from) - 1);
   const end = firstSince(times, to) + 2;
   const part = (column: number): Float64Array => history.column(column).subarray(first, end);
   return [
-    part(Column.time),
+    part(Column.time_s),
     ...spec.series.map(({ column, factor = 1 }) =>
       factor === 1 ? part(column) : part(column).map((value) => value * factor),
     ),
@@ -166,7 +166,7 @@ export function readout(column: number): number {
   const history = plotted();
   const time = cursorTime.value;
   if (time === null) return history.newest(column);
-  const at = firstSince(history.column(Column.time), time - 1e-9);
+  const at = firstSince(history.column(Column.time_s), time - 1e-9);
   return history.column(column)[at] ?? NaN;
 }
 
@@ -195,7 +195,7 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
     const box = onScreen(element, fit);
     let last = performance.now() - (PACE_MS / PHASES) * (made++ % PHASES);
     const stop = everyFrame((now) => {
-      const newest = plotted().newest(Column.time);
+      const newest = plotted().newest(Column.time_s);
       // Half a repaint of tolerance, as in everyFrame().
       if (Object.is(newest, drawn) || !box.isSeen || now - last < paceOf(plot) - 8) return;
       drawn = newest;

@@ -1,0 +1,471 @@
+// Messages of chicane_msgs as this page reads them. Made from their definitions, which follow from
+// src/chicane/protocol/frame_fields.cpp and detail/ros_schemas.hpp; do not edit. Renewed by
+// cmake --build --preset release --target renew_fixtures
+
+export interface Stamp {
+  sec: number;
+  nsec: number;
+}
+
+/**
+ * chicane_msgs/msg/Frame. One control cycle. SI units and radians; left, counter-clockwise and forward are positive.
+ * Not-a-number: unknown.
+ */
+export interface Frame {
+  stamp: Stamp;
+  cycle: bigint;
+  /** of the measurement, from the start of the run */
+  time_s: number;
+  /** the motion below is the simulator's truth; else as measured */
+  has_truth: boolean;
+
+  // Motion of the centre of mass
+  x_m: number;
+  y_m: number;
+  yaw_rad: number;
+  /** along the car */
+  vx_mps: number;
+  /** to its left */
+  vy_mps: number;
+  yaw_rate_radps: number;
+  speed_mps: number;
+  longitudinal_acceleration_mps2: number;
+  lateral_acceleration_mps2: number;
+
+  // What the controller was told
+  measured_x_m: number;
+  measured_y_m: number;
+  measured_yaw_rad: number;
+  measured_speed_mps: number;
+
+  // On the road, judged by our simulator, or from what was measured where the track was told; else not-a-number
+  /** along the centre line */
+  s_m: number;
+  lateral_error_m: number;
+  heading_error_rad: number;
+  /** of the outermost tyre to the edge, negative = off the road */
+  edge_distance_m: number;
+  is_off_track: boolean;
+  off_track_events: number;
+  /** laps completed */
+  lap: number;
+  /** of the running lap */
+  lap_time_s: number;
+  /** 0 before the first completed lap */
+  last_lap_time_s: number;
+
+  // Commands: asked by the controller now, before the gate, and acting on the car after the delay
+  steer_asked_rad: number;
+  steer_applied_rad: number;
+  /** [-1, 1], negative brakes */
+  throttle_asked: number;
+  throttle_applied: number;
+
+  // The control step
+  rung: number;
+  solve_status: number;
+  /** the command gate had to change the command */
+  is_gated: boolean;
+  /** the lap is closed in the controller's memory */
+  has_map: boolean;
+  iterations: number;
+  sweeps: number;
+  cost: number;
+  /** of the whole control step, wall clock */
+  step_time_us: number;
+  /** compensated: from measurement to actuation */
+  delay_s: number;
+  speed_reference_mps: number;
+  /** length of known road ahead */
+  sight_m: number;
+  /** from the line the controller follows */
+  tracked_lateral_error_m: number;
+  tracked_heading_error_rad: number;
+
+  // Commands as sent, after the gate
+  steer_sent_rad: number;
+  throttle_sent: number;
+  /** run seconds per second of the clock */
+  pace: number;
+  /** a person drives */
+  is_manual: boolean;
+
+  // Why: price of the plan by term (names: Run.cost_term_names), summed over its stages
+  cost_terms: Float64Array;
+  speed_limiter: number;
+  /** what the speed plan allows where the command acts */
+  speed_limit_mps: number;
+  /** constraints (bits: Run.constraint_names) in the plan's first stage */
+  active_now: number;
+  /** and anywhere in it */
+  active_ahead: number;
+
+  // The simulated car: share of the grip each axle uses, more than 1 slides
+  front_tire_use: number;
+  rear_tire_use: number;
+  /** bits: Run.fault_names */
+  active_faults: number;
+
+  // The solver's own judgement
+  /** largest step a projected gradient would still take */
+  stationarity: number;
+  /** largest violation of a soft constraint */
+  violation: number;
+  /** where it is, -1 nowhere */
+  worst_stage: number;
+  worst_constraint: number;
+  /** of the car now from where plans said, one delay and one period ago */
+  prediction_error_m: number;
+}
+
+/** Frame.rung */
+export const RUNG = {
+  /** the controller's own answer */
+  CONTROLLER: 0,
+  /** the last usable plan, at the time that has come */
+  SHIFTED_PLAN: 1,
+  /** steering along the last plan's path, gentle braking */
+  HOLD_AND_BRAKE: 2,
+  /** the same steering, all useful braking */
+  BRAKE: 3,
+} as const;
+
+/** Frame.solve_status */
+export const STATUS = {
+  OPTIMAL: 0,
+  BUDGET_SPENT: 1,
+  STALLED: -1,
+  INFEASIBLE: -2,
+  NOT_FINITE: -3,
+} as const;
+
+/** Frame.speed_limiter */
+export const SPEED_LIMITER = {
+  /** nothing that is known */
+  NONE: 0,
+  /** the speed asked for is reached */
+  ASKED: 1,
+  /** tyre grip in the bend */
+  CURVATURE: 2,
+  /** braking for a slower place ahead */
+  BRAKING: 3,
+  /** throttle at its bound, or the drive out of the last bend */
+  POWER: 4,
+  /** road known too short */
+  SIGHT: 5,
+} as const;
+
+/** What a Frame says when nothing is known. */
+export const UNKNOWN_FRAME: Frame = {
+  stamp: { sec: 0, nsec: 0 },
+  cycle: 0n,
+  time_s: NaN,
+  has_truth: false,
+  x_m: NaN,
+  y_m: NaN,
+  yaw_rad: NaN,
+  vx_mps: NaN,
+  vy_mps: NaN,
+  yaw_rate_radps: NaN,
+  speed_mps: NaN,
+  longitudinal_acceleration_mps2: NaN,
+  lateral_acceleration_mps2: NaN,
+  measured_x_m: NaN,
+  measured_y_m: NaN,
+  measured_yaw_rad: NaN,
+  measured_speed_mps: NaN,
+  s_m: NaN,
+  lateral_error_m: NaN,
+  heading_error_rad: NaN,
+  edge_distance_m: NaN,
+  is_off_track: false,
+  off_track_events: 0,
+  lap: 0,
+  lap_time_s: NaN,
+  last_lap_time_s: NaN,
+  steer_asked_rad: NaN,
+  steer_applied_rad: NaN,
+  throttle_asked: NaN,
+  throttle_applied: NaN,
+  rung: 0,
+  solve_status: 0,
+  is_gated: false,
+  has_map: false,
+  iterations: 0,
+  sweeps: 0,
+  cost: NaN,
+  step_time_us: NaN,
+  delay_s: NaN,
+  speed_reference_mps: NaN,
+  sight_m: NaN,
+  tracked_lateral_error_m: NaN,
+  tracked_heading_error_rad: NaN,
+  steer_sent_rad: NaN,
+  throttle_sent: NaN,
+  pace: NaN,
+  is_manual: false,
+  cost_terms: new Float64Array(),
+  speed_limiter: 0,
+  speed_limit_mps: NaN,
+  active_now: 0,
+  active_ahead: 0,
+  front_tire_use: NaN,
+  rear_tire_use: NaN,
+  active_faults: 0,
+  stationarity: NaN,
+  violation: NaN,
+  worst_stage: -1,
+  worst_constraint: -1,
+  prediction_error_m: NaN,
+};
+
+/** The numbers of a frame, and what is yes or no, in its order. */
+export const FRAME_NUMBERS = [
+  'time_s',
+  'has_truth',
+  'x_m',
+  'y_m',
+  'yaw_rad',
+  'vx_mps',
+  'vy_mps',
+  'yaw_rate_radps',
+  'speed_mps',
+  'longitudinal_acceleration_mps2',
+  'lateral_acceleration_mps2',
+  'measured_x_m',
+  'measured_y_m',
+  'measured_yaw_rad',
+  'measured_speed_mps',
+  's_m',
+  'lateral_error_m',
+  'heading_error_rad',
+  'edge_distance_m',
+  'is_off_track',
+  'off_track_events',
+  'lap',
+  'lap_time_s',
+  'last_lap_time_s',
+  'steer_asked_rad',
+  'steer_applied_rad',
+  'throttle_asked',
+  'throttle_applied',
+  'rung',
+  'solve_status',
+  'is_gated',
+  'has_map',
+  'iterations',
+  'sweeps',
+  'cost',
+  'step_time_us',
+  'delay_s',
+  'speed_reference_mps',
+  'sight_m',
+  'tracked_lateral_error_m',
+  'tracked_heading_error_rad',
+  'steer_sent_rad',
+  'throttle_sent',
+  'pace',
+  'is_manual',
+  'speed_limiter',
+  'speed_limit_mps',
+  'active_now',
+  'active_ahead',
+  'front_tire_use',
+  'rear_tire_use',
+  'active_faults',
+  'stationarity',
+  'violation',
+  'worst_stage',
+  'worst_constraint',
+  'prediction_error_m',
+] as const;
+
+/**
+ * chicane_msgs/msg/Plan. What the controller intends: predicted motion of the centre of mass with its commands, all
+ * arrays of the same length; element 0 is where the first command acts.
+ */
+export interface Plan {
+  stamp: Stamp;
+  time_s: Float64Array;
+  x_m: Float64Array;
+  y_m: Float64Array;
+  yaw_rad: Float64Array;
+  speed_mps: Float64Array;
+  steer_rad: Float64Array;
+  throttle: Float64Array;
+}
+
+/** What a Plan says when nothing is known. */
+export const UNKNOWN_PLAN: Plan = {
+  stamp: { sec: 0, nsec: 0 },
+  time_s: new Float64Array(),
+  x_m: new Float64Array(),
+  y_m: new Float64Array(),
+  yaw_rad: new Float64Array(),
+  speed_mps: new Float64Array(),
+  steer_rad: new Float64Array(),
+  throttle: new Float64Array(),
+};
+
+/** chicane_msgs/msg/Run. What is running: constant until something is chosen anew. */
+export interface Run {
+  track: string;
+  /** 0 = unknown */
+  track_length_m: number;
+  is_closed: boolean;
+  controller: string;
+  preset: string;
+  /** artificial, from command to actuation */
+  latency_s: number;
+  control_period_s: number;
+  is_paused: boolean;
+
+  // The car, as the controller believes it
+  car: string;
+  /** centre of mass to front axle */
+  front_axle_m: number;
+  /** centre of mass to rear axle */
+  rear_axle_m: number;
+  /** between the wheels of an axle */
+  track_width_m: number;
+  tire_width_m: number;
+  body_length_m: number;
+  body_width_m: number;
+  steer_limit_rad: number;
+  /** "drive": our simulator; "serve": an external one */
+  mode: string;
+  /** of Frame.cost_terms */
+  cost_term_names: string[];
+  /** of the bits of Frame.active_now and active_ahead, from the lowest */
+  constraint_names: string[];
+  /** of the bits of Frame.active_faults */
+  fault_names: string[];
+  /** drivable, outside each edge */
+  kerb_width_m: number;
+  /** another run that is being built: "track = oval"; empty: none */
+  building: string;
+}
+
+/** What a Run says when nothing is known. */
+export const UNKNOWN_RUN: Run = {
+  track: '',
+  track_length_m: NaN,
+  is_closed: false,
+  controller: '',
+  preset: '',
+  latency_s: NaN,
+  control_period_s: NaN,
+  is_paused: false,
+  car: '',
+  front_axle_m: NaN,
+  rear_axle_m: NaN,
+  track_width_m: NaN,
+  tire_width_m: NaN,
+  body_length_m: NaN,
+  body_width_m: NaN,
+  steer_limit_rad: NaN,
+  mode: '',
+  cost_term_names: [],
+  constraint_names: [],
+  fault_names: [],
+  kerb_width_m: NaN,
+  building: '',
+};
+
+/** chicane_msgs/msg/Lap. One completed lap, sent when it is. */
+export interface Lap {
+  /** its number, from 1 */
+  lap: number;
+  lap_time_s: number;
+  /** thirds of the lap */
+  sector_times_s: Float64Array;
+  /** no tyre left the road */
+  is_clean: boolean;
+  mean_speed_mps: number;
+  top_speed_mps: number;
+  /** of the outermost tyre, negative = off the road */
+  min_edge_distance_m: number;
+  rms_lateral_error_m: number;
+  /** lap time over the limit's, minus 100 %; not-a-number while unknown */
+  gap_to_limit_percent: number;
+  /** the same for the thirds */
+  sector_gaps_to_limit_percent: Float64Array;
+}
+
+/** What a Lap says when nothing is known. */
+export const UNKNOWN_LAP: Lap = {
+  lap: 0,
+  lap_time_s: NaN,
+  sector_times_s: new Float64Array(3).fill(NaN),
+  is_clean: false,
+  mean_speed_mps: NaN,
+  top_speed_mps: NaN,
+  min_edge_distance_m: NaN,
+  rms_lateral_error_m: NaN,
+  gap_to_limit_percent: NaN,
+  sector_gaps_to_limit_percent: new Float64Array(3).fill(NaN),
+};
+
+/** chicane_msgs/msg/Change. A setting that changed during the run, before this control cycle. */
+export interface Change {
+  stamp: Stamp;
+  cycle: bigint;
+  /** key as in YAML and --set: "latency_ms" */
+  name: string;
+  /** as --set takes it */
+  value: string;
+}
+
+/** What a Change says when nothing is known. */
+export const UNKNOWN_CHANGE: Change = {
+  stamp: { sec: 0, nsec: 0 },
+  cycle: 0n,
+  name: '',
+  value: '',
+};
+
+/**
+ * chicane_msgs/msg/Limit. The physical limit of this road for this car: the fastest lap of the model in docs/limit.md
+ * and its line, arrays of the same length by rising time from the start line, the last point the first one again.
+ */
+export interface Limit {
+  /** false: see why_not; the rest is empty */
+  is_known: boolean;
+  lap_time_s: number;
+  /** thirds of the lap, from the start line */
+  sector_times_s: Float64Array;
+  /** along the centre line from its beginning */
+  s_m: Float64Array;
+  /** of the centre of mass */
+  x_m: Float64Array;
+  y_m: Float64Array;
+  /** to the left of the centre line */
+  n_m: Float64Array;
+  speed_mps: Float64Array;
+  longitudinal_acceleration_mps2: Float64Array;
+  /** positive to the left */
+  lateral_acceleration_mps2: Float64Array;
+  /** since the start line */
+  time_s: Float64Array;
+  /** in one sentence, while is_known is false */
+  why_not: string;
+  /** it holds for laps from this one on: before, grip or mass were others */
+  first_lap: number;
+}
+
+/** What a Limit says when nothing is known. */
+export const UNKNOWN_LIMIT: Limit = {
+  is_known: false,
+  lap_time_s: NaN,
+  sector_times_s: new Float64Array(3).fill(NaN),
+  s_m: new Float64Array(),
+  x_m: new Float64Array(),
+  y_m: new Float64Array(),
+  n_m: new Float64Array(),
+  speed_mps: new Float64Array(),
+  longitudinal_acceleration_mps2: new Float64Array(),
+  lateral_acceleration_mps2: new Float64Array(),
+  time_s: new Float64Array(),
+  why_not: '',
+  first_lap: 0,
+};
