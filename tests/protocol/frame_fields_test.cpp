@@ -4,57 +4,23 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <map>
 #include <regex>
 #include <set>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "protocol/cdr_reader.hpp"
+#include "protocol/decoded_frame.hpp"
 #include "protocol/message_definition.hpp"
 #include "protocol/viewer_samples.hpp"
 
 namespace chicane::protocol {
 namespace {
 
-using test::CdrReader;
+using test::decoded;
 using test::MessageLine;
-using Values = std::map<std::string, std::vector<double>>;
-
-std::string encode(const telemetry::Frame& frame) {
-  return ros_topics().front().encode(frame, samples::run());
-}
-
-double read_one(CdrReader& reader, const std::string& type) {
-  if (type == "bool") return reader.get<std::uint8_t>();
-  if (type == "int8") return reader.get<std::int8_t>();
-  if (type == "uint8") return reader.get<std::uint8_t>();
-  if (type == "int32") return reader.get<std::int32_t>();
-  if (type == "uint32") return reader.get<std::uint32_t>();
-  if (type == "uint64") return static_cast<double>(reader.get<std::uint64_t>());
-  if (type == "builtin_interfaces/Time") return reader.seconds();
-  EXPECT_EQ(type, "float64");
-  return reader.number();
-}
-
-/// The fields of a frame by name, read as the definition says that is sent with it.
-Values decoded(const telemetry::Frame& frame) {
-  const std::string bytes = encode(frame);
-  CdrReader reader{bytes};
-  Values values;
-  for (const MessageLine& line : test::message_lines(ros_schema("chicane_msgs/msg/Frame"))) {
-    if (!line.constant.empty()) continue;
-    EXPECT_FALSE(values.contains(line.name)) << line.name << " stands twice";
-    const std::uint32_t count = line.array.empty() ? 1 : reader.get<std::uint32_t>();
-    std::vector<double>& elements = values[line.name];
-    for (std::uint32_t i = 0; i < count; ++i) elements.push_back(read_one(reader, line.type));
-  }
-  EXPECT_TRUE(reader.is_at_end());
-  return values;
-}
+using test::Values;
 
 void expect_values(const Values& values, const Values& expected) {
   for (const auto& [name, numbers] : expected) {
