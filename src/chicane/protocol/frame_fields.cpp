@@ -72,7 +72,7 @@ const solver::SolveReport& solve(const Frame& frame) { return frame.result.repor
 
 constexpr std::array kTime{
     field<Stamp>("stamp", "", [](const Frame& f) { return Stamp{f.time}; }),
-    field<std::uint64_t>("cycle", "", [](const Frame& f) { return f.cycle; }),
+    field<std::uint64_t>("cycle", "number of the control cycle", [](const Frame& f) { return f.cycle; }),
     field<double>("time_s", "of the measurement, from the start of the run",
                   [](const Frame& f) { return f.time; }),
     field<bool>("has_truth", "the motion below is the simulator's truth; else as measured",
@@ -80,34 +80,40 @@ constexpr std::array kTime{
 };
 
 constexpr std::array kMotion{
-    field<double>("x_m", "", [](const Frame& f) { return known_motion(f).x; }),
-    field<double>("y_m", "", [](const Frame& f) { return known_motion(f).y; }),
-    field<double>("yaw_rad", "", [](const Frame& f) { return known_motion(f).psi; }),
+    field<double>("x_m", "in map", [](const Frame& f) { return known_motion(f).x; }),
+    field<double>("y_m", "in map", [](const Frame& f) { return known_motion(f).y; }),
+    field<double>("yaw_rad", "in map, counter-clockwise positive",
+                  [](const Frame& f) { return known_motion(f).psi; }),
     field<double>("vx_mps", "along the car", [](const Frame& f) { return known_motion(f).vx; }),
     field<double>("vy_mps", "to its left", [](const Frame& f) { return known_motion(f).vy; }),
     field<double>("yaw_rate_radps", "", [](const Frame& f) { return known_motion(f).r; }),
-    field<double>("speed_mps", "", [](const Frame& f) { return speed(f); }),
-    field<double>("longitudinal_acceleration_mps2", "",
+    field<double>("speed_mps", "magnitude of the velocity", [](const Frame& f) { return speed(f); }),
+    field<double>("longitudinal_acceleration_mps2", "along the car",
                   [](const Frame& f) { return simulated(f, f.longitudinal_acceleration); }),
-    field<double>("lateral_acceleration_mps2", "",
+    field<double>("lateral_acceleration_mps2", "to its left",
                   [](const Frame& f) { return simulated(f, f.lateral_acceleration); }),
 };
 
 constexpr std::array kMeasured{
-    field<double>("measured_x_m", "", [](const Frame& f) { return f.measurement.x; }),
-    field<double>("measured_y_m", "", [](const Frame& f) { return f.measurement.y; }),
+    field<double>("measured_x_m", "of the centre of mass, in map",
+                  [](const Frame& f) { return f.measurement.x; }),
+    field<double>("measured_y_m", "of the centre of mass, in map",
+                  [](const Frame& f) { return f.measurement.y; }),
     field<double>("measured_yaw_rad", "", [](const Frame& f) { return f.measurement.psi; }),
     field<double>("measured_speed_mps", "", [](const Frame& f) { return f.measurement.speed; }),
 };
 
 constexpr std::array kRoad{
     field<double>("s_m", "along the centre line", [](const Frame& f) { return judged(f, f.s); }),
-    field<double>("lateral_error_m", "", [](const Frame& f) { return f.lateral_error; }),
-    field<double>("heading_error_rad", "", [](const Frame& f) { return f.heading_error; }),
+    field<double>("lateral_error_m", "from the centre line, left positive",
+                  [](const Frame& f) { return f.lateral_error; }),
+    field<double>("heading_error_rad", "yaw minus the direction of the line",
+                  [](const Frame& f) { return f.heading_error; }),
     field<double>("edge_distance_m", "of the outermost tyre to the edge, negative = off the road",
                   [](const Frame& f) { return judged(f, f.edge_distance); }),
     field<bool>("is_off_track", "", [](const Frame& f) { return f.is_off_track; }),
-    field<std::uint32_t>("off_track_events", "", [](const Frame& f) { return f.off_track_events; }),
+    field<std::uint32_t>("off_track_events", "times the car left the road",
+                         [](const Frame& f) { return f.off_track_events; }),
     field<std::uint32_t>("lap", "laps completed", [](const Frame& f) { return f.lap; }),
     field<double>("lap_time_s", "of the running lap", [](const Frame& f) { return judged(f, f.lap_time); }),
     field<double>("last_lap_time_s", "0 before the first completed lap",
@@ -115,7 +121,8 @@ constexpr std::array kRoad{
 };
 
 constexpr std::array kCommands{
-    field<double>("steer_asked_rad", "", [](const Frame& f) { return f.asked.steer; }),
+    field<double>("steer_asked_rad", "angle of the front wheels, left positive",
+                  [](const Frame& f) { return f.asked.steer; }),
     field<double>("steer_applied_rad", "", [](const Frame& f) { return f.applied.steer; }),
     field<double>("throttle_asked", "[-1, 1], negative brakes",
                   [](const Frame& f) { return f.asked.throttle; }),
@@ -147,18 +154,22 @@ constexpr std::array kStep{
                 [](const Frame& f) { return report(f).gated; }),
     field<bool>("has_map", "the lap is closed in the controller's memory",
                 [](const Frame& f) { return report(f).has_map; }),
-    field<std::uint32_t>("iterations", "", [](const Frame& f) { return solve(f).iterations; }),
-    field<std::uint32_t>("sweeps", "", [](const Frame& f) { return solve(f).sweeps; }),
-    field<double>("cost", "", [](const Frame& f) { return solve(f).cost; }),
+    field<std::uint32_t>("iterations", "of the outer (SQP) loop",
+                         [](const Frame& f) { return solve(f).iterations; }),
+    field<std::uint32_t>("sweeps", "Riccati sweeps, changes of the active set included",
+                         [](const Frame& f) { return solve(f).sweeps; }),
+    field<double>("cost", "of the plan", [](const Frame& f) { return solve(f).cost; }),
     field<double>("step_time_us", "of the whole control step, wall clock",
                   [](const Frame& f) { return 1e6 * f.step_time; }),
     field<double>("delay_s", "compensated: from measurement to actuation",
                   [](const Frame& f) { return report(f).delay; }),
-    field<double>("speed_reference_mps", "", [](const Frame& f) { return report(f).speed_reference; }),
+    field<double>("speed_reference_mps", "wanted where the command acts",
+                  [](const Frame& f) { return report(f).speed_reference; }),
     field<double>("sight_m", "length of known road ahead", [](const Frame& f) { return report(f).sight; }),
     field<double>("tracked_lateral_error_m", "from the line the controller follows",
                   [](const Frame& f) { return report(f).lateral_error; }),
-    field<double>("tracked_heading_error_rad", "", [](const Frame& f) { return report(f).heading_error; }),
+    field<double>("tracked_heading_error_rad", "yaw minus the direction of that line",
+                  [](const Frame& f) { return report(f).heading_error; }),
 };
 
 constexpr std::array kSent{
@@ -179,7 +190,8 @@ constexpr std::array kSpeedLimiters{
 };
 
 constexpr std::array kReasons{
-    field<Numbers>("cost_terms", "", [](const Frame& f) { return cost_terms(f); }),
+    field<Numbers>("cost_terms", "of the plan, summed over its stages (names: Run.cost_term_names)",
+                   [](const Frame& f) { return cost_terms(f); }),
     field<std::uint8_t>(
         "speed_limiter", "", [](const Frame& f) { return why(f).speed_limiter; }, kSpeedLimiters),
     field<double>("speed_limit_mps", "what the speed plan allows where the command acts",
@@ -191,8 +203,10 @@ constexpr std::array kReasons{
 };
 
 constexpr std::array kCar{
-    field<double>("front_tire_use", "", [](const Frame& f) { return f.tire_use[0]; }),
-    field<double>("rear_tire_use", "", [](const Frame& f) { return f.tire_use[1]; }),
+    field<double>("front_tire_use", "1 = all of it, more slides",
+                  [](const Frame& f) { return f.tire_use[0]; }),
+    field<double>("rear_tire_use", "1 = all of it, more slides",
+                  [](const Frame& f) { return f.tire_use[1]; }),
     field<std::uint32_t>("active_faults", "bits: Run.fault_names",
                          [](const Frame& f) { return f.active_faults; }),
 };
@@ -204,15 +218,16 @@ constexpr std::array kSolver{
                   [](const Frame& f) { return solve(f).violation; }),
     field<std::int32_t>("worst_stage", "where it is, -1 nowhere",
                         [](const Frame& f) { return solve(f).worst_stage; }),
-    field<std::int32_t>("worst_constraint", "", [](const Frame& f) { return solve(f).worst_constraint; }),
+    field<std::int32_t>("worst_constraint", "its place in Run.constraint_names, -1 none",
+                        [](const Frame& f) { return solve(f).worst_constraint; }),
     field<double>("prediction_error_m", "of the car now from where plans said, one delay and one period ago",
                   [](const Frame& f) { return f.prediction_error; }),
 };
 
 constexpr std::array kGroups{
     FrameGroup{"", kTime},
-    FrameGroup{"Motion of the centre of mass", kMotion},
-    FrameGroup{"What the controller was told", kMeasured},
+    FrameGroup{"Motion of the centre of mass; map is the world, yaw 0 along its x axis", kMotion},
+    FrameGroup{"What the controller was told: the measurement as it came in", kMeasured},
     FrameGroup{"On the road, judged by our simulator, or from what was measured where the track was told; "
                "else not-a-number",
                kRoad},
@@ -221,10 +236,9 @@ constexpr std::array kGroups{
         kCommands},
     FrameGroup{"The control step", kStep},
     FrameGroup{"Commands as sent, after the gate", kSent},
-    FrameGroup{"Why: price of the plan by term (names: Run.cost_term_names), summed over its stages",
-               kReasons},
-    FrameGroup{"The simulated car: share of the grip each axle uses, more than 1 slides", kCar},
-    FrameGroup{"The solver's own judgement", kSolver},
+    FrameGroup{"Why the controller chose this command", kReasons},
+    FrameGroup{"The simulated car: share of its grip that each axle uses; faults that are on", kCar},
+    FrameGroup{"How good the answer is", kSolver},
 };
 
 }  // namespace

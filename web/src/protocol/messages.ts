@@ -13,27 +13,36 @@ export interface Stamp {
  */
 export interface Frame {
   stamp: Stamp;
+  /** number of the control cycle */
   cycle: bigint;
   /** of the measurement, from the start of the run */
   time_s: number;
   /** the motion below is the simulator's truth; else as measured */
   has_truth: boolean;
 
-  // Motion of the centre of mass
+  // Motion of the centre of mass; map is the world, yaw 0 along its x axis
+  /** in map */
   x_m: number;
+  /** in map */
   y_m: number;
+  /** in map, counter-clockwise positive */
   yaw_rad: number;
   /** along the car */
   vx_mps: number;
   /** to its left */
   vy_mps: number;
   yaw_rate_radps: number;
+  /** magnitude of the velocity */
   speed_mps: number;
+  /** along the car */
   longitudinal_acceleration_mps2: number;
+  /** to its left */
   lateral_acceleration_mps2: number;
 
-  // What the controller was told
+  // What the controller was told: the measurement as it came in
+  /** of the centre of mass, in map */
   measured_x_m: number;
+  /** of the centre of mass, in map */
   measured_y_m: number;
   measured_yaw_rad: number;
   measured_speed_mps: number;
@@ -41,11 +50,14 @@ export interface Frame {
   // On the road, judged by our simulator, or from what was measured where the track was told; else not-a-number
   /** along the centre line */
   s_m: number;
+  /** from the centre line, left positive */
   lateral_error_m: number;
+  /** yaw minus the direction of the line */
   heading_error_rad: number;
   /** of the outermost tyre to the edge, negative = off the road */
   edge_distance_m: number;
   is_off_track: boolean;
+  /** times the car left the road */
   off_track_events: number;
   /** laps completed */
   lap: number;
@@ -55,6 +67,7 @@ export interface Frame {
   last_lap_time_s: number;
 
   // Commands: asked by the controller now, before the gate, and acting on the car after the delay
+  /** angle of the front wheels, left positive */
   steer_asked_rad: number;
   steer_applied_rad: number;
   /** [-1, 1], negative brakes */
@@ -68,18 +81,23 @@ export interface Frame {
   is_gated: boolean;
   /** the lap is closed in the controller's memory */
   has_map: boolean;
+  /** of the outer (SQP) loop */
   iterations: number;
+  /** Riccati sweeps, changes of the active set included */
   sweeps: number;
+  /** of the plan */
   cost: number;
   /** of the whole control step, wall clock */
   step_time_us: number;
   /** compensated: from measurement to actuation */
   delay_s: number;
+  /** wanted where the command acts */
   speed_reference_mps: number;
   /** length of known road ahead */
   sight_m: number;
   /** from the line the controller follows */
   tracked_lateral_error_m: number;
+  /** yaw minus the direction of that line */
   tracked_heading_error_rad: number;
 
   // Commands as sent, after the gate
@@ -90,7 +108,8 @@ export interface Frame {
   /** a person drives */
   is_manual: boolean;
 
-  // Why: price of the plan by term (names: Run.cost_term_names), summed over its stages
+  // Why the controller chose this command
+  /** of the plan, summed over its stages (names: Run.cost_term_names) */
   cost_terms: Float64Array;
   speed_limiter: number;
   /** what the speed plan allows where the command acts */
@@ -100,19 +119,22 @@ export interface Frame {
   /** and anywhere in it */
   active_ahead: number;
 
-  // The simulated car: share of the grip each axle uses, more than 1 slides
+  // The simulated car: share of its grip that each axle uses; faults that are on
+  /** 1 = all of it, more slides */
   front_tire_use: number;
+  /** 1 = all of it, more slides */
   rear_tire_use: number;
   /** bits: Run.fault_names */
   active_faults: number;
 
-  // The solver's own judgement
+  // How good the answer is
   /** largest step a projected gradient would still take */
   stationarity: number;
   /** largest violation of a soft constraint */
   violation: number;
   /** where it is, -1 nowhere */
   worst_stage: number;
+  /** its place in Run.constraint_names, -1 none */
   worst_constraint: number;
   /** of the car now from where plans said, one delay and one period ago */
   prediction_error_m: number;
