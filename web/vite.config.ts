@@ -1,7 +1,6 @@
 import { defineConfig } from 'vitest/config';
 
-// The dashboard's files are embedded in the program, so few and small ones are better than many; three.js comes in a
-// file of its own, when 3D is shown.
+// The files are embedded in the program: few and small ones. three.js is in a file of its own, loaded when 3D is shown.
 export default defineConfig({
   base: './',
   esbuild: { jsx: 'automatic', jsxImportSource: 'preact' },
@@ -11,7 +10,7 @@ export default defineConfig({
     reportCompressedSize: false,
     modulePreload: false,
     chunkSizeWarningLimit: 700,
-    // One script for `chicane report`, whose page stands alone.
+    // `chicane report` writes a page with a single script.
     rollupOptions: process.env.CHICANE_REPORT ? { output: { inlineDynamicImports: true } } : {},
   },
   server: {
@@ -26,5 +25,5 @@ export default defineConfig({
       },
     },
   },
-  test: { include: ['src/**/*.test.ts'], testTimeout: 60_000 }, // a busy machine is slow but not wrong
+  test: { include: ['src/**/*.test.ts'], testTimeout: 60_000 }, // for busy machines
 });

@@ -212,7 +212,7 @@ describe('the workbench', () => {
     await dashboard.until(() => dashboard.number('prediction-error'), Number.isFinite, 'prediction error');
   });
 
-  it('shows the plan of a second ago beside what came of it, for who wants it', async () => {
+  it('shows the plan of a second ago and the path driven since, when asked to', async () => {
     const pink = () =>
       page.locator('canvas.map-2d').evaluate((canvas) => {
         const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });

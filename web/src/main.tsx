@@ -12,14 +12,14 @@ import { call, refresh } from './state/operate';
 import { toggleFrozen } from './state/plot_view';
 import { isPaused } from './state/run';
 import { schema } from './state/settings';
-import { beginSettings, refreshWhenChosenAnew, takeSettings } from './state/settings_session';
+import { beginSettings, refreshOnNewChoice, takeSettings } from './state/settings_session';
 import { refreshText } from './state/shown';
 import { everyFrame } from './state/ticker';
-import { AnewView } from './views/anew_view';
 import { changePace } from './views/drive_view';
 import { HeaderView } from './views/header_view';
 import { HelpView, isHelpOpen } from './views/help_view';
 import { handBack, listenToDriver, toggleManual } from './views/manual_view';
+import { RestartView } from './views/restart_view';
 import { nextView, toggleDimension, zoom } from './views/track_view';
 import { focusSearch } from './views/tune_view';
 import { isPanelAlone, TABS, tab, toggleDock, WorkbenchView } from './views/workbench_view';
@@ -31,7 +31,7 @@ async function loadSchema(): Promise<void> {
     const answer = await fetch('schema.json');
     schema.value = answer.ok ? readSchema(await answer.json()) : [];
   } catch {
-    schema.value = []; // the connection's own banner tells what is wrong
+    schema.value = []; // the banner of the connection shows what is wrong
   }
 }
 
@@ -64,7 +64,7 @@ function live(): Source {
 }
 
 void begin(live);
-refreshWhenChosenAnew(refresh);
+refreshOnNewChoice(refresh);
 listenToDriver();
 
 addShortcuts(
@@ -158,7 +158,7 @@ function App() {
       {TimelineView && <TimelineView />}
       <WorkbenchView />
       <HelpView />
-      <AnewView />
+      <RestartView />
     </>
   );
 }

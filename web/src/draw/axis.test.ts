@@ -33,7 +33,7 @@ describe('axes', () => {
     expect(secondsBack(33, 20, 5)).toEqual([13, 18, 23, 28, 33]);
   });
 
-  it('know where nothing was heard', () => {
+  it('find gaps without data', () => {
     const times = [0, 0.04, 0.08, 2, 2.04, 9, 9.9];
     expect(silencesIn(times, 0, 6, 1)).toEqual([
       [0.08, 2],

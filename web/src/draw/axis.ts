@@ -2,13 +2,13 @@ import { extent, niceCeil } from '../lib/math';
 
 const HEADROOM = 1.06; // lines do not touch the frame
 
-/** From 0 to a round number above all values, at least `least`: an axis that seldom changes. */
+/** From 0 to a round number above all values, at least `least`: the axis seldom changes. */
 export function rangeFromZero(values: readonly ArrayLike<number>[], least: number): [number, number] {
   const high = Math.max(0, ...values.map((column) => extent(column)?.[1] ?? 0));
   return [0, niceCeil(Math.max(least, HEADROOM * high))];
 }
 
-/** Around all values in whole steps, at least `least` tall: for values far from 0. */
+/** Around all values in whole steps, at least `least` high: for values far from 0. */
 export function rangeInSteps(values: readonly ArrayLike<number>[], step: number, least: number): [number, number] {
   const extents = values.flatMap((column) => extent(column) ?? []);
   if (extents.length === 0) return [0, least];
@@ -27,7 +27,7 @@ export function rangeAboutZero(values: readonly ArrayLike<number>[], least: numb
   return [-end, end];
 }
 
-/** Index of the first of these rising times that is not before `since`. */
+/** Index of the first of these ascending times that is not before `since`. */
 export function firstSince(times: ArrayLike<number>, since: number): number {
   let [low, high] = [0, times.length];
   while (low < high) {
@@ -38,7 +38,7 @@ export function firstSince(times: ArrayLike<number>, since: number): number {
   return low;
 }
 
-/** From when to when nothing was heard for more than `longest`, among the rising times first to last. */
+/** The gaps of more than `longest` between ascending times, among those from first to last. */
 export function silencesIn(times: ArrayLike<number>, first: number, last: number, longest: number): [number, number][] {
   const silences: [number, number][] = [];
   for (let i = first + 1; i <= last; ++i) {
@@ -48,6 +48,6 @@ export function silencesIn(times: ArrayLike<number>, first: number, last: number
   return silences;
 }
 
-/** The last `seconds` up to `now`, in whole steps back from now: grid lines that stand still while time runs. */
+/** Ticks for the last `seconds` up to `now`, in whole steps back from now, so that the grid does not move. */
 export const secondsBack = (now: number, seconds: number, step: number): number[] =>
   Array.from({ length: Math.floor(seconds / step) + 1 }, (_, i) => now - seconds + i * step);

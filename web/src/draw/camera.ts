@@ -25,7 +25,7 @@ export function project(camera: Camera, point: Point): Point {
 
 /** A box of the world, along its axes, that holds all that a picture of this size shows. */
 export function worldInView(camera: Camera, width: number, height: number): Box {
-  // The transform mirrors and turns: but for its scale it is its own inverse.
+  // The transform is a reflection: except for its scale it is its own inverse.
   const [cos, sin] = [Math.cos(camera.rotation) / camera.scale, Math.sin(camera.rotation) / camera.scale];
   const [left, right, top, bottom] = [-camera.at.x, width - camera.at.x, -camera.at.y, height - camera.at.y];
   const xs = [cos * left, cos * right].flatMap((x) => [x - sin * top, x - sin * bottom]);
@@ -47,7 +47,7 @@ export function fitting(box: Box, width: number, height: number, margin: number)
   };
 }
 
-const FOOT = 84; // of the picture, where its legend lies [px]
+const FOOT = 84; // height of the legend at the bottom [px]
 
 /** The car below the middle and above the legend, looking up the screen; `heading` is a smoothed yaw. */
 export function behind(car: Point, heading: number, width: number, height: number, metresAcross: number): Camera {
@@ -72,7 +72,7 @@ export function above(car: Point, width: number, height: number, metresAcross: n
 /** Lines of a square grid that cover the view: 40 px apart or more, at multiples of 5, 10, 20, 40 … metres. */
 export function groundGrid(camera: Camera, width: number, height: number): { spacing: number; from: Point; to: Point } {
   const spacing = 5 * 2 ** Math.max(0, Math.ceil(Math.log2(40 / camera.scale / 5)));
-  // However the view is turned, it lies within this distance of the point that the camera looks at.
+  // For any rotation the view lies within this distance of the point that the camera looks at.
   const reach =
     Math.hypot(Math.max(camera.at.x, width - camera.at.x), Math.max(camera.at.y, height - camera.at.y)) / camera.scale;
   const { x, y } = camera.centre;

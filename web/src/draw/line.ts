@@ -20,7 +20,7 @@ export function lengthsOf({ x, y }: Line): Float64Array {
   return lengths;
 }
 
-/** The longest way from one point of a line to the next; a longer one than `most` is a jump and does not count [m]. */
+/** The longest step between neighbouring points of a line; steps of more than `most` are jumps and do not count [m]. */
 export function longestStep({ x, y }: Line, most = Infinity): number {
   let longest = 0;
   for (let i = 1; i < x.length; ++i) {

@@ -8,26 +8,26 @@ import { addLine, type Line, lengthsOf, lineOf, longestStep, stretchesInside } f
 import { speedColour } from './speed_colour';
 import type { Theme } from './theme';
 
-/** Everything one picture of the map is made of; lengths in metres, angles in radians, in W. */
+/** The content of one picture of the map; lengths in metres, angles in radians, in W. */
 export interface Scene {
   readonly road: RoadShape | null;
   readonly racingLine: Limit | null; // of the fastest lap possible
   readonly reference: readonly Point[];
   readonly trace: Line; // where the car has been
   readonly plan: Plan | null;
-  readonly speedScale: number; // the speed that has the last colour [m/s]
-  readonly hindsight: Hindsight | null; // what was predicted, beside what came
+  readonly speedScale: number; // the speed at the end of the colour scale [m/s]
+  readonly hindsight: Hindsight | null; // a past plan and the path driven since
   readonly ghost: Pose | null; // drawn in the car's shape
   readonly car: { x: number; y: number; yaw: number; isBraking: boolean; shape: CarShape } | null;
 }
 
-/** A road's lines, with as many points each, across from one another. */
+/** A road's lines with equally many points; points of equal index are opposite each other. */
 export interface RoadShape {
   readonly left: Line;
   readonly right: Line;
   readonly centre: Line;
   readonly lengths: Float64Array; // of the centre up to each point [m]
-  readonly reach: number; // what is farther from a point of the centre belongs to another one [m]
+  readonly reach: number; // longest step plus largest half width: the margin for clipping to the view [m]
 }
 
 export function roadShape(road: RoadLines): RoadShape | null {
@@ -58,8 +58,8 @@ function stroke(ctx: Context, path: Path2D, colour: string, width: number): void
 }
 
 /**
- * A square grid on the ground, so that speed is seen where there is no road either. Line by line: as one path, whose
- * pieces cross all over the picture, it took a tenth of a core where the processor draws.
+ * A square grid on the ground, which shows speed off the road too. Stroked line by line: as one path of crossing lines
+ * it took a tenth of a core with software rendering.
  */
 function drawGround(ctx: Context, camera: Camera, colour: string, ratio: number): void {
   const { spacing, from, to } = groundGrid(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
@@ -97,7 +97,7 @@ function drawRoad(
   for (const [first, end] of stretches) {
     const dashes = new Path2D();
     addLine(dashes, centre, first, end);
-    ctx.lineDashOffset = lengths[first] ?? 0; // dashes lie still on the road
+    ctx.lineDashOffset = lengths[first] ?? 0; // keeps the dashes fixed to the road
     stroke(ctx, dashes, colours.centreLine, Math.max(0.1, 0.75 * px));
   }
   ctx.lineDashOffset = 0;
@@ -108,9 +108,9 @@ function drawRoad(
   stroke(ctx, start, colours.edge, Math.max(0.5, 2 * px));
 }
 
-const JUMP_M = 20; // the car was put somewhere else: no line from there to here
+const JUMP_M = 20; // the car was placed elsewhere: no line across the jump
 
-/** As much of a line as is in view; `reach` is its longest step that is none from one line to another [m]. */
+/** The part of a line that is in view; longer steps than `reach` are jumps [m]. */
 function drawInView(ctx: Context, points: Line, view: Box, reach: number, colour: string, width: number): void {
   const path = new Path2D();
   for (const [first, end] of stretchesInside(points, view, reach)) addLine(path, points, first, end, reach);
@@ -142,7 +142,7 @@ function line(xs: ArrayLike<number>, ys: ArrayLike<number>): Path2D {
 
 const reaches = new WeakMap<Limit, number>();
 
-/** Thin and solid: dashes would cost as much again. */
+/** Thin and solid: dashes would double the cost. */
 function drawRacingLine(ctx: Context, limit: Limit, view: Box, colours: Theme, px: number): void {
   const points = { x: limit.x_m, y: limit.y_m };
   const reach = reaches.get(limit) ?? longestStep(points);
@@ -150,12 +150,12 @@ function drawRacingLine(ctx: Context, limit: Limit, view: Box, colours: Theme, p
   drawInView(ctx, points, view, reach, colours.racingLine, Math.max(0.2, 1.5 * px));
 }
 
-/** A plan as a broad band, and on it the way that was then driven. */
+/** A past plan as a broad band, with the path driven since on top. */
 function drawHindsight(ctx: Context, { plan, drivenX, drivenY }: Hindsight, colours: Theme, px: number): void {
   ctx.globalAlpha = 0.6;
-  stroke(ctx, line(plan.x_m, plan.y_m), colours.foreseen, Math.max(1.1, 8 * px));
+  stroke(ctx, line(plan.x_m, plan.y_m), colours.predicted, Math.max(1.1, 8 * px));
   ctx.globalAlpha = 1;
-  stroke(ctx, line(drivenX, drivenY), colours.came, Math.max(0.18, 2 * px));
+  stroke(ctx, line(drivenX, drivenY), colours.outcome, Math.max(0.18, 2 * px));
 }
 
 function drawWheels(ctx: Context, shape: CarShape, colour: string): void {
@@ -175,7 +175,7 @@ function drawCar(ctx: Context, car: NonNullable<Scene['car']>, colours: Theme, p
   ctx.save();
   ctx.translate(car.x, car.y);
   ctx.rotate(car.yaw);
-  // From far away a car of true size is a speck: never shorter than 18 px, and then with a ring around it.
+  // From far away the car is drawn enlarged, at least 18 px long, with a ring around it.
   const grown = Math.max(1, (18 * px) / length);
   if (grown > 1) {
     ctx.beginPath();
@@ -187,7 +187,7 @@ function drawCar(ctx: Context, car: NonNullable<Scene['car']>, colours: Theme, p
   ctx.scale(grown, grown);
   drawWheels(ctx, shape, colours.wheel);
 
-  const narrow = shape.halfWidth * 0.84; // the wheels stand out a little, or nobody would see them steer
+  const narrow = shape.halfWidth * 0.84; // narrower than the wheels, so that they are seen to steer
   ctx.beginPath();
   ctx.roundRect(shape.rear, -narrow, length, 2 * narrow, [0.5, 0.9, 0.9, 0.5]);
   ctx.fillStyle = colours.carBody;
@@ -228,17 +228,17 @@ function outline(ctx: Context, pose: Pose, { shape }: NonNullable<Scene['car']>,
   );
 }
 
-/** Where the car was to be now, by the plan of a second ago. */
-function drawForeseen(ctx: Context, pose: Pose, car: NonNullable<Scene['car']>, colours: Theme, px: number): void {
+/** The pose that the plan of a second ago predicts for now. */
+function drawPredicted(ctx: Context, pose: Pose, car: NonNullable<Scene['car']>, colours: Theme, px: number): void {
   ctx.save();
   outline(ctx, pose, car, px);
   ctx.restore();
-  ctx.strokeStyle = colours.foreseen;
+  ctx.strokeStyle = colours.predicted;
   ctx.lineWidth = Math.max(0.15, 1.5 * px);
   ctx.stroke();
 }
 
-/** Another drive's car; nothing where it would only smudge the car itself. */
+/** The ghost car; not drawn where it would overlap the car itself. */
 function drawGhost(ctx: Context, ghost: Pose, car: NonNullable<Scene['car']>, colours: Theme, px: number): void {
   const { shape } = car;
   if (Math.hypot(ghost.x - car.x, ghost.y - car.y) < Math.max(1, (18 * px) / (shape.front - shape.rear))) return;
@@ -251,7 +251,7 @@ function drawGhost(ctx: Context, ghost: Pose, car: NonNullable<Scene['car']>, co
 }
 
 /**
- * What stands still in the world: ground, road, racing line. Covers the whole canvas, which has `ratio` device pixels
+ * The static part of the scene: ground, road, racing line. Covers the whole canvas, which has `ratio` device pixels
  * to a CSS pixel.
  */
 export function drawWorld(
@@ -273,7 +273,7 @@ export function drawWorld(
   if (scene.racingLine) drawRacingLine(ctx, scene.racingLine, view, colours, px);
 }
 
-/** What moves, on a world that is drawn already. */
+/** The moving part of the scene, on top of drawWorld(). */
 export function drawMoving(ctx: Context, scene: Scene, camera: Camera, colours: Theme, ratio: number): void {
   ctx.setTransform(...transformOf(camera, ratio));
   ctx.lineJoin = 'round';
@@ -285,7 +285,7 @@ export function drawMoving(ctx: Context, scene: Scene, camera: Camera, colours: 
   if (scene.plan) drawPlan(ctx, scene.plan, scene.speedScale, Math.max(0.45, 4 * px));
   if (scene.ghost && scene.car) drawGhost(ctx, scene.ghost, scene.car, colours, px);
   if (scene.car) drawCar(ctx, scene.car, colours, px);
-  if (scene.hindsight?.foreseen && scene.car) drawForeseen(ctx, scene.hindsight.foreseen, scene.car, colours, px);
+  if (scene.hindsight?.predicted && scene.car) drawPredicted(ctx, scene.hindsight.predicted, scene.car, colours, px);
 }
 
 /** The whole track, small. */

@@ -8,8 +8,8 @@ export interface Theme {
   readonly reference: string;
   readonly trace: string;
   readonly racingLine: string;
-  readonly foreseen: string;
-  readonly came: string;
+  readonly predicted: string;
+  readonly outcome: string;
   readonly carBody: string;
   readonly carGlass: string;
   readonly carEdge: string;
@@ -36,8 +36,8 @@ function read(): Theme {
     reference: colour('reference'),
     trace: colour('trace'),
     racingLine: colour('racing-line'),
-    foreseen: colour('foreseen'),
-    came: colour('came'),
+    predicted: colour('predicted'),
+    outcome: colour('outcome'),
     carBody: colour('car-body'),
     carGlass: colour('car-glass'),
     carEdge: colour('car-edge'),
@@ -63,7 +63,7 @@ matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
 
 export const theme = (): Theme => (current ??= read());
 
-/** Calls back when the reader changes between light and dark. */
+/** Calls back when the colour scheme changes between light and dark. */
 export function onThemeChange(listener: () => void): () => void {
   listeners.add(listener);
   return () => void listeners.delete(listener);

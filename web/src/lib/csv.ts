@@ -1,5 +1,5 @@
 /**
- * Tables as comma-separated text: a header, a row for each record, numbers with full precision, nothing for unknown.
+ * Comma-separated text: a header and a row for each record; numbers to nine digits, unknown values empty.
  */
 export function csv(header: readonly string[], rows: Iterable<readonly (string | number | boolean)[]>): string {
   const lines = [header.map(cell).join(',')];

@@ -1,4 +1,4 @@
-/** Hands a file to the reader's browser. */
+/** Offers a file for download. */
 export function download(name: string, content: Blob | string, type = 'text/plain'): void {
   const blob = typeof content === 'string' ? new Blob([content], { type }) : content;
   const link = document.createElement('a');
@@ -8,7 +8,7 @@ export function download(name: string, content: Blob | string, type = 'text/plai
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** A canvas as a picture file. */
+/** Offers a canvas as a PNG file. */
 export function downloadPng(name: string, canvas: HTMLCanvasElement): void {
   canvas.toBlob((blob) => blob && download(name, blob), 'image/png');
 }

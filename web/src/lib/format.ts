@@ -1,4 +1,4 @@
-/** What stands where a number is not known. */
+/** Shown in place of an unknown number. */
 export const UNKNOWN = '–';
 
 /** A number with fixed decimals, a true minus sign and no "−0.0". */
@@ -8,7 +8,7 @@ export function fixed(value: number, decimals: number): string {
   return value < 0 && Number(text) !== 0 ? `−${text}` : text;
 }
 
-/** 83.4567 s → "1:23.46". Cut, not rounded, as lap clocks do. */
+/** 83.4567 s → "1:23.45". Truncated, not rounded, as lap clocks do. */
 export function lapTime(seconds: number): string {
   if (!Number.isFinite(seconds) || seconds < 0) return UNKNOWN;
   const hundredths = Math.floor(seconds * 100 + 1e-6);
@@ -16,7 +16,7 @@ export function lapTime(seconds: number): string {
   return `${minutes}:${(rest / 100).toFixed(2).padStart(5, '0')}`;
 }
 
-/** A signed offset in words: positive is left. */
+/** The side of a signed offset: positive is left. */
 export function side(metres: number): string {
   if (!Number.isFinite(metres) || Math.abs(metres) < 0.005) return '';
   return metres > 0 ? 'left' : 'right';

@@ -1,8 +1,8 @@
-/** One shortcut: the help overlay is written from these, so no key works that is not documented. */
+/** A keyboard shortcut. The help lists all of them, so that every key that works is documented. */
 export interface Shortcut {
   /** Values of KeyboardEvent.key, letters in lower case. */
   readonly keys: readonly string[];
-  /** How the key is named to people. */
+  /** The key as the help shows it. */
   readonly label: string;
   readonly does: string;
   readonly group: 'Run' | 'Camera' | 'Panels' | 'Driving by hand';
@@ -11,7 +11,7 @@ export interface Shortcut {
 
 const shortcuts: Shortcut[] = [];
 
-/** Adds shortcuts; returns their end. */
+/** Adds shortcuts; returns a function that removes them. */
 export function addShortcuts(...more: readonly Shortcut[]): () => void {
   shortcuts.push(...more);
   return () => {
@@ -21,7 +21,7 @@ export function addShortcuts(...more: readonly Shortcut[]): () => void {
 
 export const allShortcuts = (): readonly Shortcut[] => shortcuts;
 
-/** The parts of a focused element that decide who gets a key. */
+/** The properties of a focused element that decide whether it handles a key. */
 export interface KeyTarget {
   readonly tagName?: string;
   readonly type?: string;
@@ -32,7 +32,7 @@ export interface KeyTarget {
 const ON_SLIDER = new Set(['arrowleft', 'arrowright', 'arrowup', 'arrowdown', 'home', 'end', 'pageup', 'pagedown']);
 const ON_BUTTON = new Set([' ', 'enter']);
 
-/** Whether the focused element itself answers to this key, so that no shortcut may. */
+/** Whether the focused element handles this key itself, so that no shortcut applies. */
 export function isTakenBy(target: KeyTarget | null, key: string): boolean {
   const tag = target?.tagName?.toLowerCase();
   if (key === 'escape' || !tag || !target) return false;
@@ -47,7 +47,7 @@ export function isTakenBy(target: KeyTarget | null, key: string): boolean {
   return (tag === 'button' || tag === 'a' || tag === 'summary') && ON_BUTTON.has(key);
 }
 
-/** The shortcut that a key press means; null when there is none, or the focused element wants the key for itself. */
+/** The shortcut of a key press; null when there is none or the focused element handles the key itself. */
 export function shortcutFor(
   event: Pick<KeyboardEvent, 'key' | 'ctrlKey' | 'metaKey' | 'altKey' | 'repeat'>,
   target: KeyTarget | null,

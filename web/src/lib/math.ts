@@ -16,7 +16,7 @@ export const mix = (a: number, b: number, share: number): number => a + (b - a) 
 
 export const degrees = (radians: number): number => (radians * 180) / Math.PI;
 
-/** The equal angle in (−π, π]. */
+/** The angle wrapped to (−π, π]. */
 export function wrapAngle(angle: number): number {
   const turn = 2 * Math.PI;
   const wrapped = angle - turn * Math.floor((angle + Math.PI) / turn);
@@ -43,7 +43,7 @@ export function niceCeil(value: number): number {
   return step * power;
 }
 
-/** Least and greatest finite value; null when there is none. */
+/** Smallest and largest finite value; null without any. */
 export function extent(values: ArrayLike<number>): [number, number] | null {
   let [low, high] = [Infinity, -Infinity];
   for (let i = 0; i < values.length; ++i) {
@@ -54,7 +54,7 @@ export function extent(values: ArrayLike<number>): [number, number] | null {
   return low <= high && Number.isFinite(low) && Number.isFinite(high) ? [low, high] : null;
 }
 
-/** How the car goes on from one frame for `seconds` with constant speed and yaw rate: arcs, not chords. */
+/** The pose `seconds` after a frame with constant speed and yaw rate: on an arc. */
 export function extrapolate(
   pose: { x: number; y: number; yaw: number },
   motion: { vx: number; vy: number; yawRate: number },

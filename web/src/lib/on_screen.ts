@@ -1,16 +1,16 @@
 /**
- * What the browser tells of an element's box of its own accord: asking for it would make it lay out the page at once.
+ * Size and visibility of an element as the browser's observers report them: reading them directly would force a layout.
  */
 export interface OnScreen {
-  /** Without border and padding, in whole CSS pixels; 0 while it is not shown at all. */
+  /** Size without border and padding, in whole CSS pixels; 0 while it is not displayed. */
   readonly width: number;
   readonly height: number;
-  /** Some of it is in the window and not scrolled away. */
+  /** Whether any of it is inside the window and not scrolled away. */
   readonly isSeen: boolean;
   end(): void;
 }
 
-/** Follows an element; `resized` is called when it has another size. */
+/** Observes an element; `resized` is called when its size changes. */
 export function onScreen(element: Element, resized: () => void = () => undefined): OnScreen {
   const sizes = new ResizeObserver(([entry]) => {
     if (!entry) return;

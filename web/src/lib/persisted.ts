@@ -1,6 +1,6 @@
 import { effect, type Signal, signal } from '@preact/signals';
 
-/** A signal that outlives the page, in the browser's own storage; where that is refused, it just starts anew. */
+/** A signal kept in the browser's local storage; where that is not allowed, it lasts as long as the page. */
 export function persisted<T extends string | number | boolean>(
   name: string,
   initial: T,
@@ -12,7 +12,7 @@ export function persisted<T extends string | number | boolean>(
     try {
       localStorage.setItem(`chicane.${name}`, JSON.stringify(value));
     } catch {
-      // Storage is full or forbidden: the choice lasts as long as the page.
+      // Storage is full or not allowed: the value lasts as long as the page.
     }
   });
   return state;

@@ -1,6 +1,6 @@
 import { clamp } from './math';
 
-/** How the way of a slider is divided among the values of its range. */
+/** How the travel of a slider maps to the values of its range. */
 export type Scale = 'linear' | 'cubic' | 'logarithmic';
 
 export interface Range {
@@ -10,7 +10,7 @@ export interface Range {
   readonly isInteger: boolean;
 }
 
-/** Where a logarithmic scale that begins at 0 leaves 0: so many decades below its end. */
+/** Length of a logarithmic scale whose range begins at 0: decades below its end. */
 const DECADES = 7;
 
 /**
@@ -23,7 +23,7 @@ export function scaleOf(minimum: number, maximum: number, usual: number): Scale 
   return usual - minimum < 0.05 * (maximum - minimum) ? 'cubic' : 'linear';
 }
 
-/** The part of the way, in [0, 1], at which a value lies. */
+/** The share of the travel, in [0, 1], at which a value lies. */
 export function shareOf(value: number, { minimum, maximum, scale }: Range): number {
   if (!(value > minimum)) return 0;
   if (value >= maximum) return 1;
@@ -34,7 +34,7 @@ export function shareOf(value: number, { minimum, maximum, scale }: Range): numb
   return clamp(1 + Math.log10(value / maximum) / DECADES, 0, 1);
 }
 
-/** The value at a part of the way, rounded to what a hand can mean: three digits. */
+/** The value at a share of the travel, rounded to three digits. */
 export function valueAt(share: number, { minimum, maximum, scale, isInteger }: Range): number {
   if (share <= 0) return minimum;
   if (share >= 1) return maximum;
@@ -49,7 +49,7 @@ export function valueAt(share: number, { minimum, maximum, scale, isInteger }: R
   return clamp(isInteger ? Math.round(raw) : Number(raw.toPrecision(3)), minimum, maximum);
 }
 
-/** A number as people write it: no more than six digits, no trailing zeros, a true minus sign. */
+/** A number for display: at most six digits, no trailing zeros, a true minus sign. */
 export function tidy(value: number): string {
   if (value === Infinity) return '∞';
   if (!Number.isFinite(value)) return '–';

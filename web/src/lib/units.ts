@@ -1,12 +1,12 @@
 import { persisted } from './persisted';
 
-/** A unit for speeds: everything the page says of speeds goes through one of these. */
+/** A unit for speeds; every speed on the page is shown in one of these. */
 export interface SpeedUnit {
   readonly name: 'mph' | 'km/h' | 'm/s';
   readonly spoken: string; // for screen readers
   readonly perMps: number; // of the unit in one m/s
   readonly axisStep: number; // of plots [unit]
-  readonly axisLeast: number; // a plot is at least so tall [unit]
+  readonly axisLeast: number; // least height of a plot's axis [unit]
   readonly scaleStep: number; // the colours of a plan end at a multiple of it [unit]
 }
 
@@ -23,7 +23,7 @@ const chosen = persisted<SpeedUnit['name']>('speed-unit', 'mph', (value) =>
   SPEED_UNITS.some(({ name }) => name === value),
 );
 
-/** The reader's unit; who reads it while drawing text follows its changes. */
+/** The unit chosen; a signal, so that views that read it follow changes. */
 export const speedUnit = (): SpeedUnit =>
   SPEED_UNITS.find(({ name }) => name === chosen.value) ?? (SPEED_UNITS[0] as SpeedUnit);
 

@@ -13,18 +13,18 @@ import {
 } from './words';
 
 describe('words', () => {
-  it('gets graver with each rung', () => {
-    expect([0, 1, 2, 3].map((rung) => rungInWords(rung).mood)).toEqual(['good', 'warning', 'bad', 'bad']);
+  it('gets more severe with each rung', () => {
+    expect([0, 1, 2, 3].map((rung) => rungInWords(rung).severity)).toEqual(['good', 'warning', 'bad', 'bad']);
     expect(rungInWords(9).text).toContain('9');
   });
 
-  it('know every rung and every status that is sent', () => {
+  it('knows every rung and every status that is sent', () => {
     for (const rung of Object.values(RUNG)) expect(rungInWords(rung).text).not.toMatch(/^Unknown/);
     for (const status of Object.values(STATUS)) expect(statusInWords(status).text).not.toMatch(/^Unknown/);
   });
 
-  it('calls no unusable answer good', () => {
-    expect([0, 1, -1, -2, -3, 7].map((status) => statusInWords(status).mood)).toEqual([
+  it('calls no unusable solution good', () => {
+    expect([0, 1, -1, -2, -3, 7].map((status) => statusInWords(status).severity)).toEqual([
       'good',
       'warning',
       'bad',
@@ -34,24 +34,24 @@ describe('words', () => {
     ]);
   });
 
-  it('tells of the gate', () => {
-    expect(gateInWords(false).mood).toBe('good');
-    expect(gateInWords(true).mood).toBe('warning');
+  it('describes the gate', () => {
+    expect(gateInWords(false).severity).toBe('good');
+    expect(gateInWords(true).severity).toBe('warning');
   });
 
-  it('tells what road is known', () => {
+  it('describes how much road is known', () => {
     expect(sightInWords(false, 139.6).text).toBe('Sees 140 m ahead');
     expect(sightInWords(true, 300).text).toBe('Track known, uses 300 m of it');
     expect(sightInWords(false, NaN).text).toBe('Sees no road ahead');
   });
 
-  it('tells of the road', () => {
+  it('describes the place on the road', () => {
     const frame = { is_off_track: false, edge_distance_m: 1, off_track_events: 0 };
-    expect(roadInWords(frame).mood).toBe('good');
+    expect(roadInWords(frame).severity).toBe('good');
     expect(roadInWords({ ...frame, off_track_events: 1 }).text).toContain('once');
     expect(roadInWords({ ...frame, off_track_events: 2 }).text).toContain('2 times');
-    expect(roadInWords({ ...frame, is_off_track: true }).mood).toBe('bad');
-    expect(roadInWords({ ...frame, edge_distance_m: NaN }).mood).toBe('unknown');
+    expect(roadInWords({ ...frame, is_off_track: true }).severity).toBe('bad');
+    expect(roadInWords({ ...frame, edge_distance_m: NaN }).severity).toBe('unknown');
   });
 
   it('has words for whatever limits the speed', () => {

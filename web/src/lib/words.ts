@@ -1,26 +1,26 @@
 import { RUNG, STATUS } from '../protocol/messages';
 import type { Frame } from '../protocol/topics';
 
-export type Mood = 'good' | 'warning' | 'bad' | 'unknown';
+export type Severity = 'good' | 'warning' | 'bad' | 'unknown';
 
 export interface Sentence {
-  readonly mood: Mood;
+  readonly severity: Severity;
   readonly text: string;
 }
 
-/** Who chose the command, by Frame.rung. */
+/** The source of the command, by Frame.rung. */
 export function rungInWords(rung: number): Sentence {
   switch (rung) {
     case RUNG.CONTROLLER:
-      return { mood: 'good', text: 'The controller drives' };
+      return { severity: 'good', text: 'The controller drives' };
     case RUNG.SHIFTED_PLAN:
-      return { mood: 'warning', text: 'No new answer: following the last plan' };
+      return { severity: 'warning', text: 'No new answer: following the last plan' };
     case RUNG.HOLD_AND_BRAKE:
-      return { mood: 'bad', text: 'No answer: following the last plan, braking gently' };
+      return { severity: 'bad', text: 'No answer: following the last plan, braking gently' };
     case RUNG.BRAKE:
-      return { mood: 'bad', text: 'No answer: following the last plan, braking fully' };
+      return { severity: 'bad', text: 'No answer: following the last plan, braking fully' };
     default:
-      return { mood: 'bad', text: `Unknown rung ${rung}` };
+      return { severity: 'bad', text: `Unknown rung ${rung}` };
   }
 }
 
@@ -28,40 +28,43 @@ export function rungInWords(rung: number): Sentence {
 export function statusInWords(status: number): Sentence {
   switch (status) {
     case STATUS.OPTIMAL:
-      return { mood: 'good', text: 'Optimal' };
+      return { severity: 'good', text: 'Optimal' };
     case STATUS.BUDGET_SPENT:
-      return { mood: 'warning', text: 'Time or iteration limit reached, answer usable' };
+      return { severity: 'warning', text: 'Time or iteration limit reached, answer usable' };
     case STATUS.STALLED:
-      return { mood: 'bad', text: 'Did not converge' };
+      return { severity: 'bad', text: 'Did not converge' };
     case STATUS.INFEASIBLE:
-      return { mood: 'bad', text: 'Infeasible: not all constraints can hold' };
+      return { severity: 'bad', text: 'Infeasible: not all constraints can hold' };
     case STATUS.NOT_FINITE:
-      return { mood: 'bad', text: 'Invalid number (NaN) in the problem' };
+      return { severity: 'bad', text: 'Invalid number (NaN) in the problem' };
     default:
-      return { mood: 'bad', text: `Unknown status ${status}` };
+      return { severity: 'bad', text: `Unknown status ${status}` };
   }
 }
 
 export const gateInWords = (isGated: boolean): Sentence =>
-  isGated ? { mood: 'warning', text: 'Changed the command' } : { mood: 'good', text: 'Passed the command unchanged' };
+  isGated
+    ? { severity: 'warning', text: 'Changed the command' }
+    : { severity: 'good', text: 'Passed the command unchanged' };
 
-/** Where the car is on the road. With an external simulator nobody judges, and the distance is unknown. */
+/** Where the car is relative to the road. An external simulator does not report it: the distance is unknown. */
 export function roadInWords(frame: Pick<Frame, 'is_off_track' | 'edge_distance_m' | 'off_track_events'>): Sentence {
   if (Number.isNaN(frame.edge_distance_m))
-    return { mood: 'unknown', text: 'Unknown: the simulator does not report it' };
-  if (frame.is_off_track) return { mood: 'bad', text: 'Off the road' };
+    return { severity: 'unknown', text: 'Unknown: the simulator does not report it' };
+  if (frame.is_off_track) return { severity: 'bad', text: 'Off the road' };
   const events = frame.off_track_events;
-  if (events > 0) return { mood: 'warning', text: `On the road, left it ${events === 1 ? 'once' : `${events} times`}` };
-  return { mood: 'good', text: 'On the road, never left it' };
+  if (events > 0)
+    return { severity: 'warning', text: `On the road, left it ${events === 1 ? 'once' : `${events} times`}` };
+  return { severity: 'good', text: 'On the road, never left it' };
 }
 
-/** How much road the controller knows: from its memory, or only what it is told. */
+/** How much road ahead the controller knows: from its map, or from the waypoints received. */
 export function sightInWords(hasMap: boolean, metres: number): Sentence {
   const sight = metres > 0 ? `${Math.round(metres)} m` : 'no road';
-  return { mood: 'good', text: hasMap ? `Track known, uses ${sight} of it` : `Sees ${sight} ahead` };
+  return { severity: 'good', text: hasMap ? `Track known, uses ${sight} of it` : `Sees ${sight} ahead` };
 }
 
-/** What holds the speed where it is, by Frame.speed_limiter: a headline, why, and a short name for charts. */
+/** What limits the speed, by Frame.speed_limiter: headline, reason, and short name for charts. */
 export const LIMITERS: readonly { readonly title: string; readonly why: string; readonly short: string }[] = [
   { title: 'Not known', why: 'The controller does not report what limits the speed.', short: 'unknown' },
   { title: 'Reference speed', why: 'The car may drive no faster than its speed reference.', short: 'reference' },
@@ -82,7 +85,7 @@ export const limiterInWords = (limiter: number): (typeof LIMITERS)[number] =>
     short: `${limiter}`,
   };
 
-/** snake_case to words, abbreviations as people write them. */
+/** snake_case to words, with abbreviations in capitals. */
 export const nameInWords = (name: string): string =>
   name
     .replace(/[_.-]+/g, ' ')
@@ -90,7 +93,7 @@ export const nameInWords = (name: string): string =>
     .replace(/\b(mpc|pid|gps)\b/g, (short) => short.toUpperCase())
     .replace(/\bnan\b/g, 'NaN');
 
-/** The constraint that is violated most in an answer; null when all hold to `tolerance`. */
+/** The constraint violated most in a solution; null when all hold to `tolerance`. */
 export function worstInWords(
   frame: Pick<Frame, 'violation' | 'worst_stage' | 'worst_constraint'>,
   names: readonly string[],

@@ -3,10 +3,10 @@ import { decoder, encodeBool, encodeNothing } from './decoder';
 import type { ServiceName, SetAnswer, Setting, Source, SourceEvents } from './source';
 import { TOPIC_NAMES, type Topics } from './topics';
 
-/** Both names mean the same bytes; servers pick one. */
+/** Both names mean the same protocol; the server picks one. */
 export const SUBPROTOCOLS = ['foxglove.sdk.v1', 'foxglove.websocket.v1'];
 
-/** How long to wait before the attempt number n = 1, 2, … [ms]: quick at first, never longer than two seconds. */
+/** Delay before reconnection attempt 1, 2, … [ms]: 250 ms at first, at most two seconds. */
 export const retryDelay = (attempt: number): number => Math.min(2000, 250 * 2 ** (attempt - 1));
 
 const ALL = 'all'; // request id
@@ -22,8 +22,8 @@ interface PendingSet {
 }
 
 /**
- * One lasting connection to a server of the Foxglove WebSocket protocol: subscribes to the topics this page draws and
- * to all parameters, and connects again, for ever, whenever it is lost.
+ * A connection to a server of the Foxglove WebSocket protocol: subscribes to the topics of this page and to all
+ * parameters, and reconnects whenever it is lost.
  */
 export class Connection implements Source {
   readonly #open: () => IWebSocket;
@@ -69,7 +69,7 @@ export class Connection implements Source {
     if (!this.#client || !this.#hasParameters)
       return Promise.resolve({ value: null, sentence: `${name} cannot be changed in this run` });
     const id = `set ${this.#nextCall++}`;
-    // JSON does not tell 3 from 3.0: the type does.
+    // JSON does not distinguish 3 from 3.0: the type does.
     const parameter: Parameter = typeof value === 'number' ? { name, value, type: 'float64' } : { name, value };
     const answer = new Promise<SetAnswer>((resolve) => this.#sets.set(id, { name, sentence: null, resolve }));
     this.#client.setParameters([parameter], id);
@@ -83,11 +83,11 @@ export class Connection implements Source {
   #connect(): void {
     const client = new FoxgloveClient({ ws: this.#open() });
     const readers = new Map<number, (bytes: ArrayBufferView) => void>();
-    const mine = () => this.#client === client;
+    const isCurrent = () => this.#client === client;
     this.#client = client;
 
     client.on('serverInfo', ({ capabilities, sessionId }) => {
-      if (!mine()) return;
+      if (!isCurrent()) return;
       this.#attempt = 0;
       this.#hasParameters = capabilities.includes('parameters');
       this.#events.open(sessionId ?? '');
@@ -96,24 +96,24 @@ export class Connection implements Source {
       client.subscribeParameterUpdates([]);
     });
     client.on('advertise', (channels) => {
-      for (const channel of mine() ? channels : []) this.#subscribe(client, channel, readers);
+      for (const channel of isCurrent() ? channels : []) this.#subscribe(client, channel, readers);
     });
     client.on('message', ({ subscriptionId, data }) => {
-      if (mine()) readers.get(subscriptionId)?.(data);
+      if (isCurrent()) readers.get(subscriptionId)?.(data);
     });
     client.on('advertiseServices', (services) => {
       for (const service of services) this.#services.set(service.name, service);
       this.#events.services(new Set(this.#services.keys()));
     });
     client.on('parameterValues', ({ parameters, id }) => {
-      if (mine()) this.#parameterValues(parameters, id);
+      if (isCurrent()) this.#parameterValues(parameters, id);
     });
     client.on('serviceCallResponse', ({ callId, data }) => this.#answer(callId, data));
     client.on('serviceCallFailure', ({ callId, message }) => this.#finish(callId, message));
     client.on('status', ({ message }) => this.#status(message));
     client.on('error', () => undefined); // a close event follows
     client.on('close', () => {
-      if (mine()) this.#lost();
+      if (isCurrent()) this.#lost();
     });
   }
 
@@ -138,7 +138,7 @@ export class Connection implements Source {
     if (values.size > 0) this.#events.settings(values, id === ALL);
   }
 
-  /** A refusal names its parameter and comes before the answer; it belongs to the oldest open wish of that name. */
+  /** A refusal names its parameter and precedes the answer; it belongs to the oldest open request of that name. */
   #status(sentence: string): void {
     for (const pending of this.#sets.values()) {
       if (pending.sentence !== null || !sentence.startsWith(pending.name)) continue;

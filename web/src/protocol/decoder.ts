@@ -7,8 +7,8 @@ export function decoder(schema: string): (bytes: ArrayBufferView) => unknown {
   return (bytes) => reader.readMessage(bytes);
 }
 
-/** One boolean as std_srvs/srv/SetBool wants it: XCDR1 header, little endian, and the byte. */
+/** The request of std_srvs/srv/SetBool: XCDR1 header, little endian, and one byte. */
 export const encodeBool = (value: boolean): Uint8Array => new Uint8Array([0, 1, 0, 0, value ? 1 : 0]);
 
-/** std_srvs/srv/Trigger asks nothing. */
+/** The request of std_srvs/srv/Trigger, which is empty. */
 export const encodeNothing = (): Uint8Array => new Uint8Array([0, 1, 0, 0]);

@@ -1,4 +1,4 @@
-/** One tunable as /schema.json tells it; src/chicane/protocol/schema.hpp is the table behind it. */
+/** One setting as /schema.json describes it; its source is the table of src/chicane/protocol/schema.hpp. */
 export interface SchemaEntry {
   readonly key: string;
   readonly group: string;
@@ -9,7 +9,7 @@ export interface SchemaEntry {
   readonly choices: readonly string[];
   readonly default: number | boolean | string | null;
   readonly meaning: string;
-  /** Applies at the next control step; otherwise the run starts anew. */
+  /** Whether a change applies at the next control step; otherwise it restarts the run. */
   readonly is_live: boolean;
 }
 
@@ -18,7 +18,7 @@ const KINDS: readonly string[] = ['number', 'integer', 'bool', 'choice', 'text']
 const numberOr = (value: unknown): number | null =>
   typeof value === 'number' && Number.isFinite(value) ? value : null;
 
-/** Takes what is well formed out of a parsed /schema.json: a page may be older or newer than its server. */
+/** Reads the well-formed entries of a parsed /schema.json: the page may be older or newer than the server. */
 export function readSchema(json: unknown): SchemaEntry[] {
   if (!Array.isArray(json)) return [];
   return json.flatMap((each: Partial<Record<keyof SchemaEntry, unknown>> | null) => {

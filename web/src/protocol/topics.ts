@@ -9,7 +9,7 @@ export interface Path {
   poses: { pose: { position: { x: number; y: number } } }[];
 }
 
-/** The topics this page subscribes to, and what they carry. */
+/** The topics this page subscribes to, with their message types. */
 export interface Topics {
   '/chicane/frame': Frame;
   '/chicane/plan': Plan;

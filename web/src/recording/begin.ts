@@ -5,7 +5,7 @@ import { notice } from '../state/link';
 import { attach } from '../state/operate';
 import { findMode } from './mode';
 
-/** The time line, once there is a recording; its code is not loaded before. */
+/** The view of the time line; its code is loaded with the first recording. */
 export const timeline = signal<FunctionComponent | null>(null);
 
 let current: Source | null = null;
@@ -18,7 +18,7 @@ function take(source: Source): void {
 
 const sentence = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
-/** Shows recordings where the page was opened for them, otherwise a live run; and recordings that are dropped on it. */
+/** Shows the recordings that the page was opened for, otherwise the live run; and recordings dropped on the page. */
 export async function begin(live: () => Source): Promise<void> {
   addEventListener('dragover', (event) => {
     if (event.dataTransfer?.types.includes('Files')) event.preventDefault();

@@ -95,13 +95,13 @@ async function record(isClosed = true): Promise<Uint8Array> {
 
 class Page implements LogEvents {
   sessions: string[] = [];
-  told: { topic: TopicName; message: unknown }[] = [];
+  received: { topic: TopicName; message: unknown }[] = [];
   rewinds = 0;
   where = { time: NaN, isPlaying: false };
   paces: unknown[] = [];
   open = (session: string): void => void this.sessions.push(session);
   lost = (): void => undefined;
-  message = (topic: TopicName, message: unknown): void => void this.told.push({ topic, message });
+  message = (topic: TopicName, message: unknown): void => void this.received.push({ topic, message });
   services = (): void => undefined;
   settings = (values: ReadonlyMap<string, unknown>): void => void this.paces.push(values.get('run.pace'));
   notice = (sentence: string): never => {
@@ -109,13 +109,15 @@ class Page implements LogEvents {
   };
   rewind = (): void => {
     ++this.rewinds;
-    this.told = [];
+    this.received = [];
   };
   moved = (time: number, isPlaying: boolean): void => {
     this.where = { time, isPlaying };
   };
   frames(): number[] {
-    return this.told.filter(({ topic }) => topic === '/chicane/frame').map(({ message }) => (message as Frame).time_s);
+    return this.received
+      .filter(({ topic }) => topic === '/chicane/frame')
+      .map(({ message }) => (message as Frame).time_s);
   }
 }
 
@@ -156,7 +158,7 @@ describe('a recording', () => {
 });
 
 describe('playing a recording', () => {
-  it('tells the past of the moment one seeks, and every lap', async () => {
+  it('sends the minute before the time sought, and every lap', async () => {
     const page = new Page();
     const source = await LogSource.open(log, page);
     await source.seek(5.04);
@@ -165,9 +167,10 @@ describe('playing a recording', () => {
     expect(page.frames().at(-1)).toBe(5);
     await source.seek(3);
     expect(page.frames().at(-1)).toBe(3);
-    expect(page.told.find(({ topic }) => topic === '/chicane/frame')?.message).toMatchObject({ pace: 1 }); // of playing
-    expect(page.told.filter(({ topic }) => topic === '/chicane/lap')).toHaveLength(1); // all laps, also those to come
-    expect(page.told.find(({ topic }) => topic === '/chicane/run')?.message).toMatchObject({
+    // The pace of playing, not of the recorded run; and all laps, including later ones.
+    expect(page.received.find(({ topic }) => topic === '/chicane/frame')?.message).toMatchObject({ pace: 1 });
+    expect(page.received.filter(({ topic }) => topic === '/chicane/lap')).toHaveLength(1);
+    expect(page.received.find(({ topic }) => topic === '/chicane/run')?.message).toMatchObject({
       track: 'straight',
       mode: 'replay',
       is_paused: true,
@@ -207,12 +210,12 @@ describe('playing a recording', () => {
     await source.seek(6.95);
     expect(await source.call('/step')).toBeNull();
     expect(page.frames().at(-1)).toBe(7);
-    expect(page.told.some(({ topic }) => topic === '/chicane/change')).toBe(true);
+    expect(page.received.some(({ topic }) => topic === '/chicane/change')).toBe(true);
     await source.seek(10);
     expect(await source.call('/step')).toMatch('ends here');
   });
 
-  it('forgets a jump that another one overtook', async () => {
+  it('drops the result of a jump when another one follows', async () => {
     const page = new Page();
     const source = await LogSource.open(log, page);
     await Promise.all([source.seek(9), source.seek(1)]);

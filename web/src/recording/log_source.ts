@@ -3,18 +3,18 @@ import type { ServiceName, SetAnswer, Setting, Source, SourceEvents } from '../p
 import type { Frame, Lap, Run, TopicName } from '../protocol/topics';
 import type { LoggedMessage, McapLog } from './mcap_log';
 
-/** What a reader of a recording looks for. */
+/** An event on the time line of a recording. */
 export interface Landmark {
   readonly time: number; // [s]
   readonly kind: 'lap' | 'change' | 'off-track' | 'fallback' | 'gate' | 'fault';
   readonly label: string;
 }
 
-/** What a recording tells beside the events of any source. */
+/** What a recording reports beside the events of any source. */
 export interface LogEvents extends SourceEvents {
-  /** The time line jumps: what was shown belongs to another moment. */
+  /** Playback jumps: what was shown belongs to another time. */
   rewind(): void;
-  /** Where it is now [s], and whether it plays. */
+  /** The position [s], and whether it plays. */
   moved(time: number, isPlaying: boolean): void;
 }
 
@@ -28,26 +28,26 @@ const STATIC: readonly TopicName[] = [
 ];
 const MOVING: readonly TopicName[] = ['/chicane/frame', '/chicane/plan', '/reference', '/chicane/change'];
 const SHORT: readonly TopicName[] = ['/chicane/plan', '/reference'];
-/** What is shown of the past: plots reach back so far [s]. */
+/** How far back frames are sent after a jump: the reach of the plots [s]. */
 const LOOK_BACK_S = 60;
-/** Plans behind the moment shown: the page compares with that of a second ago [s]. */
+/** How far back plans are sent: the page compares with the plan of a second ago [s]. */
 const PLAN_BACK_S = 1.2;
 const SEGMENT_S = 4; // read ahead at once
 const LEAST_PACE = 0.05;
 const MOST_PACE = 20;
 
 /**
- * Plays a recording as if it happened: same messages, same page. Pausing, stepping and going back to the start are what
- * a live run offers; seek() goes anywhere. Time is read from the clock it is given; advance() must be called often.
+ * Plays a recording with the messages and services of a live run; seek() jumps anywhere. It reads no clock: advance()
+ * has to be called at every repaint.
  */
 export class LogSource implements Source {
   readonly log: McapLog;
   readonly #events: LogEvents;
   #static: LoggedMessage[] = [];
   #segment: LoggedMessage[] = [];
-  #readTo = 0; // the segment reaches so far [s]
+  #readTo = 0; // end of the segment [s]
   #isReading = false;
-  #generation = 0; // of jumps: an older one's answer is nobody's business
+  #generation = 0; // counts jumps: results of reads begun before the last one are dropped
   #position = 0;
   #isPlaying = false;
   #pace = 1;
@@ -63,7 +63,7 @@ export class LogSource implements Source {
     source.#static = await log.read(STATIC, 0, log.duration);
     events.open(log.name);
     events.services(new Set<ServiceName>(['/pause', '/step', '/reset']));
-    source.#tellPace(true);
+    source.#sendPace(true);
     return source;
   }
 
@@ -91,7 +91,7 @@ export class LogSource implements Source {
       return Promise.resolve({ value: null, sentence: `${name} belongs to the recording and cannot be changed` });
     const isInRange = value >= LEAST_PACE && value <= MOST_PACE;
     if (isInRange) this.#pace = value;
-    this.#tellPace(false);
+    this.#sendPace(false);
     return Promise.resolve({
       value: this.#pace,
       sentence: isInRange ? null : `run.pace: got ${value}, expected ${LEAST_PACE} to ${MOST_PACE}`,
@@ -99,10 +99,10 @@ export class LogSource implements Source {
   }
 
   refresh(): void {
-    this.#tellPace(true);
+    this.#sendPace(true);
   }
 
-  /** Shows the moment `time` [s]: the minute before it is told again, at once. */
+  /** Jumps to `time` [s]: the messages of the minute before it are sent at once. */
   async seek(time: number): Promise<void> {
     const generation = ++this.#generation;
     const to = Math.min(Math.max(time, 0), this.log.duration);
@@ -118,15 +118,15 @@ export class LogSource implements Source {
     ]);
     if (generation !== this.#generation) return;
     this.#events.rewind();
-    this.#tellStatic(to);
-    for (const each of [...past, ...plans].sort((a, b) => a.time - b.time)) this.#tell(each);
+    this.#sendStatic(to);
+    for (const each of [...past, ...plans].sort((a, b) => a.time - b.time)) this.#send(each);
     this.#segment = [];
     this.#readTo = to;
     this.#clock = NaN;
     this.#events.moved(to, this.#isPlaying);
   }
 
-  /** To the next control step. */
+  /** Advances to the next control step. */
   async step(): Promise<string | null> {
     const generation = this.#generation;
     for (let ahead = 0.1; ahead < 20; ahead *= 4) {
@@ -136,7 +136,7 @@ export class LogSource implements Source {
       if (!next) continue;
       const all = await this.log.read([...MOVING, ...STATIC], this.#position + 1e-6, next.time + 1e-6);
       if (generation !== this.#generation) return null;
-      for (const each of all) this.#tell(each);
+      for (const each of all) this.#send(each);
       this.#position = this.#readTo = next.time;
       this.#segment = [];
       this.#events.moved(next.time, this.#isPlaying);
@@ -145,7 +145,7 @@ export class LogSource implements Source {
     return 'the recording ends here';
   }
 
-  /** Tells what has come to pass until `now`, performance.now() [ms]. */
+  /** Sends the messages due at `now`, as of performance.now() [ms]. */
   advance(now: number): void {
     const elapsed = (now - this.#clock) / 1000;
     this.#clock = now;
@@ -153,25 +153,25 @@ export class LogSource implements Source {
     void this.#readAhead();
     if (!(elapsed >= 0)) return;
     const wanted = this.#position + Math.min(elapsed, 0.25) * this.#pace;
-    const until = Math.min(wanted, this.#readTo, this.log.duration); // waits for what is not read yet
-    let told = 0;
+    const until = Math.min(wanted, this.#readTo, this.log.duration); // waits for the reader
+    let sent = 0;
     for (const each of this.#segment) {
-      if (each.time > until + 1e-9) break; // sums of intervals are not exact
-      this.#tell(each);
-      ++told;
+      if (each.time > until + 1e-9) break; // tolerates rounding of summed intervals
+      this.#send(each);
+      ++sent;
     }
-    this.#segment.splice(0, told);
+    this.#segment.splice(0, sent);
     this.#position = until;
     if (until >= this.log.duration) this.#isPlaying = false;
     this.#events.moved(until, this.#isPlaying);
-    if (!this.#isPlaying) this.#tellStatic(until);
+    if (!this.#isPlaying) this.#sendStatic(until);
   }
 
   async #play(isPlaying: boolean): Promise<null> {
     if (isPlaying && this.#position >= this.log.duration) await this.seek(0);
     this.#isPlaying = isPlaying;
     this.#clock = NaN;
-    this.#tellStatic(this.#position, ['/chicane/run']);
+    this.#sendStatic(this.#position, ['/chicane/run']);
     this.#events.moved(this.#position, isPlaying);
     return null;
   }
@@ -197,28 +197,28 @@ export class LogSource implements Source {
     }
   }
 
-  /** The run and the road as they were at `time`, and all laps there are. */
-  #tellStatic(time: number, topics: readonly TopicName[] = STATIC): void {
+  /** Sends run and road as of `time`, and all laps. */
+  #sendStatic(time: number, topics: readonly TopicName[] = STATIC): void {
     for (const topic of topics) {
       const known = this.#static.filter((each) => each.topic === topic);
-      const told = topic === '/chicane/lap' ? known : [known.filter((each) => each.time <= time).at(-1) ?? known[0]];
-      for (const each of told) if (each) this.#tell(each);
+      const sent = topic === '/chicane/lap' ? known : [known.filter((each) => each.time <= time).at(-1) ?? known[0]];
+      for (const each of sent) if (each) this.#send(each);
     }
   }
 
-  #tell({ topic, message }: LoggedMessage): void {
+  #send({ topic, message }: LoggedMessage): void {
     if (topic === '/chicane/run')
       this.#events.message(topic, { ...(message as Run), mode: 'replay', is_paused: !this.#isPlaying });
     else if (topic === '/chicane/frame') this.#events.message(topic, { ...(message as Frame), pace: this.#pace });
     else this.#events.message(topic, message as never);
   }
 
-  #tellPace(isAll: boolean): void {
+  #sendPace(isAll: boolean): void {
     this.#events.settings(new Map([['run.pace', this.#pace]]), isAll);
   }
 }
 
-/** The moments of a recording that one wants to find again. `progress` in [0, 1] as it is read. */
+/** The events of a recording. `progress` in [0, 1] is called while it is read. */
 export async function landmarksOf(
   log: McapLog,
   progress: (share: number) => void = () => undefined,

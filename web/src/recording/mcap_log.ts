@@ -6,14 +6,14 @@ import { TOPIC_NAMES, type TopicName, type Topics } from '../protocol/topics';
 /** One message of a recording. */
 export interface LoggedMessage<T extends TopicName = TopicName> {
   readonly topic: T;
-  /** On the recording's time line, from its first message [s]. */
+  /** Time since the recording's first message [s]. */
   readonly time: number;
   readonly message: Topics[T];
 }
 
 const NANOSECONDS = 1e9;
 
-/** A recording with an index: what this page draws of it, in the order of time. */
+/** An indexed recording: the messages that this page draws, in the order of time. */
 export class McapLog {
   readonly name: string;
   /** From the first message to the last [s]. */
@@ -36,7 +36,7 @@ export class McapLog {
     }
   }
 
-  /** Rejects with a sentence for what is no recording of ours, or was never closed. */
+  /** Rejects with a reason if the file is no chicane recording or was never closed. */
   static async open(name: string, readable: McapTypes.IReadable): Promise<McapLog> {
     let reader: McapIndexedReader;
     try {

@@ -1,6 +1,5 @@
 /**
- * What the page was opened to show: a run that goes on, recordings that `chicane replay` serves, or those inside a
- * report.
+ * What the page shows: a live run, recordings served by `chicane replay`, or the recordings inside a report.
  */
 export type Mode =
   | { readonly name: 'live' }
@@ -16,7 +15,7 @@ const isRecord = (value: unknown): value is Record<string, unknown> => typeof va
 const isListed = (value: unknown): value is ListedLog =>
   isRecord(value) && typeof value.name === 'string' && typeof value.url === 'string';
 
-/** GET mode.json, as the server writes it; anything else means a live run. */
+/** Reads the server's mode.json; anything else means a live run. */
 export function modeOf(answer: unknown): Mode {
   if (!isRecord(answer) || answer.mode !== 'replay') return { name: 'live' };
   const logs = Array.isArray(answer.logs) ? answer.logs.filter(isListed) : [];

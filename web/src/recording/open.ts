@@ -2,8 +2,8 @@ import { McapLog } from './mcap_log';
 import type { Mode } from './mode';
 import { BytesReadable, HttpReadable } from './readable';
 
-/** Opened recordings, and where to begin [s]. */
-export interface Shelf {
+/** Opened recordings, and where to start [s]. */
+export interface Recordings {
   readonly logs: readonly McapLog[];
   readonly start: number;
 }
@@ -15,8 +15,8 @@ function bytesOf(base64: string): Uint8Array {
   return bytes;
 }
 
-/** Rejects with a sentence when a recording cannot be read. */
-export async function openShelf(mode: Exclude<Mode, { name: 'live' }>): Promise<Shelf> {
+/** Rejects with a reason if a recording cannot be read. */
+export async function openRecordings(mode: Exclude<Mode, { name: 'live' }>): Promise<Recordings> {
   if (mode.name === 'replay') {
     return {
       logs: await Promise.all(mode.logs.map(({ name, url }) => McapLog.open(name, new HttpReadable(url)))),
@@ -29,7 +29,7 @@ export async function openShelf(mode: Exclude<Mode, { name: 'live' }>): Promise<
 }
 
 /** Recordings dropped on the page. */
-export async function openFiles(files: readonly File[]): Promise<Shelf> {
+export async function openFiles(files: readonly File[]): Promise<Recordings> {
   const logs = files.map(async (file) =>
     McapLog.open(file.name, new BytesReadable(new Uint8Array(await file.arrayBuffer()))),
   );

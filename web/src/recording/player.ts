@@ -13,23 +13,23 @@ import { everyFrame } from '../state/ticker';
 import { type Landmark, LogSource, landmarksOf } from './log_source';
 import type { McapLog } from './mcap_log';
 import type { Mode } from './mode';
-import { openFiles, openShelf, type Shelf } from './open';
+import { openFiles, openRecordings, type Recordings } from './open';
 import { RecordedDrive } from './recorded_drive';
 
-// What the time line shows.
+// State of the time line.
 
 export const player = signal<LogSource | null>(null);
 export const logs = signal<readonly McapLog[]>([]);
-/** Which of them is played. */
+/** Index of the one that is played. */
 export const played = signal(0);
 export const position = signal(0); // [s]
 export const isPlaying = signal(false);
 export const landmarks = signal<readonly Landmark[]>([]);
-/** Share of the recording that was looked through for them. */
+/** Share of the recording that has been searched for landmarks. */
 export const searched = signal(0);
 export const duration = computed(() => player.value?.log.duration ?? 0);
 
-/** The pace is the only thing that can be set: in the schema's form, so that the page's own control serves. */
+/** Schema of the pace, the only setting of a recording. */
 const PACE = readSchema([
   {
     key: 'run.pace',
@@ -50,12 +50,12 @@ async function framesOf(log: McapLog): Promise<{ time: number; frame: Frame }[]>
   return frames.map(({ time, message }) => ({ time, frame: complete('/chicane/frame', message as Frame) }));
 }
 
-/** Plays one recording of a shelf; another one, the second future, drives beside it. */
-export async function play(shelf: Shelf, which = 0, start = shelf.start): Promise<LogSource> {
-  const log = shelf.logs[which];
+/** Plays one of several recordings; another one is shown beside it as a ghost. */
+export async function play(recordings: Recordings, which = 0, start = recordings.start): Promise<LogSource> {
+  const log = recordings.logs[which];
   if (!log) throw new Error('there is no recording to show');
   player.value?.close();
-  logs.value = shelf.logs;
+  logs.value = recordings.logs;
   played.value = which;
   landmarks.value = [];
   const source = await LogSource.open(log, {
@@ -79,17 +79,17 @@ export async function play(shelf: Shelf, which = 0, start = shelf.start): Promis
   player.value = source;
   await source.seek(start);
   void look(source);
-  const rival = shelf.logs[which === 0 ? 1 : 0];
+  const rival = recordings.logs[which === 0 ? 1 : 0];
   drawing.rival =
     rival && rival !== log ? RecordedDrive.from(rival.name, await framesOf(rival), () => position.value) : null;
   return source;
 }
 
 export const playMode = async (mode: Exclude<Mode, { name: 'live' }>): Promise<LogSource> =>
-  play(await openShelf(mode));
+  play(await openRecordings(mode));
 export const playFiles = async (files: readonly File[]): Promise<LogSource> => play(await openFiles(files));
 
-/** Reads the recording once, beside playing it: landmarks, and all laps for comparison. */
+/** Reads the whole recording while it plays: landmarks, and all laps for comparison. */
 async function look(source: LogSource): Promise<void> {
   const { log } = source;
   try {
@@ -104,7 +104,7 @@ async function look(source: LogSource): Promise<void> {
       sampleLap(frame);
     }
     for (const { lap, lap_time_s: time } of laps.value) lapSamples.complete(lap - 1, time);
-    laps.value = [...laps.value]; // now they can be compared: the page looks again
+    laps.value = [...laps.value]; // notifies the views that the laps can be compared now
   } catch (error) {
     notice.value = error instanceof Error ? error.message : String(error);
   }

@@ -24,7 +24,7 @@ export class BytesReadable implements IReadable {
 const BLOCK = 1 << 20; // fetched at once [bytes]
 const KEPT = 48; // blocks in memory
 
-/** A recording on a server that answers ranges, read in blocks; the last ones are kept. */
+/** A recording on a server with range requests, read in blocks; the last ones are cached. */
 export class HttpReadable implements IReadable {
   readonly #url: string;
   readonly #fetch: typeof fetch;
@@ -84,7 +84,7 @@ export class HttpReadable implements IReadable {
       if (answer.status !== 206) throw new Error(`${this.#url}: got HTTP ${answer.status}, expected 206`);
       return new Uint8Array(await answer.arrayBuffer());
     } catch (error) {
-      this.#blocks.delete(number); // another attempt may do better
+      this.#blocks.delete(number); // the next read tries again
       throw error;
     }
   }

@@ -6,8 +6,7 @@ const ROW = 5; // time, x, y, yaw, steer
 const LINE_SPACING_M = 2;
 
 /**
- * A whole recorded drive as numbers, by the time of its recording: another future, or another controller, beside this
- * one.
+ * The poses of a recorded drive by time: a branch or another controller, shown as a ghost beside the recording played.
  */
 export class RecordedDrive implements GhostSource {
   readonly label: string;
@@ -16,7 +15,7 @@ export class RecordedDrive implements GhostSource {
   readonly #rows: Float64Array;
   readonly #clock: () => number;
 
-  /** `clock`: the time shown now, on the recording's time line [s]. */
+  /** `clock`: the time shown, since the recording's first message [s]. */
   constructor(label: string, rows: Float64Array, clock: () => number) {
     this.label = label;
     this.#rows = rows;
@@ -37,7 +36,7 @@ export class RecordedDrive implements GhostSource {
     return new RecordedDrive(label, rows, clock);
   }
 
-  /** The lap's time does not matter: both drives share one clock. */
+  /** Ignores the lap time: both drives share one clock. */
   poseAt(_lapTime: number, into: GhostPose): boolean {
     const time = this.#clock();
     const count = this.#rows.length / ROW;

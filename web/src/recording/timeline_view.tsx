@@ -8,9 +8,9 @@ import { duration, isPlaying, landmarks, logs, play, played, player, position, s
 const seek = (time: number): void =>
   void player.value?.seek(time).catch((error: unknown) => (notice.value = String(error)));
 
-/** The next landmark in a direction, from a moment. */
+/** The next landmark in a direction, from a time [s]. */
 export function neighbour(all: readonly Landmark[], time: number, direction: 1 | -1): Landmark | null {
-  const margin = 0.05; // a landmark one stands on is not the next one [s]
+  const margin = 0.05; // skips the landmark at the present position [s]
   const onward =
     direction > 0 ? all.filter((each) => each.time > time + margin) : all.filter((each) => each.time < time - margin);
   return (direction > 0 ? onward[0] : onward.at(-1)) ?? null;
@@ -53,7 +53,7 @@ function Marks() {
   );
 }
 
-/** Where in the recording we are; absent while a run is live. */
+/** Position in the recording; absent in a live run. */
 export function TimelineView() {
   const source = player.value;
   if (!source) return null;

@@ -1,4 +1,4 @@
-/** How far the body leans at 1 g, and how its springs answer: chosen for looks, not taken from the plant. */
+/** Roll and pitch of the body at 1 g and its suspension: chosen for the picture, not taken from the plant. */
 const ROLL_PER_G = 0.062; // [rad]
 const PITCH_PER_G = 0.038; // [rad]
 const FREQUENCY = 2 * Math.PI * 1.7; // [rad/s]
@@ -6,7 +6,7 @@ const DAMPING = 0.5;
 const GRAVITY = 9.81;
 const STEP_S = 1 / 240;
 
-/** One lean of the body: a mass on a spring with a damper, drawn to where the acceleration would hold it. */
+/** One axis of the body's motion: a spring and damper with the acceleration's angle as equilibrium. */
 class Lean {
   angle = 0;
   #rate = 0;
@@ -22,7 +22,7 @@ class Lean {
   }
 }
 
-/** Roll (right side down positive) and pitch (nose down positive) of a body that leans in its springs [rad]. */
+/** Roll (right side down positive) and pitch (nose down positive) of the body on its suspension [rad]. */
 export class BodyMotion {
   readonly #roll = new Lean();
   readonly #pitch = new Lean();
@@ -35,7 +35,7 @@ export class BodyMotion {
     return this.#pitch.angle;
   }
 
-  /** Goes on by `seconds` of the run with the body's accelerations forward and to the left [m/s²]. */
+  /** Advances by `seconds` of the run, with the accelerations forward and to the left [m/s²]. */
   advance(seconds: number, ax: number, ay: number): void {
     const share = (a: number): number => Math.max(-1.6, Math.min(1.6, Number.isFinite(a) ? a / GRAVITY : 0));
     // A bend to the left pushes the body to the right; braking pushes its nose down.

@@ -10,29 +10,29 @@ export const CAMERAS: readonly { view: CameraName; label: string; title: string 
   { view: 'free', label: 'Free', title: 'Round the car: drag, arrow keys, wheel (C)' },
 ];
 
-/** Where a camera is and looks, in W; `up` is a direction of the picture. */
+/** Position and target of a camera in W; `up` is the picture's upward direction. */
 export interface Shot {
   readonly position: Vector;
   readonly target: Vector;
   readonly up: Vector;
-  readonly fieldOfView: number; // from the picture's bottom to its top [rad]
+  readonly fieldOfView: number; // vertical [rad]
 }
 
-/** What a camera needs to know of the car; lengths in W [m]. */
+/** What a camera needs of the car; in W [m]. */
 export interface Subject {
   readonly x: number;
   readonly y: number;
   readonly yaw: number;
   readonly speed: number;
-  readonly length: number; // of the car: small cars are filmed from nearer
+  readonly length: number; // of the car: the camera is closer to small cars
   readonly eye: Vector; // of the driver, in the car's axes
 }
 
-/** What the reader has set. */
+/** Position of the free camera, as set by the user. */
 export interface Orbit {
-  azimuth: number; // where the free camera stands, from straight behind, counter-clockwise seen from above [rad]
+  azimuth: number; // 0 straight behind the car, counter-clockwise seen from above [rad]
   elevation: number; // above the ground [rad]
-  zoom: number; // 1 as it comes, 2 twice as far
+  zoom: number; // distance factor: 1 is the default
 }
 
 export const DEFAULT_ORBIT: Orbit = { azimuth: 0.75, elevation: 0.3, zoom: 1 };
@@ -48,27 +48,36 @@ export const zoomedOrbit = (orbit: Orbit, factor: number): Orbit => ({
   zoom: clamp(orbit.zoom * factor, 0.3, 6),
 });
 
-/** A lens that keeps its width on tall screens. */
+/** The vertical field of view, wider on tall screens so that the width is kept. */
 const lens = (wide: number, aspect: number): number =>
   aspect >= 1.2 ? wide : 2 * Math.atan(Math.tan(wide / 2) * Math.min(1.7, 1.2 / aspect));
 
 /**
- * Follows the car from shot to shot; heading and speed are smoothed, so that corners turn the world and bumps do not.
+ * Follows the car; heading and speed are smoothed, so that the view turns with corners and not with every bump.
  */
 export class CameraMan {
   #heading = NaN;
   #speed = NaN;
 
-  /** The next shot cuts: nothing of the last is smoothed into it. */
+  /** The next view is a cut: no smoothing from the previous one. */
   cut(): void {
     this.#heading = NaN;
   }
 
   /**
-   * `seconds` since the last shot. With `isCalm` nothing is smoothed and the lens stays: no motion but the car's own.
+   * The view `seconds` after the last one. With `hasReducedMotion` there is neither smoothing nor a change of the field
+   * of view.
    */
-  shoot(name: CameraName, car: Subject, orbit: Orbit, aspect: number, seconds: number, isCalm: boolean): Shot {
-    const share = Number.isNaN(this.#heading) || isCalm ? 1 : 1 - Math.exp(-seconds / (name === 'top' ? 0.35 : 0.22));
+  shoot(
+    name: CameraName,
+    car: Subject,
+    orbit: Orbit,
+    aspect: number,
+    seconds: number,
+    hasReducedMotion: boolean,
+  ): Shot {
+    const share =
+      Number.isNaN(this.#heading) || hasReducedMotion ? 1 : 1 - Math.exp(-seconds / (name === 'top' ? 0.35 : 0.22));
     const from = Number.isNaN(this.#heading) ? car.yaw : this.#heading;
     this.#heading = wrapAngle(from + wrapAngle(car.yaw - from) * share);
     const slow = Number.isNaN(this.#speed) ? 1 : 1 - Math.exp(-seconds / 0.6);
@@ -77,7 +86,7 @@ export class CameraMan {
       (car.speed - (Number.isNaN(this.#speed) ? car.speed : this.#speed)) * slow;
     switch (name) {
       case 'chase':
-        return this.#chase(car, orbit, aspect, isCalm);
+        return this.#chase(car, orbit, aspect, hasReducedMotion);
       case 'top':
         return this.#top(car, orbit, aspect);
       case 'cockpit':
@@ -87,16 +96,16 @@ export class CameraMan {
     }
   }
 
-  #chase(car: Subject, { zoom }: Orbit, aspect: number, isCalm: boolean): Shot {
+  #chase(car: Subject, { zoom }: Orbit, aspect: number, hasReducedMotion: boolean): Shot {
     const [cos, sin] = [Math.cos(this.#heading), Math.sin(this.#heading)];
     const back = 1.62 * car.length * zoom;
     const ahead = 1.5 * car.length;
-    const rush = isCalm ? 0 : 0.14 * clamp(this.#speed / 50, 0, 1);
+    const widening = hasReducedMotion ? 0 : 0.14 * clamp(this.#speed / 50, 0, 1);
     return {
       position: [car.x - back * cos, car.y - back * sin, 0.62 * car.length * zoom ** 1.15],
       target: [car.x + ahead * cos, car.y + ahead * sin, 0.1 * car.length],
       up: [0, 0, 1],
-      fieldOfView: lens(0.92 + rush, aspect),
+      fieldOfView: lens(0.92 + widening, aspect),
     };
   }
 

@@ -30,7 +30,7 @@ function volume({ positions }: MeshData): number {
 }
 
 describe('the car', () => {
-  it('is as long and as wide as it is told, and stands on the road', () => {
+  it('has the given length and width, and stands on the road', () => {
     const all = [...corners(model.paint), ...corners(model.dark)];
     const xs = all.map(([x]) => x ?? NaN);
     const ys = all.map(([, y]) => y ?? NaN);

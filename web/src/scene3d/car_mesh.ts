@@ -1,15 +1,15 @@
 import type { CarSize } from '../draw/car';
 import { type Colour, colourOf, MeshBuilder, type MeshData, mirroredRing, type Vector } from './mesh';
 
-/** A car as parts in its own axes: x forward, y left, z up, from the centre of mass, on the road [m]. */
+/** The parts of a car in its own axes: x forward, y left, z up from the road, origin at the centre of mass [m]. */
 export interface CarModel {
   readonly paint: MeshData; // glossy
   readonly dark: MeshData; // carbon, rubber, cloth
   readonly lamps: MeshData; // red, lit when braking
   readonly headlamps: MeshData;
-  readonly helmet: MeshData; // the driver, not seen from his own eyes
-  readonly hand: MeshData; // the steering wheel about its own centre; it turns round its x axis
-  readonly wheel: MeshData; // about its hub, its axis along y, its better side to the left
+  readonly helmet: MeshData; // the driver's; hidden in the cockpit view
+  readonly hand: MeshData; // the steering wheel, about its own centre; it turns about its x axis
+  readonly wheel: MeshData; // about its hub, axis along y, outer side to the left
   /** Front left, front right, rear left, rear right. */
   readonly wheels: readonly { x: number; y: number; radius: number }[];
   readonly wheelRadius: number;
@@ -91,7 +91,7 @@ function wheelMesh(radius: number, width: number): MeshData {
   return mesh.data();
 }
 
-/** A rim with three spokes, seen by the driver; about its own centre in the plane across x. */
+/** The steering wheel: a rim with three spokes, about its own centre in the plane normal to x. */
 function handMesh(k: number): MeshData {
   const mesh = new MeshBuilder();
   const [radius, thick] = [0.135 * k, 0.026 * k];
@@ -106,7 +106,7 @@ function handMesh(k: number): MeshData {
   return mesh.data();
 }
 
-/** A round head with a visor. */
+/** The driver's helmet with a visor. */
 function helmetMesh(centre: Vector, radius: number): MeshData {
   const mesh = new MeshBuilder();
   const [ROWS, SIDES] = [6, 12];
@@ -128,7 +128,7 @@ function helmetMesh(centre: Vector, radius: number): MeshData {
   return mesh.data();
 }
 
-/** The measures everything is drawn from [m]. */
+/** The dimensions that the parts are built from [m]. */
 interface Measures {
   readonly k: number; // scale: 1 for a car of 4.5 m
   readonly front: number; // axles, and ends of the body
@@ -147,7 +147,7 @@ interface Measures {
   at(share: number): number;
 }
 
-/** Parts of one kind of surface each, still growing. */
+/** Meshes under construction, one for each kind of surface. */
 interface Parts {
   readonly paint: MeshBuilder;
   readonly dark: MeshBuilder;
@@ -166,7 +166,7 @@ function measure(size: CarSize): Measures {
   const tyre = Math.max(size.tire_width_m, 0.24 * k);
   const halfTrack = size.track_width_m / 2;
   const halfWidth = Math.max(size.body_width_m, size.track_width_m + tyre) / 2;
-  const inner = Math.max(halfTrack - tyre / 2 - 0.16 * k, 0.3 * k); // room between the wheels
+  const inner = Math.max(halfTrack - tyre / 2 - 0.16 * k, 0.3 * k); // half the room between the wheels
   const at = (share: number): number => rear + share * wheelbase; // 0 rear axle, 1 front axle
   const tub = Math.min(0.36 * k, inner);
   const pod = Math.min(halfWidth - 0.1 * k, Math.max(halfTrack - 0.08 * k, tub + 0.1));
@@ -321,8 +321,8 @@ function addWishbones({ dark }: Parts, { k, front, rear, radius, tyre, halfTrack
 }
 
 /**
- * An open single-seater: nothing hides the front wheels, whichever way one looks. Axles, track, tyres, length and width
- * are those of the car; the rest of its shape is ours.
+ * An open single-seater, whose front wheels are visible from every camera. Axles, track, tyres, length and width are
+ * those of the car; the rest of the shape is invented.
  */
 export function carModel(size: CarSize): CarModel {
   const measures = measure(size);

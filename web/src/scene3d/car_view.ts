@@ -34,7 +34,7 @@ class Wheels {
       const turn = new Group();
       turn.position.set(x, y, radius);
       const side = new Group();
-      if (y < 0) side.rotation.z = Math.PI; // its better side out
+      if (y < 0) side.rotation.z = Math.PI; // outer side outwards
       const roll = new Group();
       roll.add(...makeMesh());
       this.group.add(turn.add(side.add(roll)));
@@ -52,7 +52,7 @@ class Wheels {
   }
 }
 
-/** How the car stands at one moment. */
+/** Pose of the car, its wheels and its body. */
 export interface CarPose {
   readonly x: number;
   readonly y: number;
@@ -60,11 +60,11 @@ export interface CarPose {
   readonly steer: number;
   readonly roll: number; // of the body
   readonly pitch: number;
-  readonly wheelAngle: number; // rolled since some time
+  readonly wheelAngle: number; // rolled so far [rad]
   readonly isBraking: boolean;
 }
 
-/** A picture of light of one grey, as strong as `strength` says at u forward and v to the left, both in (−1, 1). */
+/** A texture of one grey with opacity `strength` at u forward and v to the left, both in (−1, 1). */
 function softTexture(grey: number, strength: (u: number, v: number) => number): DataTexture {
   const size = 64;
   const bytes = new Uint8Array(size * size * 4);
@@ -82,11 +82,11 @@ function softTexture(grey: number, strength: (u: number, v: number) => number): 
 
 const soft = (edge: number): number => Math.max(0, Math.min(1, edge)) ** 2 * (3 - 2 * Math.max(0, Math.min(1, edge)));
 
-/** Where the sky does not reach under the car. */
+/** The ambient shadow under the car. */
 const spotTexture = (): DataTexture =>
   softTexture(0, (u, v) => 0.75 * soft((1 - Math.abs(u)) / 0.45) * soft((1 - Math.abs(v)) / 0.45));
 
-/** What two headlamps light of the road: a fan that opens and fades. */
+/** The light of the headlamps on the road: a cone that widens and fades. */
 const beamTexture = (): DataTexture =>
   softTexture(255, (u, v) => {
     const ahead = (u + 1) / 2;
@@ -94,7 +94,7 @@ const beamTexture = (): DataTexture =>
     return 0.2 * soft(ahead / 0.25) * soft(1 - ahead) * soft((wide - Math.abs(v)) / (0.9 * wide));
   });
 
-const STEERING_RATIO = 4.5; // of the steering wheel, for looks
+const STEERING_RATIO = 4.5; // of the steering wheel; chosen for the picture
 
 /** The driven car. */
 export class CarView {
@@ -210,24 +210,24 @@ export class CarView {
   }
 }
 
-/** Another drive's car: a veil of one colour, thinner the closer it is to the driven car. */
+/** The ghost car: a transparent shape of one colour, fainter close to the driven car. */
 export class GhostView {
   readonly #scene: Scene;
   readonly #group = new Group();
   readonly #wheels: Wheels;
-  readonly #veil = new MeshLambertMaterial({ transparent: true, fog: true });
-  /** Hides what lies behind its own surface. */
-  readonly #mould = new MeshBasicMaterial({ colorWrite: false, transparent: true });
+  readonly #tint = new MeshLambertMaterial({ transparent: true, fog: true });
+  /** Writes depth only, so that the shape does not show through itself. */
+  readonly #depthOnly = new MeshBasicMaterial({ colorWrite: false, transparent: true });
   readonly #geometries: BufferGeometry[];
 
   constructor(scene: Scene, size: CarSize, model: CarModel) {
     this.#scene = scene;
     this.#geometries = [model.paint, model.dark, model.helmet, model.wheel].map(geometryOf);
     const pair = (geometry: BufferGeometry | undefined): Mesh[] => {
-      const [mould, veil] = [new Mesh(geometry, this.#mould), new Mesh(geometry, this.#veil)];
-      mould.renderOrder = 19;
-      veil.renderOrder = 20;
-      return [mould, veil];
+      const [depthOnly, tint] = [new Mesh(geometry, this.#depthOnly), new Mesh(geometry, this.#tint)];
+      depthOnly.renderOrder = 19;
+      tint.renderOrder = 20;
+      return [depthOnly, tint];
     };
     this.#wheels = new Wheels(model, size, () => pair(this.#geometries[3]));
     this.#group.add(this.#wheels.group, ...this.#geometries.slice(0, 3).flatMap(pair));
@@ -236,15 +236,15 @@ export class GhostView {
   }
 
   paint(colours: Palette): void {
-    this.#veil.color = new Color().setRGB(...colours.ghost);
-    this.#veil.emissive = new Color().setRGB(...colours.ghost).multiplyScalar(0.35);
+    this.#tint.color = new Color().setRGB(...colours.ghost);
+    this.#tint.emissive = new Color().setRGB(...colours.ghost).multiplyScalar(0.35);
   }
 
   hide(): void {
     this.#group.visible = false;
   }
 
-  /** `away`: metres from the driven car. */
+  /** `away`: distance from the driven car [m]. */
   pose(
     pose: { x: number; y: number; yaw: number; steer: number },
     wheelAngle: number,
@@ -252,7 +252,7 @@ export class GhostView {
     carLength: number,
   ): void {
     const share = Math.min(1, Math.max(0, (away / carLength - 0.25) / 1.2));
-    this.#veil.opacity = 0.5 * share;
+    this.#tint.opacity = 0.5 * share;
     this.#group.visible = share > 0;
     this.#group.position.set(pose.x, pose.y, 0);
     this.#group.rotation.z = pose.yaw;
@@ -262,7 +262,7 @@ export class GhostView {
   dispose(): void {
     this.#scene.remove(this.#group);
     for (const geometry of this.#geometries) geometry.dispose();
-    this.#veil.dispose();
-    this.#mould.dispose();
+    this.#tint.dispose();
+    this.#depthOnly.dispose();
   }
 }

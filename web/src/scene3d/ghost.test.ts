@@ -71,7 +71,7 @@ describe('the ghost', () => {
     expect(recorder.best?.lapTime).toBe(11);
   });
 
-  it('stays to be raced after a reset, and goes with its track', () => {
+  it('stays after a reset, and is cleared with the track', () => {
     const recorder = new LapRecorder();
     drive(recorder, [10, 3]);
     drive(recorder, [9, 3]); // from time 0 again

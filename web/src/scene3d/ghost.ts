@@ -3,7 +3,7 @@ import { wrapAngle } from '../lib/math';
 import type { Frame } from '../protocol/topics';
 import { LONGEST_SILENCE_S } from '../state/silence';
 
-/** Where another car was, and how its front wheels stood, at a time of the lap. */
+/** Pose and steering angle of another car at a time of the lap. */
 export interface GhostPose {
   x: number;
   y: number;
@@ -15,13 +15,13 @@ export interface GhostPose {
  * Another drive round the same track, by lap time: the best lap of this session, a lap of a log, another controller's.
  */
 export interface GhostSource {
-  /** For people, e.g. "best lap 0:26.60". */
+  /** Label for the legend, e.g. "best lap 0:26.60". */
   readonly label: string;
   /** Time for the whole lap [s]. */
   readonly lapTime: number;
-  /** Writes where it was `time` seconds into its lap; false when it was nowhere then. */
+  /** Writes the pose `time` seconds into the lap; false outside of it. */
   poseAt(time: number, into: GhostPose): boolean;
-  /** Its line, for drawing: x, y one after another [m]; fixed for the life of the source. */
+  /** Its path for drawing: x, y alternating [m]; constant. */
   readonly line: Float32Array;
 }
 
@@ -33,7 +33,7 @@ const LINE_SPACING_M = 1;
 export class RecordedLap implements GhostSource {
   readonly line: Float32Array;
   readonly #rows: Float32Array;
-  #last = 0; // row found by the last question: the next one is nearly always close
+  #last = 0; // row found last: the next query is nearly always close
 
   constructor(
     rows: Float32Array,
@@ -70,7 +70,7 @@ export class RecordedLap implements GhostSource {
   }
 }
 
-/** Watches frames go by and keeps the best whole lap, in fixed memory. A lap that left the road is not kept. */
+/** Records frames and keeps the best complete lap, in fixed memory. Laps that left the road are not kept. */
 export class LapRecorder {
   best: RecordedLap | null = null;
   readonly #rows = new Float32Array(CAPACITY * ROW);
@@ -80,7 +80,7 @@ export class LapRecorder {
   #offTrackEvents = 0;
   #time = -Infinity;
 
-  /** Forgets everything: another run. */
+  /** Clears everything, for another run. */
   clear(): void {
     this.best = null;
     this.#begin(NaN, false, 0);
@@ -89,7 +89,7 @@ export class LapRecorder {
 
   push(frame: Frame): void {
     if (frame.time_s === this.#time) return;
-    // A reset: the lap begun is lost, the best one stays to be raced.
+    // A reset discards the lap in progress; the best lap stays.
     if (frame.time_s < this.#time) this.#begin(NaN, false, 0);
     if (frame.time_s - this.#time > LONGEST_SILENCE_S) this.#isWhole = false;
     this.#time = frame.time_s;
@@ -97,7 +97,7 @@ export class LapRecorder {
     if (frame.lap !== this.#lap) {
       const isNext = frame.lap === this.#lap + 1;
       if (isNext && this.#isWhole) this.#finish(frame);
-      // Only what was seen from the line on is a whole lap.
+      // A lap is complete only if it was recorded from the line on.
       this.#begin(frame.lap, isNext || frame.lap_time_s < 0.5, frame.off_track_events);
     }
     this.#add(frame);

@@ -25,15 +25,15 @@ import { noiseTile } from './noise';
 import type { Palette } from './palette';
 import type { Tree } from './trees';
 
-/** Pictures are painted from far to near: none of these writes depth, so none flickers through another. */
+/** Drawn from far to near without writing depth, so that nothing flickers. */
 export const Order = { sky: -100, hills: -90, ground: -80, verge: -70, kerbs: -60, surface: -50, lines: -40 } as const;
 
 const GROUND_M = 2400;
-const TILE_M = 20; // of the ground's picture: one cell of its grid
+const TILE_M = 20; // of the ground's texture: one cell of the grid
 const FAR_M = 900;
 const FOREST_TILE_M = 90;
 
-/** Grey picture to be laid edge to edge, from values around 1. */
+/** A seamless grey texture from values around 1. */
 export function greyTexture(values: Float32Array, size: number, anisotropy: number): DataTexture {
   const bytes = new Uint8Array(size * size * 4);
   values.forEach((value, i) => {
@@ -62,7 +62,7 @@ const mixed = (a: Colour, b: Colour, share: number): Colour => [
 /** Sky, hills, ground and trees. */
 export class Landscape {
   readonly #scene: Scene;
-  readonly #around = new Group(); // goes with the camera
+  readonly #around = new Group(); // moves with the camera
   readonly #sky: Mesh<SphereGeometry, MeshBasicMaterial>;
   readonly #hills: Mesh<BufferGeometry, MeshBasicMaterial>;
   readonly #ground: Mesh<PlaneGeometry, MeshBasicMaterial>;
@@ -88,7 +88,7 @@ export class Landscape {
     const size = 256;
     const values = noiseTile(size, 0.16, [5, 13, 41, 128], 11);
     for (let i = 0; i < size; ++i) {
-      for (const at of [i, i * size]) values[at] = (values[at] ?? 1) * 0.88; // the grid: one line along, one across
+      for (const at of [i, i * size]) values[at] = (values[at] ?? 1) * 0.88; // the grid lines
     }
     this.#picture = greyTexture(values, size, anisotropy);
     this.#picture.repeat.set(GROUND_M / TILE_M, GROUND_M / TILE_M);
@@ -121,13 +121,13 @@ export class Landscape {
     this.#ground.material.color = underTexture(colours.ground);
   }
 
-  /** Moves along with the camera; the ground moves by whole cells, so that its grid stays put. */
+  /** Moves with the camera; the ground moves by whole cells, so that its grid stays in place. */
   follow(x: number, y: number): void {
     this.#around.position.set(x, y, 0);
     this.#ground.position.set(Math.round(x / TILE_M) * TILE_M, Math.round(y / TILE_M) * TILE_M, 0);
   }
 
-  /** Trees, tile by tile: what is out of the picture costs nothing. */
+  /** Trees in tiles, so that those out of view are not drawn. */
   plant(trees: readonly Tree[], colours: Palette): void {
     this.#fell();
     const tiles = new Map<string, MeshBuilder>();
@@ -157,7 +157,7 @@ export class Landscape {
   }
 }
 
-/** A trunk and two cones, without the faces nobody sees. */
+/** A trunk and two cones, without hidden faces. */
 function addTree(mesh: MeshBuilder, { x, y, height, width, kind }: Tree, colours: Palette): void {
   const cone = (sides: number, low: number, high: number, radius: number, top: number, colour: Colour): void => {
     const point = (k: number, r: number, z: number): Vector => {
@@ -173,7 +173,7 @@ function addTree(mesh: MeshBuilder, { x, y, height, width, kind }: Tree, colours
   cone(7, 0.48 * height, height, 0.37 * width, 0, leaves);
 }
 
-/** Two rings of hills, the far and higher one first, each with its foot in the ground. */
+/** Two rings of hills, the farther and higher one first. */
 function hillsGeometry(): BufferGeometry {
   const SIDES = 96;
   const positions: number[] = [];

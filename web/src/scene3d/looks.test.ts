@@ -19,7 +19,7 @@ describe('the body', () => {
     expect(settle(5, 0).pitch).toBeLessThan(0);
   });
 
-  it('stays small whatever it is told, at any frame rate', () => {
+  it('stays bounded for any input and frame rate', () => {
     const body = new BodyMotion();
     for (let i = 0; i < 200; ++i) body.advance(i % 7 === 0 ? 5 : 0.2, i % 2 ? 1e9 : -1e9, NaN);
     expect(Math.abs(body.pitch)).toBeLessThan(0.2);

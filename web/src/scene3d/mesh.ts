@@ -1,10 +1,10 @@
 /** A point or a direction: x, y, z [m], in W or in the axes of a car (x forward, y left, z up). */
 export type Vector = readonly [number, number, number];
 
-/** Red, green, blue in [0, 1], as light (linear), not as on a screen. */
+/** Red, green, blue in [0, 1], linear (not sRGB). */
 export type Colour = readonly [number, number, number];
 
-/** Triangles as a graphics card wants them: three corners after another, each with its normal and colour. */
+/** Triangles for the graphics card: three corners each, with normal and colour. */
 export interface MeshData {
   readonly positions: Float32Array;
   readonly normals: Float32Array;
@@ -19,7 +19,7 @@ const cross = (a: Vector, b: Vector): Vector => [
   a[0] * b[1] - a[1] * b[0],
 ];
 
-/** Screen colour #rrggbb as light. */
+/** sRGB colour #rrggbb as linear colour. */
 export function colourOf(hex: string): Colour {
   const channel = (at: number): number => {
     const value = parseInt(hex.slice(at, at + 2), 16) / 255;
@@ -37,7 +37,7 @@ export class MeshBuilder {
   triangle(a: Vector, b: Vector, c: Vector, colour: Colour): void {
     const [x, y, z] = cross(minus(b, a), minus(c, a));
     const length = Math.hypot(x, y, z);
-    if (!(length > 1e-12)) return; // nothing to see
+    if (!(length > 1e-12)) return; // degenerate
     for (const corner of [a, b, c]) {
       this.#positions.push(...corner);
       this.#normals.push(x / length, y / length, z / length);
@@ -70,13 +70,14 @@ export class MeshBuilder {
   }
 
   /**
-   * The body between two equal-cornered polygons; `near` lies at smaller x, corners counter-clockwise seen from ahead.
+   * The solid between two polygons with equally many corners; `near` at smaller x, corners counter-clockwise from
+   * ahead.
    */
   hull(near: readonly Vector[], far: readonly Vector[], colour: Colour): void {
     this.loft([near, far], colour);
   }
 
-  /** Skin over sections along x, each counter-clockwise seen from ahead (where y points right), closed at both ends. */
+  /** A closed surface over sections along x, each counter-clockwise seen from ahead (where y points right). */
   loft(sections: readonly (readonly Vector[])[], colour: Colour | ((x: number, face: number) => Colour)): void {
     const paint = typeof colour === 'function' ? colour : (): Colour => colour;
     for (let i = 0; i + 1 < sections.length; ++i) {
@@ -130,7 +131,7 @@ export class MeshBuilder {
   }
 }
 
-/** The same section on the other side as well: half a ring from the bottom to the top at y ≥ 0, mirrored. */
+/** A section from its half at y ≥ 0, bottom to top, mirrored. */
 export function mirroredRing(x: number, half: readonly (readonly [y: number, z: number])[]): Vector[] {
   const left = half.map(([y, z]): Vector => [x, y, z]);
   const right = [...half]

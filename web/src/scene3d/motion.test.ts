@@ -50,7 +50,7 @@ describe('interpolation', () => {
     expect(interpolate(a, b, 1.04).lapTime).toBeCloseTo(0.01, 9);
   });
 
-  it('draws on with what it knows when side speed and yaw rate are unknown', () => {
+  it('extrapolates with what is known when side speed and yaw rate are not', () => {
     const blind = (time: number): Motion => ({ ...circling(time), vy: NaN, yawRate: NaN });
     expect(far(interpolate(blind(1), blind(1.05), 1.025), circling(1.025))).toBeLessThan(0.01);
   });

@@ -1,7 +1,7 @@
 import { clamp, extrapolate, wrapAngle } from '../lib/math';
 import type { Frame } from '../protocol/topics';
 
-/** What of a frame is needed to draw the car. SI, radians, W; not-a-number is unknown. */
+/** The part of a frame needed to draw the car. SI, radians, W; NaN for unknown. */
 export interface Motion {
   time: number; // of the run [s]
   x: number;
@@ -72,7 +72,7 @@ export function interpolate(a: Motion, b: Motion, time: number): Motion {
     yawRate: mix(a.yawRate, b.yawRate, u),
     speed: mix(a.speed, b.speed, u),
     steer: mix(a.steer, b.steer, u),
-    throttle: b.throttle, // a switch, not a slope
+    throttle: b.throttle, // not interpolated
     ax: mix(a.ax, b.ax, u),
     ay: mix(a.ay, b.ay, u),
     lapTime: b.lapTime >= a.lapTime ? mix(a.lapTime, b.lapTime, u) : b.lapTime - (b.time - time),
@@ -81,7 +81,7 @@ export function interpolate(a: Motion, b: Motion, time: number): Motion {
   };
 }
 
-/** Was the car put somewhere else between two frames, rather than driven there? */
+/** Whether the car was placed elsewhere between two frames instead of driving there. */
 export function isJump(a: Motion, b: Motion): boolean {
   const span = b.time - a.time;
   if (!(span > 0) || span > 2) return true;
@@ -95,16 +95,16 @@ const LONGEST_LEAD_S = 0.12; // run time shown beyond the newest frame
 const SLEW_S = 0.25;
 
 /**
- * Turns frames that arrive now and then into motion at every repaint. It plays the run about one frame late, at the
- * pace at which frames arrive, so that there is nearly always a frame before and one after the moment shown. The delay
- * is bounded: where frames are rarer than that the car is led on from the newest with constant speed and yaw rate.
+ * Turns frames that arrive irregularly into smooth motion. It shows the run about one frame late, at the pace at which
+ * frames arrive, so that there is nearly always a frame before and one after the time shown. The delay is bounded: with
+ * fewer frames the newest one is extrapolated with constant speed and yaw rate.
  */
 export class Playout {
   #frames: Motion[] = [];
   #arrivals: number[] = []; // of each [ms]
   #shown = NaN; // run time [s]
   #at = NaN; // of the last advance [ms]
-  /** Counts the times the car was put somewhere else; whoever smooths starts anew. */
+  /** Counts how often the car was placed elsewhere; users restart their smoothing. */
   jumps = 0;
 
   /** Takes a frame that arrived at `now` [ms]. */
@@ -132,7 +132,7 @@ export class Playout {
     ++this.jumps;
   }
 
-  /** Run time per time of the clock, as the frames kept came in; 1 until two of them did. */
+  /** Run time per clock time, from the arrival of the frames; 1 before two have arrived. */
   pace(): number {
     const n = this.#frames.length;
     if (n < 2) return 1;
@@ -141,7 +141,7 @@ export class Playout {
     return wall > 0 ? clamp(run / wall, 0.02, 50) : 1;
   }
 
-  /** How far behind the newest frame the picture is meant to be [ms]. */
+  /** Intended delay of the picture behind the newest frame [ms]. */
   #delay(): number {
     const n = this.#frames.length;
     if (n < 2) return 0;
@@ -150,8 +150,7 @@ export class Playout {
   }
 
   /**
-   * The motion to show at `now` [ms]; null before the first frame. While the run is held the newest frame is shown as
-   * it is.
+   * The motion to show at `now` [ms]; null before the first frame. While the run is held, the newest frame unchanged.
    */
   advance(now: number, isHeld: boolean): Motion | null {
     const newest = this.#frames.at(-1);

@@ -1,4 +1,4 @@
-/** The same numbers in [0, 1) for the same seed: pictures of the same track are equal. */
+/** Random numbers in [0, 1), equal for equal seeds: pictures of the same track are equal. */
 export function randomNumbers(seed: number): () => number {
   let state = seed >>> 0;
   return () => {
@@ -10,8 +10,7 @@ export function randomNumbers(seed: number): () => number {
 }
 
 /**
- * A square of grey noise that can be laid edge to edge: `size` × `size` values around 1, ± `amplitude`, over several
- * scales.
+ * A seamless square of noise: `size` × `size` values around 1, ± `amplitude`, over several scales.
  */
 export function noiseTile(size: number, amplitude: number, cells: readonly number[], seed: number): Float32Array {
   const tile = new Float32Array(size * size).fill(1);

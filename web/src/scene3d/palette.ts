@@ -2,7 +2,7 @@ import { theme } from '../draw/theme';
 import { type Colour, colourOf } from './mesh';
 import type { RoadPaint } from './road_mesh';
 
-/** What the world looks like by day and at dusk; colours as light. */
+/** Colours of the scene by day and at dusk; linear. */
 export interface Palette {
   readonly isDark: boolean;
   readonly zenith: Colour;
@@ -16,12 +16,12 @@ export interface Palette {
   readonly reference: Colour;
   readonly trace: Colour;
   readonly racingLine: Colour;
-  readonly foreseen: Colour;
-  readonly came: Colour;
+  readonly predicted: Colour;
+  readonly outcome: Colour;
   readonly ghost: Colour;
   readonly rubber: Colour;
-  readonly sun: number; // strength of the light from one side
-  readonly sky: number; // and from all around
+  readonly sun: number; // intensity of the directional light
+  readonly sky: number; // intensity of the ambient light
 }
 
 const DAY: Omit<Palette, 'isDark'> = {
@@ -44,8 +44,8 @@ const DAY: Omit<Palette, 'isDark'> = {
   reference: colourOf('#ffffff'),
   trace: colourOf('#c6d5f2'),
   racingLine: colourOf('#4df0ff'),
-  foreseen: colourOf('#f25fc4'),
-  came: colourOf('#ffffff'),
+  predicted: colourOf('#f25fc4'),
+  outcome: colourOf('#ffffff'),
   ghost: colourOf('#3f7cf0'),
   rubber: colourOf('#16181c'),
   sun: 2.6,
@@ -72,15 +72,15 @@ const DUSK: Omit<Palette, 'isDark'> = {
   reference: colourOf('#aab6c6'),
   trace: colourOf('#6283c0'),
   racingLine: colourOf('#35b9c9'),
-  foreseen: colourOf('#e05ab6'),
-  came: colourOf('#e4ebf5'),
+  predicted: colourOf('#e05ab6'),
+  outcome: colourOf('#e4ebf5'),
   ghost: colourOf('#7aa7ff'),
   rubber: colourOf('#0a0c0f'),
   sun: 1.3,
   sky: 1.0,
 };
 
-/** Follows the page: as dark as its ground. */
+/** The palette for the page's colour scheme. */
 export function palette(): Palette {
   const [r, g, b] = colourOf(theme().ground);
   const isDark = r + g + b < 0.6;

@@ -12,7 +12,7 @@ const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
   ArrowDown: [0, -KEY_TURN],
 };
 
-/** Drag, pinch, wheel and arrow keys move the camera; returns the end of it. */
+/** Lets drag, pinch, wheel and arrow keys move the camera; returns a function that ends it. */
 export function listenToPointers(canvas: HTMLCanvasElement): () => void {
   const down = new Map<number, { x: number; y: number }>();
 
@@ -23,7 +23,7 @@ export function listenToPointers(canvas: HTMLCanvasElement): () => void {
 
   const begin = (event: PointerEvent): void => {
     if (event.pointerType === 'mouse' && event.button !== 0) return;
-    // Fingers scroll the page unless the camera is free; a mouse takes the camera along.
+    // Touch scrolls the page unless the camera is free; a mouse always moves the camera.
     if (event.pointerType !== 'mouse' && camera.value !== 'free') return;
     canvas.setPointerCapture(event.pointerId);
     down.set(event.pointerId, { x: event.clientX, y: event.clientY });
@@ -40,7 +40,7 @@ export function listenToPointers(canvas: HTMLCanvasElement): () => void {
       return;
     }
     if (camera.value !== 'free') {
-      // Takes over from where the camera stands: behind the car.
+      // Starts from the present position of the camera, behind the car.
       orbit.value = { ...orbit.value, azimuth: 0, elevation: 0.3 };
       camera.value = 'free';
     }
@@ -54,7 +54,7 @@ export function listenToPointers(canvas: HTMLCanvasElement): () => void {
   };
   const key = (event: KeyboardEvent): void => {
     const turn = ARROWS[event.key];
-    // While somebody drives by hand the arrows are the car's.
+    // While driving by hand the arrow keys steer the car.
     if (!turn || camera.value !== 'free' || live.frame?.is_manual || event.ctrlKey || event.metaKey || event.altKey)
       return;
     event.preventDefault();

@@ -1,4 +1,4 @@
-/** What a picture may cost, from dear to cheap. */
+/** Levels of quality, from expensive to cheap. */
 export interface Quality {
   readonly pixelRatio: number; // pixels drawn for each CSS pixel, at most
   readonly hasShadow: boolean;
@@ -15,16 +15,16 @@ export const LEVELS: readonly Quality[] = [
   { pixelRatio: 0.5, hasShadow: false, interval: 50 },
 ];
 
-/** Where a picture drawn by the processor instead of a graphics card starts; it never climbs above. */
+/** First and highest level with software rendering. */
 export const SOFTWARE_LEVEL = 4;
 
-const WINDOW = 40; // pictures judged together, or fewer where they take long
+const WINDOW = 40; // pictures judged together; fewer where they take long
 const LONG_WINDOW_MS = 3000;
 const LEAST_WINDOW = 8;
-const LATE = 1.45; // times the interval meant
-const CALM_WINDOWS = 6; // good ones in a row before it dares more
+const LATE = 1.45; // times the intended interval
+const CALM_WINDOWS = 6; // consecutive good windows before the level is raised
 
-/** Picks the dearest level at which pictures come in time, from the measured time between them. */
+/** Chooses the highest level at which pictures are on time, from the measured time between them. */
 export class QualityGovernor {
   level: number;
   readonly #best: number;
@@ -42,12 +42,12 @@ export class QualityGovernor {
   }
 
   /**
-   * Takes the time since the last picture and what drawing took of the page's own thread [ms]; true when the level
+   * Takes the time since the last picture and the time drawing took on the main thread [ms]; true when the level
    * changed.
    */
   picture(gap: number, cost: number): boolean {
-    if (!(gap > 0) || gap > 500) return false; // hidden, or just begun
-    this.#gaps.push(Math.max(gap, cost * 2)); // never more than half of the page's thread
+    if (!(gap > 0) || gap > 500) return false; // hidden, or just started
+    this.#gaps.push(Math.max(gap, cost * 2)); // at most half of the main thread
     const isLong = this.#gaps.length >= LEAST_WINDOW && this.#gaps.reduce((a, b) => a + b) > LONG_WINDOW_MS;
     if (this.#gaps.length < WINDOW && !isLong) return false;
     const sorted = this.#gaps.sort((a, b) => a - b);
@@ -55,7 +55,7 @@ export class QualityGovernor {
     this.#gaps = [];
     const meant = Math.max(this.quality.interval, 1000 / 60);
     if (typical > LATE * meant && this.level < LEVELS.length - 1) {
-      this.#patience *= 2; // it was too dear: not again so soon
+      this.#patience *= 2; // the higher level was too expensive: wait longer before trying it again
       this.#calm = 0;
       ++this.level;
       return true;

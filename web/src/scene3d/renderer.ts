@@ -1,4 +1,4 @@
-/** Who draws in 3D on this machine. */
+/** What renders 3D on this machine. */
 export type Renderer = 'card' | 'processor' | 'none';
 
 const BY_PROCESSOR = /swiftshader|llvmpipe|softpipe|software|basic render/i;
@@ -8,11 +8,11 @@ function ask(): Renderer {
   if (!context) return 'none';
   const info = context.getExtension('WEBGL_debug_renderer_info');
   const name = String(context.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : context.RENDERER));
-  context.getExtension('WEBGL_lose_context')?.loseContext(); // contexts are few
+  context.getExtension('WEBGL_lose_context')?.loseContext(); // the number of contexts is limited
   return BY_PROCESSOR.test(name) ? 'processor' : 'card';
 }
 
 let answer: Renderer | undefined;
 
-/** Asked once, without the noise a drawing library makes when there is nothing to draw with. */
+/** Determined once, without the console messages that the library prints where there is no WebGL. */
 export const renderer = (): Renderer => (answer ??= ask());

@@ -1,4 +1,4 @@
-/** The end of a band: where its next piece is joined. */
+/** The end of a band, where its next piece is joined. */
 interface End {
   readonly leftX: number;
   readonly leftY: number;
@@ -8,17 +8,17 @@ interface End {
 }
 
 /**
- * Bands on the ground in fixed memory, piece by piece: several tracks (one for each wheel, say) share it, and when it
- * is full the oldest pieces go. A piece is a quad of four corners, x, y, z each, in a slot of its own.
+ * Bands on the ground in a ring buffer of pieces, shared by several tracks (for example one for each wheel); when it is
+ * full the oldest pieces are overwritten. A piece is a quad of four corners, x, y, z each, in a slot of its own.
  */
 export class RibbonRing {
   readonly capacity: number;
   readonly positions: Float32Array;
-  /** Red, green, blue (full) and how visible each corner is. */
+  /** Red, green, blue (full) and opacity of each corner. */
   readonly colours: Uint8Array;
   /** Two triangles for each slot; empty slots have no area. */
   readonly indices: Uint32Array;
-  /** Pieces ever written. */
+  /** Number of pieces written so far. */
   written = 0;
   readonly #ends: (End | null)[];
 
@@ -40,7 +40,7 @@ export class RibbonRing {
     return this.written % this.capacity;
   }
 
-  /** Goes on with a track to a pair of points; the first pair after a lift writes nothing yet. */
+  /** Continues a track to a pair of points; the first pair after lift() writes nothing yet. */
   push(track: number, leftX: number, leftY: number, rightX: number, rightY: number, strength: number): void {
     const from = this.#ends[track];
     this.#ends[track] = { leftX, leftY, rightX, rightY, strength };

@@ -7,7 +7,7 @@ import { type RibbonRing, ribbonIndices, writeRibbon } from './ribbon';
 const flatMaterial = (): MeshBasicMaterial =>
   new MeshBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false });
 
-/** Shows a ring of bands; uploads only what was written since the last picture. */
+/** Shows a ring of bands; uploads only the pieces written since the last picture. */
 export class RingView {
   readonly #scene: Scene;
   readonly #ring: RibbonRing;
@@ -92,7 +92,7 @@ export class BandView {
     this.#mesh.material.color = new Color().setRGB(...colour);
   }
 
-  /** `alphaAt` tells how visible a point is, by its share of the way. */
+  /** `alphaAt` gives the opacity of a point by its share of the length. */
   show(px: ArrayLike<number>, py: ArrayLike<number>, width: number, alphaAt: (share: number) => number): void {
     const count = Math.min(px.length, py.length, this.#capacity);
     this.#lay(px, py, count, width);
@@ -107,7 +107,7 @@ export class BandView {
     const colours = this.#colours.array;
     for (let i = 0; i < count; ++i) {
       const [r, g, b] = speedRgb((plan.speed_mps[i] ?? NaN) / speedScale);
-      // Vertex colours are light, the scale is of the screen.
+      // Vertex colours are linear, the colour scale is sRGB.
       const rgba = [
         255 * (r / 255) ** 2.2,
         255 * (g / 255) ** 2.2,

@@ -80,7 +80,7 @@ describe('the road', () => {
     }
   });
 
-  it('has kerbs of the width it is told, outside the edges, and none where there are none', () => {
+  it('has kerbs of the given width outside the edges, and none for width 0', () => {
     const lines = ring(50, 5, 120);
     const radii = (flat: FlatMesh): number[] => {
       const all: number[] = [];

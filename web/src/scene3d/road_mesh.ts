@@ -1,17 +1,17 @@
 import type { Point } from '../lib/math';
 import { type Colour, colourOf } from './mesh';
 
-/** Edges and centre of a road as the server sends them: as many points each, across from one another, in W [m]. */
+/** Edges and centre of a road as the server sends them: equally many points, opposite each other, in W [m]. */
 export interface RoadLines {
   readonly left: readonly Point[];
   readonly right: readonly Point[];
   readonly centre: readonly Point[];
 }
 
-/** Something painted flat on the ground: corners in W at z = 0, three for each triangle, all facing up. */
+/** A flat mesh on the ground: corners in W at z = 0, three for each triangle, all facing up. */
 export interface FlatMesh {
   readonly positions: Float32Array;
-  readonly colours: Float32Array; // light (linear), 3 for each corner
+  readonly colours: Float32Array; // linear, 3 for each corner
 }
 
 /** Colours of the road in one theme. */
@@ -30,7 +30,7 @@ const BLACK = colourOf('#15181d');
 const EDGE_LINE_M = 0.16;
 const VERGE_M = 7;
 const KERB_BLOCK_M = 1.4;
-/** Bends tighter than this have kerbs in red and white; elsewhere the kerb is plain concrete. */
+/** Tighter bends have kerbs in red and white; elsewhere the kerb is plain concrete. */
 export const KERB_RADIUS_M = 130;
 
 class Flat {
@@ -63,8 +63,8 @@ function towards(from: Point, to: Point, metres: number): Point {
 }
 
 /**
- * Lines of equal length without repeated points, the first point once more at the end when the road is closed: there is
- * no gap at the seam, whether or not the server repeats the point. Null when there is no road.
+ * The lines without repeated points; on a closed road the first point is repeated at the end, whether or not the server
+ * repeats it, so that the seam has no gap. Null without a road.
  */
 export function tidyLines(lines: RoadLines, isClosed: boolean): RoadLines | null {
   const count = Math.min(lines.left.length, lines.right.length, lines.centre.length);
@@ -90,7 +90,7 @@ export function stations(points: readonly Point[]): Float64Array {
   return s;
 }
 
-/** The band between two lines with as many points, `left` on the left of `right`. */
+/** The band between two lines with equally many points, `left` on the left of `right`. */
 export function band(left: readonly Point[], right: readonly Point[], colour: Colour): FlatMesh {
   const flat = new Flat();
   addBand(flat, left, right, colour);
@@ -103,11 +103,11 @@ function addBand(flat: Flat, left: readonly Point[], right: readonly Point[], co
   }
 }
 
-/** Curvature at each point from the turn over a few metres before and behind; left positive [1/m]. */
+/** Curvature at each point from its neighbours a few points before and behind; left positive [1/m]. */
 export function curvatures(centre: readonly Point[], isClosed: boolean): Float64Array {
   const count = centre.length;
   const result = new Float64Array(count);
-  const reach = 3; // points: noise of single points does not make a bend
+  const reach = 3; // points: suppresses the noise of single points
   const distinct = isClosed ? count - 1 : count;
   const at = (i: number): Point =>
     centre[isClosed ? ((i % distinct) + distinct) % distinct : Math.min(Math.max(i, 0), count - 1)] as Point;
@@ -167,7 +167,7 @@ function addStart(flat: Flat, lines: RoadLines, white: Colour): void {
   }
 }
 
-/** Where kerbs are red and white: in bends, and a little before and after. */
+/** Where kerbs are red and white: in bends and a few points before and after. */
 function isPainted(bend: Float64Array, isClosed: boolean): boolean[] {
   const reach = 4; // points
   const count = bend.length;
@@ -175,7 +175,7 @@ function isPainted(bend: Float64Array, isClosed: boolean): boolean[] {
   return Array.from(bend, (_, i) => Array.from({ length: 2 * reach + 1 }, (_each, k) => i + k - reach).some(isTight));
 }
 
-/** The kerb outside one edge, in blocks of equal length. `side` is the edge, `other` the one across. */
+/** The kerb outside one edge, in blocks of equal length. `side` is the edge, `other` the opposite one. */
 function addKerb(
   flat: Flat,
   side: readonly Point[],
@@ -208,7 +208,7 @@ function addKerb(
   }
 }
 
-/** What lies on the ground, to be drawn in this order. */
+/** The meshes on the ground, in drawing order. */
 export interface RoadMeshes {
   readonly verge: FlatMesh;
   readonly kerbs: FlatMesh;

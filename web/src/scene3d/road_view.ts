@@ -4,7 +4,7 @@ import { noiseTile } from './noise';
 import type { Palette } from './palette';
 import { type FlatMesh, type RoadLines, roadMeshes } from './road_mesh';
 
-const GRAIN_M = 5; // one picture of the asphalt
+const GRAIN_M = 5; // size of the asphalt texture
 const PIECE = 120 * 18; // numbers for 120 quads
 
 function placeOnGrain(positions: Float32Array): Float32Array {
@@ -16,7 +16,7 @@ function placeOnGrain(positions: Float32Array): Float32Array {
   return uv;
 }
 
-/** The road as it lies in the scene; built anew for another road or another light. */
+/** The road in the scene; rebuilt for another road or palette. */
 export class RoadView {
   readonly #scene: Scene;
   readonly #grain: DataTexture;
@@ -47,7 +47,7 @@ export class RoadView {
     this.#scene.add(this.#parts);
   }
 
-  /** Piece by piece along the road: what is out of the picture costs nothing. */
+  /** In pieces along the road, so that those out of view are not drawn. */
   #add({ positions, colours }: FlatMesh, order: number, material: MeshBasicMaterial): void {
     for (let from = 0; from < positions.length; from += PIECE) {
       const corners = positions.subarray(from, from + PIECE);

@@ -32,11 +32,11 @@ function viewNow(): View {
     camera: camera.value,
     orbit: orbit.value,
     isHeld: isPaused.value || link.value !== 'live',
-    isCalm: stillness.matches,
+    hasReducedMotion: stillness.matches,
   };
 }
 
-/** Draws on the canvas until told to stop; what it needs is loaded first. Says in `obstacle` what stands against it. */
+/** Draws on the canvas until the returned function is called; loads the 3D code first. Sets `obstacle` on failure. */
 function play(canvas: HTMLCanvasElement): () => void {
   const ends: (() => void)[] = [];
   let isOver = false;
@@ -77,7 +77,7 @@ function play(canvas: HTMLCanvasElement): () => void {
       ends.push(
         everyFrame((now) => {
           stage.paint(now, viewNow());
-          if (stage.hasPicture && !isReady.value) isReady.value = true; // until then the map fills the place
+          if (stage.hasPicture && !isReady.value) isReady.value = true; // until then the map has the full size
         }),
       );
     },
@@ -86,7 +86,7 @@ function play(canvas: HTMLCanvasElement): () => void {
   return stop;
 }
 
-/** The run in three dimensions; `label` says in words what is seen. */
+/** The run in 3D; `label` describes the picture for screen readers. */
 export function Scene3dView({ label }: { label: string }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => (canvas.current ? play(canvas.current) : undefined), []);

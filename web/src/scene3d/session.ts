@@ -11,8 +11,8 @@ const BRAKE_MARK_M = 0.35;
 const TRACE_WIDTH_M = 0.16;
 
 /**
- * What drawing the run needs to remember, in fixed memory: the last frames, the best lap, rubber, the driven line, and
- * where the brakes came on. It listens to frames also while nothing is drawn.
+ * What drawing keeps of the run, in fixed memory: the last frames, the best lap, tyre marks, the driven line, and the
+ * brake points. It listens to frames also while nothing is drawn.
  */
 export class Session {
   readonly playout = new Playout();
@@ -20,13 +20,13 @@ export class Session {
   readonly marks = new TyreMarks();
   readonly trace = new RibbonRing(4000, 1);
   readonly brakes = new RibbonRing(256, 1);
-  /** Another drive to be shown instead of the best lap; null shows the best lap. */
+  /** Another drive to show as the ghost; null shows the best lap. */
   rival: GhostSource | null = null;
   #last: Motion | null = null;
   #jumps = 0;
   #tracePoint = { x: NaN, y: NaN };
 
-  /** Who is raced: the rival where there is one, else the best lap of this session. */
+  /** The ghost: the rival if there is one, else the best lap of this session. */
   get ghost(): GhostSource | null {
     return this.rival ?? this.laps.best;
   }
@@ -57,7 +57,7 @@ export class Session {
     this.#last = motion;
   }
 
-  /** Another track: nothing remembered belongs to it. */
+  /** Clears everything, for another track. */
   forget(): void {
     this.playout.clear();
     this.laps.clear();
@@ -79,7 +79,7 @@ export class Session {
     this.trace.push(0, x + dx, y + dy, x - dx, y - dy, 1);
   }
 
-  /** A stroke across the road where the pedal went down. */
+  /** A mark across the road where braking began. */
   #markBrake({ x, y, yaw }: Motion, width: number): void {
     const [cos, sin] = [Math.cos(yaw), Math.sin(yaw)];
     const half = width / 2;

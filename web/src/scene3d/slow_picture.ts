@@ -1,15 +1,15 @@
 import { type Camera, type Scene, SRGBColorSpace, type WebGLRenderer, WebGLRenderTarget } from 'three';
 import { DrawingTime } from './drawing_time';
 
-/** What the types of three.js leave out. */
+/** Functions missing from the types of three.js. */
 type Renderer = WebGLRenderer & {
   setRenderTargetFramebuffer(target: WebGLRenderTarget, framebuffer: WebGLFramebuffer): void;
 };
 
 /**
- * Pictures where the processor draws. A browser without a graphics card fetches what is on the canvas back from whoever
- * draws, and the page stands still until it is there. So a picture is drawn beside the canvas, and copied onto it when
- * it is finished: then there is only the copy to wait for.
+ * Pictures with software rendering. There the browser reads the canvas back at each repaint, and the page blocks until
+ * it is drawn. So a picture is drawn into a framebuffer and copied to the canvas when it is finished: the page waits
+ * for the copy only.
  */
 export class SlowPicture {
   readonly #renderer: WebGLRenderer;
@@ -30,7 +30,7 @@ export class SlowPicture {
       gl.createRenderbuffer(),
       gl.createRenderbuffer(),
     ];
-    // What is drawn here goes to the screen as it is: with the colours of screens, as three.js draws for headsets.
+    // The target has sRGB colours, as the screen: three.js draws so for XR render targets.
     Object.assign(this.#target, { isXRRenderTarget: true });
     this.#target.texture.colorSpace = SRGBColorSpace;
     (renderer as Renderer).setRenderTargetFramebuffer(this.#target, this.#framebuffer);
@@ -41,15 +41,15 @@ export class SlowPicture {
     return this.#time.isFree(now);
   }
 
-  /** Begins to compile what a picture needs. */
+  /** Begins to compile the shaders of a picture. */
   compile(scene: Scene, camera: Camera, now: number): void {
-    this.#renderer.setRenderTarget(this.#target); // shaders differ by where they draw
+    this.#renderer.setRenderTarget(this.#target); // shaders depend on the target
     this.#renderer.compile(scene, camera);
     this.#renderer.setRenderTarget(null);
     this.#time.begin(now);
   }
 
-  /** True once: it is compiled. To be called at every repaint until then. */
+  /** True once, when the shaders are compiled. To be called at every repaint until then. */
   isCompiled(now: number): boolean {
     return this.#time.isDrawn(now);
   }
@@ -79,7 +79,7 @@ export class SlowPicture {
     this.#renderer.state.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
-  /** Puts the picture on the canvas if it is finished, and tells whether it was. To be called at every repaint. */
+  /** Copies the picture to the canvas if it is finished; returns whether it was. To be called at every repaint. */
   show(now: number): boolean {
     if (!this.#time.isDrawn(now)) return false;
     const gl = this.#gl;

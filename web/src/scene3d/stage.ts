@@ -30,7 +30,7 @@ import type { Session } from './session';
 import { SlowPicture } from './slow_picture';
 import { plantTrees } from './trees';
 
-/** What the picture is to show, read anew at every repaint. */
+/** The content of the picture, read at every repaint. */
 export interface View {
   readonly session: Session;
   readonly run: Run | null;
@@ -45,10 +45,10 @@ export interface View {
   readonly camera: CameraName;
   readonly orbit: Orbit;
   readonly isHeld: boolean; // paused, or the connection is lost
-  readonly isCalm: boolean; // the reader wants little motion
+  readonly hasReducedMotion: boolean; // the user prefers reduced motion
 }
 
-const SETTLE_MS = 1200; // of smoothing after the last change
+const SETTLE_MS = 1200; // duration of smoothing after the last change
 
 /** The three-dimensional picture on one canvas. */
 export class Stage {
@@ -66,11 +66,11 @@ export class Stage {
   readonly #brakes: RingView;
   readonly #reference: BandView;
   readonly #racingLine: BandView;
-  readonly #foreseen: BandView;
-  readonly #came: BandView;
+  readonly #predicted: BandView;
+  readonly #outcome: BandView;
   readonly #plan: BandView;
   readonly #governor: QualityGovernor;
-  readonly #slow: SlowPicture | null; // where the processor draws
+  readonly #slow: SlowPicture | null; // with software rendering
   readonly #cameraMan = new CameraMan();
   readonly #body = new BodyMotion();
   #environment: WebGLRenderTarget | null = null;
@@ -93,7 +93,7 @@ export class Stage {
   #shaders: 'none' | 'asked for' | 'there' = 'none';
   #hasPicture = false;
 
-  /** `isSoftware`: drawn by the processor, so smooth only when cheap. Throws where the browser gives no WebGL 2. */
+  /** `isSoftware`: rendered by the processor, with cheaper settings. Throws where the browser offers no WebGL 2. */
   constructor(canvas: HTMLCanvasElement, session: Session, isSoftware: boolean) {
     this.#canvas = canvas;
     this.#renderer = new WebGLRenderer({ canvas, antialias: !isSoftware, preserveDrawingBuffer: isSoftware });
@@ -112,8 +112,8 @@ export class Stage {
     this.#brakes = new RingView(this.#scene, session.brakes, 4, 0.8);
     this.#reference = new BandView(this.#scene, 512, 5);
     this.#racingLine = new BandView(this.#scene, 8192, 1.5);
-    this.#foreseen = new BandView(this.#scene, 512, 6);
-    this.#came = new BandView(this.#scene, 512, 7);
+    this.#predicted = new BandView(this.#scene, 512, 6);
+    this.#outcome = new BandView(this.#scene, 512, 7);
     this.#plan = new BandView(this.#scene, 512, 8);
     this.#sun.shadow.mapSize.set(1024, 1024);
     this.#scene.add(this.#sun, this.#sun.target, this.#skyLight);
@@ -125,7 +125,7 @@ export class Stage {
     return this.#hasPicture;
   }
 
-  /** The page turned light or dark. */
+  /** Applies the palette after a change of the colour scheme. */
   repaint(): void {
     this.#palette = palette();
     const { zenith, ground, sun, sky, isDark } = this.#palette;
@@ -134,14 +134,14 @@ export class Stage {
     this.#sun.color = new Color(isDark ? '#b9cdf5' : '#fff3df');
     this.#skyLight.color = new Color().setRGB(...zenith).lerp(new Color('#ffffff'), isDark ? 0.25 : 0.6);
     this.#skyLight.groundColor = new Color().setRGB(...ground);
-    this.#skyLight.intensity = this.#slow ? 1.25 * sky : sky; // instead of what is mirrored
+    this.#skyLight.intensity = this.#slow ? 1.25 * sky : sky; // replaces the reflections
     this.#trace.paint(this.#palette.trace);
     this.#marks.paint(this.#palette.rubber);
     this.#brakes.paint([0.75, 0.03, 0.02]);
     this.#reference.paint(this.#palette.reference);
     this.#racingLine.paint(this.#palette.racingLine);
-    this.#foreseen.paint(this.#palette.foreseen);
-    this.#came.paint(this.#palette.came);
+    this.#predicted.paint(this.#palette.predicted);
+    this.#outcome.paint(this.#palette.outcome);
     this.#bestLine.paint(this.#palette.ghost);
     this.#car?.paint(this.#palette);
     this.#ghost?.paint(this.#palette);
@@ -151,8 +151,7 @@ export class Stage {
   }
 
   /**
-   * The paint of the car mirrors this sky. Not where the processor draws: to blur the sky for it took five to eight
-   * seconds there.
+   * The car's paint reflects this sky; not with software rendering, where blurring the sky took five to eight seconds.
    */
   #reflectSky(): void {
     if (this.#slow) return;
@@ -168,7 +167,7 @@ export class Stage {
     this.#scene.environmentIntensity = this.#palette.isDark ? 0.9 : 0.5;
   }
 
-  /** Draws when there is something new to see. */
+  /** Draws when the picture has changed. */
   paint(now: number, view: View): void {
     const { clientWidth: width, clientHeight: height } = this.#canvas;
     if (width === 0 || height === 0 || this.#renderer.getContext().isContextLost()) return;
@@ -186,19 +185,19 @@ export class Stage {
     this.#lastPicture = now;
     this.#renew(view);
     const passed = this.#move(view, motion);
-    // In fast motion, and after a pause of the page, the camera keeps up with the run.
+    // In fast motion and after a pause of the page the camera follows the run's time.
     this.#film(view, motion, width / height, Math.max(Math.min(gap, 1000) / 1000, passed));
     this.#draw(width, height, now);
     if (this.#governor.picture(gap, performance.now() - begin)) this.#lastChange = now;
   }
 
-  /** Shaders are compiled beside the page; to draw before they are there would be to wait for them. */
+  /** Compiles the shaders in the background; drawing before would block the page until they are compiled. */
   #compile(now: number, view: View): void {
     if (this.#shaders === 'asked for') {
       if (this.#slow?.isCompiled(now)) this.#begin();
       return;
     }
-    if (!view.run) return; // the car's shaders are not known
+    if (!view.run) return; // the shaders of the car are not known yet
     this.#shaders = 'asked for';
     this.#renew(view);
     this.#setShadow();
@@ -254,7 +253,7 @@ export class Stage {
     this.#sun.castShadow = this.#renderer.shadowMap.enabled = this.#governor.quality.hasShadow;
   }
 
-  /** Builds what changes rarely: car, road, lines. */
+  /** Rebuilds what changes rarely: car, road, lines. */
   #renew(view: View): void {
     const { run } = view;
     if (run) {
@@ -291,8 +290,8 @@ export class Stage {
       this.#reference.show(xs, ys, 0.14, (share) => 0.9 * Math.min(1, 4 * (1 - share)));
     }
     const size = (this.#car?.model.length ?? 4.5) / 4.5;
-    this.#foreseen.show(view.hindsight?.plan.x_m ?? [], view.hindsight?.plan.y_m ?? [], 1.2 * size, () => 0.6);
-    this.#came.show(view.hindsight?.drivenX ?? [], view.hindsight?.drivenY ?? [], 0.2 * size, () => 1);
+    this.#predicted.show(view.hindsight?.plan.x_m ?? [], view.hindsight?.plan.y_m ?? [], 1.2 * size, () => 0.6);
+    this.#outcome.show(view.hindsight?.drivenX ?? [], view.hindsight?.drivenY ?? [], 0.2 * size, () => 1);
     if (view.plan !== this.#planShown) {
       this.#planShown = view.plan;
       this.#plan.showPlan(view.plan, topOfScale(view.topSpeed, speedUnit()), 0.5 * size);
@@ -322,7 +321,7 @@ export class Stage {
     this.#sun.shadow.bias = -0.002;
   }
 
-  /** Returns how much of the run has passed since the last picture [s]. */
+  /** Returns the run time since the last picture [s]. */
   #move(view: View, motion: Motion | null): number {
     const car = this.#car;
     if (car) car.group.visible = motion !== null;
@@ -336,7 +335,7 @@ export class Stage {
     const passed = Math.max(0, motion.time - this.#runTime);
     this.#runTime = motion.time;
     this.#wheelAngle = (this.#wheelAngle + (motion.vx * passed) / car.model.wheelRadius || 0) % (2 * Math.PI);
-    if (view.isCalm) this.#body.rest();
+    if (view.hasReducedMotion) this.#body.rest();
     else this.#body.advance(passed, motion.ax, motion.ay);
     const { roll, pitch } = this.#body;
     const pose = {
@@ -378,7 +377,7 @@ export class Stage {
       length: model?.length ?? 4.5,
       eye: model?.eye ?? ([0, 0, 1] as const),
     };
-    const shot: Shot = this.#cameraMan.shoot(view.camera, subject, view.orbit, aspect, seconds, view.isCalm);
+    const shot: Shot = this.#cameraMan.shoot(view.camera, subject, view.orbit, aspect, seconds, view.hasReducedMotion);
     const camera = this.#camera;
     camera.position.set(...shot.position);
     camera.up.set(...shot.up);
@@ -402,8 +401,8 @@ export class Stage {
       this.#brakes,
       this.#reference,
       this.#racingLine,
-      this.#foreseen,
-      this.#came,
+      this.#predicted,
+      this.#outcome,
       this.#plan,
     ])
       part.dispose();

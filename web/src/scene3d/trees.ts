@@ -11,7 +11,7 @@ export interface Tree extends Point {
 const CELL_M = 12;
 const CLEAR_M = 13; // from any edge of any road
 
-/** Trees along the road, never on it nor where a car runs wide; the same for the same road. */
+/** Trees along the road with clearance to its edges; equal for equal roads. */
 export function plantTrees(lines: RoadLines, limit = 420): Tree[] {
   const taken = new Map<string, Point[]>();
   const key = (x: number, y: number): string => `${Math.floor(x / CELL_M)},${Math.floor(y / CELL_M)}`;

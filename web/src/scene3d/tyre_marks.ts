@@ -11,15 +11,15 @@ export interface WheelBase {
 
 const CAPACITY = 6000; // pieces of all four wheels
 const SPACING_M = 0.35;
-const SLIDE_RAD = 0.13; // slip angle that marks where the plant tells nothing of its grip
+const SLIDE_RAD = 0.13; // slip angle that leaves marks where the use of grip is unknown
 
-/** How black a tyre draws in [0, 1] when it uses `use` of its grip; not-a-number judges by slip angle. */
+/** Opacity in [0, 1] of the mark of a tyre that uses `use` of its grip; with NaN the slip angle decides. */
 export function markStrength(use: number, slipAngle: number): number {
   if (Number.isFinite(use)) return clamp((use - 1) * 4 + 0.25, 0, 1) * (use > 1 ? 1 : 0);
   return Number.isFinite(slipAngle) && Math.abs(slipAngle) > SLIDE_RAD ? clamp(Math.abs(slipAngle) * 3, 0, 1) : 0;
 }
 
-/** Rubber left on the road where the tyres slid. */
+/** Tyre marks on the road where the tyres slid. */
 export class TyreMarks {
   readonly ring = new RibbonRing(CAPACITY, 4);
   #x = NaN;
@@ -30,7 +30,7 @@ export class TyreMarks {
     this.#x = NaN;
   }
 
-  /** The car was put somewhere else: no mark from there to here. */
+  /** Ends all marks, after the car was placed elsewhere. */
   lift(): void {
     for (let wheel = 0; wheel < 4; ++wheel) this.ring.lift(wheel);
     this.#x = NaN;

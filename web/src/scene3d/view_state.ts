@@ -8,21 +8,21 @@ export type Dimension = '3d' | '2d';
 const isChoice = (value: unknown): boolean => value === '3d' || value === '2d' || value === '';
 const isCamera = (value: unknown): boolean => CAMERAS.some(({ view }) => view === value);
 
-/** What the reader has chosen, nothing at first; outlives the page. */
+/** The dimension chosen, empty at first; kept in the browser's storage. */
 const choice = persisted<Dimension | ''>('dimension', '', isChoice);
 
-/** Three dimensions from the start where a graphics card draws them; elsewhere that costs what the car may need. */
+/** 3D by default with a graphics card; without one it takes processor time that the controller may need. */
 export const dimension = computed<Dimension>(() => choice.value || (renderer() === 'processor' ? '2d' : '3d'));
 
-/** The map is shown only because 3D would be dear here. */
+/** Whether the map is shown only because 3D would be expensive here. */
 export const isSpared = computed(() => choice.value === '' && dimension.value === '2d');
 
 export const camera = persisted<CameraName>('camera', 'chase', isCamera);
 
-/** Why there is no 3D picture, for people; null while nothing stands against it. */
+/** Why there is no 3D picture, as a sentence; null if it is available. */
 export const obstacle = signal<string | null>(null);
 
-/** The 3D picture is loaded and drawn. Until then, and without it, the map fills its place. */
+/** Whether the 3D picture is loaded and drawn. Until then, and without it, the map has the full size. */
 export const isReady = signal(false);
 
 export const wants3d = computed(() => dimension.value === '3d' && obstacle.value === null);
@@ -40,6 +40,6 @@ export function zoomCamera(factor: number): void {
 }
 
 export function choose(next: Dimension): void {
-  if (next === '3d') obstacle.value = null; // asked for again, tried again
+  if (next === '3d') obstacle.value = null; // try again
   choice.value = next;
 }

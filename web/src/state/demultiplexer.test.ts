@@ -63,7 +63,7 @@ describe('a message', () => {
 });
 
 describe('a frame', () => {
-  it('counts once, however often a paused run repeats it; who listens hears each', () => {
+  it('counts once, however often a paused run repeats it; listeners are called for each', () => {
     const heard: number[] = [];
     const listener = (_: Frame, now: number): void => void heard.push(now);
     frameListeners.add(listener);
@@ -74,7 +74,7 @@ describe('a frame', () => {
     expect(heard).toEqual([0, 5]);
   });
 
-  it('from before the last one begins everything again', () => {
+  it('with an earlier time clears everything', () => {
     see({ time_s: 30, last_lap_time_s: 28, is_gated: true });
     expect(bestLap.value).toBe(28);
     see({ time_s: 0.04, last_lap_time_s: 0 });
@@ -84,7 +84,7 @@ describe('a frame', () => {
   });
 });
 
-describe('what is forgotten', () => {
+describe('what is cleared', () => {
   beforeEach(() => {
     receive('/chicane/limit', { is_known: true, lap_time_s: 20 } as Limit, 0);
     receive('/chicane/lap', lapWith(1, 30), 0);
@@ -93,19 +93,19 @@ describe('what is forgotten', () => {
   });
   const lengths = () => [live.plots.length, laps.value.length, events.value.length];
 
-  it('within a run: what was plotted, laps and events; not the frame that is shown', () => {
+  it('within a run: history, laps and events; not the newest frame', () => {
     forget();
     expect(lengths()).toEqual([0, 0, 0]);
     expect([live.frame?.time_s, limit.value?.lap_time_s]).toEqual([3, 20]);
   });
 
-  it('at another moment of a recording: the frame too, so that an earlier one is not taken for a new run', () => {
+  it('at a jump in a recording: the newest frame too, so that an earlier one is not taken for a new run', () => {
     rewind();
     expect(lengths()).toEqual([0, 0, 0]);
     expect([live.frame, shown.value?.time_s, limit.value?.lap_time_s]).toEqual([null, 3, 20]);
   });
 
-  it('at another run: the limit and all that is shown', () => {
+  it('with another run: the limit and the frame shown too', () => {
     beginSession();
     expect(lengths()).toEqual([0, 0, 0]);
     expect([live.frame, shown.value, limit.value]).toEqual([null, null, null]);

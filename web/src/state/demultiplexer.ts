@@ -8,15 +8,15 @@ import { type RoadLines, receiveReference, receiveRoadLine } from './road';
 import { receiveRun, run } from './run';
 import { shown } from './shown';
 
-// Messages into state: each topic's message goes to the files that hold what it says. And out of state again: what is
-// forgotten when the run, or the moment of it that is shown, changes.
+// Distributes messages, by topic, to the modules that hold their content; and clears these when the run changes or a
+// recording jumps to another time.
 
-/** Called with each frame as it comes, also while the page is hidden; `now` as of performance.now(). */
+/** Called with each frame on arrival, also while the page is hidden; `now` as of performance.now() [ms]. */
 export const frameListeners = new Set<(frame: Frame, now: number) => void>();
 
-/** Takes one message in, of a program of any age. `now` as of performance.now(). */
-export function receive<T extends TopicName>(topic: T, told: Topics[T], now: number): void {
-  const message = complete(topic, told);
+/** Stores one message, also of an older program. `now` as of performance.now() [ms]. */
+export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: number): void {
+  const message = complete(topic, sent);
   switch (topic) {
     case '/chicane/frame':
       receiveFrame(message as Frame, now);
@@ -63,7 +63,7 @@ function receiveFrame(frame: Frame, now: number): void {
 }
 
 /**
- * Forgets where the car has been and what was plotted: it belongs to an earlier run, or to a later moment of this one.
+ * Clears history, laps and events: they belong to an earlier run, or to a later time of this one.
  */
 export function forget(): void {
   forgetHistory();
@@ -71,7 +71,7 @@ export function forget(): void {
   forgetEvents();
 }
 
-/** Begins another run: everything of the one before is forgotten, its last frame included. */
+/** Begins another run: clears everything of the previous one, including its last frame. */
 export function beginSession(): void {
   forget();
   forgetLimit();
@@ -79,7 +79,7 @@ export function beginSession(): void {
   shown.value = null;
 }
 
-/** Another moment of the same run: what was plotted is forgotten and comes again. */
+/** Jumps to another time of a recording: its history is cleared and sent again. */
 export function rewind(): void {
   forget();
   live.frame = null;

@@ -40,7 +40,7 @@ describe('event log', () => {
     see({ time_s: 1, rung: 1 });
     see({ time_s: 2, rung: 3 });
     see({ time_s: 3 });
-    expect(events.value.map(({ time, duration, mood }) => [time, duration, mood])).toEqual([
+    expect(events.value.map(({ time, duration, severity }) => [time, duration, severity])).toEqual([
       [2, 1, 'bad'],
       [1, 1, 'warning'],
     ]);
@@ -54,7 +54,7 @@ describe('event log', () => {
     expect(events.value).toMatchObject([{ text: 'Fault: half grip', time: 2, duration: 3 }]);
   });
 
-  it('tells of changed tunables, but not of the wheel', () => {
+  it('lists changed settings, but not those of driving by hand', () => {
     noteChange({ stamp: { sec: 3, nsec: 500_000_000 }, cycle: 90n, name: 'latency_ms', value: '150' });
     noteChange({ stamp: { sec: 4, nsec: 0 }, cycle: 91n, name: 'manual.steer', value: '0.1' });
     expect(events.value).toMatchObject([{ text: 'latency_ms set to 150', time: 3.5 }]);

@@ -1,15 +1,15 @@
 import { signal } from '@preact/signals';
 import { hasBit } from '../lib/bits';
-import { type Mood, nameInWords, rungInWords, statusInWords } from '../lib/words';
+import { nameInWords, rungInWords, type Severity, statusInWords } from '../lib/words';
 import type { Change, Frame } from '../protocol/topics';
 
-/** Something worth a line: when it began, and, once it has ended, how long it took. */
+/** An event of the run: when it began and, once it has ended, how long it lasted. */
 export interface RunEvent {
   readonly id: number;
-  readonly mood: Mood;
+  readonly severity: Severity;
   readonly text: string;
   readonly time: number; // of the run [s]
-  readonly duration: number | null; // null: still going on, or a moment
+  readonly duration: number | null; // null: not over yet, or without a duration
 }
 
 const KEPT = 60;
@@ -19,8 +19,8 @@ export const events = signal<readonly RunEvent[]>([]);
 
 interface Watch {
   readonly name: string;
-  /** What is the matter in this frame; null: nothing. A different text is a different event. */
-  look(frame: Frame): { mood: Mood; text: string } | null;
+  /** The condition in this frame, or null for none. A different text is a different event. */
+  look(frame: Frame): { severity: Severity; text: string } | null;
 }
 
 const WATCHES: readonly Watch[] = [
@@ -28,10 +28,10 @@ const WATCHES: readonly Watch[] = [
   { name: 'status', look: ({ solve_status }) => (solve_status >= 0 ? null : statusInWords(solve_status)) },
   {
     name: 'gate',
-    look: ({ is_gated }) => (is_gated ? { mood: 'warning', text: 'The gate changed the command' } : null),
+    look: ({ is_gated }) => (is_gated ? { severity: 'warning', text: 'The gate changed the command' } : null),
   },
-  { name: 'road', look: ({ is_off_track }) => (is_off_track ? { mood: 'bad', text: 'Off the road' } : null) },
-  { name: 'manual', look: ({ is_manual }) => (is_manual ? { mood: 'good', text: 'Driven by hand' } : null) },
+  { name: 'road', look: ({ is_off_track }) => (is_off_track ? { severity: 'bad', text: 'Off the road' } : null) },
+  { name: 'manual', look: ({ is_manual }) => (is_manual ? { severity: 'good', text: 'Driven by hand' } : null) },
 ];
 
 let nextId = 1;
@@ -51,7 +51,7 @@ function add(event: RunEvent): void {
   events.value = [event, ...events.value].slice(0, KEPT);
 }
 
-function follow(key: string, now: { mood: Mood; text: string } | null, time: number): void {
+function follow(key: string, now: { severity: Severity; text: string } | null, time: number): void {
   const running = open.get(key);
   if (running && running.text !== now?.text) {
     const ended = { ...running, duration: time - running.time };
@@ -65,7 +65,7 @@ function follow(key: string, now: { mood: Mood; text: string } | null, time: num
   }
 }
 
-/** Compares a frame with what went on before it. */
+/** Opens and closes events by comparing a frame with the one before it. */
 export function noteEvents(frame: Frame, before: Frame | null): void {
   for (const { name, look } of WATCHES) follow(name, look(frame), frame.time_s);
   const changed = frame.active_faults ^ (before?.active_faults ?? 0);
@@ -75,7 +75,7 @@ export function noteEvents(frame: Frame, before: Frame | null): void {
     const isOn = hasBit(frame.active_faults, i);
     follow(
       `fault ${i}`,
-      isOn ? { mood: 'warning', text: `Fault: ${faultInWords(faultNames[i] ?? `#${i + 1}`)}` } : null,
+      isOn ? { severity: 'warning', text: `Fault: ${faultInWords(faultNames[i] ?? `#${i + 1}`)}` } : null,
       frame.time_s,
     );
   }
@@ -84,10 +84,10 @@ export function noteEvents(frame: Frame, before: Frame | null): void {
 export const faultInWords = (name: string): string => nameInWords(name.replace(/^fault\./, ''));
 
 export function noteChange({ stamp, name, value }: Change): void {
-  if (/^(manual|fault|run)\./.test(name)) return; // told above, or by the page itself
+  if (/^(manual|fault|run)\./.test(name)) return; // noteEvents() or the page itself shows these
   add({
     id: nextId++,
-    mood: 'unknown',
+    severity: 'unknown',
     text: `${name} set to ${value}`,
     time: stamp.sec + stamp.nsec / 1e9,
     duration: null,

@@ -10,7 +10,7 @@ export const rowsSince = (history: History, seconds: number): number => {
   return firstSince(times, (times.at(-1) ?? 0) - seconds);
 };
 
-/** Share of the last `seconds` that each value of a column of small whole numbers had. */
+/** For a column of small integers: the share of the last `seconds` in which it had each value. */
 export function sharesOf(history: History, column: number, values: number, seconds: number): number[] {
   const from = rowsSince(history, seconds);
   const numbers = history.column(column);
@@ -23,7 +23,7 @@ export function sharesOf(history: History, column: number, values: number, secon
   return shares;
 }
 
-/** Share of the last `seconds` in which each bit of a column of sets was on. */
+/** For a column of bit sets: the share of the last `seconds` in which each bit was set. */
 export function bitSharesOf(history: History, column: number, bits: number, seconds: number): number[] {
   const from = rowsSince(history, seconds);
   const sets = history.column(column);
@@ -36,7 +36,7 @@ export function bitSharesOf(history: History, column: number, bits: number, seco
 }
 
 /**
- * Root of the mean square of the finite values of a column over the last `seconds`; not-a-number when there are none.
+ * Root mean square of the finite values of a column over the last `seconds`; NaN without any.
  */
 export function rmsOf(history: History, column: number, seconds: number): number {
   const values = history.column(column);
@@ -53,13 +53,13 @@ export function rmsOf(history: History, column: number, seconds: number): number
 const timeOf = ({ stamp }: Plan): number => stamp.sec + stamp.nsec / 1e9;
 
 /**
- * The newest plan that is at least `age` seconds older than `now`; the oldest when all are younger; null without plans.
+ * The newest plan that is at least `age` seconds old at `now`; the oldest when all are newer; null without plans.
  */
 export function planOf(plans: readonly Plan[], now: number, age: number): Plan | null {
   return plans.filter((plan) => timeOf(plan) <= now - age + 1e-9).at(-1) ?? plans[0] ?? null;
 }
 
-/** A track in a car's axes: metres ahead and to the left of a pose. */
+/** A line in a car's axes: metres ahead and to the left of a pose. */
 export interface LocalLine {
   readonly ahead: number[];
   readonly left: number[];

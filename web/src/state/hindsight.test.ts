@@ -27,12 +27,12 @@ function driven(until: number): History {
 }
 
 describe('hindsight', () => {
-  it('holds the plan of a second ago against the way driven since', () => {
+  it('compares the plan of a second ago with the path driven since', () => {
     const plans = [0, 0.5, 1, 1.5, 2].map(plan);
     const seen = hindsight(plans, driven(2), 2);
     expect(seen?.plan).toBe(plans[2]);
     expect([...(seen?.drivenX ?? [])]).toEqual([10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20]);
-    expect(seen?.foreseen).toEqual({ x: expect.closeTo(20), y: expect.closeTo(0.8), yaw: expect.closeTo(0.16) });
+    expect(seen?.predicted).toEqual({ x: expect.closeTo(20), y: expect.closeTo(0.8), yaw: expect.closeTo(0.16) });
   });
 
   it('is nothing before there is a plan', () => expect(hindsight([], driven(1), 1)).toBeNull());

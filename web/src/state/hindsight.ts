@@ -5,7 +5,7 @@ import { Column } from './columns';
 import { planOf } from './explain';
 import type { History } from './history';
 
-/** How old the plan is that is held against what came [s]. */
+/** Age of the plan that is compared with the driven path [s]. */
 export const HINDSIGHT_S = 1;
 
 export interface Pose {
@@ -14,15 +14,15 @@ export interface Pose {
   readonly yaw: number;
 }
 
-/** What was predicted, and what came of it; lines of the centre of mass in W. */
+/** A past plan and the path driven since; lines of the centre of mass in W. */
 export interface Hindsight {
   readonly plan: Plan;
   readonly drivenX: Float64Array; // since the plan's first point
   readonly drivenY: Float64Array;
-  readonly foreseen: Pose | null; // where the plan saw the car at this time; null when it reached less far
+  readonly predicted: Pose | null; // the plan's pose for the present time; null beyond its end
 }
 
-/** Where a plan sees the car at a time of the run, linear between its points; null outside of them. */
+/** The pose that a plan predicts for a time of the run, linear between its points; null outside its horizon. */
 export function poseOf(plan: Plan, time: number): Pose | null {
   const times = plan.time_s;
   const next = firstSince(times, time);
@@ -39,7 +39,7 @@ export function poseOf(plan: Plan, time: number): Pose | null {
   };
 }
 
-/** The plan of a second ago against the way driven since; null before there is one. */
+/** The plan of a second ago and the path driven since; null before there is one. */
 export function hindsight(plans: readonly Plan[], plots: History, now: number): Hindsight | null {
   const plan = planOf(plans, now, HINDSIGHT_S);
   if (!plan || plan.x_m.length < 2) return null;
@@ -48,6 +48,6 @@ export function hindsight(plans: readonly Plan[], plots: History, now: number): 
     plan,
     drivenX: plots.column(Column.x_m).subarray(from),
     drivenY: plots.column(Column.y_m).subarray(from),
-    foreseen: poseOf(plan, now),
+    predicted: poseOf(plan, now),
   };
 }

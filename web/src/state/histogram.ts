@@ -6,7 +6,7 @@ export class Histogram {
   #total = 0;
   #max = NaN;
 
-  /** Bins from `low`, over so many decades; what is outside counts in the first or last bin. */
+  /** Bins from `low` over a number of decades; values outside count in the first or last bin. */
   constructor(low: number, decades: number) {
     this.low = low;
     this.counts = new Float64Array(decades * Histogram.binsPerDecade);
@@ -16,7 +16,7 @@ export class Histogram {
     return this.#total;
   }
 
-  /** The greatest value counted, exact; not-a-number when there is none. */
+  /** The largest value counted, exact; NaN without any. */
   get max(): number {
     return this.#max;
   }
@@ -41,7 +41,7 @@ export class Histogram {
     return this.low * 10 ** (bin / Histogram.binsPerDecade);
   }
 
-  /** The value below which a share of all lies, interpolated inside its bin; not-a-number when empty. */
+  /** The quantile at `share`, interpolated inside its bin; NaN when empty. */
   quantile(share: number): number {
     if (this.#total === 0) return NaN;
     const wanted = share * this.#total;
@@ -57,7 +57,7 @@ export class Histogram {
     return this.#max;
   }
 
-  /** First and one past the last bin that are not empty; null when all are. */
+  /** Indices of the first non-empty bin and one past the last; null when all are empty. */
   get span(): [number, number] | null {
     const first = this.counts.findIndex((count) => count > 0);
     if (first < 0) return null;

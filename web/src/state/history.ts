@@ -1,6 +1,6 @@
 /**
- * The newest rows of a table of numbers, in fixed memory. Each column is written twice, one capacity apart, so that the
- * rows kept always lie in one piece: reading copies nothing.
+ * Ring buffer of the newest rows of a table of numbers. Each column is written twice, one capacity apart, so that the
+ * rows kept are always contiguous and reading copies nothing.
  */
 export class History {
   readonly capacity: number;
@@ -25,7 +25,7 @@ export class History {
     ++this.#count;
   }
 
-  /** Becomes a copy of another one of the same shape, in the memory it has. */
+  /** Copies another history of the same shape without allocating. */
   copyFrom(other: History): void {
     this.#columns.forEach((column, i) => column.set(other.#columns[i] ?? []));
     this.#count = other.#count;
@@ -35,7 +35,7 @@ export class History {
     this.#count = 0;
   }
 
-  /** Oldest first; a view that the next push changes. */
+  /** A column, oldest value first: a view, valid until the next push. */
   column(index: number): Float64Array {
     const start = this.#count > this.capacity ? this.#count % this.capacity : 0;
     const column = this.#columns[index];
@@ -43,7 +43,7 @@ export class History {
     return column.subarray(start, start + this.length);
   }
 
-  /** The newest value of a column; not-a-number when there is none. */
+  /** The newest value of a column; NaN when empty. */
   newest(index: number): number {
     return this.length === 0 ? NaN : (this.column(index)[this.length - 1] ?? NaN);
   }

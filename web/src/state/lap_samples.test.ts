@@ -135,7 +135,7 @@ describe('lap samples', () => {
     expect(samples.channel(1, 'time_s')?.[690]).toBeCloseTo(31.1, 0);
   });
 
-  it('do not guess what a page that was cut off has missed', () => {
+  it('leave out what a page without a connection has missed', () => {
     const samples = new LapSamples();
     drive(samples, [20, 20]);
     cover(samples, 2, [20, 1], [300, 15], 50);
@@ -178,7 +178,7 @@ describe('lap samples', () => {
     expect(only.channel(0, 'time_s')?.[500]).toBeCloseTo(only.s(500) / 20, 2);
   });
 
-  it('do not guess where the line is, either', () => {
+  it('do not guess where the line is after missing frames', () => {
     const samples = new LapSamples();
     samples.setLength(LENGTH);
     cover(samples, 0, [0, 0], [600, 30]);

@@ -1,11 +1,11 @@
 import { mix } from '../lib/math';
 import { LONGEST_SILENCE_S } from './silence';
 
-/** What is kept of a lap, at equal distances along the road. */
+/** The channels kept of a lap, at equal distances along the road. */
 export const LAP_CHANNELS = ['time_s', 'speed_mps', 'lateral_error_m', 'steer_rad', 'throttle', 'x_m', 'y_m'] as const;
 export type LapChannel = (typeof LAP_CHANNELS)[number];
 
-/** One moment of a lap; `s_m` is along the road's line, which need not begin where laps do. */
+/** A sample of a lap; `s_m` is measured along the centre line, whose origin need not be the start line. */
 export type LapMoment = Readonly<Record<LapChannel, number>> & { readonly s_m: number };
 
 const POINTS = 1000;
@@ -18,7 +18,7 @@ interface Slot {
   readonly channels: Readonly<Record<LapChannel, Float64Array>>;
 }
 
-/** Every channel, linear from one moment to another. */
+/** All channels, interpolated linearly between two samples. */
 function between(from: LapMoment, to: LapMoment, share: number): LapMoment {
   const moment = { s_m: mix(from.s_m, to.s_m, share) } as Record<LapChannel | 's_m', number>;
   for (const name of LAP_CHANNELS) moment[name] = mix(from[name], to[name], share);
@@ -26,9 +26,9 @@ function between(from: LapMoment, to: LapMoment, share: number): LapMoment {
 }
 
 /**
- * Laps as functions of the distance along the road, in fixed memory: the newest ones and the fastest. Frames come at
- * equal times; between two of them everything is taken as linear in s, unless some are missing in between: a page that
- * was cut off does not know that stretch. The start line is where the lap count changes.
+ * Laps as functions of the distance along the road, in fixed memory: the newest ones and the fastest. Between two
+ * frames every channel is interpolated linearly in s, unless frames are missing in between: a stretch without data
+ * stays unknown. The start line is where the lap count changes.
  */
 export class LapSamples {
   readonly points = POINTS;
@@ -56,7 +56,7 @@ export class LapSamples {
     this.#line = NaN;
   }
 
-  /** Another road: nothing of before can be compared. */
+  /** Sets the length of the road; another length clears all laps. */
   setLength(length: number): void {
     if (Object.is(length, this.#length)) return;
     this.clear();
@@ -68,12 +68,12 @@ export class LapSamples {
     return (this.#firstPoint + point) * this.#spacing - this.#line;
   }
 
-  /** Distance of a point along the road's own line [m]. */
+  /** Distance of a point along the centre line, from its origin [m]. */
   place(point: number): number {
     return index(this.#firstPoint + point) * this.#spacing;
   }
 
-  /** Numbers of the laps that are kept whole, rising. */
+  /** Numbers of the complete laps, ascending. */
   get laps(): number[] {
     return this.#done.map((slot) => slot.lap).sort((a, b) => a - b);
   }
@@ -83,7 +83,7 @@ export class LapSamples {
     return this.#done.reduce<Slot | null>((a, b) => (a && a.time <= b.time ? a : b), null)?.lap ?? -1;
   }
 
-  /** A channel of a lap at a place of the road, linear between points; not-a-number where it is not known. */
+  /** A channel of a lap at a distance along the road, linear between points; NaN where unknown. */
   at(lap: number, name: LapChannel, s: number): number {
     const slot = this.#done.find((each) => each.lap === lap);
     if (!slot || !Number.isFinite(s)) return NaN;
@@ -95,7 +95,7 @@ export class LapSamples {
   }
 
   /**
-   * A channel of a lap from the start line on; null when that lap is not kept. Places it did not pass are not-a-number.
+   * A channel of a lap from the start line on; null when that lap is not kept. NaN where the lap has no data.
    */
   channel(lap: number, name: LapChannel): Float64Array | null {
     const values = this.#done.find((slot) => slot.lap === lap)?.channels[name];
@@ -107,7 +107,7 @@ export class LapSamples {
     return rotated;
   }
 
-  /** Takes one moment; `lap` counts completed laps, `lastLapTime` is of the lap before. */
+  /** Adds a sample; `lap` counts completed laps, `lastLapTime` is the time of the lap before [s]. */
   push(lap: number, moment: LapMoment, lastLapTime: number): void {
     if (!(this.#length > 0) || !Number.isFinite(moment.s_m)) return;
     const last = this.#last;
@@ -120,13 +120,13 @@ export class LapSamples {
     else this.#drop(lap);
   }
 
-  /** A lap ended in `time` [s] behind its last frame: at the end of a recording none comes from beyond the line. */
+  /** Closes a lap with its lap time [s], for the end of a recording, which has no frame beyond the line. */
   complete(lap: number, time: number): void {
     const slot = this.#current;
     const last = this.#last;
     if (slot?.lap !== lap || slot.isComplete || last?.lap !== lap) return;
     const rest = time - last.time_s;
-    if (!(rest >= 0 && rest <= LONGEST_SILENCE_S)) return; // another run's lap of that number
+    if (!(rest >= 0 && rest <= LONGEST_SILENCE_S)) return; // a lap of another run with the same number
     if (!Number.isFinite(this.#line)) this.#line = this.#onRoad(last.s_m + last.speed_mps * rest);
     this.#fill(last, this.#after(last, { ...last, s_m: this.#line, time_s: time }));
     slot.isComplete = true;
@@ -137,7 +137,7 @@ export class LapSamples {
     return this.#slots.filter((slot) => slot.lap >= 0 && slot.isComplete);
   }
 
-  /** A place along the road, however often it was gone round. */
+  /** A distance along the road, wrapped to one lap. */
   #onRoad(s: number): number {
     return s - this.#length * Math.floor(s / this.#length);
   }
@@ -151,18 +151,18 @@ export class LapSamples {
     return Math.ceil(this.#line / this.#spacing - 1e-9);
   }
 
-  /** The same moment with its s counted on from a moment before it, over the seam of the road's line. */
+  /** The same sample with s unwrapped relative to an earlier sample. */
   #after(before: LapMoment, moment: LapMoment): LapMoment {
     const step = moment.s_m - before.s_m;
     return { ...moment, s_m: before.s_m + step - this.#length * Math.round(step / this.#length) };
   }
 
-  /** The line lies between two frames: the old lap ends, and the new one begins, on it. */
+  /** Ends the old lap and begins the new one on the start line, which lies between two frames. */
   #cross(last: LapMoment, moment: LapMoment, lap: number, lastLapTime: number): void {
     const rest = lastLapTime - last.time_s; // of the old lap [s]
     const isHeard = rest + moment.time_s <= LONGEST_SILENCE_S;
     if (!isHeard && !Number.isFinite(this.#line)) {
-      this.#drop(lap); // where the line lies would be a guess
+      this.#drop(lap); // the position of the line is unknown
       return;
     }
     const line = between(last, moment, Math.min(1, Math.max(0, rest / (rest + moment.time_s))));
@@ -176,7 +176,7 @@ export class LapSamples {
     if (isHeard) this.#fill({ ...line, time_s: 0 }, moment);
   }
 
-  /** The lap that was begun is not seen to its end. */
+  /** Discards the lap in progress, which will not be complete. */
   #drop(next: number): void {
     if (this.#current && !this.#current.isComplete) this.#current.lap = -1;
     this.#begin(next);
@@ -191,7 +191,7 @@ export class LapSamples {
     this.#current = slot;
   }
 
-  /** The oldest lap but for the fastest. */
+  /** The oldest lap except for the fastest. */
   #oldest(): Slot {
     const { best } = this;
     return this.#done.filter((slot) => slot.lap !== best).reduce((a, b) => (b.lap < a.lap ? b : a));
@@ -208,8 +208,8 @@ export class LapSamples {
   }
 }
 
-/** A point counted from the beginning of the road's line, wherever it was counted on to. */
+/** The index of a point, wrapped to one lap. */
 const index = (point: number): number => ((point % POINTS) + POINTS) % POINTS;
 
-/** Time lost by lap `a` to lap `b` up to each point [s]: rising where `a` is slower. */
+/** Time that lap `a` has lost to lap `b` at each point [s]; it rises where `a` is slower. */
 export const timeGap = (a: Float64Array, b: Float64Array): Float64Array => a.map((time, i) => time - (b[i] ?? NaN));

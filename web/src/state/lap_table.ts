@@ -4,7 +4,7 @@ import { LAP_CHANNELS, type LapSamples } from './lap_samples';
 import { gapsToLimit } from './limit';
 
 export interface LapBests {
-  readonly lap: number; // fastest clean one, or fastest where none is clean; −1 without laps
+  readonly lap: number; // fastest clean lap, or the fastest if none is clean; −1 without laps
   readonly time: number;
   readonly sectors: readonly number[];
   readonly topSpeed: number;
@@ -12,7 +12,7 @@ export interface LapBests {
 
 const least = (values: readonly number[]): number => values.reduce((a, b) => (b < a || Number.isNaN(a) ? b : a), NaN);
 
-/** The best of each column, over the laps that count: clean ones, if there are any. */
+/** The best value of each column over the clean laps, or over all laps if none is clean. */
 export function bestsOf(laps: readonly Lap[]): LapBests {
   const clean = laps.filter(({ is_clean }) => is_clean);
   const count = clean.length > 0 ? clean : laps;
@@ -25,7 +25,7 @@ export function bestsOf(laps: readonly Lap[]): LapBests {
   };
 }
 
-/** The table of laps as a file; times in seconds, in SI units. */
+/** The table of laps as CSV, in SI units. */
 export const lapsCsv = (laps: readonly Lap[], limit: Limit | null): string =>
   csv(
     [
@@ -54,7 +54,7 @@ export const lapsCsv = (laps: readonly Lap[], limit: Limit | null): string =>
     ]),
   );
 
-/** A lap along the road as a file; `index` counts from 0 as the samples do. */
+/** The samples of a lap along the road as CSV; `index` counts from 0. */
 export function lapSamplesCsv(samples: LapSamples, index: number): string {
   const channels = LAP_CHANNELS.map((name) => samples.channel(index, name) ?? new Float64Array());
   const rows = Array.from({ length: samples.points }, (_, point) => [

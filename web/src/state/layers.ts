@@ -1,10 +1,10 @@
 import { persisted } from '../lib/persisted';
 
-/** Lines over the road that a reader may want or not; kept by the browser. */
+/** Optional lines over the road; the choice is kept in the browser's storage. */
 export const layers = {
-  /** The plan of a second ago, beside what came of it. */
+  /** The plan of a second ago and the path driven since. */
   hindsight: persisted<boolean>('layer.hindsight', false),
-  /** The line of the fastest lap possible. */
+  /** The racing line: that of the fastest possible lap. */
   racingLine: persisted<boolean>('layer.racing-line', true),
 } as const;
 

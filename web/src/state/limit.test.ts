@@ -63,12 +63,12 @@ describe('the limit', () => {
     expect(gapsToLimit(lap, null)).toEqual({ lap: NaN, sectors: [NaN, NaN, NaN] });
   });
 
-  it('holds for laps from the first one on that the car of today began', () => {
+  it('holds for laps from first_lap on', () => {
     expect(gapsToLimit(lapWith(4, 22), { ...limit, first_lap: 5 }).lap).toBeNaN();
     expect(gapsToLimit(lapWith(5, 22), { ...limit, first_lap: 5 }).lap).toBeCloseTo(10);
   });
 
-  it('is taken as told', () => {
+  it('is taken from the lap if it was sent', () => {
     const told = lapWith(1, 22, {
       gap_to_limit_percent: 7,
       sector_gaps_to_limit_percent: Float64Array.of(1, 2, 3),
@@ -77,7 +77,7 @@ describe('the limit', () => {
     expect(gapsToLimit(lapWith(1, 22), null).lap).toBeNaN();
   });
 
-  it('lies beside a lap that was driven, place for place', () => {
+  it('is sampled at the points of driven laps', () => {
     const all = samples();
     const speed = limitChannel(limit, all, 'speed_mps');
     const time = limitChannel(limit, all, 'time_s');

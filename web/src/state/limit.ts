@@ -19,7 +19,7 @@ export function forgetLimit(): void {
   whyNoLimit.value = '';
 }
 
-/** Columns of the limit that can be laid beside those of a lap that was driven. */
+/** Columns of the limit that correspond to channels of a driven lap. */
 const COLUMNS: Partial<Record<LapChannel, 'time_s' | 'speed_mps' | 'n_m' | 'x_m' | 'y_m'>> = {
   time_s: 'time_s',
   speed_mps: 'speed_mps',
@@ -31,7 +31,8 @@ const COLUMNS: Partial<Record<LapChannel, 'time_s' | 'speed_mps' | 'n_m' | 'x_m'
 const gap = (time: number, limit: number | undefined): number => 100 * (time / (limit ?? NaN) - 1);
 
 /**
- * How much slower a lap was than the limit, and each third of it [%]: as told, or computed where the limit came later.
+ * How much slower a lap and its sectors were than the limit [%]: as sent with the lap, or computed where the limit was
+ * found later.
  */
 export function gapsToLimit(lap: Lap, limit: Limit | null): { lap: number; sectors: readonly number[] } {
   const of = limit && lap.lap >= limit.first_lap ? limit : null;
@@ -46,7 +47,8 @@ export function gapsToLimit(lap: Lap, limit: Limit | null): { lap: number; secto
 }
 
 /**
- * A column of the limit at the places where laps are sampled, from the start line on; null for what it does not tell.
+ * A column of the limit at the points where laps are sampled, from the start line on; null for channels it does not
+ * have.
  */
 export function limitChannel(limit: Limit, samples: LapSamples, name: LapChannel): Float64Array | null {
   const column = COLUMNS[name];

@@ -26,7 +26,7 @@ export const live = {
 const row: number[] = new Array<number>(COLUMN_COUNT).fill(NaN);
 
 /**
- * Clears the history. The newest frame stays, so that what is shown does not blink while the next one is on its way.
+ * Clears the history. The newest frame stays, so that the display does not flicker before the next one arrives.
  */
 export function forgetHistory(): void {
   live.plots.clear();
@@ -38,7 +38,7 @@ export function forgetHistory(): void {
 }
 
 /**
- * Makes a frame the newest one. `isNew` when time has gone on since the one before: only then it enters the history.
+ * Stores the newest frame; it enters the history only if `isNew`, that is, if its time differs from the previous one.
  */
 export function keepFrame(frame: Frame, now: number, isNew: boolean): void {
   live.frame = frame;

@@ -1,5 +1,5 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import { held, holdKey, keyLock, letGo, ramp, type Stick, stick } from './manual';
+import { held, holdKey, keyLock, ramp, releaseAll, type Stick, stick } from './manual';
 
 const CENTRE: Stick = { steer: 0, throttle: 0 };
 const DT = 1 / 30;
@@ -10,7 +10,7 @@ function drive(from: Stick, seconds: number, speed = 0): Stick {
   return now;
 }
 
-beforeEach(letGo);
+beforeEach(releaseAll);
 
 describe('driving by hand', () => {
   it('turns a held key into a ramp, and back to the middle when it is let go', () => {
@@ -51,7 +51,7 @@ describe('driving by hand', () => {
     expect(holdKey('a', true)).toBe(false);
     holdKey('ArrowUp', true);
     stick.value = { steer: 1, throttle: 1 };
-    letGo();
+    releaseAll();
     expect(stick.value).toEqual(CENTRE);
     expect(drive(CENTRE, 1)).toEqual(CENTRE);
   });

@@ -1,32 +1,31 @@
 import { signal } from '@preact/signals';
 import { clamp } from '../lib/math';
 
-/** Where the stick stands: both in [−1, 1], left and drive positive. */
+/** Position of the stick: both in [−1, 1], left and drive positive. */
 export interface Stick {
   readonly steer: number;
   readonly throttle: number;
 }
 
-/** The keys and the pad of a person who drives; plain data, read by the ramp. */
+/** Keys and pad held by the driver; plain data, read by ramp(). */
 export const held = { left: false, right: false, up: false, down: false, pad: null as Stick | null };
-/** What is sent, for the indicator. */
+/** The stick position that is sent; shown by the indicator. */
 export const stick = signal<Stick>({ steer: 0, throttle: 0 });
 
-const STEER_RATE = 2.2; // of the full way per second, when a key is held
-const RETURN_RATE = 4; // when it is let go
+const STEER_RATE = 2.2; // of full travel per second, while a key is held
+const RETURN_RATE = 4; // after it is released
 const PEDAL_RATE = 3;
 
 /**
- * The share of the steering lock that a held key goes to. Keys know only all or nothing, and all of the lock at speed
- * spins any car: full lock up to 8 m/s, then falling with the square of the speed, as the curvature does that tyres can
- * hold.
+ * The share of the steering lock that a held key reaches. Keys are on or off, and full lock at speed spins any car:
+ * full lock up to 8 m/s, above it falling with the square of the speed, like the curvature that the tyres can hold.
  */
 export const keyLock = (speed: number): number =>
   clamp((8 / Math.max(8, Number.isFinite(speed) ? speed : 0)) ** 2, 0.03, 1);
 
 const towards = (value: number, target: number, step: number): number => value + clamp(target - value, -step, step);
 
-/** The stick `seconds` later. */
+/** The stick position `seconds` later. */
 export function ramp(now: Stick, seconds: number, speed: number): Stick {
   if (held.pad) {
     const lock = Math.max(keyLock(speed) * 2, 0.06);
@@ -49,7 +48,7 @@ const KEYS: Readonly<Record<string, 'left' | 'right' | 'up' | 'down'>> = {
   arrowdown: 'down',
 };
 
-/** Takes a key press or release; true when it was one of the driver's. */
+/** Takes a key press or release; true for one of the driving keys. */
 export function holdKey(key: string, isDown: boolean): boolean {
   const which = KEYS[key.toLowerCase()];
   if (!which) return false;
@@ -57,7 +56,7 @@ export function holdKey(key: string, isDown: boolean): boolean {
   return true;
 }
 
-export function letGo(): void {
+export function releaseAll(): void {
   held.left = held.right = held.up = held.down = false;
   held.pad = null;
   stick.value = { steer: 0, throttle: 0 };

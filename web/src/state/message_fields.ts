@@ -8,16 +8,16 @@ import {
 } from '../protocol/messages';
 import type { TopicName, Topics } from '../protocol/topics';
 
-/** What a message says where its sender does not tell. */
+/** Values for fields that a sender leaves out. */
 const UNKNOWN: { readonly [T in TopicName]?: Topics[T] } = {
   '/chicane/frame': UNKNOWN_FRAME,
   '/chicane/plan': UNKNOWN_PLAN,
-  '/chicane/run': { ...UNKNOWN_RUN, kerb_width_m: 0 }, // roads had no kerbs before they had a width
+  '/chicane/run': { ...UNKNOWN_RUN, kerb_width_m: 0 }, // programs without this field drew no kerbs
   '/chicane/lap': UNKNOWN_LAP,
   '/chicane/limit': UNKNOWN_LIMIT,
   '/chicane/change': UNKNOWN_CHANGE,
 };
 
-/** A message with every field, unknown where the sender does not tell: older programs, and their recordings. */
+/** A message with every field; unknown where an older program or its recording leaves it out. */
 export const complete = <T extends TopicName>(topic: T, message: Partial<Topics[T]>): Topics[T] =>
   ({ ...UNKNOWN[topic], ...message }) as Topics[T];

@@ -1,16 +1,16 @@
 import { signal } from '@preact/signals';
 import type { ServiceName, Setting, Source } from '../protocol/source';
 import { link, notice, services } from './link';
-import { entryOf, settings, Wishes } from './settings';
+import { entryOf, SettingRequests, settings } from './settings';
 
-/** What the page can do to the run; everything goes through here, whoever asks. */
+/** What the page can do to the run: every view changes it through these functions. */
 let source: Source | null = null;
 
-/** A wish that starts the run anew and waits for a yes. */
-export const asking = signal<{ readonly key: string; readonly value: Setting } | null>(null);
-let wasAsked = false;
+/** A change that would restart the run and waits for the operator's confirmation. */
+export const pendingConfirmation = signal<{ readonly key: string; readonly value: Setting } | null>(null);
+let isConfirmed = false;
 
-export const wishes = new Wishes(
+export const requests = new SettingRequests(
   (key, value) =>
     source?.set?.(key, value) ?? Promise.resolve({ value: null, sentence: `${key} cannot be changed here` }),
 );
@@ -21,7 +21,7 @@ export function attach(to: Source): void {
 
 export const retry = (): void => source?.retryNow?.();
 
-/** Asks for the values of all tunables again. */
+/** Requests the values of all settings again. */
 export const refresh = (): void => source?.refresh?.();
 
 export const can = (name: ServiceName): boolean => services.value.has(name) && link.value === 'live';
@@ -32,26 +32,26 @@ export function call(name: ServiceName, data?: boolean): void {
   });
 }
 
-/** Whether a tunable can be set now. */
+/** Whether a setting can be changed now. */
 export const canSet = (key: string): boolean => link.value === 'live' && settings.value.has(key);
 
-/** Sets a tunable. The first time one would start the run anew, the operator is asked. */
+/** Changes a setting. The first change that would restart the run has to be confirmed. */
 export function set(key: string, value: Setting): void {
-  if (entryOf(key)?.is_live === false && !wasAsked) {
-    asking.value = { key, value };
+  if (entryOf(key)?.is_live === false && !isConfirmed) {
+    pendingConfirmation.value = { key, value };
     return;
   }
-  void wishes.set(key, value);
+  void requests.set(key, value);
 }
 
-/** The operator's answer to `asking`; a yes holds for the rest of the page's life. */
-export function answer(isYes: boolean): void {
-  const wish = asking.value;
-  asking.value = null;
-  if (!isYes || !wish) {
-    settings.value = new Map(settings.value); // whatever shows the wish shows the value in force again
+/** Confirms or cancels the pending change; a confirmation holds until the page is closed. */
+export function confirm(isYes: boolean): void {
+  const request = pendingConfirmation.value;
+  pendingConfirmation.value = null;
+  if (!isYes || !request) {
+    settings.value = new Map(settings.value); // controls show the value in force again
     return;
   }
-  wasAsked = true;
-  void wishes.set(wish.key, wish.value);
+  isConfirmed = true;
+  void requests.set(request.key, request.value);
 }

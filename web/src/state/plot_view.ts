@@ -10,16 +10,16 @@ export const WINDOWS_S = [10, 20, 60] as const;
 export const windowSeconds = persisted<number>('plots.window', 20, (value) =>
   (WINDOWS_S as readonly unknown[]).includes(value),
 );
-/** Plots stand still, while the run goes on. */
+/** Whether the plots are held while the run goes on. */
 export const isFrozen = signal(false);
-/** A stretch of time somebody has zoomed into [s]; plots are then frozen. */
+/** The time range zoomed into [s]; the plots are then held. */
 export const zoomed = signal<readonly [number, number] | null>(null);
-/** Time under the cursor of any plot [s]; null when it is on none. */
+/** Time under the cursor of any plot [s]; null when it is over none. */
 export const cursorTime = signal<number | null>(null);
 
 let frozen: History | null = null;
 
-/** The table that plots draw: the run's, or what it was when they were frozen. */
+/** The history that plots draw: the live one, or a copy from the moment they were held. */
 export const plotted = (): History => (isFrozen.value && frozen ? frozen : live.plots);
 
 export function freeze(): void {
@@ -36,7 +36,7 @@ export function thaw(): void {
 
 export const toggleFrozen = (): void => (isFrozen.value ? thaw() : freeze());
 
-/** Shows a stretch of time; one too short to mean anything is no zoom. */
+/** Zooms into a time range; very short ones are ignored. */
 export function zoomTo(from: number, to: number): void {
   if (!(to - from > 0.05)) return;
   freeze();

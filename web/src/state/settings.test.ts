@@ -1,12 +1,12 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import { readSchema } from '../protocol/schema';
 import type { SetAnswer, Setting } from '../protocol/source';
-import { refusals, settingChanges, settings, startSettings, Wishes } from './settings';
+import { refusals, SettingRequests, settingChanges, settings, startSettings } from './settings';
 
 /** A server that answers when told to. */
 function server() {
   const asked: { key: string; value: Setting; answer: (answer: SetAnswer) => Promise<void> }[] = [];
-  const wishes = new Wishes(
+  const requests = new SettingRequests(
     (key, value) =>
       new Promise((resolve) =>
         asked.push({
@@ -19,7 +19,7 @@ function server() {
         }),
       ),
   );
-  return { wishes, asked };
+  return { requests, asked };
 }
 
 beforeEach(() => {
@@ -31,31 +31,31 @@ beforeEach(() => {
   refusals.value = new Map();
 });
 
-describe('wishes', () => {
+describe('requests', () => {
   it('show at once, and stay when granted', async () => {
-    const { wishes, asked } = server();
-    void wishes.set('latency_ms', 150);
+    const { requests, asked } = server();
+    void requests.set('latency_ms', 150);
     expect(settings.value.get('latency_ms')).toBe(150);
     await asked[0]?.answer({ value: 150, sentence: null });
     expect(settings.value.get('latency_ms')).toBe(150);
   });
 
   it('snap back when refused, with the sentence until the next success', async () => {
-    const { wishes, asked } = server();
-    void wishes.set('latency_ms', 900);
+    const { requests, asked } = server();
+    void requests.set('latency_ms', 900);
     await asked[0]?.answer({ value: 100, sentence: 'latency_ms: got 900' });
     expect(settings.value.get('latency_ms')).toBe(100);
     expect(refusals.value.get('latency_ms')).toBe('latency_ms: got 900');
-    void wishes.set('latency_ms', 90);
+    void requests.set('latency_ms', 90);
     await asked[1]?.answer({ value: 90, sentence: null });
     expect(refusals.value.size).toBe(0);
   });
 
   it('never queue: of what comes while one is on its way only the newest follows', async () => {
-    const { wishes, asked } = server();
-    for (const value of [110, 120, 130, 140]) void wishes.set('latency_ms', value);
+    const { requests, asked } = server();
+    for (const value of [110, 120, 130, 140]) void requests.set('latency_ms', value);
     expect(asked).toHaveLength(1);
-    wishes.receive(new Map([['latency_ms', 110]])); // told to all viewers meanwhile
+    requests.receive(new Map([['latency_ms', 110]])); // told to all viewers meanwhile
     expect(settings.value.get('latency_ms')).toBe(140);
     await asked[0]?.answer({ value: 110, sentence: null });
     expect(asked.map(({ value }) => value)).toEqual([110, 140]);
@@ -65,15 +65,15 @@ describe('wishes', () => {
   });
 
   it('keep what is shown when the connection is lost', async () => {
-    const { wishes, asked } = server();
-    void wishes.set('latency_ms', 150);
+    const { requests, asked } = server();
+    void requests.set('latency_ms', 150);
     await asked[0]?.answer({ value: null, sentence: 'the connection was lost' });
     expect(refusals.value.get('latency_ms')).toMatch(/lost/);
   });
 
   it('take what others have set', () => {
-    const { wishes } = server();
-    wishes.receive(new Map([['latency_ms', 50]]));
+    const { requests } = server();
+    requests.receive(new Map([['latency_ms', 50]]));
     expect(settings.value.get('latency_ms')).toBe(50);
   });
 });

@@ -2,18 +2,18 @@ import { computed, signal } from '@preact/signals';
 import type { SchemaEntry } from '../protocol/schema';
 import type { SetAnswer, Setting } from '../protocol/source';
 
-/** All tunables, as the server describes them; empty while it has not. */
+/** All settings as the server describes them; empty until it does. */
 export const schema = signal<readonly SchemaEntry[]>([]);
-/** What is in force, or wished for and on its way. */
+/** The values in force, or requested and not yet answered. */
 export const settings = signal<ReadonlyMap<string, Setting>>(new Map());
-/** What the run started with. */
+/** The values the run started with. */
 export const startSettings = signal<ReadonlyMap<string, Setting>>(new Map());
-/** Sentences about wishes that were refused, until the same tunable is set again. */
+/** Why requests were refused, by key, until the same setting is changed again. */
 export const refusals = signal<ReadonlyMap<string, string>>(new Map());
 
 export const entryOf = (key: string): SchemaEntry | undefined => schema.value.find((entry) => entry.key === key);
 
-/** Controls of the page rather than tunables of the experiment: not part of a preset or a list of changes. */
+/** Controls of the page rather than settings of the experiment: not part of a preset or of the list of changes. */
 export const isControl = (key: string): boolean => /^(run|manual|fault)\./.test(key);
 
 export interface SettingChange {
@@ -22,7 +22,7 @@ export interface SettingChange {
   readonly to: Setting;
 }
 
-/** What differs from the start, in the order of the schema. */
+/** The settings that differ from the start of the run, in the order of the schema. */
 export const settingChanges = computed<readonly SettingChange[]>(() =>
   changesBetween(startSettings.value, settings.value).filter(({ key }) => !isControl(key)),
 );
@@ -45,10 +45,11 @@ function withEntry<T>(map: ReadonlyMap<string, T>, key: string, value: T | undef
 }
 
 /**
- * Sends wishes for tunables. The page shows a wish at once; for each tunable only one is on its way, and of those that
- * come meanwhile only the newest follows it, so that a dragged slider never builds a queue. A refused wish snaps back.
+ * Sends changes of settings. The page shows the requested value at once. For each setting one request is open at a
+ * time, and of those made meanwhile only the newest is sent, so that a dragged slider builds no queue. A refused value
+ * is replaced by the one in force.
  */
-export class Wishes {
+export class SettingRequests {
   readonly #send: (key: string, value: Setting) => Promise<SetAnswer>;
   readonly #open = new Map<string, { next?: Setting }>();
 
@@ -68,9 +69,9 @@ export class Wishes {
     let inForce: Setting | null = null;
     let sentence: string | null = null;
     while (state.next !== undefined) {
-      const wish = state.next;
+      const request = state.next;
       delete state.next;
-      ({ value: inForce, sentence } = await this.#send(key, wish));
+      ({ value: inForce, sentence } = await this.#send(key, request));
     }
     this.#open.delete(key);
     if (inForce !== null) settings.value = withEntry(settings.value, key, inForce);
@@ -78,7 +79,7 @@ export class Wishes {
       refusals.value = withEntry(refusals.value, key, sentence ?? undefined);
   }
 
-  /** Values the server tells of its own accord; wishes on their way win. */
+  /** Takes values that the server sends unasked; a setting with an open request keeps the requested value. */
   receive(values: ReadonlyMap<string, Setting>): void {
     const all = new Map(settings.value);
     for (const [key, value] of values) if (!this.#open.has(key)) all.set(key, value);

@@ -1,10 +1,10 @@
 import { effect } from '@preact/signals';
 import type { Setting } from '../protocol/source';
-import { wishes } from './operate';
+import { requests } from './operate';
 import { run } from './run';
 import { refusals, settings, startSettings } from './settings';
 
-// What a run started with outlives a reload of the page, in the storage of the browser's tab.
+// The values a run started with survive a reload of the page, in the session storage of the browser's tab.
 const KEY = 'chicane.start';
 
 let session = '';
@@ -28,11 +28,11 @@ function keep(start: ReadonlyMap<string, Setting>): void {
   try {
     sessionStorage.setItem(KEY, JSON.stringify({ session, start: [...start] } satisfies Kept));
   } catch {
-    // Without storage the start is what the page first sees.
+    // Without storage the start is what the page receives first.
   }
 }
 
-/** Another run: its values are not known yet. */
+/** Begins another run, whose values are not known yet. */
 export function beginSettings(name: string): void {
   session = name;
   settings.value = new Map();
@@ -43,14 +43,14 @@ export function beginSettings(name: string): void {
 }
 
 export function takeSettings(values: ReadonlyMap<string, Setting>, isAll: boolean): void {
-  wishes.receive(values);
+  requests.receive(values);
   if (!isAll || isStartKnown) return;
   isStartKnown = true;
   keep(new Map(values));
 }
 
-/** Asks for all values again when something was chosen anew; another preset is another start. */
-export function refreshWhenChosenAnew(refresh: () => void): void {
+/** Requests all values again when the track, car, controller or preset changes; a new preset also resets the start. */
+export function refreshOnNewChoice(refresh: () => void): void {
   let [preset, rest] = ['', ''];
   effect(() => {
     const now = run.value;

@@ -1,5 +1,4 @@
 /**
- * Between frames further apart than this, in the car's time, nobody knows what was: nothing is drawn or interpolated
- * [s].
+ * Between frames further apart than this, in time of the run, nothing is drawn or interpolated [s].
  */
 export const LONGEST_SILENCE_S = 1;

@@ -9,7 +9,10 @@ function turn(now: number): void {
   else isRunning = false;
 }
 
-/** Calls `task` before each repaint, at most once in `interval` [ms]. Hidden pages do not repaint. Returns its end. */
+/**
+ * Calls `task` before each repaint, at most once in `interval` [ms]. Hidden pages do not repaint. Returns a function
+ * that ends it.
+ */
 export function everyFrame(task: Task, interval = 0): () => void {
   let last = -Infinity;
   const paced: Task = (now) => {

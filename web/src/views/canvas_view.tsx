@@ -2,13 +2,13 @@ import { useEffect, useRef } from 'preact/hooks';
 import { onThemeChange } from '../draw/theme';
 import { onScreen } from '../lib/on_screen';
 import { everyFrame } from '../state/ticker';
-import { drawnForPictures } from './picture_drawings';
+import { registerDrawing } from './picture_drawings';
 import { fitCanvas } from './plot_colours';
 
 export type Paint = (context: CanvasRenderingContext2D, width: number, height: number) => void;
 
 /**
- * A canvas that repaints itself while it is on the screen: when `version` gives another value, at most every `interval`
+ * A canvas that repaints while it is on the screen: when the value of `version` changes, at most every `interval`
  * milliseconds, and when its size or the colours change.
  */
 export function CanvasView({
@@ -42,7 +42,7 @@ export function CanvasView({
       latest.current.paint(context, box.width, box.height);
     };
     const stop = everyFrame(() => box.isSeen && draw(), interval);
-    const forget = drawnForPictures(draw);
+    const forget = registerDrawing(draw);
     return () => {
       stop();
       forget();

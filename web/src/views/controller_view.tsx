@@ -8,14 +8,14 @@ function Row({ label, sentence, id }: { label: string; sentence: Sentence | null
     <div class="row">
       <dt>{label}</dt>
       <dd data-testid={id}>
-        {sentence ? <span class={`mood ${sentence.mood}`} aria-hidden="true" /> : null}
+        {sentence ? <span class={`severity ${sentence.severity}`} aria-hidden="true" /> : null}
         {sentence?.text ?? UNKNOWN}
       </dd>
     </div>
   );
 }
 
-/** Who is in control, in words. */
+/** State of controller, solver, gate and road in words. */
 export function ControllerView() {
   const frame = shown.value;
   const solve = frame ? statusInWords(frame.solve_status) : null;

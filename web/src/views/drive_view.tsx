@@ -9,7 +9,7 @@ import { ChoiceBox, SettingRow } from './setting_row';
 
 const PACES = [0.25, 1, 4] as const;
 
-/** The pace as a slider even for a server without a schema: its range is part of the contract. */
+/** Schema of the pace, for servers without a schema: its range is part of the protocol. */
 const PACE: SchemaEntry = {
   key: 'run.pace',
   group: 'run',
@@ -36,7 +36,7 @@ function Pace() {
     <section class="block" aria-label="Pace">
       <h2>Pace</h2>
       <div class="pace">
-        <SettingRow entry={{ ...PACE, unit: '×' }} name="real-time factor" />
+        <SettingRow entry={{ ...PACE, unit: '×' }} name="time factor" />
         <div class="segments" role="group" aria-label="Common values">
           {PACES.map((each) => (
             <button
@@ -112,7 +112,7 @@ function World() {
   );
 }
 
-/** Says why there is nothing to operate. */
+/** Says why there is nothing to set. */
 export function NothingToSet() {
   if (settings.value.size > 0 || schema.value.length > 0) return null;
   if (link.value !== 'live') return <p class="empty">Waiting for the connection.</p>;

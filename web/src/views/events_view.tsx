@@ -1,7 +1,7 @@
 import { fixed } from '../lib/format';
 import { events } from '../state/event_log';
 
-/** What happened, newest first. */
+/** The events of the run, newest first. */
 export function EventsView() {
   return (
     <section class="block" aria-label="Events">
@@ -10,10 +10,10 @@ export function EventsView() {
         <p class="soft">No events so far.</p>
       ) : (
         <ol class="events" tabIndex={0}>
-          {events.value.map(({ id, mood, text, time, duration }) => (
+          {events.value.map(({ id, severity, text, time, duration }) => (
             <li key={id}>
               <span class="event-time">{fixed(time, 2)} s</span>
-              <span class={`mood ${mood}`} aria-hidden="true" />
+              <span class={`severity ${severity}`} aria-hidden="true" />
               <span>{text}</span>
               {duration !== null && (
                 <span class="unit">

@@ -117,7 +117,7 @@ function Row({ label, sentence }: { label: string; sentence: Sentence | null }) 
     <div class="row">
       <dt>{label}</dt>
       <dd>
-        {sentence ? <span class={`mood ${sentence.mood}`} aria-hidden="true" /> : null}
+        {sentence ? <span class={`severity ${sentence.severity}`} aria-hidden="true" /> : null}
         {sentence?.text ?? '–'}
       </dd>
     </div>
@@ -126,7 +126,7 @@ function Row({ label, sentence }: { label: string; sentence: Sentence | null }) 
 
 function Answer() {
   const frame = shown.value;
-  // PID and the like solve nothing.
+  // Controllers such as PID have no solver.
   const solved = frame && (frame.iterations > 0 || /mpc$/.test(run.value?.controller ?? '')) ? frame : null;
   const worst = solved ? worstInWords(solved, run.value?.constraint_names ?? []) : null;
   const solve = solved ? statusInWords(solved.solve_status) : null;
@@ -144,7 +144,11 @@ function Answer() {
         <Row
           label="Constraints"
           sentence={
-            solved ? (worst ? { mood: 'warning', text: worst } : { mood: 'good', text: 'All constraints hold' }) : null
+            solved
+              ? worst
+                ? { severity: 'warning', text: worst }
+                : { severity: 'good', text: 'All constraints hold' }
+              : null
           }
         />
         <Row label="Driving" sentence={frame ? rungInWords(frame.rung) : null} />
@@ -191,7 +195,7 @@ function Prediction() {
   );
 }
 
-/** Why the car does what it does. */
+/** Why the car drives as it does: speed limits, constraints, solution, prediction, events. */
 export function ExplainView() {
   return (
     <div class="blocks">

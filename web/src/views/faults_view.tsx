@@ -14,7 +14,7 @@ interface Fault {
   readonly isActive: boolean;
 }
 
-/** The faults of the schema; without one, those of the run, named but not explained. */
+/** The faults of the schema; without a schema those of the run, without descriptions. */
 const faults = computed<readonly Fault[]>(() => {
   const names = run.value?.fault_names ?? [];
   const active = shown.value?.active_faults ?? 0;

@@ -10,9 +10,9 @@ import { chartColours } from './plot_colours';
 const G = 9.80665; // standard gravity [m/s²]
 
 /**
- * The radius of the circle that the tyres' grip would allow [m/s²]: the acceleration at which the axle that uses more
- * of its grip would use all of it, by proportion. Told in fast bends only, where the tyres' force is what accelerates
- * the car; on a straight most of it balances the drag. Not-a-number elsewhere, and where the use is not known.
+ * The radius of the grip circle [m/s²]: the acceleration at which the axle that uses more of its grip would use all of
+ * it, extrapolated linearly. Known in fast bends only, where the tyre forces accelerate the car; on a straight most of
+ * them balance the drag. NaN elsewhere, and where the use of grip is unknown.
  */
 export function gripRadius(lateral: number, frontUse: number, rearUse: number): number {
   const use = Math.max(frontUse, rearUse);
@@ -73,7 +73,7 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number)
   context.stroke();
 }
 
-/** Old moments pale, new ones strong; in sixteen strokes, not thousands. */
+/** The trail, fading with age; drawn in sixteen strokes. */
 function drawTrail(
   context: CanvasRenderingContext2D,
   x: (i: number) => number,
@@ -110,7 +110,7 @@ function drawGrip(context: CanvasRenderingContext2D, x: number, y: number, pixel
   context.setLineDash([]);
 }
 
-/** Acceleration across and along: where on the friction circle the car is, and has been. */
+/** The g-g diagram: lateral and longitudinal acceleration, now and over the time shown. */
 export function GgView() {
   const frame = shown.value;
   const [across, along] = [

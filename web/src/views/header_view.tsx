@@ -28,7 +28,7 @@ function LinkState() {
   return <p class="pill good">Live</p>;
 }
 
-/** What is out of the ordinary, wherever the reader looks. */
+/** Marks for unusual states: next run, driving by hand, faults, pace. */
 function Marks() {
   const frame = shown.value;
   const pace = frame?.pace ?? NaN;
@@ -88,7 +88,7 @@ function Buttons() {
   );
 }
 
-/** What the reader must not miss: above everything, spoken by screen readers. */
+/** Lost connection and messages of the server; screen readers announce it. */
 function Banner() {
   return (
     <div aria-live="assertive">

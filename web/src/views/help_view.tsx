@@ -6,7 +6,7 @@ export const isHelpOpen = signal(false);
 
 const GROUPS: readonly Shortcut['group'][] = ['Run', 'Camera', 'Panels', 'Driving by hand'];
 
-/** A dialog over the page: the browser's own, with its focus handling and Escape. */
+/** A modal dialog, with the browser's handling of focus and Escape. */
 export function Dialog({
   isOpen,
   title,

@@ -30,7 +30,7 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number)
     context.fillText('No control step yet', 12, 24);
     return;
   }
-  // Whole decades around what there is.
+  // Whole decades around the values.
   const decade = Math.log10;
   const low = Math.floor(decade(histogram.edge(span[0])) + 1e-9);
   const high = Math.max(low + 1, Math.ceil(decade(histogram.edge(span[1])) - 1e-9));
@@ -71,7 +71,7 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number)
   });
 }
 
-/** How long control steps take: all of the run since the page was opened. */
+/** Times of all control steps since the page was opened. */
 export function HistogramView() {
   void shown.value;
   const { stepTimes } = live;

@@ -5,14 +5,14 @@ import { bestLap, lapSamples } from '../state/laps';
 import { run } from '../state/run';
 import { shown } from '../state/shown';
 
-/** Time lost to the best lap up to here [s]; not-a-number without one. */
+/** Time lost to the best lap at the same place [s]; NaN without one. */
 function delta(): number {
   const frame = shown.value;
   if (!frame || lapSamples.best < 0) return NaN;
   return frame.lap_time_s - lapSamples.at(lapSamples.best, 'time_s', frame.s_m);
 }
 
-/** In m/s too, or in km/h where that is the reader's unit. */
+/** The second unit shown: m/s, or km/h where m/s is the unit chosen. */
 const beside = (unit: SpeedUnit): SpeedUnit =>
   SPEED_UNITS.find(({ name }) => name === (unit.name === 'm/s' ? 'km/h' : 'm/s')) ?? unit;
 
@@ -112,7 +112,7 @@ function Reading({
 }
 
 /**
- * A bar that grows from its middle: steering to its side, the pedal to the right for drive and to the left for brake.
+ * A bar that grows from its middle: steering to its side; throttle to the right, brake to the left.
  */
 function Bar({
   label,
@@ -133,7 +133,7 @@ function Bar({
     <div class="bar-row">
       <span class="label">{label}</span>
       <div class="bar" aria-hidden="true">
-        {/* By transforms: other ways to move lay the page out anew in each repaint. */}
+        {/* Moved by transforms, which need no layout in each repaint. */}
         <span class="fill" style={{ transform: `translateX(${from}%) scaleX(${(to - from) / 100})` }} />
         {marker !== undefined && <span class="marker" style={{ transform: `translateX(${at(marker)}%)` }} />}
       </div>
@@ -176,7 +176,7 @@ function Controls() {
   );
 }
 
-/** The strip under the stage: what a driver's eyes look for. */
+/** The strip below the picture: speed, lap, controls and key numbers. */
 export function InstrumentsView() {
   const frame = shown.value;
   const error = frame?.lateral_error_m ?? NaN;
@@ -196,7 +196,7 @@ export function InstrumentsView() {
         />
         <Reading id="edge-distance" label="To the edge" value={fixed(frame?.edge_distance_m ?? NaN, 2)} unit="m" />
         <Reading id="step-time" label="Control step" value={step.value} unit={step.unit} />
-        <Reading id="delay" label="Delay foreseen" value={fixed((frame?.delay_s ?? NaN) * 1000, 0)} unit="ms" />
+        <Reading id="delay" label="Delay expected" value={fixed((frame?.delay_s ?? NaN) * 1000, 0)} unit="ms" />
       </div>
     </section>
   );

@@ -15,12 +15,12 @@ interface Curve {
   readonly title: string;
   readonly unit: string;
   readonly decimals: number;
-  /** Both laps, or what lies between them. */
+  /** Both laps, or their difference. */
   data(a: number, b: number): (Float64Array | null)[];
   readonly range: (columns: readonly ArrayLike<number>[]) => [number, number];
 }
 
-/** Laps count from 0; before them stands the fastest one possible. */
+/** Laps count from 0; −1 is the limit, the fastest possible lap. */
 const LIMIT = -1;
 const samplesOf = (lap: number, name: LapChannel): Float64Array | null =>
   lap !== LIMIT ? lapSamples.channel(lap, name) : limit.value && limitChannel(limit.value, lapSamples, name);
@@ -62,7 +62,7 @@ const OTHERS: readonly Curve[] = [
   },
 ];
 
-/** uPlot draws gaps where a value is null, not where it is not-a-number. */
+/** uPlot draws gaps where a value is null, not where it is NaN. */
 const withGaps = (values: Float64Array): (number | null)[] =>
   Array.from(values, (value) => (Number.isFinite(value) ? value : null));
 
@@ -132,7 +132,7 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
       watcher.disconnect();
       plot.destroy();
     };
-    // The laps name their data: a lap that is kept whole does not change.
+    // A complete lap does not change, so its number identifies its data.
   }, [curve, a, b, first === null]);
   return (
     <section class="plot" aria-label={`${curve.title} along the track`}>

@@ -10,10 +10,10 @@ import { run } from '../state/run';
 import { everyFrame } from '../state/ticker';
 import { LapCompareView } from './lap_compare_view';
 
-/** The fastest lap possible stands in the table as this one. */
+/** Number of the limit, the fastest possible lap, in the table. */
 const LIMIT = 0;
 
-/** The laps to compare, by number; null follows: the best against the newest. */
+/** The laps to compare, by number; null for the default: the newest against the best. */
 const chosen = signal<readonly [number | null, number | null]>([null, null]);
 
 function gap(seconds: number): string {
@@ -46,7 +46,7 @@ function Picks({ lap, pair, name }: { lap: number; pair: readonly [number, numbe
   );
 }
 
-/** What is possible, above all that was driven. */
+/** The first row: the fastest possible lap. */
 function LimitRow({ fastest, pair }: { fastest: Limit; pair: readonly [number, number] }) {
   return (
     <tr class="limit" data-testid="limit">
@@ -117,14 +117,14 @@ function Row({ lap, bests, pair }: { lap: Lap; bests: LapBests; pair: readonly [
 const ROWS = 40;
 const showsAll = signal(false);
 
-/** The newest laps, and the best; all when asked for. */
+/** The newest laps and the best, or all laps. */
 function rowsOf(all: readonly Lap[], bests: LapBests): Lap[] {
   const first = showsAll.value ? 0 : all.length - ROWS;
   return all.filter((lap, i) => i >= first || lap.lap === bests.lap).reverse();
 }
 
 /**
- * The pair shown: what was chosen, else the newest against the best, or against the one before it; of those seen whole.
+ * The pair shown: the laps chosen, else the newest complete lap against the best, or against the one before it.
  */
 function compared(all: readonly Lap[], bests: LapBests): [number, number] {
   const seen = all.filter(({ lap }) => lapSamples.laps.includes(lap - 1)).map(({ lap }) => lap);
@@ -136,7 +136,7 @@ function compared(all: readonly Lap[], bests: LapBests): [number, number] {
   return [isKnown(chosen.value[0]) ? chosen.value[0] : newest, isKnown(chosen.value[1]) ? chosen.value[1] : other];
 }
 
-/** The stage as a picture: taken right after it was painted, before a 3D canvas is emptied. */
+/** Saves the map as a picture, right after it was painted: a 3D canvas is cleared later. */
 function savePicture(): void {
   const end = everyFrame(() => {
     end();

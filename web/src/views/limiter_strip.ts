@@ -4,7 +4,7 @@ import { live } from '../state/live';
 import type { Paint } from './canvas_view';
 import { chartColours } from './plot_colours';
 
-/** A band through time in the colour of what limited the speed. */
+/** A band over time in the colour of what limited the speed. */
 export const paintLimiterStrip =
   (seconds: number): Paint =>
   (context, width, height) => {

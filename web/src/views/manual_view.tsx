@@ -5,12 +5,12 @@ import { isTakenBy } from '../lib/keys';
 import { clamp } from '../lib/math';
 import { link } from '../state/link';
 import { live } from '../state/live';
-import { held, holdKey, letGo, ramp, stick } from '../state/manual';
+import { held, holdKey, ramp, releaseAll, stick } from '../state/manual';
 import { canSet, set } from '../state/operate';
 import { settings } from '../state/settings';
 
 const RATE_HZ = 30;
-const REMIND_MS = 250; // a driver who says nothing for a second is taken for gone
+const REMIND_MS = 250; // the program ends driving by hand after a second without a message
 
 export const isManual = (): boolean => settings.value.get('manual.is_on') === true;
 
@@ -19,12 +19,12 @@ export function toggleManual(): void {
   set('manual.is_on', !isManual());
 }
 
-/** Gives the car back to the controller. */
+/** Hands the car back to the controller. */
 export function handBack(): void {
   if (isManual()) set('manual.is_on', false);
 }
 
-/** Starts listening to the driver's keys, for as long as the page lives. */
+/** Starts listening to the driving keys, until the page is closed. */
 export function listenToDriver(): void {
   const onKey = (event: KeyboardEvent): void => {
     const isDown = event.type === 'keydown';
@@ -35,9 +35,9 @@ export function listenToDriver(): void {
   };
   addEventListener('keydown', onKey);
   addEventListener('keyup', onKey);
-  // Keys that are let go elsewhere are never heard of again.
-  addEventListener('blur', letGo);
-  document.addEventListener('visibilitychange', () => document.hidden && letGo());
+  // Releases of keys outside of the page are not reported.
+  addEventListener('blur', releaseAll);
+  document.addEventListener('visibilitychange', () => document.hidden && releaseAll());
 
   let timer: ReturnType<typeof setInterval> | undefined;
   let [last, said] = [0, 0];
@@ -55,7 +55,7 @@ export function listenToDriver(): void {
   effect(() => {
     const isOn = isManual() && link.value === 'live';
     if (isOn === (timer !== undefined)) return;
-    letGo();
+    releaseAll();
     if (isOn) {
       last = performance.now();
       said = 0;
@@ -67,7 +67,7 @@ export function listenToDriver(): void {
   });
 }
 
-/** A stick under a finger or the mouse: sideways steers, up drives, down brakes. */
+/** A pad for finger or mouse: sideways steers, up is throttle, down is brake. */
 function Pad() {
   const element = useRef<HTMLDivElement>(null);
   const { steer, throttle } = stick.value;

@@ -1,14 +1,14 @@
 const drawings = new Set<() => void>();
 
-/** Has `draw` called for a picture of the page, whether its canvas is scrolled away or not. Returns its end. */
-export function drawnForPictures(draw: () => void): () => void {
+/** Registers `draw` for pictures of the page, which include canvases that are scrolled away. Returns its removal. */
+export function registerDrawing(draw: () => void): () => void {
   drawings.add(draw);
   return () => void drawings.delete(draw);
 }
 
 /**
- * Draws everything as it is now, also what is scrolled away and so stands still. Done at the next microtask, as uPlot
- * draws there.
+ * Draws all registered canvases, including those scrolled away, which are not repainted otherwise. Resolves after a
+ * microtask, in which uPlot draws.
  */
 export async function drawAll(): Promise<void> {
   for (const draw of drawings) draw();

@@ -38,7 +38,7 @@ onThemeChange(() => (current = null));
 
 export const chartColours = (): ChartColours => (current ??= read());
 
-/** A clear canvas of the size of its box [CSS pixels], sharp on this screen; null when there is nothing to draw on. */
+/** Clears a canvas and fits it to its box [CSS pixels] and the screen's resolution; null without a visible canvas. */
 export function fitCanvas(canvas: HTMLCanvasElement, width: number, height: number): CanvasRenderingContext2D | null {
   const ratio = Math.min(devicePixelRatio, 2);
   const context = canvas.getContext('2d');

@@ -6,7 +6,7 @@ import { chartColours } from './plot_colours';
 const COLUMN = 560;
 const HEAD = 26;
 
-/** All plots of the page on one canvas, two beside each other, with their titles; those scrolled away, too. */
+/** All plots on one canvas in two columns, with their titles, including those scrolled away. */
 export async function pictureOfPlots(): Promise<HTMLCanvasElement> {
   await drawAll();
   const colours = chartColours();

@@ -12,7 +12,7 @@ import { pictureOfPlots } from './plot_picture';
 import { drawStatusStrip } from './status_strip';
 import { type PlotSpec, TimePlot } from './time_plot';
 
-/** One meaning, one colour in all plots: applied blue, asked orange, sent green. */
+/** Colours with the same meaning in all plots: applied blue, requested orange, sent green. */
 const [APPLIED, ASKED, SENT, LIMIT] = [0, 1, 2, 4];
 
 /** From the units of a frame. */

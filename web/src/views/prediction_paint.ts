@@ -48,7 +48,8 @@ function strokeLine(
 }
 
 /**
- * The plan of a second ago in its own axes, the way driven since over it; sideways stretched, for centimetres matter.
+ * The plan of a second ago in the car's axes at that time, with the path driven since; stretched sideways to show
+ * centimetres.
  */
 export const paintPrediction: Paint = (context, width, height) => {
   const colours = chartColours();

@@ -16,7 +16,7 @@ const entry = (change: Partial<SchemaEntry>): SchemaEntry => ({
   ...change,
 });
 
-describe('the row of a tunable', () => {
+describe('the row of a setting', () => {
   it('is called by the words of its key, without the unit that stands beside it', () => {
     expect(labelOf({ key: 'tracking_mpc.speed_limit_mps', unit: 'm/s' })).toBe('speed limit');
     expect(labelOf({ key: 'latency_ms', unit: 'ms' })).toBe('latency');

@@ -6,9 +6,9 @@ import type { Setting } from '../protocol/source';
 import { canSet, set } from '../state/operate';
 import { refusals, settings, startSettings } from '../state/settings';
 
-const STEPS = 1000; // of a slider's way
+const STEPS = 1000; // of a slider's travel
 
-/** The part of a key that tells it from others of its group, in words and without the unit that stands beside it. */
+/** The last part of a key in words, without the unit, which is shown beside it. */
 export function labelOf({ key, unit }: Pick<SchemaEntry, 'key' | 'unit'>): string {
   const name = key.split('.').at(-1) ?? key;
   const suffix = {
@@ -33,7 +33,7 @@ export function rangeOf({ minimum, maximum, kind }: SchemaEntry, usual: Setting 
   return { minimum, maximum, scale: scaleOf(minimum, maximum, typical), isInteger: kind === 'integer' };
 }
 
-/** Sets a number as typed; "inf" means no limit where that is allowed. */
+/** A number as typed; "inf" means no limit where that is allowed. */
 function typed(text: string): Setting | null {
   const plain = text.trim().replace('−', '-').replace(',', '.');
   if (/^(inf|infinity|∞)$/i.test(plain)) return 'inf';
@@ -48,8 +48,8 @@ function NumberBox({ entry, id }: { entry: SchemaEntry; id: string }) {
   const [draft, setDraft] = useState<string | null>(null);
   const value = settings.value.get(entry.key);
   const commit = (): void => {
-    const wish = draft === null ? null : typed(draft);
-    if (wish !== null && wish !== value) set(entry.key, wish);
+    const request = draft === null ? null : typed(draft);
+    if (request !== null && request !== value) set(entry.key, request);
     setDraft(null);
   };
   return (
@@ -88,7 +88,7 @@ function Slider({ entry, range, label }: { entry: SchemaEntry; range: Range; lab
         aria-label={label}
         aria-valuetext={`${asText(value)} ${entry.unit}`}
         disabled={!canSet(entry.key)}
-        // What starts the run anew waits for the hand to let go.
+        // A setting that restarts the run is sent when the slider is released.
         onInput={(event) => entry.is_live && set(entry.key, valueAt(Number(event.currentTarget.value) / STEPS, range))}
         onChange={(event) =>
           !entry.is_live && set(entry.key, valueAt(Number(event.currentTarget.value) / STEPS, range))
@@ -134,7 +134,7 @@ function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
     );
   }
   if (entry.kind === 'choice' || entry.choices.length > 0) return <ChoiceBox entry={entry} label={label} />;
-  if (entry.kind === 'text') return <NumberBoxForText entry={entry} label={label} />;
+  if (entry.kind === 'text') return <TextBox entry={entry} label={label} />;
   const range = rangeOf(entry, startSettings.value.get(entry.key) ?? entry.default ?? undefined);
   return (
     <>
@@ -145,7 +145,7 @@ function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
   );
 }
 
-function NumberBoxForText({ entry, label }: { entry: SchemaEntry; label: string }) {
+function TextBox({ entry, label }: { entry: SchemaEntry; label: string }) {
   return (
     <input
       type="text"
@@ -158,7 +158,7 @@ function NumberBoxForText({ entry, label }: { entry: SchemaEntry; label: string 
   );
 }
 
-/** A tunable: what it is called, its control, its unit; what is wrong with the last wish; the way back to the start. */
+/** A setting: name, control, unit, the reason of a refusal, and a button back to the value at the start. */
 export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string }) {
   const label = name ?? labelOf(entry);
   const value = settings.value.get(entry.key);
@@ -177,7 +177,7 @@ export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string 
       <span class="setting-name">
         {label}
         {!entry.is_live && (
-          <span class="anew" role="img" title="A change restarts the run" aria-label="restarts the run">
+          <span class="restarts" role="img" title="A change restarts the run" aria-label="restarts the run">
             ↻
           </span>
         )}

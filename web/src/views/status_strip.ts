@@ -6,13 +6,13 @@ import type { ChartColours } from './plot_colours';
 
 const HEIGHT = 5; // CSS pixels
 
-/** How grave a control step was: 0 all well, 1 with a makeshift, 2 not the controller's own answer. */
-export function gravity(status: number, rung: number, isGated: number): 0 | 1 | 2 {
+/** Severity of a control step: 0 optimal and unchanged, 1 degraded, 2 without an answer of the controller. */
+export function stepSeverity(status: number, rung: number, isGated: number): 0 | 1 | 2 {
   if (status < 0 || rung >= 2) return 2;
   return status > 0 || rung > 0 || isGated > 0 ? 1 : 0;
 }
 
-/** A band at the foot of a plot: green while the controller's answer was optimal and went through unchanged. */
+/** A band at the bottom of a plot: green while the controller's answer was optimal and sent unchanged. */
 export function drawStatusStrip(plot: uPlot, colours: ChartColours): void {
   const history = plotted();
   const times = history.column(Column.time_s);
@@ -24,7 +24,7 @@ export function drawStatusStrip(plot: uPlot, colours: ChartColours): void {
   const look = [colours.good, colours.warning, colours.bad];
   const from = firstSince(times, plot.scales.x?.min ?? 0);
   const pixel = (i: number): number => Math.min(left + width, Math.max(left, plot.valToPos(times[i] ?? 0, 'x', true)));
-  const at = (i: number): number => gravity(statuses?.[i] ?? 0, rungs?.[i] ?? 0, gated?.[i] ?? 0);
+  const at = (i: number): number => stepSeverity(statuses?.[i] ?? 0, rungs?.[i] ?? 0, gated?.[i] ?? 0);
   for (let i = from; i < times.length; ) {
     const value = at(i);
     let end = i + 1;

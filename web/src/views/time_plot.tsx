@@ -11,7 +11,7 @@ import { cursorTime, isFrozen, plotted, thaw, timeRange, windowSeconds, zoomed, 
 import { shown } from '../state/shown';
 import { LONGEST_SILENCE_S } from '../state/silence';
 import { everyFrame } from '../state/ticker';
-import { drawnForPictures } from './picture_drawings';
+import { registerDrawing } from './picture_drawings';
 import { type ChartColours, chartColours } from './plot_colours';
 
 export interface Series {
@@ -19,7 +19,7 @@ export interface Series {
   readonly label: string;
   readonly colour: number; // of --series-…, from 0
   readonly isDashed?: boolean;
-  readonly isFilled?: boolean; // down to the series before, or to 0
+  readonly isFilled?: boolean; // down to the previous series, or to 0
   readonly factor?: number; // from the column's unit to the plot's
 }
 
@@ -43,7 +43,7 @@ function timeAxis(low: number, high: number): number[] {
   return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, i) => (first + i) * step);
 }
 
-/** Back from now while the plot follows the run; the time of the run where somebody has zoomed in. */
+/** Labels relative to now while the plot follows the run; run time when zoomed in. */
 const timeLabel = (time: number, last: number): string =>
   zoomed.value
     ? `${axisNumber(time)} s`
@@ -53,7 +53,7 @@ const timeLabel = (time: number, last: number): string =>
         : 'now'
       : `−${axisNumber(Math.round((last - time) * 10) / 10)} s`;
 
-/** Time and the columns of a plot, over the time its axis shows and one point more on each side. */
+/** Time and columns of a plot over the range of its axis, with one more point on each side. */
 function dataOf(spec: PlotSpec): Float64Array[] {
   const history = plotted();
   const times = history.column(Column.time_s);
@@ -69,7 +69,7 @@ function dataOf(spec: PlotSpec): Float64Array[] {
   ];
 }
 
-/** Where lines are interrupted, as pairs of pixels of the canvas. */
+/** Gaps of the lines, as pairs of pixels of the canvas. */
 function gapsOf(
   plot: uPlot,
   _series: number,
@@ -170,13 +170,13 @@ export function readout(column: number): number {
   return history.column(column)[at] ?? NaN;
 }
 
-const PACE_MS = 100; // as often as text is renewed
-const PHASES = 6; // plots take turns, so that no repaint has to wait for all of them
+const PACE_MS = 100; // as often as text
+const PHASES = 6; // plots take turns, so that no repaint draws all of them
 let made = 0;
 
 /**
- * How long a plot may stand still [ms]: until its lines have moved by one pixel of the screen, but no longer than text
- * does.
+ * Time between repaints of a plot [ms]: until its lines have moved by one pixel, at most as long as between updates of
+ * text.
  */
 const paceOf = (plot: uPlot): number =>
   plot.bbox.width > 0 ? Math.min(PACE_MS, (1000 * windowSeconds.value) / plot.bbox.width) : 0;
@@ -202,7 +202,7 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
       last = now;
       redraw();
     });
-    const forget = drawnForPictures(redraw);
+    const forget = registerDrawing(redraw);
     const unwatch = onThemeChange(() => {
       plot.destroy();
       plot = create();
@@ -222,7 +222,7 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
     };
   }, [spec]);
 
-  void shown.value; // renews the numbers in the title as often as other text
+  void shown.value; // updates the numbers in the title as often as other text
   return (
     <section class="plot" aria-label={spec.title}>
       <header>

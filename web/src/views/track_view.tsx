@@ -1,10 +1,10 @@
 import { signal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
+import { CachedPicture, isSame } from '../draw/cached_picture';
 import { above, behind, type Camera, fitting, scaleBar, zoomed } from '../draw/camera';
 import { carShape } from '../draw/car';
 import { drawDot, drawMoving, drawOutline, drawWorld, type RoadShape, roadShape, type Scene } from '../draw/scene';
 import { speedGradient, topOfScale } from '../draw/speed_colour';
-import { isSame, Still } from '../draw/still';
 import { onThemeChange, theme } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { type Box, boundsOf, extrapolate, type Point, wrapAngle } from '../lib/math';
@@ -52,7 +52,7 @@ const bar = signal({ metres: 10, pixels: 80 });
 const scaleTop = signal(10); // [m/s]
 const ghostLabel = signal<string | null>(null);
 
-/** The next camera, or the next cut of the map where that is what one sees. */
+/** The next camera in 3D, or the next view of the map. */
 export function nextView(): void {
   if (shows3d.value) {
     nextCamera();
@@ -62,7 +62,7 @@ export function nextView(): void {
   view.value = VIEWS[(at + 1) % VIEWS.length]?.view ?? 'behind';
 }
 
-/** Between the picture in three dimensions and the map. */
+/** Switches between 3D view and map. */
 export function toggleDimension(): void {
   choose(wants3d.value ? '2d' : '3d');
 }
@@ -72,7 +72,7 @@ export function zoom(factor: number): void {
   else metresAcross.value = zoomed(metresAcross.value, factor);
 }
 
-/** Keeps what has to be kept from one picture to the next. */
+/** Paints the map; holds what is kept from one picture to the next. */
 class Painter {
   readonly #canvas: HTMLCanvasElement;
   readonly #context: CanvasRenderingContext2D | null;
@@ -84,8 +84,8 @@ class Painter {
   #lastPaint = 0;
   #shown: readonly unknown[] = [];
   #worldKey: readonly unknown[] = [];
-  readonly #world = new Still();
-  readonly #outline = new Still();
+  readonly #world = new CachedPicture();
+  readonly #outline = new CachedPicture();
   readonly #ghost: GhostPose = { x: 0, y: 0, yaw: 0, steer: 0 };
 
   constructor(canvas: HTMLCanvasElement) {
@@ -133,7 +133,7 @@ class Painter {
       scene.racingLine,
       theme(),
     ];
-    // A paused run is the same picture again and again.
+    // In a paused run the picture does not change.
     const shown = [
       ...still,
       live.frame,
@@ -155,7 +155,7 @@ class Painter {
     if (!isInset && view.value !== 'whole' && this.#road && this.#roadBox) this.#inset(car, width, ratio);
   }
 
-  /** Drawn anew while the camera moves, copied while it stands still. */
+  /** Draws the static part; copies it while the camera does not move. */
   #drawWorld(scene: Scene, camera: Camera, key: readonly unknown[], ratio: number): void {
     const context = this.#context as CanvasRenderingContext2D;
     const isStill = isSame(key, this.#worldKey);
@@ -176,7 +176,7 @@ class Painter {
   #inset(car: Point | null, width: number, ratio: number): void {
     const [context, road] = [this.#context as CanvasRenderingContext2D, this.#road as RoadShape];
     const side = Math.min(170, width * 0.3);
-    const top = width < 560 ? 48 : 8; // below the buttons where both do not fit side by side
+    const top = width < 560 ? 48 : 8; // below the buttons where they do not fit side by side
     const fit = fitting(this.#roadBox as Box, side, side, 8);
     const pixels = Math.round(side * ratio);
     const picture = this.#outline.picture([road, ratio, theme()], pixels, pixels, (own) =>
@@ -211,7 +211,7 @@ class Painter {
     this.#roadBox = boundsOf([...road.lines.left, ...road.lines.right]);
   }
 
-  /** Where the car is at this very moment: frames come less often than repaints. */
+  /** The car's pose extrapolated to now: frames arrive less often than repaints. */
   #carNow(now: number): Scene['car'] {
     const { frame } = live;
     const size = run.value;
@@ -243,7 +243,7 @@ class Painter {
       return fitting(all as Box, width, height, isInset ? 10 : 52);
     }
     if (view.value === 'above') return above(car, width, height, metresAcross.value);
-    // A quarter of a second of smoothing: corners turn the world, wheel movements do not.
+    // Smoothed over a quarter of a second, so that the view does not follow every steering movement.
     const share = Number.isNaN(this.#heading) ? 1 : 1 - Math.exp(-(now - this.#lastPaint) / 250);
     const from = Number.isNaN(this.#heading) ? car.yaw : this.#heading;
     this.#heading = from + wrapAngle(car.yaw - from) * share;
@@ -260,7 +260,7 @@ function Swatch({ name, label, isMinor = false }: { name: string; label: string;
   );
 }
 
-/** A line that the reader can have or not. */
+/** A button that shows or hides a line. */
 function Switch({ layer, label, title }: { layer: Layer; label: string; title: string }) {
   const isOn = layers[layer].value;
   return (
@@ -271,7 +271,7 @@ function Switch({ layer, label, title }: { layer: Layer; label: string; title: s
   );
 }
 
-/** Why there is no 3D picture, where somebody could expect one. */
+/** Why there is no 3D picture, where one could be expected. */
 function Note() {
   if (dimension.value === '3d' && obstacle.value !== null) {
     return (
@@ -424,7 +424,7 @@ export function TrackView() {
   return (
     <section class={shows3d.value ? 'panel map has-3d' : 'panel map'} aria-label="Track">
       {wants3d.value && <Scene3dView label={label.replace('Map', 'Picture')} />}
-      {/* Always there: in full, or as the small map beside the 3D picture. */}
+      {/* Always present: full size, or as the small map beside the 3D picture. */}
       <canvas ref={canvas} class="map-2d" role="img" aria-label={label} />
       <MapControls />
       <Legend />

@@ -11,7 +11,7 @@ import { SettingRow } from './setting_row';
 
 const search = signal('');
 const onlyChanged = signal(false);
-/** Groups the reader has opened or closed; others follow the controller that drives. */
+/** Groups that were opened or closed by hand; others follow the active controller. */
 const isOpen = signal<ReadonlyMap<string, boolean>>(new Map());
 
 export const focusSearch = (): void => document.getElementById('tune-search')?.focus();
@@ -39,7 +39,7 @@ const groups = computed(() => {
   return [...all];
 });
 
-/** What concerns the running experiment is open: its controller, the world around it. */
+/** Groups of the active controller and its environment are open at first. */
 function isOpenAtFirst(entries: readonly SchemaEntry[]): boolean {
   const prefix = prefixOf(entries[0]?.key ?? '');
   const controller = (run.value?.controller ?? '').replace(/-/g, '_');

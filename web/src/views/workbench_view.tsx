@@ -26,7 +26,7 @@ const PANELS: Readonly<Record<Tab, { title: string; View: ComponentType }>> = {
 
 const isTab = (value: unknown): value is Tab => (TABS as readonly unknown[]).includes(value);
 
-/** The tab in the address wins over the one shown last: links can lead to a tab. */
+/** The tab in the address has priority over the one shown last, so that links can open a tab. */
 export const tab = persisted<Tab>('tab', 'plots', isTab);
 if (typeof location !== 'undefined' && isTab(location.hash.slice(1))) tab.value = location.hash.slice(1) as Tab;
 
@@ -34,7 +34,7 @@ type Dock = 'right' | 'bottom';
 const dock = persisted<Dock>('dock', 'right', (value) => value === 'right' || value === 'bottom');
 const shareRight = persisted<number>('dock.right', 0.43);
 const shareBottom = persisted<number>('dock.bottom', 0.44);
-/** The panel alone, without stage and instruments. */
+/** Whether only the panel is shown, without picture and instruments. */
 export const isPanelAlone = signal(false);
 
 export function toggleDock(): void {
@@ -47,7 +47,7 @@ function moveSplit(share: number): void {
   else shareBottom.value = limited;
 }
 
-/** The bar between stage and panel: dragged, or moved with the arrow keys. */
+/** The bar between picture and panel, moved by dragging or with the arrow keys. */
 function Splitter() {
   const isVertical = dock.value === 'right';
   const share = isVertical ? shareRight.value : shareBottom.value;

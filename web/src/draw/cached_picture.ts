@@ -1,10 +1,10 @@
-/** A part of a picture that is painted once and copied from then on, until something in its key changes. */
-export class Still {
+/** A part of a picture that is painted once and then copied until its key changes. */
+export class CachedPicture {
   #canvas: HTMLCanvasElement | null = null;
   #key: readonly unknown[] = [];
 
   /**
-   * The part in `width` × `height` device pixels. `paint` is called with a clear canvas where the key is another one.
+   * The part in `width` × `height` device pixels. `paint` is called with an empty canvas when the key has changed.
    */
   picture(
     key: readonly unknown[],
