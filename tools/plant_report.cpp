@@ -169,11 +169,10 @@ void print_cost(Plant& plant) {
 }
 
 void print_tables() {
-  for (const char* name : {"udacity", "road-car"}) {
-    const std::unique_ptr<Plant> plant = sim::make_plant(name).value();
-    const model::VehicleParams believed = model::vehicle_named(name).value();
+  for (const model::VehicleParams& believed : {model::udacity_params(), model::road_car_params()}) {
+    const std::unique_ptr<Plant> plant = sim::make_plant(believed.name).value();
     const bool is_udacity = believed.steer_helper > 0.0;
-    std::printf("== %s\n", name);
+    std::printf("== %s\n", believed.name.c_str());
     print_longitudinal(*plant);
     print_braking(*plant);
     if (is_udacity) print_lock_threshold(*plant);

@@ -43,13 +43,6 @@ TEST(MagicFormula, HasSlopeBcdAtZeroAndPeakD) {
   EXPECT_LT(tire(1.0), 1.2);
 }
 
-TEST(Brush, IsExactlyOneFromThreeOn) {
-  EXPECT_EQ(brush(3.0), 1.0);
-  EXPECT_EQ(brush(-5.0), -1.0);
-  EXPECT_NEAR(brush(2.9999), 1.0, 1e-11);  // third order contact: (1e-4)³ / 27
-  EXPECT_NEAR(brush(Dual<1>::variable(0.0, 0)).d[0], 1.0, kRounding);
-}
-
 TEST(TireCurves, AreOddAndDualsGiveTheirSlope) {
   const FrictionCurve curve;
   const MagicFormula magic{.stiffness = 9.0, .shape = 1.4, .peak = 1.1, .curvature = -0.5};
@@ -63,8 +56,6 @@ TEST(TireCurves, AreOddAndDualsGiveTheirSlope) {
   };
   check([&](const auto& x) { return curve(x); });
   check([&](const auto& x) { return magic(x); });
-  check([](const auto& x) { return brush(x); });
-  check([](const auto& x) { return saturate(x); });
 }
 
 }  // namespace

@@ -16,20 +16,10 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(Vehicle, ShippedCarsAreValidAndNamed) {
-  for (const char* name : {"udacity", "road-car"}) {
-    const Result<VehicleParams> car = vehicle_named(name);
-    ASSERT_TRUE(car) << car.error().message;
-    EXPECT_EQ(car->name, name);
-    EXPECT_TRUE(validate(*car));
-  }
-}
-
-TEST(Vehicle, RefusesAnUnknownNameAndSaysWhichThereAre) {
-  const Result<VehicleParams> car = vehicle_named("tank");
-  ASSERT_FALSE(car);
-  EXPECT_EQ(car.error().code, ErrorCode::kNotFound);
-  EXPECT_THAT(car.error().message, HasSubstr("tank"));
-  EXPECT_THAT(car.error().message, HasSubstr("road-car"));
+  EXPECT_EQ(udacity_params().name, "udacity");
+  EXPECT_EQ(road_car_params().name, "road-car");
+  EXPECT_TRUE(validate(udacity_params()));
+  EXPECT_TRUE(validate(road_car_params()));
 }
 
 TEST(Vehicle, RefusesEachUnphysicalFieldByName) {

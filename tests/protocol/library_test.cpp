@@ -87,12 +87,12 @@ TEST_F(Library, PresetDefaultSaysWhatTheCodeSays) {
 }
 
 TEST_F(Library, CarFilesSayWhatTheCodeSays) {
-  for (const char* name : {"udacity", "road-car"}) {
-    const Result<Scenario> scenario = compose({"", {{"car", name}}});
+  for (const model::VehicleParams& car : {model::udacity_params(), model::road_car_params()}) {
+    const Result<Scenario> scenario = compose({"", {{"car", car.name}}});
     ASSERT_TRUE(scenario) << scenario.error().message;
-    EXPECT_EQ(scenario->plant, name);
+    EXPECT_EQ(scenario->plant, car.name);
     Scenario expected;
-    expected.vehicle = *model::vehicle_named(name);
+    expected.vehicle = car;
     EXPECT_THAT(differences(*scenario, expected, "vehicle."), ::testing::IsEmpty());
   }
 }

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "chicane/base/random.hpp"
-#include "chicane/model/single_track.hpp"
+#include "sim/single_track.hpp"
 
 namespace chicane::sim::experiment {
 
@@ -45,11 +45,11 @@ Log record(Plant& plant, const model::VehicleParams& params, double speed, doubl
 
 /// The single track with the log's steering angle and speed against the log.
 Mismatch compare_with(const Log& log, const model::VehicleParams& params) {
-  const model::SingleTrack model{params};
-  model::BodyMotion<double> motion{log.states.front().vx, 0.0, 0.0};
+  const SingleTrack model{params};
+  BodyMotion<double> motion{log.states.front().vx, 0.0, 0.0};
   double r_error = 0.0, r_size = 0.0, v_error = 0.0, v_size = 0.0;
   for (const model::State& truth : log.states) {
-    motion = model::advance(model, motion, truth.steer, 0.0, log.dt);
+    motion = advance(model, motion, truth.steer, 0.0, log.dt);
     motion.vx = truth.vx;
     r_error += std::pow(motion.r - truth.r, 2);
     r_size += std::pow(truth.r, 2);

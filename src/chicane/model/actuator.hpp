@@ -9,7 +9,7 @@
 namespace chicane::model {
 
 /// What stands between a wish and a wheel: range, first-order lag, rate limit, in this order (docs/model.md,
-/// eq. 14). Exact for a wish held over the step while the rate does not bind. Plain data and one function, no
+/// eq. 13). Exact for a wish held over the step while the rate does not bind. Plain data and one function, no
 /// allocation.
 struct Actuator {
   double low = -1.0;  ///< range of the value

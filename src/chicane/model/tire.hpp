@@ -1,34 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
 #include "chicane/base/dual.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::model {
 
 /// Normalised tyre curves: force over load from slip. Odd functions of slip, templates over the scalar, so
-/// that a Dual gives their slope. Equations and sources: docs/model.md, eq. 9–13.
+/// that a Dual gives their slope. Equations and sources: docs/model.md, eq. 10–12.
 
-/// tanh: slope 1 at 0, limit ±1, never flat; what the single track saturates with (eq. 9).
-/// z = cornering · slip / friction.
-template <class T>
-[[nodiscard]] T saturate(const T& z) {
-  return tanh(z);
-}
-
-/// Brush model, parabolic pressure (eq. 10; Pacejka 2012, §3.2): slope 1 at 0, exactly ±1 from |z| = 3 on.
-template <class T>
-[[nodiscard]] T brush(const T& z) {
-  const double size = std::fabs(value_of(z));
-  if (size >= 3.0) return T(value_of(z) < 0.0 ? -1.0 : 1.0);
-  const T magnitude = value_of(z) < 0.0 ? T(-z) : z;
-  return z * (1.0 - magnitude * (1.0 / 3.0) + magnitude * magnitude * (1.0 / 27.0));
-}
-
-/// Magic formula y = D sin(C atan(B x − E (B x − atan(B x)))), slope B C D at 0 (eq. 11; Pacejka 2012,
+/// Magic formula y = D sin(C atan(B x − E (B x − atan(B x)))), slope B C D at 0 (eq. 10; Pacejka 2012,
 /// §4.3.1).
 struct MagicFormula {
   double stiffness = 10.0;  ///< B
@@ -44,7 +25,7 @@ struct MagicFormula {
 };
 
 /// Friction curve of PhysX wheels as Unity's WheelCollider takes it: from (0, 0) to an extremum to an
-/// asymptote by two cubic Hermite pieces (eq. 12, 13; PhysX 2.8, NxTireFunctionDesc::hermiteEval). Slope at
+/// asymptote by two cubic Hermite pieces (eq. 11, 12; PhysX 2.8, NxTireFunctionDesc::hermiteEval). Slope at
 /// 0: extremum_value / extremum_slip.
 struct FrictionCurve {
   double extremum_slip = 0.2;

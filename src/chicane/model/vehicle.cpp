@@ -139,11 +139,4 @@ VehicleParams road_car_params() {
   return p;
 }
 
-Result<VehicleParams> vehicle_named(std::string_view name) {
-  if (name == "udacity") return udacity_params();
-  if (name == "road-car") return road_car_params();
-  return fail(ErrorCode::kNotFound,
-              "vehicle: got \"" + std::string(name) + "\", expected udacity or road-car");
-}
-
 }  // namespace chicane::model

@@ -3,7 +3,6 @@
 
 #include <limits>
 #include <string>
-#include <string_view>
 
 #include "chicane/base/result.hpp"
 
@@ -81,7 +80,5 @@ struct VehicleParams {
 [[nodiscard]] VehicleParams udacity_params();
 /// An ordinary car: 1300 kg, about 1.2 g, proportional brakes, 90°/s steering.
 [[nodiscard]] VehicleParams road_car_params();
-/// "udacity" or "road-car"; kNotFound otherwise.
-[[nodiscard]] Result<VehicleParams> vehicle_named(std::string_view name);
 
 }  // namespace chicane::model

@@ -3,10 +3,9 @@
 
 #include "chicane/base/dual.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/model/tire.hpp"
 #include "chicane/model/vehicle.hpp"
 
-namespace chicane::model {
+namespace chicane::sim::experiment {
 
 /// Velocity of a car in its own axes B: what its tyres see. Also holds the rate of change of the same
 /// quantities.
@@ -17,8 +16,9 @@ struct BodyMotion {
   T r{};   ///< yaw rate [rad/s]
 };
 
-/// One front and one rear wheel with saturating tyres: longitudinal, lateral and yaw motion. No roll, no load
-/// transfer, no coupling of longitudinal to lateral force.
+/// The textbook single track, by which the plants are judged: one front and one rear wheel with saturating
+/// tyres: longitudinal, lateral and yaw motion. No roll, no load transfer, no coupling of longitudinal to
+/// lateral force.
 ///
 /// Frames    W world, B body at the centre of mass (docs/notation.md).
 /// Input     road-wheel angle δ, left positive [rad]; net longitudinal acceleration a of drive, brake and
@@ -40,7 +40,7 @@ struct BodyMotion {
 struct SingleTrack {
   static constexpr double kSlipSpeed = 3.0;  ///< v₀ [m/s]: lateral stiffness is that of at least this speed
 
-  VehicleParams params;
+  model::VehicleParams params;
 
   /// Normal acceleration that presses the car on the road at speed vx [m/s²] (load over mass).
   template <class T>
@@ -56,21 +56,21 @@ struct SingleTrack {
   };
   template <class T>
   [[nodiscard]] AxleForces<T> axle_forces(const BodyMotion<T>& motion, const T& steer) const {
-    const VehicleParams& p = params;
+    const model::VehicleParams& p = params;
     const T reciprocal = 1.0 / sqrt(motion.vx * motion.vx + kSlipSpeed * kSlipSpeed);
     const T slip_front =
         (motion.vx * sin(steer) - (motion.vy + p.front_axle * motion.r) * cos(steer)) * reciprocal;
     const T slip_rear = (p.rear_axle * motion.r - motion.vy) * reciprocal;
     const T pressed = load(motion.vx) * (p.friction / p.wheelbase());
-    return {.front = pressed * p.rear_axle * saturate(T(slip_front * (p.cornering_front / p.friction))),
-            .rear = pressed * p.front_axle * saturate(T(slip_rear * (p.cornering_rear / p.friction)))};
+    return {.front = pressed * p.rear_axle * tanh(slip_front * (p.cornering_front / p.friction)),
+            .rear = pressed * p.front_axle * tanh(slip_rear * (p.cornering_rear / p.friction))};
   }
 
   /// d(vx, vy, r)/dt for road-wheel angle `steer` [rad] and net longitudinal acceleration [m/s²].
   template <class T>
   [[nodiscard]] BodyMotion<T> derivative(const BodyMotion<T>& motion, const T& steer,
                                          const T& acceleration) const {
-    const VehicleParams& p = params;
+    const model::VehicleParams& p = params;
     const AxleForces<T> force = axle_forces(motion, steer);
     const T turning = (1.0 - p.steer_helper) * motion.r;
     const T front_across = force.front * cos(steer);
@@ -118,4 +118,4 @@ template <class T>
       {mean(k1.vx, k2.vx, k3.vx, k4.vx), mean(k1.vy, k2.vy, k3.vy, k4.vy), mean(k1.r, k2.r, k3.r, k4.r)}, dt);
 }
 
-}  // namespace chicane::model
+}  // namespace chicane::sim::experiment

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/model/single_track.hpp"
+#include "sim/single_track.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,13 @@
 
 #include "chicane/base/random.hpp"
 
-namespace chicane::model {
+namespace chicane::sim::experiment {
 namespace {
 
+using model::VehicleParams;
 using State7 = SingleTrack::StateOf<double>;
 
-std::array<VehicleParams, 2> cars() { return {udacity_params(), road_car_params()}; }
+std::array<VehicleParams, 2> cars() { return {model::udacity_params(), model::road_car_params()}; }
 
 template <class T>
 std::array<T, 7> flat(const SingleTrack::StateOf<T>& s) {
@@ -85,7 +86,7 @@ TEST(SingleTrack, MirrorsWhenSignsFlip) {
 }
 
 TEST(SingleTrack, DoesNotKnowWhereNorIs) {
-  const SingleTrack model{udacity_params()};
+  const SingleTrack model{model::udacity_params()};
   const BodyMotion<double> motion{20.0, 0.3, 0.2};
   State7 here{.x = 0.0, .y = 0.0, .psi = 0.0, .motion = motion, .steer = 0.1};
   State7 there{.x = 512.0, .y = -64.0, .psi = 1.2, .motion = motion, .steer = 0.1};
@@ -160,7 +161,7 @@ TEST(SingleTrack, StaysBoundedAtEverySpeedWithStepsOf40Milliseconds) {
 }
 
 TEST(SingleTrack, SidewaysForceNeverExceedsFrictionTimesLoad) {
-  const SingleTrack model{road_car_params()};
+  const SingleTrack model{model::road_car_params()};
   const double v = 30.0;
   const auto force = model.axle_forces(BodyMotion<double>{v, -20.0, 0.0}, 0.4);
   EXPECT_LE(force.front + force.rear, model.params.friction * model.load(v));
@@ -168,4 +169,4 @@ TEST(SingleTrack, SidewaysForceNeverExceedsFrictionTimesLoad) {
 }
 
 }  // namespace
-}  // namespace chicane::model
+}  // namespace chicane::sim::experiment
