@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a choice that starts the run anew costs whoever watches: how long until the new run is seen, and the longest gap
+// What a choice that restarts the run costs viewers: how long until the new run is seen, and the longest gap
 // between two frames meanwhile, beside as much time in which nothing is chosen. The limit of the run before is still
 // being searched at each choice.
 //   CHICANE=/path/to/chicane node choices.mjs [rounds, 10] [seconds, 1]

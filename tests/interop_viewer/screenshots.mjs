@@ -101,7 +101,7 @@ for (const { name, camera, colorScheme, part = 'body' } of SCENES.filter(isWante
   await context.addInitScript((value) => localStorage.setItem('chicane.camera', JSON.stringify(value)), camera);
   const page = await context.newPage();
   await page.goto(url);
-  await page.locator('.map.has-3d').waitFor();
+  await page.locator('.map.has-3d').waitFor({ timeout: 120_000 });
   await page.waitForTimeout(8000);
   const clip = await page.locator(part).boundingBox();
   await page.screenshot({ path: `${folder}/${name}.png`, clip, timeout: 120_000 });

@@ -167,7 +167,7 @@ describe('a run that goes on', () => {
     await until('the pace', () => latest.get('/chicane/frame').pace === 4);
   });
 
-  it('starts anew with another track and preset', async () => {
+  it('restarts with another track and preset', async () => {
     set('track', 'lakeside');
     await until('lakeside', () => latest.get('/chicane/run').track === 'lakeside');
     await until('the pace of before', () => latest.get('/chicane/frame').pace === 4);

@@ -265,7 +265,7 @@ describe('the workbench', () => {
     await dashboard.resume();
   });
 
-  it('starts anew with another track, after asking once', async () => {
+  it('restarts with another track, after asking once', async () => {
     const summary = () => page.locator('.summary').innerText();
     await choice('Track').selectOption('oval');
     await page.getByRole('dialog').getByText('Keep driving').click();
