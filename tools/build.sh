@@ -20,7 +20,7 @@ is_configured() {
   done
 }
 
-# build_release ROOT TARGET [NAME=VALUE...]: quiet when there is nothing to do; whatever it says goes to stderr.
+# build_release ROOT TARGET [NAME=VALUE...]: prints nothing when there is nothing to do; all output goes to stderr.
 build_release() {
   local root=$1 target=$2 build=$1/build/release fresh=() quiet=()
   shift 2

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Everything that has to hold before a change is taken. Each part also runs alone: tools/check.sh tidy
+# All checks that a change must pass. Each part also runs alone: tools/check.sh tidy
 #
 #   format   clang-format has nothing to change
-#   web      Biome finds nothing to change or to mend in the dashboard and its tests
+#   web      Biome finds nothing to format or to fix in the dashboard and its tests
 #   layers   arrows between modules, rules of tools/check_sources.py
 #   tidy     clang-tidy: names, function lengths, bug patterns
 #   release  ./test.sh --all: every test, with the dashboard's, the installed package's and the documents'
@@ -10,7 +10,7 @@
 #   clang    the other compiler (where it is installed)
 #   asan     address and undefined behaviour sanitizers
 #   tsan     thread sanitizer
-#   bits     the builds above drive the same laps, to the last bit
+#   bits     the builds above compute the same laps, bit for bit
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
 source tools/install_packages.sh
@@ -29,7 +29,7 @@ check_clang() { command -v clang++ >/dev/null || { say "clang++ is not installed
 check_asan() { check_preset asan; }
 check_tsan() { check_preset tsan; }
 
-# What each build says about a few laps: one state_hash for each of them, on one line.
+# The state_hash of a few laps for each build, on one line.
 hashes() {
   local run
   for run in '--car udacity' '--car road-car' '--preset weighted' 'noisy-sensor'; do

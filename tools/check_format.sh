@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks that every C++ file is formatted by .clang-format; --fix formats them. Other versions of clang-format format otherwise: exit
+# Checks that every C++ file is formatted by .clang-format; --fix formats them. Other versions of clang-format give other results: exit
 # code 77 (skipped) without the one of Debian 12.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the rules that a compiler does not know, line by line: who may do what, and how files begin.
+"""Checks rules that the compiler does not check, line by line: which module may do what, and how files begin.
 
     tools/check_sources.py [ROOT]            prints file:line: what is wrong; exit code 1 when anything is
     tools/check_sources.py --lengths [ROOT]  lists the longest files instead

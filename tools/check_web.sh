@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Checks that JavaScript, TypeScript and style sheets are formatted, and that the linter finds nothing (Biome, biome.jsonc);
-# --fix formats them and mends what can be mended without a person. Installs Biome where it is missing (Node.js and npm).
+# --fix formats them and applies the linter's safe fixes. Installs Biome where it is missing (Node.js and npm).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 cmake "-DFOLDER=$PWD/tools/web_style" -DNPM=npm -P cmake/NpmCi.cmake

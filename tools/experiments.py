@@ -5,7 +5,7 @@ writes their tables and figures.
 
     /usr/bin/python3 tools/experiments.py [PROGRAM]
 
-PROGRAM is build/release/apps/chicane/chicane when left out. Everything is virtual time: the same on every machine.
+PROGRAM is build/release/apps/chicane/chicane when left out. All runs are in virtual time: the same on every machine with the same arithmetic.
 """
 import json
 import os
@@ -41,7 +41,7 @@ class Runs:
 
 
 def command(preset, *settings, track="lakeside", laps=2, latency=100, mph=None, seconds=200, car=None):
-    """One line that a reader can type. Answers come as from the original: one 20 ms after the last one arrived."""
+    """The command as a reader can type it. Measurements come as from the original: 20 ms after the last command arrived."""
     period = [] if any(setting.startswith("control_period_ms=") for setting in settings) else [f"control_period_ms={latency + 20}"]
     text = f"drive --fast --preset {preset} --track {track} --laps {laps} --latency-ms {latency}"
     if car:
@@ -105,7 +105,7 @@ OWN = {"measured-latency": "measured", "fast-short-step": "roll-forward", "sixty
 
 def cure_table(runs):
     """Each preset with and without its own compensation."""
-    text = "| preset | its way | rms lateral error with it | without | steering rate with it | without |\n|---|---|--:|--:|--:|--:|\n"
+    text = "| preset | its method | rms lateral error with it | without | steering rate with it | without |\n|---|---|--:|--:|--:|--:|\n"
     pairs = {preset: (runs.start(command(preset)), runs.start(command(preset, "cubic_mpc.latency_handling=none"))) for preset in OWN}
     for preset, (own, none) in pairs.items():
         own, none = own.result(), none.result()
@@ -186,7 +186,7 @@ def plotting():
 
 
 def draw_latency(runs, path):
-    """rms lateral error over latency, one curve for each way; a cross where a tyre left the road."""
+    """rms lateral error over latency, one curve for each method; a cross where a tyre left the road."""
     plt = plotting()
     figure, axes = plt.subplots(figsize=(9.5, 4.5))
     reports = {key: runs.start(line).result() for key, line in latency_commands().items()}

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drives the laps of README's table of numbers and writes it. All of it is virtual time: the same on every machine.
+"""Drives the laps of README's table of numbers and writes it. All runs are in virtual time: the same on every machine with the same arithmetic.
 
     tools/measure.py [PROGRAM]          writes the table between the markers in README.md
     tools/measure.py --check [PROGRAM]  compares; exit code 1 and the lines that differ when the table is out of date

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Records runs with each of several builds of the program and verifies each recording with all builds: compilers and build
-# types compute the same bits. The last line counts.
+# types compute the same bits. The last line has the counts.
 #
 #   tools/verify_across_builds.sh build/gcc/apps/chicane/chicane build/clang/apps/chicane/chicane ...
 #
@@ -24,7 +24,7 @@ trap 'rm -rf "$folder"' EXIT
 builds=("$@")
 for i in "${!builds[@]}"; do
   for j in "${!runs[@]}"; do
-    # Exit code 1 says that the lap was not finished, or not clean: the recording is what counts here.
+    # Exit code 1 says that the lap was not finished, or not clean; only the recording is used here.
     # shellcheck disable=SC2086  # the options are words
     "${builds[$i]}" drive --fast --laps 1 --set time_limit_s=40 ${runs[$j]} --record "$folder/$i-$j.mcap" >"$folder/out" 2>&1 ||
       [ $? -eq 1 ] || { cat "$folder/out" >&2; exit 1; }
