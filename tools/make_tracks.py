@@ -183,7 +183,7 @@ def even_points(profile, spacing, left, right):
     return [(*rows[round(i * (len(rows) - 1) / count)][1:4], left, right) for i in range(count)]
 
 
-# --- lakeside's waypoints: few, uneven, placed by hand as it were ---------------------------------------------------
+# --- lakeside's waypoints: few, unevenly spaced, as if placed by hand -----------------------------------------------
 
 WAYPOINTS = 80
 BRIDGE = 33.6                        # longest spacing [m]
@@ -268,7 +268,7 @@ def make_all():
     return {
         "lakeside": text_of(
             ["lakeside: 1138 m round a lake, counter-clockwise, about 9.15 m wide, one tight right-hander",
-             "Few, uneven waypoints beside the middle of the road, as a person places them."],
+             "Few, unevenly spaced waypoints off the middle of the road, like waypoints placed by hand."],
             {"start_s_m": 258.0, "start_d_m": -0.76}, lakeside_points(lakeside, SEED)),
         "oval": text_of(["oval: two straights, two turns of R 45 m, 10 m wide, counter-clockwise"], exact,
                         even_points(oval, 12.0, 5.0, 5.0)),
