@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One question, many runs: up to which actuation delay does the controller stay on the road, with and without
-// compensating it?
+// Many runs in one program: the longest actuation delay with which the controller stays on the road, with and
+// without compensation.
 #include <cstdio>
 #include <string>
 
@@ -9,7 +9,7 @@
 
 namespace {
 
-/// "28.1 s" for a clean run of two laps, or why it was none.
+/// "28.1 s" for a clean run of two laps, otherwise the reason.
 std::string flying_lap(const std::string& latency_ms, const std::string& compensate) {
   const auto scenario = chicane::protocol::compose(
       {.scenario_file = "first-lap",

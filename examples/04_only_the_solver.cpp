@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The solver knows no car. Here it swings up a pole on a cart: 2 s in 50 steps of 40 ms, pushes of at most 20
-// N, a rail of 0.6 m each way that it pays to leave. The first guess is to do nothing.
+// The solver without a car: it swings up a pole on a cart, in 2 s of 50 steps of 40 ms, with forces of at most
+// 20 N and a soft bound of 0.6 m on the position. The first guess is no force at all.
 
 // [solver]
 #include <cstdio>
@@ -10,8 +10,8 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 
-// The structured form: each variable has a type of its own, which knows what it depends on, so zeros in the
-// derivatives cost nothing and stages are evaluated in SIMD lanes. The functions work on plain doubles, too.
+// The structured form: each variable has a type of its own, with the variables that it depends on, so zeros in
+// the derivatives cost nothing and stages are evaluated in SIMD lanes. Plain doubles are accepted, too.
 struct CartPole {
   static constexpr int kNx = 4, kNu = 1, kNr = 5, kNe = 4, kNc = 2;
   static constexpr double kStep = 0.04, kCart = 1.0, kPole = 0.2, kLength = 0.5, kGravity = 9.81;
@@ -48,7 +48,7 @@ struct CartPole {
   std::array<double, 1> input_upper(int) const { return {20.0}; }
 };
 
-// The simple form: one scalar type for everything. Slower, and any model fits: it may branch as it likes.
+// The simple form: one scalar type for everything. Slower, but for any model, also one with branches.
 struct PlainCartPole : CartPole {
   template <class T>
   using X = std::array<T, 4>;
