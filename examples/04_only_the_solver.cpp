@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The solver without a car: it swings up a pole on a cart, in 2 s of 50 steps of 40 ms, with forces of at most
-// 20 N and a soft bound of 0.6 m on the position. The first guess is no force at all.
+// The solver without a car: it swings up a pole on a cart, in 2 s of 50 steps of 40 ms, with forces of at
+// most 20 N and a soft bound of 0.6 m on the position. The first guess is no force at all.
 
 // [solver]
 #include <cstdio>
@@ -10,8 +10,8 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 
-// The structured form: each variable has a type of its own, with the variables that it depends on, so zeros in
-// the derivatives cost nothing and stages are evaluated in SIMD lanes. Plain doubles are accepted, too.
+// The structured form: each variable has a type of its own, with the variables that it depends on, so zeros
+// in the derivatives cost nothing and stages are evaluated in SIMD lanes. Plain doubles are accepted, too.
 struct CartPole {
   static constexpr int kNx = 4, kNu = 1, kNr = 5, kNe = 4, kNc = 2;
   static constexpr double kStep = 0.04, kCart = 1.0, kPole = 0.2, kLength = 0.5, kGravity = 9.81;
