@@ -10,20 +10,18 @@ set_target_properties(chicane_lib PROPERTIES EXPORT_NAME lib)
 target_link_libraries(chicane_lib INTERFACE ${modules})
 
 # What the static libraries need from the system, as far as this build uses it: arguments of find_package() and pkg-config words by target.
-set(package_of_Eigen3::Eigen "Eigen3 3.4")
 set(package_of_tl::expected "tl-expected")
 set(package_of_Threads::Threads "Threads")
 set(package_of_fmt::fmt "fmt")
 set(package_of_yaml-cpp "yaml-cpp")
 set(package_of_zstd::libzstd_shared "zstd")
-set(pc_requires_of_Eigen3::Eigen "eigen3")
 set(pc_requires_of_fmt::fmt "fmt")
 set(pc_requires_of_yaml-cpp "yaml-cpp")
 set(pc_requires_of_zstd::libzstd_shared "libzstd")
 set(pc_libs_of_Threads::Threads "-pthread")
 
 # Headers that only our own sources include: of no concern to users. As a public link they are.
-set(built_with Boost::headers Boost::boost Eigen3::Eigen nlohmann_json::nlohmann_json)
+set(built_with Boost::headers Boost::boost nlohmann_json::nlohmann_json)
 
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/chicane)
 set(pc_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

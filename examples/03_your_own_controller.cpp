@@ -17,8 +17,8 @@ class ChaseThirdWaypoint final : public controller::Controller {
  public:
   const controller::StepResult& step(const model::Measurement& now, Deadline) noexcept override {
     const Vec2 ahead = now.waypoints[2] - Vec2(now.x, now.y);
-    const double to_the_left = chicane::cos(now.psi) * ahead[1] - chicane::sin(now.psi) * ahead[0];
-    const double curvature = 2.0 * to_the_left / std::max(1.0, ahead.squaredNorm());  // of the circle there
+    const double to_the_left = chicane::cos(now.psi) * ahead.y() - chicane::sin(now.psi) * ahead.x();
+    const double curvature = 2.0 * to_the_left / std::max(1.0, ahead.squared_norm());  // of the circle there
     result_.command.steer = std::clamp(2.87 * curvature, -0.4, 0.4);
     result_.command.throttle = std::clamp(0.2 * (10.0 - now.speed) + 0.2, 0.0, 1.0);
     return result_;

@@ -4,10 +4,10 @@
 # To build and run the program.
 run_packages=(
   g++ cmake ninja-build ccache pkg-config
-  libeigen3-dev libexpected-dev libboost-dev nlohmann-json3-dev libyaml-cpp-dev libcli11-dev libfmt-dev libzstd-dev
+  libexpected-dev libboost-dev nlohmann-json3-dev libyaml-cpp-dev libcli11-dev libfmt-dev libzstd-dev
 )
 # To compare with Ipopt in `chicane bench`, on top of those.
-bench_packages=(coinor-libipopt-dev liblapack-dev libblas-dev)
+bench_packages=(libeigen3-dev coinor-libipopt-dev liblapack-dev libblas-dev)
 # To build and run the tests, on top of the first.
 test_packages=("${bench_packages[@]}" libgtest-dev libgmock-dev locales python3)
 # To run tools/check.sh, on top of those.

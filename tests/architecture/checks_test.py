@@ -14,7 +14,7 @@ SPDX = "// SPDX-License-Identifier: MIT\n"
 CLEAN = {
     "src/chicane/base/math.hpp": SPDX + "#pragma once\n#include <cmath>\n",
     "src/chicane/base/CMakeLists.txt": "chicane_module(base HEADERS math.hpp)\n",
-    "src/chicane/solver/solve.hpp": SPDX + '#pragma once\n#include <Eigen/Core>\n#include "chicane/base/math.hpp"\n',
+    "src/chicane/solver/solve.hpp": SPDX + '#pragma once\n#include <tl/expected.hpp>\n#include "chicane/base/math.hpp"\n',
     "src/chicane/solver/solve.cpp": SPDX + '#include "chicane/solver/solve.hpp"\n// It knows no car.\n',
     "src/chicane/solver/CMakeLists.txt": "chicane_module(solver HEADERS solve.hpp SOURCES solve.cpp DEPENDS base)\n",
     "apps/chicane/main.cpp": SPDX + '#include "chicane/solver/solve.hpp"\nint main() { std::puts("car"); }\n',
@@ -95,7 +95,7 @@ class Checks(unittest.TestCase):
             (source, "boost::asio::io_context c;\n", "sockets live in net"),
             (source, "double wheel_angle;\n", "solver knows no car"),
             (source, "Eigen::VectorXd v;\n", "fixed sizes only"),
-            ("src/chicane/base/math.hpp", "#include <nlohmann/json.hpp>\n", "headers show Eigen"),
+            ("src/chicane/base/math.hpp", "#include <nlohmann/json.hpp>\n", "headers show tl/expected.hpp only"),
             ("src/chicane/base/math.hpp", (SPDX + "#include <cmath>\n",), "expected #pragma once"),
             (source, (SPDX + '#include <cmath>\n#include "chicane/solver/solve.hpp"\n',), "expected its own header"),
             ("tests/solver/solve_test.cpp", ("int x;\n",), "expected // SPDX"),

@@ -26,7 +26,7 @@ read -ra libs <<<"$(pkg-config --libs chicane-solver)"
 "$work/solver_pc/consumer"
 for word in $(pkg-config --libs --print-requires chicane-solver); do
   case $word in
-    -L* | -lchicane_base | -lchicane_solver | eigen3) ;;
+    -L* | -lchicane_base | -lchicane_solver) ;;
     *) fail "chicane-solver.pc needs $word" ;;
   esac
 done

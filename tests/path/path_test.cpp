@@ -184,10 +184,11 @@ TEST(Path, WrapAndDifferenceTakeTheShortestWay) {
 TEST(Path, RotatingThePlaneRotatesThePathAndNothingElse) {
   const std::vector<Vec2> points = wavy_loop(5);
   const double angle = 1.1;
-  Mat<2, 2> turn;
-  turn << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+  const Vec2 along{std::cos(angle), std::sin(angle)};
+  const Vec2 across{-along.y(), along.x()};
   std::vector<Vec2> turned;
-  for (const Vec2& point : points) turned.emplace_back(turn * point + Vec2{300.0, -70.0});
+  for (const Vec2& point : points)
+    turned.push_back(point.x() * along + point.y() * across + Vec2{300.0, -70.0});
   const Path a = Path::create(points, true).value();
   const Path b = Path::create(turned, true).value();
   EXPECT_NEAR(a.length(), b.length(), 1e-9);
@@ -288,7 +289,7 @@ TEST(Path, SurvivesWildPointsWithFiniteNumbers) {
     ASSERT_TRUE(std::isfinite(path.length()));
     for (int k = 0; k < 20; ++k) {
       const PathPoint p = path.at(random.uniform(-0.2, 1.2) * path.length());
-      ASSERT_TRUE(p.position.allFinite() && std::isfinite(p.heading) && std::isfinite(p.curvature));
+      ASSERT_TRUE(p.position.is_finite() && std::isfinite(p.heading) && std::isfinite(p.curvature));
       const Projection foot = path.project({random.uniform(-1e3, 1e3), random.uniform(-1e3, 1e3)},
                                            random.uniform(0.0, path.length()), 50.0);
       ASSERT_TRUE(std::isfinite(foot.d) && foot.s >= 0.0 && foot.s <= path.length());

@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "chicane/base/types.hpp"
+#include "chicane/base/vec2.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 

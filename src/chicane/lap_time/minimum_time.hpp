@@ -16,7 +16,7 @@ struct LimitPoint {
   double s = 0.0;                          ///< along the track's line, from its beginning [m]
   double time = 0.0;                       ///< since the start line [s]
   double n = 0.0;                          ///< of the centre of mass from the track's line, left positive [m]
-  Vec2 position = Vec2::Zero();            ///< of the centre of mass in W [m]
+  Vec2 position{};                         ///< of the centre of mass in W [m]
   double heading = 0.0;                    ///< of the path [rad], continuous along the lap
   double curvature = 0.0;                  ///< of the path, left positive [1/m]
   double speed = 0.0;                      ///< [m/s]

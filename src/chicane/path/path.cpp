@@ -215,7 +215,7 @@ PathPoint Path::at(double s) const noexcept {
   if (is_empty()) return {};
   if (!std::isfinite(s)) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    return {Vec2::Constant(kNan), kNan, kNan, kNan};
+    return {Vec2{kNan, kNan}, kNan, kNan, kNan};
   }
   const double inside = wrap(s);
   const Segment& segment = segments_[static_cast<std::size_t>(segment_at(inside))];
@@ -233,7 +233,7 @@ PathPoint Path::at(double s) const noexcept {
     return point;
   }
   if (closed_ && beyond != 0.0) point.heading += turning_ * std::round(beyond / length_);
-  const double speed_squared = std::max(first.squaredNorm(), kMinSpeedSquared);
+  const double speed_squared = std::max(first.squared_norm(), kMinSpeedSquared);
   const double speed = std::sqrt(speed_squared);
   point.curvature = cross(first, second) / (speed_squared * speed);
   point.curvature_slope = (cross(first, third) / (speed_squared * speed) -

@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
-#include "chicane/base/types.hpp"
+#include "chicane/base/vec2.hpp"
 
 namespace chicane::path {
 
 /// Where a curve is at one arc length.
 struct PathPoint {
-  Vec2 position = Vec2::Zero();  ///< in W [m]
+  Vec2 position{};               ///< in W [m]
   double heading = 0.0;          ///< of the tangent [rad], continuous along the path (not wrapped)
   double curvature = 0.0;        ///< [1/m], left positive
   double curvature_slope = 0.0;  ///< dκ/ds [1/m²], jumps at the given points
@@ -83,16 +83,16 @@ class Path {
     double h = 0.0;
     double heading = 0.0;  ///< at t = 0, unwrapped
     double bulge = 0.0;    ///< the curve stays within this of its chord [m]
-    Vec2 a = Vec2::Zero();
-    Vec2 b = Vec2::Zero();
-    Vec2 c = Vec2::Zero();
-    Vec2 e = Vec2::Zero();
+    Vec2 a{};
+    Vec2 b{};
+    Vec2 c{};
+    Vec2 e{};
   };
   /// Rows of the tridiagonal system for the second derivatives.
   struct Row {
     double factor = 0.0;
     double corner = 0.0;  ///< solution of the system for the corner entries of a closed path
-    Vec2 second = Vec2::Zero();
+    Vec2 second{};
   };
 
   void fit(std::span<const Vec2> points) noexcept;

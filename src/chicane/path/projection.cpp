@@ -14,15 +14,15 @@ constexpr int kIterations = 30;  // of Newton's method with bisection as safegua
 struct Foot {
   double distance_squared = std::numeric_limits<double>::infinity();
   double s = 0.0;
-  Vec2 gap = Vec2::Zero();      // point minus foot
-  Vec2 tangent = Vec2::Zero();  // not normalised
+  Vec2 gap{};      // point minus foot
+  Vec2 tangent{};  // not normalised
 };
 
 template <class Segment>
 double chord_distance(const Segment& segment, const Vec2& point) noexcept {
   const Vec2 chord = segment.h * (segment.b + segment.h * (segment.c + segment.h * segment.e));
   const Vec2 gap = point - segment.a;
-  return (gap - std::clamp(gap.dot(chord) / chord.squaredNorm(), 0.0, 1.0) * chord).norm();
+  return (gap - std::clamp(gap.dot(chord) / chord.squared_norm(), 0.0, 1.0) * chord).norm();
 }
 
 /// Nearest point of a segment for t in [low, high]: best of a few samples, then the root of gap · tangent
@@ -37,10 +37,10 @@ Foot nearest_on(const Segment& segment, const Vec2& point, double low, double hi
   };
   const double interval = (high - low) / kSamples;
   double t = low;
-  double nearest = gap_at(low).squaredNorm();
+  double nearest = gap_at(low).squared_norm();
   for (int k = 1; k <= kSamples; ++k) {
     const double candidate = k == kSamples ? high : low + interval * k;
-    const double squared = gap_at(candidate).squaredNorm();
+    const double squared = gap_at(candidate).squared_norm();
     if (squared < nearest) {
       nearest = squared;
       t = candidate;
@@ -54,14 +54,14 @@ Foot nearest_on(const Segment& segment, const Vec2& point, double low, double hi
     const double ahead = gap.dot(tangent);  // positive: the foot lies further on
     (ahead > 0.0 ? low : high) = t;
     const double newton =
-        t + ahead / (tangent.squaredNorm() - gap.dot(2.0 * segment.c + 6.0 * t * segment.e));
+        t + ahead / (tangent.squared_norm() - gap.dot(2.0 * segment.c + 6.0 * t * segment.e));
     const double moved = newton >= low && newton <= high ? newton : 0.5 * (low + high);
     const bool has_converged = std::fabs(moved - t) < 1e-13 * (1.0 + segment.s0);
     t = moved;
     if (has_converged) break;
   }
   const Vec2 gap = gap_at(t);
-  return {gap.squaredNorm(), segment.s0 + t, gap, tangent_at(t)};
+  return {gap.squared_norm(), segment.s0 + t, gap, tangent_at(t)};
 }
 
 }  // namespace

@@ -122,7 +122,7 @@ struct Fit {
 void solve(Fit& fit, std::span<const Vec2> points, bool closed, double smoothing) {
   const Unrolled rolled = unroll(fit.parameter, fit.length, closed, fit.spacing, smoothing);
   fit.lead = rolled.lead;
-  fit.coefficients.assign(rolled.count, Vec2::Zero());
+  fit.coefficients.assign(rolled.count, Vec2{});
   Band band(rolled.count, {0.0, 0.0, 0.0, 0.0});
   for (std::size_t i = 0; i < rolled.s.size(); ++i) {
     const double before = i > 0 ? rolled.s[i] - rolled.s[i - 1] : 0.0;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
-#include "chicane/base/types.hpp"
+#include "chicane/base/vec2.hpp"
 
 namespace chicane::path {
 

@@ -11,9 +11,9 @@ namespace chicane::path {
 
 /// One cross-section of a road as files give it.
 struct TrackPoint {
-  Vec2 position = Vec2::Zero();  ///< point of the reference line in W [m]
-  double left = 0.0;             ///< distance to the left edge of the drivable surface [m], > 0
-  double right = 0.0;            ///< distance to the right edge [m], > 0
+  Vec2 position{};     ///< point of the reference line in W [m]
+  double left = 0.0;   ///< distance to the left edge of the drivable surface [m], > 0
+  double right = 0.0;  ///< distance to the right edge [m], > 0
 };
 
 /// How raw points become a road.

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "chicane/base/types.hpp"
+#include "chicane/base/vec2.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/lap_time/limit_answer.hpp"
 #include "chicane/model/vehicle.hpp"

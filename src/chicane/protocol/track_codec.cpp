@@ -296,7 +296,7 @@ class TrackParser {
     if (content_.points.size() == kMaxTrackPoints)
       return fail(fault("row", "another point", "at most 1000000"));
 
-    path::TrackPoint point{Vec2::Zero(), options_.default_left, options_.default_right};
+    path::TrackPoint point{Vec2{}, options_.default_left, options_.default_right};
     for (std::size_t i = 0; i < fields_.size(); ++i) {
       if (Result<void> read = read_value(fields_[i], values[i], point); !read) return read;
     }

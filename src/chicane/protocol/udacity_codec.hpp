@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "chicane/base/types.hpp"
+#include "chicane/base/vec2.hpp"
 #include "chicane/controller/plan.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"

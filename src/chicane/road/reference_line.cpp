@@ -16,7 +16,7 @@ CurvePoint between(const CurvePoint& from, const CurvePoint& to, double length, 
                 (length * u * v) * (v * from.tangent - u * to.tangent);
   const Vec2 slope =
       6.0 * u * v * chord + length * (v * (1.0 - 3.0 * u) * from.tangent + u * (3.0 * u - 2.0) * to.tangent);
-  at.tangent = slope / std::sqrt(std::max(slope.squaredNorm(), 1e-18));
+  at.tangent = slope / std::sqrt(std::max(slope.squared_norm(), 1e-18));
   at.heading = from.heading + u * u * (3.0 - 2.0 * u) * (to.heading - from.heading) +
                (length * u * v) * (v * from.curvature - u * to.curvature);
   at.curvature = v * from.curvature + u * to.curvature;
@@ -74,7 +74,7 @@ ReferenceLine::Projection ReferenceLine::project(const Vec2& point) const noexce
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < count_; ++i) {
-    const double distance = (point - samples_[i].curve.position).squaredNorm();
+    const double distance = (point - samples_[i].curve.position).squared_norm();
     if (distance < least) {
       least = distance;
       nearest = i;
@@ -99,7 +99,7 @@ ReferenceLine::Projection ReferenceLine::project(const Vec2& point, double guess
       if (i < reach || i - reach >= count_) continue;
       i -= reach;
     }
-    const double distance = (point - samples_[i].curve.position).squaredNorm();
+    const double distance = (point - samples_[i].curve.position).squared_norm();
     if (distance < least) {
       least = distance;
       nearest = i;

@@ -4,17 +4,17 @@
 #include <span>
 #include <vector>
 
-#include "chicane/base/types.hpp"
+#include "chicane/base/vec2.hpp"
 #include "chicane/road/speed_limiter.hpp"
 
 namespace chicane::road {
 
 /// A place of a plane curve.
 struct CurvePoint {
-  Vec2 position = Vec2::Zero();  ///< in W [m]
-  Vec2 tangent = Vec2::UnitX();  ///< of length 1
-  double heading = 0.0;          ///< of the tangent [rad], continuous along the curve
-  double curvature = 0.0;        ///< [1/m], left positive
+  Vec2 position{};                ///< in W [m]
+  Vec2 tangent = Vec2{1.0, 0.0};  ///< of length 1
+  double heading = 0.0;           ///< of the tangent [rad], continuous along the curve
+  double curvature = 0.0;         ///< [1/m], left positive
 };
 
 /// The curve between two of its places, `share` of the way along the `length` [m] between them: cubic Hermite

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "chicane/base/types.hpp"
+#include "chicane/base/vec2.hpp"
 #include "chicane/model/measurement.hpp"
 
 namespace chicane::road {

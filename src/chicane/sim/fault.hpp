@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "chicane/base/random.hpp"
-#include "chicane/base/types.hpp"
+#include "chicane/base/vec2.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "chicane/base/types.hpp"
+#include "chicane/base/vec2.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/path/track.hpp"
 

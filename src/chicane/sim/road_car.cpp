@@ -52,7 +52,7 @@ RoadCar::RoadCar(const RoadCarParams& params) noexcept : nominal_{params}, param
 void RoadCar::reset(const model::Pose& pose, double speed) noexcept {
   state_ = {.x = pose.x, .y = pose.y, .psi = pose.psi, .vx = speed, .vy = 0.0, .r = 0.0, .steer = 0.0};
   velocity_ = {speed * cos(pose.psi), speed * sin(pose.psi)};
-  transfer_ = Vec2::Zero();
+  transfer_ = Vec2{};
   pedal_ = 0.0;
   for (Wheel& wheel : wheels_) {
     wheel.speed = speed / params_.wheel_radius;
@@ -115,7 +115,7 @@ Vec2 RoadCar::tire_force(Wheel& wheel, const Vec2& v) const noexcept {
   // Combined slip by similarity (eq. 6).
   const double size = hypot(along, across);
   wheel.use = 0.0;
-  if (size < 1e-9 || wheel.load <= 0.0) return Vec2::Zero();
+  if (size < 1e-9 || wheel.load <= 0.0) return Vec2{};
   const double friction =
       params_.friction * (1.0 - params_.load_sensitivity * (wheel.load / wheel.static_load - 1.0));
   const double share = wheel.tire(size);

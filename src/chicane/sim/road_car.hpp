@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "chicane/base/types.hpp"
+#include "chicane/base/vec2.hpp"
 #include "chicane/model/actuator.hpp"
 #include "chicane/model/tire.hpp"
 #include "chicane/sim/plant.hpp"
@@ -77,12 +77,12 @@ class RoadCar final : public Plant {
 
  private:
   struct Wheel {
-    Vec2 position = Vec2::Zero();  ///< in B [m]
-    double static_load = 0.0;      ///< [N]
-    double load = 0.0;             ///< [N]
-    double speed = 0.0;            ///< [rad/s]
-    double slip_along = 0.0;       ///< relaxed (ω R − v_x) / |v_x|
-    double slip_across = 0.0;      ///< relaxed −v_y / |v_x|
+    Vec2 position{};           ///< in B [m]
+    double static_load = 0.0;  ///< [N]
+    double load = 0.0;         ///< [N]
+    double speed = 0.0;        ///< [rad/s]
+    double slip_along = 0.0;   ///< relaxed (ω R − v_x) / |v_x|
+    double slip_across = 0.0;  ///< relaxed −v_y / |v_x|
     model::MagicFormula tire;
     double peak_slip = 0.0;  ///< combined slip of the largest force
     double use = 0.0;        ///< of the grip, as PlantOutput::tire_use
@@ -98,9 +98,9 @@ class RoadCar final : public Plant {
   RoadCarParams params_;  ///< those of this car, which may deviate
   Disturbance disturbance_;
   std::array<Wheel, 4> wheels_{};
-  Vec2 velocity_ = Vec2::Zero();  ///< in W [m/s]
-  Vec2 transfer_ = Vec2::Zero();  ///< lagged acceleration that shifts load, in B [m/s²]
-  double pedal_ = 0.0;            ///< after its lag
+  Vec2 velocity_{};     ///< in W [m/s]
+  Vec2 transfer_{};     ///< lagged acceleration that shifts load, in B [m/s²]
+  double pedal_ = 0.0;  ///< after its lag
   model::State state_;
   PlantOutput output_;
 };

@@ -159,7 +159,7 @@ void UdacityCar::move(double dt) noexcept {
   const Vec2 v_B = rotated(velocity_, -state_.psi);
   const double cos_steer = cos(state_.steer);
   const double sin_steer = sin(state_.steer);
-  Vec2 force_B = Vec2::Zero();
+  Vec2 force_B{};
   double moment = 0.0;
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     Wheel& wheel = wheels_[i];

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "chicane/base/types.hpp"
+#include "chicane/base/vec2.hpp"
 #include "chicane/model/tire.hpp"
 #include "chicane/sim/plant.hpp"
 
@@ -78,7 +78,7 @@ class UdacityCar final : public Plant {
 
  private:
   struct Wheel {
-    Vec2 position = Vec2::Zero();  ///< in B [m]
+    Vec2 position{};  ///< in B [m]
     double radius = 0.0;
     double inertia = 0.0;
     double load = 0.0;  ///< filtered, in this step [N]
@@ -102,9 +102,9 @@ class UdacityCar final : public Plant {
   UdacityCarParams params_;  ///< those of this car, which may deviate
   Disturbance disturbance_;
   std::array<Wheel, 4> wheels_{};
-  Vec2 velocity_ = Vec2::Zero();  ///< in W [m/s]
-  double drive_torque_ = 0.0;     ///< allowed by traction control, over all wheels [N m]
-  double psi_before_ = 0.0;       ///< yaw when the helper last looked [rad]
+  Vec2 velocity_{};            ///< in W [m/s]
+  double drive_torque_ = 0.0;  ///< allowed by traction control, over all wheels [N m]
+  double psi_before_ = 0.0;    ///< yaw when the helper last looked [rad]
   model::State state_;
   PlantOutput output_;
 };

@@ -56,7 +56,7 @@ int select_waypoints(const path::Track& track, const model::Pose& pose, int coun
   int next = 0;
   double nearest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < size; ++i) {
-    const double squared = (points[static_cast<std::size_t>(i)].position - position).squaredNorm();
+    const double squared = (points[static_cast<std::size_t>(i)].position - position).squared_norm();
     if (squared < nearest) {
       nearest = squared;
       next = i;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "chicane/base/types.hpp"
+#include "chicane/base/vec2.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/path/track.hpp"

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "chicane/base/types.hpp"
+#include "chicane/base/vec2.hpp"
 #include "chicane/controller/plan.hpp"
 
 namespace chicane::telemetry {
@@ -52,7 +52,7 @@ class PredictionCheck {
  private:
   struct Promise {
     double time = 0.0;
-    Vec2 place = Vec2::Zero();
+    Vec2 place{};
   };
   static constexpr std::size_t kCapacity = 256;  // delays up to 0.5 s at periods down to 5 ms
 

@@ -16,9 +16,12 @@ double side(const Vec2& a, const Vec2& b, const Vec2& p) noexcept {
 }
 
 bool touches(const Vec2& a0, const Vec2& a1, const Vec2& b0, const Vec2& b1) noexcept {
-  const Eigen::Array2d a_low = a0.array().min(a1.array());
-  const Eigen::Array2d a_high = a0.array().max(a1.array());
-  if ((b0.array().max(b1.array()) < a_low).any() || (b0.array().min(b1.array()) > a_high).any()) return false;
+  const Vec2 a_low = min(a0, a1);
+  const Vec2 a_high = max(a0, a1);
+  const Vec2 b_low = min(b0, b1);
+  const Vec2 b_high = max(b0, b1);
+  if (b_high.x() < a_low.x() || b_high.y() < a_low.y()) return false;
+  if (b_low.x() > a_high.x() || b_low.y() > a_high.y()) return false;
   return side(a0, a1, b0) * side(a0, a1, b1) <= 0.0 && side(b0, b1, a0) * side(b0, b1, a1) <= 0.0;
 }
 
@@ -37,15 +40,15 @@ std::optional<Crossing> find_crossing(std::span<const Vec2> points, bool closed)
   Vec2 low = points[0];
   double width = 0.0;
   for (std::size_t i = 0; i < pieces; ++i) {
-    low = low.cwiseMin(points[i]).cwiseMin(end_of(i));
+    low = min(min(low, points[i]), end_of(i));
     width = std::max(width, (end_of(i) - points[i]).norm());
   }
   if (!(width > 0.0)) return std::nullopt;
   std::vector<Entry> entries;
   entries.reserve(2 * pieces);
   for (std::size_t i = 0; i < pieces; ++i) {
-    const Vec2 from = (points[i].cwiseMin(end_of(i)) - low) / width;
-    const Vec2 to = (points[i].cwiseMax(end_of(i)) - low) / width;
+    const Vec2 from = (min(points[i], end_of(i)) - low) / width;
+    const Vec2 to = (max(points[i], end_of(i)) - low) / width;
     for (auto x = static_cast<std::uint64_t>(from.x()); x <= static_cast<std::uint64_t>(to.x()); ++x) {
       for (auto y = static_cast<std::uint64_t>(from.y()); y <= static_cast<std::uint64_t>(to.y()); ++y) {
         entries.push_back({(x << 32U) + y, i});

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "chicane/base/types.hpp"
+#include "chicane/base/vec2.hpp"
 
 namespace chicane::path {
 

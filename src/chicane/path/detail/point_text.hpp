@@ -5,7 +5,7 @@
 #include <charconv>
 #include <string>
 
-#include "chicane/base/types.hpp"
+#include "chicane/base/vec2.hpp"
 
 namespace chicane::path {
 
