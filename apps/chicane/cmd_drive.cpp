@@ -129,16 +129,20 @@ class WatchedRun {
 
   telemetry::RunSummary drive() {
     Progress progress;
-    const run::RealtimeHooks hooks{.on_frame =
-                                       [&](const telemetry::Frame& frame) {
-                                         limit_.follow(loop_->scenario(), frame);
-                                         if (auto news = limit_.news()) kept_->record(std::move(news));
-                                         kept_->record(frame);
-                                         viewer_.publish(frame);
-                                         note_faults(frame);
-                                         progress.show(frame);
-                                       },
-                                   .on_change = [this](const telemetry::Change& change) { note(change); }};
+    run::RealtimeHooks hooks;
+    hooks.on_frame = [&](const telemetry::Frame& frame) {
+      limit_.follow(loop_->scenario(), frame);
+      if (auto news = limit_.news()) kept_->record(std::move(news));
+      kept_->record(frame);
+      viewer_.publish(frame);
+      note_faults(frame);
+      progress.show(frame);
+    };
+    hooks.on_lap = [&](const telemetry::CompletedLap& lap) {
+      kept_->record(lap);
+      viewer_.publish(lap, loop_->time());
+    };
+    hooks.on_change = [this](const telemetry::Change& change) { note(change); };
     for (;;) {
       telemetry::RunSummary summary = run::run_realtime(
           *loop_,
@@ -244,10 +248,12 @@ Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const ru
     Progress progress;
     summary = run::run_closed_loop(
         loop,
-        [&](const telemetry::Frame& frame) {
-          (*kept)->record(frame);
-          progress.show(frame);
-        },
+        {.on_frame =
+             [&](const telemetry::Frame& frame) {
+               (*kept)->record(frame);
+               progress.show(frame);
+             },
+         .on_lap = [&](const telemetry::CompletedLap& lap) { (*kept)->record(lap); }},
         [&] { return controls.wants_stop.load(); });
   }
   if (limit.found) telemetry::compare_with_limit(summary, limit.found->times);

@@ -74,7 +74,8 @@ class BranchRecorder {
   recording::BranchHooks hooks() {
     return {.on_begin = [this](const run::ClosedLoop& loop) { return begin(loop); },
             .on_change = [this](const telemetry::Change& change) { recorder_->record(change); },
-            .on_frame = [this](const telemetry::Frame& frame) { recorder_->record(frame); }};
+            .on_frame = [this](const telemetry::Frame& frame) { recorder_->record(frame); },
+            .on_lap = [this](const telemetry::CompletedLap& lap) { recorder_->record(lap); }};
   }
   /// The file is this branch's own.
   [[nodiscard]] bool has_file() const { return recorder_ != nullptr; }

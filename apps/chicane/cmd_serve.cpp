@@ -57,7 +57,7 @@ Result<wire::ServeSummary> run(const Options& options) {
   catch_interrupts(stop);
   const Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
-  const Result<std::unique_ptr<controller::Controller>> controller = run::make_controller(*scenario);
+  Result<std::unique_ptr<controller::Controller>> controller = run::make_controller(*scenario);
   if (!controller) return fail(controller.error());
   const Result<std::optional<path::Track>> track = told_track(options, *scenario);
   if (!track) return fail(track.error());
@@ -82,6 +82,7 @@ Result<wire::ServeSummary> run(const Options& options) {
   live::RunLimit limit([&](const lap_time::LimitAnswer& news) { viewer.set_limit(news); });
   if (!*track) limit.give_up(kUntold);
   Progress progress;
+  double last_time = 0.0;  // the control thread's
   wire::ServeHooks hooks;
   hooks.wishes = &wishes;
   hooks.on_change = [&](const telemetry::Change& change) {
@@ -93,7 +94,13 @@ Result<wire::ServeSummary> run(const Options& options) {
     if (auto news = limit.news()) (*kept)->record(std::move(news));
     (*kept)->record(frame);
     viewer.publish(frame);
+    last_time = frame.time;
     progress.show(frame);
+  };
+  hooks.on_lap = [&](const telemetry::CompletedLap& lap) {
+    (*kept)->record(lap);
+    viewer.publish(lap, last_time);
+    progress.say(line_of(lap));
   };
   hooks.log = [&](std::string_view line) { progress.say(line); };
   hooks.on_listening = [&](std::uint16_t port) {
@@ -103,7 +110,7 @@ Result<wire::ServeSummary> run(const Options& options) {
     if (*track) limit.search(**track, *scenario);
   };
   hooks.on_end = [&] { limit.end(); };
-  auto summary = wire::serve(serving, **controller, std::move(hooks), &viewer, live::embedded_assets(), stop);
+  auto summary = wire::serve(serving, std::move(*controller), std::move(hooks), &viewer, live::embedded_assets(), stop);
   if (summary) compare_with_limit(limit, summary->run, **kept, stop);
   if (const Result<void> done = (*kept)->finish(); summary && !done) return fail(done.error());
   return summary;

@@ -52,6 +52,11 @@ Result<wire::SimulateReport> run(const Options& options) {
                                  (*kept)->record(frame);
                                  progress.show(frame);
                                },
+                           .on_lap =
+                               [&](const telemetry::CompletedLap& lap) {
+                                 (*kept)->record(lap);
+                                 progress.say(line_of(lap));
+                               },
                            .log = [&](std::string_view line) { progress.say(line); }},
                           stop);
   }

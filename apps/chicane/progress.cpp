@@ -28,6 +28,11 @@ std::string line(const telemetry::Frame& frame) {
 
 }  // namespace
 
+std::string line_of(const telemetry::CompletedLap& lap) {
+  return fmt::format("lap {}: {:.2f} s, {:.1f} mph in the mean, {}", lap.lap, lap.lap_time,
+                     mps_to_mph(lap.mean_speed), lap.is_clean ? "clean" : "off the road");
+}
+
 Progress::Progress() : is_terminal_{isatty(STDERR_FILENO) == 1} {}
 
 Progress::~Progress() {

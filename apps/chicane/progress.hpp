@@ -3,11 +3,15 @@
 
 #include <atomic>
 #include <chrono>
+#include <string>
 #include <string_view>
 
 #include "chicane/telemetry/frame.hpp"
 
 namespace chicane::apps {
+
+/// A completed lap in words: "lap 2: 26.19 s, 97.1 mph in the mean, clean".
+[[nodiscard]] std::string line_of(const telemetry::CompletedLap& lap);
 
 /// Tells on stderr how a run goes: on a terminal one line that renews itself ten times a second, otherwise a
 /// line every ten seconds of the run.

@@ -7,9 +7,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/controller/doubt.hpp"
 #include "chicane/controller/explain.hpp"
-#include "chicane/controller/fallback.hpp"
 #include "chicane/controller/option_range.hpp"
 #include "chicane/controller/speed_hold.hpp"
 #include "chicane/controller/tunable.hpp"
@@ -59,36 +57,30 @@ class Baseline final : public Controller, public Tunable<typename Law::Options> 
       : name_{name},
         law_{options, vehicle},
         speed_{options.speed, vehicle},
-        fallback_{vehicle},
         steer_limit_{vehicle.steer_limit},
         lowest_throttle_{-vehicle.brake_throttle_limit} {
     reset();
   }
 
-  [[nodiscard]] const StepResult& step(const model::Measurement& told,
+  [[nodiscard]] const StepResult& step(const model::Measurement& now,
                                        Deadline /*unused: nothing is solved*/) noexcept override {
-    const model::Measurement& now = doubt_.judge(told);
-    const double act_time = now.time + now.delay;
-    if (!is_finite(now) || !line_.see(now)) return fall_back(act_time, now);
+    if (!is_finite(now) || !line_.see(now)) return no_answer();
     const path::Path& line = line_.path();
     const path::Projection here = line.project({now.x, now.y});
     const View view{line, here, angle_difference(now.psi, line.at(here.s).heading), now, elapsed(now.time)};
     const SpeedHold::Wanted wanted = speed_.reference(line, here.s);
     const double steer = std::clamp(law_.steer(view), -steer_limit_, steer_limit_);
-    return answer(act_time, view, {steer, speed_.throttle(wanted.speed, now.speed)}, wanted);
+    return answer(view, {steer, speed_.throttle(wanted.speed, now.speed)}, wanted);
   }
 
   void configure(const Options& options, const model::VehicleParams& vehicle) noexcept override {
     law_.configure(options, vehicle);
     speed_.configure(options.speed, vehicle);
-    fallback_.set_vehicle(vehicle);
     steer_limit_ = vehicle.steer_limit;
   }
 
   void reset() noexcept override {
     law_.reset();
-    fallback_.reset();
-    doubt_.reset();
     last_time_ = 0.0;
     has_time_ = false;
     result_ = {};
@@ -112,19 +104,19 @@ class Baseline final : public Controller, public Tunable<typename Law::Options> 
     return since > 0.0 && since < 1.0 ? since : 0.0;
   }
 
-  const StepResult& answer(double act_time, const View& view, const model::Command& command,
+  const StepResult& answer(const View& view, const model::Command& command,
                            const SpeedHold::Wanted& wanted) noexcept {
     const model::Measurement& now = view.now;
+    result_.answer = Answer::kDrive;
     result_.command = command;
     result_.plan.size = 1;
-    result_.plan.points[0] = {act_time, now.x, now.y, now.psi, now.speed, command};
+    result_.plan.points[0] = {now.time + now.delay, now.x, now.y, now.psi, now.speed, command};
     result_.plan.reference_size = kReferencePoints;
     const double sight = view.line.length() - view.here.s;
     for (int i = 0; i < kReferencePoints; ++i) {
       const double s = view.here.s + sight * i / (kReferencePoints - 1);
       result_.plan.reference[static_cast<std::size_t>(i)] = view.line.at(s).position;
     }
-    fallback_.accept(result_.plan);
     result_.report = {};
     result_.report.solve.status = solver::SolveStatus::kOptimal;
     result_.report.lateral_error = view.here.d;
@@ -145,12 +137,10 @@ class Baseline final : public Controller, public Tunable<typename Law::Options> 
     explanation.speed_limiter = limiter_of(speed, wanted.speed, wanted.limiter, explanation.active_now);
   }
 
-  const StepResult& fall_back(double act_time, const model::Measurement& now) noexcept {
-    const Fallback::Answer answer = fallback_.command(act_time, now);
-    result_.command = answer.command;
+  const StepResult& no_answer() noexcept {
+    result_.answer = Answer::kNone;
     result_.report = {};
     result_.report.solve.status = solver::SolveStatus::kNotFinite;
-    result_.report.rung = answer.rung;
     return result_;
   }
 
@@ -159,8 +149,6 @@ class Baseline final : public Controller, public Tunable<typename Law::Options> 
   std::string_view name_;
   Law law_;
   SpeedHold speed_;
-  Fallback fallback_;
-  Doubt doubt_;
   double steer_limit_;
   double lowest_throttle_;
   WaypointLine line_;

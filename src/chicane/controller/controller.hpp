@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string_view>
 
@@ -13,18 +14,31 @@
 
 namespace chicane::controller {
 
-/// Who chose the command. Kept by controller/fallback.cpp and nowhere else.
+/// What a controller's step came to.
+enum class Answer : signed char {
+  kNone = 0,          ///< no command: the guard falls back on the last plan (safety/guard.hpp)
+  kDrive = 1,         ///< the command is the first of the plan
+  kStopOnRoad = 2,    ///< no plan: the command stops the car along the known road
+  kReturnToRoad = 3,  ///< no plan: the command leads back to the road at walking pace
+};
+
+/// Who chose the command of a cycle, worst last but for the two that a controller chooses without a plan. Set by
+/// safety::Guard alone.
 enum class Rung : signed char {
   kController = 0,    ///< the controller's own answer
   kShiftedPlan = 1,   ///< the last usable plan, at the time that has come
   kHoldAndBrake = 2,  ///< steering along the last plan's path, gentle braking
   kBrake = 3,         ///< the same steering, all useful braking
+  kReturnToRoad = 4,  ///< the controller's own: Answer::kReturnToRoad
+  kStopOnRoad = 5,    ///< the controller's own: Answer::kStopOnRoad
 };
+inline constexpr int kRungCount = 6;
 
 /// How one step went.
 struct StepReport {
   solver::SolveReport solve;  ///< zeroed with status kOptimal for controllers that solve nothing
-  Rung rung = Rung::kController;
+  double act_time = std::numeric_limits<double>::quiet_NaN();  ///< when the command acts [s], clock of the run;
+                                                               ///< NaN: measurement time plus its delay
   double lateral_error = 0.0;    ///< of the measured position from the reference line [m], left positive
   double heading_error = 0.0;    ///< measured yaw minus the line's heading [rad]
   double speed_reference = 0.0;  ///< wanted at the point where the command acts [m/s]
@@ -32,26 +46,31 @@ struct StepReport {
   double sight = 0.0;            ///< length of known road ahead [m]
   double solve_time = 0.0;  ///< of the optimisation alone [s], as the deadline's clock saw it; 0 without one
   bool has_map = false;     ///< the lap is closed in memory
-  bool gated = false;       ///< the command gate had to change the command
-  Explanation explanation;  ///< why the answer is what it is; empty on a rung below the controller
+  Explanation explanation;  ///< why the answer is what it is; empty without an answer
+
+  // The guard's word, not the controller's.
+  Rung rung = Rung::kController;
+  bool gated = false;  ///< the command gate had to change the command
 };
 
 struct StepResult {
-  model::Command command;  ///< always finite and inside the vehicle's limits
-  Plan plan;
+  Answer answer = Answer::kDrive;
+  model::Command command;  ///< finite and inside the vehicle's limits; without meaning for Answer::kNone
+  Plan plan;               ///< empty for any answer but kDrive
   StepReport report;
 };
 
-/// The contract every controller fulfils: a measurement goes in, a command comes out, always.
+/// The contract every controller fulfils: a measurement goes in, an answer or none comes out. What happens
+/// without an answer is not the controller's concern: safety::Guard decides it, for all controllers alike.
 ///
 /// step() is noexcept, allocates nothing, takes no lock and reads no clock but the deadline's. It accepts any
 /// measurement, also one with NaN or without waypoints. The result stays valid until the next call. One
-/// thread.
+/// thread; different objects are independent.
 class Controller {
  public:
   virtual ~Controller() = default;
   [[nodiscard]] virtual const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept = 0;
-  /// Somebody else drives: this was sent in the place of the last step's command.
+  /// After each step(): what was really sent, which may be another command than the step's.
   virtual void note_sent(const model::Command& /*command*/) noexcept {}
   /// Forget everything learned (map, warm start): a new run begins.
   virtual void reset() noexcept = 0;

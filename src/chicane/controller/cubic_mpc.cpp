@@ -9,9 +9,7 @@
 #include "chicane/base/math.hpp"
 #include "chicane/controller/cubic_problem.hpp"
 #include "chicane/controller/cubic_solver.hpp"
-#include "chicane/controller/doubt.hpp"
 #include "chicane/controller/explain.hpp"
-#include "chicane/controller/fallback.hpp"
 #include "chicane/controller/local_fit.hpp"
 #include "chicane/controller/option_range.hpp"
 #include "chicane/controller/roll_forward.hpp"
@@ -33,21 +31,19 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
         steer_sign_{options.steering_right_positive ? -1.0 : 1.0},
         stages_{options.horizon_steps - 1},
         roll_forward_{options.latency_handling, options.latency, vehicle.kinematic_length},
-        problem_{options, vehicle},
-        fallback_{vehicle} {
+        problem_{options, vehicle} {
     reset();
   }
 
-  [[nodiscard]] const StepResult& step(const model::Measurement& told, Deadline deadline) noexcept override {
-    const model::Measurement& now = doubt_.judge(told);
+  [[nodiscard]] const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept override {
     result_.report = {};
-    if (!is_finite(now)) return fall_back(now);
+    if (!is_finite(now)) return no_answer(now);
     start_ = roll_forward_.predict(now);  // where the car is when the command acts
     start_time_ = now.time + roll_forward_.compensated();
-    if (!see_line(now)) return fall_back(now);  // the waypoints from there, as a cubic
+    if (!see_line(now)) return no_answer(now);  // the waypoints from there, as a cubic
     shift_warm_start();                         // the last answer, moved on by the time since
     solve(now, deadline);
-    if (!usable(result_.report.solve.status)) return fall_back(now);
+    if (!usable(result_.report.solve.status)) return no_answer(now);
     return accept();
   }
 
@@ -60,7 +56,6 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
     stages_ = options.horizon_steps - 1;
     roll_forward_.configure(options.latency_handling, options.latency, vehicle.kinematic_length);
     problem_ = CubicProblem{options, vehicle};
-    fallback_.set_vehicle(vehicle);
     if (has_answer_ && means_the_same) {
       solver::resample(answer_, stages_, ratio);
     } else {
@@ -69,9 +64,7 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
   }
 
   void reset() noexcept override {
-    doubt_.reset();
     roll_forward_.reset();
-    fallback_.reset();
     forget_warm_start();
     result_ = {};
   }
@@ -143,10 +136,10 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
 
   const StepResult& accept() noexcept {
     has_answer_ = true;
+    result_.answer = Answer::kDrive;
     answer_time_ = start_time_;
     write_plan();
     explain_answer();
-    fallback_.accept(result_.plan);
     result_.command = result_.plan.points[0].command;
     return result_;
   }
@@ -159,13 +152,10 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
         limiter_of(start_.speed, explanation.speed_limit, SpeedLimiter::kAsked, explanation.active_now);
   }
 
-  const StepResult& fall_back(const model::Measurement& now) noexcept {
+  const StepResult& no_answer(const model::Measurement& now) noexcept {
     forget_warm_start();
-    const Fallback::Answer answer = fallback_.command(now.time + roll_forward_.compensated(), now);
-    result_.command = answer.command;
-    result_.report.rung = answer.rung;
-    result_.plan.size = 0;
-    result_.plan.reference_size = 0;
+    result_.answer = Answer::kNone;
+    result_.report.act_time = now.time + roll_forward_.compensated();
     return result_;
   }
 
@@ -213,8 +203,6 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
   RollForward roll_forward_;
   CubicProblem problem_;
   std::unique_ptr<CubicSolver> solver_ = make_solver();
-  Fallback fallback_;
-  Doubt doubt_;
   Motion start_;              ///< of the horizon
   double start_time_ = 0.0;   ///< [s]
   CubicTrajectory answer_;    ///< of the last usable solve, in the frame of its start

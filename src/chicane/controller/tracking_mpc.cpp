@@ -8,9 +8,7 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/controller/command_history.hpp"
-#include "chicane/controller/doubt.hpp"
 #include "chicane/controller/explain.hpp"
-#include "chicane/controller/fallback.hpp"
 #include "chicane/controller/tracking_problem.hpp"
 #include "chicane/controller/tracking_solver.hpp"
 #include "chicane/controller/tunable.hpp"
@@ -47,7 +45,6 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
         model_{vehicle},
         road_{road_options(options), vehicle},
         estimator_{model_},
-        fallback_{vehicle},
         solver_{make_solver()} {
     problem_.model = &model_;
     shape_problem();
@@ -58,19 +55,18 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     model_.set_vehicle(vehicle);
     road_.configure(road_options(options), vehicle);
     estimator_.set_model(model_);
-    fallback_.set_vehicle(vehicle);
     shape_problem();
   }
 
-  [[nodiscard]] const StepResult& step(const model::Measurement& told, Deadline deadline) noexcept override {
-    const model::Measurement& now = doubt_.judge(told);
+  [[nodiscard]] const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept override {
+    sent_time_ = now.time + now.delay;
     const double act_time = now.time + (options_.compensate_delay ? now.delay : 0.0);
     road_.add(now);
     estimator_.correct(now, sent_);
     watch_sight(now);
     const StateEstimator::Prediction start = estimator_.predict(act_time, sent_);
-    if (!place_on_line(now, start)) return find_back(now, start, act_time);
-    if (start.state.vx < kCrawl && stopping_speed(0.0) < kCrawl) return fall_back(now, act_time);
+    if (!place_on_line(now, start)) return return_to_road(now, start, act_time);
+    if (start.state.vx < kCrawl && stopping_speed(0.0) < kCrawl) return no_answer(act_time);
     prepare(act_time);
     const double started = deadline.elapsed();
     const solver::SolveReport report = solver_->solve(problem_, x0_, horizon_, turns_, deadline);
@@ -79,9 +75,9 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     // A guess that was never improved is no answer, however well it went before.
     const bool is_guess = report.status == solver::SolveStatus::kBudgetSpent && report.iterations == 0;
     late_.note(!is_guess, now.time);
-    if (is_guess && late_.is_long && start.state.vx > kCrawl) return stop_on_line(now, start);
-    if (!usable(report.status) || is_guess) return fall_back(now, act_time);
-    return accept(now, start, act_time);
+    if (is_guess && late_.is_long && start.state.vx > kCrawl) return stop_on_road(start);
+    if (!usable(report.status) || is_guess) return no_answer(act_time);
+    return accept(start, act_time);
   }
 
   void note_sent(const model::Command& command) noexcept override {
@@ -91,11 +87,9 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   void reset() noexcept override {
     road_.reset();
     estimator_.reset();
-    fallback_.reset();
     sent_.clear();
     has_horizon_ = false;
     has_place_ = false;
-    doubt_.reset();
     blind_ = roadless_ = late_ = Absence{};
   }
 
@@ -347,16 +341,14 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     road.acceleration_max[i] = longitudinal_acceleration(car, 1.0, v);
   }
 
-  const StepResult& accept(const model::Measurement& now, const StateEstimator::Prediction& start,
-                           double act_time) noexcept {
+  const StepResult& accept(const StateEstimator::Prediction& start, double act_time) noexcept {
     has_horizon_ = true;
+    result_.answer = Answer::kDrive;
     fill_plan(act_time);
     model::Command& command = result_.command;
     command.steer = horizon_.u[0][0];
     command.throttle = throttle_for(model_.vehicle(), horizon_.u[0][1], start.state.vx);
     explain_answer(start.state.vx);
-    fallback_.accept(result_.plan);
-    send(now, command);
     return result_;
   }
 
@@ -369,60 +361,48 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   }
 
   /// No time to solve, and the last plan is old: the wheel by feedback to the line, all useful braking.
-  const StepResult& stop_on_line(const model::Measurement& now,
-                                 const StateEstimator::Prediction& start) noexcept {
+  const StepResult& stop_on_road(const StateEstimator::Prediction& start) noexcept {
     const model::VehicleParams& car = model_.vehicle();
     const int ahead = std::min(static_cast<int>(kPreview / options_.step_length), options_.horizon_steps - 1);
     result_.command.steer = std::clamp(following(ahead, horizon_.x[0])[0], -car.steer_limit, car.steer_limit);
     result_.command.throttle = throttle_for(
         car, longitudinal_acceleration(car, -car.brake_throttle_limit, start.state.vx), start.state.vx);
-    result_.report.rung = Rung::kHoldAndBrake;
+    result_.answer = Answer::kStopOnRoad;
     result_.plan.size = 0;
     result_.plan.reference_size = 0;
     has_horizon_ = false;
-    send(now, result_.command);
     return result_;
   }
 
   /// A car that has spun, or is far from its line: it brakes first, then drives at walking pace on a course
   /// that leads back.
-  const StepResult& find_back(const model::Measurement& now, const StateEstimator::Prediction& start,
+  const StepResult& return_to_road(const model::Measurement& now, const StateEstimator::Prediction& start,
                               double act_time) noexcept {
     const road::ReferenceLine& line = road_.line();
     const model::State& car = start.state;
     const bool is_known = std::isfinite(car.x + car.y + car.psi + car.vx + now.time + now.delay);
     const bool must_stop = blind_.is_long || roadless_.is_long;
     if (line.is_empty() || !is_known || must_stop || !(std::fabs(car.vx) < kSlow))
-      return fall_back(now, act_time);
+      return no_answer(act_time);
     const road::ReferenceLine::Projection place = line.project({car.x, car.y});
-    if (!(place.distance < kLost)) return fall_back(now, act_time);
+    if (!(place.distance < kLost)) return no_answer(act_time);
     const double course = line.at(place.s).heading - atan(place.d / kApproach);
     const double turn = std::clamp(2.0 * angle_difference(course, car.psi), -1.0, 1.0);
     const double acceleration = std::clamp(kWalkingPace - car.vx, -2.0, 1.0);
     has_horizon_ = false;
     result_.command = {turn * model_.vehicle().steer_limit,
                        throttle_for(model_.vehicle(), acceleration, car.vx)};
-    result_.report.rung = Rung::kController;
+    result_.answer = Answer::kReturnToRoad;
     result_.plan.size = 0;
     result_.plan.reference_size = 0;
-    send(now, result_.command);
     return result_;
   }
 
-  const StepResult& fall_back(const model::Measurement& now, double act_time) noexcept {
+  const StepResult& no_answer(double act_time) noexcept {
     has_horizon_ = false;
-    const Fallback::Answer answer = fallback_.command(act_time, now);
-    result_.command = answer.command;
-    result_.report.rung = answer.rung;
-    result_.plan.size = 0;
-    result_.plan.reference_size = 0;
-    send(now, result_.command);
+    result_.answer = Answer::kNone;
+    result_.report.act_time = act_time;
     return result_;
-  }
-
-  void send(const model::Measurement& now, const model::Command& command) noexcept {
-    sent_time_ = now.time + now.delay;
-    note_sent(command);
   }
 
   void fill_plan(double act_time) noexcept {
@@ -451,7 +431,6 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   road::Road road_;
   StateEstimator estimator_;
   CommandHistory sent_;
-  Fallback fallback_;
   Problem problem_;
   std::unique_ptr<TrackingSolver> solver_;
   Horizon horizon_;  ///< the last answer, then the guess, then the new answer
@@ -467,7 +446,6 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   unsigned revision_ = 0;
   bool has_place_ = false;
   bool has_horizon_ = false;
-  Doubt doubt_;
   Absence blind_;     ///< of measurements that tell where the car is
   Absence roadless_;  ///< of waypoints
   Absence late_;      ///< of answers, for want of time

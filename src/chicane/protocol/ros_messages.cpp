@@ -283,6 +283,10 @@ Diagnosis diagnose_controller(const controller::StepReport& report) {
       return {2, "no answer: steering along the last plan, gentle braking"};
     case controller::Rung::kBrake:
       return {2, "no answer: steering along the last plan, full braking"};
+    case controller::Rung::kReturnToRoad:
+      return {1, "finding back to the road at walking pace"};
+    case controller::Rung::kStopOnRoad:
+      return {2, "no plan in time: stopping along the road"};
     case controller::Rung::kController:
       break;
   }

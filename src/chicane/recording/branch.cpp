@@ -39,11 +39,8 @@ class FutureMeter {
   void add(const telemetry::Frame& frame) {
     if (count_ == 0) {
       start_ = frame.time;
-      laps_ = frame.completed_lap.lap;
       events_ = frame.off_track_events;
     }
-    if (frame.completed_lap.lap > laps_) future_.lap_times.push_back(frame.completed_lap.lap_time);
-    laps_ = frame.completed_lap.lap;
     // What the car did, not what it was told: sensors may fail.
     const double speed = frame.has_truth ? hypot(frame.truth.vx, frame.truth.vy) : frame.measurement.speed;
     future_.duration = frame.time - start_;
@@ -56,6 +53,7 @@ class FutureMeter {
     speed_sum_ += speed;
     future_.mean_speed = speed_sum_ / static_cast<double>(count_);
   }
+  void add(const telemetry::CompletedLap& lap) { future_.lap_times.push_back(lap.lap_time); }
   [[nodiscard]] Future future() const {
     Future future = future_;
     if (count_ == 0) future.min_edge_distance = std::numeric_limits<double>::quiet_NaN();
@@ -67,15 +65,19 @@ class FutureMeter {
   std::uint64_t count_ = 0;
   double start_ = 0.0;
   double speed_sum_ = 0.0;
-  int laps_ = 0;
   int events_ = 0;
 };
 
 /// A run that is computed again, step by recorded step.
 class Rebuilt {
  public:
-  Result<void> begin(const scenario::Scenario& scenario) {
-    auto loop = run::ClosedLoop::create(scenario);
+  using OnLap = std::function<void(const telemetry::CompletedLap&)>;
+
+  /// `on_lap` hears of each lap that is completed.
+  explicit Rebuilt(OnLap on_lap) : on_lap_{std::move(on_lap)} {}
+
+  Result<void> begin(const scenario::Scenario& scenario, const run::ControllerFactory& make) {
+    auto loop = run::ClosedLoop::create(scenario, make);
     if (!loop) return fail(loop.error());
     loop_ = std::move(*loop);
     loop_->drive_on();
@@ -89,25 +91,42 @@ class Rebuilt {
       const bool is_on = (loop_->frame().active_faults >> i & 1U) != 0U;
       if (faults[i].key == change.name.view() && is_on == (change.value.view() == "true")) return;
     }
-    while (!loop_->is_control_due()) static_cast<void>(loop_->advance());  // changes come between two cycles
+    finish_cycle();  // changes come between two cycles
     loop_->apply(change);
   }
   const telemetry::Frame& follow(const protocol::Step& step) {
     if (step.begins && loop_->cycle() > 0) loop_->restart();
     const run::GivenStep given{.delay = step.measurement.delay, .deadline_spent_at = step.deadline_spent_at};
-    while (!loop_->advance(given)) {
-    }
+    finish_cycle();
+    static_cast<void>(loop_->advance(given));
+    tell_lap();
     return loop_->frame();
+  }
+  /// Physics up to the next control step.
+  void finish_cycle() {
+    while (loop_ && !loop_->is_control_due()) static_cast<void>(advance());
+  }
+  /// One physics step of a run that goes on by itself. True when there was a control step.
+  bool advance() {
+    const bool is_new = loop_->advance();
+    tell_lap();
+    return is_new;
   }
   [[nodiscard]] run::ClosedLoop& loop() { return *loop_; }
 
  private:
+  void tell_lap() {
+    if (const auto lap = loop_->take_lap()) on_lap_(*lap);
+  }
+
+  OnLap on_lap_;
   std::unique_ptr<run::ClosedLoop> loop_;
 };
 
 class Branching {
  public:
-  Branching(const BranchOptions& options, const BranchHooks& hooks) : options_{options}, hooks_{hooks} {}
+  Branching(const BranchOptions& options, const BranchHooks& hooks, const run::ControllerFactory& make)
+      : options_{options}, hooks_{hooks}, make_{make} {}
 
   Result<BranchReport> run() {
     RecordingHead head;
@@ -126,6 +145,7 @@ class Branching {
                   fmt::format("--branch-at: got {}, expected a moment in [0, {:.2f}] s, which was recorded",
                               options_.at, last_log_time_));
     }
+    first_.finish_cycle();  // a recording ends with the last control step, a run may have gone on to a line
     if (Result<void> done = drive_on(); !done) return fail(done.error());
     report_.recorded = recorded_.future();
     report_.branched = branched_.future();
@@ -134,9 +154,9 @@ class Branching {
 
  private:
   Result<void> take(const scenario::Scenario& scenario) {
-    if (Result<void> begun = first_.begin(scenario); !begun) return begun;
+    if (Result<void> begun = first_.begin(scenario, make_); !begun) return begun;
     if (has_branched_) return {};
-    if (Result<void> begun = second_.begin(scenario); !begun) return begun;
+    if (Result<void> begun = second_.begin(scenario, make_); !begun) return begun;
     return hooks_.on_begin ? hooks_.on_begin(second_.loop()) : Result<void>{};
   }
 
@@ -156,8 +176,7 @@ class Branching {
       report_.first_difference = recorded.step.cycle;
     }
     if (has_branched_) {
-      const double limit = options_.duration > 0.0 ? options_.duration : kForever;
-      if (recorded.log_time - report_.at <= limit + 1e-9) recorded_.add(frame);
+      if (is_within(recorded.log_time)) recorded_.add(frame);
       return {};
     }
     ++report_.steps_before;
@@ -167,6 +186,8 @@ class Branching {
   }
 
   Result<void> branch(const RecordedStep& recorded) {
+    first_.finish_cycle();
+    second_.finish_cycle();
     has_branched_ = true;
     report_.at = recorded.log_time;
     report_.cycle = recorded.step.cycle;
@@ -219,7 +240,7 @@ class Branching {
     const double rest = last_log_time_ - report_.at;
     const bool has_laps_only = options_.laps > 0 && options_.duration == 0.0;
     const double duration = options_.duration > 0.0 ? options_.duration : has_laps_only ? kForever : rest;
-    while (!loop.is_control_due()) static_cast<void>(loop.advance());
+    second_.finish_cycle();
     const double start = loop.time();
     while (true) {
       if (loop.is_over()) {
@@ -228,7 +249,7 @@ class Branching {
       }
       if (options_.laps > 0 && loop.world().lap >= options_.laps) return {};
       if (loop.is_control_due() && loop.time() - start > duration + 1e-6) return {};
-      if (!loop.advance()) continue;
+      if (!second_.advance()) continue;
       branched_.add(loop.frame());
       if (hooks_.on_frame) hooks_.on_frame(loop.frame());
       if (loop.time() - start > kLongest) {
@@ -238,12 +259,24 @@ class Branching {
     }
   }
 
+  /// Of the recorded future: as long as the other one is asked to be.
+  [[nodiscard]] bool is_within(double log_time) const {
+    return log_time - report_.at <= (options_.duration > 0.0 ? options_.duration : kForever) + 1e-9;
+  }
+
   static constexpr double kForever = std::numeric_limits<double>::infinity();
   static constexpr double kLongest = 3600.0;  // [s] without a given duration
 
   const BranchOptions& options_;
   const BranchHooks& hooks_;
-  Rebuilt first_, second_;
+  const run::ControllerFactory& make_;
+  Rebuilt first_{[this](const telemetry::CompletedLap& lap) {
+    if (has_branched_ && is_within(last_log_time_)) recorded_.add(lap);
+  }};
+  Rebuilt second_{[this](const telemetry::CompletedLap& lap) {
+    if (has_branched_) branched_.add(lap);
+    if (hooks_.on_lap) hooks_.on_lap(lap);
+  }};
   FutureMeter recorded_, branched_;
   BranchReport report_;
   bool has_branched_ = false;
@@ -252,8 +285,9 @@ class Branching {
 
 }  // namespace
 
-Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks) {
-  return Branching(options, hooks).run();
+Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks,
+                                      const run::ControllerFactory& make) {
+  return Branching(options, hooks, make).run();
 }
 
 }  // namespace chicane::recording

@@ -52,12 +52,14 @@ struct BranchHooks {
   std::function<Result<void>(const run::ClosedLoop&)> on_begin{};  ///< of each run in the recording
   std::function<void(const telemetry::Change&)> on_change{};
   std::function<void(const telemetry::Frame&)> on_frame{};
+  std::function<void(const telemetry::CompletedLap&)> on_lap{};
 };
 
 /// Computes a recorded run of `drive` again from its start, controller and plant, and drives on from
 /// `options.at` with other settings, in virtual time. Fails with kInvalidArgument when the moment is not in
 /// the recording, a setting is unknown, out of range or cannot change in a run that goes on, or when the
 /// recording is not of our simulator.
-[[nodiscard]] Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks);
+[[nodiscard]] Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks,
+                                                    const run::ControllerFactory& make = run::make_controller);
 
 }  // namespace chicane::recording

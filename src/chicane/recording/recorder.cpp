@@ -64,34 +64,32 @@ void Recorder::record(const telemetry::Frame& frame) noexcept {
   commit();
 }
 
-void Recorder::record(const telemetry::Change& change) noexcept {
+/// What is too important to be left out, as long as there is any room.
+template <class Put>
+void Recorder::record_event(const Put& put) noexcept {
   Entry* const entry = next_entry(kCapacity + kReserve);
   if (entry == nullptr) {
     ++left_out_;
     return;
   }
-  entry->change = change;
+  put(*entry);
   commit();
+}
+
+void Recorder::record(const telemetry::Change& change) noexcept {
+  record_event([&](Entry& entry) { entry.change = change; });
+}
+
+void Recorder::record(const telemetry::CompletedLap& lap) noexcept {
+  record_event([&](Entry& entry) { entry.lap = lap; });
 }
 
 void Recorder::record(std::unique_ptr<const RecordedRun> run) noexcept {
-  Entry* const entry = next_entry(kCapacity + kReserve);
-  if (entry == nullptr) {
-    ++left_out_;
-    return;
-  }
-  entry->run = std::move(run);
-  commit();
+  record_event([&](Entry& entry) { entry.run = std::move(run); });
 }
 
 void Recorder::record(std::shared_ptr<const lap_time::LimitAnswer> limit) noexcept {
-  Entry* const entry = next_entry(kCapacity + kReserve);
-  if (entry == nullptr) {
-    ++left_out_;
-    return;
-  }
-  entry->limit = std::move(limit);
-  commit();
+  record_event([&](Entry& entry) { entry.limit = std::move(limit); });
 }
 
 Result<RecorderReport> Recorder::finish() {
@@ -158,13 +156,12 @@ void Recorder::describe() {
   if (options_.run.limit.found || !options_.run.limit.why_not.empty()) write(protocol::Cadence::kLimit);
 }
 
-/// The topics of what stays the same from frame to frame.
-void Recorder::write(protocol::Cadence cadence) {
-  const telemetry::Frame nothing;
+/// The topics of what stays the same from frame to frame; `frame` holds the lap for those of laps.
+void Recorder::write(protocol::Cadence cadence, const telemetry::Frame& frame) {
   std::uint16_t channel = 0;
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
     if (topic.cadence == cadence)
-      keep(writer_->write(channel, last_log_time_, 0, topic.encode(nothing, options_.run)));
+      keep(writer_->write(channel, last_log_time_, 0, topic.encode(frame, options_.run)));
     ++channel;
   }
 }
@@ -172,6 +169,7 @@ void Recorder::write(protocol::Cadence cadence) {
 void Recorder::write(Entry& entry) {
   if (std::exchange(entry.has_frame, false)) write(entry.frame);
   if (entry.change) write(*std::exchange(entry.change, std::nullopt));
+  if (entry.lap) write(*std::exchange(entry.lap, std::nullopt));
   if (const auto limit = std::move(entry.limit)) {
     options_.run.limit = *limit;
     write(protocol::Cadence::kLimit);
@@ -198,6 +196,12 @@ void Recorder::write(const telemetry::Change& change) {
   }
 }
 
+void Recorder::write(const telemetry::CompletedLap& lap) {
+  telemetry::Frame frame;
+  frame.completed_lap = lap;
+  write(protocol::Cadence::kLap, frame);
+}
+
 void Recorder::write(const telemetry::Frame& frame) {
   const std::uint64_t time = protocol::to_nanoseconds(frame.time);
   if (time + earlier_runs_ < last_log_time_) {  // the run was started anew
@@ -206,14 +210,10 @@ void Recorder::write(const telemetry::Frame& frame) {
   last_log_time_ = time + earlier_runs_;
   std::uint16_t channel = 0;
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
-    const bool is_lap = topic.cadence == protocol::Cadence::kLap && frame.completed_lap.lap != laps_ &&
-                        frame.completed_lap.lap > 0;
-    if (topic.cadence == protocol::Cadence::kFrame || is_lap) {
+    if (topic.cadence == protocol::Cadence::kFrame)
       keep(writer_->write(channel, last_log_time_, time, topic.encode(frame, options_.run)));
-    }
     ++channel;
   }
-  laps_ = frame.completed_lap.lap;
   keep(writer_->write(step_channel_, last_log_time_, time, protocol::encode_step(frame)));
   if (state_) ++frames_;
 }

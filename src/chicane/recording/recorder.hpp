@@ -63,6 +63,8 @@ class Recorder {
   void record(const telemetry::Frame& frame) noexcept;
   /// The same thread: a setting changed, or a fault began or ended, before the next frame.
   void record(const telemetry::Change& change) noexcept;
+  /// The same thread: a lap was completed, the last one of a run included.
+  void record(const telemetry::CompletedLap& lap) noexcept;
   /// The same thread: the next frame is the first of another run, with other settings; it begins at its cycle
   /// 0. A run that only starts anew needs no word.
   void record(std::unique_ptr<const RecordedRun> run) noexcept;
@@ -75,16 +77,19 @@ class Recorder {
   static constexpr std::uint64_t kCapacity = 64;
   static constexpr std::uint64_t kReserve = 64;  ///< for what is too important to be left out: no frames
 
-  /// One of the four.
+  /// One of the five.
   struct Entry {
     bool has_frame = false;
     telemetry::Frame frame;
     std::optional<telemetry::Change> change;
+    std::optional<telemetry::CompletedLap> lap;
     std::unique_ptr<const RecordedRun> run;
     std::shared_ptr<const lap_time::LimitAnswer> limit;
   };
 
   Recorder(RecorderOptions options, std::unique_ptr<telemetry::McapWriter> writer);
+  template <class Put>
+  void record_event(const Put& put) noexcept;
   [[nodiscard]] Entry* next_entry(std::uint64_t capacity) noexcept;
   void commit() noexcept { put_.store(put_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
   void work();
@@ -92,9 +97,10 @@ class Recorder {
   void describe();
   void write(Entry& entry);
   void write(const telemetry::Change& change);
+  void write(const telemetry::CompletedLap& lap);
   void keep(Result<void> done);
   void write(const telemetry::Frame& frame);
-  void write(protocol::Cadence cadence);
+  void write(protocol::Cadence cadence, const telemetry::Frame& frame = {});
   [[nodiscard]] Entry& slot(std::uint64_t number) { return ring_[number % (kCapacity + kReserve)]; }
 
   RecorderOptions options_;
@@ -108,7 +114,6 @@ class Recorder {
   // The writing thread's, until it has ended.
   std::uint16_t step_channel_ = 0;
   std::uint64_t frames_ = 0;
-  int laps_ = 0;                     ///< recorded of this run
   std::uint64_t last_log_time_ = 0;  ///< [ns]
   std::uint64_t earlier_runs_ = 0;   ///< what log times are ahead of the run's own time [ns]
   Result<void> state_;

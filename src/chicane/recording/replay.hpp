@@ -6,6 +6,7 @@
 #include <string>
 
 #include "chicane/base/result.hpp"
+#include "chicane/run/make.hpp"
 
 namespace chicane::recording {
 
@@ -26,12 +27,13 @@ struct ReplayReport {
   [[nodiscard]] bool is_verified() const { return steps > 0 && identical == steps; }
 };
 
-/// Builds the controller that a recording describes, gives it every recorded measurement, and compares what
-/// leaves the gate with what was recorded.
+/// Builds the controller that a recording describes, or that `make` makes, runs the control cycle with every
+/// recorded measurement, and compares what is sent with what was recorded.
 ///
 /// All come out the same, those in real time too: a step whose deadline was spent has recorded which question
 /// to the clock said so (base/deadline.hpp), and gets the same answer again. Fails when the file cannot be
 /// read, or is no recording of ours.
-[[nodiscard]] Result<ReplayReport> verify_recording(const std::string& path);
+[[nodiscard]] Result<ReplayReport> verify_recording(const std::string& path,
+                                                    const run::ControllerFactory& make = run::make_controller);
 
 }  // namespace chicane::recording

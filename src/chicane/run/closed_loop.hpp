@@ -4,14 +4,16 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <string>
+#include <string_view>
 
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/path/track.hpp"
+#include "chicane/run/account.hpp"
+#include "chicane/run/control_cycle.hpp"
+#include "chicane/run/make.hpp"
 #include "chicane/run/manual_drive.hpp"
 #include "chicane/safety/arrival_watch.hpp"
-#include "chicane/safety/command_gate.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/actuation_delay.hpp"
 #include "chicane/sim/fault.hpp"
@@ -21,7 +23,6 @@
 #include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
-#include "chicane/telemetry/prediction_check.hpp"
 
 namespace chicane::run {
 
@@ -43,8 +44,10 @@ struct GivenStep {
 /// command gated and sent to act `latency` later. advance() allocates nothing. One thread.
 class ClosedLoop {
  public:
-  /// Builds track, plant and controller. Fails as make.hpp does.
-  [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(const scenario::Scenario& scenario);
+  /// Builds track, plant and controller. Fails as make.hpp does, and as `make` does: any factory of a
+  /// controller may take the place of the one that knows ours (examples/03_your_own_controller.cpp).
+  [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(const scenario::Scenario& scenario,
+                                                                  const ControllerFactory& make = make_controller);
 
   /// One physics step, preceded by a control step when one is due. True when there was a control step:
   /// frame() is new. `budget` [s] bounds the control step; 0 = no bound.
@@ -53,7 +56,7 @@ class ClosedLoop {
   bool advance(const GivenStep& given) noexcept;
   /// The next advance() begins with the control step number cycle().
   [[nodiscard]] bool is_control_due() const noexcept { return time() >= next_control_ - 1e-9; }
-  [[nodiscard]] std::uint64_t cycle() const noexcept { return cycle_; }
+  [[nodiscard]] std::uint64_t cycle() const noexcept { return cycle_.next(); }
   /// A setting changes before the next control step: a key of the schema that is_live(), "run.pace",
   /// "manual.…" or "fault.…". What was learned and what is under way stay. A change that --set would refuse
   /// changes nothing. Allocates nothing; call it between two advance().
@@ -64,10 +67,12 @@ class ClosedLoop {
   /// nothing changes, for a name that is none. Call it between two advance(). What is on is in
   /// Frame::active_faults.
   bool set_fault(std::string_view name, bool on) noexcept;
-  /// All laps driven, the car lost, or time up.
-  [[nodiscard]] bool is_over() const noexcept { return over_; }
-  /// More laps than were asked for: is_over() only when the car is lost. Their laps are counted and
-  /// remembered like the others.
+  /// All laps driven, the car lost, or time up (Account).
+  [[nodiscard]] bool is_over() const noexcept { return account_.is_over(); }
+  /// A lap that the last advance() completed, once.
+  [[nodiscard]] std::optional<telemetry::CompletedLap> take_lap() noexcept { return account_.take_lap(); }
+  /// More laps than were asked for: is_over() only when the car is lost, which starts it anew. Their laps are
+  /// counted and remembered like the others.
   void drive_on();
   /// Stands the car at the start; the controller forgets everything, the count begins anew. Allocates.
   void restart();
@@ -77,7 +82,7 @@ class ClosedLoop {
   [[nodiscard]] const path::Track& track() const noexcept { return track_; }
   [[nodiscard]] const sim::WorldState& world() const noexcept { return world_.state(); }
   [[nodiscard]] const scenario::Scenario& scenario() const noexcept { return scenario_; }
-  [[nodiscard]] const controller::Controller& controller() const noexcept { return *controller_; }
+  [[nodiscard]] const controller::Controller& controller() const noexcept { return cycle_.controller(); }
   [[nodiscard]] telemetry::RunSummary summary() const;
 
  private:
@@ -86,38 +91,36 @@ class ClosedLoop {
   void control(double budget, const GivenStep* given) noexcept;
   void watch_faults() noexcept;
   [[nodiscard]] model::Command acting() noexcept;
-  void fill_frame(const model::Measurement& now, double step_time) noexcept;
-  void judge() noexcept;
+  [[nodiscard]] model::Measurement measure() noexcept;
+  void move() noexcept;
 
   scenario::Scenario scenario_;
   path::Track track_;
   path::Track waypoints_;
   std::unique_ptr<sim::Plant> plant_;
-  std::unique_ptr<controller::Controller> controller_;
+  ControlCycle cycle_;
   sim::World world_;
   sim::Sensor sensor_;
   sim::ActuationDelay in_flight_;
-  safety::CommandGate gate_;
-  ManualDrive hands_;
+  ManualDrive manual_;
   double pace_ = 1.0;
   sim::FaultLab faults_;
   safety::ArrivalWatch arrivals_;
-  telemetry::Metrics metrics_;
-  telemetry::PredictionCheck promises_;
+  Account account_;
   telemetry::Frame frame_;
-  std::uint64_t cycle_ = 0;
   double next_control_ = 0.0;
   double step_time_ = 0.0;  ///< of the control step, smoothed; 0 in virtual time [s]
-  double off_for_ = 0.0;    ///< far from the road for this long [s]
-  bool is_endless_ = false;
-  bool over_ = false;
-  std::string end_reason_;
 };
 
-/// Runs to the end as fast as the machine can. `on_frame` sees every control cycle; `stop` is asked once per
-/// cycle and ends the run with what there is.
-[[nodiscard]] telemetry::RunSummary run_closed_loop(
-    ClosedLoop& loop, const std::function<void(const telemetry::Frame&)>& on_frame = {},
-    const std::function<bool()>& stop = {});
+/// What is told of a run on the thread that runs it; must not block. Empty functions are not called.
+struct RunHooks {
+  std::function<void(const telemetry::Frame&)> on_frame{};       ///< after each control cycle
+  std::function<void(const telemetry::CompletedLap&)> on_lap{};  ///< when a lap was completed, the last one too
+};
+
+/// Runs to the end as fast as the machine can. `stop` is asked once per cycle and ends the run with what there
+/// is.
+[[nodiscard]] telemetry::RunSummary run_closed_loop(ClosedLoop& loop, const RunHooks& hooks = {},
+                                                    const std::function<bool()>& stop = {});
 
 }  // namespace chicane::run

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "chicane/base/result.hpp"
@@ -14,6 +15,9 @@ namespace chicane::run {
 /// The parts of an experiment, built from its description. Each fails with the key and value that is wrong.
 [[nodiscard]] Result<std::unique_ptr<controller::Controller>> make_controller(
     const scenario::Scenario& scenario);
+/// Makes the controller of a run: make_controller, or a program's own.
+using ControllerFactory =
+    std::function<Result<std::unique_ptr<controller::Controller>>(const scenario::Scenario&)>;
 /// Gives a controller of make_controller() the scenario's settings while it drives (controller/tunable.hpp).
 void configure(controller::Controller& controller, const scenario::Scenario& scenario) noexcept;
 [[nodiscard]] Result<std::unique_ptr<sim::Plant>> make_plant(const scenario::Scenario& scenario);

@@ -3,7 +3,6 @@
 
 #include "chicane/sim/world.hpp"
 #include "chicane/telemetry/frame.hpp"
-#include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::run {
 
@@ -29,29 +28,6 @@ inline void observe(const sim::World& world, telemetry::Frame& frame) noexcept {
   frame.longitudinal_acceleration = world.plant().output().ax;
   frame.tire_use = world.plant().output().tire_use;
   observe(world.state(), frame);
-}
-
-/// The lap that has just been timed, as metrics have measured it.
-[[nodiscard]] inline telemetry::CompletedLap completed_lap(const sim::WorldState& world,
-                                                           const telemetry::LapSummary& measured) noexcept {
-  return {.lap = world.lap,
-          .lap_time = measured.lap_time,
-          .sector_times = measured.sector_times,
-          .is_clean = world.last_lap_was_clean,
-          .mean_speed = measured.mean_speed,
-          .top_speed = measured.top_speed,
-          .min_edge_distance = measured.min_edge_distance,
-          .rms_lateral_error = measured.rms_lateral_error};
-}
-
-/// What metrics count of the physics step just done.
-[[nodiscard]] inline telemetry::PhysicsSample physics_sample(const sim::World& world) noexcept {
-  return {.step = world.plant().step_length(),
-          .state = world.plant().state(),
-          .lateral_acceleration = world.plant().output().ay,
-          .lateral_error = world.state().lateral_error,
-          .edge_distance = world.state().edge_distance,
-          .is_off_track = world.state().is_off_track};
 }
 
 }  // namespace chicane::run

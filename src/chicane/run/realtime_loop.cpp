@@ -76,7 +76,10 @@ class Session {
   /// True when there was a control step.
   bool advance() {
     if (loop_.is_control_due()) take_up_changes();
-    if (is_to_start_anew_ || !loop_.advance(budget_)) return false;
+    if (is_to_start_anew_) return false;
+    const bool is_new = loop_.advance(budget_);
+    tell_lap();
+    if (!is_new) return false;
     is_unseen_ = false;
     if (hooks_.on_frame) hooks_.on_frame(loop_.frame());
     return true;
@@ -90,7 +93,14 @@ class Session {
 
   /// Physics up to the next control step: that is where a run stands still.
   void finish_cycle() {
-    while (!loop_.is_control_due()) loop_.advance();
+    while (!loop_.is_control_due()) {
+      loop_.advance();
+      tell_lap();
+    }
+  }
+
+  void tell_lap() {
+    if (const auto lap = loop_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
   }
 
   /// While paused: waits for the wish to go on, to stop or to step. True when one control cycle is to be

@@ -29,9 +29,8 @@ struct RealtimeOptions {
   bool stay_at_end = false;                          ///< drive on after the last lap until asked to stop
 };
 
-/// What happens, told on the thread that runs; must not block.
-struct RealtimeHooks {
-  std::function<void(const telemetry::Frame&)> on_frame{};    ///< after each control cycle
+/// What is told of a run in real time, on the thread that runs it; must not block.
+struct RealtimeHooks : RunHooks {
   std::function<void(const telemetry::Change&)> on_change{};  ///< after it was applied, before the next cycle
 };
 

@@ -9,10 +9,12 @@
 namespace chicane::run {
 namespace {
 
-constexpr int kLapsRemembered = 1000;  // one by one
-
-telemetry::Metrics empty_metrics(const scenario::Scenario& scenario) {
-  return {kLapsRemembered, scenario.control_period};
+AccountTerms terms(const path::Track* track, const scenario::Scenario& scenario) {
+  AccountTerms terms = terms_of(scenario, track != nullptr ? track->name() : "");
+  terms.car = scenario.vehicle.name;
+  terms.laps = 0;
+  terms.time_limit = 0.0;
+  return terms;
 }
 
 /// What was measured, with the wheels where they are believed to be.
@@ -27,27 +29,25 @@ sim::Sighting sighting_of(const model::Measurement& seen, const model::VehiclePa
 }  // namespace
 
 Roadside::Roadside(const path::Track* track, const scenario::Scenario& scenario)
-    : track_{track}, scenario_{scenario}, metrics_{empty_metrics(scenario)} {
-  restart();
+    : scenario_{scenario}, account_{terms(track, scenario)} {
+  if (track != nullptr) judge_.emplace(*track);
 }
 
-void Roadside::restart() {
-  judge_.reset();
-  if (track_ != nullptr) judge_.emplace(*track_);
-  metrics_ = empty_metrics(scenario_);
-  completed_lap_ = {};
+void Roadside::resume() noexcept {
+  account_.resume();
+  if (has_seen_) events_before_ += judge_->state().off_track_events;
   has_seen_ = false;
 }
 
 void Roadside::judge(telemetry::Frame& frame) noexcept {
   frame.is_judged = judge_ && frame.has_measurement;
   if (frame.is_judged) look(frame);
-  metrics_.add(frame);
-  if (judge_ && judge_->state().lap > metrics_.laps_completed()) {
-    metrics_.lap_completed(judge_->state().last_lap_time, judge_->state().last_sector_times);
-    completed_lap_ = completed_lap(judge_->state(), metrics_.last_lap());
+  account_.add(frame);
+  if (frame.is_judged) {
+    account_.add_sighting(judge_->state());
+    frame.lap = account_.laps_completed();
   }
-  frame.completed_lap = completed_lap_;
+  frame.completed_lap = account_.completed_lap();
 }
 
 void Roadside::look(telemetry::Frame& frame) noexcept {
@@ -59,19 +59,9 @@ void Roadside::look(telemetry::Frame& frame) noexcept {
   }
   has_seen_ = true;
   observe(judge_->state(), frame);
+  frame.off_track_events += events_before_;
 }
 
-telemetry::RunSummary Roadside::summary() const {
-  telemetry::RunSummary run = metrics_.summary();
-  if (track_ != nullptr) run.track = track_->name();
-  run.car = scenario_.vehicle.name;
-  run.controller = scenario_.controller;
-  run.preset = scenario_.preset;
-  run.seed = scenario_.seed;
-  run.latency = scenario_.latency;
-  run.laps_wanted = 0;
-  run.end_reason = "stopped";
-  return run;
-}
+telemetry::RunSummary Roadside::summary() const { return account_.summary(); }
 
 }  // namespace chicane::run

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "chicane/path/track.hpp"
+#include "chicane/run/account.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/judge.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -11,30 +12,30 @@
 
 namespace chicane::run {
 
-/// Stands beside the road while another program simulates the car: counts, and where the road is known
-/// judges the car by the positions that were measured and the car as it is believed to be, as sim::World does
-/// with a plant of ours. Lap times are as good as the clock that telemetry is received by: some milliseconds
-/// on one machine. One thread.
+/// Keeps the account of a run whose car is simulated by another program, over all its connections: counts, and
+/// where the road is known judges the car by the positions that were measured and by the car as it is believed
+/// to be, as sim::World does with a plant of ours. Lap times are as good as the clock that telemetry is
+/// received by: some milliseconds on one machine. One thread.
 class Roadside {
  public:
   /// `track` may be null: then nothing is judged. It outlives this.
   Roadside(const path::Track* track, const scenario::Scenario& scenario);
 
-  /// Another car, or the same one again: the next frame is the first. Allocates.
-  void restart();
+  /// Another car, or the same one from another place: the running lap does not count, the rest stays.
+  void resume() noexcept;
   /// Writes place, edges and laps of what was measured into the frame, and counts it. Allocates nothing.
   void judge(telemetry::Frame& frame) noexcept;
-  /// Since restart().
+  /// The lap that was just completed, once.
+  [[nodiscard]] std::optional<telemetry::CompletedLap> take_lap() noexcept { return account_.take_lap(); }
   [[nodiscard]] telemetry::RunSummary summary() const;
 
  private:
   void look(telemetry::Frame& frame) noexcept;
 
-  const path::Track* track_;
   scenario::Scenario scenario_;
-  std::optional<sim::Judge> judge_;
-  telemetry::Metrics metrics_;
-  telemetry::CompletedLap completed_lap_;
+  std::optional<sim::Judge> judge_;  ///< none where the road is not known
+  Account account_;
+  int events_before_ = 0;  ///< off the road, before this car
   bool has_seen_ = false;
 };
 

@@ -110,6 +110,9 @@ class Metrics {
   void lap_completed(double lap_time,
                      const std::array<double, 3>& sector_times = LapSummary{}.sector_times) noexcept;
 
+  /// The running lap does not count: another one begins.
+  void drop_lap() noexcept { lap_ = {}; }
+
   [[nodiscard]] int laps_completed() const noexcept { return laps_completed_; }
   /// The last completed lap; zeros before the first.
   [[nodiscard]] const LapSummary& last_lap() const noexcept { return last_lap_; }

@@ -15,10 +15,8 @@
 
 #include "chicane/protocol/schema.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
-#include "chicane/run/make.hpp"
+#include "chicane/run/control_cycle.hpp"
 #include "chicane/run/roadside.hpp"
-#include "chicane/safety/command_gate.hpp"
-#include "chicane/telemetry/prediction_check.hpp"
 
 namespace chicane::wire {
 namespace {
@@ -77,14 +75,13 @@ class UdacityEndpoint::Control {
  public:
   using Answer = std::function<void(const Request&, std::string text, std::chrono::nanoseconds after)>;
 
-  Control(const ServeOptions& options, controller::Controller& controller, const ServeHooks& hooks,
-          Answer answer)
+  Control(const ServeOptions& options, std::unique_ptr<controller::Controller> controller,
+          const ServeHooks& hooks, Answer answer)
       : options_{options},
-        controller_{controller},
         hooks_{hooks},
         answer_{std::move(answer)},
         scenario_{options.scenario},
-        gate_{options.vehicle},
+        cycle_{std::move(controller), options.vehicle},
         delay_{seconds(options.latency) + kTypicalTurnAround},
         roadside_{options.track, options.scenario},
         thread_{[this] { work(); }} {}
@@ -143,14 +140,11 @@ class UdacityEndpoint::Control {
   /// Another simulator, or the same one again: nothing learned is trusted.
   void begin(net::ConnectionId from) {
     driven_ = from;
-    controller_.reset();
-    gate_.reset();
-    promises_.reset();
+    cycle_.begin(cycle_.next());
     delay_.reset();
     last_received_.reset();
-    last_answered_.reset();
-    roadside_.restart();
-    begins_ = true;
+    last_begun_.reset();
+    roadside_.resume();
   }
 
   void drive(const Request& request) {
@@ -159,67 +153,47 @@ class UdacityEndpoint::Control {
       measured_delay_ = delay_.value();
     }
     last_received_ = request.received;
-    const Clock::time_point begin = Clock::now();
-    ++frame_.cycle;
-    frame_.time = seconds(request.received - started_);
-    take_up_changes();
-    frame_.applied = last_sent_;
-    frame_.begins = std::exchange(begins_, false);
+    take_up_changes(seconds(request.received - started_));
     frame_.has_measurement = request.kind == Request::Kind::kTelemetry;
-    DeadlineLog questions;
-    if (frame_.has_measurement) {
-      frame_.measurement = request.measurement;
-      frame_.measurement.time = frame_.time;
-      frame_.measurement.delay = delay_.value();
-      frame_.result = controller_.step(frame_.measurement, deadline().counted_in(questions));
-    } else {
-      constexpr double kNothing =
-          std::numeric_limits<double>::quiet_NaN();  // the gate holds the wheel and brakes
-      frame_.result.command = {.steer = kNothing, .throttle = kNothing};
-      frame_.result.plan.size = 0;
-      frame_.result.plan.reference_size = 0;
-      frame_.result.report.rung = controller::Rung::kHoldAndBrake;
-      frame_.result.report.explanation = {};
-    }
-    frame_.asked = frame_.result.command;
-    frame_.prediction_error = promises_.error(frame_.time, {frame_.measurement.x, frame_.measurement.y});
-    promises_.add(frame_.result.plan, delay_.value());
-    frame_.deadline_spent_at = questions.spent_at;
-    pass_gate();
-    frame_.step_time = seconds(Clock::now() - begin);
+    frame_.measurement = frame_.has_measurement ? request.measurement : nothing_measured();
+    frame_.measurement.time = seconds(request.received - started_);
+    frame_.measurement.delay = delay_.value();
+    frame_.applied = last_sent_;
+    const Clock::time_point now = Clock::now();
+    cycle_.step({.deadline = deadline(), .interval = last_begun_ ? seconds(now - *last_begun_) : 0.0}, frame_);
+    last_begun_ = now;
+    last_sent_ = frame_.result.command;
+    if (frame_.result.report.gated) ++interventions_;
     answer_(request, protocol::encode_steer(frame_.result.command, frame_.result.plan, pose_at_receipt()),
             options_.latency);
     ++answers_;
-    frame_.solve_time = frame_.result.report.solve_time;
     frame_.lateral_error = frame_.result.report.lateral_error;
     frame_.heading_error = frame_.result.report.heading_error;
     roadside_.judge(frame_);
+    if (const auto lap = roadside_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
     if (hooks_.on_frame) hooks_.on_frame(frame_);
   }
 
-  void take_up_changes() {
+  /// Telemetry that cannot be used says only that time has passed.
+  static model::Measurement nothing_measured() {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    return {.x = kUnknown,
+            .y = kUnknown,
+            .psi = kUnknown,
+            .speed = kUnknown,
+            .steer = kUnknown,
+            .throttle = kUnknown};
+  }
+
+  void take_up_changes(double time) {
     while (const telemetry::Change* next = hooks_.wishes == nullptr ? nullptr : hooks_.wishes->front()) {
       telemetry::Change change = *next;
       hooks_.wishes->pop();
-      change.cycle = frame_.cycle;
-      change.time = frame_.time;
-      if (protocol::set_text(scenario_, change.name.view(), change.value.view())) {
-        run::configure(controller_, scenario_);
-        gate_.set_vehicle(scenario_.vehicle);
-      }
+      change.cycle = cycle_.next();
+      change.time = time;
+      if (protocol::set_text(scenario_, change.name.view(), change.value.view())) cycle_.configure(scenario_);
       if (hooks_.on_change) hooks_.on_change(change);
     }
-  }
-
-  void pass_gate() {
-    const Clock::time_point now = Clock::now();
-    frame_.gate_interval = last_answered_ ? seconds(now - *last_answered_) : 0.0;
-    last_answered_ = now;
-    const safety::GateResult gated = gate_.pass(frame_.result.command, frame_.gate_interval);
-    frame_.result.report.gated = gated.reason != safety::GateReason::kNone;
-    if (frame_.result.report.gated) ++interventions_;
-    frame_.result.command = gated.command;
-    last_sent_ = gated.command;
   }
 
   /// Where the car will be when the answer arrives: where the plan begins.
@@ -234,20 +208,17 @@ class UdacityEndpoint::Control {
   }
 
   const ServeOptions& options_;
-  controller::Controller& controller_;
   const ServeHooks& hooks_;
   Answer answer_;
   scenario::Scenario scenario_;
-  safety::CommandGate gate_;
-  telemetry::PredictionCheck promises_;
+  run::ControlCycle cycle_;
   DelayMeter delay_;
   run::Roadside roadside_;
   telemetry::RunSummary run_;
   const Clock::time_point started_ = Clock::now();
   net::ConnectionId driven_ = 0;
   std::optional<Clock::time_point> last_received_;
-  std::optional<Clock::time_point> last_answered_;
-  bool begins_ = true;
+  std::optional<Clock::time_point> last_begun_;
   model::Command last_sent_;
   telemetry::Frame frame_;
   std::atomic<std::uint64_t> answers_{0};
@@ -262,8 +233,8 @@ class UdacityEndpoint::Control {
   std::thread thread_;  // last: it starts when everything else is there
 };
 
-UdacityEndpoint::UdacityEndpoint(const ServeOptions& options, controller::Controller& controller,
-                                 ServeHooks hooks)
+UdacityEndpoint::UdacityEndpoint(const ServeOptions& options,
+                                 std::unique_ptr<controller::Controller> controller, ServeHooks hooks)
     : options_{options}, hooks_{std::move(hooks)}, log_{hooks_.log} {
   const auto answer = [this](const Request& request, std::string text, std::chrono::nanoseconds after) {
     server_->run_after(after, [this, id = request.from, text = std::move(text)]() mutable {
@@ -272,7 +243,7 @@ UdacityEndpoint::UdacityEndpoint(const ServeOptions& options, controller::Contro
       send(id, std::move(text));
     });
   };
-  control_ = std::make_unique<Control>(options_, controller, hooks_, answer);
+  control_ = std::make_unique<Control>(options_, std::move(controller), hooks_, answer);
 }
 
 UdacityEndpoint::~UdacityEndpoint() = default;
@@ -426,12 +397,12 @@ bool UdacityEndpoint::is_quiet() const {
          (session_.unanswered == 0 && Clock::now() - session_.last_word >= options_.quiet_after);
 }
 
-Result<ServeSummary> serve(const ServeOptions& options, controller::Controller& controller, ServeHooks hooks,
-                           Endpoint* viewer, std::vector<net::Asset> assets, const std::atomic<bool>& stop) {
+Result<ServeSummary> serve(const ServeOptions& options, std::unique_ptr<controller::Controller> controller,
+                           ServeHooks hooks, Endpoint* viewer, std::vector<net::Asset> assets, const std::atomic<bool>& stop) {
   const auto announce = hooks.on_listening;
   const auto end = hooks.on_end;
   Pages pages = std::move(hooks.pages);
-  UdacityEndpoint simulator(options, controller, std::move(hooks));
+  UdacityEndpoint simulator(options, std::move(controller), std::move(hooks));
   Router router(&simulator, viewer);
   auto server = net::Server::create(options.server, router.handlers(std::move(pages)), std::move(assets));
   if (!server) return fail(server.error());

@@ -53,6 +53,7 @@ struct ServeHooks {
   std::function<void(const telemetry::Change&)>
       on_change{};                                          ///< when one was taken up, on the control thread
   std::function<void(const telemetry::Frame&)> on_frame{};  ///< after each answer, on the control thread
+  std::function<void(const telemetry::CompletedLap&)> on_lap{};  ///< a lap was completed; the control thread
   std::function<void(std::string_view)> log{};  ///< one line about the connection, on the network thread
   std::function<void(std::uint16_t port)> on_listening{};  ///< once, when the port is ours
   std::function<void()> on_end{};  ///< once: control has ended, the server still stands
@@ -68,20 +69,21 @@ struct ServeSummary {
   std::uint64_t refusals = 0;       ///< simulators that came while another one drove
   std::uint64_t interventions = 0;  ///< commands that the gate had to change
   double delay = 0.0;               ///< last measured, telemetry to actuation [s]
-  telemetry::RunSummary
-      run{};  ///< of the simulator that drove last; empty until the control thread has ended
+  telemetry::RunSummary run{};      ///< of all connections; empty until the control thread has ended
 };
 
 /// The original controller program's place: answers every telemetry of one simulator with exactly one
 /// complete, finite command, and says nothing unasked (docs/protocol.md). Its control thread owns the
 /// controller; the network thread only reads, queues and sends.
 ///
-/// Broken telemetry and that of other scenes is answered too, by the wheel as it was and gentle braking. The
-/// controller is reset for each new connection.
+/// Broken telemetry and that of other scenes is answered too: it counts as a cycle in which nothing was
+/// measured (safety/guard.hpp). The controller is reset for each new connection; the account of the run goes
+/// on over all of them.
 class UdacityEndpoint final : public Endpoint {
  public:
-  /// `controller` must outlive the endpoint and belongs to its control thread.
-  UdacityEndpoint(const ServeOptions& options, controller::Controller& controller, ServeHooks hooks);
+  /// `controller` belongs to the control thread from now on.
+  UdacityEndpoint(const ServeOptions& options, std::unique_ptr<controller::Controller> controller,
+                  ServeHooks hooks);
   ~UdacityEndpoint() override;
   UdacityEndpoint(const UdacityEndpoint&) = delete;
   UdacityEndpoint& operator=(const UdacityEndpoint&) = delete;
@@ -138,8 +140,8 @@ class UdacityEndpoint final : public Endpoint {
 
 /// `chicane serve`: binds the port and answers simulators until `stop`. `viewer` (may be null) and `assets`
 /// share the port. kIo with the sentence that helps when the port is taken.
-[[nodiscard]] Result<ServeSummary> serve(const ServeOptions& options, controller::Controller& controller,
-                                         ServeHooks hooks, Endpoint* viewer, std::vector<net::Asset> assets,
+[[nodiscard]] Result<ServeSummary> serve(const ServeOptions& options,
+                                         std::unique_ptr<controller::Controller> controller, ServeHooks hooks, Endpoint* viewer, std::vector<net::Asset> assets,
                                          const std::atomic<bool>& stop);
 
 }  // namespace chicane::wire

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -15,6 +16,7 @@
 #include "chicane/base/math.hpp"
 #include "chicane/net/client.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
+#include "chicane/run/account.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/observe.hpp"
 #include "chicane/sim/sensor.hpp"
@@ -29,9 +31,6 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr double kCatchUp = 1.0 / 3.0;  // physics forgets time it cannot catch up, as the original [s]
-constexpr double kLostDistance = 25.0;  // off the line [m] ...
-constexpr double kLostTime = 3.0;       // ... for so long: the run is over [s]
-constexpr double kTimePerLap = 600.0;   // when no limit was given [s]
 constexpr milliseconds kConnectTimeout{1000};
 constexpr milliseconds kNap{5};
 
@@ -40,18 +39,26 @@ Clock::duration duration(double seconds) {
 }
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
-/// The physical side: plant, road and what is measured of them.
+run::AccountTerms terms(const scenario::Scenario& scenario, const path::Track& track) {
+  run::AccountTerms terms = run::terms_of(scenario, track.name());
+  terms.controller = terms.preset = "external";
+  terms.latency = 0.0;
+  terms.step_deadline = std::numeric_limits<double>::infinity();  // nobody promised one
+  return terms;
+}
+
+/// The physical side: plant, road and what is measured of them, and the account of the run.
 class Scene {
  public:
   Scene(const scenario::Scenario& scenario, path::Track track, path::Track waypoints,
         std::unique_ptr<sim::Plant> plant)
-      : scenario_{scenario},
+      : waypoints_sent_{scenario.waypoints_sent},
         track_{std::move(track)},
         waypoints_{std::move(waypoints)},
         plant_{std::move(plant)},
         world_{*plant_, track_},
         sensor_{scenario.sensor, scenario.seed},
-        metrics_{std::max(scenario.laps, 1), kTimePerLap} {
+        account_{terms(scenario, track_)} {
     world_.place(track_.start_s(), track_.start_d());
   }
 
@@ -59,9 +66,9 @@ class Scene {
   double advance_to(double elapsed, const model::Command& command) {
     const double step = plant_->step_length();
     const double forgotten = std::max(0.0, elapsed - world_.time() - kCatchUp);
-    while (world_.time() + step <= elapsed - forgotten && !is_over()) {
+    while (world_.time() + step <= elapsed - forgotten && !account_.is_over()) {
       world_.advance(command);
-      judge(step);
+      account_.add_physics(world_, false);
     }
     return forgotten;
   }
@@ -69,67 +76,28 @@ class Scene {
   /// Telemetry's content now; `frame` is filled with what the world knows and the controller has not answered
   /// yet.
   void sample(const model::Command& acting, telemetry::Frame& frame) {
-    const model::State& state = plant_->state();
     model::Measurement now = sensor_.sample(world_.time(), *plant_);
-    sim::select_waypoints(waypoints_, {.x = state.x, .y = state.y, .psi = state.psi},
-                          scenario_.waypoints_sent, now);
+    sim::select_waypoints(waypoints_, {.x = now.x, .y = now.y, .psi = now.psi}, waypoints_sent_, now);
     run::observe(world_, frame);
-    frame.completed_lap = completed_lap_;
+    frame.completed_lap = account_.completed_lap();
     frame.time = now.time;
     frame.measurement = now;
     frame.applied = acting;
   }
 
-  [[nodiscard]] bool is_over() const {
-    const sim::WorldState& world = world_.state();
-    if (scenario_.laps > 0 && (world.lap >= scenario_.laps || world.is_finished)) return true;
-    return off_for_ > kLostTime || world_.time() >= time_limit();
-  }
-
-  [[nodiscard]] telemetry::RunSummary summary() const {
-    telemetry::RunSummary run = metrics_.summary();
-    run.track = track_.name();
-    run.car = scenario_.car;
-    run.controller = "external";
-    run.preset = "external";
-    run.seed = scenario_.seed;
-    run.laps_wanted = scenario_.laps;
-    run.duration = world_.time();
-    run.completed = scenario_.laps > 0 && run.laps_completed >= scenario_.laps;
-    if (off_for_ > kLostTime) run.end_reason = "the car left the road and did not come back";
-    if (world_.time() >= time_limit()) run.end_reason = "time limit reached";
-    return run;
-  }
-
-  [[nodiscard]] double time() const { return world_.time(); }
+  [[nodiscard]] telemetry::RunSummary summary() const { return account_.summary(world_.time()); }
+  [[nodiscard]] run::Account& account() { return account_; }
   [[nodiscard]] double next_step() const { return world_.time() + plant_->step_length(); }
   [[nodiscard]] const model::State& car() const { return plant_->state(); }
-  void add(const telemetry::Frame& frame) { metrics_.add(frame); }
 
  private:
-  void judge(double step) {
-    const sim::WorldState& world = world_.state();
-    metrics_.add_physics(run::physics_sample(world_));
-    if (world.lap > metrics_.laps_completed()) {
-      metrics_.lap_completed(world.last_lap_time, world.last_sector_times);
-      completed_lap_ = run::completed_lap(world, metrics_.last_lap());
-    }
-    off_for_ = std::fabs(world.lateral_error) > kLostDistance ? off_for_ + step : 0.0;
-  }
-
-  [[nodiscard]] double time_limit() const {
-    return scenario_.time_limit > 0.0 ? scenario_.time_limit : kTimePerLap * std::max(scenario_.laps, 1);
-  }
-
-  const scenario::Scenario& scenario_;
+  int waypoints_sent_;
   path::Track track_;
   path::Track waypoints_;
   std::unique_ptr<sim::Plant> plant_;
   sim::World world_;
   sim::Sensor sensor_;
-  telemetry::Metrics metrics_;
-  telemetry::CompletedLap completed_lap_;
-  double off_for_ = 0.0;
+  run::Account account_;
 };
 
 /// The lines of a reply, from the car's frame to W.
@@ -168,10 +136,11 @@ class Simulation {
   Result<SimulateReport> run(const std::atomic<bool>& stop) {
     began_ = last_connected_ = Clock::now();
     const Clock::time_point wall_start = began_;
-    while (!stop && !scene_.is_over() && why_.empty()) {
+    while (!stop && !scene_.account().is_over() && why_.empty()) {
       const Clock::time_point now = Clock::now();
       server_.keep_running(now);
       if (report_.connections > 0) began_ += duration(scene_.advance_to(seconds(now - began_), acting_));
+      if (const auto lap = scene_.account().take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
       if (client_ == nullptr) {
         connect(now);
       } else {
@@ -182,8 +151,7 @@ class Simulation {
     report_.server_starts = server_.starts();
     report_.run = scene_.summary();
     report_.run.wall_time = seconds(Clock::now() - wall_start);
-    if (!report_.run.completed && report_.run.end_reason.empty())
-      report_.run.end_reason = why_.empty() ? "stopped" : why_;
+    if (!why_.empty()) report_.run.end_reason = why_;
     return report_;
   }
 
@@ -301,7 +269,7 @@ class Simulation {
     frame_.result.report.solve.status =
         solver::SolveStatus::kOptimal;  // of an external solver nothing is known
     place_lines(steer, scene_.car(), frame_.result.plan);
-    scene_.add(frame_);
+    scene_.account().add(frame_);
     if (hooks_.on_frame) hooks_.on_frame(frame_);
   }
 

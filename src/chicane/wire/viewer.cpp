@@ -129,15 +129,22 @@ void ViewerEndpoint::schedule() {
 
 void ViewerEndpoint::tick() {
   tell_changes();
+  note_lap();
   if (!latest_.take(frame_)) return;
-  has_frame_ = true;
+  note_frame();
   const auto time =
       std::make_shared<const std::string>(foxglove::time_message(protocol::to_nanoseconds(frame_.time)));
   for (const auto& [id, client] : clients_) {
     if (!client.subscriptions.empty()) server_->send(id, time, true, net::Delivery::kNewest, kTimeTopic);
   }
   send_cadence(Cadence::kFrame);
-  note_lap();
+}
+
+/// The laps of a run that has begun anew are not those of the one before.
+void ViewerEndpoint::note_frame() {
+  if (has_frame_ && frame_.cycle < cycle_) laps_.clear();
+  has_frame_ = true;
+  cycle_ = frame_.cycle;
 }
 
 /// Changes that the run has taken up go out in order; parameters that have another value, to those who
@@ -174,18 +181,25 @@ void ViewerEndpoint::send_parameters(const std::vector<foxglove::Parameter>& val
 
 /// Keeps the laps of this run for viewers that come later, and tells the present ones.
 void ViewerEndpoint::note_lap() {
-  const int lap = frame_.completed_lap.lap;
-  if (lap < lap_) laps_.clear();  // the run began anew
-  const bool is_new = lap > 0 && lap != lap_;
-  lap_ = lap;
-  if (!is_new) return;
+  TimedLap completed;
+  if (!latest_lap_.take(completed)) return;
   if (laps_.size() >= kMostLaps) laps_.erase(laps_.begin());
+  telemetry::Frame frame;
+  frame.completed_lap = completed.lap;
   const auto& topics = protocol::ros_topics();
   for (std::uint32_t channel = 0; channel < topics.size(); ++channel) {
     if (topics[channel].cadence != Cadence::kLap) continue;
-    laps_.push_back({frame_.time, topics[channel].encode(frame_, options_.run)});
-    send_channel(channel);
+    laps_.push_back({completed.time, topics[channel].encode(frame, options_.run)});
+    for (const auto& [id, client] : clients_) {
+      const auto wanted = client.subscriptions.find(channel);
+      if (wanted != client.subscriptions.end()) send_lap(id, wanted->second, laps_.back());
+    }
   }
+}
+
+void ViewerEndpoint::send_lap(net::ConnectionId id, std::uint32_t subscription,
+                              const std::pair<double, std::string>& lap) {
+  server_->send(id, foxglove::message_data(subscription, protocol::to_nanoseconds(lap.first), lap.second), true);
 }
 
 void ViewerEndpoint::send_cadence(Cadence cadence) {
@@ -265,10 +279,7 @@ void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::Subscribe& mes
     }
     // What is known now, because the next change may be far away.
     if (topics[channel].cadence == Cadence::kLap) {
-      for (const auto& [time, payload] : laps_) {
-        server_->send(id, foxglove::message_data(subscription, protocol::to_nanoseconds(time), payload),
-                      true);
-      }
+      for (const auto& lap : laps_) send_lap(id, subscription, lap);
       continue;
     }
     if (topics[channel].cadence == Cadence::kEvent) continue;

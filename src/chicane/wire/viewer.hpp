@@ -47,6 +47,8 @@ class ViewerEndpoint final : public Endpoint {
 
   /// One thread, the control thread: neither waits nor allocates.
   void publish(const telemetry::Frame& frame) noexcept { latest_.put(frame); }
+  /// The same thread: a lap was completed at `time` [s], before the next frame.
+  void publish(const telemetry::CompletedLap& lap, double time) noexcept { latest_lap_.put({lap, time}); }
   /// Another track, car or controller from now on; Run::building and is_paused stay as they are. Any thread,
   /// but not while on_start runs.
   void set_run(protocol::Run run);
@@ -81,6 +83,8 @@ class ViewerEndpoint final : public Endpoint {
   void tell_changes();
   void send_parameters(const std::vector<protocol::foxglove::Parameter>& values);
   void note_lap();
+  void note_frame();
+  void send_lap(net::ConnectionId id, std::uint32_t subscription, const std::pair<double, std::string>& lap);
   void send_cadence(protocol::Cadence cadence);
   void send_channel(std::uint32_t channel);
   void send_text(net::ConnectionId id, std::string text);
@@ -98,11 +102,16 @@ class ViewerEndpoint final : public Endpoint {
   ViewerOptions options_;
   std::vector<ServiceEntry> services_;
   std::string session_;
+  struct TimedLap {
+    telemetry::CompletedLap lap;
+    double time = 0.0;  ///< [s]
+  };
   Latest<telemetry::Frame> latest_;
+  Latest<TimedLap> latest_lap_;
   telemetry::Frame frame_;
   bool has_frame_ = false;
   std::vector<std::pair<double, std::string>> laps_;  ///< of this run: time [s] and message
-  int lap_ = 0;                                       ///< completed so far
+  std::uint64_t cycle_ = 0;                           ///< of the last frame
   net::Server* server_ = nullptr;
   std::map<net::ConnectionId, Client> clients_;
 };

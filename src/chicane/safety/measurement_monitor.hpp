@@ -7,13 +7,13 @@
 #include "chicane/base/math.hpp"
 #include "chicane/model/measurement.hpp"
 
-namespace chicane::controller {
+namespace chicane::safety {
 
-/// What a controller does not believe: a sensor that stands still while the car moves, and one that jumps
-/// where no car can go (docs/faults.md, eq. 1 and 2). What is not believed is handed on as not known, and
-/// every controller knows what to do then. A jump back ends the doubt; so does time, because after kPatience
-/// the new place is more likely than a sensor that errs so steadily. No allocation; one thread.
-class Doubt {
+/// Checks whether measurements are plausible: finds a sensor that is frozen while the car moves, and one that
+/// jumps to where no car can go (docs/faults.md, eq. 1 and 2). What is not plausible is handed on as not
+/// measured (NaN). A jump back ends the suspicion; so does time: after kPatience the new position is more
+/// likely than a sensor with so steady an error. No allocation; one thread.
+class MeasurementMonitor {
  public:
   static constexpr double kPatience = 1.5;       ///< [s]
   static constexpr double kLongestStep = 0.5;    ///< [s] between measurements that say anything of each other
@@ -24,10 +24,10 @@ class Doubt {
 
   void reset() noexcept { *this = {}; }
 
-  /// `now`, its place, heading and speed not a number where they are not believed. Valid until the next call.
-  [[nodiscard]] const model::Measurement& judge(const model::Measurement& now) noexcept {
-    told_ = now;
-    if (!std::isfinite(now.time + now.x + now.y + now.psi + now.speed)) return told_;
+  /// `now`, with position, heading and speed NaN where they are not plausible. Valid until the next call.
+  [[nodiscard]] const model::Measurement& check(const model::Measurement& now) noexcept {
+    checked_ = now;
+    if (!std::isfinite(now.time + now.x + now.y + now.psi + now.speed)) return checked_;
     const double elapsed = now.time - last_time_;
     const bool is_next = has_last_ && elapsed > 0.0 && elapsed < kLongestStep;
     const bool is_same =
@@ -52,8 +52,8 @@ class Doubt {
     last_psi_ = now.psi;
     last_speed_ = now.speed;
     if (is_frozen || place_.is_on || speed_.is_on)
-      told_.x = told_.y = told_.psi = told_.speed = std::numeric_limits<double>::quiet_NaN();
-    return told_;
+      checked_.x = checked_.y = checked_.psi = checked_.speed = std::numeric_limits<double>::quiet_NaN();
+    return checked_;
   }
 
  private:
@@ -68,7 +68,7 @@ class Doubt {
     }
   };
 
-  model::Measurement told_;
+  model::Measurement checked_;
   Suspicion place_, speed_;
   bool has_last_ = false;
   bool was_frozen_ = false;
@@ -76,4 +76,4 @@ class Doubt {
   double last_time_ = 0.0, last_x_ = 0.0, last_y_ = 0.0, last_psi_ = 0.0, last_speed_ = 0.0;
 };
 
-}  // namespace chicane::controller
+}  // namespace chicane::safety

@@ -9,19 +9,18 @@
 #include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
 
-namespace chicane::controller {
+namespace chicane::safety {
 
-/// What a car does when there is no answer, for every controller: the one place where that is decided.
+/// The command when a controller has no answer, for every controller: the one place where that is decided.
 ///
-///     kController    the answer is usable; tell accept()
 ///     kShiftedPlan   last plan at most kPlanAge old, and not over: its command for the time that has come
 ///     kHoldAndBrake  less than kHoldAge since the last usable plan: along its path, braking gently
 ///     kBrake         otherwise: along its path, all useful braking
 ///
-/// Along its path: the wheel as planned for the distance driven since, scaled to the speed that there is
-/// (docs/faults.md, eq. 4); held where no plan was. Braking gently: at least kGentleBraking, and enough to
-/// stop where the plan ends. A speed that is not measured is counted on from the last one, with half of the
-/// braking asked for: who is blind brakes too long rather than too short.
+/// Along its path: the wheel as planned for the distance driven since, scaled to the present speed
+/// (docs/faults.md, eq. 4); held where there was no plan. Braking gently: at least kGentleBraking, and enough
+/// to stop where the plan ends. A speed that is not measured is extrapolated from the last one with half of
+/// the braking asked for, so that a car without measurements brakes too long rather than too short.
 ///
 /// Braking fades below kFadeSpeed, so that a car whose negative pedal drives backwards comes to rest instead.
 /// Everything returned is finite and inside the vehicle's range, whatever came in. No allocation; one thread.
@@ -35,14 +34,14 @@ class Fallback {
 
   struct Answer {
     model::Command command;
-    Rung rung = Rung::kBrake;
+    controller::Rung rung = controller::Rung::kBrake;
   };
 
   explicit Fallback(const model::VehicleParams& vehicle) noexcept : vehicle_{vehicle} {}
 
   /// The controller answered: `plan` is what it intends, its first command is what it sends. Keeps the part
   /// of the plan before the first point that is not finite.
-  void accept(const Plan& plan) noexcept;
+  void accept(const controller::Plan& plan) noexcept;
 
   /// The controller did not: the command to act from `act_time` [s, clock of the run] on. An `act_time` that
   /// is not finite or runs backwards counts as 0.1 s after the one before; a speed that is not finite counts
@@ -67,7 +66,7 @@ class Fallback {
   [[nodiscard]] const model::Command* planned(double time) const noexcept;
 
   model::VehicleParams vehicle_;
-  std::array<Intention, Plan::kCapacity> plan_{};
+  std::array<Intention, controller::Plan::kCapacity> plan_{};
   int plan_size_ = 0;
   bool has_time_ = false;    ///< good_time_ and last_time_ hold something
   double good_time_ = 0.0;   ///< when the last usable plan began [s]
@@ -79,4 +78,4 @@ class Fallback {
   double distance_ = 0.0;  ///< driven since the last usable plan began [m]
 };
 
-}  // namespace chicane::controller
+}  // namespace chicane::safety

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/controller/fallback.hpp"
+#include "chicane/safety/fallback.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,11 @@
 
 #include "chicane/base/random.hpp"
 
-namespace chicane::controller {
+namespace chicane::safety {
 namespace {
+
+using controller::Plan;
+using controller::Rung;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -181,4 +184,4 @@ TEST(Fallback, StaysFiniteAndInRangeForAnyPlanAndTime) {
 }
 
 }  // namespace
-}  // namespace chicane::controller
+}  // namespace chicane::safety

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/controller/fallback.hpp"
+#include "chicane/safety/fallback.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "chicane/base/math.hpp"
 
-namespace chicane::controller {
+namespace chicane::safety {
 namespace {
 
 /// Cycle length assumed when the clock cannot be believed [s].
@@ -15,24 +15,24 @@ constexpr double kFarthestStep = 100.0;  // [m] between two points of a plan; mo
 constexpr double kFastest = 200.0;       // [m/s]
 constexpr double kTrustedBraking = 0.5;  // share of the braking asked for that a blind car counts on
 
-bool is_finite(const PlanPoint& point) noexcept {
+bool is_finite(const controller::PlanPoint& point) noexcept {
   return std::isfinite(point.time) && std::isfinite(point.command.steer) &&
          std::isfinite(point.command.throttle);
 }
 
 }  // namespace
 
-void Fallback::accept(const Plan& plan) noexcept {
-  const int size = std::clamp(plan.size, 0, Plan::kCapacity);
+void Fallback::accept(const controller::Plan& plan) noexcept {
+  const int size = std::clamp(plan.size, 0, controller::Plan::kCapacity);
   plan_size_ = 0;
   for (int i = 0; i < size; ++i) {
-    const PlanPoint& point = plan.points[static_cast<std::size_t>(i)];
+    const controller::PlanPoint& point = plan.points[static_cast<std::size_t>(i)];
     if (!is_finite(point)) break;
     const double steer = std::clamp(point.command.steer, -vehicle_.steer_limit, vehicle_.steer_limit);
     const double throttle = std::clamp(point.command.throttle, -1.0, 1.0);
     double distance = 0.0;
     if (i > 0) {
-      const PlanPoint& before = plan.points[static_cast<std::size_t>(i - 1)];
+      const controller::PlanPoint& before = plan.points[static_cast<std::size_t>(i - 1)];
       const double step = hypot(point.x - before.x, point.y - before.y);
       distance = plan_[static_cast<std::size_t>(i - 1)].distance + (step < kFarthestStep ? step : 0.0);
     }
@@ -65,14 +65,14 @@ Fallback::Answer Fallback::command(double act_time, const model::Measurement& no
     if (const model::Command* intended = planned(last_time_)) {
       last_steer_ = intended->steer;
       last_throttle_ = intended->throttle;
-      return {*intended, Rung::kShiftedPlan};
+      return {*intended, controller::Rung::kShiftedPlan};
     }
   }
   const double fade = has_speed_ ? std::clamp(speed_ / kFadeSpeed, 0.0, 1.0) : 1.0;
   const bool is_gentle = age < kHoldAge;
   last_steer_ = steer_along_path();
   last_throttle_ = -(is_gentle ? gentle_share() : 1.0) * vehicle_.brake_throttle_limit * fade;
-  return {{last_steer_, last_throttle_}, is_gentle ? Rung::kHoldAndBrake : Rung::kBrake};
+  return {{last_steer_, last_throttle_}, is_gentle ? controller::Rung::kHoldAndBrake : controller::Rung::kBrake};
 }
 
 /// Speed and distance now, `elapsed` [s] after the command before.
@@ -131,4 +131,4 @@ const model::Command* Fallback::planned(double time) const noexcept {
   return &plan_[static_cast<std::size_t>(i)].command;
 }
 
-}  // namespace chicane::controller
+}  // namespace chicane::safety

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/run/account.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace chicane::run {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+telemetry::Metrics empty_metrics(const AccountTerms& terms) {
+  return {std::max(terms.laps, Account::kLapsRemembered), terms.step_deadline};
+}
+
+telemetry::PhysicsSample physics_sample(const sim::World& world) noexcept {
+  return {.step = world.plant().step_length(),
+          .state = world.plant().state(),
+          .lateral_acceleration = world.plant().output().ay,
+          .lateral_error = world.state().lateral_error,
+          .edge_distance = world.state().edge_distance,
+          .is_off_track = world.state().is_off_track};
+}
+
+}  // namespace
+
+AccountTerms terms_of(const scenario::Scenario& scenario, const std::string& track) {
+  return {.track = track,
+          .car = scenario.car,
+          .controller = scenario.controller,
+          .preset = scenario.preset,
+          .seed = scenario.seed,
+          .latency = scenario.latency,
+          .laps = scenario.laps,
+          .time_limit = scenario.time_limit,
+          .step_deadline = scenario.control_period};
+}
+
+Account::Account(AccountTerms terms) : terms_{std::move(terms)}, metrics_{empty_metrics(terms_)} {}
+
+void Account::restart() {
+  metrics_ = empty_metrics(terms_);
+  completed_lap_ = {};
+  has_new_lap_ = false;
+  laps_seen_ = 0;
+  nearest_ = kNever;
+  lost_for_ = 0.0;
+  is_over_ = false;
+  end_reason_ = "";
+}
+
+void Account::resume() noexcept {
+  metrics_.drop_lap();
+  laps_seen_ = 0;
+  nearest_ = kNever;
+  lost_for_ = 0.0;
+}
+
+void Account::add_physics(const sim::World& world, bool is_manual) noexcept {
+  metrics_.add_physics(physics_sample(world));
+  count_laps(world.state());
+  look_for_end(world.state(), world.time(), world.plant().step_length(), is_manual);
+}
+
+void Account::add_sighting(const sim::WorldState& car) noexcept { count_laps(car); }
+
+void Account::count_laps(const sim::WorldState& car) noexcept {
+  if (car.lap <= laps_seen_) return;
+  laps_seen_ = car.lap;
+  metrics_.lap_completed(car.last_lap_time, car.last_sector_times);
+  const telemetry::LapSummary& measured = metrics_.last_lap();
+  completed_lap_ = {.lap = metrics_.laps_completed(),
+                    .lap_time = measured.lap_time,
+                    .sector_times = measured.sector_times,
+                    .is_clean = car.last_lap_was_clean,
+                    .mean_speed = measured.mean_speed,
+                    .top_speed = measured.top_speed,
+                    .min_edge_distance = measured.min_edge_distance,
+                    .rms_lateral_error = measured.rms_lateral_error};
+  has_new_lap_ = true;
+}
+
+std::optional<telemetry::CompletedLap> Account::take_lap() noexcept {
+  if (!std::exchange(has_new_lap_, false)) return std::nullopt;
+  return completed_lap_;
+}
+
+void Account::look_for_end(const sim::WorldState& car, double time, double step, bool is_manual) noexcept {
+  const double distance = std::fabs(car.lateral_error);
+  if (distance <= kLostDistance || is_manual) {
+    nearest_ = kNever;
+    lost_for_ = 0.0;
+  } else if (distance < nearest_ - kNearer) {
+    nearest_ = distance;
+    lost_for_ = 0.0;
+  } else {
+    lost_for_ += step;
+  }
+  const bool has_laps = terms_.laps > 0;
+  if (has_laps && !is_endless_ && (metrics_.laps_completed() >= terms_.laps || car.is_finished)) {
+    is_over_ = true;
+  } else if (has_laps && is_lost()) {
+    is_over_ = true;
+    end_reason_ = "the car left the road and did not come back";
+  } else if (!is_endless_ && time >= time_limit()) {
+    is_over_ = true;
+    end_reason_ = "time limit reached";
+  }
+}
+
+double Account::time_limit() const noexcept {
+  if (terms_.time_limit > 0.0) return terms_.time_limit;
+  return terms_.laps > 0 ? kTimePerLap * terms_.laps : kNever;
+}
+
+void Account::drive_on() noexcept {
+  is_endless_ = true;
+  is_over_ = false;
+}
+
+telemetry::RunSummary Account::summary(std::optional<double> duration) const {
+  telemetry::RunSummary run = metrics_.summary();
+  run.track = terms_.track;
+  run.car = terms_.car;
+  run.controller = terms_.controller;
+  run.preset = terms_.preset;
+  run.seed = terms_.seed;
+  run.latency = terms_.latency;
+  run.laps_wanted = terms_.laps;
+  if (duration) run.duration = *duration;
+  run.completed = terms_.laps > 0 && run.laps_completed >= terms_.laps;
+  run.end_reason = end_reason_;
+  if (!run.completed && run.end_reason.empty()) run.end_reason = "stopped";
+  return run;
+}
+
+}  // namespace chicane::run

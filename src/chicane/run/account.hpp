@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/sim/world.hpp"
+#include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/metrics.hpp"
+
+namespace chicane::run {
+
+/// What the account of a run is told of it beforehand.
+struct AccountTerms {
+  std::string track{}, car{}, controller{}, preset{};  ///< names in the report
+  std::uint64_t seed = 0;
+  double latency = 0.0;        ///< [s]
+  int laps = 0;                ///< wanted; 0: until stopped, whatever happens to the car
+  double time_limit = 0.0;     ///< [s]; 0: 10 min per lap, none without a number of laps
+  double step_deadline = 0.0;  ///< control steps that take longer are counted as misses [s]
+};
+/// Those of a run in which `scenario.controller` drives on the named track.
+[[nodiscard]] AccountTerms terms_of(const scenario::Scenario& scenario, const std::string& track);
+
+/// The account of a run: laps and sectors, metrics, when it is over and why, and the report. The one place
+/// where that is kept: `drive`, `serve`, `simulate` and branches of recordings all use it, with a plant of ours
+/// (add_physics) or with a car that is only seen (add_sighting).
+///
+/// A run is over when the laps that were asked for are driven or an open road has ended, when the time limit
+/// is reached, or when the car is lost: more than kLostDistance from the line for kLostTime without coming
+/// nearer. A run without a number of laps ends at a time limit that was given, or not at all; a car that a
+/// person drives is never lost.
+///
+/// No allocation but in the constructor, restart() and summary(). One thread.
+class Account {
+ public:
+  static constexpr double kLostDistance = 25.0;  ///< [m]
+  static constexpr double kLostTime = 30.0;      ///< [s]
+  static constexpr double kNearer = 1.0;         ///< [m] that count as coming nearer
+  static constexpr double kTimePerLap = 600.0;   ///< [s] where no time limit was given
+  static constexpr int kLapsRemembered = 1000;   ///< one by one, beyond those asked for
+
+  explicit Account(AccountTerms terms);
+
+  /// Another run with the same terms: everything is counted anew.
+  void restart();
+  /// The same run goes on with another car, or with the same one from another place: what was counted stays,
+  /// the running lap does not count.
+  void resume() noexcept;
+
+  /// After each physics step of our plant. `is_manual`: a person drives.
+  void add_physics(const sim::World& world, bool is_manual) noexcept;
+  /// After each sighting of a car that others simulate.
+  void add_sighting(const sim::WorldState& car) noexcept;
+  /// Each control cycle.
+  void add(const telemetry::Frame& frame) noexcept { metrics_.add(frame); }
+
+  /// The lap that was completed last; lap 0: none yet.
+  [[nodiscard]] const telemetry::CompletedLap& completed_lap() const noexcept { return completed_lap_; }
+  /// The same, once for each lap; none when it was taken already.
+  [[nodiscard]] std::optional<telemetry::CompletedLap> take_lap() noexcept;
+  [[nodiscard]] int laps_completed() const noexcept { return metrics_.laps_completed(); }
+
+  [[nodiscard]] bool is_over() const noexcept { return is_over_; }
+  [[nodiscard]] bool is_lost() const noexcept { return lost_for_ > kLostTime; }
+  /// More laps than were asked for, and longer: only a lost car ends the run from now on.
+  void drive_on() noexcept;
+
+  /// `duration`: of the run [s]; without one as long as was measured. Allocates.
+  [[nodiscard]] telemetry::RunSummary summary(std::optional<double> duration = std::nullopt) const;
+
+ private:
+  void count_laps(const sim::WorldState& car) noexcept;
+  void look_for_end(const sim::WorldState& car, double time, double step, bool is_manual) noexcept;
+  [[nodiscard]] double time_limit() const noexcept;
+
+  AccountTerms terms_;
+  telemetry::Metrics metrics_;
+  telemetry::CompletedLap completed_lap_;
+  bool has_new_lap_ = false;
+  int laps_seen_ = 0;      ///< by the judge since restart() or resume()
+  double nearest_ = std::numeric_limits<double>::infinity();  ///< to the line while far from it [m]
+  double lost_for_ = 0.0;  ///< far, and not coming nearer [s]
+  bool is_endless_ = false;
+  bool is_over_ = false;
+  const char* end_reason_ = "";
+};
+
+}  // namespace chicane::run

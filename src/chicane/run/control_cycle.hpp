@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "chicane/base/deadline.hpp"
+#include "chicane/controller/controller.hpp"
+#include "chicane/model/measurement.hpp"
+#include "chicane/safety/guard.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/prediction_check.hpp"
+
+namespace chicane::run {
+
+/// What holds in a control cycle beside the measurement. Recorded in the frame: with it and the measurement a
+/// cycle is computed again bit for bit.
+struct CycleInput {
+  Deadline deadline = Deadline::stopwatch();  ///< of the controller's step
+  std::uint32_t deadline_spent_at = 0;        ///< DeadlineLog::spent_at, where it is given
+  double interval = 0.0;  ///< since the cycle before [s], for the rate limit; not used in the first cycle
+  std::optional<model::Command> manual{};  ///< a person's command, sent in the controller's place
+};
+
+/// The control cycle: a measurement becomes a command, and all of it a frame. The one place where that
+/// happens: `drive`, `serve`, replay, branches and programs of users all run it.
+///
+///     measurement → plausibility → controller → fallback → gate → what is sent → frame
+///
+/// What is between measurement and gate is safety::Guard's. No allocation; one thread; objects are independent.
+class ControlCycle {
+ public:
+  /// Pre: `controller` is not null. `vehicle`: the car that the controller believes in.
+  ControlCycle(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle) noexcept;
+
+  /// A new run, or the same car after something unknown: everything learned is forgotten. The next cycle has
+  /// the number `cycle`.
+  void begin(std::uint64_t cycle = 0) noexcept;
+  /// Settings change before the next cycle; what was learned stays.
+  void configure(const scenario::Scenario& scenario) noexcept;
+
+  /// One cycle. Reads from `frame` the measurement, and the truth where there is one; writes everything that
+  /// the cycle decides, its number and its times. The rest of the frame, place and laps, is the caller's.
+  void step(const CycleInput& input, telemetry::Frame& frame) noexcept;
+
+  /// Number of the next cycle.
+  [[nodiscard]] std::uint64_t next() const noexcept { return next_; }
+  [[nodiscard]] const controller::Controller& controller() const noexcept { return guard_.controller(); }
+
+ private:
+  safety::Guard guard_;
+  telemetry::PredictionCheck prediction_check_;
+  std::uint64_t next_ = 0;
+  bool begins_ = true;
+};
+
+}  // namespace chicane::run

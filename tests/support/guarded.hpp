@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "chicane/safety/guard.hpp"
+
+namespace chicane::test {
+
+/// A controller inside its guard, asked by one call: what is sent for a measurement, without a rate limit.
+class Guarded {
+ public:
+  Guarded(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle)
+      : guard_{std::move(controller), vehicle} {}
+  const controller::StepResult& step(const model::Measurement& now, Deadline deadline) {
+    static_cast<void>(guard_.step(now, deadline, {}, result_));
+    return result_;
+  }
+  void reset() { guard_.reset(); }
+  [[nodiscard]] std::string_view name() const { return guard_.controller().name(); }
+
+ private:
+  safety::Guard guard_;
+  controller::StepResult result_;
+};
+
+}  // namespace chicane::test
