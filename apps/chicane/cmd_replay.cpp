@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "chicane/live/assets.hpp"
+#include "chicane/live/description.hpp"
 #include "chicane/live/pages.hpp"
 #include "chicane/recording/excerpt.hpp"
 #include "chicane/recording/recorder.hpp"
@@ -89,11 +90,11 @@ class BranchRecorder {
   Result<void> begin(const run::ClosedLoop& loop) {
     if (recorder_) {
       recorder_->record(std::make_unique<const recording::RecordedRun>(
-          recording::RecordedRun{.run = description(loop), .scenario = loop.scenario()}));
+          recording::RecordedRun{.run = live::description(loop), .scenario = loop.scenario()}));
       return {};
     }
     auto recorder = recording::Recorder::create(
-        {.path = file_, .run = description(loop), .scenario = loop.scenario(), .may_wait = true});
+        {.path = file_, .run = live::description(loop), .scenario = loop.scenario(), .may_wait = true});
     if (!recorder) return fail(recorder.error());
     recorder_ = std::move(*recorder);
     return {};

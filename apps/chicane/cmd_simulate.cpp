@@ -4,6 +4,7 @@
 #include <atomic>
 #include <utility>
 
+#include "chicane/live/description.hpp"
 #include "chicane/live/run_limit.hpp"
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/run/make.hpp"
@@ -24,7 +25,7 @@ protocol::Run description_of_external(const scenario::Scenario& scenario, const 
   run.vehicle = scenario.vehicle;
   run.mode = recording::kSimulateMode;
   run.limit = live::RunLimit::first_answer(track);
-  describe(track, run);
+  live::describe(track, run);
   return run;
 }
 
@@ -60,7 +61,12 @@ Result<wire::SimulateReport> run(const Options& options) {
                            .log = [&](std::string_view line) { progress.say(line); }},
                           stop);
   }
-  if (done) compare_with_limit(limit, done->run, **kept, stop);
+  if (done) {
+    if (limit.is_awaited(done->run) && !stop)
+      fmt::print(stderr, "the limit is still being computed; Ctrl-C does without\n");
+    limit.compare(done->run, stop);
+    if (auto news = limit.news()) (*kept)->record(std::move(news));
+  }
   if (const Result<void> finished = (*kept)->finish(); done && !finished) return fail(finished.error());
   return done;
 }

@@ -10,33 +10,9 @@
 #include <utility>
 
 #include "chicane/live/assets.hpp"
-#include "chicane/protocol/fault_codec.hpp"
 #include "chicane/recording/html_report.hpp"
 
 namespace chicane::apps {
-
-void describe(const path::Track& track, protocol::Run& run) {
-  constexpr double kRoadSpacing = 2.0;  // [m] between the drawn points of the road
-  run.track = track.name();
-  run.track_length = track.centre().length();
-  run.is_closed = track.centre().is_closed();
-  run.kerb_width = track.kerb_width();
-  run.road = protocol::road_lines(track, kRoadSpacing);
-}
-
-protocol::Run description(const run::ClosedLoop& loop) {
-  const scenario::Scenario& scenario = loop.scenario();
-  protocol::Run run;
-  run.preset = scenario.preset;
-  run.latency = scenario.latency;
-  run.control_period = scenario.control_period;
-  run.vehicle = scenario.vehicle;
-  run.mode = "drive";
-  describe(loop.track(), run);
-  protocol::describe(loop.controller(), run);
-  run.faults = protocol::fault_names();
-  return run;
-}
 
 namespace {
 
@@ -78,14 +54,6 @@ Result<std::unique_ptr<KeptRun>> KeptRun::start(const Options& options, protocol
   if (!recorder) return fail(recorder.error());
   kept->recorder_ = std::move(*recorder);
   return kept;
-}
-
-void compare_with_limit(live::RunLimit& limit, telemetry::RunSummary& run, KeptRun& kept,
-                        const std::atomic<bool>& wants_stop) {
-  if (limit.is_awaited(run) && !wants_stop)
-    fmt::print(stderr, "the limit is still being computed; Ctrl-C does without\n");
-  limit.compare(run, wants_stop);
-  if (auto news = limit.news()) kept.record(std::move(news));
 }
 
 Result<void> KeptRun::finish() {

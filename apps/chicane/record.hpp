@@ -1,34 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "chicane/live/run_limit.hpp"
-#include "chicane/path/track.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/recording/temporary_file.hpp"
-#include "chicane/run/closed_loop.hpp"
 #include "options.hpp"
 
 namespace chicane::apps {
-
-/// What viewers and logs are told of a run with our simulator, its limit excepted.
-[[nodiscard]] protocol::Run description(const run::ClosedLoop& loop);
-
-class KeptRun;
-
-/// The road of a run, for viewers and logs: name, length, lines.
-void describe(const path::Track& track, protocol::Run& run);
-
-/// The end of a run: RunLimit::compare, saying on stderr what is waited for, and the last news for the
-/// recording.
-void compare_with_limit(live::RunLimit& limit, telemetry::RunSummary& run, KeptRun& kept,
-                        const std::atomic<bool>& wants_stop);
 
 /// What --record and --report keep of a run: every control step. Nothing is kept where neither is asked for.
 class KeptRun {
@@ -40,6 +23,8 @@ class KeptRun {
                                                               const scenario::Scenario& scenario,
                                                               double step_budget);
 
+  /// Null where nothing is kept.
+  [[nodiscard]] recording::Recorder* recorder() const { return recorder_.get(); }
   /// As Recorder::record does.
   template <class What>
   void record(What&& what) {

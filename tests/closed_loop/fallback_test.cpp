@@ -12,6 +12,7 @@
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
 #include "closed_loop/drive.hpp"
+#include "support/guarded.hpp"
 
 namespace chicane::run {
 namespace {
@@ -34,7 +35,7 @@ BlindRun drive_blind(double blind_from, double sees_at, double end) {
   const auto scenario = protocol::compose({"", {{"preset", "weighted"}, {"track", "lakeside"}}});
   const auto track = run::make_track(*scenario);
   const auto plant = std::move(*run::make_plant(*scenario));
-  const auto mpc = std::move(*run::make_controller(*scenario));
+  test::Guarded mpc(std::move(*run::make_controller(*scenario)), scenario->vehicle);
   sim::World world{*plant, *track};
   sim::Sensor sensor{{}, 1};
   sim::ActuationDelay in_flight;
@@ -47,7 +48,7 @@ BlindRun drive_blind(double blind_from, double sees_at, double end) {
       now.delay = 0.1;
       const bool is_blind = time >= blind_from && time < sees_at;
       if (!is_blind) sim::select_waypoints(*track, {now.x, now.y, now.psi}, 6, now);
-      const controller::StepResult& answer = mpc->step(now, Deadline::never());
+      const controller::StepResult& answer = mpc.step(now, Deadline::never());
       if (time < blind_from) run.speed_before = now.speed;
       run.lowest_speed = time < blind_from ? run.lowest_speed : std::min(run.lowest_speed, now.speed);
       run.speed_after = now.speed;

@@ -9,6 +9,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "controller/sample_road.hpp"
+#include "support/guarded.hpp"
 
 namespace chicane::controller {
 namespace {
@@ -16,11 +17,11 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const model::VehicleParams kCar;
 
-std::vector<std::unique_ptr<Controller>> all_baselines() {
-  std::vector<std::unique_ptr<Controller>> all;
-  all.push_back(std::move(*make_pid({}, kCar)));
-  all.push_back(std::move(*make_pure_pursuit({}, kCar)));
-  all.push_back(std::move(*make_stanley({}, kCar)));
+std::vector<std::unique_ptr<test::Guarded>> all_baselines() {
+  std::vector<std::unique_ptr<test::Guarded>> all;
+  all.push_back(std::make_unique<test::Guarded>(std::move(*make_pid({}, kCar)), kCar));
+  all.push_back(std::make_unique<test::Guarded>(std::move(*make_pure_pursuit({}, kCar)), kCar));
+  all.push_back(std::make_unique<test::Guarded>(std::move(*make_stanley({}, kCar)), kCar));
   return all;
 }
 

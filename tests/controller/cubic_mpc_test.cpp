@@ -9,6 +9,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "controller/sample_road.hpp"
+#include "support/guarded.hpp"
 
 namespace chicane::controller {
 namespace {
@@ -16,10 +17,10 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const model::VehicleParams kCar;
 
-std::unique_ptr<Controller> make(const CubicMpcOptions& options) {
+std::unique_ptr<test::Guarded> make(const CubicMpcOptions& options) {
   auto controller = make_cubic_mpc(options, kCar);
   EXPECT_TRUE(controller.has_value()) << controller.error().message;
-  return std::move(*controller);
+  return std::make_unique<test::Guarded>(std::move(*controller), kCar);
 }
 
 /// The handlings of latency, both steering signs and both ways to the car's frame, in all combinations.

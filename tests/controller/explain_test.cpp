@@ -26,7 +26,7 @@ std::unique_ptr<Controller> cubic(const CubicMpcOptions& options = {}) {
 /// The answer after a few cycles in which the car stands still in `now`'s world.
 StepResult answer(Controller& controller, model::Measurement now) {
   for (int i = 0; i < 5; ++i) {
-    static_cast<void>(controller.step(now, Deadline::never()));
+    controller.note_sent(controller.step(now, Deadline::never()).command);
     now.time += 0.001;
   }
   return controller.step(now, Deadline::never());
@@ -119,12 +119,13 @@ TEST(Explanation, BaselinesKnowTheirInputsAndTheBendAhead) {
   EXPECT_LT(bend.speed_limit, 15.0);
 }
 
-TEST(Explanation, IsEmptyOnARungBelowTheController) {
+TEST(Explanation, IsEmptyWithoutAnAnswer) {
   model::Measurement blind = on_a_left_bend();
   blind.waypoint_count = 0;
   for (const auto& controller : {tracking(), cubic()}) {
-    const StepReport report = controller->step(blind, Deadline::never()).report;
-    ASSERT_NE(report.rung, Rung::kController);
+    const StepResult& result = controller->step(blind, Deadline::never());
+    ASSERT_EQ(result.answer, Answer::kNone);
+    const StepReport& report = result.report;
     EXPECT_EQ(report.explanation.cost_term_count, 0) << controller->name();
     EXPECT_EQ(report.explanation.active_ahead, 0U);
     EXPECT_TRUE(std::isnan(report.explanation.speed_limit));

@@ -10,24 +10,25 @@
 #include "chicane/controller/tracking_mpc.hpp"
 #include "controller/sample_road.hpp"
 #include "support/alloc_guard.hpp"
+#include "support/guarded.hpp"
 
 namespace chicane::controller {
 namespace {
 
-std::vector<std::unique_ptr<Controller>> all_controllers() {
+std::vector<std::unique_ptr<test::Guarded>> all_controllers() {
   const model::VehicleParams car;
-  std::vector<std::unique_ptr<Controller>> all;
-  all.push_back(std::move(*make_pid({}, car)));
-  all.push_back(std::move(*make_pure_pursuit({}, car)));
-  all.push_back(std::move(*make_stanley({}, car)));
-  all.push_back(std::move(*make_tracking_mpc({}, car)));
+  std::vector<std::unique_ptr<test::Guarded>> all;
+  all.push_back(std::make_unique<test::Guarded>(std::move(*make_pid({}, car)), car));
+  all.push_back(std::make_unique<test::Guarded>(std::move(*make_pure_pursuit({}, car)), car));
+  all.push_back(std::make_unique<test::Guarded>(std::move(*make_stanley({}, car)), car));
+  all.push_back(std::make_unique<test::Guarded>(std::move(*make_tracking_mpc({}, car)), car));
   for (const auto handling :
        {LatencyHandling::kNone, LatencyHandling::kRollForward, LatencyHandling::kMeasured,
         LatencyHandling::kPositionOnly, LatencyHandling::kInsideModel}) {
     CubicMpcOptions options;
     options.latency_handling = handling;
     options.polar_waypoints = handling == LatencyHandling::kMeasured;
-    all.push_back(std::move(*make_cubic_mpc(options, car)));
+    all.push_back(std::make_unique<test::Guarded>(std::move(*make_cubic_mpc(options, car)), car));
   }
   return all;
 }

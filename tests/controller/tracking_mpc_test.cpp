@@ -10,12 +10,14 @@
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "controller/sample_road.hpp"
+#include "support/guarded.hpp"
 
 namespace chicane::controller {
 namespace {
 
-std::unique_ptr<Controller> make(const TrackingMpcOptions& options = {}) {
-  return std::move(*make_tracking_mpc(options, model::udacity_params()));
+std::unique_ptr<test::Guarded> make(const TrackingMpcOptions& options = {}) {
+  return std::make_unique<test::Guarded>(std::move(*make_tracking_mpc(options, model::udacity_params())),
+                                         model::udacity_params());
 }
 
 /// The command after a few cycles in which the car stands still in `now`'s world.

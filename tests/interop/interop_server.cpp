@@ -19,7 +19,7 @@ int main() {
   }
   wire::ServeOptions options;
   options.vehicle = scenario.vehicle;
-  wire::UdacityEndpoint endpoint(options, **controller,
+  wire::UdacityEndpoint endpoint(options, std::move(*controller),
                                  {.log = [](std::string_view line) { std::cerr << line << std::endl; }});
   wire::Router router(&endpoint, nullptr);
   options.server.port = 0;

@@ -17,6 +17,9 @@ namespace {
 
 using telemetry::TemporaryFile;
 using test::RawSocket;
+using wire::Router;
+using wire::ServeOptions;
+using wire::UdacityEndpoint;
 
 scenario::Scenario short_run(const std::string& controller) {
   const auto scenario = protocol::compose(
@@ -30,9 +33,9 @@ std::vector<std::string> telemetry_of_a_drive() {
   auto loop = run::ClosedLoop::create(short_run("pid"));
   EXPECT_TRUE(loop);
   std::vector<std::string> messages;
-  static_cast<void>(run::run_closed_loop(**loop, [&](const telemetry::Frame& frame) {
+  static_cast<void>(run::run_closed_loop(**loop, {.on_frame = [&](const telemetry::Frame& frame) {
     messages.push_back(protocol::encode_telemetry(frame.measurement));
-  }));
+  }}));
   return messages;
 }
 
@@ -55,7 +58,7 @@ void drive(std::uint16_t port, const std::vector<std::string>& messages) {
 recording::ReplayReport record_and_verify(const std::string& name, std::chrono::nanoseconds step_budget) {
   const telemetry::TemporaryFile file;
   const scenario::Scenario scenario = short_run(name);
-  const auto controller = run::make_controller(scenario);
+  auto controller = run::make_controller(scenario);
   recording::RecorderOptions recording;
   recording.path = file.path();
   recording.scenario = scenario;
@@ -71,7 +74,7 @@ recording::ReplayReport record_and_verify(const std::string& name, std::chrono::
   options.scenario = scenario;
   run::ChangeQueue wishes;
   UdacityEndpoint endpoint(
-      options, **controller,
+      options, std::move(*controller),
       {.wishes = &wishes,
        .on_change = [&](const telemetry::Change& change) { (*recorder)->record(change); },
        .on_frame = [&](const telemetry::Frame& frame) { (*recorder)->record(frame); }});

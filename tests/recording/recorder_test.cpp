@@ -42,8 +42,9 @@ RecorderOptions recording(const run::ClosedLoop& loop, const std::string& path) 
 RecorderReport record(run::ClosedLoop& loop, const std::string& path) {
   auto recorder = Recorder::create(recording(loop, path));
   EXPECT_TRUE(recorder);
-  static_cast<void>(
-      run::run_closed_loop(loop, [&](const telemetry::Frame& frame) { (*recorder)->record(frame); }));
+  static_cast<void>(run::run_closed_loop(
+      loop, {.on_frame = [&](const telemetry::Frame& frame) { (*recorder)->record(frame); },
+             .on_lap = [&](const telemetry::CompletedLap& lap) { (*recorder)->record(lap); }}));
   const Result<RecorderReport> report = (*recorder)->finish();
   EXPECT_TRUE(report);
   return report.value_or(RecorderReport{});
@@ -217,6 +218,7 @@ TEST(Recorder, WritesEachLapOnce) {
   }
   telemetry::Frame frame = loop->frame();
   for (const int lap : {0, 0, 1, 1, 2, 2, 0, 1}) {  // started anew after the second
+    if (lap > frame.completed_lap.lap) (*recorder)->record(telemetry::CompletedLap{.lap = lap});
     frame.completed_lap.lap = lap;
     (*recorder)->record(frame);
   }
@@ -226,6 +228,20 @@ TEST(Recorder, WritesEachLapOnce) {
                                      if (message.channel.topic == "/chicane/lap") ++laps;
                                    }}));
   EXPECT_EQ(laps, 3);
+}
+
+TEST(Recorder, HasTheLastLapOfARun) {
+  const TemporaryFile file;
+  auto scenario = protocol::compose(
+      {.scenario_file = {}, .settings = {{"preset", "default"}, {"track", "oval"}, {"laps", "2"}}});
+  const auto loop = std::move(*run::ClosedLoop::create(*scenario));
+  static_cast<void>(record(*loop, file.path()));
+  EXPECT_EQ(loop->summary().laps_completed, 2);
+  int laps = 0;
+  ASSERT_TRUE(telemetry::read_mcap(file.path(), {.on_message = [&](const auto& message) {
+                                     if (message.channel.topic == "/chicane/lap") ++laps;
+                                   }}));
+  EXPECT_EQ(laps, 2);
 }
 
 TEST(Recorder, LeavesFramesOutRatherThanLetTheRunWait) {

@@ -117,10 +117,26 @@ TEST(Roadside, KeepsTheLapsOverTelemetryThatWasBroken) {
   const telemetry::Frame& broken = car.broken();
   EXPECT_FALSE(broken.is_judged);
   EXPECT_EQ(broken.completed_lap.lap, 1);
-  roadside.restart();
-  EXPECT_EQ(car.next().completed_lap.lap, 0);
-  EXPECT_EQ(roadside.summary().laps_completed, 0);
-  EXPECT_EQ(roadside.summary().cycles, 1U);
+}
+
+TEST(Roadside, GoesOnCountingWithTheNextCar) {
+  const path::Track track = circle();
+  Roadside roadside(&track, {});
+  Telemetry first(roadside);
+  while (first.driven_for() < 1.7 * kLapTime) first.next();
+  roadside.resume();
+  Telemetry second(roadside);
+  EXPECT_EQ(second.next(6.0).lap, 1) << "the lap that was under way does not count";
+  EXPECT_TRUE(roadside.take_lap());
+  EXPECT_FALSE(roadside.take_lap()) << "each lap is told once";
+  while (second.driven_for() < 1.1 * kLapTime) second.next();
+  EXPECT_EQ(second.next().lap, 2);
+  EXPECT_EQ(roadside.take_lap()->lap, 2);
+  const telemetry::RunSummary run = roadside.summary();
+  ASSERT_EQ(run.laps.size(), 2U);
+  EXPECT_NEAR(run.laps[0].lap_time, kLapTime, 1e-3 * kLapTime);
+  EXPECT_NEAR(run.laps[1].lap_time, kLapTime, 2e-2 * kLapTime);  // it began beside the line
+  EXPECT_EQ(run.end_reason, "stopped");
 }
 
 TEST(Roadside, AllocatesNothingWhileItLooks) {

@@ -172,7 +172,8 @@ TEST(Fallback, StaysFiniteAndInRangeForAnyPlanAndTime) {
   const auto plan = std::make_unique<Plan>();
   for (int turn = 0; turn < 2'000; ++turn) {
     plan->size = static_cast<int>(random.bits() % 600U) - 100;  // also sizes that no plan may have
-    for (PlanPoint& point : plan->points) point = {any(), any(), any(), any(), any(), {any(), any()}};
+    for (controller::PlanPoint& point : plan->points)
+      point = {any(), any(), any(), any(), any(), {any(), any()}};
     fallback.accept(*plan);
     for (int i = 0; i < 10; ++i) {
       const auto answer = fallback.command(any(), driving(any()));

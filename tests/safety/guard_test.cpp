@@ -1,2 +1,199 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/safety/guard.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "chicane/base/random.hpp"
+#include "support/alloc_guard.hpp"
+#include "support/borrowed.hpp"
+
+namespace chicane::safety {
+namespace {
+
+using controller::Answer;
+using controller::Rung;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+model::VehicleParams car() {
+  model::VehicleParams car;
+  car.steer_limit = 0.4;
+  car.steer_rate_limit = 1.0;
+  return car;
+}
+
+/// Answers as it is told to, and remembers what it was given.
+class Scripted final : public controller::Controller {
+ public:
+  const controller::StepResult& step(const model::Measurement& now, Deadline) noexcept override {
+    seen = now;
+    return result;
+  }
+  void note_sent(const model::Command& command) noexcept override { sent.push_back(command); }
+  void reset() noexcept override { ++resets; }
+  [[nodiscard]] std::string_view name() const noexcept override { return "scripted"; }
+
+  controller::StepResult result;
+  model::Measurement seen;
+  std::vector<model::Command> sent;
+  int resets = 0;
+};
+
+model::Measurement at(double time, double speed = 20.0) {
+  model::Measurement now;
+  now.time = time;
+  now.x = speed * time;
+  now.speed = speed;
+  now.delay = 0.1;
+  return now;
+}
+
+class GuardTest : public ::testing::Test {
+ protected:
+  GuardTest() : guard_{std::make_unique<test::Borrowed>(scripted_), car()} { scripted_.sent.reserve(1000); }
+  const controller::StepResult& step(const model::Measurement& now, const Guard::Cycle& cycle = {}) {
+    asked_ = guard_.step(now, Deadline::never(), cycle, result_);
+    return result_;
+  }
+
+  Scripted scripted_;
+  Guard guard_;
+  controller::StepResult result_;
+  model::Command asked_;
+};
+
+TEST_F(GuardTest, PassesAnAnswerOnUnchanged) {
+  scripted_.result.command = {.steer = 0.123, .throttle = 0.456};
+  const controller::StepResult& result = step(at(1.0));
+  EXPECT_EQ(result.command.steer, 0.123);
+  EXPECT_EQ(result.command.throttle, 0.456);
+  EXPECT_EQ(result.report.rung, Rung::kController);
+  EXPECT_FALSE(result.report.gated);
+}
+
+TEST_F(GuardTest, SaysWhichAnswerWithoutAPlanWasGiven) {
+  scripted_.result.answer = Answer::kReturnToRoad;
+  EXPECT_EQ(step(at(1.0)).report.rung, Rung::kReturnToRoad);
+  scripted_.result.answer = Answer::kStopOnRoad;
+  EXPECT_EQ(step(at(1.04)).report.rung, Rung::kStopOnRoad);
+}
+
+TEST_F(GuardTest, BelievesNoRungThatAControllerClaims) {
+  scripted_.result.report.rung = Rung::kBrake;
+  scripted_.result.report.gated = true;
+  EXPECT_EQ(step(at(1.0)).report.rung, Rung::kController);
+  EXPECT_FALSE(result_.report.gated);
+}
+
+TEST_F(GuardTest, FallsBackWithoutAnAnswerAlsoForAControllerWithoutPlans) {
+  scripted_.result.command = {.steer = 0.2, .throttle = 0.5};
+  step(at(1.0));
+  scripted_.result.answer = Answer::kNone;
+  scripted_.result.command = {.steer = -0.4, .throttle = 1.0};
+  const controller::StepResult& result = step(at(1.7));
+  EXPECT_EQ(result.report.rung, Rung::kHoldAndBrake);
+  EXPECT_EQ(result.command.steer, 0.2) << "the wheel stays where the last answer put it";
+  EXPECT_LT(result.command.throttle, 0.0);
+  EXPECT_EQ(result.plan.size, 0);
+  EXPECT_EQ(step(at(4.0)).report.rung, Rung::kBrake);
+}
+
+TEST_F(GuardTest, TakesACommandThatIsNotFiniteForNone) {
+  for (const model::Command& bad : {model::Command{kNaN, 0.1}, model::Command{0.1, kNaN},
+                                    model::Command{std::numeric_limits<double>::infinity(), 0.0}}) {
+    scripted_.result.command = bad;
+    const controller::StepResult& result = step(at(1.0));
+    EXPECT_NE(result.report.rung, Rung::kController);
+    EXPECT_TRUE(std::isfinite(result.command.steer) && std::isfinite(result.command.throttle));
+  }
+}
+
+TEST_F(GuardTest, UsesTheTimeTheControllerCounts) {
+  controller::Plan& plan = scripted_.result.plan;
+  plan.size = 5;
+  for (int i = 0; i < 5; ++i)
+    plan.points[static_cast<std::size_t>(i)] = {1.0 + 0.1 * i, 2.0 * i, 0.0, 0.0, 20.0, {0.01 * i, 0.1}};
+  step(at(1.0));
+  scripted_.result.answer = Answer::kNone;
+  scripted_.result.report.act_time = 1.35;
+  EXPECT_EQ(step(at(1.04)).command.steer, 0.03);
+  scripted_.result.report.act_time = kNaN;  // then measurement and delay: 1.0 + 0.4
+  model::Measurement now = at(1.0);
+  now.delay = 0.4;
+  EXPECT_EQ(step(now).command.steer, 0.04);
+}
+
+TEST_F(GuardTest, ShowsTheControllerNothingThatIsNotPlausible) {
+  step(at(1.0));
+  EXPECT_EQ(scripted_.seen.x, 20.0);
+  model::Measurement jumped = at(1.04);
+  jumped.y = 30.0;
+  step(jumped);
+  EXPECT_TRUE(std::isnan(scripted_.seen.x));
+  EXPECT_EQ(scripted_.seen.time, 1.04);
+}
+
+TEST_F(GuardTest, LetsNothingOutThatTheActuatorsCannotDo) {
+  scripted_.result.command = {.steer = 3.0, .throttle = 7.0};
+  const controller::StepResult& result = step(at(1.0));
+  EXPECT_EQ(result.command.steer, 0.4);
+  EXPECT_EQ(result.command.throttle, 1.0);
+  EXPECT_TRUE(result.report.gated);
+  EXPECT_EQ(asked_.steer, 3.0);
+  scripted_.result.command = {.steer = -0.4, .throttle = 0.0};
+  EXPECT_DOUBLE_EQ(step(at(1.04), {.interval = 0.04}).command.steer, 0.36) << "1 rad/s for 40 ms";
+  EXPECT_TRUE(result_.report.gated);
+}
+
+TEST_F(GuardTest, TellsTheControllerWhatWasReallySent) {
+  scripted_.result.command = {.steer = 3.0, .throttle = 0.5};
+  step(at(1.0));
+  step(at(1.04), {.manual = model::Command{.steer = -0.1, .throttle = 0.2}});
+  ASSERT_EQ(scripted_.sent.size(), 2U);
+  EXPECT_EQ(scripted_.sent[0].steer, 0.4);
+  EXPECT_EQ(scripted_.sent[1].steer, -0.1);
+  EXPECT_EQ(result_.command.throttle, 0.2);
+  EXPECT_EQ(asked_.steer, 3.0) << "a person drives; what the controller asks for is still told";
+}
+
+TEST_F(GuardTest, ForgetsEverythingOnReset) {
+  scripted_.result.command = {.steer = 0.3, .throttle = 0.5};
+  step(at(1.0));
+  guard_.reset();
+  EXPECT_EQ(scripted_.resets, 1);
+  scripted_.result.answer = Answer::kNone;
+  EXPECT_EQ(step(at(0.0)).command.steer, 0.0);
+}
+
+TEST_F(GuardTest, AllocatesNothingAndStaysInBoundsWhateverComes) {
+  Random random(11);
+  const double strange[] = {kNaN, std::numeric_limits<double>::infinity(), -1e308, 1e9, 0.0, 0.3, -0.2};
+  const auto any = [&] { return strange[random.bits() % 7]; };
+  double last = 0.0;
+  const test::AllocationGuard counter;
+  for (int i = 0; i < 500; ++i) {
+    scripted_.result.answer = static_cast<Answer>(random.bits() % 4);
+    scripted_.result.command = {any(), any()};
+    scripted_.result.plan.size = static_cast<int>(random.bits() % 300) - 10;
+    scripted_.result.report.act_time = any();
+    for (controller::PlanPoint& point : scripted_.result.plan.points)
+      point = {any(), any(), any(), any(), any(), {any(), any()}};
+    model::Measurement now = at(0.04 * i);
+    if (random.bits() % 3 == 0) now.x = any();
+    if (random.bits() % 3 == 0) now.speed = any();
+    const controller::StepResult& result = step(now, {.interval = 0.04});
+    ASSERT_LE(std::fabs(result.command.steer), 0.4) << i;
+    ASSERT_LE(std::fabs(result.command.throttle), 1.0) << i;
+    ASSERT_LE(std::fabs(result.command.steer - last), 0.04 + 1e-12) << i;
+    last = result.command.steer;
+  }
+  EXPECT_EQ(counter.count(), 0);
+}
+
+}  // namespace
+}  // namespace chicane::safety

@@ -221,7 +221,7 @@ TEST(ServeAndSimulate, DriveTheLakesideTogetherOverRealSockets) {
   options.server.port = 0;
   options.vehicle = scenario.vehicle;
   std::string log;
-  UdacityEndpoint endpoint(options, **controller,
+  UdacityEndpoint endpoint(options, std::move(*controller),
                            {.log = [&](std::string_view line) { log += std::string(line) + "\n"; }});
   Router router(&endpoint, nullptr);
   auto server = net::Server::create(options.server, router.handlers(), {});

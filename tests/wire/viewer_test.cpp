@@ -117,6 +117,8 @@ TEST_F(Viewer, IsToldOfTheLapsThatWereBeforeItCame) {
   telemetry::Frame frame = frame_at(1.0);
   const auto publish = [&](int lap) {
     frame.time += 1.0;
+    frame.cycle = lap > 0 ? frame.cycle + 1 : 0;
+    if (lap > frame.completed_lap.lap) endpoint->publish({.lap = lap}, frame.time);
     frame.completed_lap.lap = lap;
     endpoint->publish(frame);
     server.pass_time();
@@ -147,6 +149,19 @@ TEST_F(Viewer, IsToldOfTheLapsThatWereBeforeItCame) {
   server.take();
   endpoint->on_message(2, subscribe(6, "/chicane/lap"), false);
   EXPECT_EQ(laps(), (std::vector{1}));
+}
+
+TEST_F(Viewer, IsToldOfALapThatNoFrameShows) {
+  start({});
+  say(subscribe(5, "/chicane/lap"));
+  endpoint->publish(frame_at(1.0));
+  server.pass_time();
+  server.take();
+  endpoint->publish({.lap = 3}, 1.02);  // the run ends here
+  server.pass_time();
+  const auto messages = server.take();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(messages[0].bytes->at(13 + 4), 3);
 }
 
 TEST_F(Viewer, GetsTheNewestFrameOnlyAndOnlyOnce) {

@@ -22,8 +22,8 @@ enum class Answer : signed char {
   kReturnToRoad = 3,  ///< no plan: the command leads back to the road at walking pace
 };
 
-/// Who chose the command of a cycle, worst last but for the two that a controller chooses without a plan. Set by
-/// safety::Guard alone.
+/// Who chose the command of a cycle, worst last but for the two that a controller chooses without a plan. Set
+/// by safety::Guard alone.
 enum class Rung : signed char {
   kController = 0,    ///< the controller's own answer
   kShiftedPlan = 1,   ///< the last usable plan, at the time that has come
@@ -37,8 +37,8 @@ inline constexpr int kRungCount = 6;
 /// How one step went.
 struct StepReport {
   solver::SolveReport solve;  ///< zeroed with status kOptimal for controllers that solve nothing
-  double act_time = std::numeric_limits<double>::quiet_NaN();  ///< when the command acts [s], clock of the run;
-                                                               ///< NaN: measurement time plus its delay
+  double act_time = std::numeric_limits<double>::quiet_NaN();  ///< when the command acts [s], clock of the
+                                                               ///< run; NaN: measurement time plus its delay
   double lateral_error = 0.0;    ///< of the measured position from the reference line [m], left positive
   double heading_error = 0.0;    ///< measured yaw minus the line's heading [rad]
   double speed_reference = 0.0;  ///< wanted at the point where the command acts [m/s]

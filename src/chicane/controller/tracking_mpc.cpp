@@ -377,13 +377,12 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   /// A car that has spun, or is far from its line: it brakes first, then drives at walking pace on a course
   /// that leads back.
   const StepResult& return_to_road(const model::Measurement& now, const StateEstimator::Prediction& start,
-                              double act_time) noexcept {
+                                   double act_time) noexcept {
     const road::ReferenceLine& line = road_.line();
     const model::State& car = start.state;
     const bool is_known = std::isfinite(car.x + car.y + car.psi + car.vx + now.time + now.delay);
     const bool must_stop = blind_.is_long || roadless_.is_long;
-    if (line.is_empty() || !is_known || must_stop || !(std::fabs(car.vx) < kSlow))
-      return no_answer(act_time);
+    if (line.is_empty() || !is_known || must_stop || !(std::fabs(car.vx) < kSlow)) return no_answer(act_time);
     const road::ReferenceLine::Projection place = line.project({car.x, car.y});
     if (!(place.distance < kLost)) return no_answer(act_time);
     const double course = line.at(place.s).heading - atan(place.d / kApproach);

@@ -43,9 +43,9 @@ class RunBuilder {
   using Create = std::function<Result<std::unique_ptr<run::ClosedLoop>>(const scenario::Scenario&)>;
 
   /// `describe` is called on the other thread.
-  explicit RunBuilder(Describe describe, Create create = [](const scenario::Scenario& scenario) {
-    return run::ClosedLoop::create(scenario);
-  });
+  explicit RunBuilder(
+      Describe describe,
+      Create create = [](const scenario::Scenario& scenario) { return run::ClosedLoop::create(scenario); });
   /// Waits for a build under way.
   ~RunBuilder();
   RunBuilder(const RunBuilder&) = delete;

@@ -135,8 +135,10 @@ constexpr std::array kRungs{
     constant("RUNG_HOLD_AND_BRAKE", Rung::kHoldAndBrake,
              "steering along the last plan's path, gentle braking"),
     constant("RUNG_BRAKE", Rung::kBrake, "the same steering, all useful braking"),
-    constant("RUNG_RETURN_TO_ROAD", Rung::kReturnToRoad, "the controller finds back to the road at walking pace"),
-    constant("RUNG_STOP_ON_ROAD", Rung::kStopOnRoad, "the controller stops along the road, without a plan in time"),
+    constant("RUNG_RETURN_TO_ROAD", Rung::kReturnToRoad,
+             "the controller finds back to the road at walking pace"),
+    constant("RUNG_STOP_ON_ROAD", Rung::kStopOnRoad,
+             "the controller stops along the road, without a plan in time"),
 };
 
 constexpr std::array kStatuses{

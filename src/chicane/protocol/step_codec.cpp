@@ -84,7 +84,8 @@ std::optional<Step> decode_step(std::string_view bytes) {
   step.gated = fields.number<std::uint8_t>() != 0;
   static_cast<void>(fields.number<std::uint16_t>());
   const auto count = fields.number<std::uint32_t>();
-  if (rung >= controller::kRungCount || count % 2 != 0 || count > 2 * model::Measurement::kMaxWaypoints) return std::nullopt;
+  if (rung >= controller::kRungCount || count % 2 != 0 || count > 2 * model::Measurement::kMaxWaypoints)
+    return std::nullopt;
   seen.waypoint_count = static_cast<int>(count / 2);
   for (std::size_t i = 0; i < count / 2; ++i) {
     seen.waypoints[i].x() = real();

@@ -59,7 +59,8 @@ struct BranchHooks {
 /// `options.at` with other settings, in virtual time. Fails with kInvalidArgument when the moment is not in
 /// the recording, a setting is unknown, out of range or cannot change in a run that goes on, or when the
 /// recording is not of our simulator.
-[[nodiscard]] Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks,
-                                                    const run::ControllerFactory& make = run::make_controller);
+[[nodiscard]] Result<BranchReport> branch_recording(
+    const BranchOptions& options, const BranchHooks& hooks,
+    const run::ControllerFactory& make = run::make_controller);
 
 }  // namespace chicane::recording

@@ -57,6 +57,12 @@ void Account::resume() noexcept {
   lost_for_ = 0.0;
 }
 
+void Account::set_terms(int laps, double time_limit, double latency) noexcept {
+  terms_.laps = laps;
+  terms_.time_limit = time_limit;
+  terms_.latency = latency;
+}
+
 void Account::add_physics(const sim::World& world, bool is_manual) noexcept {
   metrics_.add_physics(physics_sample(world));
   count_laps(world.state());

@@ -25,8 +25,8 @@ struct AccountTerms {
 [[nodiscard]] AccountTerms terms_of(const scenario::Scenario& scenario, const std::string& track);
 
 /// The account of a run: laps and sectors, metrics, when it is over and why, and the report. The one place
-/// where that is kept: `drive`, `serve`, `simulate` and branches of recordings all use it, with a plant of ours
-/// (add_physics) or with a car that is only seen (add_sighting).
+/// where that is kept: `drive`, `serve`, `simulate` and branches of recordings all use it, with a plant of
+/// ours (add_physics) or with a car that is only seen (add_sighting).
 ///
 /// A run is over when the laps that were asked for are driven or an open road has ended, when the time limit
 /// is reached, or when the car is lost: more than kLostDistance from the line for kLostTime without coming
@@ -49,6 +49,9 @@ class Account {
   /// The same run goes on with another car, or with the same one from another place: what was counted stays,
   /// the running lap does not count.
   void resume() noexcept;
+
+  /// Other laps, time limit and latency are asked for from now on; the names stay. Does not allocate.
+  void set_terms(int laps, double time_limit, double latency) noexcept;
 
   /// After each physics step of our plant. `is_manual`: a person drives.
   void add_physics(const sim::World& world, bool is_manual) noexcept;
@@ -80,9 +83,9 @@ class Account {
   telemetry::Metrics metrics_;
   telemetry::CompletedLap completed_lap_;
   bool has_new_lap_ = false;
-  int laps_seen_ = 0;      ///< by the judge since restart() or resume()
+  int laps_seen_ = 0;                                         ///< by the judge since restart() or resume()
   double nearest_ = std::numeric_limits<double>::infinity();  ///< to the line while far from it [m]
-  double lost_for_ = 0.0;  ///< far, and not coming nearer [s]
+  double lost_for_ = 0.0;                                     ///< far, and not coming nearer [s]
   bool is_endless_ = false;
   bool is_over_ = false;
   const char* end_reason_ = "";

@@ -106,6 +106,7 @@ void ClosedLoop::apply(const telemetry::Change& change) noexcept {
   const protocol::Parameter* row = protocol::find(name);
   if (row == nullptr || !protocol::is_live(*row) || !protocol::set_text(scenario_, name, value)) return;
   cycle_.configure(scenario_);
+  account_.set_terms(scenario_.laps, scenario_.time_limit, scenario_.latency);
   sensor_.configure(scenario_.sensor);
   plant_->deviate({.friction_scale = scenario_.plant_options.friction_scale,
                    .mass_scale = scenario_.plant_options.mass_scale});

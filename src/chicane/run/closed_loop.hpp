@@ -46,8 +46,8 @@ class ClosedLoop {
  public:
   /// Builds track, plant and controller. Fails as make.hpp does, and as `make` does: any factory of a
   /// controller may take the place of the one that knows ours (examples/03_your_own_controller.cpp).
-  [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(const scenario::Scenario& scenario,
-                                                                  const ControllerFactory& make = make_controller);
+  [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(
+      const scenario::Scenario& scenario, const ControllerFactory& make = make_controller);
 
   /// One physics step, preceded by a control step when one is due. True when there was a control step:
   /// frame() is new. `budget` [s] bounds the control step; 0 = no bound.
@@ -114,12 +114,13 @@ class ClosedLoop {
 
 /// What is told of a run on the thread that runs it; must not block. Empty functions are not called.
 struct RunHooks {
-  std::function<void(const telemetry::Frame&)> on_frame{};       ///< after each control cycle
-  std::function<void(const telemetry::CompletedLap&)> on_lap{};  ///< when a lap was completed, the last one too
+  std::function<void(const telemetry::Frame&)> on_frame{};  ///< after each control cycle
+  std::function<void(const telemetry::CompletedLap&)>
+      on_lap{};  ///< when a lap was completed, the last one too
 };
 
-/// Runs to the end as fast as the machine can. `stop` is asked once per cycle and ends the run with what there
-/// is.
+/// Runs to the end as fast as the machine can. `stop` is asked once per cycle and ends the run with what
+/// there is.
 [[nodiscard]] telemetry::RunSummary run_closed_loop(ClosedLoop& loop, const RunHooks& hooks = {},
                                                     const std::function<bool()>& stop = {});
 

@@ -10,9 +10,7 @@ namespace chicane::run {
 
 ControlCycle::ControlCycle(std::unique_ptr<controller::Controller> controller,
                            const model::VehicleParams& vehicle) noexcept
-    : guard_{std::move(controller), vehicle} {
-  begin();
-}
+    : guard_{std::move(controller), vehicle} {}
 
 void ControlCycle::begin(std::uint64_t cycle) noexcept {
   guard_.reset();
@@ -41,8 +39,8 @@ void ControlCycle::step(const CycleInput& input, telemetry::Frame& frame) noexce
   frame.step_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   frame.solve_time = frame.result.report.solve_time;
 
-  const Vec2 position = frame.has_truth ? Vec2{frame.truth.x, frame.truth.y}
-                                        : Vec2{frame.measurement.x, frame.measurement.y};
+  const Vec2 position =
+      frame.has_truth ? Vec2{frame.truth.x, frame.truth.y} : Vec2{frame.measurement.x, frame.measurement.y};
   frame.prediction_error = prediction_check_.error(frame.time, position);
   prediction_check_.add(frame.result.plan, input.interval);
 }

@@ -29,11 +29,13 @@ struct CycleInput {
 ///
 ///     measurement → plausibility → controller → fallback → gate → what is sent → frame
 ///
-/// What is between measurement and gate is safety::Guard's. No allocation; one thread; objects are independent.
+/// What is between measurement and gate is safety::Guard's. No allocation; one thread; objects are
+/// independent.
 class ControlCycle {
  public:
   /// Pre: `controller` is not null. `vehicle`: the car that the controller believes in.
-  ControlCycle(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle) noexcept;
+  ControlCycle(std::unique_ptr<controller::Controller> controller,
+               const model::VehicleParams& vehicle) noexcept;
 
   /// A new run, or the same car after something unknown: everything learned is forgotten. The next cycle has
   /// the number `cycle`.

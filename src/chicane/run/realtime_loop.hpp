@@ -30,7 +30,10 @@ struct RealtimeOptions {
 };
 
 /// What is told of a run in real time, on the thread that runs it; must not block.
-struct RealtimeHooks : RunHooks {
+struct RealtimeHooks {
+  std::function<void(const telemetry::Frame&)> on_frame{};  ///< after each control cycle
+  std::function<void(const telemetry::CompletedLap&)>
+      on_lap{};                                               ///< when a lap was completed, the last one too
   std::function<void(const telemetry::Change&)> on_change{};  ///< after it was applied, before the next cycle
 };
 

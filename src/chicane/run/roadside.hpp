@@ -12,10 +12,10 @@
 
 namespace chicane::run {
 
-/// Keeps the account of a run whose car is simulated by another program, over all its connections: counts, and
-/// where the road is known judges the car by the positions that were measured and by the car as it is believed
-/// to be, as sim::World does with a plant of ours. Lap times are as good as the clock that telemetry is
-/// received by: some milliseconds on one machine. One thread.
+/// Keeps the account of a run whose car is simulated by another program, over all its connections: counts,
+/// and where the road is known judges the car by the positions that were measured and by the car as it is
+/// believed to be, as sim::World does with a plant of ours. Lap times are as good as the clock that telemetry
+/// is received by: some milliseconds on one machine. One thread.
 class Roadside {
  public:
   /// `track` may be null: then nothing is judged. It outlives this.

@@ -39,7 +39,20 @@ void Fallback::accept(const controller::Plan& plan) noexcept {
     const double speed = std::isfinite(point.speed) ? std::clamp(point.speed, 0.0, kFastest) : 0.0;
     plan_[static_cast<std::size_t>(plan_size_++)] = {point.time, distance, speed, {steer, throttle}};
   }
-  if (plan_size_ == 0) return;
+  if (plan_size_ > 0) begin_plan();
+}
+
+void Fallback::accept(const model::Command& command, double time, double speed) noexcept {
+  if (!std::isfinite(time) || !std::isfinite(command.steer) || !std::isfinite(command.throttle)) return;
+  const double known_speed = std::isfinite(speed) ? std::clamp(speed, 0.0, kFastest) : 0.0;
+  const double steer = std::clamp(command.steer, -vehicle_.steer_limit, vehicle_.steer_limit);
+  plan_[0] = {time, 0.0, known_speed, {steer, std::clamp(command.throttle, -1.0, 1.0)}};
+  plan_size_ = 1;
+  begin_plan();
+}
+
+/// The plan just accepted is what holds from now on.
+void Fallback::begin_plan() noexcept {
   speed_ = plan_[0].speed;
   has_speed_ = true;
   distance_ = 0.0;
@@ -72,7 +85,8 @@ Fallback::Answer Fallback::command(double act_time, const model::Measurement& no
   const bool is_gentle = age < kHoldAge;
   last_steer_ = steer_along_path();
   last_throttle_ = -(is_gentle ? gentle_share() : 1.0) * vehicle_.brake_throttle_limit * fade;
-  return {{last_steer_, last_throttle_}, is_gentle ? controller::Rung::kHoldAndBrake : controller::Rung::kBrake};
+  return {{last_steer_, last_throttle_},
+          is_gentle ? controller::Rung::kHoldAndBrake : controller::Rung::kBrake};
 }
 
 /// Speed and distance now, `elapsed` [s] after the command before.

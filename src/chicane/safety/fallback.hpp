@@ -43,6 +43,9 @@ class Fallback {
   /// of the plan before the first point that is not finite.
   void accept(const controller::Plan& plan) noexcept;
 
+  /// The same of a controller that plans nothing: `command` acts from `time` [s] on, at `speed` [m/s].
+  void accept(const model::Command& command, double time, double speed) noexcept;
+
   /// The controller did not: the command to act from `act_time` [s, clock of the run] on. An `act_time` that
   /// is not finite or runs backwards counts as 0.1 s after the one before; a speed that is not finite counts
   /// as fast.
@@ -60,6 +63,7 @@ class Fallback {
     double speed = 0.0;     ///< [m/s]
     model::Command command;
   };
+  void begin_plan() noexcept;
   void drive_on(double elapsed, double measured_speed) noexcept;
   [[nodiscard]] double steer_along_path() const noexcept;
   [[nodiscard]] double gentle_share() const noexcept;

@@ -14,6 +14,11 @@ bool is_finite(const model::Command& command) noexcept {
   return std::isfinite(command.steer) && std::isfinite(command.throttle);
 }
 
+/// When the command of this cycle acts [s], where the controller does not say.
+double act_time(const model::Measurement& seen, const controller::StepReport& report) noexcept {
+  return std::isnan(report.act_time) ? seen.time + seen.delay : report.act_time;
+}
+
 }  // namespace
 
 Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle) noexcept
@@ -39,7 +44,11 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   switch (answer) {
     case Answer::kDrive:
       result.report.rung = Rung::kController;
-      if (result.plan.size > 0) fallback_.accept(result.plan);
+      if (result.plan.size > 0) {
+        fallback_.accept(result.plan);
+      } else {
+        fallback_.accept(result.command, act_time(seen, result.report), seen.speed);
+      }
       break;
     case Answer::kStopOnRoad:
       result.report.rung = Rung::kStopOnRoad;
@@ -60,9 +69,7 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
 }
 
 void Guard::fall_back(const model::Measurement& seen, controller::StepResult& result) noexcept {
-  const double act_time =
-      std::isnan(result.report.act_time) ? seen.time + seen.delay : result.report.act_time;
-  const Fallback::Answer answer = fallback_.command(act_time, seen);
+  const Fallback::Answer answer = fallback_.command(act_time(seen, result.report), seen);
   result.answer = Answer::kNone;
   result.command = answer.command;
   result.report.rung = answer.rung;

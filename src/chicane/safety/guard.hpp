@@ -20,9 +20,9 @@ namespace chicane::safety {
 ///
 ///     measurement → MeasurementMonitor → controller → Fallback (without an answer) → CommandGate → sent
 ///
-/// Which of them chose the command is in the report: StepReport::rung and `gated`, and nobody else sets these.
-/// Whatever is measured and whatever the controller does, what is sent is finite and inside the vehicle's
-/// range and rate limits. No allocation; bounded time beside the controller's own; one thread.
+/// Which of them chose the command is in the report: StepReport::rung and `gated`, and nobody else sets
+/// these. Whatever is measured and whatever the controller does, what is sent is finite and inside the
+/// vehicle's range and rate limits. No allocation; bounded time beside the controller's own; one thread.
 class Guard {
  public:
   /// Pre: `controller` is not null. `vehicle`: limits of what is sent.

@@ -160,7 +160,8 @@ class UdacityEndpoint::Control {
     frame_.measurement.delay = delay_.value();
     frame_.applied = last_sent_;
     const Clock::time_point now = Clock::now();
-    cycle_.step({.deadline = deadline(), .interval = last_begun_ ? seconds(now - *last_begun_) : 0.0}, frame_);
+    cycle_.step({.deadline = deadline(), .interval = last_begun_ ? seconds(now - *last_begun_) : 0.0},
+                frame_);
     last_begun_ = now;
     last_sent_ = frame_.result.command;
     if (frame_.result.report.gated) ++interventions_;
@@ -398,7 +399,8 @@ bool UdacityEndpoint::is_quiet() const {
 }
 
 Result<ServeSummary> serve(const ServeOptions& options, std::unique_ptr<controller::Controller> controller,
-                           ServeHooks hooks, Endpoint* viewer, std::vector<net::Asset> assets, const std::atomic<bool>& stop) {
+                           ServeHooks hooks, Endpoint* viewer, std::vector<net::Asset> assets,
+                           const std::atomic<bool>& stop) {
   const auto announce = hooks.on_listening;
   const auto end = hooks.on_end;
   Pages pages = std::move(hooks.pages);

@@ -141,7 +141,8 @@ class UdacityEndpoint final : public Endpoint {
 /// `chicane serve`: binds the port and answers simulators until `stop`. `viewer` (may be null) and `assets`
 /// share the port. kIo with the sentence that helps when the port is taken.
 [[nodiscard]] Result<ServeSummary> serve(const ServeOptions& options,
-                                         std::unique_ptr<controller::Controller> controller, ServeHooks hooks, Endpoint* viewer, std::vector<net::Asset> assets,
+                                         std::unique_ptr<controller::Controller> controller, ServeHooks hooks,
+                                         Endpoint* viewer, std::vector<net::Asset> assets,
                                          const std::atomic<bool>& stop);
 
 }  // namespace chicane::wire

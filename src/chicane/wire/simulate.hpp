@@ -30,8 +30,9 @@ struct SimulateOptions {
 };
 
 struct SimulateHooks {
-  std::function<void(const telemetry::Frame&)> on_frame{};       ///< with each answer
-  std::function<void(const telemetry::CompletedLap&)> on_lap{};  ///< when a lap was completed, the last one too
+  std::function<void(const telemetry::Frame&)> on_frame{};  ///< with each answer
+  std::function<void(const telemetry::CompletedLap&)>
+      on_lap{};                                 ///< when a lap was completed, the last one too
   std::function<void(std::string_view)> log{};  ///< one line about the connection or a broken answer
 };
 

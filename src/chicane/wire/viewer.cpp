@@ -199,7 +199,8 @@ void ViewerEndpoint::note_lap() {
 
 void ViewerEndpoint::send_lap(net::ConnectionId id, std::uint32_t subscription,
                               const std::pair<double, std::string>& lap) {
-  server_->send(id, foxglove::message_data(subscription, protocol::to_nanoseconds(lap.first), lap.second), true);
+  server_->send(id, foxglove::message_data(subscription, protocol::to_nanoseconds(lap.first), lap.second),
+                true);
 }
 
 void ViewerEndpoint::send_cadence(Cadence cadence) {

@@ -19,6 +19,10 @@ export function rungInWords(rung: number): Sentence {
       return { severity: 'bad', text: 'No answer: following the last plan, braking gently' };
     case RUNG.BRAKE:
       return { severity: 'bad', text: 'No answer: following the last plan, braking fully' };
+    case RUNG.RETURN_TO_ROAD:
+      return { severity: 'warning', text: 'Returning to the road at walking pace' };
+    case RUNG.STOP_ON_ROAD:
+      return { severity: 'bad', text: 'No plan in time: stopping along the road' };
     default:
       return { severity: 'bad', text: `Unknown rung ${rung}` };
   }

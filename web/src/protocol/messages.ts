@@ -150,6 +150,10 @@ export const RUNG = {
   HOLD_AND_BRAKE: 2,
   /** the same steering, all useful braking */
   BRAKE: 3,
+  /** the controller finds back to the road at walking pace */
+  RETURN_TO_ROAD: 4,
+  /** the controller stops along the road, without a plan in time */
+  STOP_ON_ROAD: 5,
 } as const;
 
 /** Frame.solve_status */

@@ -1,5 +1,6 @@
 import type uPlot from 'uplot';
 import { firstSince } from '../draw/axis';
+import { RUNG } from '../protocol/messages';
 import { Column } from '../state/columns';
 import { plotted } from '../state/plot_view';
 import type { ChartColours } from './plot_colours';
@@ -8,7 +9,8 @@ const HEIGHT = 5; // CSS pixels
 
 /** Severity of a control step: 0 optimal and unchanged, 1 degraded, 2 without an answer of the controller. */
 export function stepSeverity(status: number, rung: number, isGated: number): 0 | 1 | 2 {
-  if (status < 0 || rung >= 2) return 2;
+  const isMild = rung === RUNG.CONTROLLER || rung === RUNG.SHIFTED_PLAN || rung === RUNG.RETURN_TO_ROAD;
+  if (status < 0 || !isMild) return 2;
   return status > 0 || rung > 0 || isGated > 0 ? 1 : 0;
 }
 

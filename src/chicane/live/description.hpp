@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "chicane/path/track.hpp"
+#include "chicane/protocol/ros_messages.hpp"
+#include "chicane/run/closed_loop.hpp"
+
+namespace chicane::live {
+
+/// The road of a run, for viewers and recordings: name, length, lines.
+void describe(const path::Track& track, protocol::Run& run);
+
+/// A run with our simulator, for viewers and recordings; without its limit.
+[[nodiscard]] protocol::Run description(const run::ClosedLoop& loop);
+
+}  // namespace chicane::live

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/live/live_run.hpp"
+
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "chicane/live/assets.hpp"
+#include "chicane/live/description.hpp"
+#include "chicane/live/pages.hpp"
+#include "chicane/protocol/fault_codec.hpp"
+
+namespace chicane::live {
+namespace {
+
+wire::ViewerServices services(run::RunControls& controls) {
+  wire::ViewerServices services;
+  services.pause = [&controls](bool is_paused) -> Result<void> {
+    controls.is_paused = is_paused;
+    return {};
+  };
+  services.step = [&controls]() -> Result<void> {
+    if (!controls.is_paused) return fail(ErrorCode::kInvalidArgument, "the run is not paused");
+    ++controls.steps;
+    return {};
+  };
+  services.reset = [&controls]() -> Result<void> {
+    controls.wants_restart = true;
+    return {};
+  };
+  return services;
+}
+
+/// What viewers are told of a run that begins now.
+protocol::Run live_description(const run::ClosedLoop& loop) {
+  protocol::Run run = description(loop);
+  run.limit = RunLimit::first_answer(loop.track());
+  return run;
+}
+
+}  // namespace
+
+LiveRun::LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop> loop, run::RunControls& controls)
+    : options_{options},
+      controls_{controls},
+      loop_{std::move(loop)},
+      settings_{{.scenario = loop_->scenario(),
+                 .faults = protocol::fault_controls(),
+                 .build = [this](ChosenRun next) { builder_.begin(std::move(next)); },
+                 .built = [this] { return built(); },
+                 .on_building =
+                     [this](const std::string& what) {
+                       viewer_.change_run([what](protocol::Run& run) { run.building = what; });
+                     },
+                 .on_accepted =
+                     [this](const scenario::Scenario& now) {
+                       viewer_.change_run([latency = now.latency, vehicle = now.vehicle](protocol::Run& run) {
+                         run.latency = latency;
+                         run.vehicle = vehicle;
+                       });
+                     }},
+                controls.wishes},
+      viewer_{{.run = live_description(*loop_), .services = services(controls), .parameters = &settings_}},
+      router_{nullptr, &viewer_},
+      faults_{protocol::fault_controls()},
+      builder_{&live_description},
+      limit_{[this](const lap_time::LimitAnswer& news) {
+        if (!news.found && hooks_.say) hooks_.say("no gap to the limit: " + news.why_not);
+        viewer_.set_limit(news);
+      }} {}
+
+LiveRun::~LiveRun() = default;
+
+Result<std::unique_ptr<LiveRun>> LiveRun::create(const LiveRunOptions& options,
+                                                 std::unique_ptr<run::ClosedLoop> loop,
+                                                 run::RunControls& controls) {
+  std::unique_ptr<LiveRun> run(new LiveRun(options, std::move(loop), controls));
+  if (const Result<void> opened = run->open(); !opened) return fail(opened.error());
+  return run;
+}
+
+Result<void> LiveRun::open() {
+  // What the command line says beside the scenario goes the way that viewers' changes go.
+  if (options_.pace) {
+    if (Result<void> set = settings_.set({"run.pace", *options_.pace}); !set) return set;
+  }
+  if (options_.is_manual) {
+    if (Result<void> set = settings_.set({"manual.is_on", true}); !set) return set;
+  }
+  auto server = net::Server::create(options_.server, router_.handlers(live_pages(settings_)), embedded_assets());
+  if (!server) return fail(server.error());
+  server_ = std::move(*server);
+  return {};
+}
+
+protocol::Run LiveRun::description() const { return live_description(*loop_); }
+
+double LiveRun::step_budget() const {
+  return options_.step_budget.value_or(run::RealtimeOptions{}.budget_share * loop_->scenario().control_period);
+}
+
+telemetry::RunSummary LiveRun::run(recording::Recorder* recorder, const LiveHooks& hooks) {
+  hooks_ = hooks;
+  RunOutputs outputs(recorder, viewer_, settings_, limit_, hooks_);
+  limit_.search(loop_->track(), loop_->scenario());
+  telemetry::RunSummary summary = drive(outputs);
+  if (limit_.is_awaited(summary) && !controls_.wants_stop)
+    outputs.say("the limit is still being computed; Ctrl-C does without");
+  limit_.compare(summary, controls_.wants_stop);
+  outputs.record_limit();
+  return summary;
+}
+
+telemetry::RunSummary LiveRun::drive(RunOutputs& outputs) {
+  const run::RealtimeHooks hooks{
+      .on_frame =
+          [&](const telemetry::Frame& frame) {
+            limit_.follow(loop_->scenario(), frame);
+            outputs.frame(frame);
+            note_faults(frame, outputs);
+          },
+      .on_lap = [&](const telemetry::CompletedLap& lap) { outputs.lap(lap); },
+      .on_change = [&](const telemetry::Change& change) { note(change, outputs); }};
+  for (;;) {
+    telemetry::RunSummary summary = run::run_realtime(
+        *loop_, {.step_budget = step_budget(), .stay_at_end = options_.stay_at_end}, controls_, hooks);
+    if (!take_over(outputs)) return summary;
+  }
+}
+
+/// Faults that began or ended by themselves: nobody asked, so nobody has been told.
+void LiveRun::note_faults(const telemetry::Frame& frame, RunOutputs& outputs) {
+  const std::uint32_t changed = frame.active_faults ^ told_faults_;
+  for (std::size_t i = 0; i < faults_.size() && changed != 0U; ++i) {
+    if ((changed >> i & 1U) == 0U) continue;
+    const bool is_on = (frame.active_faults >> i & 1U) != 0U;
+    note({.cycle = frame.cycle + 1,
+          .time = frame.time,
+          .name = faults_[i].key,
+          .value = is_on ? "true" : "false"},
+         outputs);
+  }
+}
+
+void LiveRun::note(const telemetry::Change& change, RunOutputs& outputs) {
+  for (std::size_t i = 0; i < faults_.size(); ++i) {
+    if (faults_[i].key != change.name.view()) continue;
+    const bool is_on = change.value.view() == "true";
+    told_faults_ = (told_faults_ & ~(1U << i)) | (is_on ? 1U << i : 0U);
+  }
+  outputs.change(change);
+}
+
+/// Goes on with the run that the next change begins. False when there is none.
+bool LiveRun::take_over(RunOutputs& outputs) {
+  const telemetry::Change* next = controls_.wishes.front();
+  if (next == nullptr || !next->starts_anew || controls_.wants_stop) return false;
+  std::unique_ptr<BuiltRun> run;
+  {
+    const std::lock_guard lock(mutex_);
+    run = std::move(built_.front());
+    built_.pop_front();
+  }
+  loop_ = std::move(run->loop);
+  limit_.end();  // or its news could come after the description of another road
+  viewer_.set_run(std::move(run->description));
+  outputs.begin(std::move(run->recorded));
+  for (const telemetry::Change& choice : run->choices) note(choice, outputs);
+  controls_.wishes.pop();
+  limit_.search(loop_->track(), loop_->scenario());
+  return true;
+}
+
+/// The network thread: a run that was built is the loop's to take.
+std::optional<Result<void>> LiveRun::built() {
+  auto result = builder_.take();
+  if (!result) return std::nullopt;
+  if (!*result) return fail(result->error());
+  const std::lock_guard lock(mutex_);
+  built_.push_back(std::move(**result));
+  return Result<void>{};
+}
+
+}  // namespace chicane::live

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/live/live_settings.hpp"
+#include "chicane/live/run_builder.hpp"
+#include "chicane/live/run_limit.hpp"
+#include "chicane/live/run_outputs.hpp"
+#include "chicane/net/server.hpp"
+#include "chicane/protocol/ros_messages.hpp"
+#include "chicane/recording/recorder.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "chicane/run/realtime_loop.hpp"
+#include "chicane/telemetry/metrics.hpp"
+#include "chicane/wire/endpoint.hpp"
+#include "chicane/wire/viewer.hpp"
+
+namespace chicane::live {
+
+struct LiveRunOptions {
+  net::ServerOptions server{};  ///< of the dashboard and other viewers
+  std::optional<double> step_budget{};  ///< deadline of a control step [s]; 0: none; default: a share of the period
+  bool stay_at_end = false;             ///< drive on after the last lap until asked to stop
+  std::optional<double> pace{};         ///< run seconds per second of the clock
+  bool is_manual = false;               ///< a person drives from the beginning
+};
+
+/// A run with our simulator, paced by the clock, which people watch and change while it goes on: the loop, its
+/// viewers, recording, limit and settings, and who hands what to whom.
+///
+/// Threads, and what each owns: the thread of run() the loop, the recorder's input and RunOutputs; the network
+/// thread LiveSettings, the viewers and RunBuilder's results; a builder, a searcher of the limit and the
+/// recorder's writer have one each. The network thread hands changes to the loop through RunControls::wishes
+/// and built runs through a queue under the one mutex here, which is held for a pointer's move. A setting that
+/// cannot change while a run goes on starts another one: built beside it, taken over between two cycles.
+class LiveRun {
+ public:
+  /// Opens the port. `controls` belongs to whoever may stop the run, and outlives this. kIo with the sentence
+  /// that helps when the port is taken; kInvalidArgument for a pace out of range.
+  [[nodiscard]] static Result<std::unique_ptr<LiveRun>> create(const LiveRunOptions& options,
+                                                               std::unique_ptr<run::ClosedLoop> loop,
+                                                               run::RunControls& controls);
+  LiveRun(const LiveRun&) = delete;
+  LiveRun& operator=(const LiveRun&) = delete;
+  ~LiveRun();
+
+  [[nodiscard]] std::uint16_t port() const { return server_->port(); }
+  /// The run that begins, for a recording.
+  [[nodiscard]] protocol::Run description() const;
+  /// Deadline of each control step [s]; 0: none.
+  [[nodiscard]] double step_budget() const;
+
+  /// Drives until the end, or until RunControls::wants_stop. `recorder` may be null. The laps of the summary
+  /// are compared with the limit, which is waited for where a lap needs it.
+  [[nodiscard]] telemetry::RunSummary run(recording::Recorder* recorder, const LiveHooks& hooks);
+
+ private:
+  LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop> loop, run::RunControls& controls);
+  [[nodiscard]] Result<void> open();
+  [[nodiscard]] telemetry::RunSummary drive(RunOutputs& outputs);
+  void note_faults(const telemetry::Frame& frame, RunOutputs& outputs);
+  void note(const telemetry::Change& change, RunOutputs& outputs);
+  [[nodiscard]] bool take_over(RunOutputs& outputs);
+  [[nodiscard]] std::optional<Result<void>> built();
+
+  LiveRunOptions options_;
+  run::RunControls& controls_;
+  std::unique_ptr<run::ClosedLoop> loop_;
+  LiveSettings settings_;
+  wire::ViewerEndpoint viewer_;
+  wire::Router router_;
+  const std::vector<protocol::Control> faults_;
+  std::uint32_t told_faults_ = 0;  ///< bits, as viewers know them
+  std::mutex mutex_;
+  std::deque<std::unique_ptr<BuiltRun>> built_;  ///< one for each change that starts anew
+  RunBuilder builder_;                           ///< the network thread's
+  LiveHooks hooks_;
+  RunLimit limit_;                       ///< ends before everything it tells
+  std::unique_ptr<net::Server> server_;  ///< ends first: it calls all of the above
+};
+
+}  // namespace chicane::live

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/live/served_run.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "chicane/live/assets.hpp"
+#include "chicane/live/description.hpp"
+#include "chicane/live/live_settings.hpp"
+#include "chicane/live/pages.hpp"
+#include "chicane/live/run_limit.hpp"
+#include "chicane/wire/viewer.hpp"
+
+namespace chicane::live {
+namespace {
+
+constexpr const char* kUnknownRoad = "the simulator's road is not known: --track names it";
+
+protocol::Run describe_served(const scenario::Scenario& scenario, const controller::Controller& controller,
+                              const std::optional<path::Track>& track) {
+  protocol::Run run;
+  run.mode = "serve";
+  protocol::describe(controller, run);
+  run.preset = scenario.preset;
+  run.latency = scenario.latency;
+  run.control_period = scenario.control_period;
+  run.vehicle = scenario.vehicle;
+  if (track) describe(*track, run);
+  run.limit = track ? RunLimit::first_answer(*track) : lap_time::LimitAnswer{.why_not = kUnknownRoad};
+  return run;
+}
+
+}  // namespace
+
+ServedRun::ServedRun(const net::ServerOptions& server, const scenario::Scenario& scenario,
+                     std::unique_ptr<controller::Controller> controller, std::optional<path::Track> track)
+    : scenario_{scenario},
+      controller_{std::move(controller)},
+      track_{std::move(track)},
+      description_{describe_served(scenario_, *controller_, track_)} {
+  options_.server = server;
+  options_.vehicle = scenario_.vehicle;
+  options_.scenario = scenario_;
+  if (track_) options_.track = &*track_;
+  options_.latency = std::chrono::duration_cast<std::chrono::nanoseconds>(
+      std::chrono::duration<double>(scenario_.latency));
+}
+
+double ServedRun::step_budget() const { return std::chrono::duration<double>(options_.step_budget).count(); }
+
+Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const LiveHooks& hooks,
+                                          const std::function<void(std::uint16_t)>& on_listening,
+                                          const std::atomic<bool>& stop) {
+  run::ChangeQueue changes;
+  LiveSettings settings({.scenario = scenario_, .has_world = false}, changes);
+  wire::ViewerOptions viewing;
+  viewing.run = description_;
+  viewing.parameters = &settings;
+  wire::ViewerEndpoint viewer(std::move(viewing));
+  RunLimit limit([&](const lap_time::LimitAnswer& news) { viewer.set_limit(news); });
+  if (!track_) limit.give_up(kUnknownRoad);
+  RunOutputs outputs(recorder, viewer, settings, limit, hooks);
+  wire::ServeHooks serving;
+  serving.wishes = &changes;
+  serving.on_change = [&](const telemetry::Change& change) { outputs.change(change); };
+  serving.on_frame = [&](const telemetry::Frame& frame) { outputs.frame(frame); };
+  serving.on_lap = [&](const telemetry::CompletedLap& lap) { outputs.lap(lap); };
+  serving.log = [&](std::string_view line) { outputs.say(line); };
+  serving.on_listening = [&](std::uint16_t port) {
+    if (on_listening) on_listening(port);
+    if (track_) limit.search(*track_, scenario_);
+  };
+  serving.on_end = [&] { limit.end(); };
+  serving.pages = live_pages(settings);
+  auto summary =
+      wire::serve(options_, std::move(controller_), std::move(serving), &viewer, embedded_assets(), stop);
+  if (!summary) return summary;
+  if (limit.is_awaited(summary->run) && !stop)
+    outputs.say("the limit is still being computed; Ctrl-C does without");
+  limit.compare(summary->run, stop);
+  outputs.record_limit();
+  return summary;
+}
+
+}  // namespace chicane::live

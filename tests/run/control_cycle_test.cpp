@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/run/control_cycle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "chicane/protocol/library.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "support/alloc_guard.hpp"
+
+namespace chicane::run {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+scenario::Scenario scenario_of(const char* preset) {
+  return protocol::compose({.scenario_file = {}, .settings = {{"preset", preset}, {"laps", "1"}}}).value();
+}
+
+TEST(ControlCycle, DoesOutsideTheLoopWhatItDoesInside) {
+  for (const char* preset : {"default", "weighted", "pid"}) {
+    const scenario::Scenario scenario = scenario_of(preset);
+    const auto loop = std::move(*ClosedLoop::create(scenario));
+    ControlCycle alone(std::move(*make_controller(scenario)), scenario.vehicle);
+    const auto frame = std::make_unique<telemetry::Frame>();
+    while (loop->time() < 20.0) {
+      if (!loop->advance()) continue;
+      frame->measurement = loop->frame().measurement;
+      alone.step({.deadline = Deadline::never(), .interval = scenario.control_period}, *frame);
+      ASSERT_EQ(frame->cycle, loop->frame().cycle);
+      ASSERT_EQ(frame->begins, loop->frame().begins);
+      ASSERT_EQ(frame->result.command.steer, loop->frame().result.command.steer) << preset << frame->cycle;
+      ASSERT_EQ(frame->result.command.throttle, loop->frame().result.command.throttle);
+      ASSERT_EQ(frame->result.report.rung, loop->frame().result.report.rung);
+    }
+  }
+}
+
+TEST(ControlCycle, CountsItsCyclesAndSaysWhereARunBegins) {
+  const scenario::Scenario scenario = scenario_of("pid");
+  ControlCycle cycle(std::move(*make_controller(scenario)), scenario.vehicle);
+  const auto frame = std::make_unique<telemetry::Frame>();
+  const auto step = [&] { cycle.step({.interval = 0.04}, *frame); };
+  step();
+  EXPECT_TRUE(frame->begins);
+  EXPECT_EQ(frame->gate_interval, 0.0) << "before the first command there is none";
+  step();
+  EXPECT_FALSE(frame->begins);
+  EXPECT_EQ(frame->cycle, 1U);
+  EXPECT_EQ(frame->gate_interval, 0.04);
+  cycle.begin(40);
+  step();
+  EXPECT_TRUE(frame->begins);
+  EXPECT_EQ(frame->cycle, 40U);
+}
+
+TEST(ControlCycle, AsksTheLadderWhenNothingWasMeasured) {
+  const scenario::Scenario scenario = scenario_of("default");
+  const auto loop = std::move(*ClosedLoop::create(scenario));
+  ControlCycle cycle(std::move(*make_controller(scenario)), scenario.vehicle);
+  const auto frame = std::make_unique<telemetry::Frame>();
+  while (loop->time() < 20.0) {
+    if (!loop->advance()) continue;
+    frame->measurement = loop->frame().measurement;
+    cycle.step({.interval = 0.04}, *frame);
+  }
+  const double speed = frame->measurement.speed;
+  ASSERT_GT(speed, 20.0);
+  frame->measurement.x = frame->measurement.y = frame->measurement.psi = frame->measurement.speed = kNaN;
+  frame->measurement.waypoint_count = 0;
+  frame->has_measurement = false;
+  double least = 1.0;
+  for (int i = 0; i < 100; ++i) {
+    frame->measurement.time += 0.04;
+    cycle.step({.interval = 0.04}, *frame);
+    ASSERT_TRUE(std::isfinite(frame->result.command.steer));
+    least = std::min(least, frame->result.command.throttle);
+  }
+  EXPECT_LT(least, 0.0) << "a car that is told nothing stops";
+}
+
+TEST(ControlCycle, SendsWhatAPersonWants) {
+  const scenario::Scenario scenario = scenario_of("pid");
+  ControlCycle cycle(std::move(*make_controller(scenario)), scenario.vehicle);
+  const auto frame = std::make_unique<telemetry::Frame>();
+  cycle.step({.manual = model::Command{.steer = 0.1, .throttle = 0.3}}, *frame);
+  EXPECT_TRUE(frame->is_manual);
+  EXPECT_EQ(frame->result.command.steer, 0.1);
+  EXPECT_EQ(frame->manual.throttle, 0.3);
+}
+
+TEST(ControlCycle, AllocatesNothing) {
+  const scenario::Scenario scenario = scenario_of("default");
+  ControlCycle cycle(std::move(*make_controller(scenario)), scenario.vehicle);
+  const auto frame = std::make_unique<telemetry::Frame>();
+  frame->measurement.waypoint_count = 6;
+  for (int i = 0; i < 6; ++i) frame->measurement.waypoints[static_cast<std::size_t>(i)] = {12.0 * i, 0.0};
+  cycle.step({}, *frame);
+  const test::AllocationGuard guard;
+  for (int i = 0; i < 50; ++i) {
+    frame->measurement.time += 0.04;
+    cycle.step({.interval = 0.04}, *frame);
+  }
+  EXPECT_EQ(guard.count(), 0);
+}
+
+}  // namespace
+}  // namespace chicane::run
