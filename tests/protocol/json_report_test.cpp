@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "chicane/base/instruction_set.hpp"
+
 namespace chicane::protocol {
 namespace {
 
@@ -41,7 +43,7 @@ TEST(JsonReport, HasEveryKeyThatIsPromised) {
   for (const char* key :
        {"track", "car", "controller", "preset", "seed", "latency_ms", "completed", "laps_completed",
         "off_track_events", "out_of_track_time_s", "laps", "step_time_us", "solve_time_us", "solver",
-        "fallbacks", "gate_interventions", "deadline_misses", "state_hash"}) {
+        "fallbacks", "gate_interventions", "deadline_misses", "state_hash", "arithmetic"}) {
     EXPECT_TRUE(report.contains(key)) << key;
   }
   for (const char* key : {"lap_time_s", "mean_speed_mps", "top_speed_mps", "top_speed_mph",
@@ -64,6 +66,7 @@ TEST(JsonReport, ConvertsUnits) {
   EXPECT_NEAR(report["laps"][0]["top_speed_mph"].get<double>(), 100.0, 1e-9);
   EXPECT_NEAR(report["step_time_us"]["p50"].get<double>(), 25.0, 1e-9);
   EXPECT_EQ(report["state_hash"], "0000000000000abc");
+  EXPECT_EQ(report["arithmetic"], std::string(arithmetic(chosen_instruction_set())));
   EXPECT_EQ(report["seed"], 3);
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/base/instruction_set.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -100,7 +101,8 @@ std::string to_json(const RunSummary& run) {
       {"deadline_misses", run.deadline_misses},
       {"duration_s", number(run.duration)},
       {"wall_time_s", number(run.wall_time)},
-      {"state_hash", fmt::format("{:016x}", run.state_hash)}};
+      {"state_hash", fmt::format("{:016x}", run.state_hash)},
+      {"arithmetic", arithmetic(chosen_instruction_set())}};
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
