@@ -12,7 +12,7 @@
 int main() {
   using namespace chicane;
   const auto scenario = protocol::compose({.scenario_file = "first-lap", .settings = {{"laps", "1"}}});
-  const auto loop = scenario.and_then(run::ClosedLoop::create);
+  const auto loop = scenario.and_then([](const auto& lap) { return run::ClosedLoop::create(lap); });
   if (!loop) return std::puts(loop.error().message.c_str()), 2;
   const telemetry::RunSummary run = run::run_closed_loop(**loop);
   std::fputs(protocol::to_table(run).c_str(), stdout);
