@@ -261,7 +261,7 @@ def effects(runs):
                 [("default, N dt = 2 s", own, lengths, {}), ("fast-short-step, N = 25", fast, cubic_lengths, {})], logarithmic=True)
     draw_sweeps(runs, figures / "weights.svg", "weight",
                 [("default, weight_lateral", own, laterals, {}), ("fast-short-step, weight_throttle", fast, throttles, {})], logarithmic=True)
-    draw_sweeps(runs, figures / "friction.svg", "grip of the road over that believed",
+    draw_sweeps(runs, figures / "friction.svg", "grip of the road over that of the model",
                 [("udacity", own, frictions, {}), ("road-car", own, frictions, road_car),
                  ("road-car, road 0.7, over grip_share", own, shares, road_car)])
 
