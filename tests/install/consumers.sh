@@ -7,6 +7,8 @@ rm -rf "$work/consumer"
 cmake -G Ninja -S "$source" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
 cmake --build "$work/consumer" >/dev/null
 "$work/consumer/consumer"
+data=$(dirname "$(dirname "$(find "$prefix" -path '*presets/default.yaml')")")
+CHICANE_DATA_DIR=$data "$work/consumer/own_controller" "$work/own_controller.mcap"
 
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name chicane.pc)")
 export PKG_CONFIG_PATH

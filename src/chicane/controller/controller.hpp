@@ -36,7 +36,7 @@ inline constexpr int kRungCount = 6;
 
 /// How one step went.
 struct StepReport {
-  solver::SolveReport solve;  ///< zeroed with status kOptimal for controllers that solve nothing
+  solver::SolveReport solve{.status = solver::SolveStatus::kOptimal};  ///< as it is where nothing is solved
   double act_time = std::numeric_limits<double>::quiet_NaN();  ///< when the command acts [s], clock of the
                                                                ///< run; NaN: measurement time plus its delay
   double lateral_error = 0.0;    ///< of the measured position from the reference line [m], left positive

@@ -37,6 +37,7 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
 
   [[nodiscard]] const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept override {
     result_.report = {};
+    result_.report.solve.status = solver::SolveStatus::kNotFinite;  // until there is an answer
     if (!is_finite(now)) return no_answer(now);
     start_ = roll_forward_.predict(now);  // where the car is when the command acts
     start_time_ = now.time + roll_forward_.compensated();

@@ -176,6 +176,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   bool place_on_line(const model::Measurement& now, const StateEstimator::Prediction& start) noexcept {
     StepReport& report = result_.report;
     report = {};
+    report.solve.status = solver::SolveStatus::kNotFinite;  // until there is an answer
     report.delay = now.delay;
     const road::ReferenceLine& line = road_.line();
     if (line.is_empty() || !std::isfinite(start.state.x + start.state.y + start.state.psi + start.state.vx))
