@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/result.hpp"
+
+/// What can be set: each options struct has a table of its fields with name, unit, range and meaning, beside
+/// the code that uses them. Configuration keys, command line, range checks and docs/configuration.md follow
+/// from these rows.
+namespace chicane {
+
+/// Inside C++ all is SI; outside, every number carries its unit in the key's suffix. SI value = value outside
+/// · factor / divisor.
+struct Unit {
+  std::string_view name;    ///< for people: "m/s", "ms", "deg"; empty for pure numbers
+  std::string_view suffix;  ///< the end of the key: "_mps", "_ms", "_deg"; empty where the name needs none
+  double factor = 1.0;
+  double divisor = 1.0;
+
+  [[nodiscard]] constexpr double to_si(double outside) const noexcept { return outside * factor / divisor; }
+  [[nodiscard]] constexpr double from_si(double si) const noexcept { return si * divisor / factor; }
+};
+
+namespace unit {
+inline constexpr Unit kNone{};
+inline constexpr Unit kMetre{"m", "_m"};
+inline constexpr Unit kSecond{"s", "_s"};
+inline constexpr Unit kMillisecond{"ms", "_ms", 1.0, 1000.0};
+inline constexpr Unit kSpeed{"m/s", "_mps"};
+inline constexpr Unit kAcceleration{"m/s²", "_mps2"};
+inline constexpr Unit kDegree{"deg", "_deg", kPi / 180.0, 1.0};
+inline constexpr Unit kDegreePerSecond{"deg/s", "_degps", kPi / 180.0, 1.0};
+inline constexpr Unit kKilogram{"kg", "_kg"};
+inline constexpr Unit kInertia{"kg m²", "_kgm2"};
+inline constexpr Unit kPowerPerMass{"W/kg", "_wpkg"};
+/// Of weights and gains: shown to people; the key names what is weighed and carries no suffix.
+[[nodiscard]] constexpr Unit per(std::string_view name) noexcept { return {name, "", 1.0, 1.0}; }
+}  // namespace unit
+
+enum class OptionKind { kNumber, kInteger, kBool, kChoice, kText };
+
+/// A number or integer is double, a choice or text std::string.
+using OptionValue = std::variant<double, bool, std::string>;
+
+/// One row: a field of some options struct. Made by option<&PidOptions::integral_gain>(...).
+struct Option {
+  std::string_view name;  ///< of the field, without its unit: "speed_reference"
+  OptionKind kind = OptionKind::kNumber;
+  Unit unit;
+  double minimum = 0.0;  ///< in `unit`, allowed itself; numbers and integers only
+  double maximum = 0.0;
+  std::string_view meaning;                            ///< one sentence
+  std::span<const std::string_view> choices{};         ///< in the order of the enum, where it is one
+  bool may_be_infinite = false;                        ///< beside [minimum, maximum], "inf" means no limit
+  OptionValue (*read)(const void*) = nullptr;          ///< as the field has it: SI, an enum as its number
+  void (*write)(void*, const OptionValue&) = nullptr;  ///< the same way
+
+  [[nodiscard]] constexpr Option or_infinite() const noexcept {
+    Option copy = *this;
+    copy.may_be_infinite = true;
+    return copy;
+  }
+};
+
+namespace detail {
+template <class Pointer>
+struct MemberPointer;
+template <class Struct, class Member>
+struct MemberPointer<Member Struct::*> {
+  using Owner = Struct;
+};
+
+/// The way to a field through members: &PidOptions::speed, &SpeedHoldOptions::speed_gain.
+template <auto First, auto... Rest>
+struct OptionAccess {
+  using Owner = typename MemberPointer<decltype(First)>::Owner;
+  static auto& field(auto& owner) { return ((owner.*First).*....*Rest); }
+  using Field = std::remove_reference_t<decltype(field(std::declval<Owner&>()))>;
+
+  static constexpr OptionKind kind() {
+    if (std::same_as<Field, bool>) return OptionKind::kBool;
+    if (std::same_as<Field, std::string>) return OptionKind::kText;
+    if (std::is_enum_v<Field>) return OptionKind::kChoice;
+    return std::integral<Field> ? OptionKind::kInteger : OptionKind::kNumber;
+  }
+  static OptionValue read(const void* owner) {
+    const Field& value = field(*static_cast<const Owner*>(owner));
+    if constexpr (std::same_as<Field, bool> || std::same_as<Field, std::string>)
+      return value;
+    else
+      return static_cast<double>(value);
+  }
+  static void write(void* owner, const OptionValue& value) {
+    Field& target = field(*static_cast<Owner*>(owner));
+    if constexpr (std::same_as<Field, bool> || std::same_as<Field, std::string>)
+      target = std::get<Field>(value);
+    else if constexpr (std::is_enum_v<Field>)
+      target = static_cast<Field>(static_cast<int>(std::get<double>(value)));
+    else
+      target = static_cast<Field>(std::get<double>(value));
+  }
+};
+}  // namespace detail
+
+/// A number or an integer in [minimum, maximum] `unit`.
+template <auto... Members>
+[[nodiscard]] constexpr Option option(std::string_view name, Unit unit, double minimum, double maximum,
+                                      std::string_view meaning) {
+  using Access = detail::OptionAccess<Members...>;
+  static_assert(Access::kind() == OptionKind::kNumber || Access::kind() == OptionKind::kInteger);
+  return {name, Access::kind(), unit, minimum, maximum, meaning, {}, false, Access::read, Access::write};
+}
+/// A switch or a text.
+template <auto... Members>
+[[nodiscard]] constexpr Option option(std::string_view name, std::string_view meaning) {
+  using Access = detail::OptionAccess<Members...>;
+  static_assert(Access::kind() == OptionKind::kBool || Access::kind() == OptionKind::kText);
+  return {name, Access::kind(), {}, 0.0, 0.0, meaning, {}, false, Access::read, Access::write};
+}
+/// One of `choices`: a text, or an enum counted from 0. They outlive the row.
+template <auto... Members>
+[[nodiscard]] constexpr Option option(std::string_view name, std::span<const std::string_view> choices,
+                                      std::string_view meaning) {
+  using Access = detail::OptionAccess<Members...>;
+  static_assert(Access::kind() == OptionKind::kChoice || Access::kind() == OptionKind::kText);
+  return {name, OptionKind::kChoice, {}, 0.0, 0.0, meaning, choices, false, Access::read, Access::write};
+}
+
+/// The key of an option outside C++: "pid.speed_reference_mps"; without a group "latency_ms".
+[[nodiscard]] std::string option_key(std::string_view group, const Option& option);
+/// For messages: "an integer in [2, 200]", "a number in [0, 500] ms", "one of pid, stanley", "true or false".
+[[nodiscard]] std::string expectation(const Option& option);
+/// "pid.integral_gain: got -1, expected a number in [0, 10] rad/(m s)".
+[[nodiscard]] Error refusal(std::string_view key, std::string_view got, const Option& option);
+
+/// The value in the option's unit; `owner` is the struct that the row was made for, here and below.
+[[nodiscard]] OptionValue get(const Option& option, const void* owner);
+/// Fails with refusal(), and changes nothing, for a wrong type or a value out of range; `key` is what the
+/// message calls it.
+[[nodiscard]] Result<void> set(const Option& option, std::string_view key, void* owner,
+                               const OptionValue& value);
+
+/// Fails with refusal() for the first option that is out of its range; not-a-number is.
+[[nodiscard]] Result<void> check_options(std::string_view group, std::span<const Option> options,
+                                         const void* owner);
+
+}  // namespace chicane

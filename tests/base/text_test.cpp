@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/base/text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <charconv>
+#include <cstdint>
+#include <limits>
+
+#include "chicane/base/random.hpp"
+
+namespace chicane {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(Text, WritesNumbersAsPeopleDo) {
+  EXPECT_EQ(number_text(0.0), "0");
+  EXPECT_EQ(number_text(-0.0), "-0");
+  EXPECT_EQ(number_text(0.1), "0.1");
+  EXPECT_EQ(number_text(1e6), "1000000");
+  EXPECT_EQ(number_text(1e15), "1000000000000000");
+  EXPECT_EQ(number_text(1e16), "1e+16");
+  EXPECT_EQ(number_text(1e-4), "0.0001");
+  EXPECT_EQ(number_text(1e-5), "1e-05");
+  EXPECT_EQ(number_text(-kInfinity), "-inf");
+  EXPECT_EQ(number_text(std::numeric_limits<double>::quiet_NaN()), "nan");
+}
+
+TEST(Text, EveryNumberReadsBackBitForBit) {
+  Random random(3);
+  for (int i = 0; i < 10000; ++i) {
+    const auto value = std::bit_cast<double>(random.bits());
+    if (value != value) continue;
+    const std::string text = number_text(value);
+    double read = 0.0;
+    std::from_chars(text.data(), text.data() + text.size(), read);
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(read), std::bit_cast<std::uint64_t>(value)) << text;
+  }
+}
+
+TEST(Text, RoundsToDigits) {
+  EXPECT_EQ(number_text(70.00000000000001, 6), "70");
+  EXPECT_EQ(number_text(200.0 / 3.0, 3), "66.7");
+  EXPECT_EQ(number_text(0.05, 6), "0.05");
+}
+
+TEST(Text, QuotesNoMoreThanFits) {
+  EXPECT_EQ(printable(""), "nothing");
+  EXPECT_EQ(printable("a\nb\x1b"), "a?b?");
+  EXPECT_EQ(printable(std::string(100, 'x')), std::string(60, 'x') + "…");
+}
+
+}  // namespace
+}  // namespace chicane
