@@ -86,7 +86,8 @@ Times time_whole_step(const scenario::Scenario& scenario, const std::vector<Cycl
 }
 
 Times time_road(const scenario::Scenario& scenario, const std::vector<Cycle>& cycles) {
-  const controller::TrackingMpcOptions& options = scenario.tracking_mpc;
+  const controller::TrackingMpcOptions& options =
+      std::get<controller::TrackingMpcOptions>(scenario.controllers);
   road::Road road({.half_width = options.assumed_half_width,
                    .smoothing_width = options.smoothing_width,
                    .remember_waypoints = options.remember_waypoints,

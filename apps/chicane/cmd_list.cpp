@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "chicane/controller/registry.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/sim/fault.hpp"
@@ -22,20 +23,13 @@ constexpr std::array<std::pair<std::string_view, Shelf>, 4> kShelves{{{"presets"
                                                                       {"cars", Shelf::kCar},
                                                                       {"scenarios", Shelf::kScenario}}};
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kControllers{
-    {{"tracking-mpc", "ours: arc-length reference, yaw lag, commands in flight, planned speed"},
-     {"cubic-mpc", "the one the write-ups describe: kinematic bicycle, cubic in the car's frame"},
-     {"pid", "steering on the cross-track error"},
-     {"pure-pursuit", "steering along the circle through a point ahead"},
-     {"stanley", "steering by heading error and front-axle cross-track error"}}};
-
 void print_shelf(Shelf shelf) {
   for (const protocol::Entry& entry : protocol::entries(shelf))
     fmt::print("{:<18} {}\n", entry.name, entry.description);
 }
 
 void print_controllers() {
-  for (const auto& [name, description] : kControllers) fmt::print("{:<18} {}\n", name, description);
+  for (const auto& kind : controller::Registry::kinds()) fmt::print("{:<18} {}\n", kind.name, kind.meaning);
 }
 
 std::string default_of(const Parameter& parameter) {
@@ -43,9 +37,9 @@ std::string default_of(const Parameter& parameter) {
 }
 
 std::string range_of(const Parameter& parameter) {
-  switch (parameter.kind()) {
+  switch (parameter.option.kind) {
     case protocol::Kind::kChoice:
-      return fmt::format("{}", fmt::join(parameter.choices, ", "));
+      return fmt::format("{}", fmt::join(parameter.option.choices, ", "));
     case protocol::Kind::kBool:
       return "true, false";
     case protocol::Kind::kText:
@@ -54,14 +48,14 @@ std::string range_of(const Parameter& parameter) {
     case protocol::Kind::kInteger:
       break;
   }
-  return fmt::format("{} … {}{}", parameter.minimum, parameter.maximum,
-                     parameter.may_be_infinite ? ", inf" : "");
+  return fmt::format("{} … {}{}", parameter.option.minimum, parameter.option.maximum,
+                     parameter.option.may_be_infinite ? ", inf" : "");
 }
 
 void print_parameters() {
   for (const Parameter& parameter : protocol::list()) {
-    fmt::print("{:<42} {:<14} {:<13} {}\n", parameter.key, default_of(parameter), parameter.unit.name,
-               parameter.meaning);
+    fmt::print("{:<42} {:<14} {:<13} {}\n", parameter.key, default_of(parameter), parameter.option.unit.name,
+               parameter.option.meaning);
   }
 }
 
@@ -77,17 +71,15 @@ void print_page() {
       "Later layers win: the defaults below, the car's file, the preset (with the presets it builds on by "
       "`preset: NAME`), the\n"
       "scenario file, the command line.\n");
-  std::string group = "-";
+  std::string_view group = "-";
   for (const Parameter& parameter : protocol::list()) {
-    const std::size_t dot = parameter.key.find('.');
-    const std::string own(dot == std::string_view::npos ? "" : parameter.key.substr(0, dot));
-    if (own != group) {
+    if (parameter.group != group) {
+      group = parameter.group;
       fmt::print("\n## {}\n\n| key | default | unit | range | meaning |\n|---|---|---|---|---|\n",
-                 own.empty() ? "The run" : own);
-      group = own;
+                 group.empty() ? "The run" : group);
     }
-    fmt::print("| `{}` | {} | {} | {} | {} |\n", parameter.key, default_of(parameter), parameter.unit.name,
-               range_of(parameter), parameter.meaning);
+    fmt::print("| `{}` | {} | {} | {} | {} |\n", parameter.key, default_of(parameter),
+               parameter.option.unit.name, range_of(parameter), parameter.option.meaning);
   }
 }
 

@@ -3,9 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <string>
-
+#include "chicane/base/text.hpp"
+#include "chicane/controller/registry.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
@@ -21,11 +20,14 @@ Result<scenario::Scenario> experiment(const Options& options) {
     scenario->faults.push_back(*event);
   }
   if (options.speed_mps.empty()) return scenario;
-  std::string group = scenario->controller;
-  std::replace(group.begin(), group.end(), '-', '_');
-  const bool has_limit = group == "tracking_mpc";  // plans its own speed below a limit
-  const std::string key = fmt::format("{}.{}", group, has_limit ? "speed_limit_mps" : "speed_reference_mps");
-  const Result<void> done = protocol::set_text(*scenario, key, options.speed_mps);
+  const auto* driver = controller::Registry::find(scenario->controller);
+  if (driver->speed_option.empty()) {
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("--speed-mps: got {}, expected none: {} has no speed to set",
+                            printable(options.speed_mps), driver->name));
+  }
+  const protocol::Parameter* row = protocol::find_option(driver->name, driver->speed_option);
+  const Result<void> done = protocol::set_text(*scenario, row->key, options.speed_mps);
   if (!done) return fail(done.error());
   return scenario;
 }

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/base/text.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/version.hpp"
@@ -47,8 +48,7 @@ void add_set(CLI::App& command, Options& options) {
     for (const std::string& text : texts) {
       const std::size_t equals = text.find('=');
       if (equals == std::string::npos || equals == 0) {
-        throw CLI::ValidationError("--set",
-                                   fmt::format("got {}, expected key=value", protocol::quoted(text)));
+        throw CLI::ValidationError("--set", fmt::format("got {}, expected key=value", printable(text)));
       }
       options.settings.emplace_back(text.substr(0, equals), text.substr(equals + 1));
     }
@@ -343,7 +343,7 @@ std::string command_fault(int count, const char* const* words) {
   for (const Command& command : commands()) names.push_back(command.name);
   if (word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end()) return "";
   const std::string_view best = protocol::nearest(word, names);
-  return fmt::format("chicane: got the unknown command {}, expected one of {}{}", protocol::quoted(word),
+  return fmt::format("chicane: got the unknown command {}, expected one of {}{}", printable(word),
                      fmt::join(names, ", "), best.empty() ? "" : fmt::format(" (did you mean {}?)", best));
 }
 

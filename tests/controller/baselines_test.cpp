@@ -153,7 +153,8 @@ TEST(Baselines, DoNotBelieveASensorThatJumps) {
 TEST(Baselines, RefuseOptionsOutOfRangeByName) {
   PidOptions pid;
   pid.integral_gain = -1.0;
-  EXPECT_EQ(make_pid(pid, kCar).error().message, "pid.integral_gain: got -1, expected 0 to 10");
+  EXPECT_EQ(make_pid(pid, kCar).error().message,
+            "pid.integral_gain: got -1, expected a number in [0, 10] rad/(m s)");
   PurePursuitOptions pursuit;
   pursuit.lookahead_min = 0.0;
   EXPECT_NE(make_pure_pursuit(pursuit, kCar).error().message.find("pure_pursuit.lookahead_min"),

@@ -191,7 +191,7 @@ TEST(MinimumTime, RefusesWhatHasNoLimitAndSaysWhy) {
   EXPECT_NE(open.error().message.find("strip: the road is open"), std::string::npos);
 
   model::VehicleParams wide = car;
-  wide.track_width = 12.0;
+  wide.track_width = 10.0;  // and the tyres: more than the road
   const Result<Limit> narrow = find_limit(circle(60.0), wide);
   ASSERT_FALSE(narrow);
   EXPECT_NE(narrow.error().message.find("10.00 m wide"), std::string::npos) << narrow.error().message;

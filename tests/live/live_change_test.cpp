@@ -329,8 +329,8 @@ TEST(LiveSettings, MayBeSetWhileTheRunGoesOn) {
   control.join();
   told += settings.applied().size();
   EXPECT_EQ(static_cast<int>(told), sent);
-  EXPECT_DOUBLE_EQ(loop->scenario().tracking_mpc.weight_lateral,
-                   settings.scenario().tracking_mpc.weight_lateral);
+  EXPECT_DOUBLE_EQ(std::get<controller::TrackingMpcOptions>(loop->scenario().controllers).weight_lateral,
+                   std::get<controller::TrackingMpcOptions>(settings.scenario().controllers).weight_lateral);
 }
 
 }  // namespace

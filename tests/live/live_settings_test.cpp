@@ -169,7 +169,7 @@ TEST(LiveSettings, StartAnewWithAnotherTrackAndKeepWhatWasSet) {
   ASSERT_TRUE(live.settings.set({"track", std::string("oval")}));
   ASSERT_EQ(live.started.size(), 1U);
   EXPECT_EQ(live.started[0].scenario.track, "oval");
-  EXPECT_EQ(live.started[0].scenario.tracking_mpc.grip_share, 0.5);
+  EXPECT_EQ(std::get<controller::TrackingMpcOptions>(live.started[0].scenario.controllers).grip_share, 0.5);
   EXPECT_EQ(live.building, "track = oval");
   EXPECT_TRUE(live.settings.complaints().empty());
   EXPECT_EQ(live.wishes.front(), nullptr);  // the run before goes on
@@ -194,8 +194,9 @@ TEST(LiveSettings, TakeAPresetsSettingsButKeepTheWorld) {
   live.end_of_build();
   const scenario::Scenario& now = live.settings.scenario();
   EXPECT_EQ(now.controller, "cubic-mpc");
-  EXPECT_EQ(now.cubic_mpc.horizon_steps, 7);
-  EXPECT_EQ(now.tracking_mpc.grip_share, scenario::Scenario{}.tracking_mpc.grip_share);
+  EXPECT_EQ(std::get<controller::CubicMpcOptions>(now.controllers).horizon_steps, 7);
+  EXPECT_EQ(std::get<controller::TrackingMpcOptions>(now.controllers).grip_share,
+            controller::TrackingMpcOptions{}.grip_share);
   EXPECT_EQ(now.latency, 0.05);
   EXPECT_EQ(now.track, "oval");
   EXPECT_EQ(now.seed, 7U);
@@ -353,14 +354,16 @@ std::string another_value(const protocol::Parameter& row, const scenario::Scenar
   if (row.key == "car") return "road-car";
   const protocol::Value now = protocol::get(scenario, row);
   if (const auto* flag = std::get_if<bool>(&now)) return *flag ? "false" : "true";
-  if (row.kind() == protocol::Kind::kText) return "something else";
-  if (row.kind() == protocol::Kind::kChoice)
-    return std::string(row.choices[std::get<std::string>(now) == row.choices[1] ? 0 : 1]);
-  if (row.kind() == protocol::Kind::kInteger)
-    return std::get<double>(now) == row.minimum + 1.0 ? std::to_string(static_cast<int>(row.minimum) + 2)
-                                                      : std::to_string(static_cast<int>(row.minimum) + 1);
+  if (row.option.kind == protocol::Kind::kText) return "something else";
+  if (row.option.kind == protocol::Kind::kChoice)
+    return std::string(row.option.choices[std::get<std::string>(now) == row.option.choices[1] ? 0 : 1]);
+  if (row.option.kind == protocol::Kind::kInteger)
+    return std::get<double>(now) == row.option.minimum + 1.0
+               ? std::to_string(static_cast<int>(row.option.minimum) + 2)
+               : std::to_string(static_cast<int>(row.option.minimum) + 1);
   scenario::Scenario other = scenario;
-  EXPECT_TRUE(protocol::set(other, row, row.minimum + (row.maximum - row.minimum) / 7.0)) << row.key;
+  EXPECT_TRUE(protocol::set(other, row, row.option.minimum + (row.option.maximum - row.option.minimum) / 7.0))
+      << row.key;
   return protocol::get_text(other, row);
 }
 

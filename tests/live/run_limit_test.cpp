@@ -74,8 +74,8 @@ TEST(RunLimit, SaysWhyThereIsNone) {
   limit.compare(run, kGoOn);
   EXPECT_EQ(run.why_no_limit, "nobody knows the road");
 
-  scenario::Scenario wide = on("oval");
-  wide.vehicle.track_width = 40.0;
+  scenario::Scenario wide = on("lakeside");
+  wide.vehicle.track_width = 10.0;
   limit.search(*run::make_track(wide), wide);
   limit.compare(run, kGoOn);
   EXPECT_NE(run.why_no_limit.find("the road is"), std::string::npos) << run.why_no_limit;

@@ -105,20 +105,21 @@ TEST_F(Library, LaterLayersWin) {
   EXPECT_EQ(scenario->controller, "cubic-mpc");
   EXPECT_EQ(scenario->laps, 5);
   EXPECT_EQ(scenario->seed, 4u);
-  EXPECT_EQ(scenario->cubic_mpc.horizon_steps, 11);
-  EXPECT_NEAR(scenario->cubic_mpc.speed_reference, 26.8224, 1e-12);
+  EXPECT_EQ(std::get<controller::CubicMpcOptions>(scenario->controllers).horizon_steps, 11);
+  EXPECT_NEAR(std::get<controller::CubicMpcOptions>(scenario->controllers).speed_reference, 26.8224, 1e-12);
   scenario = compose({file, {{"preset", "weighted"}}});
   ASSERT_TRUE(scenario) << scenario.error().message;
   EXPECT_EQ(scenario->preset, "weighted");
-  EXPECT_EQ(scenario->cubic_mpc.horizon_steps, 9);
+  EXPECT_EQ(std::get<controller::CubicMpcOptions>(scenario->controllers).horizon_steps, 9);
 }
 
 TEST_F(Library, APresetMayBuildOnAnother) {
   const std::string file = write("mine.yaml", "preset: sixty-mph\ncubic_mpc.horizon_steps: 8\n");
   const Result<Scenario> scenario = compose({"", {{"preset", file}}});
   ASSERT_TRUE(scenario) << scenario.error().message;
-  EXPECT_EQ(scenario->cubic_mpc.horizon_steps, 8);
-  EXPECT_EQ(scenario->cubic_mpc.latency_handling, controller::LatencyHandling::kPositionOnly);
+  EXPECT_EQ(std::get<controller::CubicMpcOptions>(scenario->controllers).horizon_steps, 8);
+  EXPECT_EQ(std::get<controller::CubicMpcOptions>(scenario->controllers).latency_handling,
+            controller::LatencyHandling::kPositionOnly);
 }
 
 TEST_F(Library, PresetsThatBuildOnThemselvesEnd) {

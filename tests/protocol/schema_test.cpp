@@ -35,30 +35,44 @@ consteval long field_count() {
   return sizeof...(Fields);
 }
 long row_count(std::string_view group) {
-  return std::count_if(list().begin(), list().end(),
-                       [&](const Parameter& p) { return p.key.starts_with(group); });
+  return std::count_if(list().begin(), list().end(), [&](const Parameter& p) { return p.group == group; });
 }
 
 TEST(Schema, EveryFieldOfEveryOptionsStructHasARow) {
-  constexpr long kSpeedHold =
-      field_count<controller::SpeedHoldOptions>() - 1;  // nested: its fields instead of itself
-  EXPECT_EQ(row_count("tracking_mpc."), field_count<controller::TrackingMpcOptions>());
-  EXPECT_EQ(row_count("cubic_mpc."), field_count<controller::CubicMpcOptions>());
-  EXPECT_EQ(row_count("pid."), field_count<controller::PidOptions>() + kSpeedHold);
-  EXPECT_EQ(row_count("pure_pursuit."), field_count<controller::PurePursuitOptions>() + kSpeedHold);
-  EXPECT_EQ(row_count("stanley."), field_count<controller::StanleyOptions>() + kSpeedHold);
-  EXPECT_EQ(row_count("vehicle."), field_count<model::VehicleParams>());
-  EXPECT_EQ(row_count("plant_options."), field_count<scenario::PlantOptions>());
-  EXPECT_EQ(row_count("sensor."), field_count<sim::SensorOptions>());
+  // A nested struct's fields stand in the place of itself.
+  constexpr long kSpeedHold = field_count<controller::SpeedHoldOptions>() - 1;
+  controller::Registry::for_each([]<class Entry>() {
+    using Options = typename Entry::Options;
+    const long nested = requires(Options options) { options.speed.speed_gain; }
+    ? kSpeedHold : 0;
+    EXPECT_EQ(row_count(controller::kOptionGroup<Entry>), field_count<Options>() + nested) << Entry::kName;
+  });
+  EXPECT_EQ(row_count("vehicle"), field_count<model::VehicleParams>());
+  EXPECT_EQ(row_count("plant_options"), field_count<sim::PlantDeviation>());
+  EXPECT_EQ(row_count("sensor"), field_count<sim::SensorOptions>());
 }
 
 TEST(Schema, KeysAreUniqueAndEndWithTheirUnit) {
   std::set<std::string_view> keys;
   for (const Parameter& parameter : list()) {
     EXPECT_TRUE(keys.insert(parameter.key).second) << parameter.key;
-    EXPECT_TRUE(parameter.key.ends_with(parameter.unit.suffix)) << parameter.key;
-    EXPECT_TRUE(parameter.meaning.ends_with(".")) << parameter.key;
+    EXPECT_TRUE(parameter.key.ends_with(parameter.option.unit.suffix)) << parameter.key;
+    EXPECT_TRUE(parameter.option.meaning.ends_with(".")) << parameter.key;
     EXPECT_EQ(find(parameter.key), &parameter);
+  }
+}
+
+TEST(Schema, EveryControllerOfTheRegistryCanBeChosenAndSet) {
+  const Parameter& controller = *find("controller");
+  for (const controller::Registry::Kind& kind : controller::Registry::kinds()) {
+    Scenario scenario;
+    EXPECT_TRUE(set(scenario, controller, std::string(kind.name))) << kind.name;
+    const auto first = std::find_if(list().begin(), list().end(),
+                                    [&](const Parameter& p) { return p.controller == kind.name; });
+    ASSERT_NE(first, list().end()) << kind.name;
+    EXPECT_EQ(first->group, kind.group);
+    EXPECT_TRUE(first->key.starts_with(std::string(kind.group) + "." + std::string(first->option.name)));
+    EXPECT_EQ(find_option(kind.name, first->option.name), &*first);
   }
 }
 
@@ -78,7 +92,8 @@ TEST(Schema, ConvertsUnitsAtTheEdge) {
   ASSERT_TRUE(set_text(scenario, "cubic_mpc.latency_handling", "measured"));
   EXPECT_EQ(scenario.latency, 0.04);
   EXPECT_EQ(scenario.vehicle.steer_limit, 0.4363323129985824);
-  EXPECT_EQ(scenario.cubic_mpc.latency_handling, controller::LatencyHandling::kMeasured);
+  EXPECT_EQ(std::get<controller::CubicMpcOptions>(scenario.controllers).latency_handling,
+            controller::LatencyHandling::kMeasured);
   EXPECT_EQ(get_text(scenario, *find("latency_ms")), "40");
   EXPECT_EQ(get_text(scenario, *find("vehicle.steer_limit_deg")), "25");
   EXPECT_EQ(get_text(scenario, *find("cubic_mpc.latency_handling")), "measured");
@@ -87,16 +102,16 @@ TEST(Schema, ConvertsUnitsAtTheEdge) {
 
 // Some value in range for every kind of parameter.
 Value any_value(const Parameter& parameter, Random& random) {
-  switch (parameter.kind()) {
+  switch (parameter.option.kind) {
     case Kind::kNumber:
-      return random.uniform(parameter.minimum, parameter.maximum);
+      return random.uniform(parameter.option.minimum, parameter.option.maximum);
     case Kind::kInteger:
-      return std::floor(random.uniform(parameter.minimum, parameter.maximum));
+      return std::floor(random.uniform(parameter.option.minimum, parameter.option.maximum));
     case Kind::kBool:
       return random.uniform() < 0.5;
     case Kind::kChoice:
-      return std::string(parameter.choices[static_cast<std::size_t>(
-          random.uniform() * static_cast<double>(parameter.choices.size()))]);
+      return std::string(parameter.option.choices[static_cast<std::size_t>(
+          random.uniform() * static_cast<double>(parameter.option.choices.size()))]);
     case Kind::kText:
       break;
   }
@@ -163,14 +178,14 @@ TEST(Schema, RefusesTheWrongType) {
 TEST(Schema, AWrongTypeOfValueIsAnErrorForEveryParameter) {
   for (const Parameter& parameter : list()) {
     Scenario scenario;
-    const bool is_number = parameter.kind() == Kind::kNumber || parameter.kind() == Kind::kInteger;
-    if (parameter.kind() != Kind::kBool) {
+    const bool is_number = parameter.option.kind == Kind::kNumber || parameter.option.kind == Kind::kInteger;
+    if (parameter.option.kind != Kind::kBool) {
       EXPECT_FALSE(set(scenario, parameter, true)) << parameter.key;
     }
     if (!is_number) {
       EXPECT_FALSE(set(scenario, parameter, 1.0)) << parameter.key;
     }
-    if (parameter.kind() != Kind::kText) {
+    if (parameter.option.kind != Kind::kText) {
       EXPECT_FALSE(set(scenario, parameter, std::string("?"))) << parameter.key;
     }
   }
@@ -204,7 +219,7 @@ TEST(Schema, ReadsAndWritesPointsInEveryLocale) {
     if (std::setlocale(LC_ALL, name) == nullptr) continue;
     Scenario scenario;
     EXPECT_TRUE(set_text(scenario, "cubic_mpc.step_length_s", "0.025"));
-    EXPECT_EQ(scenario.cubic_mpc.step_length, 0.025);
+    EXPECT_EQ(std::get<controller::CubicMpcOptions>(scenario.controllers).step_length, 0.025);
     EXPECT_EQ(get_text(scenario, *find("cubic_mpc.step_length_s")), "0.025");
   }
   std::setlocale(LC_ALL, before.c_str());
@@ -213,9 +228,10 @@ TEST(Schema, ReadsAndWritesPointsInEveryLocale) {
 TEST(Schema, DelayInsideTheModelMustBeOneStep) {
   Scenario scenario;
   scenario.controller = "cubic-mpc";
-  scenario.cubic_mpc.latency_handling = controller::LatencyHandling::kInsideModel;
+  std::get<controller::CubicMpcOptions>(scenario.controllers).latency_handling =
+      controller::LatencyHandling::kInsideModel;
   EXPECT_TRUE(contradictions(scenario).empty());
-  scenario.cubic_mpc.step_length = 0.05;
+  std::get<controller::CubicMpcOptions>(scenario.controllers).step_length = 0.05;
   ASSERT_EQ(contradictions(scenario).size(), 1u);
   EXPECT_EQ(contradictions(scenario)[0].key, "cubic_mpc.latency_ms");
   scenario.controller = "pid";  // then nobody is misled by it

@@ -133,7 +133,7 @@ TEST(YamlCodec, ReadsNestedDottedRosAndJson) {
                            "cubic_mpc:\r\n  horizon_steps: 20\r\n"}) {
     const Result<Scenario> scenario = load(text, "f");
     ASSERT_TRUE(scenario) << scenario.error().message;
-    EXPECT_EQ(scenario->cubic_mpc.horizon_steps, 20) << text;
+    EXPECT_EQ(std::get<controller::CubicMpcOptions>(scenario->controllers).horizon_steps, 20) << text;
   }
 }
 
@@ -168,15 +168,16 @@ TEST(YamlCodec, WhatItWritesItReadsBack) {
     Scenario scenario;
     for (const Parameter& parameter : list()) {
       if (random.uniform() < 0.5 || parameter.key == "preset" || parameter.key == "controller") continue;
-      if (parameter.kind() == Kind::kNumber || parameter.kind() == Kind::kInteger) {
-        const double value = random.uniform(parameter.minimum, parameter.maximum);
-        ASSERT_TRUE(set(scenario, parameter, parameter.kind() == Kind::kInteger ? std::floor(value) : value));
-      } else if (parameter.kind() == Kind::kText) {
+      if (parameter.option.kind == Kind::kNumber || parameter.option.kind == Kind::kInteger) {
+        const double value = random.uniform(parameter.option.minimum, parameter.option.maximum);
+        ASSERT_TRUE(
+            set(scenario, parameter, parameter.option.kind == Kind::kInteger ? std::floor(value) : value));
+      } else if (parameter.option.kind == Kind::kText) {
         ASSERT_TRUE(set(scenario, parameter, std::string("a \"b\\ #: ö\n\tc")));
-      } else if (parameter.kind() == Kind::kBool) {
+      } else if (parameter.option.kind == Kind::kBool) {
         ASSERT_TRUE(set(scenario, parameter, random.uniform() < 0.5));
       } else {
-        ASSERT_TRUE(set(scenario, parameter, std::string(parameter.choices.back())));
+        ASSERT_TRUE(set(scenario, parameter, std::string(parameter.option.choices.back())));
       }
     }
     const std::string text = write_document(scenario, "written by a test,\nin two lines");
@@ -199,9 +200,10 @@ TEST(YamlCodec, WritesOnlyWhatDiffers) {
 TEST(YamlCodec, WritesAPresetThatBuildsOnAnother) {
   scenario::Scenario base;
   base.preset = "sixty-mph";
-  base.cubic_mpc.horizon_steps = 7;
+  std::get<controller::CubicMpcOptions>(base.controllers).horizon_steps = 7;
   scenario::Scenario changed = base;
-  changed.cubic_mpc.horizon_steps = 10;  // a default again, but not the preset's
+  std::get<controller::CubicMpcOptions>(changed.controllers).horizon_steps =
+      10;  // a default again, but not the preset's
   changed.latency = 0.05;
   EXPECT_EQ(write_preset(changed, base, "Mine"),
             "# Mine\npreset: \"sixty-mph\"\ntrack: \"lakeside\"\ncar: \"udacity\"\nlatency_ms: 50\n"

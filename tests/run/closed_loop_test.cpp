@@ -106,7 +106,7 @@ TEST(ClosedLoop, RefusesWhatItCannotBuildAndNamesIt) {
   scenario.controller = "crystal-ball";
   const auto controller = ClosedLoop::create(scenario);
   ASSERT_FALSE(controller);
-  EXPECT_NE(controller.error().message.find("controller: got \"crystal-ball\""), std::string::npos);
+  EXPECT_NE(controller.error().message.find("controller: got crystal-ball"), std::string::npos);
   scenario = scenario_of("udacity", "lakeside", 1);
   scenario.track = "nowhere";
   const auto track = ClosedLoop::create(scenario);

@@ -70,6 +70,12 @@ struct Option {
   }
 };
 
+/// Two options of a struct that are each in range and exclude each other.
+struct OptionContradiction {
+  std::string_view option;  ///< the one to change: Option::name
+  std::string message;      ///< "got 50 ms, expected ..."
+};
+
 namespace detail {
 template <class Pointer>
 struct MemberPointer;

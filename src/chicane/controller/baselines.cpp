@@ -2,13 +2,14 @@
 #include "chicane/controller/baselines.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/explain.hpp"
-#include "chicane/controller/option_range.hpp"
 #include "chicane/controller/speed_hold.hpp"
 #include "chicane/controller/tunable.hpp"
 #include "chicane/path/path.hpp"
@@ -246,44 +247,67 @@ class StanleyLaw {
   double front_axle_ = 0.0;
 };
 
-Result<void> check(const SpeedHoldOptions& speed, const model::VehicleParams& vehicle) {
-  if (const auto valid = model::validate(vehicle); !valid) return fail(valid.error());
-  return check_ranges({{"speed.speed_reference", speed.speed_reference, 0.0, 60.0},
-                       {"speed.speed_gain", speed.speed_gain, 0.0, 10.0},
-                       {"speed.lateral_acceleration_limit", speed.lateral_acceleration_limit, 0.1, 100.0}});
+template <class Entry, class Law>
+Result<std::unique_ptr<Controller>> make(const typename Law::Options& options,
+                                         const model::VehicleParams& vehicle) {
+  if (const auto valid = check<Entry>(options, vehicle); !valid) return fail(valid.error());
+  return std::make_unique<Baseline<Law>>(Entry::kName, options, vehicle);
 }
 
-template <class Law>
-Result<std::unique_ptr<Controller>> make(std::string_view name, const typename Law::Options& options,
-                                         const model::VehicleParams& vehicle) {
-  if (const auto valid = check(options.speed, vehicle); !valid) return fail(valid.error());
-  return std::make_unique<Baseline<Law>>(name, options, vehicle);
+/// The rows of a law, and behind them those of its speed hold, which is at `Speed`.
+template <auto Speed, std::size_t N>
+constexpr std::array<Option, N + 3> with_speed_hold(const std::array<Option, N>& law) {
+  std::array<Option, N + 3> all{};
+  std::copy(law.begin(), law.end(), all.begin());
+  all[N] = option<Speed, &SpeedHoldOptions::speed_reference>("speed_reference", unit::kSpeed, 0, 60,
+                                                             "Speed to hold.");
+  all[N + 1] = option<Speed, &SpeedHoldOptions::speed_gain>("speed_gain", unit::per("s/m"), 0, 10,
+                                                            "Throttle for the speed error.");
+  all[N + 2] = option<Speed, &SpeedHoldOptions::lateral_acceleration_limit>(
+      "lateral_acceleration_limit", unit::kAcceleration, 0.1, 100,
+      "Slows where the curve would ask for more.");
+  return all;
 }
+
+constexpr auto kPidOptions = with_speed_hold<&PidOptions::speed>(std::array{
+    option<&PidOptions::proportional_gain>("proportional_gain", unit::per("rad/m"), 0, 10,
+                                           "Steering for the cross-track error."),
+    option<&PidOptions::integral_gain>("integral_gain", unit::per("rad/(m s)"), 0, 10,
+                                       "Steering for its integral."),
+    option<&PidOptions::derivative_gain>("derivative_gain", unit::per("rad s/m"), 0, 10,
+                                         "Steering for its rate."),
+});
+constexpr auto kPurePursuitOptions = with_speed_hold<&PurePursuitOptions::speed>(std::array{
+    option<&PurePursuitOptions::lookahead_time>("lookahead_time", unit::kSecond, 0, 5,
+                                                "Distance of the point aimed at, over speed."),
+    option<&PurePursuitOptions::lookahead_min>("lookahead_min", unit::kMetre, 0.5, 50, "Never aims closer."),
+});
+constexpr auto kStanleyOptions = with_speed_hold<&StanleyOptions::speed>(std::array{
+    option<&StanleyOptions::gain>("gain", unit::per("1/s"), 0, 50,
+                                  "Steering for the front axle's cross-track error over speed."),
+    option<&StanleyOptions::softening_speed>(
+        "softening_speed", unit::kSpeed, 0.01, 20,
+        "Added to the speed so that the gain stays finite near standstill."),
+});
 
 }  // namespace
 
+std::span<const Option> PidEntry::options() noexcept { return kPidOptions; }
+std::span<const Option> PurePursuitEntry::options() noexcept { return kPurePursuitOptions; }
+std::span<const Option> StanleyEntry::options() noexcept { return kStanleyOptions; }
+
 Result<std::unique_ptr<Controller>> make_pid(const PidOptions& options, const model::VehicleParams& vehicle) {
-  const auto valid = check_ranges({{"pid.proportional_gain", options.proportional_gain, 0.0, 10.0},
-                                   {"pid.integral_gain", options.integral_gain, 0.0, 10.0},
-                                   {"pid.derivative_gain", options.derivative_gain, 0.0, 10.0}});
-  if (!valid) return fail(valid.error());
-  return make<PidLaw>("pid", options, vehicle);
+  return make<PidEntry, PidLaw>(options, vehicle);
 }
 
 Result<std::unique_ptr<Controller>> make_pure_pursuit(const PurePursuitOptions& options,
                                                       const model::VehicleParams& vehicle) {
-  const auto valid = check_ranges({{"pure_pursuit.lookahead_time", options.lookahead_time, 0.0, 5.0},
-                                   {"pure_pursuit.lookahead_min", options.lookahead_min, 0.5, 50.0}});
-  if (!valid) return fail(valid.error());
-  return make<PurePursuitLaw>("pure-pursuit", options, vehicle);
+  return make<PurePursuitEntry, PurePursuitLaw>(options, vehicle);
 }
 
 Result<std::unique_ptr<Controller>> make_stanley(const StanleyOptions& options,
                                                  const model::VehicleParams& vehicle) {
-  const auto valid = check_ranges({{"stanley.gain", options.gain, 0.0, 50.0},
-                                   {"stanley.softening_speed", options.softening_speed, 0.01, 20.0}});
-  if (!valid) return fail(valid.error());
-  return make<StanleyLaw>("stanley", options, vehicle);
+  return make<StanleyEntry, StanleyLaw>(options, vehicle);
 }
 
 }  // namespace chicane::controller

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <string_view>
 
+#include "chicane/base/option.hpp"
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/vehicle.hpp"
@@ -11,38 +14,66 @@ namespace chicane::controller {
 
 /// Speed hold shared by the baselines: throttle = speed_gain · (speed_reference − v) + what drag costs.
 struct SpeedHoldOptions {
-  double speed_reference = 13.4;            ///< [m/s]; [0, 60]
-  double speed_gain = 0.3;                  ///< throttle per m/s; [0, 10]
-  double lateral_acceleration_limit = 8.0;  ///< slows for curvature by v² |κ| <= limit [m/s²]; [0.1, 100]
+  double speed_reference = 13.4;            ///< [m/s]
+  double speed_gain = 0.3;                  ///< throttle per m/s
+  double lateral_acceleration_limit = 8.0;  ///< slows for curvature by v² |κ| <= limit [m/s²]
 };
 
 /// Steer on the cross-track error: δ = −(kp e + ki ∫e dt + kd de/dt).
 struct PidOptions {
-  double proportional_gain = 0.06;  ///< [rad/m]; [0, 10]
-  double integral_gain = 0.0;       ///< [rad/(m s)]; [0, 10]
-  double derivative_gain = 0.06;    ///< [rad s/m]; [0, 10]
+  double proportional_gain = 0.06;  ///< [rad/m]
+  double integral_gain = 0.0;       ///< [rad/(m s)]
+  double derivative_gain = 0.06;    ///< [rad s/m]
   SpeedHoldOptions speed;
 };
 
 /// Steer along the circle through a point ahead on the path (Coulter 1992).
 struct PurePursuitOptions {
-  double lookahead_time = 0.8;  ///< [s]; [0, 5]
-  double lookahead_min = 5.0;   ///< [m]; [0.5, 50]
+  double lookahead_time = 0.8;  ///< [s]
+  double lookahead_min = 5.0;   ///< [m]
   SpeedHoldOptions speed;
 };
 
 /// Heading error plus arctan of the front axle's cross-track error over speed (Hoffmann et al. 2007).
 struct StanleyOptions {
-  double gain = 1.5;             ///< [1/s]; [0, 50]
-  double softening_speed = 2.0;  ///< [m/s]; [0.01, 20]
+  double gain = 1.5;             ///< [1/s]
+  double softening_speed = 2.0;  ///< [m/s]
   SpeedHoldOptions speed;
 };
 
+/// kInvalidArgument names an option out of the range that its row states, here and below.
 [[nodiscard]] Result<std::unique_ptr<Controller>> make_pid(const PidOptions& options,
                                                            const model::VehicleParams& vehicle);
 [[nodiscard]] Result<std::unique_ptr<Controller>> make_pure_pursuit(const PurePursuitOptions& options,
                                                                     const model::VehicleParams& vehicle);
 [[nodiscard]] Result<std::unique_ptr<Controller>> make_stanley(const StanleyOptions& options,
                                                                const model::VehicleParams& vehicle);
+
+struct PidEntry {
+  using Options = PidOptions;
+  static constexpr std::string_view kName = "pid";
+  static constexpr std::string_view kMeaning = "steering on the cross-track error";
+  static constexpr std::string_view kSpeedOption = "speed_reference";
+  [[nodiscard]] static std::span<const Option> options() noexcept;
+  static constexpr auto kMake = &make_pid;
+};
+
+struct PurePursuitEntry {
+  using Options = PurePursuitOptions;
+  static constexpr std::string_view kName = "pure-pursuit";
+  static constexpr std::string_view kMeaning = "steering along the circle through a point ahead";
+  static constexpr std::string_view kSpeedOption = "speed_reference";
+  [[nodiscard]] static std::span<const Option> options() noexcept;
+  static constexpr auto kMake = &make_pure_pursuit;
+};
+
+struct StanleyEntry {
+  using Options = StanleyOptions;
+  static constexpr std::string_view kName = "stanley";
+  static constexpr std::string_view kMeaning = "steering by heading error and front-axle cross-track error";
+  static constexpr std::string_view kSpeedOption = "speed_reference";
+  [[nodiscard]] static std::span<const Option> options() noexcept;
+  static constexpr auto kMake = &make_stanley;
+};
 
 }  // namespace chicane::controller

@@ -2,16 +2,18 @@
 #include "chicane/controller/cubic_mpc.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/base/text.hpp"
+#include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/cubic_problem.hpp"
 #include "chicane/controller/cubic_solver.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/local_fit.hpp"
-#include "chicane/controller/option_range.hpp"
 #include "chicane/controller/roll_forward.hpp"
 #include "chicane/controller/tunable.hpp"
 #include "chicane/solver/warm_start.hpp"
@@ -22,7 +24,6 @@ namespace {
 constexpr int kMaxIterations =
     100;  ///< one solve in thousands needs more than 40: a cubic far beyond the waypoints
 constexpr int kReferencePoints = 32;
-constexpr double kUnlimited = 1e9;
 
 class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
  public:
@@ -70,7 +71,7 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
     result_ = {};
   }
 
-  [[nodiscard]] std::string_view name() const noexcept override { return "cubic-mpc"; }
+  [[nodiscard]] std::string_view name() const noexcept override { return CubicMpcEntry::kName; }
   [[nodiscard]] std::span<const std::string_view> cost_terms() const noexcept override {
     return CubicTerms::kNames;
   }
@@ -212,25 +213,59 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
   StepResult result_;
 };
 
+using C = CubicMpcOptions;
+constexpr double kHighestWeight = 1e6;
+constexpr std::array<std::string_view, 5> kLatencyHandlings{
+    "none", "roll-forward", "measured", "position-only", "inside-model"};  // in the order of the enum
+constexpr std::array kOptions{
+    option<&C::horizon_steps>("horizon_steps", unit::kNone, 2, CubicProblem::kCapacity,
+                              "N, the steps the plan looks ahead."),
+    option<&C::step_length>("step_length", unit::kSecond, 0.005, 0.5,
+                            "dt, the time between two points of the plan."),
+    option<&C::speed_reference>("speed_reference", unit::kSpeed, 0, 90,
+                                "v_ref, the speed the cost pulls towards."),
+    option<&C::latency_handling>("latency_handling", kLatencyHandlings,
+                                 "How the time between measurement and actuation is treated."),
+    option<&C::latency>("latency", unit::kMillisecond, 0, 500, "Compensated delay when it is not measured."),
+    option<&C::polar_waypoints>("polar_waypoints",
+                                "Waypoints to the car's frame by radius and angle instead of a rotation."),
+    option<&C::steering_right_positive>("steering_right_positive",
+                                        "Model written with the simulator's steering sign."),
+    option<&C::speed_in_mph>("speed_in_mph", "The model takes miles per hour for metres per second."),
+    option<&C::weight_lateral>("weight_lateral", unit::per("1/m²"), 0, kHighestWeight,
+                               "Price of the squared cross-track error."),
+    option<&C::weight_heading>("weight_heading", unit::per("1/rad²"), 0, kHighestWeight,
+                               "Price of the squared heading error."),
+    option<&C::weight_speed>("weight_speed", unit::per("s²/m²"), 0, kHighestWeight,
+                             "Price of the squared speed error."),
+    option<&C::weight_steer>("weight_steer", unit::per("1/rad²"), 0, kHighestWeight,
+                             "Price of the squared steering angle."),
+    option<&C::weight_throttle>("weight_throttle", unit::kNone, 0, kHighestWeight,
+                                "Price of the squared throttle."),
+    option<&C::weight_steer_change>("weight_steer_change", unit::per("1/rad²"), 0, kHighestWeight,
+                                    "Price of the squared change of steering between steps."),
+    option<&C::weight_throttle_change>("weight_throttle_change", unit::kNone, 0, kHighestWeight,
+                                       "Price of the squared change of throttle between steps."),
+    option<&C::weight_speed_steer>("weight_speed_steer", unit::per("s²/(m² rad²)"), 0, kHighestWeight,
+                                   "Price of the squared product of speed and steering: slows in turns."),
+};
+
 }  // namespace
+
+std::span<const Option> CubicMpcEntry::options() noexcept { return kOptions; }
+
+std::vector<OptionContradiction> CubicMpcEntry::contradictions(const CubicMpcOptions& options) {
+  constexpr double kSame = 1e-9;  // [s]: the same time, written in ms and in s
+  const bool shifts_by_a_step = options.latency_handling == LatencyHandling::kInsideModel;
+  if (!shifts_by_a_step || std::fabs(options.latency - options.step_length) <= kSame) return {};
+  return {{"latency", "got " + number_text(options.latency * 1e3, 6) +
+                          " ms, expected cubic_mpc.step_length_s (" + number_text(options.step_length, 6) +
+                          " s), because latency_handling inside-model shifts by exactly one step"}};
+}
 
 Result<std::unique_ptr<Controller>> make_cubic_mpc(const CubicMpcOptions& options,
                                                    const model::VehicleParams& vehicle) {
-  if (const auto valid = model::validate(vehicle); !valid) return fail(valid.error());
-  const auto valid = check_ranges(
-      {{"cubic_mpc.horizon_steps", static_cast<double>(options.horizon_steps), 2.0, CubicProblem::kCapacity},
-       {"cubic_mpc.step_length", options.step_length, 0.005, 0.5},
-       {"cubic_mpc.speed_reference", options.speed_reference, 0.0, 90.0},
-       {"cubic_mpc.latency", options.latency, 0.0, 0.5},
-       {"cubic_mpc.weight_lateral", options.weight_lateral, 0.0, kUnlimited},
-       {"cubic_mpc.weight_heading", options.weight_heading, 0.0, kUnlimited},
-       {"cubic_mpc.weight_speed", options.weight_speed, 0.0, kUnlimited},
-       {"cubic_mpc.weight_steer", options.weight_steer, 0.0, kUnlimited},
-       {"cubic_mpc.weight_throttle", options.weight_throttle, 0.0, kUnlimited},
-       {"cubic_mpc.weight_steer_change", options.weight_steer_change, 0.0, kUnlimited},
-       {"cubic_mpc.weight_throttle_change", options.weight_throttle_change, 0.0, kUnlimited},
-       {"cubic_mpc.weight_speed_steer", options.weight_speed_steer, 0.0, kUnlimited}});
-  if (!valid) return fail(valid.error());
+  if (const auto valid = check<CubicMpcEntry>(options, vehicle); !valid) return fail(valid.error());
   return std::make_unique<CubicMpc>(options, vehicle);
 }
 

@@ -2,7 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
 
+#include "chicane/base/option.hpp"
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/vehicle.hpp"
@@ -22,11 +26,11 @@ enum class LatencyHandling {
 /// Weights multiply squares of SI quantities (v in mph where the model has it so); throttle stands for
 /// acceleration.
 struct CubicMpcOptions {
-  int horizon_steps = 10;         ///< N; time grows linearly; [2, 200]
-  double step_length = 0.1;       ///< dt [s]; [0.005, 0.5]
-  double speed_reference = 17.9;  ///< [m/s]; [0, 90]
+  int horizon_steps = 10;         ///< N; time grows linearly
+  double step_length = 0.1;       ///< dt [s]
+  double speed_reference = 17.9;  ///< [m/s]
   LatencyHandling latency_handling = LatencyHandling::kRollForward;
-  double latency = 0.1;          ///< compensated when not measured [s]; [0, 0.5]
+  double latency = 0.1;          ///< compensated when not measured [s]
   bool polar_waypoints = false;  ///< waypoints to the car's frame by radius and angle instead of a rotation
   bool steering_right_positive = false;  ///< model written with the simulator's sign: ψ⁺ = ψ − v δ dt / L_f
   /// The model takes telemetry's miles per hour for metres per second: it sees 2.24 times as far, and steers
@@ -46,5 +50,16 @@ struct CubicMpcOptions {
 /// out of range.
 [[nodiscard]] Result<std::unique_ptr<Controller>> make_cubic_mpc(const CubicMpcOptions& options,
                                                                  const model::VehicleParams& vehicle);
+
+struct CubicMpcEntry {
+  using Options = CubicMpcOptions;
+  static constexpr std::string_view kName = "cubic-mpc";
+  static constexpr std::string_view kMeaning =
+      "the one the write-ups describe: kinematic bicycle, cubic in the car's frame";
+  static constexpr std::string_view kSpeedOption = "speed_reference";
+  [[nodiscard]] static std::span<const Option> options() noexcept;
+  static constexpr auto kMake = &make_cubic_mpc;
+  [[nodiscard]] static std::vector<OptionContradiction> contradictions(const CubicMpcOptions& options);
+};
 
 }  // namespace chicane::controller

@@ -8,6 +8,7 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/controller/command_history.hpp"
+#include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/tracking_problem.hpp"
 #include "chicane/controller/tracking_solver.hpp"
@@ -93,7 +94,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     blind_ = roadless_ = late_ = Absence{};
   }
 
-  [[nodiscard]] std::string_view name() const noexcept override { return "tracking-mpc"; }
+  [[nodiscard]] std::string_view name() const noexcept override { return TrackingMpcEntry::kName; }
   [[nodiscard]] std::span<const std::string_view> cost_terms() const noexcept override {
     return TrackingTerms::kNames;
   }
@@ -455,13 +456,8 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
 
 Result<std::unique_ptr<Controller>> make_tracking_mpc(const TrackingMpcOptions& options,
                                                       const model::VehicleParams& vehicle) {
-  if (auto valid = validate(vehicle); !valid) return fail(valid.error());
-  if (options.horizon_steps < 5 || options.horizon_steps > Problem::kCapacity) {
-    return fail(ErrorCode::kInvalidArgument, "tracking_mpc.horizon_steps: got " +
-                                                 std::to_string(options.horizon_steps) + ", expected 5 to " +
-                                                 std::to_string(Problem::kCapacity));
-  }
-  return std::unique_ptr<Controller>(std::make_unique<TrackingMpc>(options, vehicle));
+  if (const auto valid = check<TrackingMpcEntry>(options, vehicle); !valid) return fail(valid.error());
+  return std::make_unique<TrackingMpc>(options, vehicle);
 }
 
 }  // namespace chicane::controller

@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "chicane/base/text.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
@@ -26,15 +27,9 @@ using protocol::Value;
 constexpr std::array<std::string_view, 6> kOfTheWorld{"laps",         "seed",           "latency_ms",
                                                       "time_limit_s", "turn_around_ms", "waypoints_sent"};
 
-bool is_of_the_world(std::string_view key) {
-  return key.starts_with("plant_options.") || key.starts_with("sensor.") ||
-         std::find(kOfTheWorld.begin(), kOfTheWorld.end(), key) != kOfTheWorld.end();
-}
-
-std::string group_of(std::string_view controller) {
-  std::string group(controller);
-  std::replace(group.begin(), group.end(), '-', '_');
-  return group + ".";
+bool is_of_the_world(const protocol::Parameter& row) {
+  return row.group == "plant_options" || row.group == "sensor" ||
+         std::find(kOfTheWorld.begin(), kOfTheWorld.end(), row.key) != kOfTheWorld.end();
 }
 
 /// What a preset gives with a car, on the track that is driven.
@@ -71,7 +66,7 @@ tl::unexpected<Error> refuse(std::string_view name, const foxglove::ParameterVal
     std::string operator()(std::monostate) const { return "nothing"; }
     std::string operator()(bool flag) const { return flag ? "true" : "false"; }
     std::string operator()(double number) const { return fmt::format("{}", number); }
-    std::string operator()(const std::string& text) const { return protocol::quoted(text); }
+    std::string operator()(const std::string& text) const { return printable(text); }
     std::string operator()(const std::vector<double>&) const { return "a list"; }
   };
   return fail(ErrorCode::kInvalidArgument,
@@ -82,7 +77,7 @@ Result<Value> inside(const protocol::Parameter& row, const foxglove::ParameterVa
   if (const auto* flag = std::get_if<bool>(&value)) return Value(*flag);
   if (const auto* number = std::get_if<double>(&value)) return Value(*number);
   if (const auto* text = std::get_if<std::string>(&value)) return protocol::parse(row, *text);
-  return refuse(row.key, value, protocol::expectation(row));
+  return refuse(row.key, value, expectation(row.option));
 }
 
 Result<void> validated(const scenario::Scenario& scenario) {
@@ -114,8 +109,7 @@ LiveSettings::LiveSettings(LiveSettingsOptions options, run::ChangeQueue& wishes
 
 bool LiveSettings::is_offered(const protocol::Parameter& row) const {
   if (!protocol::is_live(row) && !options_.build) return false;
-  return options_.has_world || row.key.starts_with("vehicle.") ||
-         row.key.starts_with(group_of(scenario_.controller));
+  return options_.has_world || row.group == "vehicle" || row.controller == scenario_.controller;
 }
 
 std::vector<foxglove::Parameter> LiveSettings::list() const {
@@ -143,7 +137,7 @@ Result<void> LiveSettings::set(const foxglove::Parameter& parameter) {
   if (control != controls_.end()) return set_control(*control, parameter.value);
   const protocol::Parameter* row = protocol::find(parameter.name);
   if (row != nullptr && is_offered(*row)) return set_row(*row, parameter.value);
-  const std::string shown = protocol::quoted(parameter.name);
+  const std::string shown = printable(parameter.name);
   if (row != nullptr) {
     return fail(ErrorCode::kInvalidArgument, fmt::format("{}: cannot be set while this run goes on", shown));
   }
@@ -224,7 +218,7 @@ Result<void> LiveSettings::start_anew(std::string_view key, const std::string& v
     scenario::Scenario fresh = *base;
     fresh.faults = changed.faults;
     for (const protocol::Parameter& row : protocol::list()) {
-      if (!is_of_the_world(row.key)) continue;
+      if (!is_of_the_world(row)) continue;
       if (Result<void> kept = protocol::set(fresh, row, protocol::get(changed, row)); !kept) return kept;
     }
     changed = std::move(fresh);

@@ -49,8 +49,8 @@ void RunLimit::tell(lap_time::LimitAnswer answer) {
 
 void RunLimit::follow(const scenario::Scenario& now, const telemetry::Frame& frame) {
   if (!track_) return;
-  scenario::PlantOptions& searched = scenario_.plant_options;
-  const scenario::PlantOptions& asked = now.plant_options;
+  sim::PlantDeviation& searched = scenario_.plant_options;
+  const sim::PlantDeviation& asked = now.plant_options;
   const bool is_other =
       searched.friction_scale != asked.friction_scale || searched.mass_scale != asked.mass_scale;
   const bool counts_anew = frame.begins && first_lap_ > 1;

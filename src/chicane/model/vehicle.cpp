@@ -4,31 +4,60 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace chicane::model {
 
 namespace {
 
-enum class Sign { kPositive, kNotNegative };
-
-struct Field {
-  const char* name;
-  double value;
-  Sign sign;
-  bool may_be_infinite = false;
+using P = VehicleParams;
+constexpr std::array kOptions{
+    option<&P::name>("name", "For reports."),
+    option<&P::front_axle>("front_axle", unit::kMetre, 0.01, 10, "Centre of mass to front axle."),
+    option<&P::rear_axle>("rear_axle", unit::kMetre, 0.01, 10, "Centre of mass to rear axle."),
+    option<&P::track_width>("track_width", unit::kMetre, 0.01, 10,
+                            "Between the centres of the wheels of an axle."),
+    option<&P::tire_width>("tire_width", unit::kMetre, 0, 2, "Width of a contact patch."),
+    option<&P::length>("length", unit::kMetre, 0.01, 30, "Of the body."),
+    option<&P::width>("width", unit::kMetre, 0.01, 10, "Of the body."),
+    option<&P::kinematic_length>("kinematic_length", unit::kMetre, 0.01, 20, "L_f of the described model."),
+    option<&P::mass>("mass", unit::kKilogram, 0.1, 1e5, "Mass."),
+    option<&P::yaw_inertia>("yaw_inertia", unit::kInertia, 1e-4, 1e6,
+                            "Moment of inertia about the vertical axis."),
+    option<&P::height>("height", unit::kMetre, 0, 5,
+                       "Centre of mass above the road; 0 means no load transfer."),
+    option<&P::steer_limit>("steer_limit", unit::kDegree, 0.1, 80, "Largest road-wheel angle."),
+    option<&P::steer_rate_limit>("steer_rate_limit", unit::kDegreePerSecond, 1, 1e4,
+                                 "Fastest change of the road-wheel angle.")
+        .or_infinite(),
+    option<&P::steer_lag>("steer_lag", unit::kMillisecond, 0, 1000,
+                          "Time constant of the steering; 0 is instant."),
+    option<&P::cornering_front>("cornering_front", unit::per("1/rad"), 0.1, 200,
+                                "Lateral force over load for each radian of slip, front."),
+    option<&P::cornering_rear>("cornering_rear", unit::per("1/rad"), 0.1, 200,
+                               "Lateral force over load for each radian of slip, rear."),
+    option<&P::friction>("friction", unit::kNone, 0.01, 5, "Largest lateral force over load."),
+    option<&P::friction_coupling>(
+        "friction_coupling", unit::kNone, 0, 1,
+        "1 where braking and cornering share the tyre's force, 0 where they do not."),
+    option<&P::load_constant>("load_constant", unit::kAcceleration, 0.1, 100, "Normal acceleration at rest."),
+    option<&P::load_per_speed>("load_per_speed", unit::per("1/s"), 0, 10,
+                               "Growth of the normal acceleration with speed: downforce."),
+    option<&P::steer_helper>("steer_helper", unit::kNone, 0, 0.99,
+                             "Share of each yaw change by which the velocity turns along; 0 for a real car."),
+    option<&P::drive_acceleration>("drive_acceleration", unit::kAcceleration, 0.01, 100,
+                                   "At full throttle and rest."),
+    option<&P::drive_power_per_mass>("drive_power_per_mass", unit::kPowerPerMass, 0.1, 1e5,
+                                     "Cap of drive acceleration times speed.")
+        .or_infinite(),
+    option<&P::drag_constant>("drag_constant", unit::kAcceleration, 0, 10, "Rolling resistance."),
+    option<&P::drag_linear>("drag_linear", unit::per("1/s"), 0, 10, "Deceleration for each m/s."),
+    option<&P::drag_quadratic>("drag_quadratic", unit::per("1/m"), 0, 1, "Deceleration for each (m/s)²."),
+    option<&P::brake_acceleration>("brake_acceleration", unit::kAcceleration, 0.01, 1000,
+                                   "For each unit of negative throttle, before the wheels lock."),
+    option<&P::brake_throttle_limit>("brake_throttle_limit", unit::kNone, 0.001, 1,
+                                     "Largest useful negative throttle; beyond it the wheels lock."),
+    option<&P::drive_lag>("drive_lag", unit::kMillisecond, 0, 5000, "Time constant of drive and brake."),
 };
-
-Result<void> check(const Field& field) {
-  const bool is_number = !std::isnan(field.value) && (field.may_be_infinite || std::isfinite(field.value));
-  const bool is_in_range = field.sign == Sign::kPositive ? field.value > 0.0 : field.value >= 0.0;
-  if (is_number && is_in_range) return {};
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), "vehicle.%s: got %g, expected %s%s", field.name, field.value,
-                field.may_be_infinite ? "" : "a finite number ",
-                field.sign == Sign::kPositive ? "> 0" : ">= 0");
-  return fail(ErrorCode::kInvalidArgument, text.data());
-}
 
 /// Deceleration by drag [m/s²]; has the sign of v.
 double drag(const VehicleParams& p, double v) noexcept {
@@ -44,51 +73,9 @@ double drive_limit(const VehicleParams& p, double v) noexcept {
 
 }  // namespace
 
-Result<void> validate(const VehicleParams& p) {
-  const std::array fields{
-      Field{"front_axle", p.front_axle, Sign::kPositive},
-      Field{"rear_axle", p.rear_axle, Sign::kPositive},
-      Field{"track_width", p.track_width, Sign::kPositive},
-      Field{"tire_width", p.tire_width, Sign::kNotNegative},
-      Field{"length", p.length, Sign::kPositive},
-      Field{"width", p.width, Sign::kPositive},
-      Field{"kinematic_length", p.kinematic_length, Sign::kPositive},
-      Field{"mass", p.mass, Sign::kPositive},
-      Field{"yaw_inertia", p.yaw_inertia, Sign::kPositive},
-      Field{"height", p.height, Sign::kNotNegative},
-      Field{"steer_limit", p.steer_limit, Sign::kPositive},
-      Field{"steer_rate_limit", p.steer_rate_limit, Sign::kPositive, true},
-      Field{"steer_lag", p.steer_lag, Sign::kNotNegative},
-      Field{"cornering_front", p.cornering_front, Sign::kPositive},
-      Field{"cornering_rear", p.cornering_rear, Sign::kPositive},
-      Field{"friction", p.friction, Sign::kPositive},
-      Field{"friction_coupling", p.friction_coupling, Sign::kNotNegative},
-      Field{"load_constant", p.load_constant, Sign::kPositive},
-      Field{"load_per_speed", p.load_per_speed, Sign::kNotNegative},
-      Field{"steer_helper", p.steer_helper, Sign::kNotNegative},
-      Field{"drive_acceleration", p.drive_acceleration, Sign::kPositive},
-      Field{"drive_power_per_mass", p.drive_power_per_mass, Sign::kPositive, true},
-      Field{"drag_constant", p.drag_constant, Sign::kNotNegative},
-      Field{"drag_linear", p.drag_linear, Sign::kNotNegative},
-      Field{"drag_quadratic", p.drag_quadratic, Sign::kNotNegative},
-      Field{"brake_acceleration", p.brake_acceleration, Sign::kPositive},
-      Field{"brake_throttle_limit", p.brake_throttle_limit, Sign::kPositive},
-      Field{"drive_lag", p.drive_lag, Sign::kNotNegative},
-  };
-  for (const Field& field : fields) {
-    if (Result<void> result = check(field); !result) return result;
-  }
-  if (p.steer_limit >= 1.5)
-    return fail(ErrorCode::kInvalidArgument, "vehicle.steer_limit: expected < 1.5 rad");
-  if (p.steer_helper >= 1.0) return fail(ErrorCode::kInvalidArgument, "vehicle.steer_helper: expected < 1");
-  if (p.brake_throttle_limit > 1.0) {
-    return fail(ErrorCode::kInvalidArgument, "vehicle.brake_throttle_limit: expected <= 1");
-  }
-  if (p.friction_coupling > 1.0) {
-    return fail(ErrorCode::kInvalidArgument, "vehicle.friction_coupling: expected <= 1");
-  }
-  return {};
-}
+std::span<const Option> vehicle_options() noexcept { return kOptions; }
+
+Result<void> validate(const VehicleParams& params) { return check_options("vehicle", kOptions, &params); }
 
 double longitudinal_acceleration(const VehicleParams& p, double throttle, double v) noexcept {
   const double pedal = std::clamp(throttle, -1.0, 1.0);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <string>
 
+#include "chicane/base/option.hpp"
 #include "chicane/base/result.hpp"
 
 namespace chicane::model {
@@ -15,8 +17,8 @@ struct VehicleParams {
   std::string name = "udacity";
 
   // Geometry.
-  double front_axle = 1.27;        ///< centre of mass to front axle [m], > 0
-  double rear_axle = 1.60;         ///< centre of mass to rear axle [m], > 0
+  double front_axle = 1.27;        ///< centre of mass to front axle [m]
+  double rear_axle = 1.60;         ///< centre of mass to rear axle [m]
   double track_width = 2.0;        ///< between the centres of the wheels of an axle [m]
   double tire_width = 0.20;        ///< width of a contact patch [m]
   double length = 4.47;            ///< body [m]
@@ -63,7 +65,11 @@ struct VehicleParams {
   friend bool operator==(const VehicleParams&, const VehicleParams&) = default;
 };
 
-/// The first field that is not physical, by name; success otherwise.
+/// The fields with their units and ranges, for files and messages.
+[[nodiscard]] std::span<const Option> vehicle_options() noexcept;
+
+/// kInvalidArgument "vehicle.mass_kg: got -900, expected a number in [0.1, 100000] kg" for the first field
+/// out of its range.
 [[nodiscard]] Result<void> validate(const VehicleParams& params);
 
 /// Longitudinal acceleration [m/s²] of the car at speed v [m/s] for a throttle in [-1, 1] (the law above,

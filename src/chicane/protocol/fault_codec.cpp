@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "chicane/base/text.hpp"
 #include "chicane/protocol/schema.hpp"
 
 namespace chicane::protocol {
@@ -29,7 +30,7 @@ std::string read(std::string_view key, std::string_view text, double low, double
     value = *read;
     return {};
   }
-  return fmt::format("{}: got {}, expected a number in [{}, {}]", key, quoted(text), low, high);
+  return fmt::format("{}: got {}, expected a number in [{}, {}]", key, printable(text), low, high);
 }
 
 }  // namespace
@@ -46,7 +47,7 @@ Result<sim::FaultEvent> read_fault(const FaultText& text) {
   const std::optional<sim::Fault> fault = sim::fault_named(text.name);
   if (!fault) {
     return fail(ErrorCode::kInvalidArgument, fmt::format("faults.name: got {}, expected {}",
-                                                         quoted(text.name), expected_fault(text.name)));
+                                                         printable(text.name), expected_fault(text.name)));
   }
   const sim::FaultKind& kind = sim::kind_of(*fault);
   sim::FaultEvent event = sim::default_event(*fault, 0.0);
@@ -55,8 +56,8 @@ Result<sim::FaultEvent> read_fault(const FaultText& text) {
   if (wrong.empty()) wrong = read("faults.at_s", text.at, 0.0, kLongest, event.at);
   if (wrong.empty()) wrong = read("faults.for_s", text.duration, 0.001, kLongest, event.duration);
   if (wrong.empty() && kind.strength_meaning.empty() && !text.strength.empty()) {
-    wrong = fmt::format("faults.strength: got {}, expected none: {} has no strength", quoted(text.strength),
-                        kind.name);
+    wrong = fmt::format("faults.strength: got {}, expected none: {} has no strength",
+                        printable(text.strength), kind.name);
   }
   if (wrong.empty())
     wrong = read("faults.strength", text.strength, kind.weakest, kind.strongest, event.strength);
@@ -81,7 +82,7 @@ Result<sim::FaultEvent> parse_fault(std::string_view text) {
   Result<sim::FaultEvent> event = read_fault(parts);
   if (event) return event;
   return fail(ErrorCode::kInvalidArgument,
-              fmt::format("--fault {}: {}; written as NAME@SECOND+SECONDS*STRENGTH", quoted(text),
+              fmt::format("--fault {}: {}; written as NAME@SECOND+SECONDS*STRENGTH", printable(text),
                           event.error().message));
 }
 

@@ -12,6 +12,7 @@
 #include <map>
 #include <optional>
 
+#include "chicane/base/text.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 
 namespace chicane::protocol {
@@ -209,7 +210,7 @@ Result<std::string> locate(Shelf shelf, std::string_view name_or_file) {
   if (is_path(name_or_file)) {
     if (fs::is_regular_file(fs::path(name_or_file), ignored)) return std::string(name_or_file);
     return fail(ErrorCode::kNotFound,
-                fmt::format("{}: got {}, expected a file that exists", singular, quoted(name_or_file)));
+                fmt::format("{}: got {}, expected a file that exists", singular, printable(name_or_file)));
   }
   for (const fs::path& place : folders(shelf)) {
     const fs::path file = place / fmt::format("{}{}", name_or_file, extension);
@@ -221,7 +222,7 @@ Result<std::string> locate(Shelf shelf, std::string_view name_or_file) {
   for (const Entry& entry : known) known_names.push_back(entry.name);
   const std::string_view best = nearest(name_or_file, known_names);
   return fail(ErrorCode::kNotFound,
-              fmt::format("{}: got \"{}\", expected a file or one of {}{}", singular, quoted(name_or_file),
+              fmt::format("{}: got \"{}\", expected a file or one of {}{}", singular, printable(name_or_file),
                           fmt::join(known_names, ", "),
                           best.empty() ? "" : fmt::format(" (did you mean {}?)", best)));
 }

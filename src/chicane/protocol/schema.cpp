@@ -6,33 +6,28 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
+
+#include "chicane/base/text.hpp"
 
 namespace chicane::protocol {
 namespace {
 
 using scenario::Scenario;
 
-Field field_of(const Scenario& scenario, const Parameter& parameter) {
-  return parameter.field(const_cast<Scenario&>(scenario));  // read only through the result
+void* owner_of(const Scenario& scenario, const Parameter& parameter) {
+  return parameter.owner(const_cast<Scenario&>(scenario));  // read only through the result
 }
-
-tl::unexpected<Error> unexpected(const Parameter& parameter, std::string_view got) {
-  return fail(ErrorCode::kInvalidArgument,
-              fmt::format("{}: got {}, expected {}", parameter.key, got, expectation(parameter)));
-}
-
-/// The shortest text that reads back as `value`.
-std::string number_text(double value) { return fmt::format("{}", value); }
 
 Result<double> parse_number(const Parameter& parameter, std::string_view text) {
-  if (parameter.may_be_infinite && (text == "inf" || text == ".inf"))
+  if (parameter.option.may_be_infinite && (text == "inf" || text == ".inf"))
     return std::numeric_limits<double>::infinity();
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return unexpected(parameter, quoted(text));
+  if (error != std::errc{} || end != text.data() + text.size())
+    return fail(refusal(parameter.key, printable(text), parameter.option));
   return value;
 }
 
@@ -52,20 +47,10 @@ int edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-Kind Parameter::kind() const {
-  if (!choices.empty()) return Kind::kChoice;
-  static Scenario any;
-  const Field where = field(any);
-  if (std::holds_alternative<double*>(where)) return Kind::kNumber;
-  if (std::holds_alternative<bool*>(where)) return Kind::kBool;
-  if (std::holds_alternative<std::string*>(where)) return Kind::kText;
-  return Kind::kInteger;
-}
-
 bool is_live(const Parameter& parameter) {
   constexpr std::array<std::string_view, 5> kWhatRuns{"plant", "controller", "seed", "control_period_ms",
                                                       "waypoints_sent"};
-  return parameter.kind() != Kind::kText &&  // preset, track, car: names
+  return parameter.option.kind != Kind::kText &&  // preset, track, car: names
          std::find(kWhatRuns.begin(), kWhatRuns.end(), parameter.key) == kWhatRuns.end();
 }
 
@@ -75,12 +60,11 @@ const Parameter* find(std::string_view key) {
   return row == list().end() ? nullptr : &*row;
 }
 
-std::string quoted(std::string_view text) {
-  constexpr std::size_t kMost = 60;
-  std::string shown(text.substr(0, kMost));
-  std::replace_if(
-      shown.begin(), shown.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, '?');
-  return shown.empty() ? "nothing" : text.size() > kMost ? shown + "…" : shown;
+const Parameter* find_option(std::string_view controller, std::string_view name) {
+  const auto row = std::find_if(list().begin(), list().end(), [&](const Parameter& p) {
+    return p.controller == controller && p.option.name == name;
+  });
+  return row == list().end() ? nullptr : &*row;
 }
 
 std::string_view nearest(std::string_view word, std::span<const std::string_view> known) {
@@ -115,85 +99,17 @@ std::string unknown_key(std::string_view key) {
   return fmt::format("got an unknown key, expected one of `chicane list parameters`{}", suggestion(key));
 }
 
-std::string expectation(const Parameter& parameter) {
-  const std::string unit = parameter.unit.name.empty() ? "" : fmt::format(" {}", parameter.unit.name);
-  const std::string range =
-      fmt::format("in [{}, {}]{}{}", number_text(parameter.minimum), number_text(parameter.maximum), unit,
-                  parameter.may_be_infinite ? " or inf" : "");
-  switch (parameter.kind()) {
-    case Kind::kNumber:
-      return "a number " + range;
-    case Kind::kInteger:
-      return "an integer " + range;
-    case Kind::kBool:
-      return "true or false";
-    case Kind::kChoice:
-      return fmt::format("one of {}", fmt::join(parameter.choices, ", "));
-    case Kind::kText:
-      break;
-  }
-  return "text";
-}
-
 Value get(const Scenario& scenario, const Parameter& parameter) {
-  struct Reader {
-    const Parameter& row;
-    Value operator()(const double* v) const { return *v * row.unit.divisor / row.unit.factor; }
-    Value operator()(const int* v) const { return static_cast<double>(*v); }
-    Value operator()(const std::uint64_t* v) const { return static_cast<double>(*v); }
-    Value operator()(const bool* v) const { return *v; }
-    Value operator()(const std::string* v) const { return *v; }
-    Value operator()(const controller::LatencyHandling* v) const {
-      return std::string(row.choices[static_cast<std::size_t>(*v)]);
-    }
-  };
-  return std::visit(Reader{parameter}, field_of(scenario, parameter));
+  return chicane::get(parameter.option, owner_of(scenario, parameter));
 }
 
 Result<void> set(Scenario& scenario, const Parameter& parameter, const Value& value) {
-  const Field field = parameter.field(scenario);
-  if (const auto* number = std::get_if<double>(&value)) {
-    const bool infinite = parameter.may_be_infinite && *number == std::numeric_limits<double>::infinity();
-    const bool in_range = *number >= parameter.minimum && *number <= parameter.maximum;  // false for NaN
-    const bool whole = parameter.kind() == Kind::kNumber || *number == std::floor(*number);
-    if (!(in_range || infinite) || !whole) return unexpected(parameter, number_text(*number));
-    if (auto* const* real = std::get_if<double*>(&field)) {
-      **real = *number * parameter.unit.factor / parameter.unit.divisor;
-      return {};
-    }
-    if (auto* const* integer = std::get_if<int*>(&field)) {
-      **integer = static_cast<int>(*number);
-      return {};
-    }
-    if (auto* const* large = std::get_if<std::uint64_t*>(&field)) {
-      **large = static_cast<std::uint64_t>(*number);
-      return {};
-    }
-    return unexpected(parameter, number_text(*number));
-  }
-  if (const auto* flag = std::get_if<bool>(&value)) {
-    auto* const* target = std::get_if<bool*>(&field);
-    if (target == nullptr) return unexpected(parameter, *flag ? "true" : "false");
-    **target = *flag;
-    return {};
-  }
-  const std::string& text = std::get<std::string>(value);
-  const auto choice = std::find(parameter.choices.begin(), parameter.choices.end(), text);
-  if (!parameter.choices.empty() && choice == parameter.choices.end())
-    return unexpected(parameter, quoted(text));
-  if (auto* const* handling = std::get_if<controller::LatencyHandling*>(&field)) {
-    **handling = static_cast<controller::LatencyHandling>(choice - parameter.choices.begin());
-    return {};
-  }
-  auto* const* target = std::get_if<std::string*>(&field);
-  if (target == nullptr || text.empty()) return unexpected(parameter, quoted(text));
-  **target = text;
-  return {};
+  return chicane::set(parameter.option, parameter.key, parameter.owner(scenario), value);
 }
 
 Result<Value> parse(const Parameter& parameter, std::string_view text) {
   Value value;
-  switch (parameter.kind()) {
+  switch (parameter.option.kind) {
     case Kind::kNumber:
     case Kind::kInteger: {
       const Result<double> number = parse_number(parameter, text);
@@ -202,7 +118,8 @@ Result<Value> parse(const Parameter& parameter, std::string_view text) {
       break;
     }
     case Kind::kBool:
-      if (text != "true" && text != "false") return unexpected(parameter, quoted(text));
+      if (text != "true" && text != "false")
+        return fail(refusal(parameter.key, printable(text), parameter.option));
       value = text == "true";
       break;
     case Kind::kChoice:
@@ -220,37 +137,31 @@ std::string get_text(const Scenario& scenario, const Parameter& parameter) {
   if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
   const double number = std::get<double>(value);
-  const Field field = field_of(scenario, parameter);
-  const auto* const* real = std::get_if<double*>(&field);
+  const Option& option = parameter.option;
   // What people wrote has few digits: prefer them when they give the same bits inside.
   const std::string rounded = fmt::format("{:.15g}", number);
   double read = 0.0;
   std::from_chars(rounded.data(), rounded.data() + rounded.size(), read);
-  const bool is_same = real != nullptr && read * parameter.unit.factor / parameter.unit.divisor == **real;
+  const Value inside = option.read(owner_of(scenario, parameter));
+  const bool is_same = option.kind == Kind::kNumber && option.unit.to_si(read) == std::get<double>(inside);
   return is_same ? rounded : number_text(number);
 }
 
 Result<void> set_text(Scenario& scenario, std::string_view key, std::string_view text) {
   const Parameter* parameter = find(key);
   if (parameter == nullptr) {
-    return fail(ErrorCode::kNotFound, fmt::format("{}: {}", quoted(key), unknown_key(key)));
+    return fail(ErrorCode::kNotFound, fmt::format("{}: {}", printable(key), unknown_key(key)));
   }
   const Result<Value> value = parse(*parameter, text);
   return value ? set(scenario, *parameter, *value) : fail(value.error());
 }
 
-std::vector<Contradiction> contradictions(const Scenario& s) {
+std::vector<Contradiction> contradictions(const Scenario& scenario) {
   std::vector<Contradiction> found;
-  constexpr double kSame = 1e-9;  // [s]: the same time, written in ms and in s
-  const controller::CubicMpcOptions& cubic = s.cubic_mpc;
-  if (s.controller == "cubic-mpc" && cubic.latency_handling == controller::LatencyHandling::kInsideModel &&
-      std::fabs(cubic.latency - cubic.step_length) > kSame) {
-    found.push_back(
-        {"cubic_mpc.latency_ms",
-         fmt::format("got {:g} ms, expected cubic_mpc.step_length_s ({:g} s), because latency_handling "
-                     "inside-model shifts by exactly one step",
-                     cubic.latency * 1e3, cubic.step_length)});
-  }
+  const auto* driver = controller::Registry::find(scenario.controller);
+  if (driver == nullptr) return found;
+  for (OptionContradiction& each : driver->contradictions(scenario.controllers))
+    found.push_back({find_option(driver->name, each.option)->key, std::move(each.message)});
   return found;
 }
 

@@ -1,49 +1,30 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
+#include "chicane/base/option.hpp"
 #include "chicane/base/result.hpp"
 #include "chicane/scenario/scenario.hpp"
 
-/// Everything tunable in one table. YAML files, --set, the command line's help, the dashboard's sliders and
-/// the reference page (docs/configuration.md) all read it; to add a tunable is to add one row in schema.cpp.
+/// Everything tunable in one table: the rows of each options struct (base/option.hpp) under the keys of YAML
+/// files, --set, the command line's help, the dashboard's sliders and docs/configuration.md. To add a tunable
+/// is to add a row beside its field.
 namespace chicane::protocol {
 
-/// Outside C++ every number carries its unit in the key's suffix. SI value = value outside · factor /
-/// divisor.
-struct Unit {
-  std::string_view name;    ///< for people: "m/s", "ms", "deg"; empty for pure numbers
-  std::string_view suffix;  ///< the end of the key: "_mps", "_ms", "_deg"; empty where the name needs none
-  double factor = 1.0;
-  double divisor = 1.0;
-};
-
-enum class Kind { kNumber, kInteger, kBool, kChoice, kText };
-
-/// Outside C++, in the parameter's own unit: number and integer are double, choice and text std::string.
-using Value = std::variant<double, bool, std::string>;
-
-/// Where a tunable lives in a Scenario.
-using Field = std::variant<double*, int*, std::uint64_t*, bool*, std::string*, controller::LatencyHandling*>;
+using Kind = OptionKind;
+using Value = OptionValue;
 
 /// One row of the table.
 struct Parameter {
-  std::string_view key;  ///< dotted, as in YAML and --set: "cubic_mpc.horizon_steps"
-  Unit unit;
-  double minimum = 0.0;  ///< in `unit`; numbers and integers only
-  double maximum = 0.0;
-  std::string_view meaning;  ///< one sentence
-  Field (*field)(scenario::Scenario&) = nullptr;
-  std::span<const std::string_view> choices{};
-  bool may_be_infinite = false;  ///< beside [minimum, maximum], "inf" means no limit
-
-  [[nodiscard]] Kind kind() const;
+  std::string_view key;         ///< dotted, as in YAML and --set: "pure_pursuit.lookahead_time_s"
+  std::string_view group;       ///< what stands before the dot; empty for the run's own
+  std::string_view controller;  ///< whose option it is: "pure-pursuit"; empty where it is no controller's
+  Option option;
+  void* (*owner)(scenario::Scenario&) = nullptr;  ///< the options struct in a scenario
 };
 
 /// All tunables in the order of the reference page: run, controllers, vehicle, world.
@@ -52,17 +33,14 @@ struct Parameter {
 [[nodiscard]] bool is_live(const Parameter& parameter);
 /// The row of `key`; nullptr when there is none.
 [[nodiscard]] const Parameter* find(std::string_view key);
+/// The row of a controller's option: find_option("pure-pursuit", "lookahead_time").
+[[nodiscard]] const Parameter* find_option(std::string_view controller, std::string_view name);
 /// The most similar thing among `known` when a typing mistake could explain `word`; otherwise empty.
 [[nodiscard]] std::string_view nearest(std::string_view word, std::span<const std::string_view> known);
 /// For messages: " (did you mean cubic_mpc.horizon_steps?)", or empty when nothing is similar.
 [[nodiscard]] std::string suggestion(std::string_view key);
 /// For messages: "got an unknown key, expected ...", with the suggestion.
 [[nodiscard]] std::string unknown_key(std::string_view key);
-/// For messages: the first 60 bytes of a stranger's text without control characters; "nothing" when empty.
-[[nodiscard]] std::string quoted(std::string_view text);
-/// For messages: "an integer in [2, 200]", "a number in [0, 500] ms", "one of pid, stanley", "true or false".
-[[nodiscard]] std::string expectation(const Parameter& parameter);
-
 [[nodiscard]] Value get(const scenario::Scenario& scenario, const Parameter& parameter);
 /// kInvalidArgument "latency_ms: got 900, expected a number in [0, 500] ms", and no change, for a wrong type
 /// or range.

@@ -78,15 +78,17 @@ std::string schema_json(const scenario::Scenario& defaults,
   Json list = Json::array();
   for (const Parameter& row : protocol::list()) {
     if (!is_offered(row)) continue;
-    Json json = entry(row.key, row.kind(), row.unit.name, row.minimum, row.maximum);
-    json["may_be_infinite"] = row.may_be_infinite;
-    json["choices"] = row.choices;
+    const Option& option = row.option;
+    Json json = entry(row.key, option.kind, option.unit.name, option.minimum, option.maximum);
+    json["controller"] = row.controller;
+    json["may_be_infinite"] = option.may_be_infinite;
+    json["choices"] = option.choices;
     if (const std::optional<Shelf> shelf = shelf_of(row.key)) {
       json["kind"] = name_of(Kind::kChoice);
       json["choices"] = names_on(*shelf, std::get<std::string>(get(defaults, row)));
     }
     json["default"] = to_json(get(defaults, row));
-    json["meaning"] = row.meaning;
+    json["meaning"] = option.meaning;
     json["is_live"] = is_live(row);
     list.push_back(std::move(json));
   }

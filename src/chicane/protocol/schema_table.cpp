@@ -1,272 +1,70 @@
 // SPDX-License-Identifier: MIT
-// Longer than other files on purpose: one row for each tunable, and nothing else.
 #include <array>
+#include <deque>
+#include <string>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/protocol/schema.hpp"
+#include "chicane/sim/plant_factory.hpp"
 
 namespace chicane::protocol {
 namespace {
 
 using scenario::Scenario;
+using S = Scenario;
 
-constexpr Unit kNone{};
-constexpr Unit kMetre{"m", "_m"};
-constexpr Unit kSecond{"s", "_s"};
-constexpr Unit kMillisecond{"ms", "_ms", 1.0, 1000.0};
-constexpr Unit kSpeed{"m/s", "_mps"};
-constexpr Unit kAcceleration{"m/s²", "_mps2"};
-constexpr Unit kDegree{"deg", "_deg", kPi / 180.0, 1.0};
-constexpr Unit kDegreePerSecond{"deg/s", "_degps", kPi / 180.0, 1.0};
-constexpr Unit kKilogram{"kg", "_kg"};
-constexpr Unit kInertia{"kg m²", "_kgm2"};
-constexpr Unit kPowerPerMass{"W/kg", "_wpkg"};
-
-/// Units of weights and gains, shown to people; their keys name what is weighed and carry no suffix.
-constexpr Unit per(std::string_view name) { return {name, "", 1.0, 1.0}; }
-
-constexpr std::array<std::string_view, 5> kControllers{"tracking-mpc", "cubic-mpc", "pid", "pure-pursuit",
-                                                       "stanley"};
 constexpr std::array<std::string_view, 2> kPlants{"udacity", "road-car"};
-constexpr std::array<std::string_view, 5> kLatencyHandlings{
-    "none", "roll-forward", "measured", "position-only", "inside-model"};  // in the order of the enum
 
-const Parameter kTable[] = {
-    // The run.
-    {"preset", kNone, 0, 0, "Named controller settings this run starts from.",
-     [](Scenario& s) -> Field { return &s.preset; }},
-    {"track", kNone, 0, 0, "Shipped track by name, or a file.",
-     [](Scenario& s) -> Field { return &s.track; }},
-    {"car", kNone, 0, 0, "Shipped car by name, or a file.", [](Scenario& s) -> Field { return &s.car; }},
-    {"plant", kNone, 0, 0, "Simulated car; normally set by the car file.",
-     [](Scenario& s) -> Field { return &s.plant; }, kPlants},
-    {"controller", kNone, 0, 0, "Who drives.", [](Scenario& s) -> Field { return &s.controller; },
-     kControllers},
-    {"laps", kNone, 0, 10000, "Laps to drive, the first from standstill; 0 drives until stopped.",
-     [](Scenario& s) -> Field { return &s.laps; }},
-    {"seed", kNone, 0, 9007199254740992.0, "Of everything random.",
-     [](Scenario& s) -> Field { return &s.seed; }},
-    {"latency_ms", kMillisecond, 0, 500, "Actuation delay of the simulated car.",
-     [](Scenario& s) -> Field { return &s.latency; }},
-    {"control_period_ms", kMillisecond, 5, 1000, "Time between measurements.",
-     [](Scenario& s) -> Field { return &s.control_period; }},
-    {"time_limit_s", kSecond, 0, 1e7, "Ends the run; 0 allows ten minutes per lap.",
-     [](Scenario& s) -> Field { return &s.time_limit; }},
-    {"turn_around_ms", kMillisecond, 0, 500, "Of the simulator as a client, from reply to next telemetry.",
-     [](Scenario& s) -> Field { return &s.turn_around; }},
-    {"waypoints_sent", kNone, 2, 32, "Waypoints the telemetry shows.",
-     [](Scenario& s) -> Field { return &s.waypoints_sent; }},
-
-    // The default controller.
-    {"tracking_mpc.horizon_steps", kNone, 5, 100, "Steps the plan looks ahead.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.horizon_steps; }},
-    {"tracking_mpc.step_length_s", kSecond, 0.01, 0.2, "Time between two points of the plan.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.step_length; }},
-    {"tracking_mpc.speed_limit_mps", kSpeed, 1, 100, "Never planned above.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.speed_limit; }},
-    {"tracking_mpc.grip_share", kNone, 0.01, 1, "Share of the believed tyre force the speed plan uses.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.grip_share; }},
-    {"tracking_mpc.brake_share", kNone, 0.01, 1, "Share of the believed braking the speed plan uses.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.brake_share; }},
-    {"tracking_mpc.assumed_half_width_m", kMetre, 0.2, 20,
-     "Road on each side of the waypoint line that the centre of mass may use.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.assumed_half_width; }},
-    {"tracking_mpc.smoothing_width_m", kMetre, 0, 10,
-     "How far the reference line may leave the waypoint line.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.smoothing_width; }},
-    {"tracking_mpc.weight_lateral", per("1/m²"), 0, 1e6, "Price of the squared lateral error.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.weight_lateral; }},
-    {"tracking_mpc.weight_heading", per("1/rad²"), 0, 1e6, "Price of the squared heading error.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.weight_heading; }},
-    {"tracking_mpc.weight_speed", per("s²/m²"), 0, 1e6, "Price of the squared speed error.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.weight_speed; }},
-    {"tracking_mpc.weight_steer_rate", per("s²/rad²"), 0, 1e6, "Price of the squared steering rate.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.weight_steer_rate; }},
-    {"tracking_mpc.weight_jerk", per("s⁶/m²"), 0, 1e6, "Price of the squared change of acceleration.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.weight_jerk; }},
-    {"tracking_mpc.weight_edge", per("1/m²"), 0, 1e6, "Price of leaving assumed_half_width, squared.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.weight_edge; }},
-    {"tracking_mpc.weight_slip", kNone, 0, 1e6, "Price of slip beyond the useful, normalised and squared.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.weight_slip; }},
-    {"tracking_mpc.compensate_delay", kNone, 0, 0,
-     "Replay the commands in flight; off only to show what happens.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.compensate_delay; }},
-    {"tracking_mpc.remember_waypoints", kNone, 0, 0, "Close the waypoints seen into a map.",
-     [](Scenario& s) -> Field { return &s.tracking_mpc.remember_waypoints; }},
-
-    // The described controller.
-    {"cubic_mpc.horizon_steps", kNone, 2, 200, "N, the steps the plan looks ahead.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.horizon_steps; }},
-    {"cubic_mpc.step_length_s", kSecond, 0.005, 0.5, "dt, the time between two points of the plan.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.step_length; }},
-    {"cubic_mpc.speed_reference_mps", kSpeed, 0, 90, "v_ref, the speed the cost pulls towards.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.speed_reference; }},
-    {"cubic_mpc.latency_handling", kNone, 0, 0, "How the time between measurement and actuation is treated.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.latency_handling; }, kLatencyHandlings},
-    {"cubic_mpc.latency_ms", kMillisecond, 0, 500, "Compensated delay when it is not measured.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.latency; }},
-    {"cubic_mpc.polar_waypoints", kNone, 0, 0,
-     "Waypoints to the car's frame by radius and angle instead of a rotation.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.polar_waypoints; }},
-    {"cubic_mpc.steering_right_positive", kNone, 0, 0, "Model written with the simulator's steering sign.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.steering_right_positive; }},
-    {"cubic_mpc.speed_in_mph", kNone, 0, 0, "The model takes miles per hour for metres per second.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.speed_in_mph; }},
-    {"cubic_mpc.weight_lateral", per("1/m²"), 0, 1e6, "Price of the squared cross-track error.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.weight_lateral; }},
-    {"cubic_mpc.weight_heading", per("1/rad²"), 0, 1e6, "Price of the squared heading error.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.weight_heading; }},
-    {"cubic_mpc.weight_speed", per("s²/m²"), 0, 1e6, "Price of the squared speed error.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.weight_speed; }},
-    {"cubic_mpc.weight_steer", per("1/rad²"), 0, 1e6, "Price of the squared steering angle.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.weight_steer; }},
-    {"cubic_mpc.weight_throttle", kNone, 0, 1e6, "Price of the squared throttle.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.weight_throttle; }},
-    {"cubic_mpc.weight_steer_change", per("1/rad²"), 0, 1e6,
-     "Price of the squared change of steering between steps.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.weight_steer_change; }},
-    {"cubic_mpc.weight_throttle_change", kNone, 0, 1e6,
-     "Price of the squared change of throttle between steps.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.weight_throttle_change; }},
-    {"cubic_mpc.weight_speed_steer", per("s²/(m² rad²)"), 0, 1e6,
-     "Price of the squared product of speed and steering: slows in turns.",
-     [](Scenario& s) -> Field { return &s.cubic_mpc.weight_speed_steer; }},
-
-    // The baselines.
-    {"pid.proportional_gain", per("rad/m"), 0, 10, "Steering for the cross-track error.",
-     [](Scenario& s) -> Field { return &s.pid.proportional_gain; }},
-    {"pid.integral_gain", per("rad/(m s)"), 0, 10, "Steering for its integral.",
-     [](Scenario& s) -> Field { return &s.pid.integral_gain; }},
-    {"pid.derivative_gain", per("rad s/m"), 0, 10, "Steering for its rate.",
-     [](Scenario& s) -> Field { return &s.pid.derivative_gain; }},
-    {"pid.speed_reference_mps", kSpeed, 0, 60, "Speed to hold.",
-     [](Scenario& s) -> Field { return &s.pid.speed.speed_reference; }},
-    {"pid.speed_gain", per("s/m"), 0, 10, "Throttle for the speed error.",
-     [](Scenario& s) -> Field { return &s.pid.speed.speed_gain; }},
-    {"pid.lateral_acceleration_limit_mps2", kAcceleration, 0.1, 100,
-     "Slows where the curve would ask for more.",
-     [](Scenario& s) -> Field { return &s.pid.speed.lateral_acceleration_limit; }},
-    {"pure_pursuit.lookahead_time_s", kSecond, 0, 5, "Distance of the point aimed at, over speed.",
-     [](Scenario& s) -> Field { return &s.pure_pursuit.lookahead_time; }},
-    {"pure_pursuit.lookahead_min_m", kMetre, 0.5, 50, "Never aims closer.",
-     [](Scenario& s) -> Field { return &s.pure_pursuit.lookahead_min; }},
-    {"pure_pursuit.speed_reference_mps", kSpeed, 0, 60, "Speed to hold.",
-     [](Scenario& s) -> Field { return &s.pure_pursuit.speed.speed_reference; }},
-    {"pure_pursuit.speed_gain", per("s/m"), 0, 10, "Throttle for the speed error.",
-     [](Scenario& s) -> Field { return &s.pure_pursuit.speed.speed_gain; }},
-    {"pure_pursuit.lateral_acceleration_limit_mps2", kAcceleration, 0.1, 100,
-     "Slows where the curve would ask for more.",
-     [](Scenario& s) -> Field { return &s.pure_pursuit.speed.lateral_acceleration_limit; }},
-    {"stanley.gain", per("1/s"), 0, 50, "Steering for the front axle's cross-track error over speed.",
-     [](Scenario& s) -> Field { return &s.stanley.gain; }},
-    {"stanley.softening_speed_mps", kSpeed, 0.01, 20,
-     "Added to the speed so that the gain stays finite near standstill.",
-     [](Scenario& s) -> Field { return &s.stanley.softening_speed; }},
-    {"stanley.speed_reference_mps", kSpeed, 0, 60, "Speed to hold.",
-     [](Scenario& s) -> Field { return &s.stanley.speed.speed_reference; }},
-    {"stanley.speed_gain", per("s/m"), 0, 10, "Throttle for the speed error.",
-     [](Scenario& s) -> Field { return &s.stanley.speed.speed_gain; }},
-    {"stanley.lateral_acceleration_limit_mps2", kAcceleration, 0.1, 100,
-     "Slows where the curve would ask for more.",
-     [](Scenario& s) -> Field { return &s.stanley.speed.lateral_acceleration_limit; }},
-
-    // What the controller believes about the car.
-    {"vehicle.name", kNone, 0, 0, "For reports.", [](Scenario& s) -> Field { return &s.vehicle.name; }},
-    {"vehicle.front_axle_m", kMetre, 0.01, 10, "Centre of mass to front axle.",
-     [](Scenario& s) -> Field { return &s.vehicle.front_axle; }},
-    {"vehicle.rear_axle_m", kMetre, 0.01, 10, "Centre of mass to rear axle.",
-     [](Scenario& s) -> Field { return &s.vehicle.rear_axle; }},
-    {"vehicle.track_width_m", kMetre, 0.01, 10, "Between the centres of the wheels of an axle.",
-     [](Scenario& s) -> Field { return &s.vehicle.track_width; }},
-    {"vehicle.tire_width_m", kMetre, 0, 2, "Width of a contact patch.",
-     [](Scenario& s) -> Field { return &s.vehicle.tire_width; }},
-    {"vehicle.length_m", kMetre, 0.01, 30, "Of the body.",
-     [](Scenario& s) -> Field { return &s.vehicle.length; }},
-    {"vehicle.width_m", kMetre, 0.01, 10, "Of the body.",
-     [](Scenario& s) -> Field { return &s.vehicle.width; }},
-    {"vehicle.kinematic_length_m", kMetre, 0.01, 20, "L_f of the described model.",
-     [](Scenario& s) -> Field { return &s.vehicle.kinematic_length; }},
-    {"vehicle.mass_kg", kKilogram, 0.1, 1e5, "Mass.", [](Scenario& s) -> Field { return &s.vehicle.mass; }},
-    {"vehicle.yaw_inertia_kgm2", kInertia, 1e-4, 1e6, "Moment of inertia about the vertical axis.",
-     [](Scenario& s) -> Field { return &s.vehicle.yaw_inertia; }},
-    {"vehicle.height_m", kMetre, 0, 5, "Centre of mass above the road; 0 means no load transfer.",
-     [](Scenario& s) -> Field { return &s.vehicle.height; }},
-    {"vehicle.steer_limit_deg", kDegree, 0.1, 80, "Largest road-wheel angle.",
-     [](Scenario& s) -> Field { return &s.vehicle.steer_limit; }},
-    {"vehicle.steer_rate_limit_degps",
-     kDegreePerSecond,
-     1,
-     1e4,
-     "Fastest change of the road-wheel angle.",
-     [](Scenario& s) -> Field { return &s.vehicle.steer_rate_limit; },
-     {},
-     true},
-    {"vehicle.steer_lag_ms", kMillisecond, 0, 1000, "Time constant of the steering; 0 is instant.",
-     [](Scenario& s) -> Field { return &s.vehicle.steer_lag; }},
-    {"vehicle.cornering_front", per("1/rad"), 0.1, 200,
-     "Lateral force over load for each radian of slip, front.",
-     [](Scenario& s) -> Field { return &s.vehicle.cornering_front; }},
-    {"vehicle.cornering_rear", per("1/rad"), 0.1, 200,
-     "Lateral force over load for each radian of slip, rear.",
-     [](Scenario& s) -> Field { return &s.vehicle.cornering_rear; }},
-    {"vehicle.friction", kNone, 0.01, 5, "Largest lateral force over load.",
-     [](Scenario& s) -> Field { return &s.vehicle.friction; }},
-    {"vehicle.friction_coupling", kNone, 0, 1,
-     "1 where braking and cornering share the tyre's force, 0 where they do not.",
-     [](Scenario& s) -> Field { return &s.vehicle.friction_coupling; }},
-    {"vehicle.load_constant_mps2", kAcceleration, 0.1, 100, "Normal acceleration at rest.",
-     [](Scenario& s) -> Field { return &s.vehicle.load_constant; }},
-    {"vehicle.load_per_speed", per("1/s"), 0, 10, "Growth of the normal acceleration with speed: downforce.",
-     [](Scenario& s) -> Field { return &s.vehicle.load_per_speed; }},
-    {"vehicle.steer_helper", kNone, 0, 0.99,
-     "Share of each yaw change by which the velocity turns along; 0 for a real car.",
-     [](Scenario& s) -> Field { return &s.vehicle.steer_helper; }},
-    {"vehicle.drive_acceleration_mps2", kAcceleration, 0.01, 100, "At full throttle and rest.",
-     [](Scenario& s) -> Field { return &s.vehicle.drive_acceleration; }},
-    {"vehicle.drive_power_per_mass_wpkg",
-     kPowerPerMass,
-     0.1,
-     1e5,
-     "Cap of drive acceleration times speed.",
-     [](Scenario& s) -> Field { return &s.vehicle.drive_power_per_mass; },
-     {},
-     true},
-    {"vehicle.drag_constant_mps2", kAcceleration, 0, 10, "Rolling resistance.",
-     [](Scenario& s) -> Field { return &s.vehicle.drag_constant; }},
-    {"vehicle.drag_linear", per("1/s"), 0, 10, "Deceleration for each m/s.",
-     [](Scenario& s) -> Field { return &s.vehicle.drag_linear; }},
-    {"vehicle.drag_quadratic", per("1/m"), 0, 1, "Deceleration for each (m/s)².",
-     [](Scenario& s) -> Field { return &s.vehicle.drag_quadratic; }},
-    {"vehicle.brake_acceleration_mps2", kAcceleration, 0.01, 1000,
-     "For each unit of negative throttle, before the wheels lock.",
-     [](Scenario& s) -> Field { return &s.vehicle.brake_acceleration; }},
-    {"vehicle.brake_throttle_limit", kNone, 0.001, 1,
-     "Largest useful negative throttle; beyond it the wheels lock.",
-     [](Scenario& s) -> Field { return &s.vehicle.brake_throttle_limit; }},
-    {"vehicle.drive_lag_ms", kMillisecond, 0, 5000, "Time constant of drive and brake.",
-     [](Scenario& s) -> Field { return &s.vehicle.drive_lag; }},
-
-    // The world that answers back.
-    {"plant_options.friction_scale", kNone, 0.01, 2, "Tyre forces times this.",
-     [](Scenario& s) -> Field { return &s.plant_options.friction_scale; }},
-    {"plant_options.mass_scale", kNone, 0.5, 2, "Mass times this.",
-     [](Scenario& s) -> Field { return &s.plant_options.mass_scale; }},
-    {"sensor.position_noise_m", kMetre, 0, 10, "Standard deviation of x and y.",
-     [](Scenario& s) -> Field { return &s.sensor.position_noise; }},
-    {"sensor.heading_noise_deg", kDegree, 0, 28, "Standard deviation of the yaw.",
-     [](Scenario& s) -> Field { return &s.sensor.heading_noise; }},
-    {"sensor.speed_noise_mps", kSpeed, 0, 10, "Standard deviation of the speed.",
-     [](Scenario& s) -> Field { return &s.sensor.speed_noise; }},
-    {"sensor.position_quantum_m", kMetre, 0, 10, "x and y are rounded to multiples of it; 0 does not round.",
-     [](Scenario& s) -> Field { return &s.sensor.position_quantum; }},
-    {"sensor.heading_quantum_deg", kDegree, 0, 28, "The yaw is rounded to multiples of it.",
-     [](Scenario& s) -> Field { return &s.sensor.heading_quantum; }},
-    {"sensor.speed_quantum_mps", kSpeed, 0, 10, "The speed is rounded to multiples of it.",
-     [](Scenario& s) -> Field { return &s.sensor.speed_quantum; }},
+constexpr std::array kRun{
+    option<&S::preset>("preset", "Named controller settings this run starts from."),
+    option<&S::track>("track", "Shipped track by name, or a file."),
+    option<&S::car>("car", "Shipped car by name, or a file."),
+    option<&S::plant>("plant", kPlants, "Simulated car; normally set by the car file."),
+    option<&S::controller>("controller", controller::Registry::kNames, "Who drives."),
+    option<&S::laps>("laps", unit::kNone, 0, 10000,
+                     "Laps to drive, the first from standstill; 0 drives until stopped."),
+    option<&S::seed>("seed", unit::kNone, 0, 9007199254740992.0, "Of everything random."),
+    option<&S::latency>("latency", unit::kMillisecond, 0, 500, "Actuation delay of the simulated car."),
+    option<&S::control_period>("control_period", unit::kMillisecond, 5, 1000, "Time between measurements."),
+    option<&S::time_limit>("time_limit", unit::kSecond, 0, 1e7,
+                           "Ends the run; 0 allows ten minutes per lap."),
+    option<&S::turn_around>("turn_around", unit::kMillisecond, 0, 500,
+                            "Of the simulator as a client, from reply to next telemetry."),
+    option<&S::waypoints_sent>("waypoints_sent", unit::kNone, 2, 32, "Waypoints the telemetry shows."),
 };
+
+/// All rows, and the keys they point to.
+struct Table {
+  std::deque<std::string> keys;
+  std::vector<Parameter> rows;
+
+  void add(std::string_view group, std::string_view of_controller, std::span<const Option> options,
+           void* (*owner)(Scenario&)) {
+    for (const Option& option : options) {
+      keys.push_back(option_key(group, option));
+      rows.push_back({keys.back(), group, of_controller, option, owner});
+    }
+  }
+};
+
+Table make_table() {
+  Table table;
+  table.add("", "", kRun, [](Scenario& s) -> void* { return &s; });
+  controller::Registry::for_each([&]<class Entry>() {
+    table.add(controller::kOptionGroup<Entry>, Entry::kName, Entry::options(),
+              [](Scenario& s) -> void* { return &std::get<typename Entry::Options>(s.controllers); });
+  });
+  table.add("vehicle", "", model::vehicle_options(), [](Scenario& s) -> void* { return &s.vehicle; });
+  table.add("plant_options", "", sim::deviation_options(),
+            [](Scenario& s) -> void* { return &s.plant_options; });
+  table.add("sensor", "", sim::sensor_options(), [](Scenario& s) -> void* { return &s.sensor; });
+  return table;
+}
 
 }  // namespace
 
-std::span<const Parameter> list() { return kTable; }
+std::span<const Parameter> list() {
+  static const Table kTable = make_table();
+  return kTable.rows;
+}
 
 }  // namespace chicane::protocol

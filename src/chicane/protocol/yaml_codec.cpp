@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <map>
 
+#include "chicane/base/text.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 
 namespace chicane::protocol {
@@ -99,7 +100,8 @@ class Reader {
     if (node.IsMap()) return "a map";
     if (node.IsSequence()) return "a list";
     if (!node.IsScalar()) return "nothing";
-    return node.Tag() == "!" ? fmt::format("\"{}\" in quotes", quoted(node.Scalar())) : quoted(node.Scalar());
+    return node.Tag() == "!" ? fmt::format("\"{}\" in quotes", printable(node.Scalar()))
+                             : printable(node.Scalar());
   }
 
   void read_map(const YAML::Node& map, const std::string& prefix, int depth) {
@@ -127,7 +129,7 @@ class Reader {
   void read_entry(const std::string& key, const YAML::Node& node, int line, int depth) {
     const auto [first, is_new] = lines_.emplace(key, line);
     if (!is_new && !node.IsMap()) {
-      fault(line, quoted(key),
+      fault(line, printable(key),
             fmt::format("got it a second time, expected it once (first on line {})", first->second));
       return;
     }
@@ -138,18 +140,16 @@ class Reader {
     } else if (const Parameter* parameter = find(key); parameter != nullptr) {
       read_value(*parameter, node, line);
     } else if (!is_group(key)) {
-      fault(line, quoted(key), unknown_key(key));
+      fault(line, printable(key), unknown_key(key));
     } else if (!node.IsMap()) {
-      fault(line, quoted(key), fmt::format("got {}, expected a map of settings", shown(node)));
+      fault(line, printable(key), fmt::format("got {}, expected a map of settings", shown(node)));
     } else if (depth < kMostDepth) {
       read_map(node, key, depth + 1);
     }
   }
 
   static bool is_group(const std::string& key) {
-    const std::string start = key + ".";
-    return std::any_of(list().begin(), list().end(),
-                       [&](const Parameter& p) { return p.key.starts_with(start); });
+    return std::any_of(list().begin(), list().end(), [&](const Parameter& p) { return p.group == key; });
   }
 
   void read_preset(const YAML::Node& node, int line) {
@@ -207,14 +207,14 @@ class Reader {
   }
 
   void read_value(const Parameter& parameter, const YAML::Node& node, int line) {
-    const bool is_text = parameter.kind() == Kind::kText || parameter.kind() == Kind::kChoice;
+    const bool is_text = parameter.option.kind == Kind::kText || parameter.option.kind == Kind::kChoice;
     const bool is_plain = node.IsScalar() && (node.Tag() == "?" || (is_text && node.Tag() == "!"));
     if (!is_plain) {
       const bool has_tag = node.IsScalar() && node.Tag() != "!" && node.Tag() != "?";
       fault(line, parameter.key,
             fmt::format("got {}, expected {}",
-                        has_tag ? fmt::format("the tag {}", quoted(node.Tag())) : shown(node),
-                        expectation(parameter)));
+                        has_tag ? fmt::format("the tag {}", printable(node.Tag())) : shown(node),
+                        expectation(parameter.option)));
       return;
     }
     const Result<Value> value = parse(parameter, node.Scalar());
@@ -233,7 +233,7 @@ class Reader {
 
 std::string yaml_text(const Parameter& parameter, const scenario::Scenario& scenario) {
   const std::string text = get_text(scenario, parameter);
-  if (parameter.kind() != Kind::kText) return text == "inf" ? ".inf" : text;
+  if (parameter.option.kind != Kind::kText) return text == "inf" ? ".inf" : text;
   std::string escaped;
   for (const char c : text) {
     const bool is_control = static_cast<unsigned char>(c) < 0x20;
@@ -252,12 +252,10 @@ std::string write(const scenario::Scenario& scenario, std::string_view descripti
   std::string_view group;
   for (const Parameter& parameter : list()) {
     if (!wants(parameter)) continue;
-    const std::size_t dot = parameter.key.find('.');
-    const bool is_grouped = dot != std::string_view::npos;
-    const std::string_view own_group = is_grouped ? parameter.key.substr(0, dot) : "";
-    if (is_grouped && own_group != group) text += fmt::format("{}:\n", own_group);
-    group = own_group;
-    const std::string_view name = is_grouped ? parameter.key.substr(dot + 1) : parameter.key;
+    const bool is_grouped = !parameter.group.empty();
+    if (is_grouped && parameter.group != group) text += fmt::format("{}:\n", parameter.group);
+    group = parameter.group;
+    const std::string_view name = is_grouped ? parameter.key.substr(group.size() + 1) : parameter.key;
     text += fmt::format("{}{}: {}\n", is_grouped ? "  " : "", name, yaml_text(parameter, scenario));
   }
   return text;

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "chicane/base/math.hpp"
+#include "chicane/base/text.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/recording/reader.hpp"
@@ -215,7 +216,7 @@ class Branching {
     if (is_fault && (text == "true" || text == "false")) return {};
     if (is_fault) {
       return fail(ErrorCode::kInvalidArgument,
-                  fmt::format("{}: got {}, expected true or false", key, protocol::quoted(text)));
+                  fmt::format("{}: got {}, expected true or false", key, printable(text)));
     }
     const protocol::Parameter* row = protocol::find(key);
     if (row != nullptr && !protocol::is_live(*row)) {

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "chicane/controller/tunable.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/sim/plant_factory.hpp"
@@ -14,40 +13,18 @@ namespace {
 
 constexpr double kWaypointSpacing = 12.0;  // [m] the median of the original's waypoints
 
-template <class Options>
-void configure_as(controller::Controller& controller, const Options& options,
-                  const model::VehicleParams& vehicle) noexcept {
-  if (auto* tunable = dynamic_cast<controller::Tunable<Options>*>(&controller))
-    tunable->configure(options, vehicle);
-}
-
 }  // namespace
 
 void configure(controller::Controller& controller, const scenario::Scenario& scenario) noexcept {
-  configure_as(controller, scenario.tracking_mpc, scenario.vehicle);
-  configure_as(controller, scenario.cubic_mpc, scenario.vehicle);
-  configure_as(controller, scenario.pid, scenario.vehicle);
-  configure_as(controller, scenario.pure_pursuit, scenario.vehicle);
-  configure_as(controller, scenario.stanley, scenario.vehicle);
+  controller::Registry::configure(controller, scenario.controllers, scenario.vehicle);
 }
 
 Result<std::unique_ptr<controller::Controller>> make_controller(const scenario::Scenario& scenario) {
-  const model::VehicleParams& vehicle = scenario.vehicle;
-  if (scenario.controller == "tracking-mpc")
-    return controller::make_tracking_mpc(scenario.tracking_mpc, vehicle);
-  if (scenario.controller == "cubic-mpc") return controller::make_cubic_mpc(scenario.cubic_mpc, vehicle);
-  if (scenario.controller == "pid") return controller::make_pid(scenario.pid, vehicle);
-  if (scenario.controller == "pure-pursuit")
-    return controller::make_pure_pursuit(scenario.pure_pursuit, vehicle);
-  if (scenario.controller == "stanley") return controller::make_stanley(scenario.stanley, vehicle);
-  return fail(ErrorCode::kInvalidArgument,
-              "controller: got \"" + scenario.controller +
-                  "\", expected tracking-mpc, cubic-mpc, pid, pure-pursuit or stanley");
+  return controller::Registry::make(scenario.controller, scenario.controllers, scenario.vehicle);
 }
 
 Result<std::unique_ptr<sim::Plant>> make_plant(const scenario::Scenario& scenario) {
-  return sim::make_plant(scenario.plant, {.friction_scale = scenario.plant_options.friction_scale,
-                                          .mass_scale = scenario.plant_options.mass_scale});
+  return sim::make_plant(scenario.plant, scenario.plant_options);
 }
 
 Result<path::Track> make_track(const scenario::Scenario& scenario) {

@@ -23,8 +23,8 @@ struct PlantOutput {
 
 /// How a plant differs from its nominal self: what a controller is not told.
 struct PlantDeviation {
-  double friction_scale = 1.0;  ///< all tyre forces times this; (0, 2]
-  double mass_scale = 1.0;      ///< mass and yaw inertia of the body times this; [0.5, 2]
+  double friction_scale = 1.0;  ///< all tyre forces times this
+  double mass_scale = 1.0;      ///< mass and yaw inertia of the body times this
 };
 
 /// What happens to a plant from outside (sim/fault.hpp).

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
+#include "chicane/base/option.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/sim/plant.hpp"
@@ -11,13 +13,15 @@ namespace chicane::sim {
 
 /// What stands between the plant and what a controller is told. Zero means perfect.
 struct SensorOptions {
-  double position_noise = 0.0;    ///< standard deviation of x and y [m]; [0, 10]
-  double heading_noise = 0.0;     ///< [rad]; [0, 0.5]
-  double speed_noise = 0.0;       ///< [m/s]; [0, 10]
-  double position_quantum = 0.0;  ///< x and y are rounded to multiples of it [m]; [0, 10]
-  double heading_quantum = 0.0;   ///< [rad]; [0, 0.5]
-  double speed_quantum = 0.0;     ///< [m/s]; [0, 10]
+  double position_noise = 0.0;    ///< standard deviation of x and y [m]
+  double heading_noise = 0.0;     ///< [rad]
+  double speed_noise = 0.0;       ///< [m/s]
+  double position_quantum = 0.0;  ///< x and y are rounded to multiples of it [m]
+  double heading_quantum = 0.0;   ///< [rad]
+  double speed_quantum = 0.0;     ///< [m/s]
 };
+/// The fields with their units and ranges, for files and messages.
+[[nodiscard]] std::span<const Option> sensor_options() noexcept;
 
 /// Samples the plant as telemetry does; seeded and deterministic. Fills everything but waypoints and delay.
 class Sensor {

@@ -2,6 +2,8 @@
 export interface SchemaEntry {
   readonly key: string;
   readonly group: string;
+  /** Name of the controller whose option it is: "pure-pursuit"; empty where it is no controller's. */
+  readonly controller?: string;
   readonly kind: 'number' | 'integer' | 'bool' | 'choice' | 'text';
   readonly unit: string;
   readonly minimum: number | null;
@@ -28,6 +30,7 @@ export function readSchema(json: unknown): SchemaEntry[] {
       {
         key: each.key,
         group: typeof each.group === 'string' && each.group !== '' ? each.group : (each.key.split('.')[0] ?? ''),
+        controller: typeof each.controller === 'string' ? each.controller : '',
         kind: each.kind as SchemaEntry['kind'],
         unit: typeof each.unit === 'string' ? each.unit : '',
         minimum: numberOr(each.minimum),

@@ -95,6 +95,7 @@ describe('the schema', () => {
     const good = {
       key: 'a.b',
       group: 'a',
+      controller: 'some-one',
       kind: 'number',
       unit: 'm',
       minimum: 0,
@@ -109,6 +110,7 @@ describe('the schema', () => {
       {
         key: 'a.b',
         group: 'a',
+        controller: '',
         kind: 'bool',
         unit: '',
         minimum: null,

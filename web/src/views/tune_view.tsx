@@ -42,8 +42,8 @@ const groups = computed(() => {
 /** Groups of the active controller and its environment are open at first. */
 function isOpenAtFirst(entries: readonly SchemaEntry[]): boolean {
   const prefix = prefixOf(entries[0]?.key ?? '');
-  const controller = (run.value?.controller ?? '').replace(/-/g, '_');
-  return prefix === controller || prefix === 'plant_options' || prefix === 'sensor';
+  const controller = entries[0]?.controller ?? '';
+  return (controller !== '' && controller === run.value?.controller) || prefix === 'plant_options' || prefix === 'sensor';
 }
 
 const asText = (value: Setting): string => (typeof value === 'number' ? tidy(value) : String(value));

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "chicane/controller/baselines.hpp"
+#include "chicane/controller/controller_list.hpp"
+#include "chicane/controller/cubic_mpc.hpp"
+#include "chicane/controller/tracking_mpc.hpp"
+
+namespace chicane::controller {
+
+/// The controllers that ship. A new one is a line here and its include.
+using Registry = ControllerList<TrackingMpcEntry,  //
+                                CubicMpcEntry,     //
+                                PidEntry,          //
+                                PurePursuitEntry,  //
+                                StanleyEntry>;
+
+}  // namespace chicane::controller

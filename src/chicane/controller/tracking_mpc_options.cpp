@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include <array>
+
+#include "chicane/controller/tracking_mpc.hpp"
+#include "chicane/controller/tracking_problem.hpp"
+
+namespace chicane::controller {
+namespace {
+
+using T = TrackingMpcOptions;
+constexpr double kHighestWeight = 1e6;
+constexpr std::array kOptions{
+    option<&T::horizon_steps>("horizon_steps", unit::kNone, 5, TrackingProblem::kCapacity,
+                              "Steps the plan looks ahead."),
+    option<&T::step_length>("step_length", unit::kSecond, 0.01, 0.2, "Time between two points of the plan."),
+    option<&T::speed_limit>("speed_limit", unit::kSpeed, 1, 100, "Never planned above."),
+    option<&T::grip_share>("grip_share", unit::kNone, 0.01, 1,
+                           "Share of the believed tyre force the speed plan uses."),
+    option<&T::brake_share>("brake_share", unit::kNone, 0.01, 1,
+                            "Share of the believed braking the speed plan uses."),
+    option<&T::assumed_half_width>("assumed_half_width", unit::kMetre, 0.2, 20,
+                                   "Road on each side of the waypoint line that the centre of mass may use."),
+    option<&T::smoothing_width>("smoothing_width", unit::kMetre, 0, 10,
+                                "How far the reference line may leave the waypoint line."),
+    option<&T::weight_lateral>("weight_lateral", unit::per("1/m²"), 0, kHighestWeight,
+                               "Price of the squared lateral error."),
+    option<&T::weight_heading>("weight_heading", unit::per("1/rad²"), 0, kHighestWeight,
+                               "Price of the squared heading error."),
+    option<&T::weight_speed>("weight_speed", unit::per("s²/m²"), 0, kHighestWeight,
+                             "Price of the squared speed error."),
+    option<&T::weight_steer_rate>("weight_steer_rate", unit::per("s²/rad²"), 0, kHighestWeight,
+                                  "Price of the squared steering rate."),
+    option<&T::weight_jerk>("weight_jerk", unit::per("s⁶/m²"), 0, kHighestWeight,
+                            "Price of the squared change of acceleration."),
+    option<&T::weight_edge>("weight_edge", unit::per("1/m²"), 0, kHighestWeight,
+                            "Price of leaving assumed_half_width, squared."),
+    option<&T::weight_slip>("weight_slip", unit::kNone, 0, kHighestWeight,
+                            "Price of slip beyond the useful, normalised and squared."),
+    option<&T::compensate_delay>("compensate_delay",
+                                 "Replay the commands in flight; off only to show what happens."),
+    option<&T::remember_waypoints>("remember_waypoints", "Close the waypoints seen into a map."),
+};
+
+}  // namespace
+
+std::span<const Option> TrackingMpcEntry::options() noexcept { return kOptions; }
+
+}  // namespace chicane::controller
