@@ -43,7 +43,8 @@ const groups = computed(() => {
 function isOpenAtFirst(entries: readonly SchemaEntry[]): boolean {
   const prefix = prefixOf(entries[0]?.key ?? '');
   const controller = entries[0]?.controller ?? '';
-  return (controller !== '' && controller === run.value?.controller) || prefix === 'plant_options' || prefix === 'sensor';
+  const isOfDriver = controller !== '' && controller === run.value?.controller;
+  return isOfDriver || prefix === 'plant_options' || prefix === 'sensor';
 }
 
 const asText = (value: Setting): string => (typeof value === 'number' ? tidy(value) : String(value));
