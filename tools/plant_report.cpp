@@ -13,7 +13,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/path/track.hpp"
-#include "chicane/sim/plant_factory.hpp"
+#include "chicane/sim/plant_registry.hpp"
 #include "chicane/sim/road_car.hpp"
 #include "chicane/sim/udacity_car.hpp"
 #include "chicane/sim/world.hpp"

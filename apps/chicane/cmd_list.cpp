@@ -10,6 +10,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/sim/fault.hpp"
+#include "chicane/sim/plant_registry.hpp"
 #include "commands.hpp"
 
 namespace chicane::apps {
@@ -18,18 +19,22 @@ namespace {
 using protocol::Parameter;
 using protocol::Shelf;
 
-constexpr std::array<std::pair<std::string_view, Shelf>, 4> kShelves{{{"presets", Shelf::kPreset},
-                                                                      {"tracks", Shelf::kTrack},
-                                                                      {"cars", Shelf::kCar},
-                                                                      {"scenarios", Shelf::kScenario}}};
-
-void print_shelf(Shelf shelf) {
-  for (const protocol::Entry& entry : protocol::entries(shelf))
-    fmt::print("{:<18} {}\n", entry.name, entry.description);
+/// Files of a kind, kinds of controllers, and so on: each with a line of what it is.
+void print_entry(std::string_view name, std::string_view meaning) {
+  fmt::print("{:<18} {}\n", name, meaning);
 }
 
-void print_controllers() {
-  for (const auto& kind : controller::Registry::kinds()) fmt::print("{:<18} {}\n", kind.name, kind.meaning);
+template <Shelf shelf>
+void print_shelf(bool /*is_markdown*/) {
+  for (const protocol::Entry& entry : protocol::entries(shelf)) print_entry(entry.name, entry.description);
+}
+
+void print_controllers(bool /*is_markdown*/) {
+  for (const auto& kind : controller::Registry::kinds()) print_entry(kind.name, kind.meaning);
+}
+
+void print_plants(bool /*is_markdown*/) {
+  for (const sim::PlantKind& kind : sim::plants()) print_entry(kind.name, kind.meaning);
 }
 
 std::string default_of(const Parameter& parameter) {
@@ -52,7 +57,7 @@ std::string range_of(const Parameter& parameter) {
                      parameter.option.may_be_infinite ? ", inf" : "");
 }
 
-void print_parameters() {
+void print_rows() {
   for (const Parameter& parameter : protocol::list()) {
     fmt::print("{:<42} {:<14} {:<13} {}\n", parameter.key, default_of(parameter), parameter.option.unit.name,
                parameter.option.meaning);
@@ -104,27 +109,35 @@ void print_faults(bool is_markdown) {
   }
 }
 
+void print_parameters(bool is_markdown) { is_markdown ? print_page() : print_rows(); }
+
+struct List {
+  std::string_view name;
+  void (*print)(bool is_markdown);
+  bool is_in_overview = true;
+};
+constexpr std::array kLists{
+    List{"presets", print_shelf<Shelf::kPreset>}, List{"tracks", print_shelf<Shelf::kTrack>},
+    List{"cars", print_shelf<Shelf::kCar>},       List{"scenarios", print_shelf<Shelf::kScenario>},
+    List{"controllers", print_controllers},       List{"plants", print_plants},
+    List{"faults", print_faults, false},          List{"parameters", print_parameters, false},
+};
+
 }  // namespace
 
+std::vector<std::string> list_names() {
+  std::vector<std::string> names;
+  for (const List& list : kLists) names.emplace_back(list.name);
+  return names;
+}
+
 ExitCode list(const Options& options) {
-  if (options.shelf == "parameters") {
-    options.is_markdown ? print_page() : print_parameters();
-  } else if (options.shelf == "faults") {
-    print_faults(options.is_markdown);
-  } else if (options.shelf == "controllers") {
-    print_controllers();
-  } else if (!options.shelf.empty()) {
-    const auto* const row = std::find_if(kShelves.begin(), kShelves.end(),
-                                         [&](const auto& shelf) { return shelf.first == options.shelf; });
-    print_shelf(row->second);
-  } else {
-    for (const auto& [name, shelf] : kShelves) {
-      fmt::print("{}\n", name);
-      print_shelf(shelf);
-      fmt::print("\n");
-    }
-    fmt::print("controllers\n");
-    print_controllers();
+  bool is_first = true;
+  for (const List& list : kLists) {
+    if (!options.shelf.empty() && list.name == options.shelf) list.print(options.is_markdown);
+    if (!options.shelf.empty() || !list.is_in_overview) continue;
+    fmt::print("{}{}\n", std::exchange(is_first, false) ? "" : "\n", list.name);
+    list.print(false);
   }
   return kSuccess;
 }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "chicane/base/result.hpp"
 #include "options.hpp"
@@ -26,6 +28,8 @@ struct Command {
 [[nodiscard]] ExitCode report_logs(const Options& options);
 [[nodiscard]] ExitCode check(const Options& options);
 [[nodiscard]] ExitCode list(const Options& options);
+/// What `chicane list` takes.
+[[nodiscard]] std::vector<std::string> list_names();
 /// Becomes the program chicane-bench (bench/program); kEnvironment where that is not built.
 [[nodiscard]] ExitCode bench(const Options& options);
 [[nodiscard]] ExitCode completion(const Options& options);

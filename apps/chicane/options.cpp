@@ -233,10 +233,9 @@ void add_check(CLI::App& command, Options& options) {
 void add_list(CLI::App& command, Options& options) {
   command
       .add_option("what", options.shelf,
-                  "presets, tracks, cars, scenarios, controllers, faults or parameters; all when left out")
+                  fmt::format("{}; an overview when left out", fmt::join(list_names(), ", ")))
       ->type_name("WHAT")
-      ->check(
-          CLI::IsMember({"presets", "tracks", "cars", "scenarios", "controllers", "faults", "parameters"}));
+      ->check(CLI::IsMember(list_names()));
   command.add_flag("--markdown", options.is_markdown,
                    "parameters and faults: as in docs/configuration.md and docs/faults.md");
   command.footer("Example: chicane list presets");

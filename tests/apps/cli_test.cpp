@@ -360,6 +360,7 @@ TEST(Cli, ListKnowsWhatShips) {
   EXPECT_THAT(chicane_program("list tracks").out, HasSubstr("lakeside"));
   EXPECT_THAT(chicane_program("list cars").out, HasSubstr("road-car"));
   EXPECT_THAT(chicane_program("list controllers").out, HasSubstr("stanley"));
+  EXPECT_THAT(chicane_program("list plants").out, HasSubstr("road-car"));
   EXPECT_THAT(chicane_program("list parameters").out, HasSubstr("cubic_mpc.horizon_steps"));
 }
 

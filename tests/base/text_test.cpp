@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cstdint>
@@ -50,6 +51,12 @@ TEST(Text, QuotesNoMoreThanFits) {
   EXPECT_EQ(printable(""), "nothing");
   EXPECT_EQ(printable("a\nb\x1b"), "a?b?");
   EXPECT_EQ(printable(std::string(100, 'x')), std::string(60, 'x') + "…");
+}
+
+TEST(Text, JoinsWordsWithCommas) {
+  EXPECT_EQ(joined({}), "");
+  EXPECT_EQ(joined(std::array<std::string_view, 1>{"a"}), "a");
+  EXPECT_EQ(joined(std::array<std::string_view, 2>{"a", "b"}), "a, b");
 }
 
 }  // namespace

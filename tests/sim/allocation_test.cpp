@@ -6,7 +6,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/sim/actuation_delay.hpp"
-#include "chicane/sim/plant_factory.hpp"
+#include "chicane/sim/plant_registry.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
 #include "support/alloc_guard.hpp"
@@ -21,7 +21,7 @@ TEST(Simulation, AllocatesNothingOnceBuilt) {
     points.push_back({Vec2{80.0 * std::cos(angle), 80.0 * std::sin(angle)}, 5.0, 5.0});
   }
   const path::Track track = path::Track::create("circle", points, true).value();
-  for (const char* name : {"udacity", "road-car"}) {
+  for (const std::string_view name : plant_names()) {
     const auto plant = make_plant(name).value();
     World world{*plant, track};
     ActuationDelay delay;

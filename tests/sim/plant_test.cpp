@@ -3,20 +3,22 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "chicane/base/fnv.hpp"
 #include "chicane/base/random.hpp"
-#include "chicane/sim/plant_factory.hpp"
+#include "chicane/base/text.hpp"
+#include "chicane/sim/plant_registry.hpp"
 
 namespace chicane::sim {
 namespace {
 
 using ::testing::HasSubstr;
 
-class EveryPlant : public ::testing::TestWithParam<const char*> {
+class EveryPlant : public ::testing::TestWithParam<std::string_view> {
  protected:
   std::unique_ptr<Plant> make(const PlantDeviation& deviation = {}) {
     return make_plant(GetParam(), deviation).value();
@@ -26,7 +28,7 @@ class EveryPlant : public ::testing::TestWithParam<const char*> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Plants, EveryPlant, ::testing::Values("udacity", "road-car"),
+INSTANTIATE_TEST_SUITE_P(Plants, EveryPlant, ::testing::ValuesIn(plant_names().begin(), plant_names().end()),
                          [](const auto& plant) { return std::string(plant.param).substr(0, 4); });
 
 bool is_finite(const Plant& plant) {
@@ -186,10 +188,20 @@ TEST_P(EveryPlant, LessFrictionBrakesLaterMoreMassAcceleratesSlower) {
 }
 
 TEST(MakePlant, RefusesUnknownNamesAndDeviationsOutOfRange) {
-  EXPECT_THAT(make_plant("boat").error().message, HasSubstr("boat"));
+  EXPECT_EQ(make_plant("boat").error().message, "plant: got boat, expected one of " + joined(plant_names()));
   EXPECT_EQ(make_plant("boat").error().code, ErrorCode::kNotFound);
   EXPECT_THAT(make_plant("udacity", {.friction_scale = 0.0}).error().message, HasSubstr("friction_scale"));
   EXPECT_THAT(make_plant("road-car", {.mass_scale = 5.0}).error().message, HasSubstr("mass_scale"));
+}
+
+TEST(MakePlant, KnowsEveryPlantOfTheListByItsOwnName) {
+  ASSERT_EQ(plants().size(), plant_names().size());
+  for (std::size_t i = 0; i < plants().size(); ++i) {
+    EXPECT_EQ(plants()[i].name, plant_names()[i]);
+    EXPECT_FALSE(plants()[i].meaning.empty());
+    EXPECT_EQ(std::count(plant_names().begin(), plant_names().end(), plants()[i].name), 1);
+    EXPECT_TRUE(make_plant(plants()[i].name)) << plants()[i].name;
+  }
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "chicane/sim/plant_factory.hpp"
+#include "chicane/sim/plant_registry.hpp"
 
 namespace chicane::sim {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "chicane/base/angle.hpp"
-#include "chicane/sim/plant_factory.hpp"
+#include "chicane/sim/plant_registry.hpp"
 
 namespace chicane::sim {
 namespace {
@@ -250,7 +250,7 @@ TEST(World, JudgesAPlantOfOneMillisecondEveryFiveSteps) {
 
 TEST(World, RealCarsStandAtTheStart) {
   const path::Track track = circle();
-  for (const char* name : {"udacity", "road-car"}) {
+  for (const std::string_view name : plant_names()) {
     const auto plant = make_plant(name).value();
     World world{*plant, track};
     for (int i = 0; i < 100; ++i) world.advance({});

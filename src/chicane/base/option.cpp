@@ -12,12 +12,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::string joined(std::span<const std::string_view> words) {
-  std::string text;
-  for (const std::string_view word : words) text.append(text.empty() ? "" : ", ").append(word);
-  return text;
-}
-
 bool is_in_range(const Option& option, double value) {
   return (value >= option.minimum && value <= option.maximum) ||  // false for not-a-number
          (option.may_be_infinite && value == kInfinity);

@@ -35,4 +35,10 @@ std::string printable(std::string_view text) {
   return shown.empty() ? "nothing" : text.size() > kMost ? shown + "…" : shown;
 }
 
+std::string joined(std::span<const std::string_view> words) {
+  std::string text;
+  for (const std::string_view word : words) text.append(text.empty() ? "" : ", ").append(word);
+  return text;
+}
+
 }  // namespace chicane

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -14,5 +15,8 @@ namespace chicane {
 
 /// For messages: the first 60 bytes of a stranger's text without control characters; "nothing" when empty.
 [[nodiscard]] std::string printable(std::string_view text);
+
+/// "udacity, road-car".
+[[nodiscard]] std::string joined(std::span<const std::string_view> words);
 
 }  // namespace chicane

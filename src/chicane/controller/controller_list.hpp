@@ -93,10 +93,8 @@ class ControllerList {
   [[nodiscard]] static Result<std::unique_ptr<Controller>> make(std::string_view name, const Options& options,
                                                                 const model::VehicleParams& vehicle) {
     if (const Kind* kind = find(name)) return kind->make(options, vehicle);
-    std::string known;
-    for (const std::string_view each : kNames) known.append(known.empty() ? "" : ", ").append(each);
     return fail(ErrorCode::kInvalidArgument,
-                "controller: got " + printable(name) + ", expected one of " + known);
+                "controller: got " + printable(name) + ", expected one of " + joined(kNames));
   }
 
   /// Gives a controller of this list its options while it drives (controller/tunable.hpp); others do not

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "chicane/protocol/schema.hpp"
-#include "chicane/sim/plant_factory.hpp"
+#include "chicane/sim/plant_registry.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -12,25 +12,26 @@ namespace {
 using scenario::Scenario;
 using S = Scenario;
 
-constexpr std::array<std::string_view, 2> kPlants{"udacity", "road-car"};
-
-constexpr std::array kRun{
-    option<&S::preset>("preset", "Named controller settings this run starts from."),
-    option<&S::track>("track", "Shipped track by name, or a file."),
-    option<&S::car>("car", "Shipped car by name, or a file."),
-    option<&S::plant>("plant", kPlants, "Simulated car; normally set by the car file."),
-    option<&S::controller>("controller", controller::Registry::kNames, "Who drives."),
-    option<&S::laps>("laps", unit::kNone, 0, 10000,
-                     "Laps to drive, the first from standstill; 0 drives until stopped."),
-    option<&S::seed>("seed", unit::kNone, 0, 9007199254740992.0, "Of everything random."),
-    option<&S::latency>("latency", unit::kMillisecond, 0, 500, "Actuation delay of the simulated car."),
-    option<&S::control_period>("control_period", unit::kMillisecond, 5, 1000, "Time between measurements."),
-    option<&S::time_limit>("time_limit", unit::kSecond, 0, 1e7,
-                           "Ends the run; 0 allows ten minutes per lap."),
-    option<&S::turn_around>("turn_around", unit::kMillisecond, 0, 500,
-                            "Of the simulator as a client, from reply to next telemetry."),
-    option<&S::waypoints_sent>("waypoints_sent", unit::kNone, 2, 32, "Waypoints the telemetry shows."),
-};
+/// The run itself.
+auto run_options() {
+  return std::array{
+      option<&S::preset>("preset", "Named controller settings this run starts from."),
+      option<&S::track>("track", "Shipped track by name, or a file."),
+      option<&S::car>("car", "Shipped car by name, or a file."),
+      option<&S::plant>("plant", sim::plant_names(), "Simulated car; normally set by the car file."),
+      option<&S::controller>("controller", controller::Registry::kNames, "Who drives."),
+      option<&S::laps>("laps", unit::kNone, 0, 10000,
+                       "Laps to drive, the first from standstill; 0 drives until stopped."),
+      option<&S::seed>("seed", unit::kNone, 0, 9007199254740992.0, "Of everything random."),
+      option<&S::latency>("latency", unit::kMillisecond, 0, 500, "Actuation delay of the simulated car."),
+      option<&S::control_period>("control_period", unit::kMillisecond, 5, 1000, "Time between measurements."),
+      option<&S::time_limit>("time_limit", unit::kSecond, 0, 1e7,
+                             "Ends the run; 0 allows ten minutes per lap."),
+      option<&S::turn_around>("turn_around", unit::kMillisecond, 0, 500,
+                              "Of the simulator as a client, from reply to next telemetry."),
+      option<&S::waypoints_sent>("waypoints_sent", unit::kNone, 2, 32, "Waypoints the telemetry shows."),
+  };
+}
 
 /// All rows, and the keys they point to.
 struct Table {
@@ -48,7 +49,7 @@ struct Table {
 
 Table make_table() {
   Table table;
-  table.add("", "", kRun, [](Scenario& s) -> void* { return &s; });
+  table.add("", "", run_options(), [](Scenario& s) -> void* { return &s; });
   controller::Registry::for_each([&]<class Entry>() {
     table.add(controller::kOptionGroup<Entry>, Entry::kName, Entry::options(),
               [](Scenario& s) -> void* { return &std::get<typename Entry::Options>(s.controllers); });

@@ -6,7 +6,7 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/track_codec.hpp"
-#include "chicane/sim/plant_factory.hpp"
+#include "chicane/sim/plant_registry.hpp"
 
 namespace chicane::run {
 namespace {

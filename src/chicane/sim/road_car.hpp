@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 
 #include "chicane/base/vec2.hpp"
 #include "chicane/model/actuator.hpp"
@@ -62,6 +63,8 @@ struct RoadCarParams {
 /// its top speed; its throttle never reverses.
 class RoadCar final : public Plant {
  public:
+  static constexpr std::string_view kName = "road-car";
+  static constexpr std::string_view kMeaning = "an ordinary car: slides, pitches, steers with a lag; 1 kHz";
   static constexpr double kStepLength = 0.001;  ///< [s]
 
   explicit RoadCar(const RoadCarParams& params = {}) noexcept;

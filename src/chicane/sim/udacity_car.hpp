@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 
 #include "chicane/base/vec2.hpp"
 #include "chicane/model/tire.hpp"
@@ -61,6 +62,9 @@ struct UdacityCarParams {
 /// mass lies 0.06 m above the road.
 class UdacityCar final : public Plant {
  public:
+  static constexpr std::string_view kName = "udacity";
+  static constexpr std::string_view kMeaning =
+      "the original simulator's car: torque ramp, locking wheels, steer helper; 50 Hz";
   static constexpr double kStepLength = 0.02;  ///< [s]
   static constexpr int kParts = 4;
 
