@@ -50,7 +50,8 @@ Result<std::string> check_settings(const std::string& file) {
 ExitCode check(const Options& options) {
   ExitCode worst = kSuccess;
   for (const std::string& file : options.files) {
-    const Result<std::string> found = file.ends_with(".csv") ? check_track(file) : check_settings(file);
+    const bool is_track = protocol::track_format_of(file) != nullptr;
+    const Result<std::string> found = is_track ? check_track(file) : check_settings(file);
     if (found) {
       fmt::print("{}: ok, {}\n", file, *found);
     } else {

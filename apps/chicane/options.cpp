@@ -11,6 +11,7 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/schema.hpp"
+#include "chicane/protocol/track_codec.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/version.hpp"
 #include "command_text.hpp"
@@ -224,7 +225,10 @@ void add_report(CLI::App& command, Options& options) {
 }
 
 void add_check(CLI::App& command, Options& options) {
-  command.add_option("files", options.files, "Presets, scenarios, cars (.yaml) and tracks (.csv)")
+  command
+      .add_option("files", options.files,
+                  fmt::format("Presets, scenarios, cars (.yaml) and tracks ({})",
+                              joined(protocol::track_extensions())))
       ->type_name("FILE")
       ->required();
   command.footer("Example: chicane check presets/weighted.yaml tracks/lakeside.csv");

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -11,8 +12,10 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <span>
 
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/track_codec.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 
 namespace chicane::protocol {
@@ -24,20 +27,22 @@ constexpr std::uintmax_t kMostBytes = 64U << 20U;
 constexpr std::size_t kMostPresets = 8;  // presets that build on presets
 
 struct ShelfNames {
-  std::string_view singular, folder, extension;
+  std::string_view singular, folder;
+  std::span<const std::string_view> extensions;
 };
 ShelfNames names(Shelf shelf) {
+  static constexpr std::array<std::string_view, 1> kSettings{".yaml"};
   switch (shelf) {
     case Shelf::kPreset:
-      return {"preset", "presets", ".yaml"};
+      return {"preset", "presets", kSettings};
     case Shelf::kCar:
-      return {"car", "cars", ".yaml"};
+      return {"car", "cars", kSettings};
     case Shelf::kTrack:
-      return {"track", "tracks", ".csv"};
+      return {"track", "tracks", track_extensions()};
     case Shelf::kScenario:
       break;
   }
-  return {"scenario", "scenarios", ".yaml"};
+  return {"scenario", "scenarios", kSettings};
 }
 
 /// The folder of the running program; empty where the system does not tell.
@@ -191,11 +196,13 @@ std::optional<Document> read_car(const std::string& name, Faults& faults) {
 std::vector<Entry> entries(Shelf shelf) {
   std::map<std::string, Entry> found;
   for (const fs::path& folder : folders(shelf)) {
-    std::error_code error;
-    for (fs::directory_iterator item(folder, error), end; !error && item != end; item.increment(error)) {
-      if (item->path().extension() != names(shelf).extension) continue;
-      const std::string name = item->path().stem().string();
-      if (!found.contains(name)) found[name] = {name, item->path().string(), first_comment(item->path())};
+    for (const std::string_view extension : names(shelf).extensions) {
+      std::error_code error;
+      for (fs::directory_iterator item(folder, error), end; !error && item != end; item.increment(error)) {
+        if (item->path().extension() != extension) continue;
+        const std::string name = item->path().stem().string();
+        if (!found.contains(name)) found[name] = {name, item->path().string(), first_comment(item->path())};
+      }
     }
   }
   std::vector<Entry> result;
@@ -205,7 +212,7 @@ std::vector<Entry> entries(Shelf shelf) {
 }
 
 Result<std::string> locate(Shelf shelf, std::string_view name_or_file) {
-  const auto [singular, folder, extension] = names(shelf);
+  const auto [singular, folder, extensions] = names(shelf);
   std::error_code ignored;
   if (is_path(name_or_file)) {
     if (fs::is_regular_file(fs::path(name_or_file), ignored)) return std::string(name_or_file);
@@ -213,8 +220,10 @@ Result<std::string> locate(Shelf shelf, std::string_view name_or_file) {
                 fmt::format("{}: got {}, expected a file that exists", singular, printable(name_or_file)));
   }
   for (const fs::path& place : folders(shelf)) {
-    const fs::path file = place / fmt::format("{}{}", name_or_file, extension);
-    if (fs::is_regular_file(file, ignored)) return file.lexically_normal().string();
+    for (const std::string_view extension : extensions) {
+      const fs::path file = place / fmt::format("{}{}", name_or_file, extension);
+      if (fs::is_regular_file(file, ignored)) return file.lexically_normal().string();
+    }
   }
   const std::vector<Entry> known = entries(shelf);
   std::vector<std::string_view> known_names;

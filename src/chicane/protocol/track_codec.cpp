@@ -6,385 +6,24 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <filesystem>
-#include <iterator>
 
-#include "chicane/base/angle.hpp"
-#include "chicane/base/math.hpp"
+#include "chicane/protocol/csv_track.hpp"
 #include "chicane/protocol/library.hpp"
 
 namespace chicane::protocol {
 namespace {
 
-enum class Column { kX, kY, kRight, kLeft, kHeading, kDerived, kUnknown };
-
-struct Alias {
-  std::string_view name;
-  Column column;
-};
-constexpr std::array kAliases{
-    Alias{"x_m", Column::kX},
-    Alias{"x", Column::kX},
-    Alias{"x_ref_m", Column::kX},
-    Alias{"y_m", Column::kY},
-    Alias{"y", Column::kY},
-    Alias{"y_ref_m", Column::kY},
-    Alias{"w_tr_right_m", Column::kRight},
-    Alias{"w_right_m", Column::kRight},
-    Alias{"width_right_m", Column::kRight},
-    Alias{"d_right", Column::kRight},
-    Alias{"w_tr_left_m", Column::kLeft},
-    Alias{"w_left_m", Column::kLeft},
-    Alias{"width_left_m", Column::kLeft},
-    Alias{"d_left", Column::kLeft},
-    Alias{"psi_rad", Column::kHeading},
-    Alias{"s_m", Column::kDerived},
-    Alias{"kappa_radpm", Column::kDerived},
-    Alias{"vx_mps", Column::kDerived},
-    Alias{"ax_mps2", Column::kDerived},
+/// A new format is a line here and its include.
+constexpr std::array kFormats{
+    kCsvTrack,
 };
 
-constexpr double kMaxWidth = 1000.0;     // [m]
-constexpr std::size_t kMaxLine = 65536;  // [bytes]
-constexpr double kSameAngle = 0.3;       // headings from points scatter by this [rad]
-constexpr double kClosingCopy = 1e-3;    // a last point this near to the first repeats it [m]
-constexpr double kLoopGap = 1.5;         // a loop's last gap is at most this times the longest other one
-
-std::string_view trim(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\v\f\r";
-  const std::size_t begin = text.find_first_not_of(kBlank);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
-}
-
-char separator_of(std::string_view line) {
-  for (const char candidate : {';', ',', '\t'}) {
-    if (line.find(candidate) != std::string_view::npos) return candidate;
-  }
-  return ' ';
-}
-
-std::vector<std::string_view> split(std::string_view line, char separator) {
-  std::vector<std::string_view> fields;
-  std::size_t begin = 0;
-  while (begin <= line.size()) {
-    const std::size_t end = std::min(line.find(separator, begin), line.size());
-    std::string_view field = trim(line.substr(begin, end - begin));
-    if (field.size() >= 2 && field.front() == '"' && field.back() == '"')
-      field = trim(field.substr(1, field.size() - 2));
-    if (separator != ' ' || !field.empty()) fields.push_back(field);
-    begin = end + 1;
-  }
-  return fields;
-}
-
-/// A finite number or nothing.
-std::optional<double> number(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0.0;
-  const std::from_chars_result end = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end.ec != std::errc{} || end.ptr != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
-}
-
-/// Foreign text as messages show it: short, printable.
-std::string shown(std::string_view text) {
-  if (text.empty()) return "nothing";
-  constexpr std::size_t kMost = 32;
-  std::string result{text.substr(0, kMost)};
-  for (char& c : result) {
-    if (c < ' ' || c > '~') c = '?';
-  }
-  return text.size() > kMost ? result.append("...") : result;
-}
-
-std::string lower(std::string_view text) {
-  std::string result{text};
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
-
-class TrackParser {
- public:
-  TrackParser(const std::string& file, const TrackReadOptions& options) : options_{options} {
-    content_.file = file;
-    closed_ = options.is_closed;
-  }
-
-  Result<TrackFile> parse(std::string_view text) {
-    if (text.size() > kMaxTrackBytes)
-      return fail(fault("file", fmt::format("{} bytes", text.size()), "at most 64 MiB"));
-    if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
-      return fail(fault("file", "UTF-16", "UTF-8"));
-    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-    while (!text.empty()) {
-      ++line_;
-      const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-      if (Result<void> read = read_line(trim(text.substr(0, end))); !read)
-        return fail(std::move(read.error()));
-      text.remove_prefix(std::min(text.size(), end + (text.substr(end, 2) == "\r\n" ? 2U : 1U)));
-    }
-    if (content_.points.empty()) {
-      line_ = 0;
-      return fail(fault("file", "no points", "lines of numbers below a line that names them, like x_m,y_m"));
-    }
-    compare_headings();
-    settle_ends();
-    return std::move(content_);
-  }
-
- private:
-  struct Field {
-    std::string name;
-    Column column = Column::kUnknown;
-  };
-
-  [[nodiscard]] std::string place() const {
-    return line_ > 0 ? fmt::format("{}:{}: ", content_.file, line_) : content_.file + ": ";
-  }
-  [[nodiscard]] Error fault(std::string_view column, std::string_view got, std::string_view expected) const {
-    return {ErrorCode::kParse, fmt::format("{}{}: got {}, expected {}", place(), column, got, expected)};
-  }
-  void warn(std::string_view column, std::string_view what) {
-    content_.warnings.push_back(fmt::format("{}{}: {}", place(), column, what));
-  }
-
-  Result<void> read_line(std::string_view line) {
-    if (line.size() > kMaxLine) {
-      return fail(fault("line", fmt::format("{} bytes", line.size()), fmt::format("at most {}", kMaxLine)));
-    }
-    if (line.starts_with('#')) {
-      return read_comment(trim(line.substr(std::min(line.find_first_not_of('#'), line.size()))));
-    }
-    if (content_.points.empty() && !line.empty()) {
-      const std::vector<std::string_view> values = split(line, separator_of(line));
-      if (values.empty() || !number(values.front())) return read_header(line);
-    }
-    return line.empty() ? Result<void>{} : read_point(line);
-  }
-
-  Result<void> read_comment(std::string_view comment) {
-    if (content_.points.empty() && names_a_plane(comment)) return read_header(comment);
-    for (const std::string_view field : split(comment, separator_of(comment))) {
-      const std::size_t equals = field.find('=');
-      if (equals == std::string_view::npos) continue;
-      if (Result<void> set = read_setting(trim(field.substr(0, equals)), trim(field.substr(equals + 1)));
-          !set)
-        return set;
-    }
-    return {};
-  }
-
-  Result<void> read_setting(std::string_view key, std::string_view value) {
-    if (key == "closed") {
-      if (value != "true" && value != "false") return fail(fault(key, shown(value), "true or false"));
-      if (!options_.is_closed) closed_ = value == "true";
-      return {};
-    }
-    struct Setting {
-      std::string_view key;
-      double path::TrackOptions::*field;
-    };
-    static constexpr std::array kSettings{
-        Setting{"start_s_m", &path::TrackOptions::start_s},
-        Setting{"start_d_m", &path::TrackOptions::start_d},
-        Setting{"spacing_m", &path::TrackOptions::spacing},
-        Setting{"smoothing_sigma_m", &path::TrackOptions::smoothing_sigma},
-        Setting{"kerb_width_m", &path::TrackOptions::kerb_width},
-    };
-    for (const Setting& setting : kSettings) {
-      if (key != setting.key) continue;
-      const std::optional<double> parsed = number(value);
-      if (!parsed) return fail(fault(key, shown(value), "a number"));
-      content_.options.*setting.field = *parsed;
-    }
-    return {};
-  }
-
-  static Column column_of(std::string_view name) {
-    const auto alias =
-        std::find_if(kAliases.begin(), kAliases.end(), [&](const Alias& a) { return a.name == name; });
-    return alias == kAliases.end() ? Column::kUnknown : alias->column;
-  }
-
-  /// Whether a comment is the line of column names.
-  static bool names_a_plane(std::string_view comment) {
-    bool has_x = false;
-    bool has_y = false;
-    const std::string text = lower(comment);
-    for (const std::string_view name : split_names(text)) {
-      has_x = has_x || column_of(name) == Column::kX;
-      has_y = has_y || column_of(name) == Column::kY;
-    }
-    return has_x && has_y;
-  }
-
-  /// Headers of the wild mix their separators: "ax_mps2, w_tr_right_m" after semicolons.
-  static std::vector<std::string_view> split_names(std::string_view header) {
-    std::vector<std::string_view> names;
-    const char separator = separator_of(header);
-    for (const std::string_view part : split(header, separator)) {
-      if (separator != ';') {
-        names.push_back(part);
-        continue;
-      }
-      for (const std::string_view name : split(part, ',')) names.push_back(name);
-    }
-    return names;
-  }
-
-  [[nodiscard]] bool has(Column column) const {
-    return std::any_of(fields_.begin(), fields_.end(),
-                       [&](const Field& field) { return field.column == column; });
-  }
-
-  Result<void> read_header(std::string_view header) {
-    fields_.clear();
-    const std::string text = lower(header);
-    for (const std::string_view name : split_names(text)) {
-      const Column column = column_of(name);
-      const bool is_once = column == Column::kUnknown || column == Column::kDerived || !has(column);
-      if (!is_once) return fail(fault(shown(name), "a second such column", "one"));
-      if (column == Column::kUnknown) warn(shown(name), "unknown column, ignored");
-      fields_.push_back({std::string{name}, column});
-    }
-    if (!has(Column::kX) || !has(Column::kY))
-      return fail(fault("header", shown(header), "columns x and y (or x_m and y_m)"));
-    return check_widths();
-  }
-
-  Result<void> check_widths() {
-    const bool has_right = has(Column::kRight);
-    if (has_right != has(Column::kLeft)) {
-      return fail(fault("header", has_right ? "only a right width" : "only a left width",
-                        "both w_tr_right_m and w_tr_left_m, or none"));
-    }
-    if (!has_right) {
-      warn("width", fmt::format("not in the file, {} m left and {} m right assumed", options_.default_left,
-                                options_.default_right));
-    }
-    return {};
-  }
-
-  /// Numbers without a header: the two common layouts.
-  Result<void> assume_header(std::size_t count) {
-    if (count != 2 && count != 4) {
-      return fail(fault("header", fmt::format("none for {} columns", count),
-                        "a line that names them, like x_m,y_m,w_tr_right_m,w_tr_left_m"));
-    }
-    fields_ = {{"x_m", Column::kX}, {"y_m", Column::kY}};
-    if (count == 4)
-      fields_.insert(fields_.end(), {{"w_tr_right_m", Column::kRight}, {"w_tr_left_m", Column::kLeft}});
-    warn("header", count == 4 ? "none, read as x_m,y_m,w_tr_right_m,w_tr_left_m" : "none, read as x_m,y_m");
-    return check_widths();
-  }
-
-  Result<void> read_point(std::string_view line) {
-    if (separator_ == '\0') separator_ = separator_of(line);
-    std::vector<std::string_view> values = split(line, separator_);
-    if (fields_.empty()) {
-      if (Result<void> assumed = assume_header(values.size()); !assumed) return assumed;
-    }
-    if (values.size() == fields_.size() + 1 && values.back().empty()) values.pop_back();
-    if (values.size() != fields_.size()) {
-      return fail(fault("row", fmt::format("{} columns", values.size()), fmt::format("{}", fields_.size())));
-    }
-    if (content_.points.size() == kMaxTrackPoints)
-      return fail(fault("row", "another point", "at most 1000000"));
-
-    path::TrackPoint point{Vec2{}, options_.default_left, options_.default_right};
-    for (std::size_t i = 0; i < fields_.size(); ++i) {
-      if (Result<void> read = read_value(fields_[i], values[i], point); !read) return read;
-    }
-    content_.points.push_back(point);
-    content_.lines.push_back(line_);
-    return {};
-  }
-
-  Result<void> read_value(const Field& field, std::string_view text, path::TrackPoint& point) {
-    if (field.column == Column::kUnknown || field.column == Column::kDerived) return {};
-    const std::optional<double> value = number(text);
-    if (field.column == Column::kHeading) {
-      headings_.push_back(value.value_or(0.0));
-      return {};
-    }
-    if (!value) return fail(fault(field.name, shown(text), "a finite number with a decimal point"));
-    const bool is_width = field.column == Column::kRight || field.column == Column::kLeft;
-    if (is_width && !(*value > 0.0 && *value <= kMaxWidth))
-      return fail(fault(field.name, shown(text), "a width > 0 and <= 1000 m"));
-    if (!is_width && std::fabs(*value) > path::Path::kMaxCoordinate)
-      return fail(fault(field.name, shown(text), "a coordinate within 1e7 m"));
-    switch (field.column) {
-      case Column::kX:
-        point.position.x() = *value;
-        break;
-      case Column::kY:
-        point.position.y() = *value;
-        break;
-      case Column::kRight:
-        point.right = *value;
-        break;
-      default:
-        point.left = *value;
-    }
-    return {};
-  }
-
-  /// Headings are always recomputed; a column that counts from elsewhere is worth a word.
-  void compare_headings() {
-    const std::vector<path::TrackPoint>& points = content_.points;
-    if (headings_.size() != points.size() || points.size() < 3) return;
-    std::size_t from_x = 0;
-    std::size_t from_y = 0;
-    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-      const Vec2 along = points[i + 1].position - points[i - 1].position;
-      const double heading = atan2(along.y(), along.x());
-      if (std::fabs(headings_[i]) > 1e5) continue;
-      from_x += std::fabs(angle_difference(headings_[i], heading)) < kSameAngle ? 1U : 0U;
-      from_y += std::fabs(angle_difference(headings_[i] + 0.5 * kPi, heading)) < kSameAngle ? 1U : 0U;
-    }
-    const std::size_t most = (points.size() - 2) * 8 / 10;
-    line_ = content_.lines.front();
-    if (from_x > most) return;
-    warn("psi_rad", from_y > most ? "counts from +y (as TUM files do), recomputed from the points"
-                                  : "disagrees with the points, recomputed from them");
-  }
-
-  /// Closed or open; and a closing copy of the first point goes.
-  void settle_ends() {
-    std::vector<path::TrackPoint>& points = content_.points;
-    double longest = 0.0;
-    for (std::size_t i = 1; i < points.size(); ++i) {
-      longest = std::max(longest, (points[i].position - points[i - 1].position).norm());
-    }
-    const double gap = (points.front().position - points.back().position).norm();
-    content_.is_closed = closed_.value_or(gap <= kLoopGap * longest);
-    line_ = content_.lines.back();
-    if (!content_.is_closed && !closed_) {
-      warn("row",
-           fmt::format(
-               "{:.1f} m from the last point to the first: read as an open road (closed=true forces a loop)",
-               gap));
-    }
-    while (content_.is_closed && points.size() > 1 &&
-           (points.front().position - points.back().position).norm() < kClosingCopy) {
-      points.pop_back();
-      content_.lines.pop_back();
-    }
-  }
-
-  TrackReadOptions options_;
-  TrackFile content_;
-  std::optional<bool> closed_;
-  std::vector<Field> fields_;
-  std::vector<double> headings_;
-  char separator_ = '\0';
-  int line_ = 0;
-};
+constexpr auto kExtensions = [] {
+  std::array<std::string_view, kFormats.size()> extensions{};
+  for (std::size_t i = 0; i < extensions.size(); ++i) extensions[i] = kFormats[i].extension;
+  return extensions;
+}();
 
 /// "points[57]: …" of Track::create with the line of that point in the file.
 std::string with_line(const std::string& message, const TrackFile& content) {
@@ -402,15 +41,30 @@ std::string with_line(const std::string& message, const TrackFile& content) {
 
 }  // namespace
 
+std::span<const TrackFormat> track_formats() noexcept { return kFormats; }
+std::span<const std::string_view> track_extensions() noexcept { return kExtensions; }
+
+const TrackFormat* track_format_of(std::string_view file) noexcept {
+  for (const TrackFormat& format : kFormats) {
+    if (file.ends_with(format.extension)) return &format;
+  }
+  return nullptr;
+}
+
 Result<TrackFile> parse_track(std::string_view text, const std::string& file,
                               const TrackReadOptions& options) {
   for (const double width : {options.default_left, options.default_right}) {
-    if (!(width > 0.0 && width <= kMaxWidth)) {
+    if (!(width > 0.0 && width <= kMaxTrackWidth)) {
       return fail(ErrorCode::kInvalidArgument,
                   fmt::format("default width: got {}, expected a width > 0 and <= 1000 m", width));
     }
   }
-  return TrackParser{file, options}.parse(text);
+  if (text.size() > kMaxTrackBytes) {
+    return fail(ErrorCode::kParse,
+                fmt::format("{}: file: got {} bytes, expected at most 64 MiB", file, text.size()));
+  }
+  const TrackFormat* format = track_format_of(file);
+  return (format != nullptr ? *format : kFormats.front()).parse(text, file, options);
 }
 
 Result<path::Track> make_track(const TrackFile& content) {
@@ -429,23 +83,6 @@ Result<path::Track> read_track(const std::string& file, const TrackReadOptions& 
   if (warnings != nullptr)
     warnings->insert(warnings->end(), content->warnings.begin(), content->warnings.end());
   return make_track(*content);
-}
-
-std::string write_track(const TrackFile& content, std::string_view description) {
-  std::string text;
-  for (const std::string_view line : split(description, '\n'))
-    fmt::format_to(std::back_inserter(text), "# {}\n", line);
-  const path::TrackOptions& o = content.options;
-  fmt::format_to(
-      std::back_inserter(text),
-      "# closed={}, start_s_m={}, start_d_m={}, spacing_m={}, smoothing_sigma_m={}, kerb_width_m={}\n",
-      content.is_closed, o.start_s, o.start_d, o.spacing, o.smoothing_sigma, o.kerb_width);
-  text += "# x_m,y_m,w_tr_right_m,w_tr_left_m\n";
-  for (const path::TrackPoint& p : content.points) {
-    fmt::format_to(std::back_inserter(text), "{},{},{},{}\n", p.position.x(), p.position.y(), p.right,
-                   p.left);
-  }
-  return text;
 }
 
 }  // namespace chicane::protocol

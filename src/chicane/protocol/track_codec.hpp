@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,16 +11,14 @@
 #include "chicane/base/result.hpp"
 #include "chicane/path/track.hpp"
 
-/// Roads as CSV files (docs/tracks.md): waypoints `x,y`, TUM centre lines `x_m,y_m,w_tr_right_m,w_tr_left_m`,
-/// TUM race lines `s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2` with or without widths. Columns are
-/// found by name.
+/// Roads from files of any format in the list (docs/tracks.md).
 namespace chicane::protocol {
 
 struct TrackReadOptions {
-  double default_left = 4.5;   ///< where a file has no widths [m], > 0
-  double default_right = 4.5;  ///< [m], > 0
+  double default_left = 4.5;   ///< where a file has no widths [m]; (0, kMaxTrackWidth]
+  double default_right = 4.5;  ///< [m]; the same
   std::optional<bool> is_closed =
-      std::nullopt;  ///< forces it; else the file's `# closed=...` or the gap from last to first point says
+      std::nullopt;  ///< forces it; else the file says it, or the gap from last to first point does
 };
 
 /// What a file holds, before it becomes a road.
@@ -28,16 +27,31 @@ struct TrackFile {
   std::vector<path::TrackPoint> points;  ///< a closing copy of the first point is taken away
   std::vector<int> lines;                ///< of each point in the file, from 1
   bool is_closed = true;
-  path::TrackOptions options;  ///< from comments `# start_s_m=258, kerb_width_m=0.5`, else the defaults
+  path::TrackOptions options;         ///< what the file says of them, else the defaults
   std::vector<std::string> warnings;  ///< "file:line: column: what was assumed or ignored"
 };
 
+inline constexpr double kMaxTrackWidth = 1000.0;  ///< to one side [m]
 inline constexpr std::size_t kMaxTrackPoints = 1'000'000;
 inline constexpr std::size_t kMaxTrackBytes = std::size_t{64} << 20U;
 
-/// Any bytes may be given; time and memory stay bounded. Numbers have a decimal point in every locale; `;`,
-/// `,`, tab or blanks separate them; CRLF, a byte-order mark, blank lines and `#` comments are fine. Fails
-/// with kParse and one message "tracks/x.csv:14: w_tr_left_m: got -4, expected a width > 0 and <= 1000 m".
+/// A kind of file that roads are read from, by the end of its name.
+struct TrackFormat {
+  std::string_view extension;  ///< ".csv"
+  /// Any bytes up to kMaxTrackBytes may be given; time and memory stay bounded. Fails with kParse and one
+  /// message "tracks/x.csv:14: w_tr_left_m: got -4, expected a width > 0 and <= 1000 m".
+  Result<TrackFile> (*parse)(std::string_view text, const std::string& file,
+                             const TrackReadOptions& options) = nullptr;
+};
+
+/// All of them. Where a name fits two files, the format that comes first wins.
+[[nodiscard]] std::span<const TrackFormat> track_formats() noexcept;
+/// Their extensions, in the same order.
+[[nodiscard]] std::span<const std::string_view> track_extensions() noexcept;
+/// The format of a file by its name; null when there is none.
+[[nodiscard]] const TrackFormat* track_format_of(std::string_view file) noexcept;
+
+/// What the file's format makes of the text; a file without a known extension is read as the first format.
 [[nodiscard]] Result<TrackFile> parse_track(std::string_view text, const std::string& file,
                                             const TrackReadOptions& options = {});
 
@@ -48,8 +62,5 @@ inline constexpr std::size_t kMaxTrackBytes = std::size_t{64} << 20U;
 /// Reads, parses and makes. Also kNotFound and kIo. Warnings are appended to `warnings` when given.
 [[nodiscard]] Result<path::Track> read_track(const std::string& file, const TrackReadOptions& options = {},
                                              std::vector<std::string>* warnings = nullptr);
-
-/// TUM centre-line format that parse_track() reads back bit for bit, opening with `description` as a comment.
-[[nodiscard]] std::string write_track(const TrackFile& content, std::string_view description);
 
 }  // namespace chicane::protocol

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/csv_track.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cmath>
+#include <filesystem>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/random.hpp"
+#include "support/comma_locale.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const std::string kSource = CHICANE_SOURCE_DIR;
+
+/// A ring of R 60 m as CSV rows with a separator, `format` giving the columns of one point.
+std::string ring(const std::string& header, const std::string& separator, const std::string& tail = "",
+                 const std::string& end = "\n") {
+  std::string text = header;
+  for (int i = 0; i < 40; ++i) {
+    const double angle = 2.0 * kPi * i / 40.0;
+    text += std::to_string(60.0 * std::cos(angle)) + separator + std::to_string(60.0 * std::sin(angle)) +
+            tail + end;
+  }
+  return text;
+}
+
+TEST(CsvTrack, ReadsWaypointsAndSaysTheWidthItAssumes) {
+  const TrackFile file = parse_track(ring("x,y\n", ","), "ring.csv").value();
+  EXPECT_EQ(file.points.size(), 40U);
+  EXPECT_TRUE(file.is_closed);
+  EXPECT_EQ(file.points[3].left, 4.5);
+  EXPECT_THAT(file.warnings,
+              ElementsAre("ring.csv:1: width: not in the file, 4.5 m left and 4.5 m right assumed"));
+  const TrackFile wide =
+      parse_track(ring("x,y\n", ","), "ring.csv", {.default_left = 6.0, .default_right = 3.0}).value();
+  EXPECT_EQ(wide.points[3].left, 6.0);
+  EXPECT_EQ(wide.points[3].right, 3.0);
+}
+
+TEST(CsvTrack, ReadsTumCentreLinesWithTheRightWidthFirst) {
+  const TrackFile file =
+      parse_track(ring("# x_m,y_m,w_tr_right_m,w_tr_left_m\n", ",", ",4.4,4.8"), "ring.csv").value();
+  EXPECT_EQ(file.points[0].right, 4.4);
+  EXPECT_EQ(file.points[0].left, 4.8);
+  EXPECT_EQ(file.lines[0], 2);
+  EXPECT_THAT(file.warnings, IsEmpty());
+}
+
+TEST(CsvTrack, MatchesNamesNotPositions) {
+  const TrackFile file =
+      parse_track("w_tr_left_m,y_m,note,x_m,w_tr_right_m\n4.8,1,here,0,4.4\n4.8,2,there,9,4.4\n", "a.csv")
+          .value();
+  EXPECT_EQ(file.points[1].position, (Vec2{9.0, 2.0}));
+  EXPECT_EQ(file.points[1].left, 4.8);
+  EXPECT_THAT(file.warnings, ::testing::Contains("a.csv:1: note: unknown column, ignored"));
+}
+
+TEST(CsvTrack, ReadsTumRaceLinesAndRecomputesTheirHeading) {
+  std::string text =
+      "# 7daf4d34-e3c1-4827-9777-a6793ffc3440\n# 603fd3987364b09f\n# s_m; x_m; y_m; psi_rad; kappa_radpm; "
+      "vx_mps; ax_mps2\n";
+  for (int i = 0; i <= 40; ++i) {  // the last row repeats the first place
+    const double angle = 2.0 * kPi * i / 40.0;
+    // TUM: psi is 0 along +y; heading along the ring is angle + π/2, so psi = angle.
+    text += std::to_string(60.0 * angle) + "; " + std::to_string(60.0 * std::cos(angle)) + "; " +
+            std::to_string(60.0 * std::sin(angle)) + "; " + std::to_string(angle) + "; 0.0166; 20.0; 0.0\n";
+  }
+  const TrackFile file = parse_track(text, "race.csv").value();
+  EXPECT_EQ(file.points.size(), 40U) << "without the closing copy";
+  EXPECT_TRUE(file.is_closed);
+  EXPECT_THAT(
+      file.warnings,
+      ElementsAre("race.csv:3: width: not in the file, 4.5 m left and 4.5 m right assumed",
+                  "race.csv:4: psi_rad: counts from +y (as TUM files do), recomputed from the points"));
+  EXPECT_NEAR(make_track(file)->centre().at(0.0).heading, kPi / 2.0, 0.01);
+}
+
+TEST(CsvTrack, ReadsRaceLinesWithWidthsMixedHeadersAndCommas) {
+  const std::string header =
+      "# s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2, w_tr_right_m, w_tr_left_m\n";
+  std::string text = header;
+  for (int i = 0; i < 40; ++i) {
+    const double angle = 2.0 * kPi * i / 40.0;
+    text += "0," + std::to_string(60.0 * std::cos(angle)) + "," + std::to_string(60.0 * std::sin(angle)) +
+            "," + std::to_string(angle + kPi / 2.0) + ",0,0,0,1.5,2.5\n";
+  }
+  const TrackFile file = parse_track(text, "race.csv").value();
+  EXPECT_EQ(file.points[7].right, 1.5);
+  EXPECT_EQ(file.points[7].left, 2.5);
+  EXPECT_THAT(file.warnings, IsEmpty()) << "this psi counts from +x";
+}
+
+TEST(CsvTrack, ForgivesLineEndsMarksBlanksAndSeparators) {
+  const std::vector<path::TrackPoint> expected = parse_track(ring("x,y\n", ","), "a").value().points;
+  for (const std::string& text :
+       {ring("x,y\r\n", ",", "", "\r\n"), ring("x,y\r", ",", "", "\r"), ring("\xef\xbb\xbfx,y\n", ","),
+        ring("X;Y\n\n", " ; ", "", "\n\n  \n"), ring("x\ty\n", "\t"), ring("x y\n", "   "),
+        ring("\"x\",\"y\"\n", ","), ring("x,y\n", ",", ","), ring("", ","), ring("# x, y\n", ",")}) {
+    const Result<TrackFile> file = parse_track(text, "a");
+    ASSERT_TRUE(file) << file.error().message;
+    ASSERT_EQ(file->points.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_EQ(file->points[i].position, expected[i].position);
+    }
+  }
+}
+
+TEST(CsvTrack, ReadsDecimalPointsInALocaleOfCommas) {
+  const std::string text = ring("x,y\n", ",");  // std::to_string writes commas in that locale
+  const test::CommaLocale comma;
+  if (!comma.is_set()) GTEST_SKIP() << "the Debian package locales is not installed";
+  EXPECT_EQ(parse_track(text, "a")->points[0].position.x(), 60.0);
+  EXPECT_NEAR(parse_track(text, "a")->points[5].position.x(), 60.0 * std::sqrt(0.5), 1e-6)
+      << "six digits in the text";
+}
+
+TEST(CsvTrack, TellsOpenFromClosedAndCanBeForced) {
+  const std::string straight = "x,y\n0,0\n10,0\n20,1\n30,2\n40,2\n";
+  const TrackFile open = parse_track(straight, "a.csv").value();
+  EXPECT_FALSE(open.is_closed);
+  EXPECT_THAT(open.warnings,
+              ::testing::Contains(
+                  HasSubstr("a.csv:6: row: 40.0 m from the last point to the first: read as an open road")));
+  EXPECT_TRUE(parse_track(straight, "a.csv", {.is_closed = true})->is_closed);
+  EXPECT_FALSE(parse_track(ring("x,y\n", ","), "a.csv", {.is_closed = false})->is_closed);
+  EXPECT_FALSE(parse_track(ring("# closed=false\nx,y\n", ","), "a.csv")->is_closed);
+  EXPECT_TRUE(parse_track(ring("# closed=false\nx,y\n", ","), "a.csv", {.is_closed = true})->is_closed)
+      << "the caller wins";
+}
+
+TEST(CsvTrack, TakesTheStartAndOptionsFromComments) {
+  const TrackFile file =
+      parse_track(ring("# a ring\n# start_s_m=258.5, start_d_m=-0.76, kerb_width_m=0.5\nx,y\n", ","), "a.csv")
+          .value();
+  const path::Track track = make_track(file).value();
+  EXPECT_EQ(track.start_s(), 258.5);
+  EXPECT_EQ(track.start_d(), -0.76);
+  EXPECT_EQ(track.kerb_width(), 0.5);
+  EXPECT_EQ(track.name(), "a");
+}
+
+TEST(CsvTrack, WritesWhatItReadsBackBitForBit) {
+  TrackFile file = parse_track(ring("# start_s_m=12.25\nx,y\n", ","), "a.csv").value();
+  file.points[3].left = 1.0 / 3.0;
+  const TrackFile back = parse_track(write_csv_track(file, "a ring\nof two lines"), "b.csv").value();
+  ASSERT_EQ(back.points.size(), file.points.size());
+  for (std::size_t i = 0; i < file.points.size(); ++i) {
+    EXPECT_EQ(back.points[i].position, file.points[i].position);
+    EXPECT_EQ(back.points[i].left, file.points[i].left);
+    EXPECT_EQ(back.points[i].right, file.points[i].right);
+  }
+  EXPECT_EQ(back.options.start_s, 12.25);
+  EXPECT_EQ(back.is_closed, file.is_closed);
+  EXPECT_THAT(back.warnings, IsEmpty());
+}
+
+TEST(CsvTrack, RefusesTooManyPoints) {
+  std::string text = "x,y\n";
+  for (std::size_t i = 0; i <= kMaxTrackPoints; ++i) text += i % 2 == 0 ? "1,2\n" : "3,4\n";
+  EXPECT_EQ(parse_track(text, "a.csv").error().message,
+            "a.csv:1000002: row: got another point, expected at most 1000000");
+}
+
+struct Broken {
+  const char* file;
+  const char* message;  ///< how it begins after the file's name
+};
+
+class BrokenTrack : public ::testing::TestWithParam<Broken> {};
+
+TEST_P(BrokenTrack, IsRefusedWithFileAndLine) {
+  const std::string file = kSource + "/tests/protocol/fixtures/tracks/" + GetParam().file;
+  const Result<path::Track> track = read_track(file);
+  ASSERT_FALSE(track);
+  EXPECT_EQ(track.error().code, ErrorCode::kParse);
+  EXPECT_THAT(track.error().message, ::testing::StartsWith(file + GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Fixtures, BrokenTrack,
+    ::testing::Values(
+        Broken{"empty.csv", ": file: got no points, expected lines of numbers"},
+        Broken{"header_only.csv", ": file: got no points, expected lines of numbers"},
+        Broken{"three_points.csv", ": points: got 3 with 3 different, expected at least 4 different ones"},
+        Broken{"word_for_a_number.csv", ":6: x_m: got abc, expected a finite number with a decimal point"},
+        Broken{"nan.csv", ":7: x_m: got nan, expected a finite number"},
+        Broken{"infinity.csv", ":8: y_m: got inf, expected a finite number"},
+        Broken{"overflow.csv", ":9: x_m: got 1e999, expected a finite number"},
+        Broken{"negative_width.csv", ":10: w_tr_left_m: got -4.8, expected a width > 0 and <= 1000 m"},
+        Broken{"zero_width.csv", ":4: w_tr_right_m: got 0, expected a width > 0"},
+        Broken{"width_in_millimetres.csv", ":5: w_tr_right_m: got 4400, expected a width > 0 and <= 1000 m"},
+        Broken{"missing_column.csv", ":11: row: got 3 columns, expected 4"},
+        Broken{"extra_column.csv", ":12: row: got 5 columns, expected 4"},
+        Broken{"empty_field.csv", ":13: x_m: got nothing, expected a finite number"},
+        Broken{"decimal_commas.csv", ":3: x_m: got 57,956, expected a finite number with a decimal point"},
+        Broken{"no_y_column.csv",
+               ":1: header: got x_m,z_m,w_tr_right_m,w_tr_left_m, expected columns x and y"},
+        Broken{"column_twice.csv", ":1: x_m: got a second such column, expected one"},
+        Broken{"one_width.csv", ":1: header: got only a right width, expected both"},
+        Broken{"three_columns_no_header.csv",
+               ":1: header: got none for 3 columns, expected a line that names them"},
+        Broken{"one_place.csv", ": points: got"},
+        Broken{"figure_of_eight.csv", ":61: points[59]: got a line that crosses itself near"},
+        Broken{"wrong_order.csv", ":"},
+        Broken{"start_in_words.csv", ":1: start_s_m: got soon, expected a number"},
+        Broken{"closed_yes.csv", ":1: closed: got yes, expected true or false"},
+        Broken{"start_off_the_road.csv", ": start_d: got 7.5, expected a place on the road"},
+        Broken{"far_away.csv", ":14: x_m: got 1e8, expected a coordinate within 1e7 m"},
+        Broken{"other_separator.csv", ":15: row: got 1 columns, expected 4"},
+        Broken{"utf16.csv", ": file: got UTF-16, expected UTF-8"},
+        Broken{"picture.csv", ":1: header: got ?PNG, expected columns x and y"},
+        Broken{"json.csv", ":1: header: got {\"x\": [1, 2, 3]"},
+        Broken{"hexadecimal.csv", ":16: x_m: got 0x1F, expected a finite number"},
+        Broken{"units_in_values.csv", ":17: x_m: got "},
+        Broken{"degrees.csv", ":1: header: got lat,lon, expected columns x and y"},
+        Broken{"endless_line.csv", ":2: line: got 70000 bytes, expected at most 65536"},
+        Broken{"wide_kerb.csv", ": kerb_width: got 9, expected a number in [0, 3]"}),
+    [](const auto& each) {
+      const std::string file = each.param.file;
+      return file.substr(0, file.find('.'));
+    });
+
+TEST(CsvTrack, EveryBrokenFixtureIsListed) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kSource + "/tests/protocol/fixtures/tracks")) {
+    count += entry.path().extension() == ".csv" ? 1U : 0U;
+  }
+  EXPECT_EQ(count, 34U);
+}
+
+TEST(CsvTrack, SurvivesMutilatedFiles) {
+  // Bytes of good files deleted, doubled, replaced and cut: a road or a message, never anything else.
+  Random random{20};
+  const std::string good =
+      ring("# start_s_m=3, kerb_width_m=0.5\n# x_m,y_m,w_tr_right_m,w_tr_left_m\n", ",", ",4.4,4.8");
+  int accepted = 0;
+  for (int round = 0; round < 3000; ++round) {
+    std::string text = good;
+    for (std::uint64_t k = 0; k < 1 + random.bits() % 6U && !text.empty(); ++k) {
+      const std::size_t at = random.bits() % text.size();
+      const std::size_t run = 1 + random.bits() % 40U;
+      switch (random.bits() % 5U) {
+        case 0:
+          text.erase(at, run);
+          break;
+        case 1:
+          text.insert(at, text.substr(at / 2, run));
+          break;
+        case 2:
+          text[at] = static_cast<char>(random.bits() & 0xffU);
+          break;
+        case 3:
+          text[at] = "0123456789,;.-e#=\n\r\t \"x"[random.bits() % 23U];
+          break;
+        default:
+          text.resize(at);
+      }
+    }
+    const Result<TrackFile> file = parse_track(text, "a.csv");
+    if (!file) {
+      EXPECT_THAT(file.error().message, ::testing::AllOf(::testing::StartsWith("a.csv:"), HasSubstr("got "),
+                                                         HasSubstr("expected ")));
+      continue;
+    }
+    const Result<path::Track> track = make_track(*file);
+    if (track) {
+      ++accepted;
+      EXPECT_TRUE(std::isfinite(track->length()) && std::isfinite(track->centre().at(1.0).curvature));
+    } else {
+      EXPECT_THAT(track.error().message, ::testing::AllOf(::testing::StartsWith("a.csv:"), HasSubstr("got "),
+                                                          HasSubstr("expected ")));
+    }
+  }
+  EXPECT_GT(accepted, 20) << "some wounds are harmless";
+}
+
+}  // namespace
+}  // namespace chicane::protocol
