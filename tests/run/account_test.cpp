@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chicane/base/angle.hpp"
-#include "chicane/sim/plant_factory.hpp"
+#include "chicane/sim/plant_registry.hpp"
 
 namespace chicane::run {
 namespace {
