@@ -15,14 +15,19 @@ ctest --test-dir "$work/solver" --no-tests=error --output-on-failure >"$work/sol
 
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name chicane-solver.pc)")
 export PKG_CONFIG_PATH
+# By hand for the last instruction set; the others' objects are there already.
 mkdir "$work/solver_pc"
 read -ra flags <<<"$(pkg-config --cflags chicane-solver) $(pkg-config --variable=cflags_float chicane-solver)"
-for set in $(pkg-config --variable=instruction_sets chicane-solver); do
-  read -ra set_flags <<<"$(pkg-config --variable="cflags_$set" chicane-solver)"
-  "$compiler" -O0 -DCHICANE_NO_FORCED_INLINE "${flags[@]}" "${set_flags[@]}" -Wno-psabi -c "$source/puck_solver.cpp" -o "$work/solver_pc/$set.o"
+read -ra sets <<<"$(pkg-config --variable=instruction_sets chicane-solver)"
+objects=()
+for set in "${sets[@]}"; do
+  objects+=("$work/solver/CMakeFiles/solver_consumer_puck_solver_$set.dir/puck_solver.cpp.o")
 done
+read -ra set_flags <<<"$(pkg-config --variable="cflags_${sets[-1]}" chicane-solver)"
+"$compiler" -O1 "${flags[@]}" "${set_flags[@]}" -Wno-psabi -c "$source/puck_solver.cpp" -o "$work/solver_pc/last.o"
+objects[-1]=$work/solver_pc/last.o
 read -ra libs <<<"$(pkg-config --libs chicane-solver)"
-"$compiler" "${flags[@]}" "$source/main.cpp" "$work"/solver_pc/*.o -o "$work/solver_pc/consumer" "${libs[@]}"
+"$compiler" "${flags[@]}" "$source/main.cpp" "${objects[@]}" -o "$work/solver_pc/consumer" "${libs[@]}"
 "$work/solver_pc/consumer"
 for word in $(pkg-config --libs --print-requires chicane-solver); do
   case $word in
