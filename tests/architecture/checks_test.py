@@ -92,6 +92,7 @@ class Checks(unittest.TestCase):
             (source, 'void f() { std::printf("x"); }\n', "only live, wire and apps print"),
             (source, "auto t = std::chrono::steady_clock::now();\n", "a Deadline"),
             (source, "std::mutex m;\n", "threads and locks"),
+            (source, "int f() { static int calls = 0; return ++calls; }\n", "objects share nothing"),
             (source, "boost::asio::io_context c;\n", "sockets live in net"),
             (source, "double wheel_angle;\n", "solver knows no car"),
             (source, "Eigen::VectorXd v;\n", "fixed sizes only"),

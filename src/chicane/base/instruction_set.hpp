@@ -71,7 +71,7 @@ enum class InstructionSet : std::uint8_t { kBaseline, kAvx2, kAvx512, kNeon };
 /// best one. A CHICANE_SIMD that is not available counts as "baseline": programs refuse it at their start
 /// with environment_instruction_set().
 [[nodiscard]] InstructionSet chosen_instruction_set() noexcept;
-/// Chooses; for replays and tests. Pre: is_available(set).
+/// Chooses for the whole process; for replays and tests. Any thread may call it. Pre: is_available(set).
 void choose_instruction_set(InstructionSet set) noexcept;
 /// What CHICANE_SIMD asks for; the best one when it is not set. Fails like instruction_set_by_name().
 [[nodiscard]] Result<InstructionSet> environment_instruction_set();

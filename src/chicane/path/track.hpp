@@ -26,7 +26,8 @@ struct TrackOptions {
   double start_d = 0.0;     ///< and beside it, left positive [m]; within the road
 };
 
-/// A road: a reference line with the distances to its edges, open or closed. Immutable after create().
+/// A road: a reference line with the distances to its edges, open or closed. Immutable after create(), so
+/// that many threads may use it at once; references it returns are valid as long as it lives.
 ///
 /// The line is resampled and smoothed without shifting the road (docs/tracks.md): where it leaves a raw point
 /// by d, the widths take d up, so the edges stay where the points put them. s = 0 is at the first raw point.

@@ -18,7 +18,7 @@
 ///   4. in share/chicane/presets of the prefix that the library was configured for.
 ///
 /// A program of your own that uses a moved installation sets CHICANE_DATA_DIR (CMake: chicane_DATA_DIR;
-/// pkg-config: the variable datadir).
+/// pkg-config: the variable datadir). The functions keep nothing between calls: any thread may call them.
 namespace chicane::protocol {
 
 enum class Shelf { kPreset, kCar, kTrack, kScenario };

@@ -34,7 +34,8 @@ struct Disturbance {
 };
 
 /// The car that answers back: tyres, drive, brakes, actuators. Not the model a controller believes in.
-/// Deterministic, allocation-free, one thread. Fixed physics step.
+/// Deterministic, allocation-free. Fixed physics step. One thread at a time; plants share nothing. References
+/// it returns are to what changes with the next advance() or reset().
 class Plant {
  public:
   virtual ~Plant() = default;

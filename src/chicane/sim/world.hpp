@@ -11,7 +11,8 @@
 namespace chicane::sim {
 
 /// A car on a track: advances the plant, and has a judge look at it every 5 ms or every physics step,
-/// whichever is longer, by the plant's own contact patches. Allocates nothing, cannot fail. One thread.
+/// whichever is longer, by the plant's own contact patches. Allocates nothing, cannot fail. One thread at a
+/// time; what it returns by reference changes with the next advance(), place() or reset().
 class World {
  public:
   /// Both must outlive the world. The car stands at the track's start.

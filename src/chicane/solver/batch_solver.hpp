@@ -29,7 +29,8 @@ namespace chicane::solver {
 /// `fallback`, usually an OcpSolver. Results agree with OcpSolver's within the tolerance; which lane a
 /// problem runs in, and beside which others, does not change its bits.
 ///
-/// One object holds all memory; solve() allocates nothing. One thread.
+/// One object holds all memory; solve() allocates nothing and keeps nothing of what it is given. One thread
+/// at a time; objects share nothing, so different threads may each use their own.
 template <template <class> class Problem, class Arch, int Capacity>
 class BatchSolver {
  public:

@@ -33,12 +33,13 @@ namespace chicane::solver {
 /// stage-structured quadratic program by an active set over Riccati sweeps; step. Soft constraints enter by a
 /// primal-dual interior point whose slacks are eliminated stage by stage. Steps are full, first
 /// Gauss–Newton's, near the solution Newton's; when they stop improving, the solver goes back to its best
-/// iterate and descends by nonlinear roll-outs with line search and Levenberg shift until full steps work
-/// again.
+/// iterate and descends by nonlinear roll-outs with line search until full steps work again.
 ///
 /// One plain object holding its workspace; no allocation, lock, exception, and no clock but the deadline's.
 /// Nothing is remembered from solve to solve: the trajectory is the warm start, so a failure cannot poison
-/// the next call. One thread. `Arch`: the instruction set that its translation unit is compiled for.
+/// the next call. Problem and trajectory are used during the call only; prices and multipliers are those of
+/// the last solve. One thread at a time; objects share nothing, so different threads may each use their own.
+/// `Arch`: the instruction set that its translation unit is compiled for.
 template <OcpProblem P, int Capacity, class Arch = arch::Native>
 class OcpSolver {
  public:
@@ -88,8 +89,7 @@ class OcpSolver {
     }
     return price;
   }
-  /// The multiplier of the bounds of input m of stage k: d(cost)/d(bound), 0 (within the tolerance) between
-  /// them.
+  /// The multiplier of the bounds of input m of stage k: d(cost)/d(bound), 0 between them.
   [[nodiscard]] double bound_multiplier(int k, int m) const noexcept {
     const auto stage = static_cast<std::size_t>(k);
     return now_.slope[m][k] + now_.chains.price(stage, m) - now_.chains.price(stage + 1, m);

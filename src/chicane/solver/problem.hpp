@@ -25,15 +25,14 @@ namespace chicane::solver {
 ///     std::array<double, kNu> input_lower(int k) const;    // may be -infinity
 ///     std::array<double, kNu> input_upper(int k) const;
 ///     SoftPenalty soft_penalty(int constraint) const;      // only when kNc > 0
-///     std::string_view constraint_name(int constraint) const, constraint_unit(int constraint) const;  //
-///     optional
+///     std::string_view constraint_name(int constraint) const;  // optional
+///     std::string_view constraint_unit(int constraint) const;  // optional
 ///
 /// Costs on input changes: make the previous input part of the state. **Bounds on input changes** (rates)
 /// that must hold: say which state that is, for each input, -1 where there is no such bound:
 ///
-///     static constexpr std::array<int, kNu> kPreviousInput;      // that state of x_{k+1} is u_k, in x_0 the
-///     last
-///                                                                // input before the horizon
+///     static constexpr std::array<int, kNu> kPreviousInput;      // that state of x_{k+1} is u_k; in x_0 it
+///                                                                // is the last input before the horizon
 ///     std::array<double, kNu> input_rate_lower(int k) const;     // of u_k − u_{k−1}; may be -infinity
 ///     std::array<double, kNu> input_rate_upper(int k) const;
 ///     std::string_view input_name(int input) const, input_unit(int input) const;  // optional
@@ -73,7 +72,8 @@ namespace chicane::solver {
 /// - they are called from several places: without CHICANE_INLINE on them and on what they call, jets
 /// may go through memory.
 ///
-/// A stage may have at most 24 variables (states and inputs).
+/// A stage may have at most 24 variables (states and inputs). All functions are called on the thread that
+/// calls solve(), during the call, in any order; a problem that several threads solve at once is only read.
 
 namespace detail {
 
