@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/road/speed_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "road/sample_loop.hpp"
+
+namespace chicane::road {
+namespace {
+
+/// An open line, 600 m along x but for a bend to the left of `radius` [m] between 250 m and 300 m: the table
+/// has its curvature, the positions stay on the straight, which a speed plan does not look at.
+ReferenceLine with_a_bend(double radius) {
+  ReferenceLine line(401);
+  EXPECT_TRUE(line.shape(600.0, 400, false));
+  for (std::size_t i = 0; i < line.samples().size(); ++i) {
+    const double s = 1.5 * static_cast<double>(i);
+    line.samples()[i].curve.position = {s, 0.0};
+    line.samples()[i].curve.curvature = s >= 250.0 && s <= 300.0 ? 1.0 / radius : 0.0;
+  }
+  return line;
+}
+
+/// With tyres that brake as well in a bend as on a straight.
+model::VehicleParams uncoupled_car() {
+  model::VehicleParams car = model::road_car_params();
+  car.friction_coupling = 0.0;
+  return car;
+}
+
+void plan(ReferenceLine& line, const SpeedPlanOptions& options, int share = 1'000'000) {
+  SpeedPlan speeds(401);
+  speeds.begin(uncoupled_car(), options);
+  for (int work = share; !speeds.advance(work, line); work = share) ASSERT_GT(share, 0);
+}
+
+TEST(SpeedPlan, SaysWhatLimitsTheSpeedBeforeInAndBehindABend) {
+  ReferenceLine line = with_a_bend(40.0);
+  plan(line, {.speed_limit = 40.0});
+  const auto samples = line.samples();
+  EXPECT_EQ(samples[10].limiter, SpeedLimiter::kAsked);
+  EXPECT_EQ(samples[10].speed, 40.0);
+  EXPECT_EQ(samples[160].limiter, SpeedLimiter::kBraking);  // 10 m before the bend
+  EXPECT_EQ(samples[183].limiter, SpeedLimiter::kCurvature);
+  EXPECT_EQ(samples[220].limiter, SpeedLimiter::kPower);
+  EXPECT_EQ(samples[395].limiter, SpeedLimiter::kSight);
+  const model::VehicleParams car = uncoupled_car();
+  // The middle of the bend, where curvature does not change: v² κ = share · friction · g.
+  EXPECT_NEAR(samples[183].speed, std::sqrt(0.9 * car.friction * car.load_constant * 40.0), 1e-9);
+}
+
+TEST(SpeedPlan, EndsAnOpenLineAtTheSpeedOfTheBendThatMayFollow) {
+  ReferenceLine line = with_a_bend(1e6);
+  plan(line, {.end_curvature = 0.02});
+  const model::VehicleParams car = model::road_car_params();
+  EXPECT_NEAR(line.samples().back().speed, std::sqrt(0.9 * car.friction * car.load_constant / 0.02), 1e-9);
+  EXPECT_EQ(line.samples().back().limiter, SpeedLimiter::kSight);
+}
+
+TEST(SpeedPlan, IsTheSameHoweverTheWorkIsShared) {
+  ReferenceLine whole = with_a_bend(60.0);
+  ReferenceLine in_parts = with_a_bend(60.0);
+  plan(whole, {});
+  plan(in_parts, {}, 37);
+  for (std::size_t i = 0; i < whole.samples().size(); ++i)
+    ASSERT_EQ(whole.samples()[i].speed, in_parts.samples()[i].speed) << i;
+}
+
+TEST(SpeedPlan, KeepsTheTyresWithinTheirShare) {
+  Road road({.smoothing_width = 0.0, .speed = {.grip_share = 0.7}}, model::road_car_params());
+  learn(road, stadium());
+  const model::VehicleParams car = model::road_car_params();
+  for (double s = 0.0; s < road.line().length(); s += 5.0) {
+    const ReferenceLine::Demand at = road.line().demand(s);
+    // 3 %: samples lie 1.5 m apart.
+    EXPECT_LE(at.speed * at.speed * std::fabs(at.curvature), 1.03 * 0.7 * car.friction * car.load_constant)
+        << s;
+    EXPECT_GE(at.speed, 2.0);
+  }
+}
+
+TEST(SpeedPlan, NeverAsksForMoreThanDriveAndBrakesGive) {
+  const model::VehicleParams car = model::road_car_params();
+  Road road({.speed = {.brake_share = 0.5}}, car);
+  learn(road, stadium());
+  for (double s = 0.0; s < road.line().length(); s += 2.0) {
+    const ReferenceLine::Demand at = road.line().demand(s);
+    const double a = at.speed * at.speed_slope;
+    // 0.15 m/s²: interpolation between samples.
+    EXPECT_LE(a, longitudinal_acceleration(car, 1.0, at.speed) + 0.15) << s;
+    EXPECT_GE(a, longitudinal_acceleration(car, -1.0, at.speed) - 0.15) << s;
+  }
+}
+
+TEST(SpeedPlan, IsTheSameAtTheSeam) {
+  Road road({}, model::udacity_params());
+  learn(road, stadium());
+  const auto samples = road.line().samples();
+  EXPECT_EQ(samples.front().speed, samples.back().speed);
+  EXPECT_NEAR(samples.front().curve.curvature, samples.back().curve.curvature, 1e-12);
+  EXPECT_NEAR(samples.back().curve.heading - samples.front().curve.heading, kTwoPi, 1e-12);
+  EXPECT_NEAR((samples.front().curve.position - samples.back().curve.position).norm(), 0.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace chicane::road
