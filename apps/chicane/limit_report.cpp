@@ -59,10 +59,10 @@ std::string to_csv(const LimitRun& run, const path::Track& track, const lap_time
       "x_m,y_m,w_tr_right_m,w_tr_left_m,s_m,n_m,time_s,heading_rad,curvature_radpm,v_mps,ax_mps2,ay_mps2\n",
       run.car, run.track, limit.times.lap, track.kerb_width());
   for (std::size_t i = 0; i + 1 < limit.line.size(); ++i) {  // the last repeats the first
-    const lap_time::LimitPoint& p = limit.line[i];
+    const path::LinePoint& p = limit.line[i];
     text +=
         fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{:.3f},{:.4f},{:.4f},{:.5f},{:.6f},{:.4f},{:.4f},{:.4f}\n",
-                    p.position.x(), p.position.y(), p.right, p.left, p.s, p.n, p.time, p.heading, p.curvature,
+                    p.position.x(), p.position.y(), p.right, p.left, p.s, p.d, p.time, p.heading, p.curvature,
                     p.speed, p.longitudinal_acceleration, p.lateral_acceleration);
   }
   return text;

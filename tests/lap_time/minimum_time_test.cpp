@@ -86,7 +86,7 @@ TEST(MinimumTime, AMirroredRoadHasTheMirroredLine) {
   EXPECT_NEAR(mirrored->times.lap, limit.times.lap, 1e-4 * limit.times.lap);
   ASSERT_EQ(mirrored->line.size(), limit.line.size());
   for (std::size_t i = 0; i < limit.line.size(); ++i)
-    ASSERT_NEAR(mirrored->line[i].n, -limit.line[i].n, 0.1) << i;
+    ASSERT_NEAR(mirrored->line[i].d, -limit.line[i].d, 0.1) << i;
 }
 
 TEST(MinimumTime, AFinerGridChangesLittle) {
@@ -96,7 +96,7 @@ TEST(MinimumTime, AFinerGridChangesLittle) {
 }
 
 TEST(MinimumTime, TheLineIsACurveThatIsDrivenAsFastAsItSays) {
-  const std::vector<LimitPoint>& line = bean_limit().line;
+  const std::vector<path::LinePoint>& line = bean_limit().line;
   for (std::size_t i = 1; i + 1 < line.size(); ++i) {
     const Vec2 before = line[i].position - line[i - 1].position;
     const Vec2 after = line[i + 1].position - line[i].position;
@@ -115,7 +115,7 @@ TEST(MinimumTime, TheLineIsACurveThatIsDrivenAsFastAsItSays) {
 }
 
 /// Fastest speed on the line as it is, from its own curvature: no optimisation of where to drive.
-double quasi_steady_time(const std::vector<LimitPoint>& line, const model::VehicleParams& p) {
+double quasi_steady_time(const std::vector<path::LinePoint>& line, const model::VehicleParams& p) {
   const LimitCar car(p);
   const std::size_t count = line.size() - 1;
   const auto gap = [&](std::size_t i) { return (line[i + 1].position - line[i].position).norm(); };

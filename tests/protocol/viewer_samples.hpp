@@ -106,8 +106,8 @@ inline Run run() {
   run.building = "track = oval";
   lap_time::Limit limit;
   limit.times = {.lap = 25.0, .sectors = {8.0, 9.5, 7.5}};
-  limit.line = {{.s = 258.0, .n = 0.5, .position = {1.0, 2.0}, .speed = 40.0, .lateral_acceleration = -3.0},
-                {.s = 260.0, .time = 0.0625, .n = 0.75, .position = {3.0, 2.25}, .speed = 40.5}};
+  limit.line = {{.s = 258.0, .d = 0.5, .position = {1.0, 2.0}, .speed = 40.0, .lateral_acceleration = -3.0},
+                {.s = 260.0, .time = 0.0625, .d = 0.75, .position = {3.0, 2.25}, .speed = 40.5}};
   limit.line[1].longitudinal_acceleration = 4.5;
   run.limit = {.found = std::make_shared<const lap_time::Limit>(limit)};
   return run;

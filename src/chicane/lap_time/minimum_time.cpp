@@ -217,14 +217,14 @@ class Search {
     return sum;
   }
 
-  [[nodiscard]] LimitPoint point(std::size_t k, double time) const {
+  [[nodiscard]] path::LinePoint point(std::size_t k, double time) const {
     const LimitCar& car = problem_.car;
     const State& x = now_.x[k];
     const auto& [n, course, v, kappa, force] = x;
-    LimitPoint p;
+    path::LinePoint p;
     p.s = track_.centre().wrap(place(k));
     p.time = time;
-    p.n = n;
+    p.d = n;
     const path::PathPoint foot = track_.centre().at(place(k));
     p.position = foot.position + n * Vec2{-chicane::sin(foot.heading), chicane::cos(foot.heading)};
     p.heading = foot.heading + course;
@@ -260,7 +260,7 @@ class Search {
       limit.line_length += problem_.path(static_cast<int>(k), now_.x[k]).first;
       time += taken;
     }
-    LimitPoint last = point(leg_.run + leg_.lap, time);
+    path::LinePoint last = point(leg_.run + leg_.lap, time);
     limit.line.push_back(last);
     limit.times.lap = time;
     split[3] = time;

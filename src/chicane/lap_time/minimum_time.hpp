@@ -7,24 +7,10 @@
 #include "chicane/base/result.hpp"
 #include "chicane/lap_time/lap_times.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/path/road_data.hpp"
 #include "chicane/path/track.hpp"
 
 namespace chicane::lap_time {
-
-/// The car of the limit at one place of its line.
-struct LimitPoint {
-  double s = 0.0;                          ///< along the track's line, from its beginning [m]
-  double time = 0.0;                       ///< since the start line [s]
-  double n = 0.0;                          ///< of the centre of mass from the track's line, left positive [m]
-  Vec2 position{};                         ///< of the centre of mass in W [m]
-  double heading = 0.0;                    ///< of the path [rad], continuous along the lap
-  double curvature = 0.0;                  ///< of the path, left positive [1/m]
-  double speed = 0.0;                      ///< [m/s]
-  double longitudinal_acceleration = 0.0;  ///< along the path, drag included [m/s²]
-  double lateral_acceleration = 0.0;       ///< centripetal, left positive [m/s²]
-  double left = 0.0;                       ///< from the line driven to the edge of the road on the left [m]
-  double right = 0.0;                      ///< and on the right [m]
-};
 
 /// How good a limit is (docs/limit.md, section 5).
 struct LimitReport {
@@ -43,11 +29,11 @@ struct LimitReport {
 /// The fastest lap of a car on a closed road, by the model of docs/limit.md.
 struct Limit {
   LapTimes times;
-  double mean_speed = 0.0;       ///< length of the line over lap time [m/s]
-  double top_speed = 0.0;        ///< [m/s]
-  double least_speed = 0.0;      ///< [m/s]
-  double line_length = 0.0;      ///< of the racing line [m]
-  std::vector<LimitPoint> line;  ///< by rising time, from the start line; the last repeats the first
+  double mean_speed = 0.0;            ///< length of the line over lap time [m/s]
+  double top_speed = 0.0;             ///< [m/s]
+  double least_speed = 0.0;           ///< [m/s]
+  double line_length = 0.0;           ///< of the racing line [m]
+  std::vector<path::LinePoint> line;  ///< by rising time, from the start line; the last repeats the first
   LimitReport report;
 };
 

@@ -174,13 +174,13 @@ std::string encode_limit(const Frame&, const Run& run) {
   for (const double sector : limit.times.sectors) writer.put(sector);
   const auto column = [&](auto value) {
     writer.count(limit.line.size());
-    for (const lap_time::LimitPoint& point : limit.line) writer.put(value(point));
+    for (const path::LinePoint& point : limit.line) writer.put(value(point));
   };
-  using Point = lap_time::LimitPoint;
+  using Point = path::LinePoint;
   column([](const Point& p) { return p.s; });
   column([](const Point& p) { return p.position.x(); });
   column([](const Point& p) { return p.position.y(); });
-  column([](const Point& p) { return p.n; });
+  column([](const Point& p) { return p.d; });
   column([](const Point& p) { return p.speed; });
   column([](const Point& p) { return p.longitudinal_acceleration; });
   column([](const Point& p) { return p.lateral_acceleration; });
@@ -329,7 +329,7 @@ std::string encode_centre(const Frame&, const Run& run) { return encode_line(0.0
 std::string encode_racing_line(const Frame&, const Run& run) {
   std::vector<Vec2> line;
   if (run.limit.found) {
-    for (const lap_time::LimitPoint& point : run.limit.found->line) line.push_back(point.position);
+    for (const path::LinePoint& point : run.limit.found->line) line.push_back(point.position);
   }
   return encode_line(0.0, line);
 }
