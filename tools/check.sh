@@ -3,7 +3,7 @@
 #
 #   format   clang-format has nothing to change
 #   web      Biome finds nothing to format or to fix in the dashboard and its tests
-#   layers   arrows between modules, rules of tools/check_sources.py
+#   layers   includes between modules, rules of tools/check_sources.py, a test for each public header
 #   tidy     clang-tidy: names, function lengths, bug patterns
 #   release  ./test.sh --all: every test, with the dashboard's, the installed package's and the documents'
 #   dev      Debug with assertions, public headers compile alone
@@ -17,7 +17,7 @@ source tools/install_packages.sh
 
 check_format() { tools/check_format.sh; }
 check_web() { tools/check_web.sh; }
-check_layers() { tools/check_layers.py && tools/check_sources.py; }
+check_layers() { tools/check_layers.py && tools/check_sources.py && tools/check_header_tests.py; }
 check_tidy() {
   cmake --preset release >/dev/null &&
     find src apps -name '*.cpp' -print0 | xargs -0 -n 1 -P "$(nproc)" clang-tidy --quiet -p build/release

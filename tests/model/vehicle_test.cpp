@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "chicane/base/random.hpp"
-#include "chicane/model/actuator.hpp"
 
 namespace chicane::model {
 namespace {
@@ -77,17 +76,6 @@ TEST(LongitudinalLaw, ThrottleForClampsToTheUsefulRange) {
   EXPECT_EQ(throttle_for(car, 100.0, 10.0), 1.0);
   EXPECT_EQ(throttle_for(car, -100.0, 10.0), -car.brake_throttle_limit);
   EXPECT_EQ(throttle_for(car, std::numeric_limits<double>::quiet_NaN(), 10.0), 0.0);
-}
-
-TEST(Actuator, LagsExactlyAndKeepsRangeAndRate) {
-  const Actuator lagging{.low = -1.0, .high = 1.0, .lag = 0.1};
-  double value = 0.0;
-  for (int i = 0; i < 100; ++i) value = lagging.next(value, 0.5, 0.001);
-  EXPECT_NEAR(value, 0.5 * (1.0 - std::exp(-1.0)), 1e-12);  // composition of exact steps
-  EXPECT_EQ(Actuator{}.next(0.0, 9.0, 0.001), 1.0);
-  const Actuator slow{.low = -1.0, .high = 1.0, .lag = 0.0, .rate = 2.0};
-  EXPECT_NEAR(slow.next(0.0, 1.0, 0.1), 0.2, 1e-15);
-  EXPECT_NEAR(slow.next(0.0, -1.0, 0.1), -0.2, 1e-15);
 }
 
 }  // namespace

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/schema_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace chicane::protocol {
+namespace {
+
+nlohmann::json rows(const scenario::Scenario& defaults, std::string_view only,
+                    std::span<const Control> controls = {}) {
+  return nlohmann::json::parse(schema_json(
+      defaults, [&](const Parameter& row) { return row.key == only; }, controls));
+}
+
+TEST(SchemaJson, DescribesATunableWithUnitRangeDefaultAndMeaning) {
+  scenario::Scenario defaults;
+  defaults.seed = 17;
+  const nlohmann::json all = rows(defaults, "seed");
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0]["key"], "seed");
+  EXPECT_EQ(all[0]["default"], 17);
+  EXPECT_EQ(all[0]["kind"], "integer");
+  EXPECT_TRUE(all[0].contains("minimum"));
+  EXPECT_TRUE(all[0].contains("maximum"));
+  EXPECT_FALSE(all[0]["meaning"].get<std::string>().empty());
+}
+
+TEST(SchemaJson, OffersWhatIsAskedForAndTheControlsBehind) {
+  const Control hands{.key = "manual.steer",
+                      .kind = Kind::kNumber,
+                      .unit = "share of the lock",
+                      .minimum = -1.0,
+                      .maximum = 1.0,
+                      .initial = 0.0,
+                      .meaning = "A person's hands."};
+  const nlohmann::json all = rows({}, "laps", {&hands, 1});
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0]["key"], "laps");
+  EXPECT_EQ(all[1]["key"], "manual.steer");
+  EXPECT_EQ(all[1]["minimum"], -1.0);
+  EXPECT_EQ(all[1]["meaning"], "A person's hands.");
+}
+
+TEST(SchemaJson, WritesInfinityAsText) {
+  const nlohmann::json all = rows({}, "vehicle.drive_power_per_mass");
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0]["default"], "inf");
+  EXPECT_EQ(all[0]["may_be_infinite"], true);
+}
+
+}  // namespace
+}  // namespace chicane::protocol

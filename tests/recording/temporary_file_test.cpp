@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/recording/temporary_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace chicane::recording {
+namespace {
+
+TEST(TemporaryFile, NamesAPlaceWhereNothingIsAndClearsUp) {
+  std::string path;
+  {
+    const TemporaryFile file{".mcap"};
+    path = file.path();
+    EXPECT_TRUE(path.ends_with(".mcap"));
+    EXPECT_FALSE(std::filesystem::exists(path));
+    std::ofstream{path} << "text";
+    EXPECT_TRUE(std::filesystem::exists(path));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+TEST(TemporaryFile, IsAnotherOneEachTime) {
+  const TemporaryFile one{".txt"};
+  const TemporaryFile other{".txt"};
+  EXPECT_NE(one.path(), other.path());
+}
+
+}  // namespace
+}  // namespace chicane::recording
