@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/live/live_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "chicane/live/run_outputs.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/recording/replay.hpp"
+#include "telemetry/sample_mcap.hpp"
+
+namespace chicane::live {
+namespace {
+
+scenario::Scenario scenario_of(const std::string& laps) {
+  return protocol::compose(
+             {.scenario_file = {}, .settings = {{"preset", "pid"}, {"track", "oval"}, {"laps", laps}}})
+      .value();
+}
+
+/// A run at 20 times the pace of the clock, on a port of the system's choice.
+Result<std::unique_ptr<LiveRun>> fast_run(const scenario::Scenario& scenario, run::RunControls& controls,
+                                          LiveRunOptions options = {}) {
+  options.server.port = 0;
+  if (!options.pace) options.pace = 20.0;
+  return LiveRun::create(options, std::move(*run::ClosedLoop::create(scenario)), controls);
+}
+
+TEST(LiveRun, DrivesToItsEndAndRecordsAllOfIt) {
+  scenario::Scenario scenario = scenario_of("1");
+  scenario.time_limit = 8.0;
+  run::RunControls controls;
+  const auto live = fast_run(scenario, controls);
+  ASSERT_TRUE(live) << live.error().message;
+  EXPECT_NE((*live)->port(), 0);
+  const telemetry::TemporaryFile file;
+  auto recorder = recording::Recorder::create(
+      {.path = file.path(), .run = (*live)->description(), .scenario = scenario, .may_wait = true});
+  ASSERT_TRUE(recorder);
+  int frames = 0;
+  const telemetry::RunSummary summary =
+      (*live)->run(recorder->get(), {.on_frame = [&](const telemetry::Frame&) { ++frames; }});
+  EXPECT_EQ(summary.end_reason, "time limit reached");
+  EXPECT_EQ(static_cast<int>(summary.cycles), frames);
+  ASSERT_TRUE((*recorder)->finish());
+  const auto replayed = recording::verify_recording(file.path());
+  ASSERT_TRUE(replayed);
+  EXPECT_TRUE(replayed->is_verified());
+  EXPECT_EQ(replayed->steps, summary.cycles);
+}
+
+TEST(LiveRun, TellsOfEachLapTheLastOneToo) {
+  const scenario::Scenario scenario =
+      protocol::compose(
+          {.scenario_file = {}, .settings = {{"preset", "default"}, {"track", "oval"}, {"laps", "1"}}})
+          .value();
+  run::RunControls controls;
+  controls.wants_stop = false;
+  const auto live = fast_run(scenario, controls);
+  ASSERT_TRUE(live);
+  std::vector<int> laps;
+  const telemetry::RunSummary summary =
+      (*live)->run(nullptr, {.on_lap = [&](const telemetry::CompletedLap& lap) { laps.push_back(lap.lap); }});
+  EXPECT_TRUE(summary.completed);
+  EXPECT_EQ(laps, (std::vector{1}));
+}
+
+TEST(LiveRun, BeginsWithAPersonAtTheWheelWhenAsked) {
+  scenario::Scenario scenario = scenario_of("1");
+  scenario.time_limit = 1.0;
+  run::RunControls controls;
+  LiveRunOptions options;
+  options.is_manual = true;
+  const auto live = fast_run(scenario, controls, options);
+  ASSERT_TRUE(live);
+  bool was_always_manual = true;
+  static_cast<void>((*live)->run(
+      nullptr, {.on_frame = [&](const telemetry::Frame& frame) { was_always_manual &= frame.is_manual; }}));
+  EXPECT_TRUE(was_always_manual);
+}
+
+TEST(LiveRun, StopsWhenAskedAndRefusesAPaceThatIsNone) {
+  run::RunControls controls;
+  LiveRunOptions options;
+  options.pace = 1000.0;
+  const auto refused = fast_run(scenario_of("1"), controls, options);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("run.pace: got 1000"), std::string::npos);
+
+  run::RunControls stopping;
+  const auto live = fast_run(scenario_of("0"), stopping);
+  ASSERT_TRUE(live);
+  int frames = 0;
+  const telemetry::RunSummary summary = (*live)->run(
+      nullptr, {.on_frame = [&](const telemetry::Frame&) { stopping.wants_stop = ++frames == 20; }});
+  EXPECT_EQ(summary.end_reason, "stopped");
+  EXPECT_EQ(frames, 20);
+}
+
+}  // namespace
+}  // namespace chicane::live

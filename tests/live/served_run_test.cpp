@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/live/served_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "chicane/protocol/library.hpp"
+#include "chicane/run/make.hpp"
+#include "chicane/wire/simulate.hpp"
+
+namespace chicane::live {
+namespace {
+
+scenario::Scenario short_scenario() {
+  auto scenario = protocol::compose(
+      {.scenario_file = {},
+       .settings = {
+           {"preset", "pid"}, {"track", "oval"}, {"laps", "0"}, {"time_limit_s", "2"}, {"latency_ms", "0"}}});
+  return scenario.value();
+}
+
+TEST(ServedRun, AnswersOneSimulatorAfterTheOtherAndReportsOnAll) {
+  const scenario::Scenario scenario = short_scenario();
+  net::ServerOptions server;
+  server.port = 0;
+  ServedRun served(server, scenario, std::move(*run::make_controller(scenario)), *run::make_track(scenario));
+  EXPECT_EQ(served.description().track, "oval");
+  EXPECT_EQ(served.description().mode, "serve");
+  std::atomic<std::uint16_t> port{0};
+  std::atomic<bool> stop{false};
+  Result<wire::ServeSummary> summary;
+  int frames = 0;
+  std::thread serving([&] {
+    summary = served.run(
+        nullptr, {.on_frame = [&](const telemetry::Frame&) { ++frames; }},
+        [&](std::uint16_t chosen) { port = chosen; }, stop);
+  });
+  while (port == 0) std::this_thread::yield();
+  std::uint64_t answers = 0;
+  for (int car = 0; car < 2; ++car) {
+    const auto done = wire::simulate(
+        {.url = "ws://127.0.0.1:" + std::to_string(port.load()) + "/socket.io/?EIO=4&transport=websocket"},
+        scenario, {}, stop);
+    ASSERT_TRUE(done) << done.error().message;
+    answers += done->answers;
+  }
+  stop = true;
+  serving.join();
+  ASSERT_TRUE(summary);
+  EXPECT_EQ(summary->connections, 2U);
+  EXPECT_GE(summary->answers, answers);
+  EXPECT_EQ(summary->run.cycles, static_cast<std::uint64_t>(frames)) << "of both cars";
+  EXPECT_EQ(summary->run.track, "oval");
+}
+
+TEST(ServedRun, SaysWhyThereIsNoLimitWithoutARoad) {
+  const scenario::Scenario scenario = short_scenario();
+  net::ServerOptions server;
+  server.port = 0;
+  ServedRun served(server, scenario, std::move(*run::make_controller(scenario)), std::nullopt);
+  EXPECT_NE(served.description().limit.why_not.find("--track"), std::string::npos);
+  const std::atomic<bool> stop{true};
+  const auto summary = served.run(nullptr, {}, {}, stop);
+  ASSERT_TRUE(summary);
+  EXPECT_EQ(summary->answers, 0U);
+}
+
+}  // namespace
+}  // namespace chicane::live
