@@ -370,6 +370,12 @@ TEST(Cli, TheReferencePageIsInStepWithTheProgram) {
       << "run: chicane list parameters --markdown > docs/configuration.md";
 }
 
+TEST(Cli, TheListOfFaultsIsInStepWithTheProgram) {
+  const std::string page = read(fs::path(CHICANE_SOURCE_DIR) / "docs/faults.md");
+  EXPECT_THAT(page, HasSubstr(chicane_program("list faults --markdown").out))
+      << "the table is what chicane list faults --markdown prints";
+}
+
 TEST(Cli, APortThatIsTakenIsTheEnvironmentsFault) {
   const int taken = ::socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};

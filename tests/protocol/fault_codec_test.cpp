@@ -21,13 +21,13 @@ std::string refusal(std::string_view text) {
 TEST(FaultText, NamesAFaultItsTimeAndPerhapsMore) {
   const auto all = parse_fault("half_grip@12+5*0.25");
   ASSERT_TRUE(all) << all.error().message;
-  EXPECT_EQ(all->fault, sim::Fault::kHalfGrip);
+  EXPECT_EQ(all->fault, sim::fault_named("half_grip"));
   EXPECT_EQ(all->at, 12.0);
   EXPECT_EQ(all->duration, 5.0);
   EXPECT_EQ(all->strength, 0.25);
   const auto least = parse_fault("link_lost@0.5");
   ASSERT_TRUE(least);
-  EXPECT_EQ(least->duration, sim::kind_of(sim::Fault::kLinkLost).duration);
+  EXPECT_EQ(least->duration, sim::kind_of(*sim::fault_named("link_lost")).duration);
 }
 
 TEST(FaultText, SaysWhatIsWrongAndWhatWasMeant) {
@@ -87,7 +87,7 @@ TEST(FaultYaml, RefusesWithFileLineAndKey) {
 
 TEST(FaultControls, AreOneSwitchForEach) {
   const auto controls = fault_controls();
-  ASSERT_EQ(controls.size(), sim::kFaultCount);
+  ASSERT_EQ(controls.size(), sim::fault_kinds().size());
   EXPECT_EQ(controls[0].key, "fault.link_lost");
   EXPECT_EQ(controls[0].kind, Kind::kBool);
 }

@@ -194,8 +194,9 @@ TEST(Recorder, RecordsFaultsSoThatTheyComeOutTheSame) {
   const TemporaryFile file;
   auto scenario = protocol::compose({.scenario_file = "", .settings = {}});
   ASSERT_TRUE(scenario);
-  for (const sim::Fault fault : {sim::Fault::kGpsNoise, sim::Fault::kSlowSolver, sim::Fault::kLinkLost}) {
-    scenario->faults.push_back(sim::default_event(fault, 0.5 + static_cast<double>(scenario->faults.size())));
+  for (const char* name : {"gps_noise", "slow_solver", "link_lost"}) {
+    scenario->faults.push_back(
+        sim::default_event(*sim::fault_named(name), 0.5 + static_cast<double>(scenario->faults.size())));
   }
   const auto loop = std::move(*run::ClosedLoop::create(*scenario));
   auto recorder = Recorder::create(recording(*loop, file.path()));

@@ -3,11 +3,11 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "chicane/base/random.hpp"
 #include "chicane/base/vec2.hpp"
@@ -16,42 +16,58 @@
 
 namespace chicane::sim {
 
-/// Everything that can go wrong on purpose, in the order of fault_kinds() and of the bits that say what is
-/// on.
-enum class Fault : std::uint8_t {
-  kLinkLost,
-  kFrozenSensor,
-  kNanMeasurement,
-  kPositionJump,
-  kGpsNoise,
-  kSpeedSensorZero,
-  kWaypointsMissing,
-  kHalfGrip,
-  kIcePatch,
-  kSideWind,
-  kWeakBrakes,
-  kSteeringStuck,
-  kSteeringOffset,
-  kThrottleStuck,
-  kSlowSolver,
-  kDeadController,
-  kDelayDoubled,
-  kCommandDropped,
-};
-inline constexpr std::size_t kFaultCount = 18;
+/// A fault of the list, by its place there: also the bit that says that it is on. The places of faults that
+/// recordings have do not change.
+enum class Fault : std::uint8_t {};
+inline constexpr std::size_t kMostFaults = 32;  ///< in the list: what the bits hold
 
-/// What a fault is called, what it does, and how.
+/// What a fault keeps while it is on.
+struct FaultMemory {
+  double strength = 1.0;                            ///< in the kind's range
+  Random random{0};                                 ///< its own stream, which goes on through all the run
+  std::optional<model::Measurement> measurement{};  ///< empty when it begins
+  std::optional<double> value{};                    ///< empty when it begins
+};
+
+/// Where on its way a signal meets a fault; the earlier act first, those at one place in the order of the
+/// list.
+enum class FaultPlace : std::uint8_t {
+  kSource,  ///< where it is made: a sensor that stands still, a stuck actuator
+  kValue,   ///< it is another one than it should be
+  kLink,    ///< on the way it gets lost
+};
+
+/// What a fault is called, what it does, and how. It does what its functions say, which are called while it
+/// is on, allocate nothing and take chance from their memory only; those that are null change nothing.
 struct FaultKind {
   std::string_view name;     ///< "half_grip"
   std::string_view meaning;  ///< one sentence
   double duration = 1.0;     ///< unless said otherwise [s]
   double strength = 1.0;     ///< unless said otherwise
-  double weakest = 0.0;      ///< range of the strength
+  double weakest = 1.0;      ///< range of the strength
   double strongest = 1.0;
-  std::string_view strength_meaning;  ///< with its unit; empty when the fault has no strength
+  std::string_view strength_meaning{};  ///< with its unit; empty when the fault has no strength
+  std::string_view stream{};            ///< names its random numbers, at most eight letters
+  FaultPlace place = FaultPlace::kValue;
+
+  /// Changes what the controller is `told`; `now` is what was measured.
+  void (*measure)(FaultMemory&, const model::Measurement& now, model::Measurement& told) noexcept = nullptr;
+  /// Whether a command gets lost on its way.
+  bool (*loses_command)(FaultMemory&) noexcept = nullptr;
+  /// Changes what the actuators do; `asked` is the command that arrived.
+  void (*actuate)(FaultMemory&, const model::Command& asked, model::Command& done) noexcept = nullptr;
+  /// Time that commands arrive later than the controller is told, when it is told `latency` [s].
+  double (*extra_delay)(double strength, double latency) noexcept = nullptr;
+  /// Tyre forces times this.
+  double (*grip)(double strength) noexcept = nullptr;
+  /// Sideways push on the car [m/s²], left positive.
+  double (*side_acceleration)(double strength) noexcept = nullptr;
+  /// Questions to the deadline until it is spent (base/deadline.hpp).
+  std::uint32_t (*deadline_questions)(double strength) noexcept = nullptr;
 };
 
-/// The one list of faults: scenario files, --fault, dashboard, tests and docs/faults.md all read it.
+/// The one list of faults (fault_registry.cpp): scenario files, --fault, dashboard, tests and docs/faults.md
+/// all read it.
 [[nodiscard]] std::span<const FaultKind> fault_kinds() noexcept;
 [[nodiscard]] inline const FaultKind& kind_of(Fault fault) noexcept {
   return fault_kinds()[static_cast<std::size_t>(fault)];
@@ -61,7 +77,7 @@ struct FaultKind {
 
 /// A fault with its time: what a scenario holds.
 struct FaultEvent {
-  Fault fault = Fault::kLinkLost;
+  Fault fault{};
   double at = 0.0;        ///< when it begins [s]; >= 0
   double duration = 1.0;  ///< [s]; > 0
   double strength = 1.0;  ///< in the kind's range
@@ -76,7 +92,7 @@ class FaultLab {
  public:
   static constexpr std::size_t kCapacity = 64;  ///< scheduled events; later ones are left out
 
-  FaultLab(std::span<const FaultEvent> events, std::uint64_t seed) noexcept;
+  FaultLab(std::span<const FaultEvent> events, std::uint64_t seed);
   /// A new run: nothing is on, all is scheduled again.
   void reset() noexcept;
 
@@ -106,29 +122,24 @@ class FaultLab {
 
  private:
   struct Active {
+    FaultMemory memory;
     double until = 0.0;
-    double strength = 1.0;
   };
   [[nodiscard]] static constexpr std::uint32_t bit(Fault fault) noexcept {
     return 1U << static_cast<unsigned>(fault);
   }
-  [[nodiscard]] double strength(Fault fault) const noexcept {
-    return active_[static_cast<std::size_t>(fault)].strength;
-  }
   void begin(Fault fault, double until, double strength) noexcept;
   void end(Fault fault) noexcept;
+  /// Calls act(kind, memory) for each fault that is on, in the order of the list.
+  template <class Lab, class Act>
+  static void for_each_on(Lab& lab, Act act) noexcept;
 
   std::array<FaultEvent, kCapacity> events_{};
   std::array<bool, kCapacity> has_begun_{};
   std::size_t event_count_ = 0;
   std::uint64_t seed_;
-  std::array<Active, kFaultCount> active_{};
+  std::vector<Active> active_;  ///< one for each kind
   std::uint32_t bits_ = 0;
-  Random noise_;
-  Random loss_;
-  std::optional<model::Measurement> frozen_;  ///< the last one before the sensor froze
-  std::optional<double> stuck_steer_;         ///< [rad]
-  std::optional<double> stuck_throttle_;
 };
 
 }  // namespace chicane::sim
