@@ -2,8 +2,18 @@
 #
 #   chicane_module(path HEADERS path.hpp track.hpp SOURCES path.cpp DEPENDS base PRIVATE yaml-cpp)
 #   chicane_test(path SOURCES path_test.cpp LABELS slow)
+#
+# Without HEADERS and SOURCES all of the folder belong to the module: so in folders that get a file for each controller, plant, fault or
+# track format. SIMD_SOURCES are compiled once for each instruction set (InstructionSets.cmake). A test without SOURCES has every
+# *_test.cpp of its folder.
 function(chicane_module name)
-  cmake_parse_arguments(M "" "" "HEADERS;SOURCES;DEPENDS;PRIVATE" ${ARGN})
+  cmake_parse_arguments(M "" "" "HEADERS;SOURCES;SIMD_SOURCES;DEPENDS;PRIVATE" ${ARGN})
+  if(NOT M_HEADERS AND NOT M_SOURCES)
+    list(JOIN M_SIMD_SOURCES "|" simd_sources)
+    file(GLOB M_HEADERS CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.hpp detail/*.hpp)
+    file(GLOB M_SOURCES CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
+    list(FILTER M_SOURCES EXCLUDE REGEX "^(${simd_sources})$")
+  endif()
   set(target chicane_${name})
   list(TRANSFORM M_DEPENDS PREPEND chicane_)
   if(M_SOURCES)
@@ -21,12 +31,18 @@ function(chicane_module name)
   target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/src FILES ${M_HEADERS})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} OUTPUT_NAME chicane_${name})
   set_property(GLOBAL APPEND PROPERTY CHICANE_MODULES ${target})
+  if(M_SIMD_SOURCES)
+    chicane_simd_sources(${name} ${M_SIMD_SOURCES})
+  endif()
 endfunction()
 
 function(chicane_test name)
   cmake_parse_arguments(T "" "" "SOURCES;DEPENDS;LABELS;PRIVATE" ${ARGN})
   if(NOT T_DEPENDS)
     set(T_DEPENDS ${name})
+  endif()
+  if(NOT T_SOURCES)
+    file(GLOB T_SOURCES CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *_test.cpp)
   endif()
   list(TRANSFORM T_DEPENDS PREPEND chicane_)
   set(target ${name}_test)
