@@ -45,13 +45,14 @@ template <class Entry>
 /// follows from their entries. An entry is a struct beside its controller:
 ///
 ///   struct PidEntry {
-///     using Options = PidOptions;                                  // no other entry's
-///     static constexpr std::string_view kName = "pid";             // small letters and dashes
-///     static constexpr std::string_view kMeaning = "steering ...";  // for `chicane list controllers`
-///     static constexpr std::string_view kSpeedOption = "speed_reference";  // what --speed-mps sets; may be
-///     "" static std::span<const Option> options() noexcept;           // a row for each field of Options
-///     static constexpr auto kMake = &make_pid;                     // (options, vehicle)
-///     static std::vector<OptionContradiction> contradictions(const Options&);  // optional
+///     using Options = PidOptions;                        // a struct of its own
+///     static constexpr std::string_view kName = "pid";   // small letters and dashes
+///     static constexpr std::string_view kMeaning = "…";  // a line for `chicane list controllers`
+///     static std::span<const Option> options() noexcept; // a row for each field of Options
+///     static constexpr auto kMake = &make_pid;           // from options and model::VehicleParams
+///     // Both optional: the option that --speed-mps sets, and options that exclude each other.
+///     static constexpr std::string_view kSpeedOption = "speed_reference";
+///     static std::vector<OptionContradiction> contradictions(const Options&);
 ///   };
 template <class... Entries>
 class ControllerList {

@@ -16,29 +16,29 @@
 
 namespace chicane::sim {
 
-/// A fault of the list, by its place there: also the bit that says that it is on. The places of faults that
-/// recordings have do not change.
+/// Index of a fault in the list, and the number of its bit in FaultLab::bits(). Recordings keep these bits:
+/// the index of a fault never changes.
 enum class Fault : std::uint8_t {};
-inline constexpr std::size_t kMostFaults = 32;  ///< in the list: what the bits hold
+inline constexpr std::size_t kMostFaults = 32;  ///< in the list: one bit each
 
-/// What a fault keeps while it is on.
+/// State of a fault that is on.
 struct FaultMemory {
-  double strength = 1.0;                            ///< in the kind's range
-  Random random{0};                                 ///< its own stream, which goes on through all the run
-  std::optional<model::Measurement> measurement{};  ///< empty when it begins
-  std::optional<double> value{};                    ///< empty when it begins
+  double strength = 1.0;  ///< in the kind's range
+  Random random{0};       ///< a stream of its own, not restarted when the fault begins
+  std::optional<model::Measurement> measurement{};  ///< for the effects to use; empty when it begins
+  std::optional<double> value{};                    ///< the same
 };
 
-/// Where on its way a signal meets a fault; the earlier act first, those at one place in the order of the
-/// list.
+/// Which part of a signal's path a fault changes. Faults are applied in this order; those of the same place
+/// in the order of the list.
 enum class FaultPlace : std::uint8_t {
-  kSource,  ///< where it is made: a sensor that stands still, a stuck actuator
-  kValue,   ///< it is another one than it should be
-  kLink,    ///< on the way it gets lost
+  kSource,  ///< the sensor or actuator itself: frozen, noisy, stuck
+  kValue,   ///< the value: offset, scaled, wrong
+  kLink,    ///< the transmission: lost, incomplete
 };
 
-/// What a fault is called, what it does, and how. It does what its functions say, which are called while it
-/// is on, allocate nothing and take chance from their memory only; those that are null change nothing.
+/// Name, meaning, parameters and effects of a fault. The functions are called while the fault is on; null
+/// means no effect of that kind. They do not allocate, and take random numbers from their memory only.
 struct FaultKind {
   std::string_view name;     ///< "half_grip"
   std::string_view meaning;  ///< one sentence
@@ -47,7 +47,7 @@ struct FaultKind {
   double weakest = 1.0;      ///< range of the strength
   double strongest = 1.0;
   std::string_view strength_meaning{};  ///< with its unit; empty when the fault has no strength
-  std::string_view stream{};            ///< names its random numbers, at most eight letters
+  std::string_view stream{};            ///< seed of its random numbers: at most eight letters
   FaultPlace place = FaultPlace::kValue;
 
   /// Changes what the controller is `told`; `now` is what was measured.
