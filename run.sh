@@ -18,9 +18,18 @@ case " $* " in
 esac
 mapfile -t node < <(node_packages)
 install_packages "${run_packages[@]}" "${extra[@]}" "${node[@]}"
-tests=()
-is_configured "$root" || tests=(CHICANE_BUILD_TESTS=OFF CHICANE_BUILD_EXAMPLES=OFF)
-build_release "$root" "$target" "${tests[@]}"
+# The first build is no larger than this machine and this command need; an instruction set that is asked for is added.
+options=() simd=all
+if is_configured "$root"; then
+  simd=$(cached "$root" CHICANE_SIMD)
+else
+  simd=native options=(CHICANE_BUILD_TESTS=OFF CHICANE_BUILD_EXAMPLES=OFF CHICANE_SIMD=native)
+fi
+case "${CHICANE_SIMD:-}:;${simd:-all};" in
+  :* | *';all;' | "${CHICANE_SIMD:-}:"*";${CHICANE_SIMD:-};"*) ;;
+  baseline:* | avx2:* | avx512:* | neon:*) options+=("CHICANE_SIMD=$simd;$CHICANE_SIMD") ;;
+esac
+build_release "$root" "$target" "${options[@]}"
 
 case "${1:-}" in
   -h | --help | --version) ;;

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/base/instruction_set.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/protocol/track_codec.hpp"
@@ -350,12 +351,20 @@ std::string command_fault(int count, const char* const* words) {
                      fmt::join(names, ", "), best.empty() ? "" : fmt::format(" (did you mean {}?)", best));
 }
 
+/// Its second line is there when this program cannot do what a package can.
+std::string version_text() {
+  const std::string left_out = instruction_sets_left_out();
+  if (left_out.empty()) return "chicane " CHICANE_VERSION;
+  return fmt::format("chicane {}\ninstruction sets: {} (not built in: {})", CHICANE_VERSION,
+                     built_instruction_sets(), left_out);
+}
+
 }  // namespace
 
 std::variant<Options, Done> parse_command_line(int count, const char* const* words) {
   Options options;
   CLI::App app("Drives a car round a track by model predictive control.", "chicane");
-  app.set_version_flag("--version", "chicane " CHICANE_VERSION);
+  app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
   app.footer("Example: chicane drive");
   add_commands(app, options);

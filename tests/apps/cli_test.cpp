@@ -93,7 +93,7 @@ TEST(Cli, HelpNamesEveryCommandAndGivesAnExample) {
 TEST(Cli, SaysItsVersion) {
   const Outcome version = chicane_program("--version");
   EXPECT_EQ(version.code, 0);
-  EXPECT_EQ(version.out, "chicane " CHICANE_VERSION "\n");
+  EXPECT_EQ(version.out, "chicane " CHICANE_VERSION "\n") << "one line where every instruction set was built";
 }
 
 TEST(Cli, WrongUsageIsExplainedWithExitCodeTwo) {

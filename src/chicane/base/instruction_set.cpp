@@ -21,12 +21,24 @@ std::atomic<int>& choice() noexcept {
   return chosen;
 }
 
-std::string available_names() {
+template <class Condition>
+std::string names_of(const Condition& has) {
   std::string names;
   for (const auto& [set, name] : kNames) {
-    if (is_available(set)) names += (names.empty() ? "" : ", ") + std::string(name);
+    if (has(set)) names += (names.empty() ? "" : ", ") + std::string(name);
   }
   return names;
+}
+
+/// Whether processors of this family can have it.
+bool is_of_family(InstructionSet set) noexcept {
+#if defined(__x86_64__)
+  return set != kNeon;
+#elif defined(__aarch64__)
+  return set == kBaseline || set == kNeon;
+#else
+  return set == kBaseline;
+#endif
 }
 
 }  // namespace
@@ -40,7 +52,7 @@ std::string_view to_string(InstructionSet set) noexcept {
 
 std::string_view arithmetic(InstructionSet set) noexcept { return set == kBaseline ? "plain" : "fused"; }
 
-bool is_available(InstructionSet set) noexcept {
+bool is_supported(InstructionSet set) noexcept {
 #if defined(__x86_64__)
   const bool avx2 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
   if (set == kAvx2) return avx2;
@@ -53,9 +65,36 @@ bool is_available(InstructionSet set) noexcept {
   return set == kBaseline;
 }
 
+bool is_built(InstructionSet set) noexcept {
+#if defined(CHICANE_WITHOUT_BASELINE)
+  if (set == kBaseline) return false;
+#endif
+#if defined(CHICANE_WITHOUT_AVX2)
+  if (set == kAvx2) return false;
+#endif
+#if defined(CHICANE_WITHOUT_AVX512)
+  if (set == kAvx512) return false;
+#endif
+#if defined(CHICANE_WITHOUT_NEON)
+  if (set == kNeon) return false;
+#endif
+  return is_of_family(set);
+}
+
+bool is_available(InstructionSet set) noexcept { return is_built(set) && is_supported(set); }
+
+std::string built_instruction_sets() { return names_of(is_built); }
+
+std::string instruction_sets_left_out() {
+  return names_of([](InstructionSet set) { return is_of_family(set) && !is_built(set); });
+}
+
 InstructionSet detect_instruction_set() noexcept {
   for (const InstructionSet set : {kAvx512, kAvx2, kNeon}) {
     if (is_available(set)) return set;
+  }
+  for (const InstructionSet set : {kBaseline, kAvx2, kAvx512, kNeon}) {
+    if (is_built(set)) return set;
   }
   return kBaseline;
 }
@@ -64,16 +103,33 @@ Result<InstructionSet> instruction_set_by_name(std::string_view name) {
   for (const auto& [set, known] : kNames) {
     if (known != name) continue;
     if (is_available(set)) return set;
-    return fail(ErrorCode::kInvalidArgument,
-                "instruction set: got " + std::string(name) + ", this processor has " + available_names());
+    if (is_supported(set)) {
+      return fail(ErrorCode::kInvalidArgument, "instruction set: got " + std::string(name) +
+                                                   ", which was not built in; this program has " +
+                                                   built_instruction_sets() + ". " + how_to_build(name));
+    }
+    return fail(ErrorCode::kInvalidArgument, "instruction set: got " + std::string(name) +
+                                                 ", this processor has " + names_of(is_supported));
   }
-  return fail(ErrorCode::kInvalidArgument,
-              "instruction set: got \"" + std::string(name) + "\", expected one of " + available_names());
+  return fail(ErrorCode::kInvalidArgument, "instruction set: got \"" + std::string(name) +
+                                               "\", expected one of " + names_of(is_available));
+}
+
+std::string how_to_build(std::string_view name) {
+  const std::string word(name);
+  return "In a clone `CHICANE_SIMD=" + word + " ./run.sh` adds it; for CMake it is -DCHICANE_SIMD=" + word;
 }
 
 Result<InstructionSet> environment_instruction_set() {
   const char* asked = std::getenv("CHICANE_SIMD");
-  if (asked == nullptr || *asked == '\0') return detect_instruction_set();
+  if (asked == nullptr || *asked == '\0') {
+    const InstructionSet best = detect_instruction_set();
+    if (is_available(best)) return best;
+    return fail(ErrorCode::kInvalidArgument, "instruction set: this program was built with " +
+                                                 built_instruction_sets() +
+                                                 " alone, and this processor has " + names_of(is_supported) +
+                                                 ": build it on this machine");
+  }
   auto set = instruction_set_by_name(asked);
   if (!set) return fail(set.error().code, "CHICANE_SIMD: " + set.error().message);
   return set;
@@ -83,7 +139,9 @@ InstructionSet chosen_instruction_set() noexcept {
   int chosen = choice().load(std::memory_order_relaxed);
   if (chosen == kNotChosen) {
     const auto asked = environment_instruction_set();
-    chosen = static_cast<int>(asked ? *asked : kBaseline);
+    chosen = static_cast<int>(asked                     ? *asked
+                              : is_available(kBaseline) ? kBaseline
+                                                        : detect_instruction_set());
     choice().store(chosen, std::memory_order_relaxed);
   }
   return static_cast<InstructionSet>(chosen);

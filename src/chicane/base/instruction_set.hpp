@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "chicane/base/result.hpp"
@@ -46,6 +47,17 @@ using Native = CHICANE_ARCH;  ///< of this translation unit (cmake/InstructionSe
 #else
 using Native = Baseline;
 #endif
+
+/// The simplest that the program has code for (cmake/BuiltInstructionSets.cmake).
+#if !defined(CHICANE_WITHOUT_BASELINE)
+using Simplest = Baseline;
+#elif defined(__aarch64__)
+using Simplest = Neon;
+#elif !defined(CHICANE_WITHOUT_AVX2)
+using Simplest = Avx2;
+#else
+using Simplest = Avx512;
+#endif
 }  // namespace arch
 
 /// Instruction sets a program can run on.
@@ -58,35 +70,51 @@ enum class InstructionSet : std::uint8_t { kBaseline, kAvx2, kAvx512, kNeon };
 [[nodiscard]] std::string_view arithmetic(InstructionSet set) noexcept;
 
 /// Whether this processor has it.
+[[nodiscard]] bool is_supported(InstructionSet set) noexcept;
+/// Whether the program has code for it. All of the family, unless CHICANE_SIMD was given to CMake.
+[[nodiscard]] bool is_built(InstructionSet set) noexcept;
+/// Whether it can be chosen: both of these.
 [[nodiscard]] bool is_available(InstructionSet set) noexcept;
+/// Names of those that the program has code for: "baseline, avx2, avx512".
+[[nodiscard]] std::string built_instruction_sets();
+/// Names of those of the family that were left out; empty when none was.
+[[nodiscard]] std::string instruction_sets_left_out();
 
-/// The best one of this processor.
+/// The best one that is available; the simplest that was built where none is, which is not to be run.
 [[nodiscard]] InstructionSet detect_instruction_set() noexcept;
 
-/// By name: "baseline", "avx2", "avx512", "neon". Fails for other names, and for one that this processor does
-/// not have.
+/// By name: "baseline", "avx2", "avx512", "neon". Fails for other names, for one that this processor does
+/// not have, and for one that was not built.
 [[nodiscard]] Result<InstructionSet> instruction_set_by_name(std::string_view name);
 
+/// Advice for who needs one that was left out: "In a clone `CHICANE_SIMD=avx2 ./run.sh` adds it; ...".
+[[nodiscard]] std::string how_to_build(std::string_view name);
+
 /// The one that solvers made from now on use: the last choice, else the environment's CHICANE_SIMD, else the
-/// best one. A CHICANE_SIMD that is not available counts as "baseline": programs refuse it at their start
-/// with environment_instruction_set().
+/// best one. A CHICANE_SIMD that is not available counts as "baseline", or the best where that was not built:
+/// programs refuse it at their start with environment_instruction_set().
 [[nodiscard]] InstructionSet chosen_instruction_set() noexcept;
 /// Chooses for the whole process; for replays and tests. Any thread may call it. Pre: is_available(set).
 void choose_instruction_set(InstructionSet set) noexcept;
-/// What CHICANE_SIMD asks for; the best one when it is not set. Fails like instruction_set_by_name().
+/// What CHICANE_SIMD asks for; the best one when it is not set. Fails like instruction_set_by_name(), and
+/// when none is available.
 [[nodiscard]] Result<InstructionSet> environment_instruction_set();
 
-/// Calls f with the tag of `set`; sets of other families of processors are not compiled.
+/// Calls f with the tag of `set`; sets of other families of processors, and those left out, are not compiled.
+/// Pre: is_available(set).
 template <class F>
 auto with_instructions(InstructionSet set, F&& f) {
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(CHICANE_WITHOUT_AVX512)
   if (set == InstructionSet::kAvx512) return f(arch::Avx512{});
+#endif
+#if defined(__x86_64__) && !defined(CHICANE_WITHOUT_AVX2)
   if (set == InstructionSet::kAvx2) return f(arch::Avx2{});
-#elif defined(__aarch64__)
+#endif
+#if defined(__aarch64__) && !defined(CHICANE_WITHOUT_NEON)
   if (set == InstructionSet::kNeon) return f(arch::Neon{});
 #endif
   static_cast<void>(set);
-  return f(arch::Baseline{});
+  return f(arch::Simplest{});
 }
 
 }  // namespace chicane

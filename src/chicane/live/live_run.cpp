@@ -42,7 +42,8 @@ protocol::Run live_description(const run::ClosedLoop& loop) {
 
 }  // namespace
 
-LiveRun::LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop> loop, run::RunControls& controls)
+LiveRun::LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop> loop,
+                 run::RunControls& controls)
     : options_{options},
       controls_{controls},
       loop_{std::move(loop)},
@@ -89,7 +90,8 @@ Result<void> LiveRun::open() {
   if (options_.is_manual) {
     if (Result<void> set = settings_.set({"manual.is_on", true}); !set) return set;
   }
-  auto server = net::Server::create(options_.server, router_.handlers(live_pages(settings_)), embedded_assets());
+  auto server =
+      net::Server::create(options_.server, router_.handlers(live_pages(settings_)), embedded_assets());
   if (!server) return fail(server.error());
   server_ = std::move(*server);
   return {};
@@ -98,7 +100,8 @@ Result<void> LiveRun::open() {
 protocol::Run LiveRun::description() const { return live_description(*loop_); }
 
 double LiveRun::step_budget() const {
-  return options_.step_budget.value_or(run::RealtimeOptions{}.budget_share * loop_->scenario().control_period);
+  return options_.step_budget.value_or(run::RealtimeOptions{}.budget_share *
+                                       loop_->scenario().control_period);
 }
 
 telemetry::RunSummary LiveRun::run(recording::Recorder* recorder, const LiveHooks& hooks) {

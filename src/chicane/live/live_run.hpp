@@ -27,20 +27,22 @@ namespace chicane::live {
 
 struct LiveRunOptions {
   net::ServerOptions server{};  ///< of the dashboard and other viewers
-  std::optional<double> step_budget{};  ///< deadline of a control step [s]; 0: none; default: a share of the period
-  bool stay_at_end = false;             ///< drive on after the last lap until asked to stop
-  std::optional<double> pace{};         ///< run seconds per second of the clock
-  bool is_manual = false;               ///< a person drives from the beginning
+  std::optional<double>
+      step_budget{};             ///< deadline of a control step [s]; 0: none; default: a share of the period
+  bool stay_at_end = false;      ///< drive on after the last lap until asked to stop
+  std::optional<double> pace{};  ///< run seconds per second of the clock
+  bool is_manual = false;        ///< a person drives from the beginning
 };
 
-/// A run with our simulator, paced by the clock, which people watch and change while it goes on: the loop, its
-/// viewers, recording, limit and settings, and who hands what to whom.
+/// A run with our simulator, paced by the clock, which people watch and change while it goes on: the loop,
+/// its viewers, recording, limit and settings, and who hands what to whom.
 ///
-/// Threads, and what each owns: the thread of run() the loop, the recorder's input and RunOutputs; the network
-/// thread LiveSettings, the viewers and RunBuilder's results; a builder, a searcher of the limit and the
-/// recorder's writer have one each. The network thread hands changes to the loop through RunControls::wishes
-/// and built runs through a queue under the one mutex here, which is held for a pointer's move. A setting that
-/// cannot change while a run goes on starts another one: built beside it, taken over between two cycles.
+/// Threads, and what each owns: the thread of run() the loop, the recorder's input and RunOutputs; the
+/// network thread LiveSettings, the viewers and RunBuilder's results; a builder, a searcher of the limit and
+/// the recorder's writer have one each. The network thread hands changes to the loop through
+/// RunControls::wishes and built runs through a queue under the one mutex here, which is held for a pointer's
+/// move. A setting that cannot change while a run goes on starts another one: built beside it, taken over
+/// between two cycles.
 class LiveRun {
  public:
   /// Opens the port. `controls` belongs to whoever may stop the run, and outlives this. kIo with the sentence

@@ -15,21 +15,21 @@
 
 namespace chicane::live {
 
-/// What a program shows of a live run beside viewers and recording, on the control thread. Empty functions are
-/// not called.
+/// What a program shows of a live run beside viewers and recording, on the control thread. Empty functions
+/// are not called.
 struct LiveHooks {
   std::function<void(const telemetry::Frame&)> on_frame{};
   std::function<void(const telemetry::CompletedLap&)> on_lap{};
   std::function<void(std::string_view)> say{};  ///< one line for people; any thread
 };
 
-/// Hands what happens in a live run to all who want to know: the recording, viewers, the settings that viewers
-/// see, and the program's own hooks. One thread, the control thread.
+/// Hands what happens in a live run to all who want to know: the recording, viewers, the settings that
+/// viewers see, and the program's own hooks. One thread, the control thread.
 class RunOutputs {
  public:
   /// `recorder` may be null: nothing is recorded. All outlive this.
-  RunOutputs(recording::Recorder* recorder, wire::ViewerEndpoint& viewer, LiveSettings& settings, RunLimit& limit,
-             const LiveHooks& hooks)
+  RunOutputs(recording::Recorder* recorder, wire::ViewerEndpoint& viewer, LiveSettings& settings,
+             RunLimit& limit, const LiveHooks& hooks)
       : recorder_{recorder}, viewer_{viewer}, settings_{settings}, limit_{limit}, hooks_{hooks} {}
 
   void frame(const telemetry::Frame& frame) {

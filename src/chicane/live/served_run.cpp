@@ -42,8 +42,8 @@ ServedRun::ServedRun(const net::ServerOptions& server, const scenario::Scenario&
   options_.vehicle = scenario_.vehicle;
   options_.scenario = scenario_;
   if (track_) options_.track = &*track_;
-  options_.latency = std::chrono::duration_cast<std::chrono::nanoseconds>(
-      std::chrono::duration<double>(scenario_.latency));
+  options_.latency =
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(scenario_.latency));
 }
 
 double ServedRun::step_budget() const { return std::chrono::duration<double>(options_.step_budget).count(); }

@@ -9,12 +9,12 @@ namespace chicane::path {
 
 /// One cross-section of a road, on its centre line.
 struct RoadPoint {
-  double s = 0.0;                ///< along the centre line, from its beginning [m]
+  double s = 0.0;          ///< along the centre line, from its beginning [m]
   Vec2 position = Vec2{};  ///< of the centre line in W [m]
-  double heading = 0.0;          ///< of its tangent [rad], continuous along the road (not wrapped)
-  double curvature = 0.0;        ///< [1/m], left positive
-  double left = 0.0;             ///< from the centre line to the edge on the left [m]
-  double right = 0.0;            ///< and on the right [m]
+  double heading = 0.0;    ///< of its tangent [rad], continuous along the road (not wrapped)
+  double curvature = 0.0;  ///< [1/m], left positive
+  double left = 0.0;       ///< from the centre line to the edge on the left [m]
+  double right = 0.0;      ///< and on the right [m]
 };
 
 /// A car at one place of a line that it drives: where, how fast, and with which accelerations.
@@ -22,7 +22,7 @@ struct LinePoint {
   double s = 0.0;                          ///< along the road's centre line, from its beginning [m]
   double time = 0.0;                       ///< since the line's first point [s]
   double d = 0.0;                          ///< of the centre of mass from the centre line, left positive [m]
-  Vec2 position = Vec2{};            ///< of the centre of mass in W [m]
+  Vec2 position = Vec2{};                  ///< of the centre of mass in W [m]
   double heading = 0.0;                    ///< of the line [rad], continuous along it (not wrapped)
   double curvature = 0.0;                  ///< of the line, left positive [1/m]
   double speed = 0.0;                      ///< [m/s]

@@ -20,6 +20,12 @@ Result<void> choose_arithmetic(const std::string& wanted, const std::string& pat
     choose_instruction_set(set);
     return {};
   }
+  for (const InstructionSet set : {kAvx512, kAvx2, kNeon, kBaseline}) {
+    if (!is_supported(set) || arithmetic(set) != wanted) continue;
+    return fail(ErrorCode::kInvalidArgument, path + ": arithmetic: got \"" + wanted + "\", which needs " +
+                                                 std::string(to_string(set)) + ": that was not built in. " +
+                                                 how_to_build(to_string(set)));
+  }
   return fail(ErrorCode::kInvalidArgument,
               path + ": arithmetic: got \"" + wanted + "\", expected \"" +
                   std::string(arithmetic(chosen_instruction_set())) +
