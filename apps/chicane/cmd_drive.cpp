@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "chicane/live/assets.hpp"
 #include "chicane/live/description.hpp"
 #include "chicane/live/live_run.hpp"
 #include "chicane/protocol/json_report.hpp"
@@ -40,6 +41,7 @@ Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop
                          run::RunControls& controls) {
   live::LiveRunOptions living{
       .stay_at_end = stays_up(options), .pace = options.pace, .is_manual = options.is_manual};
+  living.assets = live::embedded_assets();
   living.server.address = options.address;
   living.server.port = options.port;
   if (options.step_budget_ms) living.step_budget = 1e-3 * *options.step_budget_ms;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "chicane/live/assets.hpp"
 #include "chicane/live/served_run.hpp"
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/run/make.hpp"
@@ -42,7 +43,8 @@ Result<wire::ServeSummary> run(const Options& options) {
   net::ServerOptions server;
   server.address = options.address;
   server.port = options.port;
-  live::ServedRun served(server, *scenario, std::move(*controller), std::move(*track));
+  live::ServedRun served(server, *scenario, std::move(*controller), std::move(*track),
+                         live::embedded_assets());
   const auto kept = KeptRun::start(options, served.description(), *scenario, served.step_budget());
   if (!kept) return fail(kept.error());
   Progress progress;

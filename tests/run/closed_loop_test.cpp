@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -62,6 +63,27 @@ TEST_P(ShippedTrack, IsDrivenCleanlyByBothCarsWithTheSameTuning) {
 }
 INSTANTIATE_TEST_SUITE_P(Tracks, ShippedTrack, ::testing::Values("lakeside", "oval", "hairpins", "speedway"),
                          [](const auto& track) { return std::string(track.param); });
+
+TEST(ClosedLoop, OfARunUntilStoppedGoesOnAfterAnExcursionByHand) {
+  scenario::Scenario scenario = scenario_of("udacity", "oval", 0);
+  const auto loop = std::move(*ClosedLoop::create(scenario));
+  loop->apply({.name = "manual.is_on", .value = "true"});
+  loop->apply({.name = "manual.throttle", .value = "0.5"});
+  loop->apply({.name = "manual.steer", .value = "1"});
+  while (loop->time() < 20.0) {
+    if (loop->is_control_due()) loop->apply({.name = "manual.throttle", .value = "0.5"});
+    static_cast<void>(loop->advance());
+  }
+  loop->apply({.name = "manual.steer", .value = "0"});
+  while (loop->time() < 30.0) {
+    if (loop->is_control_due()) loop->apply({.name = "manual.throttle", .value = "0.5"});
+    static_cast<void>(loop->advance());
+  }
+  ASSERT_GT(std::fabs(loop->world().lateral_error), 25.0) << "a person has left the road";
+  loop->apply({.name = "manual.is_on", .value = "false"});
+  while (loop->time() < 120.0 && !loop->is_over()) static_cast<void>(loop->advance());
+  EXPECT_FALSE(loop->is_over());
+}
 
 TEST(ClosedLoop, DoesTheSameTwice) {
   const scenario::Scenario scenario = scenario_of("udacity", "lakeside", 1);

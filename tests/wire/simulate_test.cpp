@@ -11,6 +11,7 @@
 #include "chicane/net/server.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/run/make.hpp"
+#include "chicane/sim/world.hpp"
 #include "chicane/wire/serve.hpp"
 
 namespace chicane::wire {
@@ -121,6 +122,30 @@ TEST(Simulate, SendsWhatTheOriginalSends) {
           R"re("psi":[0-9.]+,"x":[-0-9.]+,"y":[-0-9.]+,"steering_angle":0,"throttle":0,"speed":0\}\])re"));
   const auto first = protocol::parse_telemetry(server.messages()[0]);
   EXPECT_EQ(std::get<model::Measurement>(first).waypoint_count, 6);
+}
+
+TEST(Simulate, SendsTheWaypointsOfTheMeasuredPlaceAsDriveDoes) {
+  scenario::Scenario noisy = short_run(1.0);
+  noisy.sensor.position_noise = 8.0;  // other waypoints than those of the true place, now and then
+  const path::Track points = run::make_waypoints(run::make_track(noisy).value()).value();
+  ScriptedServer server([](int, const std::string&) { return std::vector{kStraight}; });
+  int frames = 0;
+  const std::atomic<bool> stop{false};
+  const auto report =
+      simulate({.url = server.url()}, noisy,
+               {.on_frame =
+                    [&](const telemetry::Frame& frame) {
+                      const model::Measurement& seen = frame.measurement;
+                      model::Measurement expected;
+                      sim::select_waypoints(points, {.x = seen.x, .y = seen.y, .psi = seen.psi},
+                                            noisy.waypoints_sent, expected);
+                      ASSERT_EQ(seen.waypoint_count, expected.waypoint_count);
+                      ASSERT_EQ(seen.waypoints[0].x(), expected.waypoints[0].x());
+                      ++frames;
+                    }},
+               stop);
+  ASSERT_TRUE(report);
+  EXPECT_GT(frames, 5);
 }
 
 TEST(Simulate, TheEchoIsOneCycleOld) {

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "chicane/live/assets.hpp"
 #include "chicane/live/description.hpp"
 #include "chicane/live/pages.hpp"
 #include "chicane/protocol/fault_codec.hpp"
@@ -91,7 +90,7 @@ Result<void> LiveRun::open() {
     if (Result<void> set = settings_.set({"manual.is_on", true}); !set) return set;
   }
   auto server =
-      net::Server::create(options_.server, router_.handlers(live_pages(settings_)), embedded_assets());
+      net::Server::create(options_.server, router_.handlers(live_pages(settings_)), options_.assets);
   if (!server) return fail(server.error());
   server_ = std::move(*server);
   return {};

@@ -27,6 +27,8 @@ namespace chicane::live {
 
 struct LiveRunOptions {
   net::ServerOptions server{};  ///< of the dashboard and other viewers
+  std::vector<net::Asset>
+      assets{};  ///< files of the dashboard: embedded_assets() in the program; none: no page
   std::optional<double>
       step_budget{};             ///< deadline of a control step [s]; 0: none; default: a share of the period
   bool stay_at_end = false;      ///< drive on after the last lap until asked to stop

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <utility>
 
-#include "chicane/live/assets.hpp"
 #include "chicane/live/description.hpp"
 #include "chicane/live/live_settings.hpp"
 #include "chicane/live/pages.hpp"
@@ -33,11 +32,13 @@ protocol::Run describe_served(const scenario::Scenario& scenario, const controll
 }  // namespace
 
 ServedRun::ServedRun(const net::ServerOptions& server, const scenario::Scenario& scenario,
-                     std::unique_ptr<controller::Controller> controller, std::optional<path::Track> track)
+                     std::unique_ptr<controller::Controller> controller, std::optional<path::Track> track,
+                     std::vector<net::Asset> assets)
     : scenario_{scenario},
       controller_{std::move(controller)},
       track_{std::move(track)},
-      description_{describe_served(scenario_, *controller_, track_)} {
+      description_{describe_served(scenario_, *controller_, track_)},
+      assets_{std::move(assets)} {
   options_.server = server;
   options_.vehicle = scenario_.vehicle;
   options_.scenario = scenario_;
@@ -73,7 +74,7 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
   serving.on_end = [&] { limit.end(); };
   serving.pages = live_pages(settings);
   auto summary =
-      wire::serve(options_, std::move(controller_), std::move(serving), &viewer, embedded_assets(), stop);
+      wire::serve(options_, std::move(controller_), std::move(serving), &viewer, std::move(assets_), stop);
   if (!summary) return summary;
   if (limit.is_awaited(summary->run) && !stop)
     outputs.say("the limit is still being computed; Ctrl-C does without");

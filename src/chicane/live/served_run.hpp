@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
@@ -25,8 +26,10 @@ namespace chicane::live {
 class ServedRun {
  public:
   /// `track`: the road that the simulator drives on, where it is known: laps are timed, and there is a limit.
+  /// `assets`: files of the dashboard.
   ServedRun(const net::ServerOptions& server, const scenario::Scenario& scenario,
-            std::unique_ptr<controller::Controller> controller, std::optional<path::Track> track);
+            std::unique_ptr<controller::Controller> controller, std::optional<path::Track> track,
+            std::vector<net::Asset> assets = {});
   ServedRun(const ServedRun&) = delete;
   ServedRun& operator=(const ServedRun&) = delete;
 
@@ -47,6 +50,7 @@ class ServedRun {
   std::optional<path::Track> track_;
   protocol::Run description_;
   wire::ServeOptions options_;
+  std::vector<net::Asset> assets_;
 };
 
 }  // namespace chicane::live
