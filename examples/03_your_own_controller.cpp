@@ -39,7 +39,7 @@ int main() {
   auto scenario = protocol::compose({.scenario_file = "first-lap", .settings = {{"laps", "1"}}});
   if (!scenario) return std::puts(scenario.error().message.c_str()), 2;
   scenario->controller = scenario->preset = "chase-third-waypoint";
-  scenario->faults = {sim::default_event(sim::Fault::kLinkLost, 20.0)};  // no measurement for a second
+  scenario->faults = {sim::default_event(*sim::fault_named("link_lost"), 20.0)};  // 1 s
   const auto make = [](const scenario::Scenario&) -> Result<std::unique_ptr<controller::Controller>> {
     return std::make_unique<ChaseThirdWaypoint>();
   };

@@ -47,7 +47,7 @@ TEST(SchemaJson, OffersWhatIsAskedForAndTheControlsBehind) {
 }
 
 TEST(SchemaJson, WritesInfinityAsText) {
-  const nlohmann::json all = rows({}, "vehicle.drive_power_per_mass");
+  const nlohmann::json all = rows({}, "vehicle.drive_power_per_mass_wpkg");
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0]["default"], "inf");
   EXPECT_EQ(all[0]["may_be_infinite"], true);

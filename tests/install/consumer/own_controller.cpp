@@ -48,7 +48,7 @@ int say(const Error& error) {
 int main(int, char** arguments) {
   auto scenario = protocol::compose({.scenario_file = {}, .settings = {{"laps", "1"}, {"latency_ms", "80"}}});
   if (!scenario) return say(scenario.error());
-  scenario->faults = {sim::default_event(sim::Fault::kNanMeasurement, 15.0)};
+  scenario->faults = {sim::default_event(*sim::fault_named("nan_measurement"), 15.0)};
   const auto loop = run::ClosedLoop::create(*scenario, make_chaser);
   if (!loop) return say(loop.error());
   protocol::Run description;
