@@ -170,6 +170,16 @@ TEST(CsvTrack, RefusesTooManyPoints) {
             "a.csv:1000002: row: got another point, expected at most 1000000");
 }
 
+TEST(CsvTrack, WarningsAndColumnsHaveALimit) {
+  std::string text;
+  for (int i = 0; i < 2000; ++i) text += "# x,y,mood,colour\n";
+  EXPECT_EQ(parse_track(text + "1,2,3,4\n5,6,7,8\n", "a.csv")->warnings.size(), 50U);
+  std::string header = "x,y";
+  for (int i = 0; i < 1000; ++i) header += ",c";
+  EXPECT_EQ(parse_track(header, "a.csv").error().message,
+            "a.csv:1: header: got 1002 columns, expected at most 1000");
+}
+
 struct Broken {
   const char* file;
   const char* message;  ///< how it begins after the file's name

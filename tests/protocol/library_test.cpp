@@ -137,6 +137,16 @@ TEST_F(Library, NamesWhatIsKnownWhenANameIsNot) {
               HasSubstr("track: got no/such.csv, expected a file that exists"));
 }
 
+TEST_F(Library, SaysWhereAnUnknownNameStands) {
+  const std::string file = write("run.yaml", "preset: nobody\nlaps: 1\ncar: rode-car\ntrack: nowhere\n");
+  const std::string message = error_of({file, {}});
+  EXPECT_THAT(message, HasSubstr("run.yaml:1: preset: got \"nobody\""));
+  EXPECT_THAT(message, HasSubstr("run.yaml:3: car: got \"rode-car\""));
+  EXPECT_THAT(message, HasSubstr("run.yaml:4: track: got \"nowhere\""));
+  const std::string preset = write("mine.yaml", "# builds on nothing\npreset: no-such\n");
+  EXPECT_THAT(error_of({"", {{"preset", preset}}}), HasSubstr("mine.yaml:2: preset: got \"no-such\""));
+}
+
 TEST_F(Library, TellsAllFaultsOfAllLayersAtOnce) {
   const std::string file = write("run.yaml", "laps: -1\nlatency_ms: slow\n");
   const std::string message = error_of({file, {{"preset", "nobody"}, {"seed", "-1"}, {"latenzy_ms", "1"}}});

@@ -131,6 +131,61 @@ TEST(McapReader, ReadsCompressedChunksAndPassesNoDamagedOneAsGood) {
   }
 }
 
+/// A record with its head.
+std::string record(mcap::Opcode opcode, const std::string& content) {
+  std::string bytes(1, static_cast<char>(opcode));
+  mcap::Fields(bytes).number(std::uint64_t{content.size()});
+  return bytes + content;
+}
+
+// 6.5 GB asked for by a file of 2 MB.
+TEST(McapReader, ASmallFileCannotAskForMuchMemory) {
+  std::string schema;
+  mcap::Fields(schema).number(std::uint16_t{1}).text("type").text("ros2msg").text(std::string(100'000, 's'));
+  std::string bytes = std::string(mcap::kMagic) + record(mcap::Opcode::kSchema, schema);
+  constexpr std::uint16_t kChannels = 20'000;
+  for (std::uint16_t id = 0; id < kChannels; ++id) {
+    std::string channel;
+    mcap::Fields(channel).number(id).number(std::uint16_t{1}).text("/t").text("cdr").number(std::uint32_t{0});
+    bytes += record(mcap::Opcode::kChannel, channel);
+  }
+  std::string metadata;
+  std::string pairs;
+  for (int i = 0; i < 20'000; ++i) mcap::Fields(pairs).text(std::to_string(i)).text("");
+  mcap::Fields(metadata).text("many").text(pairs);
+  bytes += record(mcap::Opcode::kMetadata, metadata);
+  const TemporaryFile file;
+  file.replace(bytes);
+  bool has_metadata = false;
+  const auto report =
+      read_mcap(file.path(), {.on_metadata = [&](std::string_view, const auto&) { has_metadata = true; }});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_GT(report->damaged, kChannels - 1000U);  // 64 MiB hold less than a thousand of them
+  EXPECT_FALSE(has_metadata);
+}
+
+TEST(McapReader, SchemasAndChannelsMayBeRepeatedInEveryChunk) {
+  std::string schema;
+  mcap::Fields(schema).number(std::uint16_t{1}).text("type").text("ros2msg").text(std::string(100'000, 's'));
+  std::string channel;
+  mcap::Fields(channel)
+      .number(std::uint16_t{1})
+      .number(std::uint16_t{1})
+      .text("/t")
+      .text("cdr")
+      .number(std::uint32_t{0});
+  std::string bytes{mcap::kMagic};
+  for (int i = 0; i < 1000; ++i)
+    bytes += record(mcap::Opcode::kSchema, schema) + record(mcap::Opcode::kChannel, channel);
+  const TemporaryFile file;
+  file.replace(bytes);
+  const auto report = read_mcap(file.path(), {});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->damaged, 0U);
+}
+
+TEST(McapReader, ADeviceIsNoFile) { EXPECT_EQ(read_mcap("/dev/zero", {}).error().code, ErrorCode::kParse); }
+
 TEST(McapReader, RefusesOtherFilesInWords) {
   const TemporaryFile file;
   EXPECT_EQ(read_mcap(file.path(), {}).error().code, ErrorCode::kIo);

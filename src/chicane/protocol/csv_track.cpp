@@ -43,10 +43,12 @@ constexpr std::array kAliases{
     Alias{"ax_mps2", Column::kDerived},
 };
 
-constexpr std::size_t kMaxLine = 65536;  // [bytes]
-constexpr double kSameAngle = 0.3;       // headings from points scatter by this [rad]
-constexpr double kClosingCopy = 1e-3;    // a last point this near to the first repeats it [m]
-constexpr double kLoopGap = 1.5;         // a loop's last gap is at most this times the longest other one
+constexpr std::size_t kMaxLine = 65536;    // [bytes]
+constexpr std::size_t kMostWarnings = 50;  // of one file: memory is not for its author to fill
+constexpr std::size_t kMostColumns = 1000;
+constexpr double kSameAngle = 0.3;     // headings from points scatter by this [rad]
+constexpr double kClosingCopy = 1e-3;  // a last point this near to the first repeats it [m]
+constexpr double kLoopGap = 1.5;       // a loop's last gap is at most this times the longest other one
 
 std::string_view trim(std::string_view text) {
   constexpr std::string_view kBlank = " \t\v\f\r";
@@ -145,6 +147,7 @@ class TrackParser {
     return {ErrorCode::kParse, fmt::format("{}{}: got {}, expected {}", place(), column, got, expected)};
   }
   void warn(std::string_view column, std::string_view what) {
+    if (content_.warnings.size() >= kMostWarnings) return;
     content_.warnings.push_back(fmt::format("{}{}: {}", place(), column, what));
   }
 
@@ -240,7 +243,12 @@ class TrackParser {
   Result<void> read_header(std::string_view header) {
     fields_.clear();
     const std::string text = lower(header);
-    for (const std::string_view name : split_names(text)) {
+    const std::vector<std::string_view> names = split_names(text);
+    if (names.size() > kMostColumns) {
+      return fail(
+          fault("header", fmt::format("{} columns", names.size()), fmt::format("at most {}", kMostColumns)));
+    }
+    for (const std::string_view name : names) {
       const Column column = column_of(name);
       const bool is_once = column == Column::kUnknown || column == Column::kDerived || !has(column);
       if (!is_once) return fail(fault(shown(name), "a second such column", "one"));

@@ -86,19 +86,33 @@ bool is_path(std::string_view name) {
   return name.find('/') != std::string_view::npos || !fs::path(name).extension().empty();
 }
 
-Result<Document> read_document(Shelf shelf, const std::string& name_or_file) {
-  const Result<std::string> file = locate(shelf, name_or_file);
+/// A name and who asks for it: "runs/wet.yaml:3: ", nothing for the command line and for defaults.
+struct Wish {
+  std::string name;
+  std::string place{};
+};
+
+/// locate(), and who asked when there is none.
+Result<std::string> locate(Shelf shelf, const Wish& wish) {
+  Result<std::string> file = locate(shelf, wish.name);
+  if (!file) return fail(file.error().code, wish.place + file.error().message);
+  return file;
+}
+
+Result<Document> read_document(Shelf shelf, const Wish& wish) {
+  const Result<std::string> file = locate(shelf, wish);
   if (!file) return fail(file.error());
   const Result<std::string> text = read_file(*file);
   return text ? parse_document(*text, *file) : fail(text.error());
 }
 
-/// The value `key` has in the last layer that sets it.
-std::optional<std::string> last_text(const std::vector<Document>& layers, std::string_view key) {
-  std::optional<std::string> found;
+/// What the last layer that sets `key` wants.
+Wish last_wish(const std::vector<Document>& layers, std::string_view key, const std::string& otherwise) {
+  Wish found{otherwise};
   for (const Document& layer : layers) {
     for (const Assignment& assignment : layer.assignments) {
-      if (assignment.parameter->key == key) found = std::get<std::string>(assignment.value);
+      if (assignment.parameter->key == key)
+        found = {std::get<std::string>(assignment.value), place(layer.file, assignment.line)};
     }
   }
   return found;
@@ -151,9 +165,9 @@ void resolve_names(Document& document) {
 }
 
 /// `name` and the presets it builds on, the deepest first.
-std::vector<Document> read_presets(const std::string& name, Faults& faults) {
+std::vector<Document> read_presets(Wish name, Faults& faults) {
   std::vector<Document> presets;
-  std::optional<std::string> next = name;
+  std::optional<Wish> next = std::move(name);
   while (next) {
     if (presets.size() == kMostPresets) {
       faults.add(
@@ -168,14 +182,15 @@ std::vector<Document> read_presets(const std::string& name, Faults& faults) {
       return {};
     }
     resolve_names(*preset);
-    next = preset->preset;
+    next.reset();
+    if (preset->preset) next = Wish{*preset->preset, place(preset->file, preset->preset_line)};
     presets.insert(presets.begin(), std::move(*preset));
   }
   return presets;
 }
 
-std::optional<Document> read_car(const std::string& name, Faults& faults) {
-  Result<Document> car = read_document(Shelf::kCar, name);
+std::optional<Document> read_car(const Wish& wish, Faults& faults) {
+  Result<Document> car = read_document(Shelf::kCar, wish);
   if (!car) {
     faults.add(car.error());
     return std::nullopt;
@@ -261,33 +276,32 @@ Result<scenario::Scenario> compose(const Request& request) {
   Faults faults;
   std::vector<Document> layers;
   Document settings = parse_settings(request, faults);
-  std::optional<std::string> preset = settings.preset;
+  const scenario::Scenario defaults;
+  Wish preset{settings.preset.value_or(defaults.preset)};
   if (!request.scenario_file.empty()) {
-    Result<Document> file = read_document(Shelf::kScenario, request.scenario_file);
+    Result<Document> file = read_document(Shelf::kScenario, Wish{request.scenario_file});
     if (!file) {
       faults.add(file.error());
     } else {
       resolve_names(*file);
-      if (!preset) preset = file->preset;
+      if (!settings.preset && file->preset) preset = {*file->preset, place(file->file, file->preset_line)};
       layers.push_back(std::move(*file));
     }
   }
   layers.push_back(std::move(settings));
 
-  const scenario::Scenario defaults;
-  std::vector<Document> presets = read_presets(preset.value_or(defaults.preset), faults);
+  std::vector<Document> presets = read_presets(preset, faults);
   layers.insert(layers.begin(), std::make_move_iterator(presets.begin()),
                 std::make_move_iterator(presets.end()));
-  std::optional<Document> car = read_car(last_text(layers, "car").value_or(defaults.car), faults);
+  std::optional<Document> car = read_car(last_wish(layers, "car", defaults.car), faults);
   if (car) layers.insert(layers.begin(), std::move(*car));
-  if (const Result<std::string> track =
-          locate(Shelf::kTrack, last_text(layers, "track").value_or(defaults.track));
+  if (const Result<std::string> track = locate(Shelf::kTrack, last_wish(layers, "track", defaults.track));
       !track) {
     faults.add(track.error());
   }
 
   scenario::Scenario scenario;
-  scenario.preset = preset.value_or(defaults.preset);
+  scenario.preset = preset.name;
   if (const Result<void> applied = apply_layers(layers, scenario); !applied) faults.add(applied.error());
   if (!faults.empty()) return faults.failure();
   return scenario;

@@ -2,8 +2,6 @@
 #include "chicane/protocol/yaml_codec.hpp"
 
 #include <fmt/format.h>
-#include <yaml-cpp/depthguard.h>
-#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +9,7 @@
 #include <map>
 
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/detail/yaml_tree.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 
 namespace chicane::protocol {
@@ -18,13 +17,8 @@ namespace {
 
 constexpr std::size_t kMostBytes = 256U << 10U;
 constexpr int kMostNodes = 10000;  // counted with aliases followed
-constexpr int kMostDepth = 8;
+constexpr int kMostDepth = static_cast<int>(YamlTree::kMostDepth);
 constexpr std::size_t kMostFaults = 50;
-
-std::string place(const std::string& file, int line) {
-  if (file.empty()) return "";
-  return line > 0 ? fmt::format("{}:{}: ", file, line) : fmt::format("{}: ", file);
-}
 
 /// Length of the UTF-8 sequence at the beginning of `text`; 0 when it is none (RFC 3629: no overlong forms,
 /// no surrogates).
@@ -76,10 +70,11 @@ class Reader {
  public:
   explicit Reader(const std::string& file) { document_.file = file; }
 
-  void read(const YAML::Node& root) {
-    if (!root.IsMap()) {
+  void read(const YamlNode& root) {
+    if (!root.is_map()) {
       fault(1, "file",
-            fmt::format("got {}, expected a map of settings", root.IsNull() ? "an empty file" : shown(root)));
+            fmt::format("got {}, expected a map of settings",
+                        root.kind == YamlNode::Kind::kNothing ? "an empty file" : shown(root)));
       return;
     }
     read_map(root, "", 0);
@@ -96,39 +91,38 @@ class Reader {
     faults_.push_back(fmt::format("{}{}: {}", place(document_.file, line), key, what));
   }
 
-  static std::string shown(const YAML::Node& node) {
-    if (node.IsMap()) return "a map";
-    if (node.IsSequence()) return "a list";
-    if (!node.IsScalar()) return "nothing";
-    return node.Tag() == "!" ? fmt::format("\"{}\" in quotes", printable(node.Scalar()))
-                             : printable(node.Scalar());
+  static std::string shown(const YamlNode& node) {
+    if (node.is_map()) return "a map";
+    if (node.is_list()) return "a list";
+    if (!node.is_scalar()) return "nothing";
+    return node.tag == "!" ? fmt::format("\"{}\" in quotes", printable(node.text)) : printable(node.text);
   }
 
-  void read_map(const YAML::Node& map, const std::string& prefix, int depth) {
-    for (const auto& entry : map) {
+  void read_map(const YamlNode& map, const std::string& prefix, int depth) {
+    for (const YamlEntry& entry : map.entries()) {
       if (++nodes_ == kMostNodes)
         fault(0, "file", fmt::format("got more than {} settings, expected fewer", kMostNodes));
       if (nodes_ >= kMostNodes || faults_.size() >= kMostFaults) return;
-      const int line = entry.first.Mark().line + 1;
-      if (!entry.first.IsScalar()) {
+      const int line = entry.key.line;
+      if (!entry.key.is_scalar()) {
         fault(line, prefix.empty() ? "key" : prefix,
-              fmt::format("got {} as a key, expected a name", shown(entry.first)));
+              fmt::format("got {} as a key, expected a name", shown(entry.key)));
         continue;
       }
-      const std::string& name = entry.first.Scalar();
+      const std::string& name = entry.key.text;
       const bool is_ros_wrapper =
-          prefix.empty() && entry.second.IsMap() && (name == "ros__parameters" || name.starts_with("/"));
+          prefix.empty() && entry.value.is_map() && (name == "ros__parameters" || name.starts_with("/"));
       if (is_ros_wrapper && depth < kMostDepth) {
-        read_map(entry.second, "", depth + 1);
+        read_map(entry.value, "", depth + 1);
       } else {
-        read_entry(prefix.empty() ? name : fmt::format("{}.{}", prefix, name), entry.second, line, depth);
+        read_entry(prefix.empty() ? name : fmt::format("{}.{}", prefix, name), entry.value, line, depth);
       }
     }
   }
 
-  void read_entry(const std::string& key, const YAML::Node& node, int line, int depth) {
+  void read_entry(const std::string& key, const YamlNode& node, int line, int depth) {
     const auto [first, is_new] = lines_.emplace(key, line);
-    if (!is_new && !node.IsMap()) {
+    if (!is_new && !node.is_map()) {
       fault(line, printable(key),
             fmt::format("got it a second time, expected it once (first on line {})", first->second));
       return;
@@ -141,7 +135,7 @@ class Reader {
       read_value(*parameter, node, line);
     } else if (!is_group(key)) {
       fault(line, printable(key), unknown_key(key));
-    } else if (!node.IsMap()) {
+    } else if (!node.is_map()) {
       fault(line, printable(key), fmt::format("got {}, expected a map of settings", shown(node)));
     } else if (depth < kMostDepth) {
       read_map(node, key, depth + 1);
@@ -152,51 +146,52 @@ class Reader {
     return std::any_of(list().begin(), list().end(), [&](const Parameter& p) { return p.group == key; });
   }
 
-  void read_preset(const YAML::Node& node, int line) {
-    if (node.IsScalar() && !node.Scalar().empty()) {
-      document_.preset = node.Scalar();
+  void read_preset(const YamlNode& node, int line) {
+    if (node.is_scalar() && !node.text.empty()) {
+      document_.preset = node.text;
+      document_.preset_line = line;
     } else {
       fault(line, "preset", fmt::format("got {}, expected the name of a preset", shown(node)));
     }
   }
 
-  void read_faults(const YAML::Node& node, int line) {
-    if (!node.IsSequence() || node.size() > sim::FaultLab::kCapacity) {
+  void read_faults(const YamlNode& node, int line) {
+    if (!node.is_list() || node.children.size() > sim::FaultLab::kCapacity) {
       fault(line, "faults",
             fmt::format("got {}, expected a list of at most {} faults",
-                        node.IsSequence() ? fmt::format("{} of them", node.size()) : shown(node),
+                        node.is_list() ? fmt::format("{} of them", node.children.size()) : shown(node),
                         sim::FaultLab::kCapacity));
       return;
     }
     document_.faults.emplace();
-    for (const YAML::Node& item : node) read_fault_event(item);
+    for (const YamlNode* item : node.children) read_fault_event(*item);
   }
 
-  void read_fault_event(const YAML::Node& item) {
-    const int line = item.Mark().line + 1;
-    if (!item.IsMap()) {
+  void read_fault_event(const YamlNode& item) {
+    const int line = item.line;
+    if (!item.is_map()) {
       fault(line, "faults", fmt::format("got {}, expected {{name: half_grip, at_s: 12}}", shown(item)));
       return;
     }
     FaultText text;
     const std::array<std::pair<std::string_view, std::string*>, 4> fields{
         {{"name", &text.name}, {"at_s", &text.at}, {"for_s", &text.duration}, {"strength", &text.strength}}};
-    for (const auto& entry : item) {
-      const int entry_line = entry.first.Mark().line + 1;
-      const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
+    for (const YamlEntry& entry : item.entries()) {
+      const int entry_line = entry.key.line;
+      const std::string name = entry.key.is_scalar() ? entry.key.text : "";
       const auto* const field =
           std::find_if(fields.begin(), fields.end(), [&](const auto& each) { return each.first == name; });
       if (field == fields.end()) {
         fault(entry_line, "faults",
-              fmt::format("got {}, expected name, at_s, for_s or strength", shown(entry.first)));
+              fmt::format("got {}, expected name, at_s, for_s or strength", shown(entry.key)));
         return;
       }
-      if (!entry.second.IsScalar() || entry.second.Scalar().empty()) {
+      if (!entry.value.is_scalar() || entry.value.text.empty()) {
         fault(entry_line, fmt::format("faults.{}", name),
-              fmt::format("got {}, expected one value", shown(entry.second)));
+              fmt::format("got {}, expected one value", shown(entry.value)));
         return;
       }
-      *field->second = entry.second.Scalar();
+      *field->second = entry.value.text;
     }
     const Result<sim::FaultEvent> event = read_fault(text);
     if (!event) {
@@ -206,18 +201,18 @@ class Reader {
     document_.faults->push_back(*event);
   }
 
-  void read_value(const Parameter& parameter, const YAML::Node& node, int line) {
+  void read_value(const Parameter& parameter, const YamlNode& node, int line) {
     const bool is_text = parameter.option.kind == Kind::kText || parameter.option.kind == Kind::kChoice;
-    const bool is_plain = node.IsScalar() && (node.Tag() == "?" || (is_text && node.Tag() == "!"));
+    const bool is_plain = node.is_scalar() && (node.tag == "?" || (is_text && node.tag == "!"));
     if (!is_plain) {
-      const bool has_tag = node.IsScalar() && node.Tag() != "!" && node.Tag() != "?";
+      const bool has_tag = node.is_scalar() && node.tag != "!" && node.tag != "?";
       fault(line, parameter.key,
             fmt::format("got {}, expected {}",
-                        has_tag ? fmt::format("the tag {}", printable(node.Tag())) : shown(node),
+                        has_tag ? fmt::format("the tag {}", printable(node.tag)) : shown(node),
                         expectation(parameter.option)));
       return;
     }
-    const Result<Value> value = parse(parameter, node.Scalar());
+    const Result<Value> value = parse(parameter, node.text);
     if (!value) {
       faults_.push_back(place(document_.file, line) + value.error().message);
       return;
@@ -269,27 +264,18 @@ std::string write_faults(const scenario::Scenario& scenario) {
 
 }  // namespace
 
+std::string place(const std::string& file, int line) {
+  if (file.empty()) return "";
+  return line > 0 ? fmt::format("{}:{}: ", file, line) : fmt::format("{}: ", file);
+}
+
 Result<Document> parse_document(std::string_view text, const std::string& file) {
   if (const Result<void> checked = check_bytes(text, file); !checked) return fail(checked.error());
-  try {
-    // yaml-cpp 0.7 takes a quote that is open at a line break before the end of the file for closed: let no
-    // file end there.
-    const std::vector<YAML::Node> roots = YAML::LoadAll(std::string(text) + "\n#");
-    if (roots.size() > 1) {
-      return fail(ErrorCode::kParse, fmt::format("{}:{}: file: got {} documents, expected one", file,
-                                                 roots[1].Mark().line + 1, roots.size()));
-    }
-    Reader reader(file);
-    reader.read(roots.empty() ? YAML::Node() : roots.front());
-    return std::move(reader).result();
-  } catch (const YAML::DeepRecursion& e) {
-    return fail(ErrorCode::kParse,
-                fmt::format("{}:{}: text: got very deep nesting, expected at most {} levels", file,
-                            e.mark.line + 1, kMostDepth));
-  } catch (const YAML::Exception& e) {
-    return fail(ErrorCode::kParse,
-                fmt::format("{}:{}: text: got {}, expected valid YAML", file, e.mark.line + 1, e.msg));
-  }
+  const Result<YamlTree> tree = parse_yaml(text, file);
+  if (!tree) return fail(tree.error());
+  Reader reader(file);
+  reader.read(*tree->root);
+  return std::move(reader).result();
 }
 
 Result<void> apply_layers(std::span<const Document> layers, scenario::Scenario& scenario) {

@@ -24,6 +24,7 @@ struct Document {
   std::string file;  ///< for messages; empty for settings from the command line
   std::optional<std::vector<sim::FaultEvent>> faults;  ///< the file's `faults:`, which replace earlier ones
   std::optional<std::string> preset;  ///< the file's `preset:`, whose settings come before its own
+  int preset_line = 0;                ///< where it stands, as Assignment::line
   std::vector<Assignment> assignments;
 };
 
@@ -38,6 +39,9 @@ struct Document {
 /// and misplaced keys, wrong types, values out of range; files that are not UTF-8, indented by tabs, too
 /// large, or nested too deeply. Any bytes may be given; memory and time stay bounded.
 [[nodiscard]] Result<Document> parse_document(std::string_view text, const std::string& file);
+
+/// "presets/x.yaml:7: ", "presets/x.yaml: " without a line, nothing without a file.
+[[nodiscard]] std::string place(const std::string& file, int line);
 
 /// All layers in order, later ones win; then the settings are checked against each other. `scenario` changes
 /// completely or, on an error, not at all.

@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <memory>
+#include <string>
 #include <utility>
 #include <variant>
 
@@ -82,6 +83,13 @@ Result<ReplayReport> verify_recording(const std::string& path, const run::Contro
   };
   const Result<telemetry::McapReport> read = read_recording(path, head, visit);
   if (!read) return fail(read.error());
+  if (report.steps == 0) {
+    return fail(ErrorCode::kParse,
+                path + ": steps: got none" +
+                    (read->damaged > 0 ? " and " + std::to_string(read->damaged) + " damaged parts"
+                                       : std::string(read->is_complete ? "" : " before the file's end")) +
+                    ", expected a recording with control steps to compute again");
+  }
   report.recorded_by = head["program"];
   report.controller = head["controller"];
   report.track = head["track"];

@@ -3,8 +3,10 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "chicane/telemetry/detail/zstd.hpp"
@@ -17,12 +19,17 @@ using mcap::FieldReader;
 using mcap::Opcode;
 
 constexpr std::uint64_t kMostBytes = 256U << 20U;  // of one record
+constexpr std::size_t kMostKept = 64U << 20U;  // of schemas and channels, as long as a file is read [byte]
+constexpr std::size_t kMostEntries = 10000;    // of one metadata record
 
 class Reader {
  public:
   Reader(const std::string& path, const McapVisitor& visitor) : path_{path}, visitor_{visitor} {}
 
   Result<McapReport> read() {
+    std::error_code error;  // a pipe or a device would not end
+    if (std::filesystem::exists(path_, error) && !std::filesystem::is_regular_file(path_, error))
+      return fail(ErrorCode::kParse, path_ + ": file: got no file, expected an MCAP file");
     std::ifstream file(path_, std::ios::binary | std::ios::ate);
     if (!file) return fail(ErrorCode::kIo, path_ + ": cannot be read: " + std::strerror(errno));
     std::uint64_t left = static_cast<std::uint64_t>(file.tellg());
@@ -108,19 +115,25 @@ class Reader {
     FieldReader fields(content);
     if (opcode == Opcode::kSchema) {
       const auto id = fields.number<std::uint16_t>();
-      std::string name(fields.text());
+      const std::string_view name = fields.text();
       static_cast<void>(fields.text());  // encoding
-      schemas_[id] = {std::move(name), std::string(fields.text())};
+      const std::string_view schema = fields.text();
+      auto& known = schemas_[id];
+      if (name == known.first && schema == known.second) return !fields.is_short();  // repeated
+      if (!keep(name.size() + schema.size())) return false;
+      known = {std::string(name), std::string(schema)};
     } else if (opcode == Opcode::kChannel) {
-      McapChannel channel;
-      channel.id = fields.number<std::uint16_t>();
+      const auto id = fields.number<std::uint16_t>();
       const auto& [type, schema] = schemas_[fields.number<std::uint16_t>()];
-      channel.type = type;
-      channel.schema = schema;
-      channel.topic = fields.text();
-      channel.message_encoding = fields.text();
-      const std::uint16_t id = channel.id;
-      if (!fields.is_short()) channels_.try_emplace(id, std::move(channel));
+      const std::string_view topic = fields.text();
+      const std::string_view encoding = fields.text();
+      if (fields.is_short() || channels_.contains(id)) return !fields.is_short();
+      if (!keep(type.size() + schema.size() + topic.size() + encoding.size())) return false;
+      channels_.emplace(id, McapChannel{.id = id,
+                                        .topic = std::string(topic),
+                                        .message_encoding = std::string(encoding),
+                                        .type = type,
+                                        .schema = schema});
     } else if (opcode == Opcode::kMessage) {
       const auto channel = channels_.find(fields.number<std::uint16_t>());
       const auto sequence = fields.number<std::uint32_t>();
@@ -133,6 +146,12 @@ class Reader {
       }
     }
     return !fields.is_short();
+  }
+
+  /// Whether so much more may stay in memory: a small file can ask for much, as channels repeat schemas.
+  bool keep(std::size_t bytes) {
+    kept_ += bytes;
+    return kept_ <= kMostKept;
   }
 
   void attachment(std::string_view content) {
@@ -155,11 +174,11 @@ class Reader {
     const std::string_view name = fields.text();
     FieldReader pairs(fields.text());
     std::map<std::string, std::string> entries;
-    while (!pairs.rest().empty()) {
+    while (!pairs.rest().empty() && entries.size() <= kMostEntries) {
       std::string key(pairs.text());
       entries[std::move(key)] = std::string(pairs.text());
     }
-    if (fields.is_short() || pairs.is_short()) {
+    if (fields.is_short() || pairs.is_short() || entries.size() > kMostEntries) {
       ++report_.damaged;
     } else if (visitor_.on_metadata) {
       visitor_.on_metadata(name, entries);
@@ -170,6 +189,7 @@ class Reader {
   const McapVisitor& visitor_;
   McapReport report_;
   bool is_summary_ = false;
+  std::size_t kept_ = 0;  ///< of schemas and channels [byte]
   std::map<std::uint16_t, std::pair<std::string, std::string>> schemas_;
   std::map<std::uint16_t, McapChannel> channels_;
 };

@@ -46,7 +46,8 @@ struct McapReport {
 
 /// Reads every intact record of an MCAP file, whether or not it was closed: from front to back, without its
 /// index. What ends in the middle of a record, and chunks whose CRC is wrong, are left out and counted; a
-/// wrong length between records ends the reading. Memory: one chunk.
+/// wrong length between records ends the reading. Memory: one chunk (at most 256 MiB), and at most 64 MiB of
+/// schemas and channels; those beyond count as damaged.
 ///
 /// kIo when it cannot be read; kParse when it is no MCAP file, or is compressed by other means than
 /// Zstandard, or by that when this program was built without it.

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+// The only file that includes yaml-cpp.
+#include "chicane/protocol/detail/yaml_tree.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include <map>
+#include <sstream>
+
+namespace chicane::protocol {
+namespace {
+
+using Kind = YamlNode::Kind;
+
+/// Thrown to end the parser from within an event, and caught by parse_yaml().
+struct Refusal {
+  int line;
+  std::string what;
+};
+
+class TreeBuilder final : public YAML::EventHandler {
+ public:
+  explicit TreeBuilder(std::string_view text) : text_{text} {}
+
+  [[nodiscard]] YamlTree tree() && {
+    if (tree_.root == nullptr) tree_.root = &tree_.nodes.emplace_back();
+    return std::move(tree_);
+  }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (++documents_ == 1) return;
+    // yaml-cpp 0.7 does not step over a comma between documents: there, it would find empty ones without end.
+    const auto at = static_cast<std::size_t>(mark.pos);
+    if (at < text_.size() && text_[at] == ',')
+      throw Refusal{mark.line + 1, "text: got a comma outside of a list, expected valid YAML"};
+    throw Refusal{mark.line + 1, "file: got 2 documents, expected one"};
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    note(anchor, add(mark, Kind::kNothing, "", ""));
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    note(anchor, add(mark, Kind::kScalar, tag, value));
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto known = anchors_.find(anchor);
+    if (known == anchors_.end())
+      throw Refusal{mark.line + 1, "text: got an alias of what it is part of, expected another"};
+    count(mark);
+    attach(known->second);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value /*style*/) override {
+    open(mark, Kind::kList, tag, anchor);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value /*style*/) override {
+    open(mark, Kind::kMap, tag, anchor);
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  struct Open {
+    YamlNode* node;
+    YAML::anchor_t anchor;
+  };
+
+  void count(const YAML::Mark& mark) {
+    if (++count_ > YamlTree::kMostNodes)
+      throw Refusal{mark.line + 1,
+                    fmt::format("file: got more than {} values, expected fewer", YamlTree::kMostNodes)};
+  }
+  YamlNode* add(const YAML::Mark& mark, Kind kind, const std::string& tag, const std::string& text) {
+    count(mark);
+    YamlNode* node = &tree_.nodes.emplace_back(
+        YamlNode{.kind = kind, .line = mark.line + 1, .text = text, .tag = tag, .children = {}});
+    attach(node);
+    return node;
+  }
+  void attach(const YamlNode* node) {
+    if (open_.empty()) {
+      tree_.root = node;
+    } else {
+      open_.back().node->children.push_back(node);
+    }
+  }
+  void open(const YAML::Mark& mark, Kind kind, const std::string& tag, YAML::anchor_t anchor) {
+    if (open_.size() == YamlTree::kMostDepth) {
+      throw Refusal{mark.line + 1, fmt::format("text: got very deep nesting, expected at most {} levels",
+                                               YamlTree::kMostDepth)};
+    }
+    open_.push_back({add(mark, kind, tag, ""), anchor});
+  }
+  void close() {
+    note(open_.back().anchor, open_.back().node);
+    open_.pop_back();
+  }
+  /// Complete from now on: an alias inside would make a circle.
+  void note(YAML::anchor_t anchor, const YamlNode* node) {
+    if (anchor != 0) anchors_[anchor] = node;
+  }
+
+  std::string_view text_;
+  YamlTree tree_;
+  std::vector<Open> open_;
+  std::map<YAML::anchor_t, const YamlNode*> anchors_;
+  std::size_t count_ = 0;
+  int documents_ = 0;
+};
+
+}  // namespace
+
+std::vector<YamlEntry> YamlNode::entries() const {
+  std::vector<YamlEntry> all;
+  all.reserve(children.size() / 2);
+  for (std::size_t i = 0; is_map() && i + 1 < children.size(); i += 2)
+    all.push_back({*children[i], *children[i + 1]});
+  return all;
+}
+
+Result<YamlTree> parse_yaml(std::string_view text, const std::string& file) {
+  const auto refuse = [&](int line, std::string_view what) {
+    return fail(ErrorCode::kParse, fmt::format("{}:{}: {}", file, line, what));
+  };
+  try {
+    // yaml-cpp 0.7 takes a quote that is open at a line break before the end of the file for closed: let no
+    // file end there.
+    std::istringstream stream(std::string(text) + "\n#");
+    YAML::Parser parser(stream);
+    TreeBuilder builder(text);
+    while (parser.HandleNextDocument(builder)) {
+    }
+    return std::move(builder).tree();
+  } catch (const Refusal& e) {
+    return refuse(e.line, e.what);
+  } catch (const YAML::Exception& e) {
+    return refuse(e.mark.line + 1, fmt::format("text: got {}, expected valid YAML", e.msg));
+  }
+}
+
+}  // namespace chicane::protocol

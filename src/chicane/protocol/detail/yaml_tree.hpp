@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+
+namespace chicane::protocol {
+
+struct YamlEntry;
+
+/// One node of a YAML document.
+struct YamlNode {
+  enum class Kind : std::uint8_t { kNothing, kScalar, kList, kMap };
+
+  Kind kind = Kind::kNothing;
+  int line = 1;      ///< where it begins, from 1
+  std::string text;  ///< of a scalar
+  std::string tag;   ///< "?" for a plain scalar, "!" for one in quotes, else the tag that was written
+  std::vector<const YamlNode*> children;  ///< of a list; of a map: key, value, key, value, …
+
+  [[nodiscard]] bool is_scalar() const { return kind == Kind::kScalar; }
+  [[nodiscard]] bool is_list() const { return kind == Kind::kList; }
+  [[nodiscard]] bool is_map() const { return kind == Kind::kMap; }
+  /// Of a map, as written: keys may come twice.
+  [[nodiscard]] std::vector<YamlEntry> entries() const;
+};
+
+struct YamlEntry {
+  const YamlNode& key;
+  const YamlNode& value;
+};
+
+/// The nodes of one document. An alias is the node it stands for: those who walk over a tree count their
+/// steps.
+struct YamlTree {
+  /// In one document, aliases included, before they are followed.
+  static constexpr std::size_t kMostNodes = 50000;
+  static constexpr std::size_t kMostDepth = 8;
+
+  std::deque<YamlNode> nodes;      ///< addresses stay
+  const YamlNode* root = nullptr;  ///< an empty file's: kNothing
+};
+
+/// Parses one document event by event: memory and time are proportional to the text and end at the limits
+/// above (docs/decisions/0016-yaml-by-events.md). kParse, "FILE:LINE: …", for text that is not YAML, several
+/// documents, deeper nesting, more nodes, an alias of nothing or of what it is part of.
+[[nodiscard]] Result<YamlTree> parse_yaml(std::string_view text, const std::string& file);
+
+}  // namespace chicane::protocol
