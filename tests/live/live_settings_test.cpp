@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -22,6 +24,10 @@ using protocol::foxglove::Parameter;
 using protocol::foxglove::ParameterValue;
 using testing::HasSubstr;
 
+/// What the command gate keeps to.
+constexpr std::array<std::string_view, 3> kGateLimits{
+    "vehicle.steer_limit_deg", "vehicle.steer_rate_limit_degps", "vehicle.brake_throttle_limit"};
+
 scenario::Scenario scenario_of(std::vector<std::pair<std::string, std::string>> settings) {
   Result<scenario::Scenario> scenario =
       protocol::compose({.scenario_file = {}, .settings = std::move(settings)});
@@ -36,12 +42,14 @@ struct Live {
                   .build = [this](const ChosenRun& next) { started.push_back(next); },
                   .built = [this] { return std::exchange(outcome, std::nullopt); },
                   .on_building = [this](const std::string& what) { building = what; },
+                  .say = [this](std::string_view line) { said += line; },
                   .on_accepted = [this](const scenario::Scenario& now) { accepted = now; }},
                  wishes} {}
 
   /// The build has ended, and the network thread looks.
   std::vector<std::string> end_of_build(Result<void> with = {}) {
     outcome = std::move(with);
+    settings.update();
     return settings.complaints();
   }
 
@@ -70,6 +78,7 @@ struct Live {
   std::vector<ChosenRun> started;
   std::optional<Result<void>> outcome;
   std::string building;
+  std::string said;  ///< to whoever started the program
   scenario::Scenario accepted;
   LiveSettings settings;
 };
@@ -77,13 +86,17 @@ struct Live {
 TEST(LiveSettings, OfferEveryTunableOfTheSchemaAndTheControlsOfTheRun) {
   Live live;
   const std::vector<Parameter> all = live.settings.list();
-  EXPECT_EQ(all.size(), protocol::list().size() + 4);
-  for (const protocol::Parameter& row : protocol::list()) EXPECT_TRUE(live.settings.get(row.key)) << row.key;
+  EXPECT_EQ(all.size(), protocol::list().size() - kGateLimits.size() + 4);
+  for (const protocol::Parameter& row : protocol::list()) {
+    const bool is_gate_limit =
+        std::find(kGateLimits.begin(), kGateLimits.end(), row.key) != kGateLimits.end();
+    EXPECT_NE(live.settings.get(row.key).has_value(), is_gate_limit) << row.key;
+  }
   EXPECT_EQ(live.value("tracking_mpc.horizon_steps"), ParameterValue(40.0));
   EXPECT_EQ(live.value("latency_ms"), ParameterValue(100.0));
   EXPECT_EQ(live.value("track"), ParameterValue(std::string("lakeside")));
   EXPECT_EQ(live.value("run.pace"), ParameterValue(1.0));
-  EXPECT_EQ(live.value("vehicle.steer_rate_limit_degps"), ParameterValue(std::string("inf")));
+  EXPECT_EQ(live.value("vehicle.drive_power_per_mass_wpkg"), ParameterValue(std::string("inf")));
 }
 
 TEST(LiveSettings, HandOverEachKindOfValueAsTheTextThatSetTakes) {
@@ -95,7 +108,6 @@ TEST(LiveSettings, HandOverEachKindOfValueAsTheTextThatSetTakes) {
       {{"cubic_mpc.latency_handling", std::string("measured")}, "measured"},
       {{"latency_ms", 33.3}, "33.3"},
       {{"sensor.heading_noise_deg", 0.2}, "0.2"},
-      {{"vehicle.steer_rate_limit_degps", 90.0}, "90"},
       {{"vehicle.drive_power_per_mass_wpkg", 100.0}, "100"},
       {{"run.pace", 0.25}, "0.25"},
       {{"manual.is_on", true}, "true"},
@@ -108,7 +120,7 @@ TEST(LiveSettings, HandOverEachKindOfValueAsTheTextThatSetTakes) {
     EXPECT_FALSE(change.starts_anew);
     EXPECT_EQ(live.value(wish.name), wish.value) << wish.name;
   }
-  ASSERT_TRUE(live.settings.set({"vehicle.steer_rate_limit_degps", std::string("inf")}));
+  ASSERT_TRUE(live.settings.set({"vehicle.drive_power_per_mass_wpkg", std::string("inf")}));
   EXPECT_EQ(live.next().value.view(), "inf");
 }
 
@@ -220,7 +232,8 @@ TEST(LiveSettings, ChangeNothingWhenTheRunCannotBeBuiltAndSaySo) {
   ASSERT_TRUE(live.settings.set({"seed", 2.0}));
   static_cast<void>(live.settings.news());
   EXPECT_EQ(live.value("seed"), ParameterValue(2.0));  // what was wished for, while there is hope
-  const std::vector<std::string> said = live.end_of_build(fail(ErrorCode::kIo, "no room in the garage"));
+  const std::vector<std::string> said =
+      live.end_of_build(fail(ErrorCode::kInvalidArgument, "no room in the garage"));
   EXPECT_EQ(said,
             std::vector<std::string>{"no run with seed = 2: no room in the garage; the one before goes on"});
   EXPECT_TRUE(live.settings.complaints().empty());
@@ -229,6 +242,66 @@ TEST(LiveSettings, ChangeNothingWhenTheRunCannotBeBuiltAndSaySo) {
   ASSERT_EQ(live.settings.news().size(), 1U);  // viewers hear that it is not so
   EXPECT_EQ(live.value("seed"), ParameterValue(1.0));
   EXPECT_EQ(live.wishes.front(), nullptr);
+}
+
+// A viewer read the first lines of any file of the machine in such a message.
+TEST(LiveSettings, ChooseFromTheLibraryByNameAndOpenNoOtherFile) {
+  const std::string file = testing::TempDir() + "live_settings_secret.yaml";
+  std::ofstream(file) << "the secret word\n";
+  Live live;
+  for (const char* key : {"preset", "car", "track"}) {
+    for (const std::string& value :
+         {file, std::string("/etc/hostname"), std::string("../presets/default.yaml"),
+          std::string("default.yaml"), std::string("presets/default"), std::string("."), std::string(".."),
+          std::string("/dev/zero"), std::string("default\0x", 9), std::string("\\\\host\\share"),
+          std::string("file:///etc/passwd")}) {
+      const std::string said = live.refusal({key, value});
+      EXPECT_THAT(said, HasSubstr(std::string(key) + ": got \"")) << value;
+      EXPECT_THAT(said, HasSubstr("expected one of ")) << value;
+      EXPECT_THAT(said, testing::Not(HasSubstr("secret word")));
+    }
+  }
+  EXPECT_TRUE(live.started.empty());
+  EXPECT_EQ(live.said, "");
+  std::filesystem::remove(file);
+}
+
+TEST(LiveSettings, TakeBackTheFileThatTheRunWasStartedWith) {
+  const std::string file = testing::TempDir() + "live_settings_mine.csv";
+  std::filesystem::copy_file(*protocol::locate(protocol::Shelf::kTrack, "oval"), file,
+                             std::filesystem::copy_options::overwrite_existing);
+  Live live(scenario_of({{"track", file}}));
+  ASSERT_TRUE(live.settings.set({"track", std::string("hairpins")}));
+  live.end_of_build();
+  ASSERT_TRUE(live.settings.set({"track", file}));
+  EXPECT_EQ(live.started.back().scenario.track, file);
+  std::filesystem::remove(file);
+}
+
+TEST(LiveSettings, TellWhatAFileHoldsToWhoStartedTheProgramOnly) {
+  const std::string file = testing::TempDir() + "live_settings_preset_that_goes_bad.yaml";
+  std::ofstream(file) << "preset: default\n";
+  Live live(scenario_of({{"preset", file}}));
+  std::ofstream(file) << "preset: default\nlaps: the secret word\n";
+  EXPECT_EQ(live.refusal({"car", std::string("road-car")}),
+            "car: road-car cannot be used here; the program's own output says why");
+  EXPECT_THAT(live.said, HasSubstr(":2: laps: got the secret word"));
+  std::filesystem::remove(file);
+
+  Live other;
+  ASSERT_TRUE(other.settings.set({"track", std::string("oval")}));
+  EXPECT_EQ(other.end_of_build(fail(ErrorCode::kParse, "oval.csv:3: x_m: got the secret word")),
+            std::vector<std::string>{"no run with track = oval: it cannot be built; the program's own output "
+                                     "says why; the one before goes on"});
+  EXPECT_THAT(other.said, HasSubstr("oval.csv:3: x_m: got the secret word"));
+}
+
+TEST(LiveSettings, KeepTheLimitsOfTheCommandGateOutOfReach) {
+  Live live;
+  for (const std::string_view key : kGateLimits) {
+    EXPECT_EQ(live.refusal({std::string(key), 0.8}),
+              std::string(key) + ": is fixed when a run is started: a limit that the command gate keeps");
+  }
 }
 
 TEST(LiveSettings, TakeTheLastOfQuickChoicesWithThoseBefore) {
@@ -284,7 +357,7 @@ TEST(LiveSettings, WaitWithARunThatIsReadyUntilTheQueueHasRoom) {
   live.end_of_build();
   EXPECT_EQ(live.settings.scenario().track, "lakeside");
   for (std::uint64_t i = 0; i < run::ChangeQueue::kCapacity; ++i) live.next();
-  static_cast<void>(live.settings.complaints());
+  live.settings.update();
   EXPECT_TRUE(live.next().starts_anew);
   EXPECT_EQ(live.settings.scenario().track, "oval");
 }

@@ -54,6 +54,13 @@ LiveRun::LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop>
                      [this](const std::string& what) {
                        viewer_.change_run([what](protocol::Run& run) { run.building = what; });
                      },
+                 .say =
+                     [this](std::string_view line) {
+                       std::unique_lock lock(mutex_);  // viewers may come before run() does
+                       const auto say = hooks_.say;
+                       lock.unlock();
+                       if (say) say(line);
+                     },
                  .on_accepted =
                      [this](const scenario::Scenario& now) {
                        viewer_.change_run([latency = now.latency, vehicle = now.vehicle](protocol::Run& run) {
@@ -104,7 +111,10 @@ double LiveRun::step_budget() const {
 }
 
 telemetry::RunSummary LiveRun::run(recording::Recorder* recorder, const LiveHooks& hooks) {
-  hooks_ = hooks;
+  {
+    const std::lock_guard lock(mutex_);
+    hooks_ = hooks;
+  }
   RunOutputs outputs(recorder, viewer_, settings_, limit_, hooks_);
   limit_.search(loop_->track(), loop_->scenario());
   telemetry::RunSummary summary = drive(outputs);

@@ -27,6 +27,23 @@ using protocol::Value;
 constexpr std::array<std::string_view, 6> kOfTheWorld{"laps",         "seed",           "latency_ms",
                                                       "time_limit_s", "turn_around_ms", "waypoints_sent"};
 
+/// What the command gate keeps to: a run has those that it was started with.
+constexpr std::array<std::string_view, 3> kActuatorLimits{
+    "vehicle.steer_limit_deg", "vehicle.steer_rate_limit_degps", "vehicle.brake_throttle_limit"};
+
+bool is_actuator_limit(const protocol::Parameter& row) {
+  return std::find(kActuatorLimits.begin(), kActuatorLimits.end(), row.key) != kActuatorLimits.end();
+}
+
+/// Settings whose text may name a file.
+std::optional<protocol::Shelf> shelf_of(std::string_view key) {
+  using enum protocol::Shelf;
+  if (key == "preset") return kPreset;
+  if (key == "car") return kCar;
+  if (key == "track") return kTrack;
+  return std::nullopt;
+}
+
 bool is_of_the_world(const protocol::Parameter& row) {
   return row.group == "plant_options" || row.group == "sensor" ||
          std::find(kOfTheWorld.begin(), kOfTheWorld.end(), row.key) != kOfTheWorld.end();
@@ -108,7 +125,7 @@ LiveSettings::LiveSettings(LiveSettingsOptions options, run::ChangeQueue& wishes
 }
 
 bool LiveSettings::is_offered(const protocol::Parameter& row) const {
-  if (!protocol::is_live(row) && !options_.build) return false;
+  if (is_actuator_limit(row) || (!protocol::is_live(row) && !options_.build)) return false;
   return options_.has_world || row.group == "vehicle" || row.controller == scenario_.controller;
 }
 
@@ -139,7 +156,11 @@ Result<void> LiveSettings::set(const foxglove::Parameter& parameter) {
   if (row != nullptr && is_offered(*row)) return set_row(*row, parameter.value);
   const std::string shown = printable(parameter.name);
   if (row != nullptr) {
-    return fail(ErrorCode::kInvalidArgument, fmt::format("{}: cannot be set while this run goes on", shown));
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("{}: {}", shown,
+                            is_actuator_limit(*row)
+                                ? "is fixed when a run is started: a limit that the command gate keeps"
+                                : "cannot be set while this run goes on"));
   }
   std::vector<std::string_view> names;
   for (const Control& each : controls_) names.push_back(each.key);
@@ -209,11 +230,12 @@ Result<void> LiveSettings::start_anew(std::string_view key, const std::string& v
     return fail(ErrorCode::kInvalidArgument,
                 fmt::format("{}: got {} bytes, expected at most 256", key, value.size()));
   }
+  if (Result<void> chosen = check_choice(key, value); !chosen) return chosen;
   // A queue with room for the change and for what a person holds in his hands now.
   if (wishes_.room() < 1 + controls_.size())
     return fail(ErrorCode::kInvalidArgument, fmt::format("{}: too many changes wait; try again", key));
   const Result<scenario::Scenario> base = composed(changed);
-  if (!base) return fail(base.error());
+  if (!base) return hide(fmt::format("{}: {} cannot be used here", key, value), base.error());
   if (key == "preset") {
     scenario::Scenario fresh = *base;
     fresh.faults = changed.faults;
@@ -238,22 +260,36 @@ Result<void> LiveSettings::start_anew(std::string_view key, const std::string& v
   return {};
 }
 
-std::vector<std::string> LiveSettings::complaints() {
+/// A name of the library, or what the run was started with, which may be a file.
+Result<void> LiveSettings::check_choice(std::string_view key, const std::string& value) const {
+  const std::optional<protocol::Shelf> shelf = shelf_of(key);
+  if (!shelf || value == protocol::get_text(options_.scenario, *protocol::find(key))) return {};
+  return protocol::check_name(*shelf, value);
+}
+
+/// What a file holds is for whoever started the program.
+tl::unexpected<Error> LiveSettings::hide(std::string_view what, const Error& error) const {
+  if (options_.say) options_.say(fmt::format("{}: {}", what, error.message));
+  return fail(error.code, fmt::format("{}; the program's own output says why", what));
+}
+
+void LiveSettings::update() {
   const bool has_room =
       building_ && wishes_.room() >= 1 + building_->later.size() + controls_.size();  // else the next time
   const auto built = has_room ? options_.built() : std::nullopt;
-  if (!built) return {};
+  if (!built) return;
   Building building = std::move(*building_);
   building_.reset();
   has_news_ = true;
   if (options_.on_building) options_.on_building("");
-  if (!*built) {
-    return {fmt::format("no run with {}: {}; the one before goes on", words(building.run.choices),
-                        built->error().message)};
-  }
-  hand_over(std::move(building));
-  return {};
+  if (*built) return hand_over(std::move(building));
+  Error error = built->error();
+  if (error.code != ErrorCode::kInvalidArgument) error = hide("it cannot be built", error).value();
+  complaints_.push_back(
+      fmt::format("no run with {}: {}; the one before goes on", words(building.run.choices), error.message));
 }
+
+std::vector<std::string> LiveSettings::complaints() { return std::exchange(complaints_, {}); }
 
 /// The run that was built is the next one; what was changed meanwhile follows it.
 void LiveSettings::hand_over(Building building) {

@@ -35,6 +35,9 @@ struct LiveSettingsOptions {
   std::function<std::optional<Result<void>>()> built{};
   /// What is being built, in words: "track = oval"; empty: nothing any more.
   std::function<void(const std::string&)> on_building{};
+  /// For whoever started the program, and not for viewers: why a choice of theirs failed, where that tells of
+  /// files.
+  std::function<void(std::string_view)> say{};
   /// After each accepted change of the scenario that runs, and when another one has begun.
   std::function<void(const scenario::Scenario&)> on_accepted{};
 };
@@ -47,6 +50,10 @@ struct LiveSettingsOptions {
 /// on, or, for what starts the run anew, when the other run has been built. Until then the old one goes on,
 /// changes count for both, and another choice takes the place of the one before. All member functions but
 /// tell() are the network thread's.
+///
+/// Viewers are strangers. They choose presets, cars and tracks of the library by name, and no file but those
+/// the run was started with; no sentence for them quotes a file. The limits of actuators, which the command
+/// gate keeps, are not offered: a run has those that it was started with (docs/security.md).
 class LiveSettings final : public protocol::foxglove::ParameterStore {
  public:
   /// `wishes` is drained by the control thread and outlives this.
@@ -63,7 +70,8 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   void tell(const telemetry::Change& change) noexcept { static_cast<void>(told_.push(change)); }
   [[nodiscard]] std::vector<telemetry::Change> applied() override;
   [[nodiscard]] std::vector<protocol::foxglove::Parameter> news() override;
-  /// Looks after the run that is being built, too.
+  /// Hands the run that has been built over, where there is one and the queue has room.
+  void update() override;
   [[nodiscard]] std::vector<std::string> complaints() override;
 
   /// GET /schema.json; "default" is what the chosen preset gives with the chosen car.
@@ -92,6 +100,8 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   [[nodiscard]] Result<void> change_live(const protocol::Parameter& row, const std::string& text);
   [[nodiscard]] Result<void> start_anew(std::string_view key, const std::string& value,
                                         scenario::Scenario changed);
+  [[nodiscard]] Result<void> check_choice(std::string_view key, const std::string& value) const;
+  [[nodiscard]] tl::unexpected<Error> hide(std::string_view what, const Error& error) const;
   void hand_over(Building building);
   void hand_over_controls();
   [[nodiscard]] Result<void> send(std::string_view name, std::string_view value, bool starts_anew);
@@ -106,6 +116,7 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   std::map<std::string, protocol::Value, std::less<>> control_values_;
   std::vector<protocol::foxglove::Parameter> shown_;  ///< as news() told last
   bool has_news_ = false;
+  std::vector<std::string> complaints_;
 };
 
 }  // namespace chicane::live

@@ -33,6 +33,8 @@ class ParameterStore {
   [[nodiscard]] virtual std::optional<Parameter> get(std::string_view name) const = 0;
   /// Fails with a sentence for the operator ("tracking_mpc.step_length_s: got 3, expected 0.01 to 0.2").
   [[nodiscard]] virtual Result<void> set(const Parameter& parameter) = 0;
+  /// Called at each tick of the viewers: what was begun goes on, such as a run that is being built.
+  virtual void update() {}
   /// What has another value than at the last call, whoever changed it.
   [[nodiscard]] virtual std::vector<Parameter> news() { return {}; }
   /// Sentences for all operators since the last call: what was accepted and failed afterwards.

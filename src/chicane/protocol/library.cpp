@@ -86,6 +86,18 @@ bool is_path(std::string_view name) {
   return name.find('/') != std::string_view::npos || !fs::path(name).extension().empty();
 }
 
+/// `preset: got "dfault", expected a file or one of default, ... (did you mean default?)`.
+Error unknown_name(Shelf shelf, std::string_view name, const std::vector<Entry>& known,
+                   std::string_view or_what) {
+  std::vector<std::string_view> known_names;
+  known_names.reserve(known.size());
+  for (const Entry& entry : known) known_names.push_back(entry.name);
+  const std::string_view best = nearest(name, known_names);
+  return {ErrorCode::kNotFound, fmt::format("{}: got \"{}\", expected {}one of {}{}", names(shelf).singular,
+                                            printable(name), or_what, fmt::join(known_names, ", "),
+                                            best.empty() ? "" : fmt::format(" (did you mean {}?)", best))};
+}
+
 /// A name and who asks for it: "runs/wet.yaml:3: ", nothing for the command line and for defaults.
 struct Wish {
   std::string name;
@@ -226,6 +238,13 @@ std::vector<Entry> entries(Shelf shelf) {
   return result;
 }
 
+Result<void> check_name(Shelf shelf, std::string_view name) {
+  const std::vector<Entry> known = entries(shelf);
+  const auto is_it = [&](const Entry& entry) { return entry.name == name; };
+  if (std::any_of(known.begin(), known.end(), is_it)) return {};
+  return fail(unknown_name(shelf, name, known, ""));
+}
+
 Result<std::string> locate(Shelf shelf, std::string_view name_or_file) {
   const auto [singular, folder, extensions] = names(shelf);
   std::error_code ignored;
@@ -240,15 +259,7 @@ Result<std::string> locate(Shelf shelf, std::string_view name_or_file) {
       if (fs::is_regular_file(file, ignored)) return file.lexically_normal().string();
     }
   }
-  const std::vector<Entry> known = entries(shelf);
-  std::vector<std::string_view> known_names;
-  known_names.reserve(known.size());
-  for (const Entry& entry : known) known_names.push_back(entry.name);
-  const std::string_view best = nearest(name_or_file, known_names);
-  return fail(ErrorCode::kNotFound,
-              fmt::format("{}: got \"{}\", expected a file or one of {}{}", singular, printable(name_or_file),
-                          fmt::join(known_names, ", "),
-                          best.empty() ? "" : fmt::format(" (did you mean {}?)", best)));
+  return fail(unknown_name(shelf, name_or_file, entries(shelf), "a file or "));
 }
 
 Result<std::string> read_file(const std::string& path) {

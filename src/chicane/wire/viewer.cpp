@@ -161,6 +161,7 @@ void ViewerEndpoint::tell_changes() {
           id, foxglove::message_data(wanted->second, protocol::to_nanoseconds(change.time), payload), true);
     }
   }
+  options_.parameters->update();
   for (const std::string& sentence : options_.parameters->complaints()) {
     for (const auto& [id, client] : clients_) warn(id, sentence);
   }
