@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "access.hpp"
 #include "chicane/live/assets.hpp"
 #include "chicane/live/description.hpp"
 #include "chicane/live/live_run.hpp"
@@ -42,15 +43,16 @@ Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop
   live::LiveRunOptions living{
       .stay_at_end = stays_up(options), .pace = options.pace, .is_manual = options.is_manual};
   living.assets = live::embedded_assets();
-  living.server.address = options.address;
-  living.server.port = options.port;
+  Result<net::ServerOptions> server = server_options(options);
+  if (!server) return fail(server.error());
+  living.server = std::move(*server);
   if (options.step_budget_ms) living.step_budget = 1e-3 * *options.step_budget_ms;
   const scenario::Scenario scenario = loop->scenario();
   const auto live = live::LiveRun::create(living, std::move(loop), controls);
   if (!live) return fail(live.error());
   const auto kept = KeptRun::start(options, (*live)->description(), scenario, (*live)->step_budget());
   if (!kept) return fail(kept.error());
-  fmt::print(stderr, "dashboard at http://localhost:{}/; Ctrl-C ends\n", (*live)->port());
+  fmt::print(stderr, "dashboard at {} (Ctrl-C ends)\n", link(living.server, (*live)->port()));
   telemetry::RunSummary summary;
   {
     Progress progress;

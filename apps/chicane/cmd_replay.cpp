@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "access.hpp"
 #include "chicane/live/assets.hpp"
 #include "chicane/live/description.hpp"
 #include "chicane/live/pages.hpp"
@@ -58,11 +59,12 @@ Result<void> show(const Options& options, const Shown& shown, double start) {
   static std::atomic<bool> stop{false};  // as long as signals may come
   catch_interrupts(stop);
   wire::Router router(nullptr, nullptr);
-  const auto server =
-      net::Server::create({.address = options.address, .port = options.port},
-                          router.handlers(live::replay_pages(shown.logs(), start)), live::embedded_assets());
+  const Result<net::ServerOptions> serving = server_options(options);
+  if (!serving) return fail(serving.error());
+  const auto server = net::Server::create(*serving, router.handlers(live::replay_pages(shown.logs(), start)),
+                                          live::embedded_assets());
   if (!server) return fail(server.error());
-  fmt::print(stderr, "recordings at http://localhost:{}/; Ctrl-C ends\n", (*server)->port());
+  fmt::print(stderr, "recordings at {} (Ctrl-C ends)\n", link(*serving, (*server)->port()));
   while (!stop) std::this_thread::sleep_for(std::chrono::milliseconds{20});
   return {};
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "access.hpp"
 #include "chicane/live/assets.hpp"
 #include "chicane/live/served_run.hpp"
 #include "chicane/protocol/json_report.hpp"
@@ -40,26 +41,23 @@ Result<wire::ServeSummary> run(const Options& options) {
   Result<std::optional<path::Track>> track = told_track(options, *scenario);
   if (!track) return fail(track.error());
 
-  net::ServerOptions server;
-  server.address = options.address;
-  server.port = options.port;
-  live::ServedRun served(server, *scenario, std::move(*controller), std::move(*track),
+  const Result<net::ServerOptions> server = server_options(options);
+  if (!server) return fail(server.error());
+  live::ServedRun served(*server, *scenario, std::move(*controller), std::move(*track),
                          live::embedded_assets());
   const auto kept = KeptRun::start(options, served.description(), *scenario, served.step_budget());
   if (!kept) return fail(kept.error());
   Progress progress;
-  auto summary =
-      served.run((*kept)->recorder(),
-                 {.on_frame = [&](const telemetry::Frame& frame) { progress.show(frame); },
-                  .on_lap = [&](const telemetry::CompletedLap& lap) { progress.say(line_of(lap)); },
-                  .say = [&](std::string_view line) { progress.say(line); }},
-                 [&](std::uint16_t port) {
-                   progress.say(
-                       fmt::format("{} ({}) waits for a simulator on port {}; dashboard at "
-                                   "http://localhost:{}/; Ctrl-C ends",
-                                   scenario->preset, scenario->controller, port, port));
-                 },
-                 stop);
+  auto summary = served.run(
+      (*kept)->recorder(),
+      {.on_frame = [&](const telemetry::Frame& frame) { progress.show(frame); },
+       .on_lap = [&](const telemetry::CompletedLap& lap) { progress.say(line_of(lap)); },
+       .say = [&](std::string_view line) { progress.say(line); }},
+      [&](std::uint16_t port) {
+        progress.say(fmt::format("{} ({}) waits for a simulator on port {}; dashboard at {} (Ctrl-C ends)",
+                                 scenario->preset, scenario->controller, port, link(*server, port)));
+      },
+      stop);
   if (const Result<void> done = (*kept)->finish(); summary && !done) return fail(done.error());
   return summary;
 }

@@ -86,6 +86,14 @@ void add_port(CLI::App& command, Options& options) {
   command.add_option("--address", options.address, "Address to listen on; 0.0.0.0 lets other machines in")
       ->type_name("A")
       ->capture_default_str();
+  command
+      .add_option(
+          "--allow-origin", options.allowed_origins,
+          "A web page that may connect beside our own, like https://app.foxglove.dev; may be repeated")
+      ->type_name("ORIGIN")
+      ->allow_extra_args(false);
+  command.add_flag("!--no-token", options.needs_token,
+                   "Every program of this machine may control, without the token of the printed link");
 }
 
 void add_record(CLI::App& command, Options& options) {

@@ -394,6 +394,21 @@ TEST(Cli, APortThatIsTakenIsTheEnvironmentsFault) {
   ::close(taken);
 }
 
+TEST(Cli, WithoutATokenItListensOnThisMachineOnly) {
+  const Outcome outcome = chicane_program("drive --port 0 --laps 1 --address 0.0.0.0 --no-token");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("address: got 0.0.0.0 without a token, expected one of this machine or a token"));
+}
+
+TEST(Cli, PrintsALinkWithItsToken) {
+  const Outcome one = interrupted_program("drive --port 0 --laps 9 --json", "Ctrl-C ends");
+  EXPECT_THAT(one.err,
+              ::testing::ContainsRegex(R"(dashboard at http://localhost:[0-9]+/\?token=[-_A-Za-z0-9]+ )"));
+  const Outcome none = interrupted_program("drive --port 0 --laps 9 --json --no-token", "Ctrl-C ends");
+  EXPECT_THAT(none.err, ::testing::ContainsRegex("dashboard at http://localhost:[0-9]+/ [(]Ctrl-C ends[)]"));
+}
+
 TEST(Cli, ResultsThatCannotBeWrittenAreNotASuccess) {
   const Outcome outcome = chicane_program("list presets > /dev/full");
   EXPECT_EQ(outcome.code, 3);

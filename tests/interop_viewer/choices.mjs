@@ -24,7 +24,8 @@ const CHOICES = [
 
 /** Gaps between frames [ms], and when the first frame of another run came. */
 async function watch(url) {
-  const client = new foxglove.FoxgloveClient({ ws: new WebSocket(url.replace('http', 'ws'), ['foxglove.sdk.v1']) });
+  const as = { origin: new URL(url).origin }; // the page itself, which may control
+  const client = new foxglove.FoxgloveClient({ ws: new WebSocket(url.replace('http', 'ws'), ['foxglove.sdk.v1'], as) });
   const seen = { client, gaps: [], refusals: [], last: NaN, time: -1, began: NaN };
   let reader;
   client.on('advertise', (channels) => {

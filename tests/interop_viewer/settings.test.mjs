@@ -23,6 +23,7 @@ const folder = mkdtempSync(join(tmpdir(), 'chicane-settings-'));
 const recording = join(folder, 'run.mcap');
 let child;
 let url;
+let socketUrl;
 let client;
 const latest = new Map(); // topic → message
 const changes = [];
@@ -57,14 +58,16 @@ before(async () => {
     stdio: ['ignore', 'pipe', 'pipe'],
   });
   let said = '';
-  url = await new Promise((resolve) => {
+  const link = await new Promise((resolve) => {
     child.stderr.on('data', (text) => {
       said += text;
-      const found = /http:\/\/localhost:\d+/.exec(said)?.[0];
+      const found = /http:\/\/localhost:\d+\/\?token=\S+/.exec(said)?.[0];
       if (found) resolve(found);
     });
   });
-  client = new FoxgloveClient({ ws: new WebSocket(url.replace('http', 'ws'), ['foxglove.sdk.v1']) });
+  url = new URL(link).origin;
+  socketUrl = link.replace('http', 'ws'); // with the token, which whoever sets something needs
+  client = new FoxgloveClient({ ws: new WebSocket(socketUrl, ['foxglove.sdk.v1']) });
   const readers = new Map();
   const topics = new Map();
   client.on('advertise', (channels) => {
@@ -126,7 +129,7 @@ describe('a run that goes on', () => {
   });
 
   it('tells other viewers', async () => {
-    const other = new FoxgloveClient({ ws: new WebSocket(url.replace('http', 'ws'), ['foxglove.sdk.v1']) });
+    const other = new FoxgloveClient({ ws: new WebSocket(socketUrl, ['foxglove.sdk.v1']) });
     await new Promise((resolve) => other.on('open', resolve));
     other.setParameters([{ name: 'latency_ms', value: 60 }]);
     await until('60 ms', () => values.get('latency_ms') === 60);

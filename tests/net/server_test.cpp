@@ -284,6 +284,88 @@ TEST(Server, Refuses503WhenThereAreTooManyConnections) {
   EXPECT_THAT(third.rest(), StartsWith("HTTP/1.1 503"));
 }
 
+// 1,024 connections that said nothing left no place for the simulator.
+TEST(Server, ConnectionsThatAskForNothingGiveWayToNewOnes) {
+  Recorder recorder({.max_connections = 20, .handshake_timeout = 60s, .idle_timeout = 60s});
+  std::vector<RawSocket> idle;
+  for (int i = 0; i < 60; ++i) idle.emplace_back(recorder.port());
+  const RawSocket simulator = upgraded(recorder.port());
+  EXPECT_EQ(recorder.opened(1).size(), 1U);
+  EXPECT_EQ(idle.front().rest(), "");  // the oldest was ended without a word
+}
+
+TEST(Server, TellsAnEndpointWhenOnlyTheLastPlacesAreLeft) {
+  Recorder recorder({.max_connections = 16});
+  std::vector<RawSocket> open;
+  for (std::size_t i = 0; i < 14; ++i) {
+    open.push_back(upgraded(recorder.port()));
+    EXPECT_FALSE(recorder.upgrade().is_crowded) << i;
+    ASSERT_EQ(recorder.opened(i + 1).size(), i + 1);
+  }
+  open.push_back(upgraded(recorder.port()));
+  EXPECT_TRUE(recorder.upgrade().is_crowded);
+}
+
+TEST(Server, BoundsTheMemoryOfAllConnectionsTogether) {
+  Recorder recorder({.idle_timeout = 60s, .max_waiting = 4'000'000});
+  std::vector<RawSocket> stuck;
+  for (std::size_t i = 0; i < 8; ++i) {
+    stuck.push_back(upgraded(recorder.port(), 4096));
+    recorder.opened(i + 1);
+  }
+  // 100 messages of 20 kB for each are within max_queue, and 16 MB together.
+  for (int i = 0; i < 100; ++i) {
+    for (const ConnectionId id : recorder.opened(8))
+      recorder.server().send(id, std::string(20'000, 'x'), false);
+  }
+  const std::vector<std::string> ended = recorder.closed(4);
+  EXPECT_GE(ended.size(), 4U);
+  EXPECT_EQ(ended.front(), "does not read what it is sent");
+}
+
+TEST(Server, WhatIsSentToManyCountsOnce) {
+  Recorder recorder({.idle_timeout = 60s, .max_waiting = 4'000'000});
+  std::vector<RawSocket> viewers;
+  for (std::size_t i = 0; i < 8; ++i) {
+    viewers.push_back(upgraded(recorder.port(), 4096));
+    recorder.opened(i + 1);
+  }
+  for (int i = 0; i < 100; ++i) {
+    const auto shared = std::make_shared<const std::string>(20'000, 'x');
+    for (const ConnectionId id : recorder.opened(8)) recorder.server().send(id, shared, false);
+  }
+  for (RawSocket& viewer : viewers) {
+    for (int i = 0; i < 100; ++i) ASSERT_TRUE(viewer.frame()) << i;
+  }
+}
+
+TEST(Server, NeedsATokenToListenForOtherMachines) {
+  const auto server = Server::create({.address = "0.0.0.0", .port = 0}, {}, {});
+  ASSERT_FALSE(server);
+  EXPECT_THAT(server.error().message, StartsWith("address: got 0.0.0.0 without a token"));
+}
+
+TEST(Server, ALinkWithTheTokenBecomesACookieAndThePageItself) {
+  Recorder recorder({.address = "0.0.0.0", .token = "secret"},
+                    {{.path = "/index.html", .content_type = "text/html", .content = "<h1>hello</h1>"}});
+  EXPECT_THAT(get(recorder.port(), "/"), StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(get(recorder.port(), "/?token=guess"), StartsWith("HTTP/1.1 403"));
+  const std::string answer = get(recorder.port(), "/?token=secret");
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 303"));
+  EXPECT_THAT(answer, HasSubstr("\r\nLocation: /\r\n"));
+  const std::string cookie = "chicane-" + std::to_string(recorder.port()) + "=secret";
+  EXPECT_THAT(answer, HasSubstr("\r\nSet-Cookie: " + cookie + "; Path=/; HttpOnly; SameSite=Strict\r\n"));
+  EXPECT_THAT(get(recorder.port(), "/", "Cookie: " + cookie + "\r\n"), HasSubstr("<h1>hello</h1>"));
+  const RawSocket viewer = upgraded(recorder.port());  // the simulator's path: the endpoint decides
+  EXPECT_FALSE(recorder.upgrade().may_watch);
+  EXPECT_FALSE(recorder.upgrade().may_control);
+}
+
+TEST(Server, PagesMayOpenSocketsToTheirOwnHostOnly) {
+  Recorder recorder({}, {{.path = "/index.html", .content_type = "text/html", .content = "x"}});
+  EXPECT_THAT(get(recorder.port(), "/"), HasSubstr("; connect-src 'self' ws://localhost wss://localhost; "));
+}
+
 TEST(Server, NewestWinsForASlowReaderAndNobodyWaits) {
   Recorder recorder({.idle_timeout = 60s});
   RawSocket slow = upgraded(recorder.port(), 4096);

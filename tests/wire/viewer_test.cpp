@@ -1,105 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/wire/viewer.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstring>
-#include <nlohmann/json.hpp>
-#include <utility>
+#include "wire/fake_viewer.hpp"
 
 namespace chicane::wire {
 namespace {
 
-using nlohmann::json;
 using testing::HasSubstr;
-
-/// A network in memory: keeps what is sent, and runs timers when the test lets time pass.
-class FakeServer final : public net::Server {
- public:
-  struct Sent {
-    net::ConnectionId to = 0;
-    net::Bytes bytes;
-    bool binary = false;
-    net::Delivery delivery = net::Delivery::kReliable;
-    std::uint32_t topic = 0;
-  };
-
-  using net::Server::send;
-  [[nodiscard]] std::uint16_t port() const noexcept override { return 1; }
-  void send(net::ConnectionId to, net::Bytes bytes, bool binary, net::Delivery delivery,
-            std::uint32_t topic) override {
-    sent.push_back({to, std::move(bytes), binary, delivery, topic});
-  }
-  void close(net::ConnectionId, std::uint16_t, std::string_view) override {}
-  void run_after(std::chrono::nanoseconds delay, std::function<void()> task) override {
-    waiting.emplace_back(delay, std::move(task));
-  }
-  /// Everything that was waiting happens, once.
-  void pass_time() {
-    for (auto& [delay, task] : std::exchange(waiting, {})) task();
-  }
-  std::vector<Sent> take() { return std::exchange(sent, {}); }
-
-  std::vector<Sent> sent;
-  std::vector<std::pair<std::chrono::nanoseconds, std::function<void()>>> waiting;
-};
-
-telemetry::Frame frame_at(double time) {
-  telemetry::Frame frame;
-  frame.time = time;
-  return frame;
-}
-
-std::uint32_t channel_of(std::string_view topic) {
-  const auto& topics = protocol::ros_topics();
-  for (std::size_t i = 0; i < topics.size(); ++i) {
-    if (topics[i].name == topic) return static_cast<std::uint32_t>(i);
-  }
-  ADD_FAILURE() << topic;
-  return 0;
-}
-
-std::string subscribe(std::uint32_t id, std::string_view topic) {
-  return json{{"op", "subscribe"}, {"subscriptions", {{{"id", id}, {"channelId", channel_of(topic)}}}}}
-      .dump();
-}
-
-std::uint32_t subscription_of(const FakeServer::Sent& message) {
-  std::uint32_t id = 0;
-  std::memcpy(&id, message.bytes->data() + 1, sizeof(id));
-  return id;
-}
-
-std::string service_call(std::uint32_t service, std::string_view payload) {
-  using namespace std::string_literals;
-  std::string call = "\x02\0\0\0\0\x07\0\0\0\x03\0\0\0cdr\0\1\0\0"s;
-  call[1] = static_cast<char>(service);
-  return call.append(payload);
-}
-
-/// Viewer 1 is connected.
-class Viewer : public testing::Test {
- protected:
-  void start(ViewerOptions options) {
-    endpoint = std::make_unique<ViewerEndpoint>(std::move(options));
-    endpoint->on_start(server);
-    endpoint->on_open(1);
-  }
-  void say(const std::string& text) { endpoint->on_message(1, text, false); }
-  /// The only text message that has come since the last look.
-  json answer() {
-    const auto messages = server.take();
-    if (messages.size() != 1 || messages[0].binary) {
-      ADD_FAILURE() << messages.size() << " messages";
-      return {};
-    }
-    return json::parse(*messages[0].bytes);
-  }
-
-  FakeServer server;
-  std::unique_ptr<ViewerEndpoint> endpoint;
-};
 
 TEST_F(Viewer, IsGreetedWithWhatThereIs) {
   start({});
@@ -145,7 +52,7 @@ TEST_F(Viewer, IsToldOfTheLapsThatWereBeforeItCame) {
   publish(0);  // the run began anew
   publish(1);
   server.take();
-  endpoint->on_open(2);
+  connect(2, true);
   server.take();
   endpoint->on_message(2, subscribe(6, "/chicane/lap"), false);
   EXPECT_EQ(laps(), (std::vector{1}));
@@ -186,10 +93,10 @@ TEST_F(Viewer, IsServedAtTheAskedRate) {
   ViewerOptions options;
   options.rate_limit = 50.0;
   start(std::move(options));
-  ASSERT_EQ(server.waiting.size(), 1U);
-  EXPECT_EQ(server.waiting[0].first, std::chrono::milliseconds{20});
+  ASSERT_EQ(server.tasks.size(), 1U);
+  EXPECT_EQ(server.tasks[0].first, std::chrono::milliseconds{20});
   server.pass_time();
-  EXPECT_EQ(server.waiting.size(), 1U);  // goes on for ever
+  EXPECT_EQ(server.tasks.size(), 1U);  // goes on for ever
 }
 
 TEST_F(Viewer, LearnsTheRoadWhenItSubscribesAndWhenItChanges) {
@@ -220,7 +127,7 @@ TEST_F(Viewer, LearnsTheLastFrameWhenItComesLate) {
 
 TEST_F(Viewer, SharesBytesWithViewersOfTheSameKind) {
   start({});
-  endpoint->on_open(2);
+  connect(2, true);
   for (const net::ConnectionId id : {1U, 2U}) endpoint->on_message(id, subscribe(4, "/odom"), false);
   server.take();
   endpoint->publish(frame_at(1.0));
@@ -233,7 +140,7 @@ TEST_F(Viewer, SharesBytesWithViewersOfTheSameKind) {
 
 TEST_F(Viewer, GetsNothingAfterItHasLeftOrUnsubscribed) {
   start({});
-  endpoint->on_open(2);
+  connect(2, true);
   for (const net::ConnectionId id : {1U, 2U}) endpoint->on_message(id, subscribe(4, "/odom"), false);
   say(R"({"op":"unsubscribe","subscriptionIds":[4]})");
   endpoint->on_close(2, "gone");
@@ -294,7 +201,7 @@ TEST_F(Viewer, PausesStepsAndResetsTheRun) {
 TEST_F(Viewer, MustSpeakOneOfTheTwoSubprotocols) {
   start({});
   const auto answer_to = [&](std::vector<std::string> offered) {
-    net::UpgradeRequest request;
+    net::UpgradeRequest request{.may_watch = true};
     request.subprotocols = std::move(offered);
     return endpoint->on_upgrade(request);
   };
@@ -303,35 +210,12 @@ TEST_F(Viewer, MustSpeakOneOfTheTwoSubprotocols) {
   EXPECT_FALSE(answer_to({"soap"}).accept);
 }
 
-/// Parameters a and b; only a can be set, to positive numbers.
-class Store : public protocol::foxglove::ParameterStore {
- public:
-  std::vector<protocol::foxglove::Parameter> list() const override { return {{"a", a}, {"b", 2.0}}; }
-  std::optional<protocol::foxglove::Parameter> get(std::string_view name) const override {
-    for (auto& parameter : list()) {
-      if (parameter.name == name) return std::move(parameter);
-    }
-    return std::nullopt;
-  }
-  Result<void> set(const protocol::foxglove::Parameter& wish) override {
-    const double* value = std::get_if<double>(&wish.value);
-    if (wish.name != "a" || value == nullptr || *value <= 0.0) {
-      return fail(ErrorCode::kInvalidArgument, wish.name + ": expected a number > 0");
-    }
-    a = *value;
-    return {};
-  }
-  std::vector<std::string> complaints() override { return std::exchange(sentences, {}); }
-  double a = 1.0;
-  std::vector<std::string> sentences;
-};
-
 TEST_F(Viewer, IsToldWhatFailedAfterItWasAcceptedWhoeverAsked) {
   Store store;
   ViewerOptions options;
   options.parameters = &store;
   start(std::move(options));
-  endpoint->on_open(2);
+  connect(2, true);
   server.pass_time();
   server.take();
   store.sentences = {"no run with a = 2"};
@@ -371,7 +255,7 @@ TEST_F(Viewer, SetsParametersAndOthersSeeIt) {
   ViewerOptions options;
   options.parameters = &store;
   start(std::move(options));
-  endpoint->on_open(2);
+  connect(2, true);
   endpoint->on_message(2, R"({"op":"subscribeParameterUpdates","parameterNames":["a","no such"]})", false);
   server.take();
   say(R"({"op":"setParameters","parameters":[{"name":"a","value":7}],"id":"x"})");
@@ -398,7 +282,7 @@ TEST_F(Viewer, TellsOfParametersThatChangeWithoutBeingSet) {
   ViewerOptions options;
   options.parameters = &store;
   start(std::move(options));
-  endpoint->on_open(2);
+  connect(2, true);
   say(R"({"op":"subscribeParameterUpdates","parameterNames":["b"]})");
   server.take();
   store.waiting = {{"a", 5.0}, {"b", 3.0}};

@@ -293,6 +293,7 @@ std::vector<std::string> LiveSettings::complaints() { return std::exchange(compl
 
 /// The run that was built is the next one; what was changed meanwhile follows it.
 void LiveSettings::hand_over(Building building) {
+  ++runs_;
   const telemetry::Change& last = building.run.choices.back();
   static_cast<void>(send(last.name.view(), last.value.view(), true));
   for (const auto& [key, text] : building.later) static_cast<void>(send(key, text, false));

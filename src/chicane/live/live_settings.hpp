@@ -76,6 +76,8 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
 
   /// GET /schema.json; "default" is what the chosen preset gives with the chosen car.
   [[nodiscard]] std::string schema_json() const;
+  /// Another number when schema_json() may be another.
+  [[nodiscard]] std::uint64_t schema_version() const { return runs_; }
   /// GET /preset.yaml: what runs, as a preset.
   [[nodiscard]] std::string preset_yaml() const;
   /// What runs, or has been handed over to run.
@@ -116,6 +118,7 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   std::map<std::string, protocol::Value, std::less<>> control_values_;
   std::vector<protocol::foxglove::Parameter> shown_;  ///< as news() told last
   bool has_news_ = false;
+  std::uint64_t runs_ = 0;  ///< that have been handed over
   std::vector<std::string> complaints_;
 };
 

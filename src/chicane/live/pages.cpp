@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
 
 namespace chicane::live {
@@ -23,8 +26,15 @@ wire::Pages live_pages() { return {{"/mode.json", mode_page({{"mode", "live"}})}
 
 wire::Pages live_pages(const LiveSettings& settings) {
   wire::Pages pages = live_pages();
-  pages["/schema.json"] = [&settings] {
-    return net::Content{.content_type = "application/json", .bytes = settings.schema_json()};
+  // Hundreds may ask for it at once: it is made once for each run, and its bytes are shared.
+  struct Made {
+    std::uint64_t version = 0;
+    std::shared_ptr<const std::string> bytes{};
+  };
+  pages["/schema.json"] = [&settings, made = std::make_shared<Made>()] {
+    if (!made->bytes || made->version != settings.schema_version())
+      *made = {settings.schema_version(), std::make_shared<const std::string>(settings.schema_json())};
+    return net::Content{.content_type = "application/json", .shared = made->bytes};
   };
   pages["/preset.yaml"] = [&settings] {
     return net::Content{

@@ -14,16 +14,23 @@
 namespace chicane::net {
 namespace {
 
-constexpr std::uint64_t kPiece = 64UL * 1024UL;
+constexpr std::uint64_t kPiece = 32UL * 1024UL;
 constexpr std::string_view kNotModified = "304 Not Modified";
 constexpr std::string_view kSecurityHeaders =
     "Content-Security-Policy: default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' "
-    "'unsafe-inline'; img-src 'self' data: blob:; worker-src 'self' blob:; connect-src 'self' ws: wss:; "
+    "'unsafe-inline'; img-src 'self' data: blob:; worker-src 'self' blob:; connect-src 'self'{}; "
     "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\n"
     "X-Content-Type-Options: nosniff\r\n"
     "Referrer-Policy: no-referrer\r\n"
     "Cross-Origin-Opener-Policy: same-origin\r\n"
     "Cross-Origin-Resource-Policy: same-origin\r\n";
+
+/// Sockets of the same host; some browsers' 'self' leaves them out. Content policies know no IPv6 addresses.
+std::string sockets_of(std::string_view host) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-:";
+  if (host.empty() || host.find_first_not_of(kPlain) != std::string_view::npos) return "";
+  return fmt::format(" ws://{0} wss://{0}", host);
+}
 
 /// Digits and nothing else.
 std::optional<std::uint64_t> number(std::string_view digits) {
@@ -81,7 +88,7 @@ Result<Body> Body::open(const std::string& file) {
 
 std::string Body::tag() const {
   if (!file_tag_.empty()) return file_tag_;
-  return tag_of(view_.empty() ? owned_ : view_);
+  return tag_of(view_);
 }
 
 void Body::restrict_to(ByteRange range) {
@@ -97,7 +104,7 @@ bool Body::next(std::string& piece) {
     piece.resize(count);
     if (!file_.read(piece.data(), static_cast<std::streamsize>(count))) return false;
   } else {
-    piece = (view_.empty() ? std::string_view{owned_} : view_).substr(at_, count);
+    piece = view_.substr(at_, count);
   }
   at_ += count;
   size_ -= count;
@@ -111,10 +118,17 @@ HttpResponse HttpResponse::in_words(std::string_view status, std::string words) 
   return response;
 }
 
+HttpResponse HttpResponse::see_other(std::string_view location, std::string_view cookie) {
+  HttpResponse response = in_words("303 See Other", "the token is kept as a cookie");
+  response.add("Location", location);
+  response.add("Set-Cookie", cookie);
+  return response;
+}
+
 HttpResponse HttpResponse::of(Content content, const HttpRequest& request) {
   Body body;
   if (content.file.empty()) {
-    body = Body(std::move(content.bytes));
+    body = content.shared ? Body(std::move(content.shared)) : Body(std::move(content.bytes));
   } else {
     Result<Body> opened = Body::open(content.file);
     if (!opened) return in_words("404 Not Found", "the file is gone");
@@ -160,9 +174,9 @@ HttpResponse HttpResponse::of_asset(std::string_view bytes, std::string_view con
 
 void HttpResponse::add(std::string_view name, std::string_view value) { fields_.emplace_back(name, value); }
 
-std::string HttpResponse::head(const HttpRequest& request) const {
-  std::string text = fmt::format("HTTP/1.1 {}\r\nServer: chicane\r\nCache-Control: no-cache\r\n{}", status_,
-                                 kSecurityHeaders);
+std::string HttpResponse::head(const HttpRequest& request, std::string_view host) const {
+  std::string text = fmt::format("HTTP/1.1 {}\r\nServer: chicane\r\nCache-Control: no-cache\r\n", status_);
+  text += fmt::format(kSecurityHeaders, sockets_of(host));
   for (const auto& [name, value] : fields_) text += fmt::format("{}: {}\r\n", name, value);
   if (!request.keep_alive) text += "Connection: close\r\n";
   if (status_ != kNotModified) text += fmt::format("Content-Length: {}\r\n", body_.size());

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,7 +19,8 @@ namespace chicane::net {
 struct Content {
   std::string content_type{};
   std::string bytes{};
-  std::string file{};     ///< when not empty, the content is this file's as it is now
+  std::shared_ptr<const std::string> shared{};  ///< instead of `bytes`, for what many ask for
+  std::string file{};                           ///< when not empty, the content is this file's as it is now
   std::string save_as{};  ///< when not empty, a browser saves it under this name; no quotes, no line ends
 };
 
@@ -40,7 +42,9 @@ struct ByteRange {
 class Body {
  public:
   Body() = default;
-  explicit Body(std::string bytes) : owned_{std::move(bytes)}, size_{owned_.size()} {}
+  explicit Body(std::string bytes) : Body(std::make_shared<const std::string>(std::move(bytes))) {}
+  explicit Body(std::shared_ptr<const std::string> bytes)
+      : owned_{std::move(bytes)}, view_{*owned_}, size_{owned_->size()} {}
   /// Of bytes that live as long as the program.
   static Body of_view(std::string_view bytes);
   /// kIo when it cannot be read.
@@ -50,14 +54,14 @@ class Body {
   /// Of the whole, before restrict_to().
   [[nodiscard]] std::string tag() const;
   void restrict_to(ByteRange range);
-  /// Takes the next at most 64 KiB; false when nothing is left, or when a file has become shorter than it
+  /// Takes the next at most 32 KiB; false when nothing is left, or when a file has become shorter than it
   /// was: then is_short().
   [[nodiscard]] bool next(std::string& piece);
   [[nodiscard]] bool is_short() const { return size_ > 0; }
 
  private:
-  std::string owned_{};
-  std::string_view view_{};
+  std::shared_ptr<const std::string> owned_{};
+  std::string_view view_{};  ///< of owned_, or of the program
   std::ifstream file_{};
   std::string file_tag_{};
   std::uint64_t at_ = 0;    ///< of the next byte
@@ -78,6 +82,8 @@ class HttpResponse {
  public:
   /// Words for a person; `status` as in "404 Not Found".
   [[nodiscard]] static HttpResponse in_words(std::string_view status, std::string words);
+  /// Sends a browser on to another page of ours, with a cookie.
+  [[nodiscard]] static HttpResponse see_other(std::string_view location, std::string_view cookie);
   /// A content, whole, by range (206, 416), or not again (304); 404 when its file cannot be read.
   [[nodiscard]] static HttpResponse of(Content content, const HttpRequest& request);
   /// Bytes that live as long as the program, with the ETag that tag_of() gave them.
@@ -85,8 +91,9 @@ class HttpResponse {
                                              bool is_gzip, std::string_view tag, const HttpRequest& request);
 
   void add(std::string_view name, std::string_view value);
-  /// What is sent before the body.
-  [[nodiscard]] std::string head(const HttpRequest& request) const;
+  /// What is sent before the body. Pages may open sockets to the `host` that the request named, and to no
+  /// other.
+  [[nodiscard]] std::string head(const HttpRequest& request, std::string_view host = {}) const;
   [[nodiscard]] Body& body() { return body_; }
 
  private:

@@ -17,15 +17,18 @@
 
 #include <algorithm>
 #include <array>
-#include <deque>
+#include <list>
 #include <optional>
 #include <thread>
 #include <unordered_map>
 
 #include <fmt/format.h>
 
-#include "chicane/net/detail/access.hpp"
+#include "chicane/net/detail/admission.hpp"
+#include "chicane/net/detail/crowd.hpp"
 #include "chicane/net/detail/port_holder.hpp"
+#include "chicane/net/detail/send_queue.hpp"
+#include "chicane/net/detail/site.hpp"
 #include "chicane/net/http_response.hpp"
 
 namespace chicane::net {
@@ -42,29 +45,33 @@ constexpr int kSendBuffer = 32 * 1024;  // a reader that stalls holds this much 
 constexpr std::chrono::seconds kAnswerTimeout{30};  // for one piece of an answer on a slow line
 constexpr std::chrono::seconds kLingerTimeout{1};   // so that a refusal is read before the socket goes
 constexpr std::chrono::milliseconds kGoodbye{200};  // for close frames when the server ends
+constexpr std::size_t kKeptBuffer = 4096;           // between two messages [byte]
+constexpr std::size_t kMostReserved = 8;            // connections that viewers leave to others
 std::string_view view(boost::string_view text) { return {text.data(), text.size()}; }
 boost::string_view view(std::string_view text) { return {text.data(), text.size()}; }
-
 class WebSocket;
+class HttpConnection;
 
 /// What connections need of their server. Everything runs on its one thread; `ticket` counts open sockets.
 struct Core {
   ServerOptions options;
   ServerHandlers handlers;
-  std::vector<Asset> assets;
-  std::vector<std::string> tags;  // one ETag for each asset
+  Site site{};
   std::shared_ptr<int> ticket = std::make_shared<int>(0);
-  asio::io_context io{1};
+  Doorkeeper door{};
+  WaitingBytes waiting{};
+  std::list<HttpConnection*> visitors{};  // without an upgrade, the longest silent first
+  Crowd crowd{};
   std::unordered_map<ConnectionId, std::shared_ptr<WebSocket>> connections;
   ConnectionId next_id = 1;
   bool is_stopping = false;
-};
+  asio::io_context io{1};  // the last one: what it holds uses the others when it ends
 
-struct Outgoing {
-  Bytes bytes;
-  bool binary = false;
-  Delivery delivery = Delivery::kReliable;
-  std::uint32_t topic = 0;
+  [[nodiscard]] std::size_t open() const { return static_cast<std::size_t>(ticket.use_count()) - 1; }
+  [[nodiscard]] bool is_crowded() const {
+    return connections.size() + std::min(kMostReserved, options.max_connections / 8) >=
+           options.max_connections;
+  }
 };
 
 /// One upgraded connection. A read is pending from open to end, and its completion is the one place where it
@@ -73,6 +80,11 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
  public:
   WebSocket(Core& core, Tcp::socket socket, int endpoint, ConnectionId id)
       : core_{core}, ticket_{core.ticket}, stream_{std::move(socket)}, endpoint_{endpoint}, id_{id} {}
+  ~WebSocket() {
+    queue_.drop_waiting(false);
+    ticket_.reset();
+    core_.crowd.note(core_.open());
+  }
 
   void start(const http::request<http::empty_body>& request, const std::string& subprotocol) {
     stream_.set_option(
@@ -94,11 +106,15 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
 
   void send(Outgoing message) {
     if (is_closing_) return;
-    if (message.delivery == Delivery::kNewest && replace_waiting(message)) return;
-    if (queue_.size() >= core_.options.max_queue) return abort("does not read what it is sent");
-    queue_.push_back(std::move(message));
+    const bool is_full = !queue_.add(std::move(message), is_writing_, core_.options.max_queue);
+    const std::size_t all = core_.waiting.total();
+    const bool has_more_than_others = queue_.bytes() * core_.connections.size() >= all;
+    if (is_full || (all > core_.options.max_waiting && has_more_than_others))
+      return abort("does not read what it is sent");
     if (!is_writing_) write();
   }
+
+  [[nodiscard]] const SendQueue& queue() const { return queue_; }
 
   void close(std::uint16_t code, std::string_view reason) {
     if (is_closing_) return;
@@ -127,18 +143,9 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
                                         self->stream_.got_binary());
       }
       self->buffer_.consume(self->buffer_.size());
+      if (self->buffer_.capacity() > kKeptBuffer) self->buffer_.shrink_to_fit();
       self->read();
     });
-  }
-
-  bool replace_waiting(Outgoing& message) {
-    const auto first = queue_.begin() + (is_writing_ ? 1 : 0);
-    const auto waiting = std::find_if(first, queue_.end(), [&](const Outgoing& other) {
-      return other.delivery == Delivery::kNewest && other.topic == message.topic;
-    });
-    if (waiting == queue_.end()) return false;
-    *waiting = std::move(message);
-    return true;
   }
 
   void write() {
@@ -147,7 +154,7 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
     stream_.async_write(asio::buffer(*queue_.front().bytes),
                         [self = shared_from_this()](ErrorCodeBoost ec, std::size_t) {
                           self->is_writing_ = false;
-                          self->queue_.pop_front();
+                          self->queue_.pop();
                           if (ec) return self->abort(ec.message());
                           if (!self->queue_.empty()) return self->write();
                           if (self->is_closing_) self->finish_closing();
@@ -162,6 +169,7 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
   void abort(std::string why) {
     if (why_.empty()) why_ = std::move(why);
     is_closing_ = true;
+    queue_.drop_waiting(is_writing_);
     beast::get_lowest_layer(stream_).close();
   }
 
@@ -179,14 +187,12 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
   [[nodiscard]] std::string words(ErrorCodeBoost ec) const {
     if (has_peer_closed_ || ec == websocket::error::closed)
       return fmt::format("closed by the peer ({})", stream_.reason().code);
-    if (ec == websocket::error::message_too_big) {
+    if (ec == websocket::error::message_too_big)
       return fmt::format("sent a message of more than {} bytes", core_.options.max_message);
-    }
     if (ec == beast::error::timeout)
       return fmt::format("silent for {} ms", core_.options.idle_timeout.count());
     if (ec == asio::error::bad_descriptor) return "broke a rule and did not hang up when told";
-    if (ec == asio::error::eof) return "connection ended without a close frame";
-    return ec.message();
+    return ec == asio::error::eof ? "connection ended without a close frame" : ec.message();
   }
 
   Core& core_;
@@ -195,7 +201,7 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
   beast::flat_buffer buffer_;
   int endpoint_;
   ConnectionId id_;
-  std::deque<Outgoing> queue_;  // the front one is being written while is_writing_
+  SendQueue queue_{core_.waiting};
   bool is_writing_ = false;
   bool is_closing_ = false;
   bool has_peer_closed_ = false;
@@ -209,18 +215,31 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   HttpConnection(Core& core, Tcp::socket socket)
       : core_{core}, ticket_{core.ticket}, stream_{std::move(socket)} {}
 
+  ~HttpConnection() {
+    core_.visitors.erase(place_);
+    ticket_.reset();
+    piece_ = {};
+    core_.crowd.note(core_.open());
+  }
+
   void start() {
-    if (static_cast<std::size_t>(ticket_.use_count()) - 1 > core_.options.max_connections) {
-      return refuse(http::status::service_unavailable, "too many connections");
+    core_.crowd.note(core_.open());
+    if (core_.open() > core_.options.max_connections) {
+      if (core_.visitors.size() < 2) return refuse(http::status::service_unavailable, "too many connections");
+      core_.visitors.front()->give_way();
     }
-    ErrorCodeBoost ignored;
-    const auto peer = stream_.socket().remote_endpoint(ignored);
-    peer_ = fmt::format("{}:{}", peer.address().to_string(ignored), peer.port());
     read();
   }
 
  private:
+  /// Somebody new needs the place.
+  void give_way() {
+    core_.visitors.splice(core_.visitors.end(), core_.visitors, place_);  // it goes in a moment
+    stream_.close();
+  }
+
   void read() {
+    core_.visitors.splice(core_.visitors.end(), core_.visitors, place_);
     parser_.emplace();
     parser_->header_limit(static_cast<std::uint32_t>(core_.options.max_header));
     parser_->body_limit(0);
@@ -239,39 +258,37 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   }
 
   void answer(const http::request<http::empty_body>& request) {
-    const std::string_view host = view(request[http::field::host]);
-    if (request.count(http::field::host) != 1)
-      return refuse(http::status::bad_request, "one Host header is needed");
-    if (!host_is_allowed(host, core_.options.address, core_.options.allowed_hosts)) {
-      return refuse(http::status::forbidden, fmt::format("host '{}' is not allowed here", host));
-    }
-    if (websocket::is_upgrade(request)) return upgrade(request);
-    if (request.method() != http::verb::get && request.method() != http::verb::head) {
+    host_ = view(request[http::field::host]);
+    const Admission admission = core_.door.admit({.target = view(request.target()),
+                                                  .host = host_,
+                                                  .origin = view(request[http::field::origin]),
+                                                  .cookies = view(request[http::field::cookie]),
+                                                  .hosts = request.count(http::field::host),
+                                                  .is_upgrade = websocket::is_upgrade(request)});
+    if (admission.status == 200 && websocket::is_upgrade(request)) return upgrade(request, admission);
+    const bool is_get = request.method() == http::verb::get || request.method() == http::verb::head;
+    if (admission.status < 400 && !is_get)
       return refuse(http::status::method_not_allowed, "only GET and HEAD");
-    }
-    serve(request);
+    if (admission.status == 303)
+      return reply(HttpResponse::see_other(admission.location, core_.door.cookie()), {});
+    if (admission.status == 200) return serve(request);
+    refuse(http::int_to_status(admission.status), admission.words);
   }
 
-  [[nodiscard]] bool is_foreign(const http::request<http::empty_body>& request) const {
-    const std::string_view origin = view(request[http::field::origin]);
-    return !origin.empty() &&
-           !origin_is_allowed(origin, view(request[http::field::host]), core_.options.allowed_origins);
-  }
-
-  void upgrade(const http::request<http::empty_body>& request) {
-    const std::string_view origin = view(request[http::field::origin]);
-    const std::string_view host = view(request[http::field::host]);
+  void upgrade(const http::request<http::empty_body>& request, const Admission& admission) {
     if (buffer_.size() > 0)
       return refuse(http::status::bad_request, "bytes sent before the upgrade was answered");
-    if (is_foreign(request)) {
-      return refuse(http::status::forbidden, fmt::format("pages of '{}' may not connect here", origin));
-    }
+    ErrorCodeBoost ignored;
+    const auto peer = stream_.socket().remote_endpoint(ignored);
     UpgradeRequest asked{.id = core_.next_id++,
                          .target = std::string(view(request.target())),
-                         .peer = peer_,
-                         .origin = std::string(origin),
-                         .host = std::string(host),
-                         .subprotocols = {}};
+                         .peer = fmt::format("{}:{}", peer.address().to_string(ignored), peer.port()),
+                         .origin = std::string(view(request[http::field::origin])),
+                         .host = host_,
+                         .subprotocols = {},
+                         .may_watch = admission.may_watch,
+                         .may_control = admission.may_control,
+                         .is_crowded = core_.is_crowded()};
     for (const auto offered : http::token_list(request[http::field::sec_websocket_protocol])) {
       asked.subprotocols.emplace_back(view(offered));
     }
@@ -289,21 +306,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
                             .range = view(request[http::field::range]),
                             .if_range = view(request[http::field::if_range]),
                             .if_none_match = view(request[http::field::if_none_match])};
-    const std::string_view target = view(request.target());
-    const std::string_view path = target.substr(0, target.find('?'));
-    std::optional<Content> content;
-    if (core_.handlers.on_get) content = core_.handlers.on_get(path);
-    if (content && is_foreign(request))
-      return refuse(http::status::forbidden, "pages of other servers may not read this");
-    if (content) return reply(HttpResponse::of(std::move(*content), asked), asked);
-    const std::string_view wanted = path == "/" ? "/index.html" : path;
-    const auto asset = std::find_if(core_.assets.begin(), core_.assets.end(),
-                                    [&](const Asset& candidate) { return candidate.path == wanted; });
-    if (asset == core_.assets.end()) {
-      return reply(HttpResponse::in_words("404 Not Found", "no such page"), asked);
-    }
-    const std::string& tag = core_.tags[static_cast<std::size_t>(asset - core_.assets.begin())];
-    reply(HttpResponse::of_asset(asset->content, asset->content_type, asset->gzip, tag, asked), asked);
+    reply(core_.site.answer(view(request.target()), asked), asked);
   }
 
   /// Answers in words and ends the connection.
@@ -316,7 +319,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   }
 
   void reply(HttpResponse response, const HttpRequest& asked) {
-    piece_ = response.head(asked);
+    piece_ = response.head(asked, host_);
     body_ = asked.is_head ? Body{} : std::move(response.body());
     write(asked.keep_alive);
   }
@@ -350,10 +353,11 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   Core& core_;
   std::shared_ptr<int> ticket_;
   beast::tcp_stream stream_;
-  beast::flat_buffer buffer_{65536};
+  std::list<HttpConnection*>::iterator place_ = core_.visitors.insert(core_.visitors.end(), this);
+  beast::flat_buffer buffer_{core_.options.max_header + 2 * kKeptBuffer};
   std::optional<http::request_parser<http::empty_body>> parser_;
   std::array<char, 1024> rest_{};
-  std::string peer_;
+  std::string host_;   ///< that the last request named, once it was found to be ours
   std::string piece_;  ///< of the answer, while it is written
   Body body_;          ///< what follows it
 };
@@ -363,8 +367,7 @@ class BeastServer final : public Server {
   BeastServer(const ServerOptions& options, ServerHandlers handlers, std::vector<Asset> assets) {
     core_.options = options;
     core_.handlers = std::move(handlers);
-    core_.assets = std::move(assets);
-    for (const Asset& asset : core_.assets) core_.tags.push_back(tag_of(asset.content));
+    core_.site = Site(std::move(assets), core_.handlers.on_get);
   }
 
   ~BeastServer() override {
@@ -380,6 +383,11 @@ class BeastServer final : public Server {
     if (ec)
       return fail(ErrorCode::kInvalidArgument,
                   fmt::format("address: got '{}', expected a numeric address", core_.options.address));
+    if (!address.is_loopback() && core_.options.token.empty())
+      return fail(ErrorCode::kInvalidArgument,
+                  fmt::format("address: got {} without a token, expected one of this machine or a token: all "
+                              "who reach it could drive",
+                              core_.options.address));
     const Tcp::endpoint endpoint{address, core_.options.port};
     acceptor_.open(endpoint.protocol(), ec);
     if (!ec) acceptor_.set_option(asio::socket_base::reuse_address(true), ec);
@@ -389,15 +397,16 @@ class BeastServer final : public Server {
     if (!ec) acceptor_.bind(endpoint, ec);
     if (!ec) acceptor_.listen(asio::socket_base::max_listen_connections, ec);
     if (ec == asio::error::address_in_use) {
-      const std::string holder = port_holder(core_.options.port);
       return fail(ErrorCode::kIo, fmt::format("port {} is in use by {}", core_.options.port,
-                                              holder.empty() ? "a connection that is just ending" : holder));
+                                              port_holder(core_.options.port)));
     }
     if (ec) {
       return fail(ErrorCode::kIo, fmt::format("cannot listen on {}:{}: {}", core_.options.address,
                                               core_.options.port, ec.message()));
     }
     port_ = acceptor_.local_endpoint(ec).port();
+    const ServerOptions& o = core_.options;
+    core_.door = {o.address, o.allowed_hosts, o.allowed_origins, o.token, port_};
     asio::post(core_.io, [this] {
       if (core_.handlers.on_start) core_.handlers.on_start(*this);
       accept();
@@ -415,6 +424,10 @@ class BeastServer final : public Server {
                      const auto found = core_.connections.find(to);
                      if (found != core_.connections.end()) found->second->send(std::move(message));
                    });
+  }
+
+  [[nodiscard]] std::size_t waiting(ConnectionId id) const override {
+    return core_.connections.contains(id) ? core_.connections.at(id)->queue().size() : 0;
   }
 
   void close(ConnectionId id, std::uint16_t code, std::string_view reason) override {

@@ -29,10 +29,14 @@ struct UpgradeRequest {
   std::string origin{};  ///< empty when absent
   std::string host{};
   std::vector<std::string> subprotocols{};  ///< as offered, in order
+  bool may_watch = false;                   ///< may see what the run shows
+  bool may_control = false;                 ///< may change its state
+  bool is_crowded = false;                  ///< only the slots are left that viewers must not take
 };
 
 /// What to do with an upgrade. Refused before anybody is asked: a Host that is not ours (see
-/// ServerOptions::allowed_hosts), an Origin that is neither Host nor allowed, a connection too many.
+/// ServerOptions::allowed_hosts), an Origin that is neither Host nor allowed, a wrong token, a connection too
+/// many. What may_watch and may_control forbid is for the endpoint to refuse (docs/security.md).
 struct UpgradeAnswer {
   bool accept = false;
   std::string subprotocol{};  ///< one of those offered, or empty
@@ -54,20 +58,27 @@ struct Asset {
 /// `allowed_hosts`; an Origin header, where present (browsers always send it), must name the same host and
 /// port or be in `allowed_origins`.
 struct ServerOptions {
-  std::string address = "127.0.0.1";   ///< numeric; "::" listens on every IPv6 and IPv4 address
-  std::uint16_t port = 4567;           ///< 0 = any free port (see Server::port)
-  std::size_t max_message = 65536;     ///< larger messages close the connection with 1009 [byte]
-  std::size_t max_header = 8192;       ///< of an HTTP request; larger ones get 431 [byte]
-  std::size_t max_connections = 1024;  ///< more get 503
+  std::string address = "127.0.0.1";  ///< numeric; "::" listens on every IPv6 and IPv4 address
+  std::uint16_t port = 4567;          ///< 0 = any free port (see Server::port)
+  std::size_t max_message = 65536;    ///< larger messages close the connection with 1009 [byte]
+  std::size_t max_header = 8192;      ///< of an HTTP request; larger ones get 431 [byte]
+  /// More get 503. A new one takes the place of the oldest that has asked for no upgrade; WebSocket viewers
+  /// leave the last eighth, at most 8, to others.
+  std::size_t max_connections = 1024;
   std::chrono::milliseconds handshake_timeout{
       5000};  ///< for a whole HTTP request, and between two on one connection
   /// A WebSocket peer that has sent nothing for half of it is pinged; one that stays silent for all of it is
   /// closed. That also ends peers that stopped reading, because they never see the ping.
   std::chrono::milliseconds idle_timeout{10000};
-  std::size_t max_queue = 256;               ///< messages waiting for one connection before it is closed
-  std::vector<std::string> allowed_hosts{};  ///< further names without port, e.g. "car.local"
-  std::vector<std::string> allowed_origins{"https://app.foxglove.dev",
-                                           "file://"};  ///< hosted and desktop viewers
+  std::size_t max_queue = 256;  ///< messages waiting for one connection before it is closed
+  /// Bytes waiting for all connections together; beyond, connections that hold more than others are closed
+  /// when they are sent more.
+  std::size_t max_waiting = 64UL << 20U;
+  std::vector<std::string> allowed_hosts{};    ///< further names without port, e.g. "car.local"
+  std::vector<std::string> allowed_origins{};  ///< pages beside our own, e.g. "https://app.foxglove.dev"
+  /// What a visitor must show who wants to change something, or see something on an address that other
+  /// machines reach (token.hpp, docs/security.md); empty: nothing.
+  std::string token{};
 };
 
 /// Called on the network thread, one at a time. They must not block. None is called once ~Server has begun.
@@ -112,6 +123,8 @@ class Server {
             std::uint32_t topic = 0) {
     send(to, std::make_shared<const std::string>(std::move(bytes)), binary, delivery, topic);
   }
+  /// Messages that wait for a connection: sent here, and not yet taken by the system. The network thread's.
+  [[nodiscard]] virtual std::size_t waiting(ConnectionId id) const = 0;
   /// Sends what waits, then a close frame with `code` (RFC 6455 §7.4); on_close follows.
   virtual void close(ConnectionId id, std::uint16_t code, std::string_view reason) = 0;
   /// Runs `task` on the network thread after `delay` (0 = as soon as possible).

@@ -17,8 +17,13 @@ using protocol::Cadence;
 /// Topic number of the time for net::Delivery::kNewest; channels use their own number plus one.
 constexpr std::uint32_t kTimeTopic = 1'000'000;
 
-constexpr std::size_t kMostLaps = 1000;  // kept for viewers that come later
+constexpr std::size_t kMostWaiting = 100;  // operators between the upgrade and its end
+constexpr std::size_t kMostLaps = 1000;    // kept for viewers that come later
 
+constexpr std::size_t kLapPage = 32;  // laps that are sent before the viewer has read those before
+
+constexpr std::string_view kWatchOnly =
+    "this connection may watch only; connect with the token of the link that the program printed to control";
 constexpr std::string_view kTrigger = "std_srvs/srv/Trigger";
 constexpr std::string_view kSetBool = "std_srvs/srv/SetBool";
 
@@ -30,14 +35,20 @@ std::vector<foxglove::Channel> channels() {
   return list;
 }
 
+std::uint32_t channel_of(Cadence cadence) {
+  const auto& topics = protocol::ros_topics();
+  const auto found = std::find_if(topics.begin(), topics.end(),
+                                  [&](const protocol::RosTopic& topic) { return topic.cadence == cadence; });
+  return static_cast<std::uint32_t>(found - topics.begin());
+}
+
 std::uint32_t change_channel() {
-  static const auto channel = [] {
-    const auto& topics = protocol::ros_topics();
-    const auto found = std::find_if(topics.begin(), topics.end(), [](const protocol::RosTopic& topic) {
-      return topic.cadence == Cadence::kEvent;
-    });
-    return static_cast<std::uint32_t>(found - topics.begin());
-  }();
+  static const auto channel = channel_of(Cadence::kEvent);
+  return channel;
+}
+
+std::uint32_t lap_channel() {
+  static const auto channel = channel_of(Cadence::kLap);
   return channel;
 }
 
@@ -142,7 +153,10 @@ void ViewerEndpoint::tick() {
 
 /// The laps of a run that has begun anew are not those of the one before.
 void ViewerEndpoint::note_frame() {
-  if (has_frame_ && frame_.cycle < cycle_) laps_.clear();
+  if (has_frame_ && frame_.cycle < cycle_) {
+    laps_.clear();
+    for (auto& [id, client] : clients_) client.next_lap = 0;
+  }
   has_frame_ = true;
   cycle_ = frame_.cycle;
 }
@@ -180,28 +194,31 @@ void ViewerEndpoint::send_parameters(const std::vector<foxglove::Parameter>& val
   }
 }
 
-/// Keeps the laps of this run for viewers that come later, and tells the present ones.
+/// Keeps the laps of this run for viewers that come later.
 void ViewerEndpoint::note_lap() {
   TimedLap completed;
-  if (!latest_lap_.take(completed)) return;
-  if (laps_.size() >= kMostLaps) laps_.erase(laps_.begin());
-  telemetry::Frame frame;
-  frame.completed_lap = completed.lap;
-  const auto& topics = protocol::ros_topics();
-  for (std::uint32_t channel = 0; channel < topics.size(); ++channel) {
-    if (topics[channel].cadence != Cadence::kLap) continue;
-    laps_.push_back({completed.time, topics[channel].encode(frame, options_.run)});
-    for (const auto& [id, client] : clients_) {
-      const auto wanted = client.subscriptions.find(channel);
-      if (wanted != client.subscriptions.end()) send_lap(id, wanted->second, laps_.back());
+  if (latest_lap_.take(completed)) {
+    if (laps_.size() >= kMostLaps) {
+      laps_.erase(laps_.begin());
+      for (auto& [id, client] : clients_) client.next_lap -= client.next_lap > 0 ? 1 : 0;
     }
+    telemetry::Frame frame;
+    frame.completed_lap = completed.lap;
+    laps_.emplace_back(completed.time, protocol::ros_topics()[lap_channel()].encode(frame, options_.run));
   }
+  for (auto& [id, client] : clients_) send_laps(id, client);
 }
 
-void ViewerEndpoint::send_lap(net::ConnectionId id, std::uint32_t subscription,
-                              const std::pair<double, std::string>& lap) {
-  server_->send(id, foxglove::message_data(subscription, protocol::to_nanoseconds(lap.first), lap.second),
-                true);
+/// A page of those that it has not been sent; the next one when it has read this. All at once would be more
+/// than may wait for a connection.
+void ViewerEndpoint::send_laps(net::ConnectionId id, Client& client) {
+  const auto wanted = client.subscriptions.find(lap_channel());
+  if (wanted == client.subscriptions.end() || client.next_lap >= laps_.size()) return;
+  for (std::size_t room = kLapPage - std::min(kLapPage, server_->waiting(id));
+       room > 0 && client.next_lap < laps_.size(); --room, ++client.next_lap) {
+    const auto& [time, lap] = laps_[client.next_lap];
+    server_->send(id, foxglove::message_data(wanted->second, protocol::to_nanoseconds(time), lap), true);
+  }
 }
 
 void ViewerEndpoint::send_cadence(Cadence cadence) {
@@ -238,9 +255,16 @@ void ViewerEndpoint::warn(net::ConnectionId id, std::string_view sentence) {
 }
 
 net::UpgradeAnswer ViewerEndpoint::on_upgrade(const net::UpgradeRequest& request) {
+  if (!request.may_watch)
+    return {.accept = false,
+            .status = 403,
+            .reason = "viewers need the token of the link that the program printed"};
+  if (request.is_crowded) return {.accept = false, .status = 503, .reason = "too many viewers"};
   for (const std::string_view ours : kViewerSubprotocols) {
     if (std::find(request.subprotocols.begin(), request.subprotocols.end(), ours) !=
         request.subprotocols.end()) {
+      if (operators_.size() >= kMostWaiting) operators_.erase(operators_.begin());
+      if (request.may_control) operators_.insert(request.id);
       return {.accept = true, .subprotocol = std::string{ours}};
     }
   }
@@ -251,6 +275,7 @@ net::UpgradeAnswer ViewerEndpoint::on_upgrade(const net::UpgradeRequest& request
 
 void ViewerEndpoint::on_open(net::ConnectionId id) {
   clients_[id] = {};
+  clients_[id].may_control = operators_.erase(id) > 0;
   send_text(id, foxglove::server_info(
                     "chicane", session_,
                     {.parameters = options_.parameters != nullptr, .services = !services_.empty()}));
@@ -281,7 +306,8 @@ void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::Subscribe& mes
     }
     // What is known now, because the next change may be far away.
     if (topics[channel].cadence == Cadence::kLap) {
-      for (const auto& lap : laps_) send_lap(id, subscription, lap);
+      clients_[id].next_lap = 0;
+      send_laps(id, clients_[id]);
       continue;
     }
     if (topics[channel].cadence == Cadence::kEvent) continue;
@@ -315,8 +341,11 @@ void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::GetParameters&
 void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::SetParameters& message) {
   if (options_.parameters == nullptr) return warn(id, "setParameters: this run has none");
   std::vector<foxglove::Parameter> values;
+  const bool is_allowed = clients_[id].may_control;
+  if (!is_allowed) warn(id, fmt::format("setParameters: {}", kWatchOnly));
   for (const foxglove::Parameter& wish : message.parameters) {
-    if (const Result<void> result = options_.parameters->set(wish); !result) warn(id, result.error().message);
+    if (const Result<void> result = is_allowed ? options_.parameters->set(wish) : Result<void>{}; !result)
+      warn(id, result.error().message);
     // The value that holds now, also after a refusal: the viewer's slider must not show another.
     if (auto now = options_.parameters->get(wish.name)) values.push_back(std::move(*now));
   }
@@ -359,6 +388,7 @@ void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::CallService& c
   if (call.encoding != "cdr") {
     return send_text(id, foxglove::service_failure(call, "requests must be encoded as cdr"));
   }
+  if (!clients_[id].may_control) return send_text(id, foxglove::service_failure(call, kWatchOnly));
   const Result<std::string> done = services_[call.service].call(call.payload);
   if (!done && done.error().code == ErrorCode::kParse) {
     return send_text(id, foxglove::service_failure(call, done.error().message));

@@ -40,6 +40,8 @@ struct ViewerOptions {
 /// WebSocket protocol (docs/viewer.md). The newest frame wins on its way from the control thread, and again
 /// on its way to each viewer: slow ones see fewer frames and hold nothing up.
 ///
+/// Who may watch only (net::UpgradeRequest::may_control) gets everything but services and set parameters.
+///
 /// Must outlive the server it is started with.
 class ViewerEndpoint final : public Endpoint {
  public:
@@ -67,6 +69,8 @@ class ViewerEndpoint final : public Endpoint {
 
  private:
   struct Client {
+    bool may_control = false;
+    std::size_t next_lap = 0;                              ///< of laps_, to be sent to it
     std::map<std::uint32_t, std::uint32_t> subscriptions;  ///< channel → subscription
     bool wants_all_parameters = false;
     std::set<std::string, std::less<>> wanted_parameters;
@@ -84,7 +88,7 @@ class ViewerEndpoint final : public Endpoint {
   void send_parameters(const std::vector<protocol::foxglove::Parameter>& values);
   void note_lap();
   void note_frame();
-  void send_lap(net::ConnectionId id, std::uint32_t subscription, const std::pair<double, std::string>& lap);
+  void send_laps(net::ConnectionId id, Client& client);
   void send_cadence(protocol::Cadence cadence);
   void send_channel(std::uint32_t channel);
   void send_text(net::ConnectionId id, std::string text);
@@ -114,6 +118,7 @@ class ViewerEndpoint final : public Endpoint {
   std::uint64_t cycle_ = 0;                           ///< of the last frame
   net::Server* server_ = nullptr;
   std::map<net::ConnectionId, Client> clients_;
+  std::set<net::ConnectionId> operators_;  ///< between on_upgrade and on_open: who may control
 };
 
 }  // namespace chicane::wire

@@ -47,6 +47,13 @@ bool is_loopback(std::string_view name) {
 
 }  // namespace
 
+bool address_is_loopback(std::string_view address) { return is_loopback(address); }
+
+bool host_is_loopback(std::string_view host) {
+  const std::string_view name = without_port(host);
+  return equal(name, "localhost") || is_loopback(name);
+}
+
 bool host_is_allowed(std::string_view host, std::string_view address,
                      const std::vector<std::string>& allowed) {
   const std::string_view name = without_port(host);

@@ -17,4 +17,9 @@ namespace chicane::net {
 [[nodiscard]] bool origin_is_allowed(std::string_view origin, std::string_view host,
                                      const std::vector<std::string>& allowed);
 
+/// Is a numeric address one of this machine alone?
+[[nodiscard]] bool address_is_loopback(std::string_view address);
+/// Does a Host header (with or without port) name this machine: `localhost` or a loopback address?
+[[nodiscard]] bool host_is_loopback(std::string_view host);
+
 }  // namespace chicane::net

@@ -48,7 +48,7 @@ std::string port_holder(std::uint16_t port) {
   std::set<std::string> inodes;
   add_listeners("/proc/net/tcp", port, inodes);
   add_listeners("/proc/net/tcp6", port, inodes);
-  if (inodes.empty()) return {};
+  if (inodes.empty()) return "a connection that is just ending";
   std::error_code ec;
   for (std::filesystem::directory_iterator it("/proc", ec), end; !ec && it != end; it.increment(ec)) {
     const std::string pid = it->path().filename().string();

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/net/detail/admission.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "chicane/net/detail/access.hpp"
+#include "chicane/net/token.hpp"
+
+namespace chicane::net {
+namespace {
+
+Admission refuse(unsigned status, std::string words) { return {.status = status, .words = std::move(words)}; }
+
+/// The value of `name` in "name=value" parts between `separator`s; none when it is not there.
+std::optional<std::string_view> value_of(std::string_view parts, char separator, std::string_view name) {
+  while (!parts.empty()) {
+    const std::size_t end = std::min(parts.find(separator), parts.size());
+    std::string_view part = parts.substr(0, end);
+    parts.remove_prefix(std::min(parts.size(), end + 1));
+    while (part.starts_with(' ')) part.remove_prefix(1);
+    if (part.starts_with(name) && part.substr(name.size()).starts_with('='))
+      return part.substr(name.size() + 1);
+  }
+  return std::nullopt;
+}
+
+/// Where a link with a token leads; never to another server, as "//host" would.
+std::string page_of(std::string_view path) {
+  return path.starts_with('/') && !path.starts_with("//") && path.find('\\') == std::string_view::npos
+             ? std::string(path)
+             : "/";
+}
+
+}  // namespace
+
+Admission Doorkeeper::admit(const Visitor& visitor) const {
+  if (visitor.hosts != 1) return refuse(400, "one Host header is needed");
+  if (!host_is_allowed(visitor.host, address, allowed_hosts))
+    return refuse(403, fmt::format("host '{}' is not allowed here", visitor.host));
+  const bool is_foreign = !visitor.origin.empty() && !is_own(visitor.origin, visitor.host);
+  const bool is_let_in =
+      std::find(allowed_origins.begin(), allowed_origins.end(), visitor.origin) != allowed_origins.end();
+  if (visitor.is_upgrade && is_foreign && !is_let_in)
+    return refuse(403, fmt::format("pages of '{}' may not connect here", visitor.origin));
+
+  const std::size_t question = std::min(visitor.target.find('?'), visitor.target.size());
+  const std::string_view path = visitor.target.substr(0, question);
+  const auto asked =
+      value_of(visitor.target.substr(std::min(question + 1, visitor.target.size())), '&', "token");
+  const bool has_link = asked && is_token(*asked, token);
+  if (asked && !token.empty() && !has_link)
+    return refuse(403, "the token is not the one that the program printed");
+  const auto kept = value_of(visitor.cookies, ';', cookie_name());
+  const bool has_token = token.empty() || has_link || (kept && is_token(*kept, token));
+
+  Admission admission;
+  const bool is_local = address_is_loopback(address) && host_is_loopback(visitor.host);
+  // A browser says which page asks, and one of ours was loaded from this machine.
+  const bool is_local_page = is_local && !visitor.origin.empty() && !is_foreign;
+  admission.may_watch = is_local || has_token;
+  admission.may_control = has_token || is_local_page;
+  if (!visitor.is_upgrade && !admission.may_watch)
+    return refuse(403, "open the link that the program printed: it has the token that is needed here");
+  if (!visitor.is_upgrade && is_foreign && !is_let_in)
+    return refuse(403, "pages of other servers may not read this");
+  if (has_link && !visitor.is_upgrade && path.find('.', path.rfind('/') + 1) == std::string_view::npos) {
+    admission.status = 303;
+    admission.location = page_of(path);
+  }
+  return admission;
+}
+
+bool Doorkeeper::is_own(std::string_view origin, std::string_view host) const {
+  return origin_is_allowed(origin, host, {});
+}
+
+// Browsers keep cookies by host, not by port: the name tells programs on one machine apart.
+std::string Doorkeeper::cookie_name() const { return fmt::format("chicane-{}", port); }
+
+std::string Doorkeeper::cookie() const {
+  return fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict", cookie_name(), token);
+}
+
+}  // namespace chicane::net
