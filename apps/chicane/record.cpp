@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 #include <utility>
 
 #include "chicane/live/assets.hpp"
@@ -50,7 +51,8 @@ Result<std::unique_ptr<KeptRun>> KeptRun::start(const Options& options, protocol
                                    .scenario = scenario,
                                    .is_compressed = options.is_compressed,
                                    .step_budget = step_budget,
-                                   .may_wait = options.is_fast});
+                                   .may_wait = options.is_fast,
+                                   .say = [](std::string_view line) { fmt::print(stderr, "\n{}\n", line); }});
   if (!recorder) return fail(recorder.error());
   kept->recorder_ = std::move(*recorder);
   return kept;
@@ -66,6 +68,8 @@ Result<void> KeptRun::finish() {
                1e-6 * static_cast<double>(report->bytes));
   if (report->left_out > 0)
     fmt::print(stderr, "{}: the disk was too slow for {} steps\n", told, report->left_out);
+  if (report->missing > 0)
+    fmt::print(stderr, "{}: {} steps are missing: the disk did not take them\n", told, report->missing);
   return report_file_.empty() ? Result<void>{} : write_report();
 }
 

@@ -6,12 +6,18 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
+#include <condition_variable>
 #include <filesystem>
+#include <mutex>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "chicane/telemetry/mcap_reader.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {
@@ -19,10 +25,11 @@ namespace {
 
 using telemetry::TemporaryFile;
 
-/// From now on whatever is open as `path` in this process writes to `target` instead.
-void redirect(const std::string& path, int target) {
+/// From now on whatever is open as `path` in this process, but for `except`, writes to `target` instead.
+void redirect(const std::string& path, int except, int target) {
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
     std::error_code error;
+    if (entry.path().filename() == std::to_string(except)) continue;
     if (std::filesystem::read_symlink(entry.path(), error) != path || error) continue;
     ASSERT_GE(::dup2(target, std::stoi(entry.path().filename())), 0);
     return;
@@ -40,6 +47,11 @@ class SlowDisk : public testing::Test {
     RecorderOptions options;
     options.path = std::filesystem::weakly_canonical(file_.path()).string();
     options.scenario = loop_->scenario();
+    options.say = [this](std::string_view line) {
+      const std::lock_guard lock(mutex_);
+      said_.emplace_back(line);
+      has_said_.notify_all();
+    };
     auto recorder = Recorder::create(options);
     EXPECT_TRUE(recorder);
     recorder_ = std::move(*recorder);
@@ -53,6 +65,16 @@ class SlowDisk : public testing::Test {
     }
   }
 
+  /// What the recorder has said, when that are `count` sentences.
+  std::vector<std::string> said(std::size_t count) {
+    std::unique_lock lock(mutex_);
+    has_said_.wait_for(lock, std::chrono::seconds{30}, [&] { return said_.size() >= count; });
+    return said_;
+  }
+
+  std::mutex mutex_;
+  std::condition_variable has_said_;
+  std::vector<std::string> said_;
   TemporaryFile file_;
   std::string path_;
   std::unique_ptr<run::ClosedLoop> loop_;
@@ -62,7 +84,7 @@ class SlowDisk : public testing::Test {
 TEST_F(SlowDisk, ThatStandsStillHoldsNobodyUpAndIsReported) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);
-  redirect(path_, ends[1]);
+  redirect(path_, -1, ends[1]);
   ::close(ends[1]);
   // Nobody reads the pipe: the writing thread stands still in write() after 64 KiB. If the run waited for it,
   // the next line would never end.
@@ -87,7 +109,7 @@ TEST_F(SlowDisk, ThatStandsStillHoldsNobodyUpAndIsReported) {
 TEST_F(SlowDisk, ThatIsFullHoldsNobodyUpAndIsNamedAtTheEnd) {
   const int full = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
   ASSERT_GE(full, 0);
-  redirect(path_, full);
+  redirect(path_, -1, full);
   ::close(full);
   drive(2000);
   const Result<RecorderReport> report = recorder_->finish();
@@ -96,10 +118,46 @@ TEST_F(SlowDisk, ThatIsFullHoldsNobodyUpAndIsNamedAtTheEnd) {
   EXPECT_THAT(report.error().message, testing::HasSubstr("No space left on device"));
 }
 
+TEST_F(SlowDisk, ThatIsFullForAWhileIsNamedAtOnceAndGoesOnWhenThereIsRoom) {
+  const int disk = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  const int full = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
+  ASSERT_GE(disk, 0);
+  ASSERT_GE(full, 0);
+  drive(20);
+  redirect(path_, disk, full);
+  drive(20);
+  ASSERT_EQ(said(1).size(), 1U);
+  EXPECT_THAT(said(1)[0], testing::HasSubstr("No space left on device; trying again, steps until then"));
+  recorder_->record(telemetry::Change{.cycle = 40, .time = 1.6, .name = "latency_ms", .value = "50"});
+  drive(1000);
+  redirect("/dev/full", full, disk);
+  ::close(full);
+  const std::vector<std::string> told = said(2);
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_THAT(told[1], testing::HasSubstr(": can be written again; "));
+  drive(20);
+  const Result<RecorderReport> report = recorder_->finish();
+  ::close(disk);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_GT(report->missing, 100U);
+  EXPECT_GE(report->frames, 40U);
+  EXPECT_EQ(report->frames + report->left_out + report->missing, 1060U);
+  std::uint64_t steps = 0, changes = 0;
+  const auto read = telemetry::read_mcap(path_, {.on_message = [&](const telemetry::McapMessage& message) {
+                                           steps += message.channel.topic == "/chicane/step" ? 1 : 0;
+                                           changes += message.channel.topic == "/chicane/change" ? 1 : 0;
+                                         }});
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->damaged, 0U);
+  EXPECT_TRUE(read->is_complete);
+  EXPECT_EQ(steps, report->frames);
+  EXPECT_EQ(changes, 1U);
+}
+
 TEST_F(SlowDisk, LosesFramesBeforeItLosesAChange) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);
-  redirect(path_, ends[1]);
+  redirect(path_, -1, ends[1]);
   ::close(ends[1]);
   drive(2000);
   recorder_->record(telemetry::Change{.cycle = 2000, .time = 80.0, .name = "latency_ms", .value = "50"});

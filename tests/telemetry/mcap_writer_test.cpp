@@ -77,26 +77,76 @@ TEST(McapWriter, NeverWritesOverARecording) {
   EXPECT_EQ(file.bytes(), "precious");
 }
 
-TEST(McapWriter, SaysTheSameErrorAgainOnAFullDisk) {
-  // A limit on the size of files stands for the full disk.
-  const TemporaryFile file;
+/// In a child, whose files may have `limit` bytes from now on: that stands for the full disk, with writes of
+/// which a part fits.
+template <class Run>
+void with_little_room(Run run) {
   const ::pid_t child = ::fork();
   if (child == 0) {
-    const ::rlimit limit{4096, 4096};
     std::signal(SIGXFSZ, SIG_IGN);
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-    const auto writer = McapWriter::create(file.path(), "test");
-    const std::uint16_t channel = (*writer)->add_channel("/a", "t", "");
-    bool is_right = (*writer)->write(channel, 0, 0, std::string(8192, 'x')).has_value();
-    const Result<void> first = (*writer)->flush();
-    const Result<void> second = (*writer)->write(channel, 1, 1, "y");
-    const Result<void> third = (*writer)->close();
-    is_right = is_right && !first && !second && !third && first.error().message == third.error().message;
-    ::_exit(is_right ? 0 : 1);
+    ::_exit(run([](::rlim_t limit) {
+      const ::rlimit soft{limit, RLIM_INFINITY};
+      ::setrlimit(RLIMIT_FSIZE, &soft);
+    })
+                ? 0
+                : 1);
   }
   int status = -1;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
+TEST(McapWriter, SaysTheSameErrorAgainOnAFullDisk) {
+  const TemporaryFile file;
+  with_little_room([&](auto limit) {
+    limit(4096);
+    const auto writer = McapWriter::create(file.path(), "test");
+    const std::uint16_t channel = (*writer)->add_channel("/a", "t", "");
+    bool is_right = (*writer)->write(channel, 0, 0, std::string(8192, 'x')).has_value();
+    const Result<void> first = (*writer)->flush();
+    const Result<void> second = (*writer)->flush();
+    const Result<void> third = (*writer)->close();
+    is_right = is_right && !first && !second && !third && first.error().message == third.error().message;
+    return is_right && !(*writer)->write(channel, 1, 1, "y");
+  });
+}
+
+TEST(McapWriter, TakesBackWhatFitsOnlyInPartAndGoesOnWhenThereIsRoom) {
+  for (const ::rlim_t room : {2000U, 4096U, 4097U, 9000U, 17000U}) {
+    const TemporaryFile file;
+    with_little_room([&](auto limit) {
+      const auto writer = McapWriter::create(file.path(), "test");
+      const std::uint16_t channel = (*writer)->add_channel("/a", "t", "");
+      bool is_right = (*writer)->flush().has_value();
+      limit(room);
+      int failures = 0;
+      for (std::uint64_t i = 0; i < 4; ++i) {
+        is_right = is_right && (*writer)->write(channel, i, i, std::string(5000, 'x'));
+        if (!(*writer)->flush()) ++failures;
+      }
+      if (!(*writer)->add_metadata("late", {{"a", std::string(5000, 'b')}})) ++failures;
+      limit(RLIM_INFINITY);
+      return is_right && failures > 0 && (*writer)->close();
+    });
+    const auto report = read_mcap(file.path(), {});
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_EQ(report->messages, 4U) << room;
+    EXPECT_EQ(report->damaged, 0U) << room;
+    EXPECT_TRUE(report->is_complete) << room;
+  }
+}
+
+TEST(McapWriter, HoldsFourMebibytesAtMostWhileTheDiskIsFull) {
+  const TemporaryFile file;
+  with_little_room([&](auto limit) {
+    limit(4096);
+    const auto writer = McapWriter::create(file.path(), "test");
+    const std::uint16_t channel = (*writer)->add_channel("/a", "t", "");
+    for (std::uint64_t i = 0; i < 1000; ++i)
+      static_cast<void>((*writer)->write(channel, i, i, std::string(100'000, 'x')));
+    limit(RLIM_INFINITY);
+    return (*writer)->close().has_value() && (*writer)->bytes_written() < 4'400'000;
+  });
 }
 
 TEST(McapWriter, LosesNothingThatWasFlushedWhenItIsKilled) {

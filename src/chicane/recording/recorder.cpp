@@ -18,6 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr auto kFlushEvery = std::chrono::milliseconds(50);
+constexpr auto kTryAgainEvery = std::chrono::milliseconds(500);
 constexpr auto kNap = std::chrono::milliseconds(2);
 constexpr auto kWait = std::chrono::microseconds(200);
 constexpr const char* kProgram = "chicane " CHICANE_VERSION;
@@ -96,7 +97,8 @@ Result<RecorderReport> Recorder::finish() {
   wants_end_ = true;
   if (thread_.joinable()) thread_.join();
   if (!state_) return fail(state_.error());
-  return RecorderReport{.frames = frames_, .left_out = left_out_, .bytes = writer_->bytes_written()};
+  return RecorderReport{
+      .frames = frames_, .left_out = left_out_, .missing = missing_, .bytes = writer_->bytes_written()};
 }
 
 void Recorder::work() {
@@ -109,19 +111,40 @@ void Recorder::work() {
       write(slot(number));
       taken_.store(number + 1, std::memory_order_release);
     }
-    if (Clock::now() - flushed >= kFlushEvery) {
-      keep(writer_->flush());
+    if (Clock::now() - flushed >= (is_failing_ ? kTryAgainEvery : kFlushEvery)) {
+      note(flush());
       flushed = Clock::now();
     }
     if (has_entry) continue;
     if (is_last) break;
     std::this_thread::sleep_for(kNap);
   }
-  keep(writer_->close());
+  Result<void> done = flush();
+  if (done) done = writer_->close();
+  if (!done) {
+    state_ = fail(done.error().code,
+                  fmt::format("{}{}", done.error().message,
+                              missing_ > 0 ? fmt::format("; {} steps are missing", missing_) : ""));
+  }
 }
 
-void Recorder::keep(Result<void> done) {
-  if (state_ && !done) state_ = std::move(done);
+/// What waits, and the description of the run that goes on where that is still missing.
+Result<void> Recorder::flush() {
+  Result<void> done = writer_->flush();
+  if (!done || !is_undescribed_) return done;
+  done = describe();
+  is_undescribed_ = !done;
+  return done ? writer_->flush() : done;
+}
+
+/// Says at once that the disk does not take what it is given, and when it does again.
+void Recorder::note(const Result<void>& flushed) {
+  if (is_failing_ == !flushed) return;
+  is_failing_ = !flushed;
+  if (!options_.say) return;
+  options_.say(is_failing_
+                   ? flushed.error().message + "; trying again, steps until then will be missing"
+                   : fmt::format("{}: can be written again; {} steps are missing", options_.path, missing_));
 }
 
 /// Before anything else is done: a run that is killed in its first moments still has its scenario.
@@ -130,38 +153,47 @@ void Recorder::begin() {
     static_cast<void>(writer_->add_channel(topic.name, topic.type, topic.schema));
   }
   step_channel_ = writer_->add_channel(protocol::kStepTopic, protocol::kStepType, protocol::step_schema());
-  describe();
-  keep(writer_->flush());
+  state_ = describe();
+  if (state_) state_ = writer_->flush();
 }
 
 /// What stays the same during a run.
-void Recorder::describe() {
+Result<void> Recorder::describe() {
   const scenario::Scenario& scenario = options_.scenario;
   const InstructionSet set = chosen_instruction_set();
-  keep(writer_->add_metadata(kRecordedRun, {{"program", kProgram},
-                                            {"compiler", kCompiler},
-                                            {"instruction_set", std::string(to_string(set))},
-                                            {"arithmetic", std::string(arithmetic(set))},
-                                            {"mode", options_.run.mode},
-                                            {"track", options_.run.track},
-                                            {"controller", scenario.controller},
-                                            {"preset", scenario.preset},
-                                            {"seed", fmt::format("{}", scenario.seed)},
-                                            {"step_budget_s", fmt::format("{}", options_.step_budget)}}));
-  keep(writer_->add_attachment(
+  Result<void> done =
+      writer_->add_metadata(kRecordedRun, {{"program", kProgram},
+                                           {"compiler", kCompiler},
+                                           {"instruction_set", std::string(to_string(set))},
+                                           {"arithmetic", std::string(arithmetic(set))},
+                                           {"mode", options_.run.mode},
+                                           {"track", options_.run.track},
+                                           {"controller", scenario.controller},
+                                           {"preset", scenario.preset},
+                                           {"seed", fmt::format("{}", scenario.seed)},
+                                           {"step_budget_s", fmt::format("{}", options_.step_budget)}});
+  if (!done) return done;
+  done = writer_->add_attachment(
       kRecordedScenario, "application/yaml",
-      protocol::write_document(scenario, fmt::format("What was recorded by {}", kProgram), true)));
+      protocol::write_document(scenario, fmt::format("What was recorded by {}", kProgram), true));
+  if (!done) return done;
   write(protocol::Cadence::kRun);
   write(protocol::Cadence::kRoad);
   if (options_.run.limit.found || !options_.run.limit.why_not.empty()) write(protocol::Cadence::kLimit);
+  return {};
+}
+
+/// Into the chunk; one that is full is handed to the system.
+void Recorder::put(std::uint16_t channel, std::uint64_t log_time, std::uint64_t time,
+                   std::string_view bytes) {
+  if (const Result<void> done = writer_->write(channel, log_time, time, bytes); !done) note(done);
 }
 
 /// The topics of what stays the same from frame to frame; `frame` holds the lap for those of laps.
 void Recorder::write(protocol::Cadence cadence, const telemetry::Frame& frame) {
   std::uint16_t channel = 0;
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
-    if (topic.cadence == cadence)
-      keep(writer_->write(channel, last_log_time_, 0, topic.encode(frame, options_.run)));
+    if (topic.cadence == cadence) put(channel, last_log_time_, 0, topic.encode(frame, options_.run));
     ++channel;
   }
 }
@@ -177,8 +209,8 @@ void Recorder::write(Entry& entry) {
   if (const auto run = std::move(entry.run)) {
     options_.run = run->run;
     options_.scenario = run->scenario;
-    keep(writer_->flush());  // so that all is in the file in its order
-    describe();
+    is_undescribed_ = true;
+    note(flush());  // so that all is in the file in its order
   }
 }
 
@@ -188,9 +220,8 @@ void Recorder::write(const telemetry::Change& change) {
   std::uint16_t channel = 0;
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
     if (topic.name == protocol::kChangeTopic) {
-      keep(writer_->write(
-          channel, log_time, time,
-          protocol::encode_change(change.time, change.cycle, change.name.view(), change.value.view())));
+      put(channel, log_time, time,
+          protocol::encode_change(change.time, change.cycle, change.name.view(), change.value.view()));
     }
     ++channel;
   }
@@ -203,6 +234,10 @@ void Recorder::write(const telemetry::CompletedLap& lap) {
 }
 
 void Recorder::write(const telemetry::Frame& frame) {
+  if (is_failing_) {
+    ++missing_;
+    return;
+  }
   const std::uint64_t time = protocol::to_nanoseconds(frame.time);
   if (time + earlier_runs_ < last_log_time_) {  // the run was started anew
     earlier_runs_ = last_log_time_ + protocol::to_nanoseconds(options_.scenario.control_period) - time;
@@ -211,11 +246,11 @@ void Recorder::write(const telemetry::Frame& frame) {
   std::uint16_t channel = 0;
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
     if (topic.cadence == protocol::Cadence::kFrame)
-      keep(writer_->write(channel, last_log_time_, time, topic.encode(frame, options_.run)));
+      put(channel, last_log_time_, time, topic.encode(frame, options_.run));
     ++channel;
   }
-  keep(writer_->write(step_channel_, last_log_time_, time, protocol::encode_step(frame)));
-  if (state_) ++frames_;
+  put(step_channel_, last_log_time_, time, protocol::encode_step(frame));
+  ++frames_;
 }
 
 }  // namespace chicane::recording

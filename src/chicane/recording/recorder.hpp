@@ -3,9 +3,11 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -37,11 +39,14 @@ struct RecorderOptions {
   double step_budget = 0.0;    ///< deadline of each control step [s]; 0 = none
   /// In virtual time a full buffer holds the run up; otherwise the newest frames are left out and counted.
   bool may_wait = false;
+  /// Hears at once, on the writing thread, that the file cannot be written, and when it can again.
+  std::function<void(std::string_view)> say{};
 };
 
 struct RecorderReport {
   std::uint64_t frames = 0;    ///< in the file
   std::uint64_t left_out = 0;  ///< the disk was too slow
+  std::uint64_t missing = 0;   ///< the disk was full, or failed otherwise
   std::uint64_t bytes = 0;
 };
 
@@ -49,6 +54,9 @@ struct RecorderReport {
 /// bit (protocol/step_codec.hpp), so that verify_recording() can compute it again. What is recorded is handed
 /// to the operating system within 100 ms. A thread of its own encodes and writes; memory is bounded by 128
 /// frames and one chunk.
+///
+/// A disk that cannot be written is said so at once, and tried again twice a second: frames until then are
+/// missing, and counted; changes, laps and descriptions follow when there is room again.
 class Recorder {
  public:
   /// Hands what describes the run to the operating system before it returns. kIo as McapWriter::create does,
@@ -70,7 +78,8 @@ class Recorder {
   void record(std::unique_ptr<const RecordedRun> run) noexcept;
   /// The same thread: there are news of the run's limit.
   void record(std::shared_ptr<const lap_time::LimitAnswer> limit) noexcept;
-  /// Writes the rest and closes the file. kIo with the first thing that went wrong while recording.
+  /// Writes the rest and closes the file. kIo with what went wrong, and how much is missing, where the
+  /// file could not be written to its end.
   [[nodiscard]] Result<RecorderReport> finish();
 
  private:
@@ -94,11 +103,13 @@ class Recorder {
   void commit() noexcept { put_.store(put_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
   void work();
   void begin();
-  void describe();
+  [[nodiscard]] Result<void> describe();
+  [[nodiscard]] Result<void> flush();
   void write(Entry& entry);
   void write(const telemetry::Change& change);
   void write(const telemetry::CompletedLap& lap);
-  void keep(Result<void> done);
+  void put(std::uint16_t channel, std::uint64_t log_time, std::uint64_t time, std::string_view bytes);
+  void note(const Result<void>& flushed);
   void write(const telemetry::Frame& frame);
   void write(protocol::Cadence cadence, const telemetry::Frame& frame = {});
   [[nodiscard]] Entry& slot(std::uint64_t number) { return ring_[number % (kCapacity + kReserve)]; }
@@ -116,6 +127,9 @@ class Recorder {
   std::uint64_t frames_ = 0;
   std::uint64_t last_log_time_ = 0;  ///< [ns]
   std::uint64_t earlier_runs_ = 0;   ///< what log times are ahead of the run's own time [ns]
+  std::uint64_t missing_ = 0;        ///< frames
+  bool is_failing_ = false;          ///< the disk did not take what it was given last
+  bool is_undescribed_ = false;      ///< the run's description waits for room
   Result<void> state_;
   std::thread thread_;
 };

@@ -17,6 +17,7 @@ using mcap::Fields;
 using mcap::Opcode;
 
 constexpr std::size_t kChunkBytes = 1U << 20U;
+constexpr std::size_t kMostBytes = 4U << 20U;  // of a chunk that cannot be written
 
 std::string record(Opcode opcode, std::string_view content) {
   std::string bytes;
@@ -58,15 +59,22 @@ Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::string& path, 
 
 McapWriter::~McapWriter() { static_cast<void>(close()); }
 
+/// All of it or nothing.
 Result<void> McapWriter::put(std::string_view bytes) {
   if (!state_) return state_;
+  const std::uint64_t size = bytes.size();
   while (!bytes.empty()) {
     const ::ssize_t count = ::write(file_, bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return state_ = fail(io_error(path_, "cannot write the recording"));
-    position_ += static_cast<std::uint64_t>(count);
+    if (count < 0) {
+      Result<void> failed = fail(io_error(path_, "cannot write the recording"));
+      const bool is_partial = bytes.size() < size;
+      if (is_partial && ::ftruncate(file_, static_cast<::off_t>(position_)) != 0) state_ = failed;
+      return failed;
+    }
     bytes.remove_prefix(static_cast<std::size_t>(count));
   }
+  position_ += size;
   return {};
 }
 
@@ -120,6 +128,7 @@ Result<void> McapWriter::add_attachment(std::string_view name, std::string_view 
 Result<void> McapWriter::write(std::uint16_t channel, std::uint64_t log_time, std::uint64_t publish_time,
                                std::string_view bytes) {
   if (!state_) return state_;
+  if (chunk_.size() >= kMostBytes) return fail(ErrorCode::kIo, path_ + ": the recording cannot be written");
   Channel& to = channels_.at(channel);
   to.index.emplace_back(log_time, chunk_.size());
   chunk_.push_back(static_cast<char>(Opcode::kMessage));
@@ -136,38 +145,42 @@ Result<void> McapWriter::write(std::uint16_t channel, std::uint64_t log_time, st
   return chunk_.size() >= kChunkBytes ? flush() : Result<void>{};
 }
 
-Result<void> McapWriter::flush() {
-  if (chunk_.empty() || !state_) return state_;
+/// The chunk and the indexes of its messages, as they are in the file at position_; and its record for the
+/// summary.
+std::string McapWriter::chunk_records(std::string& index) const {
   std::string content;
-  const std::uint32_t crc = mcap::crc32(chunk_);
   Fields(content).number(chunk_start_).number(chunk_end_).number(std::uint64_t{chunk_.size()});
-  const std::uint64_t size = chunk_.size();
-  const std::string stored = compression_.empty() ? std::move(chunk_) : zstd::compress(chunk_);
-  Fields(content).number(crc).text(compression_).number(std::uint64_t{stored.size()});
+  const std::string stored = compression_.empty() ? chunk_ : zstd::compress(chunk_);
+  Fields(content).number(mcap::crc32(chunk_)).text(compression_).number(std::uint64_t{stored.size()});
   std::string bytes = record(Opcode::kChunk, content + stored);
   const std::uint64_t chunk_length = bytes.size();
 
   std::string offsets;
   for (std::size_t id = 0; id < channels_.size(); ++id) {
-    auto& index = channels_[id].index;
-    if (index.empty()) continue;
-    std::sort(index.begin(), index.end());
+    auto messages = channels_[id].index;
+    if (messages.empty()) continue;
+    std::sort(messages.begin(), messages.end());
     std::string entries;
-    for (const auto& [time, offset] : index) Fields(entries).number(time).number(offset);
+    for (const auto& [time, offset] : messages) Fields(entries).number(time).number(offset);
     Fields(offsets).number(static_cast<std::uint16_t>(id)).number(position_ + bytes.size());
     std::string message_index;
     Fields(message_index).number(static_cast<std::uint16_t>(id)).text(entries);
     bytes += record(Opcode::kMessageIndex, message_index);
-    index.clear();
   }
-  std::string chunk_index;
-  Fields(chunk_index).number(chunk_start_).number(chunk_end_).number(position_).number(chunk_length);
-  Fields(chunk_index).text(offsets).number(std::uint64_t{bytes.size() - chunk_length}).text(compression_);
-  Fields(chunk_index).number(std::uint64_t{stored.size()}).number(size);
+  Fields(index).number(chunk_start_).number(chunk_end_).number(position_).number(chunk_length);
+  Fields(index).text(offsets).number(std::uint64_t{bytes.size() - chunk_length}).text(compression_);
+  Fields(index).number(std::uint64_t{stored.size()}).number(std::uint64_t{chunk_.size()});
+  return bytes;
+}
+
+Result<void> McapWriter::flush() {
+  if (chunk_.empty() || !state_) return state_;
+  std::string index;
+  if (Result<void> written = put(chunk_records(index)); !written) return written;
+  for (Channel& channel : channels_) channel.index.clear();
   chunk_.clear();
   chunk_messages_ = chunk_start_ = chunk_end_ = 0;
-  if (Result<void> written = put(bytes); !written) return written;
-  chunk_indexes_ += record(Opcode::kChunkIndex, chunk_index);
+  chunk_indexes_ += record(Opcode::kChunkIndex, index);
   ++chunks_;
   return {};
 }
@@ -210,16 +223,15 @@ std::string McapWriter::summary() const {
 
 Result<void> McapWriter::close() {
   if (file_ < 0) return state_;
-  static_cast<void>(flush());
   std::string no_crc;  // every chunk and attachment has its own
   Fields(no_crc).number(std::uint32_t{0});
-  static_cast<void>(put(record(Opcode::kDataEnd, no_crc)));
-  static_cast<void>(put(summary()));
-  if (::close(file_) != 0 && state_) state_ = fail(io_error(path_, "cannot close the recording"));
+  Result<void> done = flush();
+  if (done) done = put(record(Opcode::kDataEnd, no_crc));
+  if (done) done = put(summary());
+  if (::close(file_) != 0 && done) done = fail(io_error(path_, "cannot close the recording"));
   file_ = -1;
-  if (!state_) return state_;
-  state_ = fail(ErrorCode::kIo, path_ + ": the recording is closed");
-  return {};
+  state_ = done ? fail(ErrorCode::kIo, path_ + ": the recording is closed") : done;
+  return done;
 }
 
 }  // namespace chicane::telemetry

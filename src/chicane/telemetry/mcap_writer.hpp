@@ -19,8 +19,11 @@ namespace chicane::telemetry {
 /// and at the end the summary that readers seek by. Nothing that is in the file is ever touched again: a
 /// process that is killed leaves all chunks up to its last flush(), and read_mcap() reads them.
 ///
-/// Memory: one chunk, and about 300 bytes for each chunk written (the index). One thread. After a failure
-/// (a full disk) every further call fails in the same words and writes nothing.
+/// Memory: one chunk, and about 300 bytes for each chunk written (the index). One thread.
+///
+/// What cannot be written (a full disk) is taken back, so that the file ends behind an intact record, and the
+/// chunk is kept: the next flush() tries again. Where taking back fails, too, every further call fails in the
+/// same words.
 class McapWriter {
  public:
   /// kIo when the file exists already or cannot be made: a recording is never written over. `is_compressed`:
@@ -39,7 +42,8 @@ class McapWriter {
   Result<void> add_metadata(std::string_view name, const std::map<std::string, std::string>& entries);
   /// A file in the file, with a CRC of its own; at once in the file.
   Result<void> add_attachment(std::string_view name, std::string_view media_type, std::string_view bytes);
-  /// `log_time` [ns] should not go back; `publish_time` [ns] may. Ends the chunk when it has 1 MiB.
+  /// `log_time` [ns] should not go back; `publish_time` [ns] may. Ends the chunk when it has 1 MiB; while
+  /// that fails it grows, up to 4 MiB, and then the message is refused.
   Result<void> write(std::uint16_t channel, std::uint64_t log_time, std::uint64_t publish_time,
                      std::string_view bytes);
   /// Ends the chunk and hands it to the operating system: from here on it survives the process.
@@ -60,6 +64,7 @@ class McapWriter {
   McapWriter(std::string path, int file, bool is_compressed)
       : path_{std::move(path)}, file_{file}, compression_{is_compressed ? "zstd" : ""} {}
   Result<void> put(std::string_view bytes);
+  [[nodiscard]] std::string chunk_records(std::string& index) const;
   [[nodiscard]] std::string summary() const;
 
   std::string path_;
