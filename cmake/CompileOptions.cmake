@@ -19,3 +19,18 @@ if(CHICANE_SANITIZE)
     target_compile_options(chicane_options INTERFACE -Wno-tsan)  # Asio has fences beside its locks; the locks are seen
   endif()
 endif()
+
+# For what reads a stranger's bytes (docs/security.md): the modules below and the program. The numerical modules stay as they are, because
+# they see checked values only. Debug and sanitizer builds have better checks of their own.
+set(CHICANE_HARDENED_MODULES net protocol telemetry recording wire live)
+set(CHICANE_IS_HARDENED OFF)
+if(NOT CHICANE_SANITIZE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug" AND NOT CMAKE_CROSSCOMPILING)
+  set(CHICANE_IS_HARDENED ON)
+endif()
+add_library(chicane_hardened INTERFACE)
+if(CHICANE_IS_HARDENED)
+  target_compile_options(chicane_hardened INTERFACE
+    -fstack-protector-strong -fstack-clash-protection -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2 -D_GLIBCXX_ASSERTIONS
+    $<$<STREQUAL:${CMAKE_SYSTEM_PROCESSOR},x86_64>:-fcf-protection>)
+  target_link_options(chicane_hardened INTERFACE -Wl,-z,relro -Wl,-z,now -Wl,-z,noexecstack)
+endif()
