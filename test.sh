@@ -9,15 +9,15 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 source "$root/tools/install_packages.sh"
 source "$root/tools/build.sh"
 
-selection=(-LE slow)
+selection=(-LE slow) slow=OFF
 if [ "${1:-}" = --all ]; then
-  selection=()
+  selection=() slow=ON
   shift
 fi
 
 mapfile -t others < <(node_packages; browser_packages)
 install_packages "${run_packages[@]}" "${test_packages[@]}" "${others[@]}"
-build_release "$root" all CHICANE_SIMD=all CHICANE_BUILD_TESTS=ON CHICANE_BUILD_EXAMPLES=ON
+build_release "$root" all CHICANE_SIMD=all CHICANE_BUILD_TESTS=ON CHICANE_BUILD_EXAMPLES=ON "CHICANE_SLOW_TESTS=$slow"
 built=$(processor_seconds)
 say "chicane: ctest ${selection[*]} $*"
 log=$root/build/release/test.log

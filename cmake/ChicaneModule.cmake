@@ -6,8 +6,24 @@
 # Without HEADERS and SOURCES all of the folder belong to the module: so in folders that get a file for each controller, plant, fault or
 # track format. SIMD_SOURCES are compiled once for each instruction set (InstructionSets.cmake). A test without SOURCES has every
 # *_test.cpp of its folder.
+#
+# Most of a small source file's compile time goes into the headers that it includes. UNITY compiles the module's sources as one file,
+# and chicane_unity(TARGET GROUP FILE...) some of a target's, so names in their anonymous namespaces must differ; files that no group
+# names, such as those of a new controller, are compiled alone. LIGHT is for what no control step waits for, and so are all tests: -O1. docs/build_times.md
+# says what each saves.
+option(CHICANE_UNITY "Compile groups of sources as one file; OFF, as in the preset dev: each alone" ON)
+
+function(chicane_unity target group)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${CHICANE_UNITY} UNITY_BUILD_MODE GROUP)
+  set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP ${group})
+endfunction()
+
+function(chicane_light target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 function(chicane_module name)
-  cmake_parse_arguments(M "" "" "HEADERS;SOURCES;SIMD_SOURCES;DEPENDS;PRIVATE" ${ARGN})
+  cmake_parse_arguments(M "UNITY;LIGHT" "" "HEADERS;SOURCES;SIMD_SOURCES;DEPENDS;PRIVATE" ${ARGN})
   if(NOT M_HEADERS AND NOT M_SOURCES)
     list(JOIN M_SIMD_SOURCES "|" simd_sources)
     file(GLOB M_HEADERS CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.hpp detail/*.hpp)
@@ -23,6 +39,12 @@ function(chicane_module name)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     if(name IN_LIST CHICANE_HARDENED_MODULES)
       target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:chicane_hardened>)
+    endif()
+    if(M_UNITY)
+      chicane_unity(${target} ${name} ${M_SOURCES})
+    endif()
+    if(M_LIGHT)
+      chicane_light(${target})
     endif()
   else()
     add_library(${target} INTERFACE)
@@ -50,6 +72,7 @@ function(chicane_test name)
   list(TRANSFORM T_DEPENDS PREPEND chicane_)
   set(target ${name}_test)
   add_executable(${target} ${T_SOURCES})
+  chicane_light(${target})
   target_link_libraries(${target} PRIVATE ${T_DEPENDS} chicane_options chicane_test_support ${T_PRIVATE})
   target_compile_definitions(${target} PRIVATE CHICANE_ENABLE_ASSERT CHICANE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   # One label with all words in it, which `ctest -L` and `-LE` find: gtest_discover_tests takes lists apart.

@@ -19,8 +19,8 @@ check_format() { tools/check_format.sh; }
 check_web() { tools/check_web.sh; }
 check_layers() { tools/check_layers.py && tools/check_sources.py && tools/check_header_tests.py; }
 check_tidy() {
-  cmake --preset release >/dev/null &&
-    find src apps -name '*.cpp' -print0 | xargs -0 -n 1 -P "$(nproc)" clang-tidy --quiet -p build/release
+  cmake --preset dev >/dev/null &&
+    find src apps -name '*.cpp' -print0 | xargs -0 -n 1 -P "$(nproc)" clang-tidy --quiet -p build/dev
 }
 check_release() { ./test.sh --all; }
 check_preset() { cmake --workflow --preset "$1"; }

@@ -25,7 +25,7 @@ Result<void> keep(const std::string& file, const std::string& text) {
   return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
 }
 
-Result<void> run(const Options& options) {
+Result<void> print_limit(const Options& options) {
   static std::atomic<bool> wants_stop{false};  // as long as signals may come
   catch_interrupts(wants_stop);
   const Result<scenario::Scenario> scenario = experiment(options);
@@ -45,7 +45,7 @@ Result<void> run(const Options& options) {
 }  // namespace
 
 ExitCode limit(const Options& options) {
-  const Result<void> done = run(options);
+  const Result<void> done = print_limit(options);
   return done ? kSuccess : report(done.error());
 }
 

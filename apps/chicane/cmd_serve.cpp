@@ -31,7 +31,7 @@ Result<std::optional<path::Track>> told_track(const Options& options, const scen
   return std::optional<path::Track>{std::move(*track)};
 }
 
-Result<wire::ServeSummary> run(const Options& options) {
+Result<wire::ServeSummary> serve_until_stopped(const Options& options) {
   static std::atomic<bool> stop{false};  // as long as signals may come
   catch_interrupts(stop);
   const Result<scenario::Scenario> scenario = experiment(options);
@@ -65,7 +65,7 @@ Result<wire::ServeSummary> run(const Options& options) {
 }  // namespace
 
 ExitCode serve(const Options& options) {
-  const Result<wire::ServeSummary> summary = run(options);
+  const Result<wire::ServeSummary> summary = serve_until_stopped(options);
   if (!summary) return report(summary.error());
   fmt::print(stderr, "{} answers to {} simulators; {} unusable messages, {} commands changed by the gate\n",
              summary->answers, summary->connections, summary->unusable, summary->interventions);

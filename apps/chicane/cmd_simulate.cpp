@@ -29,7 +29,7 @@ protocol::Run description_of_external(const scenario::Scenario& scenario, const 
   return run;
 }
 
-Result<wire::SimulateReport> run(const Options& options) {
+Result<wire::SimulateReport> connect_and_drive(const Options& options) {
   static std::atomic<bool> stop{false};  // as long as signals may come
   catch_interrupts(stop);
   const Result<scenario::Scenario> scenario = experiment(options);
@@ -74,7 +74,7 @@ Result<wire::SimulateReport> run(const Options& options) {
 }  // namespace
 
 ExitCode simulate(const Options& options) {
-  const Result<wire::SimulateReport> done = run(options);
+  const Result<wire::SimulateReport> done = connect_and_drive(options);
   if (!done) return report(done.error());
   fmt::print("{}", options.is_json ? protocol::to_json(done->run) : protocol::to_table(done->run));
   fmt::print(stderr, "{} answers in {} connections; {} broken, {} unasked for, {} missing\n", done->answers,

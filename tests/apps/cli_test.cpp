@@ -423,14 +423,6 @@ TEST(Cli, CtrlCEndsARunWithTheResultsSoFar) {
   EXPECT_EQ(outcome.code, 1);
 }
 
-TEST(Cli, CtrlCEndsABenchmarkWithTheResultsSoFar) {
-  const Outcome outcome = interrupted_program("bench --json", "instances");
-  const Json report = Json::parse(outcome.out, nullptr, false);
-  ASSERT_FALSE(report.is_discarded()) << outcome.out << outcome.err;
-  EXPECT_EQ(report["interrupted"], true);
-  EXPECT_EQ(outcome.code, 0);
-}
-
 TEST(Cli, NothingASimulatorStartedOutlivesIt) {
   const fs::path note = fs::path(::testing::TempDir()) / ("chicane_child_" + std::to_string(::getpid()));
   fs::remove(note);

@@ -4,21 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <memory>
-#include <new>
 
-namespace {
-int allocations = 0;
-}  // namespace
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc{};
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "support/alloc_guard.hpp"
 
 namespace chicane::telemetry {
 namespace {
@@ -171,13 +159,13 @@ TEST(Metrics, TheHashSeesTheLastBitOfAStateAndOfACommand) {
 TEST(Metrics, AllocatesNothingWhileRunningAndKeepsCountingBeyondItsCapacity) {
   Metrics metrics(2, 0.1);
   const auto f = frame(0.0, 0.0);
-  const int before = allocations;
+  const test::AllocationGuard guard;
   for (int lap = 0; lap < 5; ++lap) {
     metrics.add_physics(sample(1, 0, 0));
     metrics.add(*f);
     metrics.lap_completed(1.0);
   }
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(guard.count(), 0);
   EXPECT_EQ(metrics.laps_completed(), 5);
   EXPECT_EQ(metrics.summary().laps.size(), 2u);
 }
