@@ -15,7 +15,10 @@ export const PHONE = {
   isMobile: true,
   hasTouch: true,
 };
-export const TABS = ['drive', 'plots', 'explain', 'tune', 'laps', 'faults'];
+/** The panels that the dashboard has. */
+const workbench = readFileSync(new URL('../../web/src/views/workbench_view.tsx', import.meta.url), 'utf8');
+export const TABS = [...workbench.matchAll(/^ {2}\{ name: '(\w+)', title: /gm)].map((row) => row[1]);
+assert.ok(TABS.length >= 6, 'workbench_view.tsx lists its panels otherwise than these tests read them');
 
 export const differentFrom = (before) => (now) => now !== before;
 

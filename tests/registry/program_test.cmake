@@ -28,7 +28,7 @@ foreach(kind ${additions})
   file(WRITE ${COPY}/${${kind}_list} "${text}")
 endforeach()
 run(${CMAKE_COMMAND} -G Ninja -S . -B build -DCMAKE_BUILD_TYPE=Release -DCHICANE_BUILD_TESTS=OFF -DCHICANE_BUILD_EXAMPLES=OFF
-    -DCHICANE_WEB=OFF -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
+    -DCHICANE_WEB=OFF -DCHICANE_SIMD=native -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
 run(${CMAKE_COMMAND} --build build --target chicane_app)
 
 chicane_says(0 "hold-steady        holds wheel and pedal" list controllers)

@@ -12,17 +12,18 @@ import { PlotsView } from './plots_view';
 import { TrackView } from './track_view';
 import { TuneView } from './tune_view';
 
-export const TABS = ['drive', 'plots', 'explain', 'tune', 'laps', 'faults'] as const;
-export type Tab = (typeof TABS)[number];
+/** The panels, in the order of their tabs and of the keys 1, 2, ... A panel is a view of its own and one row here. */
+const PANELS = [
+  { name: 'drive', title: 'Drive', View: DriveView },
+  { name: 'plots', title: 'Plots', View: PlotsView },
+  { name: 'explain', title: 'Explain', View: ExplainView },
+  { name: 'tune', title: 'Tune', View: TuneView },
+  { name: 'laps', title: 'Laps', View: LapsView },
+  { name: 'faults', title: 'Faults', View: FaultsView },
+] as const;
 
-const PANELS: Readonly<Record<Tab, { title: string; View: ComponentType }>> = {
-  drive: { title: 'Drive', View: DriveView },
-  plots: { title: 'Plots', View: PlotsView },
-  explain: { title: 'Explain', View: ExplainView },
-  tune: { title: 'Tune', View: TuneView },
-  laps: { title: 'Laps', View: LapsView },
-  faults: { title: 'Faults', View: FaultsView },
-};
+export type Tab = (typeof PANELS)[number]['name'];
+export const TABS: readonly Tab[] = PANELS.map(({ name }) => name);
 
 const isTab = (value: unknown): value is Tab => (TABS as readonly unknown[]).includes(value);
 
@@ -92,7 +93,7 @@ function Tabs() {
   return (
     <div class="tab-row">
       <div class="tabs" role="tablist" aria-label="Panels" onKeyDown={key}>
-        {TABS.map((name, i) => (
+        {PANELS.map(({ name, title }, i) => (
           <button
             key={name}
             id={`tab-${name}`}
@@ -101,10 +102,10 @@ function Tabs() {
             aria-selected={tab.value === name}
             aria-controls="panel"
             tabIndex={tab.value === name ? 0 : -1}
-            title={`${PANELS[name].title} (${i + 1})`}
+            title={`${title} (${i + 1})`}
             onClick={() => (tab.value = name)}
           >
-            {PANELS[name].title}
+            {title}
           </button>
         ))}
       </div>
@@ -150,7 +151,7 @@ function Tabs() {
 }
 
 export function WorkbenchView() {
-  const { View } = PANELS[tab.value];
+  const View: ComponentType = PANELS[TABS.indexOf(tab.value)]?.View ?? PlotsView;
   const share = dock.value === 'right' ? shareRight.value : shareBottom.value;
   const classes = [
     'workbench',
