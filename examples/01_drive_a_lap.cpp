@@ -16,6 +16,6 @@ int main() {
   if (!loop) return std::puts(loop.error().message.c_str()), 2;
   const telemetry::RunSummary run = run::run_closed_loop(**loop);
   std::fputs(protocol::to_table(run).c_str(), stdout);
-  return telemetry::kept_its_promises(run) ? 0 : 1;
+  return telemetry::completed_on_road(run) ? 0 : 1;
 }
 // [/drive]

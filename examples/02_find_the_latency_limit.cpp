@@ -18,7 +18,7 @@ std::string flying_lap(const std::string& latency_ms, const std::string& compens
   const auto loop = chicane::run::ClosedLoop::create(*scenario);
   if (!loop) return loop.error().message;
   const auto run = chicane::run::run_closed_loop(**loop);
-  if (!chicane::telemetry::kept_its_promises(run)) return "left the road";
+  if (!chicane::telemetry::completed_on_road(run)) return "left the road";
   return std::to_string(run.laps.back().lap_time).substr(0, 5) + " s";
 }
 

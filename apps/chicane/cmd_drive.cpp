@@ -23,8 +23,8 @@
 namespace chicane::apps {
 namespace {
 
-/// Somebody watches: the dashboard stays up after the last lap. Scripts, and whoever asked for a number of
-/// laps, get an end.
+/// In a terminal the dashboard stays up after the last lap. A script's run, and one with a number of laps,
+/// ends.
 bool stays_up(const Options& options) {
   const bool has_laps = std::any_of(options.settings.begin(), options.settings.end(),
                                     [](const auto& setting) { return setting.first == "laps"; });
@@ -64,7 +64,7 @@ Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop
 }
 
 Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const run::RunControls& controls) {
-  lap_time::LimitAnswer limit{.why_not = "nobody asked for it (--limit)"};
+  lap_time::LimitAnswer limit{.why_not = "not asked for (--limit)"};
   if (options.wants_limit) {
     double wall_time = 0.0;
     const auto found = limit_of(loop.scenario(), loop.track(), {}, controls.wants_stop, wall_time);
@@ -112,8 +112,8 @@ ExitCode drive(const Options& options) {
   const telemetry::RunSummary& summary = outcome->summary;
   fmt::print("{}", options.is_json ? protocol::to_json(summary) : protocol::to_table(summary));
   if (!outcome->kept) return report(outcome->kept.error());
-  const bool is_kept = stays_up(options) ? summary.off_track_events == 0 : kept_its_promises(summary);
-  return is_kept ? kSuccess : kBrokenPromise;
+  const bool is_success = stays_up(options) ? summary.off_track_events == 0 : completed_on_road(summary);
+  return is_success ? kSuccess : kRunFailed;
 }
 
 }  // namespace chicane::apps

@@ -60,7 +60,7 @@ constexpr std::string_view kTail = R"(.SH EXIT STATUS
 success
 .TP
 .B 1
-the run broke a promise: it left the road, or did not do all its laps; replay: a command came out different
+the run failed: it left the road, or did not do all its laps; replay: a command came out different
 .TP
 .B 2
 wrong usage, or a bad input file

@@ -139,7 +139,7 @@ Result<ExitCode> branch(const Options& options) {
       return fail(added.error());
     if (Result<void> done = show(options, shown, report->at); !done) return fail(done.error());
   }
-  return report->first_difference ? kBrokenPromise : kSuccess;
+  return report->first_difference ? kRunFailed : kSuccess;
 }
 
 Result<ExitCode> verify(const Options& options) {
@@ -150,7 +150,7 @@ Result<ExitCode> verify(const Options& options) {
     fmt::print("{}", options.is_json ? to_json(*result) : to_text(*result));
     is_verified = is_verified && result->is_verified();
   }
-  return is_verified ? kSuccess : kBrokenPromise;
+  return is_verified ? kSuccess : kRunFailed;
 }
 
 Result<ExitCode> show_logs(const Options& options) {

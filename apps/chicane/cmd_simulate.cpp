@@ -79,7 +79,7 @@ ExitCode simulate(const Options& options) {
   fmt::print("{}", options.is_json ? protocol::to_json(done->run) : protocol::to_table(done->run));
   fmt::print(stderr, "{} answers in {} connections; {} broken, {} unasked for, {} missing\n", done->answers,
              done->connections, done->broken_answers, done->extra_answers, done->silences);
-  return kept_its_promises(done->run) ? kSuccess : kBrokenPromise;
+  return completed_on_road(done->run) ? kSuccess : kRunFailed;
 }
 
 }  // namespace chicane::apps

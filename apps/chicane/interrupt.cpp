@@ -14,7 +14,7 @@ std::atomic<std::int64_t> first_ns{0};  // when the first signal came [ns]; 0: n
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free &&
               std::atomic<std::atomic<bool>*>::is_always_lock_free);
 
-/// Time since the machine started [ns]; may be asked in a signal handler, which no clock of C++ promises.
+/// Time since the machine started [ns]; may be asked in a signal handler, unlike the clocks of C++.
 std::int64_t monotonic_ns() {
   std::timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC, &now);

@@ -68,7 +68,7 @@ void add_controller(CLI::App& command, Options& options) {
   add_setting(command, options, "--controller", "controller", "NAME",
               "Another controller (chicane list controllers)");
   add_setting(command, options, "--car", "car", "NAME|FILE",
-              "Car, simulated and believed (chicane list cars)");
+              "Car of the simulation and of the controller's model (chicane list cars)");
   add_speed(command, options);
 }
 
@@ -323,7 +323,7 @@ OptionText text_of(const CLI::Option& option) {
   return text;
 }
 
-/// What was meant by the first word that nobody understood.
+/// The option nearest to the first word that is not one.
 std::string correction(const CLI::App& app, const std::vector<std::string>& unknown) {
   if (unknown.empty()) return "";
   std::vector<std::string> names;

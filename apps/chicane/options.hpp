@@ -14,9 +14,9 @@ namespace chicane::apps {
 /// What a process tells its caller. A contract: scripts depend on it.
 enum ExitCode : int {
   kSuccess = 0,
-  kBrokenPromise = 1,  ///< the run left the road, or did not do all its laps
-  kUsage = 2,          ///< wrong usage or a bad input file
-  kEnvironment = 3,    ///< port in use, no permission, chicane-bench not built
+  kRunFailed = 1,    ///< the run left the road, or did not do all its laps
+  kUsage = 2,        ///< wrong usage or a bad input file
+  kEnvironment = 3,  ///< port in use, no permission, chicane-bench not built
 };
 
 struct Options {

@@ -144,7 +144,7 @@ TEST(Cli, ARunPrintsOneJsonObjectOnStdoutAndNothingElse) {
   EXPECT_EQ(outcome.code, kept ? 0 : 1);
 }
 
-TEST(Cli, ARunThatCannotFinishIsABrokenPromise) {
+TEST(Cli, ARunThatCannotFinishEndsWithExitCodeOne) {
   const Outcome outcome = chicane_program("drive --fast --json --laps 1 --set time_limit_s=2");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(Json::parse(outcome.out)["completed"], false);

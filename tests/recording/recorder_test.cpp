@@ -199,7 +199,7 @@ TEST(Recorder, HoldsEveryTopicAndTimesThatNeverGoBackWhenTheRunStartsAnew) {
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
     using enum protocol::Cadence;
     const bool is_unknown =
-        topic.name == "/chicane/limit" || topic.name == "/track/racing_line";  // nobody said anything of it
+        topic.name == "/chicane/limit" || topic.name == "/track/racing_line";  // not given
     const bool is_rare =
         topic.cadence == kLap || topic.cadence == kEvent || is_unknown;  // none in this second
     EXPECT_EQ(counts[std::string(topic.name)], topic.cadence == kFrame ? 60 : is_rare ? 0 : 1) << topic.name;

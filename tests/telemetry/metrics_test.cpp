@@ -79,15 +79,15 @@ TEST(Metrics, CountsEachExcursionOnceAndItsWholeTime) {
   EXPECT_NEAR(run.out_of_track_time, 1.5, kRounding);
 }
 
-TEST(Metrics, PromisesNeedAllLapsAndAllTyresOnTheRoad) {
+TEST(Metrics, IsCompletedOnTheRoadWithAllLapsAndAllTyresOnTheRoad) {
   RunSummary run;
-  EXPECT_TRUE(kept_its_promises(run));  // until stopped
+  EXPECT_TRUE(completed_on_road(run));  // until stopped
   run.laps_wanted = 2;
-  EXPECT_FALSE(kept_its_promises(run));
+  EXPECT_FALSE(completed_on_road(run));
   run.completed = true;
-  EXPECT_TRUE(kept_its_promises(run));
+  EXPECT_TRUE(completed_on_road(run));
   run.off_track_events = 1;
-  EXPECT_FALSE(kept_its_promises(run));
+  EXPECT_FALSE(completed_on_road(run));
 }
 
 TEST(Metrics, SteeringRateIsTakenFromCycleToCycle) {

@@ -18,10 +18,10 @@ controller::Plan plan_from(double time) {
   return plan;
 }
 
-TEST(PredictionCheck, KnowsNothingBeforeTheFirstPromiseIsDue) {
+TEST(PredictionCheck, HasNoErrorBeforeTheFirstPredictionIsDue) {
   PredictionCheck check;
   EXPECT_TRUE(std::isnan(check.error(0.0, {0.0, 0.0})));
-  check.add(plan_from(0.1), 0.05);  // promises a place at 0.15 s
+  check.add(plan_from(0.1), 0.05);  // predicts a place at 0.15 s
   check.add(plan_from(0.15), 0.05);
   EXPECT_TRUE(std::isnan(check.error(0.1, {0.0, 0.0})));
 }
@@ -40,7 +40,7 @@ TEST(PredictionCheck, IsTheDistanceFromWherePlansOfOneDelayAndPeriodAgoSaid) {
   }
 }
 
-TEST(PredictionCheck, PromisesNothingAcrossACycleWithoutAPlan) {
+TEST(PredictionCheck, PredictsNothingAcrossACycleWithoutAPlan) {
   PredictionCheck check;
   for (int cycle = 0; cycle < 10; ++cycle) check.add(plan_from(0.1 + 0.05 * cycle), 0.05);
   check.add(controller::Plan{}, 0.05);
@@ -54,7 +54,7 @@ TEST(PredictionCheck, BeginsAnewWhenTimeRunsBackwards) {
   EXPECT_NEAR(check.error(0.4, {4.0, 0.0}), 0.0, 1e-12);
 }
 
-TEST(PredictionCheck, ForgetsTheOldestWhenMoreIsPromisedThanItHolds) {
+TEST(PredictionCheck, ForgetsTheOldestWhenMoreIsPredictedThanItHolds) {
   PredictionCheck check;
   for (int cycle = 0; cycle < 1000; ++cycle) check.add(plan_from(0.01 * cycle), 0.01);
   EXPECT_TRUE(std::isnan(check.error(1.0, {10.0, 0.0})));

@@ -10,7 +10,8 @@ namespace chicane {
 /// What went wrong in the world outside the program.
 enum class ErrorCode { kInvalidArgument, kParse, kUnsupportedVersion, kNotFound, kIo };
 
-/// An answer a stranger understands: "scenarios/wet.yaml:14: car.mass_kg: got -900, expected > 0".
+/// A message that can be understood without the source: "scenarios/wet.yaml:14: car.mass_kg: got -900,
+/// expected > 0".
 struct Error {
   ErrorCode code = ErrorCode::kInvalidArgument;
   std::string message;

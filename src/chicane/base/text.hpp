@@ -13,7 +13,7 @@ namespace chicane {
 /// Rounded to `digits` significant ones: "0.05", "66.7". A point in every locale.
 [[nodiscard]] std::string number_text(double value, int digits);
 
-/// For messages: the first 60 bytes of a stranger's text without control characters; "nothing" when empty.
+/// For messages: the first 60 bytes of foreign text without control characters; "nothing" when empty.
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// "udacity, road-car".

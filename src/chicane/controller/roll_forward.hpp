@@ -7,7 +7,7 @@
 
 namespace chicane::controller {
 
-/// Where the described model believes the car to be.
+/// The state of the car by the described model.
 struct Motion {
   model::Pose pose;
   double speed = 0.0;  ///< along the yaw [m/s]

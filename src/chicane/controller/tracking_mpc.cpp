@@ -27,16 +27,16 @@ using StageInput = std::array<double, Problem::kNu>;
 constexpr int kTurns = 3;                   // of the solver in a step: docs/tracking.md, section 4
 constexpr int kMostTurns = 8;               // from a new guess, or with more time
 constexpr double kTimePerTurn = 0.04;       // [s] that a step must come later for one turn more
-constexpr double kFarFromLine = 15.0;       // [m] further away the car is lost
-constexpr double kLost = 60.0;              // [m] and further away still it does not look for its way back
+constexpr double kFarFromLine = 15.0;       // [m] further away it returns to the road
+constexpr double kLost = 60.0;              // [m] further away it does not return by itself
 constexpr double kSlow = 6.0;               // [m/s] below which it may turn round
 constexpr double kWalkingPace = 3.0;        // [m/s]
 constexpr double kApproach = 8.0;           // [m] beside the line where the course back is at 45° to it
 constexpr double kSpeedAhead = 4.0;         // [m/s] wanted at most beyond what the last answer reaches
-constexpr double kLongestHold = 0.3;        // [s] the first command is believed to be held at most this long
+constexpr double kLongestHold = 0.3;        // [s] the first command is assumed to be held at most this long
 constexpr double kBlindAfter = 0.3;         // [s] without a measurement, or a waypoint: stop
 constexpr double kPreview = 0.3;            // [s] the car answers the wheel about so late
-constexpr double kCrawl = 3.0;              // [m/s] who stops is brought to rest by the fallback from here
+constexpr double kCrawl = 3.0;              // [m/s] below it the fallback brings the car to rest
 constexpr double kProjectionWindow = 30.0;  // [m] searched around the last place
 
 class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> {
@@ -157,9 +157,9 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     roadless_.note(now.waypoint_count > 0, now.time);
   }
 
-  /// Who has not been told where he is for a while knows the road and counts on: he stops on it. Who is not
-  /// shown more road stops where it ends. Highest speed at s [m] ahead, with the braking that the speed plan
-  /// counts on [m/s].
+  /// Highest speed at s [m] ahead that lets the car stop with the braking of the speed plan [m/s]: from now
+  /// on when measurements have been missing for a while (the position is then estimated by the model), and
+  /// where the known road ends when no new waypoints have come.
   [[nodiscard]] double stopping_speed(double s) const noexcept {
     const model::VehicleParams& car = model_.vehicle();
     const road::ReferenceLine& line = road_.line();

@@ -18,8 +18,8 @@ struct TrackingMpcOptions {
   int horizon_steps = 40;           ///< N
   double step_length = 0.05;        ///< dt [s]
   double speed_limit = 60.0;        ///< never planned above [m/s]
-  double grip_share = 0.8;          ///< of the believed tyre force used by the speed plan
-  double brake_share = 0.6;         ///< of the believed braking used by the speed plan
+  double grip_share = 0.8;          ///< of the modelled tyre force used by the speed plan
+  double brake_share = 0.6;         ///< of the modelled braking used by the speed plan
   double assumed_half_width = 3.0;  ///< road each side of the waypoint line the centre of mass may use [m]
   double smoothing_width = 1.0;     ///< the reference line may leave the waypoint line by this much [m]
   double weight_lateral = 1.0;      ///< on the lateral error² [1/m²]

@@ -17,7 +17,7 @@ struct BodyMotion {
   T acceleration{};  ///< net longitudinal acceleration, drag included, cornering resistance not [m/s²]
 };
 
-/// The car a tracking controller believes in: a single track with saturating tyres, steering and drive lag,
+/// The car model of a tracking controller: a single track with saturating tyres, steering and drive lag,
 /// and the share h by which some cars turn their velocity along with the body (docs/tracking.md, eq. 1–9).
 ///
 ///     v_y' = k_f α_f + k_r α_r − (1 − h) r v_x          α_f = δ − (v_y + a r)/v_x

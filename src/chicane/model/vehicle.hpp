@@ -10,7 +10,7 @@
 
 namespace chicane::model {
 
-/// What a controller believes about a car: geometry, a single track with saturating tyres, and a longitudinal
+/// A controller's model of a car: geometry, a single track with saturating tyres, and a longitudinal
 /// law. The simulator's plants are richer (sim/plant.hpp). Values of shipped cars: cars/*.yaml, each with its
 /// origin.
 struct VehicleParams {
@@ -81,7 +81,7 @@ struct VehicleParams {
 /// `acceleration` [m/s²].
 [[nodiscard]] double throttle_for(const VehicleParams& params, double acceleration, double v) noexcept;
 
-/// What is believed about the shipped plants, fitted to them by `chicane_plant_report` (docs/plants.md). The
+/// Models of the shipped plants, fitted to them by `chicane_plant_report` (docs/plants.md). The
 /// original simulator's car: the defaults above.
 [[nodiscard]] VehicleParams udacity_params();
 /// An ordinary car: 1300 kg, about 1.2 g, proportional brakes, 90°/s steering.

@@ -12,7 +12,7 @@
 /// found by name.
 namespace chicane::protocol {
 
-/// What TrackFormat::parse promises. Numbers have a decimal point in every locale; `;`, `,`, tab or blanks
+/// What TrackFormat::parse describes. Numbers have a decimal point in every locale; `;`, `,`, tab or blanks
 /// separate them; CRLF, a byte-order mark, blank lines and `#` comments are fine.
 [[nodiscard]] Result<TrackFile> parse_csv_track(std::string_view text, const std::string& file,
                                                 const TrackReadOptions& options);

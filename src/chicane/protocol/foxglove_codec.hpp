@@ -25,7 +25,7 @@ struct Parameter {
   ParameterValue value;
 };
 
-/// Where the tunables of a run live; implemented by whoever owns the run. Called on the network thread.
+/// Where the tunables of a run live; implemented by the owner of the run. Called on the network thread.
 class ParameterStore {
  public:
   virtual ~ParameterStore() = default;
@@ -35,7 +35,7 @@ class ParameterStore {
   [[nodiscard]] virtual Result<void> set(const Parameter& parameter) = 0;
   /// Called at each tick of the viewers: what was begun goes on, such as a run that is being built.
   virtual void update() {}
-  /// What has another value than at the last call, whoever changed it.
+  /// What has another value than at the last call, by any client or the program itself.
   [[nodiscard]] virtual std::vector<Parameter> news() { return {}; }
   /// Sentences for all operators since the last call: what was accepted and failed afterwards.
   [[nodiscard]] virtual std::vector<std::string> complaints() { return {}; }

@@ -141,7 +141,7 @@ std::string to_table(const RunSummary& run) {
   }
   if (run.laps_wanted == 0) return text + fmt::format("{} laps until stopped\n", run.laps_completed);
   const std::string outcome =
-      kept_its_promises(run) ? "completed, all tyres on the road"
+      completed_on_road(run) ? "completed, all tyres on the road"
       : run.completed        ? "completed, but left the road"
                       : fmt::format("not completed: {}", run.end_reason.empty() ? "stopped" : run.end_reason);
   return text + fmt::format("{} of {} laps, {}\n", run.laps_completed, run.laps_wanted, outcome);

@@ -32,9 +32,9 @@ struct Entry {
 /// All entries of a shelf by name, each name once.
 [[nodiscard]] std::vector<Entry> entries(Shelf shelf);
 
-/// For names that strangers choose: nothing when `name` is one of the shelf's entries, letter for letter;
-/// kNotFound, "track: got ../x.csv, expected one of lakeside, ...", for everything else, paths included.
-/// Opens no file that it names.
+/// For names that come over the network: nothing when `name` is one of the shelf's entries, letter for
+/// letter; kNotFound, "track: got ../x.csv, expected one of lakeside, ...", for everything else, paths
+/// included. Opens no file that it names.
 [[nodiscard]] Result<void> check_name(Shelf shelf, std::string_view name);
 
 /// The file behind a name, or behind a path when `name_or_file` has a slash or an extension.

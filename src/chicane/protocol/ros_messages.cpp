@@ -295,7 +295,7 @@ Diagnosis diagnose_controller(const controller::StepReport& report) {
 }
 
 Diagnosis diagnose_road(const Frame& frame) {
-  if (!frame.is_judged) return {3, "nobody judges: external simulator, track not told"};
+  if (!frame.is_judged) return {3, "not judged: external simulator, track not given"};
   return frame.is_off_track ? Diagnosis{2, "off the road"} : Diagnosis{0, "on the road"};
 }
 

@@ -23,7 +23,7 @@ constexpr double kSteerUnit =
     degrees_to_radians(25.0);                 // wheel angle at ±1 (CarController.cs, m_MaximumSteerAngle)
 constexpr double kMilesPerHour = 2.23693629;  // CarController.cs, CurrentSpeed
 constexpr std::size_t kMaxReplyPoints = 1000;
-constexpr std::size_t kMaxWords = 80;  // of a stranger's text in our messages [byte]
+constexpr std::size_t kMaxWords = 80;  // of received text in our messages [byte]
 
 /// What is allowed for a number of the telemetry, on the wire. Wide enough for any world, narrow enough for
 /// arithmetic.
@@ -37,7 +37,7 @@ constexpr Range kSpeed{0.0, 1e3};      // [mph]
 constexpr Range kSteer{-1.6, 1.6};     // [rad]
 constexpr Range kThrottle{-1.0, 1.0};
 
-/// What somebody sent, for a message to a person: short, printable, valid UTF-8.
+/// A received value for an error message: short, printable, valid UTF-8.
 std::string shown(const Json& value) {
   if (value.is_discarded()) return "nothing";
   if (value.is_array()) return fmt::format("an array of {}", value.size());

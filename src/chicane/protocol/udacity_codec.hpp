@@ -44,7 +44,7 @@ struct UdacityForeign {
 /// A message that cannot be used, in words that name the field: "x: got \"NaN\", expected a number".
 struct UdacityBroken {
   std::string reason{};
-  bool is_event = true;  ///< false: not even an event (`42…`), so nobody waits for an answer
+  bool is_event = true;  ///< false: not even an event (`42…`), so no answer is expected
 };
 
 /// From the simulator. The measurement lacks `time` and `delay`, which the receiver knows. Waypoints may be 0

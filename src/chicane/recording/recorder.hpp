@@ -59,10 +59,10 @@ struct RecorderReport {
 /// missing, and counted; changes, laps and descriptions follow when there is room again.
 class Recorder {
  public:
-  /// Hands what describes the run to the operating system before it returns. kIo as McapWriter::create does,
+  /// Writes what describes the run to the file before it returns. kIo as McapWriter::create does,
   /// and when that cannot be written.
   [[nodiscard]] static Result<std::unique_ptr<Recorder>> create(RecorderOptions options);
-  /// finish(), if nobody called it; what fails then is not told.
+  /// finish(), if it was not called; errors are then not reported.
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;

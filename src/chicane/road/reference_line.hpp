@@ -26,7 +26,7 @@ struct CurvePoint {
 /// it has moved away from the line through the waypoints. Looking something up takes a division and one place
 /// of the table.
 ///
-/// Memory is reserved at construction. Whoever fills it (line_planner.hpp) begins with shape().
+/// Memory is reserved at construction. The code that fills it (line_planner.hpp) begins with shape().
 class ReferenceLine {
  public:
   struct Sample {

@@ -9,7 +9,7 @@
 
 namespace chicane::road {
 
-/// How much of the believed car the speed plan uses.
+/// Which share of the modelled tyre and brake force the speed plan uses.
 struct SpeedPlanOptions {
   double speed_limit = 60.0;    ///< [m/s]
   double grip_share = 0.9;      ///< of the tyres' lateral force; (0, 1]
@@ -20,7 +20,7 @@ struct SpeedPlanOptions {
   friend bool operator==(const SpeedPlanOptions&, const SpeedPlanOptions&) = default;
 };
 
-/// Fastest speed along a line within the believed grip: a limit for each place from curvature and its slope,
+/// Fastest speed along a line within the modelled grip: a limit for each place from curvature and its slope,
 /// then a forward pass for the drive and a backward pass for the brakes (docs/tracking.md, eq. 10–14). A
 /// point mass cannot do better; a car whose yaw lags must not either, hence the curvature slope: turning the
 /// body takes tyre force, too,

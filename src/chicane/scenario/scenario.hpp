@@ -31,7 +31,7 @@ struct Scenario {
   double turn_around = 0.02;     ///< of the simulator as a client, between reply and next telemetry [s]
   int waypoints_sent = 6;        ///< telemetry shows this many waypoints
 
-  model::VehicleParams vehicle;  ///< what the controller believes
+  model::VehicleParams vehicle;  ///< the controller's model of it
   sim::PlantDeviation plant_options;
   sim::SensorOptions sensor;
   std::vector<sim::FaultEvent> faults;  ///< that happen during the run; at most sim::FaultLab::kCapacity

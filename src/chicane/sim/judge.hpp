@@ -41,7 +41,7 @@ struct WorldState {
   std::array<double, kSectors> last_sector_times{};  ///< of the last completed lap [s]
 };
 
-/// A car as somebody sees it who stands beside the road.
+/// A car as an observer beside the road sees it.
 struct Sighting {
   model::Pose pose{};
   double speed = 0.0;                    ///< [m/s]

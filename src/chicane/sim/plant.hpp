@@ -33,7 +33,7 @@ struct Disturbance {
   double side_acceleration = 0.0;  ///< push along B's y [m/s²]
 };
 
-/// The car that answers back: tyres, drive, brakes, actuators. Not the model a controller believes in.
+/// The car that answers back: tyres, drive, brakes, actuators. Not the model of a controller.
 /// Deterministic, allocation-free. Fixed physics step. One thread at a time; plants share nothing. References
 /// it returns are to what changes with the next advance() or reset().
 class Plant {

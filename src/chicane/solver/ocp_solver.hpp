@@ -412,7 +412,7 @@ class OcpSolver {
 
   // ---- endings
 
-  /// Hands out the best iterate, extended to the whole horizon; unless it is optimal, its residuals decide
+  /// Returns the best iterate, extended to the whole horizon; unless it is optimal, its residuals decide
   /// the status.
   SolveReport finish(SolveStatus status, const P& problem, Trajectory& trajectory,
                      SolveReport report) noexcept {

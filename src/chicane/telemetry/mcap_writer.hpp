@@ -31,7 +31,7 @@ class McapWriter {
   [[nodiscard]] static Result<std::unique_ptr<McapWriter>> create(const std::string& path,
                                                                   std::string_view library,
                                                                   bool is_compressed = false);
-  /// Closes, if nobody did; what fails then is not told.
+  /// Closes, if close() was not called; errors are then not reported.
   ~McapWriter();
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
@@ -46,7 +46,7 @@ class McapWriter {
   /// that fails it grows, up to 4 MiB, and then the message is refused.
   Result<void> write(std::uint16_t channel, std::uint64_t log_time, std::uint64_t publish_time,
                      std::string_view bytes);
-  /// Ends the chunk and hands it to the operating system: from here on it survives the process.
+  /// Ends the chunk and writes it to the file: from here on it survives the end of the process.
   Result<void> flush();
   /// The last chunk, the summary and the end. Nothing can be written afterwards.
   Result<void> close();

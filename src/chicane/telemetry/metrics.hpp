@@ -69,7 +69,7 @@ struct RunSummary {
   double wall_time = 0.0;                   ///< of the run, on the wall [s]; filled by the run time
   std::vector<LapSummary> laps;             ///< completed laps
   std::optional<lap_time::LapTimes> limit;  ///< the fastest lap the car can drive; none when not computed
-  std::string why_no_limit;                 ///< in one sentence; empty when there is one, or nobody asked
+  std::string why_no_limit;  ///< in one sentence; empty when there is one, or none was asked for
   LapSummary total;          ///< the whole run, unfinished lap included; lap_time is its duration
   TimeSummary step_time;     ///< of whole control steps, wall clock
   TimeSummary solve_time;    ///< of the optimisation in them, wall clock
@@ -83,9 +83,9 @@ struct RunSummary {
       0;  ///< of every plant state and command: same scenario and seed, same number, everywhere
 };
 
-/// True when the run did all it promised: every wanted lap, no tyre off the road. A run until stopped wants
+/// True when every wanted lap is completed and no tyre left the road. A run until stopped wants
 /// no number of laps.
-[[nodiscard]] inline bool kept_its_promises(const RunSummary& run) noexcept {
+[[nodiscard]] inline bool completed_on_road(const RunSummary& run) noexcept {
   return (run.completed || run.laps_wanted == 0) && run.off_track_events == 0;
 }
 

@@ -11,15 +11,15 @@
 
 namespace chicane::telemetry {
 
-/// Compares what plans promised with what came: of every plan it keeps where the car is to be one control
+/// Compares plans with the motion that followed: of every plan it keeps where the car is to be one control
 /// period after the plan's beginning, that is one delay and one period after the measurement. Between two
-/// such places the promise is the straight line (a sagitta of 4 mm at 30 m/s on a radius of 50 m).
-/// No allocation; one thread.
+/// such places the predicted position is on the straight line (a sagitta of 4 mm at 30 m/s on a radius of 50
+/// m). No allocation; one thread.
 class PredictionCheck {
  public:
   void reset() noexcept { count_ = 0; }
 
-  /// A plan of this cycle. An empty one breaks the chain of promises.
+  /// A plan of this cycle. An empty one discards the predictions before it.
   void add(const controller::Plan& plan, double period) noexcept {
     if (plan.size < 2) return reset();
     const double time = plan.points[0].time + period;
@@ -36,8 +36,8 @@ class PredictionCheck {
     at(count_++) = {time, {from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)}};
   }
 
-  /// Distance of `position` at `time` [s] from the promise for it [m]; NaN when there is none. Times do not
-  /// decrease between resets.
+  /// Distance of `position` at `time` [s] from the one predicted for it [m]; NaN when there is none. Times do
+  /// not decrease between resets.
   [[nodiscard]] double error(double time, const Vec2& position) noexcept {
     constexpr double kRounding = 1e-9;  // sums of step lengths round
     while (count_ > 1 && at(1).time <= time + kRounding) {
@@ -50,7 +50,7 @@ class PredictionCheck {
   }
 
  private:
-  struct Promise {
+  struct Prediction {
     double time = 0.0;
     Vec2 place{};
   };
@@ -59,9 +59,9 @@ class PredictionCheck {
   [[nodiscard]] static const controller::PlanPoint& point(const controller::Plan& plan, int i) noexcept {
     return plan.points[static_cast<std::size_t>(i)];
   }
-  [[nodiscard]] Promise& at(std::size_t i) noexcept { return promises_[(first_ + i) % kCapacity]; }
+  [[nodiscard]] Prediction& at(std::size_t i) noexcept { return predictions_[(first_ + i) % kCapacity]; }
 
-  std::array<Promise, kCapacity> promises_{};
+  std::array<Prediction, kCapacity> predictions_{};
   std::size_t first_ = 0;
   std::size_t count_ = 0;
 };

@@ -346,7 +346,7 @@ export interface Run {
   control_period_s: number;
   is_paused: boolean;
 
-  // The car, as the controller believes it
+  // The car, as the controller models it
   car: string;
   /** centre of mass to front axle */
   front_axle_m: number;

@@ -19,7 +19,7 @@ export function toggleManual(): void {
   set('manual.is_on', !isManual());
 }
 
-/** Hands the car back to the controller. */
+/** Gives control back to the controller. */
 export function handBack(): void {
   if (isManual()) set('manual.is_on', false);
 }

@@ -73,7 +73,7 @@ float64 latency_s                       # artificial, from command to actuation
 float64 control_period_s
 bool is_paused
 
-# The car, as the controller believes it
+# The car, as the controller models it
 string car
 float64 front_axle_m                    # centre of mass to front axle
 float64 rear_axle_m                     # centre of mass to rear axle

@@ -116,7 +116,7 @@ class Barrier {
     const double share = length > 0.9 ? std::min(least, std::sqrt(mu_)) : (length > 0.5 ? 0.2 : 0.6);
     mu_ = std::max(final_, share * mu_);
   }
-  /// Lowers it after a descent step once the promised gain is within the barrier's own gap.
+  /// Lowers it after a descent step once the predicted gain is within the barrier's own gap.
   void lower_for_gain(double gain, std::size_t horizon) noexcept {
     if (gain < mu_ * static_cast<double>(horizon * kNc)) mu_ = std::max(final_, 0.2 * mu_);
   }

@@ -92,7 +92,7 @@ class Descent {
   }
 
  private:
-  /// Change of merit that the quadratic model promises for the whole step; `scale`: largest curvature of an
+  /// Change of merit that the quadratic model predicts for the whole step; `scale`: largest curvature of an
   /// input.
   static double expected_change(const Lq& lq, std::size_t horizon, double& scale) noexcept {
     double change = 0.0;

@@ -14,7 +14,7 @@
 
 namespace chicane::solver {
 
-/// Calls the functions of a problem for eight stages and hands out jets over packs, whatever its level:
+/// Calls the functions of a problem for eight stages and returns jets over packs, whatever its level:
 /// structured ones in lanes with a type for each variable; those that take lanes of one type likewise; others
 /// stage by stage.
 template <OcpProblem P, class Arch>

@@ -24,7 +24,7 @@ std::string compress(std::string_view bytes) {
 }
 
 std::optional<std::string> decompress(std::string_view bytes, std::uint64_t size) {
-  constexpr std::uint64_t kMost = 256U << 20U;  // a stranger's file says how much we allocate
+  constexpr std::uint64_t kMost = 256U << 20U;  // the size is read from the file and not to be trusted
   if (size > kMost) return std::nullopt;
   std::string plain(static_cast<std::size_t>(size), '\0');
   if (ZSTD_decompress(plain.data(), plain.size(), bytes.data(), bytes.size()) != plain.size())
