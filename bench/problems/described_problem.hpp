@@ -11,6 +11,8 @@
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
+#include "chicane/controller/described_model.hpp"
+#include "chicane/controller/local_fit.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/warm_start.hpp"
 
@@ -77,32 +79,27 @@ struct DescribedProblem : DescribedData {
   }
 };
 
-/// The same problem in the solver's structured form. cte_{k+1} depends on stage k alone: an output, not a
-/// state. State (x, y, ψ, v, eψ, previous δ, previous a), with the constant 1 as wide as one 512-bit vector.
-struct StructuredDescribedProblem : DescribedData {
+/// The same problem in the solver's structured form, by the equations of controller/described_model.hpp:
+/// cte_{k+1} depends on stage k alone, an output, not a state. State (x, y, ψ, v, eψ, previous δ, previous
+/// a), with the constant 1 as wide as one 512-bit vector. Over its numbers: doubles for one problem, packs
+/// for several side by side (solver/batch_solver.hpp).
+template <class Real>
+struct DescribedOver {
   static constexpr int kNx = 7;
   static constexpr int kNu = 2;
   static constexpr int kNr = 7;
   static constexpr int kNe = 3;
   static constexpr int kNc = 0;
 
-  double first_cte = 0.0;  ///< given with the start: a constant of the cost
-
-  StructuredDescribedProblem() = default;
-  explicit StructuredDescribedProblem(const DescribedProblem& plain, double cte)
-      : DescribedData(plain), first_cte(cte) {}
-
-  static std::array<double, kNx> without_cte(const std::array<double, DescribedProblem::kNx>& s) {
-    return {s[0], s[1], s[2], s[3], s[5], s[6], s[7]};
-  }
+  controller::CubicOver<Real> line{};
+  Real speed_reference{};
+  Real steer_limit{};
+  Real acceleration_limit{};
+  Real first_cte{};  ///< given with the start: a constant of the cost
 
   template <class K, class X, class U>
   CHICANE_INLINE auto dynamics(K, const X& s, const U& input) const {
-    const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
-    const auto& [steer, a] = input;
-    const auto turn = v * steer * (kStep / kLength);
-    return std::make_tuple(x + v * cos(psi) * kStep, y + v * sin(psi) * kStep, psi + turn, v + a * kStep,
-                           psi - atan(slope(x)) + turn, steer, a);
+    return model().next(s, input, input);
   }
   template <class K, class X, class U>
   CHICANE_INLINE auto residual(K k, const X& s, const U& input) const {
@@ -121,14 +118,32 @@ struct StructuredDescribedProblem : DescribedData {
   }
   template <class X>
   CHICANE_INLINE auto next_cte(const X& s) const {
-    const auto& [x, y, psi, v, epsi, last_steer, last_a] = s;
-    return path[0] + x * (path[1] + x * (path[2] + x * path[3])) - y + v * sin(epsi) * kStep;
+    return model().next_lateral_error(s);
   }
+  [[nodiscard]] std::array<Real, 2> input_lower(int) const { return {-steer_limit, -acceleration_limit}; }
+  [[nodiscard]] std::array<Real, 2> input_upper(int) const { return {steer_limit, acceleration_limit}; }
 
  private:
-  template <class T>
-  CHICANE_INLINE auto slope(const T& x) const {
-    return path[1] + x * (2.0 * path[2] + x * (3.0 * path[3]));
+  static double weight(double w) { return DescribedData::weight(w); }
+  [[nodiscard]] CHICANE_INLINE controller::DescribedModel<controller::CubicOver<Real>> model() const {
+    return {.line = line,
+            .dt = DescribedData::kStep,
+            .turn_per_length = DescribedData::kStep / DescribedData::kLength};
+  }
+};
+
+/// One of them.
+struct StructuredDescribedProblem : DescribedOver<double> {
+  StructuredDescribedProblem() = default;
+  explicit StructuredDescribedProblem(const DescribedProblem& plain, double cte)
+      : DescribedOver{.line = {plain.path},
+                      .speed_reference = plain.speed_reference,
+                      .steer_limit = plain.steer_limit,
+                      .acceleration_limit = plain.acceleration_limit,
+                      .first_cte = cte} {}
+
+  static std::array<double, kNx> without_cte(const std::array<double, DescribedProblem::kNx>& s) {
+    return {s[0], s[1], s[2], s[3], s[5], s[6], s[7]};
   }
 };
 

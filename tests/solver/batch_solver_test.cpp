@@ -257,7 +257,7 @@ TEST(BatchSolver, HandsOverWhatIsNotANumberAndLeavesTheRestAlone) {
     Batch<DescribedOver> whole = guesses;
     whole.solve(set);
     Batch<DescribedOver> batch = guesses;
-    batch.problems[3].path[1] = std::numeric_limits<double>::quiet_NaN();
+    batch.problems[3].line.c[1] = std::numeric_limits<double>::quiet_NaN();
     batch.starts[5][3] = std::numeric_limits<double>::infinity();
     batch.problems[7].steer_limit = -1.0;
     batch.problems[8].steer_limit = std::numeric_limits<double>::quiet_NaN();

@@ -8,6 +8,7 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/controller/cubic_mpc.hpp"
+#include "chicane/controller/described_model.hpp"
 #include "chicane/controller/local_fit.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/solver/stage_data.hpp"
@@ -54,10 +55,8 @@ struct CubicProblem {
   [[nodiscard]] auto dynamics(K, const X& state, const U& input) const noexcept {
     const auto& [x, y, psi, v, epsi, last_steer, last_throttle] = state;
     const auto& [steer, throttle] = input;
-    const auto turn = v * acting(last_steer, steer) * (turn_per_metre * dt);
-    return std::make_tuple(x + v * cos(psi) * dt, y + v * sin(psi) * dt, psi + turn,
-                           v + acting(last_throttle, throttle) * dt, psi - atan(line.slope(x)) + turn, steer,
-                           throttle);
+    return model().next(state, std::make_tuple(acting(last_steer, steer), acting(last_throttle, throttle)),
+                        input);
   }
 
   /// Equation 7, one stage, with cte of the next one. The first stage has no change to pay for, as described.
@@ -82,8 +81,7 @@ struct CubicProblem {
   /// Equation 5: cte of the stage after this one [m].
   template <class X>
   [[nodiscard]] auto next_lateral_error(const X& state) const noexcept {
-    const auto& [x, y, psi, v, epsi, last_steer, last_throttle] = state;
-    return line.at(x) - y + v * sin(epsi) * dt;
+    return model().next_lateral_error(state);
   }
 
   [[nodiscard]] Input input_lower(int) const noexcept { return {-steer_limit, -1.0}; }
@@ -100,6 +98,9 @@ struct CubicProblem {
   double first_lateral_error = 0.0;  ///< cte where the horizon begins, renewed in every step [m]
 
  private:
+  [[nodiscard]] CHICANE_INLINE DescribedModel<Cubic> model() const noexcept {
+    return {.line = line, .dt = dt, .turn_per_length = turn_per_metre * dt};
+  }
   /// The input that drives a stage: its own, or inside the model that of the stage before (equation 13).
   template <class Last, class Own>
   [[nodiscard]] auto acting(const Last& last, const Own& own) const noexcept {

@@ -10,9 +10,11 @@
 
 namespace chicane::controller {
 
-/// The line ahead in the car's frame (x forward, y left): y = f(x) = c0 + c1 x + c2 x² + c3 x³ [m].
-struct Cubic {
-  std::array<double, 4> c{};
+/// The line ahead in the car's frame (x forward, y left): y = f(x) = c0 + c1 x + c2 x² + c3 x³ [m]. `Real`: a
+/// number, or a pack of several lines'.
+template <class Real>
+struct CubicOver {
+  std::array<Real, 4> c{};
 
   template <class T>
   [[nodiscard]] auto at(const T& x) const {
@@ -24,6 +26,7 @@ struct Cubic {
     return c[1] + x * (2.0 * c[2] + x * (3.0 * c[3]));
   }
 };
+using Cubic = CubicOver<double>;
 
 /// Points in a car's frame; fixed memory.
 struct LocalPoints {

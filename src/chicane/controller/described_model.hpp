@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <tuple>
+
+#include "chicane/base/inlining.hpp"
+#include "chicane/base/math.hpp"
+
+namespace chicane::controller {
+
+/// The model of the five write-ups (docs/problem.md, equations 1 to 6): a kinematic bicycle by forward Euler
+/// beside a line y = f(x), in the car's frame. State x, y [m], ψ [rad], v [m/s], eψ [rad], and the inputs of
+/// the stage before; input δ [rad], a [m/s²]. The type of the states is the solver's: numbers, jets, or packs
+/// of either. A Line has at(x) [m] and slope(x).
+template <class Line>
+struct DescribedModel {
+  const Line& line;
+  double dt;               ///< [s]
+  double turn_per_length;  ///< ± dt / L_f: + for steering positive left [s/m]
+
+  /// The state after one step, with the described recursion of the heading error. `acting`: the steering and
+  /// acceleration that move the car meanwhile, `input` itself or what came before.
+  template <class X, class A, class U>
+  [[nodiscard]] CHICANE_INLINE auto next(const X& state, const A& acting, const U& input) const noexcept {
+    const auto& [x, y, psi, v, epsi, last_steer, last_acceleration] = state;
+    const auto& [acting_steer, acting_acceleration] = acting;
+    const auto& [steer, acceleration] = input;
+    const auto turn = v * acting_steer * turn_per_length;
+    return std::make_tuple(x + v * cos(psi) * dt, y + v * sin(psi) * dt, psi + turn,
+                           v + acting_acceleration * dt, psi - atan(line.slope(x)) + turn, steer,
+                           acceleration);
+  }
+
+  /// Equation 5: cte of the stage after this one [m].
+  template <class X>
+  [[nodiscard]] CHICANE_INLINE auto next_lateral_error(const X& state) const noexcept {
+    const auto& [x, y, psi, v, epsi, last_steer, last_acceleration] = state;
+    return line.at(x) - y + v * sin(epsi) * dt;
+  }
+};
+
+}  // namespace chicane::controller

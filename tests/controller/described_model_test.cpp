@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/controller/described_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "chicane/base/math.hpp"
+#include "chicane/controller/local_fit.hpp"
+
+namespace chicane::controller {
+namespace {
+
+constexpr double kRounding = 1e-14;  // of a few operations on numbers of magnitude 10
+const Cubic kLine{{0.5, 0.1, -0.02, 0.001}};
+const std::array<double, 7> kState{2.0, 0.3, 0.05, 12.0, -0.04, 0.0, 0.0};
+
+DescribedModel<Cubic> model(double sign = 1.0) {
+  return {.line = kLine, .dt = 0.1, .turn_per_length = sign * 0.1 / 2.67};
+}
+
+TEST(DescribedModel, MovesByForwardEuler) {
+  const std::array input{0.2, -0.5};
+  const auto [x, y, psi, v, epsi, steer, acceleration] = model().next(kState, input, input);
+  const double turn = 12.0 * 0.2 * 0.1 / 2.67;
+  const double slope = 0.1 + 2.0 * (-0.02) * 2.0 + 3.0 * 0.001 * 4.0;
+  EXPECT_NEAR(x, 2.0 + 1.2 * std::cos(0.05), kRounding);
+  EXPECT_NEAR(y, 0.3 + 1.2 * std::sin(0.05), kRounding);
+  EXPECT_NEAR(psi, 0.05 + turn, kRounding);
+  EXPECT_NEAR(v, 12.0 - 0.05, kRounding);
+  EXPECT_NEAR(epsi, 0.05 - std::atan(slope) + turn, kRounding);
+  EXPECT_EQ(steer, 0.2);
+  EXPECT_EQ(acceleration, -0.5);
+}
+
+TEST(DescribedModel, IsMovedByWhatActsAndKeepsWhatIsAsked) {
+  const auto [x, y, psi, v, epsi, steer, acceleration] =
+      model().next(kState, std::array{0.0, 1.0}, std::array{0.2, -0.5});
+  EXPECT_EQ(psi, 0.05);
+  EXPECT_NEAR(v, 12.1, kRounding);
+  EXPECT_EQ(steer, 0.2);
+  EXPECT_EQ(acceleration, -0.5);
+}
+
+TEST(DescribedModel, TurnsTheOtherWayWithTheOtherSign) {
+  const std::array input{0.2, 0.0};
+  const double left = std::get<2>(model(1.0).next(kState, input, input)) - 0.05;
+  const double right = std::get<2>(model(-1.0).next(kState, input, input)) - 0.05;
+  EXPECT_GT(left, 0.0);
+  EXPECT_NEAR(right, -left, kRounding);
+}
+
+TEST(DescribedModel, NextLateralErrorIsOfTheLineBesideTheCar) {
+  const double line = 0.5 + 0.1 * 2.0 - 0.02 * 4.0 + 0.001 * 8.0;
+  EXPECT_NEAR(model().next_lateral_error(kState), line - 0.3 + 12.0 * std::sin(-0.04) * 0.1, kRounding);
+}
+
+}  // namespace
+}  // namespace chicane::controller
