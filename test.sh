@@ -18,16 +18,16 @@ fi
 mapfile -t others < <(node_packages; browser_packages)
 install_packages "${run_packages[@]}" "${test_packages[@]}" "${others[@]}"
 build_release "$root" all CHICANE_SIMD=all CHICANE_BUILD_TESTS=ON CHICANE_BUILD_EXAMPLES=ON "CHICANE_SLOW_TESTS=$slow"
-built=$(processor_seconds)
+processor_seconds built
 say "chicane: ctest ${selection[*]} $*"
 log=$root/build/release/test.log
 result=0
 ctest --test-dir "$root/build/release" -j "$(nproc)" --output-on-failure --no-tests=error --no-label-summary \
   --output-log "$log" "${selection[@]}" "$@" || result=$?
 grep -E '^[0-9]+% tests passed' "$log" || true  # again, below the list of what was skipped
-tested=$(($(processor_seconds) - built))
+processor_seconds all
 "$root/tools/build_times.py" --count 5 || true
-printf 'processor time: %s s to configure and build, %s s for the tests\n' "$built" "$tested"
+awk "BEGIN { printf \"processor time: %.0f s to configure and build, %.0f s for the tests\n\", $built, $all - $built }"
 printf 'size: program %s, page %s compressed\n' "$(kilobytes <"$root/build/release/apps/chicane/chicane")" \
   "$(cat "$root"/build/release/web/dist/assets/* 2>/dev/null | gzip -9 | kilobytes)"
 exit "$result"

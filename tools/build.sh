@@ -44,12 +44,13 @@ build_release() {
   ninja -C "$build" -j "$(build_jobs)" "${quiet[@]}" "$target" </dev/null >&2
 }
 
-# Processor time, user and system, of all that this shell has started and waited for, in seconds.
+# processor_seconds NAME: sets that variable to the processor time, user and system, of all that this shell has started and waited for
+# [s]. Not to be called in $(...), a shell of its own that has started nothing.
 processor_seconds() {
   local file
   file=$(mktemp)
-  times >"$file"  # not through a pipe, whose shell has started nothing
-  awk 'NR == 2 { split($1, u, "[ms]"); split($2, s, "[ms]"); printf "%.0f\n", 60 * (u[1] + s[1]) + u[2] + s[2] }' "$file"
+  times >"$file"
+  printf -v "$1" %s "$(awk 'NR == 2 { split($1, u, "[ms]"); split($2, s, "[ms]"); printf "%.1f", 60 * (u[1] + s[1]) + u[2] + s[2] }' "$file")"
   rm -f "$file"
 }
 

@@ -41,6 +41,15 @@ class NoteTime(unittest.TestCase):
             self.assertEqual(lines[0].split("\t")[1], kind, result)
 
 
+class ProcessorSeconds(unittest.TestCase):
+    def test_counts_what_the_shell_has_started(self):
+        busy = "i=0; while [ $i -lt 300000 ]; do i=$((i + 1)); done"
+        script = f"source {ROOT}/tools/build.sh; processor_seconds before; sh -c '{busy}'; processor_seconds after; echo $before $after"
+        before, after = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True).stdout.split()
+        self.assertLess(float(before), 0.1)
+        self.assertGreater(float(after), float(before))
+
+
 class BuildTimes(unittest.TestCase):
     def test_the_last_time_of_each_file_counts(self):
         made = build_times.read_log(["1.5 0.5\trun\ta.o", "9 1\trun\tb.o", "0.25 0.25\trun\ta.o", "0.1 0\tcached\tc.o", "1.2 0."])
