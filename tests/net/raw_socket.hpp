@@ -53,6 +53,9 @@ class RawSocket {
     }
   }
 
+  /// Says that nothing more will be sent.
+  void end() const { ::shutdown(handle_, SHUT_WR); }
+
   /// Reads until `input_` contains `mark` and takes everything up to and including it; what there is when the
   /// peer ends or nothing comes for `patience`.
   std::string until(std::string_view mark, std::chrono::milliseconds patience = std::chrono::seconds{10}) {

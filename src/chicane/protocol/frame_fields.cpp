@@ -37,7 +37,7 @@ consteval std::string_view type_name() {
 
 /// A row of the table: T is the type on the wire, `value` a lambda without captures from a frame.
 template <class T, class Value>
-consteval FrameField field(std::string_view name, std::string_view meaning, Value /*value*/,
+constexpr FrameField field(std::string_view name, std::string_view meaning, Value /*value*/,
                            std::span<const FrameConstant> constants = {}) {
   return {.type = type_name<T>(),
           .name = name,
@@ -47,7 +47,7 @@ consteval FrameField field(std::string_view name, std::string_view meaning, Valu
 }
 
 template <class Enum>
-consteval FrameConstant constant(std::string_view name, Enum value, std::string_view meaning = {}) {
+constexpr FrameConstant constant(std::string_view name, Enum value, std::string_view meaning = {}) {
   return {name, static_cast<int>(value), meaning};
 }
 

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "fuzz/targets.hpp"
+
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "chicane/net/server.hpp"
+#include "chicane/protocol/foxglove_codec.hpp"
+#include "chicane/protocol/ros_messages.hpp"
+#include "chicane/protocol/track_codec.hpp"
+#include "chicane/protocol/udacity_codec.hpp"
+#include "chicane/protocol/yaml_codec.hpp"
+#include "chicane/recording/reader.hpp"
+#include "net/raw_socket.hpp"
+
+namespace chicane::fuzz {
+namespace {
+
+void promise(bool is_kept) {
+  if (!is_kept) std::abort();
+}
+
+/// A message of at most a few sentences that begins as ours do.
+void check(const Error& error) { promise(!error.message.empty() && error.message.size() < 100'000); }
+
+void telemetry(std::string_view bytes) {
+  const protocol::UdacityTelemetry told = protocol::parse_telemetry(bytes);
+  if (const auto* measurement = std::get_if<model::Measurement>(&told)) {
+    promise(std::isfinite(measurement->x) && std::isfinite(measurement->y) &&
+            std::isfinite(measurement->psi) && std::isfinite(measurement->speed) &&
+            measurement->waypoint_count >= 0 &&
+            measurement->waypoint_count <= model::Measurement::kMaxWaypoints);
+  }
+  if (const auto* broken = std::get_if<protocol::UdacityBroken>(&told)) promise(!broken->reason.empty());
+  const protocol::UdacityReply reply = protocol::parse_reply(bytes);
+  if (const auto* steer = std::get_if<protocol::UdacitySteer>(&reply)) {
+    promise(std::isfinite(steer->command.steer) && std::fabs(steer->command.throttle) <= 1.0);
+  }
+}
+
+/// The first byte says whether the message is a binary one.
+void viewer(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const auto message = protocol::foxglove::parse(bytes.substr(1), (bytes[0] & 1) != 0);
+  if (!message) return check(message.error());
+  if (const auto* call = std::get_if<protocol::foxglove::CallService>(&*message))
+    static_cast<void>(protocol::decode_set_bool(call->payload));
+}
+
+/// A server that sends back what viewers say.
+class Echo {
+ public:
+  Echo() {
+    net::ServerHandlers handlers;
+    handlers.on_start = [this](net::Server& server) { server_ = &server; };
+    handlers.on_upgrade = [](const net::UpgradeRequest&) { return net::UpgradeAnswer{.accept = true}; };
+    handlers.on_open = [](net::ConnectionId, int) {};
+    handlers.on_message = [this](net::ConnectionId id, int, std::string_view text, bool binary) {
+      server_->send(id, std::string(text), binary);
+    };
+    handlers.on_close = [](net::ConnectionId, int, std::string_view) {};
+    handlers.on_get = [](std::string_view path) -> std::optional<net::Content> {
+      if (path != "/page") return std::nullopt;
+      return net::Content{.content_type = "text/plain", .bytes = std::string(1000, 'x')};
+    };
+    auto server = net::Server::create({.port = 0, .token = "secret"}, std::move(handlers), {});
+    promise(server.has_value());
+    owner_ = std::move(*server);
+  }
+  [[nodiscard]] std::uint16_t port() const { return owner_->port(); }
+
+ private:
+  net::Server* server_ = nullptr;
+  std::unique_ptr<net::Server> owner_;
+};
+
+/// The first byte says whether the rest is a request, or what a viewer sends after a good one.
+void http(std::string_view bytes) {
+  static const Echo echo;
+  if (bytes.empty()) return;
+  test::RawSocket socket(echo.port());
+  if ((bytes[0] & 1) != 0) {
+    socket.send(test::unity_handshake(echo.port()));
+    promise(socket.until("\r\n\r\n").starts_with("HTTP/1.1 101"));
+  }
+  socket.send(bytes.substr(1));
+  socket.end();
+  static_cast<void>(socket.rest());
+}
+
+void yaml(std::string_view bytes) {
+  const auto document = protocol::parse_document(bytes, "f");
+  if (!document) return check(document.error());
+  scenario::Scenario scenario;
+  const std::array layers{*document};
+  if (const auto applied = protocol::apply_layers(layers, scenario); !applied) return check(applied.error());
+  promise(protocol::parse_document(protocol::write_document(scenario, "fuzz", true), "f").has_value());
+}
+
+void track(std::string_view bytes) {
+  const auto file = protocol::parse_track(bytes, "f.csv");
+  if (!file) return check(file.error());
+  constexpr std::size_t kQuick = 200;  // points; more take longer and say nothing new
+  if (file->points.size() > kQuick) return;
+  const auto made = protocol::make_track(*file);
+  if (!made) return check(made.error());
+  promise(std::isfinite(made->centre().length()) && made->centre().length() > 0.0);
+}
+
+void mcap(std::string_view bytes) {
+  static const int file = ::memfd_create("fuzz", MFD_CLOEXEC);
+  promise(file >= 0 && ::ftruncate(file, 0) == 0);
+  promise(::pwrite(file, bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size()));
+  recording::RecordingHead head;
+  const auto read = recording::read_recording("/proc/self/fd/" + std::to_string(file), head,
+                                              [](const recording::RecordedEvent&) { return Result<void>{}; });
+  if (!read) check(read.error());
+}
+
+constexpr std::array kTargets{Target{"telemetry", telemetry}, Target{"viewer", viewer}, Target{"http", http},
+                              Target{"yaml", yaml},           Target{"track", track},   Target{"mcap", mcap}};
+
+}  // namespace
+
+std::span<const Target> targets() noexcept { return kTargets; }
+
+const Target* find(std::string_view name) noexcept {
+  const auto* const found =
+      std::find_if(kTargets.begin(), kTargets.end(), [&](const Target& each) { return each.name == name; });
+  return found == kTargets.end() ? nullptr : found;
+}
+
+}  // namespace chicane::fuzz
