@@ -3,7 +3,7 @@
 #   consumers.sh SOURCE_FOLDER PREFIX WORK_FOLDER COMPILER BUILD_FOLDER
 set -euo pipefail
 source=$1 prefix=$2 work=$3 compiler=$4 build=$5
-rm -rf "$work/consumer"
+rm -rf "$work/consumer" "$work/own_controller.mcap"
 cmake -G Ninja -S "$source" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
 cmake --build "$work/consumer" >/dev/null
 "$work/consumer/consumer"
