@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "chicane/base/angle.hpp"
@@ -56,6 +57,28 @@ TEST(SmoothLine, SaysWhereEachGivenPointIsAlongIt) {
   ASSERT_EQ(line->parameter.size(), 100u);
   for (std::size_t i = 1; i < 100; ++i)
     EXPECT_NEAR(line->parameter[i] - line->parameter[i - 1], kTwoPi * 50.0 / 100.0, 0.02) << i;
+}
+
+// Files of 300 and of six points took 12 GB and a minute.
+TEST(SmoothLine, RefusesPointsBetweenWhichThereAreTooManyKnots) {
+  for (const int count : {6, 60, 300}) {
+    std::vector<Vec2> points;
+    for (int i = 0; i < count; ++i) {
+      const double angle = kTwoPi * i / count;
+      const double radius = 1500.0 + (count == 6 ? 300.0 * std::sin(2.1 * i) : 0.0);
+      points.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    }
+    constexpr double kFinest = 0.05;    // spacing [m]
+    constexpr double kMostNoise = 1.0;  // sigma [m]
+    const Result<SmoothLine> line = smooth_line(points, true, kFinest, kMostNoise);
+    if (line) {
+      EXPECT_LT(line->knots.size(), 400'000U) << count;
+    } else {
+      EXPECT_NE(line.error().message.find("points: got points that no smooth line follows"),
+                std::string::npos)
+          << line.error().message;
+    }
+  }
 }
 
 }  // namespace

@@ -20,7 +20,10 @@ constexpr int kOverlapPoints = 16;  // a closed line is unrolled by at least thi
 constexpr double kOverlapLengths =
     30.0;  // ... and this many smoothing lengths: what is beyond has no influence
 constexpr std::size_t kMaxKnots = 200'000;
-constexpr double kMinLength = 1.0;          // of a line [m]
+constexpr double kMinLength = 1.0;    // of a line [m]
+constexpr double kLeastShare = 0.01;  // of the length of the chords, in that of the line
+constexpr double kMostShare = 2.0;
+constexpr double kMostUnrolled = 4e6;       // points
 constexpr double kMaxShareOfLength = 0.02;  // of ℓ in the length of a short line
 
 /// Uniform cubic B-spline with values and derivatives, unit knot distance: coefficient i has its peak at i
@@ -218,6 +221,13 @@ SmoothLine finish(Fit&& fit, std::span<const Vec2> points, bool closed) {
   return line;
 }
 
+/// Where knots are many to each point rounding can win: the line then has any length, and memory with it.
+bool is_solvable(const Fit& fit, const Fit& raw, std::size_t points, double smoothing) noexcept {
+  const bool has_a_length = fit.length >= kLeastShare * raw.length && fit.length <= kMostShare * raw.length;
+  return has_a_length &&
+         kOverlapLengths * smoothing / fit.length * static_cast<double>(points) <= kMostUnrolled;
+}
+
 }  // namespace
 
 Result<SmoothLine> smooth_line(std::span<const Vec2> points, bool closed, double spacing, double sigma) {
@@ -239,6 +249,12 @@ Result<SmoothLine> smooth_line(std::span<const Vec2> points, bool closed, double
     Fit fit = raw;
     for (int pass = 0; pass < kParameterPasses; ++pass) {
       if (pass > 0) measure(fit);
+      if (!is_solvable(fit, raw, points.size(), smoothing)) {
+        return fail(ErrorCode::kInvalidArgument,
+                    "points: got points that no smooth line follows, expected more of them, or a wider "
+                    "spacing than " +
+                        number_text(spacing) + " m");
+      }
       fit.spacing = fit.length / static_cast<double>(interval_count(fit.length, spacing));
       solve(fit, points, closed, smoothing);
     }
