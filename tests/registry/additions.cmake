@@ -4,8 +4,8 @@ set(additions controller plant fault track)
 
 set(controller_list src/chicane/controller/registry.hpp)
 set(controller_header chicane/controller/steady.hpp)
-set(controller_after "    PurePursuitEntry,\n")
-set(controller_line "    SteadyEntry,\n")
+set(controller_after "                                PurePursuitEntry,  //\n")
+set(controller_line "                                SteadyEntry,       //\n")
 
 set(plant_list src/chicane/sim/plant_registry.cpp)
 set(plant_header chicane/sim/cart.hpp)
