@@ -88,6 +88,8 @@ void http(std::string_view bytes) {
   static const Echo echo;
   if (bytes.empty()) return;
   test::RawSocket socket(echo.port());
+  promise(socket.is_connected());
+  socket.forget_when_closed();
   if ((bytes[0] & 1) != 0) {
     socket.send(test::unity_handshake(echo.port()));
     promise(socket.until("\r\n\r\n").starts_with("HTTP/1.1 101"));
