@@ -25,8 +25,8 @@ failed=()
 for name in "${names[@]}"; do
   mkdir -p "build/fuzz/corpus/$name"
   echo "== $name" >&2
-  # An input may take 10 s under the sanitizers, and 1 GB; 100 times what any has needed.
-  "build/fuzz/tests/fuzz/fuzz_$name" "${limit[@]}" -max_len="${longest[$name]}" -timeout=10 -rss_limit_mb=1024 -print_final_stats=1 -verbosity=0 \
+  # An input may take a minute under the sanitizers beside other programs (a second without them), and 1 GB.
+  "build/fuzz/tests/fuzz/fuzz_$name" "${limit[@]}" -max_len="${longest[$name]}" -timeout=60 -rss_limit_mb=1024 -print_final_stats=1 -verbosity=0 \
     -artifact_prefix="build/fuzz/$name-" "build/fuzz/corpus/$name" "tests/fuzz/corpus/$name" || failed+=("$name")
 done
 [ ${#failed[@]} -eq 0 ] || { echo "failed: ${failed[*]}" >&2; exit 1; }
