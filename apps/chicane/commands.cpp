@@ -13,6 +13,7 @@ constexpr Command kCommands[] = {
     {"limit", "Fastest lap and racing line of a car on a track", limit},
     {"replay", "Show recorded runs, verify them bit for bit, or drive on from within one", replay},
     {"report", "Recorded runs as one HTML page that needs nothing else", report_logs},
+    {"campaign", "Faults at every moment of a lap: where the car leaves the road", campaign},
     {"check", "Validate scenarios, presets, cars and tracks, and explain what is wrong", check},
     {"list", "Presets, tracks, cars, scenarios, controllers and parameters", list},
     {"bench", "Times of solver and control step on this machine, beside Ipopt's", bench},

@@ -26,6 +26,7 @@ struct Command {
 [[nodiscard]] ExitCode limit(const Options& options);
 [[nodiscard]] ExitCode replay(const Options& options);
 [[nodiscard]] ExitCode report_logs(const Options& options);
+[[nodiscard]] ExitCode campaign(const Options& options);
 [[nodiscard]] ExitCode check(const Options& options);
 [[nodiscard]] ExitCode list(const Options& options);
 /// What `chicane list` takes.

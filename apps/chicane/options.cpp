@@ -14,6 +14,7 @@
 #include "chicane/protocol/schema.hpp"
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "chicane/run/fault_campaign.hpp"
 #include "chicane/version.hpp"
 #include "command_text.hpp"
 #include "commands.hpp"
@@ -31,6 +32,18 @@ void add_setting(CLI::App& command, Options& options, const std::string& name, c
       .add_option_function<std::string>(
           name, [&options, key](const std::string& text) { options.settings.emplace_back(key, text); }, help)
       ->type_name(type);
+}
+
+/// "2", or "inf" for a fault that lasts.
+double fault_duration(const std::string& text) {
+  double seconds = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+  if (text == "inf") return run::kLasting;
+  if (error == std::errc{} && end == text.data() + text.size() && seconds >= 0.001 &&
+      seconds <= run::kLasting)
+    return seconds;
+  throw CLI::ValidationError(
+      "--for-s", fmt::format("got {}, expected a number in [0.001, 1000000] or inf", printable(text)));
 }
 
 void add_speed(CLI::App& command, Options& options) {
@@ -233,6 +246,44 @@ void add_report(CLI::App& command, Options& options) {
   command.footer("Example: chicane report run.mcap -o run.html");
 }
 
+void add_campaign(CLI::App& command, Options& options) {
+  Options::Campaign& campaign = options.campaign;
+  command.add_option("--faults", campaign.faults, "With commas (chicane list faults); all when left out")
+      ->type_name("NAME,...")
+      ->delimiter(',');
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--for-s",
+          [&campaign](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) campaign.durations.push_back(fault_duration(text));
+          },
+          "How long the faults last [s], with commas; inf: to the end; each fault's own when left out")
+      ->type_name("S,...")
+      ->delimiter(',');
+  command.add_option("--every-s", campaign.step, "Between the moments of the flying lap [s]")
+      ->type_name("S")
+      ->check(CLI::Range(0.02, 1000.0))
+      ->capture_default_str();
+  command.add_option("--tracks", campaign.tracks, "Names or files, with commas")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->capture_default_str();
+  command.add_option("--cars", campaign.cars, "Names or files, with commas")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->capture_default_str();
+  add_setting(command, options, "--preset", "preset", "NAME",
+              "Controller and its settings (chicane list presets)");
+  command.add_option("--jobs", campaign.jobs, "Threads; 0: as many as cores")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  add_set(command, options);
+  command.footer(
+      "Example: chicane campaign --faults link_lost,nan_measurement --for-s 1,2,inf --tracks oval");
+}
+
 void add_check(CLI::App& command, Options& options) {
   command
       .add_option("files", options.files,
@@ -291,6 +342,7 @@ void add_commands(CLI::App& app, Options& options) {
     if (command.name == "limit") add_limit(*sub, options);
     if (command.name == "replay") add_replay(*sub, options);
     if (command.name == "report") add_report(*sub, options);
+    if (command.name == "campaign") add_campaign(*sub, options);
     if (command.name == "check") add_check(*sub, options);
     if (command.name == "list") add_list(*sub, options);
     if (command.name == "bench") add_bench(*sub, options);

@@ -61,6 +61,16 @@ struct Options {
   bool is_markdown = false;            ///< list parameters, list faults
   std::string shell;                   ///< completion
 
+  struct Campaign {
+    std::vector<std::string> faults{};  ///< names; empty: all
+    std::vector<double> durations{};    ///< [s]; empty: each fault's own
+    std::vector<std::string> tracks{"lakeside", "oval", "hairpins", "speedway"};
+    std::vector<std::string> cars{"udacity", "road-car"};
+    double step = 0.5;  ///< between onsets [s]
+    int jobs = 0;       ///< threads; 0: as many as cores
+  };
+  Campaign campaign{};
+
   int instances = 100;                    ///< bench: of each family
   std::vector<int> horizons{10, 20, 50};  ///< bench
   std::string reference_folder;           ///< bench: problems with known optima; empty: none

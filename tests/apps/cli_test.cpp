@@ -337,6 +337,33 @@ TEST(Cli, ARunWritesItsReport) {
   fs::remove_all(folder);
 }
 
+TEST(Cli, ACampaignTellsWhereTheCarLeavesTheRoadAndHowToRepeatIt) {
+  const std::string trials =
+      "campaign --faults nan_measurement --for-s inf --every-s 5 --tracks oval --cars udacity";
+  const Outcome guarded = chicane_program(trials + " --json");
+  EXPECT_EQ(guarded.code, 0) << guarded.out;
+  const Json row = Json::parse(guarded.out)["rows"][0];
+  EXPECT_EQ(row["off_road"], 0);
+  EXPECT_EQ(row["standing"], row["trials"]);
+  EXPECT_TRUE(row["for_s"].is_null()) << "it lasts";
+  const Outcome unguarded = chicane_program(trials + " --set guard.mode=off");
+  EXPECT_EQ(unguarded.code, 1);
+  const std::size_t command = unguarded.out.find("chicane drive");
+  ASSERT_NE(command, std::string::npos);
+  const std::string again =
+      unguarded.out.substr(command + 8, unguarded.out.find('\n', command) - command - 8);
+  const Outcome repeated = chicane_program(again + " --json");
+  EXPECT_GT(Json::parse(repeated.out)["off_track_events"], 0) << again;
+}
+
+TEST(Cli, ACampaignRefusesWhatIsNoFault) {
+  const Outcome outcome = chicane_program("campaign --faults link_lots --tracks oval --cars udacity");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("did you mean link_lost?"));
+  EXPECT_EQ(chicane_program("campaign --for-s 0").code, 2);
+  EXPECT_EQ(chicane_program("campaign --tracks nowhere").code, 2);
+}
+
 TEST(Cli, CheckAcceptsWhatShips) {
   const Outcome outcome = chicane_program("check presets/*.yaml cars/*.yaml scenarios/*.yaml tracks/*.csv");
   EXPECT_EQ(outcome.code, 0) << outcome.err;

@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
 /// told and cannot find out in time. Measured worst plus a fifth; docs/faults.md has the figures and says
 /// why.
 double beyond_edge(std::string_view fault, std::string_view driver) {
-  if (fault == "half_grip" && driver == "tracking_road") return 2.2;
+  if (fault == "half_grip" && driver == "tracking_road") return 3.7;  // the guard believes in the full grip, too
   if (fault == "half_grip" && driver == "cubic_road") return 9.0;
   if (fault == "delay_doubled" && driver == "cubic_road") return 16.0;
   return 0.0;

@@ -8,7 +8,8 @@ namespace {
 
 /// `preset` on the lakeside with 100 ms, its own compensation replaced by `handling`.
 telemetry::RunSummary with_handling(const char* preset, const char* handling, const Settings& more = {}) {
-  Settings settings{{"preset", preset},    {"track", "lakeside"},   {"laps", "2"},
+  Settings settings{{"guard.mode", "off"},  // what the controller does by itself
+                    {"preset", preset},    {"track", "lakeside"},   {"laps", "2"},
                     {"latency_ms", "100"}, {"time_limit_s", "200"}, {"cubic_mpc.latency_handling", handling}};
   settings.insert(settings.end(), more.begin(), more.end());
   return drive(settings);

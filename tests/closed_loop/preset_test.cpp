@@ -33,8 +33,11 @@ void expect_clean_laps(const telemetry::RunSummary& run) {
 
 TEST(Presets, LapTheLakesideCleanlyAtTheSpeedTheyClaim) {
   for (const Claim& claim : kClaims) {
-    const auto run =
-        drive({{"preset", claim.preset}, {"track", "lakeside"}, {"laps", "3"}, {"latency_ms", "100"}});
+    const auto run = drive({{"guard.mode", "off"},
+                            {"preset", claim.preset},
+                            {"track", "lakeside"},
+                            {"laps", "3"},
+                            {"latency_ms", "100"}});
     expect_clean_laps(run);
     EXPECT_GE(top_mph(run), claim.low_mph) << claim.preset;
     EXPECT_LE(top_mph(run), claim.high_mph) << claim.preset;
@@ -44,8 +47,11 @@ TEST(Presets, LapTheLakesideCleanlyAtTheSpeedTheyClaim) {
 TEST(Presets, LapTheOriginalLakeCleanlyAtTheSpeedTheyClaim) {
   if (!std::filesystem::exists(kOriginalLake)) GTEST_SKIP() << "no " << kOriginalLake;
   for (const Claim& claim : kClaims) {
-    const auto run =
-        drive({{"preset", claim.preset}, {"track", kOriginalLake}, {"laps", "3"}, {"latency_ms", "100"}});
+    const auto run = drive({{"guard.mode", "off"},
+                            {"preset", claim.preset},
+                            {"track", kOriginalLake},
+                            {"laps", "3"},
+                            {"latency_ms", "100"}});
     expect_clean_laps(run);
     EXPECT_GE(top_mph(run), claim.low_mph) << claim.preset;
     EXPECT_LE(top_mph(run), claim.high_mph) << claim.preset;
@@ -59,7 +65,8 @@ TEST(Presets, StayOnTheRoadWhenTheAnswerIsLateOrSlow) {
        {"measured-latency", "fast-short-step", "sixty-mph", "weighted", "delay-in-model"}) {
     for (const auto& [latency, period] :
          {std::pair{"100", "100"}, {"110", "130"}, {"120", "140"}, {"100", "150"}}) {
-      const auto run = drive({{"preset", preset},
+      const auto run = drive({{"guard.mode", "off"},
+                              {"preset", preset},
                               {"track", "lakeside"},
                               {"laps", "2"},
                               {"latency_ms", latency},
@@ -71,7 +78,8 @@ TEST(Presets, StayOnTheRoadWhenTheAnswerIsLateOrSlow) {
 }
 
 TEST(Presets, MeasuredLatencyWorksToFifty) {
-  const auto run = drive({{"preset", "measured-latency"},
+  const auto run = drive({{"guard.mode", "off"},
+                          {"preset", "measured-latency"},
                           {"track", "lakeside"},
                           {"laps", "2"},
                           {"cubic_mpc.speed_reference_mps", "22.352"}});
@@ -80,8 +88,10 @@ TEST(Presets, MeasuredLatencyWorksToFifty) {
 }
 
 TEST(Presets, FastShortStepTakesItsSpeedFromTheWeightOnAcceleration) {
-  const auto slow = drive({{"preset", "fast-short-step"}, {"track", "lakeside"}, {"laps", "2"}});
-  const auto fast = drive({{"preset", "fast-short-step"},
+  const auto slow =
+      drive({{"guard.mode", "off"}, {"preset", "fast-short-step"}, {"track", "lakeside"}, {"laps", "2"}});
+  const auto fast = drive({{"guard.mode", "off"},
+                           {"preset", "fast-short-step"},
                            {"track", "lakeside"},
                            {"laps", "2"},
                            {"cubic_mpc.weight_throttle", "48"}});
@@ -91,10 +101,12 @@ TEST(Presets, FastShortStepTakesItsSpeedFromTheWeightOnAcceleration) {
 }
 
 TEST(Presets, WeightedSlowsInCurvesAndDelayInModelForThem) {
-  const auto weighted = drive({{"preset", "weighted"}, {"track", "lakeside"}, {"laps", "2"}});
+  const auto weighted =
+      drive({{"guard.mode", "off"}, {"preset", "weighted"}, {"track", "lakeside"}, {"laps", "2"}});
   ASSERT_EQ(weighted.laps.size(), 2U);
   EXPECT_LT(weighted.laps[1].mean_speed, 0.95 * weighted.laps[1].top_speed);
-  const auto delayed = drive({{"preset", "delay-in-model"}, {"track", "lakeside"}, {"laps", "2"}});
+  const auto delayed =
+      drive({{"guard.mode", "off"}, {"preset", "delay-in-model"}, {"track", "lakeside"}, {"laps", "2"}});
   ASSERT_EQ(delayed.laps.size(), 2U);
   EXPECT_LT(delayed.laps[1].mean_speed, 0.9 * delayed.laps[1].top_speed);
 }

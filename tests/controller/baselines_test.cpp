@@ -132,24 +132,6 @@ TEST(Baselines, AnswerAlsoWithoutAUsableMeasurement) {
   }
 }
 
-TEST(Baselines, DoNotBelieveASensorThatJumps) {
-  for (const auto& controller : all_baselines()) {
-    model::Measurement now = on_a_straight(0.0, 0.0, 10.0);
-    const double steer = controller->step(now, Deadline::never()).command.steer;
-    now.time += 0.05;
-    now.x += 0.5;
-    now.y += 5.0;
-    const StepResult& result = controller->step(now, Deadline::never());
-    EXPECT_NE(result.report.rung, Rung::kController) << controller->name();
-    EXPECT_EQ(result.command.steer, steer);
-    EXPECT_LT(result.command.throttle, 0.0);
-    now.time += 0.05;
-    now.x += 0.5;
-    now.y -= 5.0;
-    EXPECT_EQ(controller->step(now, Deadline::never()).report.rung, Rung::kController);
-  }
-}
-
 TEST(Baselines, RefuseOptionsOutOfRangeByName) {
   PidOptions pid;
   pid.integral_gain = -1.0;

@@ -85,5 +85,44 @@ TEST(PredictionModel, MirrorsLeftAndRightExactly) {
   EXPECT_EQ(left.steer, -right.steer);
 }
 
+TEST(PredictionModel, SteersForTheYawAccelerationAskedFor) {
+  for (const VehicleParams& car : {udacity_params(), road_car_params()}) {
+    const PredictionModel model(car);
+    for (const double wanted : {-1.0, -0.2, 0.0, 0.5, 1.0}) {
+      BodyMotion<double> m{.vx = 20.0, .vy = -0.1, .r = 0.1, .steer = 0.0, .acceleration = -2.0};
+      for (int i = 0; i < 20; ++i)
+        m.steer = model.steer_for(m, wanted);  // its stiffness is that of the wheel now
+      constexpr double kShort = 1e-5;
+      BodyMotion<double> to = model.advance(m, m.steer, m.acceleration, kShort);
+      model.add_front_force(to, kShort);
+      EXPECT_NEAR((to.r - m.r) / kShort, wanted, 0.05) << car.name;
+      // Its mirror image asks for the mirrored wheel.
+      EXPECT_NEAR(model.steer_for({20.0, 0.1, -0.1, -m.steer, -2.0}, -wanted), -model.steer_for(m, wanted),
+                  1e-12);
+    }
+  }
+}
+
+TEST(PredictionModel, IsLessStableTheFasterAndTheHarderItBrakes) {
+  const PredictionModel model(road_car_params());
+  EXPECT_GT(model.stability(20.0, 3.0), model.stability(40.0, 3.0));
+  EXPECT_GT(model.stability(40.0, 3.0), model.stability(40.0, 7.0));
+  EXPECT_LT(model.stability(45.0, 8.0), 1.0) << "the rear is unloaded";
+  EXPECT_EQ(model.stability(20.0, 0.0), std::numeric_limits<double>::infinity()) << "it understeers";
+}
+
+TEST(PredictionModel, TurnsLessWhileItsFrontWheelsBrake) {
+  const PredictionModel model(udacity_params());
+  for (const double side : {1.0, -1.0}) {
+    BodyMotion<double> m{.vx = 25.0, .vy = 0.0, .r = 0.5 * side, .steer = 0.1 * side, .acceleration = -8.0};
+    const double before = m.r;
+    model.add_front_force(m, 0.01);
+    EXPECT_LT(std::fabs(m.r), std::fabs(before));
+    BodyMotion<double> coasting{.vx = 25.0, .vy = 0.0, .r = 0.5, .steer = 0.1, .acceleration = 1.0};
+    model.add_front_force(coasting, 0.01);
+    EXPECT_EQ(coasting.r, 0.5) << "drive is not braking";
+  }
+}
+
 }  // namespace
 }  // namespace chicane::model

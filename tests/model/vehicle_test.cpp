@@ -47,10 +47,28 @@ TEST(LongitudinalLaw, IsTheDocumentedOne) {
   VehicleParams car = udacity_params();
   EXPECT_NEAR(longitudinal_acceleration(car, 1.0, 20.0), car.drive_acceleration - car.drag_linear * 20.0,
               1e-12);
-  EXPECT_NEAR(longitudinal_acceleration(car, -0.02, 0.0), -0.02 * car.brake_acceleration, 1e-12);
+  EXPECT_NEAR(longitudinal_acceleration(car, -0.02, 10.0),
+              -0.02 * car.brake_acceleration - car.drag_linear * 10.0, 1e-12);
+  EXPECT_EQ(longitudinal_acceleration(car, -1.0, 10.0),
+            longitudinal_acceleration(car, -car.brake_throttle_limit, 10.0))
+      << "locked wheels brake no harder";
+  EXPECT_NEAR(longitudinal_acceleration(car, -0.5, 0.0), -0.5 * car.reverse_acceleration, 1e-12)
+      << "the reverse gear";
+  EXPECT_EQ(lowest_throttle(car, 1.0), -1.0);
+  EXPECT_EQ(lowest_throttle(car, 10.0), -car.brake_throttle_limit);
   EXPECT_EQ(longitudinal_acceleration(car, 7.0, 5.0), longitudinal_acceleration(car, 1.0, 5.0));
   car.drive_power_per_mass = 40.0;
   EXPECT_NEAR(longitudinal_acceleration(car, 1.0, 20.0), 2.0 - car.drag_linear * 20.0, 1e-12);
+}
+
+TEST(Vehicle, BrakesWithTyresOfItsOwn) {
+  VehicleParams car = udacity_params();
+  car.braking_friction = 2.0;
+  car.braking_turn = 0.5;
+  const VehicleParams braking = while_braking(car);
+  EXPECT_EQ(braking.friction, 2.0 * car.friction);
+  EXPECT_NEAR(1.0 - braking.steer_helper, 0.5 * (1.0 - car.steer_helper), 1e-12);
+  EXPECT_EQ(braking.mass, car.mass);
 }
 
 TEST(LongitudinalLaw, ThrottleForIsItsInverse) {

@@ -197,7 +197,9 @@ TEST(Schema, OnlyWhatMakesTheRunAnotherOneIsNotLive) {
     if (!is_live(parameter)) not_live.push_back(parameter.key);
   }
   EXPECT_EQ(not_live, (std::vector<std::string_view>{"preset", "track", "car", "plant", "controller", "seed",
-                                                     "control_period_ms", "waypoints_sent", "vehicle.name"}));
+                                                     "control_period_ms", "waypoints_sent", "vehicle.name",
+                                                     "guard.mode", "guard.road", "guard.half_width_m",
+                                                     "guard.receiver", "guard.margin_m"}));
 }
 
 TEST(Schema, SuggestsWhatWasMeant) {

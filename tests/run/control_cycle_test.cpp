@@ -24,7 +24,7 @@ TEST(ControlCycle, DoesOutsideTheLoopWhatItDoesInside) {
   for (const char* preset : {"default", "weighted", "pid"}) {
     const scenario::Scenario scenario = scenario_of(preset);
     const auto loop = std::move(*ClosedLoop::create(scenario));
-    ControlCycle alone(std::move(*make_controller(scenario)), scenario.vehicle);
+    ControlCycle alone(std::move(*make_controller(scenario)), scenario, &loop->track());
     const auto frame = std::make_unique<telemetry::Frame>();
     while (loop->time() < 20.0) {
       if (!loop->advance()) continue;
@@ -41,7 +41,7 @@ TEST(ControlCycle, DoesOutsideTheLoopWhatItDoesInside) {
 
 TEST(ControlCycle, CountsItsCyclesAndSaysWhereARunBegins) {
   const scenario::Scenario scenario = scenario_of("pid");
-  ControlCycle cycle(std::move(*make_controller(scenario)), scenario.vehicle);
+  ControlCycle cycle(std::move(*make_controller(scenario)), scenario, nullptr);
   const auto frame = std::make_unique<telemetry::Frame>();
   const auto step = [&] { cycle.step({.interval = 0.04}, *frame); };
   step();
@@ -57,10 +57,10 @@ TEST(ControlCycle, CountsItsCyclesAndSaysWhereARunBegins) {
   EXPECT_EQ(frame->cycle, 40U);
 }
 
-TEST(ControlCycle, AsksTheLadderWhenNothingWasMeasured) {
+TEST(ControlCycle, StopsWhenNothingIsMeasured) {
   const scenario::Scenario scenario = scenario_of("default");
   const auto loop = std::move(*ClosedLoop::create(scenario));
-  ControlCycle cycle(std::move(*make_controller(scenario)), scenario.vehicle);
+  ControlCycle cycle(std::move(*make_controller(scenario)), scenario, &loop->track());
   const auto frame = std::make_unique<telemetry::Frame>();
   while (loop->time() < 20.0) {
     if (!loop->advance()) continue;
@@ -84,7 +84,7 @@ TEST(ControlCycle, AsksTheLadderWhenNothingWasMeasured) {
 
 TEST(ControlCycle, SendsWhatAPersonWants) {
   const scenario::Scenario scenario = scenario_of("pid");
-  ControlCycle cycle(std::move(*make_controller(scenario)), scenario.vehicle);
+  ControlCycle cycle(std::move(*make_controller(scenario)), scenario, nullptr);
   const auto frame = std::make_unique<telemetry::Frame>();
   cycle.step({.manual = model::Command{.steer = 0.1, .throttle = 0.3}}, *frame);
   EXPECT_TRUE(frame->is_manual);
@@ -94,7 +94,7 @@ TEST(ControlCycle, SendsWhatAPersonWants) {
 
 TEST(ControlCycle, AllocatesNothing) {
   const scenario::Scenario scenario = scenario_of("default");
-  ControlCycle cycle(std::move(*make_controller(scenario)), scenario.vehicle);
+  ControlCycle cycle(std::move(*make_controller(scenario)), scenario, nullptr);
   const auto frame = std::make_unique<telemetry::Frame>();
   frame->measurement.waypoint_count = 6;
   for (int i = 0; i < 6; ++i) frame->measurement.waypoints[static_cast<std::size_t>(i)] = {12.0 * i, 0.0};

@@ -3,84 +3,179 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
+#include "chicane/base/random.hpp"
+
 namespace chicane::safety {
 namespace {
 
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kCycle = 0.04;  // [s]
+
 /// Straight on along x at 20 m/s, measured each 40 ms.
-model::Measurement at(int cycle) {
+model::Measurement at(int cycle, double speed = 20.0) {
   model::Measurement now;
-  now.time = 0.04 * cycle;
-  now.x = 20.0 * now.time;
-  now.speed = 20.0;
+  now.time = kCycle * cycle;
+  now.x = speed * now.time;
+  now.speed = speed;
   now.waypoint_count = 6;
   return now;
 }
 
-bool is_accepted(MeasurementMonitor& monitor, const model::Measurement& now) {
-  const model::Measurement& checked = monitor.check(now);
-  EXPECT_EQ(checked.time, now.time);
+/// What a perfect estimator expects of the same car.
+model::State expected(int cycle, double speed = 20.0) {
+  return {.x = speed * kCycle * cycle, .y = 0.0, .psi = 0.0, .vx = speed};
+}
+
+const Findings& look(MeasurementMonitor& monitor, const model::Measurement& now, const model::State& state) {
+  const model::Measurement& checked = monitor.check(now, &state);
   EXPECT_EQ(checked.waypoint_count, now.waypoint_count);
-  return std::isfinite(checked.x) && std::isfinite(checked.speed);
+  return monitor.findings();
+}
+
+bool is_plausible(const Findings& f) {
+  return !f.unmeasured && !f.frozen && !f.speed_mismatch && !f.heading_jump && !f.position_jump;
 }
 
 TEST(MeasurementMonitor, AcceptsACarThatDrivesBrakesAndTurns) {
   MeasurementMonitor monitor;
-  for (int i = 0; i < 100; ++i) {
+  double x = 0.0;
+  double y = 0.0;
+  for (int i = 0; i < 50; ++i) {
     model::Measurement now = at(i);
-    now.y = 0.5 * 9.0 * now.time * now.time;  // 0.9 g sideways
-    now.speed = std::max(0.0, 20.0 - 9.0 * now.time);
-    EXPECT_EQ(is_accepted(monitor, now), true) << i;
-    if (now.time > 1.0) break;
+    now.speed = 20.0 - 9.0 * now.time;
+    now.psi = 0.5 * now.time;
+    now.x = x;
+    now.y = y;
+    const model::State state{.x = x, .y = y, .psi = now.psi, .vx = now.speed};
+    EXPECT_TRUE(is_plausible(look(monitor, now, state))) << i;
+    x += kCycle * now.speed * std::cos(now.psi);
+    y += kCycle * now.speed * std::sin(now.psi);
   }
 }
 
 TEST(MeasurementMonitor, AcceptsACarThatStands) {
   MeasurementMonitor monitor;
-  model::Measurement standing;
   for (int i = 0; i < 100; ++i) {
-    standing.time = 0.04 * i;
-    EXPECT_TRUE(is_accepted(monitor, standing));
+    model::Measurement standing;
+    standing.time = kCycle * i;
+    EXPECT_TRUE(is_plausible(look(monitor, standing, {})));
   }
+}
+
+TEST(MeasurementMonitor, AcceptsTheNoiseOfAGoodReceiver) {
+  MeasurementMonitor monitor;
+  Random random(3);
+  for (int i = 0; i < 20000; ++i) {
+    model::Measurement now = at(i);
+    now.x += 0.5 * random.normal();
+    now.y += 0.5 * random.normal();
+    now.psi += 0.017 * random.normal();
+    now.speed += 0.3 * random.normal();
+    ASSERT_TRUE(is_plausible(look(monitor, now, expected(i)))) << i;
+  }
+}
+
+TEST(MeasurementMonitor, SaysWhatIsNotMeasured) {
+  MeasurementMonitor monitor;
+  EXPECT_TRUE(is_plausible(look(monitor, at(0), expected(0))));
+  for (double model::Measurement::*field : {&model::Measurement::x, &model::Measurement::y,
+                                            &model::Measurement::psi, &model::Measurement::speed}) {
+    model::Measurement now = at(1);
+    now.*field = kNaN;
+    EXPECT_TRUE(look(monitor, now, expected(1)).unmeasured);
+  }
+  EXPECT_TRUE(look(monitor, at(0), expected(0)).unmeasured) << "time ran backwards";
 }
 
 TEST(MeasurementMonitor, FindsAFrozenSensorInACarThatMoves) {
   MeasurementMonitor monitor;
-  for (int i = 0; i < 10; ++i) EXPECT_TRUE(is_accepted(monitor, at(i)));
-  model::Measurement frozen = at(9);
-  frozen.time = 0.04 * 10;
-  EXPECT_FALSE(is_accepted(monitor, frozen)) << "0.8 m should have been driven";
-  frozen.time = 0.04 * 20;
-  EXPECT_FALSE(is_accepted(monitor, frozen));
-  EXPECT_TRUE(is_accepted(monitor, at(21))) << "the jump from the frozen place is no jump of the car";
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(is_plausible(look(monitor, at(i), expected(i))));
+  for (int i = 10; i < 200; ++i) {
+    model::Measurement frozen = at(9);
+    frozen.time = kCycle * i;
+    EXPECT_TRUE(look(monitor, frozen, expected(i)).frozen)
+        << "0.8 m should have been driven; it never ends by itself";
+    EXPECT_TRUE(std::isnan(monitor.check(frozen, nullptr).x)) << i;
+  }
 }
 
-TEST(MeasurementMonitor, DisbelievesAJumpUntilItJumpsBackOrLasts) {
-  MeasurementMonitor monitor;
-  const auto jumped = [](int cycle) {
-    model::Measurement now = at(cycle);
-    now.y += 5.0;
-    return now;
-  };
-  for (int i = 0; i < 10; ++i) EXPECT_TRUE(is_accepted(monitor, at(i)));
-  for (int i = 10; i < 20; ++i) EXPECT_FALSE(is_accepted(monitor, jumped(i))) << i;
-  for (int i = 20; i < 30; ++i) EXPECT_TRUE(is_accepted(monitor, at(i))) << i;
-  int believed_after = 0;
-  for (int i = 30; i < 90 && believed_after == 0; ++i) {
-    if (is_accepted(monitor, jumped(i))) believed_after = i - 30;
+TEST(MeasurementMonitor, DisbelievesAJumpHoweverLongItLasts) {
+  for (const double side : {5.0, -5.0}) {
+    MeasurementMonitor monitor;
+    for (int i = 0; i < 10; ++i) EXPECT_TRUE(is_plausible(look(monitor, at(i), expected(i))));
+    for (int i = 10; i < 150; ++i) {  // 112 m: a stop from any speed here
+      model::Measurement jumped = at(i);
+      jumped.y += side;
+      EXPECT_TRUE(look(monitor, jumped, expected(i)).position_jump) << i;
+      const model::State there = expected(i);
+      const model::Measurement& checked = monitor.check(jumped, &there);
+      EXPECT_TRUE(std::isnan(checked.x + checked.y));
+    }
+    EXPECT_TRUE(is_plausible(look(monitor, at(151), expected(151)))) << "it agrees again";
   }
-  EXPECT_NEAR(0.04 * believed_after, MeasurementMonitor::kPatience, 0.1);
+}
+
+TEST(MeasurementMonitor, KeepsWhatIsPlausibleBesideAJump) {
+  MeasurementMonitor monitor;
+  for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
+  model::Measurement jumped = at(10);
+  jumped.y += 5.0;
+  const model::State there = expected(10);
+  const model::Measurement& checked = monitor.check(jumped, &there);
+  EXPECT_EQ(checked.speed, 20.0);
+  EXPECT_EQ(checked.psi, 0.0);
 }
 
 TEST(MeasurementMonitor, DisbelievesASpeedThatNoBrakingExplains) {
   MeasurementMonitor monitor;
-  for (int i = 0; i < 10; ++i) EXPECT_TRUE(is_accepted(monitor, at(i)));
-  for (int i = 10; i < 20; ++i) {
-    model::Measurement zero = at(i);
-    zero.speed = 0.0;
-    // The place cannot tell: where a car of no speed is expected, ours is 0.8 m further, less than a jump.
-    EXPECT_FALSE(is_accepted(monitor, zero)) << i;
+  for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
+  model::Measurement zero = at(10);
+  zero.speed = 0.0;
+  EXPECT_TRUE(look(monitor, zero, expected(10)).speed_mismatch);
+  zero.time += kCycle;
+  EXPECT_TRUE(look(monitor, zero, {.x = zero.x, .vx = 0.5}).speed_mismatch)
+      << "a zero does not become true because the car has come to rest";
+  EXPECT_FALSE(look(monitor, at(12), expected(12)).speed_mismatch);
+}
+
+TEST(MeasurementMonitor, FindsASpeedInAnotherUnitByTheDisplacement) {
+  MeasurementMonitor monitor;
+  int found_at = 0;
+  for (int i = 0; i < 100 && found_at == 0; ++i) {
+    model::Measurement now = at(i);
+    now.speed *= 2.236936;  // mph told as m/s, from the first message on: the expectation believes it
+    model::State state = expected(i);
+    state.vx = now.speed;
+    if (look(monitor, now, state).speed_mismatch) found_at = i;
   }
-  EXPECT_TRUE(is_accepted(monitor, at(20)));
+  EXPECT_GT(found_at, 0);
+  EXPECT_LT(kCycle * found_at, 0.5);
+}
+
+TEST(MeasurementMonitor, DisbelievesAYawThatNoCarTurnsTo) {
+  MeasurementMonitor monitor;
+  for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
+  model::Measurement turned = at(10);
+  turned.psi = -0.6;
+  EXPECT_TRUE(look(monitor, turned, expected(10)).heading_jump);
+  turned.psi = 6.283185307 - 0.05;
+  EXPECT_FALSE(look(monitor, turned, expected(10)).heading_jump) << "angles wrap";
+}
+
+TEST(MeasurementMonitor, RecognisesAResetOfTheSimulator) {
+  MeasurementMonitor monitor;
+  for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
+  bool is_reset = false;
+  for (int i = 10; i < 30 && !is_reset; ++i) {
+    model::Measurement start;
+    start.time = kCycle * i;
+    start.x = -200.0;
+    is_reset = look(monitor, start, expected(10)).is_reset;
+  }
+  EXPECT_TRUE(is_reset) << "it jumped, and stands";
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace chicane::test {
 class Guarded {
  public:
   Guarded(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle)
-      : guard_{std::move(controller), vehicle} {}
+      : guard_{std::move(controller), vehicle, {.mode = safety::GuardMode::kOff}} {}
   const controller::StepResult& step(const model::Measurement& now, Deadline deadline) {
     static_cast<void>(guard_.step(now, deadline, {}, result_));
     return result_;

@@ -81,8 +81,9 @@ void StateEstimator::advance(model::State& state, double& acceleration, double f
     const double reach = p.steer_rate_limit * dt;
     const double steer = std::clamp(command.steer, state.steer - reach, state.steer + reach);
     const double asked = longitudinal_acceleration(p, command.throttle, state.vx);
-    const model::BodyMotion<double> body =
+    model::BodyMotion<double> body =
         model_.advance({state.vx, state.vy, state.r, state.steer, acceleration}, steer, asked, dt, lags);
+    if (has_front_force_) model_.add_front_force(body, dt);
     const double psi = state.psi + 0.5 * dt * (state.r + body.r);
     const double mean_psi = 0.5 * (state.psi + psi);
     const double vx = 0.5 * (state.vx + body.vx);
@@ -105,6 +106,7 @@ void StateEstimator::correct(const model::Measurement& now, const CommandHistory
     if (is_started_ && elapsed > 0.0 && elapsed < kLongestGap) {
       advance(state_, acceleration_, time_, now.time, sent);
       time_ = now.time;
+      take_part(now, elapsed);
     }
     return;
   }
@@ -152,6 +154,29 @@ void StateEstimator::take_over(const model::Measurement& now, double dx, double 
   state_.vy += slide * (dy * cos(state_.psi) - dx * sin(state_.psi)) / unseen;
   state_.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state_.vy * state_.vy));
   time_ = measured_ = now.time;
+}
+
+/// Of a measurement that lacks something: what it has, with the gains of a model that is a little wrong.
+/// Where the speed is missing, the place says how fast the car is.
+void StateEstimator::take_part(const model::Measurement& now, double elapsed) noexcept {
+  const bool has_place = std::isfinite(now.x) && std::isfinite(now.y);
+  const bool has_speed = std::isfinite(now.speed);
+  if (std::isfinite(now.psi)) {
+    const double dpsi = angle_difference(now.psi, state_.psi);
+    state_.psi += InnovationGains::kMostPosition * dpsi;
+    state_.r += InnovationGains::kMostVelocity * dpsi / elapsed;
+  }
+  if (has_place && std::isfinite(now.psi)) {
+    const double dx = now.x - state_.x;
+    const double dy = now.y - state_.y;
+    const double along = dx * cos(state_.psi) + dy * sin(state_.psi);
+    const double aside = dy * cos(state_.psi) - dx * sin(state_.psi);
+    state_.x += InnovationGains::kMostPosition * dx;
+    state_.y += InnovationGains::kMostPosition * dy;
+    state_.vy += kMostSlideGain * aside / elapsed;
+    if (!has_speed) state_.vx = std::max(0.0, state_.vx + InnovationGains::kMostVelocity * along / elapsed);
+  }
+  if (has_speed) state_.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state_.vy * state_.vy));
 }
 
 StateEstimator::Prediction StateEstimator::predict(double time, const CommandHistory& sent) const noexcept {

@@ -71,7 +71,10 @@ class InnovationGains {
 /// does not hold, come from here.
 class StateEstimator {
  public:
-  explicit StateEstimator(const model::PredictionModel& model) noexcept : model_{model} {}
+  /// `has_front_force`: the model's add_front_force() is part of the motion (a car that brakes hard in a
+  /// bend).
+  explicit StateEstimator(const model::PredictionModel& model, bool has_front_force = false) noexcept
+      : model_{model}, has_front_force_{has_front_force} {}
   void reset() noexcept {
     is_started_ = false;
     place_gains_.reset();
@@ -80,7 +83,7 @@ class StateEstimator {
   /// Another model from now on; the estimate stays.
   void set_model(const model::PredictionModel& model) noexcept { model_ = model; }
 
-  /// Takes in a measurement. Afterwards state() is the estimate at now.time; one that is not finite is
+  /// Takes in a measurement. Afterwards state() is the estimate at now.time; what of it is not finite is
   /// replaced by what the model expects.
   void correct(const model::Measurement& now, const CommandHistory& sent) noexcept;
   [[nodiscard]] const model::State& state() const noexcept { return state_; }
@@ -100,10 +103,12 @@ class StateEstimator {
   static constexpr double kYawAcceleration = 1.0;    ///< [rad/s²]
 
   void take_over(const model::Measurement& now, double dx, double dy, double dpsi, double elapsed) noexcept;
+  void take_part(const model::Measurement& now, double elapsed) noexcept;
   void advance(model::State& state, double& acceleration, double from, double to,
                const CommandHistory& sent) const noexcept;
 
   model::PredictionModel model_;
+  bool has_front_force_;
   InnovationGains place_gains_{kPlaceAcceleration};
   InnovationGains heading_gains_{kYawAcceleration};
   bool is_started_ = false;

@@ -31,8 +31,23 @@ enum class Rung : signed char {
   kBrake = 3,         ///< the same steering, all useful braking
   kReturnToRoad = 4,  ///< the controller's own: Answer::kReturnToRoad
   kStopOnRoad = 5,    ///< the controller's own: Answer::kStopOnRoad
+  kGuardStop = 6,     ///< the guard's verified stop on the known road (safety/stop_planner.hpp)
 };
-inline constexpr int kRungCount = 6;
+inline constexpr int kRungCount = 7;
+
+/// Why the guard did not send the controller's answer, or would not have (docs/safety.md, table of
+/// conditions). The worst one holds: later ones win.
+enum class GuardReason : signed char {
+  kNone = 0,
+  kNoAnswer = 1,       ///< the controller had none
+  kNotMeasured = 2,    ///< position, yaw or speed unknown for longer than is tolerated
+  kFrozen = 3,         ///< measurements repeat although the car moves
+  kSpeedMismatch = 4,  ///< measured speed and measured displacement contradict each other
+  kHeadingJump = 5,    ///< measured yaw changed as no car turns
+  kPositionJump = 6,   ///< measured position changed as no car moves
+  kNoWayToStop = 7,    ///< after the answer the car could not be stopped on the road any more
+};
+inline constexpr int kGuardReasonCount = 8;
 
 /// How one step went.
 struct StepReport {
@@ -50,7 +65,11 @@ struct StepReport {
 
   // The guard's word, not the controller's.
   Rung rung = Rung::kController;
-  bool gated = false;  ///< the command gate had to change the command
+  bool gated = false;                       ///< the command gate had to change the command
+  GuardReason reason = GuardReason::kNone;  ///< with mode `observe` also where nothing was done about it
+  double stop_edge = std::numeric_limits<double>::quiet_NaN();  ///< of the stop at hand: least distance of a
+                                                                ///< tyre to the known edge [m]
+  double stop_distance = std::numeric_limits<double>::quiet_NaN();  ///< and its length [m]; NaN: none at hand
 };
 
 struct StepResult {

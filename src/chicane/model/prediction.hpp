@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <limits>
+
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/model/vehicle.hpp"
@@ -100,12 +102,50 @@ class PredictionModel {
     return to;
   }
 
+  /// What the braking force of the steered front wheels adds over dt [s]: it points along the wheels, not
+  /// along the car. Left out of advance(), where it matters little.
+  void add_front_force(BodyMotion<double>& to, double dt) const noexcept {
+    const double sideways = dt * front_force(to);
+    to.vy += sideways;
+    to.r += vehicle_.mass / vehicle_.yaw_inertia * vehicle_.front_axle * sideways;
+  }
+
   /// Normalised lateral tyre use, front and rear: cornering · slip / friction. 1 is where the linear tyre
   /// would reach its peak; larger means sliding.
   template <class T>
   [[nodiscard]] CHICANE_INLINE inline std::array<T, 2> tire_use(const BodyMotion<T>& motion) const noexcept {
     const Tires<T> tires = tire_state(motion, motion.steer);
     return {tires.use_front, tires.use_rear};
+  }
+
+  /// Static stability at speed v [m/s] and deceleration `a` [m/s²]: k_f k_r L² over v² (a k_f − b k_r), where
+  /// load transfer has changed the stiffnesses. Below 1 the car turns away from its path by itself; infinite
+  /// where it understeers.
+  [[nodiscard]] double stability(double v, double a) const noexcept {
+    const model::VehicleParams& p = vehicle_;
+    const double transfer = p.height / kGravity * a * kSlopeFollowsLoad;
+    const double share = load(v) / p.wheelbase();
+    const double front = p.rear_axle * share * p.cornering_front * (1.0 + transfer / p.rear_axle);
+    const double rear = p.front_axle * share * p.cornering_rear * (1.0 - transfer / p.front_axle);
+    const double moment = (1.0 - p.steer_helper) * v * v * (p.front_axle * front - p.rear_axle * rear);
+    if (!(moment > 0.0)) return std::numeric_limits<double>::infinity();
+    return front * rear * p.wheelbase() * p.wheelbase() / moment;
+  }
+
+  /// The road-wheel angle at which the yaw rate begins to change by `yaw_acceleration` [rad/s²], lag apart;
+  /// no more slip than the front tyres' peak [rad].
+  [[nodiscard]] double steer_for(const BodyMotion<double>& m, double yaw_acceleration) const noexcept {
+    const model::VehicleParams& p = vehicle_;
+    const Tires<double> tires = tire_state(m, m.steer);
+    const double rear = tires.stiffness_rear * (p.rear_axle * m.r - m.vy) * tires.inverse_speed;
+    const double wanted =
+        (p.yaw_inertia / p.mass * yaw_acceleration + p.rear_axle * rear) / p.front_axle - front_force(m);
+    const double most = p.friction / p.cornering_front;
+    const double slip = wanted / tires.stiffness_front;
+    return (slip < -most  ? -most
+            : slip > most ? most
+                          : slip) +
+           (m.vy + p.front_axle * m.r) * tires.inverse_speed;
   }
 
   /// Normal acceleration carried by the tyres at speed v [m/s²].
@@ -115,6 +155,10 @@ class PredictionModel {
   [[nodiscard]] const model::VehicleParams& vehicle() const noexcept { return vehicle_; }
 
  private:
+  /// Sideways, per mass [m/s²].
+  [[nodiscard]] double front_force(const BodyMotion<double>& m) const noexcept {
+    return vehicle_.brake_share_front * (m.acceleration < 0.0 ? m.acceleration : 0.0) * m.steer;
+  }
   static constexpr double kGravity = 9.81;  ///< [m/s²]
   static constexpr double kLeastDeterminant = 0.2;
   static constexpr double kSpeedFloor =

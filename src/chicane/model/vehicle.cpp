@@ -57,6 +57,19 @@ constexpr std::array kOptions{
     option<&P::brake_throttle_limit>("brake_throttle_limit", unit::kNone, 0.001, 1,
                                      "Largest useful negative throttle; beyond it the wheels lock."),
     option<&P::drive_lag>("drive_lag", unit::kMillisecond, 0, 5000, "Time constant of drive and brake."),
+    option<&P::brake_share_front>("brake_share_front", unit::kNone, 0, 1, "Of the braking force."),
+    option<&P::braking_cornering_front>("braking_cornering_front", unit::kNone, 0.1, 10,
+                                        "cornering_front while braking hard, times this."),
+    option<&P::braking_cornering_rear>("braking_cornering_rear", unit::kNone, 0.1, 10,
+                                       "cornering_rear while braking hard, times this."),
+    option<&P::braking_friction>("braking_friction", unit::kNone, 0.1, 10,
+                                 "friction while braking hard, times this."),
+    option<&P::braking_turn>("braking_turn", unit::kNone, 0.1, 10,
+                             "What the helper leaves, 1 - steer_helper, while braking hard, times this."),
+    option<&P::reverse_speed>("reverse_speed", unit::kSpeed, 0, 10,
+                              "Below it a negative throttle is the reverse gear; 0 where it never is."),
+    option<&P::reverse_acceleration>("reverse_acceleration", unit::kAcceleration, 0.01, 100,
+                                     "For each unit of negative throttle then."),
 };
 
 /// Deceleration by drag [m/s²]; has the sign of v.
@@ -77,25 +90,55 @@ std::span<const Option> vehicle_options() noexcept { return kOptions; }
 
 Result<void> validate(const VehicleParams& params) { return check_options("vehicle", kOptions, &params); }
 
+double lowest_throttle(const VehicleParams& p, double v) noexcept {
+  return v < p.reverse_speed ? -1.0 : -p.brake_throttle_limit;
+}
+
 double longitudinal_acceleration(const VehicleParams& p, double throttle, double v) noexcept {
-  const double pedal = std::clamp(throttle, -1.0, 1.0);
+  const double pedal = std::clamp(throttle, lowest_throttle(p, v), 1.0);  // beyond it the wheels are locked
+  const double negative = v < p.reverse_speed ? p.reverse_acceleration : p.brake_acceleration;
   const double force =
-      pedal >= 0.0 ? std::min(p.drive_acceleration * pedal, drive_limit(p, v)) : p.brake_acceleration * pedal;
+      pedal >= 0.0 ? std::min(p.drive_acceleration * pedal, drive_limit(p, v)) : negative * pedal;
   return force - drag(p, v);
 }
 
 double throttle_for(const VehicleParams& p, double acceleration, double v) noexcept {
   const double force = acceleration + drag(p, v);
   if (std::isnan(force)) return 0.0;
-  if (force < 0.0) return std::max(force / p.brake_acceleration, -p.brake_throttle_limit);
+  if (force < 0.0) {
+    const double negative = v < p.reverse_speed ? p.reverse_acceleration : p.brake_acceleration;
+    return std::max(force / negative, lowest_throttle(p, v));
+  }
   return std::min(force / p.drive_acceleration, 1.0);
 }
 
-VehicleParams udacity_params() { return {}; }
+VehicleParams while_braking(const VehicleParams& params) noexcept {
+  VehicleParams p = params;
+  p.cornering_front *= p.braking_cornering_front;
+  p.cornering_rear *= p.braking_cornering_rear;
+  p.friction *= p.braking_friction;
+  p.steer_helper = 1.0 - p.braking_turn * (1.0 - p.steer_helper);
+  return p;
+}
+
+VehicleParams udacity_params() {
+  VehicleParams p;
+  p.brake_share_front = 0.35;
+  p.braking_cornering_front = 1.08;
+  p.braking_cornering_rear = 1.13;
+  p.braking_friction = 1.45;
+  p.braking_turn = 0.82;
+  return p;
+}
 
 VehicleParams road_car_params() {
   VehicleParams p;
   p.name = "road-car";
+  p.brake_share_front = 0.32;
+  p.braking_cornering_front = 0.74;
+  p.braking_cornering_rear = 0.726;
+  p.braking_friction = 1.107;
+  p.reverse_speed = 0.0;
   p.front_axle = 1.25;
   p.rear_axle = 1.45;
   p.track_width = 1.60;

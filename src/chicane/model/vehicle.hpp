@@ -48,7 +48,8 @@ struct VehicleParams {
       0.774;  ///< share of each yaw change by which the car turns its velocity along; 0 = a real car
 
   // Longitudinal: a = drive_acceleration · throttle − drag_linear · v − drag_quadratic · v² for throttle >=
-  // 0, and − brake_acceleration · |throttle| − drag for throttle < 0. Stated for v >= 0.
+  // 0, and − brake_acceleration · |throttle| − drag for throttle < 0 (reverse_acceleration below
+  // reverse_speed). Stated for v >= 0.
   double drive_acceleration = 5.43;  ///< at full throttle and rest [m/s²]
   double drive_power_per_mass =
       std::numeric_limits<double>::infinity();  ///< cap of drive acceleration · v [W/kg]
@@ -59,6 +60,18 @@ struct VehicleParams {
   double brake_throttle_limit =
       0.04;                ///< largest useful negative throttle: beyond it the wheels lock (1 = proportional)
   double drive_lag = 0.0;  ///< time constant of drive and brake [s]
+  double brake_share_front = 0.5;  ///< of the braking force: turned with the wheels, it acts sideways, too
+
+  // While it brakes hard: the values above times these, fitted to stops that are driven without any
+  // measurement.
+  double braking_cornering_front = 1.0;
+  double braking_cornering_rear = 1.0;
+  double braking_friction = 1.0;
+  double braking_turn = 1.0;  ///< times 1 − steer_helper
+
+  // The reverse gear.
+  double reverse_speed = 2.235;  ///< below it a negative throttle is the reverse gear [m/s]; 0: it never is
+  double reverse_acceleration = 1.63;  ///< per unit of negative throttle then [m/s²]
 
   [[nodiscard]] double wheelbase() const noexcept { return front_axle + rear_axle; }
 
@@ -77,9 +90,15 @@ struct VehicleParams {
 [[nodiscard]] double longitudinal_acceleration(const VehicleParams& params, double throttle,
                                                double v) noexcept;
 
-/// The throttle in [-brake_throttle_limit, 1] whose acceleration at speed v [m/s] is nearest to
+/// Lowest useful throttle at speed v [m/s]: -brake_throttle_limit, or -1 where it is the reverse gear.
+[[nodiscard]] double lowest_throttle(const VehicleParams& params, double v) noexcept;
+
+/// The throttle in [lowest_throttle, 1] whose acceleration at speed v [m/s] is nearest to
 /// `acceleration` [m/s²].
 [[nodiscard]] double throttle_for(const VehicleParams& params, double acceleration, double v) noexcept;
+
+/// The car while it brakes hard: its tyres and its helper as fitted to stops (docs/safety.md).
+[[nodiscard]] VehicleParams while_braking(const VehicleParams& params) noexcept;
 
 /// Models of the shipped plants, fitted to them by `chicane_plant_report` (docs/plants.md). The
 /// original simulator's car: the defaults above.

@@ -14,6 +14,7 @@
 namespace chicane::protocol {
 namespace {
 
+using controller::GuardReason;
 using controller::Rung;
 using controller::SpeedLimiter;
 using solver::SolveStatus;
@@ -137,8 +138,22 @@ constexpr std::array kRungs{
     constant("RUNG_BRAKE", Rung::kBrake, "the same steering, all useful braking"),
     constant("RUNG_RETURN_TO_ROAD", Rung::kReturnToRoad,
              "the controller finds back to the road at walking pace"),
+    constant("RUNG_GUARD_STOP", Rung::kGuardStop, "the guard stops the car on the known road"),
     constant("RUNG_STOP_ON_ROAD", Rung::kStopOnRoad,
              "the controller stops along the road, without a plan in time"),
+};
+
+constexpr std::array kGuardReasons{
+    constant("REASON_NONE", GuardReason::kNone, "nothing found"),
+    constant("REASON_NO_ANSWER", GuardReason::kNoAnswer, "the controller had no answer"),
+    constant("REASON_NOT_MEASURED", GuardReason::kNotMeasured, "nothing is measured"),
+    constant("REASON_FROZEN", GuardReason::kFrozen, "measurements repeat although the car moves"),
+    constant("REASON_SPEED_MISMATCH", GuardReason::kSpeedMismatch,
+             "measured speed and displacement contradict"),
+    constant("REASON_HEADING_JUMP", GuardReason::kHeadingJump, "the yaw changed as no car turns"),
+    constant("REASON_POSITION_JUMP", GuardReason::kPositionJump, "the place changed as no car moves"),
+    constant("REASON_NO_WAY_TO_STOP", GuardReason::kNoWayToStop,
+             "after the answer the car could not be stopped on the road"),
 };
 
 constexpr std::array kStatuses{
@@ -156,6 +171,13 @@ constexpr std::array kStep{
         "solve_status", "", [](const Frame& f) { return solve(f).status; }, kStatuses),
     field<bool>("is_gated", "the command gate had to change the command",
                 [](const Frame& f) { return report(f).gated; }),
+    field<std::uint8_t>(
+        "guard_reason", "", [](const Frame& f) { return report(f).reason; }, kGuardReasons),
+    field<double>("stop_edge_m",
+                  "of the stop at hand, least distance of a tyre to the known edge; NaN: no stop",
+                  [](const Frame& f) { return report(f).stop_edge; }),
+    field<double>("stop_distance_m", "of the stop at hand, to standstill; NaN: no stop",
+                  [](const Frame& f) { return report(f).stop_distance; }),
     field<bool>("has_map", "the lap is closed in the controller's memory",
                 [](const Frame& f) { return report(f).has_map; }),
     field<std::uint32_t>("iterations", "of the outer (SQP) loop",

@@ -275,8 +275,21 @@ struct Diagnosis {
   std::string_view message;
 };
 
+/// What the guard found, by controller::GuardReason.
+constexpr std::array<std::string_view, controller::kGuardReasonCount> kReasons{
+    "stopping on the road",
+    "stopping on the road: the controller has no answer",
+    "stopping on the road: nothing is measured",
+    "stopping on the road: measurements repeat although the car moves",
+    "stopping on the road: measured speed and measured place contradict each other",
+    "stopping on the road: the measured yaw jumped as no car turns",
+    "stopping on the road: the measured place jumped as no car moves",
+    "braking: the controller's command would leave no way to stop on the road"};
+
 Diagnosis diagnose_controller(const controller::StepReport& report) {
   switch (report.rung) {
+    case controller::Rung::kGuardStop:
+      return {2, kReasons[static_cast<std::size_t>(report.reason)]};
     case controller::Rung::kShiftedPlan:
       return {1, "no answer: following the last plan"};
     case controller::Rung::kHoldAndBrake:

@@ -51,6 +51,7 @@ bool is_live(const Parameter& parameter) {
   constexpr std::array<std::string_view, 5> kWhatRuns{"plant", "controller", "seed", "control_period_ms",
                                                       "waypoints_sent"};
   return parameter.option.kind != Kind::kText &&  // preset, track, car: names
+         parameter.group != "guard" &&            // what watches over a run is fixed when it starts
          std::find(kWhatRuns.begin(), kWhatRuns.end(), parameter.key) == kWhatRuns.end();
 }
 

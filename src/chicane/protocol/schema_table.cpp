@@ -55,6 +55,7 @@ Table make_table() {
               [](Scenario& s) -> void* { return &std::get<typename Entry::Options>(s.controllers); });
   });
   table.add("vehicle", "", model::vehicle_options(), [](Scenario& s) -> void* { return &s.vehicle; });
+  table.add("guard", "", safety::guard_options(), [](Scenario& s) -> void* { return &s.guard; });
   table.add("plant_options", "", sim::deviation_options(),
             [](Scenario& s) -> void* { return &s.plant_options; });
   table.add("sensor", "", sim::sensor_options(), [](Scenario& s) -> void* { return &s.sensor; });

@@ -21,8 +21,9 @@ bool is_same(double a, double b) {
 /// The control cycles of a run, from the first step on.
 class Recomputation {
  public:
-  Recomputation(const scenario::Scenario& scenario, std::unique_ptr<controller::Controller> controller)
-      : scenario_{scenario}, cycle_{std::move(controller), scenario.vehicle} {}
+  Recomputation(const scenario::Scenario& scenario, std::unique_ptr<controller::Controller> controller,
+                const path::Track* track)
+      : scenario_{scenario}, cycle_{std::move(controller), scenario, track} {}
 
   /// What concerns neither controller nor vehicle changes nothing here.
   void add(const telemetry::Change& change) {
@@ -73,7 +74,14 @@ Result<ReplayReport> verify_recording(const std::string& path, const run::Contro
     if (const auto* scenario = std::get_if<scenario::Scenario>(&event)) {
       auto controller = make(*scenario);
       if (!controller) return fail(controller.error());
-      again = std::make_unique<Recomputation>(*scenario, std::move(*controller));
+      std::optional<path::Track> track;
+      if (scenario->guard.road == safety::GuardRoad::kTrack &&
+          scenario->guard.mode != safety::GuardMode::kOff) {
+        auto found = run::make_track(*scenario);  // the guard knew it
+        if (!found) return fail(found.error());
+        track = std::move(*found);
+      }
+      again = std::make_unique<Recomputation>(*scenario, std::move(*controller), track ? &*track : nullptr);
     } else if (const auto* change = std::get_if<telemetry::Change>(&event)) {
       again->add(*change);
     } else {

@@ -26,11 +26,11 @@ ClosedLoop::ClosedLoop(const scenario::Scenario& scenario, path::Track track, pa
       track_{std::move(track)},
       waypoints_{std::move(waypoints)},
       plant_{std::move(plant)},
-      cycle_{std::move(controller), scenario.vehicle},
+      cycle_{std::move(controller), scenario, &track_},
       world_{*plant_, track_},
       sensor_{scenario.sensor, scenario.seed},
       faults_{scenario.faults, scenario.seed},
-      arrivals_{scenario.control_period},
+      receiver_{scenario.vehicle, scenario.control_period, scenario.guard.receiver},
       account_{terms_of(scenario, track_.name())} {
   restart();
 }
@@ -55,7 +55,7 @@ void ClosedLoop::restart() {
   in_flight_.reset({});
   manual_.restart();
   faults_.reset();
-  arrivals_.reset();
+  receiver_.reset();
   sensor_ = sim::Sensor(scenario_.sensor, scenario_.seed);
   account_.restart();
   frame_ = {};
@@ -128,8 +128,7 @@ void ClosedLoop::watch_faults() noexcept {
 model::Command ClosedLoop::acting() noexcept {
   const double late = faults_.extra_delay(scenario_.latency);
   const model::Command& arrived = in_flight_.at(time() + 1e-9 - late);
-  return faults_.done(arrivals_.guard(arrived, time() - late, plant_->output().speed,
-                                      scenario_.vehicle.brake_throttle_limit));
+  return faults_.done(receiver_.guard(arrived, time() - late, plant_->output().speed));
 }
 
 /// What the controller is told now.
@@ -162,7 +161,7 @@ void ClosedLoop::control(double budget, const GivenStep* given) noexcept {
   if (faults_.is_delivered()) {
     const double act_time = frame_.measurement.time + frame_.measurement.delay;
     in_flight_.push(act_time, frame_.result.command);
-    arrivals_.arrived(act_time);
+    receiver_.arrived(act_time, cycle_.stop());
   }
   account_.add(frame_);
   next_control_ += scenario_.control_period;

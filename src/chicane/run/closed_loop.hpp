@@ -13,7 +13,7 @@
 #include "chicane/run/control_cycle.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/manual_drive.hpp"
-#include "chicane/safety/arrival_watch.hpp"
+#include "chicane/safety/stop_player.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/actuation_delay.hpp"
 #include "chicane/sim/fault.hpp"
@@ -105,7 +105,7 @@ class ClosedLoop {
   ManualDrive manual_;
   double pace_ = 1.0;
   sim::FaultLab faults_;
-  safety::ArrivalWatch arrivals_;
+  safety::StopPlayer receiver_;
   Account account_;
   telemetry::Frame frame_;
   double next_control_ = 0.0;

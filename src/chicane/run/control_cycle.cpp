@@ -4,13 +4,27 @@
 #include <chrono>
 #include <utility>
 
+#include "chicane/path/road_data.hpp"
 #include "chicane/run/make.hpp"
 
 namespace chicane::run {
 
+namespace {
+
+constexpr double kRoadSpacing = 2.0;  // [m] of the road that the guard knows
+
+safety::Guard make_guard(std::unique_ptr<controller::Controller> controller,
+                         const scenario::Scenario& scenario, const path::Track* track) {
+  if (track == nullptr) return {std::move(controller), scenario.vehicle, scenario.guard};
+  const path::RoadData road = path::road_data(*track, kRoadSpacing);
+  return {std::move(controller), scenario.vehicle, scenario.guard, &road};
+}
+
+}  // namespace
+
 ControlCycle::ControlCycle(std::unique_ptr<controller::Controller> controller,
-                           const model::VehicleParams& vehicle) noexcept
-    : guard_{std::move(controller), vehicle} {}
+                           const scenario::Scenario& scenario, const path::Track* track)
+    : guard_{make_guard(std::move(controller), scenario, track)} {}
 
 void ControlCycle::begin(std::uint64_t cycle) noexcept {
   guard_.reset();

@@ -8,6 +8,7 @@
 #include "chicane/base/deadline.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/measurement.hpp"
+#include "chicane/path/track.hpp"
 #include "chicane/safety/guard.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -33,9 +34,10 @@ struct CycleInput {
 /// independent.
 class ControlCycle {
  public:
-  /// Pre: `controller` is not null. `vehicle`: the car that the controller believes in.
-  ControlCycle(std::unique_ptr<controller::Controller> controller,
-               const model::VehicleParams& vehicle) noexcept;
+  /// Pre: `controller` is not null. The scenario's vehicle is the car that is believed in, its guard watches.
+  /// `track`: the road, where the guard may know it; null: it is not known.
+  ControlCycle(std::unique_ptr<controller::Controller> controller, const scenario::Scenario& scenario,
+               const path::Track* track);
 
   /// A new run, or the same car after something unknown: everything learned is forgotten. The next cycle has
   /// the number `cycle`.
@@ -50,6 +52,8 @@ class ControlCycle {
   /// Number of the next cycle.
   [[nodiscard]] std::uint64_t next() const noexcept { return next_; }
   [[nodiscard]] const controller::Controller& controller() const noexcept { return guard_.controller(); }
+  /// The stop at hand after step(), for whoever has to stop the car when commands cease.
+  [[nodiscard]] const safety::StopPlan& stop() const noexcept { return guard_.stop(); }
 
  private:
   safety::Guard guard_;

@@ -1,14 +1,37 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/safety/guard.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+
+#include "chicane/base/angle.hpp"
 
 namespace chicane::safety {
 namespace {
 
 using controller::Answer;
+using controller::GuardReason;
 using controller::Rung;
+
+constexpr double kAssumedCycle = 0.04;      // [s] where the interval between commands is not known
+constexpr double kCyclesLate = 1.5;         // the next command is waited for so long
+constexpr double kLongestLate = 0.06;       // [s]
+constexpr double kSlowStop = 6.0;           // [m] a car that stops within this is slow
+constexpr double kStandingSpeed = 0.3;      // [m/s]
+constexpr double kWalkingPace = 3.0;        // [m/s]
+constexpr double kMostUse = 1.5;            // of the tyres sideways, after a command that is sent
+constexpr double kLeastEdge = 0.1;          // [m] that a car on the road keeps in any case
+constexpr double kNoFloor = -1e9;           // [m]
+constexpr double kLeniency = 0.05;          // [m] nearer to the edge, for a slow car beyond the margin
+constexpr double kLeniencyRate = 0.25;      // [m/s] more of it for one that stands
+constexpr double kMostLeniency = 3.0;       // [m]
+constexpr double kLongestHold = 0.5;        // [s]
+constexpr double kProjectionWindow = 30.0;  // [m] searched around the last place
+constexpr double kFarFromRoad = 20.0;       // [m] beside its line there is no stop along the road
+constexpr double kBlindStability = 1.6;     // of a car that nobody steers by what it does
+constexpr double kGentleStop = 0.8;         // share of the useful braking; all of it when that is too little
 
 bool is_finite(const model::Command& command) noexcept {
   return std::isfinite(command.steer) && std::isfinite(command.throttle);
@@ -19,53 +42,132 @@ double act_time(const model::Measurement& seen, const controller::StepReport& re
   return std::isnan(report.act_time) ? seen.time + seen.delay : report.act_time;
 }
 
+road::KnownRoad known_road(const GuardOptions& options, const path::RoadData* road,
+                           const model::VehicleParams& vehicle) {
+  const bool knows_track = options.road == GuardRoad::kTrack && road != nullptr && road->points.size() > 1;
+  return knows_track ? road::KnownRoad{*road, vehicle} : road::KnownRoad{options.half_width, vehicle};
+}
+
 }  // namespace
 
-Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle) noexcept
-    : controller_{std::move(controller)}, fallback_{vehicle}, gate_{vehicle} {}
+Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
+             const GuardOptions& options, const path::RoadData* road)
+    : controller_{std::move(controller)},
+      options_{options},
+      fallback_{vehicle},
+      gate_{vehicle},
+      road_{known_road(options, road, vehicle)},
+      estimator_{model::PredictionModel{vehicle}, true},
+      planner_{while_braking(vehicle)},
+      model_{vehicle},
+      braking_model_{while_braking(vehicle)} {}
 
 void Guard::reset() noexcept {
   controller_->reset();
   monitor_.reset();
+  supervisor_.reset();
   fallback_.reset();
   gate_.reset();
+  road_.reset();
+  estimator_.reset();
+  sent_.clear();
+  stop_.size = 0;
+  has_place_ = false;
+  is_stopping_ = false;
+  floor_ = kNoFloor;
 }
 
 void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   fallback_.set_vehicle(vehicle);
-  gate_.set_vehicle(vehicle);
+  model_.set_vehicle(vehicle);
+  braking_model_.set_vehicle(while_braking(vehicle));
+  planner_.set_vehicle(braking_model_.vehicle());
 }
 
 model::Command Guard::step(const model::Measurement& measured, Deadline deadline, const Cycle& cycle,
                            controller::StepResult& result) noexcept {
-  const model::Measurement& seen = monitor_.check(measured);
+  const bool is_off = options_.mode == GuardMode::kOff;
+  const model::Measurement& seen = is_off ? measured : look(measured);
   result = controller_->step(seen, deadline);
-  const Answer answer = is_finite(result.command) ? result.answer : Answer::kNone;
-  switch (answer) {
-    case Answer::kDrive:
-      result.report.rung = Rung::kController;
-      if (result.plan.size > 0) {
-        fallback_.accept(result.plan);
-      } else {
-        fallback_.accept(result.command, act_time(seen, result.report), seen.speed);
-      }
-      break;
-    case Answer::kStopOnRoad:
-      result.report.rung = Rung::kStopOnRoad;
-      break;
-    case Answer::kReturnToRoad:
-      result.report.rung = Rung::kReturnToRoad;
-      break;
-    case Answer::kNone:
-      fall_back(seen, result);
-      break;
-  }
+  if (!is_finite(result.command)) result.answer = Answer::kNone;
+  choose(seen, cycle, result);
   const model::Command asked = result.command;
   const GateResult gated = gate_.pass(cycle.manual.value_or(asked), cycle.interval);
   result.command = gated.command;
   result.report.gated = gated.reason != GateReason::kNone;
   controller_->note_sent(result.command);
+  if (!is_off && std::isfinite(sent_from_)) sent_.add(sent_from_, result.command);
   return asked;
+}
+
+/// What of a measurement can be believed; estimate and road take it in.
+const model::Measurement& Guard::look(const model::Measurement& measured) noexcept {
+  estimator_.set_model(is_stopping_ ? braking_model_ : model_);
+  std::optional<model::State> expected;
+  if (estimator_.is_started() && std::isfinite(measured.time))
+    expected = estimator_.predict(measured.time, sent_).state;
+  const model::Measurement& seen = monitor_.check(measured, expected ? &*expected : nullptr);
+  if (monitor_.findings().is_reset) {
+    estimator_.reset();
+    has_place_ = false;
+  }
+  road_.add(seen);
+  estimator_.correct(seen, sent_);
+  return options_.mode == GuardMode::kOn ? seen : measured;
+}
+
+void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
+                   controller::StepResult& result) noexcept {
+  const double act = act_time(seen, result.report);
+  sent_from_ = seen.time + seen.delay;
+  stop_.size = 0;
+  is_stopping_ = false;
+  if (options_.mode == GuardMode::kOff || cycle.manual) {
+    if (cycle.manual) supervisor_.rearm();
+    return result.answer == Answer::kNone ? fall_back(seen, result) : accept(seen, result);
+  }
+  const model::State& now = estimator_.state();
+  const Supervisor::Verdict verdict = supervisor_.judge(monitor_.findings(), seen.time, now.vx);
+  if (verdict.may_begin_anew) {
+    monitor_.reset();
+    estimator_.reset();
+  }
+  controller::StepReport& report = result.report;
+  report.reason = verdict.reason;
+  const std::optional<StopStart> start = place_on_road(act);
+  const bool has_answer = result.answer != Answer::kNone;
+  if (!has_answer && report.reason == GuardReason::kNone) report.reason = GuardReason::kNoAnswer;
+  bool must_stop = verdict.must_stop || !has_answer;
+  if (start && result.answer == Answer::kDrive && !must_stop &&
+      !leaves_a_stop(*start, result.command, cycle.interval, report)) {
+    report.reason = GuardReason::kNoWayToStop;
+    must_stop = true;
+  }
+  if (options_.mode == GuardMode::kObserve) must_stop = !has_answer;
+  if (!must_stop) return accept(seen, result);
+  if (start && options_.mode == GuardMode::kOn) return drive_stop(*start, result);
+  fall_back(seen, result);
+}
+
+/// The controller's answer is sent.
+void Guard::accept(const model::Measurement& seen, controller::StepResult& result) noexcept {
+  switch (result.answer) {
+    case Answer::kStopOnRoad:
+      result.report.rung = Rung::kStopOnRoad;
+      return;
+    case Answer::kReturnToRoad:
+      result.report.rung = Rung::kReturnToRoad;
+      return;
+    case Answer::kDrive:
+    case Answer::kNone:
+      break;
+  }
+  result.report.rung = Rung::kController;
+  if (result.plan.size > 0) {
+    fallback_.accept(result.plan);
+  } else {
+    fallback_.accept(result.command, act_time(seen, result.report), seen.speed);
+  }
 }
 
 void Guard::fall_back(const model::Measurement& seen, controller::StepResult& result) noexcept {
@@ -75,6 +177,87 @@ void Guard::fall_back(const model::Measurement& seen, controller::StepResult& re
   result.report.rung = answer.rung;
   result.plan.size = 0;
   result.plan.reference_size = 0;
+}
+
+/// The stop in the place of the controller's answer.
+void Guard::drive_stop(const StopStart& start, controller::StepResult& result) noexcept {
+  is_stopping_ = true;
+  // Blind, the stop had better be short.
+  const bool is_blind = monitor_.findings().unmeasured || monitor_.findings().frozen;
+  static_cast<void>(plan_stop(start, std::numeric_limits<double>::infinity(), is_blind, result.report));
+  result.answer = Answer::kNone;
+  result.command = stop_.points[0].command;
+  result.report.rung = Rung::kGuardStop;
+  result.plan.size = 0;
+  result.plan.reference_size = 0;
+}
+
+/// Where the car will be on the known road when the command acts; none when car or road are lost.
+std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
+  const road::ReferenceLine& line = road_.line();
+  if (line.is_empty() || !estimator_.is_started() || !std::isfinite(act_time)) return std::nullopt;
+  const controller::StateEstimator::Prediction at = estimator_.predict(act_time, sent_);
+  const model::State& car = at.state;
+  if (!std::isfinite(car.x + car.y + car.psi + car.vx + car.vy + car.r)) return std::nullopt;
+  if (revision_ != road_.revision()) has_place_ = false;
+  revision_ = road_.revision();
+  const Vec2 position{car.x, car.y};
+  road::ReferenceLine::Projection place =
+      has_place_ ? line.project(position, s_, kProjectionWindow) : line.project(position);
+  if (has_place_ && place.distance > 0.5 * kFarFromRoad) place = line.project(position);
+  has_place_ = place.distance < kFarFromRoad;
+  if (!has_place_) return std::nullopt;
+  s_ = place.s;
+  const double e = angle_difference(car.psi, line.at(place.s).heading);
+  return StopStart{.time = act_time,
+                   .s = place.s,
+                   .d = place.d,
+                   .e = e,
+                   .body = {car.vx, car.vy, car.r, car.steer, at.acceleration}};
+}
+
+/// Whether the car can still be stopped on the road after `command` has acted for a cycle.
+bool Guard::leaves_a_stop(const StopStart& start, const model::Command& command, double interval,
+                          controller::StepReport& report) noexcept {
+  // The receiver holds the command until the stop begins: time enough for the next one to come late.
+  const double cycle = interval > 0.0 ? interval : kAssumedCycle;
+  const double held = std::min(cycle + std::min(kCyclesLate * cycle, kLongestLate), kLongestHold);
+  double least_edge = planner_.edge(road_, start);
+  const double edge_now = least_edge;
+  const StopStart next = planner_.advance(road_, start, command, held, least_edge);
+  const auto use = braking_model_.tire_use(next.body);
+  const bool slides =
+      start.body.vx > kWalkingPace && std::max(std::fabs(use[0]), std::fabs(use[1])) > kMostUse;
+  if (plan_stop(next, least_edge, false, report) && !slides) {
+    floor_ = kNoFloor;
+    return true;
+  }
+  // A car that is beyond the margin already may move slowly, if it comes no nearer to the edge than it was.
+  // One that stands and would wait for ever may use up the margin; one that is off the road may come further,
+  // the more the longer it has stood.
+  floor_ = floor_ == kNoFloor ? edge_now : std::max(floor_, edge_now);
+  if (floor_ == edge_now) leniency_ = kLeniency;
+  if (std::fabs(start.body.vx) < kStandingSpeed) leniency_ += kLeniencyRate * cycle;
+  const double lowest = floor_ < 0.0 ? floor_ - kMostLeniency : kLeastEdge;
+  const double allowed = std::max(std::min(floor_, options_.margin) - leniency_, lowest);
+  return !slides && report.stop_distance < kSlowStop && report.stop_edge >= allowed;
+}
+
+/// The gentle stop, or the hard one where that is too little. True when it keeps the margin.
+bool Guard::plan_stop(const StopStart& from, double edge_before, bool is_hard,
+                      controller::StepReport& report) noexcept {
+  // Gently, hard, and last as hard as a driver would who sees where the car goes.
+  constexpr Braking kStops[] = {{kGentleStop, kBlindStability}, {1.0, kBlindStability}, {1.0, 1.0}};
+  bool is_good = false;
+  for (const Braking& braking : kStops) {
+    if (is_hard && braking.share < 1.0) continue;
+    const StopCheck check = planner_.plan(road_, from, braking, stop_);
+    report.stop_edge = std::min(check.least_edge, edge_before);
+    report.stop_distance = check.distance;
+    is_good = check.stands && report.stop_edge >= options_.margin;
+    if (is_good || is_hard) break;
+  }
+  return is_good;
 }
 
 }  // namespace chicane::safety

@@ -5,28 +5,43 @@
 #include <optional>
 
 #include "chicane/base/deadline.hpp"
+#include "chicane/controller/command_history.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/measurement.hpp"
+#include "chicane/model/prediction.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/path/road_data.hpp"
+#include "chicane/road/known_road.hpp"
 #include "chicane/safety/command_gate.hpp"
 #include "chicane/safety/fallback.hpp"
+#include "chicane/safety/guard_options.hpp"
 #include "chicane/safety/measurement_monitor.hpp"
+#include "chicane/safety/stop_plan.hpp"
+#include "chicane/safety/stop_planner.hpp"
+#include "chicane/safety/supervisor.hpp"
 
 namespace chicane::safety {
 
-/// The guard around a controller, the same for all of them: checks what it is told, decides what happens
-/// without an answer, and lets nothing out that the actuators cannot do.
+/// The guard around a controller, the same for all of them (docs/safety.md):
 ///
-///     measurement → MeasurementMonitor → controller → Fallback (without an answer) → CommandGate → sent
+///     measurement → MeasurementMonitor → controller → Supervisor → is there still a way to stop? →
+///     CommandGate
 ///
-/// Which of them chose the command is in the report: StepReport::rung and `gated`, and nobody else sets
-/// these. Whatever is measured and whatever the controller does, what is sent is finite and inside the
-/// vehicle's range and rate limits. No allocation; bounded time beside the controller's own; one thread.
+/// With each answer that is sent there is a plan to standstill on the known road at hand, stop(). An answer
+/// that would leave none is not sent, and while the supervisor wants the car stopped, the stop is driven in
+/// its place. Without a known road the Fallback takes the stop's place. What was chosen, and why, is in the
+/// report: StepReport::rung, `reason` and `gated`, and nobody else sets these.
+///
+/// A person's command (Cycle::manual) is not checked: the person drives. Whatever is measured and whatever
+/// the controller does, what is sent is finite and inside the vehicle's range and rate limits. No allocation
+/// after construction; bounded time beside the controller's own; one thread.
 class Guard {
  public:
-  /// Pre: `controller` is not null. `vehicle`: limits of what is sent.
-  Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle) noexcept;
+  /// Pre: `controller` is not null. `vehicle`: the car that is believed in, and the limits of what is sent.
+  /// `road`: the track's; null, or GuardRoad::kWaypoints: the guard learns it from the waypoints it is shown.
+  Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
+        const GuardOptions& options = {}, const path::RoadData* road = nullptr);
 
   /// What else holds in a cycle.
   struct Cycle {
@@ -39,19 +54,45 @@ class Guard {
                       controller::StepResult& result) noexcept;
   /// Everything learned is forgotten, the controller's part included: a new run begins.
   void reset() noexcept;
-  /// Another car's limits from now on.
+  /// Another car is believed in from now on. The limits of what is sent stay those of the beginning.
   void set_vehicle(const model::VehicleParams& vehicle) noexcept;
 
+  /// The stop at hand after step(): from the moment at which the next command would act. Size 0: none.
+  [[nodiscard]] const StopPlan& stop() const noexcept { return stop_; }
   [[nodiscard]] controller::Controller& controller() noexcept { return *controller_; }
   [[nodiscard]] const controller::Controller& controller() const noexcept { return *controller_; }
 
  private:
+  void choose(const model::Measurement& seen, const Cycle& cycle, controller::StepResult& result) noexcept;
+  void accept(const model::Measurement& seen, controller::StepResult& result) noexcept;
   void fall_back(const model::Measurement& seen, controller::StepResult& result) noexcept;
+  void drive_stop(const StopStart& start, controller::StepResult& result) noexcept;
+  [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
+  [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
+  [[nodiscard]] bool leaves_a_stop(const StopStart& start, const model::Command& command, double interval,
+                                   controller::StepReport& report) noexcept;
+  [[nodiscard]] bool plan_stop(const StopStart& from, double edge_before, bool is_hard,
+                               controller::StepReport& report) noexcept;
 
   std::unique_ptr<controller::Controller> controller_;
+  GuardOptions options_;
   MeasurementMonitor monitor_;
+  Supervisor supervisor_;
   Fallback fallback_;
   CommandGate gate_;
+  road::KnownRoad road_;
+  controller::StateEstimator estimator_;
+  controller::CommandHistory sent_;
+  StopPlanner planner_;
+  model::PredictionModel model_, braking_model_;
+  bool is_stopping_ = false;
+  double floor_ = -1e9;     ///< how far from the edge a car beyond the margin has been since [m]
+  double leniency_ = 0.05;  ///< how much nearer to the edge it may come, slowly [m]
+  StopPlan stop_;
+  double s_ = 0.0;  ///< on the known road where the command acts [m]
+  unsigned revision_ = 0;
+  bool has_place_ = false;
+  double sent_from_ = 0.0;  ///< from which the command of this cycle acts [s]
 };
 
 }  // namespace chicane::safety

@@ -1,79 +1,75 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cmath>
-#include <limits>
+#include <array>
 
-#include "chicane/base/math.hpp"
 #include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
 
 namespace chicane::safety {
 
-/// Checks whether measurements are plausible: finds a sensor that is frozen while the car moves, and one that
-/// jumps to where no car can go (docs/faults.md, eq. 1 and 2). What is not plausible is handed on as not
-/// measured (NaN). A jump back ends the suspicion; so does time: after kPatience the new position is more
-/// likely than a sensor with so steady an error. No allocation; one thread.
+/// What is wrong with a measurement.
+struct Findings {
+  bool unmeasured = false;      ///< position, yaw, speed or time is not a number, or time ran backwards
+  bool frozen = false;          ///< it repeats although the car moves
+  bool speed_mismatch = false;  ///< its speed contradicts its displacement, or what the car can do
+  bool heading_jump = false;    ///< its yaw is not where the car can have turned to
+  bool position_jump = false;   ///< its place is not where the car can have moved to
+  bool is_reset = false;        ///< the simulator has put the car elsewhere, standing: a new beginning
+};
+
+/// Checks whether measurements are plausible (docs/safety.md, eq. 7–10). What is not plausible is handed on
+/// as not measured (NaN), the rest of the measurement stays: a car that knows two of place, yaw and speed can
+/// count on. A finding ends when the sensor agrees again with what is expected; it is never believed because
+/// it lasts. No allocation; one thread.
 class MeasurementMonitor {
  public:
-  static constexpr double kPatience = 1.5;       ///< [s]
-  static constexpr double kLongestStep = 0.5;    ///< [s] between measurements that say anything of each other
-  static constexpr double kJump = 3.0;           ///< [m] beside where speed and heading lead
-  static constexpr double kSpeedJump = 3.0;      ///< [m/s] beside what any braking explains
-  static constexpr double kAcceleration = 40.0;  ///< [m/s²] that no car here exceeds, in any direction
-  static constexpr double kUnmoved = 0.3;  ///< [m] that a car has driven by its speed, and not by its place
+  static constexpr double kJump = 3.0;          ///< [m] from where the car is expected
+  static constexpr double kKnownDrift = 0.012;  ///< of the distance driven since, with yaw and speed measured
+  static constexpr double kBlindDrift = 0.15;   ///< and without
+  static constexpr double kSpeedJump = 3.0;     ///< [m/s] from what is expected
+  static constexpr double kAcceleration = 40.0;     ///< [m/s²] that no car here exceeds
+  static constexpr double kHeadingJump = 0.35;      ///< [rad]
+  static constexpr double kYawAcceleration = 12.0;  ///< [rad/s²] that no car here exceeds
+  static constexpr double kUnmoved = 0.3;           ///< [m] driven by its speed, and not by its place
+  static constexpr double kMoving = 3.0;            ///< [m/s] a speed that shows that its sensor works
 
   void reset() noexcept { *this = {}; }
 
-  /// `now`, with position, heading and speed NaN where they are not plausible. Valid until the next call.
-  [[nodiscard]] const model::Measurement& check(const model::Measurement& now) noexcept {
-    checked_ = now;
-    if (!std::isfinite(now.time + now.x + now.y + now.psi + now.speed)) return checked_;
-    const double elapsed = now.time - last_time_;
-    const bool is_next = has_last_ && elapsed > 0.0 && elapsed < kLongestStep;
-    const bool is_same =
-        is_next && now.x == last_x_ && now.y == last_y_ && now.psi == last_psi_ && now.speed == last_speed_;
-    if (!is_same) same_since_ = now.time;
-    const bool is_frozen = now.speed * (now.time - same_since_) > kUnmoved;
-    if (is_next) {
-      const double reach = last_speed_ * elapsed;
-      const double aside =
-          hypot(now.x - last_x_ - reach * cos(last_psi_), now.y - last_y_ - reach * sin(last_psi_));
-      place_.note(aside > kJump + kAcceleration * elapsed * elapsed && !was_frozen_, now.time);
-      speed_.note(std::fabs(now.speed - last_speed_) > kSpeedJump + kAcceleration * elapsed && !was_frozen_,
-                  now.time);
-    } else {
-      place_ = speed_ = Suspicion{};
-    }
-    was_frozen_ = is_frozen;
-    has_last_ = true;
-    last_time_ = now.time;
-    last_x_ = now.x;
-    last_y_ = now.y;
-    last_psi_ = now.psi;
-    last_speed_ = now.speed;
-    if (is_frozen || place_.is_on || speed_.is_on)
-      checked_.x = checked_.y = checked_.psi = checked_.speed = std::numeric_limits<double>::quiet_NaN();
-    return checked_;
-  }
+  /// `now`, with NaN where it is not plausible; `expected` at now.time, null when nothing is known yet. Valid
+  /// until the next call.
+  [[nodiscard]] const model::Measurement& check(const model::Measurement& now,
+                                                const model::State* expected) noexcept;
+  /// Of the last check().
+  [[nodiscard]] const Findings& findings() const noexcept { return findings_; }
 
  private:
-  struct Suspicion {
-    bool is_on = false;
-    double since = 0.0;  ///< [s]
-    void note(bool has_jumped, double time) noexcept {
-      if (is_on && time - since > kPatience) is_on = false;
-      if (!has_jumped) return;
-      is_on = !is_on;
-      since = time;
-    }
+  /// Displacement and speed over the last second: what was measured at its beginning.
+  struct Sample {
+    double time = 0.0;
+    double x = 0.0;
+    double y = 0.0;
+    double driven = 0.0;  ///< integral of the measured speed [m]
   };
+  static constexpr int kSamples = 16;
+  static constexpr double kSampleSpacing = 0.06;  ///< [s]
+
+  [[nodiscard]] bool is_frozen(const model::Measurement& now, double elapsed) noexcept;
+  [[nodiscard]] bool contradicts_displacement(const model::Measurement& now, double elapsed) noexcept;
+  void look_for_reset(const model::Measurement& now) noexcept;
 
   model::Measurement checked_;
-  Suspicion place_, speed_;
+  Findings findings_;
+  model::Measurement last_;  ///< as it came
   bool has_last_ = false;
-  bool was_frozen_ = false;
-  double same_since_ = 0.0;  ///< [s]
-  double last_time_ = 0.0, last_x_ = 0.0, last_y_ = 0.0, last_psi_ = 0.0, last_speed_ = 0.0;
+  double same_since_ = 0.0;   ///< [s]
+  double place_drift_ = 0.0;  ///< what the expected place may be wrong by, beyond kJump [m]
+  double other_drift_ = 0.0;  ///< and the expected speed [m/s]
+  double standing_since_ = 0.0;
+  bool may_be_reset_ = false;
+  std::array<Sample, kSamples> samples_{};
+  int sample_count_ = 0;
+  double driven_ = 0.0;
 };
 
 }  // namespace chicane::safety

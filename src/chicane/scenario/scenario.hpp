@@ -7,6 +7,7 @@
 
 #include "chicane/controller/registry.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/safety/guard_options.hpp"
 #include "chicane/sim/fault.hpp"
 #include "chicane/sim/plant.hpp"
 #include "chicane/sim/sensor.hpp"
@@ -31,7 +32,8 @@ struct Scenario {
   double turn_around = 0.02;     ///< of the simulator as a client, between reply and next telemetry [s]
   int waypoints_sent = 6;        ///< telemetry shows this many waypoints
 
-  model::VehicleParams vehicle;  ///< the controller's model of it
+  model::VehicleParams vehicle = model::udacity_params();  ///< the controller's model of it
+  safety::GuardOptions guard;                              ///< what watches over the controller
   sim::PlantDeviation plant_options;
   sim::SensorOptions sensor;
   std::vector<sim::FaultEvent> faults;  ///< that happen during the run; at most sim::FaultLab::kCapacity

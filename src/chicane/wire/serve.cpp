@@ -81,7 +81,7 @@ class UdacityEndpoint::Control {
         hooks_{hooks},
         answer_{std::move(answer)},
         scenario_{options.scenario},
-        cycle_{std::move(controller), options.vehicle},
+        cycle_{std::move(controller), options.scenario, options.track},
         delay_{seconds(options.latency) + kTypicalTurnAround},
         roadside_{options.track, options.scenario},
         thread_{[this] { work(); }} {}

@@ -79,6 +79,11 @@ export interface Frame {
   solve_status: number;
   /** the command gate had to change the command */
   is_gated: boolean;
+  guard_reason: number;
+  /** of the stop at hand, least distance of a tyre to the known edge; NaN: no stop */
+  stop_edge_m: number;
+  /** of the stop at hand, to standstill; NaN: no stop */
+  stop_distance_m: number;
   /** the lap is closed in the controller's memory */
   has_map: boolean;
   /** of the outer (SQP) loop */
@@ -152,6 +157,8 @@ export const RUNG = {
   BRAKE: 3,
   /** the controller finds back to the road at walking pace */
   RETURN_TO_ROAD: 4,
+  /** the guard stops the car on the known road */
+  GUARD_STOP: 6,
   /** the controller stops along the road, without a plan in time */
   STOP_ON_ROAD: 5,
 } as const;
@@ -163,6 +170,26 @@ export const STATUS = {
   STALLED: -1,
   INFEASIBLE: -2,
   NOT_FINITE: -3,
+} as const;
+
+/** Frame.guard_reason */
+export const REASON = {
+  /** nothing found */
+  NONE: 0,
+  /** the controller had no answer */
+  NO_ANSWER: 1,
+  /** nothing is measured */
+  NOT_MEASURED: 2,
+  /** measurements repeat although the car moves */
+  FROZEN: 3,
+  /** measured speed and displacement contradict */
+  SPEED_MISMATCH: 4,
+  /** the yaw changed as no car turns */
+  HEADING_JUMP: 5,
+  /** the place changed as no car moves */
+  POSITION_JUMP: 6,
+  /** after the answer the car could not be stopped on the road */
+  NO_WAY_TO_STOP: 7,
 } as const;
 
 /** Frame.speed_limiter */
@@ -216,6 +243,9 @@ export const UNKNOWN_FRAME: Frame = {
   rung: 0,
   solve_status: 0,
   is_gated: false,
+  guard_reason: 0,
+  stop_edge_m: NaN,
+  stop_distance_m: NaN,
   has_map: false,
   iterations: 0,
   sweeps: 0,
@@ -278,6 +308,9 @@ export const FRAME_NUMBERS = [
   'rung',
   'solve_status',
   'is_gated',
+  'guard_reason',
+  'stop_edge_m',
+  'stop_distance_m',
   'has_map',
   'iterations',
   'sweeps',

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/road/known_road.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "chicane/base/math.hpp"
+
+namespace chicane::road {
+namespace {
+
+/// The speed plan of a supervisor's line is not used.
+constexpr double kWaypointSpacing = 10.0;  // [m]
+constexpr RoadOptions kSeen{
+    .half_width = 0.0, .smoothing_width = 1.0, .remember_waypoints = true, .speed = {}};
+
+}  // namespace
+
+KnownRoad::KnownRoad(const path::RoadData& data, const model::VehicleParams& vehicle)
+    : line_{static_cast<int>(data.points.size())} {
+  const int intervals = static_cast<int>(data.points.size()) - 1;
+  if (intervals < 1 || !line_.shape(data.length, intervals, data.is_closed)) return;
+  edges_.reserve(data.points.size());
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    const path::RoadPoint& point = data.points[i];
+    line_.samples()[i].curve = {.position = point.position,
+                                .tangent = Vec2{cos(point.heading), sin(point.heading)},
+                                .heading = point.heading,
+                                .curvature = point.curvature};
+    edges_.push_back({point.left, point.right});
+  }
+  if (data.is_closed) smooth(data, vehicle);
+}
+
+/// In the place of the track's own line the smooth one that a controller plans from its waypoints: as wide in
+/// the bends as that one is.
+void KnownRoad::smooth(const path::RoadData& data, const model::VehicleParams& vehicle) {
+  std::vector<Vec2> waypoints;
+  double next = 0.0;
+  for (std::size_t i = 0; i + 1 < data.points.size(); ++i) {
+    if (data.points[i].s < next || data.length - data.points[i].s < 0.5 * kWaypointSpacing) continue;
+    waypoints.push_back(data.points[i].position);
+    next = data.points[i].s + kWaypointSpacing;
+  }
+  if (waypoints.size() < 8) return;
+  const auto planned = std::make_unique<Road>(kSeen, vehicle);
+  model::Measurement shown;
+  shown.waypoint_count = 6;
+  const std::size_t most = 4 * waypoints.size() + 2000;
+  for (std::size_t i = 0; i < most && !planned->line().is_closed(); ++i) {
+    for (std::size_t k = 0; k < 6; ++k) shown.waypoints[k] = waypoints[(i + k) % waypoints.size()];
+    planned->add(shown);
+    shown.time += 0.32;
+  }
+  if (!planned->line().is_closed()) return;
+  const ReferenceLine centre = line_;
+  std::vector<Edges> edges;
+  edges.reserve(planned->line().samples().size());
+  for (const ReferenceLine::Sample& sample : planned->line().samples()) {
+    const ReferenceLine::Projection place = centre.project(sample.curve.position);
+    const Edges here = this->edges(place.s);
+    edges.push_back({here.left - place.d, here.right + place.d});
+  }
+  line_ = planned->line();
+  edges_ = std::move(edges);
+}
+
+KnownRoad::KnownRoad(double half_width, const model::VehicleParams& vehicle)
+    : line_{2}, half_width_{half_width} {
+  seen_.emplace(kSeen, vehicle);
+}
+
+void KnownRoad::reset() noexcept {
+  if (seen_) seen_->reset();
+}
+
+void KnownRoad::add(const model::Measurement& now) noexcept {
+  if (seen_) seen_->add(now);
+}
+
+KnownRoad::Edges KnownRoad::edges(double s) const noexcept {
+  if (seen_) {
+    const double offset = seen_->line().demand(s).offset;
+    return {half_width_ - offset, half_width_ + offset};
+  }
+  const double length = line_.length();
+  const double along = line_.is_closed() ? s - std::floor(s / length) * length : std::clamp(s, 0.0, length);
+  const auto last = edges_.size() - 2;
+  const double place = along / line_.spacing();
+  const auto i = std::min(static_cast<std::size_t>(std::max(place, 0.0)), last);
+  const double share = std::clamp(place - static_cast<double>(i), 0.0, 1.0);
+  const Edges& from = edges_[i];
+  const Edges& to = edges_[i + 1];
+  return {from.left + share * (to.left - from.left), from.right + share * (to.right - from.right)};
+}
+
+}  // namespace chicane::road

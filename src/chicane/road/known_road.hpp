@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "chicane/model/measurement.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/path/road_data.hpp"
+#include "chicane/road/reference_line.hpp"
+#include "chicane/road/road.hpp"
+
+namespace chicane::road {
+
+/// The road that a supervisor knows: its line, and where its edges are. Either a track's, complete from the
+/// beginning, or what the waypoints of the measurements have shown so far, with an assumed width. All memory
+/// is reserved at construction; one thread.
+class KnownRoad {
+ public:
+  /// A track's road. Pre: `data` has at least two points.
+  KnownRoad(const path::RoadData& data, const model::VehicleParams& vehicle);
+  /// From waypoints; `half_width`: assumed each side of their line [m].
+  KnownRoad(double half_width, const model::VehicleParams& vehicle);
+
+  void reset() noexcept;
+  /// Takes in the waypoints of a measurement; nothing where the track is known.
+  void add(const model::Measurement& now) noexcept;
+
+  /// In W; empty while nothing is known.
+  [[nodiscard]] const ReferenceLine& line() const noexcept { return seen_ ? seen_->line() : line_; }
+  /// Distances from the line to the edges at s, both positive on the road [m]. Pre: the line is not empty.
+  struct Edges {
+    double left = 0.0;
+    double right = 0.0;
+  };
+  [[nodiscard]] Edges edges(double s) const noexcept;
+  /// Increases with every new line: positions along an older one mean nothing any more.
+  [[nodiscard]] unsigned revision() const noexcept { return seen_ ? seen_->revision() : 0U; }
+
+ private:
+  void smooth(const path::RoadData& data, const model::VehicleParams& vehicle);
+
+  ReferenceLine line_;
+  std::vector<Edges> edges_;  ///< at the samples of line_
+  std::optional<Road> seen_;
+  double half_width_ = 0.0;
+};
+
+}  // namespace chicane::road

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/run/make.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/sim/fault.hpp"
+
+namespace chicane::run {
+
+/// A fault that never ends: a duration beyond any run [s].
+inline constexpr double kLasting = 1e6;
+
+/// One fault at one moment of the flying lap.
+struct FaultTrial {
+  sim::Fault fault{};
+  double onset = 0.0;     ///< since the flying lap began [s]
+  double duration = 1.0;  ///< [s]; kLasting: until the end of the run
+  double strength = 1.0;
+};
+
+/// What became of the car.
+struct FaultOutcome {
+  FaultTrial trial;
+  double at = 0.0;  ///< when the fault began, clock of the run [s]: `--fault NAME@at` repeats it
+  double least_edge = std::numeric_limits<double>::infinity();  ///< of a tyre from then on [m]; < 0: off road
+  double end_speed = 0.0;                                       ///< [m/s]
+  int not_controller = 0;  ///< control steps that were not the controller's own answer
+  [[nodiscard]] bool has_left_road() const noexcept { return least_edge < 0.0; }
+  [[nodiscard]] bool stands() const noexcept { return end_speed < kStanding; }
+  static constexpr double kStanding = 0.1;  ///< [m/s]
+};
+
+/// When the flying lap of a scenario begins, and how long it takes, without a fault.
+struct FlyingLap {
+  double begins = 0.0;  ///< clock of the run [s]
+  double time = 0.0;    ///< [s]
+};
+/// The second lap. kInvalidArgument when two laps are not driven without leaving the road.
+[[nodiscard]] Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario,
+                                                const ControllerFactory& make = make_controller);
+
+/// Drives one trial: `scenario` without its own faults, until kSettling after a fault that ends, or until the
+/// car has stood for a second, at most kLongestWait. Deterministic; independent of other trials.
+inline constexpr double kSettling = 10.0;     ///< [s]
+inline constexpr double kLongestWait = 30.0;  ///< [s]
+[[nodiscard]] Result<FaultOutcome> drive_trial(const scenario::Scenario& scenario, const FlyingLap& lap,
+                                               const FaultTrial& trial,
+                                               const ControllerFactory& make = make_controller);
+
+/// Trials of one fault at each `step` [s] of the flying lap.
+[[nodiscard]] std::vector<FaultTrial> trials_over_lap(const FlyingLap& lap, sim::Fault fault, double duration,
+                                                      double step);
+
+/// Drives all trials with `jobs` threads; the outcomes are in the order of the trials, whatever the number of
+/// threads. `on_done` is told how many are done, on any thread; false ends early, with the outcomes so far
+/// (a trial that was not driven has an infinite least_edge).
+[[nodiscard]] Result<std::vector<FaultOutcome>> drive_trials(
+    const scenario::Scenario& scenario, const FlyingLap& lap, const std::vector<FaultTrial>& trials, int jobs,
+    const std::function<bool(std::size_t)>& on_done = {}, const ControllerFactory& make = make_controller);
+
+}  // namespace chicane::run

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/guard_options.hpp"
+
+#include <array>
+#include <string_view>
+
+namespace chicane::safety {
+namespace {
+
+using G = GuardOptions;
+constexpr std::array<std::string_view, 3> kModes{"on", "observe", "off"};
+constexpr std::array<std::string_view, 2> kRoads{"track", "waypoints"};
+constexpr std::array<std::string_view, 3> kReceivers{"stop-plan", "brake", "hold"};
+constexpr std::array kOptions{
+    option<&G::mode>(
+        "mode", kModes,
+        "on: without a way to stop, or when sensors fail, the car is stopped on the road; observe: it "
+        "is only reported; off: only range and rate of commands are limited."),
+    option<&G::road>("road", kRoads,
+                     "Where the guard knows the road from: the track, or the waypoints it is shown."),
+    option<&G::half_width>("half_width", unit::kMetre, 0.2, 100,
+                           "Assumed from waypoints to edge where the road is known from waypoints."),
+    option<&G::receiver>(
+        "receiver", kReceivers,
+        "What the actuators do when commands cease: the stop that came with the last one, all "
+        "braking with the last steering, or the last command for ever, as the original game."),
+    option<&G::margin>("margin", unit::kMetre, 0, 10, "From the edge, that the stop at hand keeps."),
+};
+
+}  // namespace
+
+std::span<const Option> guard_options() noexcept { return kOptions; }
+
+}  // namespace chicane::safety

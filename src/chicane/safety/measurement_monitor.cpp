@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/measurement_monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
+
+namespace chicane::safety {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLongestGap = 0.5;     // [s] between measurements that say anything of each other
+constexpr double kMismatch = 2.0;       // [m] between displacement and integrated speed
+constexpr double kMismatchShare = 0.3;  // and of the larger one
+constexpr double kBlindSpeedDrift =
+    6.0;                             // [m/s²] that the expected speed may be wrong by, without measurements
+constexpr double kResetSpeed = 1.0;  // [m/s] a car that was put elsewhere stands
+constexpr double kResetTime = 0.3;   // [s] for so long
+constexpr double kResetPlace = 0.5;  // [m] within this
+
+}  // namespace
+
+const model::Measurement& MeasurementMonitor::check(const model::Measurement& now,
+                                                    const model::State* expected) noexcept {
+  checked_ = now;
+  const Findings before = findings_;
+  findings_ = {};
+  const double elapsed = has_last_ ? now.time - last_.time : 0.0;
+  const bool is_later = std::isfinite(now.time) && (!has_last_ || elapsed > 0.0);
+  const bool has_place = std::isfinite(now.x) && std::isfinite(now.y);
+  const bool is_whole = is_later && has_place && std::isfinite(now.psi) && std::isfinite(now.speed);
+  findings_.unmeasured = !is_whole;
+  if (!is_later) {
+    checked_.x = checked_.y = checked_.psi = checked_.speed = kNaN;
+    return checked_;
+  }
+  if (is_whole) findings_.frozen = is_frozen(now, elapsed);
+  const bool is_blind = !is_whole || findings_.frozen;
+
+  if (expected != nullptr && is_whole && !findings_.frozen) {
+    const double speed = hypot(expected->vx, expected->vy);
+    const double step = std::clamp(elapsed, 0.0, kLongestGap);
+    findings_.speed_mismatch =
+        std::fabs(now.speed - speed) > kSpeedJump + kAcceleration * step + other_drift_ ||
+        contradicts_displacement(now, elapsed);
+    // A speed that was wrong is right again when it says so of a car that moves.
+    findings_.speed_mismatch |= before.speed_mismatch && now.speed < kMoving;
+    findings_.heading_jump = std::fabs(angle_difference(now.psi, expected->psi)) >
+                             kHeadingJump + kYawAcceleration * step * step + 0.1 * other_drift_;
+    findings_.position_jump =
+        hypot(now.x - expected->x, now.y - expected->y) > kJump + kAcceleration * step * step + place_drift_;
+    look_for_reset(now);
+  }
+  // While something is missing, what is expected drifts away from the car.
+  const double driven =
+      expected != nullptr ? std::max(elapsed, 0.0) * hypot(expected->vx, expected->vy) : 0.0;
+  if (is_blind) {
+    place_drift_ += kBlindDrift * driven;
+    other_drift_ += kBlindSpeedDrift * std::clamp(elapsed, 0.0, kLongestGap);
+  } else {
+    place_drift_ = findings_.position_jump ? place_drift_ + kKnownDrift * driven : 0.0;
+    other_drift_ = 0.0;
+  }
+  if (is_whole) {
+    last_ = now;
+    has_last_ = true;
+  } else if (has_last_) {
+    last_.time = now.time;
+    sample_count_ = 0;
+  }
+  if (findings_.is_reset) {
+    findings_ = {.is_reset = true};
+    sample_count_ = 0;
+    may_be_reset_ = false;
+    return checked_;
+  }
+  if (findings_.frozen) checked_.x = checked_.y = checked_.psi = checked_.speed = kNaN;
+  if (findings_.position_jump) checked_.x = checked_.y = kNaN;
+  if (findings_.heading_jump) checked_.psi = kNaN;
+  if (findings_.speed_mismatch) checked_.speed = kNaN;
+  return checked_;
+}
+
+bool MeasurementMonitor::is_frozen(const model::Measurement& now, double elapsed) noexcept {
+  const bool is_same = has_last_ && elapsed < kLongestGap && now.x == last_.x && now.y == last_.y &&
+                       now.psi == last_.psi && now.speed == last_.speed;
+  if (!is_same) same_since_ = now.time;
+  return now.speed * (now.time - same_since_) > kUnmoved;
+}
+
+/// Equation 8: over the last second, or what there is of it.
+bool MeasurementMonitor::contradicts_displacement(const model::Measurement& now, double elapsed) noexcept {
+  if (!has_last_ || elapsed > kLongestGap) sample_count_ = 0;
+  driven_ = sample_count_ == 0 ? 0.0 : driven_ + 0.5 * elapsed * (now.speed + last_.speed);
+  // A jump of the place would look like a speed.
+  const bool has_jumped =
+      sample_count_ > 0 && hypot(now.x - last_.x, now.y - last_.y) >
+                               kJump + (now.speed + last_.speed) * elapsed + kAcceleration * elapsed;
+  if (has_jumped) sample_count_ = 0;
+  bool is_wrong = false;
+  if (sample_count_ > 0) {
+    const Sample& first = samples_[0];
+    const double displacement = hypot(now.x - first.x, now.y - first.y);
+    const double driven = driven_ - first.driven;
+    is_wrong = std::fabs(displacement - driven) > kMismatch + kMismatchShare * std::max(displacement, driven);
+  }
+  const auto last = static_cast<std::size_t>(std::max(sample_count_ - 1, 0));
+  if (sample_count_ == 0 || now.time - samples_[last].time >= kSampleSpacing) {
+    if (sample_count_ == kSamples) {
+      std::move(samples_.begin() + 1, samples_.end(), samples_.begin());
+      --sample_count_;
+    }
+    samples_[static_cast<std::size_t>(sample_count_++)] = {now.time, now.x, now.y, driven_};
+  }
+  return is_wrong;
+}
+
+/// A car that jumps and stands from then on was put there.
+void MeasurementMonitor::look_for_reset(const model::Measurement& now) noexcept {
+  const bool has_moved =
+      !has_last_ || hypot(now.x - last_.x, now.y - last_.y) > kResetPlace || !(now.speed < kResetSpeed);
+  if (has_moved) {
+    may_be_reset_ = findings_.position_jump && now.speed < kResetSpeed;
+    standing_since_ = now.time;
+  }
+  findings_.is_reset = may_be_reset_ && findings_.position_jump && now.time - standing_since_ >= kResetTime;
+}
+
+}  // namespace chicane::safety

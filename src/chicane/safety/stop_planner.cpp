@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/stop_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "chicane/base/math.hpp"
+
+namespace chicane::safety {
+namespace {
+
+constexpr double kStep = 0.05;      // [s] of the simulation
+constexpr int kStepsPerPoint = 2;   // of the simulation, in the plan
+constexpr double kStanding = 0.3;   // [m/s] slower than that the car counts as standing
+constexpr double kRestTime = 0.4;   // [s] with which the car comes to rest at the end
+constexpr double kBandwidth = 1.0;  // [rad/s] of the feedback to the line
+constexpr double kDamping = 0.7;
+constexpr double kYawBandwidth = 6.0;   // [rad/s] of the feedback to the yaw rate
+constexpr double kPreview = 0.2;        // [s] the car answers the wheel about so late
+constexpr double kGripShare = 0.9;      // of the believed tyre force of the rear axle, used sideways
+constexpr double kGravity = 9.81;       // [m/s²]
+constexpr double kLeastBraking = 0.15;  // of the useful one, in any curve
+constexpr double kFeedbackShare = 0.4;  // of the grip, for coming back to the middle of the road
+constexpr double kMostOffset = 20.0;    // [m] beside the line the stop is given up
+
+}  // namespace
+
+double StopPlanner::edge(const road::KnownRoad& road, const StopStart& at) const noexcept {
+  const model::VehicleParams& car = model_.vehicle();
+  const road::KnownRoad::Edges edges = road.edges(at.s);
+  const double half_track = 0.5 * (car.track_width + car.tire_width);
+  const double sine = sin(at.e);
+  const double beside = half_track * cos(at.e);
+  double least = std::numeric_limits<double>::infinity();
+  for (const double x : {car.front_axle, -car.rear_axle}) {
+    const double middle = at.d + x * sine;
+    least = std::min({least, edges.left - middle - beside, edges.right + middle - beside});
+  }
+  return least;
+}
+
+/// Share of a deceleration that leaves the rear axle, unloaded by it, the force that holds the car sideways:
+/// equation 4.
+double StopPlanner::braking_share(double sideways, double deceleration, double v,
+                                  double stability) const noexcept {
+  const model::VehicleParams& car = model_.vehicle();
+  const double grip = car.friction * model_.load(v);
+  const auto holds = [&](double a) {
+    const double along = std::min(a / grip, 1.0);
+    const double ellipse = std::sqrt(std::max(1.0 - car.friction_coupling * along * along, 0.0));
+    const double load = std::max(1.0 - car.height * a / (kGravity * car.front_axle), 0.0);
+    return kGripShare * grip * ellipse * load >= sideways && model_.stability(v, a) >= stability;
+  };
+  if (holds(deceleration)) return 1.0;
+  double low = kLeastBraking;
+  double high = 1.0;
+  for (int i = 0; i < 6; ++i) {
+    const double middle = 0.5 * (low + high);
+    (holds(middle * deceleration) ? low : high) = middle;
+  }
+  return low;
+}
+
+model::Command StopPlanner::law(const road::KnownRoad& road, const StopStart& at,
+                                const Braking& braking) const noexcept {
+  const model::VehicleParams& car = model_.vehicle();
+  const double v = std::max(at.body.vx, 1.0);
+  const double ahead = road.line().demand(at.s + kPreview * v).curvature;
+  const double course = at.e + at.body.vy / v;
+  // Towards the middle of the road, where there is most room on both sides.
+  const road::KnownRoad::Edges edges = road.edges(at.s);
+  const double beside = at.d - 0.5 * (edges.left - edges.right);
+  const double grip = kGripShare * car.friction * model_.load(v);
+  const double most = kFeedbackShare * grip / ((1.0 - car.steer_helper) * v * v);
+  const double curvature = ahead + std::clamp(-kBandwidth * kBandwidth * beside / (v * v) -
+                                                  2.0 * kDamping * kBandwidth * course / v,
+                                              -most, most);
+  // The wheel that gives the yaw rate this asks for, by the model: a braking car oversteers.
+  const double yaw_acceleration = kYawBandwidth * (v * curvature - at.body.r);
+  const double steer =
+      std::clamp(model_.steer_for(at.body, yaw_acceleration), -car.steer_limit, car.steer_limit);
+  const double bend = std::max(std::fabs(ahead), std::fabs(road.line().demand(at.s).curvature));
+  const double sideways = (1.0 - car.steer_helper) * std::max(bend * v * v, std::fabs(at.body.r) * v);
+  const double useful = longitudinal_acceleration(car, lowest_throttle(car, v), v);
+  const double along =
+      useful * braking.share * braking_share(sideways, -useful * braking.share, v, braking.stability);
+  // To rest without rolling back: the last metre per second more and more gently.
+  const double asked = std::max(along, -std::max(at.body.vx, 0.0) / kRestTime);
+  return {steer, std::min(throttle_for(car, asked, at.body.vx), 0.0)};
+}
+
+void StopPlanner::move(const road::KnownRoad& road, StopStart& at, const model::Command& command, double dt,
+                       const model::PredictionModel::Lags& lags) const noexcept {
+  const model::VehicleParams& car = model_.vehicle();
+  const double reach = car.steer_rate_limit * dt;
+  const double steer = std::clamp(command.steer, at.body.steer - reach, at.body.steer + reach);
+  const double asked = longitudinal_acceleration(car, command.throttle, at.body.vx);
+  model::BodyMotion<double> to = model_.advance(at.body, steer, asked, dt, lags);
+  model_.add_front_force(to, dt);
+  to.vx = std::max(to.vx, 0.0);
+  const double vx = 0.5 * (at.body.vx + to.vx);
+  const double vy = 0.5 * (at.body.vy + to.vy);
+  const double turned = 0.5 * dt * (at.body.r + to.r);
+  const double curvature = road.line().demand(at.s).curvature;
+  const double shrink = std::max(1.0 - curvature * at.d, 0.2);
+  const double e = at.e + 0.5 * turned - 0.5 * dt * curvature * vx / shrink;
+  const double along = dt * (vx * cos(e) - vy * sin(e)) / shrink;
+  at.s += along;
+  at.d += dt * (vx * sin(e) + vy * cos(e));
+  at.e += turned - curvature * along;
+  at.body = to;
+  at.time += dt;
+}
+
+StopStart StopPlanner::advance(const road::KnownRoad& road, const StopStart& from,
+                               const model::Command& command, double time,
+                               double& least_edge) const noexcept {
+  const int steps = std::max(1, static_cast<int>(std::ceil(time / kStep)));
+  const double dt = time / steps;
+  const model::PredictionModel::Lags lags = model_.lags(dt);
+  StopStart at = from;
+  for (int i = 0; i < steps; ++i) {
+    move(road, at, command, dt, lags);
+    least_edge = std::min(least_edge, edge(road, at));
+  }
+  return at;
+}
+
+StopCheck StopPlanner::plan(const road::KnownRoad& road, const StopStart& start, const Braking& braking,
+                            StopPlan& out) const noexcept {
+  const model::PredictionModel::Lags lags = model_.lags(kStep);
+  const double end = road.line().is_closed() ? start.s + road.line().length() : road.line().length();
+  StopCheck check{.least_edge = edge(road, start)};
+  StopStart at = start;
+  double driven = 0.0;
+  double speed = hypot(at.body.vx, at.body.vy);
+  out.size = 0;
+  for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity; ++i) {
+    const model::Command command = law(road, at, braking);
+    const bool has_ended = speed < kStanding || !(std::fabs(at.d) < kMostOffset) || !(at.s < end);
+    if (i % kStepsPerPoint == 0 || (has_ended && out.size < StopPlan::kCapacity))
+      out.points[static_cast<std::size_t>(out.size++)] = {at.time, driven, speed, command};
+    if (has_ended) break;
+    const double before = speed;
+    move(road, at, command, kStep, lags);
+    speed = hypot(at.body.vx, at.body.vy);
+    driven += 0.5 * kStep * (before + speed);
+    check.least_edge = std::min(check.least_edge, edge(road, at));
+    const auto use = model_.tire_use(at.body);
+    check.tire_use = std::max({check.tire_use, std::fabs(use[0]), std::fabs(use[1])});
+  }
+  check.stands = speed < kStanding && at.s < end;
+  check.distance = driven;
+  return check;
+}
+
+}  // namespace chicane::safety

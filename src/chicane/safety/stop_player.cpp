@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/stop_player.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace chicane::safety {
+namespace {
+
+constexpr double kSpeedTime = 0.4;  // [s] in which the planned speed is met again
+constexpr double kRestTime = 0.4;   // [s] with which the car comes to rest
+
+}  // namespace
+
+StopPlayer::StopPlayer(const model::VehicleParams& vehicle, double control_period, Receiver receiver) noexcept
+    : vehicle_{vehicle},
+      patience_{std::max(kPatience, kPatienceInPeriods * control_period)},
+      receiver_{receiver} {}
+
+void StopPlayer::reset() noexcept {
+  first_ = count_ = 0;
+  last_time_ = distance_ = 0.0;
+  is_stopping_ = false;
+}
+
+void StopPlayer::arrived(double time, const StopPlan& stop) noexcept {
+  if (count_ == kWaiting) {
+    first_ = (first_ + 1) % kWaiting;
+    --count_;
+  }
+  Arrival& last = arrivals_[static_cast<std::size_t>((first_ + count_++) % kWaiting)];
+  last.time = time;
+  last.stop.size = std::clamp(stop.size, 0, StopPlan::kCapacity);
+  std::copy_n(stop.points.begin(), last.stop.size, last.stop.points.begin());
+}
+
+model::Command StopPlayer::guard(const model::Command& command, double time, double speed) noexcept {
+  const double elapsed = std::max(time - last_time_, 0.0);
+  last_time_ = time;
+  while (count_ > 1 && arrivals_[static_cast<std::size_t>((first_ + 1) % kWaiting)].time <= time) {
+    first_ = (first_ + 1) % kWaiting;
+    --count_;
+    is_stopping_ = false;  // something newer acts
+  }
+  if (receiver_ == Receiver::kHold) return command;
+  const Arrival& acting = arrivals_[static_cast<std::size_t>(first_)];
+  const bool has_any = count_ > 0 && acting.time <= time;
+  const bool has_plan = receiver_ == Receiver::kStopPlan && has_any && acting.stop.size > 0;
+  const double begins = has_plan ? acting.stop.points[0].time : (has_any ? acting.time : 0.0) + patience_;
+  if (time <= begins) {
+    is_stopping_ = false;
+    return command;
+  }
+  distance_ = is_stopping_ ? distance_ + elapsed * std::fabs(speed) : 0.0;
+  is_stopping_ = true;
+  return has_plan ? play(acting.stop, speed) : brake(command, speed);
+}
+
+model::Command StopPlayer::play(const StopPlan& stop, double speed) const noexcept {
+  int i = 0;
+  while (i + 1 < stop.size && stop.points[static_cast<std::size_t>(i + 1)].distance <= distance_) ++i;
+  const StopPoint& here = stop.points[static_cast<std::size_t>(i)];
+  const StopPoint& next = stop.points[static_cast<std::size_t>(std::min(i + 1, stop.size - 1))];
+  const double length = next.distance - here.distance;
+  const double share = length > 1e-6 ? std::clamp((distance_ - here.distance) / length, 0.0, 1.0) : 0.0;
+  const double planned = here.speed + share * (next.speed - here.speed);
+  const double steer = here.command.steer + share * (next.command.steer - here.command.steer);
+  const double rest = -std::max(speed, 0.0) / kRestTime;
+  const double wanted =
+      longitudinal_acceleration(vehicle_, here.command.throttle, speed) + (planned - speed) / kSpeedTime;
+  const double throttle = throttle_for(vehicle_, std::max(wanted, rest), speed);
+  return {std::clamp(steer, -vehicle_.steer_limit, vehicle_.steer_limit), std::min(throttle, 0.0)};
+}
+
+model::Command StopPlayer::brake(const model::Command& command, double speed) const noexcept {
+  const double useful = longitudinal_acceleration(vehicle_, lowest_throttle(vehicle_, speed), speed);
+  const double rest = -std::max(speed, 0.0) / kRestTime;
+  return {command.steer, std::min(throttle_for(vehicle_, std::max(useful, rest), speed), 0.0)};
+}
+
+}  // namespace chicane::safety

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+
+#include "chicane/model/state.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/safety/guard_options.hpp"
+#include "chicane/safety/stop_plan.hpp"
+
+namespace chicane::safety {
+
+/// The receiver's side of a broken link: what the actuators do when commands cease. A watchdog at the sender
+/// could not help. It knows the clock, its own wheel speed, and what has arrived; no position.
+///
+///     kStopPlan   the stop that came with the last command, by the distance driven since (docs/safety.md,
+///     eq. 11);
+///                 braking with the last steering where none came
+///     kBrake      all useful braking with the last steering, after kPatience
+///     kHold       the last command for ever, as the original simulator does
+///
+/// No allocation after construction; one thread.
+class StopPlayer {
+ public:
+  static constexpr double kPatience = 0.25;        ///< [s] without a stop plan
+  static constexpr double kPatienceInPeriods = 3;  ///< where the control period is long
+
+  StopPlayer(const model::VehicleParams& vehicle, double control_period, Receiver receiver) noexcept;
+
+  /// A new run begins at time 0.
+  void reset() noexcept;
+  /// A command acts from `time` [s] on, and `stop` holds when nothing comes after it.
+  void arrived(double time, const StopPlan& stop) noexcept;
+  /// What the actuators do at `time` [s]: `command`, the last that acts, or the stop. `speed` [m/s] is the
+  /// actuators' own. Times do not decrease.
+  [[nodiscard]] model::Command guard(const model::Command& command, double time, double speed) noexcept;
+  /// The last guard() was not the command.
+  [[nodiscard]] bool is_stopping() const noexcept { return is_stopping_; }
+
+ private:
+  struct Arrival {
+    double time = 0.0;
+    StopPlan stop;
+  };
+  static constexpr int kWaiting = 32;
+
+  [[nodiscard]] model::Command play(const StopPlan& stop, double speed) const noexcept;
+  [[nodiscard]] model::Command brake(const model::Command& command, double speed) const noexcept;
+
+  model::VehicleParams vehicle_;
+  double patience_;
+  Receiver receiver_;
+  std::array<Arrival, kWaiting> arrivals_{};  ///< ring, by rising time
+  int first_ = 0;
+  int count_ = 0;
+  double last_time_ = 0.0;  ///< of the last guard() [s]
+  double distance_ = 0.0;   ///< driven since the stop began [m]
+  bool is_stopping_ = false;
+};
+
+}  // namespace chicane::safety

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "chicane/controller/controller.hpp"
+#include "chicane/safety/measurement_monitor.hpp"
+
+namespace chicane::safety {
+
+/// Decides from what the monitor finds whether the car has to be stopped, and when it may drive on:
+///
+///     condition        tolerated [s]   ends
+///     not measured     0.12            by itself
+///     frozen           0               by itself
+///     speed mismatch   0.1             by itself when the sensor agrees again; else as below
+///     heading jump     0.1             the same
+///     position jump    0.1             the same
+///
+/// A sensor that still disagrees when the car has stood for kStanding is believed anew, once in kOnceIn;
+/// after that a person has to: by a reset of the run, or by taking over. Worst condition wins. No allocation;
+/// one thread.
+class Supervisor {
+ public:
+  static constexpr double kTolerated = 0.1;      ///< [s] of a sensor that disagrees
+  static constexpr double kUnmeasured = 0.12;    ///< [s] without a measurement
+  static constexpr double kStanding = 3.0;       ///< [s]
+  static constexpr double kOnceIn = 60.0;        ///< [s]
+  static constexpr double kStandingSpeed = 0.3;  ///< [m/s]
+
+  void reset() noexcept { *this = {}; }
+  /// A person has taken over: what was latched is forgotten.
+  void rearm() noexcept { rearmed_ = kNever; }
+
+  struct Verdict {
+    controller::GuardReason reason = controller::GuardReason::kNone;
+    bool must_stop = false;
+    bool may_begin_anew = false;  ///< stands, and the sensors may be believed anew
+  };
+  /// `speed`: as estimated [m/s].
+  [[nodiscard]] Verdict judge(const Findings& findings, double time, double speed) noexcept {
+    using enum controller::GuardReason;
+    Verdict verdict;
+    const auto note = [&](double& since, bool is_there, double tolerated, controller::GuardReason reason) {
+      if (!is_there) since = time;
+      if (!(time - since > tolerated) && !(is_there && tolerated <= 0.0)) return;
+      verdict.reason = reason;
+      verdict.must_stop = true;
+    };
+    note(unmeasured_, findings.unmeasured, kUnmeasured, kNotMeasured);
+    note(frozen_, findings.frozen, 0.0, kFrozen);
+    note(speed_, findings.speed_mismatch, kTolerated, kSpeedMismatch);
+    note(heading_, findings.heading_jump, kTolerated, kHeadingJump);
+    note(position_, findings.position_jump, kTolerated, kPositionJump);
+    const bool is_latched =
+        verdict.reason == kSpeedMismatch || verdict.reason == kHeadingJump || verdict.reason == kPositionJump;
+    if (!is_latched || !(speed < kStandingSpeed)) stood_ = time;
+    if (is_latched && time - stood_ > kStanding && time - rearmed_ > kOnceIn) {
+      verdict.may_begin_anew = true;
+      rearmed_ = time;
+    }
+    return verdict;
+  }
+
+ private:
+  static constexpr double kNever = -1e9;
+  double unmeasured_ = 0.0, frozen_ = 0.0, speed_ = 0.0, heading_ = 0.0, position_ = 0.0;  ///< since [s]
+  double stood_ = 0.0;
+  double rearmed_ = kNever;
+};
+
+}  // namespace chicane::safety

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/road/known_road.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "road/sample_loop.hpp"
+
+namespace chicane::road {
+namespace {
+
+/// A circle of 100 m to the left, 4 m of road on its left, 6 m on its right.
+path::RoadData ring() {
+  path::RoadData data;
+  data.is_closed = true;
+  data.length = kTwoPi * 100.0;
+  constexpr int kCount = 314;
+  for (int i = 0; i <= kCount; ++i) {
+    const double angle = kTwoPi * i / kCount;
+    data.points.push_back({.s = data.length * i / kCount,
+                           .position = {100.0 * std::sin(angle), 100.0 - 100.0 * std::cos(angle)},
+                           .heading = angle,
+                           .curvature = 0.01,
+                           .left = 4.0,
+                           .right = 6.0});
+  }
+  return data;
+}
+
+TEST(KnownRoad, KnowsATracksEdgesFromTheBeginning) {
+  const KnownRoad road(ring(), model::udacity_params());
+  ASSERT_TRUE(road.line().is_closed());
+  EXPECT_NEAR(road.line().length(), kTwoPi * 100.0, 10.0);
+  for (double s = -300.0; s < 1000.0; s += 37.0) {
+    const CurvePoint at = road.line().at(s);
+    const double radius = (at.position - Vec2{0.0, 100.0}).norm();
+    const KnownRoad::Edges edges = road.edges(s);
+    EXPECT_NEAR(radius - edges.left, 96.0, 0.05)
+        << s << ": the edge stays where it is, wherever the line runs";
+    EXPECT_NEAR(radius + edges.right, 106.0, 0.05) << s;
+    EXPECT_NEAR(at.curvature, 0.01, 2e-3);
+  }
+}
+
+TEST(KnownRoad, KeepsAnOpenTracksOwnLine) {
+  path::RoadData data;
+  data.length = 100.0;
+  for (int i = 0; i <= 50; ++i)
+    data.points.push_back({.s = 2.0 * i, .position = {2.0 * i, 0.0}, .left = 3.0 + 0.02 * i, .right = 5.0});
+  const KnownRoad road(data, model::udacity_params());
+  EXPECT_FALSE(road.line().is_closed());
+  EXPECT_NEAR(road.edges(51.0).left, 3.51, 1e-9);
+  EXPECT_NEAR(road.edges(500.0).left, 4.0, 1e-9) << "beyond the end as at the end";
+}
+
+TEST(KnownRoad, LearnsFromWaypointsWhatItIsNotTold) {
+  KnownRoad road(3.5, model::udacity_params());
+  EXPECT_TRUE(road.line().is_empty());
+  const std::vector<Vec2> points = stadium();
+  const unsigned before = road.revision();
+  model::Measurement now = seeing(points, 0);
+  road.add(now);
+  ASSERT_FALSE(road.line().is_empty());
+  EXPECT_NE(road.revision(), before);
+  for (int i = 1; i < 200; ++i) {
+    now = seeing(points, i);
+    now.time = 0.3 * i;
+    road.add(now);
+  }
+  ASSERT_TRUE(road.line().is_closed());
+  const KnownRoad::Edges edges = road.edges(100.0);
+  EXPECT_NEAR(edges.left + edges.right, 7.0, 1e-9);
+  road.reset();
+  EXPECT_TRUE(road.line().is_empty());
+}
+
+}  // namespace
+}  // namespace chicane::road

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/run/fault_campaign.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "chicane/protocol/library.hpp"
+
+namespace chicane::run {
+namespace {
+
+scenario::Scenario on_oval(const char* mode = "on") {
+  return protocol::compose({.scenario_file = {}, .settings = {{"track", "oval"}, {"guard.mode", mode}}})
+      .value();
+}
+
+TEST(FaultCampaign, FindsTheFlyingLap) {
+  const auto lap = find_flying_lap(on_oval());
+  ASSERT_TRUE(lap);
+  EXPECT_GT(lap->begins, 10.0);
+  EXPECT_GT(lap->time, 10.0);
+  EXPECT_LT(lap->time, lap->begins) << "the first lap is from standstill";
+}
+
+TEST(FaultCampaign, TriesEveryMomentOfTheLap) {
+  const auto trials =
+      trials_over_lap({.begins = 30.0, .time = 2.1}, *sim::fault_named("half_grip"), 3.0, 0.5);
+  ASSERT_EQ(trials.size(), 5U);
+  EXPECT_EQ(trials[4].onset, 2.0);
+  EXPECT_EQ(trials[4].strength, 0.5);
+}
+
+TEST(FaultCampaign, OutcomesDoNotDependOnTheNumberOfThreads) {
+  const scenario::Scenario scenario = on_oval();
+  const auto lap = find_flying_lap(scenario);
+  ASSERT_TRUE(lap);
+  const auto trials = trials_over_lap(*lap, *sim::fault_named("gps_noise"), 1.0, 6.0);
+  const auto one = drive_trials(scenario, *lap, trials, 1);
+  const auto two = drive_trials(scenario, *lap, trials, 2);
+  ASSERT_TRUE(one && two);
+  ASSERT_EQ(one->size(), trials.size());
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    EXPECT_EQ((*one)[i].least_edge, (*two)[i].least_edge) << i;
+    EXPECT_EQ((*one)[i].at, lap->begins + trials[i].onset);
+  }
+}
+
+TEST(FaultCampaign, EndsEarlyWithWhatItHas) {
+  const scenario::Scenario scenario = on_oval();
+  const auto lap = find_flying_lap(scenario);
+  const auto trials = trials_over_lap(*lap, *sim::fault_named("gps_noise"), 0.5, 4.0);
+  const auto outcomes = drive_trials(scenario, *lap, trials, 1, [](std::size_t done) { return done < 2; });
+  ASSERT_TRUE(outcomes);
+  EXPECT_TRUE(std::isfinite((*outcomes)[1].least_edge));
+  EXPECT_FALSE(std::isfinite((*outcomes)[2].least_edge));
+}
+
+/// What the guard is for: without it the same trials leave the road.
+TEST(FaultCampaign, TellsGuardedFromUnguarded) {
+  const auto off = [](const char* mode) {
+    const scenario::Scenario scenario = on_oval(mode);
+    const auto lap = find_flying_lap(scenario);
+    const auto trials = trials_over_lap(*lap, *sim::fault_named("nan_measurement"), kLasting, 2.5);
+    int count = 0;
+    const auto outcomes = drive_trials(scenario, *lap, trials, 2);
+    EXPECT_TRUE(outcomes);
+    for (const FaultOutcome& outcome : outcomes.value_or(std::vector<FaultOutcome>{})) {
+      count += outcome.has_left_road() ? 1 : 0;
+      if (std::string_view(mode) == "on") {
+        EXPECT_TRUE(outcome.stands()) << outcome.at;
+      }
+    }
+    return count;
+  };
+  EXPECT_EQ(off("on"), 0);
+  EXPECT_GT(off("off"), 0);
+}
+
+}  // namespace
+}  // namespace chicane::run

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/stop_planner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "chicane/base/angle.hpp"
+#include "support/alloc_guard.hpp"
+
+namespace chicane::safety {
+namespace {
+
+/// A circle, 10 m wide; `side` 1 turns left.
+road::KnownRoad circle(double radius, double side = 1.0) {
+  path::RoadData data;
+  data.length = kTwoPi * radius;
+  constexpr int kCount = 400;
+  for (int i = 0; i <= kCount; ++i) {
+    const double angle = kTwoPi * i / kCount;
+    data.points.push_back({.s = data.length * i / kCount,
+                           .position = {radius * std::sin(angle), side * radius * (1.0 - std::cos(angle))},
+                           .heading = side * angle,
+                           .curvature = side / radius,
+                           .left = 5.0,
+                           .right = 5.0});
+  }
+  return {data, model::udacity_params()};
+}
+
+StopStart start_at(double s, double speed, double d = 0.0, double e = 0.0) {
+  return {.time = 2.0, .s = s, .d = d, .e = e, .body = {.vx = speed}};
+}
+
+const model::VehicleParams kCars[] = {model::udacity_params(), model::road_car_params()};
+
+TEST(StopPlanner, StopsOnAStraightRoadAsFastAsItBrakes) {
+  const road::KnownRoad road = circle(1e5);
+  for (const model::VehicleParams& car : kCars) {
+    const StopPlanner planner(car);
+    StopPlan stop;
+    for (const double speed : {10.0, 20.0, 30.0}) {
+      const StopCheck check = planner.plan(road, start_at(100.0, speed), {.share = 1.0}, stop);
+      EXPECT_TRUE(check.stands) << car.name << speed;
+      EXPECT_GT(check.least_edge, 3.5);
+      const double ideal =
+          speed * speed / (2.0 * -longitudinal_acceleration(car, -car.brake_throttle_limit, 0.5 * speed));
+      EXPECT_GT(check.distance, 0.8 * ideal);
+      EXPECT_LT(check.distance, 1.5 * ideal + 4.0) << car.name << " " << speed;
+    }
+  }
+}
+
+TEST(StopPlanner, PlanIsWhatAReceiverCanDrive) {
+  const road::KnownRoad road = circle(80.0);
+  const StopPlanner planner(kCars[0]);
+  StopPlan stop;
+  const StopCheck check = planner.plan(road, start_at(10.0, 25.0), {.share = 0.8}, stop);
+  ASSERT_TRUE(check.stands);
+  ASSERT_GT(stop.size, 10);
+  EXPECT_EQ(stop.points[0].time, 2.0);
+  for (int i = 1; i < stop.size; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    EXPECT_GT(stop.points[k].time, stop.points[k - 1].time);
+    EXPECT_GE(stop.points[k].distance, stop.points[k - 1].distance);
+    EXPECT_LE(stop.points[k].command.throttle, 0.0);
+    EXPECT_LE(std::fabs(stop.points[k].command.steer), kCars[0].steer_limit);
+  }
+  EXPECT_NEAR(stop.points[static_cast<std::size_t>(stop.size - 1)].distance, check.distance, 1.0);
+}
+
+TEST(StopPlanner, IsTheSameInAMirror) {
+  const road::KnownRoad left = circle(60.0);
+  const road::KnownRoad right = circle(60.0, -1.0);
+  for (const model::VehicleParams& car : kCars) {
+    const StopPlanner planner(car);
+    StopPlan one;
+    StopPlan other;
+    const StopCheck a = planner.plan(left, start_at(20.0, 18.0, 1.0, -0.05), {.share = 0.8}, one);
+    const StopCheck b = planner.plan(right, start_at(20.0, 18.0, -1.0, 0.05), {.share = 0.8}, other);
+    EXPECT_NEAR(a.least_edge, b.least_edge, 1e-9);
+    EXPECT_NEAR(a.distance, b.distance, 1e-9);
+    ASSERT_EQ(one.size, other.size);
+    for (int i = 0; i < one.size; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      EXPECT_NEAR(one.points[k].command.steer, -other.points[k].command.steer, 1e-9) << i;
+      EXPECT_NEAR(one.points[k].command.throttle, other.points[k].command.throttle, 1e-9);
+    }
+  }
+}
+
+TEST(StopPlanner, SaysWhenTheCarIsTooFastForTheBend) {
+  const road::KnownRoad road = circle(40.0);
+  const StopPlanner planner(model::road_car_params());
+  StopPlan stop;
+  EXPECT_GT(planner.plan(road, start_at(10.0, 12.0), {.share = 0.8}, stop).least_edge, 1.0);
+  const StopCheck fast = planner.plan(road, start_at(10.0, 35.0), {.share = 1.0}, stop);  // 3.1 g
+  EXPECT_TRUE(fast.least_edge < 0.0 || !fast.stands);
+}
+
+TEST(StopPlanner, ComesBackToTheMiddleFromBothSides) {
+  const road::KnownRoad road = circle(1e5);
+  for (const model::VehicleParams& car : kCars) {
+    const StopPlanner planner(car);
+    for (const double d : {3.0, -3.0}) {
+      double edge = 9.0;
+      StopStart at = start_at(100.0, 30.0, d);
+      for (int i = 0; i < 100 && at.body.vx > 0.5; ++i)
+        at = planner.advance(road, at, planner.law(road, at, {.share = 0.6}), 0.05, edge);
+      EXPECT_LT(std::fabs(at.d), 1.6) << car.name;
+    }
+  }
+}
+
+TEST(StopPlanner, MeasuresTheEdgeAtTheOutermostTyre) {
+  const road::KnownRoad road = circle(1e5);
+  const model::VehicleParams car = model::udacity_params();
+  const StopPlanner planner(car);
+  const double half = 0.5 * (car.track_width + car.tire_width);
+  EXPECT_NEAR(planner.edge(road, start_at(100.0, 0.0, 1.0)), 5.0 - 1.0 - half, 1e-9);
+  EXPECT_NEAR(planner.edge(road, start_at(100.0, 0.0, -2.0)), 5.0 - 2.0 - half, 1e-9);
+  const double e = 0.3;
+  EXPECT_NEAR(planner.edge(road, start_at(100.0, 0.0, 0.0, e)),
+              5.0 - car.rear_axle * std::sin(e) - half * std::cos(e), 1e-9)
+      << "the rear axle is further from the centre of mass";
+}
+
+TEST(StopPlanner, NeedsTheRoadAsFarAsItStops) {
+  path::RoadData data;
+  data.length = 60.0;
+  for (int i = 0; i <= 30; ++i)
+    data.points.push_back({.s = 2.0 * i, .position = {2.0 * i, 0.0}, .left = 5.0, .right = 5.0});
+  const road::KnownRoad road(data, kCars[0]);
+  const StopPlanner planner(kCars[0]);
+  StopPlan stop;
+  EXPECT_TRUE(planner.plan(road, start_at(5.0, 20.0), {.share = 1.0}, stop).stands);
+  EXPECT_FALSE(planner.plan(road, start_at(5.0, 40.0), {.share = 1.0}, stop).stands);
+}
+
+TEST(StopPlanner, AllocatesNothing) {
+  const road::KnownRoad road = circle(60.0);
+  const StopPlanner planner(kCars[1]);
+  StopPlan stop;
+  const test::AllocationGuard guard;
+  static_cast<void>(planner.plan(road, start_at(20.0, 18.0), {.share = 0.8}, stop));
+  EXPECT_EQ(guard.count(), 0);
+}
+
+}  // namespace
+}  // namespace chicane::safety
