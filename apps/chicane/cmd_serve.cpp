@@ -34,12 +34,14 @@ Result<std::optional<path::Track>> told_track(const Options& options, const scen
 Result<wire::ServeSummary> serve_until_stopped(const Options& options) {
   static std::atomic<bool> stop{false};  // as long as signals may come
   catch_interrupts(stop);
-  const Result<scenario::Scenario> scenario = experiment(options);
+  Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
   Result<std::unique_ptr<controller::Controller>> controller = run::make_controller(*scenario);
   if (!controller) return fail(controller.error());
   Result<std::optional<path::Track>> track = told_track(options, *scenario);
   if (!track) return fail(track.error());
+  // What is recorded says where the guard knew the road from, so that a replay computes the same.
+  if (!*track) scenario->guard.road = safety::GuardRoad::kWaypoints;
 
   const Result<net::ServerOptions> server = server_options(options);
   if (!server) return fail(server.error());

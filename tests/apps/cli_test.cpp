@@ -234,6 +234,27 @@ TEST(Cli, ServeSaysThatNobodyToldItTheRoad) {
   EXPECT_THAT(run["why_no_limit"].get<std::string>(), HasSubstr("--track"));
 }
 
+TEST(Cli, ARecordingOfServeSaysThatTheRoadIsKnownFromWaypointsAndReplays) {
+  const fs::path folder = file_of_test("served");
+  fs::create_directories(folder);
+  const std::string log = (folder / "run.mcap").string();
+  const std::string said = (folder / "serve.txt").string();
+  const Outcome outcome = shell(
+      kProgram + "serve --port 0 --record '" + log + "' > '" + (folder / "out.txt").string() + "' 2> '" +
+      said +
+      "' & server=$!; port=; while kill -0 $server && [ -z \"$port\" ]; do sleep 0.05; "
+      "port=$(sed -n 's/.* on port \\([0-9]*\\);.*/\\1/p' '" +
+      said + "'); done; " + kProgram +
+      "simulate --connect ws://127.0.0.1:$port --set time_limit_s=6 --json; kill -INT $server; wait $server");
+  ASSERT_EQ(outcome.code, 0) << outcome.err << read(said);
+  const Outcome verified = chicane_program("replay '" + log + "' --verify --json");
+  EXPECT_EQ(verified.code, 0) << verified.err << verified.out;
+  const Json report = Json::parse(verified.out);
+  EXPECT_GT(report["steps"], 10);
+  EXPECT_EQ(report["identical"], report["steps"]);
+  fs::remove_all(folder);
+}
+
 TEST(Cli, TheSameSeedGivesTheSameRun) {
   const std::string arguments =
       "drive --fast --json --laps 1 --set time_limit_s=8 --set sensor.position_noise_m=0.05 --seed ";

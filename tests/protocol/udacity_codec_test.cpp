@@ -240,6 +240,85 @@ TEST(UdacityReplyFromController, IsReadAsTheSimulatorDoes) {
   EXPECT_EQ(std::get<UdacityPacket>(parse_reply("0{\"sid\":\"x\"}")), UdacityPacket::kOpen);
 }
 
+safety::StopPlan stop_of(int size) {
+  safety::StopPlan stop;
+  stop.size = size;
+  for (int i = 0; i < size; ++i) {
+    stop.points[static_cast<std::size_t>(i)] = {.time = 7.25 + 0.1 * i,
+                                                .distance = 1.5 * i,
+                                                .speed = 20.0 - 0.1 * i,
+                                                .command = {.steer = 0.25 * kFullLock, .throttle = -0.5}};
+  }
+  return stop;
+}
+
+TEST(UdacityStopPlan, TravelsBetweenTheSixFieldsInTheWiresSigns) {
+  EXPECT_EQ(encode_steer({.steer = -0.5 * kFullLock}, {}, {}, stop_of(2), 7.0),
+            R"(42["steer",{"mpc_x":[],"mpc_y":[],"next_x":[],"next_y":[],"steering_angle":0.5,)"
+            R"("stop_plan":[[0.25,0,20,-0.25,-0.5],[0.35,1.5,19.9,-0.25,-0.5]],"throttle":0}])");
+}
+
+TEST(UdacityStopPlan, ComesBackAsItWasCountedFromTheTelemetry) {
+  const auto reply = parse_reply(encode_steer({}, {}, {}, stop_of(30), 7.0));
+  const safety::StopPlan& stop = std::get<UdacitySteer>(reply).stop;
+  ASSERT_EQ(stop.size, 30);
+  EXPECT_NEAR(stop.points[29].time, 3.15, 1e-3);
+  EXPECT_NEAR(stop.points[29].distance, 43.5, 1e-3);
+  EXPECT_NEAR(stop.points[29].speed, 17.1, 1e-3);
+  EXPECT_NEAR(stop.points[29].command.steer, 0.25 * kFullLock, 1e-4);  // left is left
+  EXPECT_NEAR(stop.points[29].command.throttle, -0.5, 1e-4);
+}
+
+TEST(UdacityStopPlan, ALongOneIsThinnedAndKeepsItsEnds) {
+  const std::string text = encode_steer({}, {}, {}, stop_of(safety::StopPlan::kCapacity), 7.25);
+  EXPECT_LT(text.size(), 3000U);
+  const auto reply = parse_reply(text);
+  const safety::StopPlan& stop = std::get<UdacitySteer>(reply).stop;
+  ASSERT_EQ(stop.size, kMaxUdacityStop);
+  EXPECT_EQ(stop.points[0].time, 0.0);
+  EXPECT_NEAR(stop.points[kMaxUdacityStop - 1].distance, 1.5 * (safety::StopPlan::kCapacity - 1), 1e-3);
+}
+
+TEST(UdacityStopPlan, ANonFiniteOneIsNotSent) {
+  safety::StopPlan stop = stop_of(3);
+  stop.points[1].speed = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(encode_steer({}, {}, {}, stop, 7.0), encode_steer({}, {}, {}));
+}
+
+TEST(UdacityStopPlan, WhatCouldNotBePlayedIsRefusedInWords) {
+  const auto reply_with = [](const std::string& stop) {
+    return parse_reply(
+        R"(42["steer",{"mpc_x":[],"mpc_y":[],"next_x":[],"next_y":[],"steering_angle":0,"throttle":0,"stop_plan":)" +
+        stop + "}]");
+  };
+  EXPECT_EQ(std::get<UdacitySteer>(reply_with("[]")).stop.size, 0);
+  std::string many = "[[0,0,0,0,0]";
+  for (int i = 0; i < kMaxUdacityStop; ++i) many += ",[0,0,0,0,0]";
+  const std::vector<std::pair<std::string, std::string>> list{
+      {"null", "stop_plan: got null, expected an array of at most 64 points"},
+      {"7", "stop_plan: got 7"},
+      {many + "]", "stop_plan: got an array of 65"},
+      {"[[0,0,0,0]]", "stop_plan[0]: got an array of 4, expected an array of 5 numbers"},
+      {"[7]", "stop_plan[0]: got 7"},
+      {"[[0,0,0,0,null]]", "stop_plan[0][4]: got null, expected a number"},
+      {R"([[0,0,0,0,"1"]])", R"(stop_plan[0][4]: got "1")"},
+      {"[[-1,0,0,0,0]]", "stop_plan[0][0]: got -1"},
+      {"[[6,0,0,0,0]]", "begins after 6 s"},
+      {"[[0,1e9,0,0,0]]", "stop_plan[0][1]: got 1000000000.0"},
+      {"[[0,0,-1,0,0]]", "stop_plan[0][2]: got -1"},
+      {"[[0,0,0,1.01,0]]", "stop_plan[0][3]: got 1.01"},
+      {"[[0,0,0,0,-2]]", "stop_plan[0][4]: got -2"},
+      {"[[1,0,0,0,0],[0,0,0,0,0]]", "stop_plan[1]: time and distance must not fall"},
+      {"[[1,9,0,0,0],[2,8,0,0,0]]", "stop_plan[1]: time and distance must not fall"},
+  };
+  for (const auto& [stop, words] : list) {
+    const auto reply = reply_with(stop);
+    const auto* broken = std::get_if<UdacityBroken>(&reply);
+    ASSERT_NE(broken, nullptr) << stop;
+    EXPECT_THAT(broken->reason, HasSubstr(words)) << stop;
+  }
+}
+
 TEST(UdacityReplyFromController, WhatStallsTheOriginalIsSaidInWords) {
   const std::string rest = R"("next_x":[],"next_y":[],"mpc_x":[],"mpc_y":[])";
   const std::vector<std::pair<std::string, std::string>> list{

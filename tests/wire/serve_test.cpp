@@ -168,6 +168,25 @@ TEST(Serve, AnswersTheOriginalClientWithExactlyOneCompleteReply) {
   EXPECT_EQ(served.controller.last().waypoint_count, 6);
 }
 
+TEST(Serve, SendsAStopPlanToASimulatorThatAsksForItAndToNobodyElse) {
+  Served served;
+  for (const bool asks : {false, true}) {
+    std::string handshake = test::unity_handshake(served.port());
+    if (asks) handshake.replace(handshake.find("transport=websocket"), 19, "stop_plan=1&transport=websocket");
+    RawSocket socket(served.port());
+    socket.send(handshake);
+    ASSERT_THAT(socket.until("\r\n\r\n"), StartsWith("HTTP/1.1 101"));
+    socket.send(RawSocket::masked(kRealTelemetry));
+    const json data = steer_of(socket.frame());
+    ASSERT_EQ(data.contains("stop_plan"), asks) << data;
+    EXPECT_EQ(data.size(), asks ? 7U : 6U);
+    if (asks) {
+      EXPECT_GT(data["stop_plan"].size(), 0U);
+    }
+    socket.send(RawSocket::masked("41"));
+  }
+}
+
 TEST(Serve, AnswersEachOfSeveralPipelinedTelemetries) {
   Served served;
   RawSocket client = served.connect();

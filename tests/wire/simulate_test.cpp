@@ -4,7 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -189,6 +192,61 @@ TEST(Simulate, NoticesASilentControllerAndConnectsAnew) {
   EXPECT_EQ(outcome.report->connections, 2U);
   EXPECT_GE(outcome.report->answers, 2U);
   EXPECT_THAT(outcome.log, HasSubstr("no answer for 50 ms: the original simulator would wait for ever"));
+}
+
+/// Full throttle for 1.2 s, then silence.
+Outcome forsaken(safety::Receiver receiver) {
+  const auto began = std::make_shared<std::optional<std::chrono::steady_clock::time_point>>();
+  ScriptedServer server([began](int, const std::string&) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!*began) *began = now;
+    return now - **began < 1200ms ? std::vector{kStraight} : std::vector<std::string>{};
+  });
+  scenario::Scenario scenario = short_run(5.0);
+  scenario.guard.receiver = receiver;
+  return run({.url = server.url()}, scenario);
+}
+
+TEST(Simulate, StopsTheCarOfAControllerThatFallsSilent) {
+  const Outcome outcome = forsaken(safety::Receiver::kStopPlan);
+  ASSERT_TRUE(outcome.report);
+  EXPECT_GE(outcome.report->stops, 1U);
+  EXPECT_THAT(outcome.log, HasSubstr("no command in time: the car is stopped from "));
+  EXPECT_THAT(outcome.log, HasSubstr("the car stands, its outermost wheel "));
+}
+
+TEST(Simulate, HoldsTheLastCommandOfAControllerThatFallsSilentWhereItIsTold) {
+  const Outcome outcome = forsaken(safety::Receiver::kHold);
+  ASSERT_TRUE(outcome.report);
+  EXPECT_EQ(outcome.report->stops, 0U);
+  EXPECT_GT(outcome.report->run.total.top_speed, 10.0);
+}
+
+TEST(Simulate, SaysThatItPlaysStopPlansUnlessItHoldsAsTheOriginal) {
+  const auto target = [](safety::Receiver receiver, const std::string& path) {
+    std::string asked;
+    std::mutex mutex;
+    auto server = net::Server::create({.port = 0},
+                                      {.on_upgrade =
+                                           [&](const net::UpgradeRequest& request) {
+                                             const std::lock_guard lock(mutex);
+                                             asked = request.target;
+                                             return net::UpgradeAnswer{.accept = true};
+                                           },
+                                       .on_open = [](net::ConnectionId, int) {},
+                                       .on_message = [](net::ConnectionId, int, std::string_view, bool) {},
+                                       .on_close = [](net::ConnectionId, int, std::string_view) {}},
+                                      {});
+    scenario::Scenario scenario = short_run(0.1);
+    scenario.guard.receiver = receiver;
+    static_cast<void>(run({.url = "ws://127.0.0.1:" + std::to_string((*server)->port()) + path}, scenario));
+    server->reset();
+    return asked;
+  };
+  EXPECT_EQ(target(safety::Receiver::kStopPlan, "/socket.io/?EIO=4"), "/socket.io/?EIO=4&stop_plan=1");
+  EXPECT_EQ(target(safety::Receiver::kStopPlan, "/x"), "/x?stop_plan=1");
+  EXPECT_EQ(target(safety::Receiver::kStopPlan, ""), "/?stop_plan=1");
+  EXPECT_EQ(target(safety::Receiver::kHold, "/socket.io/?EIO=4"), "/socket.io/?EIO=4");
 }
 
 TEST(Simulate, ManualDrivingSendsNull) {

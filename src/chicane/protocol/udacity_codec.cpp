@@ -37,6 +37,11 @@ constexpr Range kSpeed{0.0, 1e3};      // [mph]
 constexpr Range kSteer{-1.6, 1.6};     // [rad]
 constexpr Range kThrottle{-1.0, 1.0};
 
+/// And for the numbers of a point of a stop plan: after_s, distance_m, speed_mps, steering_angle, throttle.
+constexpr std::array<Range, 5> kStopPoint{
+    Range{0.0, 60.0}, {0.0, 1e4}, {0.0, 450.0}, {-1.0, 1.0}, {-1.0, 1.0}};
+constexpr Range kStopBegins{0.0, 5.0};  // [s] later is no stop
+
 /// A received value for an error message: short, printable, valid UTF-8.
 std::string shown(const Json& value) {
   if (value.is_discarded()) return "nothing";
@@ -171,6 +176,31 @@ class FieldReader {
     return result;
   }
 
+  /// The rows of a table of at most `capacity`; none when there is no such field.
+  template <std::size_t kColumns>
+  std::vector<std::array<double, kColumns>> rows(const char* key, std::size_t capacity,
+                                                 const std::array<Range, kColumns>& ranges) {
+    std::vector<std::array<double, kColumns>> result;
+    const auto found = data_.find(key);
+    if (found == data_.end()) return result;
+    if (!found->is_array() || found->size() > capacity) {
+      refuse(unexpected(key, *found, fmt::format("an array of at most {} points", capacity)));
+      return result;
+    }
+    result.reserve(found->size());
+    for (const Json& row : *found) {
+      const std::string name = fmt::format("{}[{}]", key, result.size());
+      if (!row.is_array() || row.size() != kColumns) {
+        refuse(unexpected(name, row, fmt::format("an array of {} numbers", kColumns)));
+        return result;
+      }
+      std::array<double, kColumns>& numbers = result.emplace_back();
+      for (std::size_t i = 0; i < kColumns; ++i)
+        numbers[i] = checked(fmt::format("{}[{}]", name, i), row[i], ranges[i]);
+    }
+    return result;
+  }
+
   void refuse(UdacityBroken broken) {
     if (!broken_) broken_ = std::move(broken);
   }
@@ -267,6 +297,49 @@ std::vector<Vec2> read_line(FieldReader& fields, const char* x_key, const char* 
   return line;
 }
 
+/// A stop plan of the reply; times count from when the telemetry was sampled.
+safety::StopPlan read_stop(FieldReader& fields) {
+  constexpr const char* kKey = "stop_plan";
+  const auto rows = fields.rows(kKey, kMaxUdacityStop, kStopPoint);
+  safety::StopPlan stop;
+  for (const auto& [after, distance, speed, steer, throttle] : rows) {
+    if (stop.size == 0 && after > kStopBegins.high)
+      fields.refuse(
+          {fmt::format("{}: begins after {} s, expected at most {}", kKey, after, kStopBegins.high)});
+    if (stop.size > 0) {
+      const safety::StopPoint& before = stop.points[static_cast<std::size_t>(stop.size - 1)];
+      if (after < before.time || distance < before.distance)
+        fields.refuse({fmt::format("{}[{}]: time and distance must not fall", kKey, stop.size)});
+    }
+    stop.points[static_cast<std::size_t>(stop.size++)] = {
+        after, distance, speed, {.steer = 0.0 - steer * kSteerUnit, .throttle = throttle}};
+  }
+  return stop;
+}
+
+/// `"stop_plan":[…],`, or nothing.
+std::string encode_stop(const safety::StopPlan& stop, double sampled) {
+  const int size = std::clamp(stop.size, 0, safety::StopPlan::kCapacity);
+  const int sent = std::min(size, kMaxUdacityStop);
+  const auto rounded = [](double value, double unit) { return std::round(value / unit) * unit + 0.0; };
+  std::string text;
+  for (int k = 0; k < sent; ++k) {
+    const int i = sent < 2 ? 0 : k * (size - 1) / (sent - 1);  // the first and the last among them
+    const safety::StopPoint& point = stop.points[static_cast<std::size_t>(i)];
+    const std::array numbers{point.time - sampled, point.distance, point.speed,
+                             -point.command.steer / kSteerUnit, point.command.throttle};
+    constexpr std::array kUnits{1e-3, 1e-3, 1e-3, 1e-4, 1e-4};
+    text += k == 0 ? "[" : ",[";
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      if (!std::isfinite(numbers[n])) return {};
+      const double value = std::clamp(numbers[n], kStopPoint[n].low, kStopPoint[n].high);
+      text += fmt::format("{}{:.6g}", n == 0 ? "" : ",", rounded(value, kUnits[n]));
+    }
+    text += ']';
+  }
+  return text.empty() ? text : fmt::format(R"("stop_plan":[{}],)", text);
+}
+
 /// In [0, 2π), as the original sends angles.
 double full_turn(double angle) {
   const double wrapped = wrap_angle(angle);
@@ -293,16 +366,17 @@ UdacityTelemetry parse_telemetry(std::string_view text) {
   return read_measurement(event->payload);
 }
 
-std::string encode_steer(const model::Command& command, const controller::Plan& plan,
-                         const model::Pose& pose) {
+std::string encode_steer(const model::Command& command, const controller::Plan& plan, const model::Pose& pose,
+                         const safety::StopPlan& stop, double sampled) {
   const LineText mpc = encode_line(plan.size, pose, [&](std::size_t i) {
     return Vec2{plan.points[i].x, plan.points[i].y};
   });
   const LineText next =
       encode_line(plan.reference_size, pose, [&](std::size_t i) { return plan.reference[i]; });
   return fmt::format(
-      R"(42["steer",{{"mpc_x":{},"mpc_y":{},"next_x":{},"next_y":{},"steering_angle":{},"throttle":{}}}])",
-      mpc.x, mpc.y, next.x, next.y, normalised(-command.steer / kSteerUnit), normalised(command.throttle));
+      R"(42["steer",{{"mpc_x":{},"mpc_y":{},"next_x":{},"next_y":{},"steering_angle":{},{}"throttle":{}}}])",
+      mpc.x, mpc.y, next.x, next.y, normalised(-command.steer / kSteerUnit), encode_stop(stop, sampled),
+      normalised(command.throttle));
 }
 
 std::string encode_manual() { return R"(42["manual",{}])"; }
@@ -324,6 +398,7 @@ UdacityReply parse_reply(std::string_view text) {
   steer.command.throttle = std::clamp(fields.number("throttle", kAnything), -1.0, 1.0);
   steer.reference = read_line(fields, "next_x", "next_y");
   steer.plan = read_line(fields, "mpc_x", "mpc_y");
+  steer.stop = read_stop(fields);
   if (fields.broken()) return *fields.broken();
   return steer;
 }

@@ -11,6 +11,7 @@
 #include "chicane/controller/plan.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
+#include "chicane/safety/stop_plan.hpp"
 
 /// The dialect of the Udacity Term-2 simulator's MPC scene (v1.45), from both ends. All of its signs and
 /// units live here: on the wire steering is positive to the right, speed is in mph, a steering command is a
@@ -20,6 +21,10 @@ namespace chicane::protocol {
 
 inline constexpr std::size_t kMaxUdacityMessage = 65536;  ///< longer texts are broken by definition [byte]
 inline constexpr int kMaxUdacityLine = 25;  ///< points drawn for one line: each costs the original frame time
+inline constexpr int kMaxUdacityStop = 64;  ///< points of a stop plan
+
+/// In the query of its request a simulator says with this that it plays stop plans.
+inline constexpr std::string_view kStopPlanItem = "stop_plan=1";
 
 /// `null` instead of data: a person drives by keyboard.
 struct UdacityManual {};
@@ -56,16 +61,20 @@ using UdacityTelemetry =
 /// The answer to telemetry: command, plan (green) and reference (yellow). The lines are given in W and sent
 /// in the frame of the car at `pose_at_receipt`, because the original draws them from where the car is when
 /// they arrive: the predicted pose. Lines are thinned to kMaxUdacityLine points and end before the first
-/// non-finite one. Pre: the command is finite.
+/// non-finite one. `stop`, if it has points and all are finite, travels in a field that the original ignores;
+/// thinned to kMaxUdacityStop points, its times counted from `sampled` [s], when the telemetry was. Pre: the
+/// command is finite.
 [[nodiscard]] std::string encode_steer(const model::Command& command, const controller::Plan& plan,
-                                       const model::Pose& pose_at_receipt);
+                                       const model::Pose& pose_at_receipt, const safety::StopPlan& stop = {},
+                                       double sampled = 0.0);
 [[nodiscard]] std::string encode_manual();
 
 /// From the controller: what the simulator makes of it.
 struct UdacitySteer {
-  model::Command command;       ///< clamped as the simulator does: |steer| <= 25°, throttle in [-1, 1]
-  std::vector<Vec2> plan;       ///< mpc_*, in B at receipt [m]
-  std::vector<Vec2> reference;  ///< next_*, in B at receipt [m]
+  model::Command command;         ///< clamped as the simulator does: |steer| <= 25°, throttle in [-1, 1]
+  std::vector<Vec2> plan{};       ///< mpc_*, in B at receipt [m]
+  std::vector<Vec2> reference{};  ///< next_*, in B at receipt [m]
+  safety::StopPlan stop{};  ///< its times [s] count from when the telemetry was sampled; size 0: none came
 };
 using UdacityReply = std::variant<UdacitySteer, UdacityManual, UdacityPacket, UdacityBroken>;
 [[nodiscard]] UdacityReply parse_reply(std::string_view text);

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kSpeedTime = 0.4;  // [s] in which the planned speed is met again
 constexpr double kRestTime = 0.4;   // [s] with which the car comes to rest
+constexpr double kStanding = 0.5;   // [m/s] a plan that ends faster is not complete
 
 }  // namespace
 
@@ -63,7 +64,8 @@ model::Command StopPlayer::play(const StopPlan& stop, double speed) const noexce
   const StopPoint& next = stop.points[static_cast<std::size_t>(std::min(i + 1, stop.size - 1))];
   const double length = next.distance - here.distance;
   const double share = length > 1e-6 ? std::clamp((distance_ - here.distance) / length, 0.0, 1.0) : 0.0;
-  const double planned = here.speed + share * (next.speed - here.speed);
+  const bool ends_rolling = i + 1 == stop.size && here.speed >= kStanding;  // where the known road ended
+  const double planned = ends_rolling ? 0.0 : here.speed + share * (next.speed - here.speed);
   const double steer = here.command.steer + share * (next.command.steer - here.command.steer);
   const double rest = -std::max(speed, 0.0) / kRestTime;
   const double wanted =

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "chicane/model/state.hpp"
@@ -29,6 +30,8 @@ class StopPlayer {
 
   /// A new run begins at time 0.
   void reset() noexcept;
+  /// Without a stop plan the next command is waited for so long [s], at least kPatience.
+  void set_patience(double patience) noexcept { patience_ = std::max(patience, kPatience); }
   /// A command acts from `time` [s] on, and `stop` holds when nothing comes after it.
   void arrived(double time, const StopPlan& stop) noexcept;
   /// What the actuators do at `time` [s]: `command`, the last that acts, or the stop. `speed` [m/s] is the

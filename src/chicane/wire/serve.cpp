@@ -66,7 +66,19 @@ struct Request {
   net::ConnectionId from = 0;
   Clock::time_point received{};
   model::Measurement measurement{};
+  bool wants_stop_plan = false;
 };
+
+/// Whether the query of a request's target ("/path?a=1&b=2") has this item.
+bool has_item(std::string_view target, std::string_view item) {
+  std::size_t begin = target.find('?');
+  while (begin != std::string_view::npos) {
+    const std::size_t end = target.find('&', ++begin);
+    if (target.substr(begin, end - begin) == item) return true;
+    begin = end;
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -165,7 +177,10 @@ class UdacityEndpoint::Control {
     last_begun_ = now;
     last_sent_ = frame_.result.command;
     if (frame_.result.report.gated) ++interventions_;
-    answer_(request, protocol::encode_steer(frame_.result.command, frame_.result.plan, pose_at_receipt()),
+    static const safety::StopPlan kNone;
+    answer_(request,
+            protocol::encode_steer(frame_.result.command, frame_.result.plan, pose_at_receipt(),
+                                   request.wants_stop_plan ? cycle_.stop() : kNone, frame_.time),
             options_.latency);
     ++answers_;
     frame_.lateral_error = frame_.result.report.lateral_error;
@@ -277,6 +292,7 @@ net::UpgradeAnswer UdacityEndpoint::on_upgrade(const net::UpgradeRequest& reques
   }
   Session session{.id = request.id, .name = request.peer};
   session.is_version_3 = request.target.find("EIO=3") != std::string::npos;
+  session.knows_stop_plan = has_item(request.target, protocol::kStopPlanItem);
   if (accepted_.size() >= kMaxAccepted) accepted_.erase(accepted_.begin());
   accepted_[request.id] = session;
   return {.accept = true};
@@ -316,6 +332,7 @@ void UdacityEndpoint::on_close(net::ConnectionId id, std::string_view why) {
 
 void UdacityEndpoint::hear_telemetry(std::string_view bytes) {
   Request request{.from = session_.id, .received = session_.last_word};
+  request.wants_stop_plan = session_.knows_stop_plan;
   const protocol::UdacityTelemetry message = protocol::parse_telemetry(bytes);
   if (const auto* packet = std::get_if<protocol::UdacityPacket>(&message)) return hear_packet(*packet);
   if (const auto* measurement = std::get_if<model::Measurement>(&message)) {

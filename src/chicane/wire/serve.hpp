@@ -105,10 +105,11 @@ class UdacityEndpoint final : public Endpoint {
 
   /// The one simulator that is driven. Network thread only.
   struct Session {
-    net::ConnectionId id = 0;   ///< 0 = nobody
-    std::string name{};         ///< for the log: its address
-    bool is_stock = false;      ///< got our open packet: an Engine.IO client that expects pings and pongs
-    bool is_version_3 = false;  ///< EIO=3: the server connects the namespace, the client pings
+    net::ConnectionId id = 0;      ///< 0 = nobody
+    std::string name{};            ///< for the log: its address
+    bool is_stock = false;         ///< got our open packet: an Engine.IO client that expects pings and pongs
+    bool is_version_3 = false;     ///< EIO=3: the server connects the namespace, the client pings
+    bool knows_stop_plan = false;  ///< said so in its request: it gets one with each command
     bool has_spoken = false;
     bool has_left = false;  ///< said goodbye, though the connection still stands
     bool has_told = false;  ///< telemetry has come

@@ -21,6 +21,7 @@
 #include "chicane/run/observe.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
+#include "chicane/wire/command_receiver.hpp"
 #include "chicane/wire/server_process.hpp"
 #include "chicane/wire/sparse_log.hpp"
 
@@ -33,11 +34,21 @@ using std::chrono::milliseconds;
 constexpr double kCatchUp = 1.0 / 3.0;  // physics forgets time it cannot catch up, as the original [s]
 constexpr milliseconds kConnectTimeout{1000};
 constexpr milliseconds kNap{5};
+constexpr double kStanding = 0.1;  // [m/s]
 
 Clock::duration duration(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+/// Says in the request that this simulator plays stop plans.
+std::string with_stop_plan(const std::string& url) {
+  constexpr std::string_view kScheme = "ws://";
+  const char* separator = url.find('?') != std::string::npos                   ? "&"
+                          : url.find('/', kScheme.size()) != std::string::npos ? "?"
+                                                                               : "/?";
+  return fmt::format("{}{}{}", url, separator, protocol::kStopPlanItem);
+}
 
 run::AccountTerms terms(const scenario::Scenario& scenario, const path::Track& track) {
   run::AccountTerms terms = run::terms_of(scenario, track.name());
@@ -58,37 +69,43 @@ class Scene {
         plant_{std::move(plant)},
         world_{*plant_, track_},
         sensor_{scenario.sensor, scenario.seed},
+        receiver_{scenario.vehicle, scenario.guard.receiver},
         account_{terms(scenario, track_)} {
     world_.place(track_.start_s(), track_.start_d());
   }
 
   /// Physics up to the moment `elapsed` [s] after the run began; what it cannot catch up is returned.
-  double advance_to(double elapsed, const model::Command& command) {
+  double advance_to(double elapsed) {
     const double step = plant_->step_length();
     const double forgotten = std::max(0.0, elapsed - world_.time() - kCatchUp);
     while (world_.time() + step <= elapsed - forgotten && !account_.is_over()) {
-      world_.advance(command);
+      world_.advance(receiver_.act(world_.time(), plant_->output().speed));
       account_.add_physics(world_, false);
     }
     return forgotten;
   }
 
-  /// Telemetry's content now; `frame` is filled with what the world knows and the controller has not answered
-  /// yet.
-  void sample(const model::Command& acting, telemetry::Frame& frame) {
+  /// Telemetry's content now, and with it the command of the last answer reaches the wheels, unless it is too
+  /// late for that; false says so. `frame` is filled with what the world knows and the controller has not
+  /// answered yet.
+  bool sample(telemetry::Frame& frame) {
     model::Measurement now = sensor_.sample(world_.time(), *plant_);
     sim::select_waypoints(waypoints_, {.x = now.x, .y = now.y, .psi = now.psi}, waypoints_sent_, now);
     run::observe(world_, frame);
     frame.completed_lap = account_.completed_lap();
     frame.time = now.time;
     frame.measurement = now;
-    frame.applied = acting;
+    frame.applied = receiver_.acting();
+    return receiver_.sampled(now.time);
   }
 
   [[nodiscard]] telemetry::RunSummary summary() const { return account_.summary(world_.time()); }
   [[nodiscard]] run::Account& account() { return account_; }
   [[nodiscard]] double next_step() const { return world_.time() + plant_->step_length(); }
   [[nodiscard]] const model::State& car() const { return plant_->state(); }
+  [[nodiscard]] double speed() const { return plant_->output().speed; }
+  [[nodiscard]] double edge() const { return world_.state().edge_distance; }
+  [[nodiscard]] CommandReceiver& receiver() { return receiver_; }
 
  private:
   int waypoints_sent_;
@@ -97,6 +114,7 @@ class Scene {
   std::unique_ptr<sim::Plant> plant_;
   sim::World world_;
   sim::Sensor sensor_;
+  CommandReceiver receiver_;
   run::Account account_;
 };
 
@@ -129,6 +147,8 @@ class Simulation {
       : options_{options},
         turn_around_{duration(scenario.turn_around)},
         hooks_{hooks},
+        url_{scenario.guard.receiver == safety::Receiver::kStopPlan ? with_stop_plan(options.url)
+                                                                    : options.url},
         log_{hooks.log},
         server_{options.server_command, log_},
         scene_{scene} {}
@@ -139,7 +159,7 @@ class Simulation {
     while (!stop && !scene_.account().is_over() && why_.empty()) {
       const Clock::time_point now = Clock::now();
       server_.keep_running(now);
-      if (report_.connections > 0) began_ += duration(scene_.advance_to(seconds(now - began_), acting_));
+      if (report_.connections > 0) move(now);
       if (const auto lap = scene_.account().take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
       if (client_ == nullptr) {
         connect(now);
@@ -156,6 +176,27 @@ class Simulation {
   }
 
  private:
+  /// Physics up to now; says when the car is stopped because nobody commands it, and when it stands.
+  void move(Clock::time_point now) {
+    const double speed = scene_.speed();
+    began_ += duration(scene_.advance_to(seconds(now - began_)));
+    const bool is_forsaken = scene_.receiver().is_forsaken();
+    if (is_forsaken && !is_forsaken_ && speed > kStanding) {
+      ++report_.stops;
+      log_.say(fmt::format("no command in time: the car is stopped from {:.1f} m/s", speed));
+      is_told_standing_ = false;
+    }
+    if (!is_forsaken && is_forsaken_ && !is_told_standing_) {
+      log_.say(fmt::format("commands again: the car drives on from {:.1f} m/s", speed));
+      is_told_standing_ = true;
+    }
+    is_forsaken_ = is_forsaken;
+    if (!is_forsaken || is_told_standing_ || scene_.speed() >= kStanding) return;
+    is_told_standing_ = true;
+    log_.say(fmt::format("the car stands, its outermost wheel {:.2f} m {} the road's edge",
+                         std::fabs(scene_.edge()), scene_.edge() < 0.0 ? "beyond" : "inside"));
+  }
+
   /// Attempts run beside the physics, politely spaced.
   void connect(Clock::time_point now) {
     if (attempt_.valid()) {
@@ -170,8 +211,8 @@ class Simulation {
       return;
     }
     if (now < next_attempt_) return std::this_thread::sleep_for(kNap);
-    attempt_ = std::async(std::launch::async,
-                          [url = options_.url] { return net::Client::connect(url, kConnectTimeout); });
+    attempt_ =
+        std::async(std::launch::async, [url = url_] { return net::Client::connect(url, kConnectTimeout); });
   }
 
   void begin(std::unique_ptr<net::Client> client) {
@@ -181,13 +222,13 @@ class Simulation {
     log_.say(fmt::format("connected to {}", options_.url));
     asked_.reset();
     due_ = Clock::now();
-    pending_.reset();
     deliver("2");  // the original pings once, because its time-out is a thousand times too long
   }
 
   void lose(const std::string& why) {
     log_.say(fmt::format("connection lost: {}", why));
     client_.reset();
+    scene_.receiver().disconnected();
     last_connected_ = Clock::now();
     next_attempt_ = last_connected_ + options_.retry_after;
   }
@@ -219,10 +260,8 @@ class Simulation {
     due_.reset();
     asked_ = now;
     is_reported_silent_ = false;
-    scene_.sample(acting_, frame_);
+    if (!scene_.sample(frame_)) ++report_.late_answers;
     is_manual_ = frame_.time < options_.manual_time;
-    if (pending_) acting_ = *pending_;
-    pending_.reset();
     deliver(is_manual_ ? protocol::encode_manual_telemetry()
                        : protocol::encode_telemetry(frame_.measurement));
   }
@@ -262,7 +301,7 @@ class Simulation {
 
   void accept(const protocol::UdacitySteer& steer, double waited) {
     ++report_.answers;
-    pending_ = steer.command;
+    scene_.receiver().answered(steer);
     ++frame_.cycle;
     frame_.step_time = waited;
     frame_.result.command = frame_.asked = steer.command;  // its own gate is unknown
@@ -285,6 +324,7 @@ class Simulation {
   const SimulateOptions& options_;
   const Clock::duration turn_around_;
   const SimulateHooks& hooks_;
+  const std::string url_;
   SparseLog log_;
   ServerProcess server_;
   Scene& scene_;
@@ -302,8 +342,8 @@ class Simulation {
   std::optional<Clock::time_point> asked_;  ///< telemetry is out since then
   bool is_reported_silent_ = false;
   bool is_manual_ = false;
-  model::Command acting_;                  ///< held until the next answer has been picked up
-  std::optional<model::Command> pending_;  ///< of the last answer
+  bool is_forsaken_ = false;      ///< when the car was looked at last
+  bool is_told_standing_ = true;  ///< nothing more to say about the stop
   telemetry::Frame frame_;
 };
 
