@@ -3,17 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <variant>
-
-#include "chicane/protocol/udacity_codec.hpp"
-#include "chicane/run/control_cycle.hpp"
-#include "chicane/run/make.hpp"
-#include "chicane/sim/sensor.hpp"
-#include "chicane/sim/world.hpp"
-
 namespace chicane::wire {
 namespace {
 
@@ -101,71 +90,6 @@ TEST(CommandReceiver, PlaysThePlanThatCameByTimeAndDistance) {
   EXPECT_DOUBLE_EQ(receiver.act(5.31, 8.0).steer, 0.1);
   EXPECT_NEAR(receiver.act(5.81, 8.0).steer, 0.2, 1e-9);  // half of the way
   EXPECT_LT(receiver.acting().throttle, 0.0);
-}
-
-/// Our controller and our car at both ends of the messages, in simulated time; the controller vanishes.
-struct Outcome {
-  double least_edge = 1e9;  ///< after that [m]
-  double speed_then = 0.0;  ///< [m/s]
-  double speed_at_end = 0.0;
-};
-
-Outcome vanish(scenario::Scenario scenario, double moment, bool has_plan = true) {
-  scenario.guard.road = safety::GuardRoad::kWaypoints;
-  const path::Track track = run::make_track(scenario).value();
-  const path::Track waypoints = run::make_waypoints(track).value();
-  const std::unique_ptr<sim::Plant> plant = run::make_plant(scenario).value();
-  sim::World world(*plant, track);
-  sim::Sensor sensor(scenario.sensor, scenario.seed);
-  run::ControlCycle cycle(run::make_controller(scenario).value(), scenario, nullptr);
-  CommandReceiver receiver(scenario.vehicle, scenario.guard.receiver);
-  auto frame = std::make_unique<telemetry::Frame>();
-  world.place(track.start_s(), track.start_d());
-  Outcome outcome;
-  double next = 0.0;
-  while (world.time() < moment + 12.0) {
-    if (world.time() >= next - 1e-9 && world.time() < moment) {
-      model::Measurement now = sensor.sample(world.time(), *plant);
-      sim::select_waypoints(waypoints, {now.x, now.y, now.psi}, scenario.waypoints_sent, now);
-      EXPECT_TRUE(receiver.sampled(world.time()));
-      frame->measurement =
-          std::get<model::Measurement>(protocol::parse_telemetry(protocol::encode_telemetry(now)));
-      frame->measurement.time = world.time() + 100.0;  // the controller's clock is another one
-      frame->measurement.delay = kCycle;
-      cycle.step({.interval = kCycle}, *frame);
-      const std::string text =
-          protocol::encode_steer(frame->result.command, frame->result.plan, {},
-                                 has_plan ? cycle.stop() : safety::StopPlan{}, frame->time);
-      receiver.answered(std::get<protocol::UdacitySteer>(protocol::parse_reply(text)));
-      next += kCycle;
-      outcome.speed_then = plant->output().speed;
-    }
-    world.advance(receiver.act(world.time(), plant->output().speed));
-    if (world.time() > moment) outcome.least_edge = std::min(outcome.least_edge, world.state().edge_distance);
-  }
-  outcome.speed_at_end = plant->output().speed;
-  return outcome;
-}
-
-TEST(AControllerThatVanishes, LeavesTheCarStandingOnTheRoadWhereItSentStopPlans) {
-  for (const double moment : {4.0, 7.3, 10.1, 12.7, 14.2, 16.9, 19.4, 22.6, 25.8, 28.3, 31.7, 35.2, 41.3}) {
-    const Outcome outcome = vanish({}, moment);
-    EXPECT_GT(outcome.speed_then, 5.0) << moment;
-    EXPECT_GE(outcome.least_edge, 0.0) << moment;
-    EXPECT_LT(outcome.speed_at_end, 0.1) << moment;
-  }
-}
-
-TEST(AControllerThatVanishes, LeavesTheCarOffTheRoadWhereTheLastCommandIsHeld) {
-  scenario::Scenario as_original;
-  as_original.guard.receiver = safety::Receiver::kHold;
-  for (const double moment : {10.1, 16.9, 25.8})
-    EXPECT_LT(vanish(as_original, moment).least_edge, 0.0) << moment;
-}
-
-TEST(AControllerThatVanishes, LeavesTheCarStandingSomewhereWhereItSentNoPlan) {
-  for (const double moment : {10.1, 16.9, 25.8})
-    EXPECT_LT(vanish({}, moment, false).speed_at_end, 0.1) << moment;
 }
 
 }  // namespace

@@ -242,6 +242,22 @@ TEST(Serve, TellsTheControllerHowLongItsCommandsTake) {
   EXPECT_GE(served.summary().delay, 0.035 - 0.005);
 }
 
+TEST(Serve, BeginsAnewAfterASilenceAndOnceMoreWithTheNextTelemetry) {
+  for (const bool is_long : {false, true}) {
+    ServeOptions options = Served::immediate();
+    options.forget_after = is_long ? -60s : 60s;  // every gap is long, or none
+    Served served(options);
+    RawSocket unity = served.connect();
+    int resets = 0;
+    for (int i = 0; i < 3; ++i) {
+      unity.send(RawSocket::masked(kRealTelemetry));
+      steer_of(unity.frame());
+      if (i == 0) resets = served.controller.resets();
+    }
+    EXPECT_EQ(served.controller.resets() - resets, is_long ? 2 : 0);
+  }
+}
+
 TEST(Serve, EveryHostileMessageIsSafe) {
   ServeOptions options = Served::immediate();
   options.quiet_after = 0ns;  // each message comes over a connection of its own

@@ -27,6 +27,7 @@ using std::chrono::milliseconds;
 constexpr int kMaxUnanswered = 16;           // a client in lock-step has one
 constexpr std::size_t kMaxAccepted = 16;     // upgrades that have not completed
 constexpr double kTypicalTurnAround = 0.02;  // of the original simulator [s]
+constexpr double kGapInDelays = 2.0;         // beside ServeOptions::forget_after
 constexpr milliseconds kWatchPeriod{250};
 constexpr std::chrono::seconds kPingInterval{25};  // Engine.IO's default
 constexpr const char* kOpenPacket =
@@ -156,11 +157,13 @@ class UdacityEndpoint::Control {
     delay_.reset();
     last_received_.reset();
     last_begun_.reset();
+    begins_again_ = false;
     roadside_.resume();
   }
 
   void drive(const Request& request) {
     if (last_received_) {
+      watch_gap(seconds(request.received - *last_received_));
       delay_.add(seconds(request.received - *last_received_));
       measured_delay_ = delay_.value();
     }
@@ -188,6 +191,18 @@ class UdacityEndpoint::Control {
     roadside_.judge(frame_);
     if (const auto lap = roadside_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
     if (hooks_.on_frame) hooks_.on_frame(frame_);
+  }
+
+  /// After a silence, ours too, the car has been stopped meanwhile, or has gone on with the last command;
+  /// nobody here knows. The first telemetry may have waited as long, so that the second one begins anew, too.
+  void watch_gap(double gap) {
+    const bool is_long = gap > seconds(options_.forget_after) + kGapInDelays * delay_.value();
+    if (is_long || begins_again_) {
+      cycle_.begin(cycle_.next());
+      last_begun_.reset();
+      roadside_.resume();
+    }
+    begins_again_ = is_long;
   }
 
   /// Telemetry that cannot be used says only that time has passed.
@@ -235,6 +250,7 @@ class UdacityEndpoint::Control {
   net::ConnectionId driven_ = 0;
   std::optional<Clock::time_point> last_received_;
   std::optional<Clock::time_point> last_begun_;
+  bool begins_again_ = false;
   model::Command last_sent_;
   telemetry::Frame frame_;
   std::atomic<std::uint64_t> answers_{0};

@@ -44,6 +44,8 @@ struct ServeOptions {
   /// A client that has said nothing for so long gets the Engine.IO open packet: stock clients wait for it,
   /// the original speaks first (and would double its loop if it got one).
   std::chrono::nanoseconds open_after = std::chrono::seconds{1};
+  /// From telemetry to telemetry, beside twice the usual delay: after so long nothing learned is trusted.
+  std::chrono::nanoseconds forget_after = std::chrono::milliseconds{500};
   std::chrono::nanoseconds quiet_after = std::chrono::seconds{1};   ///< then another connection may take over
   std::chrono::nanoseconds silent_after = std::chrono::seconds{3};  ///< then missing telemetry is reported
 };
@@ -77,8 +79,8 @@ struct ServeSummary {
 /// controller; the network thread only reads, queues and sends.
 ///
 /// Broken telemetry and that of other scenes is answered too: it counts as a cycle in which nothing was
-/// measured (safety/guard.hpp). The controller is reset for each new connection; the account of the run goes
-/// on over all of them.
+/// measured (safety/guard.hpp). The controller is reset for each new connection, and after a silence; the
+/// account of the run goes on over all of them.
 class UdacityEndpoint final : public Endpoint {
  public:
   /// `controller` belongs to the control thread from now on.
