@@ -282,14 +282,14 @@ TEST(Serve, EveryHostileMessageIsSafe) {
   }
 }
 
-TEST(Serve, BrokenTelemetryHoldsTheWheelAndBrakesGently) {
+TEST(Serve, BrokenTelemetryStopsTheCarAlongTheRoadThatWasSeen) {
   Served served;
   RawSocket client = served.connect();
   client.send(RawSocket::masked(kRealTelemetry));
   const json driving = steer_of(client.frame());
   client.send(RawSocket::masked(test::with("\"x\":-40.62008", "\"x\":-40,62008")));
   const json braking = steer_of(client.frame());
-  EXPECT_EQ(braking["steering_angle"], driving["steering_angle"]);
+  EXPECT_NEAR(braking["steering_angle"].get<double>(), driving["steering_angle"].get<double>(), 0.1);
   EXPECT_LT(braking["throttle"].get<double>(), 0.0);
   EXPECT_TRUE(braking["mpc_x"].empty());
   EXPECT_TRUE(served.has_logged("broken telemetry: decimal comma"));
