@@ -64,8 +64,14 @@ INSTANTIATE_TEST_SUITE_P(
                {{"track", "oval"}, {"sensor.position_noise_m", "0.05"}, {"seed", "7"}},
                0xd0b2e3b5a727c606,
                0xb690f94ad765742f},
-        Golden{"weighted", {{"preset", "weighted"}}, 0x2289abd6e0b12064, 0xb8e2970005c7aff6},
-        Golden{"delay_in_model", {{"preset", "delay-in-model"}}, 0xd30ef6e02d73d5c9, 0xa462655e2609913f},
+        Golden{"weighted",
+               {{"preset", "weighted"}, {"guard.mode", "off"}},
+               0x2289abd6e0b12064,
+               0xb8e2970005c7aff6},
+        Golden{"delay_in_model",
+               {{"preset", "delay-in-model"}, {"guard.mode", "off"}},
+               0xd30ef6e02d73d5c9,
+               0xa462655e2609913f},
         Golden{"pid", {{"preset", "pid"}, {"latency_ms", "37"}}, 0xdab4f526bb2d5617, 0xdab4f526bb2d5617}),
     [](const auto& run) { return std::string(run.param.name); });
 

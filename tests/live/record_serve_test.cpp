@@ -57,7 +57,8 @@ void drive(std::uint16_t port, const std::vector<std::string>& messages) {
 
 recording::ReplayReport record_and_verify(const std::string& name, std::chrono::nanoseconds step_budget) {
   const telemetry::TemporaryFile file;
-  const scenario::Scenario scenario = short_run(name);
+  scenario::Scenario scenario = short_run(name);
+  scenario.guard.road = safety::GuardRoad::kWaypoints;  // nobody tells the endpoint its track
   auto controller = run::make_controller(scenario);
   recording::RecorderOptions recording;
   recording.path = file.path();
@@ -117,7 +118,7 @@ TEST(RecordedSession, ComesOutTheSameWhenDeadlinesAreSpentSomewhere) {
 TEST(RecordedSession, ComesOutTheSameWhenEveryDeadlineIsSpent) {
   const recording::ReplayReport report = record_and_verify("cubic-mpc", std::chrono::nanoseconds{1});
   EXPECT_EQ(report.identical, report.steps);
-  EXPECT_EQ(report.late, report.steps - 2) << "all but the two that were unusable";
+  EXPECT_GT(report.late, 20U) << "until the car stands, and nothing is solved any more";
 }
 
 }  // namespace

@@ -19,9 +19,12 @@ constexpr double kAssumedCycle = 0.04;      // [s] where the interval between co
 constexpr double kCyclesLate = 1.5;         // the next command is waited for so long
 constexpr double kLongestLate = 0.06;       // [s]
 constexpr double kSlowStop = 6.0;           // [m] a car that stops within this is slow
-constexpr double kStandingSpeed = 0.3;      // [m/s]
+constexpr double kStandingSpeed = 0.6;      // [m/s]
+constexpr int kShown = 64;                  // points of a stop that is drawn
+constexpr double kShownStep = 0.1;          // [s]
 constexpr double kWalkingPace = 3.0;        // [m/s]
 constexpr double kMostUse = 1.5;            // of the tyres sideways, after a command that is sent
+constexpr double kGuessedWidth = 1.0;       // [m] that the assumed width may be too small by, for a slow car
 constexpr double kLeastEdge = 0.1;          // [m] that a car on the road keeps in any case
 constexpr double kNoFloor = -1e9;           // [m]
 constexpr double kLeniency = 0.05;          // [m] nearer to the edge, for a slow car beyond the margin
@@ -188,8 +191,30 @@ void Guard::drive_stop(const StopStart& start, controller::StepResult& result) n
   result.answer = Answer::kNone;
   result.command = stop_.points[0].command;
   result.report.rung = Rung::kGuardStop;
-  result.plan.size = 0;
-  result.plan.reference_size = 0;
+  show_stop(start, result.plan);
+}
+
+/// The stop as a plan, for whoever draws it.
+void Guard::show_stop(const StopStart& start, controller::Plan& plan) const noexcept {
+  const road::ReferenceLine& line = road_.line();
+  StopStart at = start;
+  double edge = 0.0;
+  plan.size = plan.reference_size = 0;
+  while (plan.size < kShown) {
+    const model::Command command = planner_.law(road_, at, {});
+    const road::CurvePoint here = line.at(at.s);
+    const auto i = static_cast<std::size_t>(plan.size++);
+    plan.reference[i] = here.position;
+    plan.points[i] = {.time = at.time,
+                      .x = here.position.x() - at.d * here.tangent.y(),
+                      .y = here.position.y() + at.d * here.tangent.x(),
+                      .psi = here.heading + at.e,
+                      .speed = at.body.vx,
+                      .command = command};
+    if (at.body.vx < kStandingSpeed) break;
+    at = planner_.advance(road_, at, command, kShownStep, edge);
+  }
+  plan.reference_size = plan.size;
 }
 
 /// Where the car will be on the known road when the command acts; none when car or road are lost.
@@ -221,7 +246,8 @@ bool Guard::leaves_a_stop(const StopStart& start, const model::Command& command,
                           controller::StepReport& report) noexcept {
   // The receiver holds the command until the stop begins: time enough for the next one to come late.
   const double cycle = interval > 0.0 ? interval : kAssumedCycle;
-  const double held = std::min(cycle + std::min(kCyclesLate * cycle, kLongestLate), kLongestHold);
+  const double late = std::clamp(kCyclesLate * cycle, 0.0, std::max(kLongestLate - 0.3 * cycle, 0.0));
+  const double held = std::min(cycle + late, kLongestHold);
   double least_edge = planner_.edge(road_, start);
   const double edge_now = least_edge;
   const StopStart next = planner_.advance(road_, start, command, held, least_edge);
@@ -235,10 +261,14 @@ bool Guard::leaves_a_stop(const StopStart& start, const model::Command& command,
   // A car that is beyond the margin already may move slowly, if it comes no nearer to the edge than it was.
   // One that stands and would wait for ever may use up the margin; one that is off the road may come further,
   // the more the longer it has stood.
-  floor_ = floor_ == kNoFloor ? edge_now : std::max(floor_, edge_now);
-  if (floor_ == edge_now) leniency_ = kLeniency;
+  if (start.body.vx > kWalkingPace) floor_ = kNoFloor;  // it has not come to rest yet
+  if (edge_now > floor_ + kLeniency) {
+    floor_ = edge_now;
+    leniency_ = kLeniency;
+  }
   if (std::fabs(start.body.vx) < kStandingSpeed) leniency_ += kLeniencyRate * cycle;
-  const double lowest = floor_ < 0.0 ? floor_ - kMostLeniency : kLeastEdge;
+  const double least = options_.road == GuardRoad::kWaypoints ? -kGuessedWidth : kLeastEdge;
+  const double lowest = floor_ < 0.0 ? floor_ - kMostLeniency : least;
   const double allowed = std::max(std::min(floor_, options_.margin) - leniency_, lowest);
   return !slides && report.stop_distance < kSlowStop && report.stop_edge >= allowed;
 }

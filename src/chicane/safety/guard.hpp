@@ -67,6 +67,7 @@ class Guard {
   void accept(const model::Measurement& seen, controller::StepResult& result) noexcept;
   void fall_back(const model::Measurement& seen, controller::StepResult& result) noexcept;
   void drive_stop(const StopStart& start, controller::StepResult& result) noexcept;
+  void show_stop(const StopStart& start, controller::Plan& plan) const noexcept;
   [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
   [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
   [[nodiscard]] bool leaves_a_stop(const StopStart& start, const model::Command& command, double interval,

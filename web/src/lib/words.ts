@@ -1,4 +1,4 @@
-import { RUNG, STATUS } from '../protocol/messages';
+import { REASON, RUNG, STATUS } from '../protocol/messages';
 import type { Frame } from '../protocol/topics';
 
 export type Severity = 'good' | 'warning' | 'bad' | 'unknown';
@@ -8,8 +8,32 @@ export interface Sentence {
   readonly text: string;
 }
 
+/** What the guard found, by Frame.guard_reason. */
+export function reasonInWords(reason: number): string {
+  switch (reason) {
+    case REASON.NONE:
+      return 'nothing found';
+    case REASON.NO_ANSWER:
+      return 'the controller has no answer';
+    case REASON.NOT_MEASURED:
+      return 'nothing is measured';
+    case REASON.FROZEN:
+      return 'measurements repeat although it moves';
+    case REASON.SPEED_MISMATCH:
+      return 'measured speed and place contradict each other';
+    case REASON.HEADING_JUMP:
+      return 'the measured yaw jumped';
+    case REASON.POSITION_JUMP:
+      return 'the measured place jumped';
+    case REASON.NO_WAY_TO_STOP:
+      return 'after the command there would be no way to stop';
+    default:
+      return `unknown reason ${reason}`;
+  }
+}
+
 /** The source of the command, by Frame.rung. */
-export function rungInWords(rung: number): Sentence {
+export function rungInWords(rung: number, reason = 0): Sentence {
   switch (rung) {
     case RUNG.CONTROLLER:
       return { severity: 'good', text: 'The controller drives' };
@@ -21,6 +45,8 @@ export function rungInWords(rung: number): Sentence {
       return { severity: 'bad', text: 'No answer: following the last plan, braking fully' };
     case RUNG.RETURN_TO_ROAD:
       return { severity: 'warning', text: 'Returning to the road at walking pace' };
+    case RUNG.GUARD_STOP:
+      return { severity: 'bad', text: `The guard stops the car on the road: ${reasonInWords(reason)}` };
     case RUNG.STOP_ON_ROAD:
       return { severity: 'bad', text: 'No plan in time: stopping along the road' };
     default:

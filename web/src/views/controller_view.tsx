@@ -24,7 +24,7 @@ export function ControllerView() {
     <section class="block" aria-label="Controller">
       <h2>{run.value?.controller ?? 'Controller'}</h2>
       <dl class="rows">
-        <Row id="rung" label="Driving" sentence={frame ? rungInWords(frame.rung) : null} />
+        <Row id="rung" label="Driving" sentence={frame ? rungInWords(frame.rung, frame.guard_reason) : null} />
         <Row id="status" label="Solver" sentence={solve ? { ...solve, text: solve.text + turns } : null} />
         <Row id="gate" label="Gate" sentence={frame ? gateInWords(frame.is_gated) : null} />
         <Row id="road" label="Road" sentence={frame ? roadInWords(frame) : null} />

@@ -151,7 +151,7 @@ function Answer() {
               : null
           }
         />
-        <Row label="Driving" sentence={frame ? rungInWords(frame.rung) : null} />
+        <Row label="Driving" sentence={frame ? rungInWords(frame.rung, frame.guard_reason) : null} />
         <Row label="Gate" sentence={frame ? gateInWords(frame.is_gated) : null} />
         <Row label="Sight" sentence={frame ? sightInWords(frame.has_map, frame.sight_m) : null} />
       </dl>
