@@ -24,7 +24,7 @@ interface Watch {
 }
 
 const WATCHES: readonly Watch[] = [
-  { name: 'rung', look: ({ rung }) => (rung === 0 ? null : rungInWords(rung)) },
+  { name: 'rung', look: ({ rung, guard_reason }) => (rung === 0 ? null : rungInWords(rung, guard_reason)) },
   { name: 'status', look: ({ solve_status }) => (solve_status >= 0 ? null : statusInWords(solve_status)) },
   {
     name: 'gate',
