@@ -9,7 +9,9 @@ run_packages=(
 # To compare with Ipopt in `chicane bench`, on top of those.
 bench_packages=(libeigen3-dev coinor-libipopt-dev liblapack-dev libblas-dev)
 # To build and run the tests, on top of the first.
-test_packages=("${bench_packages[@]}" libgtest-dev libgmock-dev locales python3)
+test_packages=("${bench_packages[@]}" libgtest-dev libgmock-dev locales python3 groff fish parallel libnlopt-dev)
+# For the slow ones, on top of those.
+slow_test_packages=(openmpi-bin slurm-wlm munge)
 # To run tools/check.sh, on top of those.
 check_packages=(clang-format clang-tidy)
 

@@ -7,42 +7,35 @@
 PROGRAM is build/release/apps/chicane/chicane when left out.
 """
 import json
-import os
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
+import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+MPH = 0.44704
 BEGIN, END = "<!-- numbers: tools/measure.py -->\n", "<!-- /numbers -->\n"
-PRESETS = ("measured-latency", "fast-short-step", "sixty-mph", "weighted", "delay-in-model", "pid", "pure-pursuit", "stanley")
-RUNS = [
-    *(("udacity", "lakeside", preset) for preset in ("default", *PRESETS)),
-    *(("udacity", track, "default") for track in ("oval", "hairpins", "speedway")),
-    *(("road-car", track, "default") for track in ("lakeside", "oval", "hairpins", "speedway")),
-]
+PLAN = "plans/numbers.yaml"
 
 
-def row(program, run):
-    """One line of the table: what `chicane drive` reports about the last of three laps."""
-    car, track, preset = run
-    command = f"drive --fast --car {car} --track {track} --preset {preset} --laps 3 --latency-ms 100 --set guard.mode=off"
-    result = subprocess.run([program, *command.split(), "--json"], capture_output=True, text=True, cwd=ROOT)
-    report = json.loads(result.stdout)
-    laps = report["laps"]
-    if not report["completed"]:
-        return f"| {car} | {track} | `{preset}` | did not finish | | | | {report['off_track_events']} |\n"
-    last = laps[-1]
-    return (f"| {car} | {track} | `{preset}` | {last['lap_time_s']:.2f} | {last['mean_speed_mps'] / 0.44704:.1f} "
-            f"| {last['top_speed_mph']:.1f} | {min(lap['min_edge_distance_m'] for lap in laps):.2f} "
-            f"| {report['off_track_events']} |\n")
+def row(run):
+    """One line of the table: the last of three laps, the least distance to the edge of all."""
+    car, track, preset = (run["settings"][key] for key in ("car", "track", "preset"))
+    if not run["completed"]:
+        return f"| {car} | {track} | `{preset}` | did not finish | | | | {run['off_track_events']} |\n"
+    return (f"| {car} | {track} | `{preset}` | {run['lap_time_s']:.2f} | {run['lap_mean_speeds_mps'][-1] / MPH:.1f} "
+            f"| {run['lap_top_speeds_mps'][-1] / MPH:.1f} | {min(run['lap_min_edge_distances_m']):.2f} "
+            f"| {run['off_track_events']} |\n")
 
 
 def table(program):
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        rows = list(pool.map(lambda run: row(program, run), RUNS))
+    with tempfile.TemporaryDirectory() as folder:
+        driven, results = f"{folder}/driven.jsonl", f"{folder}/results.jsonl"
+        for command in (["sweep", PLAN, "--jobs", "0", "-o", driven], ["merge", driven, "-o", results]):
+            subprocess.run([program, *command], check=True, stderr=subprocess.DEVNULL, cwd=ROOT)
+        runs = [json.loads(line) for line in Path(results).read_text(encoding="utf-8").splitlines()[1:]]
     return ("| car | track | preset | flying lap [s] | mean [mph] | top [mph] | tyre to edge, least [m] | times off the road |\n"
-            "|---|---|---|--:|--:|--:|--:|--:|\n" + "".join(rows))
+            "|---|---|---|--:|--:|--:|--:|--:|\n" + "".join(map(row, runs)))
 
 
 def main():
@@ -51,7 +44,7 @@ def main():
     head, rest = text.split(BEGIN)
     old, tail = rest.split(END)
     programs = [a for a in sys.argv[1:] if a != "--check"]
-    new = table(programs[0] if programs else ROOT / "build/release/apps/chicane/chicane")
+    new = table(Path(programs[0]).resolve() if programs else ROOT / "build/release/apps/chicane/chicane")
     if "--check" in sys.argv:
         for was, now in zip(old.splitlines(), new.splitlines()):
             if was != now:

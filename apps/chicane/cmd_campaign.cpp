@@ -7,15 +7,16 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <thread>
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/fault_campaign.hpp"
+#include "chicane/run/parallel.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "interrupt.hpp"
+#include "many_runs.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -140,9 +141,7 @@ Result<std::vector<Row>> drive_all(const Options& options, const std::atomic<boo
   const Result<std::vector<sim::Fault>> faults = chosen_faults(options.campaign.faults);
   if (!faults) return fail(faults.error());
   const bool is_terminal = isatty(STDERR_FILENO) == 1;
-  const int jobs = options.campaign.jobs > 0
-                       ? options.campaign.jobs
-                       : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int jobs = run::threads_for(options.jobs);
   std::vector<Row> rows;
   for (const std::string& track : options.campaign.tracks) {
     for (const std::string& car : options.campaign.cars) {
@@ -174,6 +173,7 @@ Result<std::vector<Row>> drive_all(const Options& options, const std::atomic<boo
 }  // namespace
 
 ExitCode campaign(const Options& options) {
+  keep_memory();
   static std::atomic<bool> wants_stop{false};  // as long as signals may come
   catch_interrupts(wants_stop);
   const Result<std::vector<Row>> rows = drive_all(options, wants_stop);

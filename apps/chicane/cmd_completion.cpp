@@ -21,7 +21,7 @@ Value value_of(const OptionText& option) {
   Value value;
   value.words = fmt::format("{}", fmt::join(option.choices, " "));
   value.shelf = shelf_of(option);
-  for (const char* kind : {"FILE", "LOG", "FOLDER", "SCENARIO"})
+  for (const char* kind : {"FILE", "LOG", "FOLDER", "SCENARIO", "PLAN", "LEAGUE"})
     value.is_file = value.is_file || option.value.find(kind) != std::string::npos;
   value.is_assignment = option.value.find('=') != std::string::npos;
   return value;

@@ -33,13 +33,19 @@ Result<void> print_limit(const Options& options) {
   const Result<path::Track> track = run::make_track(*scenario);
   if (!track) return fail(track.error());
   LimitRun told{.track = track->name(), .car = scenario->car};
-  const auto limit = limit_of(*scenario, *track, options.spacing, wants_stop, told.wall_time);
-  if (!limit) return fail(limit.error());
-  if (!options.csv_file.empty()) {
-    if (Result<void> kept = keep(options.csv_file, to_csv(told, *track, **limit)); !kept) return kept;
+  const auto tell = [&](const auto& limit) -> Result<void> {
+    if (!options.csv_file.empty()) {
+      if (Result<void> kept = keep(options.csv_file, to_csv(told, *track, limit)); !kept) return kept;
+    }
+    fmt::print("{}", options.is_json ? to_json(told, limit) : to_table(told, limit));
+    return {};
+  };
+  if (options.is_quick || options.spacing) {
+    const auto limit = limit_of(*scenario, *track, options.spacing, wants_stop, told.wall_time);
+    return limit ? tell(**limit) : fail(limit.error());
   }
-  fmt::print("{}", options.is_json ? to_json(told, **limit) : to_table(told, **limit));
-  return {};
+  const auto limit = plant_limit_of(*scenario, *track, wants_stop, told.wall_time);
+  return limit ? tell(*limit) : fail(limit.error());
 }
 
 }  // namespace

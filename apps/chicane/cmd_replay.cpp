@@ -16,10 +16,14 @@
 #include "chicane/live/assets.hpp"
 #include "chicane/live/description.hpp"
 #include "chicane/live/pages.hpp"
+#include "chicane/live/what_if.hpp"
+#include "chicane/protocol/schema_json.hpp"
 #include "chicane/recording/excerpt.hpp"
+#include "chicane/recording/reader.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/recording/temporary_file.hpp"
 #include "chicane/wire/endpoint.hpp"
+#include "chicane/wire/viewer.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "record.hpp"
@@ -45,10 +49,30 @@ class Shown {
       served = copies_.back().path();
       if (const auto copied = recording::excerpt(file, served, {}); !copied) return fail(copied.error());
     }
-    logs_.push_back({std::move(name), std::move(served)});
+    std::string settings;
+    if (const auto scenario = recording::recorded_scenario(served)) {
+      settings = protocol::schema_json(*scenario, *scenario, &protocol::is_live, {});
+    }
+    logs_.push_back({std::move(name), std::move(served), std::move(settings)});
     return {};
   }
   [[nodiscard]] const std::vector<live::ServedLog>& logs() const { return logs_; }
+  /// Another future of one of them. Viewers are told names, not files.
+  [[nodiscard]] Result<recording::BranchReport> branch(const live::WhatIfQuestion& question,
+                                                       const recording::BranchHooks& hooks) const {
+    if (question.log >= logs_.size()) {
+      return fail(ErrorCode::kInvalidArgument,
+                  fmt::format("what if: log: got {}, expected one of {}", question.log, logs_.size()));
+    }
+    recording::BranchOptions options = question.options;
+    options.log = logs_[question.log].file;
+    auto report = recording::branch_recording(options, hooks);
+    if (report) return report;
+    std::string message = report.error().message;
+    if (const auto file = message.find(options.log); file != std::string::npos)
+      message.replace(file, options.log.size(), logs_[question.log].name);
+    return fail(report.error().code, std::move(message));
+  }
 
  private:
   std::list<recording::TemporaryFile> copies_;
@@ -58,11 +82,19 @@ class Shown {
 Result<void> show(const Options& options, const Shown& shown, double start) {
   static std::atomic<bool> stop{false};  // as long as signals may come
   catch_interrupts(stop);
-  wire::Router router(nullptr, nullptr);
+  live::WhatIf what_if([&shown](const live::WhatIfQuestion& question, const recording::BranchHooks& hooks) {
+    return shown.branch(question, hooks);
+  });
+  wire::ViewerServices services;
+  services.what_if = [&what_if](std::string_view question) { return what_if.ask(question); };
+  wire::ViewerEndpoint viewer({.run = {}, .services = std::move(services)});
+  wire::Router router(nullptr, &viewer);
   const Result<net::ServerOptions> serving = server_options(options);
   if (!serving) return fail(serving.error());
-  const auto server = net::Server::create(*serving, router.handlers(live::replay_pages(shown.logs(), start)),
-                                          live::embedded_assets());
+  wire::Pages pages = live::replay_pages(shown.logs(), start);
+  live::add_what_if(pages, what_if);
+  const auto server =
+      net::Server::create(*serving, router.handlers(std::move(pages)), live::embedded_assets());
   if (!server) return fail(server.error());
   fmt::print(stderr, "recordings at {} (Ctrl-C ends)\n", link(*serving, (*server)->port()));
   while (!stop) std::this_thread::sleep_for(std::chrono::milliseconds{20});

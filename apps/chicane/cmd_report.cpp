@@ -1,15 +1,48 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "chicane/live/assets.hpp"
 #include "chicane/recording/html_report.hpp"
+#include "chicane/sweep/summary_page.hpp"
 #include "commands.hpp"
 
 namespace chicane::apps {
 
+namespace {
+
+/// The results of a sweep are lines of JSON, recordings are MCAP.
+bool are_results(const std::vector<std::string>& files) {
+  return std::all_of(files.begin(), files.end(), [](const std::string& file) {
+    return std::filesystem::path(file).extension() == ".jsonl";
+  });
+}
+
+ExitCode report_sweep(const Options& options) {
+  if (!options.maps_page.empty()) {
+    const auto maps = sweep::write_maps(options.log_files, options.maps_page);
+    if (!maps) return report(maps.error());
+    fmt::print(stderr, "{}: maps of {} runs\n", options.maps_page, maps->runs);
+    if (options.output_file.empty()) return kSuccess;
+  }
+  const auto written = sweep::write_page(options.log_files, options.output_file);
+  if (!written) return report(written.error());
+  fmt::print("{}: {} runs, {:.1f} MB; open it in a browser\n", options.output_file, written->runs,
+             1e-6 * static_cast<double>(written->bytes));
+  return kSuccess;
+}
+
+}  // namespace
+
 ExitCode report_logs(const Options& options) {
+  if (options.output_file.empty() && options.maps_page.empty())
+    return report(
+        Error{ErrorCode::kInvalidArgument, "report: got neither --output nor --page, expected one"});
+  if (are_results(options.log_files)) return report_sweep(options);
+  if (!options.maps_page.empty())
+    return report(Error{ErrorCode::kInvalidArgument, "--page: got recordings, expected results of a sweep"});
   recording::ReportOptions reporting{
       .output = options.output_file, .logs = {}, .bundle = live::report_bundle()};
   for (const std::string& file : options.log_files) {

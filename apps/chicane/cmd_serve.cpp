@@ -12,6 +12,7 @@
 #include "chicane/live/served_run.hpp"
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/run/make.hpp"
+#include "chicane/run/racing.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "interrupt.hpp"
@@ -45,8 +46,10 @@ Result<wire::ServeSummary> serve_until_stopped(const Options& options) {
 
   const Result<net::ServerOptions> server = server_options(options);
   if (!server) return fail(server.error());
+  auto planned = run::plan_lap(*scenario, *track ? &**track : nullptr);
+  if (!planned) return fail(planned.error());
   live::ServedRun served(*server, *scenario, std::move(*controller), std::move(*track),
-                         live::embedded_assets());
+                         live::embedded_assets(), std::move(*planned));
   const auto kept = KeptRun::start(options, served.description(), *scenario, served.step_budget());
   if (!kept) return fail(kept.error());
   Progress progress;

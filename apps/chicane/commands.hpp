@@ -26,6 +26,12 @@ struct Command {
 [[nodiscard]] ExitCode limit(const Options& options);
 [[nodiscard]] ExitCode replay(const Options& options);
 [[nodiscard]] ExitCode report_logs(const Options& options);
+[[nodiscard]] ExitCode make_video(const Options& options);
+[[nodiscard]] ExitCode drive_sweep(const Options& options);
+[[nodiscard]] ExitCode merge_results(const Options& options);
+[[nodiscard]] ExitCode try_claims(const Options& options);
+[[nodiscard]] ExitCode compare_league(const Options& options);
+[[nodiscard]] ExitCode tune(const Options& options);
 [[nodiscard]] ExitCode campaign(const Options& options);
 [[nodiscard]] ExitCode check(const Options& options);
 [[nodiscard]] ExitCode list(const Options& options);

@@ -39,4 +39,28 @@ Result<std::shared_ptr<const lap_time::Limit>> limit_of(const scenario::Scenario
   return std::make_shared<const lap_time::Limit>(std::move(*limit));
 }
 
+Result<lap_time::PlantLimit> plant_limit_of(const scenario::Scenario& scenario, const path::Track& track,
+                                            const std::atomic<bool>& wants_stop, double& wall_time) {
+  using Clock = std::chrono::steady_clock;
+  const bool is_terminal = isatty(STDERR_FILENO) == 1;
+  const auto start = Clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  double told = 0.0;
+  lap_time::PlantLimitOptions options;
+  options.go_on = [&](std::string_view stage, int turn, double lap_time) {
+    const double now = seconds();
+    if (now - told >= (is_terminal ? 0.1 : 10.0)) {
+      told = now;
+      fmt::print(stderr, "{}limit: {}, turn {}, {:.3f} s{}", is_terminal ? "\r" : "", stage, turn, lap_time,
+                 is_terminal ? "   " : "\n");
+    }
+    return !wants_stop.load();
+  };
+  Result<lap_time::PlantLimit> limit =
+      lap_time::find_plant_limit(track, scenario.plant, scenario.plant_options, options);
+  wall_time = seconds();
+  if (is_terminal && told > 0.0) fmt::print(stderr, "\r{:60}\r", "");
+  return limit;
+}
+
 }  // namespace chicane::apps

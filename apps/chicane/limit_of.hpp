@@ -7,6 +7,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/lap_time/minimum_time.hpp"
+#include "chicane/lap_time/plant_limit.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/scenario/scenario.hpp"
 
@@ -19,5 +20,11 @@ namespace chicane::apps {
                                                                       std::optional<double> spacing,
                                                                       const std::atomic<bool>& wants_stop,
                                                                       double& wall_time);
+
+/// The bound of the experiment's plant and its witness; everything else as limit_of().
+[[nodiscard]] Result<lap_time::PlantLimit> plant_limit_of(const scenario::Scenario& scenario,
+                                                          const path::Track& track,
+                                                          const std::atomic<bool>& wants_stop,
+                                                          double& wall_time);
 
 }  // namespace chicane::apps

@@ -3,16 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 
 namespace chicane::apps {
 
 std::string to_table(const LimitRun& run, const lap_time::Limit& limit) {
   const lap_time::LimitReport& report = limit.report;
   std::string text =
-      fmt::format("{} on {}: {:.3f} s ({:.3f} {:.3f} {:.3f} by thirds)\n", run.car, run.track,
+      fmt::format("{} on {}, quick: {:.3f} s ({:.3f} {:.3f} {:.3f} by thirds)\n", run.car, run.track,
                   limit.times.lap, limit.times.sectors[0], limit.times.sectors[1], limit.times.sectors[2]);
   text +=
       fmt::format("speed {:.1f} mph on average, {:.1f} at least, {:.1f} at most; the line is {:.1f} m long\n",
@@ -64,6 +67,97 @@ std::string to_csv(const LimitRun& run, const path::Track& track, const lap_time
         fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{:.3f},{:.4f},{:.4f},{:.5f},{:.6f},{:.4f},{:.4f},{:.4f}\n",
                     p.position.x(), p.position.y(), p.right, p.left, p.s, p.d, p.time, p.heading, p.curvature,
                     p.speed, p.longitudinal_acceleration, p.lateral_acceleration);
+  }
+  return text;
+}
+
+namespace {
+
+/// Slowest and fastest of a line, and its length along the car's path.
+struct LineExtent {
+  double least_speed = 0.0, top_speed = 0.0;
+};
+
+LineExtent extent_of(const path::RacingLine& line) {
+  LineExtent extent{line.points.front().vx, line.points.front().vx};
+  for (const path::RacingLinePoint& p : line.points) {
+    extent.least_speed = std::min(extent.least_speed, std::hypot(p.vx, p.vy));
+    extent.top_speed = std::max(extent.top_speed, std::hypot(p.vx, p.vy));
+  }
+  return extent;
+}
+
+}  // namespace
+
+std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit) {
+  const LineExtent extent = extent_of(limit.line);
+  std::string text = fmt::format("{} on {}: between {:.3f} s and ", run.car, run.track, limit.bound.lap);
+  text += limit.witness
+              ? fmt::format("{:.3f} s ({:+.2f} %)\n", limit.witness->lap_time, 100.0 * limit.bracket())
+              : "what could be driven: no plan could\n";
+  text += fmt::format(
+      "bound    {:.3f} s ({:.3f} {:.3f} {:.3f} by thirds): the optimum of the plant's own equations\n",
+      limit.bound.lap, limit.bound.sectors[0], limit.bound.sectors[1], limit.bound.sectors[2]);
+  if (limit.witness)
+    text += fmt::format(
+        "witness  {:.3f} s: the best of {} laps driven in succession, the slowest {:.3f} s; {:.3f} m to the "
+        "edge at least\n",
+        limit.witness->lap_time, limit.witness->laps, limit.witness->worst, limit.witness->least_edge);
+  text += fmt::format("speed    {:.1f} mph at least, {:.1f} at most\n", mps_to_mph(extent.least_speed),
+                      mps_to_mph(extent.top_speed));
+  text += fmt::format("found in {:.1f} s: {} nodes, {} turns; stationarity {:.1e}, violation {:.1e}\n",
+                      run.wall_time, limit.nodes, limit.iterations, limit.stationarity, limit.violation);
+  return text;
+}
+
+std::string to_json(const LimitRun& run, const lap_time::PlantLimit& limit) {
+  using Json = nlohmann::ordered_json;
+  const LineExtent extent = extent_of(limit.line);
+  Json witness;
+  if (limit.witness)
+    witness = Json{{"lap_time_s", limit.witness->lap_time},
+                   {"slowest_lap_s", limit.witness->worst},
+                   {"laps", limit.witness->laps},
+                   {"least_edge_distance_m", limit.witness->least_edge},
+                   {"planned_lap_s", limit.witness->line.lap_time()},
+                   {"planned_margin_m", limit.witness->line.margin}};
+  const Json json{{"track", run.track},
+                  {"car", run.car},
+                  {"plant", limit.line.car},
+                  {"lap_time_s", limit.bound.lap},
+                  {"sector_times_s", limit.bound.sectors},
+                  {"witness", witness},
+                  {"bracket_percent", limit.witness ? Json(100.0 * limit.bracket()) : Json()},
+                  {"least_speed_mps", extent.least_speed},
+                  {"top_speed_mps", extent.top_speed},
+                  {"nodes", limit.nodes},
+                  {"iterations", limit.iterations},
+                  {"stationarity", limit.stationarity},
+                  {"violation", limit.violation},
+                  {"wall_time_s", run.wall_time}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string to_csv(const LimitRun& run, const path::Track& track, const lap_time::PlantLimit& limit) {
+  const path::RacingLine& line = limit.witness ? limit.witness->line : limit.line;
+  std::string text = fmt::format(
+      "# A lap of {} on {} in {:.4f} s, planned for the plant {} with {:g} m to spare (chicane limit, "
+      "docs/limit.md)\n"
+      "# start_s_m=0, kerb_width_m={:g}, smoothing_sigma_m=0.02, closed=true\n"
+      "# x_m,y_m,w_tr_right_m,w_tr_left_m,s_m,n_m,time_s,heading_rad,vx_mps,vy_mps,yaw_rate_radps,steer_rad,"
+      "steer_asked_rad,ax_mps2,throttle\n",
+      run.car, run.track, line.lap_time(), line.car, line.margin, track.kerb_width());
+  for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {  // the last repeats the first
+    const path::RacingLinePoint& p = line.points[i];
+    const path::PathPoint foot = track.centre().at(p.s);
+    const Vec2 place =
+        foot.position + p.offset * Vec2{-chicane::sin(foot.heading), chicane::cos(foot.heading)};
+    text += fmt::format(
+        "{:.4f},{:.4f},{:.4f},{:.4f},{:.3f},{:.4f},{:.4f},{:.5f},{:.4f},{:.4f},{:.5f},{:.5f},{:.5f},{:.4f},{:"
+        ".4f}\n",
+        place.x(), place.y(), track.right_width(p.s) + p.offset, track.left_width(p.s) - p.offset, p.s,
+        p.offset, p.time, p.heading, p.vx, p.vy, p.yaw_rate, p.steer, p.steer_asked, p.acceleration,
+        p.throttle);
   }
   return text;
 }

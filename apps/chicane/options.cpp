@@ -18,6 +18,8 @@
 #include "chicane/version.hpp"
 #include "command_text.hpp"
 #include "commands.hpp"
+#include "sweep_options.hpp"
+#include "video_options.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -120,6 +122,16 @@ void add_record(CLI::App& command, Options& options) {
       ->type_name("FILE.html");
 }
 
+void add_tune(CLI::App& command, Options& options) {
+  add_controller(command, options);
+  add_setting(command, options, "--track", "track", "NAME|FILE", "Track (chicane list tracks)");
+  add_setting(command, options, "--latency-ms", "latency_ms", "X",
+              "Actuation delay of the simulated car [ms]");
+  add_search(command, options);
+  add_set(command, options);
+  command.footer("Example: chicane tune --preset weighted --evaluations 2000 -o tuned.yaml");
+}
+
 void add_drive(CLI::App& command, Options& options) {
   command
       .add_option("scenario", options.scenario_file,
@@ -166,13 +178,15 @@ void add_serve(CLI::App& command, Options& options) {
   add_controller(command, options);
   add_setting(command, options, "--latency-ms", "latency_ms", "X",
               "Sleep before each answer [ms], default 100 as the original");
-  add_setting(command, options, "--track", "track", "NAME|FILE",
-              "The simulator's road, where it is one of ours: for laps, and their gap to the limit");
+  add_setting(
+      command, options, "--track", "track", "NAME|FILE",
+      "The simulator's road: judges tyres, tells the gap to the limit. For the original game its course's "
+      "lake_track_waypoints.csv; lap times need none");
   add_port(command, options);
   add_record(command, options);
   command.add_flag("--json", options.is_json, "One JSON object on stdout at the end, all else on stderr");
   add_set(command, options);
-  command.footer("Example: chicane serve --preset weighted --track lakeside --port 4567");
+  command.footer("Example: chicane serve --preset weighted --port 4567");
 }
 
 void add_simulate(CLI::App& command, Options& options) {
@@ -200,7 +214,9 @@ void add_limit(CLI::App& command, Options& options) {
   add_setting(command, options, "--car", "car", "NAME|FILE", "Car (chicane list cars)");
   command.add_option("--csv", options.csv_file, "Keep the racing line in this file, a track to drive on")
       ->type_name("FILE");
-  command.add_option("--spacing-m", options.spacing, "Between the places computed [m], default 2")
+  command.add_flag("--quick", options.is_quick, "That of a simpler car, which follows its path: no bound");
+  command
+      .add_option("--spacing-m", options.spacing, "With --quick: between the places computed [m], default 2")
       ->type_name("X")
       ->check(CLI::Range(0.5, 5.0));
   command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
@@ -239,10 +255,11 @@ void add_replay(CLI::App& command, Options& options) {
 }
 
 void add_report(CLI::App& command, Options& options) {
-  add_logs(command, options, "What --record wrote");
+  add_logs(command, options, "What --record wrote, or the results of a sweep (.jsonl)");
   command.add_option("-o,--output", options.output_file, "The page; an older one is replaced")
-      ->type_name("FILE.html")
-      ->required();
+      ->type_name("FILE.html");
+  command.add_option("--page", options.maps_page, "Write the heat maps of a sweep in letters into this page")
+      ->type_name("FILE.md");
   command.footer("Example: chicane report run.mcap -o run.html");
 }
 
@@ -274,10 +291,7 @@ void add_campaign(CLI::App& command, Options& options) {
       ->capture_default_str();
   add_setting(command, options, "--preset", "preset", "NAME",
               "Controller and its settings (chicane list presets)");
-  command.add_option("--jobs", campaign.jobs, "Threads; 0: as many as cores")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
+  add_jobs(command, options.jobs);
   command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
   add_set(command, options);
   command.footer(
@@ -342,6 +356,12 @@ void add_commands(CLI::App& app, Options& options) {
     if (command.name == "limit") add_limit(*sub, options);
     if (command.name == "replay") add_replay(*sub, options);
     if (command.name == "report") add_report(*sub, options);
+    if (command.name == "video") add_video(*sub, options);
+    if (command.name == "sweep") add_sweep(*sub, options);
+    if (command.name == "league") add_league(*sub, options);
+    if (command.name == "claims") add_claims(*sub, options);
+    if (command.name == "tune") add_tune(*sub, options);
+    if (command.name == "merge") add_merge(*sub, options);
     if (command.name == "campaign") add_campaign(*sub, options);
     if (command.name == "check") add_check(*sub, options);
     if (command.name == "list") add_list(*sub, options);

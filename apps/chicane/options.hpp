@@ -43,7 +43,8 @@ struct Options {
 
   bool wants_limit = false;       ///< drive --fast: the gaps of its laps to the limit
   std::string csv_file;           ///< limit: the racing line; empty: not kept
-  std::optional<double> spacing;  ///< limit: of the places computed [m]
+  bool is_quick = false;          ///< limit: that of the car which follows its path
+  std::optional<double> spacing;  ///< limit: of the places computed by the quick one [m]
 
   std::string connect =
       "ws://127.0.0.1:4567/socket.io/?EIO=4&transport=websocket";  ///< simulate: the controller
@@ -56,10 +57,59 @@ struct Options {
   double for_s = 0.0;                  ///< replay: length of the branch; 0: to the end of the recording
   int branch_laps = 0;                 ///< replay: of the run; 0: no matter
   std::string output_file;             ///< replay: the branch's recording; report: the page
+  std::string maps_page;               ///< report: Markdown, for the maps of a sweep; empty: none
   bool is_served = true;               ///< replay
   std::string shelf;                   ///< list; empty: an overview
   bool is_markdown = false;            ///< list parameters, list faults
   std::string shell;                   ///< completion
+
+  int jobs = 0;  ///< sweep, tune, claims, campaign: threads; 0: as many as cores
+
+  struct Sweep {
+    std::string plan_file{};
+    std::string shard{};            ///< I/N; empty: as the environment says
+    std::optional<double> shown{};  ///< only the command of this run
+  };
+  Sweep sweep{};
+
+  struct Tune {
+    std::vector<std::string> over{};  ///< keys; empty: weights, horizon and speed
+    std::string objective = "lap", optimizer = "crs";
+    int evaluations = 500;
+    std::uint64_t seed = 1;
+  };
+  Tune tune{};
+
+  struct Claims {
+    std::vector<std::string> ids{};  ///< empty: all
+    std::string folder = "claims";
+    std::string page{};     ///< to write; empty: details on stdout
+    bool is_check = false;  ///< compare only
+  };
+  Claims claims{};
+
+  struct League {
+    std::string file{};
+    std::string results{};               ///< a line for each run; empty: LEAGUE.jsonl
+    std::string page{};                  ///< of docs/, written below its marker; empty: none
+    std::vector<std::string> servers{};  ///< commands of external programs, beside those of the file
+    bool wants_programs = true;          ///< false: no external ones are started
+    double patience = 15.0;              ///< with a program that does not answer [s]
+  };
+  League league{};
+
+  struct Video {
+    std::string ghost{};  ///< another recording; empty: none
+    int lap = -1;         ///< from 1; 0: the whole run; -1: the last whole lap
+    double from = 0.0;    ///< after the beginning of the lap [s]
+    double length = 0.0;  ///< [s]; 0: to its end
+    double rate = 30.0;   ///< pictures in a second
+    double speed = 1.0;   ///< seconds of the run in one of the film
+    int width = 1280;     ///< [px]
+    int quality = 0;      ///< of .webp; 0: as the encoder likes
+    bool is_whole = false;
+  };
+  Video video{};
 
   struct Campaign {
     std::vector<std::string> faults{};  ///< names; empty: all
@@ -67,7 +117,6 @@ struct Options {
     std::vector<std::string> tracks{"lakeside", "oval", "hairpins", "speedway"};
     std::vector<std::string> cars{"udacity", "road-car"};
     double step = 0.5;  ///< between onsets [s]
-    int jobs = 0;       ///< threads; 0: as many as cores
   };
   Campaign campaign{};
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <string>
 
 #include "chicane/base/angle.hpp"
@@ -29,8 +30,11 @@ std::string line(const telemetry::Frame& frame) {
 }  // namespace
 
 std::string line_of(const telemetry::CompletedLap& lap) {
-  return fmt::format("lap {}: {:.2f} s, {:.1f} mph in the mean, {}", lap.lap, lap.lap_time,
-                     mps_to_mph(lap.mean_speed), lap.is_clean ? "clean" : "off the road");
+  const std::string_view verdict = !std::isfinite(lap.min_edge_distance) ? ""  // nobody knows the road
+                                   : lap.is_clean                        ? ", clean"
+                                                                         : ", off the road";
+  return fmt::format("lap {}: {:.2f} s, {:.1f} mph in the mean{}", lap.lap, lap.lap_time,
+                     mps_to_mph(lap.mean_speed), verdict);
 }
 
 Progress::Progress() : is_terminal_{isatty(STDERR_FILENO) == 1} {}

@@ -45,6 +45,7 @@ struct DescribedProblem : DescribedData {
   static constexpr int kNr = 7;
   static constexpr int kNe = 3;
   static constexpr int kNc = 0;
+  static constexpr bool kRealTime = true;
 
   template <class K, class T>
   CHICANE_INLINE std::array<T, kNx> dynamics(K, const std::array<T, kNx>& s,
@@ -90,6 +91,7 @@ struct DescribedOver {
   static constexpr int kNr = 7;
   static constexpr int kNe = 3;
   static constexpr int kNc = 0;
+  static constexpr bool kRealTime = true;
 
   controller::CubicOver<Real> line{};
   Real speed_reference{};

@@ -23,6 +23,7 @@ struct RacingProblem {
   static constexpr int kNr = 7;
   static constexpr int kNe = 3;
   static constexpr int kNc = 4;
+  static constexpr bool kRealTime = true;
   static constexpr std::size_t kCapacity = 60;
   static constexpr double kStep = 0.05;
   static constexpr double kFront = 1.2, kRear = 1.4;        ///< axles from the centre of mass [m]

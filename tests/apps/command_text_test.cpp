@@ -77,7 +77,7 @@ std::string without_dashes_of_roff(std::string page) {
 TEST(CommandText, TheHelpIsRead) {
   EXPECT_THAT(commands(), IsSupersetOf({"drive", "serve", "replay", "list", "completion", "manual"}));
   EXPECT_THAT(options_of("drive"), IsSupersetOf({"--preset", "--laps", "--fast", "--set"}));
-  EXPECT_THAT(options_of("report"), ElementsAre("--output"));
+  EXPECT_THAT(options_of("report"), ElementsAre("--output", "--page"));
 }
 
 TEST(CommandText, TheManualNamesEveryCommandAndOption) {

@@ -52,6 +52,18 @@ TEST(Latency, CostsTheDefaultControllerHardlyAnyTime) {
   EXPECT_LT(flying_lap("300", "320"), 1.03 * flying_lap("0", "20"));
 }
 
+TEST(Latency, KeepsTheDefaultControllerOnTheRoadWithTheGuardOn) {
+  for (const auto& [latency, period] : {std::pair{"300", "320"}, {"0", "20"}, {"400", "40"}}) {
+    const auto run = drive({{"preset", "default"},
+                            {"track", "lakeside"},
+                            {"laps", "2"},
+                            {"latency_ms", latency},
+                            {"control_period_ms", period}});
+    EXPECT_TRUE(run.completed) << latency << ' ' << period;
+    EXPECT_EQ(run.off_track_events, 0) << latency << ' ' << period;
+  }
+}
+
 TEST(Latency, DoesNotSpinAnOrdinaryCarThatBrakesFromTopSpeed) {
   const auto run = drive({{"preset", "default"},
                           {"car", "road-car"},

@@ -58,6 +58,18 @@ TEST(Presets, LapTheOriginalLakeCleanlyAtTheSpeedTheyClaim) {
   }
 }
 
+/// As they are driven unless said otherwise: the guard may hold them back, and does them no harm.
+TEST(Presets, LapTheLakesideWithTheGuardOn) {
+  for (const Claim& claim : kClaims) {
+    const auto run =
+        drive({{"preset", claim.preset}, {"track", "lakeside"}, {"laps", "3"}, {"latency_ms", "100"}});
+    EXPECT_TRUE(run.completed) << claim.preset << ": " << run.end_reason;
+    EXPECT_EQ(run.off_track_events, 0) << claim.preset;
+    EXPECT_GE(top_mph(run), claim.low_mph) << claim.preset;
+    EXPECT_LT(run.fallbacks, 20U) << claim.preset;
+  }
+}
+
 TEST(Presets, StayOnTheRoadWhenTheAnswerIsLateOrSlow) {
   // Answers of the original take 110 to 160 ms, by machine (docs/protocol.md): the presets are not tuned to
   // one of them.

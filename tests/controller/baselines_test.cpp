@@ -17,11 +17,11 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const model::VehicleParams kCar;
 
-std::vector<std::unique_ptr<test::Guarded>> all_baselines() {
+std::vector<std::unique_ptr<test::Guarded>> all_baselines(safety::GuardMode mode = safety::GuardMode::kOff) {
   std::vector<std::unique_ptr<test::Guarded>> all;
-  all.push_back(std::make_unique<test::Guarded>(std::move(*make_pid({}, kCar)), kCar));
-  all.push_back(std::make_unique<test::Guarded>(std::move(*make_pure_pursuit({}, kCar)), kCar));
-  all.push_back(std::make_unique<test::Guarded>(std::move(*make_stanley({}, kCar)), kCar));
+  all.push_back(std::make_unique<test::Guarded>(std::move(*make_pid({}, kCar)), kCar, mode));
+  all.push_back(std::make_unique<test::Guarded>(std::move(*make_pure_pursuit({}, kCar)), kCar, mode));
+  all.push_back(std::make_unique<test::Guarded>(std::move(*make_stanley({}, kCar)), kCar, mode));
   return all;
 }
 
@@ -144,6 +144,25 @@ TEST(Baselines, RefuseOptionsOutOfRangeByName) {
   StanleyOptions stanley;
   stanley.speed.speed_gain = kNaN;
   EXPECT_NE(make_stanley(stanley, kCar).error().message.find("speed_gain"), std::string::npos);
+}
+
+TEST(Baselines, AreNotToldOfAPlaceThatJumps) {
+  for (const auto& controller : all_baselines(safety::GuardMode::kOn)) {
+    model::Measurement now = on_a_straight(0.0, 0.0, 10.0);
+    const auto drive = [&](double aside) {
+      now.time += 0.05;
+      now.x += 0.5;
+      now.y += aside;
+      return controller->step(now, Deadline::never());
+    };
+    for (int i = 0; i < 4; ++i) EXPECT_EQ(drive(0.0).report.rung, Rung::kController) << controller->name();
+    const double steer = drive(0.0).command.steer;
+    const StepResult jumped = drive(5.0);
+    EXPECT_NE(jumped.report.rung, Rung::kController) << controller->name();
+    EXPECT_NEAR(jumped.command.steer, steer, 0.02);
+    EXPECT_LT(jumped.command.throttle, 0.0);
+    EXPECT_EQ(drive(-5.0).report.rung, Rung::kController);
+  }
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ struct DenseCubicProblem {
   static constexpr int kNr = 8;
   static constexpr int kNe = 3;
   static constexpr int kNc = 0;
+  static constexpr bool kRealTime = true;
   enum StateIndex : std::size_t { kX, kY, kPsi, kV, kCte, kEpsi, kLastSteer, kLastThrottle };
   enum InputIndex : std::size_t { kSteer, kThrottle };
   template <class T>

@@ -56,5 +56,17 @@ TEST(DescribedModel, NextLateralErrorIsOfTheLineBesideTheCar) {
   EXPECT_NEAR(model().next_lateral_error(kState), line - 0.3 + 12.0 * std::sin(-0.04) * 0.1, kRounding);
 }
 
+TEST(DescribedModel, WithTheErrorToTheLeftACarThatHeadsForTheLineGetsNearer) {
+  // Write-up 1: cte = y − f(x), cte⁺ = cte + v sin eψ dt; here with the other sign of the whole.
+  const double line = 0.5 + 0.1 * 2.0 - 0.02 * 4.0 + 0.001 * 8.0;
+  DescribedModel<Cubic> theirs = model();
+  theirs.error_sign = -1.0;
+  EXPECT_NEAR(-theirs.next_lateral_error(kState), 0.3 - line + 12.0 * std::sin(-0.04) * 0.1, kRounding);
+  std::array<double, 7> right_of_it = kState;
+  right_of_it[4] = 0.04;  // heads to the left, where the line is
+  EXPECT_LT(std::fabs(theirs.next_lateral_error(right_of_it)), line - 0.3);
+  EXPECT_GT(std::fabs(model().next_lateral_error(right_of_it)), line - 0.3);
+}
+
 }  // namespace
 }  // namespace chicane::controller

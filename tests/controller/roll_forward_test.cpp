@@ -96,5 +96,21 @@ TEST(RollForward, MirrorsWithTheWheel) {
   }
 }
 
+TEST(RollForward, MilesPerHourTakeTheCarAsMuchFarther) {
+  model::Measurement now;
+  now.speed = 10.0;
+  now.psi = 0.3;
+  now.steer = 0.05;
+  RollForward literal(LatencyHandling::kPositionOnly, 0.1, 2.67, 2.25);
+  RollForward longer(LatencyHandling::kPositionOnly, 0.225, 2.67);
+  const Motion a = literal.predict(now);
+  const Motion b = longer.predict(now);
+  EXPECT_NEAR(a.pose.x, b.pose.x, 1e-12);
+  EXPECT_NEAR(a.pose.y, b.pose.y, 1e-12);
+  EXPECT_NEAR(a.speed, 10.0, 1e-12);  // told in m/s again
+  RollForward inside(LatencyHandling::kInsideModel, 0.1, 2.67, 2.25);
+  EXPECT_EQ(inside.predict(now).speed, 10.0);
+}
+
 }  // namespace
 }  // namespace chicane::controller

@@ -149,6 +149,7 @@ describe('chicane report', () => {
     const topics = [...reader.channelsById.values()].map(({ topic }) => topic).sort();
     assert.deepEqual(topics, [
       '/chicane/frame',
+      '/chicane/limit',
       '/chicane/plan',
       '/chicane/run',
       '/track/centre',

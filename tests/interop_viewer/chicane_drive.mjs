@@ -9,7 +9,8 @@ import foxglove from '@foxglove/ws-protocol';
 import WebSocket from 'ws';
 
 export async function startDrive(args = [], port = 0) {
-  const child = spawn(process.env.CHICANE ?? 'chicane', ['drive', '--port', String(port), '--laps', '10000', ...args], {
+  const laps = args.includes('--laps') ? [] : ['--laps', '10000'];
+  const child = spawn(process.env.CHICANE ?? 'chicane', ['drive', '--port', String(port), ...laps, ...args], {
     stdio: ['ignore', 'ignore', 'pipe'],
   });
   let said = '';
@@ -26,9 +27,9 @@ export async function startDrive(args = [], port = 0) {
   return {
     port: listening,
     url: `http://127.0.0.1:${listening}/`,
-    async stop() {
+    async stop(signal = 'SIGTERM') {
       if (child.exitCode !== null || child.signalCode !== null) return;
-      child.kill('SIGTERM');
+      child.kill(signal);
       await once(child, 'exit');
     },
   };

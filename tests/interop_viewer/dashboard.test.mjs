@@ -153,13 +153,13 @@ describe('the dashboard', () => {
     const chosen = () => page.locator('[role="tab"][aria-selected="true"]').innerText();
     for (const [i, tab] of TABS.entries()) {
       await page.keyboard.press(String(i + 1));
-      assert.equal((await chosen()).toLowerCase(), tab);
+      assert.equal((await chosen()).toLowerCase().replace(' ', ''), tab);
     }
-    await page.locator('#tab-faults').focus();
+    await page.locator(`#tab-${TABS.at(-1)}`).focus();
     await page.keyboard.press('ArrowRight');
     assert.equal(await chosen(), 'Drive');
     await page.keyboard.press('End');
-    assert.equal(await chosen(), 'Faults');
+    assert.equal(await chosen(), 'What if');
 
     const view = () =>
       page
@@ -235,7 +235,12 @@ it('is dark for readers who like it dark', async () => {
     page
       .locator('.map canvas')
       .first()
-      .evaluate((canvas) => [...canvas.getContext('2d').getImageData(2, canvas.height - 2, 1, 1).data]);
+      .evaluate((canvas) => {
+        // From a copy: browsers complain of a canvas that is read again and again.
+        const pixel = new OffscreenCanvas(1, 1).getContext('2d', { willReadFrequently: true });
+        pixel.drawImage(canvas, -2, 2 - canvas.height);
+        return [...pixel.getImageData(0, 0, 1, 1).data];
+      });
   await dashboard.until(corner, ([red]) => red > 200, 'the map turns light with the page');
   await dashboard.close();
 });

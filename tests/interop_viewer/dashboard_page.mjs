@@ -23,8 +23,11 @@ assert.ok(TABS.length >= 6, 'workbench_view.tsx lists its panels otherwise than 
 export const differentFrom = (before) => (now) => now !== before;
 
 export class DashboardPage {
-  /** Opens the page at a tab and waits until it is live. What the browser complains of is kept in `complaints`. */
-  static async open(browser, url, { tab = 'drive', ...options } = {}) {
+  /**
+   * Opens the page at a tab and waits until it says that it is live, or in another `state`. What the browser complains
+   * of is kept in `complaints`.
+   */
+  static async open(browser, url, { tab = 'drive', state = 'Live', ...options } = {}) {
     const context = await browser.newContext({ ...LAPTOP, ...options });
     context.setDefaultTimeout(PATIENCE);
     const page = await context.newPage();
@@ -38,7 +41,7 @@ export class DashboardPage {
     });
     await page.goto(`${url}#${tab}`);
     const dashboard = new DashboardPage(page, complaints);
-    await page.getByText('Live', { exact: true }).waitFor();
+    await page.getByText(state, { exact: true }).waitFor();
     return dashboard;
   }
 

@@ -65,7 +65,7 @@ for (const subprotocol of ['foxglove.websocket.v1', 'foxglove.sdk.v1']) {
 
     it('sends every advertised topic, each decodable by its own schema', async () => {
       const { client, seen, next } = connection;
-      assert.equal(seen.channels.size, 17);
+      assert.equal(seen.channels.size, 18);
       // a lap completed, a setting changed, the limit found: not in this short run
       const onOccasion = ['/chicane/lap', '/chicane/change', '/chicane/limit', '/track/racing_line'];
       for (const channel of seen.channels.values()) {
@@ -77,7 +77,13 @@ for (const subprotocol of ['foxglove.websocket.v1', 'foxglove.sdk.v1']) {
         const message = decode(channel.schema, data);
         assert.ok(Object.keys(message).length > 0, channel.topic);
         if (channel.topic === '/track/left') assert.ok(message.poses.length > 300);
-        if (channel.topic === '/odom') assert.equal(message.child_frame_id, 'base_link');
+        if (channel.topic === '/odom')
+          assert.deepEqual([message.header.frame_id, message.child_frame_id], ['odom', 'base_link']);
+        if (channel.topic === '/scene')
+          assert.deepEqual(
+            message.entities.map(({ id, frame_id: frame }) => `${id} in ${frame}`),
+            ['road in map', 'car in base_link'],
+          );
         client.unsubscribe(id);
       }
       assert.deepEqual(seen.problems, []);

@@ -28,7 +28,7 @@ async function open(options) {
   await dashboard.until(
     () => dashboard.number('speed'),
     (mph) => mph > 35,
-    'a plan without the cyan of slow speeds',
+    'a plan with little of the cyan of slow speeds',
   );
   await dashboard.pause();
   return dashboard;
@@ -38,8 +38,8 @@ async function open(options) {
 const close = (dashboard) => dashboard.close((each) => each.includes('GL Driver Message'));
 
 /**
- * How many pixels of a canvas are cyan, and how many of its 16 × 16 fields have one: nothing else in the picture is of
- * that colour.
+ * How many pixels of a canvas are cyan, and how many of its 16 × 16 fields have one: of that colour
+ * the plan has some where it is slow, and nothing else in the picture.
  */
 const cyan = (page, selector) =>
   page.locator(selector).evaluate(async (canvas) => {
@@ -70,12 +70,13 @@ async function toggles(dashboard, selector, fields) {
     (now) => now >= fields,
     'the racing line',
   );
+  const { pixels } = await seen();
   await page.locator('body').press('l');
   assert.equal(await isOn(page), 'false');
   await dashboard.until(
     async () => (await seen()).pixels,
-    (pixels) => pixels === 0,
-    'the picture without it',
+    (left) => left < 0.2 * pixels,
+    `the picture without it, after ${pixels} pixels`,
   );
   await line(page).click();
   assert.equal(await isOn(page), 'true');

@@ -9,6 +9,7 @@ import { join } from 'node:path';
 import { after, afterEach, before, describe, it } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { launch } from './browser.mjs';
+import { startDrive } from './chicane_drive.mjs';
 import { DashboardPage, PHONE } from './dashboard_page.mjs';
 import { PATIENCE } from './patience.mjs';
 
@@ -29,15 +30,7 @@ before(async () => {
   run('replay', log, '--branch-at', '40', '--set', 'tracking_mpc.speed_limit_mps=20', '--output', future, '--json');
   run('report', log, future, '--output', report);
   server = spawn(program, ['replay', log, future, '--port', '0'], { stdio: ['ignore', 'ignore', 'pipe'] });
-  let said = '';
-  url = await new Promise((resolve, reject) => {
-    server.stderr.on('data', (data) => {
-      said += data;
-      const found = /http:\/\/localhost:(\d+)\//.exec(said);
-      if (found) resolve(`http://127.0.0.1:${found[1]}/`);
-    });
-    server.on('exit', (code) => reject(new Error(`chicane replay ended with ${code}: ${said}`)));
-  });
+  url = await addressOf(server);
   browser = await launch();
 });
 after(async () => {
@@ -47,6 +40,18 @@ after(async () => {
   assert.equal(server?.exitCode, 0, 'Ctrl-C ends it well');
   rmSync(folder, { recursive: true });
 });
+
+function addressOf(child) {
+  let said = '';
+  return new Promise((resolve, reject) => {
+    child.stderr.on('data', (data) => {
+      said += data;
+      const found = /http:\/\/localhost:(\d+)\//.exec(said);
+      if (found) resolve(`http://127.0.0.1:${found[1]}/`);
+    });
+    child.on('exit', (code) => reject(new Error(`chicane replay ended with ${code}: ${said}`)));
+  });
+}
 
 /** The page once its recording is read to the end. */
 async function open(address, options = {}) {
@@ -82,7 +87,7 @@ describe('a recording in the page', () => {
 
   it('is scrubbed, played and stepped', async () => {
     const page = await open(url);
-    await page.locator('tbody tr').nth(1).waitFor(); // both laps, though we stand at the start
+    await page.locator('.laps tbody tr').nth(1).waitFor(); // both laps, though we stand at the start
     await scrub(page, 30);
     await dashboard.until(
       () => dashboard.number('speed'),
@@ -161,16 +166,83 @@ describe('a report', () => {
 
   it('opens from disk, alone', async () => {
     const page = await open(pathToFileURL(report).href);
+    await page.getByTestId('verdict').nth(1).waitFor();
+    assert.match(
+      await page.getByTestId('verdict').first().innerText(),
+      /^2 laps, the best in \d:\d\d\.\d{3}.*; never off the road; the controller drove all the time\.$/,
+    );
+    assert.equal(await page.locator('.summary-run').first().locator('.lap-table tbody tr').count(), 2);
+    assert.equal(await page.getByTestId('comparison').locator('thead th').count(), 3, 'both, side by side');
+    assert.match(await page.locator('.summary-run pre').first().textContent(), /track: "?lakeside/);
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await page.emulateMedia({ media: 'print' });
+    assert.ok(await page.locator('.summary-map').first().isVisible(), 'the map is printed');
+    assert.ok(await page.getByTestId('verdict').first().isVisible());
+    assert.equal(await page.locator('.timeline').isVisible(), false);
+    const ink = (await page.pdf()).length;
+    await page.emulateMedia({ media: 'screen' });
+    assert.ok(ink > 30_000, `${ink} bytes of print`);
+    await dashboard.button('Explore').click();
     await scrub(page, 30);
     await dashboard.until(
       () => dashboard.number('speed'),
       (mph) => mph > 50,
       'the speed of that moment',
     );
-    assert.equal(await page.locator('tbody tr').count(), 2);
-    assert.ok((await page.pdf()).length > 10_000, 'it prints');
+    assert.equal(await page.locator('.laps .lap-table tbody tr:not(.limit)').count(), 2);
     assert.deepEqual(await dashboard.accessibilityFindings(), []);
   });
+});
+
+it('keeps the laps of several runs in a recording apart', async () => {
+  const file = join(folder, 'several.mcap');
+  const drive = await startDrive(['--track', 'oval', '--pace', '20', '--record', file]);
+  const live = await DashboardPage.open(browser, drive.url, { tab: 'laps' });
+  const rows = (page) => page.locator('.laps .lap-table tbody tr:not(.limit)').count();
+  await live.until(
+    () => rows(live.page),
+    (count) => count >= 3,
+    'laps on the oval',
+  );
+  await live.show('drive');
+  await live.page.locator('.choices').getByLabel('Track', { exact: true }).selectOption('hairpins');
+  await live.page.getByRole('dialog').getByText('Restart', { exact: true }).click();
+  await live.until(
+    () => live.page.locator('.summary').innerText(),
+    (text) => /hairpins/.test(text),
+    'the other track',
+  );
+  await live.show('laps');
+  await live.until(
+    () => rows(live.page),
+    (count) => count === 1,
+    'a lap on the other track',
+  );
+  await live.close();
+  await drive.stop();
+  const replay = spawn(program, ['replay', file, '--port', '0'], { stdio: ['ignore', 'ignore', 'pipe'] });
+  const page = await open(await addressOf(replay));
+  const first = await rows(page);
+  assert.ok(first >= 3, `${first} laps on the oval`);
+  const runs = page.getByLabel('Run of the recording');
+  assert.equal(await runs.locator('option').count(), 2);
+  await runs.selectOption('1');
+  await dashboard.until(
+    () => page.locator('.summary').innerText(),
+    (text) => /hairpins/.test(text),
+    'the other run',
+  );
+  const second = await dashboard.until(
+    () => rows(page),
+    (count) => count < first && count >= 1,
+    'its laps only',
+  );
+  await dashboard.button('Report').click();
+  assert.equal(await page.locator('.summary-run').count(), 2);
+  assert.equal(await page.locator('.summary-run').nth(1).locator('.lap-table tbody tr').count(), second);
+  await dashboard.close(isAboutGraphics);
+  replay.kill('SIGINT');
+  await once(replay, 'exit');
 });
 
 it('has nothing that its reader would fetch', () => {

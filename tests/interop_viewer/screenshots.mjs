@@ -40,6 +40,7 @@ const PICTURES = [
         .click({ timeout: 1000 })
         .catch(() => undefined),
   },
+  { name: 'dashboard_what_if', tab: 'whatif', size: [1366, 900], colorScheme: 'light', prepare: whatIf },
   {
     name: 'dashboard_phone',
     tab: 'drive',
@@ -57,6 +58,13 @@ async function tune(page) {
   const box = page.locator('[data-key="tracking_mpc.weight_lateral"] .number-box');
   await box.fill('4');
   await box.press('Enter');
+}
+
+async function whatIf(page) {
+  await page.getByLabel('Setting to change').fill('latency_ms');
+  await page.getByLabel('What if: latency').fill('250');
+  await page.getByText('Drive both', { exact: true }).click();
+  await page.getByTestId('what-if-verdict').waitFor();
 }
 
 const browser = await launch();

@@ -190,14 +190,48 @@ describe('the workbench', () => {
 
   it('injects a fault and clears it', async () => {
     await dashboard.show('faults');
-    const fault = page.locator('.fault').first();
-    await fault.click();
+    await page
+      .getByLabel(/^Duration of/)
+      .first()
+      .fill('600'); // it lasts until it is cleared, however slow the machine is
+    await page.locator('.fault').first().click();
     await page.locator('.fault[aria-pressed="true"]').first().waitFor();
     await page.locator('.pill', { hasText: 'Fault' }).waitFor();
     await page.locator('.events li', { hasText: 'Fault' }).first().waitFor();
     await dashboard.button('Clear all').click();
     await page.locator('.pill', { hasText: 'Fault' }).waitFor({ state: 'detached' });
     assert.equal(await page.locator('.fault[aria-pressed="true"]').count(), 0);
+  });
+
+  it('gives a fault the duration and strength that are asked for, and counts down', async () => {
+    await dashboard.show('faults');
+    assert.deepEqual(await page.locator('.fault-group h2').allInnerTexts(), [
+      'Sensors',
+      'Link',
+      'Actuators',
+      'Road and wind',
+      'Computer',
+    ]);
+    const duration = page.getByLabel('Duration of ice patch [s]');
+    await duration.fill('300');
+    const then = await dashboard.seconds();
+    await dashboard.until(
+      () => dashboard.seconds(),
+      (now) => now < then || now > then + 0.5,
+      'a page that was drawn again',
+    );
+    assert.equal(await duration.inputValue(), '300', 'what is typed stays while the car drives');
+    await page.getByLabel(/^Strength of ice patch/).fill('0.9');
+    await page.locator('[data-key="fault.ice_patch"]').click();
+    const badge = page.locator('.fault-card.active .badge');
+    const left = async () => Number(/(\d+\.\d) s left/.exec((await badge.allInnerTexts()).join())?.[1]);
+    const first = await dashboard.until(left, (seconds) => seconds > 100 && seconds <= 300, 'a countdown');
+    await dashboard.until(left, (seconds) => seconds < first - 1, 'less time left');
+    await page.locator('.alert.bad', { hasText: /Fault: ice patch, \d+ s left/ }).waitFor();
+    assert.match(await dashboard.text('fault-answer'), /What is done about it: \S+/);
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await dashboard.button('Clear all').click();
+    await page.locator('.fault-card.active').waitFor({ state: 'detached' });
   });
 
   it('explains what limits the speed', async () => {
@@ -235,8 +269,8 @@ describe('the workbench', () => {
   });
 
   it('tells speeds in the unit of the reader, and remembers it', async () => {
-    const unit = page.locator('.speed .big .unit');
-    const metres = () => page.locator('.speed .beside b').first().innerText();
+    const unit = page.locator('.hud .big .unit');
+    const metres = () => dashboard.text('speed');
     await dashboard.until(metres, (text) => Number(text) > 1, 'a car that drives');
     await dashboard.pause();
     const told = { mph: 0, 'km/h': 0, 'm/s': 0 };
@@ -356,9 +390,9 @@ it('takes another run of a restarted server for another run', async () => {
   );
   const { port } = drive;
   await drive.stop();
-  await page.getByTestId('banner').waitFor();
+  await page.getByTestId('end-card').waitFor();
   drive = await startDrive(['--track', 'hairpins', '--controller', 'pid'], port);
-  await page.getByTestId('banner').waitFor({ state: 'detached' });
+  await page.getByTestId('end-card').waitFor({ state: 'detached' });
   await dashboard.until(
     () => page.locator('.summary').innerText(),
     (text) => /pid.*hairpins/.test(text),

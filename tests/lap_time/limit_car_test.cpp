@@ -9,9 +9,9 @@ namespace {
 TEST(LimitCar, HasTheGripAndDragOfTheParameters) {
   const model::VehicleParams udacity = model::udacity_params();
   const LimitCar car(udacity);
-  EXPECT_NEAR(car.grip(40.0), 12.22 + 0.0923 * 40.0, 1e-9);
+  EXPECT_NEAR(car.grip(40.0), udacity.friction * (12.22 + 0.0923 * 40.0), 1e-9);
   EXPECT_NEAR(car.drag(40.0), -model::longitudinal_acceleration(udacity, 0.0, 40.0), 1e-12);
-  EXPECT_NEAR(car.stay, 0.226, 1e-12);
+  EXPECT_NEAR(car.stay, 1.0 - udacity.steer_helper, 1e-12);
 }
 
 TEST(LimitCar, SlipDragIsTheForcesOfBothAxlesTimesTheirSlips) {

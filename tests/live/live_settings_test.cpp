@@ -219,6 +219,27 @@ TEST(LiveSettings, TakeAPresetsSettingsButKeepTheWorld) {
   EXPECT_TRUE(live.settings.news().empty());
 }
 
+TEST(LiveSettings, RememberWithWhatARunStarted) {
+  Live live(scenario_of({{"latency_ms", "50"}}));
+  const auto start = [&](const std::string& key) {
+    for (const auto& each : nlohmann::json::parse(live.settings.schema_json())) {
+      if (each["key"] == key) return each["start"];
+    }
+    return nlohmann::json();
+  };
+  ASSERT_TRUE(live.settings.set({"latency_ms", 80.0}));
+  live.next();
+  EXPECT_EQ(start("latency_ms"), 50);
+  ASSERT_TRUE(live.settings.set({"car", std::string("road-car")}));
+  live.end_of_build();
+  EXPECT_EQ(start("car"), "road-car");
+  EXPECT_EQ(start("latency_ms"), 50) << "what was changed before stays a change";
+  ASSERT_TRUE(live.settings.set({"preset", std::string("sixty-mph")}));
+  live.end_of_build();
+  EXPECT_EQ(start("cubic_mpc.horizon_steps"), 7);
+  EXPECT_EQ(start("latency_ms"), 80) << "a preset leaves nothing of before";
+}
+
 TEST(LiveSettings, TakeACarsVehicleAndPlant) {
   Live live;
   ASSERT_TRUE(live.settings.set({"car", std::string("road-car")}));
@@ -378,10 +399,10 @@ TEST(LiveSettings, OfferControllerAndVehicleOnlyForAnExternalSimulator) {
 
 TEST(LiveSettings, TellWhatTheRunHasTakenUpAndFaultsThatEndByThemselves) {
   run::ChangeQueue wishes;
-  LiveSettings settings(
-      {.scenario = scenario_of({}),
-       .faults = {{"fault.link_lost", protocol::Kind::kBool, "", 0.0, 0.0, false, "Silence."}}},
-      wishes);
+  LiveSettings settings({.scenario = scenario_of({}),
+                         .faults = {{"fault.link_lost", protocol::Kind::kBool, "", 0.0, 0.0, false,
+                                     "Silence.", &sim::kind_of(*sim::fault_named("link_lost"))}}},
+                        wishes);
   ASSERT_TRUE(settings.set({"fault.link_lost", true}));
   EXPECT_EQ(settings.get("fault.link_lost")->value, ParameterValue(true));
   EXPECT_EQ(settings.news().size(), 1U);
@@ -391,6 +412,11 @@ TEST(LiveSettings, TellWhatTheRunHasTakenUpAndFaultsThatEndByThemselves) {
   EXPECT_EQ(changes[0].cycle, 9U);
   ASSERT_EQ(settings.news().size(), 1U);
   EXPECT_EQ(settings.get("fault.link_lost")->value, ParameterValue(false));
+  ASSERT_TRUE(settings.set({"fault.link_lost", std::string("+4")}));
+  EXPECT_EQ(settings.get("fault.link_lost")->value, ParameterValue(true));
+  const auto refused = settings.set({"fault.link_lost", std::string("+4*2")});
+  ASSERT_FALSE(refused) << "it has no strength";
+  EXPECT_THAT(refused.error().message, HasSubstr("fault.link_lost: got +4*2"));
 }
 
 TEST(LiveSettings, DescribeThemselvesInJson) {
@@ -409,6 +435,7 @@ TEST(LiveSettings, DescribeThemselvesInJson) {
   EXPECT_EQ(horizon["minimum"], 2);
   EXPECT_EQ(horizon["maximum"], 200);
   EXPECT_EQ(horizon["default"], 7);  // the preset's, not what is set now
+  EXPECT_EQ(horizon["start"], 9);    // the command line's
   EXPECT_EQ(horizon["is_live"], true);
   EXPECT_EQ(entry("latency_ms")["unit"], "ms");
   EXPECT_EQ(entry("latency_ms")["group"], "run");

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
+#include "chicane/live/what_if.hpp"
 #include "chicane/wire/endpoint.hpp"
 
 namespace chicane::live {
@@ -29,6 +32,19 @@ TEST(Pages, OfAReplayNameItsLogsAndServeNoOtherFile) {
   for (const char* path : {"/log/2.mcap", "/log/", "/log/../tmp/b", "/tmp/b", "/log/01.mcap", ""}) {
     EXPECT_FALSE(handlers.on_get(path)) << path;
   }
+}
+
+TEST(Pages, OfAReplayTellTheSettingsThatAnotherFutureMayHave) {
+  wire::Router router(nullptr, nullptr);
+  WhatIf what_if([](const WhatIfQuestion&, const recording::BranchHooks&) -> Result<recording::BranchReport> {
+    return fail(ErrorCode::kInvalidArgument, "nothing");
+  });
+  wire::Pages pages = replay_pages({{"a", "/tmp/a"}, {"b", "/tmp/b", "[1]"}}, 0.0);
+  add_what_if(pages, what_if);
+  const auto handlers = router.handlers(std::move(pages));
+  EXPECT_FALSE(handlers.on_get("/log/0.settings.json")) << "none are known";
+  EXPECT_EQ(handlers.on_get("/log/1.settings.json")->bytes, "[1]");
+  EXPECT_EQ(handlers.on_get("/what_if.json")->bytes, "{\"id\":0,\"state\":\"none\"}\n");
 }
 
 }  // namespace

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -57,6 +59,44 @@ TEST(ServedRun, AnswersOneSimulatorAfterTheOtherAndReportsOnAll) {
   EXPECT_GE(summary->answers, answers);
   EXPECT_EQ(summary->run.cycles, static_cast<std::uint64_t>(frames)) << "of both cars";
   EXPECT_EQ(summary->run.track, "oval");
+}
+
+TEST(ServedRun, NamesTheRoadThatIsNotTheSimulators) {
+  scenario::Scenario scenario = short_scenario();
+  net::ServerOptions server;
+  server.port = 0;
+  ServedRun served(server, scenario, std::move(*run::make_controller(scenario)), *run::make_track(scenario));
+  std::atomic<std::uint16_t> port{0};
+  std::atomic<bool> stop{false};
+  Result<wire::ServeSummary> summary;
+  std::vector<std::string> lines;
+  std::mutex mutex;
+  std::thread serving([&] {
+    summary = served.run(
+        nullptr,
+        {.say =
+             [&](std::string_view line) {
+               const std::lock_guard lock(mutex);
+               lines.emplace_back(line);
+             }},
+        [&](std::uint16_t chosen) { port = chosen; }, stop);
+  });
+  while (port == 0) std::this_thread::yield();
+  scenario.track = "speedway";
+  const auto done = wire::simulate(
+      {.url = "ws://127.0.0.1:" + std::to_string(port.load()) + "/socket.io/?EIO=4&transport=websocket"},
+      scenario, {}, stop);
+  stop = true;
+  serving.join();
+  ASSERT_TRUE(done && summary);
+  EXPECT_EQ(std::count_if(lines.begin(), lines.end(),
+                          [](const std::string& line) {
+                            return line.find("another road than oval, up to") != std::string::npos;
+                          }),
+            1);
+  EXPECT_EQ(summary->run.track, "");
+  EXPECT_EQ(summary->run.off_track_events, 0);
+  EXPECT_EQ(summary->run.why_no_limit, "the simulator drives on another road than --track");
 }
 
 TEST(ServedRun, SaysWhyThereIsNoLimitWithoutARoad) {

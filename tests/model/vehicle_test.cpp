@@ -61,16 +61,6 @@ TEST(LongitudinalLaw, IsTheDocumentedOne) {
   EXPECT_NEAR(longitudinal_acceleration(car, 1.0, 20.0), 2.0 - car.drag_linear * 20.0, 1e-12);
 }
 
-TEST(Vehicle, BrakesWithTyresOfItsOwn) {
-  VehicleParams car = udacity_params();
-  car.braking_friction = 2.0;
-  car.braking_turn = 0.5;
-  const VehicleParams braking = while_braking(car);
-  EXPECT_EQ(braking.friction, 2.0 * car.friction);
-  EXPECT_NEAR(1.0 - braking.steer_helper, 0.5 * (1.0 - car.steer_helper), 1e-12);
-  EXPECT_EQ(braking.mass, car.mass);
-}
-
 TEST(LongitudinalLaw, ThrottleForIsItsInverse) {
   Random random{7};
   for (const VehicleParams& car : {udacity_params(), road_car_params()}) {

@@ -185,15 +185,27 @@ TEST(Server, RefusesStrangersBeforeAnybodyIsAsked) {
 }
 
 TEST(Server, ServesAssetsWithTheirHeadersAndNothingElse) {
+  using namespace std::string_view_literals;
+  // printf 'hello hello hello hello' | gzip -n -9
+  constexpr auto kGreeting =
+      "\x1f\x8b\x08\0\0\0\0\0\x02\x03\xcb\x48\xcd\xc9\xc9\x57\xc8\x40\x27\x01\xe3\x51\x3d\x8d\x17\0\0\0"sv;
   Recorder recorder(
       {}, {{.path = "/index.html", .content_type = "text/html", .content = "<h1>hello</h1>"},
-           {.path = "/app.js", .content_type = "text/javascript", .content = "\x1f\x8b..", .gzip = true}});
+           {.path = "/app.js", .content_type = "text/javascript", .content = kGreeting, .gzip = true}});
   const std::string page = get(recorder.port(), "/?view=map");
   EXPECT_THAT(page, StartsWith("HTTP/1.1 200"));
   EXPECT_THAT(page, HasSubstr("Content-Security-Policy: default-src 'self'"));
   EXPECT_THAT(page, HasSubstr("X-Content-Type-Options: nosniff"));
   EXPECT_THAT(page, HasSubstr("\r\n\r\n<h1>hello</h1>"));
-  EXPECT_THAT(get(recorder.port(), "/app.js"), HasSubstr("Content-Encoding: gzip"));
+  const std::string compressed = get(recorder.port(), "/app.js", "Accept-Encoding: gzip, br\r\n");
+  EXPECT_THAT(compressed, HasSubstr("Content-Encoding: gzip"));
+  EXPECT_THAT(compressed, HasSubstr("\r\n\r\n" + std::string(kGreeting)));
+  for (const char* asked : {"", "Accept-Encoding: identity\r\n", "Accept-Encoding: gzip;q=0, br\r\n"}) {
+    const std::string plain = get(recorder.port(), "/app.js", asked);
+    EXPECT_THAT(plain, HasSubstr("\r\n\r\nhello hello hello hello")) << asked;
+    EXPECT_THAT(plain, Not(HasSubstr("Content-Encoding"))) << asked;
+    EXPECT_THAT(plain, HasSubstr("Vary: Accept-Encoding")) << asked;
+  }
   EXPECT_THAT(get(recorder.port(), "/../etc/passwd"), StartsWith("HTTP/1.1 404"));
   EXPECT_THAT(get(recorder.port(), "/favicon.ico"), StartsWith("HTTP/1.1 404"));
   EXPECT_THAT(get(recorder.port(), "/", {}, "DELETE"), StartsWith("HTTP/1.1 405"));

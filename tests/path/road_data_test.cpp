@@ -76,5 +76,36 @@ TEST(RoadData, HasItsTwoEndsHoweverWideTheSpacing) {
   EXPECT_EQ(road_data(straight(), 1e6).points.size(), 2u);
 }
 
+TEST(LinePoints, AreThePlannedCoursesPlacesAndRoom) {
+  // Round a circle 1 m to the right of its line, sliding: the body looks into the bend by 0.1 rad.
+  const Track track = circle();
+  RacingLine line;
+  line.length = track.length();
+  const double around = (kRadius + 1.0) * kTwoPi;
+  constexpr int kPoints = 200;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double share = static_cast<double>(i) / kPoints;
+    line.points.push_back({.s = share * line.length,
+                           .time = share * around / 20.0,
+                           .offset = -1.0,
+                           .heading = 0.1,
+                           .vx = 20.0 * std::cos(0.1),
+                           .vy = -20.0 * std::sin(0.1)});
+  }
+  const std::vector<LinePoint> points = line_points(track, line);
+  ASSERT_EQ(points.size(), line.points.size());
+  for (const LinePoint& p : points) {
+    EXPECT_NEAR(p.position.norm(), kRadius + 1.0, 0.01);
+    EXPECT_NEAR(p.sideslip, -0.1, 1e-12);
+    EXPECT_NEAR(angle_difference(p.heading, std::atan2(p.position.y(), p.position.x())), kPi / 2.0, 1e-3);
+    EXPECT_NEAR(p.curvature, 1.0 / (kRadius + 1.0), 1e-3 / kRadius);
+    EXPECT_NEAR(p.speed, 20.0, 1e-9);
+    EXPECT_NEAR(p.left, 6.0, 0.01);
+    EXPECT_NEAR(p.right, 2.0, 0.01);
+  }
+  EXPECT_NEAR(points.back().heading - points.front().heading, kTwoPi, 1e-9);
+  EXPECT_TRUE(line_points(track, {}).empty());
+}
+
 }  // namespace
 }  // namespace chicane::path

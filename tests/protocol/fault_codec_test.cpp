@@ -85,11 +85,26 @@ TEST(FaultYaml, RefusesWithFileLineAndKey) {
               HasSubstr("faults.for_s: got 0"));
 }
 
+TEST(FaultControls, AreSwitchedWithDurationAndStrength) {
+  const auto plain = read_switch("half_grip", "true");
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(plain->duration, sim::default_event(plain->fault, 0.0).duration);
+  const auto chosen = read_switch("half_grip", "+7.5*0.25");
+  ASSERT_TRUE(chosen) << chosen.error().message;
+  EXPECT_EQ(chosen->duration, 7.5);
+  EXPECT_EQ(chosen->strength, 0.25);
+  EXPECT_EQ(read_switch("half_grip", "*0.25")->duration, plain->duration);
+  for (const char* wrong : {"", "1", "yes", "+", "+-1", "+5*9", "+5@3", "+nan"})
+    EXPECT_FALSE(read_switch("half_grip", wrong)) << wrong;
+  EXPECT_THAT(read_switch("half_grip", "+5*9").error().message, HasSubstr("fault.half_grip: got +5*9"));
+}
+
 TEST(FaultControls, AreOneSwitchForEach) {
   const auto controls = fault_controls();
   ASSERT_EQ(controls.size(), sim::fault_kinds().size());
   EXPECT_EQ(controls[0].key, "fault.link_lost");
   EXPECT_EQ(controls[0].kind, Kind::kBool);
+  EXPECT_EQ(controls[0].fault, &sim::fault_kinds()[0]);
 }
 
 }  // namespace

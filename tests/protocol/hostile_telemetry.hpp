@@ -34,6 +34,11 @@ inline std::string repeat(const std::string& text, int count) {
   return result;
 }
 
+/// `[1,1,1]` for ("1", 3).
+inline std::string repeated(const std::string& element, int count) {
+  return "[" + repeat(element + ",", count - 1) + element + "]";
+}
+
 /// Telemetry that must not be believed.
 struct Hostile {
   std::string text;

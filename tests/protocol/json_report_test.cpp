@@ -40,10 +40,26 @@ telemetry::RunSummary example() {
 
 TEST(JsonReport, HasEveryDocumentedKey) {
   const Json report = Json::parse(to_json(example()));
-  for (const char* key :
-       {"track", "car", "controller", "preset", "seed", "latency_ms", "completed", "laps_completed",
-        "off_track_events", "out_of_track_time_s", "laps", "step_time_us", "solve_time_us", "solver",
-        "fallbacks", "gate_interventions", "deadline_misses", "state_hash", "arithmetic"}) {
+  for (const char* key : {"track",
+                          "car",
+                          "controller",
+                          "preset",
+                          "seed",
+                          "latency_ms",
+                          "completed",
+                          "laps_completed",
+                          "off_track_events",
+                          "out_of_track_time_s",
+                          "laps",
+                          "step_time_us",
+                          "solve_time_us",
+                          "solver",
+                          "fallbacks",
+                          "guard_reasons",
+                          "gate_interventions",
+                          "deadline_misses",
+                          "state_hash",
+                          "arithmetic"}) {
     EXPECT_TRUE(report.contains(key)) << key;
   }
   for (const char* key : {"lap_time_s", "mean_speed_mps", "top_speed_mps", "top_speed_mph",

@@ -58,6 +58,8 @@ TEST(RosMessages, RunSaysWhatTheBitsAndTermsOfAFrameMean) {
   }
   EXPECT_EQ(reader.number(), 0.75);
   EXPECT_EQ(reader.text(), "track = oval");
+  EXPECT_EQ(reader.text(), "failed");
+  EXPECT_EQ(reader.text(), "time limit reached");
   EXPECT_TRUE(reader.is_at_end());
 }
 
@@ -89,6 +91,25 @@ TEST(RosMessages, LimitHasItsLineInColumnsOfTheSameLength) {
   EXPECT_EQ(reader.text(), "");
   EXPECT_EQ(reader.get<std::uint32_t>(), 1U);
   EXPECT_TRUE(reader.is_at_end());
+}
+
+TEST(RosMessages, TheSceneHasARoadInTheWorldAndACarThatMovesWithItsFrame) {
+  const protocol::Run run = samples::run();
+  const auto& topics = ros_topics();
+  const auto scene =
+      std::find_if(topics.begin(), topics.end(), [](const RosTopic& each) { return each.name == "/scene"; });
+  ASSERT_NE(scene, topics.end());
+  EXPECT_EQ(scene->cadence, Cadence::kRoad);
+  EXPECT_NE(scene->schema.find("MSG: foxglove_msgs/ModelPrimitive"), std::string::npos);
+  const std::string bytes = scene->encode(samples::frame(), run);
+  CdrReader reader{bytes};
+  EXPECT_EQ(reader.get<std::uint32_t>(), 0U);  // deletions
+  EXPECT_EQ(reader.get<std::uint32_t>(), 2U);
+  EXPECT_EQ(reader.get<std::int32_t>(), 0);
+  EXPECT_EQ(reader.get<std::uint32_t>(), 0U);
+  EXPECT_EQ(reader.text(), "map");
+  EXPECT_EQ(reader.text(), "road");
+  EXPECT_EQ(scene->encode(samples::frame(), run), bytes) << "nothing of it depends on the frame";
 }
 
 TEST(RosMessages, ALimitThatIsNotKnownSaysWhyAndLapsHaveNoGap) {
@@ -146,7 +167,7 @@ TEST(RosMessages, OdometryStandsAtTheRearAxleAndMovesWithIt) {
   const std::string bytes = encode("/odom");
   CdrReader reader{bytes};
   EXPECT_EQ(reader.seconds(), 12.25);
-  EXPECT_EQ(reader.text(), "map");
+  EXPECT_EQ(reader.text(), "odom");  // as /tf has it
   EXPECT_EQ(reader.text(), "base_link");
   EXPECT_NEAR(reader.number(), 10.0 - 2.0 * std::cos(0.5), 1e-12);
   EXPECT_NEAR(reader.number(), -20.0 - 2.0 * std::sin(0.5), 1e-12);
@@ -334,6 +355,18 @@ TEST(RosMessages, RoadLinesCloseAndKeepTheirWidths) {
     // Counter-clockwise: left is inside. 0.2 m allows for the smoothing of the centre line.
     EXPECT_NEAR(lines.left[i].norm(), 47.0, 0.2);
     EXPECT_NEAR(lines.right[i].norm(), 55.0, 0.2);
+  }
+}
+
+TEST(RosMessages, ReadTheTextOfAQuestionAndNothingElse) {
+  using std::string_literals::operator""s;
+  EXPECT_EQ(decode_ask("\0\1\0\0\3\0\0\0hi\0"s), "hi");
+  EXPECT_EQ(decode_ask("\0\0\0\0\0\0\0\3hi\0"s), "hi") << "big endian";
+  EXPECT_EQ(decode_ask("\0\1\0\0\1\0\0\0\0"s), "");
+  for (const std::string& bytes :
+       {""s, "\0\1\0\0"s, "\0\1\0\0\0\0\0\0"s, "\0\1\0\0\0\0\0\0x"s, "\0\1\0\0\4\0\0\0hi\0"s,
+        "\0\1\0\0\2\0\0\0hi\0"s, "\0\1\0\0\377\377\377\377hi\0"s, "\0\2\0\0\3\0\0\0hi\0"s}) {
+    EXPECT_FALSE(decode_ask(bytes)) << bytes.size();
   }
 }
 

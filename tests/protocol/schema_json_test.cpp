@@ -11,10 +11,16 @@
 namespace chicane::protocol {
 namespace {
 
+scenario::Scenario started() {
+  scenario::Scenario start;
+  start.seed = 4;
+  return start;
+}
+
 nlohmann::json rows(const scenario::Scenario& defaults, std::string_view only,
                     std::span<const Control> controls = {}) {
   return nlohmann::json::parse(schema_json(
-      defaults, [&](const Parameter& row) { return row.key == only; }, controls));
+      defaults, started(), [&](const Parameter& row) { return row.key == only; }, controls));
 }
 
 TEST(SchemaJson, DescribesATunableWithUnitRangeDefaultAndMeaning) {
@@ -24,6 +30,7 @@ TEST(SchemaJson, DescribesATunableWithUnitRangeDefaultAndMeaning) {
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0]["key"], "seed");
   EXPECT_EQ(all[0]["default"], 17);
+  EXPECT_EQ(all[0]["start"], 4);
   EXPECT_EQ(all[0]["kind"], "integer");
   EXPECT_TRUE(all[0].contains("minimum"));
   EXPECT_TRUE(all[0].contains("maximum"));

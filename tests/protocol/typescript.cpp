@@ -121,8 +121,8 @@ std::string typescript(std::string_view name, std::string_view schema) {
 std::string typescript_messages() {
   std::string text =
       "// Messages of chicane_msgs as this page reads them. Made from their definitions, which follow from\n"
-      "// src/chicane/protocol/frame_fields.cpp and detail/ros_schemas.hpp; do not edit. Renewed by\n"
-      "// cmake --build --preset release --target renew_fixtures\n"
+      "// src/chicane/protocol/frame_fields.cpp and detail/ros_schemas.hpp; do not edit. As long as the\n"
+      "// messages are. Renewed by cmake --build --preset release --target renew_fixtures\n"
       "\n"
       "export interface Stamp {\n  sec: number;\n  nsec: number;\n}\n";
   std::string columns;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <clocale>
 #include <cmath>
 #include <cstdlib>
@@ -238,6 +239,76 @@ TEST(UdacityReplyFromController, IsReadAsTheSimulatorDoes) {
   EXPECT_EQ(steer->reference.size(), 1U);
   EXPECT_TRUE(std::holds_alternative<UdacityManual>(parse_reply(R"(42["manual",{}])")));
   EXPECT_EQ(std::get<UdacityPacket>(parse_reply("0{\"sid\":\"x\"}")), UdacityPacket::kOpen);
+}
+
+/// A steer event with these four lists, in the order next_x, next_y, mpc_x, mpc_y; "" leaves a key out.
+std::string steer_with(const std::array<std::string, 4>& lists) {
+  constexpr std::array kKeys{"next_x", "next_y", "mpc_x", "mpc_y"};
+  std::string text = R"(42["steer",{"steering_angle":0.25,"throttle":0.5)";
+  for (std::size_t i = 0; i < lists.size(); ++i)
+    if (!lists[i].empty()) text += std::string(",\"") + kKeys[i] + "\":" + lists[i];
+  return text + "}]";
+}
+
+TEST(UdacityReplyFromController, TakesEveryShapeOfTheLinesThatTheOriginalTakes) {
+  struct Shape {
+    std::array<std::string, 4> lists;
+    std::size_t reference, plan;  // points
+  };
+  const std::vector<Shape> taken{
+      {{"[1,2]", "[3,4]", "[5]", "[6]"}, 2, 1},
+      {{"[]", "[]", "[]", "[]"}, 0, 0},
+      {{"0", "0", "0", "0"}, 0, 0},                            // its loops do not run
+      {{"null", "null", "[1]", "[2]"}, 0, 1},                  // nlohmann::json() prints so
+      {{R"("")", R"("a")", "true", "false"}, 0, 0},            //
+      {{"[]", "", "null", ""}, 0, 0},                          // *_y of an empty *_x is never looked at
+      {{"[1]", R"([2,"three",null])", "[1]", "[2,3]"}, 1, 1},  // nor what *_y has more
+      {{R"({"a":1,"b":2})", R"({"a":3,"b":4})", "{}", "7"}, 2, 0},
+      {{"[1e30]", "[-1E-30]", "[1]", "[2]"}, 1, 1},
+      {{test::repeated("1", 2000), test::repeated("2", 2000), "[]", "[]"}, 2000, 0},
+  };
+  for (const Shape& shape : taken) {
+    const auto reply = parse_reply(steer_with(shape.lists));
+    const auto* steer = std::get_if<UdacitySteer>(&reply);
+    ASSERT_NE(steer, nullptr) << shape.lists[0].substr(0, 30) << ": "
+                              << std::get<UdacityBroken>(reply).reason;
+    EXPECT_EQ(steer->reference.size(), shape.reference) << shape.lists[0];
+    EXPECT_EQ(steer->plan.size(), shape.plan) << shape.lists[2];
+    EXPECT_DOUBLE_EQ(steer->command.steer, -0.25 * kFullLock);
+  }
+}
+
+TEST(UdacityReplyFromController, RefusesTheShapesOfTheLinesOnWhichTheOriginalStalls) {
+  const std::vector<std::pair<std::array<std::string, 4>, std::string>> stalling{
+      {{"", "[]", "[]", "[]"}, "next_x: missing"},
+      {{"[]", "[]", "", "[]"}, "mpc_x: missing"},
+      {{"[1]", "", "[]", "[]"}, "next_y: missing"},
+      {{"[1,2]", "[1]", "[]", "[]"}, "next_x has 2 points, next_y only 1"},
+      {{"[1]", "0", "[]", "[]"}, "next_x has 1 points, next_y only 0"},
+      {{"[1]", "null", "[]", "[]"}, "next_y only 0"},
+      {{"[]", "[]", R"(["1"])", "[1]"}, R"(mpc_x[0]: got "1", expected a number)"},
+      {{"[]", "[]", "[1]", "[null]"}, "mpc_y[0]: got null"},
+      {{"[[1]]", "[1]", "[]", "[]"}, "next_x[0]: got an array of 1"},
+      {{"[1e39]", "[1]", "[]", "[]"}, "next_x[0]: got 1e+39"},
+  };
+  for (const auto& [lists, words] : stalling) {
+    const auto reply = parse_reply(steer_with(lists));
+    const auto* broken = std::get_if<UdacityBroken>(&reply);
+    ASSERT_NE(broken, nullptr) << words;
+    EXPECT_THAT(broken->reason, HasSubstr(words));
+  }
+}
+
+TEST(UdacityReplyFromController, TakesWhatElseTheOriginalTakes) {
+  const std::string lines = R"("next_x":[],"next_y":[],"mpc_x":[],"mpc_y":[])";
+  for (const std::string& data : {
+           R"({"throttle":1,)" + lines + R"(,"steering_angle":0})",             // any order
+           "{" + lines + R"(,"steering_angle":1e-7,"throttle":-3E0})",          // exponents, beyond the range
+           "{" + lines + R"(,"steering_angle":0,"throttle":0,"note":[null]})",  // more keys
+           "{ " + lines + "  ,\n\"steering_angle\" : 0 , \"throttle\" : 0 }",   // white space
+       }) {
+    EXPECT_TRUE(std::holds_alternative<UdacitySteer>(parse_reply("42[\"steer\"," + data + "]"))) << data;
+  }
 }
 
 safety::StopPlan stop_of(int size) {

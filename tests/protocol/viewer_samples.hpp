@@ -104,6 +104,8 @@ inline Run run() {
   run.road.right = {{0.0, -2.0}, {4.0, -2.0}, {0.0, -2.0}};
   run.road.centre = {{0.0, 0.0}, {4.0, 0.0}, {0.0, 0.0}};
   run.building = "track = oval";
+  run.end = "failed";
+  run.end_reason = "time limit reached";
   lap_time::Limit limit;
   limit.times = {.lap = 25.0, .sectors = {8.0, 9.5, 7.5}};
   limit.line = {{.s = 258.0, .d = 0.5, .position = {1.0, 2.0}, .speed = 40.0, .lateral_acceleration = -3.0},

@@ -239,5 +239,53 @@ TEST_F(BranchTest, RefusesWhatCannotBeInWords) {
   EXPECT_THAT(message({.at = 1.0, .settings = {{"track", "speedway"}}}), HasSubstr("while the run goes on"));
 }
 
+TEST_F(BranchTest, DrivesBothFuturesOnWhereTheRecordingEnds) {
+  record(*short_run(), file_.path(), 200);
+  std::map<bool, std::vector<double>> distances;
+  std::map<bool, std::vector<double>> speeds;
+  const BranchHooks hooks{.on_future = [&](const FutureStep& step) {
+    distances[step.is_branch].push_back(step.distance);
+    speeds[step.is_branch].push_back(step.frame.measurement.speed);
+  }};
+  const auto report =
+      branch_recording({.log = file_.path(), .at = 4.0, .more_laps = 1, .drives_both = true}, hooks);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_FALSE(report->first_difference);
+  EXPECT_DOUBLE_EQ(report->known_until, 199 * 0.04);
+  EXPECT_EQ(speeds[false], speeds[true]) << "nothing was changed: the same, to the last bit";
+  const Future &was = report->recorded, &is = report->branched;
+  ASSERT_EQ(was.lap_times.size(), 1U);
+  EXPECT_EQ(was.lap_times, is.lap_times);
+  ASSERT_EQ(is.passages.size(), 3U) << "the run begins on the line";
+  EXPECT_EQ(is.passages.back().lap, 1);
+  EXPECT_EQ(is.passages.back().sector, 3);
+  EXPECT_NEAR(4.0 + is.passages.back().time, is.lap_times.front(), 0.02)
+      << "a lap ends with its third sector";
+  EXPECT_GT(distances[true].back(), distances[true].front() + 1000.0);
+}
+
+TEST_F(BranchTest, BeginsWhereTheRecordingEndsAndTellsTheDifference) {
+  record(*short_run(), file_.path(), 200);
+  const auto report = branch_recording({.log = file_.path(),
+                                        .at = 1e9,
+                                        .settings = {{"tracking_mpc.speed_limit_mps", "8"}},
+                                        .duration = 10.0,
+                                        .drives_both = true},
+                                       {});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->cycle, 200U);
+  EXPECT_NEAR(report->recorded.duration, 10.0, 0.05);
+  EXPECT_NEAR(report->branched.duration, 10.0, 0.05);
+  EXPECT_LT(report->branched.mean_speed, report->recorded.mean_speed - 3.0);
+}
+
+TEST_F(BranchTest, EndsWhenNobodyWantsItAnyMore) {
+  record(*short_run(), file_.path(), 50);
+  const BranchHooks hooks{.go_on = [](double time) { return time < 1.0; }};
+  const auto report = branch_recording({.log = file_.path(), .at = 0.5, .duration = 100.0}, hooks);
+  ASSERT_FALSE(report);
+  EXPECT_THAT(report.error().message, HasSubstr("given up"));
+}
+
 }  // namespace
 }  // namespace chicane::recording

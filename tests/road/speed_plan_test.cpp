@@ -49,14 +49,15 @@ TEST(SpeedPlan, SaysWhatLimitsTheSpeedBeforeInAndBehindABend) {
   EXPECT_EQ(samples[395].limiter, SpeedLimiter::kSight);
   const model::VehicleParams car = uncoupled_car();
   // The middle of the bend, where curvature does not change: v² κ = share · friction · g.
-  EXPECT_NEAR(samples[183].speed, std::sqrt(0.9 * car.friction * car.load_constant * 40.0), 1e-9);
+  EXPECT_NEAR(samples[183].speed, std::sqrt(0.9 * car.cornering_friction() * car.load_constant * 40.0), 1e-9);
 }
 
 TEST(SpeedPlan, EndsAnOpenLineAtTheSpeedOfTheBendThatMayFollow) {
   ReferenceLine line = with_a_bend(1e6);
   plan(line, {.end_curvature = 0.02});
   const model::VehicleParams car = model::road_car_params();
-  EXPECT_NEAR(line.samples().back().speed, std::sqrt(0.9 * car.friction * car.load_constant / 0.02), 1e-9);
+  EXPECT_NEAR(line.samples().back().speed,
+              std::sqrt(0.9 * car.cornering_friction() * car.load_constant / 0.02), 1e-9);
   EXPECT_EQ(line.samples().back().limiter, SpeedLimiter::kSight);
 }
 

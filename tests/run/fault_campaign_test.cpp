@@ -61,7 +61,7 @@ TEST(FaultCampaign, TellsGuardedFromUnguarded) {
   const auto off = [](const char* mode) {
     const scenario::Scenario scenario = on_oval(mode);
     const auto lap = find_flying_lap(scenario);
-    const auto trials = trials_over_lap(*lap, *sim::fault_named("nan_measurement"), kLasting, 2.5);
+    const auto trials = trials_over_lap(*lap, *sim::fault_named("frozen_sensor"), kLasting, 2.5);
     int count = 0;
     const auto outcomes = drive_trials(scenario, *lap, trials, 2);
     EXPECT_TRUE(outcomes);

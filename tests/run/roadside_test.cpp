@@ -103,10 +103,38 @@ TEST(Roadside, JudgesNothingOnARoadThatNobodyKnows) {
   for (int i = 0; i < 600; ++i) EXPECT_FALSE(car.next().is_judged);
   const telemetry::RunSummary run = roadside.summary();
   EXPECT_EQ(run.track, "");
-  EXPECT_EQ(run.laps_completed, 0);
   EXPECT_EQ(run.cycles, 600U);
   EXPECT_TRUE(std::isnan(run.total.min_edge_distance));
   EXPECT_NEAR(run.total.mean_speed, kSpeed, 1e-9);
+}
+
+TEST(Roadside, TimesLapsOnARoadThatNobodyKnows) {
+  Roadside roadside(nullptr, {});
+  Telemetry car(roadside);
+  while (car.driven_for() < 2.2 * kLapTime) car.next();
+  EXPECT_EQ(car.next().lap, 2);
+  const auto lap = roadside.take_lap();
+  ASSERT_TRUE(lap);
+  EXPECT_NEAR(lap->lap_time, kLapTime, 1e-3 * kLapTime);
+  EXPECT_FALSE(std::isfinite(lap->min_edge_distance));
+  const telemetry::RunSummary run = roadside.summary();
+  ASSERT_EQ(run.laps.size(), 2U);
+  EXPECT_NEAR(run.laps[1].mean_speed, kSpeed, 1e-9);
+  EXPECT_EQ(run.off_track_events, 0);
+}
+
+TEST(Roadside, ForgetsWhatWasJudgedByAnotherRoad) {
+  const path::Track track = circle();
+  Roadside roadside(&track, {});
+  Telemetry car(roadside);
+  EXPECT_TRUE(car.next(20.0).is_off_track);
+  roadside.forget_track();
+  EXPECT_FALSE(car.next().is_judged);
+  while (car.driven_for() < 1.2 * kLapTime) car.next();
+  const telemetry::RunSummary run = roadside.summary();
+  EXPECT_EQ(run.track, "");
+  EXPECT_EQ(run.off_track_events, 0);
+  EXPECT_EQ(run.laps_completed, 1);
 }
 
 TEST(Roadside, KeepsTheLapsOverTelemetryThatWasBroken) {

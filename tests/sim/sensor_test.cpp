@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "chicane/sim/plant_registry.hpp"
 
@@ -82,6 +83,43 @@ TEST(Sensor, SpeedIsNeverNegative) {
   const auto plant = make_plant("road-car").value();
   Sensor sensor{{.speed_noise = 1.0}, 3};
   for (int i = 0; i < 100; ++i) EXPECT_GE(sensor.sample(0.0, *plant).speed, 0.0);
+}
+
+TEST(Sensor, TellsWhatWasThereALatencyAgoAsIfItWereNew) {
+  const auto plant = make_plant("road-car").value();
+  plant->reset({.x = 1.0, .y = 2.0, .psi = 3.1}, 20.0);
+  Sensor sensor{{.latency = 0.1}, 1};
+  std::vector<model::Measurement> truth;
+  for (int i = 0; i <= 50; ++i) {
+    const double time = 0.04 * i;
+    truth.push_back(Sensor{{}, 1}.sample(time, *plant));
+    const model::Measurement seen = sensor.sample(time, *plant);
+    EXPECT_EQ(seen.time, time);
+    if (i < 3) {
+      EXPECT_EQ(seen.x, 1.0) << "nothing is older than the beginning";
+    } else {
+      const auto older = static_cast<std::size_t>(i - 3), newer = static_cast<std::size_t>(i - 2);
+      EXPECT_NEAR(seen.x, 0.5 * (truth[older].x + truth[newer].x), 1e-9) << "between 120 and 80 ms ago";
+      EXPECT_NEAR(seen.speed, 0.5 * (truth[older].speed + truth[newer].speed), 1e-9);
+      EXPECT_EQ(seen.steer, truth[older].steer);
+    }
+    for (int step = 0; step < 40; ++step) plant->advance({.steer = 0.05, .throttle = 0.3});
+  }
+  EXPECT_GT(truth.back().x * truth.back().x + truth.back().y * truth.back().y, 100.0);
+}
+
+TEST(Sensor, TheLongestLatencyIsHeldAlsoWhereItIsSampledOften) {
+  const auto plant = moving_plant();
+  Sensor sensor{{.latency = 0.5}, 1};
+  model::Measurement first = sensor.sample(0.0, *plant);
+  for (int i = 1; i < 400; ++i) {
+    plant->advance({});
+    static_cast<void>(sensor.sample(0.004 * i, *plant));
+  }
+  Sensor exact{{}, 1};
+  const model::Measurement now = exact.sample(1.6, *plant), seen = sensor.sample(1.6, *plant);
+  EXPECT_NE(now.x, seen.x);
+  EXPECT_NE(first.x, seen.x);
 }
 
 }  // namespace

@@ -109,6 +109,9 @@ template void solve_lq<arch::Native, RatePattern>(const LqData&, LqAnswer&) noex
 template void solve_lq<arch::Native, MemorylessPattern>(const LqData&, LqAnswer&) noexcept;
 template void solve_lq<arch::Native, solver::FullPattern<2, 1>>(const LqData&, LqAnswer&) noexcept;
 template void solve_lq<arch::Native, solver::FullPattern<8, 2>>(const LqData&, LqAnswer&) noexcept;
+template void solve_lq<arch::Native, Compact<SparsePattern>>(const LqData&, LqAnswer&) noexcept;
+template void solve_lq<arch::Native, Compact<RatePattern>>(const LqData&, LqAnswer&) noexcept;
+template void solve_lq<arch::Native, Compact<solver::FullPattern<8, 2>>>(const LqData&, LqAnswer&) noexcept;
 template void solve_lq<arch::Native, solver::FullPattern<5, 3>>(const LqData&, LqAnswer&) noexcept;
 template void solve_lq<arch::Native, solver::FullPattern<2, 4>>(const LqData&, LqAnswer&) noexcept;
 template void solve_lq<arch::Native, solver::FullPattern<10, 2>>(const LqData&, LqAnswer&) noexcept;

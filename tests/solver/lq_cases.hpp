@@ -92,4 +92,10 @@ struct MemorylessPattern : solver::FullPattern<3, 1> {
 template <class Arch, class Pattern>
 void solve_lq(const LqData& data, LqAnswer& answer) noexcept;
 
+/// The same, to be built quickly.
+template <class Pattern>
+struct Compact : Pattern {
+  static constexpr bool kIsCompact = true;
+};
+
 }  // namespace chicane::test

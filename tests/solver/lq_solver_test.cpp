@@ -200,7 +200,8 @@ class LqSolverOn : public testing::Test {};
 using Patterns =
     testing::Types<test::SparsePattern, test::RatePattern, test::MemorylessPattern, solver::FullPattern<2, 1>,
                    solver::FullPattern<8, 2>, solver::FullPattern<5, 3>, solver::FullPattern<2, 4>,
-                   solver::FullPattern<10, 2>>;
+                   solver::FullPattern<10, 2>, test::Compact<test::SparsePattern>,
+                   test::Compact<test::RatePattern>, test::Compact<solver::FullPattern<8, 2>>>;
 TYPED_TEST_SUITE(LqSolverOn, Patterns);
 
 TYPED_TEST(LqSolverOn, FindsTheOptimumOfTheWholeProblem) {
@@ -296,6 +297,48 @@ TYPED_TEST(LqSolverOn, ShiftsInputsWhoseCostIsNotConvex) {
     for (std::size_t k = 0; k < data->horizon; ++k) {
       for (std::size_t m = 0; m < TypeParam::kNu; ++m) EXPECT_TRUE(std::isfinite(answer.du[k][m]));
     }
+  }
+}
+
+template <class Pattern>
+void expect_same_bits_when_compact() {
+  Random random{47};
+  for (std::size_t trial = 0; trial < 48; ++trial) {
+    const auto data = random_data<Pattern>(random, 1 + trial % LqData::kMostStages);
+    for (const InstructionSet set : available_sets()) {
+      const LqAnswer one = solve<Pattern>(set, *data);
+      const LqAnswer other = solve<test::Compact<Pattern>>(set, *data);
+      EXPECT_EQ(one.sweeps, other.sweeps);
+      EXPECT_EQ(std::memcmp(one.du, other.du, sizeof one.du), 0) << to_string(set) << ", trial " << trial;
+    }
+  }
+}
+TEST(LqSolver, HasTheSameBitsWhereItIsBuiltQuickly) {
+  expect_same_bits_when_compact<test::SparsePattern>();
+  expect_same_bits_when_compact<test::RatePattern>();
+  expect_same_bits_when_compact<solver::FullPattern<8, 2>>();
+}
+
+TEST(LqProblem, IsSetByTablesAsByCode) {
+  using Lq = solver::LqProblem<test::SparsePattern, 16>;
+  using V = Pack<arch::Baseline, 8>;
+  std::array<V, Lq::Layout::kFCount> f;
+  std::array<V, Lq::Layout::kLCount> l;
+  Random random{48};
+  const auto fill = [&](auto& entries) {
+    for (V& entry : entries) {
+      for (std::size_t lane = 0; lane < 8; ++lane) entry.set(lane, random.uniform(-1.0, 1.0));
+    }
+  };
+  fill(f);
+  fill(l);
+  const auto one = std::make_unique<Lq>(), other = std::make_unique<Lq>();
+  one->set(8, f, l);
+  other->set_by_tables(8, f, l);
+  for (std::size_t k = 8; k < 16; ++k) {
+    EXPECT_EQ(std::memcmp(one->stage[k].number, other->stage[k].number, sizeof one->stage[k].number), 0) << k;
+    const std::size_t size = Lq::Layout::kWideRows * sizeof one->stage[k].wide[0];
+    EXPECT_EQ(std::memcmp(one->stage[k].wide, other->stage[k].wide, size), 0) << k;
   }
 }
 

@@ -34,10 +34,15 @@ struct Runaway {
   std::array<double, 1> input_upper(int) const { return {10.0}; }
 };
 
+struct RealTimeRunaway : Runaway {
+  static constexpr bool kRealTime = true;
+};
+
 using Solver = OcpSolver<Runaway, 60>;
 
+template <class P = RealTimeRunaway>
 SolveReport solve_from(double x0, const SolverOptions& options, Solver::Trajectory& trajectory) {
-  return std::make_unique<Solver>(options)->solve(Runaway{}, {x0}, trajectory);
+  return std::make_unique<OcpSolver<P, 60>>(options)->solve(P{}, {x0}, trajectory);
 }
 
 TEST(StartFromStates, SolvesWhatASimulatedGuessRunsAwayFrom) {
@@ -55,6 +60,13 @@ TEST(StartFromStates, SolvesWhatASimulatedGuessRunsAwayFrom) {
   EXPECT_NEAR(answer->x[60][0], 0.0, 1e-6);
   for (std::size_t k = 0; k < 60; ++k)
     EXPECT_NEAR(answer->x[k + 1][0], next_state(Runaway{}, 0, answer->x[k], answer->u[k])[0], 1e-9) << k;
+}
+
+TEST(StartFromStates, IsNotNeededWhereAStartThatCannotBeSimulatedStandsStill) {
+  const auto answer = std::make_unique<Solver::Trajectory>();
+  answer->horizon = 60;
+  EXPECT_EQ(solve_from<Runaway>(1.0, {}, *answer).status, SolveStatus::kOptimal);
+  EXPECT_NEAR(answer->x[60][0], 0.0, 1e-6);
 }
 
 TEST(StartFromStates, HasTheSameOptimumAndSimulatesWhereStatesAreNoNumbers) {

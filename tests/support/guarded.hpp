@@ -11,8 +11,9 @@ namespace chicane::test {
 /// A controller inside its guard, asked by one call: what is sent for a measurement, without a rate limit.
 class Guarded {
  public:
-  Guarded(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle)
-      : guard_{std::move(controller), vehicle, {.mode = safety::GuardMode::kOff}} {}
+  Guarded(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
+          safety::GuardMode mode = safety::GuardMode::kOff)
+      : guard_{std::move(controller), vehicle, {.mode = mode}} {}
   const controller::StepResult& step(const model::Measurement& now, Deadline deadline) {
     static_cast<void>(guard_.step(now, deadline, {}, result_));
     return result_;

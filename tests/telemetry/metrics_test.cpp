@@ -107,6 +107,7 @@ TEST(Metrics, CountsWhatWentWrongInTheSteps) {
   f->result.report.solve.iterations = 2;
   f->result.report.solve.status = solver::SolveStatus::kStalled;
   f->result.report.rung = controller::Rung::kShiftedPlan;
+  f->result.report.reason = controller::GuardReason::kFrozen;
   f->result.report.gated = true;
   f->step_time = 0.2;
   f->solve_time = 0.15;
@@ -116,6 +117,8 @@ TEST(Metrics, CountsWhatWentWrongInTheSteps) {
   EXPECT_EQ(run.mean_iterations, 3.0);
   EXPECT_EQ(run.not_usable, 1u);
   EXPECT_EQ(run.fallbacks, 1u);
+  EXPECT_EQ(run.guard_reasons[static_cast<std::size_t>(controller::GuardReason::kFrozen)], 1u);
+  EXPECT_EQ(run.guard_reasons[0], 1u);
   EXPECT_EQ(run.gate_interventions, 1u);
   EXPECT_EQ(run.deadline_misses, 1u);
   EXPECT_NEAR(run.step_time.max, 0.2, 1e-9);  // counted in whole nanoseconds

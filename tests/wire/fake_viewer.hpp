@@ -88,8 +88,8 @@ class Viewer : public testing::Test {
     endpoint->on_start(server);
     connect(1, true);
   }
-  void connect(net::ConnectionId id, bool may_control) {
-    net::UpgradeRequest request{.id = id, .may_watch = true, .may_control = may_control};
+  void connect(net::ConnectionId id, bool may_control, const std::string& target = "/viewer") {
+    net::UpgradeRequest request{.id = id, .target = target, .may_watch = true, .may_control = may_control};
     request.subprotocols = {"foxglove.sdk.v1"};
     EXPECT_TRUE(endpoint->on_upgrade(request).accept);
     endpoint->on_open(id);
@@ -128,8 +128,10 @@ class Store : public protocol::foxglove::ParameterStore {
     return {};
   }
   std::vector<std::string> complaints() override { return std::exchange(sentences, {}); }
+  std::vector<telemetry::Change> applied() override { return std::exchange(changes, {}); }
   double a = 1.0;
   std::vector<std::string> sentences;
+  std::vector<telemetry::Change> changes;
 };
 
 }  // namespace chicane::wire

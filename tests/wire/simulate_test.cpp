@@ -114,6 +114,14 @@ TEST(Simulate, PassesTheTokenInLockStepAndDrivesByTheAnswers) {
   EXPECT_EQ(outcome.report->run.end_reason, "time limit reached");
 }
 
+TEST(Simulate, EndsWithAProgramThatNeverAnswersWhereItShall) {
+  ScriptedServer server([](int, const std::string&) { return std::vector<std::string>{}; });
+  const Outcome outcome = run({.url = server.url(), .hopeless_after = 300ms}, short_run(600.0));
+  ASSERT_TRUE(outcome.report) << outcome.report.error().message;
+  EXPECT_EQ(outcome.report->answers, 0U);
+  EXPECT_EQ(outcome.report->run.end_reason, "no usable answer within 0.3 s");
+}
+
 TEST(Simulate, SendsWhatTheOriginalSends) {
   ScriptedServer server([](int, const std::string&) { return std::vector{kStraight}; });
   static_cast<void>(run({.url = server.url()}, short_run(0.3)));

@@ -58,6 +58,120 @@ TEST_F(Viewer, IsToldOfTheLapsThatWereBeforeItCame) {
   EXPECT_EQ(laps(), (std::vector{1}));
 }
 
+TEST_F(Viewer, GetsTheFramesOfBeforeWhenItAsksForThem) {
+  start({});
+  telemetry::Frame frame;
+  const auto drive = [&](int frames) {
+    for (int i = 0; i < frames; ++i) {
+      frame.time += 0.04;
+      ++frame.cycle;
+      endpoint->publish(frame);
+      server.pass_time();
+    }
+  };
+  drive(300);
+  server.take();
+  connect(2, false, "/viewer?x=1&past");
+  connect(3, false, "/viewer?passed");
+  server.take();
+  for (const net::ConnectionId id : {2U, 3U}) endpoint->on_message(id, subscribe(4, "/chicane/frame"), false);
+  const auto times = [&](net::ConnectionId of) {
+    std::vector<double> found;
+    for (const auto& message : server.take()) {
+      if (message.to != of || message.bytes->front() != 1) continue;
+      std::uint64_t nanoseconds = 0;
+      std::memcpy(&nanoseconds, message.bytes->data() + 5, sizeof(nanoseconds));
+      found.push_back(1e-9 * static_cast<double>(nanoseconds));
+    }
+    return found;
+  };
+  EXPECT_TRUE(times(2).empty()) << "what describes the run comes first";
+  server.pass_time();
+  std::vector<double> seen = times(2);
+  EXPECT_EQ(seen.size(), 192U) << "a page, and the next one when it has been read";
+  endpoint->on_message(3, subscribe(5, "/clock"), false);
+  EXPECT_EQ(times(3).size(), 1U) << "who does not ask gets the newest only";
+  for (int i = 0; i < 3; ++i) {
+    drive(1);
+    for (const double time : times(2)) seen.push_back(time);
+  }
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (i > 0 && seen[i] == seen[i - 1]) continue;  // the newest one may come twice
+    EXPECT_GE(seen[i], i == 0 ? 0.04 : seen[i - 1]);
+  }
+  EXPECT_NEAR(seen.front(), 0.04, 1e-9);
+  EXPECT_NEAR(seen.back(), frame.time, 1e-9);
+  EXPECT_GE(seen.size(), 303U);
+}
+
+TEST_F(Viewer, GetsAllLapsBeforeTheFramesOfBefore) {
+  start({});
+  telemetry::Frame frame;
+  for (int lap = 1; lap <= 40; ++lap) {
+    frame.time += 20.0;
+    ++frame.cycle;
+    endpoint->publish({.lap = lap}, frame.time);
+    endpoint->publish(frame);
+    server.pass_time();
+  }
+  connect(2, false, "/viewer?past");
+  server.take();
+  endpoint->on_message(2, subscribe(4, "/chicane/frame"), false);
+  endpoint->on_message(2, subscribe(5, "/chicane/lap"), false);
+  std::string order;
+  for (int i = 0; i < 4; ++i) {
+    server.pass_time();
+    for (const auto& message : server.take()) {
+      if (message.to == 2 && message.bytes->front() == 1) order += subscription_of(message) == 5 ? 'l' : 'f';
+    }
+  }
+  EXPECT_EQ(std::count(order.begin(), order.end(), 'l'), 40);
+  EXPECT_GT(order.find('f'), order.rfind('l')) << order;
+}
+
+TEST_F(Viewer, IsToldOfTheChangesThatWereBeforeItCame) {
+  Store store;
+  ViewerOptions options;
+  options.parameters = &store;
+  start(std::move(options));
+  server.take();
+  store.changes = {{.cycle = 3, .time = 0.12, .name = "latency_ms", .value = "80"},
+                   {.cycle = 4, .time = 0.16, .name = "manual.steer", .value = "0.5"}};
+  say(subscribe(5, "/chicane/change"));
+  server.pass_time();
+  EXPECT_EQ(server.take().size(), 2U);
+  connect(2, false);
+  server.take();
+  endpoint->on_message(2, subscribe(6, "/chicane/change"), false);
+  const auto messages = server.take();
+  ASSERT_EQ(messages.size(), 1U) << "hands are not remembered";
+  EXPECT_THAT(*messages[0].bytes, HasSubstr("latency_ms"));
+}
+
+TEST_F(Viewer, LearnsThatARunIsOverAndThatItBeganAnew) {
+  start({});
+  say(subscribe(5, "/chicane/run"));
+  telemetry::Frame frame = frame_at(3.0);
+  frame.cycle = 75;
+  endpoint->publish(frame);
+  endpoint->set_end("failed", "the car left the road and did not come back");
+  server.pass_time();
+  const auto runs = [&] {
+    std::vector<std::string> found;
+    for (const auto& message : server.take()) {
+      if (message.bytes->front() == 1) found.push_back(*message.bytes);
+    }
+    return found;
+  };
+  EXPECT_THAT(runs(), testing::Contains(HasSubstr("did not come back")));
+  endpoint->publish(frame_at(0.0));
+  server.pass_time();
+  server.pass_time();
+  const auto anew = runs();
+  ASSERT_FALSE(anew.empty());
+  EXPECT_THAT(anew.back(), testing::Not(HasSubstr("did not come back")));
+}
+
 TEST_F(Viewer, IsToldOfALapThatNoFrameShows) {
   start({});
   say(subscribe(5, "/chicane/lap"));

@@ -1,15 +1,18 @@
 import { render } from 'preact';
+import { toggleScheme } from './lib/appearance';
 import { addShortcuts, shortcutFor } from './lib/keys';
 import { nextSpeedUnit } from './lib/units';
 import { Connection, SUBPROTOCOLS } from './protocol/connection';
 import { readSchema } from './protocol/schema';
 import type { Source } from './protocol/source';
-import { begin, timeline } from './recording/begin';
+import { begin, isReading, summary, timeline } from './recording/begin';
 import { beginSession, receive } from './state/demultiplexer';
 import { toggleLayer } from './state/layers';
 import { attempt, link, notice, services } from './state/link';
 import { call, refresh } from './state/operate';
+import { rememberRun } from './state/other_run';
 import { toggleFrozen } from './state/plot_view';
+import { togglePresentation } from './state/presentation';
 import { isPaused } from './state/run';
 import { schema } from './state/settings';
 import { beginSettings, refreshOnNewChoice, takeSettings } from './state/settings_session';
@@ -22,27 +25,31 @@ import { handBack, listenToDriver, toggleManual } from './views/manual_view';
 import { RestartView } from './views/restart_view';
 import { nextView, toggleDimension, zoom } from './views/track_view';
 import { focusSearch } from './views/tune_view';
-import { isPanelAlone, TABS, tab, toggleDock, WorkbenchView } from './views/workbench_view';
+import { isPanelAlone, TABS, tab, titleOf, toggleDock, WorkbenchView } from './views/workbench_view';
 
 let session: string | null = null;
 
 async function loadSchema(): Promise<void> {
   try {
     const answer = await fetch('schema.json');
-    schema.value = answer.ok ? readSchema(await answer.json()) : [];
+    if (answer.ok) schema.value = readSchema(await answer.json());
   } catch {
-    schema.value = []; // the banner of the connection shows what is wrong
+    // The banner of the connection shows what is wrong.
   }
 }
 
 function live(): Source {
   const url = new URL('viewer', location.href);
+  url.search = '?past'; // the frames of the last minutes before the newest
   url.protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
   return new Connection(() => new WebSocket(url, SUBPROTOCOLS), {
     open(name) {
-      if (name !== session) {
-        beginSession();
-        beginSettings(name);
+      // The program tells of its run from the beginning, whenever the page comes.
+      const isOther = name !== session;
+      beginSession(isOther);
+      if (isOther) {
+        if (session !== null) rememberRun();
+        beginSettings();
         schema.value = [];
       }
       session = name;
@@ -56,8 +63,8 @@ function live(): Source {
     message: (topic, message) => receive(topic, message, performance.now()),
     services: (names) => (services.value = names),
     settings(values, isAll) {
-      takeSettings(values, isAll);
-      if (isAll && schema.value.length === 0) void loadSchema();
+      takeSettings(values);
+      if (isAll) void loadSchema();
     },
     notice: (sentence) => (notice.value = sentence),
   });
@@ -91,11 +98,12 @@ addShortcuts(
     group: 'Camera',
     action: () => toggleLayer('hindsight'),
   },
+  { keys: ['t'], label: 'T', does: 'Light or dark', group: 'Panels', action: toggleScheme },
   { keys: ['u'], label: 'U', does: 'Next unit for speeds: mph, km/h, m/s', group: 'Panels', action: nextSpeedUnit },
   ...TABS.map((name, i) => ({
     keys: [String(i + 1)],
     label: String(i + 1),
-    does: `${name[0]?.toUpperCase()}${name.slice(1)}`,
+    does: titleOf(name),
     group: 'Panels' as const,
     action: () => {
       tab.value = name;
@@ -122,6 +130,7 @@ addShortcuts(
       isPanelAlone.value = !isPanelAlone.value;
     },
   },
+  { keys: ['g'], label: 'G', does: 'The picture alone, for an audience', group: 'Panels', action: togglePresentation },
   {
     keys: ['?'],
     label: '?',
@@ -152,11 +161,13 @@ addEventListener('keydown', (event) => {
 
 function App() {
   const TimelineView = timeline.value;
+  const SummaryView = summary.value;
   return (
     <>
       <HeaderView />
       {TimelineView && <TimelineView />}
-      <WorkbenchView />
+      {SummaryView && <SummaryView />}
+      {!isReading.value() && <WorkbenchView />}
       <HelpView />
       <RestartView />
     </>

@@ -133,6 +133,27 @@ template <int N, class T>
   return Dual<N, T>::chain(a, t, 1.0 - t * t);
 }
 template <int N, class T>
+[[nodiscard]] Dual<N, T> asin(const Dual<N, T>& a) {
+  return Dual<N, T>::chain(a, asin(a.v), 1.0 / sqrt((1.0 - a.v) * (1.0 + a.v)));
+}
+template <int N, class T>
+[[nodiscard]] Dual<N, T> acos(const Dual<N, T>& a) {
+  return Dual<N, T>::chain(a, acos(a.v), -1.0 / sqrt((1.0 - a.v) * (1.0 + a.v)));
+}
+template <int N, class T>
+[[nodiscard]] Dual<N, T> pow(const Dual<N, T>& a, double exponent) {
+  const T slope = exponent == 0.0 ? T(0.0) : T(exponent * pow(a.v, exponent - 1.0));
+  return Dual<N, T>::chain(a, pow(a.v, exponent), slope);
+}
+template <int N, class T>
+[[nodiscard]] Dual<N, T> pow(const Dual<N, T>& a, const Dual<N, T>& b) {
+  return exp(b * log(a));
+}
+template <int N, class T>
+[[nodiscard]] Dual<N, T> hypot(const Dual<N, T>& a, const std::type_identity_t<Dual<N, T>>& b) {
+  return sqrt(a * a + b * b);
+}
+template <int N, class T>
 [[nodiscard]] Dual<N, T> abs(const Dual<N, T>& a) {
   return value_of(a) < 0.0 ? -a : a;
 }

@@ -13,5 +13,8 @@ double atan2(double y, double x) noexcept { return elementary::atan2(y, x); }
 double exp(double x) noexcept { return elementary::exp(x); }
 double log(double x) noexcept { return elementary::log(x); }
 double tanh(double x) noexcept { return elementary::tanh(x); }
+double asin(double x) noexcept { return elementary::asin(x); }
+double acos(double x) noexcept { return elementary::acos(x); }
+double pow(double x, double exponent) noexcept { return elementary::pow(x, exponent); }
 
 }  // namespace chicane

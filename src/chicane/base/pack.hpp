@@ -28,6 +28,11 @@ struct Mask {
   using Ops = pack_detail::Ops<Arch, kWidth>;
   typename Ops::Mask part[kParts];
 
+  // clang-format off: compilers show the comment
+  operator bool() const = delete;  // NOLINT  several answers at once: write select(x > 1.0, a, b), max(a, b),
+                                   // min or abs instead of if, ?:, && and ||
+  // clang-format on
+
   /// The first `count` lanes.
   CHICANE_INLINE static Mask first(std::size_t count) noexcept {
     struct {
@@ -255,6 +260,12 @@ struct Pack {
     return value[0];
   }
 };
+
+/// Of a pack whose lanes are equal.
+template <class Arch, std::size_t N>
+[[nodiscard]] CHICANE_INLINE inline double value_of(const Pack<Arch, N>& x) noexcept {
+  return x[0];
+}
 
 /// Rows become columns; N packs of N lanes.
 template <class Arch, std::size_t N>

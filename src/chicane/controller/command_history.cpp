@@ -83,7 +83,6 @@ void StateEstimator::advance(model::State& state, double& acceleration, double f
     const double asked = longitudinal_acceleration(p, command.throttle, state.vx);
     model::BodyMotion<double> body =
         model_.advance({state.vx, state.vy, state.r, state.steer, acceleration}, steer, asked, dt, lags);
-    if (has_front_force_) model_.add_front_force(body, dt);
     const double psi = state.psi + 0.5 * dt * (state.r + body.r);
     const double mean_psi = 0.5 * (state.psi + psi);
     const double vx = 0.5 * (state.vx + body.vx);

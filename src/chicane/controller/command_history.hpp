@@ -71,10 +71,7 @@ class InnovationGains {
 /// does not hold, come from here.
 class StateEstimator {
  public:
-  /// `has_front_force`: the model's add_front_force() is part of the motion (a car that brakes hard in a
-  /// bend).
-  explicit StateEstimator(const model::PredictionModel& model, bool has_front_force = false) noexcept
-      : model_{model}, has_front_force_{has_front_force} {}
+  explicit StateEstimator(const model::PredictionModel& model) noexcept : model_{model} {}
   void reset() noexcept {
     is_started_ = false;
     place_gains_.reset();
@@ -108,7 +105,6 @@ class StateEstimator {
                const CommandHistory& sent) const noexcept;
 
   model::PredictionModel model_;
-  bool has_front_force_;
   InnovationGains place_gains_{kPlaceAcceleration};
   InnovationGains heading_gains_{kYawAcceleration};
   bool is_started_ = false;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string_view>
 
@@ -11,6 +13,10 @@
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/solver/solution.hpp"
+
+namespace chicane::road {
+class RacingRoad;
+}
 
 namespace chicane::controller {
 
@@ -48,6 +54,10 @@ enum class GuardReason : signed char {
   kNoWayToStop = 7,    ///< after the answer the car could not be stopped on the road any more
 };
 inline constexpr int kGuardReasonCount = 8;
+/// As reports name them.
+inline constexpr std::array<std::string_view, kGuardReasonCount> kGuardReasonNames{
+    "none",           "no_answer",    "not_measured",  "frozen",
+    "speed_mismatch", "heading_jump", "position_jump", "no_way_to_stop"};
 
 /// How one step went.
 struct StepReport {
@@ -91,7 +101,10 @@ class Controller {
   [[nodiscard]] virtual const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept = 0;
   /// After each step(): what was really sent, which may be another command than the step's.
   virtual void note_sent(const model::Command& /*command*/) noexcept {}
-  /// Forget everything learned (map, warm start): a new run begins.
+  /// A planned lap to race by from the next step() on; null: none any more. Controllers that follow the
+  /// waypoints do not care. Allocates nothing.
+  virtual void use_line(std::shared_ptr<const road::RacingRoad> /*lap*/) noexcept {}
+  /// Forget everything learned (map, warm start): a new run begins. A planned lap stays.
   virtual void reset() noexcept = 0;
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
   /// Names of Explanation's cost terms and of the bits of its active constraints; empty for none.

@@ -25,13 +25,19 @@ constexpr int kMaxIterations =
     100;  ///< one solve in thousands needs more than 40: a cubic far beyond the waypoints
 constexpr int kReferencePoints = 32;
 
+/// The speed that the roll-forward takes for 1 m/s.
+double rolled_unit(const CubicMpcOptions& options) noexcept {
+  return options.roll_forward_in_mph ? mps_to_mph(1.0) : 1.0;
+}
+
 class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
  public:
   CubicMpc(const CubicMpcOptions& options, const model::VehicleParams& vehicle)
       : uses_polar_{options.polar_waypoints},
         steer_sign_{options.steering_right_positive ? -1.0 : 1.0},
         stages_{options.horizon_steps - 1},
-        roll_forward_{options.latency_handling, options.latency, vehicle.kinematic_length},
+        roll_forward_{options.latency_handling, options.latency, vehicle.kinematic_length,
+                      rolled_unit(options)},
         problem_{options, vehicle} {
     reset();
   }
@@ -56,7 +62,8 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
     uses_polar_ = options.polar_waypoints;
     steer_sign_ = steer_sign;
     stages_ = options.horizon_steps - 1;
-    roll_forward_.configure(options.latency_handling, options.latency, vehicle.kinematic_length);
+    roll_forward_.configure(options.latency_handling, options.latency, vehicle.kinematic_length,
+                            rolled_unit(options));
     problem_ = CubicProblem{options, vehicle};
     if (has_answer_ && means_the_same) {
       solver::resample(answer_, stages_, ratio);
@@ -222,7 +229,7 @@ constexpr std::array kOptions{
                               "N, the steps the plan looks ahead."),
     option<&C::step_length>("step_length", unit::kSecond, 0.005, 0.5,
                             "dt, the time between two points of the plan."),
-    option<&C::speed_reference>("speed_reference", unit::kSpeed, 0, 90,
+    option<&C::speed_reference>("speed_reference", unit::kSpeed, 0, 110,
                                 "v_ref, the speed the cost pulls towards."),
     option<&C::latency_handling>("latency_handling", kLatencyHandlings,
                                  "How the time between measurement and actuation is treated."),
@@ -231,7 +238,11 @@ constexpr std::array kOptions{
                                 "Waypoints to the car's frame by radius and angle instead of a rotation."),
     option<&C::steering_right_positive>("steering_right_positive",
                                         "Model written with the simulator's steering sign."),
+    option<&C::lateral_error_to_left>(
+        "lateral_error_to_left",
+        "cte is y − f(x), as write-up 1 has it; in f(x) − y its step has v sin eψ with the other sign."),
     option<&C::speed_in_mph>("speed_in_mph", "The model takes miles per hour for metres per second."),
+    option<&C::roll_forward_in_mph>("roll_forward_in_mph", "The roll-forward over the latency does so, too."),
     option<&C::weight_lateral>("weight_lateral", unit::per("1/m²"), 0, kHighestWeight,
                                "Price of the squared cross-track error."),
     option<&C::weight_heading>("weight_heading", unit::per("1/rad²"), 0, kHighestWeight,

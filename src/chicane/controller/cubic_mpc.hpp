@@ -36,6 +36,10 @@ struct CubicMpcOptions {
   /// The model takes telemetry's miles per hour for metres per second: it sees 2.24 times as far, and steers
   /// that much less. The delay is still rolled forward in m/s.
   bool speed_in_mph = false;
+  /// So does the roll-forward: the car is believed 2.24 times as far along, as if the latency were longer.
+  bool roll_forward_in_mph = false;
+  /// Equation 5 with cte = y − f(x) (docs/problem.md).
+  bool lateral_error_to_left = false;
   double weight_lateral = 200.0;        ///< on cte² [1/m²]
   double weight_heading = 200.0;        ///< on eψ² [1/rad²]
   double weight_speed = 0.1;            ///< on (v − v_ref)² [s²/m²]

@@ -33,6 +33,7 @@ struct CubicProblem {
   static constexpr int kNe = 3;
   static constexpr int kNc = 0;
   static constexpr int kCapacity = 200;
+  static constexpr bool kRealTime = true;
   enum StateIndex : std::size_t { kX, kY, kPsi, kV, kEpsi, kLastSteer, kLastThrottle };
 
   using State = std::array<double, kNx>;
@@ -44,6 +45,7 @@ struct CubicProblem {
         steer_limit{vehicle.steer_limit},
         speed_unit{options.speed_in_mph ? mps_to_mph(1.0) : 1.0},
         speed_reference{options.speed_reference * speed_unit},
+        error_sign{options.lateral_error_to_left ? -1.0 : 1.0},
         acts_late{options.latency_handling == LatencyHandling::kInsideModel},
         root{weight_root(options.weight_lateral),         weight_root(options.weight_heading),
              weight_root(options.weight_speed),           weight_root(options.weight_steer),
@@ -92,6 +94,7 @@ struct CubicProblem {
   double steer_limit;     ///< [rad]
   double speed_unit;      ///< the model's v for 1 m/s
   double speed_reference;            ///< as the model's v
+  double error_sign;                 ///< of the last term of equation 5
   bool acts_late;                    ///< the inputs of a stage act in the next one
   std::array<double, kNr> root;      ///< √(2 weight) of: cte, eψ, v, δ, a, Δδ, Δa, v δ
   Cubic line;                        ///< reference, renewed in every step
@@ -99,7 +102,7 @@ struct CubicProblem {
 
  private:
   [[nodiscard]] CHICANE_INLINE DescribedModel<Cubic> model() const noexcept {
-    return {.line = line, .dt = dt, .turn_per_length = turn_per_metre * dt};
+    return {.line = line, .dt = dt, .turn_per_length = turn_per_metre * dt, .error_sign = error_sign};
   }
   /// The input that drives a stage: its own, or inside the model that of the stage before (equation 13).
   template <class Last, class Own>

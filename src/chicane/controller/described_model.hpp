@@ -17,6 +17,9 @@ struct DescribedModel {
   const Line& line;
   double dt;               ///< [s]
   double turn_per_length;  ///< ± dt / L_f: + for steering positive left [s/m]
+  /// Of the last term of equation 5: + where cte is f(x) − y, − where it is y − f(x), but for the sign of
+  /// cte.
+  double error_sign = 1.0;
 
   /// The state after one step, with the described recursion of the heading error. `acting`: the steering and
   /// acceleration that move the car meanwhile, `input` itself or what came before.
@@ -31,11 +34,11 @@ struct DescribedModel {
                            acceleration);
   }
 
-  /// Equation 5: cte of the stage after this one [m].
+  /// Equation 5: cte of the stage after this one [m], as f(x) − y.
   template <class X>
   [[nodiscard]] CHICANE_INLINE auto next_lateral_error(const X& state) const noexcept {
     const auto& [x, y, psi, v, epsi, last_steer, last_acceleration] = state;
-    return line.at(x) - y + v * sin(epsi) * dt;
+    return line.at(x) - y + v * sin(epsi) * (error_sign * dt);
   }
 };
 

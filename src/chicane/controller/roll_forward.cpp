@@ -40,7 +40,14 @@ Motion roll_accelerating(const Motion& from, const model::Command& acting, doubl
 }
 
 Motion RollForward::predict(const model::Measurement& now) noexcept {
-  const Motion seen{{now.x, now.y, now.psi}, now.speed};
+  const bool is_rolled = handling_ != LatencyHandling::kNone && handling_ != LatencyHandling::kInsideModel;
+  const double unit = is_rolled ? speed_unit_ : 1.0;
+  Motion rolled = roll(now, {{now.x, now.y, now.psi}, now.speed * unit});
+  rolled.speed /= unit;
+  return rolled;
+}
+
+Motion RollForward::roll(const model::Measurement& now, const Motion& seen) noexcept {
   const model::Command acting{now.steer, now.throttle};
   switch (handling_) {
     case LatencyHandling::kNone:

@@ -28,11 +28,14 @@ struct Motion {
 /// Chooses among them, and keeps the measured latency. Latency lies in [0, 0.5] s whatever is measured.
 class RollForward {
  public:
-  RollForward(LatencyHandling handling, double latency, double kinematic_length) noexcept
+  /// `speed_unit`: what is taken for 1 m/s on the way.
+  RollForward(LatencyHandling handling, double latency, double kinematic_length,
+              double speed_unit = 1.0) noexcept
       : handling_{handling},
         first_latency_{latency},
         latency_{latency},
-        kinematic_length_{kinematic_length} {}
+        kinematic_length_{kinematic_length},
+        speed_unit_{speed_unit} {}
 
   /// The measured motion at the time the command acts, by the described means. Pre: finite pose, speed and
   /// commands.
@@ -41,19 +44,24 @@ class RollForward {
   [[nodiscard]] double compensated() const noexcept;
   void reset() noexcept { latency_ = first_latency_; }
   /// Other settings; a measured latency stays measured.
-  void configure(LatencyHandling handling, double latency, double kinematic_length) noexcept {
+  void configure(LatencyHandling handling, double latency, double kinematic_length,
+                 double speed_unit = 1.0) noexcept {
     const bool is_told_anew = handling != handling_ || latency != first_latency_;
     if (is_told_anew) latency_ = latency;
     handling_ = handling;
     first_latency_ = latency;
     kinematic_length_ = kinematic_length;
+    speed_unit_ = speed_unit;
   }
 
  private:
+  Motion roll(const model::Measurement& now, const Motion& seen) noexcept;
+
   LatencyHandling handling_;
   double first_latency_;
   double latency_;
   double kinematic_length_;
+  double speed_unit_;
 };
 
 }  // namespace chicane::controller

@@ -14,6 +14,7 @@
 #include "chicane/controller/tracking_solver.hpp"
 #include "chicane/controller/tunable.hpp"
 #include "chicane/model/prediction.hpp"
+#include "chicane/road/racing_road.hpp"
 #include "chicane/road/road.hpp"
 
 namespace chicane::controller {
@@ -24,8 +25,7 @@ using Horizon = TrackingTrajectory;
 using StageState = std::array<double, Problem::kNx>;
 using StageInput = std::array<double, Problem::kNu>;
 
-constexpr int kTurns = 3;                   // of the solver in a step: docs/tracking.md, section 4
-constexpr int kMostTurns = 8;               // from a new guess, or with more time
+constexpr int kMostTurns = TrackingMpcOptions::kMostTurns;  // from a new guess, or with more time
 constexpr double kTimePerTurn = 0.04;       // [s] that a step must come later for one turn more
 constexpr double kFarFromLine = 15.0;       // [m] further away it returns to the road
 constexpr double kLost = 60.0;              // [m] further away it does not return by itself
@@ -62,7 +62,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   [[nodiscard]] const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept override {
     sent_time_ = now.time + now.delay;
     const double act_time = now.time + (options_.compensate_delay ? now.delay : 0.0);
-    road_.add(now);
+    if (!racing_) road_.add(now);
     estimator_.correct(now, sent_);
     watch_sight(now);
     const StateEstimator::Prediction start = estimator_.predict(act_time, sent_);
@@ -85,6 +85,13 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     if (std::isfinite(sent_time_)) sent_.add(sent_time_, command);
   }
 
+  void use_line(std::shared_ptr<const road::RacingRoad> lap) noexcept override {
+    racing_ = std::move(lap);
+    ++lines_;
+    has_horizon_ = false;
+    shape_edges();
+  }
+
   void reset() noexcept override {
     road_.reset();
     estimator_.reset();
@@ -103,6 +110,12 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   }
 
  private:
+  [[nodiscard]] const road::ReferenceLine& line() const noexcept {
+    return racing_ ? racing_->line() : road_.line();
+  }
+  /// Changes with every other line.
+  [[nodiscard]] unsigned revision() const noexcept { return road_.revision() + lines_; }
+
   static std::unique_ptr<TrackingSolver> make_solver() {
     const solver::SolverOptions options{.tolerance = 1e-2,
                                         .loose_tolerance = 1e3,
@@ -138,6 +151,23 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
                        .slip = std::sqrt(options_.weight_slip),
                        .excess_steer_rate = 10.0,
                        .friction = std::sqrt(options_.weight_slip)};
+    shape_edges();
+  }
+
+  /// Raced by, the edges are those of the road, and the axles stay inside; otherwise the centre of mass keeps
+  /// to an assumed width.
+  void shape_edges() noexcept {
+    problem_.nose = racing_ ? model_.vehicle().front_axle : 0.0;
+    problem_.tail = racing_ ? model_.vehicle().rear_axle : 0.0;
+  }
+
+  /// Room beside the line at s [m] ahead, where the line has moved sideways by `offset` [m].
+  [[nodiscard]] road::Road::Room room_at(double s, double offset) const noexcept {
+    if (!racing_) return road_.room(offset);
+    const model::VehicleParams& car = model_.vehicle();
+    const double taken = 0.5 * (car.track_width + car.tire_width) + options_.edge_margin;
+    const road::Road::Room room = racing_->room(s_ + s);
+    return {room.left - taken, room.right - taken};
   }
 
   /// How long something has not been there that was.
@@ -162,7 +192,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   /// where the known road ends when no new waypoints have come.
   [[nodiscard]] double stopping_speed(double s) const noexcept {
     const model::VehicleParams& car = model_.vehicle();
-    const road::ReferenceLine& line = road_.line();
+    const road::ReferenceLine& line = this->line();
     const double v = std::max(x0_[Problem::kVx], 0.0);
     const double braking =
         -options_.brake_share * longitudinal_acceleration(car, -car.brake_throttle_limit, v);
@@ -179,11 +209,11 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     report = {};
     report.solve.status = solver::SolveStatus::kNotFinite;  // until there is an answer
     report.delay = now.delay;
-    const road::ReferenceLine& line = road_.line();
+    const road::ReferenceLine& line = this->line();
     if (line.is_empty() || !std::isfinite(start.state.x + start.state.y + start.state.psi + start.state.vx))
       return false;
     const Vec2 position{start.state.x, start.state.y};
-    if (revision_ != road_.revision()) has_place_ = false;
+    if (revision_ != revision()) has_place_ = false;
     road::ReferenceLine::Projection place =
         has_place_ ? line.project(position, s_, kProjectionWindow) : line.project(position);
     if (has_place_ && place.distance > 0.5 * kFarFromLine) place = line.project(position);
@@ -194,7 +224,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     if (std::fabs(heading_error) > most) return false;
     s_ = place.s;
     has_place_ = true;
-    revision_ = road_.revision();
+    revision_ = revision();
     x0_ = {0.0,           place.d,           heading_error,     start.state.vx, start.state.vy,
            start.state.r, start.state.steer, start.acceleration};
 
@@ -220,7 +250,8 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     turns_ = kMostTurns;
     if (can_shift) {
       const double more = std::min(elapsed / kTimePerTurn, static_cast<double>(kMostTurns));
-      turns_ = std::clamp(kTurns - 1 + static_cast<int>(std::lround(more)), kTurns, kMostTurns);
+      turns_ =
+          std::clamp(options_.turns - 1 + static_cast<int>(std::lround(more)), options_.turns, kMostTurns);
       shift_answer(elapsed);
     } else {
       follow_line();
@@ -320,12 +351,13 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   /// What the road asks at stage k where the car is about to be in state x.
   void ask_road(int k, const StageState& x) noexcept {
     const double s = x[Problem::kS];
-    road::ReferenceLine::Demand demand = road_.line().demand(s_ + s);
+    road::ReferenceLine::Demand demand = line().demand(s_ + s);
     if (const double stop = stopping_speed(s); stop < demand.speed) {
       demand.speed = stop;
       demand.speed_slope = 0.0;
     }
-    const road::Road::Room room = road_.room(demand.offset);
+    const road::Road::Room room = room_at(s + problem_.nose, demand.offset);
+    const road::Road::Room behind = room_at(s - problem_.tail, demand.offset);
     const model::VehicleParams& car = model_.vehicle();
     const double v = std::max(x[Problem::kVx], 0.0);
     // Asking for far more than the car can do would only drown the other prices (and Gauss–Newton with them).
@@ -337,8 +369,11 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     road.curvature_slope[i] = demand.curvature_slope;
     road.speed[i] = is_reachable ? demand.speed : v + kSpeedAhead;
     road.speed_slope[i] = is_reachable ? demand.speed_slope : 0.0;
+    road.sideslip[i] = racing_ ? racing_->sideslip(s_ + s) : 0.0;
     road.left[i] = room.left;
     road.right[i] = room.right;
+    road.tail_left[i] = behind.left;
+    road.tail_right[i] = behind.right;
     road.acceleration_min[i] = longitudinal_acceleration(car, -car.brake_throttle_limit, v);
     road.acceleration_max[i] = longitudinal_acceleration(car, 1.0, v);
   }
@@ -357,7 +392,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   void explain_answer(double speed) noexcept {
     Explanation& explanation = result_.report.explanation;
     explain<TrackingTerms>(problem_, horizon_, explanation);
-    const road::ReferenceLine::Demand planned = road_.line().demand(s_);
+    const road::ReferenceLine::Demand planned = line().demand(s_);
     explanation.speed_limit = planned.speed;
     explanation.speed_limiter = limiter_of(speed, planned.speed, planned.limiter, explanation.active_now);
   }
@@ -380,7 +415,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   /// that leads back.
   const StepResult& return_to_road(const model::Measurement& now, const StateEstimator::Prediction& start,
                                    double act_time) noexcept {
-    const road::ReferenceLine& line = road_.line();
+    const road::ReferenceLine& line = this->line();
     const model::State& car = start.state;
     const bool is_known = std::isfinite(car.x + car.y + car.psi + car.vx + now.time + now.delay);
     const bool must_stop = blind_.is_long || roadless_.is_long;
@@ -407,7 +442,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   }
 
   void fill_plan(double act_time) noexcept {
-    const road::ReferenceLine& line = road_.line();
+    const road::ReferenceLine& line = this->line();
     Plan& plan = result_.plan;
     const int n = options_.horizon_steps;
     plan.size = n + 1;
@@ -434,6 +469,8 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   CommandHistory sent_;
   Problem problem_;
   std::unique_ptr<TrackingSolver> solver_;
+  std::shared_ptr<const road::RacingRoad> racing_;  ///< null: the road is what waypoints show
+  unsigned lines_ = 0;
   Horizon horizon_;  ///< the last answer, then the guess, then the new answer
   Horizon old_;
   StageState x0_{};

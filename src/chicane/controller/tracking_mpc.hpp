@@ -15,6 +15,7 @@ namespace chicane::controller {
 /// The default controller: arc-length reference from remembered waypoints, single-track model with the car's
 /// yaw lag, commands in flight replayed through it, speed planned for curvature and sight.
 struct TrackingMpcOptions {
+  static constexpr int kMostTurns = 8;
   int horizon_steps = 40;           ///< N
   double step_length = 0.05;        ///< dt [s]
   double speed_limit = 60.0;        ///< never planned above [m/s]
@@ -30,6 +31,9 @@ struct TrackingMpcOptions {
   double weight_edge = 200.0;       ///< price of leaving assumed_half_width, per m² [1/m²]
   double weight_slip = 100.0;       ///< price of slip beyond the useful, normalised²
   bool compensate_delay = true;     ///< replay commands in flight; off only to show what happens
+  bool racing_line = false;         ///< race by the minimum-time line of a known track
+  double edge_margin = 0.2;         ///< that the tyres keep from the edges of a road that is raced on [m]
+  int turns = 3;                    ///< of the solver in a step, at least
   bool remember_waypoints = true;   ///< close the waypoints seen into a map
 };
 

@@ -27,6 +27,7 @@ struct TrackingProblem {
   static constexpr int kNe = 4;
   static constexpr int kNc = 0;
   static constexpr int kCapacity = 100;
+  static constexpr bool kRealTime = true;
   static constexpr bool kGaussNewton = true;  ///< a step has no time for exact Hessians
 
   enum StateIndex { kS, kD, kE, kVx, kVy, kR, kSteer, kAcceleration };
@@ -37,13 +38,16 @@ struct TrackingProblem {
 
   /// What the road asks at the stages 0..horizon, linear in arc length around `s`.
   struct Road {
-    Data s;                 ///< where it was taken [m from the start]
-    Data curvature;         ///< [1/m]
-    Data curvature_slope;   ///< [1/m²]
-    Data speed;             ///< wanted [m/s]
-    Data speed_slope;       ///< [1/s]
-    Data left;              ///< room for the centre of mass to the left of the line [m]
-    Data right;             ///< to the right [m]
+    Data s;                ///< where it was taken [m from the start]
+    Data curvature;        ///< [1/m]
+    Data curvature_slope;  ///< [1/m²]
+    Data speed;            ///< wanted [m/s]
+    Data speed_slope;      ///< [1/s]
+    Data sideslip;         ///< planned: from the body's heading to the line's [rad]
+    Data left;             ///< room for what is `nose` ahead of the centre of mass, left of the line [m]
+    Data right;            ///< and to the right [m]
+    Data tail_left;        ///< for what is `tail` behind [m]
+    Data tail_right;
     Data acceleration_min;  ///< [m/s²]
     Data acceleration_max;
   };
@@ -64,6 +68,8 @@ struct TrackingProblem {
   Step first;   ///< of stage 0: its command is held until the next one comes
   Step others;  ///< of all other stages
   RootWeights weight{};
+  double nose = 0.0;  ///< what has to stay inside the edges reaches so far ahead of the centre of mass [m]
+  double tail = 0.0;  ///< and behind it
   Road road;
   /// What the model moves in a long first stage beyond one step of its length, at the first guess. Zero for
   /// a short one.
@@ -95,20 +101,23 @@ struct TrackingProblem {
     using T = Common<decltype(vx), decltype(vy), decltype(r), decltype(steer), decltype(a)>;
     const auto use = model->tire_use(model::BodyMotion<T>{T(vx), T(vy), T(r), T(steer), T(a)});
     const model::VehicleParams& car = model->vehicle();
-    // Share of the friction ellipse, for tyres that have one: asked longitudinal over load, and lateral use.
-    const auto load = car.load_constant + car.load_per_speed * vx;
-    const auto along = (car.friction_coupling / car.friction) * a_asked / load;
-    const auto ellipse = along * along + 0.5 * (use[0] * use[0] + use[1] * use[1]);
+    // Offsets of the middles of the axles: the line bends away from the car.
+    const auto bend = 0.5 * road.curvature.at(k);
+    const auto ahead = d + nose * (e - nose * bend);
+    const auto behind = d - tail * (e + tail * bend);
     const double friction = car.friction_coupling > 0.0 ? weight.friction : 0.0;
     return std::make_tuple(
-        weight.lateral * d, weight.heading * e,
+        weight.lateral * d, weight.heading * (e + road.sideslip.at(k)),
         weight.speed * (vx - (road.speed.at(k) + road.speed_slope.at(k) * (s - road.s.at(k)))),
         weight.steer_rate * rate, (weight.jerk * per_length) * (a_asked - a),
-        weight.edge * positive_part(d - road.left.at(k)), weight.edge * positive_part(-d - road.right.at(k)),
-        weight.slip * positive_part(abs(use[0]) - kUsefulTireUse),
-        weight.slip * positive_part(abs(use[1]) - kUsefulTireUse),
+        weight.edge * positive_part(max(ahead - road.left.at(k), behind - road.tail_left.at(k))),
+        weight.edge *
+            positive_part(max(-1.0 * ahead - road.right.at(k), -1.0 * behind - road.tail_right.at(k))),
+        weight.slip * positive_part(use.front - kUsefulTireUse),
+        weight.slip * positive_part(use.rear - kUsefulTireUse),
         weight.excess_steer_rate * positive_part(abs(rate) - car.steer_rate_limit),
-        friction * positive_part(ellipse - 1.0));
+        friction *
+            (positive_part(use.along_front - kUsefulForce) + positive_part(use.along_rear - kUsefulForce)));
   }
 
   template <class X>
@@ -118,7 +127,7 @@ struct TrackingProblem {
         3.0;  // the end stands for what follows: the square root of about ten stages
     const double wanted = road.speed.at(horizon);
     return std::make_tuple(
-        kEndFactor * weight.lateral * d, kEndFactor * weight.heading * e,
+        kEndFactor * weight.lateral * d, kEndFactor * weight.heading * (e + road.sideslip.at(horizon)),
         kEndFactor * weight.speed * (vx - (wanted + road.speed_slope.at(horizon) * (s - road.s.at(horizon)))),
         kEndFactor * weight.heading * 0.3 * (r - road.curvature.at(horizon) * vx));
   }
@@ -181,6 +190,8 @@ struct TrackingProblem {
                            a_asked + late_a * lags.drive.end);
   }
 
+  static constexpr double kUsefulForce =
+      0.93;  ///< of the longitudinal force: the rest keeps the car on its course
   static constexpr double kUsefulTireUse = 1.0;  ///< slip beyond this gives hardly more force
 
  public:

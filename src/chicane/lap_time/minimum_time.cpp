@@ -35,7 +35,7 @@ constexpr double kLooser = 0.75;  // after one that did not
 constexpr int kCalmRounds = 3;
 constexpr double kSameTime = 5e-5;   // relative
 constexpr double kSeamOffset = 0.3;  // [m]
-constexpr double kSeamSpeed = 0.05;  // [m/s]
+constexpr double kSeamSpeed = 0.1;   // [m/s]
 
 // Prices of changes (eq. 8), for each metre.
 constexpr double kCurvaturePrice = 1e-4;

@@ -12,7 +12,7 @@
 
 namespace chicane::lap_time {
 
-/// How good a limit is (docs/limit.md, section 5).
+/// How good a limit is (docs/limit.md, section 11).
 struct LimitReport {
   int rounds = 0;             ///< problems solved one after the other
   int iterations = 0;         ///< turns of the solver in all of them
@@ -26,7 +26,8 @@ struct LimitReport {
   double violation = 0.0;     ///< largest violation of a constraint: [m] of an edge, else relative
 };
 
-/// The fastest lap of a car on a closed road, by the model of docs/limit.md.
+/// The fastest lap of a car that follows its path on a closed road (docs/limit.md, sections 7 to 11): the
+/// quick limit. No bound for a plant, which has tyres and a body that slides: see find_plant_limit().
 struct Limit {
   LapTimes times;
   double mean_speed = 0.0;            ///< length of the line over lap time [m/s]

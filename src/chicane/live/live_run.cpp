@@ -14,8 +14,9 @@
 namespace chicane::live {
 namespace {
 
-wire::ViewerServices services(run::RunControls& controls) {
+wire::ViewerServices services(run::RunControls& controls, WhatIf& what_if) {
   wire::ViewerServices services;
+  services.what_if = [&what_if](std::string_view question) { return what_if.ask(question); };
   services.pause = [&controls](bool is_paused) -> Result<void> {
     controls.is_paused = is_paused;
     return {};
@@ -69,10 +70,18 @@ LiveRun::LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop>
                        });
                      }},
                 controls.wishes},
-      viewer_{{.run = live_description(*loop_), .services = services(controls), .parameters = &settings_}},
+      viewer_{{.run = live_description(*loop_),
+               .services = services(controls, what_if_),
+               .parameters = &settings_}},
       router_{nullptr, &viewer_},
       faults_{protocol::fault_controls()},
       builder_{&live_description},
+      what_if_{[this](const WhatIfQuestion& question,
+                      const recording::BranchHooks& hooks) -> Result<recording::BranchReport> {
+        const Result<recording::RunEvents> events = journal_.history();
+        if (!events) return fail(events.error());
+        return recording::branch_run(*events, question.options, hooks);
+      }},
       limit_{[this](const lap_time::LimitAnswer& news) {
         if (!news.found && hooks_.say) hooks_.say("no gap to the limit: " + news.why_not);
         viewer_.set_limit(news);
@@ -96,8 +105,9 @@ Result<void> LiveRun::open() {
   if (options_.is_manual) {
     if (Result<void> set = settings_.set({"manual.is_on", true}); !set) return set;
   }
-  auto server =
-      net::Server::create(options_.server, router_.handlers(live_pages(settings_)), options_.assets);
+  wire::Pages pages = live_pages(settings_);
+  add_what_if(pages, what_if_);
+  auto server = net::Server::create(options_.server, router_.handlers(std::move(pages)), options_.assets);
   if (!server) return fail(server.error());
   server_ = std::move(*server);
   return {};
@@ -115,26 +125,46 @@ telemetry::RunSummary LiveRun::run(recording::Recorder* recorder, const LiveHook
     const std::lock_guard lock(mutex_);
     hooks_ = hooks;
   }
-  RunOutputs outputs(recorder, viewer_, settings_, limit_, hooks_);
+  RunOutputs outputs(recorder, viewer_, settings_, limit_, hooks_, &journal_);
+  journal_.begin(loop_->scenario());
   limit_.search(loop_->track(), loop_->scenario());
   telemetry::RunSummary summary = drive(outputs);
+  tell_end(summary);
   if (limit_.is_awaited(summary) && !controls_.wants_stop)
     outputs.say("the limit is still being computed; Ctrl-C does without");
   limit_.compare(summary, controls_.wants_stop);
   outputs.record_limit();
+  viewer_.dismiss();
   return summary;
 }
 
+/// Once for each run: a run that is driven on stays over.
+void LiveRun::tell_end(const telemetry::RunSummary& summary) {
+  if (std::exchange(has_told_end_, true)) return;
+  if (summary.completed || summary.laps_wanted == 0) {
+    viewer_.set_end(summary.completed ? "finished" : "stopped",
+                    summary.completed ? "" : "stopped by its operator");
+  } else if (summary.end_reason == "stopped") {
+    viewer_.set_end("stopped", "stopped by its operator");
+  } else {
+    viewer_.set_end("failed", summary.end_reason);
+  }
+}
+
 telemetry::RunSummary LiveRun::drive(RunOutputs& outputs) {
-  const run::RealtimeHooks hooks{
-      .on_frame =
-          [&](const telemetry::Frame& frame) {
-            limit_.follow(loop_->scenario(), frame);
-            outputs.frame(frame);
-            note_faults(frame, outputs);
-          },
-      .on_lap = [&](const telemetry::CompletedLap& lap) { outputs.lap(lap); },
-      .on_change = [&](const telemetry::Change& change) { note(change, outputs); }};
+  const run::RealtimeHooks hooks{.on_frame =
+                                     [&](const telemetry::Frame& frame) {
+                                       if (frame.begins && frame.cycle == 0) has_told_end_ = false;
+                                       limit_.follow(loop_->scenario(), frame);
+                                       outputs.frame(frame);
+                                       note_faults(frame, outputs);
+                                     },
+                                 .on_lap = [&](const telemetry::CompletedLap& lap) { outputs.lap(lap); },
+                                 .on_change = [&](const telemetry::Change& change) { note(change, outputs); },
+                                 .on_over =
+                                     [&] {
+                                       if (!has_told_end_) tell_end(loop_->summary());
+                                     }};
   for (;;) {
     telemetry::RunSummary summary = run::run_realtime(
         *loop_, {.step_budget = step_budget(), .stay_at_end = options_.stay_at_end}, controls_, hooks);
@@ -159,7 +189,7 @@ void LiveRun::note_faults(const telemetry::Frame& frame, RunOutputs& outputs) {
 void LiveRun::note(const telemetry::Change& change, RunOutputs& outputs) {
   for (std::size_t i = 0; i < faults_.size(); ++i) {
     if (faults_[i].key != change.name.view()) continue;
-    const bool is_on = change.value.view() == "true";
+    const bool is_on = change.value.view() != "false";
     told_faults_ = (told_faults_ & ~(1U << i)) | (is_on ? 1U << i : 0U);
   }
   outputs.change(change);

@@ -10,10 +10,12 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/live/journal.hpp"
 #include "chicane/live/live_settings.hpp"
 #include "chicane/live/run_builder.hpp"
 #include "chicane/live/run_limit.hpp"
 #include "chicane/live/run_outputs.hpp"
+#include "chicane/live/what_if.hpp"
 #include "chicane/net/server.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/recording/recorder.hpp"
@@ -41,10 +43,10 @@ struct LiveRunOptions {
 ///
 /// Threads, and what each owns: the thread of run() the loop, the recorder's input and RunOutputs; the
 /// network thread LiveSettings, the viewers and RunBuilder's results; a builder, a searcher of the limit and
-/// the recorder's writer have one each. The network thread hands changes to the loop through
-/// RunControls::wishes and built runs through a queue under the one mutex here, which is held for a pointer's
-/// move. A setting that cannot change while a run goes on starts another one: built beside it, taken over
-/// between two cycles.
+/// the recorder's writer have one each, and so do the collector of the Journal and WhatIf. The network thread
+/// hands changes to the loop through RunControls::wishes and built runs through a queue under the one mutex
+/// here, which is held for a pointer's move. A setting that cannot change while a run goes on starts another
+/// one: built beside it, taken over between two cycles.
 class LiveRun {
  public:
   /// Opens the port. `controls` belongs to whoever may stop the run, and outlives this. kIo with the sentence
@@ -70,6 +72,7 @@ class LiveRun {
   LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop> loop, run::RunControls& controls);
   [[nodiscard]] Result<void> open();
   [[nodiscard]] telemetry::RunSummary drive(RunOutputs& outputs);
+  void tell_end(const telemetry::RunSummary& summary);
   void note_faults(const telemetry::Frame& frame, RunOutputs& outputs);
   void note(const telemetry::Change& change, RunOutputs& outputs);
   [[nodiscard]] bool take_over(RunOutputs& outputs);
@@ -83,10 +86,13 @@ class LiveRun {
   wire::Router router_;
   const std::vector<protocol::Control> faults_;
   std::uint32_t told_faults_ = 0;  ///< bits, as viewers know them
+  bool has_told_end_ = false;
   std::mutex mutex_;
   std::deque<std::unique_ptr<BuiltRun>> built_;  ///< one for each change that starts anew
   RunBuilder builder_;                           ///< the network thread's
   LiveHooks hooks_;
+  Journal journal_;
+  WhatIf what_if_;
   RunLimit limit_;                       ///< ends before everything it tells
   std::unique_ptr<net::Server> server_;  ///< ends first: it calls all of the above
 };

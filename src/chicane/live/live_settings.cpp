@@ -11,6 +11,7 @@
 
 #include "chicane/base/text.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/run/closed_loop.hpp"
@@ -119,6 +120,7 @@ LiveSettings::LiveSettings(LiveSettingsOptions options, run::ChangeQueue& wishes
       wishes_{wishes},
       scenario_{options_.scenario},
       base_{composed(scenario_).value_or(scenario_)},
+      start_{scenario_},
       controls_{run_controls(options_.has_world, options_.faults)} {
   for (const Control& control : controls_) control_values_.emplace(control.key, control.initial);
   shown_ = list();
@@ -172,7 +174,12 @@ Result<void> LiveSettings::set(const foxglove::Parameter& parameter) {
 
 Result<void> LiveSettings::set_control(const Control& control, const foxglove::ParameterValue& value) {
   std::string text;
-  if (control.kind == Kind::kBool) {
+  const auto* words = std::get_if<std::string>(&value);
+  if (control.fault != nullptr && words != nullptr) {
+    if (const auto event = protocol::read_switch(control.fault->name, *words); !event)
+      return fail(event.error());
+    text = *words;
+  } else if (control.kind == Kind::kBool) {
     const bool* flag = std::get_if<bool>(&value);
     if (flag == nullptr) return refuse(control.key, value, "true or false");
     text = *flag ? "true" : "false";
@@ -186,7 +193,7 @@ Result<void> LiveSettings::set_control(const Control& control, const foxglove::P
     text = fmt::format("{}", *number);
   }
   if (Result<void> sent = send(control.key, text, false); !sent) return sent;
-  Value accepted = control.kind == Kind::kBool ? Value(text == "true") : Value(std::get<double>(value));
+  Value accepted = control.kind == Kind::kBool ? Value(text != "false") : Value(std::get<double>(value));
   control_values_.find(control.key)->second = std::move(accepted);
   has_news_ = true;
   return {};
@@ -297,9 +304,22 @@ void LiveSettings::hand_over(Building building) {
   const telemetry::Change& last = building.run.choices.back();
   static_cast<void>(send(last.name.view(), last.value.view(), true));
   for (const auto& [key, text] : building.later) static_cast<void>(send(key, text, false));
+  begin_with(building.run.scenario, building.later);
   scenario_ = std::move(building.run.scenario);
   base_ = std::move(building.base);
   hand_over_controls();
+}
+
+/// What the choice of another run brings along is how it started; what was changed before it, and while it
+/// was built, stays a change. A preset leaves nothing of before.
+void LiveSettings::begin_with(const scenario::Scenario& next,
+                              const std::map<std::string, std::string>& later) {
+  const bool is_other_preset = next.preset != scenario_.preset;
+  for (const protocol::Parameter& row : protocol::list()) {
+    const bool is_brought = protocol::get_text(next, row) != protocol::get_text(scenario_, row);
+    if ((!is_brought && !is_other_preset) || later.contains(std::string(row.key))) continue;
+    static_cast<void>(protocol::set(start_, row, protocol::get(next, row)));
+  }
 }
 
 /// The run that starts anew knows nothing of pace and hands; faults end with the old one.
@@ -324,7 +344,7 @@ std::vector<telemetry::Change> LiveSettings::applied() {
     // Faults end by themselves; everything else was asked for here.
     const auto value = control_values_.find(change->name.view());
     if (value != control_values_.end() && value->first.starts_with("fault.")) {
-      value->second = change->value.view() == "true";
+      value->second = change->value.view() != "false";
       has_news_ = true;
     }
     // Its description is from when it was built.
@@ -351,7 +371,7 @@ std::vector<foxglove::Parameter> LiveSettings::news() {
 
 std::string LiveSettings::schema_json() const {
   return protocol::schema_json(
-      base_, [this](const protocol::Parameter& row) { return is_offered(row); }, controls_);
+      base_, start_, [this](const protocol::Parameter& row) { return is_offered(row); }, controls_);
 }
 
 std::string LiveSettings::preset_yaml() const {

@@ -74,7 +74,8 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   void update() override;
   [[nodiscard]] std::vector<std::string> complaints() override;
 
-  /// GET /schema.json; "default" is what the chosen preset gives with the chosen car.
+  /// GET /schema.json; "default" is what the chosen preset gives with the chosen car, "start" what the run
+  /// started with.
   [[nodiscard]] std::string schema_json() const;
   /// Another number when schema_json() may be another.
   [[nodiscard]] std::uint64_t schema_version() const { return runs_; }
@@ -105,6 +106,7 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   [[nodiscard]] Result<void> check_choice(std::string_view key, const std::string& value) const;
   [[nodiscard]] tl::unexpected<Error> hide(std::string_view what, const Error& error) const;
   void hand_over(Building building);
+  void begin_with(const scenario::Scenario& next, const std::map<std::string, std::string>& later);
   void hand_over_controls();
   [[nodiscard]] Result<void> send(std::string_view name, std::string_view value, bool starts_anew);
 
@@ -112,7 +114,8 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   run::ChangeQueue& wishes_;
   run::ChangeQueue told_;
   scenario::Scenario scenario_;
-  scenario::Scenario base_;  ///< what its preset gives with its car
+  scenario::Scenario base_;   ///< what its preset gives with its car
+  scenario::Scenario start_;  ///< what the run started with
   std::optional<Building> building_;
   std::vector<protocol::Control> controls_;
   std::map<std::string, protocol::Value, std::less<>> control_values_;

@@ -43,11 +43,22 @@ wire::Pages live_pages(const LiveSettings& settings) {
   return pages;
 }
 
+void add_what_if(wire::Pages& pages, WhatIf& what_if) {
+  pages["/what_if.json"] = [&what_if] {
+    return net::Content{.content_type = "application/json", .bytes = what_if.answer()};
+  };
+}
+
 wire::Pages replay_pages(const std::vector<ServedLog>& logs, double start) {
   wire::Pages pages;
   Json list = Json::array();
   for (const ServedLog& log : logs) {
     std::string url = fmt::format("/log/{}.mcap", list.size());
+    if (!log.settings.empty()) {
+      pages[fmt::format("/log/{}.settings.json", list.size())] = [text = log.settings] {
+        return net::Content{.content_type = "application/json", .bytes = text};
+      };
+    }
     list.push_back({{"name", log.name}, {"url", url}});
     pages[std::move(url)] = [file = log.file] {
       return net::Content{.content_type = "application/octet-stream", .file = file};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "chicane/live/live_settings.hpp"
+#include "chicane/live/what_if.hpp"
 #include "chicane/wire/endpoint.hpp"
 
 namespace chicane::live {
@@ -15,14 +16,17 @@ namespace chicane::live {
 struct ServedLog {
   std::string name;  ///< for people: "run.mcap", "branch at 12.0 s"
   std::string file;
+  std::string settings{};  ///< /schema.json of what can be changed in another future of it; empty: none
 };
 
 /// GET /mode.json of a run that is going on: {"mode":"live"}.
 [[nodiscard]] wire::Pages live_pages();
 /// The same, /schema.json and /preset.yaml of its settings, which must outlive the server.
 [[nodiscard]] wire::Pages live_pages(const LiveSettings& settings);
-/// GET /mode.json that names the logs, and each of them as /log/0.mcap, /log/1.mcap, ...; `start` is where
-/// the dashboard's time line begins [s].
+/// GET /what_if.json of an answer that must outlive the server.
+void add_what_if(wire::Pages& pages, WhatIf& what_if);
+/// GET /mode.json that names the logs, and each of them as /log/0.mcap, /log/1.mcap, ..., its settings as
+/// /log/0.settings.json; `start` is where the dashboard's time line begins [s].
 [[nodiscard]] wire::Pages replay_pages(const std::vector<ServedLog>& logs, double start);
 
 }  // namespace chicane::live

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "chicane/live/journal.hpp"
 #include "chicane/live/live_settings.hpp"
 #include "chicane/live/run_limit.hpp"
 #include "chicane/recording/recorder.hpp"
@@ -27,14 +28,20 @@ struct LiveHooks {
 /// viewers see, and the program's own hooks. One thread, the control thread.
 class RunOutputs {
  public:
-  /// `recorder` may be null: nothing is recorded. All outlive this.
+  /// `recorder` and `journal` may be null: nothing is recorded, or known for a branch. All outlive this.
   RunOutputs(recording::Recorder* recorder, wire::ViewerEndpoint& viewer, LiveSettings& settings,
-             RunLimit& limit, const LiveHooks& hooks)
-      : recorder_{recorder}, viewer_{viewer}, settings_{settings}, limit_{limit}, hooks_{hooks} {}
+             RunLimit& limit, const LiveHooks& hooks, Journal* journal = nullptr)
+      : recorder_{recorder},
+        viewer_{viewer},
+        settings_{settings},
+        limit_{limit},
+        hooks_{hooks},
+        journal_{journal} {}
 
   void frame(const telemetry::Frame& frame) {
     record_limit();
     record(frame);
+    if (journal_ != nullptr) journal_->note(frame);
     viewer_.publish(frame);
     time_ = frame.time;
     if (hooks_.on_frame) hooks_.on_frame(frame);
@@ -46,10 +53,14 @@ class RunOutputs {
   }
   void change(const telemetry::Change& change) {
     record(change);
+    if (journal_ != nullptr) journal_->note(change);
     settings_.tell(change);
   }
   /// The next frame is the first of another run.
-  void begin(std::unique_ptr<const recording::RecordedRun> run) { record(std::move(run)); }
+  void begin(std::unique_ptr<const recording::RecordedRun> run) {
+    if (journal_ != nullptr) journal_->begin(run->scenario);
+    record(std::move(run));
+  }
   /// The limit, when there are news of it.
   void record_limit() {
     if (auto news = limit_.news()) record(std::move(news));
@@ -69,6 +80,7 @@ class RunOutputs {
   LiveSettings& settings_;
   RunLimit& limit_;
   const LiveHooks& hooks_;
+  Journal* journal_;
   double time_ = 0.0;  ///< of the last frame [s]
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/served_run.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <utility>
 
@@ -13,7 +15,8 @@
 namespace chicane::live {
 namespace {
 
-constexpr const char* kUnknownRoad = "the simulator's road is not known: --track names it";
+constexpr const char* kUnknownRoad = "the simulator's road is not known: --track FILE tells it";
+constexpr const char* kOtherRoad = "the simulator drives on another road than --track";
 
 protocol::Run describe_served(const scenario::Scenario& scenario, const controller::Controller& controller,
                               const std::optional<path::Track>& track) {
@@ -33,7 +36,7 @@ protocol::Run describe_served(const scenario::Scenario& scenario, const controll
 
 ServedRun::ServedRun(const net::ServerOptions& server, const scenario::Scenario& scenario,
                      std::unique_ptr<controller::Controller> controller, std::optional<path::Track> track,
-                     std::vector<net::Asset> assets)
+                     std::vector<net::Asset> assets, std::shared_ptr<const road::RacingRoad> lap)
     : scenario_{scenario},
       controller_{std::move(controller)},
       track_{std::move(track)},
@@ -43,6 +46,7 @@ ServedRun::ServedRun(const net::ServerOptions& server, const scenario::Scenario&
   options_.vehicle = scenario_.vehicle;
   options_.scenario = scenario_;
   if (track_) options_.track = &*track_;
+  options_.lap = std::move(lap);
   options_.latency =
       std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(scenario_.latency));
 }
@@ -66,12 +70,24 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
   serving.on_change = [&](const telemetry::Change& change) { outputs.change(change); };
   serving.on_frame = [&](const telemetry::Frame& frame) { outputs.frame(frame); };
   serving.on_lap = [&](const telemetry::CompletedLap& lap) { outputs.lap(lap); };
+  serving.on_other_road = [&](double distance) {
+    limit.give_up(kOtherRoad);
+    viewer.set_limit({.why_not = kOtherRoad});
+    outputs.say(
+        fmt::format("the simulator drives on another road than {}, up to {:.0f} m away: --track is not "
+                    "used, and laps are taken from where the car drives",
+                    track_->name(), distance));
+  };
   serving.log = [&](std::string_view line) { outputs.say(line); };
   serving.on_listening = [&](std::uint16_t port) {
     if (on_listening) on_listening(port);
     if (track_) limit.search(*track_, scenario_);
   };
-  serving.on_end = [&] { limit.end(); };
+  serving.on_end = [&] {
+    limit.end();
+    viewer.set_end("stopped", "stopped by its operator");
+    viewer.dismiss();
+  };
   serving.pages = live_pages(settings);
   auto summary =
       wire::serve(options_, std::move(controller_), std::move(serving), &viewer, std::move(assets_), stop);

@@ -26,10 +26,10 @@ namespace chicane::live {
 class ServedRun {
  public:
   /// `track`: the road that the simulator drives on, where it is known: laps are timed, and there is a limit.
-  /// `assets`: files of the dashboard.
+  /// `assets`: files of the dashboard. `lap`: planned, of a controller that races (run/racing.hpp).
   ServedRun(const net::ServerOptions& server, const scenario::Scenario& scenario,
             std::unique_ptr<controller::Controller> controller, std::optional<path::Track> track,
-            std::vector<net::Asset> assets = {});
+            std::vector<net::Asset> assets = {}, std::shared_ptr<const road::RacingRoad> lap = nullptr);
   ServedRun(const ServedRun&) = delete;
   ServedRun& operator=(const ServedRun&) = delete;
 

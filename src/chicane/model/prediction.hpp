@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 #include "chicane/base/inlining.hpp"
@@ -22,8 +23,8 @@ struct BodyMotion {
 /// The car model of a tracking controller: a single track with saturating tyres, steering and drive lag,
 /// and the share h by which some cars turn their velocity along with the body (docs/tracking.md, eq. 1–9).
 ///
-///     v_y' = k_f α_f + k_r α_r − (1 − h) r v_x          α_f = δ − (v_y + a r)/v_x
-///     r'   = (m / I)(a k_f α_f − b k_r α_r)             α_r =   − (v_y − b r)/v_x
+///     v_y' = k_f α_f + k_r α_r + φ a_x δ − (1 − h) r v_x    α_f = δ − (v_y + a r)/v_x
+///     r'   = (m / I)(a (k_f α_f + φ a_x δ) − b k_r α_r)     α_r =   − (v_y − b r)/v_x
 ///     v_x' = a_x + (1 − h) r v_y − k_f α_f δ
 ///
 /// k are secant stiffnesses per mass, F/(m α), of a saturating tyre. One step is linearly implicit in (v_y,
@@ -34,8 +35,13 @@ struct BodyMotion {
 /// failure for finite input, any dt > 0. Error O(dt²) per step.
 class PredictionModel {
  public:
-  explicit PredictionModel(const model::VehicleParams& vehicle) noexcept : vehicle_{vehicle} {}
-  void set_vehicle(const model::VehicleParams& vehicle) noexcept { vehicle_ = vehicle; }
+  explicit PredictionModel(const model::VehicleParams& vehicle) noexcept { set_vehicle(vehicle); }
+  void set_vehicle(const model::VehicleParams& vehicle) noexcept {
+    vehicle_ = vehicle;
+    per_peak_ = per_peak(vehicle);
+    unloading_front_ = unloading(vehicle, vehicle.rear_axle, vehicle.roll_share_front);
+    unloading_rear_ = unloading(vehicle, vehicle.front_axle, 1.0 - vehicle.roll_share_front);
+  }
 
   /// What a first-order lag leaves of the difference between now and asked.
   struct Lag {
@@ -58,7 +64,7 @@ class PredictionModel {
                                                             const T& acceleration,
                                                             const D& dt) const noexcept {
     const model::VehicleParams& p = vehicle_;
-    const Tires<T> tires = tire_state(from, steer);
+    const Tires<T> tires = tire_state<false>(from, steer);
     const T& kf = tires.stiffness_front;
     const T& kr = tires.stiffness_rear;
     const T& inverse_v = tires.inverse_speed;
@@ -74,9 +80,10 @@ class PredictionModel {
     const T a12 = dt * (moment + (1.0 - p.steer_helper) * from.vx);
     const T a21 = turn * moment;
     const T a22 = 1.0 + turn * damping;
-    const T force = kf * steer;
+    // The drive or brake force of the steered wheels points along the wheels.
+    const T force = (kf + front_force<false>(acceleration)) * steer;
     const T b1 = from.vy + dt * force;
-    const T b2 = from.r + (turn * a) * force;
+    const T b2 = from.r + (turn * a) * force + turn * tires.twist;
     const T det = a11 * a22 - a12 * a21;
     // A car about to spin has no implicit step for large dt: let it grow fivefold, not without bound.
     const T inverse_det = 1.0 / T(select(det > kLeastDeterminant, det, kLeastDeterminant));
@@ -85,7 +92,8 @@ class PredictionModel {
     to.r = (a11 * b2 - a21 * b1) * inverse_det;
 
     const T slip_front = steer - (to.vy + a * to.r) * inverse_v;
-    to.vx = from.vx + dt * (acceleration + (1.0 - p.steer_helper) * to.r * to.vy - force * slip_front);
+    to.vx = from.vx + dt * (acceleration - tires.lost + (1.0 - p.steer_helper) * to.r * to.vy -
+                            kf * steer * slip_front);
     return to;
   }
 
@@ -102,45 +110,70 @@ class PredictionModel {
     return to;
   }
 
-  /// What the braking force of the steered front wheels adds over dt [s]: it points along the wheels, not
-  /// along the car. Left out of advance(), where it matters little.
-  void add_front_force(BodyMotion<double>& to, double dt) const noexcept {
-    const double sideways = dt * front_force(to);
-    to.vy += sideways;
-    to.r += vehicle_.mass / vehicle_.yaw_inertia * vehicle_.front_axle * sideways;
-  }
-
-  /// Normalised lateral tyre use, front and rear: cornering · slip / friction. 1 is where the linear tyre
-  /// would reach its peak; larger means sliding.
+  /// Changes by time of v_x, v_y and r, and what they take of the tyres.
   template <class T>
-  [[nodiscard]] CHICANE_INLINE inline std::array<T, 2> tire_use(const BodyMotion<T>& motion) const noexcept {
-    const Tires<T> tires = tire_state(motion, motion.steer);
-    return {tires.use_front, tires.use_rear};
+  struct Change {
+    T vx, vy;                     ///< [m/s²]
+    T r;                          ///< [rad/s²]
+    T square_front, square_rear;  ///< of TireUse::front and rear
+    T along_front, along_rear;    ///< as in TireUse
+  };
+  /// With the steering and acceleration that the car has (eq. 1–3). Smooth, for searches that use second
+  /// derivatives: drive and brakes take over from each other within kBlend.
+  template <class T>
+  [[nodiscard]] Change<T> change(const BodyMotion<T>& at) const noexcept {
+    const model::VehicleParams& p = vehicle_;
+    const Tires<T> tires = tire_state<true>(at, at.steer);
+    const T front = tires.stiffness_front * (at.steer - (at.vy + p.front_axle * at.r) * tires.inverse_speed);
+    const T rear = tires.stiffness_rear * ((p.rear_axle * at.r - at.vy) * tires.inverse_speed);
+    const T pull = front_force<true>(at.acceleration) * at.steer;
+    const T turn = (1.0 - p.steer_helper) * at.r;
+    return {
+        .vx = at.acceleration - tires.lost + turn * at.vy - front * at.steer,
+        .vy = front + rear + pull - turn * at.vx,
+        .r = (p.mass / p.yaw_inertia) * (p.front_axle * (front + pull) - p.rear_axle * rear + tires.twist),
+        .square_front = (per_peak_ * per_peak_) * tires.square_front,
+        .square_rear = (per_peak_ * per_peak_) * tires.square_rear,
+        .along_front = tires.along_front,
+        .along_rear = tires.along_rear};
   }
 
-  /// Static stability at speed v [m/s] and deceleration `a` [m/s²]: k_f k_r L² over v² (a k_f − b k_r), where
-  /// load transfer has changed the stiffnesses. Below 1 the car turns away from its path by itself; infinite
-  /// where it understeers.
+  /// How much of its tyres an axle uses; 1 is the peak of the tyre curve. Of its inner wheel while it drives:
+  /// that one spins first.
+  template <class T>
+  struct TireUse {
+    T front, rear;  ///< slip over the slip of the peak, both directions together
+    /// Longitudinal force over the peak. 0 where the directions share nothing.
+    T along_front, along_rear;
+  };
+  template <class T>
+  [[nodiscard]] CHICANE_INLINE inline TireUse<T> tire_use(const BodyMotion<T>& motion) const noexcept {
+    const Tires<T> tires = tire_state<false>(motion, motion.steer);
+    return {sqrt(tires.square_front) * per_peak_, sqrt(tires.square_rear) * per_peak_, tires.along_front,
+            tires.along_rear};
+  }
+
+  /// Static stability at speed v [m/s] and deceleration `a` [m/s²] on a straight: k_f k_r L² over
+  /// v² (a k_f − b k_r), where load transfer and braking slip have changed the stiffnesses. Below 1 the car
+  /// turns away from its path by itself; infinite where it understeers.
   [[nodiscard]] double stability(double v, double a) const noexcept {
     const model::VehicleParams& p = vehicle_;
-    const double transfer = p.height / kGravity * a * kSlopeFollowsLoad;
-    const double share = load(v) / p.wheelbase();
-    const double front = p.rear_axle * share * p.cornering_front * (1.0 + transfer / p.rear_axle);
-    const double rear = p.front_axle * share * p.cornering_rear * (1.0 - transfer / p.front_axle);
+    const Tires<double> tires = tire_state<false>(BodyMotion<double>{v, 0.0, 0.0, 0.0, -a}, 0.0);
+    const double front = tires.stiffness_front, rear = tires.stiffness_rear;
     const double moment = (1.0 - p.steer_helper) * v * v * (p.front_axle * front - p.rear_axle * rear);
     if (!(moment > 0.0)) return std::numeric_limits<double>::infinity();
     return front * rear * p.wheelbase() * p.wheelbase() / moment;
   }
 
   /// The road-wheel angle at which the yaw rate begins to change by `yaw_acceleration` [rad/s²], lag apart;
-  /// no more slip than the front tyres' peak [rad].
+  /// no more slip than gives nine tenths of the front tyres' peak [rad].
   [[nodiscard]] double steer_for(const BodyMotion<double>& m, double yaw_acceleration) const noexcept {
     const model::VehicleParams& p = vehicle_;
-    const Tires<double> tires = tire_state(m, m.steer);
+    const Tires<double> tires = tire_state<false>(m, m.steer);
     const double rear = tires.stiffness_rear * (p.rear_axle * m.r - m.vy) * tires.inverse_speed;
-    const double wanted =
-        (p.yaw_inertia / p.mass * yaw_acceleration + p.rear_axle * rear) / p.front_axle - front_force(m);
-    const double most = p.friction / p.cornering_front;
+    const double wanted = (p.yaw_inertia / p.mass * yaw_acceleration + p.rear_axle * rear) / p.front_axle -
+                          front_force<false>(m.acceleration) * m.steer;
+    const double most = p.friction / p.cornering_front * std::min(1.0 / per_peak_, kMostSlip);
     const double slip = wanted / tires.stiffness_front;
     return (slip < -most  ? -most
             : slip > most ? most
@@ -155,10 +188,6 @@ class PredictionModel {
   [[nodiscard]] const model::VehicleParams& vehicle() const noexcept { return vehicle_; }
 
  private:
-  /// Sideways, per mass [m/s²].
-  [[nodiscard]] double front_force(const BodyMotion<double>& m) const noexcept {
-    return vehicle_.brake_share_front * (m.acceleration < 0.0 ? m.acceleration : 0.0) * m.steer;
-  }
   static constexpr double kGravity = 9.81;  ///< [m/s²]
   static constexpr double kLeastDeterminant = 0.2;
   static constexpr double kSpeedFloor =
@@ -166,7 +195,12 @@ class PredictionModel {
 
   template <class T>
   struct Tires {
-    T inverse_speed, use_front, use_rear, stiffness_front, stiffness_rear;
+    T inverse_speed;
+    T square_front, square_rear;  ///< of the slip, over peak force by initial stiffness
+    T along_front, along_rear;    ///< longitudinal force over the peak
+    T stiffness_front, stiffness_rear;
+    T lost;   ///< of the acceleration asked for, where wheels spin or their brakes let go [m/s²]
+    T twist;  ///< yaw moment that follows over mass [m²/s²]
   };
 
   static Lag lag(double time_constant, double dt) noexcept {
@@ -175,7 +209,7 @@ class PredictionModel {
     return {decay, (1.0 - decay) * time_constant / dt};
   }
 
-  template <class T>
+  template <bool kSmooth, class T>
   [[nodiscard]] CHICANE_INLINE inline Tires<T> tire_state(const BodyMotion<T>& m,
                                                           const T& steer) const noexcept {
     const model::VehicleParams& p = vehicle_;
@@ -183,37 +217,129 @@ class PredictionModel {
     const T speed = sqrt(m.vx * m.vx + kSpeedFloor * kSpeedFloor);
     const T load_now = p.load_constant + p.load_per_speed * speed;
     const T transfer = (p.height / kGravity) * m.acceleration;
-    const T share_front = 1.0 - (1.0 / p.rear_axle) * transfer;  // of its load at rest
-    const T share_rear = 1.0 + (1.0 / p.front_axle) * transfer;
-    const T along = m.acceleration / (p.friction * load_now);
-    const T square = along * along;
-    // Even a locked car keeps some sideways force.
-    const T taken = select(square < kMostOfEllipse, square, kMostOfEllipse);
-    const T peak = p.friction * sqrt(1.0 - p.friction_coupling * taken);
+    const T part_front = least(1.0 - (1.0 / p.rear_axle) * transfer);  // of its load at rest
+    const T part_rear = least(1.0 + (1.0 / p.front_axle) * transfer);
+    const T load_front = (p.rear_axle * per_wheelbase) * load_now * part_front;
+    const T load_rear = (p.front_axle * per_wheelbase) * load_now * part_rear;
+    const T grip_front = 1.0 + p.load_sensitivity * (1.0 - part_front);  // friction over that at rest
+    const T grip_rear = 1.0 + p.load_sensitivity * (1.0 - part_rear);
     Tires<T> t;
     t.inverse_speed = 1.0 / speed;
     const T slip_front = steer - (m.vy + p.front_axle * m.r) * t.inverse_speed;
     const T slip_rear = (p.rear_axle * m.r - m.vy) * t.inverse_speed;
-    // Load moves the peak in proportion, the slope by less. Without that a braking car seems stable that is
-    // not.
-    const T cornering_front = p.cornering_front * (1.0 - (kSlopeFollowsLoad / p.rear_axle) * transfer);
-    const T cornering_rear = p.cornering_rear * (1.0 + (kSlopeFollowsLoad / p.front_axle) * transfer);
-    t.use_front = cornering_front * slip_front / (peak * share_front);
-    t.use_rear = cornering_rear * slip_rear / (peak * share_rear);
-    t.stiffness_front = (p.rear_axle * per_wheelbase) * load_now * cornering_front * saturation(t.use_front);
-    t.stiffness_rear = (p.front_axle * per_wheelbase) * load_now * cornering_rear * saturation(t.use_rear);
+    const double per_friction = 1.0 / p.friction;
+    if (!(p.friction_coupling > 0.0)) {
+      const auto axle = [&](double cornering, const T& slip, const T& load, T& square, T& stiffness)
+                            CHICANE_INLINE {
+                              const T z = (cornering / p.friction) * slip;
+                              square = z * z;
+                              stiffness = cornering * load * secant(square);
+                            };
+      axle(p.cornering_front, slip_front, grip_front * load_front, t.square_front, t.stiffness_front);
+      axle(p.cornering_rear, slip_rear, grip_rear * load_rear, t.square_rear, t.stiffness_rear);
+      t.along_front = t.along_rear = t.lost = t.twist = T(0.0);
+      return t;
+    }
+    // The wheels of an axle share its slip angle and its force along, not its load.
+    const T drive = positive<kSmooth>(m.acceleration, kBlend);
+    const T brake = drive - m.acceleration;
+    const T sideways = m.vx * m.r;
+    const T side = 2.0 * positive<kSmooth>(sideways, kBlend) - sideways;
+    T lost_inner(0.0);
+    T lost_outer(0.0);
+    // An inner wheel that is driven too hard spins; anti-lock keeps one that brakes.
+    const T driving = (drive + kLeastSide) / (drive + brake + kLeastSide);
+    const auto axle = [&](double cornering, const T& slip, const T& pull, double rest, const T& part,
+                          double unloading, const T& grip, T& along, T& square, T& stiffness) CHICANE_INLINE {
+      const T z = (cornering / p.friction) * slip;
+      const T z2 = z * z;
+      const T shift = unloading * side;
+      const auto wheel = [&](const T& its_part, T& use, T& its_square, T& its_stiffness,
+                             T& lost) CHICANE_INLINE {
+        const T load = (0.5 * rest) * load_now * its_part * (1.0 + p.load_sensitivity * (1.0 - its_part));
+        use = (0.5 * per_friction) * pull / load;
+        const T over = positive<kSmooth>(T(use - kMostAlong), kSmoothUse);
+        lost = lost + over * (p.friction * load);
+        // The slip along the tyre that gives this force beside the slip across, by similarity.
+        const T kept = use - over;
+        const T u2 = kept * kept;
+        const T first = secant(z2 + u2 / sqrt(1.0 - u2 * u2));
+        its_square = z2 + u2 / (first * first);
+        its_stiffness = cornering * load * secant(its_square);
+      };
+      T use_inner, use_outer, square_inner, square_outer, inner, outer;
+      const T inner_part = least(part - shift);
+      const T outer_part = part + shift;
+      wheel(inner_part, use_inner, square_inner, inner, lost_inner);
+      wheel(outer_part, use_outer, square_outer, outer, lost_outer);
+      const T mean = (inner_part * square_inner + outer_part * square_outer) / (inner_part + outer_part);
+      square = mean + driving * (square_inner - mean);
+      const T together = (per_friction * pull) / (grip * (rest * load_now * part));
+      along = together + driving * (use_inner - together);
+      stiffness = inner + outer;
+    };
+    axle(p.cornering_front, slip_front, T(p.drive_share_front * drive + p.brake_share_front * brake),
+         p.rear_axle * per_wheelbase, part_front, unloading_front_, grip_front, t.along_front, t.square_front,
+         t.stiffness_front);
+    axle(p.cornering_rear, slip_rear,
+         T((1.0 - p.drive_share_front) * drive + (1.0 - p.brake_share_front) * brake),
+         p.front_axle * per_wheelbase, part_rear, unloading_rear_, grip_rear, t.along_rear, t.square_rear,
+         t.stiffness_rear);
+    const T sign = select(m.acceleration < 0.0, T(-1.0), T(1.0));
+    t.lost = sign * (lost_inner + lost_outer);
+    t.twist = (0.5 * p.track_width) * sign * (sideways / (side + kLeastSide)) * (lost_inner - lost_outer);
     return t;
   }
 
-  /// Secant of the tyre curve over its initial slope: (1 + z⁴)^(−1/4); force tends to the peak, never falls.
+  /// Secant of the tyre curve over its initial slope, by the square of the slip z over peak force by initial
+  /// stiffness: that of the magic formula, sin(C atan(z/C))/z, or of the original simulator's curve.
   template <class T>
-  CHICANE_INLINE static inline T saturation(const T& z) noexcept {
-    const T z2 = z * z;
-    return 1.0 / sqrt(sqrt(1.0 + z2 * z2));
+  [[nodiscard]] CHICANE_INLINE inline T secant(const T& square) const noexcept {
+    const T z = sqrt(square + kLeastSquare);
+    if (vehicle_.tire_shape > 0.0)
+      return sin(vehicle_.tire_shape * atan((1.0 / vehicle_.tire_shape) * z)) / z;
+    const T beyond = (z - 1.0) * (1.0 / 1.5);
+    const T w = select(beyond < 1.0, beyond, T(1.0));
+    return select(z < 1.0, 1.0 + z - z * z, (1.0 - 0.25 * (w * w * (3.0 - 2.0 * w))) / z);
   }
 
-  static constexpr double kMostOfEllipse = 0.8;
-  static constexpr double kSlopeFollowsLoad = 0.7;  ///< change of cornering stiffness over that of load
+  /// max(x, 0); smooth within about `width`, or exact.
+  template <bool kSmooth, class T>
+  [[nodiscard]] CHICANE_INLINE static inline T positive(const T& x, double width) noexcept {
+    if constexpr (kSmooth) {
+      return 0.5 * (x + sqrt(x * x + width * width));
+    } else {
+      return positive_part(x);
+    }
+  }
+  /// Drive and brake force of the front wheels by mass.
+  template <bool kSmooth, class T>
+  [[nodiscard]] CHICANE_INLINE inline T front_force(const T& acceleration) const noexcept {
+    const T drive = positive<kSmooth>(acceleration, kBlend);
+    return vehicle_.drive_share_front * drive + vehicle_.brake_share_front * (acceleration - drive);
+  }
+  template <class T>
+  CHICANE_INLINE static inline T least(const T& share) noexcept {
+    return select(share > kLeastLoad, share, T(kLeastLoad));
+  }
+  /// What an inner wheel loses of its load at rest for each m/s² of lateral acceleration.
+  static double unloading(const model::VehicleParams& p, double other_axle, double share) noexcept {
+    return 2.0 * p.height * share / p.track_width / (p.load_constant * other_axle / p.wheelbase());
+  }
+  static double per_peak(const model::VehicleParams& p) noexcept {
+    constexpr double kHalfPi = 1.5707963267948966;
+    return p.tire_shape > 0.0 ? 1.0 / (p.tire_shape * tan(kHalfPi / p.tire_shape)) : 1.0;
+  }
+
+  static constexpr double kMostSlip = 1.4;    ///< that steer_for() asks of the front tyres, as z in secant()
+  static constexpr double kMostAlong = 0.95;  ///< of the peak: the model asks for no more along the tyre
+  static constexpr double kSmoothUse = 0.02;  ///< of change()
+  static constexpr double kLeastSide = 1e-3;  ///< [m/s²]
+  static constexpr double kBlend = 0.3;       ///< [m/s²] of change()
+  static constexpr double kLeastLoad = 0.1;   ///< of the load at rest
+  static constexpr double kLeastSquare = 1e-8;           ///< of a slip: the curve's secant has a kink at 0
+  double unloading_front_ = 0.0, unloading_rear_ = 0.0;  ///< [s²/m]
+  double per_peak_ = 1.0;                                ///< one over the slip of the peak, as in secant()
   model::VehicleParams vehicle_;
 };
 

@@ -58,14 +58,13 @@ constexpr std::array kOptions{
                                      "Largest useful negative throttle; beyond it the wheels lock."),
     option<&P::drive_lag>("drive_lag", unit::kMillisecond, 0, 5000, "Time constant of drive and brake."),
     option<&P::brake_share_front>("brake_share_front", unit::kNone, 0, 1, "Of the braking force."),
-    option<&P::braking_cornering_front>("braking_cornering_front", unit::kNone, 0.1, 10,
-                                        "cornering_front while braking hard, times this."),
-    option<&P::braking_cornering_rear>("braking_cornering_rear", unit::kNone, 0.1, 10,
-                                       "cornering_rear while braking hard, times this."),
-    option<&P::braking_friction>("braking_friction", unit::kNone, 0.1, 10,
-                                 "friction while braking hard, times this."),
-    option<&P::braking_turn>("braking_turn", unit::kNone, 0.1, 10,
-                             "What the helper leaves, 1 - steer_helper, while braking hard, times this."),
+    option<&P::roll_share_front>("roll_share_front", unit::kNone, 0, 1,
+                                 "Of the load that moves to the outer wheels in a bend."),
+    option<&P::drive_share_front>("drive_share_front", unit::kNone, 0, 1, "Of the drive force."),
+    option<&P::load_sensitivity>("load_sensitivity", unit::kNone, 0, 0.5,
+                                 "Share of the friction that an axle loses when its load doubles."),
+    option<&P::tire_shape>("tire_shape", unit::kNone, 0, 2.5,
+                           "C of the magic formula; 0: the original simulator's curve."),
     option<&P::reverse_speed>("reverse_speed", unit::kSpeed, 0, 10,
                               "Below it a negative throttle is the reverse gear; 0 where it never is."),
     option<&P::reverse_acceleration>("reverse_acceleration", unit::kAcceleration, 0.01, 100,
@@ -112,32 +111,29 @@ double throttle_for(const VehicleParams& p, double acceleration, double v) noexc
   return std::min(force / p.drive_acceleration, 1.0);
 }
 
-VehicleParams while_braking(const VehicleParams& params) noexcept {
-  VehicleParams p = params;
-  p.cornering_front *= p.braking_cornering_front;
-  p.cornering_rear *= p.braking_cornering_rear;
-  p.friction *= p.braking_friction;
-  p.steer_helper = 1.0 - p.braking_turn * (1.0 - p.steer_helper);
-  return p;
+double throttle_to_rest(const VehicleParams& p, double acceleration, double v) noexcept {
+  return std::min(throttle_for(p, std::max(acceleration, -std::max(v, 0.0) / kRestTime), v), 0.0);
 }
 
-VehicleParams udacity_params() {
-  VehicleParams p;
-  p.brake_share_front = 0.35;
-  p.braking_cornering_front = 1.08;
-  p.braking_cornering_rear = 1.13;
-  p.braking_friction = 1.45;
-  p.braking_turn = 0.82;
-  return p;
+VehicleParams udacity_params() { return {}; }
+
+double VehicleParams::cornering_friction() const noexcept {
+  const auto lost = [&](double other_axle, double share) {
+    const double load = load_constant * other_axle / wheelbase();
+    const double shift = 2.0 * height * share / track_width * (friction * load_constant) / load;
+    return load_sensitivity * shift * shift * other_axle / wheelbase();
+  };
+  return friction * (1.0 - lost(rear_axle, roll_share_front) - lost(front_axle, 1.0 - roll_share_front));
 }
 
 VehicleParams road_car_params() {
   VehicleParams p;
   p.name = "road-car";
-  p.brake_share_front = 0.32;
-  p.braking_cornering_front = 0.74;
-  p.braking_cornering_rear = 0.726;
-  p.braking_friction = 1.107;
+  p.brake_share_front = 0.72;
+  p.drive_share_front = 0.4;
+  p.roll_share_front = 0.58;
+  p.load_sensitivity = 0.08;
+  p.tire_shape = 1.5;
   p.reverse_speed = 0.0;
   p.front_axle = 1.25;
   p.rear_axle = 1.45;
@@ -151,9 +147,9 @@ VehicleParams road_car_params() {
   p.height = 0.5;
   p.steer_rate_limit = 1.5707963267948966;
   p.steer_lag = 0.05;
-  p.cornering_front = 16.0;
+  p.cornering_front = 16.2;
   p.cornering_rear = 18.0;
-  p.friction = 1.07;
+  p.friction = 1.2;
   p.friction_coupling = 1.0;
   p.load_constant = 9.81;
   p.load_per_speed = 0.0;

@@ -35,17 +35,19 @@ struct VehicleParams {
   double steer_rate_limit = std::numeric_limits<double>::infinity();  ///< [rad/s]
   double steer_lag = 0.0;  ///< time constant of the steering actuator [s], 0 = instant
 
-  // Tyres: lateral force = load · friction · tanh(cornering · slip / friction), load = mass · (load_0 +
-  // load_v · v) by axle.
-  double cornering_front = 5.05;  ///< normalised cornering stiffness [1/rad]
-  double cornering_rear = 4.85;   ///< [1/rad]
-  double friction = 1.0;          ///< peak lateral force over load
+  // Tyres: force = load · friction · curve(cornering · slip / friction), load = mass · (load_0 + load_v · v)
+  // by axle (docs/tracking.md, eq. 3).
+  double cornering_front = 5.0;   ///< normalised cornering stiffness [1/rad]
+  double cornering_rear = 4.92;   ///< [1/rad]
+  double friction = 1.08;         ///< peak force over load
+  double load_sensitivity = 0.0;  ///< share of the friction that an axle loses when its load doubles
+  double tire_shape = 0.0;        ///< C of the magic formula; 0: the original simulator's curve
   double friction_coupling =
       0.0;  ///< 1 = friction ellipse (a real tyre), 0 = braking and cornering do not share force
   double load_constant = 12.22;    ///< normal acceleration at rest [m/s²]
   double load_per_speed = 0.0923;  ///< its growth with speed (downforce) [1/s]
   double steer_helper =
-      0.774;  ///< share of each yaw change by which the car turns its velocity along; 0 = a real car
+      0.768;  ///< share of each yaw change by which the car turns its velocity along; 0 = a real car
 
   // Longitudinal: a = drive_acceleration · throttle − drag_linear · v − drag_quadratic · v² for throttle >=
   // 0, and − brake_acceleration · |throttle| − drag for throttle < 0 (reverse_acceleration below
@@ -60,20 +62,18 @@ struct VehicleParams {
   double brake_throttle_limit =
       0.04;                ///< largest useful negative throttle: beyond it the wheels lock (1 = proportional)
   double drive_lag = 0.0;  ///< time constant of drive and brake [s]
-  double brake_share_front = 0.5;  ///< of the braking force: turned with the wheels, it acts sideways, too
-
-  // While it brakes hard: the values above times these, fitted to stops that are driven without any
-  // measurement.
-  double braking_cornering_front = 1.0;
-  double braking_cornering_rear = 1.0;
-  double braking_friction = 1.0;
-  double braking_turn = 1.0;  ///< times 1 − steer_helper
+  double roll_share_front = 0.5;   ///< of the load that moves to the outer wheels in a bend
+  double brake_share_front = 0.5;  ///< of the braking force
+  double drive_share_front = 0.5;  ///< of the drive force
 
   // The reverse gear.
   double reverse_speed = 2.235;  ///< below it a negative throttle is the reverse gear [m/s]; 0: it never is
   double reverse_acceleration = 1.63;  ///< per unit of negative throttle then [m/s²]
 
   [[nodiscard]] double wheelbase() const noexcept { return front_axle + rear_axle; }
+  /// Peak lateral force over load of the whole car: what load transfer to the outer wheels leaves of the
+  /// friction (docs/tracking.md, eq. 3b).
+  [[nodiscard]] double cornering_friction() const noexcept;
 
   friend bool operator==(const VehicleParams&, const VehicleParams&) = default;
 };
@@ -97,8 +97,10 @@ struct VehicleParams {
 /// `acceleration` [m/s²].
 [[nodiscard]] double throttle_for(const VehicleParams& params, double acceleration, double v) noexcept;
 
-/// The car while it brakes hard: its tyres and its helper as fitted to stops (docs/safety.md).
-[[nodiscard]] VehicleParams while_braking(const VehicleParams& params) noexcept;
+/// The throttle, never positive, that brakes with `acceleration` [m/s²] at speed v [m/s] and brings the car
+/// to rest without rolling back: the last of it more and more gently, within kRestTime.
+[[nodiscard]] double throttle_to_rest(const VehicleParams& params, double acceleration, double v) noexcept;
+inline constexpr double kRestTime = 0.4;  ///< [s]
 
 /// Models of the shipped plants, fitted to them by `chicane_plant_report` (docs/plants.md). The
 /// original simulator's car: the defaults above.

@@ -72,6 +72,7 @@ class Body {
 struct HttpRequest {
   bool is_head = false;
   bool keep_alive = false;
+  bool accepts_gzip = false;
   std::string_view range{};
   std::string_view if_range{};
   std::string_view if_none_match{};
@@ -86,7 +87,8 @@ class HttpResponse {
   [[nodiscard]] static HttpResponse see_other(std::string_view location, std::string_view cookie);
   /// A content, whole, by range (206, 416), or not again (304); 404 when its file cannot be read.
   [[nodiscard]] static HttpResponse of(Content content, const HttpRequest& request);
-  /// Bytes that live as long as the program, with the ETag that tag_of() gave them.
+  /// Bytes that live as long as the program, with the ETag that tag_of() gave them. What is compressed is
+  /// expanded for who did not ask for gzip, with a tag of its own.
   [[nodiscard]] static HttpResponse of_asset(std::string_view bytes, std::string_view content_type,
                                              bool is_gzip, std::string_view tag, const HttpRequest& request);
 

@@ -26,6 +26,7 @@
 
 #include "chicane/net/detail/admission.hpp"
 #include "chicane/net/detail/crowd.hpp"
+#include "chicane/net/detail/gunzip.hpp"
 #include "chicane/net/detail/port_holder.hpp"
 #include "chicane/net/detail/send_queue.hpp"
 #include "chicane/net/detail/site.hpp"
@@ -303,6 +304,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   void serve(const http::request<http::empty_body>& request) {
     const HttpRequest asked{.is_head = request.method() == http::verb::head,
                             .keep_alive = request.keep_alive(),
+                            .accepts_gzip = accepts_gzip(view(request[http::field::accept_encoding])),
                             .range = view(request[http::field::range]),
                             .if_range = view(request[http::field::if_range]),
                             .if_none_match = view(request[http::field::if_none_match])};

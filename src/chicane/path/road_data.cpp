@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/assert.hpp"
+#include "chicane/base/math.hpp"
 
 namespace chicane::path {
 
@@ -28,6 +30,45 @@ RoadData road_data(const Track& track, double spacing) {
                            .right = track.right_width(s)});
   }
   return road;
+}
+
+std::vector<LinePoint> line_points(const Track& track, const RacingLine& line) {
+  std::vector<LinePoint> points;
+  if (line.is_empty()) return points;
+  const Path& centre = track.centre();
+  for (const RacingLinePoint& at : line.points) {
+    const PathPoint foot = centre.at(at.s);
+    LinePoint p;
+    p.s = at.s;
+    p.time = at.time;
+    p.d = at.offset;
+    p.position = foot.position + at.offset * Vec2{-chicane::sin(foot.heading), chicane::cos(foot.heading)};
+    p.sideslip = chicane::atan2(at.vy, at.vx);
+    p.heading = foot.heading + at.heading + p.sideslip;
+    p.speed = hypot(at.vx, at.vy);
+    p.left = track.left_width(at.s) - at.offset;
+    p.right = track.right_width(at.s) + at.offset;
+    points.push_back(p);
+  }
+  // Its end has the heading of its beginning, and what the road has turned in a lap.
+  const std::size_t last = points.size() - 1;
+  points[last].heading =
+      points[0].heading + kTwoPi * std::round((points[last].heading - points[0].heading) / kTwoPi);
+  for (std::size_t i = 0; i < last; ++i) {
+    const std::size_t before = i == 0 ? last - 1 : i - 1;
+    const double turned = wrap_angle(points[i + 1].heading - points[before].heading);
+    double taken = points[i + 1].time - points[before].time;
+    if (taken < 0.0) taken += line.lap_time();
+    LinePoint& p = points[i];
+    p.curvature = turned / taken / p.speed;
+    p.lateral_acceleration = p.speed * p.speed * p.curvature;
+    const double faster = points[i + 1].speed - points[before].speed;
+    p.longitudinal_acceleration = faster / taken;
+  }
+  points[last].curvature = points[0].curvature;
+  points[last].lateral_acceleration = points[0].lateral_acceleration;
+  points[last].longitudinal_acceleration = points[0].longitudinal_acceleration;
+  return points;
 }
 
 }  // namespace chicane::path

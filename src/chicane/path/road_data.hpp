@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "chicane/path/racing_line.hpp"
 #include "chicane/path/track.hpp"
 
 namespace chicane::path {
@@ -30,6 +31,7 @@ struct LinePoint {
   double lateral_acceleration = 0.0;       ///< centripetal, left positive [m/s²]
   double left = 0.0;                       ///< from the centre of mass to the edge on the left [m]
   double right = 0.0;                      ///< and on the right [m]
+  double sideslip = 0.0;                   ///< from the body's heading to the line's, left positive [rad]
 };
 
 /// A road, and how it may be driven, as plain data: what modules that do not know each other hand over
@@ -44,5 +46,9 @@ struct RoadData {
 /// The road of a track, at points spaced evenly by at most `spacing` [m]; no racing line. On a closed road
 /// the last point has s = length and the first one's heading plus a lap's turning. Pre: spacing > 0.
 [[nodiscard]] RoadData road_data(const Track& track, double spacing);
+
+/// The line that the centre of mass follows on a planned lap of `track`, by rising time; the last point
+/// repeats the first. Empty for an empty line.
+[[nodiscard]] std::vector<LinePoint> line_points(const Track& track, const RacingLine& line);
 
 }  // namespace chicane::path

@@ -86,6 +86,18 @@ Result<sim::FaultEvent> parse_fault(std::string_view text) {
                           event.error().message));
 }
 
+Result<sim::FaultEvent> read_switch(std::string_view name, std::string_view value) {
+  if (value == "true") return parse_fault(fmt::format("{}@0", name));
+  if (value.starts_with('+') || value.starts_with('*')) {
+    if (const auto event = parse_fault(fmt::format("{}@0{}", name, value))) return event;
+  }
+  return fail(
+      ErrorCode::kInvalidArgument,
+      fmt::format("fault.{}: got {}, expected true, false or +SECONDS*STRENGTH in the range of `chicane list "
+                  "faults`",
+                  printable(name), printable(value)));
+}
+
 std::string write_fault(const sim::FaultEvent& event) {
   const sim::FaultKind& kind = sim::kind_of(event.fault);
   std::string text = fmt::format("{{name: {}, at_s: {}, for_s: {}", kind.name, event.at, event.duration);
@@ -107,7 +119,8 @@ std::vector<Control> fault_controls() {
   }();
   std::vector<Control> controls;
   for (std::size_t i = 0; i < keys.size(); ++i)
-    controls.push_back({keys[i], Kind::kBool, "", 0.0, 0.0, false, sim::fault_kinds()[i].meaning});
+    controls.push_back(
+        {keys[i], Kind::kBool, "", 0.0, 0.0, false, sim::fault_kinds()[i].meaning, &sim::fault_kinds()[i]});
   return controls;
 }
 

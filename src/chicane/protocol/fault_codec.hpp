@@ -15,6 +15,10 @@ namespace chicane::protocol {
 /// kInvalidArgument with what was expected.
 [[nodiscard]] Result<sim::FaultEvent> parse_fault(std::string_view text);
 
+/// The value of the switch "fault.half_grip" as an event at 0 s: "true", or "+5*0.5" for a duration of 5 s
+/// and a strength of 0.5, each of which may be left out. kInvalidArgument with what was expected.
+[[nodiscard]] Result<sim::FaultEvent> read_switch(std::string_view name, std::string_view value);
+
 /// What a scenario file says of one fault, as it is written: {name: half_grip, at_s: 12, for_s: 5, strength:
 /// 0.5}. Empty: left out.
 struct FaultText {

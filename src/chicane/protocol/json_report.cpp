@@ -71,6 +71,16 @@ std::string times(const TimeSummary& time) {
                      1e6 * time.max);
 }
 
+/// Steps by what the guard found; what it never found is left out.
+Json guard_reasons(const telemetry::RunSummary& run) {
+  Json reasons = Json::object();
+  for (std::size_t i = 1; i < run.guard_reasons.size(); ++i) {
+    if (run.guard_reasons[i] > 0)
+      reasons[std::string(controller::kGuardReasonNames[i])] = run.guard_reasons[i];
+  }
+  return reasons;
+}
+
 }  // namespace
 
 std::string to_json(const RunSummary& run) {
@@ -97,6 +107,7 @@ std::string to_json(const RunSummary& run) {
       {"solver", {{"mean_iterations", number(run.mean_iterations)}, {"not_usable", run.not_usable}}},
       {"cycles", run.cycles},
       {"fallbacks", run.fallbacks},
+      {"guard_reasons", guard_reasons(run)},
       {"gate_interventions", run.gate_interventions},
       {"deadline_misses", run.deadline_misses},
       {"duration_s", number(run.duration)},
@@ -135,6 +146,9 @@ std::string to_table(const RunSummary& run) {
                       times(run.solve_time), run.mean_iterations, run.not_usable);
   text += fmt::format("safety             {} fallbacks, {} commands changed by the gate\n", run.fallbacks,
                       run.gate_interventions);
+  const Json reasons = guard_reasons(run);
+  for (const auto& [reason, steps] : reasons.items())
+    text += fmt::format("guard              {}: {} steps\n", reason, steps.get<std::uint64_t>());
   if (run.wall_time > 0.0) {
     text += fmt::format("simulated          {:.1f} s in {:.2f} s ({:.0f} times real time)\n", run.duration,
                         run.wall_time, run.duration / run.wall_time);

@@ -15,6 +15,8 @@
 #include <span>
 
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/fault_codec.hpp"
+#include "chicane/protocol/remembered_files.hpp"
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 
@@ -111,11 +113,24 @@ Result<std::string> locate(Shelf shelf, const Wish& wish) {
   return file;
 }
 
-Result<Document> read_document(Shelf shelf, const Wish& wish) {
-  const Result<std::string> file = locate(shelf, wish);
-  if (!file) return fail(file.error());
-  const Result<std::string> text = read_file(*file);
-  return text ? parse_document(*text, *file) : fail(text.error());
+Result<Document> read_document(Shelf shelf, const Wish& wish, RememberedFiles& files) {
+  return files.document(shelf, wish.name, [&]() -> Result<Document> {
+    const Result<std::string> file = locate(shelf, wish);
+    if (!file) return fail(file.error());
+    const Result<std::string> text = read_file(*file);
+    return text ? parse_document(*text, *file) : fail(text.error());
+  });
+}
+
+/// Of a track only that there is one.
+Result<Document> find_track(const Wish& wish, RememberedFiles& files) {
+  return files.document(Shelf::kTrack, wish.name, [&]() -> Result<Document> {
+    const Result<std::string> file = locate(Shelf::kTrack, wish);
+    if (!file) return fail(file.error());
+    Document document;
+    document.file = *file;
+    return document;
+  });
 }
 
 /// What the last layer that sets `key` wants.
@@ -177,7 +192,7 @@ void resolve_names(Document& document) {
 }
 
 /// `name` and the presets it builds on, the deepest first.
-std::vector<Document> read_presets(Wish name, Faults& faults) {
+std::vector<Document> read_presets(Wish name, RememberedFiles& files, Faults& faults) {
   std::vector<Document> presets;
   std::optional<Wish> next = std::move(name);
   while (next) {
@@ -188,7 +203,7 @@ std::vector<Document> read_presets(Wish name, Faults& faults) {
                        presets.front().file, kMostPresets)});
       return {};
     }
-    Result<Document> preset = read_document(Shelf::kPreset, *next);
+    Result<Document> preset = read_document(Shelf::kPreset, *next, files);
     if (!preset) {
       faults.add(preset.error());
       return {};
@@ -201,8 +216,8 @@ std::vector<Document> read_presets(Wish name, Faults& faults) {
   return presets;
 }
 
-std::optional<Document> read_car(const Wish& wish, Faults& faults) {
-  Result<Document> car = read_document(Shelf::kCar, wish);
+std::optional<Document> read_car(const Wish& wish, RememberedFiles& files, Faults& faults) {
+  Result<Document> car = read_document(Shelf::kCar, wish, files);
   if (!car) {
     faults.add(car.error());
     return std::nullopt;
@@ -283,14 +298,34 @@ Result<std::string> read_file(const std::string& path) {
   return text;
 }
 
+namespace {
+
+/// The speed of whichever controller drives. kInvalidArgument where it has none to set.
+Result<void> set_speed(scenario::Scenario& scenario, const std::string& text) {
+  const auto* driver = controller::Registry::find(scenario.controller);
+  if (driver->speed_option.empty()) {
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("--speed-mps: got {}, expected none: {} has no speed to set", printable(text),
+                            driver->name));
+  }
+  return set_text(scenario, find_option(driver->name, driver->speed_option)->key, text);
+}
+
+}  // namespace
+
 Result<scenario::Scenario> compose(const Request& request) {
+  RememberedFiles none;
+  return compose(request, none);
+}
+
+Result<scenario::Scenario> compose(const Request& request, RememberedFiles& files) {
   Faults faults;
   std::vector<Document> layers;
   Document settings = parse_settings(request, faults);
   const scenario::Scenario defaults;
   Wish preset{settings.preset.value_or(defaults.preset)};
   if (!request.scenario_file.empty()) {
-    Result<Document> file = read_document(Shelf::kScenario, Wish{request.scenario_file});
+    Result<Document> file = read_document(Shelf::kScenario, Wish{request.scenario_file}, files);
     if (!file) {
       faults.add(file.error());
     } else {
@@ -301,19 +336,25 @@ Result<scenario::Scenario> compose(const Request& request) {
   }
   layers.push_back(std::move(settings));
 
-  std::vector<Document> presets = read_presets(preset, faults);
+  std::vector<Document> presets = read_presets(preset, files, faults);
   layers.insert(layers.begin(), std::make_move_iterator(presets.begin()),
                 std::make_move_iterator(presets.end()));
-  std::optional<Document> car = read_car(last_wish(layers, "car", defaults.car), faults);
+  std::optional<Document> car = read_car(last_wish(layers, "car", defaults.car), files, faults);
   if (car) layers.insert(layers.begin(), std::move(*car));
-  if (const Result<std::string> track = locate(Shelf::kTrack, last_wish(layers, "track", defaults.track));
-      !track) {
+  if (const auto track = find_track(last_wish(layers, "track", defaults.track), files); !track)
     faults.add(track.error());
-  }
 
   scenario::Scenario scenario;
   scenario.preset = preset.name;
   if (const Result<void> applied = apply_layers(layers, scenario); !applied) faults.add(applied.error());
+  for (const std::string& text : request.faults) {
+    const Result<sim::FaultEvent> event = parse_fault(text);
+    if (event) scenario.faults.push_back(*event);
+    if (!event) faults.add(event.error());
+  }
+  if (faults.empty() && !request.speed_mps.empty()) {
+    if (const Result<void> done = set_speed(scenario, request.speed_mps); !done) faults.add(done.error());
+  }
   if (!faults.empty()) return faults.failure();
   return scenario;
 }

@@ -49,11 +49,13 @@ struct Entry {
 struct Request {
   std::string scenario_file;
   std::vector<std::pair<std::string, std::string>> settings;
+  std::string speed_mps{};            ///< reference of whichever controller drives; empty: its own
+  std::vector<std::string> faults{};  ///< NAME@S+S*X (fault_codec.hpp), beside those of the scenario file
 };
 
 /// The experiment asked for. Later layers win: defaults, car file, preset (with the presets it builds on),
-/// scenario file, settings. The names `preset`, `car` and `track` may be files, relative to the working
-/// directory or to the scenario file. All faults at once, each with its file and line.
+/// scenario file, settings, speed. The names `preset`, `car` and `track` may be files, relative to the
+/// working directory or to the scenario file. All faults at once, each with its file and line.
 [[nodiscard]] Result<scenario::Scenario> compose(const Request& request);
 
 }  // namespace chicane::protocol

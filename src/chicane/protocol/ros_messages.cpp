@@ -5,17 +5,17 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
 #include "chicane/base/math.hpp"
+#include "chicane/protocol/detail/cdr_writer.hpp"
 #include "chicane/protocol/detail/ros_schemas.hpp"
+#include "chicane/protocol/detail/scene_message.hpp"
 #include "chicane/protocol/frame_fields.hpp"
 #include "chicane/solver/solution.hpp"
 
@@ -26,61 +26,6 @@ using telemetry::Frame;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// One message under construction: XCDR1 with its header, each primitive aligned to its size counted from the
-/// end of the header (OMG DDSI-RTPS 2.3, chapter 10). Padding is zero, so equal messages have equal bytes.
-class Writer {
- public:
-  static_assert(std::endian::native == std::endian::little);
-
-  explicit Writer(std::size_t expected_size = 512) { bytes_.reserve(expected_size); }
-
-  template <class... Values>
-  Writer& put(Values... values) {
-    (append(values), ...);
-    return *this;
-  }
-  Writer& text(std::string_view value) {
-    count(value.size() + 1);
-    bytes_.append(value).push_back('\0');
-    return *this;
-  }
-  Writer& count(std::size_t value) { return put(static_cast<std::uint32_t>(value)); }
-  Writer& texts(const std::vector<std::string>& values) {
-    count(values.size());
-    for (const std::string& value : values) text(value);
-    return *this;
-  }
-  Writer& stamp(double seconds) { return put(Stamp{seconds}); }
-  Writer& header(double seconds, std::string_view frame_id) { return stamp(seconds).text(frame_id); }
-  Writer& orientation(double yaw) { return put(0.0, 0.0, chicane::sin(0.5 * yaw), chicane::cos(0.5 * yaw)); }
-  Writer& zeros(int number) {
-    for (int i = 0; i < number; ++i) append(0.0);
-    return *this;
-  }
-  [[nodiscard]] std::string bytes() { return std::move(bytes_); }
-
- private:
-  static constexpr std::size_t kHeader = 4;
-
-  template <class T>
-  void append(T value) {
-    static_assert(std::is_arithmetic_v<T>);
-    while ((bytes_.size() - kHeader) % sizeof(T) != 0) bytes_.push_back('\0');
-    bytes_.append(std::bit_cast<std::array<char, sizeof(T)>>(value).data(), sizeof(T));
-  }
-  void append(Stamp stamp) {
-    const std::uint64_t ns = to_nanoseconds(stamp.seconds);
-    append(static_cast<std::int32_t>(ns / 1'000'000'000U));
-    append(static_cast<std::uint32_t>(ns % 1'000'000'000U));
-  }
-  void append(std::span<const double> values) {
-    count(values.size());
-    for (const double value : values) append(value);
-  }
-
-  std::string bytes_{'\0', '\1', '\0', '\0'};
-};
-
 double or_zero(double value) { return std::isfinite(value) ? value : 0.0; }
 
 /// The middle of the rear axle, in W.
@@ -90,7 +35,7 @@ model::Pose base_link(const model::State& state, const Run& run) {
 }
 
 std::string encode_frame(const Frame& frame, const Run&) {
-  Writer writer{1024};
+  CdrWriter writer{1024};
   for (const FrameGroup& group : frame_groups()) {
     for (const FrameField& field : group.fields) {
       std::visit([&](auto value) { writer.put(value); }, field.value(frame));
@@ -106,7 +51,7 @@ std::span<const controller::PlanPoint> points_of(const controller::Plan& plan) {
 
 std::string encode_plan(const Frame& frame, const Run&) {
   const auto points = points_of(frame.result.plan);
-  Writer writer{128 + points.size() * 7 * sizeof(double)};
+  CdrWriter writer{128 + points.size() * 7 * sizeof(double)};
   writer.stamp(frame.time);
   const auto column = [&](auto&& value_of) {
     writer.count(points.size());
@@ -124,7 +69,7 @@ std::string encode_plan(const Frame& frame, const Run&) {
 
 std::string encode_run(const Frame&, const Run& run) {
   const model::VehicleParams& car = run.vehicle;
-  return Writer{}
+  return CdrWriter{}
       .text(run.track)
       .put(run.track_length, run.is_closed)
       .text(run.controller)
@@ -139,6 +84,8 @@ std::string encode_run(const Frame&, const Run& run) {
       .texts(run.faults)
       .put(run.kerb_width)
       .text(run.building)
+      .text(run.end)
+      .text(run.end_reason)
       .bytes();
 }
 
@@ -151,7 +98,7 @@ std::string encode_lap(const Frame& frame, const Run& run) {
   const telemetry::CompletedLap& lap = frame.completed_lap;
   const bool has_limit = run.limit.found && lap.lap >= run.limit.first_lap;
   const lap_time::LapTimes limit = has_limit ? run.limit.found->times : lap_time::LapTimes{};
-  return Writer{}
+  return CdrWriter{}
       .put(static_cast<std::uint32_t>(lap.lap), lap.lap_time)
       .put(lap.sector_times[0], lap.sector_times[1], lap.sector_times[2], lap.is_clean)
       .put(lap.mean_speed, lap.top_speed, lap.min_edge_distance, lap.rms_lateral_error)
@@ -169,7 +116,7 @@ std::string encode_limit(const Frame&, const Run& run) {
     return limit;
   }();
   const lap_time::Limit& limit = run.limit.found ? *run.limit.found : nothing;
-  Writer writer{256 + 64 * limit.line.size()};
+  CdrWriter writer{256 + 64 * limit.line.size()};
   writer.put(run.limit.found != nullptr).put(limit.times.lap);
   for (const double sector : limit.times.sectors) writer.put(sector);
   const auto column = [&](auto value) {
@@ -194,8 +141,8 @@ std::string encode_odometry(const Frame& frame, const Run& run) {
   const model::State now = known_motion(frame);
   const model::Pose pose = base_link(now, run);
   const double r = or_zero(now.r);
-  return Writer{}
-      .header(frame.time, "map")
+  return CdrWriter{}
+      .header(frame.time, "odom")
       .text("base_link")
       .put(pose.x, pose.y, 0.0)
       .orientation(pose.psi)
@@ -205,7 +152,7 @@ std::string encode_odometry(const Frame& frame, const Run& run) {
       .bytes();
 }
 
-void put_pose_stamped(Writer& writer, double time, const model::Pose& pose) {
+void put_pose_stamped(CdrWriter& writer, double time, const model::Pose& pose) {
   writer.header(time, "map").put(pose.x, pose.y, 0.0).orientation(pose.psi);
 }
 
@@ -213,7 +160,7 @@ constexpr std::size_t kPoseSize = 88;  // upper bound of one PoseStamped in fram
 
 std::string encode_predicted_path(const Frame& frame, const Run&) {
   const auto points = points_of(frame.result.plan);
-  Writer writer{64 + kPoseSize * points.size()};
+  CdrWriter writer{64 + kPoseSize * points.size()};
   writer.header(frame.time, "map").count(points.size());
   for (const controller::PlanPoint& point : points) {
     put_pose_stamped(writer, point.time, {point.x, point.y, point.psi});
@@ -223,7 +170,7 @@ std::string encode_predicted_path(const Frame& frame, const Run&) {
 
 /// A polyline as nav_msgs/Path, each pose looking at the next point.
 std::string encode_line(double time, std::span<const Vec2> line) {
-  Writer writer{64 + kPoseSize * line.size()};
+  CdrWriter writer{64 + kPoseSize * line.size()};
   writer.header(time, "map").count(line.size());
   double heading = 0.0;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -244,7 +191,7 @@ std::string encode_reference(const Frame& frame, const Run&) {
 
 std::string encode_transforms(const Frame& frame, const Run& run) {
   const model::Pose pose = base_link(known_motion(frame), run);
-  return Writer{}
+  return CdrWriter{}
       .count(2)
       .header(frame.time, "map")
       .text("odom")
@@ -261,14 +208,14 @@ std::string encode_drive(const Frame& frame, const Run& run) {
   const model::Command& sent = frame.result.command;
   const double acceleration =
       model::longitudinal_acceleration(run.vehicle, sent.throttle, frame.measurement.speed);
-  return Writer{}
+  return CdrWriter{}
       .header(frame.time, "base_link")
       .put(static_cast<float>(sent.steer), 0.0F, static_cast<float>(frame.result.report.speed_reference),
            static_cast<float>(acceleration), 0.0F)
       .bytes();
 }
 
-std::string encode_clock(const Frame& frame, const Run&) { return Writer{}.stamp(frame.time).bytes(); }
+std::string encode_clock(const Frame& frame, const Run&) { return CdrWriter{}.stamp(frame.time).bytes(); }
 
 struct Diagnosis {
   std::uint8_t level;  ///< 0 fine, 1 warning, 2 error, 3 unknown
@@ -314,7 +261,7 @@ Diagnosis diagnose_road(const Frame& frame) {
 
 std::string encode_diagnostics(const Frame& frame, const Run& run) {
   const controller::StepReport& report = frame.result.report;
-  Writer writer;
+  CdrWriter writer;
   const auto status = [&](Diagnosis diagnosis, std::string_view name, std::string_view hardware,
                           std::initializer_list<std::pair<std::string_view, std::string>> values) {
     writer.put(diagnosis.level).text(name).text(diagnosis.message).text(hardware).count(values.size());
@@ -440,6 +387,7 @@ const std::vector<RosTopic>& ros_topics() {
       topic("/chicane/change", "chicane_msgs/msg/Change", Cadence::kEvent, nullptr),
       topic("/chicane/limit", "chicane_msgs/msg/Limit", Cadence::kLimit, encode_limit),
       topic("/track/racing_line", "nav_msgs/msg/Path", Cadence::kLimit, encode_racing_line),
+      topic("/scene", "foxglove_msgs/msg/SceneUpdate", Cadence::kRoad, encode_scene),
   };
   return topics;
 }
@@ -451,7 +399,7 @@ void describe(const controller::Controller& controller, Run& run) {
 }
 
 std::string encode_change(double time, std::uint64_t cycle, std::string_view name, std::string_view value) {
-  return Writer{}.stamp(time).put(cycle).text(name).text(value).bytes();
+  return CdrWriter{}.stamp(time).put(cycle).text(name).text(value).bytes();
 }
 
 std::string ros_schema(std::string_view type) {
@@ -467,7 +415,8 @@ std::string ros_schema(std::string_view type) {
 }
 
 std::string_view service_request_schema(std::string_view type) {
-  return type == "std_srvs/srv/SetBool" ? "bool data\n" : "";
+  if (type == "std_srvs/srv/SetBool") return "bool data\n";
+  return type == "chicane_msgs/srv/Ask" ? "string question\n" : "";
 }
 
 std::string_view service_response_schema() { return "bool success\nstring message\n"; }
@@ -479,8 +428,23 @@ std::optional<bool> decode_set_bool(std::string_view request) {
   return request[4] == '\1';
 }
 
+std::optional<std::string> decode_ask(std::string_view request) {
+  // Header, length with the final zero, and the text; peers may pad the end.
+  constexpr std::size_t kBegin = 8;
+  if (request.size() < kBegin + 1 || request[0] != '\0' || (request[1] != '\0' && request[1] != '\1'))
+    return std::nullopt;
+  const bool is_little_endian = request[1] == '\1';
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto byte = static_cast<unsigned char>(request[4 + i]);
+    size |= static_cast<std::size_t>(byte) << (8 * (is_little_endian ? i : 3 - i));
+  }
+  if (size < 1 || size > request.size() - kBegin || request[kBegin + size - 1] != '\0') return std::nullopt;
+  return std::string(request.substr(kBegin, size - 1));
+}
+
 std::string encode_service_response(bool success, std::string_view message) {
-  return Writer{}.put(success).text(message).bytes();
+  return CdrWriter{}.put(success).text(message).bytes();
 }
 
 std::uint64_t to_nanoseconds(double seconds) noexcept {

@@ -45,7 +45,9 @@ struct Run {
   double kerb_width = 0.0;            ///< [m]
   RoadLines road;
   lap_time::LimitAnswer limit{};
-  std::string building{};  ///< another run that is being built, in words: "track = oval"; empty: none
+  std::string building{};    ///< another run that is being built, in words: "track = oval"; empty: none
+  std::string end{};         ///< "finished", "stopped" or "failed"; empty: it goes on
+  std::string end_reason{};  ///< why it is over, in one sentence; empty when it finished
 };
 
 /// What a controller says about itself, copied into a run.
@@ -86,12 +88,14 @@ struct RosTopic {
 /// The definition of a type ("nav_msgs/msg/Odometry") with all it refers to; empty for a type not known.
 [[nodiscard]] std::string ros_schema(std::string_view type);
 
-/// Services with standard ROS 2 types: std_srvs/srv/Trigger asks nothing, std_srvs/srv/SetBool one boolean;
-/// both answer with success and a sentence.
+/// Services: std_srvs/srv/Trigger asks nothing, std_srvs/srv/SetBool one boolean, chicane_msgs/srv/Ask a
+/// text; all answer with success and a sentence.
 [[nodiscard]] std::string_view service_request_schema(std::string_view type);
 [[nodiscard]] std::string_view service_response_schema();
 /// The boolean of a SetBool request; none when the bytes are not one.
 [[nodiscard]] std::optional<bool> decode_set_bool(std::string_view request);
+/// The text of an Ask request; none when the bytes are not one.
+[[nodiscard]] std::optional<std::string> decode_ask(std::string_view request);
 [[nodiscard]] std::string encode_service_response(bool success, std::string_view message);
 
 /// Seconds of the run as nanoseconds, clamped to what a ROS 2 time can hold; not-a-number gives 0.

@@ -55,6 +55,24 @@ Json entry(std::string_view key, Kind kind, std::string_view unit, double minimu
           {"maximum", has_range ? Json(maximum) : Json(nullptr)}};
 }
 
+/// Where a fault sits, by what it changes.
+std::string_view place_of(const sim::FaultKind& kind) {
+  if (kind.deadline_questions != nullptr) return "computer";
+  if (kind.grip != nullptr || kind.side_acceleration != nullptr) return "road";
+  if (kind.actuate != nullptr) return "actuator";
+  if (kind.loses_command != nullptr || kind.extra_delay != nullptr) return "link";
+  return kind.place == sim::FaultPlace::kLink ? "link" : "sensor";
+}
+
+Json described(const sim::FaultKind& kind) {
+  Json json{{"group", place_of(kind)}, {"duration_s", kind.duration}};
+  json["strength_meaning"] = kind.strength_meaning;
+  json["strength"] = kind.strength;
+  json["weakest"] = kind.weakest;
+  json["strongest"] = kind.strongest;
+  return json;
+}
+
 std::optional<Shelf> shelf_of(std::string_view key) {
   if (key == "preset") return Shelf::kPreset;
   if (key == "car") return Shelf::kCar;
@@ -72,7 +90,7 @@ Json names_on(Shelf shelf, const std::string& chosen) {
 
 }  // namespace
 
-std::string schema_json(const scenario::Scenario& defaults,
+std::string schema_json(const scenario::Scenario& defaults, const scenario::Scenario& start,
                         const std::function<bool(const Parameter&)>& is_offered,
                         std::span<const Control> controls) {
   Json list = Json::array();
@@ -88,6 +106,7 @@ std::string schema_json(const scenario::Scenario& defaults,
       json["choices"] = names_on(*shelf, std::get<std::string>(get(defaults, row)));
     }
     json["default"] = to_json(get(defaults, row));
+    json["start"] = to_json(get(start, row));
     json["meaning"] = option.meaning;
     json["is_live"] = is_live(row);
     list.push_back(std::move(json));
@@ -99,6 +118,7 @@ std::string schema_json(const scenario::Scenario& defaults,
     json["default"] = to_json(control.initial);
     json["meaning"] = control.meaning;
     json["is_live"] = true;
+    if (control.fault != nullptr) json["fault"] = described(*control.fault);
     list.push_back(std::move(json));
   }
   return list.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";

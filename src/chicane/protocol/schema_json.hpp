@@ -8,6 +8,7 @@
 
 #include "chicane/protocol/schema.hpp"
 #include "chicane/scenario/scenario.hpp"
+#include "chicane/sim/fault.hpp"
 
 namespace chicane::protocol {
 
@@ -20,15 +21,17 @@ struct Control {
   double minimum = 0.0;   ///< numbers only
   double maximum = 0.0;
   Value initial = false;
-  std::string_view meaning;  ///< one sentence
+  std::string_view meaning;               ///< one sentence
+  const sim::FaultKind* fault = nullptr;  ///< of a switch for a fault; else null
 };
 
 /// What a page needs to draw sliders, as JSON: an array of {"key", "group", "kind": "number" | "integer" |
 /// "bool" | "choice" | "text", "unit", "minimum", "maximum", "may_be_infinite", "choices", "default",
-/// "meaning", "is_live"}, the schema's rows that `is_offered` lets in, then the controls. `defaults` says
-/// what "default" is. A number that is infinite is the text "inf". Preset, car and track offer what ships.
-/// Reads folders.
-[[nodiscard]] std::string schema_json(const scenario::Scenario& defaults,
+/// "start", "meaning", "is_live"}, for faults "fault": {"group", "duration_s", "strength", "weakest",
+/// "strongest", "strength_meaning"}, the schema's rows that `is_offered` lets in, then the controls.
+/// `defaults` says what "default" is, `start` with what the run started; controls have no "start". A number
+/// that is infinite is the text "inf". Preset, car and track offer what ships. Reads folders.
+[[nodiscard]] std::string schema_json(const scenario::Scenario& defaults, const scenario::Scenario& start,
                                       const std::function<bool(const Parameter&)>& is_offered,
                                       std::span<const Control> controls);
 

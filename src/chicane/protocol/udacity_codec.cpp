@@ -22,8 +22,7 @@ using Json = nlohmann::json;
 constexpr double kSteerUnit =
     degrees_to_radians(25.0);                 // wheel angle at ±1 (CarController.cs, m_MaximumSteerAngle)
 constexpr double kMilesPerHour = 2.23693629;  // CarController.cs, CurrentSpeed
-constexpr std::size_t kMaxReplyPoints = 1000;
-constexpr std::size_t kMaxWords = 80;  // of received text in our messages [byte]
+constexpr std::size_t kMaxWords = 80;         // of received text in our messages [byte]
 
 /// What is allowed for a number of the telemetry, on the wire. Wide enough for any world, narrow enough for
 /// arithmetic.
@@ -176,6 +175,29 @@ class FieldReader {
     return result;
   }
 
+  /// A line whose points the original reads one by one out of two lists, *_y at every index of *_x. What is
+  /// no list has no points there, whatever it is; an object counts as the list of its values.
+  std::vector<Vec2> line(const char* x_key, const char* y_key, const Range& range) {
+    std::vector<Vec2> points;
+    const Json* xs = find(x_key);
+    if (xs == nullptr || !xs->is_structured() || xs->empty()) return points;  // then *_y is not looked at
+    const Json* ys = find(y_key);
+    if (ys == nullptr) return points;
+    const std::size_t size = ys->is_structured() ? ys->size() : 0;
+    if (size < xs->size()) {
+      refuse({fmt::format("{} has {} points, {} only {}", x_key, xs->size(), y_key, size)});
+      return points;
+    }
+    points.reserve(xs->size());
+    auto y = ys->begin();
+    for (auto x = xs->begin(); x != xs->end() && !broken_; ++x, ++y) {
+      const std::size_t i = points.size();
+      points.emplace_back(checked(fmt::format("{}[{}]", x_key, i), *x, range),
+                          checked(fmt::format("{}[{}]", y_key, i), *y, range));
+    }
+    return points;
+  }
+
   /// The rows of a table of at most `capacity`; none when there is no such field.
   template <std::size_t kColumns>
   std::vector<std::array<double, kColumns>> rows(const char* key, std::size_t capacity,
@@ -282,21 +304,6 @@ double normalised(double value) {
   return std::isfinite(value) ? std::clamp(value, -1.0, 1.0) + 0.0 : 0.0;
 }
 
-/// A line of the reply. The original reads *_y at every index of *_x; what *_y has more is ignored.
-std::vector<Vec2> read_line(FieldReader& fields, const char* x_key, const char* y_key) {
-  constexpr Range kAnything{-1e300, 1e300};
-  const std::vector<double> xs = fields.numbers(x_key, kMaxReplyPoints, kAnything);
-  const std::vector<double> ys = fields.numbers(y_key, kMaxReplyPoints, kAnything);
-  std::vector<Vec2> line;
-  if (ys.size() < xs.size()) {
-    fields.refuse({fmt::format("{} has {} points, {} only {}", x_key, xs.size(), y_key, ys.size())});
-    return line;
-  }
-  line.reserve(xs.size());
-  for (std::size_t i = 0; i < xs.size(); ++i) line.emplace_back(xs[i], ys[i]);
-  return line;
-}
-
 /// A stop plan of the reply; times count from when the telemetry was sampled.
 safety::StopPlan read_stop(FieldReader& fields) {
   constexpr const char* kKey = "stop_plan";
@@ -391,13 +398,13 @@ UdacityReply parse_reply(std::string_view text) {
   if (event->name != "steer")
     return UdacityBroken{fmt::format("event: got {}, expected \"steer\"", shown(event->name))};
   if (!event->payload.is_object()) return unexpected("steer", event->payload, "an object");
-  constexpr Range kAnything{-1e300, 1e300};
+  constexpr Range kAnything{-3.4e38, 3.4e38};  // a larger number does not fit the original's float
   FieldReader fields(event->payload);
   UdacitySteer steer;
   steer.command.steer = 0.0 - std::clamp(fields.number("steering_angle", kAnything), -1.0, 1.0) * kSteerUnit;
   steer.command.throttle = std::clamp(fields.number("throttle", kAnything), -1.0, 1.0);
-  steer.reference = read_line(fields, "next_x", "next_y");
-  steer.plan = read_line(fields, "mpc_x", "mpc_y");
+  steer.reference = fields.line("next_x", "next_y", kAnything);
+  steer.plan = fields.line("mpc_x", "mpc_y", kAnything);
   steer.stop = read_stop(fields);
   if (fields.broken()) return *fields.broken();
   return steer;

@@ -5,65 +5,18 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <map>
 
 #include "chicane/base/text.hpp"
-#include "chicane/protocol/detail/yaml_tree.hpp"
 #include "chicane/protocol/fault_codec.hpp"
+#include "chicane/protocol/yaml_tree.hpp"
 
 namespace chicane::protocol {
 namespace {
 
-constexpr std::size_t kMostBytes = 256U << 10U;
 constexpr int kMostNodes = 10000;  // counted with aliases followed
 constexpr int kMostDepth = static_cast<int>(YamlTree::kMostDepth);
 constexpr std::size_t kMostFaults = 50;
-
-/// Length of the UTF-8 sequence at the beginning of `text`; 0 when it is none (RFC 3629: no overlong forms,
-/// no surrogates).
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) -> std::uint32_t {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
-  };
-  const auto continues = [&](std::size_t i) { return (byte(i) & 0xc0U) == 0x80U; };
-  if (byte(0) < 0x80U) return 1;
-  if (byte(0) >= 0xc2U && byte(0) < 0xe0U) return continues(1) ? 2 : 0;
-  const std::uint32_t first_two = byte(0) << 8U | byte(1);
-  if ((byte(0) & 0xf0U) == 0xe0U) {
-    const bool is_allowed = first_two >= 0xe0a0U && (first_two < 0xeda0U || first_two > 0xedbfU);
-    return is_allowed && continues(1) && continues(2) ? 3 : 0;
-  }
-  const bool is_allowed = first_two >= 0xf090U && first_two <= 0xf48fU;
-  return is_allowed && continues(1) && continues(2) && continues(3) ? 4 : 0;
-}
-
-/// What must hold for the bytes before a YAML parser sees them.
-Result<void> check_bytes(std::string_view text, const std::string& file) {
-  if (text.size() > kMostBytes) {
-    return fail(ErrorCode::kParse,
-                fmt::format("{}: file: got {} bytes, expected at most {}", file, text.size(), kMostBytes));
-  }
-  int line = 1;
-  bool in_indentation = true;
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = utf8_length(text.substr(i));
-    const auto fault = [&](std::string_view got, std::string_view expected) {
-      return fail(ErrorCode::kParse,
-                  fmt::format("{}:{}: text: got {}, expected {}", file, line, got, expected));
-    };
-    if (length == 0) return fault(fmt::format("byte 0x{:02x}", static_cast<unsigned char>(text[i])), "UTF-8");
-    const char c = text[i];
-    if (c == '\t' && in_indentation) return fault("a tab in the indentation", "spaces");
-    if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t') {
-      return fault(fmt::format("control character 0x{:02x}", static_cast<unsigned char>(c)), "text");
-    }
-    if (c == '\n') ++line;
-    in_indentation = c == '\n' || (in_indentation && c == ' ');
-    i += length;
-  }
-  return {};
-}
 
 /// Walks the nodes of one file and collects settings and faults.
 class Reader {
@@ -270,7 +223,6 @@ std::string place(const std::string& file, int line) {
 }
 
 Result<Document> parse_document(std::string_view text, const std::string& file) {
-  if (const Result<void> checked = check_bytes(text, file); !checked) return fail(checked.error());
   const Result<YamlTree> tree = parse_yaml(text, file);
   if (!tree) return fail(tree.error());
   Reader reader(file);

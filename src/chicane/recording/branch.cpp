@@ -7,14 +7,14 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <variant>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/schema.hpp"
-#include "chicane/recording/reader.hpp"
-#include "chicane/recording/recorder.hpp"
+#include "chicane/sim/judge.hpp"
 
 namespace chicane::recording {
 namespace {
@@ -34,10 +34,59 @@ bool is_same(const telemetry::Frame& frame, const protocol::Step& step) {
          is_same(sent.throttle, sent_then.throttle);
 }
 
+/// The road of a future from the branch on: how far, and when which third of the lap was passed.
+class Odometer {
+ public:
+  /// Distance from the start line of the lap in which the first frame is [m].
+  double add(const telemetry::Frame& frame, const path::Track& track) {
+    const bool is_closed = track.centre().is_closed();
+    const double length = track.centre().length() - (is_closed ? 0.0 : track.start_s());
+    third_ = length / sim::WorldState::kSectors;
+    if (!has_begun_) {
+      begin(frame, frame.s - track.start_s(), is_closed ? length : 0.0);
+    } else {
+      double step = frame.s - s_;
+      if (is_closed) step -= length * std::round(step / length);
+      go(step, frame.time);
+    }
+    s_ = frame.s;
+    time_ = frame.time;
+    return distance_;
+  }
+  [[nodiscard]] const std::vector<Passage>& passages() const { return passages_; }
+
+ private:
+  void begin(const telemetry::Frame& frame, double behind_line, double round) {
+    has_begun_ = true;
+    distance_ = behind_line < 0.0 ? behind_line + round : behind_line;
+    start_ = frame.time;
+    lap_ = frame.lap;
+    passed_ = thirds();
+  }
+  void go(double step, double time) {
+    const double before = distance_;
+    distance_ += step;
+    if (thirds() <= passed_) return;
+    passed_ = thirds();
+    const double share = (passed_ * third_ - before) / step;
+    passages_.push_back({.lap = lap_ + (passed_ - 1) / sim::WorldState::kSectors + 1,
+                         .sector = (passed_ - 1) % sim::WorldState::kSectors + 1,
+                         .time = time_ + share * (time - time_) - start_});
+  }
+  [[nodiscard]] int thirds() const { return static_cast<int>(std::floor(distance_ / third_)); }
+
+  bool has_begun_ = false;
+  double third_ = 1.0;                                          // of the lap [m]
+  double distance_ = 0.0, s_ = 0.0, time_ = 0.0, start_ = 0.0;  // as of the last frame
+  int lap_ = 0, passed_ = 0;
+  std::vector<Passage> passages_;
+};
+
 /// What a future comes to, from its frames.
 class FutureMeter {
  public:
-  void add(const telemetry::Frame& frame) {
+  /// The distance that Odometer tells.
+  double add(const telemetry::Frame& frame, const path::Track& track) {
     if (count_ == 0) {
       start_ = frame.time;
       events_ = frame.off_track_events;
@@ -50,19 +99,32 @@ class FutureMeter {
         count_ == 0 ? frame.edge_distance : std::min(future_.min_edge_distance, frame.edge_distance);
     future_.top_speed = std::max(future_.top_speed, speed);
     future_.off_track_events = frame.off_track_events - events_;
+    const controller::StepReport& step = frame.result.report;
+    if (!frame.is_manual && (step.rung != controller::Rung::kController || step.gated)) {
+      ++future_.interventions;
+    }
     ++count_;
     speed_sum_ += speed;
     future_.mean_speed = speed_sum_ / static_cast<double>(count_);
+    return road_.add(frame, track);
   }
   void add(const telemetry::CompletedLap& lap) { future_.lap_times.push_back(lap.lap_time); }
   [[nodiscard]] Future future() const {
     Future future = future_;
     if (count_ == 0) future.min_edge_distance = std::numeric_limits<double>::quiet_NaN();
+    future.passages = road_.passages();
     return future;
+  }
+  /// How often the line was crossed, as far as a frame behind it was seen.
+  [[nodiscard]] int crossings() const {
+    return static_cast<int>(
+        std::count_if(road_.passages().begin(), road_.passages().end(),
+                      [](const Passage& each) { return each.sector == sim::WorldState::kSectors; }));
   }
 
  private:
   Future future_;
+  Odometer road_;
   std::uint64_t count_ = 0;
   double start_ = 0.0;
   double speed_sum_ = 0.0;
@@ -90,7 +152,7 @@ class Rebuilt {
     const std::vector<protocol::Control> faults = protocol::fault_controls();
     for (std::size_t i = 0; i < faults.size(); ++i) {
       const bool is_on = (loop_->frame().active_faults >> i & 1U) != 0U;
-      if (faults[i].key == change.name.view() && is_on == (change.value.view() == "true")) return;
+      if (faults[i].key == change.name.view() && is_on == (change.value.view() != "false")) return;
     }
     finish_cycle();  // changes come between two cycles
     loop_->apply(change);
@@ -129,25 +191,25 @@ class Branching {
   Branching(const BranchOptions& options, const BranchHooks& hooks, const run::ControllerFactory& make)
       : options_{options}, hooks_{hooks}, make_{make} {}
 
-  Result<BranchReport> run() {
-    RecordingHead head;
-    const auto read = read_recording(options_.log, head, [&](const RecordedEvent& event) -> Result<void> {
-      if (head["mode"] == "serve") {
-        return fail(ErrorCode::kInvalidArgument,
-                    options_.log +
-                        ": mode: got serve, expected drive: the car of an external simulator is not "
-                        "here to drive on");
-      }
+  Result<BranchReport> run(const RunEvents& events) {
+    const Result<void> read = events([this](const RecordedEvent& event) {
       return std::visit([this](const auto& one) { return take(one); }, event);
     });
     if (!read) return fail(read.error());
+    if (!has_branched_ && options_.drives_both) {
+      if (Result<void> branched = branch_at_end(); !branched) return fail(branched.error());
+    }
     if (!has_branched_) {
       return fail(ErrorCode::kInvalidArgument,
                   fmt::format("--branch-at: got {}, expected a moment in [0, {:.2f}] s, which was recorded",
                               options_.at, last_log_time_));
     }
+    report_.known_until = last_log_time_;
     first_.finish_cycle();  // a recording ends with the last control step, a run may have gone on to a line
-    if (Result<void> done = drive_on(); !done) return fail(done.error());
+    if (options_.drives_both && !is_first_over_) {
+      if (Result<void> done = drive_on(first_, recorded_, false); !done) return fail(done.error());
+    }
+    if (Result<void> done = drive_on(second_, branched_, true); !done) return fail(done.error());
     report_.recorded = recorded_.future();
     report_.branched = branched_.future();
     return report_;
@@ -155,6 +217,7 @@ class Branching {
 
  private:
   Result<void> take(const scenario::Scenario& scenario) {
+    if (ends_first(has_branched_)) return {};
     if (Result<void> begun = first_.begin(scenario, make_); !begun) return begun;
     if (has_branched_) return {};
     if (Result<void> begun = second_.begin(scenario, make_); !begun) return begun;
@@ -162,6 +225,7 @@ class Branching {
   }
 
   Result<void> take(const telemetry::Change& change) {
+    if (is_first_over_) return {};
     first_.apply(change);
     if (!has_branched_) change_second(change);
     return {};
@@ -169,21 +233,45 @@ class Branching {
 
   Result<void> take(const RecordedStep& recorded) {
     last_log_time_ = recorded.log_time;
-    if (!has_branched_ && recorded.log_time >= options_.at - 1e-9) {
+    next_cycle_ = recorded.step.cycle + 1;
+    if (!may_go_on(recorded.log_time)) return fail(ErrorCode::kInvalidArgument, kGivenUp);
+    const bool is_start = !has_branched_ && recorded.log_time >= options_.at - 1e-9;
+    if (is_start) {
       if (Result<void> branched = branch(recorded); !branched) return branched;
     }
+    const bool is_seen = has_branched_ && is_within(recorded.log_time);
+    // Of two futures that are compared nobody asks for what follows, nor for another run.
+    if (ends_first(has_branched_ && !is_start && (!is_seen || recorded.step.begins))) return {};
     const telemetry::Frame& frame = first_.follow(recorded.step);
     if (!report_.first_difference && !is_same(frame, recorded.step)) {
       report_.first_difference = recorded.step.cycle;
     }
     if (has_branched_) {
-      if (is_within(recorded.log_time)) recorded_.add(frame);
+      if (is_seen) add(recorded_, first_.loop(), false);
       return {};
     }
     ++report_.steps_before;
     static_cast<void>(second_.follow(recorded.step));
     if (hooks_.on_frame) hooks_.on_frame(second_.loop().frame());
     return {};
+  }
+
+  /// From now on: what comes next is not known yet.
+  Result<void> branch_at_end() {
+    if (next_cycle_ == 0)
+      return fail(ErrorCode::kInvalidArgument, "the run has not begun: there is nothing to go on from");
+    RecordedStep next;
+    next.step.cycle = next_cycle_;
+    first_.finish_cycle();
+    second_.finish_cycle();
+    next.log_time = last_log_time_ + (first_.loop().time() - first_.loop().frame().time);
+    return branch(next);
+  }
+
+  void add(FutureMeter& meter, const run::ClosedLoop& loop, bool is_branch) {
+    const double distance = meter.add(loop.frame(), loop.track());
+    if (hooks_.on_future)
+      hooks_.on_future({.frame = loop.frame(), .distance = distance, .is_branch = is_branch});
   }
 
   Result<void> branch(const RecordedStep& recorded) {
@@ -194,6 +282,7 @@ class Branching {
     report_.cycle = recorded.step.cycle;
     run::ClosedLoop& loop = second_.loop();
     if (recorded.step.begins && loop.cycle() > 0) loop.restart();
+    branch_time_ = loop.time();
     scenario::Scenario changed = loop.scenario();
     for (const auto& [key, text] : options_.settings) {
       if (Result<void> set = check(key, text, changed); !set) return set;
@@ -213,10 +302,10 @@ class Branching {
     const std::vector<protocol::Control> faults = protocol::fault_controls();
     const bool is_fault = std::any_of(faults.begin(), faults.end(),
                                       [&](const protocol::Control& fault) { return fault.key == key; });
-    if (is_fault && (text == "true" || text == "false")) return {};
     if (is_fault) {
-      return fail(ErrorCode::kInvalidArgument,
-                  fmt::format("{}: got {}, expected true or false", key, printable(text)));
+      if (text == "false") return {};
+      const auto event = protocol::read_switch(std::string_view(key).substr(key.find('.') + 1), text);
+      return event ? Result<void>{} : fail(event.error());
     }
     const protocol::Parameter* row = protocol::find(key);
     if (row != nullptr && !protocol::is_live(*row)) {
@@ -235,36 +324,50 @@ class Branching {
     if (hooks_.on_change) hooks_.on_change(change);
   }
 
-  /// The second future, in virtual time.
-  Result<void> drive_on() {
-    run::ClosedLoop& loop = second_.loop();
+  /// A future, in virtual time, from where it has come to.
+  Result<void> drive_on(Rebuilt& car, FutureMeter& meter, bool is_branch) {
+    run::ClosedLoop& loop = car.loop();
     const double rest = last_log_time_ - report_.at;
-    const bool has_laps_only = options_.laps > 0 && options_.duration == 0.0;
+    const bool has_laps_only = options_.laps + options_.more_laps > 0 && options_.duration == 0.0;
     const double duration = options_.duration > 0.0 ? options_.duration : has_laps_only ? kForever : rest;
-    second_.finish_cycle();
-    const double start = loop.time();
+    car.finish_cycle();
+    const double start = branch_time_;
     while (true) {
       if (loop.is_over()) {
-        report_.end_reason = "the car left the road and did not come back";
+        if (is_branch) report_.end_reason = "the car left the road and did not come back";
         return {};
       }
       if (options_.laps > 0 && loop.world().lap >= options_.laps) return {};
+      if (has_all_laps(meter)) return {};
       if (loop.is_control_due() && loop.time() - start > duration + 1e-6) return {};
-      if (!second_.advance()) continue;
-      branched_.add(loop.frame());
-      if (hooks_.on_frame) hooks_.on_frame(loop.frame());
+      if (!car.advance()) continue;
+      add(meter, loop, is_branch);
+      if (!may_go_on(report_.at + loop.time() - start)) return fail(ErrorCode::kInvalidArgument, kGivenUp);
+      if (is_branch && hooks_.on_frame) hooks_.on_frame(loop.frame());
       if (loop.time() - start > kLongest) {
-        report_.end_reason = "the laps were not driven within an hour";
+        if (is_branch) report_.end_reason = "the laps were not driven within an hour";
         return {};
       }
     }
   }
 
+  /// The first future of two that are driven ends here, if `is_end`.
+  bool ends_first(bool is_end) {
+    is_first_over_ = is_first_over_ || (is_end && options_.drives_both);
+    return is_first_over_;
+  }
+  [[nodiscard]] bool may_go_on(double time) const { return !hooks_.go_on || hooks_.go_on(time); }
+  [[nodiscard]] bool has_all_laps(const FutureMeter& meter) const {
+    return options_.more_laps > 0 && meter.crossings() >= options_.more_laps;
+  }
+
   /// Of the recorded future: as long as the other one is asked to be.
   [[nodiscard]] bool is_within(double log_time) const {
+    if (has_all_laps(recorded_)) return false;
     return log_time - report_.at <= (options_.duration > 0.0 ? options_.duration : kForever) + 1e-9;
   }
 
+  static constexpr const char* kGivenUp = "given up";
   static constexpr double kForever = std::numeric_limits<double>::infinity();
   static constexpr double kLongest = 3600.0;  // [s] without a given duration
 
@@ -281,14 +384,35 @@ class Branching {
   FutureMeter recorded_, branched_;
   BranchReport report_;
   bool has_branched_ = false;
-  double last_log_time_ = 0.0;  // [s]
+  bool is_first_over_ = false;
+  double branch_time_ = 0.0;      // of the run [s]
+  double last_log_time_ = 0.0;    // [s]
+  std::uint64_t next_cycle_ = 0;  // behind the last recorded one
 };
 
 }  // namespace
 
+Result<BranchReport> branch_run(const RunEvents& events, const BranchOptions& options,
+                                const BranchHooks& hooks, const run::ControllerFactory& make) {
+  return Branching(options, hooks, make).run(events);
+}
+
 Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks,
                                       const run::ControllerFactory& make) {
-  return Branching(options, hooks, make).run();
+  RecordingHead head;
+  const RunEvents events = [&](const auto& visit) -> Result<void> {
+    const auto read = read_recording(options.log, head, [&](const RecordedEvent& event) -> Result<void> {
+      if (head["mode"] == "serve") {
+        return fail(ErrorCode::kInvalidArgument,
+                    options.log +
+                        ": mode: got serve, expected drive: the car of an external simulator is not "
+                        "here to drive on");
+      }
+      return visit(event);
+    });
+    return read ? Result<void>{} : fail(read.error());
+  };
+  return branch_run(events, options, hooks, make);
 }
 
 }  // namespace chicane::recording

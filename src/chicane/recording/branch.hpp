@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/recording/reader.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/telemetry/frame.hpp"
 
@@ -22,6 +23,16 @@ struct BranchOptions {
   std::vector<std::pair<std::string, std::string>> settings{};  ///< as --set takes them; empty: no change
   double duration = 0.0;  ///< from `at` on [s]; 0: to the end of the recording, or `laps`
   int laps = 0;           ///< until so many laps of the run are completed; 0: no matter
+  int more_laps = 0;      ///< until the line was crossed so often from `at` on; 0: no matter
+  /// The first future is driven on, too, where what is known of it ends before the second one does.
+  bool drives_both = false;
+};
+
+/// The end of a third of a lap that was passed.
+struct Passage {
+  int lap = 0;        ///< from 1
+  int sector = 0;     ///< from 1
+  double time = 0.0;  ///< since the branch [s], interpolated
 };
 
 /// One future, from the moment of the branch on.
@@ -33,12 +44,22 @@ struct Future {
   double mean_speed = 0.0;          ///< [m/s]
   double top_speed = 0.0;           ///< [m/s]
   int off_track_events = 0;
+  std::uint64_t interventions = 0;  ///< control steps in which another command than the controller's was sent
+  std::vector<Passage> passages{};
+};
+
+/// A control step of a future.
+struct FutureStep {
+  const telemetry::Frame& frame;
+  double distance = 0.0;  ///< along the line, from the start line of the lap in which the branch begins [m]
+  bool is_branch = false;
 };
 
 struct BranchReport {
   double at = 0.0;                 ///< where it begins: the first control step from there on [s]
   std::uint64_t cycle = 0;         ///< that control step, in its run
   std::uint64_t steps_before = 0;  ///< computed again on the way to it
+  double known_until = 0.0;        ///< the last control step of the recording [s]
   /// The first of all recorded steps that did not come out bit for bit as recorded: from there on the first
   /// future is what this program computes, not what was.
   std::optional<std::uint64_t> first_difference{};
@@ -53,14 +74,24 @@ struct BranchHooks {
   std::function<void(const telemetry::Change&)> on_change{};
   std::function<void(const telemetry::Frame&)> on_frame{};
   std::function<void(const telemetry::CompletedLap&)> on_lap{};
+  std::function<void(const FutureStep&)> on_future{};  ///< of both, from the branch on, one after the other
+  /// Asked at each control step that is computed, with the time [s] it has come to; false gives up.
+  std::function<bool(double time)> go_on{};
 };
+
+/// Tells all events of a run to a visitor, in order; its failure ends them.
+using RunEvents = std::function<Result<void>(const std::function<Result<void>(const RecordedEvent&)>& visit)>;
 
 /// Computes a recorded run of `drive` again from its start, controller and plant, and drives on from
 /// `options.at` with other settings, in virtual time. Fails with kInvalidArgument when the moment is not in
-/// the recording, a setting is unknown, out of range or cannot change in a run that goes on, or when the
-/// recording is not of our simulator.
+/// the recording, a setting is unknown, out of range or cannot change in a run that goes on, when
+/// BranchHooks::go_on gives up, or when the recording is not of our simulator.
 [[nodiscard]] Result<BranchReport> branch_recording(
     const BranchOptions& options, const BranchHooks& hooks,
     const run::ControllerFactory& make = run::make_controller);
+/// The same of a run that is not a file; `options.log` is not used.
+[[nodiscard]] Result<BranchReport> branch_run(const RunEvents& events, const BranchOptions& options,
+                                              const BranchHooks& hooks,
+                                              const run::ControllerFactory& make = run::make_controller);
 
 }  // namespace chicane::recording

@@ -23,8 +23,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // What the dashboard draws of a log. The standard messages beside them say the same to other viewers.
-const std::vector<std::string> kTopics{"/chicane/frame",  "/chicane/plan", "/chicane/run", "/chicane/lap",
-                                       "/chicane/change", "/track/left",   "/track/right", "/track/centre"};
+const std::vector<std::string> kTopics{"/chicane/frame", "/chicane/plan",   "/chicane/run",
+                                       "/chicane/lap",   "/chicane/change", "/chicane/limit",
+                                       "/track/left",    "/track/right",    "/track/centre"};
 constexpr std::array kRates{10.0, 5.0, 2.0, 1.0};  // [Hz]
 
 // The dashboard's files are gzip-compressed in the program, and stay so in the page: every browser unpacks

@@ -2,7 +2,9 @@
 #include "chicane/recording/reader.hpp"
 
 #include <array>
+#include <optional>
 #include <utility>
+#include <variant>
 
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
@@ -111,6 +113,20 @@ class RecordingReader {
 Result<telemetry::McapReport> read_recording(const std::string& path, RecordingHead& head,
                                              const std::function<Result<void>(const RecordedEvent&)>& visit) {
   return RecordingReader(path, head, visit).read();
+}
+
+Result<scenario::Scenario> recorded_scenario(const std::string& path) {
+  RecordingHead head;
+  std::optional<scenario::Scenario> first;
+  const auto read = read_recording(path, head, [&](const RecordedEvent& event) -> Result<void> {
+    if (const auto* scenario = std::get_if<scenario::Scenario>(&event)) first = *scenario;
+    return fail(ErrorCode::kInvalidArgument, path + ": read as far as needed");
+  });
+  if (!first) return fail(read ? Error{ErrorCode::kParse, path + ": scenario: got none"} : read.error());
+  if (head["mode"] == "serve") {
+    return fail(ErrorCode::kInvalidArgument, path + ": mode: got serve, expected drive");
+  }
+  return *first;
 }
 
 }  // namespace chicane::recording

@@ -44,4 +44,8 @@ struct RecordingHead {
     const std::string& path, RecordingHead& head,
     const std::function<Result<void>(const RecordedEvent&)>& visit);
 
+/// The scenario of the first run in a recording of `drive`; the failures of read_recording(), and
+/// kInvalidArgument for a recording of `serve`, whose car is not here to drive on.
+[[nodiscard]] Result<scenario::Scenario> recorded_scenario(const std::string& path);
+
 }  // namespace chicane::recording

@@ -10,6 +10,8 @@
 #include "chicane/protocol/schema.hpp"
 #include "chicane/recording/reader.hpp"
 #include "chicane/run/control_cycle.hpp"
+#include "chicane/run/make.hpp"
+#include "chicane/run/racing.hpp"
 
 namespace chicane::recording {
 namespace {
@@ -22,8 +24,10 @@ bool is_same(double a, double b) {
 class Recomputation {
  public:
   Recomputation(const scenario::Scenario& scenario, std::unique_ptr<controller::Controller> controller,
-                const path::Track* track)
-      : scenario_{scenario}, cycle_{std::move(controller), scenario, track} {}
+                const path::Track* track, std::shared_ptr<const road::RacingRoad> lap)
+      : scenario_{scenario}, cycle_{std::move(controller), scenario, track} {
+    cycle_.use_line(std::move(lap));
+  }
 
   /// What concerns neither controller nor vehicle changes nothing here.
   void add(const telemetry::Change& change) {
@@ -75,13 +79,15 @@ Result<ReplayReport> verify_recording(const std::string& path, const run::Contro
       auto controller = make(*scenario);
       if (!controller) return fail(controller.error());
       std::optional<path::Track> track;
-      if (scenario->guard.road == safety::GuardRoad::kTrack &&
-          scenario->guard.mode != safety::GuardMode::kOff) {
-        auto found = run::make_track(*scenario);  // the guard knew it
+      if (scenario->guard.road == safety::GuardRoad::kTrack) {
+        auto found = run::make_track(*scenario);  // guard and racing controller knew it
         if (!found) return fail(found.error());
         track = std::move(*found);
       }
-      again = std::make_unique<Recomputation>(*scenario, std::move(*controller), track ? &*track : nullptr);
+      auto lap = run::plan_lap(*scenario, track ? &*track : nullptr);
+      if (!lap) return fail(lap.error());
+      again = std::make_unique<Recomputation>(*scenario, std::move(*controller), track ? &*track : nullptr,
+                                              std::move(*lap));
     } else if (const auto* change = std::get_if<telemetry::Change>(&event)) {
       again->add(*change);
     } else {

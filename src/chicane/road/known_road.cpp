@@ -72,6 +72,18 @@ KnownRoad::KnownRoad(double half_width, const model::VehicleParams& vehicle)
   seen_.emplace(kSeen, vehicle);
 }
 
+void KnownRoad::use_line(const RacingRoad* lap) {
+  if (lap == nullptr || lap->line().is_empty()) return;
+  line_ = lap->line();
+  edges_.clear();
+  for (std::size_t i = 0; i < line_.samples().size(); ++i) {
+    const Road::Room room = lap->room(static_cast<double>(i) * line_.spacing());
+    edges_.push_back({room.left, room.right});
+  }
+  is_raced_ = true;
+  ++lines_;
+}
+
 void KnownRoad::reset() noexcept {
   if (seen_) seen_->reset();
 }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/path/road_data.hpp"
+#include "chicane/road/racing_road.hpp"
 #include "chicane/road/reference_line.hpp"
 #include "chicane/road/road.hpp"
 
@@ -22,6 +24,10 @@ class KnownRoad {
   /// From waypoints; `half_width`: assumed each side of their line [m].
   KnownRoad(double half_width, const model::VehicleParams& vehicle);
 
+  /// Instead of the middle of the track, a line to race by: its places, the room beside it, and no wish to
+  /// leave it. Allocates; null changes nothing.
+  void use_line(const RacingRoad* lap);
+
   void reset() noexcept;
   /// Takes in the waypoints of a measurement; nothing where the track is known.
   void add(const model::Measurement& now) noexcept;
@@ -34,8 +40,15 @@ class KnownRoad {
     double right = 0.0;
   };
   [[nodiscard]] Edges edges(double s) const noexcept;
+  /// Where a car that has to stop had better be: that far to the left of the line, between `edges` [m]. In
+  /// the middle of the road, or where a line is raced by on it, but at least `room` from the edges.
+  [[nodiscard]] double target(const Edges& edges, double room) const noexcept {
+    const double middle = 0.5 * (edges.left - edges.right);
+    if (!is_raced_ || edges.left + edges.right < 2.0 * room) return middle;
+    return std::clamp(0.0, room - edges.right, edges.left - room);
+  }
   /// Increases with every new line: positions along an older one mean nothing any more.
-  [[nodiscard]] unsigned revision() const noexcept { return seen_ ? seen_->revision() : 0U; }
+  [[nodiscard]] unsigned revision() const noexcept { return seen_ ? seen_->revision() : lines_; }
 
  private:
   void smooth(const path::RoadData& data, const model::VehicleParams& vehicle);
@@ -44,6 +57,8 @@ class KnownRoad {
   std::vector<Edges> edges_;  ///< at the samples of line_
   std::optional<Road> seen_;
   double half_width_ = 0.0;
+  unsigned lines_ = 0;
+  bool is_raced_ = false;
 };
 
 }  // namespace chicane::road

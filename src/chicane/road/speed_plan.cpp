@@ -14,8 +14,9 @@ constexpr double kLowestSpeed = 2.0;  // [m/s] the plan never asks to stop
 
 /// Largest v with v² demand <= share · friction · (load_0 + load_v v).
 double speed_for(double demand, const model::VehicleParams& p, double share) {
-  const double g0 = share * p.friction * p.load_constant;
-  const double g1 = share * p.friction * p.load_per_speed;
+  const double grip = share * p.cornering_friction();
+  const double g0 = grip * p.load_constant;
+  const double g1 = grip * p.load_per_speed;
   const double d = std::max(demand, 1e-6);
   return (g1 + std::sqrt(g1 * g1 + 4.0 * d * g0)) / (2.0 * d);
 }
@@ -32,7 +33,8 @@ double demand_of(double curvature, double slope, const model::VehicleParams& p) 
 /// tyres).
 double longitudinal_share(double v, double demand, const model::VehicleParams& p, double grip) {
   if (p.friction_coupling == 0.0) return 1.0;
-  const double use = v * v * demand / (grip * p.friction * (p.load_constant + p.load_per_speed * v));
+  const double use =
+      v * v * demand / (grip * p.cornering_friction() * (p.load_constant + p.load_per_speed * v));
   return std::sqrt(std::max(0.0, 1.0 - p.friction_coupling * std::min(1.0, use * use)));
 }
 

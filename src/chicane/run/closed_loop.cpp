@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/run/observe.hpp"
 
@@ -20,33 +21,38 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
-ClosedLoop::ClosedLoop(const scenario::Scenario& scenario, path::Track track, path::Track waypoints,
+ClosedLoop::ClosedLoop(const scenario::Scenario& scenario, const Roads::Prepared& road,
                        std::unique_ptr<sim::Plant> plant, std::unique_ptr<controller::Controller> controller)
     : scenario_{scenario},
-      track_{std::move(track)},
-      waypoints_{std::move(waypoints)},
+      track_{road.track},
+      waypoints_{road.waypoints},
       plant_{std::move(plant)},
-      cycle_{std::move(controller), scenario, &track_},
+      cycle_{std::move(controller), scenario, road.known},
       world_{*plant_, track_},
       sensor_{scenario.sensor, scenario.seed},
       faults_{scenario.faults, scenario.seed},
       receiver_{scenario.vehicle, scenario.control_period, scenario.guard.receiver},
       account_{terms_of(scenario, track_.name())} {
+  cycle_.use_line(road.lap);
   restart();
 }
 
 Result<std::unique_ptr<ClosedLoop>> ClosedLoop::create(const scenario::Scenario& scenario,
                                                        const ControllerFactory& make) {
-  Result<path::Track> track = make_track(scenario);
-  if (!track) return fail(track.error());
-  Result<path::Track> waypoints = make_waypoints(*track);
-  if (!waypoints) return fail(waypoints.error());
+  Roads roads;
+  return create(scenario, roads, make);
+}
+
+Result<std::unique_ptr<ClosedLoop>> ClosedLoop::create(const scenario::Scenario& scenario, Roads& roads,
+                                                       const ControllerFactory& make) {
+  const auto road = roads.of(scenario);
+  if (!road) return fail(road.error());
   Result<std::unique_ptr<sim::Plant>> plant = make_plant(scenario);
   if (!plant) return fail(plant.error());
   Result<std::unique_ptr<controller::Controller>> controller = make(scenario);
   if (!controller) return fail(controller.error());
-  return std::unique_ptr<ClosedLoop>(new ClosedLoop(scenario, std::move(*track), std::move(*waypoints),
-                                                    std::move(*plant), std::move(*controller)));
+  return std::unique_ptr<ClosedLoop>(
+      new ClosedLoop(scenario, **road, std::move(*plant), std::move(*controller)));
 }
 
 void ClosedLoop::restart() {
@@ -96,8 +102,7 @@ void ClosedLoop::apply(const telemetry::Change& change) noexcept {
   const std::string_view name = change.name.view();
   const std::string_view value = change.value.view();
   constexpr std::string_view kFault = "fault.";
-  if (name.starts_with(kFault))
-    return static_cast<void>(set_fault(name.substr(kFault.size()), value == "true"));
+  if (name.starts_with(kFault)) return switch_fault(name.substr(kFault.size()), value);
   if (name == "run.pace") {
     std::from_chars(value.data(), value.data() + value.size(), pace_);
     pace_ = std::clamp(pace_, kSlowestPace, kFastestPace);
@@ -110,6 +115,15 @@ void ClosedLoop::apply(const telemetry::Change& change) noexcept {
   sensor_.configure(scenario_.sensor);
   plant_->deviate({.friction_scale = scenario_.plant_options.friction_scale,
                    .mass_scale = scenario_.plant_options.mass_scale});
+}
+
+/// What viewers and recordings say of a fault: "true", "false", or for how long and how strongly.
+void ClosedLoop::switch_fault(std::string_view name, std::string_view value) noexcept {
+  if (value == "true" || value == "false") return static_cast<void>(set_fault(name, value == "true"));
+  auto event = protocol::read_switch(name, value);
+  if (!event) return;
+  event->at = time();
+  faults_.set(*event);
 }
 
 bool ClosedLoop::set_fault(std::string_view name, bool on) noexcept {

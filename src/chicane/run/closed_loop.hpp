@@ -13,6 +13,7 @@
 #include "chicane/run/control_cycle.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/manual_drive.hpp"
+#include "chicane/run/roads.hpp"
 #include "chicane/safety/stop_player.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/actuation_delay.hpp"
@@ -48,6 +49,9 @@ class ClosedLoop {
   /// controller may take the place of the one that knows ours (examples/03_your_own_controller.cpp).
   [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(
       const scenario::Scenario& scenario, const ControllerFactory& make = make_controller);
+  /// The same for one of many runs: what is the same for all on a road is taken from `roads`.
+  [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(
+      const scenario::Scenario& scenario, Roads& roads, const ControllerFactory& make = make_controller);
 
   /// One physics step, preceded by a control step when one is due. True when there was a control step:
   /// frame() is new. `budget` [s] bounds the control step; 0 = no bound.
@@ -86,9 +90,10 @@ class ClosedLoop {
   [[nodiscard]] telemetry::RunSummary summary() const;
 
  private:
-  ClosedLoop(const scenario::Scenario& scenario, path::Track track, path::Track waypoints,
+  ClosedLoop(const scenario::Scenario& scenario, const Roads::Prepared& road,
              std::unique_ptr<sim::Plant> plant, std::unique_ptr<controller::Controller> controller);
   void control(double budget, const GivenStep* given) noexcept;
+  void switch_fault(std::string_view name, std::string_view value) noexcept;
   void watch_faults() noexcept;
   [[nodiscard]] model::Command acting() noexcept;
   [[nodiscard]] model::Measurement measure() noexcept;

@@ -13,18 +13,25 @@ namespace {
 
 constexpr double kRoadSpacing = 2.0;  // [m] of the road that the guard knows
 
-safety::Guard make_guard(std::unique_ptr<controller::Controller> controller,
-                         const scenario::Scenario& scenario, const path::Track* track) {
-  if (track == nullptr) return {std::move(controller), scenario.vehicle, scenario.guard};
-  const path::RoadData road = path::road_data(*track, kRoadSpacing);
-  return {std::move(controller), scenario.vehicle, scenario.guard, &road};
-}
-
 }  // namespace
+
+road::KnownRoad known_road(const scenario::Scenario& scenario, const path::Track* track) {
+  if (track == nullptr) return safety::known_road(scenario.guard, nullptr, scenario.vehicle);
+  const path::RoadData road = path::road_data(*track, kRoadSpacing);
+  return safety::known_road(scenario.guard, &road, scenario.vehicle);
+}
 
 ControlCycle::ControlCycle(std::unique_ptr<controller::Controller> controller,
                            const scenario::Scenario& scenario, const path::Track* track)
-    : guard_{make_guard(std::move(controller), scenario, track)} {}
+    : ControlCycle(std::move(controller), scenario, known_road(scenario, track)) {}
+
+ControlCycle::ControlCycle(std::unique_ptr<controller::Controller> controller,
+                           const scenario::Scenario& scenario, road::KnownRoad road)
+    : guard_{std::move(controller), scenario.vehicle, scenario.guard, std::move(road)} {}
+
+void ControlCycle::use_line(std::shared_ptr<const road::RacingRoad> lap) {
+  if (lap) guard_.use_line(std::move(lap));
+}
 
 void ControlCycle::begin(std::uint64_t cycle) noexcept {
   guard_.reset();
@@ -36,6 +43,7 @@ void ControlCycle::begin(std::uint64_t cycle) noexcept {
 void ControlCycle::configure(const scenario::Scenario& scenario) noexcept {
   run::configure(guard_.controller(), scenario);
   guard_.set_vehicle(scenario.vehicle);
+  if (scenario.guard.road == safety::GuardRoad::kWaypoints) guard_.forget_road();
 }
 
 void ControlCycle::step(const CycleInput& input, telemetry::Frame& frame) noexcept {

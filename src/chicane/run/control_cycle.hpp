@@ -9,6 +9,7 @@
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/path/track.hpp"
+#include "chicane/road/racing_road.hpp"
 #include "chicane/safety/guard.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -18,6 +19,9 @@ namespace chicane::run {
 
 /// What holds in a control cycle beside the measurement. Recorded in the frame: with it and the measurement a
 /// cycle is computed again bit for bit.
+/// The road as the scenario's guard knows it at first; `track`: where it may know it, or null. Milliseconds.
+[[nodiscard]] road::KnownRoad known_road(const scenario::Scenario& scenario, const path::Track* track);
+
 struct CycleInput {
   Deadline deadline = Deadline::stopwatch();  ///< of the controller's step
   std::uint32_t deadline_spent_at = 0;        ///< DeadlineLog::spent_at, where it is given
@@ -38,11 +42,18 @@ class ControlCycle {
   /// `track`: the road, where the guard may know it; null: it is not known.
   ControlCycle(std::unique_ptr<controller::Controller> controller, const scenario::Scenario& scenario,
                const path::Track* track);
+  /// The same with what known_road() has made of the track before.
+  ControlCycle(std::unique_ptr<controller::Controller> controller, const scenario::Scenario& scenario,
+               road::KnownRoad road);
+
+  /// The planned lap of a scenario that races (run/racing.hpp), before the car drives; null changes nothing.
+  void use_line(std::shared_ptr<const road::RacingRoad> lap);
 
   /// A new run, or the same car after something unknown: everything learned is forgotten. The next cycle has
   /// the number `cycle`.
   void begin(std::uint64_t cycle = 0) noexcept;
-  /// Settings change before the next cycle; what was learned stays.
+  /// Settings change before the next cycle; what was learned stays. GuardRoad::kWaypoints in the place of
+  /// kTrack, the one change of the guard that is taken up, allocates: it belongs before the car drives.
   void configure(const scenario::Scenario& scenario) noexcept;
 
   /// One cycle. Reads from `frame` the measurement, and the truth where there is one; writes everything that

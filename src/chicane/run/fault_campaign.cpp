@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <thread>
 #include <utility>
 
 #include "chicane/base/math.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "chicane/run/parallel.hpp"
 
 namespace chicane::run {
 namespace {
@@ -50,11 +50,11 @@ Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario, const Cont
 }
 
 Result<FaultOutcome> drive_trial(const scenario::Scenario& scenario, const FlyingLap& lap,
-                                 const FaultTrial& trial, const ControllerFactory& make) {
+                                 const FaultTrial& trial, Roads& roads, const ControllerFactory& make) {
   scenario::Scenario one = endless(scenario);
   FaultOutcome outcome{.trial = trial, .at = lap.begins + trial.onset};
   one.faults = {{trial.fault, outcome.at, trial.duration, trial.strength}};
-  auto created = ClosedLoop::create(one, make);
+  auto created = ClosedLoop::create(one, roads, make);
   if (!created) return fail(created.error());
   ClosedLoop& loop = **created;
   const bool is_lasting = trial.duration >= kLasting;
@@ -88,19 +88,12 @@ Result<std::vector<FaultOutcome>> drive_trials(const scenario::Scenario& scenari
                                                const ControllerFactory& make) {
   std::vector<Result<FaultOutcome>> outcomes(trials.size());
   for (std::size_t i = 0; i < trials.size(); ++i) outcomes[i] = FaultOutcome{.trial = trials[i]};
-  std::atomic<std::size_t> next{0}, done{0};
-  std::atomic<bool> goes_on{true};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < trials.size() && goes_on; i = next++) {
-      outcomes[i] = drive_trial(scenario, lap, trials[i], make);
-      const std::size_t count = ++done;
-      if (on_done && !on_done(count)) goes_on = false;
-    }
-  };
-  std::vector<std::thread> others;
-  for (int j = 1; j < jobs; ++j) others.emplace_back(work);
-  work();
-  for (std::thread& other : others) other.join();
+  std::atomic<std::size_t> done{0};
+  for_each_run(trials.size(), jobs, [&](std::uint64_t i, Roads& roads) {
+    outcomes[i] = drive_trial(scenario, lap, trials[i], roads, make);
+    const std::size_t count = ++done;
+    return !on_done || on_done(count);
+  });
   std::vector<FaultOutcome> all;
   all.reserve(outcomes.size());
   for (Result<FaultOutcome>& outcome : outcomes) {

@@ -7,6 +7,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/run/make.hpp"
+#include "chicane/run/roads.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/fault.hpp"
 
@@ -49,7 +50,7 @@ struct FlyingLap {
 inline constexpr double kSettling = 10.0;     ///< [s]
 inline constexpr double kLongestWait = 30.0;  ///< [s]
 [[nodiscard]] Result<FaultOutcome> drive_trial(const scenario::Scenario& scenario, const FlyingLap& lap,
-                                               const FaultTrial& trial,
+                                               const FaultTrial& trial, Roads& roads,
                                                const ControllerFactory& make = make_controller);
 
 /// Trials of one fault at each `step` [s] of the flying lap.

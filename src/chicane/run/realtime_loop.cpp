@@ -67,7 +67,10 @@ class Session {
       }
       const double until = loop_.time() + kNap;
       while (loop_.time() < until && !loop_.is_over() && !is_to_start_anew_) advance();
-      if (loop_.is_over() && stay_at_end) loop_.drive_on();
+      if (loop_.is_over() && stay_at_end) {
+        if (hooks_.on_over) hooks_.on_over();
+        loop_.drive_on();
+      }
       pacer_.wait_for(loop_.time(), loop_.pace());
     }
   }

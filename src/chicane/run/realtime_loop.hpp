@@ -35,6 +35,7 @@ struct RealtimeHooks {
   std::function<void(const telemetry::CompletedLap&)>
       on_lap{};                                               ///< when a lap was completed, the last one too
   std::function<void(const telemetry::Change&)> on_change{};  ///< after it was applied, before the next cycle
+  std::function<void()> on_over{};  ///< the run is over and is driven on (stay_at_end); again and again
 };
 
 /// Runs an experiment at ClosedLoop::pace() by the clock. A loop that falls behind more than 100 ms does not

@@ -35,7 +35,15 @@ Roadside::Roadside(const path::Track* track, const scenario::Scenario& scenario)
 
 void Roadside::resume() noexcept {
   account_.resume();
-  if (has_seen_) events_before_ += judge_->state().off_track_events;
+  if (judge_ && has_seen_) events_before_ += judge_->state().off_track_events;
+  learner_.reset();
+  has_seen_ = false;
+}
+
+void Roadside::forget_track() {
+  judge_.reset();
+  account_ = Account(terms(nullptr, scenario_));
+  events_before_ = 0;
   has_seen_ = false;
 }
 
@@ -46,6 +54,8 @@ void Roadside::judge(telemetry::Frame& frame) noexcept {
   if (frame.is_judged) {
     account_.add_sighting(judge_->state());
     frame.lap = account_.laps_completed();
+  } else if (!judge_ && frame.has_measurement) {
+    learn(frame);
   }
   frame.completed_lap = account_.completed_lap();
 }
@@ -60,6 +70,15 @@ void Roadside::look(telemetry::Frame& frame) noexcept {
   has_seen_ = true;
   observe(judge_->state(), frame);
   frame.off_track_events += events_before_;
+}
+
+void Roadside::learn(telemetry::Frame& frame) noexcept {
+  const model::Measurement& seen = frame.measurement;
+  learner_.see(frame.time, {.x = seen.x, .y = seen.y, .psi = seen.psi}, seen.speed);
+  account_.add_sighting(learner_.state());
+  frame.lap = account_.laps_completed();
+  frame.lap_time = learner_.state().lap_time;
+  frame.last_lap_time = learner_.state().last_lap_time;
 }
 
 telemetry::RunSummary Roadside::summary() const { return account_.summary(); }

@@ -5,6 +5,7 @@
 
 #include "chicane/path/track.hpp"
 #include "chicane/run/account.hpp"
+#include "chicane/run/lap_learner.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/judge.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -14,15 +15,18 @@ namespace chicane::run {
 
 /// Keeps the account of a run whose car is simulated by another program, over all its connections: counts,
 /// and where the road is known judges the car by the positions that were measured and by the car as it is
-/// believed to be, as sim::World does with a plant of ours. Lap times are as good as the clock that telemetry
-/// is received by: some milliseconds on one machine. One thread.
+/// believed to be, as sim::World does with a plant of ours. Where it is not, laps are learnt from where the
+/// car has been (lap_learner.hpp). Lap times are as good as the clock that telemetry is received by: some
+/// milliseconds on one machine. One thread.
 class Roadside {
  public:
-  /// `track` may be null: then nothing is judged. It outlives this.
+  /// `track` may be null: then laps are timed, and nothing is judged. It outlives this.
   Roadside(const path::Track* track, const scenario::Scenario& scenario);
 
   /// Another car, or the same one from another place: the running lap does not count, the rest stays.
   void resume() noexcept;
+  /// The car drives on another road than was told: what was judged by it is forgotten.
+  void forget_track();
   /// Writes place, edges and laps of what was measured into the frame, and counts it. Allocates nothing.
   void judge(telemetry::Frame& frame) noexcept;
   /// The lap that was just completed, once.
@@ -31,9 +35,11 @@ class Roadside {
 
  private:
   void look(telemetry::Frame& frame) noexcept;
+  void learn(telemetry::Frame& frame) noexcept;
 
   scenario::Scenario scenario_;
   std::optional<sim::Judge> judge_;  ///< none where the road is not known
+  LapLearner learner_;               ///< of laps, in its place
   Account account_;
   int events_before_ = 0;  ///< off the road, before this car
   bool has_seen_ = false;

@@ -16,14 +16,13 @@ using controller::GuardReason;
 using controller::Rung;
 
 constexpr double kAssumedCycle = 0.04;      // [s] where the interval between commands is not known
-constexpr double kCyclesLate = 1.5;         // the next command is waited for so long
-constexpr double kLongestLate = 0.06;       // [s]
+constexpr double kShortestHold = 0.09;      // [s] a command is held for so long where no other one comes
 constexpr double kSlowStop = 6.0;           // [m] a car that stops within this is slow
 constexpr double kStandingSpeed = 0.6;      // [m/s]
 constexpr int kShown = 64;                  // points of a stop that is drawn
 constexpr double kShownStep = 0.1;          // [s]
 constexpr double kWalkingPace = 3.0;        // [m/s]
-constexpr double kMostUse = 1.5;            // of the tyres sideways, after a command that is sent
+constexpr double kMostUse = 0.75;           // of the tyres sideways, after a command that is sent
 constexpr double kGuessedWidth = 1.0;       // [m] that the assumed width may be too small by, for a slow car
 constexpr double kLeastEdge = 0.1;          // [m] that a car on the road keeps in any case
 constexpr double kNoFloor = -1e9;           // [m]
@@ -45,25 +44,29 @@ double act_time(const model::Measurement& seen, const controller::StepReport& re
   return std::isnan(report.act_time) ? seen.time + seen.delay : report.act_time;
 }
 
+}  // namespace
+
 road::KnownRoad known_road(const GuardOptions& options, const path::RoadData* road,
                            const model::VehicleParams& vehicle) {
-  const bool knows_track = options.road == GuardRoad::kTrack && road != nullptr && road->points.size() > 1;
+  const bool knows_track = options.mode != GuardMode::kOff && options.road == GuardRoad::kTrack &&
+                           road != nullptr && road->points.size() > 1;
   return knows_track ? road::KnownRoad{*road, vehicle} : road::KnownRoad{options.half_width, vehicle};
 }
 
-}  // namespace
-
 Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
              const GuardOptions& options, const path::RoadData* road)
+    : Guard(std::move(controller), vehicle, options, known_road(options, road, vehicle)) {}
+
+Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
+             const GuardOptions& options, road::KnownRoad road)
     : controller_{std::move(controller)},
       options_{options},
       fallback_{vehicle},
       gate_{vehicle},
-      road_{known_road(options, road, vehicle)},
-      estimator_{model::PredictionModel{vehicle}, true},
-      planner_{while_braking(vehicle)},
-      model_{vehicle},
-      braking_model_{while_braking(vehicle)} {}
+      road_{std::move(road)},
+      estimator_{model::PredictionModel{vehicle}},
+      planner_{vehicle},
+      model_{vehicle} {}
 
 void Guard::reset() noexcept {
   controller_->reset();
@@ -76,15 +79,28 @@ void Guard::reset() noexcept {
   sent_.clear();
   stop_.size = 0;
   has_place_ = false;
-  is_stopping_ = false;
   floor_ = kNoFloor;
+}
+
+void Guard::forget_road() {
+  if (options_.road == GuardRoad::kWaypoints) return;
+  options_.road = GuardRoad::kWaypoints;
+  road_ = known_road(options_, nullptr, model_.vehicle());
+  has_place_ = false;
+  controller_->use_line(nullptr);
+}
+
+void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
+  if (options_.road == GuardRoad::kTrack) road_.use_line(lap.get());
+  has_place_ = false;
+  controller_->use_line(std::move(lap));
 }
 
 void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   fallback_.set_vehicle(vehicle);
   model_.set_vehicle(vehicle);
-  braking_model_.set_vehicle(while_braking(vehicle));
-  planner_.set_vehicle(braking_model_.vehicle());
+  planner_.set_vehicle(vehicle);
+  estimator_.set_model(model_);
 }
 
 model::Command Guard::step(const model::Measurement& measured, Deadline deadline, const Cycle& cycle,
@@ -105,7 +121,6 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
 
 /// What of a measurement can be believed; estimate and road take it in.
 const model::Measurement& Guard::look(const model::Measurement& measured) noexcept {
-  estimator_.set_model(is_stopping_ ? braking_model_ : model_);
   std::optional<model::State> expected;
   if (estimator_.is_started() && std::isfinite(measured.time))
     expected = estimator_.predict(measured.time, sent_).state;
@@ -124,7 +139,6 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   const double act = act_time(seen, result.report);
   sent_from_ = seen.time + seen.delay;
   stop_.size = 0;
-  is_stopping_ = false;
   if (options_.mode == GuardMode::kOff || cycle.manual) {
     if (cycle.manual) supervisor_.rearm();
     return result.answer == Answer::kNone ? fall_back(seen, result) : accept(seen, result);
@@ -141,8 +155,9 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   const bool has_answer = result.answer != Answer::kNone;
   if (!has_answer && report.reason == GuardReason::kNone) report.reason = GuardReason::kNoAnswer;
   bool must_stop = verdict.must_stop || !has_answer;
-  if (start && result.answer == Answer::kDrive && !must_stop &&
-      !leaves_a_stop(*start, result.command, cycle.interval, report)) {
+  // A way back to the road begins where there may be none: it is planned for the receiver, and not refused.
+  if (start && !must_stop && !leaves_a_stop(*start, result.command, cycle.interval, report) &&
+      result.answer == Answer::kDrive) {
     report.reason = GuardReason::kNoWayToStop;
     must_stop = true;
   }
@@ -184,7 +199,6 @@ void Guard::fall_back(const model::Measurement& seen, controller::StepResult& re
 
 /// The stop in the place of the controller's answer.
 void Guard::drive_stop(const StopStart& start, controller::StepResult& result) noexcept {
-  is_stopping_ = true;
   // Blind, the stop had better be short.
   const bool is_blind = monitor_.findings().unmeasured || monitor_.findings().frozen;
   static_cast<void>(plan_stop(start, std::numeric_limits<double>::infinity(), is_blind, result.report));
@@ -201,7 +215,7 @@ void Guard::show_stop(const StopStart& start, controller::Plan& plan) const noex
   double edge = 0.0;
   plan.size = plan.reference_size = 0;
   while (plan.size < kShown) {
-    const model::Command command = planner_.law(road_, at, {});
+    const model::Command command = planner_.law(road_, at, braking_);
     const road::CurvePoint here = line.at(at.s);
     const auto i = static_cast<std::size_t>(plan.size++);
     plan.reference[i] = here.position;
@@ -246,14 +260,14 @@ bool Guard::leaves_a_stop(const StopStart& start, const model::Command& command,
                           controller::StepReport& report) noexcept {
   // The receiver holds the command until the stop begins: time enough for the next one to come late.
   const double cycle = interval > 0.0 ? interval : kAssumedCycle;
-  const double late = std::clamp(kCyclesLate * cycle, 0.0, std::max(kLongestLate - 0.3 * cycle, 0.0));
-  const double held = std::min(cycle + late, kLongestHold);
+  const double held = std::clamp(cycle, kShortestHold, kLongestHold);
   double least_edge = planner_.edge(road_, start);
   const double edge_now = least_edge;
   const StopStart next = planner_.advance(road_, start, command, held, least_edge);
-  const auto use = braking_model_.tire_use(next.body);
-  const bool slides =
-      start.body.vx > kWalkingPace && std::max(std::fabs(use[0]), std::fabs(use[1])) > kMostUse;
+  model::BodyMotion<double> undriven = next.body;  // a stop does not ask for its drive
+  undriven.acceleration = std::min(undriven.acceleration, 0.0);
+  const auto use = model_.tire_use(undriven);
+  const bool slides = start.body.vx > kWalkingPace && std::max(use.front, use.rear) > kMostUse;
   if (plan_stop(next, least_edge, false, report) && !slides) {
     floor_ = kNoFloor;
     return true;
@@ -281,6 +295,7 @@ bool Guard::plan_stop(const StopStart& from, double edge_before, bool is_hard,
   bool is_good = false;
   for (const Braking& braking : kStops) {
     if (is_hard && braking.share < 1.0) continue;
+    braking_ = braking;
     const StopCheck check = planner_.plan(road_, from, braking, stop_);
     report.stop_edge = std::min(check.least_edge, edge_before);
     report.stop_distance = check.distance;

@@ -23,6 +23,11 @@
 
 namespace chicane::safety {
 
+/// The road as a guard knows it at first: `road`, where it may, or nothing yet. A guard that is off has no
+/// use for one.
+[[nodiscard]] road::KnownRoad known_road(const GuardOptions& options, const path::RoadData* road,
+                                         const model::VehicleParams& vehicle);
+
 /// The guard around a controller, the same for all of them (docs/safety.md):
 ///
 ///     measurement → MeasurementMonitor → controller → Supervisor → is there still a way to stop? →
@@ -42,6 +47,9 @@ class Guard {
   /// `road`: the track's; null, or GuardRoad::kWaypoints: the guard learns it from the waypoints it is shown.
   Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
         const GuardOptions& options = {}, const path::RoadData* road = nullptr);
+  /// The same with what known_road() has made before: smoothing a road takes milliseconds.
+  Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
+        const GuardOptions& options, road::KnownRoad road);
 
   /// What else holds in a cycle.
   struct Cycle {
@@ -54,6 +62,11 @@ class Guard {
                       controller::StepResult& result) noexcept;
   /// Everything learned is forgotten, the controller's part included: a new run begins.
   void reset() noexcept;
+  /// The road that was told is another one: from now on the guard learns it from waypoints. Allocates.
+  void forget_road();
+  /// A planned lap for the controller to race by; the stops follow it, too, where the guard knows the track.
+  /// It stays when a new run begins.
+  void use_line(std::shared_ptr<const road::RacingRoad> lap);
   /// Another car is believed in from now on. The limits of what is sent stay those of the beginning.
   void set_vehicle(const model::VehicleParams& vehicle) noexcept;
 
@@ -85,8 +98,8 @@ class Guard {
   controller::StateEstimator estimator_;
   controller::CommandHistory sent_;
   StopPlanner planner_;
-  model::PredictionModel model_, braking_model_;
-  bool is_stopping_ = false;
+  model::PredictionModel model_;
+  Braking braking_;         ///< of the stop at hand
   double floor_ = -1e9;     ///< how far from the edge a car beyond the margin has been since [m]
   double leniency_ = 0.05;  ///< how much nearer to the edge it may come, slowly [m]
   StopPlan stop_;

@@ -13,28 +13,28 @@ namespace {
 constexpr double kStep = 0.05;      // [s] of the simulation
 constexpr int kStepsPerPoint = 2;   // of the simulation, in the plan
 constexpr double kStanding = 0.3;   // [m/s] slower than that the car counts as standing
-constexpr double kRestTime = 0.4;   // [s] with which the car comes to rest at the end
 constexpr double kBandwidth = 1.0;  // [rad/s] of the feedback to the line
 constexpr double kDamping = 0.7;
 constexpr double kYawBandwidth = 6.0;   // [rad/s] of the feedback to the yaw rate
 constexpr double kPreview = 0.2;        // [s] the car answers the wheel about so late
-constexpr double kGripShare = 0.9;      // of the believed tyre force of the rear axle, used sideways
+constexpr double kGripShare = 0.85;     // of the believed tyre force of the rear axle, used sideways
 constexpr double kGravity = 9.81;       // [m/s²]
 constexpr double kLeastBraking = 0.15;  // of the useful one, in any curve
 constexpr double kFeedbackShare = 0.4;  // of the grip, for coming back to the middle of the road
+constexpr double kStopMargin = 0.6;     // [m] wanted to the edge by a car that stops
 constexpr double kMostOffset = 20.0;    // [m] beside the line the stop is given up
 
 }  // namespace
 
 double StopPlanner::edge(const road::KnownRoad& road, const StopStart& at) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
-  const road::KnownRoad::Edges edges = road.edges(at.s);
   const double half_track = 0.5 * (car.track_width + car.tire_width);
   const double sine = sin(at.e);
   const double beside = half_track * cos(at.e);
   double least = std::numeric_limits<double>::infinity();
   for (const double x : {car.front_axle, -car.rear_axle}) {
     const double middle = at.d + x * sine;
+    const road::KnownRoad::Edges edges = road.edges(at.s + x);
     least = std::min({least, edges.left - middle - beside, edges.right + middle - beside});
   }
   return least;
@@ -45,7 +45,7 @@ double StopPlanner::edge(const road::KnownRoad& road, const StopStart& at) const
 double StopPlanner::braking_share(double sideways, double deceleration, double v,
                                   double stability) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
-  const double grip = car.friction * model_.load(v);
+  const double grip = friction_ * model_.load(v);
   const auto holds = [&](double a) {
     const double along = std::min(a / grip, 1.0);
     const double ellipse = std::sqrt(std::max(1.0 - car.friction_coupling * along * along, 0.0));
@@ -68,10 +68,10 @@ model::Command StopPlanner::law(const road::KnownRoad& road, const StopStart& at
   const double v = std::max(at.body.vx, 1.0);
   const double ahead = road.line().demand(at.s + kPreview * v).curvature;
   const double course = at.e + at.body.vy / v;
-  // Towards the middle of the road, where there is most room on both sides.
-  const road::KnownRoad::Edges edges = road.edges(at.s);
-  const double beside = at.d - 0.5 * (edges.left - edges.right);
-  const double grip = kGripShare * car.friction * model_.load(v);
+  // Towards the middle of the road, where there is most room on both sides, or the line that is raced by.
+  const double beside =
+      at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) + kStopMargin);
+  const double grip = kGripShare * friction_ * model_.load(v);
   const double most = kFeedbackShare * grip / ((1.0 - car.steer_helper) * v * v);
   const double curvature = ahead + std::clamp(-kBandwidth * kBandwidth * beside / (v * v) -
                                                   2.0 * kDamping * kBandwidth * course / v,
@@ -85,9 +85,7 @@ model::Command StopPlanner::law(const road::KnownRoad& road, const StopStart& at
   const double useful = longitudinal_acceleration(car, lowest_throttle(car, v), v);
   const double along =
       useful * braking.share * braking_share(sideways, -useful * braking.share, v, braking.stability);
-  // To rest without rolling back: the last metre per second more and more gently.
-  const double asked = std::max(along, -std::max(at.body.vx, 0.0) / kRestTime);
-  return {steer, std::min(throttle_for(car, asked, at.body.vx), 0.0)};
+  return {steer, throttle_to_rest(car, along, at.body.vx)};
 }
 
 void StopPlanner::move(const road::KnownRoad& road, StopStart& at, const model::Command& command, double dt,
@@ -97,7 +95,6 @@ void StopPlanner::move(const road::KnownRoad& road, StopStart& at, const model::
   const double steer = std::clamp(command.steer, at.body.steer - reach, at.body.steer + reach);
   const double asked = longitudinal_acceleration(car, command.throttle, at.body.vx);
   model::BodyMotion<double> to = model_.advance(at.body, steer, asked, dt, lags);
-  model_.add_front_force(to, dt);
   to.vx = std::max(to.vx, 0.0);
   const double vx = 0.5 * (at.body.vx + to.vx);
   const double vy = 0.5 * (at.body.vy + to.vy);
@@ -147,8 +144,6 @@ StopCheck StopPlanner::plan(const road::KnownRoad& road, const StopStart& start,
     speed = hypot(at.body.vx, at.body.vy);
     driven += 0.5 * kStep * (before + speed);
     check.least_edge = std::min(check.least_edge, edge(road, at));
-    const auto use = model_.tire_use(at.body);
-    check.tire_use = std::max({check.tire_use, std::fabs(use[0]), std::fabs(use[1])});
   }
   check.stands = speed < kStanding && at.s < end;
   check.distance = driven;

@@ -8,7 +8,6 @@ namespace chicane::safety {
 namespace {
 
 constexpr double kSpeedTime = 0.4;  // [s] in which the planned speed is met again
-constexpr double kRestTime = 0.4;   // [s] with which the car comes to rest
 constexpr double kStanding = 0.5;   // [m/s] a plan that ends faster is not complete
 
 }  // namespace
@@ -67,17 +66,15 @@ model::Command StopPlayer::play(const StopPlan& stop, double speed) const noexce
   const bool ends_rolling = i + 1 == stop.size && here.speed >= kStanding;  // where the known road ended
   const double planned = ends_rolling ? 0.0 : here.speed + share * (next.speed - here.speed);
   const double steer = here.command.steer + share * (next.command.steer - here.command.steer);
-  const double rest = -std::max(speed, 0.0) / kRestTime;
   const double wanted =
       longitudinal_acceleration(vehicle_, here.command.throttle, speed) + (planned - speed) / kSpeedTime;
-  const double throttle = throttle_for(vehicle_, std::max(wanted, rest), speed);
-  return {std::clamp(steer, -vehicle_.steer_limit, vehicle_.steer_limit), std::min(throttle, 0.0)};
+  return {std::clamp(steer, -vehicle_.steer_limit, vehicle_.steer_limit),
+          throttle_to_rest(vehicle_, wanted, speed)};
 }
 
 model::Command StopPlayer::brake(const model::Command& command, double speed) const noexcept {
   const double useful = longitudinal_acceleration(vehicle_, lowest_throttle(vehicle_, speed), speed);
-  const double rest = -std::max(speed, 0.0) / kRestTime;
-  return {command.steer, std::min(throttle_for(vehicle_, std::max(useful, rest), speed), 0.0)};
+  return {command.steer, throttle_to_rest(vehicle_, useful, speed)};
 }
 
 }  // namespace chicane::safety

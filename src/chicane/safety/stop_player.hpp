@@ -15,7 +15,7 @@ namespace chicane::safety {
 /// could not help. It knows the clock, its own wheel speed, and what has arrived; no position.
 ///
 ///     kStopPlan   the stop that came with the last command, by the distance driven since (docs/safety.md,
-///     eq. 11);
+///     "The receiver");
 ///                 braking with the last steering where none came
 ///     kBrake      all useful braking with the last steering, after kPatience
 ///     kHold       the last command for ever, as the original simulator does

@@ -41,7 +41,7 @@ class Supervisor {
     Verdict verdict;
     const auto note = [&](double& since, bool is_there, double tolerated, controller::GuardReason reason) {
       if (!is_there) since = time;
-      if (!(time - since > tolerated) && !(is_there && tolerated <= 0.0)) return;
+      if (!is_there || !(time - since > tolerated)) return;
       verdict.reason = reason;
       verdict.must_stop = true;
     };

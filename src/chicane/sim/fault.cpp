@@ -70,6 +70,11 @@ void FaultLab::set(Fault fault, bool on, double time) noexcept {
   begin(fault, time + kind.duration, kind.strength);
 }
 
+void FaultLab::set(const FaultEvent& event) noexcept {
+  const FaultKind& kind = kind_of(event.fault);
+  begin(event.fault, event.at + event.duration, std::clamp(event.strength, kind.weakest, kind.strongest));
+}
+
 void FaultLab::begin(Fault fault, double until, double strength) noexcept {
   Active& active = active_[static_cast<std::size_t>(fault)];
   active.until = until;

@@ -101,6 +101,9 @@ class FaultLab {
   /// Switches on from `time` for the kind's own duration and with its own strength, or off; what is already
   /// as asked stays.
   void set(Fault fault, bool on, double time) noexcept;
+  /// Switches on for a duration and with a strength of its own, also what is on already; the strength is kept
+  /// in the kind's range.
+  void set(const FaultEvent& event) noexcept;
 
   [[nodiscard]] bool is_on(Fault fault) const noexcept { return (bits_ & bit(fault)) != 0U; }
   [[nodiscard]] std::uint32_t bits() const noexcept { return bits_; }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sim/sensor.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "chicane/base/angle.hpp"
 
 namespace chicane::sim {
 namespace {
@@ -22,6 +25,8 @@ constexpr std::array kOptions{
                                 "The yaw is rounded to multiples of it."),
     option<&S::speed_quantum>("speed_quantum", unit::kSpeed, 0, 10,
                               "The speed is rounded to multiples of it."),
+    option<&S::latency>("latency", unit::kMillisecond, 0, 500,
+                        "Age of what is measured when the controller gets it, which is not told of it."),
 };
 
 }  // namespace
@@ -35,15 +40,39 @@ model::Measurement Sensor::sample(double time, const Plant& plant) noexcept {
   const double noise_psi = random_.normal() * options_.heading_noise;
   const double noise_speed = random_.normal() * options_.speed_noise;
   const model::State& state = plant.state();
+  sights_[count_++ % kRemembered] = {
+      time, state.x, state.y, state.psi, plant.output().speed, state.steer, plant.output().throttle};
+  const Sight seen = seen_at(time - options_.latency);
   model::Measurement result;
   result.time = time;
-  result.x = quantised(state.x + noise_x, options_.position_quantum);
-  result.y = quantised(state.y + noise_y, options_.position_quantum);
-  result.psi = quantised(state.psi + noise_psi, options_.heading_quantum);
-  result.speed = std::fabs(quantised(plant.output().speed + noise_speed, options_.speed_quantum));
-  result.steer = state.steer;
-  result.throttle = plant.output().throttle;
+  result.x = quantised(seen.x + noise_x, options_.position_quantum);
+  result.y = quantised(seen.y + noise_y, options_.position_quantum);
+  result.psi = quantised(seen.psi + noise_psi, options_.heading_quantum);
+  result.speed = std::fabs(quantised(seen.speed + noise_speed, options_.speed_quantum));
+  result.steer = seen.steer;
+  result.throttle = seen.throttle;
   return result;
+}
+
+Sensor::Sight Sensor::seen_at(double time) const noexcept {
+  const Sight* later = &sights_[(count_ - 1) % kRemembered];
+  const std::size_t most = std::min(count_, kRemembered);
+  for (std::size_t back = 2; later->time > time && back <= most; ++back) {
+    const Sight& earlier = sights_[(count_ - back) % kRemembered];
+    if (earlier.time <= time) {
+      const double share = (time - earlier.time) / (later->time - earlier.time);
+      const auto between = [&](double a, double b) { return a + share * (b - a); };
+      return {time,
+              between(earlier.x, later->x),
+              between(earlier.y, later->y),
+              earlier.psi + share * angle_difference(later->psi, earlier.psi),
+              between(earlier.speed, later->speed),
+              earlier.steer,
+              earlier.throttle};
+    }
+    later = &earlier;
+  }
+  return *later;
 }
 
 }  // namespace chicane::sim

@@ -13,14 +13,17 @@
 #include "chicane/base/inlining.hpp"
 #include "chicane/solver/detail/barrier.hpp"
 #include "chicane/solver/detail/descent.hpp"
+#include "chicane/solver/detail/endings.hpp"
 #include "chicane/solver/detail/evaluation.hpp"
-#include "chicane/solver/detail/interior_point.hpp"
+#include "chicane/solver/detail/filter_method.hpp"
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/linearisation.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
 #include "chicane/solver/detail/problem_pattern.hpp"
 #include "chicane/solver/detail/progress.hpp"
 #include "chicane/solver/detail/roll_out.hpp"
+#include "chicane/solver/detail/steps.hpp"
+#include "chicane/solver/detail/working_set_qp.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/solution.hpp"
 #include "chicane/solver/warm_start.hpp"
@@ -62,8 +65,15 @@ class OcpSolver {
     SolveReport report;
     if (!start(problem, x0, trajectory)) return give_up(problem, x0, trajectory, report);
     for (;; ++report.iterations, work_ += share_of_horizon()) {
+      if constexpr (kCanFilter) {
+        if (is_filtering_ && !filter_turn(problem, deadline, report)) break;
+        if (is_filtering_) continue;
+      }
       look(problem, report);
-      if (!is_finite(report) && !has_best_) return give_up(problem, x0, trajectory, report);
+      if (!is_finite(report) && !has_best_) {
+        if (stand_still(problem, report)) continue;
+        return give_up(problem, x0, trajectory, report);
+      }
       if (is_growing() && residual(report) <= kGoodEnoughToGrow) {
         if (!grow(problem)) break;
         continue;
@@ -72,7 +82,8 @@ class OcpSolver {
       const bool budget_spent = work_ >= options_.max_iterations || deadline.spent();
       shows_best_ = keep_best(report);
       if (!shows_best_ && !budget_spent && has_lost_its_way(report)) {
-        if (!(may_grow() ? start_short(problem) : go_back(problem))) break;
+        if (is_at_floor(report)) return finish(SolveStatus::kAtFloor, problem, trajectory, report);
+        if (!recover(problem, trajectory, report)) break;
         continue;
       }
       if (budget_spent) break;
@@ -107,19 +118,18 @@ class OcpSolver {
   static constexpr std::size_t kNx = P::kNx;
   static constexpr std::size_t kNu = P::kNu;
   static constexpr std::size_t kSize = Capacity;
-  /// Sweeps that may correct the whole working set in vain.
-  static constexpr int kChances = kHasRateBounds<P> ? 3 : 5;
   static constexpr std::size_t kFirstHorizon = 5;  ///< of the growing horizons
   static constexpr std::size_t kMaxGrowth = 16;
   static constexpr double kGoodEnoughToGrow = 1e-1;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  static constexpr double kDefectShare = 1e-7;  ///< of the tolerance: Hessians amplify defects
+  static constexpr double kDefectShare = 1e-7;   ///< of the tolerance: Hessians amplify defects
+  static constexpr double kDefectFloor = 2e-15;  ///< what rounding leaves
+  static constexpr bool kCanFilter = has_filter_method<P>();
   /// Steps this short: exact curvature from here on. Dense problems pay for it.
   static constexpr double kNear = StructuredProblem<P> ? 1e-1 : 1e-2;
 
   using Evaluate = Evaluation<P, Arch>;
   using Lq = LqSolver<Arch, ProblemPattern<P>, kSize>;
-  using Repair = typename Lq::Repair;
   using V = Stages<Arch>;
 
   static_assert(ConsistentRates<P>,
@@ -131,10 +141,12 @@ class OcpSolver {
   bool start(const P& problem, const State& x0, const Trajectory& trajectory) noexcept {
     full_steps_ = is_fresh_ = true;
     has_best_ = shows_best_ = is_exact_ = has_grown_ = false;
+    is_filtering_ = has_filtered_ = stands_still_ = false;
     work_ = 0.0;
     progress_.restart();
     descent_.start();
-    target_ = t_.horizon = static_cast<std::size_t>(trajectory.horizon);
+    target_ = static_cast<std::size_t>(trajectory.horizon);
+    t_.horizon = target_;
     for (std::size_t i = 0; i < kNx; ++i) {
       if (!std::isfinite(x0[i])) return false;
       t_.x[i][0] = x0[i];
@@ -146,18 +158,41 @@ class OcpSolver {
         if (!(low[m] <= high[m] && low[m] < kInfinity && high[m] > -kInfinity)) return false;
         now_.lower[m][k] = low[m];
         now_.upper[m][k] = high[m];
-        t_.u[m][k] = nearest(trajectory.u[k][m], low[m], high[m]);
       }
     }
     if (!now_.chains.set(problem, x0, target_)) return false;
-    admit_inputs();
-    bool is_good = (options_.start_from_states && take_states(trajectory)) || roll_out(problem);
-    if (!is_good) {
-      fill_inputs(0);
-      is_good = roll_out(problem);
-    }
+    const bool is_good = take_guess(problem, trajectory);
     barrier_.start(problem, options_.tolerance, Evaluate::violation(problem, t_));
     return is_good;
+  }
+  /// The inputs of the warm start; its states or those of a simulation, of inputs of zero where that
+  /// diverges.
+  bool take_guess(const P& problem, const Trajectory& trajectory) noexcept {
+    t_.horizon = target_;
+    for (std::size_t m = 0; m < kNu; ++m) {
+      for (std::size_t k = 0; k < target_; ++k)
+        t_.u[m][k] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
+    }
+    admit_inputs();
+    if ((options_.start_from_states && take_states(trajectory)) || roll_out(problem)) return true;
+    fill_inputs(0);
+    if (roll_out(problem)) return true;
+    if (kCanFilter) hold_states();
+    return kCanFilter;
+  }
+  /// All states as the first one.
+  void hold_states() noexcept {
+    stands_still_ = true;
+    for (std::size_t i = 0; i < kNx; ++i) std::fill(t_.x[i] + 1, t_.x[i] + t_.horizon + 1, t_.x[i][0]);
+  }
+  /// A simulation whose functions are not finite somewhere: the first state everywhere may be better. Once.
+  bool stand_still(const P& problem, const SolveReport& report) noexcept {
+    if (!kCanFilter || stands_still_ || report.iterations > 0) return false;
+    fill_inputs(0);
+    hold_states();
+    is_fresh_ = true;
+    barrier_.start(problem, options_.tolerance, Evaluate::violation(problem, t_));
+    return true;
   }
   /// Inputs whose changes are bounded become the nearest admissible ones.
   void admit_inputs() noexcept {
@@ -193,7 +228,7 @@ class OcpSolver {
   /// cost descends.
   void look(const P& problem, SolveReport& report) noexcept {
     const bool centre = is_fresh_ || !full_steps_;
-    const double share = kDefectShare * options_.tolerance;
+    const double share = std::max(kDefectShare * options_.tolerance, kDefectFloor);
     const auto look = [&](auto order) {
       now_.template look<order>(problem, t_, centre, share, barrier_, lq_.lq, report);
     };
@@ -205,7 +240,7 @@ class OcpSolver {
     if constexpr (kHasRateBounds<P>) {
       if (is_fresh_) now_.chains.guess(now_.slope, t_.horizon, lq_);
     }
-    chooses_ = is_fresh_ && !kHasRateBounds<P>;
+    qp_.choose(is_fresh_ && !kHasRateBounds<P>);
     is_fresh_ = false;
   }
 
@@ -213,8 +248,8 @@ class OcpSolver {
     return std::isfinite(report.cost + report.defect + report.stationarity + report.complementarity);
   }
   [[nodiscard]] bool has_converged(const SolveReport& report) const noexcept {
-    return report.stationarity <= options_.tolerance && now_.defect_excess <= 0.0 &&
-           report.complementarity <= options_.tolerance && barrier_.is_final();
+    return (!kCanFilter || is_finite(report)) && report.stationarity <= options_.tolerance &&
+           now_.defect_excess <= 0.0 && report.complementarity <= options_.tolerance && barrier_.is_final();
   }
   static double residual(const SolveReport& report) noexcept {
     return std::max({report.stationarity, report.defect, report.complementarity});
@@ -222,26 +257,6 @@ class OcpSolver {
 
   // ---- full steps
 
-  /// Solves the quadratic program: by the working set, else stage by stage, or with bounds on changes by an
-  /// interior point. False when the deadline came first.
-  bool solve_qp(const P& problem, const Deadline& deadline, SolveReport& report) noexcept {
-    const Outcome outcome = correct_working_set(problem, deadline, report);
-    if (outcome != Outcome::kCircles) return outcome == Outcome::kSolved;
-    if constexpr (kHasRateBounds<P>) {
-      if (is_exact_) take_gauss_newton(problem);
-      report.sweeps += interior_.solve(
-          lq_, t_.horizon, [&](std::size_t k, std::size_t m) { return now_.slope[m][k]; },
-          [&] { return deadline.spent(); });
-      const Outcome refined = correct_working_set(problem, deadline, report);
-      if (refined == Outcome::kCircles) interior_.put_step(lq_, t_.horizon);
-      return refined != Outcome::kSpent;
-    } else {
-      ++report.sweeps;
-      lq_.backward(t_.horizon, 0.0, true);
-      lq_.forward(t_.horizon, Repair::kClip);
-      return true;
-    }
-  }
   /// Hessians of the present look become Gauss–Newton's.
   void take_gauss_newton(const P& problem) noexcept {
     is_exact_ = false;
@@ -249,44 +264,20 @@ class OcpSolver {
     look(problem, unused);
   }
 
-  /// Working-set turns: all corrections at once as long as that lowers their number, then one by one if there
-  /// are few. The first set of all is the one of the stages' own box problems.
-  enum class Outcome { kSolved, kCircles, kSpent };
-  Outcome correct_working_set(const P& problem, const Deadline& deadline, SolveReport& report) noexcept {
-    constexpr int kMaxSweeps = 20;
-    int fewest = std::numeric_limits<int>::max();
-    int chances = kChances;
-    ++report.sweeps;
-    double extra = lq_.backward(t_.horizon, 0.0, chooses_);
-    chooses_ = false;
-    for (int sweep = 1; sweep < kMaxSweeps; ++sweep) {
-      if (extra > 0.0 && is_exact_) {  // indefinite: Gauss–Newton is not
-        take_gauss_newton(problem);
-        ++report.sweeps;
-        extra = lq_.backward(t_.horizon);
-      }
-      const int contradictions = lq_.forward(t_.horizon, chances > 0 ? Repair::kAll : Repair::kLast);
-      if (contradictions == 0) return Outcome::kSolved;
-      if (deadline.spent()) return Outcome::kSpent;
-      if (chances == 0 && contradictions > (kHasRateBounds<P> ? 0 : kMaxSweeps - sweep))
-        return Outcome::kCircles;
-      chances = contradictions < fewest ? kChances : chances - 1;
-      fewest = std::min(fewest, contradictions);
-      ++report.sweeps;
-      extra = lq_.backward_again();
-    }
-    return Outcome::kCircles;
-  }
-
   /// Takes the whole step of the quadratic program. False when the deadline came first.
   bool full_step(const P& problem, const Deadline& deadline, SolveReport& report) noexcept {
-    if (!solve_qp(problem, deadline, report)) return false;
-    const double longest = collect_step();
+    const bool in_time = qp_.solve(
+        lq_, t_.horizon, is_exact_, [&] { take_gauss_newton(problem); },
+        [&](std::size_t k, std::size_t m) { return now_.slope[m][k]; }, deadline, report.sweeps);
+    if (!in_time) return false;
+    const double longest = collect_step<Arch, true>(lq_, t_.horizon, step_);
+    now_.chains.cut(lq_, step_);
     const double length = barrier_.step(problem, step_);
     if (!is_growing()) barrier_.lower(length, longest);
-    take_step(length);
+    add_step<Arch>(t_, length, step_, t_);
+    now_.chains.keep_previous(t_);
     progress_.note(longest, !barrier_.is_final() && !is_growing());
-    is_exact_ = options_.second_order && longest <= kNear && curvature_pays();
+    is_exact_ = options_.second_order && ((longest <= kNear && curvature_pays()) || is_crawling());
     return true;
   }
   /// Structured problems have second derivatives almost for free. Dense ones cost as much as several turns:
@@ -295,42 +286,27 @@ class OcpSolver {
     constexpr double kTurns = 6.0;
     return StructuredProblem<P> || progress_.is_slow(0.1 * options_.tolerance, kTurns);
   }
-  /// The step of the quadratic program, stage after stage of one variable; returns its longest input.
-  double collect_step() noexcept {
-    step_.horizon = t_.horizon;
-    for (std::size_t k0 = 0; k0 <= t_.horizon; k0 += 8) {
-      for (std::size_t block = 0; block < Lq::kLanes; block += 8) {
-        V rows[8];
-        unroll<8>([&](auto lane) CHICANE_INLINE {
-          rows[lane] = V::load(lq_.dx[std::min(k0 + lane, t_.horizon)] + block);
-        });
-        transpose(rows);
-        unroll<8>([&](auto i) CHICANE_INLINE {
-          if (block + i < kNx) rows[i].store(step_.x[block + i] + k0);
-        });
-      }
-    }
-    double longest = 0.0;
-    for (std::size_t m = 0; m < kNu; ++m) {
-      for (std::size_t k = 0; k < t_.horizon; ++k) {
-        const double du = std::min(std::max(lq_.du[k][m], lq_.lq.low[m][k]), lq_.lq.high[m][k]);
-        step_.u[m][k] = du;
-        longest = std::max(longest, std::fabs(du));
-      }
-    }
-    now_.chains.cut(lq_, step_);
-    return longest;
+  /// Gauss–Newton would need tens of turns, or the filter method has brought a point near the solution:
+  /// whatever the units of the inputs.
+  [[nodiscard]] bool is_crawling() const noexcept {
+    constexpr double kTurns = 20.0;
+    return kCanFilter &&
+           (has_filtered_ || (barrier_.is_final() && progress_.is_slow(0.1 * options_.tolerance, kTurns)));
   }
-  void take_step(double length) noexcept {
-    for (std::size_t k = 0; k <= t_.horizon; k += 8) {
-      const auto move = [&](double* value, const double* change) CHICANE_INLINE {
-        (V::load(value + k) + length * V::load(change + k)).store(value + k);
-      };
-      for (std::size_t i = 0; i < kNx; ++i) move(t_.x[i], step_.x[i]);
-      for (std::size_t m = 0; m < kNu; ++m) move(t_.u[m], step_.u[m]);
+
+  // ---- the filter method (detail/ocp_fallback.hpp)
+
+  /// What to do where full steps have lost their way. False when nothing helps.
+  bool recover(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept {
+    if constexpr (kCanFilter) {
+      if (options_.may_start_short) return begin_filter(problem, trajectory, report);
     }
-    now_.chains.keep_previous(t_);
+    return may_grow() ? start_short(problem) : go_back(problem);
   }
+  bool begin_filter(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept;
+  bool filter_turn(const P& problem, const Deadline& deadline, SolveReport& report) noexcept;
+  void take_cheapest(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept;
+  bool is_at_floor(const SolveReport& report) noexcept;
 
   // ---- globalisation
 
@@ -342,6 +318,7 @@ class OcpSolver {
       return false;
     best_ = t_;
     best_report_ = report;
+    if constexpr (kCanFilter) barrier_.save(best_slacks_, t_.horizon);
     has_best_ = true;
     return true;
   }
@@ -412,6 +389,25 @@ class OcpSolver {
 
   // ---- endings
 
+  /// Within the loose tolerance; the barrier, too, which is what complementarity lacks to zero.
+  [[nodiscard]] bool is_close(const SolveReport& report) const noexcept {
+    const double gap = kCanFilter && P::kNc > 0 ? barrier_.mu() : 0.0;
+    return std::max(residual(report), gap) <= options_.loose_tolerance;
+  }
+  /// Constraints and prices are to be of the answer, and the report of both.
+  void look_at_best(const P& problem, SolveReport& report) noexcept {
+    is_exact_ = false;
+    if constexpr (kCanFilter) {
+      full_steps_ = true;
+      is_fresh_ = false;
+      barrier_.restore(best_slacks_, t_.horizon);
+      look(problem, report);
+    } else {
+      full_steps_ = false;
+      SolveReport unused;
+      look(problem, unused);
+    }
+  }
   /// Returns the best iterate, extended to the whole horizon; unless it is optimal, its residuals decide
   /// the status.
   SolveReport finish(SolveStatus status, const P& problem, Trajectory& trajectory,
@@ -422,12 +418,9 @@ class OcpSolver {
       if (has_best_) {
         t_ = best_;
         report = best_report_;
-        if (!shows_best_) {  // constraints and prices are to be of the answer; slacks were not kept
-          full_steps_ = is_exact_ = false;
-          SolveReport unused;
-          look(problem, unused);
-        }
+        if (!shows_best_) look_at_best(problem, report);
       }
+      if (kCanFilter && !(has_best_ && is_close(report))) take_cheapest(problem, trajectory, report);
       if (is_growing() || !has_best_) {
         while (is_growing()) grow(problem);
         look(problem, report);
@@ -435,8 +428,8 @@ class OcpSolver {
       }
       report.iterations = iterations;
       report.sweeps = sweeps;
-      const bool is_close = residual(report) <= options_.loose_tolerance;
-      status = is_close ? SolveStatus::kBudgetSpent : SolveStatus::kStalled;
+      if (status != SolveStatus::kAtFloor)
+        status = is_close(report) ? SolveStatus::kBudgetSpent : SolveStatus::kStalled;
     } else if (barrier_.exceeds_a_cap(problem, t_.horizon)) {
       status = SolveStatus::kInfeasible;
     }
@@ -448,12 +441,7 @@ class OcpSolver {
     now_.chains.admit(t_.horizon,
                       [&](std::size_t k, std::size_t m) -> double& { return trajectory.u[k][m]; });
     now_.chains.tell(report);
-    WorstViolation worst;
-    for (std::size_t k = 0; k < t_.horizon; ++k) {
-      for (std::size_t c = 0; c < static_cast<std::size_t>(P::kNc); ++c)
-        worst.consider(barrier_.value(c, k), price_of(problem, c).cap, k, c);
-    }
-    worst.tell(report);
+    tell_violation(problem, barrier_, t_.horizon, report);
     report.status = status;
     return report;
   }
@@ -461,16 +449,7 @@ class OcpSolver {
   /// The data are not finite: leaves admissible inputs and finite states behind.
   SolveReport give_up(const P& problem, const State& x0, Trajectory& trajectory,
                       SolveReport report) noexcept {
-    for (auto& u : trajectory.u) u.fill(0.0);
-    trajectory.horizon = static_cast<int>(target_);
-    trajectory.x[0] = x0;
-    clamp_inputs(problem, trajectory);
-    for (auto& u : trajectory.u) {  // of bounds that no number keeps
-      for (double& value : u) value = std::isfinite(value) ? value : 0.0;
-    }
-    for (auto& x : trajectory.x) {
-      for (std::size_t i = 0; i < kNx; ++i) x[i] = std::isfinite(x0[i]) ? x0[i] : 0.0;
-    }
+    leave_admissible(problem, x0, static_cast<int>(target_), trajectory);
     report.status = SolveStatus::kNotFinite;
     return report;
   }
@@ -478,10 +457,13 @@ class OcpSolver {
   SolverOptions options_;
   Linearisation<P, kSize, Arch> now_;  ///< of the present iterate
   Lq lq_;                              ///< its quadratic program
-  std::conditional_t<kHasRateBounds<P>, InteriorPoint<Lq>, std::nullptr_t> interior_{};
-  Barrier<P, kSize, Arch> barrier_;
+  WorkingSetQp<P, Lq> qp_;             ///< what solves it
+  using Slacks = Barrier<P, kSize, Arch>;
+  Slacks barrier_;
   Descent<P, kSize, Arch> descent_;
   Progress progress_;
+  using Filter = FilterMethod<P, kSize, Arch>;
+  std::conditional_t<kCanFilter, Filter, NoFilter> filter_;
   Iterate<kNx, kNu, kSize> t_;     ///< the present iterate
   Iterate<kNx, kNu, kSize> step_;  ///< from it to the next
   Iterate<kNx, kNu, kSize> best_;
@@ -491,10 +473,15 @@ class OcpSolver {
   bool full_steps_ = true;
   bool is_exact_ = false;  ///< Hessians of the next look
   bool has_grown_ = false;
-  bool is_fresh_ = true;    ///< slacks and working set are to be guessed anew
-  bool chooses_ = false;    ///< the next backward sweep chooses the working set
-  std::size_t target_ = 0;  ///< horizon asked for
-  double work_ = 0.0;       ///< turns so far, those of a shorter horizon by their share
+  bool is_filtering_ = false;  ///< steps are the filter method's
+  bool has_filtered_ = false;  ///< it has been used in this solve
+  bool stands_still_ = false;  ///< the start could not be simulated
+  bool is_fresh_ = true;       ///< slacks and working set are to be guessed anew
+  std::size_t target_ = 0;     ///< horizon asked for
+  double work_ = 0.0;          ///< turns so far, those of a shorter horizon by their share
+  std::conditional_t<kCanFilter, typename Slacks::Memory, NoFilter> best_slacks_;  ///< of the best iterate
 };
 
 }  // namespace chicane::solver
+
+#include "chicane/solver/detail/ocp_fallback.hpp"

@@ -5,10 +5,14 @@
 #include <concepts>
 #include <cstddef>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/jet.hpp"
+#include "chicane/base/jet_functions.hpp"
+#include "chicane/base/math_pack.hpp"
+#include "chicane/base/symbol.hpp"
 #include "chicane/solver/stage_data.hpp"
 
 namespace chicane::solver {
@@ -39,6 +43,9 @@ namespace chicane::solver {
 ///
 /// Where they contradict input_lower and input_upper, those count; the report says by how much.
 ///
+/// **For budgets of a few turns**, a type may say `static constexpr bool kRealTime = true`: the filter
+/// method, which solves from poor guesses in tens of turns, is left out, and is not compiled.
+///
 /// **Level 1, any model.** One scalar type for everything, branches allowed; derivatives are dense:
 ///
 ///     template <class T> std::array<T, kNx> dynamics(int k, const std::array<T, kNx>& x,
@@ -64,11 +71,12 @@ namespace chicane::solver {
 /// - `auto` for every intermediate; results by std::make_tuple (or std::array where all types are equal);
 /// - data that differ from stage to stage: a StageData member and `.at(k)`; `stage_number(k)` is k as a
 /// number;
-/// - no branches on values: select(mask, a, b), max, min, positive_part, abs instead; compile-time ones are
-/// fine;
+/// - no branches on values: select(a > b, x, y), max, min, positive_part, abs instead; compile-time ones are
+/// fine. All functions of jet.hpp and jet_functions.hpp are found by their arguments; what variables cannot
+/// do is refused in few lines (symbol.hpp);
 /// - model code over one type T (`struct Motion<T>`) runs on T = Common<A, B, …> of the variables it uses;
 /// - what is computed from x_k and u_k but needs no memory is an output, not a state: put it into residual();
-/// - the functions must also work on plain doubles: that is how they are simulated and tested;
+/// - next_state() and roll_out() call them with numbers;
 /// - they are called from several places: without CHICANE_INLINE on them and on what they call, jets
 /// may go through memory.
 ///
@@ -98,18 +106,57 @@ template <class T, class Row>
   return std::apply([](const auto&... values) { return std::array<T, sizeof...(values)>{T(values)...}; },
                     row);
 }
+/// A number that knows the functions of models, as jets do.
+using Plain = Jet<double, 1, 0>;
+
 template <class Row>
 inline constexpr int kRowSize = static_cast<int>(std::tuple_size_v<std::remove_cvref_t<Row>>);
 
+namespace detail {
+
+template <int... n>
+auto make_symbols(std::integer_sequence<int, n...>) -> std::tuple<std::enable_if_t<n >= 0, Symbol>...>;
+template <int Count>
+using Symbols = decltype(make_symbols(std::make_integer_sequence<int, Count>{}));
+
+/// Functions over variables of any types, tried with symbols: what no variable can do is refused here, first
+/// and once.
 template <class P>
-concept OcpProblem = requires(const P& p, const std::array<double, P::kNx>& x,
-                              const std::array<double, P::kNu>& u) {
-  requires kRowSize<decltype(p.dynamics(0, x, u))>
-  == P::kNx;
-  requires kRowSize<decltype(p.residual(0, x, u))>
-  == P::kNr;
-  requires kRowSize<decltype(p.terminal_residual(x))>
-  == P::kNe;
+concept TakesSymbols = requires(const P& p, const Symbols<P::kNx>& x, const Symbols<P::kNu>& u) {
+  p.dynamics(0, x, u);
+  p.residual(0, x, u);
+  p.terminal_residual(x);
+  requires P::kNc == 0 || requires { p.constraint(0, x, u); };
+};
+
+/// What each level's functions return.
+template <class P, bool IsStructured>
+struct RowsOf;
+template <class P>
+struct RowsOf<P, true> {
+  using X = Symbols<P::kNx>;
+  using U = Symbols<P::kNu>;
+  template <class Row, int Count>
+  static constexpr bool kFits = kRowSize<Row> == Count;
+};
+template <class P>
+struct RowsOf<P, false> {
+  using X = std::array<double, P::kNx>;
+  using U = std::array<double, P::kNu>;
+  template <class Row, int Count>
+  static constexpr bool kFits = std::is_same_v<Row, std::array<double, Count>>;
+};
+template <class P>
+using Rows = RowsOf<P, TakesSymbols<P>>;
+
+}  // namespace detail
+
+template <class P>
+concept OcpProblem = requires(const P& p, const typename detail::Rows<P>::X& x,
+                              const typename detail::Rows<P>::U& u) {
+  requires detail::Rows<P>::template kFits<decltype(p.dynamics(0, x, u)), P::kNx>;
+  requires detail::Rows<P>::template kFits<decltype(p.residual(0, x, u)), P::kNr>;
+  requires detail::Rows<P>::template kFits<decltype(p.terminal_residual(x)), P::kNe>;
   { p.input_lower(0) } -> std::same_as<std::array<double, P::kNu>>;
   { p.input_upper(0) } -> std::same_as<std::array<double, P::kNu>>;
   { P::kNc } -> std::convertible_to<int>;
@@ -117,10 +164,7 @@ concept OcpProblem = requires(const P& p, const std::array<double, P::kNx>& x,
 
 /// Level 2 of the interface.
 template <class P>
-concept StructuredProblem = OcpProblem<P> &&
-    requires(const P& p, const StateJets<P, double, 1>& x, const InputJets<P, double, 1>& u) {
-  p.dynamics(0, x, u);
-};
+concept StructuredProblem = OcpProblem<P> && detail::TakesSymbols<P>;
 
 /// Whether a problem has bounds on the changes of inputs.
 template <class P>
@@ -171,7 +215,14 @@ concept ConsistentRates = (!kHasRateBounds<P> && !detail::NamesRates<P>) || requ
 template <class T, OcpProblem P>
 [[nodiscard]] std::array<T, P::kNx> next_state(const P& problem, int k, const std::array<T, P::kNx>& x,
                                                const std::array<T, P::kNu>& u) {
-  return to_array<T>(problem.dynamics(k, x, u));
+  if constexpr (std::is_same_v<T, double>) {  // as what brings the functions of models along
+    using One = std::conditional_t<StructuredProblem<P>, Pack<arch::Baseline, 2>, Plain>;
+    const auto next = to_array<One>(problem.dynamics(k, to_array<One>(x), to_array<One>(u)));
+    return std::apply([](const auto&... value) { return std::array<double, P::kNx>{value_of(value)...}; },
+                      next);
+  } else {
+    return to_array<T>(problem.dynamics(k, x, u));
+  }
 }
 
 /// Price of violating a soft constraint c <= 0 by s > 0: linear · s + ½ quadratic · s².
@@ -196,11 +247,11 @@ struct Trajectory {
 struct SolverOptions {
   double tolerance = 1e-6;        ///< stationarity accepted as optimal; (0, 1e-2]
   double loose_tolerance = 1e-2;  ///< stationarity accepted when the budget is spent; [tolerance, 1e3]
-  int max_iterations = 100;  ///< SQP turns, those of a shorter horizon by their share; worst-case time is
-                             ///< proportional to it; [1, 200]. Controllers ask for fewer
+  int max_iterations = 500;  ///< SQP turns, those of a shorter horizon by their share; worst-case time is
+                             ///< proportional to it; [1, 2000]. Controllers ask for fewer
   bool may_start_short =
-      true;  ///< when full steps fail, grow the horizon from its beginning: reaches optima from poor
-             ///< guesses, at the price of tens of turns; off where the budget is a few turns
+      true;  ///< when full steps fail, the filter method, or for kRealTime a growing horizon: reaches optima
+             ///< from poor guesses, at the price of tens of turns; off where the budget is a few turns
   bool start_from_states = false;  ///< a warm start's states count, too, where they are finite: the first
                                    ///< steps close their gaps. For systems that are unstable, whose simulated
                                    ///< guess would run away

@@ -13,6 +13,8 @@ namespace chicane::solver {
 enum class SolveStatus : std::int8_t {
   kOptimal = 0,      ///< all residuals <= tolerance
   kBudgetSpent = 1,  ///< deadline or max_iterations reached; input bounds hold, residuals <= loose_tolerance
+  kAtFloor =
+      2,  ///< steps are as short as rounding lets them; a residual above tolerance is what is left of it
   kStalled = -1,     ///< no further progress, or budget spent, before loose_tolerance
   kInfeasible = -2,  ///< converged, but a soft constraint is violated by more than its cap
   kNotFinite = -3,   ///< a NaN or infinity in the data or an iterate
@@ -25,6 +27,8 @@ enum class SolveStatus : std::int8_t {
       return "optimal";
     case SolveStatus::kBudgetSpent:
       return "budget_spent";
+    case SolveStatus::kAtFloor:
+      return "at_floor";
     case SolveStatus::kStalled:
       return "stalled";
     case SolveStatus::kInfeasible:

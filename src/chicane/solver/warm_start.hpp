@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/solver/detail/input_chains.hpp"
 #include "chicane/solver/problem.hpp"
 
@@ -14,7 +15,8 @@ namespace chicane::solver {
 /// Moves every input into its bounds, also those on its changes: trajectory.x[0] knows the last one before
 /// the horizon. One that is not a number becomes the admissible value nearest to zero.
 template <OcpProblem P, int Capacity>
-void clamp_inputs(const P& problem, Trajectory<P::kNx, P::kNu, Capacity>& trajectory) noexcept {
+CHICANE_INLINE inline void clamp_inputs(const P& problem,
+                                        Trajectory<P::kNx, P::kNu, Capacity>& trajectory) noexcept {
   for (int k = 0; k < trajectory.horizon; ++k) {
     const auto stage = static_cast<std::size_t>(k);
     const auto low = problem.input_lower(k);

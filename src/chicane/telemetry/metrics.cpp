@@ -101,6 +101,7 @@ void Metrics::add(const Frame& frame) noexcept {
   iterations_ += static_cast<std::uint64_t>(std::max(0, report.solve.iterations));
   if (!solver::usable(report.solve.status)) ++not_usable_;
   if (report.rung != controller::Rung::kController) ++fallbacks_;
+  ++guard_reasons_[static_cast<std::size_t>(report.reason)];
   if (report.gated) ++gated_;
 }
 
@@ -126,6 +127,7 @@ RunSummary Metrics::summary() const {
   run.mean_iterations = cycles_ > 0 ? static_cast<double>(iterations_) / static_cast<double>(cycles_) : 0.0;
   run.not_usable = not_usable_;
   run.fallbacks = fallbacks_;
+  run.guard_reasons = guard_reasons_;
   run.gate_interventions = gated_;
   run.deadline_misses = deadline_misses_;
   run.state_hash = hash_.value();

@@ -77,6 +77,8 @@ struct RunSummary {
   double mean_iterations = 0.0;
   std::uint64_t not_usable = 0;  ///< solves whose answer must not be used
   std::uint64_t fallbacks = 0;   ///< steps whose command came from a rung below the controller
+  /// Steps in which the guard found something, by controller::GuardReason; [0]: nothing.
+  std::array<std::uint64_t, controller::kGuardReasonCount> guard_reasons{};
   std::uint64_t gate_interventions = 0;
   std::uint64_t deadline_misses = 0;  ///< steps that took longer than the control period
   std::uint64_t state_hash =
@@ -150,6 +152,7 @@ class Metrics {
   int off_track_events_ = 0;
   bool is_off_track_ = false;
   double out_of_track_time_ = 0.0;
+  std::array<std::uint64_t, controller::kGuardReasonCount> guard_reasons_{};
   std::uint64_t cycles_ = 0, iterations_ = 0, not_usable_ = 0, fallbacks_ = 0, gated_ = 0,
                 deadline_misses_ = 0;
   double last_time_ = 0.0;

@@ -17,6 +17,7 @@
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/run/control_cycle.hpp"
 #include "chicane/run/roadside.hpp"
+#include "chicane/run/track_fit.hpp"
 
 namespace chicane::wire {
 namespace {
@@ -130,6 +131,7 @@ class UdacityEndpoint::Control {
 
  private:
   void work() {
+    cycle_.use_line(options_.lap);
     for (;;) {
       Request request;
       {
@@ -169,6 +171,7 @@ class UdacityEndpoint::Control {
     }
     last_received_ = request.received;
     take_up_changes(seconds(request.received - started_));
+    check_road(request);
     frame_.has_measurement = request.kind == Request::Kind::kTelemetry;
     frame_.measurement = frame_.has_measurement ? request.measurement : nothing_measured();
     frame_.measurement.time = seconds(request.received - started_);
@@ -203,6 +206,23 @@ class UdacityEndpoint::Control {
       roadside_.resume();
     }
     begins_again_ = is_long;
+  }
+
+  /// A track that was told, and is not the one whose waypoints are shown, is not used any more.
+  void check_road(const Request& request) {
+    if (options_.track == nullptr || is_other_road_ || request.kind != Request::Kind::kTelemetry) return;
+    const auto distance = run::distance_to_other_road(*options_.track, request.measurement);
+    if (!distance) return;
+    is_other_road_ = true;
+    const telemetry::Change change{.cycle = cycle_.next(),
+                                   .time = seconds(request.received - started_),
+                                   .name = "guard.road",
+                                   .value = "waypoints"};
+    scenario_.guard.road = safety::GuardRoad::kWaypoints;
+    cycle_.configure(scenario_);
+    roadside_.forget_track();
+    if (hooks_.on_change) hooks_.on_change(change);
+    if (hooks_.on_other_road) hooks_.on_other_road(*distance);
   }
 
   /// Telemetry that cannot be used says only that time has passed.
@@ -251,6 +271,7 @@ class UdacityEndpoint::Control {
   std::optional<Clock::time_point> last_received_;
   std::optional<Clock::time_point> last_begun_;
   bool begins_again_ = false;
+  bool is_other_road_ = false;  ///< than the one that was told
   model::Command last_sent_;
   telemetry::Frame frame_;
   std::atomic<std::uint64_t> answers_{0};

@@ -18,6 +18,7 @@
 #include "chicane/net/server.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
+#include "chicane/road/racing_road.hpp"
 #include "chicane/run/change_queue.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/change.hpp"
@@ -33,9 +34,10 @@ struct ServeOptions {
   net::ServerOptions server;
   model::VehicleParams vehicle;  ///< bounds of what is sent
   scenario::Scenario scenario;   ///< what the controller was made from: needed to change it while it drives
-  /// The road that the simulator drives on, where somebody told: laps are timed from the positions it sends.
-  /// Outlives the endpoint; null: not known.
+  /// The road that the simulator drives on, where somebody told: the car is judged by the positions it sends.
+  /// Outlives the endpoint; null: not known, laps are timed all the same.
   const path::Track* track = nullptr;
+  std::shared_ptr<const road::RacingRoad> lap{};  ///< planned, of a controller that races (run/racing.hpp)
   /// Artificial, between the end of a control step and its answer, as the original controller sleeps. [0, 0.5
   /// s]
   std::chrono::nanoseconds latency = std::chrono::milliseconds{100};
@@ -56,6 +58,9 @@ struct ServeHooks {
       on_change{};                                          ///< when one was taken up, on the control thread
   std::function<void(const telemetry::Frame&)> on_frame{};  ///< after each answer, on the control thread
   std::function<void(const telemetry::CompletedLap&)> on_lap{};  ///< a lap was completed; the control thread
+  /// The simulator drives on another road than ServeOptions::track, so far from it at most [m], which is not
+  /// used any more. At most once, the control thread.
+  std::function<void(double)> on_other_road{};
   std::function<void(std::string_view)> log{};  ///< one line about the connection, on the network thread
   std::function<void(std::uint16_t port)> on_listening{};  ///< once, when the port is ours
   std::function<void()> on_end{};  ///< once: control has ended, the server still stands

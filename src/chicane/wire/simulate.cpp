@@ -159,6 +159,7 @@ class Simulation {
     while (!stop && !scene_.account().is_over() && why_.empty()) {
       const Clock::time_point now = Clock::now();
       server_.keep_running(now);
+      lose_hope(now);
       if (report_.connections > 0) move(now);
       if (const auto lap = scene_.account().take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
       if (client_ == nullptr) {
@@ -197,6 +198,12 @@ class Simulation {
                          std::fabs(scene_.edge()), scene_.edge() < 0.0 ? "beyond" : "inside"));
   }
 
+  void lose_hope(Clock::time_point now) {
+    if (options_.hopeless_after.count() == 0 || report_.connections == 0) return;
+    if (now - last_answer_ >= options_.hopeless_after)
+      why_ = fmt::format("no usable answer within {:g} s", seconds(options_.hopeless_after));
+  }
+
   /// Attempts run beside the physics, politely spaced.
   void connect(Clock::time_point now) {
     if (attempt_.valid()) {
@@ -218,7 +225,7 @@ class Simulation {
   void begin(std::unique_ptr<net::Client> client) {
     client_ = std::move(client);
     last_failure_.clear();
-    if (report_.connections++ == 0) began_ = Clock::now();  // the clock starts with the first controller
+    if (report_.connections++ == 0) began_ = last_answer_ = Clock::now();  // with the first controller
     log_.say(fmt::format("connected to {}", options_.url));
     asked_.reset();
     due_ = Clock::now();
@@ -301,6 +308,7 @@ class Simulation {
 
   void accept(const protocol::UdacitySteer& steer, double waited) {
     ++report_.answers;
+    last_answer_ = Clock::now();
     scene_.receiver().answered(steer);
     ++frame_.cycle;
     frame_.step_time = waited;
@@ -334,6 +342,7 @@ class Simulation {
   std::future<Result<std::unique_ptr<net::Client>>> attempt_;
   Clock::time_point next_attempt_{};
   Clock::time_point last_connected_{};
+  Clock::time_point last_answer_{};
   std::string last_failure_;
   std::unique_ptr<net::Client> client_;
 

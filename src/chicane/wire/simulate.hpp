@@ -27,6 +27,8 @@ struct SimulateOptions {
   std::chrono::milliseconds complain_after{1000};  ///< without an answer
   std::chrono::milliseconds give_up_after{5000};   ///< without an answer: connect anew
   std::chrono::milliseconds lost_after{30000};     ///< without a connection: the run ends
+  /// Without any usable answer: the run ends. 0: it waits for ever, connecting anew, as a person would.
+  std::chrono::milliseconds hopeless_after{0};
 };
 
 struct SimulateHooks {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
 #include <memory>
 #include <utility>
 
@@ -17,15 +18,20 @@ using protocol::Cadence;
 /// Topic number of the time for net::Delivery::kNewest; channels use their own number plus one.
 constexpr std::uint32_t kTimeTopic = 1'000'000;
 
-constexpr std::size_t kMostWaiting = 100;  // operators between the upgrade and its end
-constexpr std::size_t kMostLaps = 1000;    // kept for viewers that come later
+constexpr std::size_t kMostWaiting = 100;  // viewers between the upgrade and its end
 
-constexpr std::size_t kLapPage = 32;  // laps that are sent before the viewer has read those before
+// Kept messages that are sent before the viewer has read those before; with what else waits they stay below
+// net::ServerOptions::max_queue.
+constexpr std::size_t kLapPage = 32;
+constexpr std::size_t kFramePage = 192;
+
+constexpr std::uint16_t kGoingAway = 1001;  // RFC 6455 §7.4.1
 
 constexpr std::string_view kWatchOnly =
     "this connection may watch only; connect with the token of the link that the program printed to control";
 constexpr std::string_view kTrigger = "std_srvs/srv/Trigger";
 constexpr std::string_view kSetBool = "std_srvs/srv/SetBool";
+constexpr std::string_view kAsk = "chicane_msgs/srv/Ask";
 
 std::vector<foxglove::Channel> channels() {
   std::vector<foxglove::Channel> list;
@@ -50,6 +56,27 @@ std::uint32_t change_channel() {
 std::uint32_t lap_channel() {
   static const auto channel = channel_of(Cadence::kLap);
   return channel;
+}
+
+std::uint32_t frame_channel() {
+  static const auto channel = channel_of(Cadence::kFrame);
+  return channel;
+}
+
+/// A person's hands move thirty times a second: nobody wants to read that later.
+bool is_worth_keeping(const telemetry::Change& change) {
+  return change.name.view() != "manual.steer" && change.name.view() != "manual.throttle";
+}
+
+bool asks_for_past(std::string_view target) {
+  const std::size_t query = target.find('?');
+  if (query == std::string_view::npos) return false;
+  for (std::string_view rest = target.substr(query + 1); !rest.empty();) {
+    const std::size_t end = std::min(rest.find('&'), rest.size());
+    if (rest.substr(0, end) == "past") return true;
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return false;
 }
 
 /// A frame is stale once the next one is there; descriptions of the run must arrive.
@@ -81,6 +108,13 @@ ViewerEndpoint::ViewerEndpoint(ViewerOptions options)
   }
   if (options_.services.step) offer("/step", kTrigger, trigger(options_.services.step, "one step"));
   if (options_.services.reset) offer("/reset", kTrigger, trigger(options_.services.reset, "reset"));
+  if (options_.services.what_if) {
+    offer("/what_if", kAsk, [this](std::string_view request) -> Result<std::string> {
+      const std::optional<std::string> question = protocol::decode_ask(request);
+      if (!question) return fail(ErrorCode::kParse, "/what_if: expected one text in CDR");
+      return options_.services.what_if(*question);
+    });
+  }
 }
 
 void ViewerEndpoint::offer(std::string_view name, std::string_view type,
@@ -113,6 +147,33 @@ void ViewerEndpoint::set_paused(bool paused) {
   change_run([paused](protocol::Run& run) { run.is_paused = paused; });
 }
 
+void ViewerEndpoint::set_end(std::string kind, std::string reason) {
+  change_run([kind = std::move(kind), reason = std::move(reason)](protocol::Run& run) {
+    run.end = kind;
+    run.end_reason = reason;
+  });
+}
+
+void ViewerEndpoint::dismiss(std::chrono::milliseconds patience) {
+  if (server_ == nullptr) return;
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + patience;
+  std::promise<void> gone;
+  std::set<net::ConnectionId> told;
+  bool has_ticked = false;
+  std::function<void()> look = [&] {
+    if (!std::exchange(has_ticked, true)) tick();
+    for (const auto& [id, client] : clients_) {
+      const bool has_all = server_->waiting(id) == 0 && !client.next_frame;
+      if (has_all && told.insert(id).second) server_->close(id, kGoingAway, "the run is over");
+    }
+    if (clients_.empty() || Clock::now() >= end) return gone.set_value();
+    server_->run_after(std::chrono::milliseconds{5}, look);
+  };
+  server_->run_after(std::chrono::nanoseconds{0}, look);
+  gone.get_future().wait();
+}
+
 void ViewerEndpoint::change_run(std::function<void(protocol::Run&)> change) {
   on_network([this, change = std::move(change)] {
     change(options_.run);
@@ -141,8 +202,10 @@ void ViewerEndpoint::schedule() {
 void ViewerEndpoint::tick() {
   tell_changes();
   note_lap();
-  if (!latest_.take(frame_)) return;
-  note_frame();
+  const bool is_new = latest_.take(frame_);
+  if (is_new) note_frame();
+  for (auto& [id, client] : clients_) send_kept(id, client);
+  if (!is_new) return;
   const auto time =
       std::make_shared<const std::string>(foxglove::time_message(protocol::to_nanoseconds(frame_.time)));
   for (const auto& [id, client] : clients_) {
@@ -151,14 +214,15 @@ void ViewerEndpoint::tick() {
   send_cadence(Cadence::kFrame);
 }
 
-/// The laps of a run that has begun anew are not those of the one before.
+/// What was before a run began anew is not of this one.
 void ViewerEndpoint::note_frame() {
   if (has_frame_ && frame_.cycle < cycle_) {
-    laps_.clear();
-    for (auto& [id, client] : clients_) client.next_lap = 0;
+    memory_.forget();
+    if (!options_.run.end.empty()) set_end("", "");
   }
   has_frame_ = true;
   cycle_ = frame_.cycle;
+  memory_.add_frame(frame_.time, protocol::ros_topics()[frame_channel()].encode(frame_, options_.run));
 }
 
 /// Changes that the run has taken up go out in order; parameters that have another value, to those who
@@ -168,6 +232,10 @@ void ViewerEndpoint::tell_changes() {
   for (const telemetry::Change& change : options_.parameters->applied()) {
     const std::string payload =
         protocol::encode_change(change.time, change.cycle, change.name.view(), change.value.view());
+    if (is_worth_keeping(change)) {
+      memory_.add_change(change.time, payload);
+      continue;  // send_kept() sends it
+    }
     for (const auto& [id, client] : clients_) {
       const auto wanted = client.subscriptions.find(change_channel());
       if (wanted == client.subscriptions.end()) continue;
@@ -197,28 +265,35 @@ void ViewerEndpoint::send_parameters(const std::vector<foxglove::Parameter>& val
 /// Keeps the laps of this run for viewers that come later.
 void ViewerEndpoint::note_lap() {
   TimedLap completed;
-  if (latest_lap_.take(completed)) {
-    if (laps_.size() >= kMostLaps) {
-      laps_.erase(laps_.begin());
-      for (auto& [id, client] : clients_) client.next_lap -= client.next_lap > 0 ? 1 : 0;
-    }
-    telemetry::Frame frame;
-    frame.completed_lap = completed.lap;
-    laps_.emplace_back(completed.time, protocol::ros_topics()[lap_channel()].encode(frame, options_.run));
-  }
-  for (auto& [id, client] : clients_) send_laps(id, client);
+  if (!latest_lap_.take(completed)) return;
+  telemetry::Frame frame;
+  frame.completed_lap = completed.lap;
+  memory_.add_lap(completed.lap, completed.time,
+                  protocol::ros_topics()[lap_channel()].encode(frame, options_.run));
 }
 
-/// A page of those that it has not been sent; the next one when it has read this. All at once would be more
-/// than may wait for a connection.
-void ViewerEndpoint::send_laps(net::ConnectionId id, Client& client) {
-  const auto wanted = client.subscriptions.find(lap_channel());
-  if (wanted == client.subscriptions.end() || client.next_lap >= laps_.size()) return;
-  for (std::size_t room = kLapPage - std::min(kLapPage, server_->waiting(id));
-       room > 0 && client.next_lap < laps_.size(); --room, ++client.next_lap) {
-    const auto& [time, lap] = laps_[client.next_lap];
-    server_->send(id, foxglove::message_data(wanted->second, protocol::to_nanoseconds(time), lap), true);
-  }
+/// A page of what it has not been sent; the next one when it has read this. All at once would be more than
+/// may wait for a connection.
+void ViewerEndpoint::send_kept(net::ConnectionId id, Client& client) {
+  const auto send_page = [&](std::uint32_t channel, std::size_t page, std::uint64_t& next, auto from) {
+    const auto wanted = client.subscriptions.find(channel);
+    if (wanted == client.subscriptions.end()) return true;
+    for (std::size_t room = page - std::min(page, server_->waiting(id)); room > 0; --room) {
+      const KeptMessage* message = (memory_.*from)(next);
+      if (message == nullptr) return true;
+      server_->send(
+          id,
+          foxglove::message_data(wanted->second, protocol::to_nanoseconds(message->time), message->payload),
+          true);
+      next = message->number + 1;
+    }
+    return false;
+  };
+  const bool has_laps = send_page(lap_channel(), kLapPage, client.next_lap, &RunMemory::lap_from);
+  send_page(change_channel(), kLapPage, client.next_change, &RunMemory::change_from);
+  if (!client.next_frame || !has_laps) return;  // the table before the curves
+  const bool has_all = send_page(frame_channel(), kFramePage, *client.next_frame, &RunMemory::frame_from);
+  if (has_all) client.next_frame.reset();
 }
 
 void ViewerEndpoint::send_cadence(Cadence cadence) {
@@ -238,6 +313,7 @@ void ViewerEndpoint::send_channel(std::uint32_t channel) {
   for (const auto& [id, client] : clients_) {
     const auto wanted = client.subscriptions.find(channel);
     if (wanted == client.subscriptions.end()) continue;
+    if (channel == frame_channel() && client.next_frame) continue;  // the past comes first
     if (!payload) payload = topic.encode(frame_, options_.run);
     net::Bytes& bytes = by_subscription[wanted->second];
     if (!bytes)
@@ -263,8 +339,10 @@ net::UpgradeAnswer ViewerEndpoint::on_upgrade(const net::UpgradeRequest& request
   for (const std::string_view ours : kViewerSubprotocols) {
     if (std::find(request.subprotocols.begin(), request.subprotocols.end(), ours) !=
         request.subprotocols.end()) {
-      if (operators_.size() >= kMostWaiting) operators_.erase(operators_.begin());
-      if (request.may_control) operators_.insert(request.id);
+      if (upgrades_.size() >= kMostWaiting) upgrades_.erase(upgrades_.begin());
+      Client& client = upgrades_[request.id];
+      client.may_control = request.may_control;
+      client.wants_past = asks_for_past(request.target);
       return {.accept = true, .subprotocol = std::string{ours}};
     }
   }
@@ -274,8 +352,8 @@ net::UpgradeAnswer ViewerEndpoint::on_upgrade(const net::UpgradeRequest& request
 }
 
 void ViewerEndpoint::on_open(net::ConnectionId id) {
-  clients_[id] = {};
-  clients_[id].may_control = operators_.erase(id) > 0;
+  const auto upgrade = upgrades_.extract(id);
+  clients_[id] = upgrade.empty() ? Client{} : upgrade.mapped();
   send_text(id, foxglove::server_info(
                     "chicane", session_,
                     {.parameters = options_.parameters != nullptr, .services = !services_.empty()}));
@@ -305,12 +383,18 @@ void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::Subscribe& mes
       continue;
     }
     // What is known now, because the next change may be far away.
-    if (topics[channel].cadence == Cadence::kLap) {
-      clients_[id].next_lap = 0;
-      send_laps(id, clients_[id]);
+    Client& client = clients_[id];
+    if (channel == frame_channel() && client.wants_past) {
+      client.next_frame = 0;  // from the next tick on: what describes the run comes first
       continue;
     }
-    if (topics[channel].cadence == Cadence::kEvent) continue;
+    const Cadence cadence = topics[channel].cadence;
+    if (cadence == Cadence::kLap) client.next_lap = 0;
+    if (cadence == Cadence::kEvent) client.next_change = 0;
+    if (cadence == Cadence::kLap || cadence == Cadence::kEvent) {
+      send_kept(id, client);
+      continue;
+    }
     if (topics[channel].cadence == Cadence::kFrame && !has_frame_) continue;
     server_->send(id,
                   foxglove::message_data(subscription, protocol::to_nanoseconds(frame_.time),

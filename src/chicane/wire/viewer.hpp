@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -17,6 +18,7 @@
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/wire/endpoint.hpp"
+#include "chicane/wire/run_memory.hpp"
 
 namespace chicane::wire {
 
@@ -26,6 +28,8 @@ struct ViewerServices {
   std::function<Result<void>(bool paused)> pause;  ///< "/pause", std_srvs/srv/SetBool
   std::function<Result<void>()> step;   ///< "/step", std_srvs/srv/Trigger: one control cycle while paused
   std::function<Result<void>()> reset;  ///< "/reset", std_srvs/srv/Trigger: the run starts anew
+  /// "/what_if", chicane_msgs/srv/Ask: begins to compute another future; its number as a text.
+  std::function<Result<std::string>(std::string_view question)> what_if{};
 };
 
 struct ViewerOptions {
@@ -41,6 +45,9 @@ struct ViewerOptions {
 /// on its way to each viewer: slow ones see fewer frames and hold nothing up.
 ///
 /// Who may watch only (net::UpgradeRequest::may_control) gets everything but services and set parameters.
+///
+/// Laps and changes of the run are sent from its beginning to whoever subscribes. A viewer whose address ends
+/// with "?past" gets the frames of the last minutes before the newest (run_memory.hpp).
 ///
 /// Must outlive the server it is started with.
 class ViewerEndpoint final : public Endpoint {
@@ -60,6 +67,12 @@ class ViewerEndpoint final : public Endpoint {
   void change_run(std::function<void(protocol::Run&)> change);
   /// For runs that are paused by others than viewers. Any thread, but not while on_start runs.
   void set_paused(bool paused);
+  /// The run is over: why in a word ("finished", "stopped", "failed") and in a sentence. A run that begins
+  /// anew is not over any more. Any thread, but not while on_start runs.
+  void set_end(std::string kind, std::string reason);
+  /// Sends what is not sent yet and says goodbye; comes back when viewers have gone, or after `patience`. The
+  /// thread that runs the experiment, at its end.
+  void dismiss(std::chrono::milliseconds patience = std::chrono::milliseconds{1000});
 
   void on_start(net::Server& server) override;
   [[nodiscard]] net::UpgradeAnswer on_upgrade(const net::UpgradeRequest& request) override;
@@ -70,7 +83,10 @@ class ViewerEndpoint final : public Endpoint {
  private:
   struct Client {
     bool may_control = false;
-    std::size_t next_lap = 0;                              ///< of laps_, to be sent to it
+    bool wants_past = false;
+    std::optional<std::uint64_t> next_frame{};  ///< of those of the past; none: it follows the newest
+    std::uint64_t next_lap = 0;                 ///< of memory_, to be sent to it
+    std::uint64_t next_change = 0;
     std::map<std::uint32_t, std::uint32_t> subscriptions;  ///< channel → subscription
     bool wants_all_parameters = false;
     std::set<std::string, std::less<>> wanted_parameters;
@@ -88,7 +104,7 @@ class ViewerEndpoint final : public Endpoint {
   void send_parameters(const std::vector<protocol::foxglove::Parameter>& values);
   void note_lap();
   void note_frame();
-  void send_laps(net::ConnectionId id, Client& client);
+  void send_kept(net::ConnectionId id, Client& client);
   void send_cadence(protocol::Cadence cadence);
   void send_channel(std::uint32_t channel);
   void send_text(net::ConnectionId id, std::string text);
@@ -114,11 +130,11 @@ class ViewerEndpoint final : public Endpoint {
   Latest<TimedLap> latest_lap_;
   telemetry::Frame frame_;
   bool has_frame_ = false;
-  std::vector<std::pair<double, std::string>> laps_;  ///< of this run: time [s] and message
-  std::uint64_t cycle_ = 0;                           ///< of the last frame
+  RunMemory memory_;
+  std::uint64_t cycle_ = 0;  ///< of the last frame
   net::Server* server_ = nullptr;
   std::map<net::ConnectionId, Client> clients_;
-  std::set<net::ConnectionId> operators_;  ///< between on_upgrade and on_open: who may control
+  std::map<net::ConnectionId, Client> upgrades_;  ///< between on_upgrade and on_open
 };
 
 }  // namespace chicane::wire

@@ -1,5 +1,14 @@
 import { describe, expect, it } from 'vitest';
-import { above, behind, fitting, groundGrid, project, scaleBar, worldInView, zoomed } from './camera';
+import { above, behind, fitting, groundGrid, project, scaleBar, unproject, worldInView, zoomed } from './camera';
+
+describe('a place on the screen', () => {
+  it('is the point of the world that appears there', () => {
+    const camera = { centre: { x: 12, y: -7 }, at: { x: 300, y: 200 }, scale: 4, rotation: 0.7 };
+    const back = unproject(camera, project(camera, { x: 33, y: 5 }));
+    expect(back.x).toBeCloseTo(33, 9);
+    expect(back.y).toBeCloseTo(5, 9);
+  });
+});
 
 describe('camera', () => {
   it('shows north up and east right', () => {

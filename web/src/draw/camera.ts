@@ -23,6 +23,13 @@ export function project(camera: Camera, point: Point): Point {
   return { x: a * point.x + c * point.y + e, y: b * point.x + d * point.y + f };
 }
 
+/** The point of the world that appears at a place of the screen: the inverse of project(). */
+export function unproject(camera: Camera, at: Point): Point {
+  const [a, b, c, d, e, f] = transformOf(camera, 1);
+  const [x, y, size] = [at.x - e, at.y - f, a * d - b * c];
+  return { x: (d * x - c * y) / size, y: (a * y - b * x) / size };
+}
+
 /** A box of the world, along its axes, that holds all that a picture of this size shows. */
 export function worldInView(camera: Camera, width: number, height: number): Box {
   // The transform is a reflection: except for its scale it is its own inverse.

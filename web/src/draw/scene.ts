@@ -17,6 +17,7 @@ export interface Scene {
   readonly plan: Plan | null;
   readonly speedScale: number; // the speed at the end of the colour scale [m/s]
   readonly hindsight: Hindsight | null; // a past plan and the path driven since
+  readonly faults: readonly Point[]; // where faults began
   readonly ghost: Pose | null; // drawn in the car's shape
   readonly car: { x: number; y: number; yaw: number; isBraking: boolean; shape: CarShape } | null;
 }
@@ -212,6 +213,21 @@ function drawCar(ctx: Context, car: NonNullable<Scene['car']>, colours: Theme, p
   ctx.restore();
 }
 
+/** A triangle where a fault began. */
+function drawFault(ctx: Context, { x, y }: Point, colours: Theme, px: number): void {
+  const size = Math.max(0.9, 7 * px);
+  ctx.beginPath();
+  ctx.moveTo(x, y + size);
+  ctx.lineTo(x - 0.87 * size, y - 0.5 * size);
+  ctx.lineTo(x + 0.87 * size, y - 0.5 * size);
+  ctx.closePath();
+  ctx.fillStyle = colours.brake;
+  ctx.fill();
+  ctx.strokeStyle = colours.panel;
+  ctx.lineWidth = 1.5 * px;
+  ctx.stroke();
+}
+
 /** The car's outline at another pose. */
 function outline(ctx: Context, pose: Pose, { shape }: NonNullable<Scene['car']>, px: number): void {
   const grown = Math.max(1, (18 * px) / (shape.front - shape.rear));
@@ -283,9 +299,26 @@ export function drawMoving(ctx: Context, scene: Scene, camera: Camera, colours: 
   stroke(ctx, trail(scene.reference), scene.road ? colours.reference : colours.faint, Math.max(0.12, 1.5 * px));
   if (scene.hindsight) drawHindsight(ctx, scene.hindsight, colours, px);
   if (scene.plan) drawPlan(ctx, scene.plan, scene.speedScale, Math.max(0.45, 4 * px));
+  for (const mark of scene.faults) drawFault(ctx, mark, colours, px);
   if (scene.ghost && scene.car) drawGhost(ctx, scene.ghost, scene.car, colours, px);
   if (scene.car) drawCar(ctx, scene.car, colours, px);
   if (scene.hindsight?.predicted && scene.car) drawPredicted(ctx, scene.hindsight.predicted, scene.car, colours, px);
+}
+
+/** Where the cursor of the plots stands. */
+export function drawCursor(ctx: Context, at: Point, camera: Camera, colours: Theme, ratio: number): void {
+  ctx.setTransform(...transformOf(camera, ratio));
+  const px = 1 / camera.scale;
+  for (const [radius, colour, width] of [
+    [9, colours.carEdge, 5],
+    [9, colours.predicted, 3],
+  ] as const) {
+    ctx.beginPath();
+    ctx.arc(at.x, at.y, radius * px, 0, 2 * Math.PI);
+    ctx.strokeStyle = colour;
+    ctx.lineWidth = width * px;
+    ctx.stroke();
+  }
 }
 
 /** The whole track, small. */
@@ -299,13 +332,20 @@ export function drawOutline(ctx: Context, { centre }: RoadShape, camera: Camera,
   stroke(ctx, path, colours.faint, 2.5 * px);
 }
 
-/** The car on it. */
-export function drawDot(ctx: Context, car: Point, camera: Camera, colours: Theme, ratio: number): void {
+/** The car on it, or the cursor of the plots. */
+export function drawDot(
+  ctx: Context,
+  car: Point,
+  camera: Camera,
+  colours: Theme,
+  ratio: number,
+  colour = colours.accent,
+): void {
   ctx.setTransform(...transformOf(camera, ratio));
   const px = 1 / camera.scale;
   ctx.beginPath();
   ctx.arc(car.x, car.y, 5 * px, 0, 2 * Math.PI);
-  ctx.fillStyle = colours.accent;
+  ctx.fillStyle = colour;
   ctx.fill();
   ctx.strokeStyle = colours.panel;
   ctx.lineWidth = 2 * px;

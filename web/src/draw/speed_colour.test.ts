@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { SPEED_UNITS, type SpeedUnit } from '../lib/units';
+import { SPEED_UNITS } from '../lib/units';
 import { speedColour, speedGradient, topOfScale } from './speed_colour';
 
 describe('speed colour', () => {
@@ -20,13 +20,11 @@ describe('speed colour', () => {
     }
   });
 
-  it('ends the scale at a round speed', () => {
-    const [mph, kmh, mps] = SPEED_UNITS as readonly [SpeedUnit, SpeedUnit, SpeedUnit];
-    const top = (speed: number, unit: SpeedUnit) => topOfScale(speed / unit.perMps, unit) * unit.perMps;
-    expect(top(0, mph)).toBeCloseTo(20, 9);
-    expect(top(100, mph)).toBeCloseTo(100, 9);
-    expect(top(101, mph)).toBeCloseTo(120, 9);
-    expect(top(161, kmh)).toBeCloseTo(200, 9);
-    expect(top(45, mps)).toBeCloseTo(50, 9);
+  it('ends at a round speed that depends on nothing but the car', () => {
+    const tops = (length: number) => SPEED_UNITS.map((unit) => Math.round(topOfScale(length, unit) * unit.perMps));
+    expect(tops(4.47)).toEqual([120, 200, 55]);
+    expect(tops(0.5)).toEqual([30, 50, 14]);
+    expect(tops(NaN)).toEqual([120, 200, 55]);
+    for (const unit of SPEED_UNITS) expect(Math.abs(topOfScale(4.47, unit) - 54.5)).toBeLessThan(1.2);
   });
 });

@@ -24,9 +24,15 @@ export function speedRgb(share: number): readonly [number, number, number] {
 /** The same as a CSS colour. */
 export const speedColour = (share: number): string => `rgb(${speedRgb(share).join(' ')})`;
 
-/** The upper end of the colour scale: round in the reader's unit [m/s]. */
-export const topOfScale = (topSpeed: number, { perMps, scaleStep }: SpeedUnit): number =>
-  (Math.ceil(Math.max(scaleStep, topSpeed * perMps) / scaleStep - 1e-9) * scaleStep) / perMps;
+/** Cars shorter than this are models, whose speeds have a scale of their own [m]. */
+const MODEL_CAR_M = 1.5;
+
+/**
+ * The upper end of the colour scale [m/s], round in the reader's unit. It depends on the size of the car only, so that
+ * a colour means the same speed all the time; what is faster has the last colour.
+ */
+export const topOfScale = (bodyLength: number, { perMps, scaleTop, scaleTopOfModels }: SpeedUnit): number =>
+  (bodyLength < MODEL_CAR_M ? scaleTopOfModels : scaleTop) / perMps;
 
 /** The scale as a CSS gradient, for the legend. */
 export const speedGradient = (): string =>

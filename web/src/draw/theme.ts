@@ -1,3 +1,6 @@
+import { effect } from '@preact/signals';
+import { scheme } from '../lib/appearance';
+
 /** The colours of style.css that canvases need. */
 export interface Theme {
   readonly ground: string;
@@ -56,7 +59,8 @@ function read(): Theme {
 let current: Theme | null = null;
 const listeners = new Set<() => void>();
 
-matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+effect(() => {
+  void scheme.value;
   current = null;
   for (const listener of listeners) listener();
 });

@@ -8,12 +8,13 @@ export function fixed(value: number, decimals: number): string {
   return value < 0 && Number(text) !== 0 ? `−${text}` : text;
 }
 
-/** 83.4567 s → "1:23.45". Truncated, not rounded, as lap clocks do. */
-export function lapTime(seconds: number): string {
+/** 83.4567 s → "1:23.45", or with three decimals. Truncated, not rounded, as lap clocks do. */
+export function lapTime(seconds: number, decimals: 2 | 3 = 2): string {
   if (!Number.isFinite(seconds) || seconds < 0) return UNKNOWN;
-  const hundredths = Math.floor(seconds * 100 + 1e-6);
-  const [minutes, rest] = [Math.floor(hundredths / 6000), hundredths % 6000];
-  return `${minutes}:${(rest / 100).toFixed(2).padStart(5, '0')}`;
+  const parts = 10 ** decimals; // of a second
+  const count = Math.floor(seconds * parts + 1e-6);
+  const [minutes, rest] = [Math.floor(count / (60 * parts)), count % (60 * parts)];
+  return `${minutes}:${(rest / parts).toFixed(decimals).padStart(3 + decimals, '0')}`;
 }
 
 /** The side of a signed offset: positive is left. */

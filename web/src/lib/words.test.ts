@@ -23,10 +23,10 @@ describe('words', () => {
     for (const status of Object.values(STATUS)) expect(statusInWords(status).text).not.toMatch(/^Unknown/);
   });
 
-  it('calls no unusable solution good', () => {
+  it('calls usable solutions good, and no others', () => {
     expect([0, 1, -1, -2, -3, 7].map((status) => statusInWords(status).severity)).toEqual([
       'good',
-      'warning',
+      'good',
       'bad',
       'bad',
       'bad',

@@ -32,6 +32,12 @@ export function reasonInWords(reason: number): string {
   }
 }
 
+/** Who drives: a person, or what Frame.rung says. */
+export const driverInWords = (frame: Pick<Frame, 'is_manual' | 'rung' | 'guard_reason'>): Sentence =>
+  frame.is_manual && frame.rung === RUNG.CONTROLLER
+    ? { severity: 'good', text: 'A person drives; the controller plans beside' }
+    : rungInWords(frame.rung, frame.guard_reason);
+
 /** The source of the command, by Frame.rung. */
 export function rungInWords(rung: number, reason = 0): Sentence {
   switch (rung) {
@@ -60,7 +66,7 @@ export function statusInWords(status: number): Sentence {
     case STATUS.OPTIMAL:
       return { severity: 'good', text: 'Optimal' };
     case STATUS.BUDGET_SPENT:
-      return { severity: 'warning', text: 'Time or iteration limit reached, answer usable' };
+      return { severity: 'good', text: 'Good enough: stopped at its limit of time or iterations, within tolerance' };
     case STATUS.STALLED:
       return { severity: 'bad', text: 'Did not converge' };
     case STATUS.INFEASIBLE:

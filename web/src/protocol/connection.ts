@@ -1,6 +1,6 @@
 import { type Channel, FoxgloveClient, type IWebSocket, type Parameter, type Service } from '@foxglove/ws-protocol';
-import { decoder, encodeBool, encodeNothing } from './decoder';
-import type { ServiceName, SetAnswer, Setting, Source, SourceEvents } from './source';
+import { decoder, encodeBool, encodeNothing, encodeText } from './decoder';
+import type { AskAnswer, ServiceName, SetAnswer, Setting, Source, SourceEvents } from './source';
 import { TOPIC_NAMES, type Topics } from './topics';
 
 /** Both names mean the same protocol; the server picks one. */
@@ -32,7 +32,7 @@ export class Connection implements Source {
   #attempt = 0;
   #timer: ReturnType<typeof setTimeout> | undefined;
   #services = new Map<string, Service>();
-  #calls = new Map<number, { service: Service; resolve: (sentence: string | null) => void }>();
+  #calls = new Map<number, { service: Service; resolve: (answer: AskAnswer) => void }>();
   #sets = new Map<string, PendingSet>(); // by request id, in the order sent
   #nextCall = 1;
   #hasParameters = false;
@@ -56,12 +56,21 @@ export class Connection implements Source {
     this.#connect();
   }
 
-  call(name: ServiceName, data?: boolean): Promise<string | null> {
+  async call(name: ServiceName, data?: boolean): Promise<string | null> {
+    const { isTaken, message } = await this.#request(name, data === undefined ? encodeNothing() : encodeBool(data));
+    return isTaken ? null : message;
+  }
+
+  ask(name: ServiceName, question: string): Promise<AskAnswer> {
+    return this.#request(name, encodeText(question));
+  }
+
+  #request(name: ServiceName, data: Uint8Array): Promise<AskAnswer> {
     const service = this.#services.get(name);
-    if (!service || !this.#client) return Promise.resolve(`${name} is not offered by this run`);
+    if (!service || !this.#client)
+      return Promise.resolve({ isTaken: false, message: `${name} is not offered by this run` });
     const callId = this.#nextCall++;
-    const request = data === undefined ? encodeNothing() : encodeBool(data);
-    this.#client.sendServiceCallRequest({ serviceId: service.id, callId, encoding: 'cdr', data: request });
+    this.#client.sendServiceCallRequest({ serviceId: service.id, callId, encoding: 'cdr', data });
     return new Promise((resolve) => this.#calls.set(callId, { service, resolve }));
   }
 
@@ -109,7 +118,7 @@ export class Connection implements Source {
       if (isCurrent()) this.#parameterValues(parameters, id);
     });
     client.on('serviceCallResponse', ({ callId, data }) => this.#answer(callId, data));
-    client.on('serviceCallFailure', ({ callId, message }) => this.#finish(callId, message));
+    client.on('serviceCallFailure', ({ callId, message }) => this.#finish(callId, { isTaken: false, message }));
     client.on('status', ({ message }) => this.#status(message));
     client.on('error', () => undefined); // a close event follows
     client.on('close', () => {
@@ -153,11 +162,11 @@ export class Connection implements Source {
     if (!service) return;
     const schema = service.response?.schema ?? service.responseSchema ?? '';
     const answer = decoder(schema)(data) as { success: boolean; message: string };
-    this.#finish(callId, answer.success ? null : answer.message);
+    this.#finish(callId, { isTaken: answer.success, message: answer.message });
   }
 
-  #finish(callId: number, sentence: string | null): void {
-    this.#calls.get(callId)?.resolve(sentence);
+  #finish(callId: number, answer: AskAnswer): void {
+    this.#calls.get(callId)?.resolve(answer);
     this.#calls.delete(callId);
   }
 
@@ -166,7 +175,7 @@ export class Connection implements Source {
     this.#hasParameters = false;
     this.#services.clear();
     this.#events.services(new Set());
-    for (const callId of [...this.#calls.keys()]) this.#finish(callId, LOST);
+    for (const callId of [...this.#calls.keys()]) this.#finish(callId, { isTaken: false, message: LOST });
     for (const { resolve } of this.#sets.values()) resolve({ value: null, sentence: LOST });
     this.#sets.clear();
     const delay = retryDelay(++this.#attempt);

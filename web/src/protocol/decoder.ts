@@ -12,3 +12,13 @@ export const encodeBool = (value: boolean): Uint8Array => new Uint8Array([0, 1, 
 
 /** The request of std_srvs/srv/Trigger, which is empty. */
 export const encodeNothing = (): Uint8Array => new Uint8Array([0, 1, 0, 0]);
+
+/** The request of chicane_msgs/srv/Ask, one text: its length with a final zero, and the bytes. */
+export function encodeText(text: string): Uint8Array {
+  const bytes = new TextEncoder().encode(text);
+  const request = new Uint8Array(8 + bytes.length + 1);
+  request.set([0, 1, 0, 0]);
+  new DataView(request.buffer).setUint32(4, bytes.length + 1, true);
+  request.set(bytes, 8);
+  return request;
+}

@@ -151,9 +151,20 @@ describe('messages of the C++ side', () => {
     expect(read<Path>('/reference').poses).toHaveLength(2);
   });
 
+  it('carry a scene for the 3D panels of other viewers', () => {
+    const { entities } = read<{
+      entities: { id: string; frame_id: string; frame_locked: boolean; cubes: unknown[] }[];
+    }>('/scene');
+    expect(entities).toMatchObject([
+      { id: 'road', frame_id: 'map', frame_locked: false, lines: [{ type: 0 }, { type: 0 }] },
+      { id: 'car', frame_id: 'base_link', frame_locked: true, triangles: [], models: [] },
+    ]);
+    expect(entities[1]?.cubes).toHaveLength(6);
+  });
+
   it('carry the standard types', () => {
     expect(read('/odom')).toMatchObject({
-      header: { frame_id: 'map' },
+      header: { frame_id: 'odom' },
       child_frame_id: 'base_link',
       twist: { twist: { linear: { x: 30 }, angular: { z: 0.25 } } },
     });

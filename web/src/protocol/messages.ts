@@ -1,6 +1,6 @@
 // Messages of chicane_msgs as this page reads them. Made from their definitions, which follow from
-// src/chicane/protocol/frame_fields.cpp and detail/ros_schemas.hpp; do not edit. Renewed by
-// cmake --build --preset release --target renew_fixtures
+// src/chicane/protocol/frame_fields.cpp and detail/ros_schemas.hpp; do not edit. As long as the
+// messages are. Renewed by cmake --build --preset release --target renew_fixtures
 
 export interface Stamp {
   sec: number;
@@ -403,6 +403,10 @@ export interface Run {
   kerb_width_m: number;
   /** another run that is being built: "track = oval"; empty: none */
   building: string;
+  /** "finished", "stopped", "failed": the run is over; empty: it goes on */
+  end: string;
+  /** why, in one sentence; empty when it finished */
+  end_reason: string;
 }
 
 /** What a Run says when nothing is known. */
@@ -429,6 +433,8 @@ export const UNKNOWN_RUN: Run = {
   fault_names: [],
   kerb_width_m: NaN,
   building: '',
+  end: '',
+  end_reason: '',
 };
 
 /** chicane_msgs/msg/Lap. One completed lap, sent when it is. */

@@ -10,9 +10,36 @@ export interface SchemaEntry {
   readonly maximum: number | null;
   readonly choices: readonly string[];
   readonly default: number | boolean | string | null;
+  /** What the run started with; null for what is no setting of the experiment, and for older programs. */
+  readonly start: number | boolean | string | null;
   readonly meaning: string;
+  /** Of a switch for a fault; else absent. */
+  readonly fault?: FaultEntry;
   /** Whether a change applies at the next control step; otherwise it restarts the run. */
   readonly is_live: boolean;
+}
+
+/** What a fault does unless it is told otherwise, and the range of its strength; no meaning: it has no strength. */
+export interface FaultEntry {
+  readonly group: string;
+  readonly duration_s: number;
+  readonly strength: number;
+  readonly weakest: number;
+  readonly strongest: number;
+  readonly strength_meaning: string;
+}
+
+function readFault(value: unknown): FaultEntry | undefined {
+  if (typeof value !== 'object' || value === null) return undefined;
+  const { group, duration_s, strength, weakest, strongest, strength_meaning } = value as Record<string, unknown>;
+  return {
+    group: typeof group === 'string' ? group : '',
+    duration_s: numberOr(duration_s) ?? 1,
+    strength: numberOr(strength) ?? 1,
+    weakest: numberOr(weakest) ?? 1,
+    strongest: numberOr(strongest) ?? 1,
+    strength_meaning: typeof strength_meaning === 'string' ? strength_meaning : '',
+  };
 }
 
 const KINDS: readonly string[] = ['number', 'integer', 'bool', 'choice', 'text'] satisfies SchemaEntry['kind'][];
@@ -20,12 +47,15 @@ const KINDS: readonly string[] = ['number', 'integer', 'bool', 'choice', 'text']
 const numberOr = (value: unknown): number | null =>
   typeof value === 'number' && Number.isFinite(value) ? value : null;
 
+const settingOr = (value: unknown): number | boolean | string | null =>
+  typeof value === 'number' || typeof value === 'boolean' || typeof value === 'string' ? value : null;
+
 /** Reads the well-formed entries of a parsed /schema.json: the page may be older or newer than the server. */
 export function readSchema(json: unknown): SchemaEntry[] {
   if (!Array.isArray(json)) return [];
   return json.flatMap((each: Partial<Record<keyof SchemaEntry, unknown>> | null) => {
     if (typeof each?.key !== 'string' || typeof each.kind !== 'string' || !KINDS.includes(each.kind)) return [];
-    const value = each.default;
+    const fault = readFault(each.fault);
     return [
       {
         key: each.key,
@@ -36,9 +66,11 @@ export function readSchema(json: unknown): SchemaEntry[] {
         minimum: numberOr(each.minimum),
         maximum: numberOr(each.maximum),
         choices: Array.isArray(each.choices) ? each.choices.filter((choice) => typeof choice === 'string') : [],
-        default: typeof value === 'number' || typeof value === 'boolean' || typeof value === 'string' ? value : null,
+        default: settingOr(each.default),
+        start: settingOr(each.start),
         meaning: typeof each.meaning === 'string' ? each.meaning : '',
         is_live: each.is_live !== false,
+        ...(fault ? { fault } : {}),
       },
     ];
   });

@@ -35,7 +35,7 @@ describe.each([
     let compared = 0;
     for (const [name, fields] of named) {
       if (!standard.has(name)) {
-        expect(name).toMatch(/^(chicane_msgs|ackermann_msgs)\//);
+        expect(name).toMatch(/^(chicane_msgs|ackermann_msgs|foxglove_msgs)\//);
         continue;
       }
       expect(fields, name).toEqual(standard.get(name));

@@ -3,7 +3,14 @@ import type { TopicName, Topics } from './topics';
 /** The value of a setting, in the unit of its key. */
 export type Setting = number | boolean | string;
 
-export type ServiceName = '/pause' | '/step' | '/reset';
+export type ServiceName = '/pause' | '/step' | '/reset' | '/what_if';
+
+/** The server's answer to a question in words. */
+export interface AskAnswer {
+  readonly isTaken: boolean;
+  /** What it says: of '/what_if' the number of the question, or why it was not taken. */
+  readonly message: string;
+}
 
 /** The server's answer to a request: the value in force and, if it is not the one requested, the reason. */
 export interface SetAnswer {
@@ -35,6 +42,7 @@ export interface Source {
   retryNow?(): void;
   /** Resolves to null on success, to the reason on failure. */
   call?(name: ServiceName, data?: boolean): Promise<string | null>;
+  ask?(name: ServiceName, question: string): Promise<AskAnswer>;
   set?(name: string, value: Setting): Promise<SetAnswer>;
   /** Requests the values of all settings again. */
   refresh?(): void;

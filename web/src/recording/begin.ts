@@ -3,10 +3,14 @@ import type { FunctionComponent } from 'preact';
 import type { Source } from '../protocol/source';
 import { notice } from '../state/link';
 import { attach } from '../state/operate';
+import { askedLog } from '../state/what_if';
 import { findMode } from './mode';
 
-/** The view of the time line; its code is loaded with the first recording. */
+/** The views of recordings; their code is loaded with the first one. */
 export const timeline = signal<FunctionComponent | null>(null);
+export const summary = signal<FunctionComponent | null>(null);
+/** Whether the report is shown instead of the workbench. */
+export const isReading = signal<() => boolean>(() => false);
 
 let current: Source | null = null;
 
@@ -27,15 +31,23 @@ export async function begin(live: () => Source): Promise<void> {
     const files = [...(event.dataTransfer?.files ?? [])].filter((file) => file.name.endsWith('.mcap'));
     if (files.length === 0) return;
     event.preventDefault();
+    askedLog.value = null; // the program knows nothing of these
     show((player) => player.playFiles(files)).catch((error: unknown) => (notice.value = sentence(error)));
   });
   const mode = await findMode();
   if (mode.name === 'live') return take(live());
   await show((player) => player.playMode(mode)).catch((error: unknown) => (notice.value = sentence(error)));
+  if (mode.name === 'replay') (await import('./ask_server')).offerWhatIf();
 }
 
 async function show(open: (player: typeof import('./player')) => Promise<Source>): Promise<void> {
-  const [player, view] = await Promise.all([import('./player'), import('./timeline_view')]);
+  const [player, view, report] = await Promise.all([
+    import('./player'),
+    import('./timeline_view'),
+    import('./summary_view'),
+  ]);
   take(await open(player));
   timeline.value = view.TimelineView;
+  summary.value = report.SummaryView;
+  isReading.value = () => report.isSummaryShown.value;
 }

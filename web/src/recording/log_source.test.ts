@@ -3,7 +3,7 @@ import { MessageWriter } from '@foxglove/rosmsg2-serialization';
 import { McapWriter } from '@mcap/core';
 import { beforeAll, describe, expect, it } from 'vitest';
 import type { Frame, TopicName } from '../protocol/topics';
-import { type LogEvents, LogSource, landmarksOf } from './log_source';
+import { type LogEvents, LogSource, landmarksOf, runStarts } from './log_source';
 import { McapLog } from './mcap_log';
 import { BytesReadable, HttpReadable } from './readable';
 import { RecordedDrive } from './recorded_drive';
@@ -39,6 +39,21 @@ class Bytes {
     return all;
   }
 }
+
+describe('the runs of a recording', () => {
+  const message = (topic: TopicName, time: number, content: object = {}) => ({
+    topic,
+    time,
+    message: content as never,
+  });
+  const lap = (number: number, time: number) => message('/chicane/lap', time, { lap: number, lap_time_s: 3 });
+
+  it('begin where another one is told, and where laps are counted anew', () => {
+    expect(runStarts([message('/chicane/run', 0), lap(1, 5), lap(2, 8)])).toEqual([0]);
+    expect(runStarts([message('/chicane/run', 0), lap(1, 5), message('/chicane/run', 6), lap(1, 9)])).toEqual([0, 6]);
+    expect(runStarts([message('/chicane/run', 0), lap(1, 5), lap(1, 9), lap(2, 12)])).toEqual([0, 6]);
+  });
+});
 
 async function record(isClosed = true): Promise<Uint8Array> {
   const file = new Bytes();

@@ -6,7 +6,7 @@ import type { LoggedMessage, McapLog } from './mcap_log';
 /** An event on the time line of a recording. */
 export interface Landmark {
   readonly time: number; // [s]
-  readonly kind: 'lap' | 'change' | 'off-track' | 'fallback' | 'gate' | 'fault';
+  readonly kind: 'run' | 'lap' | 'change' | 'off-track' | 'fallback' | 'gate' | 'fault';
   readonly label: string;
 }
 
@@ -44,6 +44,8 @@ export class LogSource implements Source {
   readonly log: McapLog;
   readonly #events: LogEvents;
   #static: LoggedMessage[] = [];
+  #starts: readonly number[] = [0];
+  #shown = 0; // the run whose laps are sent
   #segment: LoggedMessage[] = [];
   #readTo = 0; // end of the segment [s]
   #isReading = false;
@@ -61,6 +63,7 @@ export class LogSource implements Source {
   static async open(log: McapLog, events: LogEvents): Promise<LogSource> {
     const source = new LogSource(log, events);
     source.#static = await log.read(STATIC, 0, log.duration);
+    source.#starts = runStarts(source.#static);
     events.open(log.name);
     events.services(new Set<ServiceName>(['/pause', '/step', '/reset']));
     source.#sendPace(true);
@@ -73,6 +76,16 @@ export class LogSource implements Source {
 
   get isPlaying(): boolean {
     return this.#isPlaying;
+  }
+
+  /** Where the runs of this recording begin [s], ascending, the first at 0. */
+  get starts(): readonly number[] {
+    return this.#starts;
+  }
+
+  /** Number of the run at a time, from 0. */
+  runAt(time: number): number {
+    return Math.max(0, this.#starts.filter((start) => start <= time + 1e-9).length - 1);
   }
 
   close(): void {
@@ -108,13 +121,14 @@ export class LogSource implements Source {
     const to = Math.min(Math.max(time, 0), this.log.duration);
     this.#position = to;
     this.#events.moved(to, this.#isPlaying);
+    const begin = this.#starts[this.runAt(to)] ?? 0; // what was before belongs to another run
     const [past, plans] = await Promise.all([
       this.log.read(
         MOVING.filter((topic) => !SHORT.includes(topic)),
-        to - LOOK_BACK_S,
+        Math.max(begin, to - LOOK_BACK_S),
         to,
       ),
-      this.log.read(SHORT, to - PLAN_BACK_S, to),
+      this.log.read(SHORT, Math.max(begin, to - PLAN_BACK_S), to),
     ]);
     if (generation !== this.#generation) return;
     this.#events.rewind();
@@ -162,6 +176,7 @@ export class LogSource implements Source {
     }
     this.#segment.splice(0, sent);
     this.#position = until;
+    if (this.runAt(until) !== this.#shown) this.#sendStatic(until);
     if (until >= this.log.duration) this.#isPlaying = false;
     this.#events.moved(until, this.#isPlaying);
     if (!this.#isPlaying) this.#sendStatic(until);
@@ -197,11 +212,15 @@ export class LogSource implements Source {
     }
   }
 
-  /** Sends run and road as of `time`, and all laps. */
+  /** Sends run and road as of `time`, and all laps of the run that is driven then. */
   #sendStatic(time: number, topics: readonly TopicName[] = STATIC): void {
+    this.#shown = this.runAt(time);
     for (const topic of topics) {
       const known = this.#static.filter((each) => each.topic === topic);
-      const sent = topic === '/chicane/lap' ? known : [known.filter((each) => each.time <= time).at(-1) ?? known[0]];
+      const sent =
+        topic === '/chicane/lap'
+          ? known.filter((each) => this.runAt(each.time - 1e-6) === this.#shown)
+          : [known.filter((each) => each.time <= time).at(-1) ?? known[0]];
       for (const each of sent) if (each) this.#send(each);
     }
   }
@@ -216,6 +235,24 @@ export class LogSource implements Source {
   #sendPace(isAll: boolean): void {
     this.#events.settings(new Map([['run.pace', this.#pace]]), isAll);
   }
+}
+
+/** Where runs begin: another one is told, or laps are counted anew. */
+export function runStarts(messages: readonly LoggedMessage[]): number[] {
+  const starts = [0];
+  let lap = 0;
+  const begin = (time: number): void => {
+    if (time > (starts.at(-1) ?? 0) + 1e-6) starts.push(time);
+    lap = 0;
+  };
+  for (const { topic, time, message } of messages) {
+    if (topic === '/chicane/run' && time > 0) begin(time);
+    if (topic !== '/chicane/lap') continue;
+    const { lap: number, lap_time_s: seconds } = message as Lap;
+    if (number <= lap) begin(Math.max(0, time - seconds));
+    lap = number;
+  }
+  return starts;
 }
 
 /** The events of a recording. `progress` in [0, 1] is called while it is read. */
@@ -233,6 +270,8 @@ export async function landmarksOf(
   )) {
     progress(log.duration > 0 ? time / log.duration : 1);
     if (topic === '/chicane/run') {
+      const { track, car } = message as Run;
+      if (time > 0) found.push({ time, kind: 'run', label: `another run: ${car} on ${track}` });
       faultNames = (message as Run).fault_names ?? [];
     } else if (topic === '/chicane/lap') {
       const { lap, lap_time_s: seconds } = message as Lap;

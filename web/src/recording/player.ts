@@ -1,12 +1,13 @@
-import { computed, signal } from '@preact/signals';
+import { computed, effect, signal, untracked } from '@preact/signals';
 import { readSchema } from '../protocol/schema';
-import type { Frame } from '../protocol/topics';
+import type { Frame, Run } from '../protocol/topics';
 import { session as drawing } from '../scene3d/session';
 import { beginSession, receive, rewind } from '../state/demultiplexer';
 import { keepAllLaps, lapSamples, laps, sampleLap } from '../state/laps';
 import { link, notice, services } from '../state/link';
 import { complete } from '../state/message_fields';
 import { run } from '../state/run';
+import { seekTo } from '../state/seek';
 import { schema } from '../state/settings';
 import { beginSettings, takeSettings } from '../state/settings_session';
 import { everyFrame } from '../state/ticker';
@@ -15,6 +16,8 @@ import type { McapLog } from './mcap_log';
 import type { Mode } from './mode';
 import { openFiles, openRecordings, type Recordings } from './open';
 import { RecordedDrive } from './recorded_drive';
+import { reportsOf } from './summary';
+import { isSummaryShown, reports } from './summary_view';
 
 // State of the time line.
 
@@ -55,13 +58,14 @@ export async function play(recordings: Recordings, which = 0, start = recordings
   const log = recordings.logs[which];
   if (!log) throw new Error('there is no recording to show');
   player.value?.close();
+  endSampling();
   logs.value = recordings.logs;
   played.value = which;
   landmarks.value = [];
   const source = await LogSource.open(log, {
-    open(name) {
+    open() {
       beginSession();
-      beginSettings(name);
+      beginSettings();
       schema.value = PACE;
       link.value = 'live';
     },
@@ -77,17 +81,69 @@ export async function play(recordings: Recordings, which = 0, start = recordings
     },
   });
   player.value = source;
+  seekTo.value = (time) => void source.seek(time).catch((error: unknown) => (notice.value = String(error)));
   await source.seek(start);
   void look(source);
-  const rival = recordings.logs[which === 0 ? 1 : 0];
-  drawing.rival =
-    rival && rival !== log ? RecordedDrive.from(rival.name, await framesOf(rival), () => position.value) : null;
+  await showBeside(beside.value, log);
   return source;
 }
 
-export const playMode = async (mode: Exclude<Mode, { name: 'live' }>): Promise<LogSource> =>
-  play(await openRecordings(mode));
-export const playFiles = async (files: readonly File[]): Promise<LogSource> => play(await openFiles(files));
+/** Index of the recording that is shown as a ghost beside the one played; −1: none. */
+export const beside = signal(1);
+
+/** Shows another recording as a ghost, where it was driven on the same track. */
+export async function showBeside(which: number, log = logs.value[played.value]): Promise<void> {
+  const rival = logs.value[which] === log ? logs.value.find((each) => each !== log) : logs.value[which];
+  drawing.rival = null;
+  beside.value = rival ? logs.value.indexOf(rival) : -1;
+  if (!rival || !log) return;
+  const [mine, other] = await Promise.all([trackOf(log), trackOf(rival)]);
+  if (mine !== other) {
+    notice.value = `${rival.name} was driven on another track (${other.split(' ')[0]}): it is not drawn on this road`;
+    beside.value = -1;
+    return;
+  }
+  drawing.rival = RecordedDrive.from(rival.name, await framesOf(rival), () => position.value);
+}
+
+async function trackOf(log: McapLog): Promise<string> {
+  const [first] = await log.read(['/chicane/run'], 0, log.duration);
+  const told = complete('/chicane/run', (first?.message ?? {}) as Run);
+  return `${told.track} ${told.track_length_m.toFixed(1)}`;
+}
+
+export async function playMode(mode: Exclude<Mode, { name: 'live' }>): Promise<LogSource> {
+  const recordings = await openRecordings(mode);
+  isSummaryShown.value = mode.name === 'report';
+  void readReports(recordings);
+  return play(recordings);
+}
+
+export async function playFiles(files: readonly File[]): Promise<LogSource> {
+  const recordings = await openFiles(files);
+  void readReports(recordings);
+  return play(recordings);
+}
+
+/** Reads all recordings for the report, one after another. */
+async function readReports(recordings: Recordings): Promise<void> {
+  reports.value = [];
+  try {
+    for (const log of recordings.logs) reports.value = [...reports.value, ...(await reportsOf(log))];
+  } catch (error) {
+    notice.value = error instanceof Error ? error.message : String(error);
+  }
+}
+
+let endSampling: () => void = () => undefined;
+
+/** Samples all laps of the run that is shown. */
+function sampleRun(source: LogSource, frames: readonly { time: number; frame: Frame }[], which: number): void {
+  lapSamples.clear();
+  for (const { time, frame } of frames) if (source.runAt(time) === which) sampleLap(frame);
+  for (const { lap, lap_time_s: seconds } of laps.value) lapSamples.complete(lap - 1, seconds);
+  laps.value = [...laps.value]; // notifies the views that the laps can be compared now
+}
 
 /** Reads the whole recording while it plays: landmarks, and all laps for comparison. */
 async function look(source: LogSource): Promise<void> {
@@ -99,12 +155,14 @@ async function look(source: LogSource): Promise<void> {
     searched.value = 1;
     if (!run.value) return;
     keepAllLaps();
-    for (const { frame } of await framesOf(log)) {
-      if (player.value !== source) return;
-      sampleLap(frame);
-    }
-    for (const { lap, lap_time_s: time } of laps.value) lapSamples.complete(lap - 1, time);
-    laps.value = [...laps.value]; // notifies the views that the laps can be compared now
+    const frames = await framesOf(log);
+    let sampled = -1;
+    endSampling = effect(() => {
+      const now = source.runAt(position.value);
+      if (player.value !== source || now === sampled) return;
+      sampled = now;
+      untracked(() => sampleRun(source, frames, now));
+    });
   } catch (error) {
     notice.value = error instanceof Error ? error.message : String(error);
   }

@@ -3,7 +3,20 @@ import { lapTime } from '../lib/format';
 import { notice } from '../state/link';
 import { attach } from '../state/operate';
 import type { Landmark } from './log_source';
-import { duration, isPlaying, landmarks, logs, play, played, player, position, searched } from './player';
+import {
+  beside,
+  duration,
+  isPlaying,
+  landmarks,
+  logs,
+  play,
+  played,
+  player,
+  position,
+  searched,
+  showBeside,
+} from './player';
+import { isSummaryShown } from './summary_view';
 
 const seek = (time: number): void =>
   void player.value?.seek(time).catch((error: unknown) => (notice.value = String(error)));
@@ -120,6 +133,42 @@ export function TimelineView() {
       ) : (
         <span class="timeline-name">{source.log.name}</span>
       )}
+      {logs.value.length > 2 && (
+        <select
+          aria-label="Recording shown beside it"
+          value={beside.value}
+          onChange={(event) => void showBeside(Number(event.currentTarget.value))}
+        >
+          <option value={-1}>none beside it</option>
+          {logs.value.map((log, i) =>
+            i === played.value ? null : (
+              <option key={log.name} value={i}>
+                beside: {log.name}
+              </option>
+            ),
+          )}
+        </select>
+      )}
+      {source.starts.length > 1 && (
+        <select
+          aria-label="Run of the recording"
+          value={source.runAt(position.value)}
+          onChange={(event) => seek(source.starts[Number(event.currentTarget.value)] ?? 0)}
+        >
+          {source.starts.map((start, i) => (
+            <option key={start} value={i}>
+              run {i + 1} of {source.starts.length}
+            </option>
+          ))}
+        </select>
+      )}
+      <button
+        type="button"
+        aria-pressed={isSummaryShown.value}
+        onClick={() => (isSummaryShown.value = !isSummaryShown.value)}
+      >
+        {isSummaryShown.value ? 'Explore' : 'Report'}
+      </button>
       {searched.value < 1 && <progress max={1} value={searched.value} aria-label="Looking for landmarks" />}
     </section>
   );

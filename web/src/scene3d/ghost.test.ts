@@ -35,7 +35,7 @@ describe('the ghost', () => {
     drive(recorder, [12, 10, 11, 3]);
     const ghost = recorder.best;
     expect(ghost?.lapTime).toBe(10);
-    expect(ghost?.label).toBe('best lap 0:10.00');
+    expect(ghost?.label).toBe('best lap 0:10.000');
     const pose: GhostPose = { x: 0, y: 0, yaw: 0, steer: 0 };
     for (const time of [0, 2.51, 7.77, 9.9, 1.2]) {
       expect(ghost?.poseAt(time, pose)).toBe(true);

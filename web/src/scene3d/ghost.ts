@@ -121,6 +121,6 @@ export class LapRecorder {
     const time = frame.last_lap_time_s;
     const isClean = frame.off_track_events === this.#offTrackEvents;
     if (!(time > 0) || !isClean || this.#count < 2 || (this.best && time >= this.best.lapTime)) return;
-    this.best = new RecordedLap(this.#rows.slice(0, this.#count * ROW), time, `best lap ${lapTime(time)}`);
+    this.best = new RecordedLap(this.#rows.slice(0, this.#count * ROW), time, `best lap ${lapTime(time, 3)}`);
   }
 }

@@ -93,6 +93,8 @@ const KEPT = 32;
 const LONGEST_DELAY_MS = 50;
 const LONGEST_LEAD_S = 0.12; // run time shown beyond the newest frame
 const SLEW_S = 0.25;
+const BURST_MS = 2; // frames closer together than this, many in a row, are the past of the run
+const BURST = 6;
 
 /**
  * Turns frames that arrive irregularly into smooth motion. It shows the run about one frame late, at the pace at which
@@ -104,6 +106,7 @@ export class Playout {
   #arrivals: number[] = []; // of each [ms]
   #shown = NaN; // run time [s]
   #at = NaN; // of the last advance [ms]
+  #close = 0; // frames in a row that arrived close together
   /** Counts how often the car was placed elsewhere; users restart their smoothing. */
   jumps = 0;
 
@@ -111,7 +114,13 @@ export class Playout {
   push(frame: Motion, now: number): void {
     const last = this.#frames.at(-1);
     if (last && frame.time === last.time && frame.x === last.x && frame.y === last.y) return;
-    if (last && isJump(last, frame)) {
+    this.#close = now - (this.#arrivals.at(-1) ?? -Infinity) < BURST_MS ? this.#close + 1 : 0;
+    if (this.#close >= BURST) {
+      // The pace of arrival says nothing: only the newest counts.
+      this.#frames = [];
+      this.#arrivals = [];
+      this.#shown = NaN;
+    } else if (last && isJump(last, frame)) {
       this.#frames = [];
       this.#arrivals = [];
       this.#shown = NaN;

@@ -1,5 +1,6 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { onThemeChange } from '../draw/theme';
+import { cursorMark } from '../state/cursor';
 import { hindsight } from '../state/hindsight';
 import { layers } from '../state/layers';
 import { limit } from '../state/limit';
@@ -27,8 +28,9 @@ function viewNow(): View {
     reference: road.reference,
     hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
     racingLine: layers.racingLine.value ? limit.value : null,
-    topSpeed: live.topSpeed,
+    bodyLength: run.value?.body_length_m ?? NaN,
     ghost: session.ghost,
+    cursor: cursorMark(),
     camera: camera.value,
     orbit: orbit.value,
     isHeld: isPaused.value || link.value !== 'live',

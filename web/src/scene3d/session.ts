@@ -1,5 +1,6 @@
 import type { Frame } from '../protocol/topics';
 import { frameListeners } from '../state/demultiplexer';
+import { replayListeners } from '../state/replay';
 import { run } from '../state/run';
 import { type GhostSource, LapRecorder } from './ghost';
 import { type Motion, motionOf, Playout } from './motion';
@@ -94,6 +95,8 @@ export class Session {
 export const session = new Session();
 
 let track = '';
+// What is shown again moves the car and leaves no marks.
+replayListeners.add((frame, now) => session.playout.push(motionOf(frame), now));
 frameListeners.add((frame, now) => {
   const name = `${run.value?.track} ${run.value?.track_length_m}`;
   if (run.value && name !== track) {

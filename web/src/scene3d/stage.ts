@@ -13,6 +13,7 @@ import { topOfScale } from '../draw/speed_colour';
 import type { Point } from '../lib/math';
 import { speedUnit } from '../lib/units';
 import type { Limit, Plan, Run } from '../protocol/topics';
+import type { CursorMark } from '../state/cursor';
 import type { Hindsight } from '../state/hindsight';
 import type { RoadLines } from '../state/road';
 import { BodyMotion } from './body_motion';
@@ -40,8 +41,9 @@ export interface View {
   readonly reference: readonly Point[];
   readonly hindsight: Hindsight | null;
   readonly racingLine: Limit | null;
-  readonly topSpeed: number;
+  readonly bodyLength: number; // [m]
   readonly ghost: GhostSource | null;
+  readonly cursor: CursorMark | null; // of the plots
   readonly camera: CameraName;
   readonly orbit: Orbit;
   readonly isHeld: boolean; // paused, or the connection is lost
@@ -69,6 +71,7 @@ export class Stage {
   readonly #predicted: BandView;
   readonly #outcome: BandView;
   readonly #plan: BandView;
+  readonly #cursor: BandView;
   readonly #governor: QualityGovernor;
   readonly #slow: SlowPicture | null; // with software rendering
   readonly #cameraMan = new CameraMan();
@@ -115,6 +118,7 @@ export class Stage {
     this.#predicted = new BandView(this.#scene, 512, 6);
     this.#outcome = new BandView(this.#scene, 512, 7);
     this.#plan = new BandView(this.#scene, 512, 8);
+    this.#cursor = new BandView(this.#scene, 2, 9);
     this.#sun.shadow.mapSize.set(1024, 1024);
     this.#scene.add(this.#sun, this.#sun.target, this.#skyLight);
     this.repaint();
@@ -142,6 +146,7 @@ export class Stage {
     this.#racingLine.paint(this.#palette.racingLine);
     this.#predicted.paint(this.#palette.predicted);
     this.#outcome.paint(this.#palette.outcome);
+    this.#cursor.paint(this.#palette.predicted);
     this.#bestLine.paint(this.#palette.ghost);
     this.#car?.paint(this.#palette);
     this.#ghost?.paint(this.#palette);
@@ -227,6 +232,8 @@ export class Stage {
       view.roadVersion,
       view.hindsight === null,
       view.racingLine === null,
+      view.cursor?.x,
+      view.cursor?.y,
     ].join();
     if (key !== this.#changeKey || view.plan !== this.#planShown) {
       this.#changeKey = key;
@@ -292,11 +299,24 @@ export class Stage {
     const size = (this.#car?.model.length ?? 4.5) / 4.5;
     this.#predicted.show(view.hindsight?.plan.x_m ?? [], view.hindsight?.plan.y_m ?? [], 1.2 * size, () => 0.6);
     this.#outcome.show(view.hindsight?.drivenX ?? [], view.hindsight?.drivenY ?? [], 0.2 * size, () => 1);
+    this.#showCursor(view.cursor, size);
     if (view.plan !== this.#planShown) {
       this.#planShown = view.plan;
-      this.#plan.showPlan(view.plan, topOfScale(view.topSpeed, speedUnit()), 0.5 * size);
+      this.#plan.showPlan(view.plan, topOfScale(view.bodyLength, speedUnit()), 0.5 * size);
     }
     for (const ring of [this.#trace, this.#marks, this.#brakes]) ring.update();
+  }
+
+  /** A bar across the road. */
+  #showCursor(mark: CursorMark | null, size: number): void {
+    const [dx, dy] = mark ? [-Math.sin(mark.yaw) * 5 * size, Math.cos(mark.yaw) * 5 * size] : [0, 0];
+    const ends = mark ? [1, -1] : [];
+    this.#cursor.show(
+      ends.map((side) => (mark?.x ?? 0) + side * dx),
+      ends.map((side) => (mark?.y ?? 0) + side * dy),
+      0.5 * size,
+      () => 1,
+    );
   }
 
   #renewCar(run: Run, key: string): void {

@@ -25,10 +25,11 @@ export function plotRow(frame: Frame, row: number[]): number[] {
   return row;
 }
 
-/** Running sums: the top of each coloured layer. Terms below zero have no layer. */
+/** Running sums: the top of each coloured layer. Terms below zero have no layer; without a plan there are none. */
 function stack(terms: ArrayLike<number>, row: number[]): void {
   let sum = 0;
-  const known = Math.min(terms.length, COST_TERMS);
+  const hasPlan = Array.from(terms).some((term) => Math.abs(term) > 0);
+  const known = hasPlan ? Math.min(terms.length, COST_TERMS) : 0;
   for (let term = 0; term < Math.max(terms.length, COST_TERMS); ++term) {
     sum += Math.max(0, terms[term] ?? 0);
     row[costColumn(term)] = known === 0 ? NaN : sum;

@@ -32,7 +32,7 @@ describe('a message', () => {
     receive('/chicane/change', { stamp, name: 'latency_ms', value: '150' } as Change, 0);
     see({ time_s: 2, active_faults: 1 });
     expect(run.value?.track).toBe('lakeside');
-    expect(live.topSpeed).toBe(44);
+    expect(live.plan?.speed_mps[0]).toBe(44);
     expect(laps.value).toHaveLength(1);
     expect(whyNoLimit.value).toBe('the road is open');
     expect(road.reference).toEqual([{ x: 5, y: 5 }]);

@@ -1,9 +1,11 @@
 import type { Change, Frame, Lap, Limit, Path, Plan, Run, TopicName, Topics } from '../protocol/topics';
 import { forgetEvents, noteChange, noteEvents, setFaultNames } from './event_log';
+import { forgetFaults, noteFaultChange, noteFaultMarks } from './faults';
 import { forgetLaps, noteLap, receiveLap } from './laps';
 import { forgetLimit, receiveLimit } from './limit';
 import { forgetHistory, keepFrame, keepPlan, live } from './live';
 import { complete } from './message_fields';
+import { forgetRecent, isReplaying, keepRecent } from './replay';
 import { type RoadLines, receiveReference, receiveRoadLine } from './road';
 import { receiveRun, run } from './run';
 import { shown } from './shown';
@@ -14,6 +16,9 @@ import { shown } from './shown';
 /** Called with each frame on arrival, also while the page is hidden; `now` as of performance.now() [ms]. */
 export const frameListeners = new Set<(frame: Frame, now: number) => void>();
 
+/** Called when the run that is shown has begun anew. */
+export const restartListeners = new Set<() => void>();
+
 /** Stores one message, also of an older program. `now` as of performance.now() [ms]. */
 export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: number): void {
   const message = complete(topic, sent);
@@ -22,7 +27,8 @@ export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: num
       receiveFrame(message as Frame, now);
       break;
     case '/chicane/plan':
-      keepPlan(message as Plan);
+      newestPlan = message as Plan;
+      keepPlan(newestPlan, !isReplaying());
       break;
     case '/chicane/run':
       receiveRun(message as Run);
@@ -36,6 +42,7 @@ export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: num
       break;
     case '/chicane/change':
       noteChange(message as Change);
+      noteFaultChange(message as Change);
       break;
     case '/reference':
       receiveReference(message as Path);
@@ -47,19 +54,27 @@ export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: num
   }
 }
 
+let newest: Frame | null = null;
+let newestPlan: Plan | null = null;
+
 function receiveFrame(frame: Frame, now: number): void {
-  let before = live.frame;
+  let before = newest;
   if (before && frame.time_s < before.time_s) {
     forget();
+    for (const listener of restartListeners) listener();
     before = null;
   }
   const isNew = frame.time_s !== before?.time_s; // a paused run repeats its last frame
-  keepFrame(frame, now, isNew);
+  const isShown = !isReplaying();
+  newest = frame;
+  keepFrame(frame, now, isNew, isShown);
   if (isNew) {
+    keepRecent(frame, newestPlan);
     noteEvents(frame, before);
+    noteFaultMarks(frame, before, run.value?.fault_names ?? []);
     noteLap(frame);
   }
-  for (const listener of frameListeners) listener(frame, now);
+  if (isShown) for (const listener of frameListeners) listener(frame, now);
 }
 
 /**
@@ -69,18 +84,26 @@ export function forget(): void {
   forgetHistory();
   forgetLaps();
   forgetEvents();
+  forgetFaults();
+  forgetRecent();
 }
 
-/** Begins another run: clears everything of the previous one, including its last frame. */
-export function beginSession(): void {
+/**
+ * Messages follow that tell of a run from its beginning: clears what is known. The last frame of the same run stays on
+ * the screen until they come.
+ */
+export function beginSession(isOtherRun = true): void {
   forget();
-  forgetLimit();
+  newest = null;
   live.frame = null;
+  if (!isOtherRun) return;
+  forgetLimit();
   shown.value = null;
 }
 
 /** Jumps to another time of a recording: its history is cleared and sent again. */
 export function rewind(): void {
   forget();
+  newest = null;
   live.frame = null;
 }

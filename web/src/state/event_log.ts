@@ -47,8 +47,11 @@ export function setFaultNames(names: readonly string[]): void {
   faultNames = names;
 }
 
+/** Keeps them by time: changes of a run that was joined late arrive apart from its frames. */
 function add(event: RunEvent): void {
-  events.value = [event, ...events.value].slice(0, KEPT);
+  const at = events.value.findIndex(({ time }) => time <= event.time);
+  const before = at < 0 ? events.value.length : at;
+  events.value = [...events.value.slice(0, before), event, ...events.value.slice(before)].slice(0, KEPT);
 }
 
 function follow(key: string, now: { severity: Severity; text: string } | null, time: number): void {

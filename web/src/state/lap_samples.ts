@@ -32,6 +32,8 @@ function between(from: LapMoment, to: LapMoment, share: number): LapMoment {
  */
 export class LapSamples {
   readonly points = POINTS;
+  /** How many laps have been completed here so far. */
+  completed = 0;
   readonly #slots: Slot[];
   #length = NaN; // of the road [m]
   #line = NaN; // where laps begin [m]
@@ -61,6 +63,11 @@ export class LapSamples {
     if (Object.is(length, this.#length)) return;
     this.clear();
     this.#length = length;
+  }
+
+  /** Length of the road [m]; not-a-number before it is known. */
+  get length(): number {
+    return this.#length;
   }
 
   /** Distance of a point from the start line along the road [m]. */
@@ -100,11 +107,14 @@ export class LapSamples {
   channel(lap: number, name: LapChannel): Float64Array | null {
     const values = this.#done.find((slot) => slot.lap === lap)?.channels[name];
     if (!values) return null;
-    const first = index(this.#firstPoint);
-    const rotated = new Float64Array(POINTS);
-    rotated.set(values.subarray(first));
-    rotated.set(values.subarray(0, first), POINTS - first);
-    return rotated;
+    return rotated(values, index(this.#firstPoint));
+  }
+
+  /** A channel of the lap that is driven now, from the start line on, NaN ahead of the car; null before any. */
+  present(name: LapChannel): Float64Array | null {
+    const slot = this.#current;
+    if (!slot || !(this.#length > 0)) return null;
+    return rotated(slot.channels[name], Number.isFinite(this.#line) ? index(this.#firstPoint) : 0);
   }
 
   /** Adds a sample; `lap` counts completed laps, `lastLapTime` is the time of the lap before [s]. */
@@ -131,6 +141,7 @@ export class LapSamples {
     this.#fill(last, this.#after(last, { ...last, s_m: this.#line, time_s: time }));
     slot.isComplete = true;
     slot.time = time;
+    ++this.completed;
   }
 
   get #done(): Slot[] {
@@ -168,6 +179,7 @@ export class LapSamples {
     const line = between(last, moment, Math.min(1, Math.max(0, rest / (rest + moment.time_s))));
     if (isHeard) this.#fill(last, { ...line, time_s: lastLapTime });
     if (this.#current) {
+      if (!this.#current.isComplete) ++this.completed;
       this.#current.isComplete = true;
       this.#current.time = lastLapTime;
     }
@@ -210,6 +222,14 @@ export class LapSamples {
 
 /** The index of a point, wrapped to one lap. */
 const index = (point: number): number => ((point % POINTS) + POINTS) % POINTS;
+
+/** The same values from the point `first` on. */
+function rotated(values: Float64Array, first: number): Float64Array {
+  const turned = new Float64Array(POINTS);
+  turned.set(values.subarray(first));
+  turned.set(values.subarray(0, first), POINTS - first);
+  return turned;
+}
 
 /** Time that lap `a` has lost to lap `b` at each point [s]; it rises where `a` is slower. */
 export const timeGap = (a: Float64Array, b: Float64Array): Float64Array => a.map((time, i) => time - (b[i] ?? NaN));

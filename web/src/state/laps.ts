@@ -1,4 +1,4 @@
-import { signal } from '@preact/signals';
+import { computed, signal } from '@preact/signals';
 import type { Frame, Lap } from '../protocol/topics';
 import { LapSamples } from './lap_samples';
 import { bestsOf } from './lap_table';
@@ -8,10 +8,15 @@ const LAPS_KEPT = 1000;
 
 /** Completed laps as the server sends them, by number: the newest ones and the best. */
 export const laps = signal<readonly Lap[]>([]);
-/** The fastest lap time that a frame has reported since the page was opened [s]; not-a-number before the first lap. */
-export const bestLap = signal(NaN);
+/** The fastest lap time that a frame has reported [s], for runs that report no details of their laps. */
+const bestSeen = signal(NaN);
+/** Time of the best lap [s], the same everywhere on the page; not-a-number before the first lap. */
+export const bestLap = computed(() => (laps.value.length > 0 ? bestsOf(laps.value).time : bestSeen.value));
 /** Laps as functions of the distance, sampled from frames. */
 export const lapSamples = new LapSamples();
+
+/** Counts the laps that have been sampled to their end: views that show samples read it, and follow. */
+export const sampledLaps = signal(0);
 
 /** A recording's laps are all sampled when it is opened: none of its moments adds to them or removes any. */
 let hasAllLaps = false;
@@ -21,12 +26,18 @@ export function keepAllLaps(): void {
 
 export function forgetLaps(): void {
   laps.value = [];
-  bestLap.value = NaN;
+  bestSeen.value = NaN;
   if (!hasAllLaps) lapSamples.clear();
 }
 
 export function receiveLap(lap: Lap): void {
-  const all = [...laps.value.filter((each) => each.lap !== lap.lap), lap].sort((a, b) => a.lap - b.lap);
+  const before = laps.value;
+  const isNext = before.length === 0 || (before.at(-1)?.lap ?? 0) < lap.lap;
+  const all = isNext
+    ? [...before, lap]
+    : [...before.filter((each) => each.lap !== lap.lap), lap].sort((a, b) => a.lap - b.lap);
+  lapSamples.complete(lap.lap - 1, lap.lap_time_s); // after the last lap no frame says so
+  sampledLaps.value = lapSamples.completed;
   const best = all.length > LAPS_KEPT ? bestsOf(all).lap : NaN;
   laps.value = all.filter((each, i) => i >= all.length - LAPS_KEPT || each.lap === best);
 }
@@ -48,10 +59,11 @@ export function sampleLap(frame: Frame): void {
     },
     frame.last_lap_time_s,
   );
+  sampledLaps.value = lapSamples.completed;
 }
 
 /** Takes from a frame what it says about laps. */
 export function noteLap(frame: Frame): void {
   if (!hasAllLaps) sampleLap(frame);
-  if (frame.last_lap_time_s > 0 && !(frame.last_lap_time_s >= bestLap.value)) bestLap.value = frame.last_lap_time_s;
+  if (frame.last_lap_time_s > 0 && !(frame.last_lap_time_s >= bestSeen.value)) bestSeen.value = frame.last_lap_time_s;
 }

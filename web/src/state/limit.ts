@@ -46,6 +46,18 @@ export function gapsToLimit(lap: Lap, limit: Limit | null): { lap: number; secto
   };
 }
 
+/** Time of the fastest possible lap at a distance along the road [s]; not-a-number outside of it. */
+export function limitTimeAt({ s_m: places, time_s: times }: Limit, s: number): number {
+  if (places.length < 2 || !Number.isFinite(s)) return NaN;
+  // Points are in the order of the lap, whose start need not be where s is 0.
+  for (let i = 1; i < places.length; ++i) {
+    const [from, to] = [places[i - 1] ?? NaN, places[i] ?? NaN];
+    if (!(s >= from && s <= to)) continue;
+    return mix(times[i - 1] ?? NaN, times[i] ?? NaN, to > from ? (s - from) / (to - from) : 0);
+  }
+  return NaN;
+}
+
 /**
  * A column of the limit at the points where laps are sampled, from the start line on; null for channels it does not
  * have.

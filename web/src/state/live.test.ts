@@ -46,18 +46,11 @@ describe('the history', () => {
     expect(live.pastPlans.at(-1)).toBe(live.plan);
   });
 
-  it('takes the top speed from frames and plans', () => {
-    keep({ speed_mps: 30 });
-    expect(live.topSpeed).toBe(30);
-    keepPlan(planWith({ speed_mps: new Float64Array([20, NaN, 44]) }));
-    expect(live.topSpeed).toBe(44);
-  });
-
   it('is cleared but for the newest frame', () => {
     keep({ time_s: 3 });
     keepPlan(planWith());
     forgetHistory();
-    expect([live.plots.length, live.trace.length, live.stepTimes.total, live.topSpeed]).toEqual([0, 0, 0, 0]);
+    expect([live.plots.length, live.trace.length, live.stepTimes.total]).toEqual([0, 0, 0]);
     expect([live.plan, live.pastPlans]).toEqual([null, []]);
     expect(live.frame?.time_s).toBe(3);
   });

@@ -17,7 +17,6 @@ export const live = {
   receivedAt: 0, // performance.now() of the newest frame [ms]
   plan: null as Plan | null,
   pastPlans: [] as Plan[], // oldest first
-  topSpeed: 0, // fastest driven or planned [m/s]
   plots: new History(COLUMN_COUNT, LONGEST_WINDOW_S * FRAMES_PER_SECOND),
   trace: new History(2, 4000),
   stepTimes: new Histogram(1, 6), // [µs], to 1 s
@@ -32,18 +31,19 @@ export function forgetHistory(): void {
   live.plots.clear();
   live.trace.clear();
   live.stepTimes.clear();
-  live.topSpeed = 0;
   live.plan = null;
   live.pastPlans = [];
 }
 
 /**
  * Stores the newest frame; it enters the history only if `isNew`, that is, if its time differs from the previous one.
+ * While the last seconds are replayed it is not shown (`isShown`).
  */
-export function keepFrame(frame: Frame, now: number, isNew: boolean): void {
-  live.frame = frame;
-  live.receivedAt = now;
-  if (frame.speed_mps > live.topSpeed) live.topSpeed = frame.speed_mps;
+export function keepFrame(frame: Frame, now: number, isNew: boolean, isShown = true): void {
+  if (isShown) {
+    live.frame = frame;
+    live.receivedAt = now;
+  }
   if (!isNew) return;
   live.plots.push(plotRow(frame, row));
   live.stepTimes.push(frame.step_time_us);
@@ -51,9 +51,8 @@ export function keepFrame(frame: Frame, now: number, isNew: boolean): void {
   if (!(Math.hypot(frame.x_m - x, frame.y_m - y) < TRACE_SPACING_M)) live.trace.push([frame.x_m, frame.y_m]);
 }
 
-export function keepPlan(plan: Plan): void {
-  live.plan = plan;
+export function keepPlan(plan: Plan, isShown = true): void {
+  if (isShown) live.plan = plan;
   live.pastPlans.push(plan);
   if (live.pastPlans.length > PLANS_KEPT) live.pastPlans.shift();
-  for (const speed of plan.speed_mps) if (speed > live.topSpeed) live.topSpeed = speed;
 }

@@ -1,5 +1,5 @@
 import { signal } from '@preact/signals';
-import type { ServiceName, Setting, Source } from '../protocol/source';
+import type { AskAnswer, ServiceName, Setting, Source } from '../protocol/source';
 import { link, notice, services } from './link';
 import { entryOf, SettingRequests, settings } from './settings';
 
@@ -31,6 +31,10 @@ export function call(name: ServiceName, data?: boolean): void {
     if (sentence !== null) notice.value = sentence;
   });
 }
+
+/** Asks for another future of the run that goes on. */
+export const ask = (question: string): Promise<AskAnswer> =>
+  source?.ask?.('/what_if', question) ?? Promise.resolve({ isTaken: false, message: 'nobody is there to ask' });
 
 /** Whether a setting can be changed now. */
 export const canSet = (key: string): boolean => link.value === 'live' && settings.value.has(key);

@@ -17,6 +17,9 @@ export const zoomed = signal<readonly [number, number] | null>(null);
 /** Time under the cursor of any plot [s]; null when it is over none. */
 export const cursorTime = signal<number | null>(null);
 
+/** A place on a lap that is compared, under the cursor: the lap from 0, and metres along the road; null: over none. */
+export const cursorPlace = signal<{ readonly lap: number; readonly place: number } | null>(null);
+
 let frozen: History | null = null;
 
 /** The history that plots draw: the live one, or a copy from the moment they were held. */
@@ -32,6 +35,7 @@ export function freeze(): void {
 export function thaw(): void {
   isFrozen.value = false;
   zoomed.value = null;
+  cursorTime.value = null;
 }
 
 export const toggleFrozen = (): void => (isFrozen.value ? thaw() : freeze());

@@ -1,7 +1,7 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import { readSchema } from '../protocol/schema';
 import type { SetAnswer, Setting } from '../protocol/source';
-import { refusals, SettingRequests, settingChanges, settings, startSettings } from './settings';
+import { refusals, SettingRequests, schema, settingChanges, settings, startSettings } from './settings';
 
 /** A server that answers when told to. */
 function server() {
@@ -27,7 +27,10 @@ beforeEach(() => {
     ['latency_ms', 100],
     ['run.pace', 1],
   ]);
-  startSettings.value = settings.value;
+  schema.value = readSchema([
+    { key: 'latency_ms', kind: 'number', start: 100 },
+    { key: 'run.pace', kind: 'number' },
+  ]);
   refusals.value = new Map();
 });
 
@@ -102,6 +105,7 @@ describe('the schema', () => {
       maximum: 1,
       choices: [],
       default: 0.5,
+      start: 0.25,
       meaning: 'x',
       is_live: true,
     };
@@ -117,6 +121,7 @@ describe('the schema', () => {
         maximum: null,
         choices: [],
         default: null,
+        start: null,
         meaning: '',
         is_live: true,
       },

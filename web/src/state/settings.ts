@@ -6,8 +6,10 @@ import type { SetAnswer, Setting } from '../protocol/source';
 export const schema = signal<readonly SchemaEntry[]>([]);
 /** The values in force, or requested and not yet answered. */
 export const settings = signal<ReadonlyMap<string, Setting>>(new Map());
-/** The values the run started with. */
-export const startSettings = signal<ReadonlyMap<string, Setting>>(new Map());
+/** The values the run started with, as the program knows them. */
+export const startSettings = computed<ReadonlyMap<string, Setting>>(
+  () => new Map(schema.value.flatMap(({ key, start }) => (start === null ? [] : [[key, start]]))),
+);
 /** Why requests were refused, by key, until the same setting is changed again. */
 export const refusals = signal<ReadonlyMap<string, string>>(new Map());
 

@@ -2,63 +2,27 @@ import { effect } from '@preact/signals';
 import type { Setting } from '../protocol/source';
 import { requests } from './operate';
 import { run } from './run';
-import { refusals, settings, startSettings } from './settings';
-
-// The values a run started with survive a reload of the page, in the session storage of the browser's tab.
-const KEY = 'chicane.start';
-
-let session = '';
-let isStartKnown = false;
-
-interface Kept {
-  readonly session: string;
-  readonly start: readonly [string, Setting][];
-}
-
-function kept(): Kept | null {
-  try {
-    return JSON.parse(sessionStorage.getItem(KEY) ?? 'null') as Kept | null;
-  } catch {
-    return null;
-  }
-}
-
-function keep(start: ReadonlyMap<string, Setting>): void {
-  startSettings.value = start;
-  try {
-    sessionStorage.setItem(KEY, JSON.stringify({ session, start: [...start] } satisfies Kept));
-  } catch {
-    // Without storage the start is what the page receives first.
-  }
-}
+import { refusals, settings } from './settings';
 
 /** Begins another run, whose values are not known yet. */
-export function beginSettings(name: string): void {
-  session = name;
+export function beginSettings(): void {
   settings.value = new Map();
   refusals.value = new Map();
-  const before = kept();
-  isStartKnown = before?.session === name;
-  startSettings.value = isStartKnown && before ? new Map(before.start) : new Map();
 }
 
-export function takeSettings(values: ReadonlyMap<string, Setting>, isAll: boolean): void {
+export function takeSettings(values: ReadonlyMap<string, Setting>): void {
   requests.receive(values);
-  if (!isAll || isStartKnown) return;
-  isStartKnown = true;
-  keep(new Map(values));
 }
 
-/** Requests all values again when the track, car, controller or preset changes; a new preset also resets the start. */
+/** Requests all values again when the track, car, controller or preset changes. */
 export function refreshOnNewChoice(refresh: () => void): void {
-  let [preset, rest] = ['', ''];
+  let known = '';
   effect(() => {
     const now = run.value;
     if (!now) return;
-    const others = [now.track, now.car, now.controller].join('\n');
-    const [isPreset, isOther] = [preset !== '' && preset !== now.preset, rest !== '' && rest !== others];
-    [preset, rest] = [now.preset, others];
-    if (isPreset) isStartKnown = false;
-    if (isPreset || isOther) refresh();
+    const choice = [now.track, now.car, now.controller, now.preset].join('\n');
+    const isOther = known !== '' && known !== choice;
+    known = choice;
+    if (isOther) refresh();
   });
 }

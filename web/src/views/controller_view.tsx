@@ -1,5 +1,5 @@
 import { plural, UNKNOWN } from '../lib/format';
-import { gateInWords, roadInWords, rungInWords, type Sentence, sightInWords, statusInWords } from '../lib/words';
+import { driverInWords, gateInWords, roadInWords, type Sentence, sightInWords, statusInWords } from '../lib/words';
 import { run } from '../state/run';
 import { shown } from '../state/shown';
 
@@ -24,7 +24,7 @@ export function ControllerView() {
     <section class="block" aria-label="Controller">
       <h2>{run.value?.controller ?? 'Controller'}</h2>
       <dl class="rows">
-        <Row id="rung" label="Driving" sentence={frame ? rungInWords(frame.rung, frame.guard_reason) : null} />
+        <Row id="rung" label="Driving" sentence={frame ? driverInWords(frame) : null} />
         <Row id="status" label="Solver" sentence={solve ? { ...solve, text: solve.text + turns } : null} />
         <Row id="gate" label="Gate" sentence={frame ? gateInWords(frame.is_gated) : null} />
         <Row id="road" label="Road" sentence={frame ? roadInWords(frame) : null} />

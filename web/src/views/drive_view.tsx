@@ -19,6 +19,7 @@ const PACE: SchemaEntry = {
   maximum: 20,
   choices: [],
   default: 1,
+  start: null,
   meaning: 'Simulated seconds per second of real time, as far as the machine keeps up.',
   is_live: true,
 };

@@ -2,11 +2,11 @@ import { hasBit } from '../lib/bits';
 import { fixed, plural } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import {
+  driverInWords,
   gateInWords,
   LIMITERS,
   limiterInWords,
   nameInWords,
-  rungInWords,
   type Sentence,
   sightInWords,
   statusInWords,
@@ -15,6 +15,7 @@ import {
 import { Column } from '../state/columns';
 import { bitSharesOf, rmsOf, sharesOf } from '../state/explain';
 import { live } from '../state/live';
+import { cursorTime } from '../state/plot_view';
 import { run } from '../state/run';
 import { shown } from '../state/shown';
 import { CanvasView } from './canvas_view';
@@ -50,7 +51,7 @@ function Limiter() {
       <CanvasView
         label="What limited the speed in the last 20 seconds"
         paint={paintLimiterStrip(WINDOW_S)}
-        version={() => live.plots.newest(Column.time_s)}
+        version={() => `${live.plots.newest(Column.time_s)} ${cursorTime.value}`}
         interval={100}
         tall="22px"
       />
@@ -151,7 +152,7 @@ function Answer() {
               : null
           }
         />
-        <Row label="Driving" sentence={frame ? rungInWords(frame.rung, frame.guard_reason) : null} />
+        <Row label="Driving" sentence={frame ? driverInWords(frame) : null} />
         <Row label="Gate" sentence={frame ? gateInWords(frame.is_gated) : null} />
         <Row label="Sight" sentence={frame ? sightInWords(frame.has_map, frame.sight_m) : null} />
       </dl>

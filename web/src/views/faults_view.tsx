@@ -1,17 +1,55 @@
-import { computed } from '@preact/signals';
+import { computed, signal } from '@preact/signals';
 import { hasBit } from '../lib/bits';
+import { fixed } from '../lib/format';
+import { clamp } from '../lib/math';
+import { tidy } from '../lib/scale';
+import { driverInWords } from '../lib/words';
+import type { FaultEntry } from '../protocol/schema';
 import { faultInWords } from '../state/event_log';
+import { secondsLeft } from '../state/faults';
 import { canSet, set } from '../state/operate';
 import { run } from '../state/run';
 import { schema, settings } from '../state/settings';
 import { shown } from '../state/shown';
+import { DraftBox } from './draft_box';
 import { EventsView } from './events_view';
+import { typed } from './setting_row';
 
 interface Fault {
   readonly key: string; // "fault.link_lost"
   readonly name: string;
   readonly meaning: string;
   readonly isActive: boolean;
+  readonly entry: FaultEntry | undefined;
+}
+
+const GROUPS: readonly { readonly name: string; readonly title: string }[] = [
+  { name: 'sensor', title: 'Sensors' },
+  { name: 'link', title: 'Link' },
+  { name: 'actuator', title: 'Actuators' },
+  { name: 'road', title: 'Road and wind' },
+  { name: 'computer', title: 'Computer' },
+  { name: '', title: 'Others' },
+];
+
+/** Shorter faults are over before anybody has seen them: the page asks for this, unless told otherwise [s]. */
+const LEAST_S = 3;
+const DURATIONS_S = [0.1, 600] as const;
+
+/** Duration and strength chosen here, by key. */
+const chosen = signal<ReadonlyMap<string, { readonly duration: number; readonly strength: number }>>(new Map());
+
+const choiceOf = (key: string, entry: FaultEntry): { duration: number; strength: number } =>
+  chosen.value.get(key) ?? { duration: Math.max(LEAST_S, entry.duration_s), strength: entry.strength };
+
+function choose(
+  key: string,
+  entry: FaultEntry,
+  { duration, strength }: { duration?: number | undefined; strength?: number | undefined },
+): void {
+  const before = choiceOf(key, entry);
+  const now = { duration: duration ?? before.duration, strength: strength ?? before.strength };
+  chosen.value = new Map([...chosen.value, [key, now]]);
 }
 
 /** The faults of the schema; without a schema those of the run, without descriptions. */
@@ -25,25 +63,98 @@ const faults = computed<readonly Fault[]>(() => {
     described.length > 0
       ? described.map(({ key }) => key)
       : [...settings.value.keys()].filter((key) => key.startsWith('fault.'));
-  return keys.map((key) => ({
-    key,
-    name: faultInWords(key),
-    meaning: described.find((entry) => entry.key === key)?.meaning ?? '',
-    isActive: isActive(key),
-  }));
+  return keys.map((key) => {
+    const entry = described.find((each) => each.key === key);
+    return {
+      key,
+      name: faultInWords(key),
+      meaning: entry?.meaning ?? '',
+      isActive: isActive(key),
+      entry: entry?.fault,
+    };
+  });
 });
+
+function toggle({ key, isActive, entry }: Fault): void {
+  if (isActive || !entry) {
+    set(key, !isActive);
+    return;
+  }
+  const { duration, strength } = choiceOf(key, entry);
+  set(key, `+${duration}${entry.strength_meaning === '' ? '' : `*${strength}`}`);
+}
+
+/** The number that is typed, within its range; nothing while it is none. */
+function numberIn(text: string, least: number, most: number): number | undefined {
+  const value = typed(text);
+  return typeof value === 'number' ? clamp(value, least, most) : undefined;
+}
+
+function Parameters({ fault, entry }: { fault: Fault; entry: FaultEntry }) {
+  const { key, name } = fault;
+  const { duration, strength } = choiceOf(key, entry);
+  return (
+    <div class="fault-parameters">
+      <span class="parameter">
+        <span>for</span>
+        <DraftBox
+          class="number-box"
+          label={`Duration of ${name} [s]`}
+          value={tidy(duration)}
+          when="typed"
+          onText={(text) => choose(key, entry, { duration: numberIn(text, ...DURATIONS_S) })}
+        />
+        <span>s</span>
+      </span>
+      {entry.strength_meaning !== '' && (
+        <span class="parameter">
+          <DraftBox
+            class="number-box"
+            label={`Strength of ${name}: ${entry.strength_meaning}`}
+            value={tidy(strength)}
+            when="typed"
+            onText={(text) => choose(key, entry, { strength: numberIn(text, entry.weakest, entry.strongest) })}
+          />
+          <span>{entry.strength_meaning}</span>
+        </span>
+      )}
+    </div>
+  );
+}
+
+function FaultCard({ fault }: { fault: Fault }) {
+  const { key, name, meaning, isActive, entry } = fault;
+  const left = isActive ? secondsLeft(key, shown.value?.time_s ?? NaN) : NaN;
+  return (
+    <li class={isActive ? 'fault-card active' : 'fault-card'}>
+      <button
+        type="button"
+        class="fault"
+        data-key={key}
+        aria-pressed={isActive}
+        disabled={!canSet(key)}
+        onClick={() => toggle(fault)}
+      >
+        <span class="fault-name">
+          {name}
+          {isActive && <span class="badge bad">{Number.isFinite(left) ? `${fixed(left, 1)} s left` : 'active'}</span>}
+        </span>
+        <span class="fault-meaning">{meaning}</span>
+      </button>
+      {entry && <Parameters fault={fault} entry={entry} />}
+    </li>
+  );
+}
 
 export function FaultsView() {
   const all = faults.value;
   const active = all.filter(({ isActive }) => isActive);
+  const frame = shown.value;
   if (all.length === 0) return <p class="empty">This run has no faults to inject.</p>;
   return (
     <div class="blocks">
       <div class="toolbar">
-        <p class="soft">
-          Click to inject a fault into the running car, click again to clear it. Each ends by itself after its usual
-          time.
-        </p>
+        <p class="soft">Click to inject a fault into the running car, click again to clear it.</p>
         <button
           type="button"
           disabled={active.length === 0}
@@ -52,26 +163,25 @@ export function FaultsView() {
           Clear all
         </button>
       </div>
-      <ul class="faults">
-        {all.map(({ key, name, meaning, isActive }) => (
-          <li key={key}>
-            <button
-              type="button"
-              class="fault"
-              data-key={key}
-              aria-pressed={isActive}
-              disabled={!canSet(key)}
-              onClick={() => set(key, !isActive)}
-            >
-              <span class="fault-name">
-                {name}
-                {isActive && <span class="badge bad">active</span>}
-              </span>
-              <span class="fault-meaning">{meaning}</span>
-            </button>
-          </li>
-        ))}
-      </ul>
+      {active.length > 0 && frame && (
+        <p class={`fault-answer ${driverInWords(frame).severity}`} role="status" data-testid="fault-answer">
+          What is done about it: <b>{driverInWords(frame).text}</b>
+        </p>
+      )}
+      {GROUPS.map(({ name: group, title }) => {
+        const members = all.filter(({ entry }) => (entry?.group ?? '') === group);
+        if (members.length === 0) return null;
+        return (
+          <section key={group} class="fault-group" aria-label={title}>
+            <h2>{title}</h2>
+            <ul class="faults">
+              {members.map((fault) => (
+                <FaultCard key={fault.key} fault={fault} />
+              ))}
+            </ul>
+          </section>
+        );
+      })}
       <EventsView />
     </div>
   );

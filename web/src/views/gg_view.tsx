@@ -30,7 +30,9 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number)
   const across = history.column(Column.lateral_acceleration_mps2).subarray(first, end);
   const along = history.column(Column.longitudinal_acceleration_mps2).subarray(first, end);
   const reach = Math.max(...[across, along].flatMap((values) => (extent(values) ?? [0, 0]).map(Math.abs))) / G;
-  const scale = niceCeil(Math.max(0.5, reach * 1.08));
+  const newest = across.length - 1;
+  renewGrip(newest + first);
+  const scale = niceCeil(Math.max(0.5, reach * 1.08, Number.isFinite(radius) ? radius * 1.02 : 0));
   const [middleX, middleY] = [width / 2, height / 2];
   const pixels = (Math.min(width, height) / 2 - 16) / scale;
 
@@ -56,8 +58,7 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number)
   context.strokeStyle = colours.grid;
   context.stroke();
 
-  const newest = across.length - 1;
-  drawGrip(context, middleX, middleY, pixels, newest + first);
+  drawGrip(context, middleX, middleY, pixels);
   // Left is positive in the data and on the left on the screen; accelerating is up.
   const x = (i: number): number => middleX - ((across[i] ?? NaN) / G) * pixels;
   const y = (i: number): number => middleY - ((along[i] ?? NaN) / G) * pixels;
@@ -94,12 +95,15 @@ function drawTrail(
   context.globalAlpha = 1;
 }
 
-function drawGrip(context: CanvasRenderingContext2D, x: number, y: number, pixels: number, row: number): void {
+function renewGrip(row: number): void {
   const history = plotted();
   const value = (column: number): number => history.column(column)[row] ?? NaN;
   const now =
     gripRadius(value(Column.lateral_acceleration_mps2), value(Column.front_tire_use), value(Column.rear_tire_use)) / G;
   if (Number.isFinite(now)) radius = Number.isFinite(radius) ? radius + (now - radius) * 0.2 : now;
+}
+
+function drawGrip(context: CanvasRenderingContext2D, x: number, y: number, pixels: number): void {
   if (!Number.isFinite(radius)) return;
   context.beginPath();
   context.arc(x, y, radius * pixels, 0, 2 * Math.PI);

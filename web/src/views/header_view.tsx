@@ -1,7 +1,11 @@
+import { scheme, toggleScheme } from '../lib/appearance';
 import { fixed } from '../lib/format';
 import { tidy } from '../lib/scale';
 import { attempt, link, notice, services } from '../state/link';
-import { call, can, retry } from '../state/operate';
+import { call, can, canSet, retry } from '../state/operate';
+import { chooseBefore, forgetOtherRun, inWords, otherRun } from '../state/other_run';
+import { isStageAlone } from '../state/presentation';
+import { replayLeft } from '../state/replay';
 import { isPaused, run } from '../state/run';
 import { shown, silence } from '../state/shown';
 import { isHelpOpen } from './help_view';
@@ -20,10 +24,14 @@ function RunSummary() {
 }
 
 function LinkState() {
-  if (link.value === 'lost') return <p class="pill bad">Not connected</p>;
+  const end = run.value?.end ?? '';
+  if (replayLeft.value !== null) return <p class="pill accent">Replay, {replayLeft.value} s left</p>;
+  if (link.value === 'lost')
+    return end === '' ? <p class="pill bad">Not connected</p> : <p class="pill">Program ended</p>;
   if (link.value === 'connecting' || !run.value) return <p class="pill">Connecting</p>;
   if (run.value.mode === 'replay') return <p class="pill accent">{isPaused.value ? 'Recording' : 'Recording plays'}</p>;
   if (isPaused.value) return <p class="pill warning">Paused</p>;
+  if (silence.value > 0 && end !== '') return <p class="pill">Over</p>;
   if (silence.value > 0) return <p class="pill">No data for {silence.value} s</p>;
   return <p class="pill good">Live</p>;
 }
@@ -92,7 +100,25 @@ function Buttons() {
 function Banner() {
   return (
     <div aria-live="assertive">
-      {link.value === 'lost' && (
+      {otherRun.value && link.value === 'live' && (
+        <div class="banner warning" data-testid="other-run">
+          <p>
+            <b>Another run.</b> The program was started again with its own choice. Before, this page showed{' '}
+            {inWords(otherRun.value)}.
+          </p>
+          <div class="buttons">
+            {canSet('track') && (
+              <button type="button" onClick={() => void chooseBefore()}>
+                Drive that again
+              </button>
+            )}
+            <button type="button" onClick={forgetOtherRun}>
+              Keep this one
+            </button>
+          </div>
+        </div>
+      )}
+      {link.value === 'lost' && (run.value?.end ?? '') === '' && (
         <div class="banner bad" data-testid="banner">
           <p>
             <b>Connection lost.</b> The numbers below are the last ones received. Reconnecting
@@ -117,7 +143,7 @@ function Banner() {
 
 export function HeaderView() {
   return (
-    <header class="top">
+    <header class={isStageAlone.value ? 'top alone' : 'top'}>
       <div class="top-row">
         <h1>
           <svg viewBox="0 0 32 32" width="22" height="22" aria-hidden="true">
@@ -133,6 +159,19 @@ export function HeaderView() {
           <LinkState />
         </div>
         <Buttons />
+        <button
+          type="button"
+          class="icon"
+          aria-label={scheme.value === 'dark' ? 'Change to light colours' : 'Change to dark colours'}
+          title="Light or dark (T)"
+          aria-keyshortcuts="T"
+          onClick={toggleScheme}
+        >
+          <svg viewBox="0 0 16 16" width="16" height="16" aria-hidden="true">
+            <circle cx="8" cy="8" r="5.5" fill="none" stroke="currentColor" stroke-width="1.5" />
+            <path d="M8 2.5a5.5 5.5 0 0 1 0 11z" fill="currentColor" />
+          </svg>
+        </button>
         <button
           type="button"
           class="icon help"

@@ -1,83 +1,26 @@
 import { duration, fixed, lapTime, side, UNKNOWN } from '../lib/format';
 import { clamp, degrees } from '../lib/math';
-import { inSpeedUnit, nextSpeedUnit, SPEED_UNITS, type SpeedUnit, speedUnit } from '../lib/units';
-import { bestLap, lapSamples } from '../state/laps';
+import { CLOSE_TO_EDGE_M } from '../state/alerts';
+import { bestLap } from '../state/laps';
 import { run } from '../state/run';
 import { shown } from '../state/shown';
 
-/** Time lost to the best lap at the same place [s]; NaN without one. */
-function delta(): number {
-  const frame = shown.value;
-  if (!frame || lapSamples.best < 0) return NaN;
-  return frame.lap_time_s - lapSamples.at(lapSamples.best, 'time_s', frame.s_m);
-}
-
-/** The second unit shown: m/s, or km/h where m/s is the unit chosen. */
-const beside = (unit: SpeedUnit): SpeedUnit =>
-  SPEED_UNITS.find(({ name }) => name === (unit.name === 'm/s' ? 'km/h' : 'm/s')) ?? unit;
-
-function Speed() {
-  const frame = shown.value;
-  const unit = speedUnit();
-  const other = beside(unit);
-  const speed = frame?.speed_mps ?? NaN;
-  const wanted = frame?.speed_reference_mps ?? NaN;
-  return (
-    <div class="speed">
-      <p class="big">
-        <span class="value" data-testid="speed">
-          {fixed(inSpeedUnit(speed), 0)}
-        </span>
-        <button
-          type="button"
-          class="unit"
-          aria-label={`Speeds in ${unit.spoken}: change the unit`}
-          aria-keyshortcuts="U"
-          title="Next unit for speeds (U)"
-          onClick={nextSpeedUnit}
-        >
-          {unit.name}
-        </button>
-      </p>
-      <p class="beside">
-        <span>
-          <b>{fixed(speed * other.perMps, 1)}</b> {other.name}
-        </span>
-        <span>
-          of <b>{fixed(inSpeedUnit(wanted), 0)}</b> {unit.name}
-        </span>
-      </p>
-    </div>
-  );
-}
-
 function Lap() {
   const frame = shown.value;
-  const gap = delta();
   return (
     <div class="lap">
       <p class="label">
         Lap <b data-testid="lap">{frame && Number.isFinite(frame.lap_time_s) ? frame.lap + 1 : UNKNOWN}</b>
-        {Number.isFinite(gap) && (
-          <span
-            class={gap >= 0.005 ? 'delta slower' : 'delta faster'}
-            data-testid="delta"
-            title="Against the best lap, at the same place"
-          >
-            {gap >= 0.005 ? '+' : ''}
-            {fixed(gap, 2)}
-          </span>
-        )}
       </p>
       <p class="clock value" data-testid="lap-time">
         {lapTime(frame?.lap_time_s ?? NaN)}
       </p>
       <p class="beside">
         <span>
-          last <b>{frame && frame.last_lap_time_s > 0 ? lapTime(frame.last_lap_time_s) : UNKNOWN}</b>
+          last <b>{frame && frame.last_lap_time_s > 0 ? lapTime(frame.last_lap_time_s, 3) : UNKNOWN}</b>
         </span>
         <span>
-          best <b>{lapTime(bestLap.value)}</b>
+          best <b>{lapTime(bestLap.value, 3)}</b>
         </span>
       </p>
     </div>
@@ -89,19 +32,21 @@ function Reading({
   value,
   unit,
   note = '',
+  severity = '',
   id,
 }: {
   label: string;
   value: string;
   unit: string;
   note?: string;
+  severity?: string;
   id: string;
 }) {
   return (
     <div class="number">
       <p class="label">{label}</p>
       <p>
-        <span class="value" data-testid={id}>
+        <span class={`value ${severity}`} data-testid={id}>
           {value}
         </span>
         <span class="unit">{unit}</span>
@@ -176,14 +121,14 @@ function Controls() {
   );
 }
 
-/** The strip below the picture: speed, lap, controls and key numbers. */
+/** The strip below the picture: lap, controls and key numbers. */
 export function InstrumentsView() {
   const frame = shown.value;
   const error = frame?.lateral_error_m ?? NaN;
+  const edge = frame?.edge_distance_m ?? NaN;
   const step = duration(frame?.step_time_us ?? NaN);
   return (
     <section class="panel instruments" aria-label="Numbers">
-      <Speed />
       <Lap />
       <Controls />
       <div class="numbers">
@@ -194,7 +139,14 @@ export function InstrumentsView() {
           unit="m"
           note={side(error)}
         />
-        <Reading id="edge-distance" label="To the edge" value={fixed(frame?.edge_distance_m ?? NaN, 2)} unit="m" />
+        <Reading
+          id="edge-distance"
+          label="To the edge"
+          value={fixed(edge, 2)}
+          unit="m"
+          note={edge < 0 ? 'off' : ''}
+          severity={edge < 0 ? 'bad' : edge < CLOSE_TO_EDGE_M ? 'warning' : ''}
+        />
         <Reading id="step-time" label="Control step" value={step.value} unit={step.unit} />
         <Reading id="delay" label="Delay expected" value={fixed((frame?.delay_s ?? NaN) * 1000, 0)} unit="ms" />
       </div>

@@ -1,4 +1,4 @@
-import { computed } from '@preact/signals';
+import { computed, effect } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
@@ -6,9 +6,11 @@ import { rangeAboutZero, rangeInSteps } from '../draw/axis';
 import { onThemeChange } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { speedUnit } from '../lib/units';
+import { cursorMark } from '../state/cursor';
 import { type LapChannel, timeGap } from '../state/lap_samples';
 import { lapSamples } from '../state/laps';
 import { limit, limitChannel } from '../state/limit';
+import { cursorPlace, cursorTime } from '../state/plot_view';
 import { chartColours } from './plot_colours';
 
 interface Curve {
@@ -62,6 +64,13 @@ const OTHERS: readonly Curve[] = [
   },
 ];
 
+/** Metres from the start line of a place along the road. */
+function distanceFromLine(place: number): number {
+  const length = lapSamples.s(lapSamples.points) - lapSamples.s(0);
+  const from = place - lapSamples.place(0) + lapSamples.s(0);
+  return from < 0 ? from + length : from;
+}
+
 /** uPlot draws gaps where a value is null, not where it is NaN. */
 const withGaps = (values: Float64Array): (number | null)[] =>
   Array.from(values, (value) => (Number.isFinite(value) ? value : null));
@@ -106,6 +115,9 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
             (plot) => {
               if (!reading.current) return;
               const at = plot.cursor.idx;
+              if (plot.cursor.event)
+                cursorPlace.value =
+                  at === null || at === undefined || a < 0 ? null : { lap: a, place: lapSamples.place(at) };
               const values =
                 at === null || at === undefined
                   ? []
@@ -119,6 +131,14 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
       return new uPlot(options, [places, ...columns.map(withGaps)] as uPlot.AlignedData, element);
     };
     let plot = create();
+    // The cursor of the other plots, at its place on the road.
+    const unfollow = effect(() => {
+      if (cursorPlace.value !== null || (cursorTime.value === null && plot.cursor.event)) return;
+      const mark = cursorTime.value === null ? null : cursorMark();
+      const along = mark ? distanceFromLine(mark.place) : NaN;
+      const left = Number.isFinite(along) ? plot.valToPos(along, 'x') : -10;
+      plot.setCursor({ left, top: Number.isFinite(along) ? 10 : -10 });
+    });
     const watcher = new ResizeObserver(() =>
       plot.setSize({ width: element.clientWidth, height: element.clientHeight }),
     );
@@ -128,6 +148,8 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
       plot = create();
     });
     return () => {
+      unfollow();
+      cursorPlace.value = null;
       unwatch();
       watcher.disconnect();
       plot.destroy();

@@ -4,7 +4,7 @@ import { fixed, lapTime, UNKNOWN } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import type { Lap, Limit } from '../protocol/topics';
 import { bestsOf, type LapBests, lapSamplesCsv, lapsCsv } from '../state/lap_table';
-import { bestLap, lapSamples, laps } from '../state/laps';
+import { bestLap, lapSamples, laps, sampledLaps } from '../state/laps';
 import { gapsToLimit, limit, whyNoLimit } from '../state/limit';
 import { run } from '../state/run';
 import { everyFrame } from '../state/ticker';
@@ -51,7 +51,7 @@ function LimitRow({ fastest, pair }: { fastest: Limit; pair: readonly [number, n
   return (
     <tr class="limit" data-testid="limit">
       <th scope="row">limit</th>
-      <td class="time">{lapTime(fastest.lap_time_s)}</td>
+      <td class="time">{lapTime(fastest.lap_time_s, 3)}</td>
       <td>{UNKNOWN}</td>
       {[0, 1, 2].map((sector) => (
         <td key={sector}>{fixed(fastest.sector_times_s[sector] ?? NaN, 2)}</td>
@@ -77,7 +77,7 @@ function Row({ lap, bests, pair }: { lap: Lap; bests: LapBests; pair: readonly [
         {!lap.is_clean && <span class="badge bad">off road</span>}
       </th>
       <td class="time">
-        {lapTime(lap.lap_time_s)}
+        {lapTime(lap.lap_time_s, 3)}
         {Number.isFinite(gaps.lap) && (
           <>
             {' '}
@@ -180,6 +180,7 @@ function Toolbar({ pair }: { pair: readonly [number, number] }) {
 
 export function LapsView() {
   const all = laps.value;
+  void sampledLaps.value;
   const bests = bestsOf(all);
   const pair = compared(all, bests);
   return (
@@ -193,7 +194,7 @@ export function LapsView() {
       {all.length === 0 ? (
         <p class="empty">
           {Number.isFinite(bestLap.value)
-            ? `Best lap ${lapTime(bestLap.value)}; this run reports no details of its laps.`
+            ? `Best lap ${lapTime(bestLap.value, 3)}; this run reports no details of its laps.`
             : 'No lap completed yet.'}
         </p>
       ) : (

@@ -1,6 +1,7 @@
 import { Column } from '../state/columns';
 import { rowsSince } from '../state/explain';
 import { live } from '../state/live';
+import { cursorTime } from '../state/plot_view';
 import type { Paint } from './canvas_view';
 import { chartColours } from './plot_colours';
 
@@ -21,4 +22,7 @@ export const paintLimiterStrip =
       context.fillRect(from, 0, Math.max(1, to - from), height);
       i = next;
     }
+    if (cursorTime.value === null) return;
+    context.fillStyle = colours.text;
+    context.fillRect(x(cursorTime.value) - 1, 0, 2, height);
   };

@@ -1,6 +1,7 @@
 import { useComputed } from '@preact/signals';
 import { rangeAboutZero, rangeFromZero, rangeInSteps } from '../draw/axis';
 import { downloadPng, fileName } from '../lib/download';
+import { persisted } from '../lib/persisted';
 import { type SpeedUnit, speedUnit } from '../lib/units';
 import { nameInWords } from '../lib/words';
 import { COST_TERMS, Column, costColumn } from '../state/columns';
@@ -11,6 +12,10 @@ import { HistogramView } from './histogram_view';
 import { pictureOfPlots } from './plot_picture';
 import { drawStatusStrip } from './status_strip';
 import { type PlotSpec, TimePlot } from './time_plot';
+import { TrackPlots } from './track_plots';
+
+/** Whether plots run over time, or over the distance along the track with the best lap and the limit behind. */
+const axis = persisted<'time' | 'track'>('plots.axis', 'time', (value) => value === 'time' || value === 'track');
 
 /** Colours with the same meaning in all plots: applied blue, requested orange, sent green. */
 const [APPLIED, ASKED, SENT, LIMIT] = [0, 1, 2, 4];
@@ -146,6 +151,13 @@ function Toolbar() {
           </button>
         ))}
       </div>
+      <div class="segments" role="group" aria-label="Plots over">
+        {(['time', 'track'] as const).map((each) => (
+          <button key={each} type="button" aria-pressed={axis.value === each} onClick={() => (axis.value = each)}>
+            {each === 'time' ? 'Time' : 'Track'}
+          </button>
+        ))}
+      </div>
       {zoomed.value ? (
         <button type="button" onClick={thaw}>
           Reset zoom
@@ -168,7 +180,8 @@ export function PlotsView() {
   return (
     <div class="plots-view">
       <Toolbar />
-      <div class="plots">
+      {axis.value === 'track' && <TrackPlots />}
+      <div class="plots" hidden={axis.value === 'track'}>
         <TimePlot key="speed" spec={speed.value} />
         {BEFORE_COST.map((spec) => (
           <TimePlot key={spec.title} spec={spec} />

@@ -11,6 +11,7 @@ const entry = (change: Partial<SchemaEntry>): SchemaEntry => ({
   maximum: 1,
   choices: [],
   default: 0,
+  start: null,
   meaning: '',
   is_live: true,
   ...change,

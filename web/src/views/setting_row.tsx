@@ -1,10 +1,10 @@
-import { useState } from 'preact/hooks';
 import { type Range, scaleOf, shareOf, tidy, valueAt } from '../lib/scale';
 import { nameInWords } from '../lib/words';
 import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
 import { canSet, set } from '../state/operate';
-import { refusals, settings, startSettings } from '../state/settings';
+import { isControl, refusals, settings, startSettings } from '../state/settings';
+import { DraftBox } from './draft_box';
 
 const STEPS = 1000; // of a slider's travel
 
@@ -34,7 +34,7 @@ export function rangeOf({ minimum, maximum, kind }: SchemaEntry, usual: Setting 
 }
 
 /** A number as typed; "inf" means no limit where that is allowed. */
-function typed(text: string): Setting | null {
+export function typed(text: string): Setting | null {
   const plain = text.trim().replace('−', '-').replace(',', '.');
   if (/^(inf|infinity|∞)$/i.test(plain)) return 'inf';
   const value = Number(plain);
@@ -45,26 +45,17 @@ const asText = (value: Setting | undefined): string =>
   typeof value === 'number' ? tidy(value).replace('−', '-') : value === undefined ? '' : String(value);
 
 function NumberBox({ entry, id }: { entry: SchemaEntry; id: string }) {
-  const [draft, setDraft] = useState<string | null>(null);
   const value = settings.value.get(entry.key);
-  const commit = (): void => {
-    const request = draft === null ? null : typed(draft);
-    if (request !== null && request !== value) set(entry.key, request);
-    setDraft(null);
-  };
   return (
-    <input
+    <DraftBox
       class="number-box"
-      type="text"
-      inputMode="decimal"
-      aria-label={`${id}, value`}
+      label={`${id}, value`}
       disabled={!canSet(entry.key)}
-      value={draft ?? asText(value)}
-      onInput={(event) => setDraft(event.currentTarget.value)}
-      onBlur={commit}
-      onKeyDown={(event) => {
-        if (event.key === 'Enter') commit();
-        if (event.key === 'Escape') setDraft(null);
+      value={asText(value)}
+      when="complete"
+      onText={(text) => {
+        const request = typed(text);
+        if (request !== null && request !== value) set(entry.key, request);
       }}
     />
   );
@@ -147,13 +138,13 @@ function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
 
 function TextBox({ entry, label }: { entry: SchemaEntry; label: string }) {
   return (
-    <input
-      type="text"
+    <DraftBox
       class="text-box"
-      aria-label={label}
+      label={label}
       disabled={!canSet(entry.key)}
       value={String(settings.value.get(entry.key) ?? '')}
-      onChange={(event) => set(entry.key, event.currentTarget.value)}
+      when="complete"
+      onText={(text) => text !== settings.value.get(entry.key) && set(entry.key, text)}
     />
   );
 }
@@ -162,7 +153,8 @@ function TextBox({ entry, label }: { entry: SchemaEntry; label: string }) {
 export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string }) {
   const label = name ?? labelOf(entry);
   const value = settings.value.get(entry.key);
-  const start = startSettings.value.get(entry.key);
+  // Controls of the page begin at their defaults.
+  const start = startSettings.value.get(entry.key) ?? (isControl(entry.key) ? (entry.default ?? undefined) : undefined);
   const isChanged = start !== undefined && !Object.is(value, start);
   const refusal = refusals.value.get(entry.key);
   const bounds =

@@ -7,14 +7,14 @@ import type { ChartColours } from './plot_colours';
 
 const HEIGHT = 5; // CSS pixels
 
-/** Severity of a control step: 0 optimal and unchanged, 1 degraded, 2 without an answer of the controller. */
+/** Severity of a control step: 0 usable and sent unchanged, 1 changed or replaced, 2 not the controller's. */
 export function stepSeverity(status: number, rung: number, isGated: number): 0 | 1 | 2 {
   const isMild = rung === RUNG.CONTROLLER || rung === RUNG.SHIFTED_PLAN || rung === RUNG.RETURN_TO_ROAD;
   if (status < 0 || !isMild) return 2;
-  return status > 0 || rung > 0 || isGated > 0 ? 1 : 0;
+  return rung > 0 || isGated > 0 ? 1 : 0;
 }
 
-/** A band at the bottom of a plot: green while the controller's answer was optimal and sent unchanged. */
+/** A band at the bottom of a plot: green while the controller's answer was usable and sent unchanged. */
 export function drawStatusStrip(plot: uPlot, colours: ChartColours): void {
   const history = plotted();
   const times = history.column(Column.time_s);

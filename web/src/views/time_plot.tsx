@@ -11,6 +11,7 @@ import { cursorTime, isFrozen, plotted, thaw, timeRange, windowSeconds, zoomed, 
 import { shown } from '../state/shown';
 import { LONGEST_SILENCE_S } from '../state/silence';
 import { everyFrame } from '../state/ticker';
+import { drawFaultBands } from './fault_bands';
 import { registerDrawing } from './picture_drawings';
 import { type ChartColours, chartColours } from './plot_colours';
 
@@ -37,7 +38,9 @@ const axisNumber = (value: number): string => String(Number(value.toPrecision(6)
 
 function timeAxis(low: number, high: number): number[] {
   const span = high - low;
-  const step = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20].find((each) => span / each <= 6) ?? 20;
+  // Zoomed in, labels are times of the run: long ones, so fewer.
+  const most = zoomed.value ? 4 : 6;
+  const step = [0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20].find((each) => span / each <= most) ?? 20;
   if (!zoomed.value) return secondsBack(high, Math.ceil(span / step) * step, step).filter((time) => time >= low - 1e-9);
   const first = Math.ceil(low / step - 1e-9);
   return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, i) => (first + i) * step);
@@ -142,6 +145,7 @@ function optionsOf(spec: PlotSpec, colours: ChartColours): uPlot.Options {
       each.isFilled && i > 0 ? [{ series: [i + 1, i] as [number, number], fill: fill(each.colour) }] : [],
     ),
     hooks: {
+      drawClear: [(plot) => drawFaultBands(plot, colours)],
       drawAxes: [(plot) => spec.under?.(plot, colours)],
       setSelect: [
         (plot) => {
@@ -212,11 +216,18 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
       void [isFrozen.value, zoomed.value, windowSeconds.value];
       drawn = NaN;
     });
+    // A cursor that was set elsewhere, on the map for one.
+    const point = effect(() => {
+      const time = cursorTime.value;
+      if (plot.cursor.event?.type === 'mousemove') return;
+      plot.setCursor({ left: time === null ? -10 : plot.valToPos(time, 'x'), top: time === null ? -10 : 10 }, false);
+    });
     return () => {
       stop();
       forget();
       unwatch();
       unfollow();
+      point();
       box.end();
       plot.destroy();
     };

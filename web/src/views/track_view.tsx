@@ -1,9 +1,18 @@
 import { signal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { CachedPicture, isSame } from '../draw/cached_picture';
-import { above, behind, type Camera, fitting, scaleBar, zoomed } from '../draw/camera';
+import { above, behind, type Camera, fitting, scaleBar, unproject, zoomed } from '../draw/camera';
 import { carShape } from '../draw/car';
-import { drawDot, drawMoving, drawOutline, drawWorld, type RoadShape, roadShape, type Scene } from '../draw/scene';
+import {
+  drawCursor,
+  drawDot,
+  drawMoving,
+  drawOutline,
+  drawWorld,
+  type RoadShape,
+  roadShape,
+  type Scene,
+} from '../draw/scene';
 import { speedGradient, topOfScale } from '../draw/speed_colour';
 import { onThemeChange, theme } from '../draw/theme';
 import { fixed } from '../lib/format';
@@ -26,15 +35,20 @@ import {
   wants3d,
   zoomCamera,
 } from '../scene3d/view_state';
+import { cursorMark, pointAt, timeNear } from '../state/cursor';
+import { faultMarks } from '../state/faults';
 import { hindsight } from '../state/hindsight';
 import { type Layer, layers, toggleLayer } from '../state/layers';
 import { limit } from '../state/limit';
 import { link } from '../state/link';
 import { live } from '../state/live';
+import { isStageAlone, togglePresentation } from '../state/presentation';
 import { road } from '../state/road';
 import { isPaused, run } from '../state/run';
+import { seekTo } from '../state/seek';
 import { shown } from '../state/shown';
 import { everyFrame } from '../state/ticker';
+import { AlertsView, dangerNow, HudView } from './hud_view';
 
 export type View = 'behind' | 'above' | 'whole';
 
@@ -83,6 +97,7 @@ class Painter {
   #heading = NaN; // smoothed yaw of the car [rad]
   #lastPaint = 0;
   #shown: readonly unknown[] = [];
+  #seen: Camera | null = null; // of the last picture
   #worldKey: readonly unknown[] = [];
   readonly #world = new CachedPicture();
   readonly #outline = new CachedPicture();
@@ -106,7 +121,7 @@ class Painter {
     const car = this.#carNow(now);
     const camera = this.#camera(car, now, width, height, isInset);
     this.#lastPaint = now;
-    const top = topOfScale(live.topSpeed, speedUnit());
+    const top = topOfScale(run.value?.body_length_m ?? NaN, speedUnit());
     if (scaleTop.value !== top) scaleTop.value = top;
     const length = scaleBar(camera.scale, Math.min(120, width / 4));
     if (bar.value.metres !== length.metres || Math.abs(bar.value.pixels - length.pixels) > 0.5) bar.value = length;
@@ -119,6 +134,7 @@ class Painter {
       plan: live.plan,
       speedScale: top,
       hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
+      faults: faultMarks.value,
       ghost: this.#ghostNow(),
       car,
     };
@@ -133,6 +149,8 @@ class Painter {
       scene.racingLine,
       theme(),
     ];
+    const mark = cursorMark();
+    this.#seen = camera;
     // In a paused run the picture does not change.
     const shown = [
       ...still,
@@ -147,12 +165,17 @@ class Painter {
       scene.ghost?.x,
       scene.ghost?.y,
       top,
+      faultMarks.value,
+      mark?.x,
+      mark?.y,
     ];
     if (isSame(shown, this.#shown)) return;
     this.#shown = shown;
     this.#drawWorld(scene, camera, still, ratio);
     drawMoving(this.#context, scene, camera, theme(), ratio);
-    if (!isInset && view.value !== 'whole' && this.#road && this.#roadBox) this.#inset(car, width, ratio);
+    if (mark) drawCursor(this.#context, mark, camera, theme(), ratio);
+    if (!isInset && view.value !== 'whole' && this.#road && this.#roadBox)
+      this.#inset({ car, mark, ghost: scene.ghost }, width, ratio);
   }
 
   /** Draws the static part; copies it while the camera does not move. */
@@ -173,7 +196,11 @@ class Painter {
     );
   }
 
-  #inset(car: Point | null, width: number, ratio: number): void {
+  #inset(
+    { car, mark, ghost }: { car: Point | null; mark: Point | null; ghost: Point | null },
+    width: number,
+    ratio: number,
+  ): void {
     const [context, road] = [this.#context as CanvasRenderingContext2D, this.#road as RoadShape];
     const side = Math.min(170, width * 0.3);
     const top = width < 560 ? 48 : 8; // below the buttons where they do not fit side by side
@@ -185,18 +212,19 @@ class Painter {
     context.setTransform(1, 0, 0, 1, 0, 0);
     const [left, above] = [Math.round((width - 8 - side) * ratio), Math.round(top * ratio)];
     context.drawImage(picture, left, above);
-    if (car)
-      drawDot(
-        context,
-        car,
-        { ...fit, at: { x: left / ratio + side / 2, y: above / ratio + side / 2 } },
-        theme(),
-        ratio,
-      );
+    const there = { ...fit, at: { x: left / ratio + side / 2, y: above / ratio + side / 2 } };
+    if (ghost) drawDot(context, ghost, there, theme(), ratio, theme().trace);
+    if (car) drawDot(context, car, there, theme(), ratio);
+    if (mark) drawDot(context, mark, there, theme(), ratio, theme().predicted);
   }
 
   end(): void {
     this.#box.end();
+  }
+
+  /** The point of the world at a place of the canvas. */
+  worldAt(at: Point): Point | null {
+    return this.#seen && unproject(this.#seen, at);
   }
 
   #resize(width: number, height: number): void {
@@ -376,6 +404,17 @@ function MapControls() {
       ) : (
         <Segments name="View" choices={VIEWS} chosen={view.value} choose={(next) => (view.value = next)} />
       )}
+      <div class="segments" role="group" aria-label="Presentation">
+        <button
+          type="button"
+          aria-pressed={isStageAlone.value}
+          aria-keyshortcuts="G"
+          title="The picture alone, on the whole screen (G)"
+          onClick={togglePresentation}
+        >
+          Present
+        </button>
+      </div>
       {canZoom && (
         <div class="segments" role="group" aria-label="Zoom">
           <button type="button" title="Zoom out (−)" aria-label="Zoom out" onClick={() => zoom(1.25)}>
@@ -401,6 +440,15 @@ function usePainter() {
       event.preventDefault();
       zoom(Math.exp(event.deltaY * 0.0015));
     };
+    const onClick = (event: MouseEvent): void => {
+      const point = painter.worldAt({ x: event.offsetX, y: event.offsetY });
+      if (!point) return;
+      const seek = seekTo.value;
+      const time = seek && timeNear(point.x, point.y);
+      if (!seek) pointAt(point.x, point.y);
+      else if (time !== null) seek(time);
+    };
+    element.addEventListener('click', onClick);
     element.addEventListener('wheel', onWheel, { passive: false });
     const stop = everyFrame((now) => {
       painter.paint(now);
@@ -413,6 +461,7 @@ function usePainter() {
       painter.end();
       unwatch();
       element.removeEventListener('wheel', onWheel);
+      element.removeEventListener('click', onClick);
     };
   }, []);
   return canvas;
@@ -421,13 +470,18 @@ function usePainter() {
 export function TrackView() {
   const canvas = usePainter();
   const label = describeMap();
+  const classes = ['panel map', shows3d.value ? 'has-3d' : '', dangerNow()];
   return (
-    <section class={shows3d.value ? 'panel map has-3d' : 'panel map'} aria-label="Track">
+    <section class={classes.filter(Boolean).join(' ')} aria-label="Track">
       {wants3d.value && <Scene3dView label={label.replace('Map', 'Picture')} />}
       {/* Always present: full size, or as the small map beside the 3D picture. */}
       <canvas ref={canvas} class="map-2d" role="img" aria-label={label} />
       <MapControls />
-      <Legend />
+      <AlertsView />
+      <div class="map-foot">
+        <HudView />
+        <Legend />
+      </div>
     </section>
   );
 }

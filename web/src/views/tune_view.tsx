@@ -121,8 +121,8 @@ export function TuneView() {
   if (run.value?.mode === 'replay') {
     return (
       <p class="empty">
-        A recording cannot be changed. <code>chicane replay LOG --branch-at T --set KEY=VALUE</code> drives on from time
-        T with other settings.
+        A recording cannot be changed. The tab What if drives on from the moment that is shown with other settings, and
+        so does <code>chicane replay LOG --branch-at T --set KEY=VALUE</code>.
       </p>
     );
   }

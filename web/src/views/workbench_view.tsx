@@ -3,7 +3,9 @@ import type { ComponentType } from 'preact';
 import { clamp } from '../lib/math';
 import { persisted } from '../lib/persisted';
 import { link } from '../state/link';
+import { isStageAlone } from '../state/presentation';
 import { DriveView } from './drive_view';
+import { EndView } from './end_view';
 import { ExplainView } from './explain_view';
 import { FaultsView } from './faults_view';
 import { InstrumentsView } from './instruments_view';
@@ -11,6 +13,7 @@ import { LapsView } from './laps_view';
 import { PlotsView } from './plots_view';
 import { TrackView } from './track_view';
 import { TuneView } from './tune_view';
+import { WhatIfView } from './what_if_view';
 
 /** The panels, in the order of their tabs and of the keys 1, 2, ... A panel is a view of its own and one row here. */
 const PANELS = [
@@ -20,10 +23,13 @@ const PANELS = [
   { name: 'tune', title: 'Tune', View: TuneView },
   { name: 'laps', title: 'Laps', View: LapsView },
   { name: 'faults', title: 'Faults', View: FaultsView },
+  { name: 'whatif', title: 'What if', View: WhatIfView },
 ] as const;
 
 export type Tab = (typeof PANELS)[number]['name'];
 export const TABS: readonly Tab[] = PANELS.map(({ name }) => name);
+
+export const titleOf = (name: Tab): string => PANELS.find((each) => each.name === name)?.title ?? name;
 
 const isTab = (value: unknown): value is Tab => (TABS as readonly unknown[]).includes(value);
 
@@ -157,18 +163,21 @@ export function WorkbenchView() {
     'workbench',
     `dock-${dock.value}`,
     isPanelAlone.value ? 'panel-alone' : '',
+    isStageAlone.value ? 'stage-alone' : '',
     link.value === 'lost' ? 'stale' : '',
   ];
+  const hasStage = isStageAlone.value || !isPanelAlone.value;
   return (
     <main class={classes.filter(Boolean).join(' ')} style={{ '--panel-share': String(share) }}>
-      {!isPanelAlone.value && (
+      <EndView />
+      {hasStage && (
         <div class="stage">
           <TrackView />
           <InstrumentsView />
         </div>
       )}
-      {!isPanelAlone.value && <Splitter />}
-      <div class="panel side">
+      {!isPanelAlone.value && !isStageAlone.value && <Splitter />}
+      <div class="panel side" hidden={isStageAlone.value}>
         <Tabs />
         <div
           class={`panel-body show-${tab.value}`}

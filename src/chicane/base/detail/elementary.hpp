@@ -201,4 +201,35 @@ template <class V>
   return select(a < V(1e-4), x - x * x * x / 3.0, large);
 }
 
+/// NaN beyond ±1.
+template <class V>
+[[nodiscard]] CHICANE_INLINE inline V asin(const V& x) noexcept {
+  return elementary::atan2(x, sqrt((1.0 - x) * (1.0 + x)));
+}
+template <class V>
+[[nodiscard]] CHICANE_INLINE inline V acos(const V& x) noexcept {
+  return elementary::atan2(sqrt((1.0 - x) * (1.0 + x)), x);
+}
+
+/// x multiplied by itself: of any sign, and 1 for n = 0.
+template <class V>
+[[nodiscard]] CHICANE_INLINE inline V power(const V& x, int n) noexcept {
+  V result(1.0);
+  V square = x;
+  for (unsigned rest = n < 0 ? 0U - static_cast<unsigned>(n) : static_cast<unsigned>(n); rest != 0;
+       rest >>= 1U) {
+    if ((rest & 1U) != 0) result = result * square;
+    if (rest > 1U) square = square * square;
+  }
+  return n < 0 ? 1.0 / result : result;
+}
+template <class V>
+[[nodiscard]] CHICANE_INLINE inline V pow(const V& x, double exponent) noexcept {
+  constexpr double kMostFactors = 64.0;
+  const bool is_whole = exponent >= -kMostFactors && exponent <= kMostFactors &&
+                        exponent == static_cast<double>(static_cast<int>(exponent));
+  if (is_whole) return elementary::power(x, static_cast<int>(exponent));
+  return elementary::exp(exponent * elementary::log(x));
+}
+
 }  // namespace chicane::elementary

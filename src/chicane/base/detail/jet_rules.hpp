@@ -55,6 +55,11 @@ struct Jet {
       !(F == First && U == Unit &&
         P == Second)) constexpr Jet(const Jet<V, Order, F, U, P>& narrow);  // NOLINT: as safe as int to long
 
+  // clang-format off: compilers show the comment
+  operator double() const =
+      delete;  // NOLINT  a jet is no number: write sin(x), not std::sin(x); auto y = x, not double y = x
+  // clang-format on
+
   constexpr Jet& operator+=(const Jet& o) { return *this = *this + o; }
   constexpr Jet& operator-=(const Jet& o) { return *this = *this - o; }
   constexpr Jet& operator*=(const Jet& o) { return *this = *this * o; }

@@ -12,6 +12,11 @@ constexpr double kGravity = 9.81;        // [m/s²]
 constexpr double kMostPower = 1e4;       // [W/kg]; stands for none
 constexpr double kMostSteerRate = 10.0;  // [rad/s]; stands for at once
 
+/// What an inner wheel loses of its load at rest for each m/s² of lateral acceleration.
+double unloading(const model::VehicleParams& p, double other_axle, double share) {
+  return 2.0 * p.height * share / p.track_width / (p.load_constant * other_axle / p.wheelbase());
+}
+
 }  // namespace
 
 LimitCar::LimitCar(const model::VehicleParams& p) noexcept
@@ -21,8 +26,15 @@ LimitCar::LimitCar(const model::VehicleParams& p) noexcept
       stay{1.0 - p.steer_helper},
       front_turn{p.yaw_inertia / (p.mass * p.rear_axle)},
       rear_turn{p.yaw_inertia / (p.mass * p.front_axle)},
-      grip_0{p.friction * p.load_constant},
-      grip_v{p.friction * p.load_per_speed},
+      grip_0{p.cornering_friction() * p.load_constant},
+      grip_v{p.cornering_friction() * p.load_per_speed},
+      brake_front{p.brake_share_front},
+      drive_front{p.drive_share_front},
+      front_part{p.wheelbase() / p.rear_axle},
+      rear_part{p.wheelbase() / p.front_axle},
+      front_roll{unloading(p, p.rear_axle, p.roll_share_front)},
+      rear_roll{unloading(p, p.front_axle, 1.0 - p.roll_share_front)},
+      sensitivity{p.load_sensitivity},
       coupling{p.friction_coupling},
       front_shift{p.height / (kGravity * p.rear_axle)},
       rear_shift{p.height / (kGravity * p.front_axle)},

@@ -14,8 +14,8 @@
 
 namespace chicane::lap_time {
 
-/// The minimum-time problem along a road (docs/limit.md, eq. 7–17), in the solver's structured form. Stage k
-/// is a piece of the reference line of length `step`; how long it takes is a function of the state.
+/// The minimum-time problem along a road (docs/limit.md, eq. Q7–Q14), in the solver's structured form. Stage
+/// k is a piece of the reference line of length `step`; how long it takes is a function of the state.
 ///
 /// State x = (n, χ, v, κ, a): offset to the left [m], course against the line [rad], speed [m/s], curvature
 /// of the path [1/m], drive or brake force over mass [m/s²]. Input u: the changes of κ and a along the path,
@@ -28,6 +28,7 @@ struct LimitProblem {
   static constexpr int kNe = 1;
   static constexpr int kNc = 18;
   static constexpr int kCapacity = 8192;
+  static constexpr bool kRealTime = true;
 
   enum StateIndex { kN, kCourse, kSpeed, kCurvature, kForce };
 
@@ -132,19 +133,31 @@ struct LimitProblem {
     const auto tail = n - car.rear_axle * lean;
     const auto per_grip = 1.0 / car.grip(v);
     const auto along = force * per_grip;
-    const auto taken = car.coupling * (along * along);
+    const auto share = select(force < 0.0, car.brake_front, car.drive_front);
+    const auto side = select(force < 0.0, 0.0, 1.0) * abs(v2 * kappa);
+    const auto in_front =
+        (car.front_part * share) * along /
+        (((1.0 - car.front_shift * force) * (1.0 + (car.sensitivity * car.front_shift) * force)) *
+         (1.0 - car.front_roll * side));
+    const auto in_rear =
+        (car.rear_part * (1.0 - share)) * along /
+        (((1.0 + car.rear_shift * force) * (1.0 - (car.sensitivity * car.rear_shift) * force)) *
+         (1.0 - car.rear_roll * side));
+    const auto taken = car.coupling * (in_front * in_front);
+    const auto taken_rear = car.coupling * (in_rear * in_rear);
     const auto reach = v2 * per_grip;
-    const auto front = reach * (car.stay * kappa + (car.front_turn * kCurvatureSlope) * bend) /
-                       (1.0 - car.front_shift * force);
+    const auto front =
+        reach * (car.stay * kappa + (car.front_turn * kCurvatureSlope) * bend) /
+        ((1.0 - car.front_shift * force) * (1.0 + (car.sensitivity * car.front_shift) * force));
     const auto rear = reach * (car.stay * kappa - (car.rear_turn * kCurvatureSlope) * bend) /
-                      (1.0 + car.rear_shift * force);
+                      ((1.0 + car.rear_shift * force) * (1.0 - (car.sensitivity * car.rear_shift) * force));
     const auto steer = (kCurvatureSlope / car.curvature_rate) * (bend * v);
     const double per_lock = 1.0 / car.curvature_limit;
     return std::make_tuple(nose - road.front_left.at(k), road.front_right.at(k) - nose,
                            tail - road.rear_left.at(k), road.rear_right.at(k) - tail,
                            (1.0 / car.drive) * force - 1.0, (1.0 / car.power) * (force * v) - 1.0,
                            (-1.0 / car.brake) * force - 1.0, -1.0 * along - 1.0, front * front + taken - 1.0,
-                           rear * rear + taken - 1.0, front - 1.0, -1.0 * front - 1.0, rear - 1.0,
+                           rear * rear + taken_rear - 1.0, front - 1.0, -1.0 * front - 1.0, rear - 1.0,
                            -1.0 * rear - 1.0, steer - 1.0, -1.0 * steer - 1.0,
                            (per_lock * per_lock) * (kappa * kappa) - 1.0, 1.0 - (1.0 / kLowestSpeed) * v);
   }

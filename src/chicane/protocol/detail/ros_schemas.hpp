@@ -51,6 +51,46 @@ inline constexpr std::array kRosDefinitions{
                   "float32 acceleration\nfloat32 jerk\n"},
     RosDefinition{"ackermann_msgs/AckermannDriveStamped",
                   "std_msgs/Header header\nackermann_msgs/AckermannDrive drive\n"},
+    RosDefinition{"builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"},
+    RosDefinition{"foxglove_msgs/Color", "float64 r\nfloat64 g\nfloat64 b\nfloat64 a\n"},
+    RosDefinition{"foxglove_msgs/KeyValuePair", "string key\nstring value\n"},
+    RosDefinition{"foxglove_msgs/ArrowPrimitive",
+                  "geometry_msgs/Pose pose\nfloat64 shaft_length\nfloat64 shaft_diameter\n"
+                  "float64 head_length\nfloat64 head_diameter\nfoxglove_msgs/Color color\n"},
+    RosDefinition{"foxglove_msgs/CubePrimitive",
+                  "geometry_msgs/Pose pose\ngeometry_msgs/Vector3 size\nfoxglove_msgs/Color color\n"},
+    RosDefinition{"foxglove_msgs/SpherePrimitive",
+                  "geometry_msgs/Pose pose\ngeometry_msgs/Vector3 size\nfoxglove_msgs/Color color\n"},
+    RosDefinition{"foxglove_msgs/CylinderPrimitive",
+                  "geometry_msgs/Pose pose\ngeometry_msgs/Vector3 size\nfloat64 bottom_scale\n"
+                  "float64 top_scale\nfoxglove_msgs/Color color\n"},
+    RosDefinition{"foxglove_msgs/LinePrimitive",
+                  "uint8 LINE_STRIP=0\nuint8 LINE_LOOP=1\nuint8 LINE_LIST=2\nuint8 type\n"
+                  "geometry_msgs/Pose pose\nfloat64 thickness\nbool scale_invariant\n"
+                  "geometry_msgs/Point[] points\nfoxglove_msgs/Color color\n"
+                  "foxglove_msgs/Color[] colors\nuint32[] indices\n"},
+    RosDefinition{"foxglove_msgs/TriangleListPrimitive",
+                  "geometry_msgs/Pose pose\ngeometry_msgs/Point[] points\nfoxglove_msgs/Color color\n"
+                  "foxglove_msgs/Color[] colors\nuint32[] indices\n"},
+    RosDefinition{"foxglove_msgs/TextPrimitive",
+                  "geometry_msgs/Pose pose\nbool billboard\nfloat64 font_size\nbool scale_invariant\n"
+                  "foxglove_msgs/Color color\nstring text\n"},
+    RosDefinition{"foxglove_msgs/ModelPrimitive",
+                  "geometry_msgs/Pose pose\ngeometry_msgs/Vector3 scale\nfoxglove_msgs/Color color\n"
+                  "bool override_color\nstring url\nstring media_type\nuint8[] data\n"},
+    RosDefinition{"foxglove_msgs/SceneEntityDeletion",
+                  "uint8 MATCHING_ID=0\nuint8 ALL=1\nbuiltin_interfaces/Time timestamp\nuint8 type\n"
+                  "string id\n"},
+    RosDefinition{"foxglove_msgs/SceneEntity",
+                  "builtin_interfaces/Time timestamp\nstring frame_id\nstring id\n"
+                  "builtin_interfaces/Duration lifetime\nbool frame_locked\n"
+                  "foxglove_msgs/KeyValuePair[] metadata\nfoxglove_msgs/ArrowPrimitive[] arrows\n"
+                  "foxglove_msgs/CubePrimitive[] cubes\nfoxglove_msgs/SpherePrimitive[] spheres\n"
+                  "foxglove_msgs/CylinderPrimitive[] cylinders\nfoxglove_msgs/LinePrimitive[] lines\n"
+                  "foxglove_msgs/TriangleListPrimitive[] triangles\nfoxglove_msgs/TextPrimitive[] texts\n"
+                  "foxglove_msgs/ModelPrimitive[] models\n"},
+    RosDefinition{"foxglove_msgs/SceneUpdate",
+                  "foxglove_msgs/SceneEntityDeletion[] deletions\nfoxglove_msgs/SceneEntity[] entities\n"},
     RosDefinition{"chicane_msgs/Plan",
                   R"(# What the controller intends: predicted motion of the centre of mass with
 # its commands, all arrays of the same length; element 0 is where the first command acts.
@@ -89,6 +129,8 @@ string[] constraint_names               # of the bits of Frame.active_now and ac
 string[] fault_names                    # of the bits of Frame.active_faults
 float64 kerb_width_m                    # drivable, outside each edge
 string building                         # another run that is being built: "track = oval"; empty: none
+string end                              # "finished", "stopped", "failed": the run is over; empty: it goes on
+string end_reason                       # why, in one sentence; empty when it finished
 )"},
     RosDefinition{"chicane_msgs/Lap", R"(# One completed lap, sent when it is.
 uint32 lap                              # its number, from 1

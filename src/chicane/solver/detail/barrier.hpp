@@ -43,7 +43,30 @@ class Barrier {
   void lift(const P& problem) noexcept { mu_ = std::max(mu_, 0.002 * highest_price(problem)); }
 
   [[nodiscard]] double mu() const noexcept { return mu_; }
+  void set_mu(double mu) noexcept { mu_ = mu; }
   [[nodiscard]] bool is_final() const noexcept { return kNc == 0 || mu_ <= final_; }
+
+  /// Slacks, multipliers and barrier of one iterate, to come back to.
+  struct Memory {
+    double mu = 0.0;
+    double numbers[4][kNc > 0 ? kNc : 1][kStageStride<Capacity>]{};
+  };
+  void save(Memory& memory, std::size_t horizon) const noexcept {
+    memory.mu = mu_;
+    const double(*const from[4])[kStride] = {s_, t_, n_, z_};
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t c = 0; c < kNc; ++c)
+        std::copy(from[i][c], from[i][c] + padded_stages(horizon), memory.numbers[i][c]);
+    }
+  }
+  void restore(const Memory& memory, std::size_t horizon) noexcept {
+    mu_ = memory.mu;
+    double(*const to[4])[kStride] = {s_, t_, n_, z_};
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t c = 0; c < kNc; ++c)
+        std::copy(memory.numbers[i][c], memory.numbers[i][c] + padded_stages(horizon), to[i][c]);
+    }
+  }
 
   // ---- constraint c of the eight stages from k on
   [[nodiscard]] CHICANE_INLINE SoftConstraint<V> load(std::size_t c, std::size_t k) const noexcept {
@@ -66,8 +89,18 @@ class Barrier {
     });
   }
 
+  /// First-order change of constraint c of the eight stages from k on under a step.
+  V change(const Step& step, std::size_t c, std::size_t k) const noexcept {
+    V sum(0.0);
+    for (std::size_t i = 0; i < P::kNx; ++i) sum += V::load(row_[c][i] + k) * V::load(step.x[i] + k);
+    for (std::size_t m = 0; m < P::kNu; ++m) sum += V::load(row_[c][P::kNx + m] + k) * V::load(step.u[m] + k);
+    return sum;
+  }
+
   /// Value of constraint c of stage k at the last look.
   [[nodiscard]] double value(std::size_t c, std::size_t k) const noexcept { return value_[c][k]; }
+  [[nodiscard]] double violation_slack(std::size_t c, std::size_t k) const noexcept { return s_[c][k]; }
+  [[nodiscard]] double distance_slack(std::size_t c, std::size_t k) const noexcept { return t_[c][k]; }
   /// Its multiplier: what a unit more room would save.
   [[nodiscard]] double multiplier(std::size_t c, std::size_t k) const noexcept { return z_[c][k]; }
 
@@ -153,14 +186,6 @@ class Barrier {
       }
     }
   }
-  /// First-order change of constraint c under the step.
-  V change(const Step& step, std::size_t c, std::size_t k) const noexcept {
-    V sum(0.0);
-    for (std::size_t i = 0; i < P::kNx; ++i) sum += V::load(row_[c][i] + k) * V::load(step.x[i] + k);
-    for (std::size_t m = 0; m < P::kNu; ++m) sum += V::load(row_[c][P::kNx + m] + k) * V::load(step.u[m] + k);
-    return sum;
-  }
-
   double mu_ = 0.0;
   double final_ = 0.0;
   alignas(64) double value_[kNc > 0 ? kNc : 1][kStride]{};

@@ -27,8 +27,10 @@ class Evaluation {
   static constexpr int kVariables = kNx + kNu;
   static constexpr bool kIsStructured = StructuredProblem<P>;
   /// One stage as a value: a pack of equal lanes, so that its code carries the tag of the instruction set;
-  /// plain doubles for functions that may branch.
-  using One = std::conditional_t<kIsStructured, Pack<Arch, 2>, double>;
+  /// for functions that may branch a number that knows the functions of models.
+  using One = std::conditional_t<kIsStructured, Pack<Arch, 2>, Plain>;
+  /// What the values and derivatives of terminal residuals are made of.
+  using EndValue = std::conditional_t<kIsStructured, Pack<Arch, 2>, double>;
 
   template <class Next, class Residual, class Constraint>
   struct StageRows {
@@ -77,21 +79,22 @@ class Evaluation {
   template <int Order, class Point>
   static auto end(const P& problem, const Point& t) noexcept {
     if constexpr (kIsStructured) {
-      StateJets<P, One, Order> x;
-      jet::repeat<kNx>([&](auto i) CHICANE_INLINE { std::get<i>(x).v = One(t.x[i][t.horizon]); });
+      StateJets<P, EndValue, Order> x;
+      jet::repeat<kNx>([&](auto i) CHICANE_INLINE { std::get<i>(x).v = EndValue(t.x[i][t.horizon]); });
       return problem.terminal_residual(x);
     } else {
-      return problem.terminal_residual(dense<One, Order, 0, kNx>(t.x, t.horizon));
+      return problem.terminal_residual(dense<EndValue, Order, 0, kNx>(t.x, t.horizon));
     }
   }
   CHICANE_INLINE static double number(double x) noexcept { return x; }
+  CHICANE_INLINE static double number(const Plain& x) noexcept { return x.v; }
   template <std::size_t N>
   CHICANE_INLINE static double number(const Pack<Arch, N>& x) noexcept {
     return x[0];
   }
   template <class S>
   CHICANE_INLINE static double slope_number(const S& s) noexcept {
-    return number(jet::number<One>(s));
+    return number(jet::number<EndValue>(s));
   }
 
  private:

@@ -46,6 +46,9 @@ class Linearisation {
   InputChains<P, Capacity> chains;  ///< inputs whose changes are bounded, with all their bounds
   double merit = 0.0;               ///< cost with the barrier's smoothed penalties; when slacks were centred
   double defect_excess = 0.0;       ///< largest defect beyond its tolerance; <= 0: all are small enough
+  /// Not null: prices of the dynamics are unknowns, too. Looks leave `adjoint` as it is and put here what is
+  /// missing to optimality in the states: [i][k] of x_k, k = 1 … horizon.
+  double (*state_residual)[kStageStride<Capacity>] = nullptr;
 
   /// Looks at `t`. With Order 2 the stages get exact Hessians of the Lagrangian, else Gauss–Newton's.
   /// `centre`: slacks are put on the central path first. `defect_share`: of 1 + |x| that defects may have.
@@ -57,7 +60,8 @@ class Linearisation {
     double lambda[kNx];
     sums.end_cost = look_at_end<Order>(problem, t, lq, lambda);
     for (std::size_t k = (t.horizon - 1) / 8 * 8 + 8; k > 0; k -= 8)
-      look_at<Order>(problem, t, k - 8, {centre, defect_share}, slacks, lambda, lq, sums);
+      look_at<kHasOneLook ? 2 : Order>(problem, t, k - 8, {centre, defect_share, exactness<Order>()}, slacks,
+                                       lambda, lq, sums);
     sums.finish(*this, report);
     if constexpr (kHasRateBounds<P>) {  // measured by whole chains
       chains.fold_first(lq);
@@ -73,9 +77,21 @@ class Linearisation {
   using Jacobians = typename Entries::Jacobians;
   using Gradient = typename Entries::Gradient;
 
+  /// One look of second order for both kinds of Hessians, where that is to be built quickly and curvature
+  /// costs little.
+  static constexpr bool kHasOneLook = StructuredProblem<P> && has_hessians<P>() && has_filter_method<P>();
+  template <int Order>
+  using IsExact = std::conditional_t<kHasOneLook, bool, std::bool_constant<Order == 2>>;
+  template <int Order>
+  static constexpr IsExact<Order> exactness() noexcept {
+    if constexpr (kHasOneLook) return Order == 2;
+    return {};
+  }
+  template <int Order>
   struct How {
     bool centre;
     double defect_share;
+    IsExact<Order> is_exact;
   };
 
   /// What is added up over the horizon, eight stages side by side.
@@ -107,7 +123,7 @@ class Linearisation {
     for (auto& row : lq.terminal) std::fill(std::begin(row), std::end(row), 0.0);
     const auto rows = Evaluate::template end<Order>(problem, t);
     double cost = 0.0;
-    each_row<typename Evaluate::One, Order>(rows, [&](auto, const auto& r) CHICANE_INLINE {
+    each_row<typename Evaluate::EndValue, Order>(rows, [&](auto, const auto& r) CHICANE_INLINE {
       const double value = Evaluate::number(r.v);
       cost += 0.5 * value * value;
       add_end_row(r, value, lq);
@@ -146,9 +162,12 @@ class Linearisation {
 
   /// The eight stages from k0 on; those beyond the horizon count for nothing.
   template <int Order>
-  void look_at(const P& problem, const Point& t, std::size_t k0, How how, Slacks& slacks,
+  void look_at(const P& problem, const Point& t, std::size_t k0, const How<Order>& how, Slacks& slacks,
                double (&lambda)[kNx], Lq& lq, Sums& sums) noexcept {
-    const auto rows = Evaluate::template stages<Order>(problem, t, k0);
+    const auto rows = [&]() CHICANE_INLINE {
+      if constexpr (is_compact<Pattern>()) return evaluate<Order>(problem, t, k0);
+      if constexpr (!is_compact<Pattern>()) return Evaluate::template stages<Order>(problem, t, k0);
+    }();
     const auto live = stage_number(StageLanes<V>{static_cast<int>(k0)}) < V(static_cast<double>(t.horizon));
     Jacobians f;
     Costs l;
@@ -158,10 +177,25 @@ class Linearisation {
     add_residuals<Order>(rows.residual, live, gradient, l, sums);
     if constexpr (kNc > 0)
       add_soft<Order>(problem, rows.constraint, k0, live, how.centre, slacks, gradient, l, sums);
-    run_adjoint(t.horizon, k0, f, gradient, lambda);
+    if (!has_filter_method<P>() || state_residual == nullptr) [[likely]] {
+      run_adjoint(t.horizon, k0, f, gradient, lambda);
+    } else {
+      miss_adjoint(k0, f, gradient);
+    }
     measure(t, k0, live, f, gradient, lq, sums);
-    if constexpr (Order == 2) add_curvature(rows, k0, slacks, l);
-    lq.set(k0, f, l);
+    if constexpr (Order == 2) {
+      if (how.is_exact) add_curvature(rows, k0, slacks, l);
+    }
+    if constexpr (is_compact<Pattern>()) {
+      lq.set_by_tables(k0, f, l);
+    } else {
+      lq.set(k0, f, l);
+    }
+  }
+  /// A function of its own: quicker to build.
+  template <int Order>
+  [[gnu::noinline]] static auto evaluate(const P& problem, const Point& t, std::size_t k0) noexcept {
+    return Evaluate::template stages<Order>(problem, t, k0);
   }
 
   template <int Order, class Row, class Mask>
@@ -242,6 +276,21 @@ class Linearisation {
       unroll<kNx>([&](auto i) CHICANE_INLINE { now[i] = before[i]; });
     }
     unroll<kNx>([&](auto i) CHICANE_INLINE { lambda[i] = now[i]; });
+  }
+
+  /// g_x + Aᵀ λ_{k+1} − λ_k of the group.
+  void miss_adjoint(std::size_t k0, const Jacobians& f, const Gradient& gradient) noexcept {
+    unroll<kNx>([&](auto j) CHICANE_INLINE {
+      V sum = gradient[j];
+      unroll<kNx>([&](auto i) CHICANE_INLINE {
+        if constexpr (Pattern::kF[i][j] == Entry::kOne) sum += V::load(adjoint[i] + k0);
+        if constexpr (Pattern::kF[i][j] == Entry::kValue)
+          sum = fused_multiply_add(f[Layout::kF[i][j]], V::load(adjoint[i] + k0), sum);
+      });
+      sum.store(state_residual[j] + k0);
+      for (std::size_t lane = k0 == 0 ? 1 : 0; lane < 8; ++lane)
+        state_residual[j][k0 + lane] -= adjoint[j][k0 + lane - 1];
+    });
   }
 
   /// Slopes of the inputs, and how far they are from optimal (eq. 12); bounds on the step.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <type_traits>
 
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/pack.hpp"
@@ -60,11 +61,23 @@ class LqSolver {
   /// then descends). Returns the largest extra shift that an indefinite input block needed; 0 when none did.
   double backward(std::size_t horizon, double shift = 0.0, bool choose = false) noexcept {
     std::copy(&lq.terminal[0][0], &lq.terminal[0][0] + (kNx + 1) * kLanes, &value_[horizon][0][0]);
-    return choose ? sweep<true>(horizon, shift) : sweep<false>(horizon, shift);
+    if constexpr (kIsCompact) return sweep(horizon, shift, choose, false);
+    return choose ? sweep(horizon, shift, std::true_type{}, std::false_type{})
+                  : sweep(horizon, shift, std::false_type{}, std::false_type{});
+  }
+  /// The same with `shift` added to the curvature of all states as well, those of the horizon's end included.
+  double backward_shifted(std::size_t horizon, double shift) noexcept {
+    std::copy(&lq.terminal[0][0], &lq.terminal[0][0] + (kNx + 1) * kLanes, &value_[horizon][0][0]);
+    for (std::size_t i = 0; i < kNx; ++i) value_[horizon][i][i] += shift;
+    if constexpr (kIsCompact) return sweep(horizon, shift, false, true);
+    return sweep(horizon, shift, std::false_type{}, std::true_type{});
   }
   /// The same after forward() has changed the working set: stages behind the last change are as they were.
   /// Pre: the same problem.
-  double backward_again(double shift = 0.0) noexcept { return sweep<false>(last_change_ + 1, shift); }
+  double backward_again(double shift = 0.0) noexcept {
+    if constexpr (kIsCompact) return sweep(last_change_ + 1, shift, false, false);
+    return sweep(last_change_ + 1, shift, std::false_type{}, std::false_type{});
+  }
 
   /// What the forward sweep does with inputs that contradict the working set.
   enum class Repair { kAll, kLast, kClip, kNone };
@@ -95,7 +108,7 @@ class LqSolver {
     last_change_ = found.stage;
     if (repair == Repair::kLast) apply(found);
     if (kHasRates && repair != Repair::kNone) {
-      for (std::size_t m = 0; m < kNu; ++m) RateSet<kNu>(hold, m).tidy(horizon);
+      for (std::size_t m = 0; m < kNu; ++m) RateSet<kNu, Arch>(hold, m).tidy(horizon);
     }
     return found.count;
   }
@@ -109,6 +122,13 @@ class LqSolver {
     }
   }
 
+  /// Price of state i of x_k at the step's end, after forward(): the multiplier of the dynamics that lead to
+  /// it.
+  [[nodiscard]] double price(std::size_t k, std::size_t i) const noexcept {
+    double sum = value_[k][kNx][i];
+    for (std::size_t j = 0; j < kNx; ++j) sum += value_[k][j][i] * dx[k][j];
+    return sum;
+  }
   /// Slope of the cost to go by a held input, after forward().
   [[nodiscard]] double slope(std::size_t k, std::size_t m) const noexcept {
     double sum = feedback[k].constant[m];
@@ -138,22 +158,32 @@ class LqSolver {
     return hold == Hold::kRateLow || hold == Hold::kRateHigh;
   }
 
-  template <bool Choose>
-  double sweep(std::size_t from, double shift) noexcept {
+  static constexpr bool kIsCompact = is_compact<Pattern>();
+  /// `choose`, `shift_states`: types, with a sweep for each use; bools of compact solvers, with one for all.
+  template <class Choose, class ShiftStates>
+  double sweep(std::size_t from, double shift, Choose choose, ShiftStates shift_states) noexcept {
     Value P;
     unroll<kNx + 1>([&](auto i) CHICANE_INLINE { P.column[i] = Vector::load(value_[from][i]); });
     double largest = 0.0;
     for (std::size_t k = from; k-- > 0;) {
-      eliminate<Choose>(k, P, shift, largest);
-      if (k % kSymmetryPeriod == 0) Algebra::make_symmetric(P);
+      eliminate(k, P, shift, choose, largest);
+      if (k % kSymmetryPeriod == 0) {
+        if constexpr (kIsCompact) Algebra::make_symmetric_apart(P);
+        if constexpr (!kIsCompact) Algebra::make_symmetric(P);
+      }
       unroll<kNx + 1>([&](auto i) CHICANE_INLINE { P.column[i].store(value_[k][i]); });
+      if (shift_states) {
+        for (std::size_t i = 0; i < kNx; ++i) value_[k][i][i] += shift;
+        unroll<kNx>([&](auto i) CHICANE_INLINE { P.column[i] = Vector::load(value_[k][i]); });
+      }
     }
     return largest;
   }
 
   /// One stage backwards: the value function P of stage k + 1 becomes that of stage k (eq. 9–11).
-  template <bool Choose>  // NOLINTNEXTLINE(readability-function-size): one stage, in registers
-  CHICANE_INLINE void eliminate(std::size_t k, Value& P, double shift, double& largest) noexcept {
+  template <class Choose>  // NOLINTNEXTLINE(readability-function-size): one stage, in registers
+  CHICANE_INLINE void eliminate(std::size_t k, Value& P, double shift, Choose choose,
+                                double& largest) noexcept {
     const Stage& s = lq.stage[k];
     Feedback& out = feedback[k];
     Vector W[1 + kNu];  // columns of P F: the defect's, then the inputs'
@@ -185,7 +215,7 @@ class LqSolver {
     Vector q = Algebra::template row_of_q<kNx>(s, W[0], w[0]);
 
     bool is_held[kNu];
-    const bool any_held = settle_inputs<Choose>(k, block, is_held, largest);
+    const bool any_held = settle_inputs(k, block, choose, is_held, largest);
     double b[kNu] = {};  // where inputs are held
     double g[kNu];       // slopes with them there
     unroll<kNu>([&](auto m) CHICANE_INLINE { g[m] = block.g[m]; });
@@ -193,23 +223,11 @@ class LqSolver {
     Vector T[kNu];
     unroll<kNu>([&](auto m) CHICANE_INLINE { T[m] = Algebra::combination(block.adjugate[m], R); });
 
-    Vector Wx[kNx];
-    alignas(64) double wx[kNx][kLanes];
-    unroll<kNx>([&](auto j) CHICANE_INLINE {
-      if constexpr (Algebra::has_column(j)) {
-        Wx[j] = Algebra::template times_jacobian<j>(s, P);
-        Wx[j].store(wx[j]);
-      }
-    });
-    Algebra::settle(wx);
-    unroll<kNx>([&](auto j) CHICANE_INLINE {
-      if constexpr (Algebra::has_column(j)) {
-        P.column[j] = Algebra::template row_of_q<j>(s, Wx[j], wx[j]);
-      } else {
-        P.column[j] = Algebra::template cost_row<j>(s);
-      }
-      Algebra::template eliminate_inputs<j>(T, block.scale, r, P.column[j]);
-    });
+    if constexpr (kIsCompact && Layout::is_full()) {
+      Algebra::eliminate_full(s, T, block.scale, r, P);
+    } else {
+      Algebra::eliminate_states(s, T, block.scale, r, P);
+    }
     P.column[kNx] = q;
     P.column[kNx].add(-block.scale, Algebra::combination(g, T));
 
@@ -232,12 +250,12 @@ class LqSolver {
     }
   }
 
-  /// Reads (or with `Choose` chooses) which inputs are held, and inverts the free block, shifted until it is
+  /// Reads (or with `choose` chooses) which inputs are held, and inverts the free block, shifted until it is
   /// positive definite. True when any input is held.
-  template <bool Choose>
-  CHICANE_INLINE bool settle_inputs(std::size_t k, Block& block, bool (&is_held)[kNu],
+  template <class Choose>
+  CHICANE_INLINE bool settle_inputs(std::size_t k, Block& block, Choose choose, bool (&is_held)[kNu],
                                     double& largest) noexcept {
-    if constexpr (Choose) {
+    if (choose) {
       Block chosen = block;
       largest = std::max(largest, choose_hold(k, chosen));
       block = chosen;
@@ -338,7 +356,7 @@ class LqSolver {
 
   // ---- working set
 
-  using Finding = typename RateSet<kNu>::Finding;
+  using Finding = typename RateSet<kNu, Arch>::Finding;
   /// What contradicted the working set in a forward sweep: how many, and the last one.
   struct Contradictions {
     int count = 0;
@@ -358,10 +376,10 @@ class LqSolver {
   };
 
   void apply(const Contradictions& found) noexcept {
-    if (found.finding == Finding::kNone) {
+    if (!kHasRates || found.finding == Finding::kNone) {
       hold[found.stage][found.input] = found.next;
-    } else {
-      RateSet<kNu>(hold, found.input).repair(found.stage, found.finding, found.bounds, found.u);
+    } else if constexpr (kHasRates) {
+      RateSet<kNu, Arch>(hold, found.input).repair(found.stage, found.finding, found.bounds, found.u);
     }
   }
 
@@ -381,7 +399,7 @@ class LqSolver {
   /// One input whose change is bounded: its step; `carried` is the slope of the members that it fixes.
   double with_rate(std::size_t k, std::size_t m, double value, const InputBounds& bounds, Repair repair,
                    double& carried, Contradictions& found) noexcept {
-    using Set = RateSet<kNu>;
+    using Set = RateSet<kNu, Arch>;
     const Hold now = hold[k][m];
     double u = now == Hold::kFree ? value : (Set::precedes(now) ? fixed_[k][m] : bounds.at(now));
     const double slope = value + (Set::is_fixed(now) ? carried : 0.0);

@@ -43,6 +43,14 @@ struct FullPattern {
   }();
 };
 
+/// Whether what is made of a pattern is to be built quickly, `kIsCompact = true`: one sweep for all uses,
+/// loops where every entry counts. Some percent slower.
+template <class Pattern>
+[[nodiscard]] constexpr bool is_compact() noexcept {
+  if constexpr (requires { Pattern::kIsCompact; }) return Pattern::kIsCompact;
+  return false;
+}
+
 /// Numbers the entries of a pattern that are stored.
 template <class Pattern>
 struct Layout {
@@ -163,6 +171,15 @@ struct Layout {
     for (std::size_t j = 0; j < kNx; ++j) stored += row[j] != kNone ? 1 : 0;
     return stored;
   }
+  /// Whether each entry of F and L counts, and each row over the states is kept as such.
+  static constexpr bool is_full() noexcept {
+    bool is_full = kNx > kNarrow && kFCount == kNx * kNz;
+    for (std::size_t i = 0; i < kNz; ++i) {
+      for (std::size_t j = 0; j < kNz; ++j)
+        is_full = is_full && (Pattern::kL[i][j] || (i == kOne && j == kOne));
+    }
+    return is_full;
+  }
   static constexpr bool has_rate_bounds() noexcept {
     for (const int state : Pattern::kRateState) {
       if (state >= 0) return true;
@@ -218,6 +235,21 @@ struct LqProblem {
     unroll<Layout::kNz>([&](auto i) CHICANE_INLINE {
       if constexpr (Layout::is_wide_cost(i)) write_row<i, false>(k, f, l);
     });
+  }
+  /// The same by tables, in a loop: quicker to build.
+  template <class Arch>
+  [[gnu::noinline]] void set_by_tables(std::size_t k, const std::array<Pack<Arch, 8>, Layout::kFCount>& f,
+                                       const std::array<Pack<Arch, 8>, Layout::kLCount>& l) noexcept {
+    using Stages = Pack<Arch, 8>;
+    const Stages constants[2] = {Stages(0.0), Stages(1.0)};
+    const Stages* const from[3] = {f.data(), l.data(), constants};
+    for (const Line& line : kLines) {
+      Stages rows[8];
+      for (std::size_t lane = 0; lane < 8; ++lane) rows[lane] = from[line.from[lane]][line.entry[lane]];
+      transpose(rows);
+      for (std::size_t s = 0; s < 8; ++s)
+        rows[s].store((line.is_wide ? stage[k + s].wide[line.row] : stage[k + s].number) + line.begin);
+    }
   }
 
   /// Single entries of stage k, for code that does not work on eight stages at once. Pre: the pattern has
@@ -281,6 +313,46 @@ struct LqProblem {
     return sources;
   }
 
+  /// All lines of a stage: eight numbers each, from entries of F (0), of L (1), or the constants 0 and 1 (2).
+  struct Line {
+    std::array<std::uint16_t, 8> entry{};
+    std::array<std::uint8_t, 8> from{};
+    bool is_wide = false;
+    std::uint16_t row = 0;    ///< of the wide ones
+    std::uint16_t begin = 0;  ///< its first number
+  };
+  static constexpr Line line_of(const Sources& of, bool is_wide, std::size_t row,
+                                std::size_t begin) noexcept {
+    Line line{.is_wide = is_wide,
+              .row = static_cast<std::uint16_t>(row),
+              .begin = static_cast<std::uint16_t>(begin)};
+    for (std::size_t lane = 0; lane < 8; ++lane) {
+      const bool is_f = of.f[lane] != Layout::kNone;
+      const bool is_l = !is_f && of.l[lane] != Layout::kNone;
+      line.from[lane] = is_f ? 0 : (is_l ? 1 : 2);
+      line.entry[lane] =
+          static_cast<std::uint16_t>(is_f ? of.f[lane] : (is_l ? of.l[lane] : of.is_one[lane]));
+    }
+    return line;
+  }
+  static constexpr auto kLines = [] {
+    constexpr std::size_t kNumberLines = Layout::kNumbers / 8;
+    std::array<Line, kNumberLines + Layout::kWideRows*(kLanes / 8)> lines{};
+    std::size_t at = 0;
+    for (; at < kNumberLines; ++at) lines[at] = line_of(sources_of_numbers(at), false, 0, 8 * at);
+    const auto add = [&](std::size_t i, bool of_f, std::size_t row) {
+      for (std::size_t block = 0; block < kLanes / 8; ++block)
+        lines[at++] = line_of(sources_of_row(i, of_f, block), true, row, 8 * block);
+    };
+    for (std::size_t i = 0; i < kNx; ++i) {
+      if (Layout::is_wide_state(i)) add(i, true, Layout::wide_state(i));
+    }
+    for (std::size_t i = 0; i < Layout::kNz; ++i) {
+      if (Layout::is_wide_cost(i)) add(i, false, Layout::wide_cost(i));
+    }
+    return lines;
+  }();
+
   /// Writes wide row I of F, or of L.
   template <std::size_t I, bool OfF, class F, class L>
   CHICANE_INLINE void write_row(std::size_t k, const F& f, const L& l) noexcept {
@@ -289,17 +361,17 @@ struct LqProblem {
       write<sources_of_row(I, OfF, block)>(k, f, l, [=](Stage& s) { return s.wide[kRow] + block * 8; });
     });
   }
-  template <auto Line, class F, class L, class Place>
+  template <auto Of, class F, class L, class Place>
   CHICANE_INLINE void write(std::size_t k, const F& f, const L& l, const Place& place) noexcept {
     using Stages = typename F::value_type;
     Stages rows[8];
     unroll<8>([&](auto lane) CHICANE_INLINE {
-      if constexpr (Line.f[lane] != Layout::kNone) {
-        rows[lane] = f[Line.f[lane]];
-      } else if constexpr (Line.l[lane] != Layout::kNone) {
-        rows[lane] = l[Line.l[lane]];
+      if constexpr (Of.f[lane] != Layout::kNone) {
+        rows[lane] = f[Of.f[lane]];
+      } else if constexpr (Of.l[lane] != Layout::kNone) {
+        rows[lane] = l[Of.l[lane]];
       } else {
-        rows[lane] = Stages(Line.is_one[lane] ? 1.0 : 0.0);
+        rows[lane] = Stages(Of.is_one[lane] ? 1.0 : 0.0);
       }
     });
     transpose(rows);

@@ -8,6 +8,7 @@
 
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/jet.hpp"
+#include "chicane/base/pack.hpp"
 #include "chicane/solver/detail/pattern.hpp"
 #include "chicane/solver/problem.hpp"
 
@@ -63,7 +64,7 @@ struct JetSets {
   static constexpr Variables first() noexcept { return (J::kFirst | ... | Variables{0}); }
 };
 template <class T>
-using JetOf = std::remove_cvref_t<decltype(as_jet<double, 2>(std::declval<const T&>()))>;
+using JetOf = std::remove_cvref_t<decltype(as_jet<Pack<arch::Baseline, 2>, 2>(std::declval<const T&>()))>;
 template <class Row, class Sequence = std::make_index_sequence<std::tuple_size_v<Row>>>
 struct RowSets;
 template <class Row, std::size_t... n>
@@ -79,6 +80,14 @@ template <class P>
   return true;
 }
 
+/// Whether the solver has the filter method for this problem: unless it says `kRealTime = true`, for budgets
+/// of a few turns.
+template <class P>
+[[nodiscard]] constexpr bool has_filter_method() noexcept {
+  if constexpr (requires { P::kRealTime; }) return !P::kRealTime;
+  return true;
+}
+
 /// Which entries of the stages of its quadratic programs a structured problem can make other than zero, read
 /// off the types that its functions return.
 template <StructuredProblem P>
@@ -86,8 +95,9 @@ struct StructuredPattern {
   static constexpr std::size_t kNx = P::kNx;
   static constexpr std::size_t kNu = P::kNu;
   static constexpr std::size_t kNz = kNx + 1 + kNu;
-  using X = StateJets<P, double, has_hessians<P>() ? 2 : 1>;
-  using U = InputJets<P, double, has_hessians<P>() ? 2 : 1>;
+  using V = Pack<arch::Baseline, 2>;
+  using X = StateJets<P, V, has_hessians<P>() ? 2 : 1>;
+  using U = InputJets<P, V, has_hessians<P>() ? 2 : 1>;
   using Next = decltype(std::declval<const P&>().dynamics(0, X{}, U{}));
   using Residual = decltype(std::declval<const P&>().residual(0, X{}, U{}));
   static constexpr auto constraint_type() {
@@ -100,6 +110,7 @@ struct StructuredPattern {
   using Constraint = typename decltype(constraint_type())::type;
 
   static constexpr auto kRateState = previous_inputs<P>();
+  static constexpr bool kIsCompact = has_filter_method<P>();
   static constexpr auto kF = [] {
     std::array<std::array<Entry, kNz>, kNx> f{};
     for (std::size_t i = 0; i < kNx; ++i) {
@@ -120,6 +131,11 @@ struct StructuredPattern {
     for (int i = 0; i < P::kNx + P::kNu; ++i) {
       for (int j = 0; j < P::kNx + P::kNu; ++j) l[in_z<P>(i)][in_z<P>(j)] = pairs.contains(i, j);
       l[in_z<P>(i)][kNx] = l[kNx][in_z<P>(i)] = contains(first, i);
+    }
+    for (std::size_t m = 0; m < kNu && has_filter_method<P>();
+         ++m) {  // barriers of bounds (bound_barrier.hpp)
+      const std::size_t u = kNx + 1 + m;
+      l[u][u] = l[u][kNx] = l[kNx][u] = true;
     }
     for (std::size_t m = 0; m < kNu; ++m) {  // barriers of bounds on changes (interior_point.hpp)
       if (kRateState[m] < 0) continue;
@@ -148,6 +164,7 @@ struct StructuredPattern {
 template <OcpProblem P>
 struct DensePattern : FullPattern<P::kNx, P::kNu> {
   static constexpr auto kRateState = previous_inputs<P>();
+  static constexpr bool kIsCompact = has_filter_method<P>();
   static constexpr bool keeps_previous_inputs() noexcept { return true; }
 };
 

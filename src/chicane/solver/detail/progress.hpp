@@ -30,6 +30,8 @@ class Progress {
   [[nodiscard]] bool is_good() const noexcept { return idle_ == 0; }
   /// Steps have not become shorter for a while.
   [[nodiscard]] bool is_lost() const noexcept { return idle_ >= kPatience; }
+  /// The shortest step so far.
+  [[nodiscard]] double shortest() const noexcept { return shortest_; }
   /// Whether more than `turns` further steps would be needed to get as short as `length`, at the present
   /// linear rate.
   [[nodiscard]] bool is_slow(double length, double turns) const noexcept {

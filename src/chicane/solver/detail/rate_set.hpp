@@ -12,7 +12,9 @@ namespace chicane::solver {
 /// on changes). Inputs tied by changes at their bounds are a chain: with no member at a bound of its own, the
 /// first is free and each other one follows its predecessor (kRate…); with one at its bound, those before it
 /// are fixed by their successors (kNext…) and those behind it still follow.
-template <std::size_t Nu>
+///
+/// `Tag`: the instruction set that its translation unit is compiled for, so that the linker tells them apart.
+template <std::size_t Nu, class Tag = void>
 class RateSet {
  public:
   RateSet(Hold (*hold)[Nu], std::size_t input) noexcept : hold_(hold), m_(input) {}

@@ -247,6 +247,51 @@ class StageAlgebra {
     return inputs;
   }
 
+  /// P of the states: Aᵀ P A + L, less what the inputs save.
+  CHICANE_INLINE static void eliminate_states(const Stage& s, const Vector (&T)[kNu], double scale,
+                                              const double (&r)[kNu][kLanes], Value& P) noexcept {
+    Vector Wx[kNx];
+    alignas(64) double wx[kNx][kLanes];
+    unroll<kNx>([&](auto j) CHICANE_INLINE {
+      if constexpr (has_column(j)) {
+        Wx[j] = times_jacobian<j>(s, P);
+        Wx[j].store(wx[j]);
+      }
+    });
+    settle(wx);
+    unroll<kNx>([&](auto j) CHICANE_INLINE {
+      if constexpr (has_column(j)) {
+        P.column[j] = row_of_q<j>(s, Wx[j], wx[j]);
+      } else {
+        P.column[j] = cost_row<j>(s);
+      }
+      eliminate_inputs<j>(T, scale, r, P.column[j]);
+    });
+  }
+
+  /// The same where every entry counts: column by column in a loop, in the order of the products above.
+  CHICANE_INLINE static void eliminate_full(const Stage& s, const Vector (&T)[kNu], double scale,
+                                            const double (&r)[kNu][kLanes], Value& P) noexcept {
+    alignas(64) double wx[kNx][kLanes];
+    for (std::size_t j = 0; j < kNx; ++j) {
+      const Vector start = Vector::scaled(s.wide[0][j], P.column[0]);
+      combine<kNx - 1>(
+          start, [&](auto t) CHICANE_INLINE { return s.wide[t + 1][j]; },
+          [&](auto t) CHICANE_INLINE { return P.column[t + 1]; })
+          .store(wx[j]);
+    }
+    settle(wx);
+    for (std::size_t j = 0; j < kNx; ++j) {
+      Vector column = combine<kNx>(
+          Vector::load(s.wide[kNx + j]), [&](auto t) CHICANE_INLINE { return wx[j][t]; },
+          [&](auto t) CHICANE_INLINE { return Vector::load(s.wide[t]); });
+      Vector sum = Vector::scaled(r[0][j], T[0]);
+      unroll<kNu - 1>([&](auto m) CHICANE_INLINE { sum.add(r[m + 1][j], T[m + 1]); });
+      column.add(-scale, sum);
+      P.column[j] = column;
+    }
+  }
+
   /// start + column J of F times w, number by number.
   template <std::size_t J>
   CHICANE_INLINE static double times_column(const Stage& s, const double* w, double start) noexcept {
@@ -277,6 +322,13 @@ class StageAlgebra {
       unroll<a + 1>([&](auto b) CHICANE_INLINE { average_blocks<a, b>(P); });
     });
   }
+  /// A function of its own: quicker to build.
+  [[gnu::noinline]] static void make_symmetric_apart(Value& P) noexcept {
+    Value changed = P;
+    make_symmetric(changed);
+    P = changed;
+  }
+
   /// The block in columns a and rows b, and the one across from it.
   template <std::size_t A, std::size_t B>
   CHICANE_INLINE static void average_blocks(Value& P) noexcept {

@@ -47,9 +47,10 @@ struct YamlTree {
   const YamlNode* root = nullptr;  ///< an empty file's: kNothing
 };
 
-/// Parses one document event by event: memory and time are proportional to the text and end at the limits
-/// above (docs/decisions/0016-yaml-by-events.md). kParse, "FILE:LINE: …", for text that is not YAML, several
-/// documents, deeper nesting, more nodes, an alias of nothing or of what it is part of.
+/// Parses one document of at most 256 KiB event by event: memory and time are proportional to the text and
+/// end at the limits above (docs/decisions/0016-yaml-by-events.md). kParse, "FILE:LINE: …", for text that is
+/// not YAML or not UTF-8, indented by tabs, several documents, deeper nesting, more nodes, an alias of
+/// nothing or of what it is part of.
 [[nodiscard]] Result<YamlTree> parse_yaml(std::string_view text, const std::string& file);
 
 }  // namespace chicane::protocol

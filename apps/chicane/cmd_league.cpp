@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <optional>
+
+#include "chicane/protocol/library.hpp"
+#include "chicane/run/parallel.hpp"
+#include "chicane/sweep/league_page.hpp"
+#include "chicane/sweep/league_results.hpp"
+#include "chicane/sweep/sweep.hpp"
+#include "chicane/sweep/trial.hpp"
+#include "chicane/wire/simulate.hpp"
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "many_runs.hpp"
+
+namespace chicane::apps {
+namespace {
+
+using sweep::ExternalTrial;
+using sweep::League;
+
+/// `wanted` where nobody listens on it, or with 0 any free port of this machine; nothing where it is taken.
+std::optional<int> free_port(int wanted) {
+  const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(wanted));
+  const int reuse = 1;  // also behind a program that has just ended
+  ::setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
+  socklen_t size = sizeof address;
+  auto* const plain = reinterpret_cast<sockaddr*>(&address);
+  const bool is_free = ::bind(descriptor, plain, size) == 0 && ::listen(descriptor, 1) == 0 &&
+                       ::getsockname(descriptor, plain, &size) == 0;
+  ::close(descriptor);
+  return is_free ? std::optional<int>(ntohs(address.sin_port)) : std::nullopt;
+}
+
+/// For {chicane}: the shell need not know where we are.
+std::string own_program() {
+  std::error_code error;
+  const auto path = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? "chicane" : "'" + path.string() + "'";
+}
+
+/// Starts the program, drives it in real time, and ends it. A program that has not connected or not answered
+/// for `patience` [s] never will.
+Result<telemetry::RunSummary> drive_program(const ExternalTrial& trial, double patience,
+                                            const std::atomic<bool>& stop) {
+  const bool has_port = trial.command.find("{port}") != std::string::npos;
+  const std::optional<int> port = free_port(has_port ? 0 : sweep::kOriginalPort);
+  if (!port)
+    return fail(ErrorCode::kIo, fmt::format("port {} is taken by another program, and the command has no "
+                                            "place {{port}}",
+                                            sweep::kOriginalPort));
+  const auto request = sweep::request_of(trial.settings);
+  if (!request) return fail(request.error());
+  const auto scenario = protocol::compose(*request);
+  if (!scenario) return fail(scenario.error());
+  wire::SimulateOptions options;
+  options.url = fmt::format("ws://127.0.0.1:{}/socket.io/?EIO=4&transport=websocket", *port);
+  options.server_command = sweep::filled(trial, *port, own_program());
+  options.lost_after = options.hopeless_after =
+      std::chrono::milliseconds(static_cast<long long>(1e3 * patience));
+  const auto done = wire::simulate(options, *scenario, {}, stop);
+  if (!done)
+    return fail(done.error().code,
+                fmt::format("the program does not listen on port {}: {}", *port, done.error().message));
+  if (done->answers == 0)
+    return fail(ErrorCode::kIo,
+                fmt::format("the program accepts the simulator, and gives {}",
+                            done->run.end_reason.empty() ? "no usable answer" : done->run.end_reason));
+  return done->run;
+}
+
+/// Everything that a league has to do, step by step; what is done is not done again.
+class LeagueRun {
+ public:
+  LeagueRun(const Options& options, League league, std::string results, const std::atomic<bool>& stop)
+      : options_{options}, league_{std::move(league)}, results_{std::move(results)}, stop_{stop} {
+    beside_ = std::filesystem::path(results_).replace_extension(".beside.jsonl").string();
+  }
+
+  Result<void> drive() {
+    Result<sweep::BesideFile> beside = sweep::BesideFile::open(beside_, league_);
+    if (!beside) return fail(beside.error());
+    if (Result<void> done = drive_own(*beside); !done) return done;
+    if (Result<void> done = find_bounds(*beside); !done) return done;
+    return options_.league.wants_programs ? drive_programs(*beside) : Result<void>{};
+  }
+
+  [[nodiscard]] Result<sweep::LeagueResults> read() const {
+    return sweep::read_results(league_, results_, beside_);
+  }
+  [[nodiscard]] const League& league() const { return league_; }
+
+ private:
+  Result<void> drive_own(sweep::BesideFile& beside) {
+    RunCounter counter;
+    std::optional<Error> failure;
+    sweep::SweepOptions sweeping{.jobs = run::threads_for(options_.jobs), .file = results_};
+    sweeping.on_progress = [&](const sweep::Progress& progress) {
+      counter.show(progress.found + progress.driven, progress.runs, progress.driven);
+    };
+    sweeping.on_run = [&](std::uint64_t run, const telemetry::RunSummary& summary) {
+      if (const Result<void> kept = beside.add_times(run, summary); !kept) failure = kept.error();
+    };
+    const auto done = sweep::drive_plan(league_.plan, {}, sweeping, stop_);
+    counter.end();
+    if (!done) return fail(done.error());
+    if (failure) return fail(*failure);
+    fmt::print(stderr, "{}: {} of {} runs, {} of them found\n", results_, done->found + done->driven,
+               done->runs, done->found);
+    return {};
+  }
+
+  Result<void> find_bounds(sweep::BesideFile& beside) {
+    std::vector<std::pair<std::string, std::string>> wanted;
+    for (const std::string& track : league_.tracks)
+      for (const std::string& car : league_.cars)
+        if (!beside.has_bound(track, car)) wanted.emplace_back(track, car);
+    std::mutex mutex;
+    std::optional<Error> failure;
+    run::for_each_run(wanted.size(), run::threads_for(options_.jobs), [&](std::uint64_t i, run::Roads&) {
+      const auto& [track, car] = wanted[i];
+      sweep::Settings settings = league_.plan.fixed;
+      settings.emplace_back("track", track);
+      settings.emplace_back("car", car);
+      const Result<double> bound = sweep::bound_of(settings, stop_);
+      if (stop_) return false;
+      const std::lock_guard lock(mutex);
+      fmt::print(stderr, "the limit of {} on {}: {}\n", car, track,
+                 bound ? fmt::format("{:.2f} s", *bound) : bound.error().message);
+      if (const Result<void> kept = beside.add_bound(track, car, bound); !kept) failure = kept.error();
+      return !failure;
+    });
+    return failure ? fail(*failure) : Result<void>{};
+  }
+
+  Result<void> drive_programs(sweep::BesideFile& beside) {
+    for (const ExternalTrial& trial : league_.external_trials()) {
+      if (stop_) return {};
+      if (!trial.why_not.empty() || beside.has_trial(trial)) continue;
+      fmt::print(stderr, "{} on {} in {}, {}, in real time: ", trial.entry, trial.track, trial.car,
+                 trial.disturbance);
+      const auto run = drive_program(trial, options_.league.patience, stop_);
+      if (stop_) return {};
+      fmt::print(
+          stderr, "{}\n",
+          run ? fmt::format("{} laps, {} times off the road", run->laps_completed, run->off_track_events)
+              : run.error().message);
+      if (const Result<void> kept = beside.add_trial(trial, run); !kept) return kept;
+    }
+    return {};
+  }
+
+  const Options& options_;
+  const League league_;
+  const std::string results_;
+  const std::atomic<bool>& stop_;
+  std::string beside_;
+};
+
+Result<void> write(const std::string& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << text;
+  out.close();
+  return out ? Result<void>{} : fail(ErrorCode::kIo, file + ": cannot be written");
+}
+
+constexpr std::string_view kLeagueMarker = "<!-- league: chicane league -->\n";
+
+Result<void> write_pages(const Options& options, const League& league, const sweep::LeagueResults& results) {
+  if (!options.output_file.empty()) {
+    if (Result<void> done = write(options.output_file, sweep::league_html(league, results)); !done)
+      return done;
+    fmt::print(stderr, "{}: open it in a browser\n", options.output_file);
+  }
+  if (!options.csv_file.empty()) {
+    if (Result<void> done = write(options.csv_file, sweep::league_csv(results)); !done) return done;
+  }
+  if (!options.league.page.empty()) {
+    const std::string older = protocol::read_file(options.league.page).value_or("");
+    const std::size_t begin = older.find(kLeagueMarker);
+    const std::string above = begin == std::string::npos ? std::string(kLeagueMarker)
+                                                         : older.substr(0, begin + kLeagueMarker.size());
+    if (Result<void> done =
+            write(options.league.page, above + "\n" + sweep::league_markdown(league, results));
+        !done)
+      return done;
+  }
+  if (options.is_json) fmt::print("{}", sweep::league_json(results));
+  return {};
+}
+
+}  // namespace
+
+ExitCode compare_league(const Options& options) {
+  keep_memory();
+  static std::atomic<bool> stop{false};  // as long as signals may come
+  catch_interrupts(stop);
+  Result<League> league = sweep::read_league(options.league.file);
+  if (!league) return report(league.error());
+  for (const std::string& command : options.league.servers) sweep::add_external(*league, command);
+  const std::string results = options.league.results.empty()
+                                  ? std::filesystem::path(options.league.file).stem().string() + ".jsonl"
+                                  : options.league.results;
+  LeagueRun run(options, std::move(*league), results, stop);
+  if (const Result<void> done = run.drive(); !done) return report(done.error());
+  const auto read = run.read();
+  if (!read) return report(read.error());
+  if (const Result<void> written = write_pages(options, run.league(), *read); !written)
+    return report(written.error());
+  if (!stop) return kSuccess;
+  fmt::print(stderr, "stopped: the same command goes on with what is missing\n");
+  return kRunFailed;
+}
+
+}  // namespace chicane::apps

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "chicane/run/parallel.hpp"
+#include "chicane/sweep/csv.hpp"
+#include "chicane/sweep/merge.hpp"
+#include "chicane/sweep/plan_codec.hpp"
+#include "chicane/sweep/sweep.hpp"
+#include "chicane/sweep/trial.hpp"
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "many_runs.hpp"
+
+namespace chicane::apps {
+namespace {
+
+Result<sweep::Shard> shard_of(const Options& options) {
+  if (!options.sweep.shard.empty()) return sweep::parse_shard(options.sweep.shard);
+  return sweep::environment_shard([](const char* name) { return std::getenv(name); });
+}
+
+std::string output_of(const Options& options) {
+  if (!options.output_file.empty()) return options.output_file;
+  return std::filesystem::path(options.sweep.plan_file).stem().string() + ".jsonl";
+}
+
+ExitCode show(const sweep::Plan& plan, double number) {
+  const auto run = static_cast<std::uint64_t>(number);
+  if (run >= plan.size())
+    return report(Error{ErrorCode::kInvalidArgument,
+                        fmt::format("--show: got {}, expected a run from 0 to {}", run, plan.size() - 1)});
+  fmt::print("{}\n", sweep::command_of(plan.settings_of(run)));
+  return kSuccess;
+}
+
+}  // namespace
+
+ExitCode drive_sweep(const Options& options) {
+  keep_memory();
+  static std::atomic<bool> stop{false};  // as long as signals may come
+  catch_interrupts(stop);
+  const Result<sweep::Plan> plan = sweep::read_plan(options.sweep.plan_file);
+  if (!plan) return report(plan.error());
+  if (options.sweep.shown) return show(*plan, *options.sweep.shown);
+  const Result<sweep::Shard> shard = shard_of(options);
+  if (!shard) return report(shard.error());
+  const std::string file = shard->file_of(output_of(options));
+  if (!shard->from.empty())
+    fmt::print(stderr, "part {} of {} ({}): {}\n", shard->index + 1, shard->count, shard->from, file);
+  RunCounter counter;
+  const auto done =
+      sweep::drive_plan(*plan, *shard,
+                        {.jobs = run::threads_for(options.jobs),
+                         .file = file,
+                         .on_progress =
+                             [&](const sweep::Progress& progress) {
+                               counter.show(progress.found + progress.driven, progress.runs, progress.driven);
+                             }},
+                        stop);
+  counter.end();
+  if (!done) return report(done.error());
+  fmt::print(stderr, "{}: {} of {} runs, {} of them found, {} that cannot be driven\n", file,
+             done->found + done->driven, done->runs, done->found, done->failed);
+  if (done->is_complete()) return kSuccess;
+  fmt::print(stderr, "stopped: the same command goes on with what is missing\n");
+  return kRunFailed;
+}
+
+ExitCode merge_results(const Options& options) {
+  const auto merged = sweep::merge(options.files, options.output_file);
+  if (!merged) return report(merged.error());
+  fmt::print(stderr, "{}: {} runs{}\n", options.output_file, merged->runs,
+             merged->repeated > 0 ? fmt::format(", {} of them came twice", merged->repeated) : "");
+  if (options.csv_file.empty()) return kSuccess;
+  const auto written = sweep::write_csv(options.output_file, options.csv_file);
+  return written ? kSuccess : report(written.error());
+}
+
+}  // namespace chicane::apps

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace chicane::apps {
+
+/// Each run takes some megabytes and gives them back: the process keeps them for the next one.
+void keep_memory();
+
+/// Tells on stderr how many of many runs are done, how fast, and how long the rest will take: on a terminal
+/// one line that renews itself, otherwise a line every ten seconds. One thread at a time.
+class RunCounter {
+ public:
+  /// `what`: the word for what is counted.
+  explicit RunCounter(const char* what = "runs");
+  /// `driven`: of the `done` ones since the start, for the speed.
+  void show(std::uint64_t done, std::uint64_t runs, std::uint64_t driven);
+  /// Leaves the cursor at the beginning of a line.
+  void end();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const char* what_;
+  bool is_terminal_;
+  bool has_line_ = false;
+  Clock::time_point started_ = Clock::now();
+  Clock::time_point next_;
+};
+
+}  // namespace chicane::apps

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace chicane::bench {
+
+/// Where a solve starts: from trivial inputs, simulated, or from trivial inputs and a straight line of
+/// states.
+enum class NaiveStart { kIdle, kLine };
+[[nodiscard]] constexpr std::string_view to_string(NaiveStart start) noexcept {
+  return start == NaiveStart::kIdle ? "idle" : "line";
+}
+
+/// What Ipopt found of one instance.
+struct ReferenceAnswer {
+  bool is_solved = false;
+  double cost = 0.0;
+  double time = 0.0;
+  int turns = 0;
+};
+/// By family, start and seed; kept in a file, as Ipopt takes minutes.
+using References = std::map<std::string, ReferenceAnswer>;
+
+struct FamilyRequest {
+  int instances = 200;
+  int first = 0;
+  double tolerance = 1e-6;
+  int max_iterations = 500;
+  bool with_ipopt = false;
+  bool each = false;  ///< a line for each instance
+};
+
+/// One row of the table.
+struct FamilyRow {
+  std::string_view family;
+  NaiveStart start = NaiveStart::kIdle;
+  int instances = 0, optimal = 0, at_floor = 0, usable = 0;
+  int reference = 0, both = 0;  ///< solved by Ipopt; by both
+  int lower = 0, higher = 0;    ///< costs more than 1 % (and 1e-6) from Ipopt's
+  int false_optimal = 0;
+  double turns = 0.0, time = 0.0, most_time = 0.0, ratio = 0.0, least_ratio = 0.0;
+  double worst_residual = 0.0;  ///< of those that are optimal, by the independent check
+  double floor_residual = 0.0;  ///< and of those at the floor
+};
+
+}  // namespace chicane::bench

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "chicane/base/dual.hpp"
+#include "chicane/solver/problem.hpp"
+
+namespace chicane::bench {
+
+/// A structured problem, or one over lanes, as functions of arrays of one scalar: for Ipopt and for checks.
+template <solver::OcpProblem P>
+struct OverArrays : P {
+  template <class T>
+  using X = std::array<T, P::kNx>;
+  template <class T>
+  using U = std::array<T, P::kNu>;
+  template <class T>
+  std::array<T, P::kNx> dynamics(int k, const X<T>& x, const U<T>& u) const {
+    return solver::to_array<T>(P::dynamics(k, x, u));
+  }
+  template <class T>
+  std::array<T, P::kNr> residual(int k, const X<T>& x, const U<T>& u) const {
+    return solver::to_array<T>(P::residual(k, x, u));
+  }
+  template <class T>
+  std::array<T, P::kNe> terminal_residual(const X<T>& x) const {
+    return solver::to_array<T>(P::terminal_residual(x));
+  }
+  template <class T>
+  std::array<T, P::kNc> constraint(int k, const X<T>& x, const U<T>& u) const {
+    if constexpr (P::kNc > 0) return solver::to_array<T>(P::constraint(k, x, u));
+    return {};
+  }
+};
+
+/// How far a trajectory is from a point where no direction is downhill.
+struct KktResidual {
+  double defect = 0.0;        ///< ‖x_{k+1} − f‖∞ / (1 + |x|)
+  double stationarity = 0.0;  ///< ‖u − Proj(u − dL/du)‖∞
+  double subgradient = 0.0;   ///< how far each price is from belonging to its constraint's value
+  double outside = 0.0;       ///< of the bounds of inputs and of their changes
+  double rounding = 0.0;  ///< what it may leave of the stationarity here: one ulp in each product, added up
+                          ///< along the horizon
+  double cost = 0.0;      ///< with the exact penalties
+};
+
+/// Checks a trajectory with the prices of its soft constraints, `price(k, c)`, and of the bounds on changes
+/// of inputs, `rate_price(k, m)`. Everything else is computed here, by dual numbers, stage by stage: no line
+/// is shared with the solver.
+template <solver::OcpProblem P, int Capacity, class Price, class RatePrice>
+KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::kNx, P::kNu, Capacity>& t,
+                      const Price& price, const RatePrice& rate_price) {
+  constexpr int kNx = P::kNx, kNu = P::kNu, kNz = kNx + kNu;
+  using D = Dual<kNz>;
+  constexpr double kUnit = 2.2e-16;
+  std::array<double, kNx> error{};  // of the adjoint, as rounding adds up
+  KktResidual result;
+  std::array<double, kNx> adjoint{};
+  {
+    std::array<D, kNx> x;
+    for (int i = 0; i < kNx; ++i)
+      x[static_cast<std::size_t>(i)] =
+          D::variable(t.x[static_cast<std::size_t>(t.horizon)][static_cast<std::size_t>(i)], i);
+    for (const D& r : problem.template terminal_residual<D>(x)) {
+      result.cost += 0.5 * r.v * r.v;
+      for (std::size_t i = 0; i < kNx; ++i) adjoint[i] += r.v * r.d[i];
+    }
+  }
+  for (int stage = t.horizon; stage-- > 0;) {
+    const auto k = static_cast<std::size_t>(stage);
+    std::array<D, kNx> x;
+    std::array<D, kNu> u;
+    for (int i = 0; i < kNx; ++i)
+      x[static_cast<std::size_t>(i)] = D::variable(t.x[k][static_cast<std::size_t>(i)], i);
+    for (int m = 0; m < kNu; ++m)
+      u[static_cast<std::size_t>(m)] = D::variable(t.u[k][static_cast<std::size_t>(m)], kNx + m);
+    std::array<double, kNz> slope{};
+    std::array<double, kNz> noise{};
+    const auto add = [&](const D& row, double weight) {
+      for (std::size_t v = 0; v < kNz; ++v) {
+        slope[v] += weight * row.d[v];
+        noise[v] += kUnit * std::fabs(weight * row.d[v]);
+      }
+    };
+    for (const D& r : problem.template residual<D>(stage, x, u)) {
+      result.cost += 0.5 * r.v * r.v;
+      add(r, r.v);
+    }
+    const auto next = problem.template dynamics<D>(stage, x, u);
+    for (std::size_t i = 0; i < kNx; ++i) {
+      const double size = 1.0 + std::fabs(next[i].v);
+      result.defect = std::max(result.defect, std::fabs(t.x[k + 1][i] - next[i].v) / size);
+      add(next[i], adjoint[i]);
+      for (std::size_t v = 0; v < kNz; ++v)
+        noise[v] += std::fabs(next[i].d[v]) * (error[i] + kUnit * std::fabs(adjoint[i]));
+    }
+    if constexpr (P::kNc > 0) {
+      const auto values = problem.template constraint<D>(stage, x, u);
+      for (int c = 0; c < P::kNc; ++c) {
+        const double value = values[static_cast<std::size_t>(c)].v;
+        const auto penalty = problem.soft_penalty(c);
+        const double z = price(stage, c);
+        const double beyond = std::max(value, 0.0);
+        result.cost += beyond * (penalty.linear + 0.5 * penalty.quadratic * beyond);
+        const double inside = std::min(std::fabs(std::min(value, 0.0)), std::fabs(z));
+        const double kink = std::min(beyond, std::fabs(penalty.linear + penalty.quadratic * beyond - z));
+        result.subgradient = std::max({result.subgradient, inside, kink, -z});
+        add(values[static_cast<std::size_t>(c)], z);
+      }
+    }
+    const auto low = problem.input_lower(stage);
+    const auto high = problem.input_upper(stage);
+    for (std::size_t m = 0; m < kNu; ++m) {
+      double gradient = slope[kNx + m];
+      if constexpr (solver::kHasRateBounds<P>) gradient += rate_price(stage, static_cast<int>(m));
+      const double at = t.u[k][m];
+      const double moved = std::clamp(at - gradient, low[m], high[m]);
+      result.stationarity = std::max(result.stationarity, std::fabs(moved - at));
+      result.outside = std::max({result.outside, low[m] - at, at - high[m]});
+      if constexpr (solver::kHasRateBounds<P>) {
+        if (P::kPreviousInput[m] >= 0)
+          slope[static_cast<std::size_t>(P::kPreviousInput[m])] -= rate_price(stage, static_cast<int>(m));
+      }
+    }
+    for (std::size_t m = 0; m < kNu; ++m) result.rounding = std::max(result.rounding, noise[kNx + m]);
+    for (std::size_t i = 0; i < kNx; ++i) {
+      adjoint[i] = slope[i];
+      error[i] = noise[i] + kUnit * std::fabs(slope[i]);
+    }
+  }
+  return result;
+}
+
+}  // namespace chicane::bench

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#include "families/list.hpp"
+
+#include <array>
+
+namespace chicane::bench {
+
+// One for each family, compiled alone (one_family.cpp).
+Family cart_pole_family();
+Family planar_quadrotor_family();
+Family quadrotor_family();
+Family rocket_landing_family();
+Family chain_of_masses_family();
+Family parking_family();
+Family crane_family();
+Family double_pendulum_family();
+Family arm_family();
+Family acrobot_family();
+Family reactor_family();
+Family glider_family();
+
+std::span<const Family> all_families() {
+  static const std::array families{cart_pole_family(),      planar_quadrotor_family(), quadrotor_family(),
+                                   rocket_landing_family(), chain_of_masses_family(),  parking_family(),
+                                   crane_family(),          double_pendulum_family(),  arm_family(),
+                                   acrobot_family(),        reactor_family(),          glider_family()};
+  return families;
+}
+
+}  // namespace chicane::bench

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chicane/solver/ocp_solver.hpp"
+#include "chicane/solver/warm_start.hpp"
+#include "families/family.hpp"
+#include "families/family_row.hpp"
+#include "families/kkt.hpp"
+#include "problems/cpu_time.hpp"
+#if defined(CHICANE_HAVE_IPOPT)
+#include "problems/ipopt_solver.hpp"
+#endif
+
+namespace chicane::bench {
+
+namespace detail {
+inline double at_share(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+}  // namespace detail
+
+template <class P>
+class FamilyMeasurement {
+ public:
+  static constexpr int kHorizon = P::kHorizon;
+  using Trajectory = solver::Trajectory<P::kNx, P::kNu, kHorizon>;
+
+  static FamilyInstance<P> instance(int seed) {
+    Random random{static_cast<std::uint64_t>(seed) * 7919U + 17U};
+    return P::make(random);
+  }
+  /// The guess that belongs to a start.
+  static Trajectory guess(const FamilyInstance<P>& instance, NaiveStart start) {
+    Trajectory t;
+    t.horizon = kHorizon;
+    for (int k = 0; k < kHorizon; ++k) t.u[static_cast<std::size_t>(k)] = instance.idle;
+    solver::roll_out(instance.problem, instance.start, t);
+    if (start == NaiveStart::kIdle) return t;
+    for (int k = 0; k <= kHorizon; ++k) {
+      const double share = static_cast<double>(k) / kHorizon;
+      for (std::size_t i = 0; i < P::kNx; ++i)
+        t.x[static_cast<std::size_t>(k)][i] =
+            instance.start[i] + share * (instance.goal[i] - instance.start[i]);
+    }
+    return t;
+  }
+
+  static FamilyRow measure(const FamilyRequest& request, NaiveStart start, References& references) {
+    using Solver = solver::OcpSolver<P, kHorizon>;
+    const auto ocp =
+        std::make_unique<Solver>(solver::SolverOptions{.tolerance = request.tolerance,
+                                                       .max_iterations = request.max_iterations,
+                                                       .start_from_states = start == NaiveStart::kLine});
+    FamilyRow row{.family = P::kName, .start = start, .instances = request.instances};
+    std::vector<double> times, turns, ratios;
+    for (int i = request.first; i < request.first + request.instances; ++i) {
+      const FamilyInstance<P> one = instance(i);
+      const auto t = std::make_unique<Trajectory>();
+      solver::SolveReport report;
+      double time = 1e30;
+      for (int repeat = 0; repeat < 2; ++repeat) {
+        *t = guess(one, start);
+        const double begin = cpu_time();
+        report = ocp->solve(one.problem, one.start, *t);
+        time = std::min(time, cpu_time() - begin);
+      }
+      const OverArrays<P> arrays{one.problem};
+      const KktResidual kkt = check_kkt(
+          arrays, *t, [&](int k, int c) { return ocp->constraint_multiplier(k, c); },
+          [&](int k, int m) { return -ocp->rate_multiplier(k, m); });
+      const ReferenceAnswer reference = reference_of(request, references, one, arrays, start, i);
+      times.push_back(time);
+      turns.push_back(report.iterations);
+      const bool is_optimal = report.status == solver::SolveStatus::kOptimal;
+      row.optimal += is_optimal ? 1 : 0;
+      const bool is_at_floor = report.status == solver::SolveStatus::kAtFloor;
+      row.at_floor += is_at_floor ? 1 : 0;
+      row.usable += solver::usable(report.status) ? 1 : 0;
+      row.reference += reference.is_solved ? 1 : 0;
+      row.both += reference.is_solved && is_optimal ? 1 : 0;
+      const double worst = std::max(kkt.stationarity, std::max(kkt.defect, kkt.outside));
+      const bool is_false = is_optimal && !(worst <= 1.5 * request.tolerance + kkt.rounding &&
+                                            kkt.subgradient <= 2.0 * std::sqrt(request.tolerance));
+      row.false_optimal += is_false ? 1 : 0;
+      if (is_optimal) row.worst_residual = std::max(row.worst_residual, worst);
+      if (is_at_floor) row.floor_residual = std::max(row.floor_residual, worst);
+      if (is_optimal && reference.is_solved) {
+        ratios.push_back(reference.time / time);
+        const double margin = 1e-2 * std::fabs(reference.cost) + 1e-6;
+        row.lower += kkt.cost < reference.cost - margin ? 1 : 0;
+        row.higher += kkt.cost > reference.cost + margin ? 1 : 0;
+      }
+      if (request.each) {
+        std::printf(
+            "%s %s %d: %s turns %d sweeps %d cost %.8g stat %.2e defect %.2e | check stat %.2e defect %.2e "
+            "sub %.2e | ipopt %d cost %.8g turns %d%s\n",
+            P::kName.data(), to_string(start).data(), i, to_string(report.status).data(), report.iterations,
+            report.sweeps, kkt.cost, report.stationarity, report.defect, kkt.stationarity, kkt.defect,
+            kkt.subgradient, reference.is_solved ? 1 : 0, reference.cost, reference.turns,
+            is_false ? " FALSE" : "");
+      }
+    }
+    row.turns = detail::at_share(turns, 0.5);
+    row.time = detail::at_share(times, 0.5);
+    row.most_time = detail::at_share(times, 0.99);
+    row.ratio = detail::at_share(ratios, 0.5);
+    row.least_ratio = detail::at_share(ratios, 0.01);
+    return row;
+  }
+
+ private:
+  static ReferenceAnswer reference_of([[maybe_unused]] const FamilyRequest& request, References& references,
+                                      [[maybe_unused]] const FamilyInstance<P>& one,
+                                      [[maybe_unused]] const OverArrays<P>& arrays, NaiveStart start,
+                                      int seed) {
+    const std::string key =
+        std::string(P::kName) + "|" + std::string(to_string(start)) + "|" + std::to_string(seed);
+    if (const auto known = references.find(key); known != references.end()) return known->second;
+#if defined(CHICANE_HAVE_IPOPT)
+    if (!request.with_ipopt) return {};
+    static IpoptSolver<OverArrays<P>> ipopt;
+    const auto t = std::make_unique<Trajectory>(guess(one, start));
+    const IpoptReport report = ipopt.solve(arrays, one.start, *t);
+    const double cost = check_kkt(
+                            arrays, *t, [](int, int) { return 0.0; }, [](int, int) { return 0.0; })
+                            .cost;
+    return references[key] = {report.is_solved, cost, report.time, report.iterations};
+#else
+    return {};
+#endif
+  }
+};
+
+}  // namespace chicane::bench

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#include "fuzz/list.hpp"
+
+#include <array>
+
+namespace chicane::bench {
+
+// One for each type of problems, compiled alone (one_kind.cpp).
+FuzzKind fuzz_small();
+FuzzKind fuzz_middle();
+FuzzKind fuzz_wide();
+FuzzKind fuzz_lanes();
+FuzzKind fuzz_branches();
+FuzzKind fuzz_rates();
+FuzzKind fuzz_one();
+
+std::span<const FuzzKind> all_fuzz_kinds() {
+  static const std::array kinds{fuzz_one(),   fuzz_small(),    fuzz_middle(), fuzz_wide(),
+                                fuzz_lanes(), fuzz_branches(), fuzz_rates()};
+  return kinds;
+}
+
+}  // namespace chicane::bench

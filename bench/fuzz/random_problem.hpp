@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "chicane/base/random.hpp"
+#include "chicane/solver/problem.hpp"
+
+namespace chicane::bench {
+
+/// What a random problem may have that solvers do not like; each is switched on in some instances.
+struct Quirks {
+  double log = 0.0;      ///< 1: a logarithm of a state, not a number below zero
+  double root = 0.0;     ///< 1: a square root of a state
+  double pole = 0.0;     ///< 1: a division by a state
+  double blow = 0.0;     ///< 1: an exponential that overflows
+  double jump = 0.0;     ///< height of a discontinuity
+  double kink = 0.0;     ///< weight of |x|
+  double product = 0.0;  ///< weight of products of states and inputs
+};
+
+/// Numbers of a random problem, for every size.
+template <int Nx, int Nu, int Nc>
+struct RandomData {
+  static constexpr int kNx = Nx, kNu = Nu, kNr = Nx + Nu + 1, kNe = Nx, kNc = Nc;
+  double a[Nx][Nx]{}, b[Nx][Nu]{}, wave[Nx]{}, goal[Nx]{}, weight[Nx + Nu]{}, end[Nx]{};
+  double edge[Nc + 1]{}, slope[Nc + 1]{};
+  std::array<double, Nu> low{}, high{};
+  solver::SoftPenalty price;
+  Quirks quirks;
+
+  [[nodiscard]] solver::SoftPenalty soft_penalty(int) const { return price; }
+  [[nodiscard]] std::array<double, Nu> input_lower(int) const { return low; }
+  [[nodiscard]] std::array<double, Nu> input_upper(int) const { return high; }
+
+  /// Next value of state i of an array or a tuple; T: what it may be assigned to.
+  template <std::size_t I, class X, class U>
+  auto next(const X& x, const U& u) const {
+    constexpr std::size_t kOther = (I + 1) % Nx;
+    const auto& own = std::get<I>(x);
+    const auto& other = std::get<kOther>(x);
+    const auto& push = std::get<I % Nu>(u);
+    auto smooth = own + a[I][I] * own + a[I][kOther] * other + b[I][I % Nu] * push + wave[I] * sin(other) +
+                  quirks.product * own * push + quirks.kink * abs(other);
+    if constexpr (I == 0) {
+      const auto rough = 0.05 * log(quirks.log * other + (1.0 - quirks.log)) +
+                         0.05 * sqrt(quirks.root * other + (1.0 - quirks.root)) +
+                         0.01 / (quirks.pole * other + (1.0 - quirks.pole)) +
+                         0.01 * exp(quirks.blow * 10.0 * other);
+      return smooth + rough + quirks.jump * select(own > 0.5, 0.0 * own + 1.0, 0.0 * own);
+    } else {
+      return smooth;
+    }
+  }
+  template <std::size_t C, class X, class U>
+  auto limit(const X& x, const U& u) const {
+    return std::get<C % Nx>(x) - edge[C] + slope[C] * std::get<C % Nu>(u) +
+           quirks.product * std::get<0>(x) * std::get<0>(x);
+  }
+  template <std::size_t R, class X, class U>
+  auto cost(const X& x, const U& u) const {
+    if constexpr (R < Nx) {
+      return weight[R] * (std::get<R>(x) - goal[R]);
+    } else if constexpr (R < Nx + Nu) {
+      return weight[R] * std::get<R - Nx>(u);
+    } else {
+      return 0.1 * sin(std::get<0>(x)) * std::get<0>(u);
+    }
+  }
+
+  static RandomData make(Random& random) {
+    RandomData p;
+    const auto chance = [&](double share) { return random.uniform() < share; };
+    const auto decade = [&](double least, double most) {
+      return exp(2.302585 * random.uniform(least, most));
+    };
+    const double speed = decade(-2.0, 0.3), scale = chance(0.3) ? decade(-4.0, 4.0) : 1.0;
+    const double costs = chance(0.3) ? decade(-4.0, 4.0) : 1.0;
+    for (std::size_t i = 0; i < Nx; ++i) {
+      for (double& v : p.a[i]) v = speed * random.normal();
+      for (double& v : p.b[i]) v = speed * scale * random.normal();
+      p.wave[i] = speed * random.normal();
+      p.goal[i] = random.normal();
+      p.weight[i] = chance(0.2) ? 0.0 : costs * decade(-2.0, 1.0);
+      p.end[i] = chance(0.2) ? 0.0 : costs * decade(-1.0, 2.0);
+    }
+    for (std::size_t m = 0; m < Nu; ++m) {
+      p.weight[Nx + m] = chance(0.1) ? 0.0 : costs * scale * decade(-2.0, 0.0);
+      const double middle = random.normal() / scale, width = chance(0.1) ? 0.0 : decade(-2.0, 1.0) / scale;
+      p.low[m] = middle - width;
+      p.high[m] = middle + width;
+      constexpr double kInfinity = std::numeric_limits<double>::infinity();
+      if (chance(0.2)) p.low[m] = -kInfinity;
+      if (chance(0.2)) p.high[m] = kInfinity;
+      if (chance(0.003)) std::swap(p.low[m], p.high[m]);
+      if (chance(0.003)) p.low[m] = std::numeric_limits<double>::quiet_NaN();
+    }
+    for (std::size_t c = 0; c < Nc; ++c) {
+      p.edge[c] = random.normal();
+      p.slope[c] = chance(0.5) ? 0.0 : random.normal() * scale;
+    }
+    p.price = {.linear = decade(-1.0, 4.0),
+               .quadratic = chance(0.2) ? 0.0 : decade(-1.0, 4.0),
+               .cap = chance(0.2) ? decade(-3.0, 0.0) : 1e30};
+    Quirks& q = p.quirks;
+    q.log = chance(0.04) ? 1.0 : 0.0;
+    q.root = chance(0.04) ? 1.0 : 0.0;
+    q.pole = chance(0.04) ? 1.0 : 0.0;
+    q.blow = chance(0.04) ? 1.0 : 0.0;
+    q.jump = chance(0.06) ? random.normal() : 0.0;
+    q.kink = chance(0.06) ? speed * random.normal() : 0.0;
+    q.product = chance(0.2) ? speed * random.normal() : 0.0;
+    return p;
+  }
+};
+
+/// With a type for each variable.
+template <int Nx, int Nu, int Nc>
+struct RandomStructured : RandomData<Nx, Nu, Nc> {
+  using Data = RandomData<Nx, Nu, Nc>;
+  template <int Count, class Make>
+  static auto row(const Make& make) {
+    return [&]<std::size_t... i>(std::index_sequence<i...>) {
+      return std::make_tuple(make(std::integral_constant<std::size_t, i>{})...);
+    }
+    (std::make_index_sequence<static_cast<std::size_t>(Count)>{});
+  }
+  template <class K, class X, class U>
+  auto dynamics(K, const X& x, const U& u) const {
+    return row<Nx>([&](auto i) { return this->template next<i>(x, u); });
+  }
+  template <class K, class X, class U>
+  auto residual(K, const X& x, const U& u) const {
+    return row<Data::kNr>([&](auto r) { return this->template cost<r>(x, u); });
+  }
+  template <class X>
+  auto terminal_residual(const X& x) const {
+    return row<Nx>([&](auto i) { return this->end[i] * (std::get<i>(x) - this->goal[i]); });
+  }
+  template <class K, class X, class U>
+  auto constraint(K, const X& x, const U& u) const {
+    return row<Nc>([&](auto c) { return this->template limit<c>(x, u); });
+  }
+};
+
+/// Over arrays of one scalar type; one stage at a time where it branches.
+template <int Nx, int Nu, int Nc, bool Branches>
+struct RandomPlain : RandomStructured<Nx, Nu, Nc> {
+  using Base = RandomStructured<Nx, Nu, Nc>;
+  using Data = RandomData<Nx, Nu, Nc>;
+  template <class T>
+  using X = std::array<T, Nx>;
+  template <class T>
+  using U = std::array<T, Nu>;
+  template <class K>
+  static constexpr bool kTakes = !Branches || std::is_same_v<K, int>;
+
+  template <class K, class T>
+  requires kTakes<K> X<T> dynamics(K k, const X<T>& x, const U<T>& u)
+  const {
+    X<T> next = solver::to_array<T>(Base::dynamics(k, x, u));
+    if constexpr (Branches) {
+      if (x[0] > 3.0) next[0] = next[0] + 0.1 * this->quirks.jump;
+    }
+    return next;
+  }
+  template <class K, class T>
+  requires kTakes<K> std::array<T, Data::kNr> residual(K k, const X<T>& x, const U<T>& u)
+  const { return solver::to_array<T>(Base::residual(k, x, u)); }
+  template <class T>
+  X<T> terminal_residual(const X<T>& x) const {
+    return solver::to_array<T>(Base::terminal_residual(x));
+  }
+  template <class K, class T>
+  requires kTakes<K> std::array<T, Nc> constraint(K k, const X<T>& x, const U<T>& u)
+  const { return solver::to_array<T>(Base::constraint(k, x, u)); }
+};
+
+/// Bounds on the change of input 0, whose last value is the last state.
+template <int Nx, int Nu, int Nc>
+struct RandomRates : RandomStructured<Nx, Nu, Nc> {
+  using Base = RandomStructured<Nx, Nu, Nc>;
+  static constexpr std::array<int, Nu> kPreviousInput = [] {
+    std::array<int, Nu> state{};
+    state.fill(-1);
+    state[0] = Nx - 1;
+    return state;
+  }();
+  double most = 1.0;
+  template <class K, class X, class U>
+  auto dynamics(K, const X& x, const U& u) const {
+    return Base::template row<Nx>([&](auto i) {
+      if constexpr (i == Nx - 1) {
+        return std::get<0>(u);
+      } else {
+        return this->template next<i>(x, u);
+      }
+    });
+  }
+  [[nodiscard]] std::array<double, Nu> input_rate_lower(int) const {
+    std::array<double, Nu> rates;
+    rates.fill(-most);
+    return rates;
+  }
+  [[nodiscard]] std::array<double, Nu> input_rate_upper(int) const {
+    std::array<double, Nu> rates;
+    rates.fill(most);
+    return rates;
+  }
+};
+
+}  // namespace chicane::bench

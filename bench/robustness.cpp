@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+// The solver on families of problems that are no car, beside Ipopt: how many are solved, at what cost, in
+// what time.
+//
+//   chicane-robustness [-n INSTANCES] [-t TOLERANCE] [-m TURNS] [--each] [--references FILE] [NAME...]
+//   chicane-robustness --tolerances [-n INSTANCES] [NAME...]     a table of statuses and residuals, without
+//   Ipopt
+//
+// NAME: families whose name contains it; all without. FILE keeps what Ipopt finds, which takes minutes;
+// without Ipopt (Debian: coinor-libipopt-dev) only what is in FILE is compared with.
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "families/list.hpp"
+
+namespace {
+
+using namespace chicane::bench;
+
+References read(const std::string& file) {
+  References references;
+  std::ifstream in(file);
+  std::string line;
+  while (std::getline(in, line)) {
+    const auto tab = line.rfind('\t');
+    int is_solved = 0;
+    ReferenceAnswer answer;
+    if (tab == std::string::npos || std::sscanf(line.c_str() + tab + 1, "%d %lf %lf %d", &is_solved,
+                                                &answer.cost, &answer.time, &answer.turns) != 4)
+      continue;
+    answer.is_solved = is_solved != 0;
+    references[line.substr(0, tab)] = answer;
+  }
+  return references;
+}
+void write(const References& references, const std::string& file) {
+  std::ofstream out(file);
+  for (const auto& [key, answer] : references) {
+    char numbers[96];
+    std::snprintf(numbers, sizeof numbers, "%d %.17g %.6g %d", answer.is_solved ? 1 : 0, answer.cost,
+                  answer.time, answer.turns);
+    out << key << '\t' << numbers << '\n';
+  }
+}
+
+void print(const FamilyRow& row) {
+  std::printf("%-34s %-4s %4d/%-4d %4d %4d/%-4d %4d %4d %5d %5.0f %8.2f %8.2f %6.0f %6.0f %8.1e\n",
+              row.family.data(), to_string(row.start).data(), row.optimal, row.instances,
+              row.usable - row.optimal, row.both, row.reference, row.lower, row.higher, row.false_optimal,
+              row.turns, 1e3 * row.time, 1e3 * row.most_time, row.ratio, row.least_ratio, row.worst_residual);
+  std::fflush(stdout);
+}
+
+bool is_wanted(const Family& family, const std::vector<std::string_view>& names) {
+  bool is_named = names.empty();
+  for (const std::string_view name : names)
+    is_named = is_named || family.name.find(name) != std::string_view::npos;
+  return is_named;
+}
+
+/// Each family at each tolerance, both starts: how many are optimal, at the floor of rounding, within the
+/// loose tolerance, and none of these; the largest residual of the first and of the second by the independent
+/// check.
+int print_tolerances(FamilyRequest request, const std::vector<std::string_view>& names) {
+  int wrong = 0;
+  std::printf(
+      "| family | tolerance | optimal | at floor | near | not | residual | at floor "
+      "|\n|---|--:|--:|--:|--:|--:|--:|--:|\n");
+  References none;
+  request.with_ipopt = false;
+  for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}) {
+    request.tolerance = tolerance;
+    FamilyRow all{.family = "all"};
+    const auto print_row = [&](const FamilyRow& row) {
+      std::printf("| %s | %.0e | %d | %d | %d | %d | %.1e | %.1e |\n", row.family.data(), tolerance,
+                  row.optimal, row.at_floor, row.usable - row.optimal - row.at_floor,
+                  row.instances - row.usable, row.worst_residual, row.floor_residual);
+      std::fflush(stdout);
+    };
+    for (const Family& family : all_families()) {
+      if (!is_wanted(family, names)) continue;
+      FamilyRow both{.family = family.name};
+      for (const NaiveStart start : {NaiveStart::kIdle, NaiveStart::kLine}) {
+        const FamilyRow row = family.measure(request, start, none);
+        for (FamilyRow* sum : {&both, &all}) {
+          sum->instances += row.instances;
+          sum->optimal += row.optimal;
+          sum->at_floor += row.at_floor;
+          sum->usable += row.usable;
+          sum->worst_residual = std::max(sum->worst_residual, row.worst_residual);
+          sum->floor_residual = std::max(sum->floor_residual, row.floor_residual);
+        }
+        wrong += row.false_optimal;
+      }
+      print_row(both);
+    }
+    print_row(all);
+  }
+  return wrong == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  FamilyRequest request{.with_ipopt = true};
+  bool are_tolerances = false;
+  std::string file;
+  std::vector<std::string_view> names;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    const char* value = i + 1 < argc ? argv[i + 1] : "";
+    if (word == "--each") {
+      request.each = true;
+    } else if (word == "--tolerances") {
+      are_tolerances = true;
+      request.instances = 30;
+    } else if (word == "-n" || word == "-t" || word == "-m" || word == "--references") {
+      if (word == "-n") request.instances = std::atoi(value);
+      if (word == "-t") request.tolerance = std::atof(value);
+      if (word == "-m") request.max_iterations = std::atoi(value);
+      if (word == "--references") file = value;
+      ++i;
+    } else {
+      names.push_back(word);
+    }
+  }
+  if (are_tolerances) return print_tolerances(request, names);
+  References references = read(file);
+  std::printf("%-34s %-4s %9s %4s %9s %4s %4s %5s %5s %8s %8s %6s %6s %8s\n", "family", "from", "optimal",
+              "near", "of Ipopt's", "less", "more", "false", "turns", "ms", "p99", "ratio", "p1", "residual");
+  int both = 0, reference = 0, wrong = 0;
+  for (const Family& family : all_families()) {
+    if (!is_wanted(family, names)) continue;
+    for (const NaiveStart start : {NaiveStart::kIdle, NaiveStart::kLine}) {
+      const FamilyRow row = family.measure(request, start, references);
+      print(row);
+      both += row.both;
+      reference += row.reference;
+      wrong += row.false_optimal;
+      if (!file.empty()) write(references, file);
+    }
+  }
+  std::printf("%d of the %d that Ipopt solves, %d false\n", both, reference, wrong);
+  return wrong == 0 ? 0 : 1;
+}

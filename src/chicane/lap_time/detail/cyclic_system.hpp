@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "chicane/lap_time/detail/symmetric_block.hpp"
+
+namespace chicane::lap_time {
+
+/// Symmetric linear system of a ring of nodes (docs/limit.md, section 3). Node k has unknowns
+/// b_k = (z_k, λ_k, η_k): its variables, the multipliers of the interval that ends at it, and those of its
+/// own equations. Matrix: dense blocks on the diagonal, and B_k = ∂(interval from k to k + 1)/∂z_k between
+/// λ_{k+1} and z_k, cyclic. Nodes 1 … N−1 are eliminated in turn; what they leave falls on node 0.
+class CyclicSystem {
+ public:
+  CyclicSystem(int nodes, int variables, int states, int equations);
+
+  [[nodiscard]] int block_size() const noexcept { return nb_; }
+  /// To be filled before factor(): both triangles of node k's block, by rows; and B_k, states × variables.
+  [[nodiscard]] double* diagonal(int k) noexcept { return diagonal_.data() + index(k) * area(); }
+  [[nodiscard]] double* coupling(int k) noexcept {
+    return coupling_.data() + index(k) * states_by_variables();
+  }
+
+  /// False when singular or when the number of negative eigenvalues is not that of the multipliers: the
+  /// Hessian is not positive definite where the equations hold.
+  [[nodiscard]] bool factor();
+  /// Solves in place, with refinement; b holds the blocks one after the other.
+  void solve(std::vector<double>& b) const;
+
+ private:
+  [[nodiscard]] static std::size_t index(int k) noexcept { return static_cast<std::size_t>(k); }
+  [[nodiscard]] std::size_t area() const noexcept { return index(nb_) * index(nb_); }
+  [[nodiscard]] std::size_t states_by_variables() const noexcept { return index(nx_) * index(nz_); }
+  void solve_once(std::vector<double>& b) const;
+  void subtract_product(const std::vector<double>& x, std::vector<double>& rest) const;
+
+  int n_, nz_, nx_, na_, nb_;
+  int width_;  ///< columns of what eliminating a node spreads: λ of the next one and z of node 0
+  std::vector<double> diagonal_, coupling_;
+  std::vector<double> reduced_;  ///< block being eliminated, and that of node 0
+  std::vector<double> spread_;   ///< D_k⁻¹ times both couplings, n × nb × width
+  std::vector<SymmetricBlock> blocks_;
+};
+
+}  // namespace chicane::lap_time

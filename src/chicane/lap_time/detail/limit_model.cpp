@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/lap_time/detail/limit_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "chicane/lap_time/detail/road_car_model.hpp"
+#include "chicane/lap_time/detail/udacity_model.hpp"
+
+namespace chicane::lap_time {
+namespace {
+
+constexpr double kGravity = 9.81;    // [m/s²]
+constexpr double kNearLimit = 0.96;  // of the drive
+
+template <class Model>
+class WithModel : public PlanModelOf<LimitModel, Model> {
+ public:
+  [[nodiscard]] int driven() const override { return Model::kDriven; }
+  [[nodiscard]] int input() const override { return Model::kInput; }
+};
+
+class UdacityLimit final : public WithModel<UdacityModel> {
+ public:
+  explicit UdacityLimit(const sim::PlantDeviation& deviation) {
+    model_.car.mass *= deviation.mass_scale;
+    model_.car.yaw_inertia *= deviation.mass_scale;
+    friction_ = model_.car.friction_scale * deviation.friction_scale;
+    set_reserve({});
+  }
+  [[nodiscard]] CarSize size() const override {
+    return {model_.car.front_axle, model_.car.rear_axle, model_.car.half_track + model_.car.half_tire,
+            model_.car.steer_limit};
+  }
+  [[nodiscard]] std::span<const Reserve> reserves() const override {
+    static constexpr Reserve kReserves[] = {
+        {.margin = 0.02},
+        {.margin = 0.05, .slip_share = 1.2, .brake_share = 0.98},
+        {.margin = 0.1, .grip_share = 0.98, .brake_share = 0.95},
+        {.margin = 0.3, .grip_share = 0.97, .brake_share = 0.93},
+        {.margin = 0.3, .grip_share = 0.98, .slip_share = 0.95, .brake_share = 0.95},
+        {.margin = 0.3, .grip_share = 0.97, .slip_share = 0.85, .brake_share = 0.93}};
+    return kReserves;
+  }
+  [[nodiscard]] GuessCar guess_car() const override {
+    return {.grip = 0.9 * model_.load(0.0),
+            .drive = 0.5 * model_.drive(),
+            .brake = 0.65 * model_.load(0.0),
+            .speed = 45.0,
+            .front_axle = model_.car.front_axle,
+            .rear_axle = model_.car.rear_axle};
+  }
+  void set_reserve(const Reserve& reserve) override {
+    model_.margin = reserve.margin;
+    model_.brake_share = reserve.brake_share;
+    model_.slip_share = reserve.slip_share;
+    model_.steer_price = reserve.steer_price;
+    model_.car.friction_scale = friction_ * reserve.grip_share;
+  }
+  void guess(double v, double a, double curvature, double* z) const override {
+    const double side = (1.0 - model_.car.steer_helper) * v * v * curvature / (5.0 * model_.load(v));
+    z[kYawRate] = v * curvature;
+    z[kVx] = v;
+    z[kVy] = model_.car.rear_axle * z[kYawRate] - v * side;
+    z[kHeading] = -z[kVy] / v;
+    z[kSteer] = (model_.car.front_axle + model_.car.rear_axle) * curvature;
+    z[kPedal] = a + model_.car.linear_drag * v;
+  }
+  [[nodiscard]] path::RacingLinePoint point(const double* z) const override {
+    const auto m = model_.motion(z[kVx], z[kVy], z[kYawRate], z[kSteer], z[kPedal]);
+    return {.offset = z[kOffset],
+            .heading = z[kHeading],
+            .vx = z[kVx],
+            .vy = z[kVy],
+            .yaw_rate = z[kYawRate],
+            .steer = z[kSteer],
+            .steer_asked = z[kSteer],
+            .acceleration = m.vx,
+            .throttle = std::clamp(model_.pedal_for(z[kPedal], z[kVx], m.vx), -1.0, 1.0)};
+  }
+
+  [[nodiscard]] std::vector<double> error_prices() const override { return {25.0, 4.0, 4.0, 0.1, 0.1}; }
+  [[nodiscard]] std::span<const Tuning> tunings() const override {
+    static constexpr Tuning kTunings[] = {{{40.0, 0.1}}, {{10.0, 0.1}}, {{160.0, 0.1}}, {{40.0, 0.02}}};
+    return kTunings;
+  }
+  [[nodiscard]] bool is_spent(const double*) const override { return false; }
+  void start() override {}
+  void see(const model::Command&, const sim::PlantOutput&, double) override {}
+  /// The velocity in the middle of the next step: the helper turns it first, drag comes last.
+  void motion(const model::State& state, double* x) const override {
+    const double turn = kSeen * model_.car.steer_helper * sim::UdacityCar::kStepLength * state.r;
+    const double mean = 1.0 + 0.5 * model_.car.linear_drag * sim::UdacityCar::kStepLength;
+    x[kVx] = mean * state.vx - turn * state.vy;
+    x[kVy] = state.vy + turn * state.vx;
+    x[kYawRate] = state.r;
+  }
+  [[nodiscard]] model::Command command(const model::State& state, const double* z,
+                                       const double* inputs) const override {
+    const double lock = model_.rear_share() / (1.0 - model_.front_pull()) * model_.load(state.vx);
+    const double pull = std::max(inputs[1], -kNearLock * lock);
+    const auto m = model_.motion(state.vx, state.vy, state.r, z[kSteer], pull);
+    // More slip than that of the peak would give less force, not more.
+    const auto course = [&](double vx, double vy, double r) {
+      return chicane::atan((vy + model_.car.front_axle * r) / (vx + model_.car.lateral_speed_offset));
+    };
+    const double planned = z[kSteer] - course(z[kVx], z[kVy], z[kYawRate]);
+    const double most = std::max(kMostSlip, std::fabs(planned));
+    std::array<double, 5> x{};
+    motion(state, x.data());
+    const double now = course(x[kVx], x[kVy], x[kYawRate]);
+    const double steer = std::clamp(inputs[0], now - most, now + most);
+    return {std::clamp(steer, -model_.car.steer_limit, model_.car.steer_limit),
+            std::clamp(model_.pedal_for(pull, state.vx, m.vx), -1.0, 1.0)};
+  }
+
+ private:
+  static constexpr double kSeen = 0.625;     ///< mean over the parts of a step of what is left of the turn
+  static constexpr double kMostSlip = 0.19;  ///< [rad]
+  static constexpr double kNearLock = 0.985;
+  double friction_ = 1.0;
+};
+
+class RoadCarLimit final : public WithModel<RoadCarModel> {
+ public:
+  explicit RoadCarLimit(const sim::PlantDeviation& deviation) {
+    model_.car.mass *= deviation.mass_scale;
+    model_.car.yaw_inertia *= deviation.mass_scale;
+    model_.car.friction *= deviation.friction_scale;
+  }
+  [[nodiscard]] CarSize size() const override {
+    return {model_.car.front_axle, model_.car.rear_axle, model_.car.half_track + model_.car.half_tire,
+            model_.car.steer.high};
+  }
+  [[nodiscard]] std::span<const Reserve> reserves() const override {
+    static constexpr Reserve kReserves[] = {{.margin = 0.05, .slip_share = 1.0},
+                                            {.margin = 0.06, .slip_share = 0.95},
+                                            {.margin = 0.1, .slip_share = 0.9},
+                                            {.margin = 0.15, .grip_share = 0.99, .slip_share = 0.85},
+                                            {.margin = 0.2, .grip_share = 0.98, .slip_share = 0.8}};
+    return kReserves;
+  }
+  [[nodiscard]] GuessCar guess_car() const override {
+    return {.grip = 0.68 * model_.car.friction * kGravity,
+            .drive = 0.5 * model_.car.drive_force / model_.car.mass,
+            .brake = 0.42 * model_.car.friction * kGravity,
+            .speed = 60.0,
+            .front_axle = model_.car.front_axle,
+            .rear_axle = model_.car.rear_axle};
+  }
+  void set_reserve(const Reserve& reserve) override {
+    model_.margin = reserve.margin;
+    model_.grip_share = reserve.grip_share;
+    model_.slip_share = reserve.slip_share;
+    model_.steer_price = reserve.steer_price;
+  }
+  void guess(double v, double a, double curvature, double* z) const override {
+    const sim::RoadCarParams& car = model_.car;
+    const double wheelbase = car.front_axle + car.rear_axle;
+    const double side = v * v * curvature;
+    const double slope = kGravity * car.friction * car.shape;
+    const double rear_slip = side / (slope * car.stiffness_rear);
+    z[kYawRate] = v * curvature;
+    z[kVx] = v;
+    z[kVy] = car.rear_axle * z[kYawRate] - v * rear_slip;
+    z[kHeading] = -z[kVy] / v;
+    z[kSteer] = wheelbase * curvature + side / (slope * car.stiffness_front) - rear_slip;
+    z[kPedal] = a * car.mass / (a > 0.0 ? car.drive_force : car.brake_force);
+    z[RoadCarModel::kShiftX] = a;
+    z[RoadCarModel::kShiftY] = side;
+    for (int i = 0; i < 4; ++i) {
+      const double front = a > 0.0 ? car.drive_share_front : car.brake_share_front;
+      const double share =
+          i < 2 ? front * wheelbase / car.rear_axle : (1.0 - front) * wheelbase / car.front_axle;
+      z[RoadCarModel::kSlip + i] = share * a / (slope * (i < 2 ? car.stiffness_front : car.stiffness_rear));
+    }
+  }
+  [[nodiscard]] path::RacingLinePoint point(const double* z) const override {
+    const auto m = model_.motion(z);
+    const sim::RoadCarParams& car = model_.car;
+    return {.offset = z[kOffset],
+            .heading = z[kHeading],
+            .vx = z[kVx],
+            .vy = z[kVy],
+            .yaw_rate = z[kYawRate],
+            .steer = z[kSteer],
+            .steer_asked = z[kSteer] + car.steer.lag * z[RoadCarModel::kSteerRate],
+            .acceleration = m.ax + z[kYawRate] * z[kVy],
+            .throttle = std::clamp(z[kPedal] + car.pedal.lag * z[RoadCarModel::kPedalRate], -1.0, 1.0)};
+  }
+
+  [[nodiscard]] std::vector<double> error_prices() const override {
+    return {25.0, 4.0, 4.0, 0.1, 0.1, 0.0, 0.0, 0.0, 0.0};
+  }
+  [[nodiscard]] std::span<const Tuning> tunings() const override {
+    static constexpr Tuning kTunings[] = {{{2.0, 0.1}},         {{2.0, 0.1}, 1000.0}, {{10.0, 1.0}},
+                                          {{10.0, 1.0}, 100.0}, {{0.5, 0.1}},         {{2.0, 0.1}, 10.0},
+                                          {{2.0, 0.1}, 100.0},  {{0.5, 0.1}, 1000.0}};
+    return kTunings;
+  }
+  [[nodiscard]] bool is_spent(const double* z) const override {
+    const sim::RoadCarParams& car = model_.car;
+    const double asked = z[kPedal] + car.pedal.lag * z[RoadCarModel::kPedalRate];
+    return asked > kNearLimit || z[kPedal] * car.drive_force * z[kVx] > kNearLimit * car.drive_power;
+  }
+
+  void start() override {
+    pedal_ = 0.0;
+    shift_x_ = shift_y_ = 0.0;
+  }
+  void see(const model::Command& asked, const sim::PlantOutput& output, double elapsed) override {
+    pedal_ = model_.car.pedal.next(pedal_, asked.throttle, elapsed);
+    shift_x_ += elapsed / model_.car.load_lag * (output.ax - shift_x_);
+    shift_y_ += elapsed / model_.car.load_lag * (output.ay - shift_y_);
+  }
+  void motion(const model::State& state, double* x) const override {
+    x[kVx] = state.vx;
+    x[kVy] = state.vy;
+    x[kYawRate] = state.r;
+    x[kSteer] = state.steer;
+    x[kPedal] = pedal_;
+    x[RoadCarModel::kShiftX] = shift_x_;
+    x[RoadCarModel::kShiftY] = shift_y_;
+  }
+  [[nodiscard]] model::Command command(const model::State& state, const double* z,
+                                       const double* inputs) const override {
+    const sim::RoadCarParams& car = model_.car;
+    // More slip than that of the peak would give less force, not more.
+    const auto course = [&](double vx, double vy, double r) { return (vy + car.front_axle * r) / vx; };
+    const double planned = z[kSteer] - course(z[kVx], z[kVy], z[kYawRate]);
+    const double most = std::max(kMostSlip * model_.peak_slip(true), std::fabs(planned));
+    const double now = course(std::max(state.vx, 1.0), state.vy, state.r);
+    const double steer = std::clamp(state.steer + car.steer.lag * inputs[0], now - most, now + most);
+    return {std::clamp(steer, car.steer.low, car.steer.high),
+            std::clamp(pedal_ + car.pedal.lag * inputs[1], -1.0, 1.0)};
+  }
+
+ private:
+  static constexpr double kMostSlip = 0.9;  ///< of the peak's
+  double pedal_ = 0.0, shift_x_ = 0.0, shift_y_ = 0.0;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<LimitModel>> make_limit_model(std::string_view plant,
+                                                     const sim::PlantDeviation& deviation) {
+  if (plant == sim::UdacityCar::kName) return std::make_unique<UdacityLimit>(deviation);
+  if (plant == sim::RoadCar::kName) return std::make_unique<RoadCarLimit>(deviation);
+  return fail(ErrorCode::kNotFound,
+              "limit: got plant " + std::string(plant) + ", expected one with a model: udacity, road-car");
+}
+
+}  // namespace chicane::lap_time

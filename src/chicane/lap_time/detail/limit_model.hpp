@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/lap_time/detail/plan_model.hpp"
+#include "chicane/model/state.hpp"
+#include "chicane/sim/plant.hpp"
+
+namespace chicane::lap_time {
+
+/// Prices of a feedback's two inputs, squared and second, and times which where the drive has no more to
+/// give.
+struct Tuning {
+  std::array<double, 2> inputs{1.0, 1.0};
+  double spent = 1.0;
+};
+
+/// A plant, whose plans are also driven.
+class LimitModel : public PlanModel {
+ public:
+  /// What plans to be driven keep in reserve: the first that can be driven is taken.
+  [[nodiscard]] virtual std::span<const Reserve> reserves() const = 0;
+
+  /// Feedback along a plan: the first `driven` states, and two inputs from variable `input` on. Prices of
+  /// errors and inputs, over each of them squared and second.
+  [[nodiscard]] virtual int driven() const = 0;
+  [[nodiscard]] virtual int input() const = 0;
+  [[nodiscard]] virtual std::vector<double> error_prices() const = 0;
+  /// Several are tried: plans at the limit are told apart by how they are followed.
+  [[nodiscard]] virtual std::span<const Tuning> tunings() const = 0;
+  /// The drive has no more to give at a plan's variables.
+  [[nodiscard]] virtual bool is_spent(const double* z) const = 0;
+
+  /// What happens inside the plant and no State shows, from what was asked of it and measured.
+  virtual void start() = 0;
+  virtual void see(const model::Command& asked, const sim::PlantOutput& output, double elapsed) = 0;
+  /// The driven states beyond offset and heading.
+  virtual void motion(const model::State& state, double* states) const = 0;
+  /// What to ask for: `z` is the plan's place a moment ahead, `inputs` its two inputs with feedback.
+  [[nodiscard]] virtual model::Command command(const model::State& state, const double* z,
+                                               const double* inputs) const = 0;
+};
+
+/// The model of that plant with that deviation. kNotFound for a plant without one.
+[[nodiscard]] Result<std::unique_ptr<LimitModel>> make_limit_model(std::string_view plant,
+                                                                   const sim::PlantDeviation& deviation);
+
+}  // namespace chicane::lap_time

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/lap_time/detail/plan_model.hpp"
+#include "chicane/path/racing_line.hpp"
+#include "chicane/path/track.hpp"
+
+namespace chicane::lap_time {
+
+/// A lap of a plant's model: its nodes and their variables, one after the other.
+struct NodePlan {
+  RoadNodes road;
+  std::vector<double> z;
+  double lap_time = 0.0;
+};
+
+/// Time round the ring by the trapezoidal rule [s].
+[[nodiscard]] double lap_time_of(const RoadNodes& road, const std::vector<double>& z, int variables);
+
+/// A plan of `car` as a line, which keeps `margin` [m] to edge and kerb.
+[[nodiscard]] path::RacingLine line_of(const path::Track& track, std::string_view car, const PlanModel& model,
+                                       const NodePlan& plan, double margin);
+
+/// The fastest laps of one model on one road: from a first guess on coarse nodes to fine ones; then others
+/// with more in reserve from there.
+class PlanSearch {
+ public:
+  struct Options {
+    double time_step = 0.05;  ///< between nodes [s]
+    double tolerance = 1e-6;  ///< of an optimum (Collocation::Options)
+    /// Told how far it has come in words, and the lap time; false ends the search. May be empty.
+    std::function<bool(int iteration, double lap_time)> go_on{};
+  };
+  PlanSearch(const path::Track& track, PlanModel& model, const Options& options)
+      : track_{track}, model_{model}, options_{options} {}
+
+  /// kInvalidArgument when there is no optimum from any first guess.
+  [[nodiscard]] Result<NodePlan> find();
+  /// The plan with that in reserve, from a neighbouring one.
+  [[nodiscard]] Result<NodePlan> near(const NodePlan& plan, const Reserve& reserve);
+
+  [[nodiscard]] bool is_stopped() const noexcept { return is_stopped_; }
+  [[nodiscard]] int iterations() const noexcept { return iterations_; }
+  [[nodiscard]] double stationarity() const noexcept { return stationarity_; }
+  [[nodiscard]] double violation() const noexcept { return violation_; }
+
+ private:
+  [[nodiscard]] std::vector<double> first_guess(const RoadNodes& road, double share) const;
+  [[nodiscard]] bool solve(NodePlan& plan, double barrier, int most_iterations);
+
+  const path::Track& track_;
+  PlanModel& model_;
+  Options options_;
+  int iterations_ = 0;
+  double stationarity_ = 0.0, violation_ = 0.0;
+  bool is_stopped_ = false;
+};
+
+}  // namespace chicane::lap_time

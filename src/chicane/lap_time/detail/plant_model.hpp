@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "chicane/base/math.hpp"
+#include "chicane/lap_time/detail/collocation.hpp"
+#include "chicane/lap_time/detail/curved.hpp"
+
+namespace chicane::lap_time {
+
+/// The road at the nodes of a plan (docs/limit.md, section 2).
+struct RoadNodes {
+  std::vector<double> s;                      ///< along the centre line [m]
+  std::vector<double> heading;                ///< of the centre line in W, in (−π, π] [rad]
+  std::vector<double> step;                   ///< to the next node [m]
+  std::vector<double> turn;                   ///< of the centre line until the next node [rad]
+  std::vector<double> curvature;              ///< mean around the node [1/m]
+  std::vector<double> front_bend, rear_bend;  ///< that moves the line away at the axles [1/m]
+  std::vector<double> front_left, front_right, rear_left, rear_right;  ///< edges at the axles [m]
+};
+
+/// First variables of every plant's model: position and motion of the body in the road's axes.
+enum CommonState { kOffset, kHeading, kVx, kVy, kYawRate, kSteer, kPedal };
+
+/// Size of a model, and the functions of a node by numbers and by curved numbers.
+template <class Model>
+class ModelFunctions final : public NodeFunctions {
+ public:
+  explicit ModelFunctions(const Model& model) : model_{model} {
+    variables = Model::kVariables;
+    states = Model::kStates;
+    equations = Model::kEquations;
+    inequalities = Model::kInequalities;
+    const auto sizes = Model::scale();
+    scale.assign(sizes.begin(), sizes.end());
+  }
+  void values(int node, const double* z, double* out) const override {
+    model_.template functions<double>(static_cast<std::size_t>(node), z, out);
+  }
+  void derivatives(int node, const double* z, const double* weights, double* out, double* jacobian,
+                   double* hessian) const override {
+    using C = Curved<Model::kVariables>;
+    constexpr std::size_t kCount = Model::kStates + Model::kEquations + 1 + Model::kInequalities;
+    std::array<C, Model::kVariables> x;
+    std::array<C, kCount> f;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      x[i] = C(z[i]);
+      x[i].g[i] = 1.0;
+    }
+    model_.template functions<C>(static_cast<std::size_t>(node), x.data(), f.data());
+    for (std::size_t i = 0; i < C::kEntries; ++i) hessian[i] = 0.0;
+    for (std::size_t m = 0; m < kCount; ++m) {
+      out[m] = f[m].v;
+      for (std::size_t i = 0; i < x.size(); ++i) jacobian[m * x.size() + i] = f[m].g[i];
+      if (weights[m] == 0.0) continue;
+      for (std::size_t i = 0; i < C::kEntries; ++i) hessian[i] += weights[m] * f[m].h[i];
+    }
+  }
+
+ private:
+  const Model& model_;
+};
+
+/// A body in the road's axes (docs/limit.md, eq. 7–8).
+template <class T>
+struct OnRoad {
+  T c, s;      ///< of the heading against the line
+  T slowness;  ///< time by arc length of the centre line [s/m]
+
+  OnRoad(double curvature, const T& offset, const T& heading, const T& vx, const T& vy)
+      : c{cos(heading)}, s{sin(heading)}, slowness{(1.0 - curvature * offset) / (c * vx - s * vy)} {}
+
+  /// Offset from the line of a point of the body (eq. 8); `bend` as RoadNodes.
+  T offset_of(const T& offset, double x, double y, double bend) const {
+    const T along = x * c - y * s;
+    const T across = offset + x * s + y * c;
+    return across - (0.5 * bend) * (along * along) / (1.0 - bend * across);
+  }
+};
+
+/// max(x, 0), smooth within about `width`.
+template <class T>
+[[nodiscard]] T smooth_positive(const T& x, double width) {
+  return 0.5 * (x + sqrt(x * x + width * width));
+}
+
+}  // namespace chicane::lap_time

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/lap_time/detail/tightest_bend.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chicane/lap_time/detail/collocation.hpp"
+#include "chicane/lap_time/detail/plant_model.hpp"
+#include "chicane/lap_time/detail/road_nodes.hpp"
+
+namespace chicane::lap_time {
+namespace {
+
+/// A line with as little curvature where it has most as the road allows: Σ (κ/κ_lock)⁸. Variables: offset,
+/// course against the road, curvature; change of curvature along the road.
+struct BendModel {
+  static constexpr int kVariables = 4, kStates = 3, kEquations = 0, kInequalities = 4;
+  static constexpr std::array<double, kVariables> scale() { return {2.0, 0.2, 0.1, 0.1}; }
+
+  CarSize car;
+  const RoadNodes* road = nullptr;
+
+  template <class T>
+  void functions(std::size_t k, const T* z, T* out) const {
+    const RoadNodes& at = *road;
+    const T heading = z[1] - car.rear_axle * z[2];  // the rear axle follows without slip
+    const T length = (1.0 - at.curvature[k] * z[0]) / cos(z[1]);
+    const T share = (1.0 / car.most_curvature()) * z[2];
+    const T square = share * share;
+    const T fourth = square * square;
+    *out++ = sin(z[1]) * length;
+    *out++ = z[2] * length;
+    *out++ = z[3] * length;
+    *out++ = (fourth * fourth + kSmooth * (z[3] * z[3])) * length;
+    const OnRoad<T> on(0.0, z[0], heading, T(1.0), T(0.0));
+    const double w = car.half_width;
+    *out++ = at.front_left[k] - on.offset_of(z[0], car.front_axle, w, at.front_bend[k]);
+    *out++ = at.front_right[k] + on.offset_of(z[0], car.front_axle, -w, at.front_bend[k]);
+    *out++ = at.rear_left[k] - on.offset_of(z[0], -car.rear_axle, w, at.rear_bend[k]);
+    *out++ = at.rear_right[k] + on.offset_of(z[0], -car.rear_axle, -w, at.rear_bend[k]);
+  }
+
+ private:
+  static constexpr double kSmooth = 1e-3;
+};
+
+constexpr double kSurelyWide = 4.0;  // times the radius at full lock: no bend of the centre line needs a look
+constexpr double kPace = 4.0;        // of the nodes [m/s]
+constexpr double kFits = 1.02;       // the power's optimum is not quite the least maximum
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  std::array<char, 240> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, values...);
+  return buffer.data();
+}
+
+}  // namespace
+
+double CarSize::most_curvature() const noexcept {
+  const double rear = chicane::tan(steer_limit) / (front_axle + rear_axle);  // of the rear axle's middle
+  return rear / std::sqrt(1.0 + rear_axle * rear_axle * rear * rear);
+}
+
+Result<void> fits_road(const path::Track& track, const CarSize& car) {
+  const GuessCar pace{.grip = 2.0,
+                      .drive = 2.0,
+                      .brake = 2.0,
+                      .speed = kPace,
+                      .front_axle = car.front_axle,
+                      .rear_axle = car.rear_axle};
+  const RoadNodes road = lay_nodes(track, pace, 0.25);
+  double sharpest = 0.0;
+  for (std::size_t k = 0; k < road.s.size(); ++k) {
+    const double width =
+        std::min(road.front_left[k] + road.front_right[k], road.rear_left[k] + road.rear_right[k]);
+    if (width <= 2.0 * car.half_width)
+      return fail(ErrorCode::kInvalidArgument,
+                  text("limit: the road is %.2f m wide at s = %.1f m, expected more than the car's %.2f m",
+                       width, road.s[k], 2.0 * car.half_width));
+    sharpest = std::max(sharpest, std::fabs(road.curvature[k]));
+  }
+  if (sharpest * kSurelyWide < car.most_curvature()) return {};
+
+  BendModel model;
+  model.car = car;
+  model.road = &road;
+  const ModelFunctions<BendModel> functions(model);
+  const std::size_t n = road.s.size();
+  std::vector<double> z(n * BendModel::kVariables, 0.0);
+  std::vector<double> changes(n * BendModel::kStates, 0.0);
+  for (std::size_t k = 0; k < n; ++k) {
+    z[k * BendModel::kVariables + 2] = road.curvature[k];
+    changes[k * BendModel::kStates + 1] = -road.turn[k];
+  }
+  Collocation problem(functions, road.step, std::move(changes));
+  const Collocation::Report report = problem.solve(z, {.tolerance = 1e-4,
+                                                       .first_barrier = 0.1,
+                                                       .last_barrier = 1e-5,
+                                                       .cost_scale = 1.0,
+                                                       .most_iterations = 300});
+  if (report.violation > 1e-2) return {};  // no answer: the search itself will tell
+  std::size_t worst = 0;
+  const auto curvature = [&](std::size_t k) { return std::fabs(z[k * BendModel::kVariables + 2]); };
+  for (std::size_t k = 0; k < n; ++k)
+    if (curvature(k) > curvature(worst)) worst = k;
+  if (curvature(worst) <= kFits * car.most_curvature()) return {};
+  return fail(
+      ErrorCode::kInvalidArgument,
+      text("limit: the bend at s = %.1f m leaves room for a radius of %.2f m, and the car's full lock "
+           "drives no less than %.2f m",
+           road.s[worst], 1.0 / curvature(worst), 1.0 / car.most_curvature()));
+}
+
+}  // namespace chicane::lap_time

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/lap_time/racing_plan.hpp"
+
+#include <cmath>
+
+#include "chicane/lap_time/detail/plan_search.hpp"
+#include "chicane/lap_time/detail/vehicle_model.hpp"
+
+namespace chicane::lap_time {
+namespace {
+
+constexpr double kTolerance = 1e-5;  // of a plan: about a millisecond of a lap
+
+class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
+ public:
+  VehiclePlan(const model::VehicleParams& vehicle, double speed_limit) : vehicle_{vehicle} {
+    model_.speed_limit = speed_limit;
+    set_reserve({.slip_share = 1.0});
+  }
+  [[nodiscard]] CarSize size() const override {
+    return {vehicle_.front_axle, vehicle_.rear_axle, 0.5 * (vehicle_.track_width + vehicle_.tire_width),
+            vehicle_.steer_limit};
+  }
+  [[nodiscard]] GuessCar guess_car() const override {
+    const model::VehicleParams& car = vehicle_;
+    const double stay = 1.0 - car.steer_helper;
+    const double grip = car.friction * car.load_constant;
+    return {.grip = 0.65 * grip / std::max(stay, 0.6),
+            .drive = 0.5 * car.drive_acceleration,
+            .brake = 0.5 * std::min(car.brake_acceleration * car.brake_throttle_limit, grip),
+            .speed = std::min(45.0, model_.speed_limit),
+            .front_axle = car.front_axle,
+            .rear_axle = car.rear_axle};
+  }
+  void set_reserve(const Reserve& reserve) override {
+    model::VehicleParams car = vehicle_;
+    car.friction *= reserve.grip_share;
+    model_.model.set_vehicle(car);
+    model_.margin = reserve.margin;
+    model_.brake_share = reserve.brake_share;
+    model_.slip_share = reserve.slip_share;
+    model_.steer_price = reserve.steer_price;
+  }
+  void guess(double v, double a, double curvature, double* z) const override {
+    const model::VehicleParams& car = vehicle_;
+    const double side = (1.0 - car.steer_helper) * v * v * curvature / model_.model.load(v);
+    z[kYawRate] = v * curvature;
+    z[kVx] = v;
+    z[kVy] = car.rear_axle * z[kYawRate] - v * side / car.cornering_rear;
+    z[kHeading] = -z[kVy] / v;
+    z[kSteer] = car.wheelbase() * curvature + side / car.cornering_front - side / car.cornering_rear;
+    z[kPedal] = a;
+  }
+  [[nodiscard]] path::RacingLinePoint point(const double* z) const override {
+    const model::VehicleParams& car = vehicle_;
+    const model::BodyMotion<double> body{z[kVx], z[kVy], z[kYawRate], z[kSteer], z[kPedal]};
+    return {.offset = z[kOffset],
+            .heading = z[kHeading],
+            .vx = z[kVx],
+            .vy = z[kVy],
+            .yaw_rate = z[kYawRate],
+            .steer = z[kSteer],
+            .steer_asked = z[kSteer] + car.steer_lag * z[7],
+            .acceleration = model_.model.change(body).vx,
+            .throttle = throttle_for(car, z[kPedal] + car.drive_lag * z[8], z[kVx])};
+  }
+
+ private:
+  model::VehicleParams vehicle_;
+};
+
+}  // namespace
+
+Result<path::RacingLine> plan_racing_line(const path::Track& track, const model::VehicleParams& vehicle,
+                                          const RacingPlanOptions& options) {
+  if (Result<void> valid = model::validate(vehicle); !valid) return fail(valid.error());
+  if (!track.centre().is_closed())
+    return fail(ErrorCode::kInvalidArgument,
+                track.name() + ": the road is open, expected a closed one: a lap has no end");
+  const auto is_share = [](double share, double most) { return share > 0.0 && share <= most; };
+  if (!(options.margin >= 0.0 && is_share(options.grip_share, 1.0) && is_share(options.brake_share, 1.0) &&
+        is_share(options.slip_share, 2.0) && options.speed_limit > 3.0 && options.time_step >= 0.01 &&
+        options.time_step <= 0.2))
+    return fail(ErrorCode::kInvalidArgument, "racing plan: an option is out of its range");
+  VehiclePlan model(vehicle, options.speed_limit);
+  CarSize size = model.size();
+  size.half_width += options.margin;
+  if (Result<void> fits = fits_road(track, size); !fits) return fail(fits.error());
+  model.set_reserve({.margin = options.margin,
+                     .grip_share = options.grip_share,
+                     .slip_share = options.slip_share,
+                     .brake_share = options.brake_share});
+  // Where tyres saturate an optimum may not settle on some nodes: others are tried.
+  Result<NodePlan> plan = fail(ErrorCode::kInvalidArgument, "");
+  for (const double step : {1.0, 0.85, 1.2}) {
+    PlanSearch search(
+        track, model,
+        {.time_step = step * options.time_step, .tolerance = kTolerance, .go_on = options.go_on});
+    plan = search.find();
+    if (plan || search.is_stopped()) break;
+  }
+  if (!plan) return fail(plan.error());
+  return line_of(track, vehicle.name, model, *plan, options.margin);
+}
+
+}  // namespace chicane::lap_time

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+
+#include "chicane/base/result.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/path/racing_line.hpp"
+#include "chicane/path/track.hpp"
+
+namespace chicane::lap_time {
+
+/// What a plan to race by leaves unused.
+struct RacingPlanOptions {
+  double margin = 0.0;         ///< of each contact patch from its edge, kerb included [m], >= 0
+  double grip_share = 1.0;     ///< of the friction, (0, 1]
+  double brake_share = 1.0;    ///< of the largest useful deceleration, (0, 1]
+  double slip_share = 1.0;     ///< most slip of an axle over that of its peak force, (0, 2]
+  double speed_limit = 100.0;  ///< [m/s], > 3
+  double time_step = 0.08;     ///< between nodes, about [s]; [0.01, 0.2]
+  /// Told how far it has come, and the lap time, after each iteration; false ends the search. May be empty.
+  std::function<bool(int iteration, double lap_time)> go_on{};
+};
+
+/// The fastest lap of a car as a controller believes it to be (model::PredictionModel), with its yaw motion,
+/// sideslip, lags and rates: a plan that such a controller can follow (docs/racing.md, section 1). Takes 0.2
+/// to 20 s and some 10 MB. Deterministic. Keeps nothing between calls.
+///
+/// kInvalidArgument for an open road, a road too narrow for the car or with a bend too tight for its full
+/// lock (names the place and the radius), parameters or options out of range, and for a search that ended
+/// without an optimum.
+[[nodiscard]] Result<path::RacingLine> plan_racing_line(const path::Track& track,
+                                                        const model::VehicleParams& vehicle,
+                                                        const RacingPlanOptions& options = {});
+
+}  // namespace chicane::lap_time

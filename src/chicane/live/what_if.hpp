@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include "chicane/base/result.hpp"
+#include "chicane/recording/branch.hpp"
+
+namespace chicane::live {
+
+/// "What if" of a run: from a moment on, with other settings.
+struct WhatIfQuestion {
+  std::size_t log = 0;                       ///< which of several recordings; 0 in a live run
+  recording::BranchOptions options{};        ///< `drives_both`: what was, or would be, beside it
+  static constexpr double kLongest = 600.0;  ///< [s] of each future
+  static constexpr std::size_t kMostSettings = 64;
+};
+
+/// Reads {"at_s":12.5,"for_s":20,"laps":1,"log":0,"settings":{"latency_ms":60}}. `at_s` null or absent: from
+/// now on; `laps`: the line is crossed so often, whatever is reached first. kInvalidArgument in a sentence
+/// for viewers.
+[[nodiscard]] Result<WhatIfQuestion> read_question(std::string_view json);
+
+/// Answers one question at a time, by computing the run again and driving both futures, on a thread of its
+/// own with low priority: control never waits. A new question takes the place of the one before. ask() and
+/// answer() are one thread's, the network thread.
+class WhatIf {
+ public:
+  /// Computes a question; called on the other thread. `hooks` are handed on to recording::branch_run().
+  using Compute = std::function<Result<recording::BranchReport>(const WhatIfQuestion& question,
+                                                                const recording::BranchHooks& hooks)>;
+
+  explicit WhatIf(Compute compute);
+  /// Gives up what is being computed.
+  ~WhatIf();
+  WhatIf(const WhatIf&) = delete;
+  WhatIf& operator=(const WhatIf&) = delete;
+
+  /// Begins, and does not wait; the number of the question, as a text.
+  [[nodiscard]] Result<std::string> ask(std::string_view json);
+  /// The newest answer, or how far it is: GET /what_if.json (docs/viewer.md).
+  [[nodiscard]] std::string answer();
+
+ private:
+  void work();
+  [[nodiscard]] std::string computed(std::uint64_t number, const WhatIfQuestion& question);
+
+  Compute compute_;
+  std::atomic<std::uint64_t> newest_{
+      0};                           ///< number of the last question; the one being computed may be older
+  std::atomic<double> share_{0.0};  ///< of it that is computed
+  std::mutex mutex_;                ///< of all below
+  std::condition_variable changed_;
+  std::optional<WhatIfQuestion> wish_;
+  std::string answer_ = R"({"id":0,"state":"none"})";
+  std::uint64_t answered_ = 0;
+  bool is_ending_ = false;
+  std::thread thread_;  // last: it starts when everything else is there
+};
+
+}  // namespace chicane::live

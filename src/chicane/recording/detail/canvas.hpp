@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "chicane/base/vec2.hpp"
+
+namespace chicane::recording {
+
+struct Colour {
+  std::uint8_t red = 0, green = 0, blue = 0;
+  double opacity = 1.0;  ///< [0, 1]
+};
+
+/// A picture of plain shapes with smooth edges. Coordinates are pixels from the upper left corner, y down;
+/// what lies outside is left out. Deterministic.
+class Canvas {
+ public:
+  Canvas(int width, int height);
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  /// Three bytes for each pixel, row by row: red, green, blue.
+  [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; }
+
+  void clear(const Colour& colour);
+  /// Fills what lies between some closed rings: one within another, turned against it, is a hole.
+  void fill(const std::vector<std::vector<Vec2>>& rings, const Colour& colour);
+  void line(std::span<const Vec2> points, double thickness, const Colour& colour);
+  void disc(const Vec2& centre, double radius, const Colour& colour);
+  void rectangle(double x, double y, double width, double height, const Colour& colour);
+  /// Text with its base line at y, `size` pixels from base line to the top of a capital letter. Letters
+  /// without a shape here are left blank. Where it ends.
+  double text(double x, double y, double size, std::string_view words, const Colour& colour);
+  /// How wide it would be.
+  [[nodiscard]] static double text_width(double size, std::string_view words);
+
+ private:
+  void add_edge(Vec2 from, Vec2 to);
+  void add_stroke(const Vec2& from, const Vec2& to, double thickness);
+  void paint(const Colour& colour);
+
+  int width_, height_;
+  std::vector<std::uint8_t> bytes_;
+  std::vector<float> cover_;  ///< of the shape under construction: change from pixel to pixel
+  int first_row_, last_row_;  ///< that it touches
+};
+
+}  // namespace chicane::recording

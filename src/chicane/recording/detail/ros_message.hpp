@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+
+namespace chicane::recording {
+
+/// The content of a message: all elements of each field, in their order. Fields of nested messages have their
+/// path as name: "poses.pose.position.x" holds the x of all poses.
+struct RosContent {
+  std::map<std::string, std::vector<double>, std::less<>> numbers{};
+  std::map<std::string, std::vector<std::string>, std::less<>> texts{};
+
+  /// The first element; `missing` where there is none.
+  [[nodiscard]] double number(std::string_view name, double missing = 0.0) const;
+  [[nodiscard]] std::string text(std::string_view name) const;
+  /// All of them; empty where there are none.
+  [[nodiscard]] const std::vector<double>& list(std::string_view name) const;
+};
+
+/// Reads CDR messages (XCDR1, little endian) by the definition that their recording holds, so that older and
+/// newer recordings are read alike.
+class RosReader {
+ public:
+  /// `definition` as MCAP's "ros2msg" has it: the message, then those it refers to, each behind a line of `=`
+  /// and "MSG: NAME". kParse for a type that is not defined in it.
+  [[nodiscard]] static Result<RosReader> create(std::string_view definition);
+
+  /// kParse for bytes that end too early.
+  [[nodiscard]] Result<RosContent> read(std::string_view bytes) const;
+
+ private:
+  struct Field {
+    std::string type{}, name{};
+    enum class Many { kOne, kFixed, kCounted } many = Many::kOne;
+    std::size_t count = 1;
+  };
+  class Cursor;
+
+  [[nodiscard]] bool read_type(const std::string& type, const std::string& name, Cursor& cursor, int depth,
+                               RosContent& content) const;
+
+  std::map<std::string, std::vector<Field>, std::less<>> types_{};  ///< "" is the message itself
+};
+
+}  // namespace chicane::recording

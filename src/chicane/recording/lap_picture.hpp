@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "chicane/recording/detail/canvas.hpp"
+#include "chicane/recording/driven_lap.hpp"
+
+namespace chicane::recording {
+
+struct PictureOptions {
+  int width = 1280;          ///< [px], even; [160, 3840]
+  int height = 720;          ///< [px], even; [90, 2160]
+  bool shows_whole = false;  ///< the whole road all the time, and not the car from above
+  double view = 110.0;       ///< width of the view that follows the car [m]
+};
+
+/// Draws moments of a run from above: road, car, plan in the colours of its speed, where it has been, and
+/// another run's car as a ghost; in words speed, lap time, the time lost to the ghost at the same place, and
+/// how far the lap is. A small map shows the whole road.
+class LapPicture {
+ public:
+  /// `shown`: what will be drawn, in order of time; `ghost`: the same of the other run, empty without one.
+  /// Both begin at the same moment: the ghost is where it was so long after its own beginning.
+  LapPicture(const DrivenRun& run, std::vector<DrivenMoment> shown, std::vector<DrivenMoment> ghost,
+             const PictureOptions& options);
+
+  /// How long it takes [s].
+  [[nodiscard]] double duration() const;
+  /// The picture `time` [s] after the beginning; held at both ends.
+  [[nodiscard]] const Canvas& at(double time);
+  /// How much later the car is at the ghost's places, `time` after the beginning [s]; none where one of the
+  /// two has not been there.
+  [[nodiscard]] std::optional<double> lost_to_ghost(double time) const;
+
+ private:
+  struct Camera {
+    Vec2 middle{};
+    double scale = 1.0;  ///< [px/m]
+    Vec2 corner{};       ///< of the picture, where the middle is drawn [px]
+    [[nodiscard]] Vec2 operator()(const Vec2& point) const;
+  };
+  [[nodiscard]] Camera whole(double x, double y, double width, double height) const;
+  void draw_road(const Camera& camera, double edge);
+  void draw_car(const Camera& camera, const DrivenMoment& moment, const Colour& colour);
+  void draw_plan(const Camera& camera, const DrivenMoment& moment);
+  void draw_trace(const Camera& camera, double time);
+  void draw_map(const DrivenMoment& moment, const std::optional<DrivenMoment>& other);
+  /// Share of the lap that is driven, from where it began; none where no track is known.
+  [[nodiscard]] std::optional<double> progress(const DrivenMoment& moment) const;
+  void draw_words(const DrivenMoment& moment, double time);
+
+  const DrivenRun& run_;
+  std::vector<DrivenMoment> shown_, ghost_;
+  PictureOptions options_;
+  Canvas canvas_;
+  double top_speed_ = 1.0;
+};
+
+}  // namespace chicane::recording

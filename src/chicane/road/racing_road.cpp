@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/road/racing_road.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "chicane/base/math.hpp"
+
+namespace chicane::road {
+namespace {
+
+CurvePoint curve_of(const path::LinePoint& point) {
+  return {.position = point.position,
+          .tangent = {cos(point.heading), sin(point.heading)},
+          .heading = point.heading,
+          .curvature = point.curvature};
+}
+
+/// Arc length between two points of a line: the chord, and what its bend adds.
+double length_between(const path::LinePoint& from, const path::LinePoint& to) {
+  const double chord = (to.position - from.position).norm();
+  const double turn = to.heading - from.heading;
+  return chord * (1.0 + turn * turn / 24.0);
+}
+
+std::vector<double> arc_lengths(std::span<const path::LinePoint> lap) {
+  std::vector<double> s(lap.size());
+  for (std::size_t i = 1; i < lap.size(); ++i) s[i] = s[i - 1] + length_between(lap[i - 1], lap[i]);
+  return s;
+}
+
+constexpr std::size_t kLeastPoints = 8;
+
+}  // namespace
+
+RacingRoad::RacingRoad(std::span<const path::LinePoint> lap, double kerb) : line_{0} {
+  if (lap.size() < kLeastPoints) return;
+  const std::vector<double> s = arc_lengths(lap);
+  const double length = s.back();
+  const int intervals = static_cast<int>(std::ceil(length / kSpacing));
+  line_ = ReferenceLine{intervals + 1};
+  if (!line_.shape(length, intervals, true)) return;
+  rooms_.resize(line_.samples().size());
+  sideslips_.resize(rooms_.size());
+  std::size_t from = 0;
+  for (std::size_t i = 0; i < rooms_.size(); ++i) {
+    const double at = std::min(static_cast<double>(i) * line_.spacing(), length);
+    while (from + 2 < lap.size() && s[from + 1] < at) ++from;
+    const path::LinePoint& a = lap[from];
+    const path::LinePoint& b = lap[from + 1];
+    const double piece = s[from + 1] - s[from];
+    const double share = std::clamp((at - s[from]) / piece, 0.0, 1.0);
+    const auto blend = [&](double of_a, double of_b) { return of_a + share * (of_b - of_a); };
+    ReferenceLine::Sample& sample = line_.samples()[i];
+    sample.curve = between(curve_of(a), curve_of(b), piece, share);
+    sample.offset = blend(a.d, b.d);
+    sample.speed = blend(a.speed, b.speed);
+    sample.limiter = SpeedLimiter::kNone;
+    sideslips_[i] = blend(a.sideslip, b.sideslip);
+    rooms_[i] = {blend(a.left, b.left) + kerb, blend(a.right, b.right) + kerb};
+  }
+}
+
+RacingRoad::Place RacingRoad::place(double s) const noexcept {
+  const double inside = s - line_.length() * std::floor(s / line_.length());
+  const double position = inside / line_.spacing();
+  const std::size_t i = std::min(static_cast<std::size_t>(position), rooms_.size() - 2);
+  return {i, position - static_cast<double>(i)};
+}
+
+Road::Room RacingRoad::room(double s) const noexcept {
+  const auto [i, share] = place(s);
+  return {rooms_[i].left + share * (rooms_[i + 1].left - rooms_[i].left),
+          rooms_[i].right + share * (rooms_[i + 1].right - rooms_[i].right)};
+}
+
+double RacingRoad::sideslip(double s) const noexcept {
+  const auto [i, share] = place(s);
+  return sideslips_[i] + share * (sideslips_[i + 1] - sideslips_[i]);
+}
+
+}  // namespace chicane::road

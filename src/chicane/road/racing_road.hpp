@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "chicane/path/road_data.hpp"
+#include "chicane/road/reference_line.hpp"
+#include "chicane/road/road.hpp"
+
+namespace chicane::road {
+
+/// A planned lap to race by: a line with its speeds, and the road's edges beside it. Immutable: made beside
+/// the loop that drives by it, and handed over whole. Look-ups allocate nothing; several threads may read.
+class RacingRoad {
+ public:
+  static constexpr double kSpacing = 1.0;  ///< of the samples [m] at most
+
+  /// From a lap by rising time, whose last point repeats the first. `kerb`: drivable beyond the edges [m].
+  /// Empty line for less than 8 points.
+  explicit RacingRoad(std::span<const path::LinePoint> lap, double kerb = 0.0);
+
+  /// In W, closed. The offset of its samples is that from the road's centre line [m].
+  [[nodiscard]] const ReferenceLine& line() const noexcept { return line_; }
+  /// From the line to the edges, kerbs included, at arc length s on it, across the line [m].
+  [[nodiscard]] Road::Room room(double s) const noexcept;
+  /// From the body's heading to the line's where the car is planned to slide [rad], left positive.
+  [[nodiscard]] double sideslip(double s) const noexcept;
+
+ private:
+  /// Between two samples: the first, and the share of the second.
+  struct Place {
+    std::size_t sample;
+    double share;
+  };
+  [[nodiscard]] Place place(double s) const noexcept;
+
+  ReferenceLine line_;
+  std::vector<Road::Room> rooms_;  ///< at the line's samples
+  std::vector<double> sideslips_;
+};
+
+}  // namespace chicane::road

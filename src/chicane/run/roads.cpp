@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/run/roads.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "chicane/run/control_cycle.hpp"
+#include "chicane/run/make.hpp"
+#include "chicane/run/racing.hpp"
+
+namespace chicane::run {
+namespace {
+
+bool are_same(std::span<const Option> options, const void* a, const void* b) {
+  return std::all_of(options.begin(), options.end(),
+                     [&](const Option& option) { return option.read(a) == option.read(b); });
+}
+
+bool plan_same_lap(const scenario::Scenario& a, const scenario::Scenario& b) {
+  using Entry = controller::TrackingMpcEntry;
+  if (!races(a) && !races(b)) return true;
+  return races(a) && races(b) &&
+         are_same(Entry::options(), &std::get<Entry::Options>(a.controllers),
+                  &std::get<Entry::Options>(b.controllers));
+}
+
+/// Whether the same road comes of both.
+bool is_same_road(const scenario::Scenario& a, const scenario::Scenario& b) {
+  return a.track == b.track && are_same(safety::guard_options(), &a.guard, &b.guard) && plan_same_lap(a, b) &&
+         ((a.guard.mode == safety::GuardMode::kOff && !races(a)) ||
+          are_same(model::vehicle_options(), &a.vehicle, &b.vehicle));
+}
+
+}  // namespace
+
+Result<const Roads::Prepared*> Roads::of(const scenario::Scenario& scenario) {
+  const auto known = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const Entry& each) { return is_same_road(each.scenario, scenario); });
+  if (known != entries_.end()) return &known->prepared;
+  Result<path::Track> track = make_track(scenario);
+  if (!track) return fail(track.error());
+  Result<path::Track> waypoints = make_waypoints(*track);
+  if (!waypoints) return fail(waypoints.error());
+  road::KnownRoad road = known_road(scenario, &*track);
+  auto lap = plan_lap(scenario, &*track);
+  if (!lap) return fail(lap.error());
+  if (entries_.size() == kRemembered) entries_.pop_back();
+  entries_.push_front(
+      {scenario, {std::move(*track), std::move(*waypoints), std::move(road), std::move(*lap)}});
+  return &entries_.front().prepared;
+}
+
+}  // namespace chicane::run

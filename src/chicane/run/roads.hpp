@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <deque>
+#include <memory>
+
+#include "chicane/base/result.hpp"
+#include "chicane/path/track.hpp"
+#include "chicane/protocol/remembered_files.hpp"
+#include "chicane/road/known_road.hpp"
+#include "chicane/road/racing_road.hpp"
+#include "chicane/scenario/scenario.hpp"
+
+namespace chicane::run {
+
+/// What many runs on a few roads have in common, made once: a track file is read, and its line is smoothed
+/// for the guard, in milliseconds; ten simulated seconds take no longer. Remembers the last kRemembered
+/// roads, and the files that runs are composed of. Runs that use it are the same bit for bit as those that do
+/// not. One thread.
+class Roads {
+ public:
+  static constexpr std::size_t kRemembered = 16;
+
+  struct Prepared {
+    path::Track track;
+    path::Track waypoints;                        ///< that telemetry shows
+    road::KnownRoad known;                        ///< to the guard, at the beginning
+    std::shared_ptr<const road::RacingRoad> lap;  ///< planned, of a controller that races; null of any other
+  };
+  /// Of scenario.track, for its guard and vehicle. Fails as make.hpp does. Valid until the next call.
+  [[nodiscard]] Result<const Prepared*> of(const scenario::Scenario& scenario);
+  /// For protocol::compose() of those runs.
+  [[nodiscard]] protocol::RememberedFiles& files() noexcept { return files_; }
+
+ private:
+  struct Entry {
+    scenario::Scenario scenario;
+    Prepared prepared;
+  };
+  protocol::RememberedFiles files_;
+  std::deque<Entry> entries_;  ///< the newest first
+};
+
+}  // namespace chicane::run

@@ -1,0 +1,430 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <type_traits>
+
+#include "chicane/base/deadline.hpp"
+#include "chicane/base/math.hpp"
+#include "chicane/solver/detail/barrier.hpp"
+#include "chicane/solver/detail/bound_barrier.hpp"
+#include "chicane/solver/detail/evaluation.hpp"
+#include "chicane/solver/detail/filter.hpp"
+#include "chicane/solver/detail/iterate.hpp"
+#include "chicane/solver/detail/linearisation.hpp"
+#include "chicane/solver/detail/lq_solver.hpp"
+#include "chicane/solver/detail/soft_steps.hpp"
+#include "chicane/solver/detail/steps.hpp"
+#include "chicane/solver/problem.hpp"
+#include "chicane/solver/solution.hpp"
+
+namespace chicane::solver {
+
+/// A primal-dual interior point method with a filter line search over multiple shooting (docs/solver.md, eq.
+/// 30–39; after Wächter, Biegler 2006). States, inputs, slacks and prices of the dynamics are all unknowns;
+/// Hessians are exact, and shifted until the quadratic program is convex. Slower than full steps with a
+/// working set, and works from where those fail.
+template <OcpProblem P, std::size_t Capacity, class Arch>
+class FilterMethod {
+ public:
+  static constexpr std::size_t kNx = P::kNx;
+  static constexpr std::size_t kNu = P::kNu;
+  static constexpr std::size_t kNc = P::kNc;
+  static constexpr std::size_t kNz = kNx + kNu;
+  using Evaluate = Evaluation<P, Arch>;
+  using Point = Iterate<kNx, kNu, Capacity>;
+  using Lq = LqSolver<Arch, ProblemPattern<P>, Capacity>;
+  using Layout = typename Lq::Layout;
+  using Bounds = BoundBarrier<Lq, Capacity>;
+  using Slacks = Barrier<P, Capacity, Arch>;
+  using Look = Linearisation<P, Capacity, Arch>;
+  enum class Outcome {
+    kGoing,
+    kSolved,  ///< the problem of the last barrier, loosely: near the solution
+    kStuck,   ///< no step, no simulation helps
+    kSpent    ///< the deadline came first
+  };
+
+  /// Begins at `t`, whose inputs are moved off their bounds. The barrier will end at `final_mu` in the
+  /// problem's own unit of costs.
+  void start(const P& problem, double final_mu, bool is_exact, Look& now, Lq& lq, Slacks& slacks, Point& t,
+             SolveReport& report) noexcept {
+    for (std::size_t m = 0; m < kNu; ++m) {
+      for (std::size_t k = 0; k < t.horizon; ++k)
+        t.u[m][k] = Bounds::inside(t.u[m][k], now.lower[m][k], now.upper[m][k]);
+    }
+    now.chains.keep_previous(t);
+    has_prices_ = false;
+    is_exact_ = is_exact;
+    is_fresh_ = is_new_barrier_ = are_sides_new_ = true;
+    slacks.set_mu(kFirstBarrier);
+    look<1>(problem, now, lq, slacks, t, report);
+    double steepest = 0.0;
+    keep_gradient(lq, t.horizon);
+    for (std::size_t k = 0; k < t.horizon; ++k) {
+      for (const double slope : gradient_[k]) steepest = std::max(steepest, std::fabs(slope));
+    }
+    for (std::size_t i = 0; i < kNx; ++i) steepest = std::max(steepest, std::fabs(lq.lq.terminal[kNx][i]));
+    unit_ = std::isfinite(steepest) ? std::max(1.0, steepest / kSteep) : 1.0;
+    mu_ = kFirstBarrier * unit_;
+    final_mu_ = std::min(final_mu, mu_);
+    slacks.set_mu(mu_);
+    is_fresh_ = true;
+    last_shift_ = forced_shift_ = 0.0;
+    failures_ = simulations_ = 0;
+    candidate_ = t;
+  }
+  /// The working set of the present point; what is needed to go on should that not be enough.
+  void hand_over(const Look& now, Lq& lq) noexcept {
+    bounds_.choose_working_set(lq);
+    for (std::size_t i = 0; i < kNx; ++i)
+      std::copy(now.adjoint[i], now.adjoint[i] + candidate_.horizon, prices_[i]);
+  }
+  /// Goes on with a lower barrier from where it left off. False when there is none.
+  bool resume(Look& now, Slacks& slacks, Point& t) noexcept {
+    constexpr double kLeast = 1e-13;
+    if (final_mu_ <= kLeast * unit_) return false;
+    final_mu_ = std::max(kLeast * unit_, 1e-2 * final_mu_);
+    t = candidate_;
+    for (std::size_t i = 0; i < kNx; ++i) std::copy(prices_[i], prices_[i] + t.horizon, now.adjoint[i]);
+    slacks.set_mu(mu_);
+    is_fresh_ = is_new_barrier_ = true;
+    return true;
+  }
+  /// The point where it stands; after start().
+  [[nodiscard]] const Point& point() const noexcept { return candidate_; }
+
+  /// One look and one step from t. Pre: `t` is as the last call left it.
+  Outcome turn(const P& problem, Look& now, Lq& lq, Slacks& slacks, Point& t, const Deadline& deadline,
+               SolveReport& report) noexcept {
+    look(problem, now, lq, slacks, t, report);
+    if (!std::isfinite(report.cost + report.defect + report.complementarity)) return Outcome::kStuck;
+    if (are_sides_new_) bounds_.start(lq, t.horizon, mu_);
+    are_sides_new_ = false;
+    const double error = residual(now, lq, t, report);
+    if (error <= kSolvedAt * mu_) {
+      candidate_ = t;
+      if (mu_ <= final_mu_) return Outcome::kSolved;
+      lower_barrier(slacks);
+      look(problem, now, lq, slacks, t, report);
+    }
+    const Merit here = measure(problem, slacks, t, 0.0);
+    if (!here.is_finite()) return Outcome::kStuck;
+    if (is_new_barrier_) {
+      filter_.reset(1e4 * std::max(1.0, here.miss));
+      small_miss_ = 1e-4 * std::max(1.0, here.miss);
+      is_new_barrier_ = false;
+    }
+    keep_gradient(lq, t.horizon);
+    bounds_.add_to(lq, mu_);
+    if (deadline.spent()) return Outcome::kSpent;
+    if (!factorise(lq, t.horizon, report.sweeps)) {
+      failures_ = std::max(failures_, 1);
+      return recover(problem, now, lq, t);
+    }
+    lq.forward(t.horizon, Lq::Repair::kNone);
+    collect_step<Arch, false>(lq, t.horizon, step_);
+    return search(problem, now, lq, slacks, t, here, deadline);
+  }
+
+ private:
+  static constexpr double kFirstBarrier = 0.1;  ///< where gradients are at most kSteep
+  static constexpr double kSteep = 100.0;
+  static constexpr double kSolvedAt = 10.0;  ///< a barrier's problem is solved at this many times the barrier
+
+  static constexpr std::size_t z(std::size_t i) noexcept { return i < kNx ? i : i + 1; }
+
+  // ---- looks
+
+  template <int Order>
+  void look(const P& problem, Look& now, Lq& lq, Slacks& slacks, const Point& t,
+            SolveReport& report) noexcept {
+    now.state_residual = has_prices_ ? residual_ : nullptr;
+    now.template look<Order>(problem, t, is_fresh_, 1.0, slacks, lq.lq, report);
+    now.state_residual = nullptr;
+    is_fresh_ = false;
+  }
+  /// With exact Hessians once there are prices for them.
+  void look(const P& problem, Look& now, Lq& lq, Slacks& slacks, const Point& t,
+            SolveReport& report) noexcept {
+    if constexpr (has_hessians<P>()) {
+      if (has_prices_ && is_exact_) return look<2>(problem, now, lq, slacks, t, report);
+    }
+    look<1>(problem, now, lq, slacks, t, report);
+  }
+
+  /// How far from solving the barrier problem (eq. 34).
+  double residual(const Look& now, const Lq& lq, const Point& t, const SolveReport& report) const noexcept {
+    if (!has_prices_) return std::numeric_limits<double>::infinity();
+    double dual = 0.0;
+    double prices = 0.0;
+    for (std::size_t i = 0; i < kNx; ++i) {
+      for (std::size_t k = 1; k < t.horizon; ++k) {
+        double sum = residual_[i][k];
+        for (std::size_t m = 0; Lq::kHasRates && m < kNu; ++m) {
+          if (Lq::has_rate(m) && Lq::rate_state(m) == i) sum += bounds_.rate_pull(k, m);
+        }
+        dual = std::max(dual, std::fabs(sum));
+        prices += std::fabs(now.adjoint[i][k]);
+      }
+      dual = std::max(dual, std::fabs(lq.lq.terminal[kNx][i] - now.adjoint[i][t.horizon - 1]));
+    }
+    for (std::size_t m = 0; m < kNu; ++m) {
+      for (std::size_t k = 0; k < t.horizon; ++k) {
+        if (lq.hold[k][m] == Hold::kFree)
+          dual = std::max(dual, std::fabs(now.slope[m][k] + bounds_.pull(k, m)));
+      }
+    }
+    const auto sides = bounds_.residual(mu_);
+    const double count = static_cast<double>(t.horizon * kNx) + sides.count;
+    const double scale = std::max(kSteep, (prices + sides.multipliers) / count / unit_) / kSteep;
+    return std::max(std::max({dual, sides.product, report.complementarity}) / scale, report.defect * unit_);
+  }
+  void lower_barrier(Slacks& slacks) noexcept {
+    const double share = mu_ / unit_;
+    mu_ = std::max(final_mu_, unit_ * std::min(0.2 * share, share * std::sqrt(share)));
+    slacks.set_mu(mu_);
+    is_new_barrier_ = true;
+  }
+
+  // ---- the step
+
+  void keep_gradient(const Lq& lq, std::size_t horizon) noexcept {
+    for (std::size_t k = 0; k < horizon; ++k) {
+      for (std::size_t i = 0; i < kNz; ++i) gradient_[k][i] = lq.lq.cost(k, z(i), Layout::kOne);
+    }
+  }
+  /// Shifts Hessians until the quadratic program is convex (eq. 36). False when it takes too much.
+  bool factorise(Lq& lq, std::size_t horizon, int& sweeps) noexcept {
+    const double most = 1e10 * unit_;
+    shift_ = forced_shift_;
+    forced_shift_ = 0.0;
+    while (shift_ <= most) {
+      ++sweeps;
+      if (!(lq.backward_shifted(horizon, shift_) > 0.0)) {
+        if (shift_ > 0.0) last_shift_ = shift_;
+        return true;
+      }
+      const bool is_known = last_shift_ > 0.0;
+      if (shift_ > 0.0) {
+        shift_ *= is_known ? 8.0 : 100.0;
+      } else {
+        shift_ = is_known ? std::max(1e-12 * unit_, last_shift_ / 3.0) : 1e-4 * unit_;
+      }
+    }
+    last_shift_ = 0.0;
+    return false;
+  }
+  /// Slope of cost and barriers along the step.
+  double slope_along(const Lq& lq, std::size_t horizon) const noexcept {
+    double sum = bounds_.slope(mu_) + soft_.slope();
+    for (std::size_t k = 0; k < horizon; ++k) {
+      for (std::size_t i = 0; i < kNx; ++i) sum += gradient_[k][i] * step_.x[i][k];
+      for (std::size_t m = 0; m < kNu; ++m) sum += gradient_[k][kNx + m] * step_.u[m][k];
+    }
+    for (std::size_t i = 0; i < kNx; ++i) sum += lq.lq.terminal[kNx][i] * step_.x[i][horizon];
+    return sum;
+  }
+
+  // ---- the line search
+
+  /// Halves the step until the filter takes it; where that takes long, also along simulations that keep a
+  /// share of the defects.
+  Outcome search(const P& problem, Look& now, const Lq& lq, Slacks& slacks, Point& t, const Merit& here,
+                 const Deadline& deadline) noexcept {
+    constexpr int kPatience = 4;
+    const double fraction = std::max(0.99, 1.0 - mu_ / unit_);
+    const StepLengths own = bounds_.find(lq, mu_, fraction);
+    const StepLengths soft = soft_.find(problem, slacks, step_, fraction);
+    const double dual = std::min(own.dual, soft.dual);
+    const double slope = slope_along(lq, t.horizon);
+    const double least = least_length(here, slope);
+    double length = std::min(own.primal, soft.primal);
+    for (int trial = 0; trial == 0 || length >= least; ++trial, length *= 0.5) {
+      if (deadline.spent()) return Outcome::kSpent;
+      add_step<Arch>(t, length, step_, candidate_);
+      now.chains.keep_previous(candidate_);
+      Merit there = measure(problem, slacks, candidate_, length);
+      bool is_good = is_acceptable(here, there, slope, length);
+      if (!is_good && trial >= kPatience && simulate(problem, now, lq, t, length)) {
+        there = measure(problem, slacks, candidate_, length, &lq, &t);
+        is_good = is_acceptable(here, there, slope, length);
+      }
+      if (!is_good) continue;
+      if (length >= 0.05 || there.miss <= 0.9 * here.miss) failures_ = 0;
+      t = candidate_;
+      bounds_.move(dual, mu_);
+      soft_.move(slacks, t.horizon, dual);
+      take_prices(lq, now, t.horizon, has_prices_ ? length : 1.0);
+      has_prices_ = true;
+      return Outcome::kGoing;
+    }
+    last_shift_ = shift_;
+    return recover(problem, now, lq, t);
+  }
+  /// Of Wächter and Biegler: enough descent where the equations hold and the step promises it, else less of
+  /// miss or cost.
+  bool is_acceptable(const Merit& here, const Merit& there, double slope, double length) noexcept {
+    if (!filter_.accepts(there)) return false;
+    const double rounding = 1e-13 * std::fabs(here.cost);
+    const bool promises = slope < 0.0 && length > worth(here.miss, slope);
+    if (here.miss <= small_miss_ && promises)
+      return there.cost <= here.cost + 1e-4 * length * slope + rounding;
+    const bool is_better = there.miss <= (1.0 - Filter::kMissMargin) * here.miss + 1e-14 ||
+                           there.cost <= here.cost - Filter::kCostMargin * here.miss + rounding;
+    if (is_better) filter_.add(here);
+    return is_better;
+  }
+  /// The length from which on a step promises more cost than its miss is worth: miss^1.1 / (−slope)^2.3. Pre:
+  /// slope < 0.
+  static double worth(double miss, double slope) noexcept {
+    return miss > 0.0 ? exp(1.1 * log(miss) - 2.3 * log(-slope)) : 0.0;
+  }
+  double least_length(const Merit& here, double slope) const noexcept {
+    double least = Filter::kMissMargin;
+    if (slope < 0.0) {
+      least = std::min(least, Filter::kCostMargin * here.miss / -slope);
+      if (here.miss <= small_miss_) least = std::min(least, worth(here.miss, slope));
+    }
+    return std::max(0.05 * least, 1e-10);
+  }
+  void take_prices(const Lq& lq, Look& now, std::size_t horizon, double length) noexcept {
+    for (std::size_t k = 0; k < horizon; ++k) {
+      for (std::size_t i = 0; i < kNx; ++i) {
+        double& price = now.adjoint[i][k];
+        price += length * (lq.price(k + 1, i) - price);
+      }
+    }
+  }
+
+  /// Miss and cost of `point` with the slacks at `length` of their direction (0: where they are). With
+  /// `from`, whose bounds are in `lq`: slacks of bounds as they are.
+  Merit measure(const P& problem, const Slacks& slacks, const Point& point, double length,
+                const Lq* lq = nullptr, const Point* from = nullptr) noexcept {
+    using One = typename Evaluate::One;
+    Merit merit;
+    for (std::size_t k = 0; k < point.horizon; ++k) {
+      const auto x = point.template state<One>(k);
+      const auto u = point.template input<One>(k);
+      merit.cost += half_square(problem.residual(static_cast<int>(k), x, u));
+      if constexpr (kNc > 0) {
+        const auto values = to_array<One>(problem.constraint(static_cast<int>(k), x, u));
+        for (std::size_t c = 0; c < kNc; ++c)
+          soft_.measure(price_of(problem, c), slacks, c, k, Evaluate::number(values[c]), length, merit.miss,
+                        merit.cost);
+      }
+      const auto next = Evaluate::next(problem, k, x, u);
+      for (std::size_t i = 0; i < kNx; ++i)
+        merit.miss += std::fabs(Evaluate::number(next[i]) - point.x[i][k + 1]);
+    }
+    merit.cost += half_square(problem.terminal_residual(point.template state<One>(point.horizon)));
+    if (from == nullptr) {
+      bounds_.measure(length, mu_, merit.miss, merit.cost);
+    } else {
+      const auto moved = [&](std::size_t k, std::size_t m) { return point.u[m][k] - from->u[m][k]; };
+      bounds_.measure_at(*lq, mu_, moved, merit.miss, merit.cost);
+    }
+    return merit;
+  }
+  template <class Row>
+  static double half_square(const Row& row) noexcept {
+    double sum = 0.0;
+    for (const auto& r : to_array<typename Evaluate::One>(row))
+      sum += 0.5 * Evaluate::number(r) * Evaluate::number(r);
+    return sum;
+  }
+
+  // ---- when no step is good
+
+  /// First a larger shift, then prices and slacks anew, then a simulation, which has no defects.
+  Outcome recover(const P& problem, const Look& now, const Lq& lq, Point& t) noexcept {
+    constexpr int kMostSimulations = 8;
+    candidate_ = t;
+    ++failures_;
+    if (failures_ == 1) {
+      forced_shift_ = last_shift_ = std::max(100.0 * last_shift_, 1e-2 * unit_);
+      return Outcome::kGoing;
+    }
+    is_new_barrier_ = is_fresh_ = true;
+    has_prices_ = false;
+    if (failures_ == 2) return Outcome::kGoing;
+    failures_ = 1;
+    if (++simulations_ > kMostSimulations) return Outcome::kStuck;
+    if (!simulate(problem, now, lq, t, 1.0, 0.0) && !simulate(problem, now, lq, t, 0.0, 0.0)) {
+      candidate_ = t;
+      return Outcome::kStuck;
+    }
+    t = candidate_;
+    are_sides_new_ = true;
+    return Outcome::kGoing;
+  }
+  bool simulate(const P& problem, const Look& now, const Lq& lq, const Point& t, double length) noexcept {
+    return simulate(problem, now, lq, t, 1.0, length, 1.0 - length);
+  }
+  /// candidate_ by simulation: inputs of t, with `feedback` times the gains and `length` of the step's
+  /// constant part, cut to 0.99 of the way to their bounds; a share `kept` of each defect stays. False when
+  /// that is not finite.
+  bool simulate(const P& problem, const Look& now, const Lq& lq, const Point& t, double feedback,
+                double length, double kept = 0.0) noexcept {
+    using One = typename Evaluate::One;
+    constexpr double kShare = 0.99;
+    candidate_.horizon = t.horizon;
+    for (std::size_t i = 0; i < kNx; ++i) candidate_.x[i][0] = t.x[i][0];
+    for (std::size_t k = 0; k < t.horizon; ++k) {
+      for (std::size_t m = 0; m < kNu; ++m) {
+        double du = length * lq.constant(k, m);
+        for (std::size_t i = 0; feedback > 0.0 && i < kNx; ++i)
+          du += feedback * lq.gain(k, m, i) * (candidate_.x[i][k] - t.x[i][k]);
+        du = std::min(std::max(du, kShare * lq.lq.low[m][k]), kShare * lq.lq.high[m][k]);
+        if (Lq::kHasRates && Lq::has_rate(m) && k > 0) {
+          const double was = candidate_.u[m][k - 1] - t.u[m][k - 1];
+          du = was +
+               std::min(std::max(du - was, kShare * lq.lq.rate_low[m][k]), kShare * lq.lq.rate_high[m][k]);
+        }
+        candidate_.u[m][k] = t.u[m][k] + du;
+      }
+      const auto next =
+          Evaluate::next(problem, k, candidate_.template state<One>(k), candidate_.template input<One>(k));
+      double sum = 0.0;
+      for (std::size_t i = 0; i < kNx; ++i) {
+        candidate_.x[i][k + 1] = Evaluate::number(next[i]) - kept * lq.lq.stage[k].defect(i);
+        sum += 0.0 * candidate_.x[i][k + 1];
+      }
+      if (!(sum == 0.0)) return false;
+    }
+    now.chains.keep_previous(candidate_);
+    return true;
+  }
+
+  Bounds bounds_;
+  SoftSteps<P, Capacity, Arch> soft_;
+  Filter filter_;
+  Point step_;
+  Point candidate_;  ///< of the line search; between turns the present point
+  alignas(64) double residual_[kNx][kStageStride<Capacity>]{};  ///< of optimality in the states
+  double prices_[kNx][Capacity]{};                              ///< of the dynamics, at the last hand-over
+  double gradient_[Capacity][kNz]{};                            ///< of the stages' costs
+  double mu_ = kFirstBarrier;
+  double final_mu_ = 1e-6;
+  double unit_ = 1.0;        ///< of costs
+  double small_miss_ = 0.0;  ///< below it the cost has to fall
+  double shift_ = 0.0;       ///< of this turn's Hessians
+  double last_shift_ = 0.0;
+  double forced_shift_ = 0.0;   ///< least shift of the next turn
+  bool is_exact_ = true;        ///< Hessians
+  bool has_prices_ = false;     ///< of the dynamics
+  bool is_fresh_ = true;        ///< the slacks of soft constraints go to their central path
+  bool is_new_barrier_ = true;  ///< the filter is of another problem
+  bool are_sides_new_ = true;   ///< the slacks of bounds do not belong to the present point
+  int failures_ = 0;
+  int simulations_ = 0;
+};
+
+/// In its place for problems that leave it out.
+struct NoFilter {};
+
+}  // namespace chicane::solver

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "chicane/base/deadline.hpp"
+#include "chicane/solver/ocp_solver.hpp"
+
+namespace chicane::solver {
+
+// What OcpSolver does where full steps have lost their way: the parts of it that have to do with the filter
+// method.
+
+/// From where the solve started, or once more from where the filter method left off. False when that is of no
+/// use.
+template <OcpProblem P, int Capacity, class Arch>
+bool OcpSolver<P, Capacity, Arch>::begin_filter(const P& problem, const Trajectory& trajectory,
+                                                SolveReport& report) noexcept {
+  is_filtering_ = true;
+  if (has_filtered_) return filter_.resume(now_, barrier_, t_);
+  full_steps_ = is_fresh_ = has_filtered_ = true;
+  is_exact_ = false;
+  if (!take_guess(problem, trajectory)) return false;
+  if (stands_still_) {
+    fill_inputs(0);
+    hold_states();
+  }
+  filter_.start(problem, options_.tolerance, options_.second_order, now_, lq_, barrier_, t_, report);
+  return true;
+}
+
+/// One turn of it. Near the solution its working set goes to full steps, which converge faster. False at the
+/// end of the budget, or when it has lost its way, too.
+template <OcpProblem P, int Capacity, class Arch>
+bool OcpSolver<P, Capacity, Arch>::filter_turn(const P& problem, const Deadline& deadline,
+                                               SolveReport& report) noexcept {
+  using Outcome = typename Filter::Outcome;
+  if (work_ >= options_.max_iterations || deadline.spent()) return false;
+  const Outcome outcome = filter_.turn(problem, now_, lq_, barrier_, t_, deadline, report);
+  if (outcome == Outcome::kGoing) return true;
+  is_filtering_ = false;
+  if (outcome != Outcome::kSolved) return false;
+  filter_.hand_over(now_, lq_);
+  best_ = t_;
+  best_report_ = report;
+  best_report_.stationarity = kInfinity;  // by other prices than those of the first look at it
+  barrier_.save(best_slacks_, t_.horizon);
+  has_best_ = full_steps_ = true;
+  is_exact_ = options_.second_order;
+  progress_.restart();
+  barrier_.set_mu(std::max(barrier_.mu(), options_.tolerance));
+  return true;
+}
+
+/// Steps have become as short as rounding lets them: the present iterate, whose slacks and prices are known,
+/// is as good as any.
+template <OcpProblem P, int Capacity, class Arch>
+bool OcpSolver<P, Capacity, Arch>::is_at_floor(const SolveReport& report) noexcept {
+  constexpr double kFloor = 1e-8;  // of the inputs
+  constexpr double kClose = 1e-6;
+  if (!kCanFilter || !is_finite(report) || !has_best_ || !full_steps_ || is_growing() || !barrier_.is_final())
+    return false;
+  double largest = 1.0;
+  for (std::size_t m = 0; m < kNu; ++m) {
+    for (std::size_t k = 0; k < t_.horizon; ++k) largest = std::max(largest, std::fabs(t_.u[m][k]));
+  }
+  const bool is_short = progress_.shortest() <= kFloor * largest;
+  if (!is_short || !(residual(report) <= std::min(kClose, options_.loose_tolerance))) return false;
+  best_ = t_;
+  best_report_ = report;
+  return shows_best_ = true;
+}
+
+/// Not solved: where the filter method stands if that is close; else, of its inputs, the best iterate's and
+/// the guess's, those whose simulation costs least: no more than the guess.
+template <OcpProblem P, int Capacity, class Arch>
+void OcpSolver<P, Capacity, Arch>::take_cheapest(const P& problem, const Trajectory& trajectory,
+                                                 SolveReport& report) noexcept {
+  if constexpr (kCanFilter) {
+    full_steps_ = is_exact_ = false;  // slacks on their central path
+    double least = kInfinity;
+    const auto consider = [&](bool is_solution) {
+      if (!is_solution && !roll_out(problem)) return false;
+      SolveReport seen = report;
+      look(problem, seen);
+      if (!is_finite(seen) || (is_solution && !is_close(seen))) return false;
+      if (!is_solution && seen.cost >= least) return false;
+      least = seen.cost;
+      step_ = t_;
+      return true;
+    };
+    if (has_filtered_) t_ = filter_.point();
+    if (!has_filtered_ || !consider(true)) {
+      if (has_filtered_) consider(false);
+      if (has_best_) {
+        t_ = best_;
+        consider(false);
+      }
+      if (take_guess(problem, trajectory)) consider(false);
+    }
+    if (least < kInfinity) {
+      t_ = step_;
+      has_best_ = true;
+    } else if (has_best_) {
+      t_ = best_;
+    }
+    look(problem, report);
+  }
+}
+
+}  // namespace chicane::solver

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <type_traits>
+
+#include "chicane/base/deadline.hpp"
+#include "chicane/solver/detail/interior_point.hpp"
+#include "chicane/solver/detail/lq_solver.hpp"
+#include "chicane/solver/problem.hpp"
+
+namespace chicane::solver {
+
+/// Solves the quadratic program of one turn by corrections of its working set, else stage by stage, or with
+/// bounds on changes by an interior point (docs/solver.md, "Bounds: primal-dual active set").
+template <OcpProblem P, class Lq>
+class WorkingSetQp {
+ public:
+  using Repair = typename Lq::Repair;
+
+  /// A fresh problem: the next backward sweep chooses the working set.
+  void choose(bool chooses) noexcept { chooses_ = chooses; }
+
+  /// Leaves the step in `lq`; adds to `sweeps`. `is_exact`: the stages have exact Hessians, which
+  /// `take_gauss_newton()` replaces where they are indefinite, and unsets. `slope(k, m)`: of the cost by
+  /// input m. False when the deadline came first.
+  template <class TakeGaussNewton, class Slope>
+  bool solve(Lq& lq, std::size_t horizon, const bool& is_exact, const TakeGaussNewton& take_gauss_newton,
+             const Slope& slope, const Deadline& deadline, int& sweeps) noexcept {
+    const Outcome outcome = correct(lq, horizon, is_exact, take_gauss_newton, deadline, sweeps);
+    if (outcome != Outcome::kCircles) return outcome == Outcome::kSolved;
+    if constexpr (kHasRateBounds<P>) {
+      if (is_exact) take_gauss_newton();
+      sweeps += interior_.solve(lq, horizon, slope, [&] { return deadline.spent(); });
+      const Outcome refined = correct(lq, horizon, is_exact, take_gauss_newton, deadline, sweeps);
+      if (refined == Outcome::kCircles) interior_.put_step(lq, horizon);
+      return refined != Outcome::kSpent;
+    } else {
+      ++sweeps;
+      lq.backward(horizon, 0.0, true);
+      lq.forward(horizon, Repair::kClip);
+      return true;
+    }
+  }
+
+ private:
+  /// Sweeps that may correct the whole working set in vain.
+  static constexpr int kChances = kHasRateBounds<P> ? 3 : 5;
+  enum class Outcome { kSolved, kCircles, kSpent };
+
+  /// All corrections at once as long as that lowers their number, then one by one if there are few. The first
+  /// set of all is the one of the stages' own box problems.
+  template <class TakeGaussNewton>
+  Outcome correct(Lq& lq, std::size_t horizon, const bool& is_exact, const TakeGaussNewton& take_gauss_newton,
+                  const Deadline& deadline, int& sweeps) noexcept {
+    constexpr int kMaxSweeps = 20;
+    int fewest = std::numeric_limits<int>::max();
+    int chances = kChances;
+    ++sweeps;
+    double extra = lq.backward(horizon, 0.0, chooses_);
+    chooses_ = false;
+    for (int sweep = 1; sweep < kMaxSweeps; ++sweep) {
+      if (extra > 0.0 && is_exact) {  // indefinite: Gauss–Newton is not
+        take_gauss_newton();
+        ++sweeps;
+        extra = lq.backward(horizon);
+      }
+      const int contradictions = lq.forward(horizon, chances > 0 ? Repair::kAll : Repair::kLast);
+      if (contradictions == 0) return Outcome::kSolved;
+      if (deadline.spent()) return Outcome::kSpent;
+      if (chances == 0 && contradictions > (kHasRateBounds<P> ? 0 : kMaxSweeps - sweep))
+        return Outcome::kCircles;
+      chances = contradictions < fewest ? kChances : chances - 1;
+      fewest = std::min(fewest, contradictions);
+      ++sweeps;
+      extra = lq.backward_again();
+    }
+    return Outcome::kCircles;
+  }
+
+  std::conditional_t<kHasRateBounds<P>, InteriorPoint<Lq>, std::nullptr_t> interior_{};
+  bool chooses_ = false;
+};
+
+}  // namespace chicane::solver

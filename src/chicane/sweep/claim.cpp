@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sweep/claim.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "chicane/base/text.hpp"
+#include "chicane/protocol/yaml_codec.hpp"
+#include "chicane/protocol/yaml_tree.hpp"
+#include "chicane/sweep/outcome.hpp"
+#include "chicane/sweep/trial.hpp"
+
+namespace chicane::sweep {
+namespace {
+
+using protocol::YamlEntry;
+using protocol::YamlNode;
+
+std::optional<double> real_in(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// "lap_times_s[-1]" into name and place.
+struct ColumnPlace {
+  std::string name;
+  std::optional<int> place;
+};
+ColumnPlace place_in(std::string_view text) {
+  const std::size_t open = text.find('[');
+  if (open == std::string_view::npos || !text.ends_with(']')) return {std::string(text), std::nullopt};
+  const auto place = real_in(text.substr(open + 1, text.size() - open - 2));
+  return {std::string(text.substr(0, open)), place ? std::optional(static_cast<int>(*place)) : std::nullopt};
+}
+
+bool is_column(std::string_view text) {
+  return text == "clean" || find_column(place_in(text).name) != nullptr;
+}
+
+std::optional<Condition::Value> value_in(const std::string& text, const std::vector<Case>& cases) {
+  if (const auto number = real_in(text)) return Condition::Value{.constant = *number};
+  const std::size_t dot = text.find('.');
+  if (dot == std::string::npos) return std::nullopt;
+  Condition::Value value{.name = text.substr(0, dot), .column = text.substr(dot + 1)};
+  const bool is_known =
+      std::any_of(cases.begin(), cases.end(), [&](const Case& each) { return each.name == value.name; });
+  if (!is_known || !is_column(value.column)) return std::nullopt;
+  return value;
+}
+
+std::optional<Condition> condition_in(const std::string& text, const std::vector<Case>& cases) {
+  std::istringstream words(text);
+  std::string left, comparison, right, sign, amount, more;
+  words >> left >> comparison >> right >> sign >> amount >> more;
+  Condition condition{.text = text};
+  const auto a = value_in(left, cases);
+  const auto b = value_in(right, cases);
+  if (!a || !b || a->name.empty() || comparison.size() != 1 || !more.empty()) return std::nullopt;
+  condition.left = *a;
+  condition.right = *b;
+  condition.comparison = comparison[0];
+  if (std::string_view("<>=").find(condition.comparison) == std::string_view::npos) return std::nullopt;
+  if (sign.empty()) return condition;
+  const auto number = real_in(amount);
+  if (!number || (sign != "*" && sign != "+")) return std::nullopt;
+  (sign == "*" ? condition.factor : condition.term) = *number;
+  return condition;
+}
+
+class ClaimReader {
+ public:
+  explicit ClaimReader(const std::string& file) : file_{file} {}
+
+  Result<std::vector<Claim>> read(const YamlNode& root) {
+    if (!root.is_map()) fault(1, "file", "expected a map with settings and claims");
+    Settings shared;
+    for (const YamlEntry& entry : root.entries())
+      if (entry.key.text == "settings") shared = settings_of(entry.value, "");
+    for (const YamlEntry& entry : root.entries()) {
+      if (entry.key.text == "settings" || entry.key.text == "about") continue;
+      if (entry.key.text != "claims" || !entry.value.is_list()) {
+        fault(entry.key.line, printable(entry.key.text), "expected settings, about, or a list of claims");
+        continue;
+      }
+      for (const YamlNode* node : entry.value.children) read_claim(*node, shared);
+    }
+    if (faults_.empty()) return std::move(claims_);
+    return fail(ErrorCode::kParse, fmt::format("{}", fmt::join(faults_, "\n")));
+  }
+
+ private:
+  void fault(int line, std::string_view key, std::string_view what) {
+    if (faults_.size() < 50)
+      faults_.push_back(fmt::format("{}{}: {}", protocol::place(file_, line), key, what));
+  }
+
+  Settings settings_of(const YamlNode& map, const std::string& prefix) {
+    Settings settings;
+    if (!map.is_map()) {
+      fault(map.line, "settings", "expected a map of settings");
+      return settings;
+    }
+    for (const YamlEntry& entry : map.entries()) {
+      const std::string key = prefix.empty() ? entry.key.text : fmt::format("{}.{}", prefix, entry.key.text);
+      if (entry.value.is_map()) {
+        for (auto& setting : settings_of(entry.value, key)) settings.push_back(std::move(setting));
+        continue;
+      }
+      const Result<void> checked = check_setting(key, entry.value.text);
+      if (!checked) faults_.push_back(protocol::place(file_, entry.key.line) + checked.error().message);
+      settings.emplace_back(key, entry.value.text);
+    }
+    return settings;
+  }
+
+  void read_claim(const YamlNode& node, const Settings& shared) {
+    if (!node.is_map()) return fault(node.line, "claims", "expected a map with id and says");
+    Claim claim{.settings = shared};
+    std::vector<const YamlNode*> conditions;
+    for (const YamlEntry& entry : node.entries()) {
+      const std::string& key = entry.key.text;
+      const YamlNode& value = entry.value;
+      if (key == "id" || key == "says" || key == "found" || key == "see") {
+        (key == "id"      ? claim.id
+         : key == "says"  ? claim.says
+         : key == "found" ? claim.found
+                          : claim.see) = value.text;
+      } else if (key == "settings") {
+        for (auto& setting : settings_of(value, "")) claim.settings.push_back(std::move(setting));
+      } else if (key == "cases" && value.is_map()) {
+        for (const YamlEntry& each : value.entries())
+          claim.cases.push_back({each.key.text, settings_of(each.value, "")});
+      } else if (key == "true_when" && value.is_list()) {
+        conditions = value.children;
+      } else if (key == "shows" && value.is_list()) {
+        for (const YamlNode* column : value.children) {
+          if (!is_column(column->text))
+            fault(column->line, "shows", fmt::format("got {}, expected a column", printable(column->text)));
+          claim.shows.push_back(column->text);
+        }
+      } else {
+        fault(entry.key.line, printable(key),
+              "expected id, says, settings, cases, true_when, shows, found or see");
+      }
+    }
+    for (const YamlNode* each : conditions) {
+      const auto condition = condition_in(each->text, claim.cases);
+      if (condition) claim.conditions.push_back(*condition);
+      if (!condition)
+        fault(each->line, "true_when",
+              fmt::format("got {}, expected CASE.column > CASE.column * 1.02, or a number",
+                          printable(each->text)));
+    }
+    if (claim.id.empty() || claim.says.empty() || !ids_.insert(claim.id).second)
+      fault(node.line, "id", "expected an id of its own, and what is said");
+    if (claim.is_tried() == claim.conditions.empty() || claim.is_tried() != claim.found.empty())
+      fault(node.line, claim.id, "expected either cases and true_when, or found");
+    claims_.push_back(std::move(claim));
+  }
+
+  const std::string& file_;
+  std::vector<Claim> claims_;
+  std::set<std::string> ids_;
+  std::vector<std::string> faults_;
+};
+
+double value_of(const Condition::Value& value, const CaseResults& results) {
+  if (value.name.empty()) return value.constant;
+  const auto found = results.find(value.name);
+  return found == results.end() ? telemetry::kNotMeasured : number_of(found->second, value.column);
+}
+
+}  // namespace
+
+double number_of(const telemetry::RunSummary& run, std::string_view column) {
+  if (column == "clean") return run.completed && run.off_track_events == 0 ? 1.0 : 0.0;
+  const ColumnPlace at = place_in(column);
+  const Column* found = find_column(at.name);
+  if (found == nullptr) return telemetry::kNotMeasured;
+  if (!at.place) return found->number(run).value_or(telemetry::kNotMeasured);
+  const nlohmann::json list = nlohmann::json::parse(found->text(run), nullptr, false);
+  const int size = list.is_array() ? static_cast<int>(list.size()) : 0;
+  const int place = *at.place < 0 ? size + *at.place : *at.place;
+  if (place < 0 || place >= size || !list[static_cast<std::size_t>(place)].is_number())
+    return telemetry::kNotMeasured;
+  return list[static_cast<std::size_t>(place)].get<double>();
+}
+
+bool holds(const Claim& claim, const CaseResults& results) {
+  return std::all_of(claim.conditions.begin(), claim.conditions.end(), [&](const Condition& condition) {
+    const double left = value_of(condition.left, results);
+    const double right = value_of(condition.right, results) * condition.factor + condition.term;
+    if (std::isnan(left) || std::isnan(right)) return false;
+    return condition.comparison == '>'   ? left > right
+           : condition.comparison == '<' ? left < right
+                                         : left == right;
+  });
+}
+
+Result<std::vector<Claim>> parse_claims(std::string_view text, const std::string& file) {
+  const Result<protocol::YamlTree> tree = protocol::parse_yaml(text, file);
+  return tree ? ClaimReader(file).read(*tree->root) : fail(tree.error());
+}
+
+}  // namespace chicane::sweep

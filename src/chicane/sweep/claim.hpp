@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/sweep/plan.hpp"
+#include "chicane/telemetry/metrics.hpp"
+
+/// A statement of somebody's, and how it is tried.
+namespace chicane::sweep {
+
+/// One run of the trial, beside what the claim says of all.
+struct Case {
+  std::string name{};
+  Settings settings{};
+};
+
+/// `N40.top_speed_mps > N25.top_speed_mps * 1.02`: one number of a case, a comparison, and a number or one of
+/// another case, times a factor or plus a term.
+struct Condition {
+  struct Value {
+    std::string name{};  ///< of the case; empty: the number is `constant`
+    std::string
+        column{};  ///< of outcome.hpp, "lap_times_s[-1]", or "clean": all laps driven, no tyre off the road
+    double constant = 0.0;
+  };
+  std::string text{};
+  Value left{}, right{};
+  char comparison = '>';  ///< > < = (equal)
+  double factor = 1.0, term = 0.0;
+};
+
+struct Claim {
+  std::string id{};     ///< "B7"
+  std::string says{};   ///< paraphrased
+  Settings settings{};  ///< of all cases, the preset among them
+  std::vector<Case> cases{};
+  std::vector<Condition> conditions{};  ///< true when all hold
+  std::vector<std::string> shows{};     ///< columns
+  /// Of a statement about what there is, which no run can try: "works", "partly" or "not so", and where to
+  /// see.
+  std::string found{}, see{};
+
+  [[nodiscard]] bool is_tried() const noexcept { return !cases.empty(); }
+};
+
+/// The results of a claim's cases in one world, by their names.
+using CaseResults = std::map<std::string, telemetry::RunSummary>;
+
+/// Whether all conditions hold; a number that was not measured makes its condition false.
+[[nodiscard]] bool holds(const Claim& claim, const CaseResults& results);
+/// The number of a column, "clean" or a place in a list ("lap_times_s[-1]") included; NaN where there is
+/// none.
+[[nodiscard]] double number_of(const telemetry::RunSummary& run, std::string_view column);
+
+/// Reads the claims of one file: `settings`, and a list `claims` of {id, says, settings, cases: {name:
+/// {settings}}, true_when: [conditions], shows: [columns]} or {id, says, found, see}. kParse with all faults
+/// and their lines.
+[[nodiscard]] Result<std::vector<Claim>> parse_claims(std::string_view text, const std::string& file);
+
+}  // namespace chicane::sweep

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sweep/csv.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "chicane/sweep/detail/page_text.hpp"
+#include "chicane/sweep/result_file.hpp"
+
+namespace chicane::sweep {
+namespace {
+
+std::string cell_of(const nlohmann::json& value) {
+  if (value.is_null()) return "";
+  return detail::csv_cell(value.is_string() ? value.get<std::string>() : value.dump());
+}
+
+}  // namespace
+
+Result<void> write_csv(const std::string& results, const std::string& csv) {
+  std::ifstream first(results, std::ios::binary);
+  std::string line;
+  std::getline(first, line);
+  const Result<Header> header = parse_header(line, results);
+  if (!header) return fail(header.error());
+  std::ofstream out(csv, std::ios::binary | std::ios::trunc);
+  out << "run";
+  for (const std::string& key : header->keys) out << ',' << cell_of(key);
+  for (const std::string& column : header->columns) out << ',' << cell_of(column);
+  out << ",error\r\n";
+  const auto read = read_lines(results, [&](const LinePlace& place, const std::string& text) -> Result<void> {
+    const nlohmann::json run = nlohmann::json::parse(text, nullptr, false);
+    if (!run.is_object()) return fail(ErrorCode::kParse, "got no JSON object");
+    const nlohmann::json settings = run.value("settings", nlohmann::json::object());
+    out << place.run;
+    for (const std::string& key : header->keys) out << ',' << cell_of(settings.value(key, nlohmann::json()));
+    for (const std::string& column : header->columns)
+      out << ',' << cell_of(run.value(column, nlohmann::json()));
+    out << ',' << cell_of(run.value("error", nlohmann::json())) << "\r\n";
+    return {};
+  });
+  if (!read) return fail(read.error());
+  out.close();
+  if (!out) return fail(ErrorCode::kIo, fmt::format("{}: {}", csv, std::strerror(errno)));
+  return {};
+}
+
+}  // namespace chicane::sweep

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "chicane/base/result.hpp"
+
+namespace chicane::sweep {
+
+/// Writes a file of results as comma separated values (RFC 4180): `run`, the keys of the axes, the columns.
+/// Lists stand in quotes, as JSON; what was not measured is empty. Memory does not grow with the file.
+/// kParse, kIo.
+[[nodiscard]] Result<void> write_csv(const std::string& results, const std::string& csv);
+
+}  // namespace chicane::sweep

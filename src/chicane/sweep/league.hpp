@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/sweep/plan.hpp"
+
+/// Controllers, each on all tracks, in all cars and disturbances, at the fastest speed at which it is clean.
+namespace chicane::sweep {
+
+/// Keys of the axes of a league's plan.
+inline constexpr std::string_view kEntryKey = "entry";
+inline constexpr std::string_view kDisturbanceKey = "disturbance";
+
+/// A controller that is a program of its own, driven over the wire, at its own speed and in real time.
+struct ExternalEntry {
+  std::string name{};
+  /// Of a shell; starts it. {port}, {latency_ms}, {track} and {chicane} stand for what it shall listen to,
+  /// the sleep before each answer, the road, and the program that reads this.
+  std::string command{};
+  std::vector<std::string> tracks{}, cars{}, disturbances{};  ///< on which it is tried
+};
+
+/// One run of an external entry.
+struct ExternalTrial {
+  std::string entry{}, command{}, track{}, car{}, disturbance{};
+  Settings settings{};    ///< of the world
+  std::string why_not{};  ///< it cannot be tried, in one sentence; empty: it can
+};
+
+struct League {
+  std::string name{};
+  Plan plan{};  ///< of our own controllers; its axes are entry, track, car, disturbance
+  std::vector<ExternalEntry> externals{};
+  std::vector<std::string> tracks{}, cars{};
+  std::vector<std::pair<std::string, Settings>> disturbances{};  ///< the first one is the undisturbed world
+
+  /// The runs of the external entries. A disturbance by faults, or by a latency that the command has no place
+  /// for, cannot be made for them: the latency is the controller's own, and faults are in our control loop.
+  [[nodiscard]] std::vector<ExternalTrial> external_trials() const;
+};
+
+/// Port of the original's controllers, which commands without {port} listen to.
+inline constexpr int kOriginalPort = 4567;
+/// The command with what its places in braces stand for.
+[[nodiscard]] std::string filled(const ExternalTrial& trial, int port,
+                                 const std::string& program = "chicane");
+
+/// Adds `command` as an entry of its own name, on all tracks, in all cars and disturbances.
+void add_external(League& league, const std::string& command);
+
+/// Reads a league (docs/league.md):
+///
+///     name: mine against theirs
+///     settings: {laps: 2, guard.mode: "off"}            # of all runs
+///     search: {speed_mps: {from: 8, to: 80}}            # as in a plan; this when left out
+///     entries:
+///       mine: {preset: mine.yaml}                       # settings, as in a preset
+///       theirs: {server: "./mpc {port}", tracks: [lakeside]}   # a program; tracks, cars, disturbances: some
+///     tracks: [lakeside, oval]
+///     cars: [udacity, road-car]
+///     disturbances: {none: {}, wet: {plant_options.friction_scale: 0.8}}
+///
+/// kParse lists all faults, each with its line.
+[[nodiscard]] Result<League> parse_league(std::string_view text, const std::string& file);
+
+/// The same of a file; kNotFound when there is none.
+[[nodiscard]] Result<League> read_league(const std::string& file);
+
+/// The fastest lap that the plant of a car allows on a track (lap_time/plant_limit.hpp), in seconds; what
+/// `settings` say of car and track. Takes up to half a minute. kInvalidArgument also when `stop` is set.
+[[nodiscard]] Result<double> bound_of(const Settings& settings, const std::atomic<bool>& stop);
+
+}  // namespace chicane::sweep

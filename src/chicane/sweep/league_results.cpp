@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sweep/league_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "chicane/base/text.hpp"
+#include "chicane/sweep/outcome.hpp"
+#include "chicane/sweep/result_file.hpp"
+#include "chicane/sweep/trial.hpp"
+
+namespace chicane::sweep {
+namespace {
+
+using LeagueJson = nlohmann::ordered_json;
+
+std::string dumped(const LeagueJson& json) {
+  return json.dump(-1, ' ', false, LeagueJson::error_handler_t::replace);
+}
+
+std::string bound_key(const std::string& track, const std::string& car) {
+  return dumped(LeagueJson{{"track", track}, {"car", car}});
+}
+std::string trial_key(const std::string& entry, const std::string& track, const std::string& car,
+                      const std::string& disturbance) {
+  return dumped(LeagueJson{{"entry", entry}, {"track", track}, {"car", car}, {kDisturbanceKey, disturbance}});
+}
+std::string trial_key(const ExternalTrial& trial) {
+  return trial_key(trial.entry, trial.track, trial.car, trial.disturbance);
+}
+
+/// Of the plan and the commands: what else is in the file belongs to another league.
+std::string first_line(const League& league) {
+  LeagueJson programs = LeagueJson::object();
+  for (const ExternalEntry& entry : league.externals) programs[entry.name] = entry.command;
+  return dumped(LeagueJson{
+      {"league", league.name}, {"plan", fmt::format("{:016x}", league.plan.hash())}, {"programs", programs}});
+}
+
+LeagueJson times_of(const telemetry::TimeSummary& times) {
+  return {{"p50", std::round(1e7 * times.p50) / 10.0}, {"p99", std::round(1e7 * times.p99) / 10.0}};
+}
+
+void read_numbers(const LeagueJson& json, LeagueCell& cell) {
+  for (const auto& [name, value] : json.items()) {
+    if (value.is_number()) cell.numbers[name] = value.get<double>();
+    if (value.is_boolean()) cell.numbers[name] = value.get<bool>() ? 1.0 : 0.0;
+    if (value.is_object())
+      for (const auto& [part, number] : value.items())
+        if (number.is_number()) cell.numbers[name + "." + part] = number.get<double>();
+  }
+}
+
+std::string reason_in(const LeagueJson& json, const LeagueCell& cell) {
+  if (const std::string error = json.value("error", ""); !error.empty()) return error;
+  const double events = cell.number("off_track_events");
+  if (events > 0.0) return fmt::format("{:g} times off the road", events);
+  return json.value("end_reason", "not all laps were driven");
+}
+
+}  // namespace
+
+double LeagueCell::number(std::string_view column) const {
+  const auto found = numbers.find(column);
+  return found == numbers.end() ? std::nan("") : found->second;
+}
+
+Result<BesideFile> BesideFile::open(const std::string& path, const League& league) {
+  BesideFile file(path);
+  const std::string wanted = first_line(league);
+  std::ifstream stream(path, std::ios::binary);
+  std::string line;
+  std::getline(stream, line);
+  const bool is_ours = line == wanted;
+  while (is_ours && std::getline(stream, line)) {
+    const LeagueJson json = LeagueJson::parse(line, nullptr, false);
+    if (!json.is_object()) continue;
+    for (const char* kind : {"limit", "external"})
+      if (json.contains(kind)) file.keys_.push_back(dumped(json[kind]));
+  }
+  stream.close();
+  if (is_ours) return file;
+  std::ofstream(path, std::ios::binary | std::ios::trunc).close();
+  if (const Result<void> written = file.append(wanted); !written) return fail(written.error());
+  return file;
+}
+
+BesideFile::BesideFile(BesideFile&& other) noexcept
+    : path_{std::move(other.path_)}, keys_{std::move(other.keys_)} {}
+
+bool BesideFile::has_bound(const std::string& track, const std::string& car) const {
+  return std::find(keys_.begin(), keys_.end(), bound_key(track, car)) != keys_.end();
+}
+bool BesideFile::has_trial(const ExternalTrial& trial) const {
+  return std::find(keys_.begin(), keys_.end(), trial_key(trial)) != keys_.end();
+}
+
+Result<void> BesideFile::append(const std::string& line) {
+  const std::lock_guard lock(mutex_);
+  std::ofstream out(path_, std::ios::binary | std::ios::app);
+  out << line + "\n";
+  out.close();
+  return out ? Result<void>{} : fail(ErrorCode::kIo, path_ + ": cannot be written");
+}
+
+Result<void> BesideFile::add_bound(const std::string& track, const std::string& car,
+                                   const Result<double>& bound) {
+  LeagueJson json{{"limit", LeagueJson{{"track", track}, {"car", car}}}};
+  if (bound) json["lap_time_s"] = *bound;
+  if (!bound) json["error"] = bound.error().message;
+  return append(dumped(json));
+}
+
+Result<void> BesideFile::add_times(std::uint64_t run, const telemetry::RunSummary& summary) {
+  return append(dumped(LeagueJson{{"run", run}, {"solve_time_us", times_of(summary.solve_time)}}));
+}
+
+Result<void> BesideFile::add_trial(const ExternalTrial& trial, const Result<telemetry::RunSummary>& run) {
+  std::string line = fmt::format("{{\"external\":{},\"clean\":{}", trial_key(trial),
+                                 run && telemetry::completed_on_road(*run));
+  if (!run) return append(line + ",\"error\":" + dumped(LeagueJson(run.error().message)) + "}");
+  for (const Column& column : columns()) line += fmt::format(",\"{}\":{}", column.name, column.text(*run));
+  return append(line + fmt::format(",\"answer_time_us\":{}}}", dumped(times_of(run->step_time))));
+}
+
+namespace {
+
+/// The runs of our own controllers, by their number; those that are missing stay without numbers.
+Result<void> read_own(const League& league, const std::string& file, LeagueResults& results) {
+  std::vector<bool> seen(results.cells.size(), false);
+  const auto contents =
+      read_lines(file, [&](const LinePlace& place, const std::string& text) -> Result<void> {
+        if (place.run >= seen.size())
+          return fail(ErrorCode::kParse, "got a run that is none of the league's");
+        const LeagueJson json = LeagueJson::parse(text, nullptr, false);
+        if (!json.is_object()) return fail(ErrorCode::kParse, "got no JSON object");
+        LeagueCell& cell = results.cells[place.run];
+        seen[place.run] = true;
+        read_numbers(json, cell);
+        const double found = cell.number(kSearchValue);
+        cell.is_clean = std::isfinite(found);
+        Settings settings = league.plan.settings_of(place.run);
+        if (league.plan.search)
+          settings.emplace_back(league.plan.search->key,
+                                number_text(cell.is_clean ? found : league.plan.search->from));
+        cell.command = command_of(settings);
+        cell.why = cell.is_clean ? "" : reason_in(json, cell);
+        return {};
+      });
+  if (!contents) return fail(contents.error());
+  results.missing = static_cast<std::uint64_t>(std::count(seen.begin(), seen.end(), false));
+  return {};
+}
+
+std::string simulate_command(const ExternalTrial& trial) {
+  std::string rest;
+  for (const auto& [key, text] : trial.settings)
+    if (key != "track" && key != "car" && key != "latency_ms") rest += fmt::format(" --set {}={}", key, text);
+  return fmt::format("chicane simulate --server '{}' --track {} --car {}{}", filled(trial, kOriginalPort),
+                     trial.track, trial.car, rest);
+}
+
+void read_beside(const LeagueJson& json, LeagueResults& results) {
+  if (json.contains("limit") && json.contains("lap_time_s"))
+    results.bounds[{json["limit"].value("track", ""), json["limit"].value("car", "")}] = json["lap_time_s"];
+  if (json.contains("run")) {
+    const auto run = json["run"].get<std::uint64_t>();
+    if (run < results.cells.size() && !results.cells[run].is_external) read_numbers(json, results.cells[run]);
+  }
+  if (!json.contains("external")) return;
+  for (LeagueCell& cell : results.cells) {
+    if (!cell.is_external ||
+        dumped(json["external"]) != trial_key(cell.entry, cell.track, cell.car, cell.disturbance))
+      continue;
+    read_numbers(json, cell);
+    cell.is_clean = cell.number("clean") == 1.0;
+    cell.why = cell.is_clean ? "" : reason_in(json, cell);
+  }
+}
+
+}  // namespace
+
+Result<LeagueResults> read_results(const League& league, const std::string& results_file,
+                                   const std::string& beside) {
+  LeagueResults results;
+  for (std::uint64_t run = 0; run < league.plan.size(); ++run) {
+    const Settings varied = league.plan.at(run);
+    results.cells.push_back({.entry = varied[0].second,
+                             .track = varied[1].second,
+                             .car = varied[2].second,
+                             .disturbance = varied[3].second,
+                             .why = "not driven yet"});
+  }
+  if (const Result<void> read = read_own(league, results_file, results); !read) return fail(read.error());
+  for (const ExternalTrial& trial : league.external_trials())
+    results.cells.push_back({.entry = trial.entry,
+                             .track = trial.track,
+                             .car = trial.car,
+                             .disturbance = trial.disturbance,
+                             .is_external = true,
+                             .why = trial.why_not.empty() ? "not driven yet" : trial.why_not,
+                             .command = simulate_command(trial)});
+  std::ifstream stream(beside, std::ios::binary);
+  for (std::string line; std::getline(stream, line);) {
+    const LeagueJson json = LeagueJson::parse(line, nullptr, false);
+    if (json.is_object()) read_beside(json, results);
+  }
+  return results;
+}
+
+}  // namespace chicane::sweep

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// What a sweep drives: settings that all runs share, and axes, of which each run has one combination.
+namespace chicane::sweep {
+
+/// Key and text of settings, as `--set` takes them; beside the keys of the schema those of trial.hpp.
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+/// What the names along an axis stand for, by the axis's key and by name.
+using Cases = std::map<std::string, std::map<std::string, Settings>>;
+
+/// The values of one key along an axis: a list, a range, or cases.
+struct Dimension {
+  std::string key{};
+  std::vector<std::string> list{};  ///< where it has values, there is no range
+  std::vector<Settings> cases{};    ///< what the names of the list stand for; empty: they are values of `key`
+  double from = 0.0, to = 0.0;      ///< a range, both ends included
+  bool is_logarithmic = false;      ///< even factors in the place of even distances; from, to > 0
+  bool is_integer = false;          ///< rounded to integers
+
+  /// The value at a share of the range or list, [0, 1].
+  [[nodiscard]] std::string at(double share) const;
+};
+
+/// Keys that change together.
+struct Axis {
+  enum class Kind { kTogether, kSobol, kLatinHypercube };
+  Kind kind = Kind::kTogether;
+  std::uint64_t size = 0;  ///< runs along it; kTogether: also the length of each list
+  std::uint64_t seed = 0;  ///< of a sample
+  std::vector<Dimension> dimensions{};
+
+  /// The value of dimension `d` in place `i`.
+  [[nodiscard]] std::string value(std::size_t d, std::uint64_t i) const;
+};
+
+/// Each run looks for the largest value of a key with which it is clean: all laps driven, no tyre off the
+/// road. From `to` downwards by `factor` until one is, then between that and the one before, in equal
+/// proportions, until they are `within` of each other. What holds below the value found is not looked at.
+struct Search {
+  std::string key{};
+  double from = 0.0, to = 0.0;  ///< 0 < from <= to
+  double factor = 1.25;         ///< > 1
+  double within = 0.03;         ///< relative, > 0
+  /// The values tried first, falling, `from` the last one.
+  [[nodiscard]] std::vector<double> ladder() const;
+};
+
+/// `settings` with what its cases stand for in the place of their names.
+[[nodiscard]] Settings expanded(const Settings& settings, const Cases& cases);
+
+struct Plan {
+  static constexpr std::uint64_t kMostRuns = 1'000'000'000;
+
+  std::string name{};
+  Settings fixed{};
+  std::vector<Axis> axes{};         ///< the last one turns fastest
+  std::optional<Search> search{};   ///< none: each run is driven once
+  std::vector<std::string> keep{};  ///< columns of the results (outcome.hpp); empty: all
+
+  std::vector<Settings> marks{};  ///< places that maps mark, by values of axes; of no effect on runs
+
+  /// Number of runs; 1 without axes.
+  [[nodiscard]] std::uint64_t size() const;
+  /// What makes run `index` different from the others. Pure: depends on nothing else.
+  [[nodiscard]] Settings at(std::uint64_t index) const;
+  /// Everything about it: what all runs share, and at(index) with its cases expanded. The later ones win.
+  [[nodiscard]] Settings settings_of(std::uint64_t index) const;
+  /// What the names in at() stand for.
+  [[nodiscard]] Cases cases() const;
+  /// The keys of at().
+  [[nodiscard]] std::vector<std::string> keys() const;
+  /// Of everything that a run depends on: equal numbers mean equal plans, wherever and however written.
+  [[nodiscard]] std::uint64_t hash() const;
+};
+
+}  // namespace chicane::sweep

@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sweep/summary_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "chicane/base/text.hpp"
+#include "chicane/sweep/detail/heat_map.hpp"
+#include "chicane/sweep/detail/page_text.hpp"
+#include "chicane/sweep/result_file.hpp"
+#include "chicane/sweep/trial.hpp"
+
+namespace chicane::sweep {
+namespace {
+
+using detail::ByNumber;
+using detail::colour;
+using detail::escaped;
+using nlohmann::json;
+
+constexpr std::size_t kMostValues = 60;  // of an axis in a table or a map; more are put into intervals
+constexpr int kMostBins = 12;
+constexpr std::size_t kMostMaps = 60;
+
+/// Columns that are summed up, where a sweep has kept them.
+struct Shown {
+  const char *column, *title;
+  bool is_low_good;
+};
+constexpr std::array kShown{Shown{"search_value", "largest clean value", false},
+                            Shown{"lap_time_s", "last lap [s]", true},
+                            Shown{"rms_lateral_error_m", "rms lateral error [m]", true},
+                            Shown{"min_edge_distance_m", "tyre to edge, least [m]", false},
+                            Shown{"off_track_events", "times off the road", true},
+                            Shown{"steering_rate_rms_radps", "steering rate [rad/s]", true},
+                            Shown{"max_lateral_acceleration_mps2", "lateral acceleration, most [m/s²]", true},
+                            Shown{"mean_iterations", "iterations", true}};
+
+struct Run {
+  std::uint64_t number = 0;
+  std::vector<std::string> values;  ///< of the axes
+  std::array<double, kShown.size()> numbers{};
+  bool is_clean = false;  ///< no tyre off the road, and all laps where a number was asked for
+  std::string error;
+};
+
+/// What a group of runs has in common.
+struct Group {
+  std::uint64_t runs = 0, clean = 0;
+  std::array<double, kShown.size()> sums{}, least{}, most{};
+  std::array<std::uint64_t, kShown.size()> counts{};
+
+  void add(const Run& run) {
+    ++runs;
+    if (run.is_clean) ++clean;
+    for (std::size_t i = 0; i < kShown.size(); ++i) {
+      if (!std::isfinite(run.numbers[i])) continue;
+      least[i] = counts[i] == 0 ? run.numbers[i] : std::min(least[i], run.numbers[i]);
+      most[i] = counts[i] == 0 ? run.numbers[i] : std::max(most[i], run.numbers[i]);
+      sums[i] += run.numbers[i];
+      ++counts[i];
+    }
+  }
+  [[nodiscard]] double clean_share() const {
+    return static_cast<double>(clean) / static_cast<double>(std::max<std::uint64_t>(runs, 1));
+  }
+};
+
+std::string figure(double value) { return std::isfinite(value) ? number_text(value, 4) : "–"; }
+
+class Page {
+ public:
+  Result<void> read(const std::vector<std::string>& files) {
+    std::vector<bool> seen;
+    for (const std::string& file : files) {
+      std::ifstream stream(file, std::ios::binary);
+      std::string first;
+      std::getline(stream, first);
+      Result<Header> header = parse_header(first, file);
+      if (!header) return fail(header.error());
+      if (seen.empty()) {
+        header_ = *header;
+        seen.resize(header->runs);
+      } else if (header->plan != header_.plan) {
+        return fail(ErrorCode::kInvalidArgument,
+                    fmt::format("{}: got another plan than {}", file, files.front()));
+      }
+      const auto contents =
+          read_lines(file, [&](const LinePlace& place, const std::string& text) -> Result<void> {
+            if (place.run >= seen.size())
+              return fail(ErrorCode::kParse, "got a run that is none of the plan's");
+            if (!seen[place.run]) add(place.run, json::parse(text, nullptr, false));
+            seen[place.run] = true;
+            return {};
+          });
+      if (!contents) return fail(contents.error());
+    }
+    std::sort(runs_.begin(), runs_.end(), [](const Run& a, const Run& b) { return a.number < b.number; });
+    return {};
+  }
+
+  [[nodiscard]] std::uint64_t runs() const { return runs_.size(); }
+  [[nodiscard]] const std::string& name() const { return header_.name; }
+
+  /// For a page of docs/: what was driven, and the maps in letters.
+  [[nodiscard]] std::string markdown() {
+    bin_values();
+    std::string page = fmt::format("{} runs", runs_.size());
+    for (std::size_t i = 0; i < header_.fixed.size(); ++i)
+      page += fmt::format("{}`{}={}`", i == 0 ? ", all with " : ", ", header_.fixed[i].first,
+                          header_.fixed[i].second);
+    const auto failed =
+        std::count_if(runs_.begin(), runs_.end(), [](const Run& run) { return !run.error.empty(); });
+    page += fmt::format(". {} are clean{}.\n\n```text\n", clean_runs(),
+                        failed > 0 ? fmt::format(", {} cannot be driven", failed) : "");
+    for (const detail::HeatMap& map : maps()) {
+      const bool is_of_numbers = ByNumber::number(map.rows.back()) && ByNumber::number(map.columns.back());
+      if (is_of_numbers) page += detail::map_text(map) + "\n";
+    }
+    return page + "```\n";
+  }
+
+  [[nodiscard]] std::string text() {
+    std::string page = detail::page_head(header_.name);
+    page += fmt::format(
+        "<p>{} of {} runs, {} clean (all laps driven, no tyre off the road). Plan {}, {}, {} arithmetic.</p>",
+        runs_.size(), header_.runs, clean_runs(), header_.plan, escaped(header_.program),
+        escaped(header_.arithmetic));
+    if (!header_.fixed.empty()) {
+      page += "<p>All runs: ";
+      for (const auto& [key, value] : header_.fixed)
+        page += fmt::format("<code>{}={}</code> ", escaped(key), escaped(value));
+      page += "</p>";
+    }
+    bin_values();
+    page += "<h2>Along each axis</h2>";
+    for (std::size_t axis = 0; axis < header_.keys.size(); ++axis) page += table(axis);
+    const std::vector<detail::HeatMap> all = maps();
+    if (!all.empty())
+      page += header_.marks.empty() ? "<h2>Clean runs over pairs of axes [%]</h2>"
+                                    : "<h2>Clean runs over pairs of axes [%]; framed: what is marked</h2>";
+    for (const detail::HeatMap& map : all) page += detail::map_html(map);
+    page += "<h2>Distributions</h2>";
+    for (std::size_t i = 0; i < kShown.size(); ++i) page += histogram(i);
+    return page + listing() + "</html>\n";
+  }
+
+ private:
+  [[nodiscard]] std::size_t clean_runs() const {
+    return static_cast<std::size_t>(
+        std::count_if(runs_.begin(), runs_.end(), [](const Run& run) { return run.is_clean; }));
+  }
+
+  void add(std::uint64_t number, const json& line) {
+    Run run;
+    run.number = number;
+    const json settings = line.is_object() ? line.value("settings", json::object()) : json::object();
+    for (const std::string& key : header_.keys) {
+      const json value = settings.value(key, json());
+      run.values.push_back(value.is_string() ? value.get<std::string>() : value.dump());
+    }
+    for (std::size_t i = 0; i < kShown.size(); ++i) {
+      const json value = line.is_object() ? line.value(kShown[i].column, json()) : json();
+      run.numbers[i] = value.is_number() ? value.get<double>() : std::nan("");
+    }
+    run.error = line.is_object() ? line.value("error", "") : "not readable";
+    const bool is_done = !wants_laps(run) || (line.is_object() && line.value("completed", true));
+    run.is_clean = run.error.empty() && is_done && line.value("off_track_events", 0) == 0;
+    runs_.push_back(std::move(run));
+  }
+
+  /// Whether a number of laps was asked for: otherwise none has to be completed.
+  [[nodiscard]] bool wants_laps(const Run& run) const {
+    std::string laps;
+    for (const auto& [key, value] : header_.fixed)
+      if (key == "laps") laps = value;
+    for (std::size_t axis = 0; axis < header_.keys.size(); ++axis)
+      if (header_.keys[axis] == "laps") laps = run.values[axis];
+    return laps != "0";
+  }
+
+  /// So many that a cell of a map has some ten runs.
+  static int bins_for(std::size_t runs) {
+    return std::clamp(static_cast<int>(std::sqrt(static_cast<double>(runs) / 10.0)), 4, kMostBins);
+  }
+
+  /// Axes with more values than a table can have, such as those of a sample, are cut into intervals.
+  void bin_values() {
+    binned_.assign(runs_.size(), {});
+    const int bins = bins_for(runs_.size());
+    for (std::size_t axis = 0; axis < header_.keys.size(); ++axis) {
+      std::map<std::string, int, ByNumber> values;
+      double low = INFINITY, high = -INFINITY;
+      bool are_numbers = true;
+      for (const Run& run : runs_) {
+        if (values.size() <= kMostValues) ++values[run.values[axis]];
+        const auto number = ByNumber::number(run.values[axis]);
+        are_numbers = are_numbers && number;
+        if (number) low = std::min(low, *number), high = std::max(high, *number);
+      }
+      const bool is_binned = values.size() > kMostValues && are_numbers && high > low;
+      for (std::size_t i = 0; i < runs_.size(); ++i) {
+        std::string value = runs_[i].values[axis];
+        if (is_binned) {
+          const double width = (high - low) / bins;
+          const int bin = std::min(bins - 1, static_cast<int>((*ByNumber::number(value) - low) / width));
+          value = number_text(low + (bin + 0.5) * width, 3);
+        }
+        binned_[i].push_back(std::move(value));
+      }
+    }
+  }
+
+  [[nodiscard]] bool is_kept(std::size_t i) const {
+    return std::find(header_.columns.begin(), header_.columns.end(), kShown[i].column) !=
+           header_.columns.end();
+  }
+
+  [[nodiscard]] std::string table(std::size_t axis) const {
+    std::map<std::string, Group, ByNumber> groups;
+    for (std::size_t i = 0; i < runs_.size() && groups.size() <= kMostValues; ++i)
+      groups[binned_[i][axis]].add(runs_[i]);
+    std::string text =
+        fmt::format("<div class=scroll><table><tr><th>{}<th>runs<th>clean", escaped(header_.keys[axis]));
+    for (std::size_t i = 0; i < kShown.size(); ++i)
+      if (is_kept(i)) text += fmt::format("<th>{}", kShown[i].title);
+    text += "</tr>";
+    for (const auto& [value, group] : groups) {
+      text += fmt::format("<tr><td>{}<td>{}<td style='background:{}'>{:.0f} %", escaped(value), group.runs,
+                          colour(group.clean_share()), 100.0 * group.clean_share());
+      for (std::size_t i = 0; i < kShown.size(); ++i) {
+        if (!is_kept(i)) continue;
+        const double mean =
+            group.counts[i] > 0 ? group.sums[i] / static_cast<double>(group.counts[i]) : std::nan("");
+        text += fmt::format("<td title='{} to {}'>{}", figure(group.least[i]), figure(group.most[i]),
+                            figure(kShown[i].is_low_good ? mean : group.least[i]));
+      }
+    }
+    return text + "</table></div>";
+  }
+
+  /// The share of clean runs over pairs of axes.
+  [[nodiscard]] std::vector<detail::HeatMap> maps() const {
+    std::vector<detail::MapRun> runs;
+    for (std::size_t i = 0; i < runs_.size(); ++i)
+      if (runs_[i].error.empty()) runs.push_back({binned_[i], runs_[i].is_clean});
+    std::vector<detail::HeatMap> maps = detail::heat_maps(header_.keys, runs, header_.marks, kMostValues);
+    if (maps.size() > kMostMaps) maps.resize(kMostMaps);
+    return maps;
+  }
+
+  [[nodiscard]] std::string histogram(std::size_t column) const {
+    std::vector<double> values;
+    for (const Run& run : runs_)
+      if (std::isfinite(run.numbers[column])) values.push_back(run.numbers[column]);
+    if (values.size() < 2) return "";
+    std::sort(values.begin(), values.end());
+    const double low = values.front(), high = values.back();
+    if (high <= low) return "";
+    constexpr int kBars = 24;
+    std::array<int, kBars> bars{};
+    for (const double value : values)
+      ++bars[static_cast<std::size_t>(
+          std::min(kBars - 1, static_cast<int>((value - low) / (high - low) * kBars)))];
+    const int most = *std::max_element(bars.begin(), bars.end());
+    std::string text =
+        fmt::format("<figure><svg width=264 height=90 role=img aria-label='{}'>", kShown[column].title);
+    for (int i = 0; i < kBars; ++i) {
+      const double height = 80.0 * bars[static_cast<std::size_t>(i)] / most;
+      text += fmt::format("<rect x={} y={:.1f} width=10 height={:.1f} fill='#3b6ea5'/>", 11 * i,
+                          85.0 - height, height);
+    }
+    const double median = values[values.size() / 2];
+    return text + fmt::format("</svg><figcaption>{}: {} to {}, median {}</figcaption></figure> ",
+                              kShown[column].title, figure(low), figure(high), figure(median));
+  }
+
+  [[nodiscard]] std::string listing() const {
+    std::string text = fmt::format(
+        "<h2>Runs</h2><p>{}Each with the command that drives it; without <code>--fast</code> it is "
+        "driven in the dashboard, at <code>http://localhost:4567/</code>.</p><div class=scroll>"
+        "<table><tr><th>run<th>clean",
+        runs_.size() > kMostListed ? fmt::format("The first {} of {}. ", kMostListed, runs_.size()) : "");
+    for (std::size_t i = 0; i < kShown.size(); ++i)
+      if (is_kept(i)) text += fmt::format("<th>{}", kShown[i].title);
+    text += "<th>command</tr>";
+    for (std::size_t n = 0; n < std::min(runs_.size(), kMostListed); ++n) {
+      const Run& run = runs_[n];
+      text += fmt::format("<tr><td>{}<td>{}", run.number, run.is_clean ? "yes" : "no");
+      for (std::size_t i = 0; i < kShown.size(); ++i)
+        if (is_kept(i)) text += "<td>" + figure(run.numbers[i]);
+      Settings varied;
+      for (std::size_t axis = 0; axis < header_.keys.size(); ++axis)
+        varied.emplace_back(header_.keys[axis], run.values[axis]);
+      Settings settings = header_.fixed;
+      for (auto& setting : expanded(varied, header_.cases)) settings.push_back(std::move(setting));
+      if (!header_.search_key.empty() && std::isfinite(run.numbers[0]))
+        settings.emplace_back(header_.search_key, number_text(run.numbers[0]));
+      text += fmt::format("<td style='text-align:left'><code>{}</code>{}", escaped(command_of(settings)),
+                          run.error.empty() ? "" : "<br>" + escaped(run.error));
+    }
+    return text + "</table></div>";
+  }
+
+  Header header_;
+  std::vector<Run> runs_;
+  std::vector<std::vector<std::string>>
+      binned_;  ///< the values of the runs, in intervals where they are many
+};
+
+Result<void> write_file(const std::string& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << text;
+  out.close();
+  return out ? Result<void>{} : fail(ErrorCode::kIo, fmt::format("{}: {}", file, std::strerror(errno)));
+}
+
+}  // namespace
+
+Result<PageSummary> write_page(const std::vector<std::string>& results, const std::string& page) {
+  Page content;
+  if (const Result<void> read = content.read(results); !read) return fail(read.error());
+  const std::string text = content.text();
+  if (const Result<void> written = write_file(page, text); !written) return fail(written.error());
+  return PageSummary{content.runs(), text.size()};
+}
+
+Result<PageSummary> write_maps(const std::vector<std::string>& results, const std::string& page) {
+  Page content;
+  if (const Result<void> read = content.read(results); !read) return fail(read.error());
+  std::ifstream stream(page, std::ios::binary);
+  std::string older{std::istreambuf_iterator<char>(stream), {}};
+  const std::string begin = fmt::format("<!-- sweep: {} -->\n", content.name());
+  const std::string_view end = "<!-- end of sweep -->\n";
+  if (older.find(begin) == std::string::npos) older += begin + std::string(end);
+  const std::size_t from = older.find(begin) + begin.size();
+  const std::size_t to = older.find(end, from);
+  if (to == std::string::npos)
+    return fail(ErrorCode::kParse,
+                fmt::format("{}: got no \"<!-- end of sweep -->\" after that of {}", page, content.name()));
+  const std::string text = older.substr(0, from) + content.markdown() + older.substr(to);
+  if (const Result<void> written = write_file(page, text); !written) return fail(written.error());
+  return PageSummary{content.runs(), text.size()};
+}
+
+}  // namespace chicane::sweep

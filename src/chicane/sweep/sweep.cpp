@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sweep/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "chicane/base/text.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/protocol/schema.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "chicane/run/parallel.hpp"
+#include "chicane/sweep/detail/settings_reader.hpp"
+#include "chicane/sweep/outcome.hpp"
+#include "chicane/sweep/result_file.hpp"
+#include "chicane/sweep/trial.hpp"
+
+namespace chicane::sweep {
+namespace {
+
+constexpr int kSearchDigits = 4;  // of a value tried: 12.35
+
+std::string quoted(const std::string& text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// A number as a number, all else as text.
+std::string setting_json(const std::string& key, const std::string& text) {
+  const protocol::Parameter* row = protocol::find(key);
+  const bool is_text = row != nullptr && (row->option.kind == protocol::Kind::kText ||
+                                          row->option.kind == protocol::Kind::kChoice);
+  const bool is_json = !is_text && nlohmann::json::accept(text);
+  return is_json ? text : quoted(text);
+}
+
+/// Found, driven and failed runs, counted by all threads; and the first failure of the file.
+class Tally {
+ public:
+  Tally(const SweepOptions& options, Progress progress) : options_{options}, progress_{progress} {}
+
+  void add(std::uint64_t run, const Result<RunOutcome>& result) {
+    const std::lock_guard lock(mutex_);
+    const bool has_failed = !result;
+    if (result && options_.on_run) options_.on_run(run, result->run);
+    ++progress_.driven;
+    if (has_failed) ++progress_.failed;
+    if (options_.on_progress) options_.on_progress(progress_);
+  }
+  void fail_with(const Error& error) {
+    const std::lock_guard lock(mutex_);
+    if (!error_) error_ = error;
+  }
+  [[nodiscard]] Result<Progress> result() const {
+    if (!error_) return progress_;
+    return fail(error_->code,
+                fmt::format("{} ({} of {} runs are done; the same command goes on with them)",
+                            error_->message, progress_.found + progress_.driven, progress_.runs));
+  }
+
+ private:
+  const SweepOptions& options_;
+  std::mutex mutex_;
+  Progress progress_;
+  std::optional<Error> error_;
+};
+
+/// As drive(); `is_hasty`: a tyre off the road ends it, too.
+Result<std::optional<telemetry::RunSummary>> drive_while(const Settings& settings, run::Roads& roads,
+                                                         const std::atomic<bool>& stop, bool is_hasty) {
+  const Result<protocol::Request> request = request_of(settings);
+  if (!request) return fail(request.error());
+  const Result<scenario::Scenario> scenario = protocol::compose(*request, roads.files());
+  if (!scenario) return fail(scenario.error());
+  const auto loop = run::ClosedLoop::create(*scenario, roads);
+  if (!loop) return fail(loop.error());
+  telemetry::RunSummary summary = run::run_closed_loop(
+      **loop, {}, [&] { return stop.load() || (is_hasty && (*loop)->world().off_track_events > 0); });
+  if (stop && !(*loop)->is_over()) return std::optional<telemetry::RunSummary>{};
+  return std::optional(std::move(summary));
+}
+
+/// One search of find_largest().
+class Searcher {
+ public:
+  Searcher(const Search& search, const Settings& settings, run::Roads& roads, const std::atomic<bool>& stop)
+      : search_{search}, settings_{settings}, roads_{roads}, stop_{stop} {}
+
+  Result<std::optional<RunOutcome>> find() {
+    const std::vector<double> ladder = search_.ladder();
+    for (const double value : ladder) {
+      const Trial trial = is_clean(value, value == ladder.back());
+      if (trial == Trial::kStopped) return std::optional<RunOutcome>{};
+      if (trial == Trial::kClean) break;
+    }
+    if (found_.search_trials == 0) return fail(refusal_);
+    while (found_.search_value > 0.0 && unclean_ > found_.search_value * (1.0 + search_.within)) {
+      const double middle = std::sqrt(found_.search_value * unclean_);
+      if (is_clean(middle, false) == Trial::kStopped) return std::optional<RunOutcome>{};
+    }
+    return std::optional(std::move(found_));
+  }
+
+ private:
+  enum class Trial { kClean, kNotClean, kStopped };
+
+  Trial is_clean(double wanted, bool is_last) {
+    const std::string text = number_text(wanted, kSearchDigits);
+    const double value = detail::number_in(text).value_or(wanted);
+    Settings tried = settings_;
+    tried.emplace_back(search_.key, text);
+    auto driven = drive_while(tried, roads_, stop_, !is_last);
+    if (!driven) {  // a value that this controller does not take
+      refusal_ = driven.error();
+      unclean_ = value;
+      return Trial::kNotClean;
+    }
+    if (!*driven) return Trial::kStopped;
+    ++found_.search_trials;
+    const bool clean = telemetry::completed_on_road(**driven);
+    if (clean || is_last) found_.run = std::move(**driven);
+    (clean ? found_.search_value : unclean_) = value;
+    return clean ? Trial::kClean : Trial::kNotClean;
+  }
+
+  const Search& search_;
+  const Settings& settings_;
+  run::Roads& roads_;
+  const std::atomic<bool>& stop_;
+  RunOutcome found_;
+  double unclean_ = 0.0;  ///< the smallest value above all clean ones; 0: none yet
+  Error refusal_{ErrorCode::kInvalidArgument, ""};
+};
+
+/// Of a run of a plan, driven once or searched.
+Result<std::optional<RunOutcome>> outcome_of(const Plan& plan, std::uint64_t run, run::Roads& roads,
+                                             const std::atomic<bool>& stop) {
+  const Settings settings = plan.settings_of(run);
+  if (plan.search) return find_largest(*plan.search, settings, roads, stop);
+  auto driven = drive(settings, roads, stop);
+  if (!driven) return fail(driven.error());
+  if (!*driven) return std::optional<RunOutcome>{};
+  return std::optional(RunOutcome{.run = std::move(**driven)});
+}
+
+}  // namespace
+
+Result<std::optional<telemetry::RunSummary>> drive(const Settings& settings, run::Roads& roads,
+                                                   const std::atomic<bool>& stop) {
+  return drive_while(settings, roads, stop, false);
+}
+
+Result<std::optional<RunOutcome>> find_largest(const Search& search, const Settings& settings,
+                                               run::Roads& roads, const std::atomic<bool>& stop) {
+  Searcher searcher(search, settings, roads, stop);
+  return searcher.find();
+}
+
+std::string line_of(const Plan& plan, std::uint64_t run, const Settings& varied,
+                    const Result<RunOutcome>& result) {
+  std::string line = fmt::format("{{\"run\":{},\"settings\":{{", run);
+  for (std::size_t i = 0; i < varied.size(); ++i) {
+    const auto& [key, text] = varied[i];
+    line += fmt::format("{}{}:{}", i == 0 ? "" : ",", quoted(key), setting_json(key, text));
+  }
+  line += '}';
+  if (!result) return line + fmt::format(",\"error\":{}}}", quoted(result.error().message));
+  if (plan.search)
+    line += fmt::format(",\"{}\":{},\"{}\":{}", kSearchValue,
+                        std::isnan(result->search_value) ? "null" : number_text(result->search_value),
+                        kSearchTrials, result->search_trials);
+  const auto add = [&](const Column& column) {
+    line += fmt::format(",\"{}\":{}", column.name, column.text(result->run));
+  };
+  if (plan.keep.empty())
+    for (const Column& column : columns()) add(column);
+  for (const std::string& name : plan.keep) add(*find_column(name));
+  const bool has_hash =
+      plan.keep.empty() || std::find(plan.keep.begin(), plan.keep.end(), "state_hash") != plan.keep.end();
+  if (!has_hash) add(*find_column("state_hash"));
+  return line + '}';
+}
+
+Result<Progress> drive_plan(const Plan& plan, const Shard& shard, const SweepOptions& options,
+                            const std::atomic<bool>& stop) {
+  Result<ResultFile> file = ResultFile::open(options.file, plan, shard);
+  if (!file) return fail(file.error());
+  const std::uint64_t ours = shard.size(plan.size());
+  Tally tally(options, {.runs = ours, .found = file->done()});
+  run::for_each_run(ours, options.jobs, [&](std::uint64_t i, run::Roads& roads) {
+    const std::uint64_t run = i * shard.count + shard.index;
+    if (file->has(run)) return !stop;
+    if (stop) return false;
+    auto driven = outcome_of(plan, run, roads, stop);
+    if (driven && !*driven) return false;
+    const Result<RunOutcome> result = driven ? Result<RunOutcome>(std::move(**driven)) : fail(driven.error());
+    if (const Result<void> written = file->append(line_of(plan, run, plan.at(run), result)); !written) {
+      tally.fail_with(written.error());
+      return false;
+    }
+    tally.add(run, result);
+    return true;
+  });
+  return tally.result();
+}
+
+}  // namespace chicane::sweep

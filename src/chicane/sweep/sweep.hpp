@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "chicane/base/result.hpp"
+#include "chicane/run/roads.hpp"
+#include "chicane/sweep/plan.hpp"
+#include "chicane/sweep/shard.hpp"
+#include "chicane/telemetry/metrics.hpp"
+
+namespace chicane::sweep {
+
+/// Drives one run as far as it goes: no sockets, no clock. Nothing when `stop` has ended it before. Fails as
+/// protocol::compose() and run::ClosedLoop::create() do.
+[[nodiscard]] Result<std::optional<telemetry::RunSummary>> drive(const Settings& settings, run::Roads& roads,
+                                                                 const std::atomic<bool>& stop);
+
+/// What a run of a plan has come to.
+struct RunOutcome {
+  telemetry::RunSummary run;                      ///< of a search: the clean one, or else the slowest
+  double search_value = telemetry::kNotMeasured;  ///< of Search::key; not-a-number: none was clean
+  std::uint64_t search_trials = 0;                ///< 0: nothing was searched
+};
+
+/// Looks for the largest clean value (plan.hpp); `settings` without it. Runs that leave the road end there.
+/// Otherwise as drive().
+[[nodiscard]] Result<std::optional<RunOutcome>> find_largest(const Search& search, const Settings& settings,
+                                                             run::Roads& roads,
+                                                             const std::atomic<bool>& stop);
+
+/// The line of a run: its number, what makes it different, and its columns or the reason why it cannot be
+/// driven.
+[[nodiscard]] std::string line_of(const Plan& plan, std::uint64_t run, const Settings& varied,
+                                  const Result<RunOutcome>& result);
+
+struct Progress {
+  std::uint64_t runs = 0;    ///< of the shard
+  std::uint64_t found = 0;   ///< done when the sweep began
+  std::uint64_t driven = 0;  ///< since
+  std::uint64_t failed = 0;  ///< of them such as cannot be driven
+  [[nodiscard]] bool is_complete() const noexcept { return found + driven == runs; }
+};
+
+struct SweepOptions {
+  int jobs = 1;        ///< threads
+  std::string file{};  ///< of the results, of this shard; an older one is completed
+  std::function<void(const Progress&)> on_progress{};  ///< after each run, any thread
+  /// With each run that could be driven, one thread at a time: what a clock has told is in it, and nowhere in
+  /// the file.
+  std::function<void(std::uint64_t run, const telemetry::RunSummary&)> on_run{};
+};
+
+/// Drives the runs of a shard that are not in the file yet. Each run depends on the plan and its number
+/// alone: not on threads, shards, order or what was driven before. Ends early with what there is when `stop`
+/// is set; kIo when the file cannot be written, with all runs so far in it.
+[[nodiscard]] Result<Progress> drive_plan(const Plan& plan, const Shard& shard, const SweepOptions& options,
+                                          const std::atomic<bool>& stop);
+
+}  // namespace chicane::sweep

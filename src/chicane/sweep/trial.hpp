@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "chicane/base/result.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/sweep/plan.hpp"
+
+/// One run of a sweep, as settings: the keys of the schema, and
+///
+///   scenario                        a scenario by name or file, which all other settings win over
+///   speed_mph, speed_mps            the reference of whichever controller drives
+///   fault                           NAME@S+S*X, as `drive --fault`; may come several times
+///   fault.name, fault.at_s,         the same in parts, for axes; the last two may be left out
+///   fault.for_s, fault.strength
+namespace chicane::sweep {
+
+/// Whether `text` may be the value of `key` in some run. kNotFound for an unknown key, with a suggestion;
+/// kInvalidArgument with what was expected.
+[[nodiscard]] Result<void> check_setting(std::string_view key, const std::string& text);
+
+/// The experiment that `settings` ask for; later ones win.
+[[nodiscard]] Result<protocol::Request> request_of(const Settings& settings);
+
+/// The command that drives it again: `chicane drive --fast --preset weighted --set laps=2 …`.
+[[nodiscard]] std::string command_of(const Settings& settings);
+
+}  // namespace chicane::sweep

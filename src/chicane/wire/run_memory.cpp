@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/wire/run_memory.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace chicane::wire {
+namespace {
+
+constexpr double kRounding = 1e-6;  // of times that are sums of periods [s]
+
+/// By bisection: numbers rise.
+template <class Messages>
+const KeptMessage* first_from(const Messages& messages, std::uint64_t number) {
+  const auto found =
+      std::lower_bound(messages.begin(), messages.end(), number,
+                       [](const KeptMessage& each, std::uint64_t wanted) { return each.number < wanted; });
+  return found == messages.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+void RunMemory::forget() {
+  sparse_.clear();
+  dense_.clear();
+  laps_.clear();
+  changes_.clear();
+}
+
+void RunMemory::add_frame(double time, std::string payload) {
+  dense_.push_back({next_++, time, std::move(payload)});
+  while (dense_.size() > kMostDense || dense_.front().time < time - kDense) {
+    if (sparse_.empty() || dense_.front().time >= sparse_.back().time + kSpacing - kRounding)
+      sparse_.push_back(std::move(dense_.front()));
+    dense_.pop_front();
+  }
+  while (sparse_.size() > kMostSparse) sparse_.pop_front();
+}
+
+void RunMemory::add_lap(const telemetry::CompletedLap& lap, double time, std::string payload) {
+  if (laps_.size() >= kMostLaps) drop_lap();
+  KeptLap kept;
+  kept.number = next_++;
+  kept.time = time;
+  kept.payload = std::move(payload);
+  kept.lap_time = lap.lap_time;
+  kept.is_clean = lap.is_clean;
+  laps_.push_back(std::move(kept));
+}
+
+/// The oldest, but for the best: clean before fast.
+void RunMemory::drop_lap() {
+  const auto best = std::min_element(laps_.begin(), laps_.end(), [](const KeptLap& a, const KeptLap& b) {
+    return a.is_clean != b.is_clean ? a.is_clean : a.lap_time < b.lap_time;
+  });
+  laps_.erase(best == laps_.begin() ? best + 1 : laps_.begin());
+}
+
+void RunMemory::add_change(double time, std::string payload) {
+  if (changes_.size() >= kMostChanges) changes_.pop_front();
+  changes_.push_back({next_++, time, std::move(payload)});
+}
+
+const KeptMessage* RunMemory::frame_from(std::uint64_t number) const {
+  const KeptMessage* older = first_from(sparse_, number);
+  return older != nullptr ? older : first_from(dense_, number);
+}
+
+const KeptMessage* RunMemory::lap_from(std::uint64_t number) const { return first_from(laps_, number); }
+
+const KeptMessage* RunMemory::change_from(std::uint64_t number) const { return first_from(changes_, number); }
+
+}  // namespace chicane::wire

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// A league from outside, with programs that it starts and ends itself.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+namespace chicane {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class LeagueCommand : public ::testing::Test {
+ protected:
+  LeagueCommand() { fs::create_directories(folder_); }
+  ~LeagueCommand() override { fs::remove_all(folder_); }
+  LeagueCommand(const LeagueCommand&) = delete;
+  LeagueCommand& operator=(const LeagueCommand&) = delete;
+
+  [[nodiscard]] std::string read(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(folder_ / name).rdbuf();
+    return text.str();
+  }
+  /// Its exit code; what it says is in the files out and err.
+  int league(const std::string& entries, const std::string& options) {
+    std::ofstream(folder_ / "l.yaml") << "settings: {laps: 0, time_limit_s: 1.5}\n"
+                                         "search: {speed_mps: {from: 9, to: 10}}\n"
+                                         "tracks: [oval]\ncars: [udacity]\nentries:\n"
+                                      << entries;
+    const std::string here = folder_.string();
+    const int status = std::system(("cd '" CHICANE_SOURCE_DIR "' && '" CHICANE_PROGRAM "' league '" + here +
+                                    "/l.yaml' --results '" + here + "/r.jsonl' " + options + " > '" + here +
+                                    "/out' 2> '" + here + "/err'")
+                                       .c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+  }
+
+  fs::path folder_ =
+      fs::path(::testing::TempDir()) / ("chicane_league_command_" + std::to_string(::getpid()));
+};
+
+TEST_F(LeagueCommand, DrivesOurControllersAndAProgramOverTheWire) {
+  const std::string entries =
+      "  ours: {preset: pid}\n"
+      "  theirs: {server: \"{chicane} serve --preset pid --latency-ms {latency_ms} --port {port}\"}\n";
+  const std::string options = "-o '" + (folder_ / "l.html").string() + "' --patience-s 60 --json";
+  ASSERT_EQ(league(entries, options), 0) << read("err");
+  const auto rows = nlohmann::json::parse(read("out"));
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0]["clean"], true);
+  EXPECT_EQ(rows[0]["search_value"], 10.0);
+  EXPECT_EQ(rows[1]["entry"], "theirs");
+  EXPECT_EQ(rows[1]["clean"], true) << read("err");
+  EXPECT_GT(rows[1]["top_speed_mps"], 0.0);
+  EXPECT_THAT(read("l.html"), HasSubstr("Standings"));
+  EXPECT_THAT(read("r.jsonl"), HasSubstr("\"search_value\":10"));
+  ASSERT_EQ(league(entries, options), 0) << read("err");
+  EXPECT_THAT(read("err"), HasSubstr("1 of 1 runs, 1 of them found")) << "what is done is not done again";
+  EXPECT_THAT(read("err"), Not(HasSubstr("in real time")));
+}
+
+TEST_F(LeagueCommand, SaysInWordsWhyAProgramDoesNotDrive) {
+  ASSERT_EQ(
+      league("  ours: {preset: pid}\n  gone: {server: \"exit 3 # {port}\"}\n", "--patience-s 0.5 --json"), 0)
+      << read("err");
+  const auto rows = nlohmann::json::parse(read("out"));
+  EXPECT_EQ(rows[1]["clean"], false);
+  EXPECT_THAT(std::string(rows[1]["why_not"]), HasSubstr("the program does not listen on port"));
+}
+
+TEST_F(LeagueCommand, RefusesALeagueWithFaultsAndOneThatIsNotThere) {
+  EXPECT_EQ(league("  ours: {preset: 1, nonsense: 2}\n", ""), 2);
+  EXPECT_THAT(read("err"), HasSubstr("l.yaml:6: nonsense"));
+}
+
+}  // namespace
+}  // namespace chicane

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// A film from outside, with a shell script in ffmpeg's place: the package is optional.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace chicane {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class VideoCommand : public ::testing::Test {
+ protected:
+  VideoCommand() {
+    fs::create_directories(folder_ / "bin");
+    std::ofstream(folder_ / "bin" / "ffmpeg")
+        << "#!/bin/sh\nfor last; do :; done\necho \"$*\" >&2\nexec cat > \"${last#file:}\"\n";
+    fs::permissions(folder_ / "bin" / "ffmpeg", fs::perms::owner_all);
+  }
+  ~VideoCommand() override { fs::remove_all(folder_); }
+  VideoCommand(const VideoCommand&) = delete;
+  VideoCommand& operator=(const VideoCommand&) = delete;
+
+  /// Its exit code; what it says on stderr is in said_. `path`: where programs are looked for.
+  int program(const std::string& arguments, const std::string& path) {
+    const fs::path errors = folder_ / "err";
+    const std::string words = "cd '" CHICANE_SOURCE_DIR "' && PATH='" + path + "' '" CHICANE_PROGRAM "' " +
+                              arguments + " > /dev/null 2> '" + errors.string() + "'";
+    const int status = std::system(words.c_str());
+    std::ostringstream text;
+    text << std::ifstream(errors).rdbuf();
+    said_ = text.str();
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+  }
+  [[nodiscard]] std::string quoted(const std::string& name) const {
+    return "'" + (folder_ / name).string() + "'";
+  }
+  [[nodiscard]] std::string usual() const { return (folder_ / "bin").string() + ":" + std::getenv("PATH"); }
+
+  fs::path folder_ = fs::path(::testing::TempDir()) / ("chicane_video_command_" + std::to_string(::getpid()));
+  std::string said_;
+};
+
+TEST_F(VideoCommand, FilmsALapWithAGhost) {
+  const std::string drive = "drive --fast --track oval --laps 1 --set time_limit_s=6 --record ";
+  static_cast<void>(program(drive + quoted("a.mcap"), usual()));
+  static_cast<void>(program(drive + quoted("b.mcap") + " --preset pid", usual()));
+  const std::string film =
+      "video " + quoted("a.mcap") + " --ghost " + quoted("b.mcap") + " --width 160 --rate 5 ";
+  ASSERT_EQ(program(film + "--for-s 4 -o " + quoted("lap.gif"), usual()), 0) << said_;
+  EXPECT_THAT(said_, HasSubstr("-s 160x90 -r 5"));
+  const auto picture = static_cast<std::uintmax_t>(160 * 90 * 3);
+  EXPECT_EQ(fs::file_size(folder_ / "lap.gif") % picture, 0U);
+  EXPECT_GE(fs::file_size(folder_ / "lap.gif"), 19 * picture);
+  EXPECT_EQ(program(film + "--lap 7 -o " + quoted("no.gif"), usual()), 2);
+  EXPECT_THAT(said_, HasSubstr("--lap: got 7"));
+  EXPECT_EQ(program(film + "-o " + quoted("lap.avi"), usual()), 2);
+  EXPECT_THAT(said_, HasSubstr("expected .mp4"));
+  EXPECT_EQ(program(film + "-o " + quoted("lap.mp4"), "/nowhere"), 3);
+  EXPECT_THAT(said_, HasSubstr("apt-get install ffmpeg"));
+  EXPECT_FALSE(fs::exists(folder_ / "lap.mp4"));
+}
+
+}  // namespace
+}  // namespace chicane

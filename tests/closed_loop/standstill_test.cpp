@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// The five presets from standstill, 1.5 m beside the line: where they steer, and whether they come back.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "chicane/protocol/library.hpp"
+#include "chicane/run/closed_loop.hpp"
+
+namespace chicane::run {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Start {
+  double first_steer = 0.0;  ///< left positive [rad]
+  double begin = 0.0;        ///< lateral error, left positive [m]
+  double end = 0.0;          ///< after eight seconds [m]
+};
+
+/// `lakeside` with the car `offset` to the left of its line.
+Start drive_from(const std::string& preset, double offset) {
+  std::ostringstream text;
+  text << std::ifstream(CHICANE_SOURCE_DIR "/tracks/lakeside.csv").rdbuf();
+  std::string track = text.str();
+  const std::string shipped = "start_d_m=-0.76";
+  const std::size_t at = track.find(shipped);
+  EXPECT_NE(at, std::string::npos);
+  track.replace(at, shipped.size(), "start_d_m=" + std::to_string(offset));
+  const fs::path file =
+      fs::path(::testing::TempDir()) / ("standstill_" + std::to_string(::getpid()) + ".csv");
+  std::ofstream(file) << track;
+  const auto scenario = protocol::compose({.scenario_file = {},
+                                           .settings = {{"preset", preset},
+                                                        {"track", file.string()},
+                                                        {"guard.mode", "off"},
+                                                        {"laps", "0"},
+                                                        {"time_limit_s", "8"}}});
+  EXPECT_TRUE(scenario);
+  const auto loop = ClosedLoop::create(*scenario);
+  fs::remove(file);
+  EXPECT_TRUE(loop);
+  Start start;
+  bool is_first = true;
+  static_cast<void>(run_closed_loop(**loop, {.on_frame = [&](const telemetry::Frame& frame) {
+    if (is_first) start = {.first_steer = frame.result.command.steer, .begin = frame.lateral_error};
+    is_first = false;
+    start.end = frame.lateral_error;
+  }}));
+  return start;
+}
+
+TEST(Standstill, MeasuredLatencyAndWeightedSteerTowardsTheLineFromBothSides) {
+  for (const char* preset : {"measured-latency", "weighted"}) {
+    const Start left = drive_from(preset, 1.5), right = drive_from(preset, -1.5);
+    EXPECT_NEAR(left.begin, 1.5, 0.01);
+    EXPECT_LT(left.first_steer, -0.01) << preset << ": left of the line, it steers to the right";
+    EXPECT_GT(right.first_steer, 0.01) << preset << ": right of it, to the left";
+    // The road bends to the left there, which adds to both.
+    EXPECT_GT(left.first_steer + right.first_steer, 0.0) << preset;
+  }
+}
+
+TEST(Standstill, AllFiveComeBackToTheLine) {
+  for (const char* preset :
+       {"measured-latency", "fast-short-step", "sixty-mph", "weighted", "delay-in-model"})
+    for (const double side : {1.5, -1.5})
+      EXPECT_LT(std::fabs(drive_from(preset, side).end), 0.6) << preset << " from " << side << " m";
+}
+
+}  // namespace
+}  // namespace chicane::run

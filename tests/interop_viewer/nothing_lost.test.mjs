@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+// What a page knows of a run, whenever it was opened, and when the run is over: laps, plots, changes, settings, end.
+import assert from 'node:assert/strict';
+import { after, before, describe, it } from 'node:test';
+import { launch } from './browser.mjs';
+import { startDrive } from './chicane_drive.mjs';
+import { DashboardPage } from './dashboard_page.mjs';
+
+let browser;
+before(async () => {
+  browser = await launch();
+});
+after(() => browser.close());
+
+const isAboutSocket = (text) => text.startsWith('WebSocket connection to') || /ERR_CONNECTION_REFUSED/.test(text);
+const open = (drive, tab, state = 'Live') => DashboardPage.open(browser, drive.url, { tab, state });
+const lapRows = (dashboard) => dashboard.page.locator('.lap-table tbody tr:not(.limit)').count();
+const box = (dashboard, key) => dashboard.page.locator(`.panel-body [data-key="${key}"] .number-box`);
+async function type(dashboard, key, value) {
+  await box(dashboard, key).fill(String(value));
+  await box(dashboard, key).press('Enter');
+}
+
+describe('a page that is opened late', () => {
+  let drive;
+  let first;
+  before(async () => {
+    drive = await startDrive(['--track', 'oval']);
+    first = await open(drive, 'drive');
+    await type(first, 'latency_ms', 60);
+    await type(first, 'run.pace', 5); // faster, a busy program would leave out too much of a lap to compare it
+    await first.show('laps');
+    await first.until(
+      () => lapRows(first),
+      (count) => count >= 3,
+      'three laps',
+    );
+    await first.show('drive');
+    await type(first, 'run.pace', 1);
+    await first.pause();
+  });
+  after(async () => {
+    await first.close();
+    await drive.stop();
+  });
+
+  it('shows plots, compares laps that it has not seen, and knows the changes', async () => {
+    const late = await open(drive, 'plots', 'Paused');
+    await late.until(
+      () => late.colours('.plot[aria-label="Lateral error"] canvas'),
+      (colours) => colours > 8,
+      'a plot of the last minute',
+    );
+    await late.page.getByText('60 s', { exact: true }).click();
+    await late.show('laps');
+    await late.until(
+      () => late.page.locator('.compare canvas').count(),
+      (count) => count === 3,
+      'two laps along the track',
+    );
+    await late.show('faults');
+    await late.page.locator('.events li', { hasText: 'latency_ms set to 60' }).waitFor();
+    await late.close();
+  });
+
+  it('shows the same settings as changed, and how they were at the start', async () => {
+    const late = await open(drive, 'tune', 'Paused');
+    await late.until(
+      () => late.text('changes'),
+      (text) => /1 change.*latency_ms 100 → 60/s.test(text.replace(/\s+/g, ' ')),
+      'the change of before',
+    );
+    await late.button('Reset latency_ms').click();
+    await late.page.getByText('No changes').waitFor();
+    await first.show('tune');
+    await first.page.getByText('No changes').waitFor();
+    await late.close();
+  });
+
+  it('has one best lap, in thousandths, on the strip and in the table', async () => {
+    const late = await open(drive, 'laps', 'Paused');
+    await first.show('laps');
+    const driven = await lapRows(first);
+    await late.until(
+      () => lapRows(late),
+      (count) => count === driven,
+      'all laps',
+    );
+    const inTable = await late.page.locator('.lap-table tr.best .time').innerText();
+    const [time] = /\d+:\d\d\.\d{3}/.exec(inTable);
+    for (const dashboard of [first, late]) {
+      await dashboard.until(
+        () => dashboard.page.locator('.lap .beside').innerText(),
+        (text) => text.replace(/\s+/g, ' ').endsWith(`best ${time}`),
+        `the best lap ${time}`,
+      );
+    }
+    await late.close();
+  });
+});
+
+describe('the end of a run', () => {
+  it('is told, with all laps, the gap and the last seconds once more', async () => {
+    const drive = await startDrive(['--track', 'oval', '--laps', '2']);
+    const dashboard = await open(drive, 'drive');
+    const { page } = dashboard;
+    await type(dashboard, 'run.pace', 20); // not before the page is there: the run must not end earlier
+    await dashboard.show('laps');
+    await page.getByTestId('end-card').waitFor();
+    assert.equal(await dashboard.text('end-title'), 'Finished');
+    assert.equal(await dashboard.text('end-laps'), '2');
+    await dashboard.until(
+      () => lapRows(dashboard),
+      (count) => count === 2,
+      'the last lap, too',
+    );
+    await page.getByText('Program ended', { exact: true }).waitFor();
+    assert.equal(await page.getByTestId('banner').count(), 0, 'nothing is wrong');
+    assert.match(await page.locator('.end-command code').innerText(), /^chicane drive --preset \S+ --track oval/);
+    const end = await dashboard.text('speed');
+    await page.getByText('Replay the last 10 s').click();
+    await page.getByText(/^Replay, \d+ s left$/).waitFor();
+    await dashboard.until(
+      () => dashboard.text('speed'),
+      (speed) => speed !== end,
+      'another speed than at the end',
+    );
+    await page.getByText('End the replay').click();
+    await dashboard.until(
+      () => dashboard.text('speed'),
+      (speed) => speed === end,
+      'the end again',
+    );
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await page.getByLabel('Close', { exact: true }).click();
+    await page.getByTestId('end-card').waitFor({ state: 'detached' });
+    await dashboard.close(isAboutSocket);
+    await drive.stop();
+  });
+
+  it('tells a stop from a crash', async () => {
+    for (const [signal, title] of [
+      ['SIGTERM', 'Stopped'],
+      ['SIGKILL', 'Connection lost'],
+    ]) {
+      const drive = await startDrive(['--track', 'oval']);
+      const dashboard = await open(drive, 'drive');
+      await drive.stop(signal);
+      await dashboard.until(
+        () => dashboard.text('end-title'),
+        (text) => text === title,
+        title,
+      );
+      await dashboard.close(isAboutSocket);
+    }
+  });
+
+  it('of the program is not the end of the choice that was driven', async () => {
+    let drive = await startDrive(['--track', 'oval', '--car', 'road-car']);
+    const dashboard = await open(drive, 'drive');
+    const { port } = drive;
+    await drive.stop();
+    drive = await startDrive([], port);
+    await dashboard.page.getByTestId('other-run').waitFor();
+    assert.match(await dashboard.text('other-run'), /road-car on oval/);
+    await dashboard.button('Drive that again').click();
+    await dashboard.until(
+      () => dashboard.page.locator('.summary').innerText(),
+      (text) => /road-car · oval/.test(text),
+      'what was driven before',
+    );
+    assert.equal(await dashboard.page.getByTestId('other-run').count(), 0);
+    await dashboard.close(isAboutSocket);
+    await drive.stop();
+  });
+});

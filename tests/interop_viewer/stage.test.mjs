@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+// The picture and what lies on it: speed, why, alerts, the cursor; and how the page fits windows, fingers and eyes.
+import assert from 'node:assert/strict';
+import { after, before, describe, it } from 'node:test';
+import { launch } from './browser.mjs';
+import { startDrive } from './chicane_drive.mjs';
+import { DashboardPage, PHONE, TABS } from './dashboard_page.mjs';
+
+let browser;
+let drive;
+before(async () => {
+  browser = await launch();
+  drive = await startDrive(['--track', 'oval']);
+});
+after(async () => {
+  await browser.close();
+  await drive.stop();
+});
+
+const open = (options = {}) => DashboardPage.open(browser, drive.url, { tab: 'laps', ...options });
+const box = (dashboard, selector) => dashboard.page.locator(selector).first().boundingBox();
+const background = (page) => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+
+describe('on the picture', () => {
+  it('stand the speed and the sentence why, whatever tab is open; nothing moves at 100', async () => {
+    const dashboard = await open();
+    const { page } = dashboard;
+    await page.getByTestId('why').waitFor();
+    assert.match(await dashboard.text('why'), /^(Reference speed|Grip|Braking|Power|Sight).*\. \S+/s);
+    const unit = async () => (await box(dashboard, '.hud .big .unit')).x;
+    await dashboard.button('Reset').click();
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph < 30,
+      'a car at the start',
+    );
+    const scale = await page.locator('.legend').innerText();
+    const first = await unit();
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph >= 100,
+      'three digits',
+    );
+    assert.equal(await unit(), first);
+    const colours = /plan 0.*?(\d+ mph)/s;
+    assert.equal(
+      colours.exec(await page.locator('.legend').innerText())[1],
+      colours.exec(scale)[1],
+      'the same colours at every speed',
+    );
+    await dashboard.close();
+  });
+
+  it('stands who drives, and how far the car is off the road', async () => {
+    const dashboard = await open({ tab: 'explain' });
+    const { page } = dashboard;
+    await page.locator('body').press('m');
+    await page.getByText('A person drives', { exact: true }).waitFor();
+    await page.locator('.rows dd', { hasText: 'A person drives; the controller plans beside' }).waitFor();
+    await page.keyboard.down('ArrowUp');
+    await page.keyboard.down('ArrowLeft');
+    await page.locator('.alert.bad', { hasText: /Off the road, \d+\.\d m beyond the edge/ }).waitFor();
+    await page.locator('.map.danger-bad').waitFor();
+    await page.locator('[data-testid="edge-distance"].bad').waitFor();
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await page.keyboard.up('ArrowUp');
+    await page.keyboard.up('ArrowLeft');
+    await page.keyboard.press('Escape');
+    await dashboard.button('Reset').click();
+    await page.locator('.map.danger-bad').waitFor({ state: 'detached' });
+    await dashboard.close();
+  });
+});
+
+describe('the cursor', () => {
+  it('is the same in plots, on the map and in the explanation; a click on the road moves it there', async () => {
+    const dashboard = await open({ tab: 'plots', state: 'Live' });
+    const { page } = dashboard;
+    const pink = () =>
+      page.locator('canvas.map-2d').evaluate((canvas) => {
+        const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });
+        const context = copy.getContext('2d', { willReadFrequently: true });
+        context.drawImage(canvas, 0, 0);
+        const { data } = context.getImageData(0, 0, copy.width, copy.height);
+        let count = 0;
+        for (let i = 0; i < data.length; i += 4)
+          count += data[i] - data[i + 1] > 60 && data[i + 2] - data[i + 1] > 40 ? 1 : 0;
+        return count;
+      });
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph > 60,
+      'a car that drives',
+    );
+    await page.waitForTimeout(1500); // a stretch behind the car to point at
+    await dashboard.pause();
+    await dashboard.button('Whole track').click();
+    assert.equal(await pink(), 0);
+    const plot = await box(dashboard, '.plot[aria-label="Lateral error"] .u-over');
+    await page.mouse.move(plot.x + plot.width - 12, plot.y + plot.height / 2);
+    await dashboard.until(pink, (count) => count > 20, 'a ring where the car was then');
+    await page.mouse.move(5, 5);
+    await dashboard.until(pink, (count) => count === 0, 'no ring without a cursor');
+    await dashboard.button('Chase').click();
+    const map = await box(dashboard, 'canvas.map-2d');
+    await page.mouse.click(map.x + map.width / 2, map.y + map.height * 0.75);
+    await dashboard.until(pink, (count) => count > 20, 'a ring where the road was clicked');
+    await dashboard.button('Follow').waitFor();
+    await dashboard.button('Follow').click();
+    await dashboard.until(pink, (count) => count === 0, 'no ring when the plots follow again');
+    await dashboard.resume();
+    await dashboard.close();
+  });
+});
+
+it('plots this lap against the track, with the best lap and the limit behind it', async () => {
+  const dashboard = await open({ tab: 'plots' });
+  const { page } = dashboard;
+  await dashboard.button('Track').click();
+  assert.equal(await page.locator('.track-plots .plot').count(), 3);
+  await dashboard.until(
+    () => dashboard.colours('.track-plots .plot[aria-label="Speed along the track"] canvas'),
+    (colours) => colours > 20,
+    'curves',
+  );
+  assert.equal(await page.locator('.plot[aria-label="Cost"]').isVisible(), false);
+  assert.deepEqual(await dashboard.accessibilityFindings(), []);
+  await dashboard.button('Time').click();
+  await page.locator('.plot[aria-label="Cost"]').waitFor();
+  await dashboard.close();
+});
+
+describe('the page', () => {
+  it('changes between light and dark, and remembers it', async () => {
+    const dashboard = await open({ colorScheme: 'light' });
+    const { page } = dashboard;
+    const light = await background(page);
+    await page.locator('body').press('t');
+    const dark = await background(page);
+    assert.notEqual(dark, light);
+    await page.reload();
+    await page.getByText('Live', { exact: true }).waitFor();
+    assert.equal(await background(page), dark);
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await page.getByLabel('Change to light colours').click();
+    assert.equal(await background(page), light);
+    await dashboard.close();
+  });
+
+  it('shows the picture alone to an audience, and comes back', async () => {
+    const dashboard = await open();
+    const { page } = dashboard;
+    const before = await box(dashboard, '.map');
+    await page.locator('body').press('g');
+    await page.locator('.workbench.stage-alone').waitFor();
+    const alone = await box(dashboard, '.map');
+    assert.ok(alone.width > 1.5 * before.width, `${before.width}, then ${alone.width}`);
+    assert.equal(await page.locator('.tabs').isVisible(), false);
+    assert.ok((await dashboard.number('speed')) >= 0);
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await page.locator('body').press('g');
+    await page.locator('.tabs').waitFor();
+    await dashboard.close();
+  });
+
+  it('shows the buttons of the lap table in a small window', async () => {
+    const dashboard = await open({ viewport: { width: 1280, height: 720 } });
+    const { page } = dashboard;
+    await dashboard.until(
+      () => page.locator('.lap-table .picks').count(),
+      (count) => count >= 1,
+      'a row to choose',
+    );
+    const panel = await box(dashboard, '.table-scroll');
+    for (const radio of await page.locator('.lap-table .picks input').all()) {
+      const { x, width } = await radio.boundingBox();
+      assert.ok(x >= panel.x && x + width <= panel.x + panel.width, `${x} of ${panel.x} + ${panel.width}`);
+    }
+    await dashboard.close();
+  });
+
+  it('is for fingers on a phone: nothing under 44 px, help included', async () => {
+    const dashboard = await open({ ...PHONE, tab: 'drive' });
+    const { page } = dashboard;
+    for (const tab of TABS) {
+      await dashboard.show(tab);
+      const small = await page.locator('button, select, input[type="range"]').evaluateAll((all) =>
+        all
+          .filter((each) => each.offsetParent !== null && !each.closest('.legend'))
+          .map((each) => ({ each, height: Math.round(each.getBoundingClientRect().height) }))
+          .filter(({ height }) => height < 44)
+          .map(({ each, height }) => `${each.textContent || each.ariaLabel}: ${height}`),
+      );
+      assert.deepEqual(small, [], tab);
+    }
+    await page.getByLabel('Keys and help').click();
+    await page.getByRole('dialog').waitFor();
+    await dashboard.button('Close').click();
+    await dashboard.close();
+  });
+});

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// Another future of a live run and of a recording, asked for and compared in the page.
+import assert from 'node:assert/strict';
+import { execFileSync, spawn } from 'node:child_process';
+import { once } from 'node:events';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, it } from 'node:test';
+import { launch } from './browser.mjs';
+import { startDrive } from './chicane_drive.mjs';
+import { DashboardPage, PHONE } from './dashboard_page.mjs';
+
+const SPEED = 'tracking_mpc.speed_limit_mps';
+
+let browser;
+before(async () => {
+  browser = await launch();
+});
+after(() => browser.close());
+
+/** Asks for another future with a lower speed limit, and waits for the answer. */
+async function askForLess({ page }, limit = 15) {
+  await page.getByLabel('Setting to change').fill(SPEED);
+  await page.getByLabel('What if: Speed limit').fill(String(limit));
+  await page.getByText('Drive both', { exact: true }).click();
+  await page.getByTestId('what-if-verdict').waitFor();
+}
+/** A row of the table: its cells as texts. */
+const row = ({ page }, name) =>
+  page.getByTestId('what-if-table').locator('tr', { hasText: name }).first().locator('td').allInnerTexts();
+
+describe('what if, in a live run', () => {
+  let drive;
+  let dashboard;
+  before(async () => {
+    drive = await startDrive(['--track', 'oval']);
+    dashboard = await DashboardPage.open(browser, drive.url, { tab: 'whatif' });
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph > 60,
+      'a car that drives',
+    );
+    await dashboard.pause();
+  });
+  after(async () => {
+    await dashboard.close();
+    await drive.stop();
+  });
+
+  it('drives both futures from now on, and sets them side by side', async () => {
+    const { page } = dashboard;
+    await dashboard.button('30 s').click();
+    await askForLess(dashboard);
+    assert.match(await dashboard.text('what-if-verdict'), /s slower to the same place/);
+    const [was, branch, difference] = await row(dashboard, 'Mean speed');
+    assert.ok(Number(branch) < Number(was), `${was}, then ${branch}`);
+    assert.match(difference, /^−/);
+    for (const name of ['sector', 'Least distance', 'Largest lateral error', 'changed by the guard'])
+      assert.equal((await row(dashboard, name)).length, 3, name);
+    assert.equal(await page.locator('.what-if-plots canvas').count(), 4);
+    await dashboard.until(
+      () => dashboard.colours('.plot[aria-label="Speed of both futures"] canvas'),
+      (colours) => colours > 10,
+      'curves',
+    );
+    await page.locator('.legend', { hasText: 'what if' }).waitFor();
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+  });
+
+  it('shows both cars on the picture', async () => {
+    const { page } = dashboard;
+    await dashboard.button('Watch both').click();
+    await page.getByText(/^Replay, \d+ s left$/).waitFor();
+    await dashboard.button('End watching').click();
+    await dashboard.button('Watch both').waitFor();
+  });
+
+  it('drives the lap from the line with both settings, and says what cannot be', async () => {
+    const { page } = dashboard;
+    // Which lap it is depends on how busy the machine has been: the answer is another one when it begins elsewhere.
+    const begun = () => page.getByTestId('what-if-table').locator('th', { hasText: 'From' }).innerText();
+    const before = await begun();
+    await dashboard.button('From the line').click();
+    await dashboard.button('A lap').click();
+    await askForLess(dashboard, 25);
+    await dashboard.until(begun, (from) => from !== before, 'an answer from the line on');
+    const lap = await row(dashboard, 'sector 3');
+    assert.ok(Number(lap[1]) > Number(lap[0]), lap.join());
+    await page.getByLabel('What if: Speed limit').fill('9999');
+    await page.getByText('Drive both', { exact: true }).click();
+    await page.locator('.what-if [role="alert"]', { hasText: /speed_limit_mps: got 9999, expected/ }).waitFor();
+  });
+
+  it('keeps the winner with one click', async () => {
+    const { page } = dashboard;
+    await askForLess(dashboard, 25);
+    await page.locator('.what-if [role="alert"]').waitFor({ state: 'detached' });
+    await dashboard.button('Keep the change').click();
+    await dashboard.button('Kept').waitFor();
+    await dashboard.show('tune');
+    await dashboard.until(
+      () => dashboard.text('changes'),
+      (text) => /1 change.*speed_limit_mps.*25/s.test(text),
+      'the change',
+    );
+    await dashboard.show('whatif');
+    await dashboard.button('Reset').click();
+    await page.getByTestId('what-if-verdict').waitFor({ state: 'detached' });
+  });
+});
+
+it('another future of a recording begins at the moment that is shown', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'chicane-what-if-'));
+  const log = join(folder, 'run.mcap');
+  execFileSync(process.env.CHICANE, ['drive', '--fast', '--track', 'oval', '--laps', '2', '--record', log], {
+    stdio: 'ignore',
+  });
+  const server = spawn(process.env.CHICANE, ['replay', log, '--port', '0'], { stdio: ['ignore', 'ignore', 'pipe'] });
+  let said = '';
+  const port = await new Promise((resolve) => {
+    server.stderr.on('data', (data) => {
+      said += data;
+      const found = /http:\/\/localhost:(\d+)\//.exec(said);
+      if (found) resolve(found[1]);
+    });
+  });
+  const dashboard = await DashboardPage.open(browser, `http://127.0.0.1:${port}/`, {
+    ...PHONE,
+    tab: 'whatif',
+    state: 'Recording',
+  });
+  const { page } = dashboard;
+  await page.getByLabel('Position in the recording').evaluate((slider) => {
+    slider.value = '10';
+    slider.dispatchEvent(new Event('input', { bubbles: true }));
+  });
+  await dashboard.until(
+    () => dashboard.number('speed'),
+    (mph) => mph > 40,
+    'the speed of that moment',
+  );
+  await dashboard.button('10 s').click();
+  await askForLess(dashboard);
+  const heads = await page.getByTestId('what-if-table').locator('thead th').allInnerTexts();
+  assert.match(heads[0], /From 0:10\.0/);
+  assert.match(heads[1], /As driven/);
+  assert.match(await dashboard.text('what-if-verdict'), /slower/);
+  assert.equal(await dashboard.button('Keep the change').count(), 0, 'a recording stays as it is');
+  assert.deepEqual(await dashboard.accessibilityFindings(), []);
+  assert.ok((await dashboard.overflow()).across <= 0);
+  await dashboard.close((each) => /GPU|WebGL|GL Driver/i.test(each));
+  server.kill('SIGINT');
+  await once(server, 'exit');
+  rmSync(folder, { recursive: true });
+});

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/lap_time/racing_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/lap_time/detail/vehicle_model.hpp"
+#include "chicane/lap_time/plant_limit.hpp"
+#include "lap_time/derivatives.hpp"
+
+namespace chicane::lap_time {
+namespace {
+
+/// A closed road with corners to both sides, one side wider than the other; `side` −1 mirrors it.
+path::Track bean(double side = 1.0, double half_width = 4.0) {
+  std::vector<path::TrackPoint> points;
+  for (int i = 0; i < 140; ++i) {
+    const double angle = kTwoPi * i / 140.0;
+    const double radius = 75.0 + 25.0 * std::cos(2.0 * angle) + 12.0 * std::sin(3.0 * angle);
+    path::TrackPoint point{
+        {side * radius * std::cos(angle), radius * std::sin(angle)}, half_width, 1.2 * half_width};
+    if (side < 0.0) std::swap(point.left, point.right);
+    points.push_back(point);
+  }
+  return *path::Track::create("bean", points, true);
+}
+
+model::VehicleParams car_named(const std::string& name) {
+  return name == "udacity" ? model::udacity_params() : model::road_car_params();
+}
+
+class RacingPlanOf : public testing::TestWithParam<const char*> {};
+
+TEST_P(RacingPlanOf, ItsModelHasTheDerivativesOfDifferences) {
+  VehicleModel vehicle;
+  vehicle.model.set_vehicle(car_named(GetParam()));
+  RoadNodes road = lay_nodes(bean(), {}, 0.1);
+  vehicle.road = &road;
+  const ModelFunctions<VehicleModel> f(vehicle);
+  // Coasting, braking and driving in bends to both sides.
+  for (const double side : {1.0, -1.0}) {
+    for (const double net : {-6.0, -0.2, 0.1, 3.5}) {
+      SCOPED_TRACE(net * side);
+      expect_derivatives_of_differences(
+          f, 3, {0.4, 0.03 * side, 22.0, -0.6 * side, 0.36 * side, 0.06 * side, net, 0.1, 4.0});
+    }
+  }
+}
+
+TEST_P(RacingPlanOf, WithoutReserveIsAsFastAsThePlantCanBe) {
+  const auto plan = plan_racing_line(bean(), car_named(GetParam()));
+  ASSERT_TRUE(plan) << plan.error().message;
+  const auto limit = find_plant_limit(bean(), GetParam(), {}, {.time_step = 0.1, .wants_witness = false});
+  ASSERT_TRUE(limit) << limit.error().message;
+  EXPECT_NEAR(plan->lap_time() / limit->bound.lap, 1.0, 0.025);
+}
+
+TEST_P(RacingPlanOf, KeepsWhatItIsToldToAndMirrors) {
+  const RacingPlanOptions reserve{.margin = 0.3, .grip_share = 0.9, .brake_share = 0.9};
+  const model::VehicleParams car = car_named(GetParam());
+  const path::Track track = bean();
+  const auto plan = plan_racing_line(track, car, reserve);
+  const auto free = plan_racing_line(track, car);
+  const auto mirrored = plan_racing_line(bean(-1.0), car, reserve);
+  ASSERT_TRUE(plan && free && mirrored);
+  EXPECT_GT(plan->lap_time(), 1.002 * free->lap_time());
+  EXPECT_NEAR(mirrored->lap_time() / plan->lap_time(), 1.0, 1e-3);
+  const double beside = 0.5 * (car.track_width + car.tire_width);
+  double least = 100.0;
+  for (const path::RacingLinePoint& p : plan->points) {
+    for (const double x : {car.front_axle, -car.rear_axle}) {
+      // To first order in the small angles; the bend takes the rest.
+      const double middle = p.offset + x * p.heading;
+      least = std::min(
+          {least, track.left_width(p.s + x) - middle - beside, track.right_width(p.s + x) + middle - beside});
+    }
+  }
+  EXPECT_GT(least, 0.15);
+  EXPECT_LT(least, 0.4) << "it uses the road";
+}
+
+TEST_P(RacingPlanOf, IsTheSameEachTime) {
+  const auto one = plan_racing_line(bean(), car_named(GetParam()));
+  const auto two = plan_racing_line(bean(), car_named(GetParam()));
+  ASSERT_TRUE(one && two);
+  ASSERT_EQ(one->points.size(), two->points.size());
+  for (std::size_t i = 0; i < one->points.size(); ++i) EXPECT_EQ(one->points[i].vx, two->points[i].vx);
+}
+
+TEST_P(RacingPlanOf, KeepsToASpeedLimit) {
+  const auto plan = plan_racing_line(bean(), car_named(GetParam()), {.speed_limit = 15.0});
+  ASSERT_TRUE(plan) << plan.error().message;
+  for (const path::RacingLinePoint& p : plan->points) EXPECT_LE(p.vx, 15.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cars, RacingPlanOf, testing::Values("udacity", "road-car"), [](const auto& param) {
+  return std::string(param.param) == "udacity" ? "Udacity" : "RoadCar";
+});
+
+TEST(RacingPlan, SaysWhyThereIsNone) {
+  const auto narrow = plan_racing_line(bean(1.0, 0.9), model::udacity_params());
+  ASSERT_FALSE(narrow);
+  EXPECT_NE(narrow.error().message.find("road"), std::string::npos) << narrow.error().message;
+  EXPECT_FALSE(plan_racing_line(bean(), model::udacity_params(), {.grip_share = 0.0}));
+  EXPECT_FALSE(plan_racing_line(bean(), model::udacity_params(), {.margin = -0.1}));
+  std::vector<path::TrackPoint> points;
+  for (int i = 0; i < 20; ++i) points.push_back({{10.0 * i, 0.0}, 4.0, 4.0});
+  const auto open = plan_racing_line(*path::Track::create("open", points, false), model::udacity_params());
+  ASSERT_FALSE(open);
+  EXPECT_NE(open.error().message.find("closed"), std::string::npos) << open.error().message;
+}
+
+TEST(RacingPlan, StopsWhenToldTo) {
+  int told = 0;
+  const auto plan =
+      plan_racing_line(bean(), model::udacity_params(), {.go_on = [&](int, double) { return ++told < 5; }});
+  EXPECT_FALSE(plan);
+  EXPECT_EQ(told, 5);
+}
+
+}  // namespace
+}  // namespace chicane::lap_time

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/recording/driven_lap.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "chicane/protocol/library.hpp"
+#include "chicane/recording/detail/ros_message.hpp"
+#include "chicane/recording/recorder.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "telemetry/sample_mcap.hpp"
+
+namespace chicane::recording {
+namespace {
+
+using telemetry::TemporaryFile;
+using testing::HasSubstr;
+
+/// One lap of the oval, as the program records it; the frames that were recorded.
+std::vector<telemetry::Frame> record_oval(const std::string& path) {
+  const auto scenario =
+      protocol::compose({.scenario_file = {}, .settings = {{"track", "oval"}, {"laps", "1"}}});
+  EXPECT_TRUE(scenario);
+  const auto loop = run::ClosedLoop::create(*scenario);
+  EXPECT_TRUE(loop);
+  RecorderOptions options;
+  options.path = path;
+  options.run.track = "oval";
+  options.run.track_length = (*loop)->track().length();
+  options.run.vehicle = scenario->vehicle;
+  options.run.road = protocol::road_lines((*loop)->track(), 2.0);
+  options.scenario = *scenario;
+  options.may_wait = true;
+  const auto recorder = Recorder::create(options);
+  EXPECT_TRUE(recorder);
+  std::vector<telemetry::Frame> frames;
+  static_cast<void>(run::run_closed_loop(
+      **loop, {.on_frame =
+                   [&](const telemetry::Frame& frame) {
+                     frames.push_back(frame);
+                     (*recorder)->record(frame);
+                   },
+               .on_lap = [&](const telemetry::CompletedLap& lap) { (*recorder)->record(lap); }}));
+  EXPECT_TRUE((*recorder)->finish());
+  return frames;
+}
+
+TEST(DrivenRun, HoldsWhatWasRecorded) {
+  const TemporaryFile file;
+  const std::vector<telemetry::Frame> frames = record_oval(file.path());
+  const auto run = read_run(file.path());
+  ASSERT_TRUE(run) << run.error().message;
+  EXPECT_EQ(run->track, "oval");
+  EXPECT_GT(run->left.size(), 100U);
+  EXPECT_EQ(run->left.size(), run->right.size());
+  EXPECT_EQ(run->last_lap, 1);
+  ASSERT_EQ(run->moments.size(), frames.size());
+  const telemetry::Frame& frame = frames[200];
+  const DrivenMoment& moment = run->moments[200];
+  EXPECT_DOUBLE_EQ(moment.time, frame.time);
+  EXPECT_DOUBLE_EQ(moment.position.x(), frame.truth.x);
+  EXPECT_DOUBLE_EQ(moment.heading, frame.truth.psi);
+  EXPECT_DOUBLE_EQ(moment.steer, frame.result.command.steer);
+  EXPECT_DOUBLE_EQ(moment.s, frame.s);
+  ASSERT_EQ(moment.plan.size(), static_cast<std::size_t>(frame.result.plan.size));
+  EXPECT_DOUBLE_EQ(moment.plan[3].y(), frame.result.plan.points[3].y);
+  EXPECT_EQ(run->of_lap(1).size(), frames.size());
+  EXPECT_EQ(run->of_lap(0).size(), frames.size());
+  EXPECT_TRUE(run->of_lap(2).empty());
+}
+
+TEST(DrivenRun, SaysWhatIsNoRecording) {
+  EXPECT_FALSE(read_run("nowhere.mcap"));
+  const auto read = read_run(CHICANE_SOURCE_DIR "/README.md");
+  ASSERT_FALSE(read);
+}
+
+TEST(RosReader, ReadsNestedMessagesArraysAndTexts) {
+  const auto reader = RosReader::create(
+      "# a comment\nuint8 KIND=3\nbool flag\nfloat64 x # with unit\na_msgs/Point[] points\nstring name\n"
+      "float64[2] pair\n================\nMSG: a_msgs/Point\nint32 i\nfloat64 y\n");
+  ASSERT_TRUE(reader) << reader.error().message;
+  std::string bytes{"\0\1\0\0", 4};
+  const auto add = [&](auto value, std::size_t padding) {
+    bytes.append(padding, '\0');
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  add(std::uint8_t{1}, 0);
+  add(2.5, 7);
+  add(std::uint32_t{2}, 0);
+  add(std::int32_t{-1}, 0);
+  add(7.0, 0);
+  add(std::int32_t{5}, 0);
+  add(8.0, 4);
+  add(std::uint32_t{3}, 0);
+  bytes.append("hi\0", 3);
+  add(1.0, 1);
+  add(2.0, 0);
+  const auto content = reader->read(bytes);
+  ASSERT_TRUE(content) << content.error().message;
+  EXPECT_EQ(content->number("flag"), 1.0);
+  EXPECT_EQ(content->number("x"), 2.5);
+  EXPECT_THAT(content->list("points.i"), testing::ElementsAre(-1.0, 5.0));
+  EXPECT_THAT(content->list("points.y"), testing::ElementsAre(7.0, 8.0));
+  EXPECT_EQ(content->text("name"), "hi");
+  EXPECT_THAT(content->list("pair"), testing::ElementsAre(1.0, 2.0));
+  EXPECT_EQ(content->number("nothing", -7.0), -7.0);
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_FALSE(reader->read(std::string_view(bytes).substr(0, size))) << size;
+}
+
+TEST(RosReader, RefusesDefinitionsWithHolesAndCountsBeyondReason) {
+  const auto hole = RosReader::create("b_msgs/Missing[] all\n");
+  ASSERT_FALSE(hole);
+  EXPECT_THAT(hole.error().message, HasSubstr("b_msgs/Missing"));
+  const auto reader = RosReader::create("float64[] x\n");
+  ASSERT_TRUE(reader);
+  EXPECT_FALSE(reader->read(std::string("\0\1\0\0\xff\xff\xff\xff", 8)));
+  const auto endless = RosReader::create("c_msgs/A a\n===\nMSG: c_msgs/A\nc_msgs/A a\n");
+  ASSERT_TRUE(endless);
+  EXPECT_FALSE(endless->read(std::string("\0\1\0\0", 4))) << "a message within itself ends somewhere";
+}
+
+}  // namespace
+}  // namespace chicane::recording

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/road/racing_road.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "chicane/base/math.hpp"
+#include "chicane/road/known_road.hpp"
+
+namespace chicane::road {
+namespace {
+
+constexpr double kRadius = 80.0;
+
+/// A circle to the left (side 1) or right (-1), with 3 m of road inside and 5 m outside of it, faster in one
+/// half.
+std::vector<path::LinePoint> lap(double side) {
+  std::vector<path::LinePoint> points;
+  constexpr int kCount = 200;
+  for (int i = 0; i <= kCount; ++i) {
+    const double angle = kTwoPi * i / kCount;
+    path::LinePoint point;
+    point.position = {kRadius * std::sin(angle), side * kRadius * (1.0 - std::cos(angle))};
+    point.heading = side * angle;
+    point.curvature = side / kRadius;
+    point.speed = 20.0 + 5.0 * std::sin(angle);
+    point.left = side > 0.0 ? 3.0 : 5.0;
+    point.right = side > 0.0 ? 5.0 : 3.0;
+    points.push_back(point);
+  }
+  return points;
+}
+
+TEST(RacingRoad, HasTheLapsLineItsSpeedsAndItsRoom) {
+  for (const double side : {1.0, -1.0}) {
+    const RacingRoad road(lap(side), 0.5);
+    ASSERT_TRUE(road.line().is_closed());
+    EXPECT_NEAR(road.line().length(), kTwoPi * kRadius, 1e-3);
+    EXPECT_LE(road.line().spacing(), RacingRoad::kSpacing);
+    for (double s = -600.0; s < 1200.0; s += 31.7) {
+      const double angle = s / kRadius;
+      const CurvePoint at = road.line().at(s);
+      EXPECT_NEAR(at.position.x(), kRadius * std::sin(angle), 1e-3);
+      EXPECT_NEAR(at.position.y(), side * kRadius * (1.0 - std::cos(angle)), 1e-3);
+      EXPECT_NEAR(at.curvature, side / kRadius, 1e-9);
+      EXPECT_NEAR(road.line().demand(s).speed, 20.0 + 5.0 * std::sin(angle), 0.01);
+      const Road::Room room = road.room(s);
+      EXPECT_NEAR(side > 0.0 ? room.left : room.right, 3.5, 1e-9) << "the kerb is road";
+      EXPECT_NEAR(side > 0.0 ? room.right : room.left, 5.5, 1e-9);
+    }
+  }
+}
+
+TEST(RacingRoad, IsEmptyForNoLap) {
+  EXPECT_TRUE(RacingRoad({}).line().is_empty());
+  const std::vector<path::LinePoint> few(4);
+  EXPECT_TRUE(RacingRoad(few).line().is_empty());
+}
+
+TEST(RacingRoad, IsWhatAStopOnItFollows) {
+  const RacingRoad road(lap(1.0));
+  KnownRoad known(4.0, model::udacity_params());
+  known.use_line(nullptr);
+  EXPECT_TRUE(known.line().is_empty());
+  path::RoadData data;
+  data.length = 100.0;
+  data.points = {{.s = 0.0, .left = 4.0, .right = 4.0},
+                 {.s = 100.0, .position = {100.0, 0.0}, .left = 4.0, .right = 4.0}};
+  KnownRoad told(data, model::udacity_params());
+  const unsigned before = told.revision();
+  EXPECT_EQ(told.target({.left = 5.0, .right = 3.0}, 1.5), 1.0) << "the middle of the road";
+  told.use_line(&road);
+  EXPECT_NE(told.revision(), before);
+  EXPECT_NEAR(told.line().length(), kTwoPi * kRadius, 1e-3);
+  EXPECT_NEAR(told.edges(10.0).left, 3.0, 1e-9);
+  EXPECT_EQ(told.target({.left = 5.0, .right = 3.0}, 1.5), 0.0) << "the line itself";
+  EXPECT_EQ(told.target({.left = 7.0, .right = 1.0}, 1.5), 0.5) << "but away from the edge";
+  EXPECT_EQ(told.target({.left = 1.0, .right = 7.0}, 1.5), -0.5);
+}
+
+}  // namespace
+}  // namespace chicane::road

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/solver/detail/filter_method.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "chicane/solver/ocp_solver.hpp"
+#include "families/cart_pole.hpp"
+#include "families/measure_family.hpp"
+#include "families/reactor.hpp"
+
+namespace chicane::bench {
+namespace {
+
+using solver::SolveStatus;
+
+/// A solved instance of a family, and what an independent check finds of it.
+template <class P>
+struct Solved {
+  solver::SolveReport report;
+  KktResidual kkt;
+};
+template <class P>
+Solved<P> solve(int seed, NaiveStart start, solver::SolverOptions options = {}) {
+  using Measurement = FamilyMeasurement<P>;
+  const auto ocp = std::make_unique<solver::OcpSolver<P, P::kHorizon>>(options);
+  const auto instance = Measurement::instance(seed);
+  const auto t = std::make_unique<typename Measurement::Trajectory>(Measurement::guess(instance, start));
+  Solved<P> solved;
+  solved.report = ocp->solve(instance.problem, instance.start, *t);
+  solved.kkt = check_kkt(
+      OverArrays<P>{instance.problem}, *t, [&](int k, int c) { return ocp->constraint_multiplier(k, c); },
+      [&](int k, int m) { return -ocp->rate_multiplier(k, m); });
+  return solved;
+}
+
+template <class P>
+void expect_optimal(int seed, NaiveStart start) {
+  const auto [report, kkt] = solve<P>(seed, start);
+  EXPECT_EQ(report.status, SolveStatus::kOptimal) << seed;
+  EXPECT_LE(kkt.stationarity, 2e-6) << seed;  // the tolerance, and rounding that the adjoint amplifies
+  EXPECT_LE(kkt.defect, 1e-12) << seed;
+  EXPECT_LE(kkt.subgradient, 2e-3) << seed;  // the root of the last barrier
+  EXPECT_LE(kkt.outside, 0.0) << seed;
+}
+
+TEST(FilterMethod, SwingsUpAPoleFromNoPush) {  // full steps and descents solve 12 of these 20
+  for (int seed = 0; seed < 20; ++seed) expect_optimal<CartPole>(seed, NaiveStart::kIdle);
+}
+
+TEST(FilterMethod, KeepsBoundsOnChangesOfInputs) {  // descents solve none of these
+  for (const int seed : {9, 29, 44, 79}) expect_optimal<Reactor>(seed, NaiveStart::kIdle);
+  for (const int seed : {1, 21, 33, 51}) expect_optimal<Reactor>(seed, NaiveStart::kLine);
+}
+
+TEST(FilterMethod, SaysWhereRoundingEndsIt) {
+  int at_floor = 0;
+  for (int seed = 0; seed < 20; ++seed) {
+    const auto [report, kkt] = solve<CartPole>(seed, NaiveStart::kIdle, {.tolerance = 1e-12});
+    const double left = std::max({report.stationarity, report.defect, report.complementarity});
+    EXPECT_TRUE(solver::usable(report.status)) << seed;
+    EXPECT_EQ(report.status == SolveStatus::kOptimal, left <= 1e-12) << seed;
+    if (report.status == SolveStatus::kAtFloor) {
+      EXPECT_LE(left, 1e-6) << seed;
+      EXPECT_LE(kkt.stationarity, 1e-5) << seed;  // with the prices that are handed out
+    }
+    EXPECT_LE(kkt.defect, 1e-12) << seed;
+    at_floor += report.status == SolveStatus::kAtFloor ? 1 : 0;
+  }
+  EXPECT_GT(at_floor, 0);  // else the tolerance is too easy for this test
+}
+
+TEST(FilterMethod, HandsOutNoWorseThanTheGuessWhenTheBudgetEnds) {
+  for (const int turns : {5, 10, 15, 20, 30}) {
+    for (int seed = 0; seed < 10; ++seed) {
+      const auto instance = FamilyMeasurement<CartPole>::instance(seed);
+      const auto guess = FamilyMeasurement<CartPole>::guess(instance, NaiveStart::kIdle);
+      const auto none = [](int, int) { return 0.0; };
+      const double before = check_kkt(OverArrays<CartPole>{instance.problem}, guess, none, none).cost;
+      const auto [report, kkt] = solve<CartPole>(seed, NaiveStart::kIdle, {.max_iterations = turns});
+      EXPECT_LE(kkt.cost, (1.0 + 1e-9) * before) << turns << " " << seed;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chicane::bench

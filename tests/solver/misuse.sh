@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Compiles each case of misuse.cpp: case 0 has to pass, the others have to fail with the message that stands behind them, early and in
+# few lines.
+#   misuse.sh COMPILER SOURCE_FOLDER
+set -uo pipefail
+compiler=$1 source=$2
+here=$(dirname "$0")
+# Lines up to the end of the first message: how it came about (5), a standard header's name (3), the message and its note (8).
+most_lines=18
+failures=0
+fail() { echo "case $case: $1"; failures=1; }
+cases=$(grep -c 'CASE == ' "$here/misuse.cpp")
+for ((case = 0; case < cases; ++case)); do
+  expected=$(sed -n "s/^#.*CASE == $case  *\/\/ expect: //p" "$here/misuse.cpp")
+  LC_ALL=C said=$("$compiler" -std=c++20 -fsyntax-only -Wno-psabi -DCASE="$case" -I"$source/src" "$here/misuse.cpp" 2>&1)
+  code=$?
+  if ((case == 0)); then
+    [ $code -eq 0 ] || fail "$said"
+    continue
+  fi
+  [ $code -eq 1 ] || fail "compiler ended with $code"
+  [ -n "$expected" ] || fail "says not what to expect"
+  line=$(grep -nF -- "$expected" <<<"$said" | head -1 | cut -d: -f1)
+  if [ -z "$line" ]; then
+    fail "expected \"$expected\" in: $said"
+  elif ((case <= 12 && line > most_lines)); then
+    fail "expected \"$expected\" in the first $most_lines lines, got it in line $line of: $said"
+  fi
+  if ((case <= 12)) && (($(wc -l <<<"$said") > 60)); then fail "said too much: $said"; fi
+done
+exit $failures

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Random problems, most of them unpleasant; bench/solver_fuzz.cpp has more of them.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+
+#include "chicane/base/random.hpp"
+#include "chicane/solver/ocp_solver.hpp"
+#include "fuzz/classify.hpp"
+#include "fuzz/random_case.hpp"
+#include "fuzz/random_problem.hpp"
+
+namespace chicane {
+namespace {
+
+template <class Problem>
+void expect_confirmed(std::uint64_t first, std::uint64_t count) {
+  using Ocp = solver::OcpSolver<Problem, 40>;
+  const auto one = std::make_unique<bench::FuzzCase<Problem, 40>>();
+  std::uint64_t usable = 0;
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    Random random{seed * 2654435761U + 11U};
+    bench::make_case(random, *one);
+    const auto ocp = std::make_unique<Ocp>(one->options);
+    one->report = ocp->solve(one->problem, one->start, one->answer);
+    usable += solver::usable(one->report.status) ? 1 : 0;
+    const bench::Wrong wrong = bench::Judge<Problem, 40, Ocp>{*one, *ocp}.verdict();
+    EXPECT_EQ(wrong, bench::Wrong::kNothing) << seed << ": " << bench::kWrongNames[static_cast<int>(wrong)];
+  }
+  EXPECT_GT(usable, count / 2);  // the check has something to do
+}
+
+// Of these 1000 answers 15 were none: prices of another iterate than the one handed out, a barrier that was
+// still high, inputs that cost more than the guess.
+TEST(RandomProblems, GetAnswersThatAnIndependentCheckConfirms) {
+  expect_confirmed<bench::RandomStructured<2, 1, 1>>(0, 1000);
+}
+// Of these two were "optimal" or "at the floor" with defects that are not finite.
+TEST(RandomProblems, GetNoAnswersWithDefectsThatAreNotNumbers) {
+  expect_confirmed<bench::RandomStructured<1, 1, 0>>(7420, 40);
+}
+
+}  // namespace
+}  // namespace chicane

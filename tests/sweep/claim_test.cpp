@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sweep/claim.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "chicane/protocol/library.hpp"
+
+namespace chicane::sweep {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kClaims = R"(
+settings: {preset: weighted}
+claims:
+  - id: D1
+    says: more is faster
+    settings: {laps: 2}
+    cases: {N10: {}, N20: {cubic_mpc: {horizon_steps: 20}}}
+    true_when: [N20.top_speed_mps > N10.top_speed_mps * 1.1, "N20.lap_times_s[-1] < 30", N10.clean = 1]
+    shows: [top_speed_mps]
+  - {id: D2, says: it is there, found: works, see: somewhere}
+)";
+
+telemetry::RunSummary run(double top, double lap, bool is_clean = true) {
+  telemetry::RunSummary summary;
+  summary.total.top_speed = top;
+  summary.laps = {{.lap_time = 99.0}, {.lap_time = lap}};
+  summary.completed = true;
+  summary.off_track_events = is_clean ? 0 : 1;
+  return summary;
+}
+
+TEST(Claim, HoldsWhenAllItsConditionsDo) {
+  const auto claims = parse_claims(kClaims, "c.yaml");
+  ASSERT_TRUE(claims) << claims.error().message;
+  ASSERT_EQ(claims->size(), 2U);
+  const Claim& claim = claims->front();
+  EXPECT_TRUE(claim.is_tried());
+  EXPECT_EQ(claim.cases[1].settings, (Settings{{"cubic_mpc.horizon_steps", "20"}}));
+  EXPECT_EQ(claim.settings, (Settings{{"preset", "weighted"}, {"laps", "2"}}));
+  EXPECT_TRUE(holds(claim, {{"N10", run(20, 40)}, {"N20", run(23, 29)}}));
+  EXPECT_FALSE(holds(claim, {{"N10", run(20, 40)}, {"N20", run(21, 29)}})) << "less than 10 % faster";
+  EXPECT_FALSE(holds(claim, {{"N10", run(20, 40)}, {"N20", run(23, 31)}})) << "the last lap";
+  EXPECT_FALSE(holds(claim, {{"N10", run(20, 40, false)}, {"N20", run(23, 29)}})) << "off the road";
+  telemetry::RunSummary lost = run(23, 29);
+  lost.laps.clear();
+  EXPECT_FALSE(holds(claim, {{"N10", run(20, 40)}, {"N20", lost}})) << "not measured";
+  EXPECT_FALSE((*claims)[1].is_tried());
+}
+
+TEST(Claim, SaysWhatIsWrongWithAFile) {
+  const auto fault = [](const std::string& text) {
+    const auto claims = parse_claims(text, "c.yaml");
+    return claims ? "none" : claims.error().message;
+  };
+  EXPECT_THAT(fault("claims: [{id: A, says: b}]"),
+              HasSubstr("c.yaml:1: A: expected either cases and true_when, or found"));
+  EXPECT_THAT(fault("claims: [{id: A, says: b, cases: {x: {}}, true_when: [y.clean = 1]}]"),
+              HasSubstr("true_when: got y.clean = 1"));
+  EXPECT_THAT(fault("claims: [{id: A, says: b, cases: {x: {}}, true_when: [x.cleen = 1]}]"),
+              HasSubstr("true_when"));
+  EXPECT_THAT(fault("claims: [{id: A, says: b, cases: {x: {lap: 2}}, true_when: [x.clean = 1]}]"),
+              HasSubstr("lap: got an unknown key"));
+  EXPECT_THAT(fault("claims: [{id: A, says: b, found: works}, {id: A, says: b, found: works}]"),
+              HasSubstr("id of its own"));
+  EXPECT_THAT(fault("claims: [{id: A, says: b, found: works, shows: [x]}]"),
+              HasSubstr("got x, expected a column"));
+}
+
+TEST(Claim, AllSeventyEightStatementsAreThere) {
+  std::set<std::string> ids;
+  int tried = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(CHICANE_SOURCE_DIR "/claims")) {
+    const auto claims =
+        parse_claims(protocol::read_file(entry.path().string()).value(), entry.path().string());
+    ASSERT_TRUE(claims) << claims.error().message;
+    for (const Claim& claim : *claims) {
+      EXPECT_TRUE(ids.insert(claim.id).second) << claim.id;
+      EXPECT_TRUE(claim.is_tried() || !claim.see.empty()) << claim.id;
+      if (claim.is_tried()) ++tried;
+    }
+  }
+  EXPECT_EQ(ids.size(), 78U);
+  EXPECT_GE(tried, 35);
+}
+
+}  // namespace
+}  // namespace chicane::sweep

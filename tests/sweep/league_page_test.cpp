@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sweep/league_page.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "chicane/sweep/league_results.hpp"
+#include "chicane/sweep/sweep.hpp"
+
+namespace chicane::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A league that takes a second: nobody has to complete a lap.
+class LeagueFiles : public testing::Test {
+ protected:
+  LeagueFiles() {
+    fs::create_directories(folder_);
+    league_ = parse_league(R"(
+name: small & <plain>
+settings: {laps: 0, time_limit_s: 2}
+search: {speed_mps: {from: 8, to: 10}}
+entries:
+  mine: {preset: pid}
+  theirs: {server: "./mpc {port}"}
+tracks: [oval]
+cars: [udacity]
+disturbances: {none: {}, late: {latency_ms: 130}}
+)",
+                           "l.yaml")
+                  .value();
+  }
+  ~LeagueFiles() override { fs::remove_all(folder_); }
+  LeagueFiles(const LeagueFiles&) = delete;
+  LeagueFiles& operator=(const LeagueFiles&) = delete;
+
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// All runs, a limit of 10 s, and one trial of the program.
+  LeagueResults driven(const Result<telemetry::RunSummary>& of_program) {
+    auto beside = BesideFile::open(path("b.jsonl"), league_);
+    EXPECT_TRUE(beside);
+    SweepOptions options{.jobs = 2, .file = path("r.jsonl")};
+    options.on_run = [&](std::uint64_t run, const telemetry::RunSummary& summary) {
+      EXPECT_TRUE(beside->add_times(run, summary));
+    };
+    const std::atomic<bool> stop{false};
+    EXPECT_TRUE(drive_plan(league_.plan, {}, options, stop));
+    EXPECT_TRUE(beside->add_bound("oval", "udacity", 10.0));
+    EXPECT_TRUE(beside->add_trial(league_.external_trials()[0], of_program));
+    const auto results = read_results(league_, path("r.jsonl"), path("b.jsonl"));
+    EXPECT_TRUE(results) << results.error().message;
+    return results.value_or(LeagueResults{});
+  }
+
+  static telemetry::RunSummary clean_run() {
+    telemetry::RunSummary run;
+    run.completed = true;
+    run.laps_wanted = run.laps_completed = 1;
+    run.laps.push_back({.lap_time = 12.5});
+    run.step_time = {.p50 = 0.12, .p99 = 0.13};
+    return run;
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("chicane_league_test." + std::to_string(getpid()));
+  League league_;
+};
+
+TEST_F(LeagueFiles, ResultsJoinOurRunsThoseOfTheProgramAndTheLimits) {
+  const LeagueResults results = driven(clean_run());
+  ASSERT_EQ(results.cells.size(), 4U);
+  EXPECT_EQ(results.missing, 0U);
+  EXPECT_TRUE(results.cells[0].is_clean);
+  EXPECT_DOUBLE_EQ(results.cells[0].number("search_value"), 10.0);
+  EXPECT_THAT(results.cells[1].command, HasSubstr("--latency-ms 130"));
+  EXPECT_THAT(results.cells[1].command, HasSubstr("--speed-mps 10"));
+  EXPECT_TRUE(results.cells[2].is_external);
+  EXPECT_TRUE(results.cells[2].is_clean);
+  EXPECT_DOUBLE_EQ(results.cells[2].number("lap_time_s"), 12.5);
+  EXPECT_DOUBLE_EQ(results.cells[2].number("answer_time_us.p50"), 120000.0);
+  EXPECT_FALSE(results.cells[3].is_clean);
+  EXPECT_EQ(results.cells[3].why, "the command has no place {latency_ms}");
+  EXPECT_EQ(results.bounds.size(), 1U);
+}
+
+TEST_F(LeagueFiles, WhatAClockHasToldIsNotInTheResults) {
+  static_cast<void>(driven(clean_run()));
+  std::ifstream stream(path("r.jsonl"));
+  const std::string results{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_THAT(results, Not(HasSubstr("time_us")));
+  EXPECT_THAT(results, Not(HasSubstr("theirs")));
+}
+
+TEST_F(LeagueFiles, ThePageHasStandingsGapsTimesAndReasons) {
+  const LeagueResults results =
+      driven(fail(ErrorCode::kIo, "the program does not listen on port 1: <refused>"));
+  const std::string page = league_html(league_, results);
+  EXPECT_THAT(page, HasSubstr("<title>small &amp; &lt;plain&gt;</title>"));
+  EXPECT_THAT(page, HasSubstr("&lt;refused&gt;"));
+  EXPECT_THAT(page, Not(HasSubstr("<refused>")));
+  EXPECT_THAT(page, HasSubstr("--preset pid --track oval --car udacity"));
+  const std::string markdown = league_markdown(league_, driven(clean_run()));
+  EXPECT_THAT(markdown, HasSubstr("### Standings"));
+  EXPECT_THAT(markdown, HasSubstr("| mine | 1 of 1 | 1 of 1 |"));
+  EXPECT_THAT(markdown, HasSubstr("| theirs | its own | 12.50 | 25.0 |"));
+  EXPECT_THAT(markdown, HasSubstr("The limit is 10.00 s."));
+  EXPECT_THAT(markdown, HasSubstr("| theirs | answer | 120000 | 130000 | 1 |"));
+}
+
+TEST_F(LeagueFiles, TablesForOtherProgramsHaveARowForEachRun) {
+  const LeagueResults results = driven(clean_run());
+  const std::string csv = league_csv(results);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+  EXPECT_THAT(csv, HasSubstr("mine,oval,udacity,late,1,10,10,1,"));
+  const auto json = nlohmann::json::parse(league_json(results));
+  ASSERT_EQ(json.size(), 4U);
+  EXPECT_EQ(json[2]["lap_time_s"], 12.5);
+  EXPECT_TRUE(json[3]["lap_time_s"].is_null());
+}
+
+TEST_F(LeagueFiles, TheFileBesideKnowsWhatIsDoneAndForgetsAnotherLeague) {
+  static_cast<void>(driven(clean_run()));
+  const auto trials = league_.external_trials();
+  const auto again = BesideFile::open(path("b.jsonl"), league_);
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(again->has_bound("oval", "udacity"));
+  EXPECT_FALSE(again->has_bound("oval", "road-car"));
+  EXPECT_TRUE(again->has_trial(trials[0]));
+  EXPECT_FALSE(again->has_trial(trials[1]));
+  league_.externals[0].command = "./another {port}";
+  const auto other = BesideFile::open(path("b.jsonl"), league_);
+  ASSERT_TRUE(other);
+  EXPECT_FALSE(other->has_trial(trials[0]));
+}
+
+TEST_F(LeagueFiles, MissingRunsAreCounted) {
+  SweepOptions options{.jobs = 1, .file = path("r.jsonl")};
+  std::atomic<bool> stop{false};
+  options.on_progress = [&](const Progress&) { stop = true; };
+  ASSERT_TRUE(drive_plan(league_.plan, {}, options, stop));
+  const auto results = read_results(league_, path("r.jsonl"), path("none.jsonl"));
+  ASSERT_TRUE(results);
+  EXPECT_EQ(results->missing, 1U);
+  EXPECT_EQ(results->cells[1].why, "not driven yet");
+  EXPECT_THAT(league_markdown(league_, *results), HasSubstr("1 of them not driven yet"));
+}
+
+}  // namespace
+}  // namespace chicane::sweep

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sweep/summary_page.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "chicane/sweep/plan_codec.hpp"
+#include "chicane/sweep/result_file.hpp"
+
+namespace chicane::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Results that are written by hand: a run is clean where speed times latency stays below 5000.
+class SummaryPage : public testing::Test {
+ protected:
+  SummaryPage() {
+    fs::create_directories(folder_);
+    const Plan plan = parse_plan(R"(
+name: by hand
+settings: {laps: 1}
+axes:
+  - preset: [pid, stanley]
+  - latency_ms: [50, 100, 150]
+  - speed_mph: [20, 40, 60]
+marks: [{preset: stanley, latency_ms: 100, speed_mph: 39}]
+keep: [completed, off_track_events]
+)",
+                                 "plan.yaml")
+                          .value();
+    std::ofstream out(path("r.jsonl"));
+    out << header_of(plan) << "\n";
+    for (std::uint64_t run = 0; run < plan.size(); ++run) {
+      const Settings at = plan.at(run);
+      const bool is_clean = std::stod(at[1].second) * std::stod(at[2].second) < 5000.0;
+      out << "{\"run\":" << run << ",\"settings\":{\"preset\":\"" << at[0].second
+          << "\",\"latency_ms\":" << at[1].second << ",\"speed_mph\":" << at[2].second
+          << "},\"completed\":true,\"off_track_events\":" << (is_clean ? 0 : 2) << "}\n";
+    }
+  }
+  ~SummaryPage() override { fs::remove_all(folder_); }
+  SummaryPage(const SummaryPage&) = delete;
+  SummaryPage& operator=(const SummaryPage&) = delete;
+
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  [[nodiscard]] std::string read(const std::string& name) const {
+    std::ifstream stream(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("chicane_summary_page_test." + std::to_string(getpid()));
+};
+
+TEST_F(SummaryPage, HasAMapOfNumbersForEachText) {
+  ASSERT_TRUE(write_page({path("r.jsonl")}, path("page.html")));
+  const std::string page = read("page.html");
+  EXPECT_THAT(page, HasSubstr("<h3>pid</h3>"));
+  EXPECT_THAT(page, HasSubstr("<h3>stanley</h3>"));
+  EXPECT_THAT(page, HasSubstr("framed: what is marked"));
+  const std::string of_stanley = page.substr(page.find("<h3>stanley</h3>"));
+  const std::size_t mark = of_stanley.find("class=mark");
+  EXPECT_LT(mark, of_stanley.find("</table>"));
+  const std::string of_pid =
+      page.substr(page.find("<h3>pid</h3>"), page.find("<h3>stanley</h3>") - page.find("<h3>pid</h3>"));
+  EXPECT_THAT(of_pid, Not(HasSubstr("class=mark")));
+}
+
+TEST_F(SummaryPage, MapsInLettersStandBetweenTheirLines) {
+  std::ofstream(path("page.md")) << "above\n<!-- sweep: by hand -->\nolder\n<!-- end of sweep -->\nbelow\n";
+  const auto written = write_maps({path("r.jsonl")}, path("page.md"));
+  ASSERT_TRUE(written) << written.error().message;
+  const std::string page = read("page.md");
+  EXPECT_TRUE(page.starts_with("above\n<!-- sweep: by hand -->\n18 runs, all with `laps=1`."));
+  EXPECT_TRUE(page.ends_with("<!-- end of sweep -->\nbelow\n"));
+  EXPECT_THAT(page, Not(HasSubstr("older")));
+  EXPECT_THAT(page, HasSubstr("pid: latency_ms down, speed_mph across\n"
+                              "      20    40    60\n"
+                              " 50  100   100   100\n"
+                              "100  100   100     ·\n"
+                              "150  100     ·     ·\n"));
+  EXPECT_THAT(page, HasSubstr("100  100  [100]    ·\n")) << "the nearest value is marked";
+  ASSERT_TRUE(write_maps({path("r.jsonl")}, path("page.md")));
+  EXPECT_EQ(read("page.md"), page) << "once more changes nothing";
+}
+
+TEST_F(SummaryPage, APageWithoutItsSecondLineIsLeftAsItIs) {
+  std::ofstream(path("page.md")) << "<!-- sweep: by hand -->\nmine\n";
+  const auto written = write_maps({path("r.jsonl")}, path("page.md"));
+  ASSERT_FALSE(written);
+  EXPECT_THAT(written.error().message, HasSubstr("end of sweep"));
+  EXPECT_THAT(read("page.md"), HasSubstr("mine"));
+}
+
+}  // namespace
+}  // namespace chicane::sweep

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sweep/sweep.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "chicane/base/text.hpp"
+#include "chicane/sweep/csv.hpp"
+#include "chicane/sweep/merge.hpp"
+#include "chicane/sweep/outcome.hpp"
+#include "chicane/sweep/plan_codec.hpp"
+#include "chicane/sweep/result_file.hpp"
+#include "chicane/sweep/summary_page.hpp"
+#include "chicane/sweep/trial.hpp"
+
+namespace chicane::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr const char* kPlan = R"(
+settings: {laps: 0, time_limit_s: 2, preset: pid, sensor.position_noise_m: 0.05}
+axes:
+  - seed: {from: 1, to: 4}
+  - latency_ms: [60, 100, 140]
+keep: [top_speed_mps, lap_times_s, end_reason]
+)";
+
+class Sweep : public testing::Test {
+ protected:
+  Sweep() { fs::create_directories(folder_); }
+  ~Sweep() override { fs::remove_all(folder_); }
+  Sweep(const Sweep&) = delete;
+  Sweep& operator=(const Sweep&) = delete;
+
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  static std::string read(const std::string& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  Result<Progress> run(const std::string& file, const Shard& shard = {}, int jobs = 1) {
+    return drive_plan(plan_, shard, {.jobs = jobs, .file = path(file)}, stop_);
+  }
+  /// The merged bytes of some files.
+  std::string merged(const std::vector<std::string>& names) {
+    std::vector<std::string> files;
+    for (const std::string& name : names) files.push_back(path(name));
+    const auto done = merge(files, path("merged"));
+    return done ? read(path("merged")) : done.error().message;
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("chicane_sweep_test." + std::to_string(getpid()));
+  Plan plan_ = parse_plan(kPlan, "plan.yaml").value();
+  std::atomic<bool> stop_{false};
+};
+
+TEST_F(Sweep, WritesALineForEachRunWithItsSettingsAndResults) {
+  const auto done = run("a.jsonl");
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_TRUE(done->is_complete());
+  EXPECT_EQ(done->driven, 12U);
+  std::ifstream stream(path("a.jsonl"));
+  std::string line;
+  std::getline(stream, line);
+  const auto header = parse_header(line, "a");
+  ASSERT_TRUE(header);
+  EXPECT_EQ(header->runs, 12U);
+  EXPECT_EQ(header->keys, (std::vector<std::string>{"seed", "latency_ms"}));
+  std::getline(stream, line);
+  const auto first = nlohmann::json::parse(line);
+  EXPECT_EQ(first["run"], 0);
+  EXPECT_EQ(first["settings"], (nlohmann::json{{"seed", 1}, {"latency_ms", 60}}));
+  EXPECT_GT(first["top_speed_mps"].get<double>(), 1.0);
+  EXPECT_EQ(first["lap_times_s"], nlohmann::json::array());
+  EXPECT_EQ(first["end_reason"], "time limit reached");
+  EXPECT_EQ(first["state_hash"].get<std::string>().size(), 16U);
+  EXPECT_EQ(first.size(), 6U);
+}
+
+TEST_F(Sweep, TheMergedBytesDependOnNothingButThePlan) {
+  ASSERT_TRUE(run("one.jsonl"));
+  ASSERT_TRUE(run("two.jsonl", {}, 2));
+  std::vector<std::string> parts;
+  for (std::uint64_t i = 0; i < 7; ++i) {
+    const std::string name = "part" + std::to_string(i);
+    ASSERT_TRUE(run(name, {i, 7, "--shard"}, 1 + static_cast<int>(i % 2)));
+    parts.insert(parts.begin(), name);
+  }
+  const std::string expected = merged({"one.jsonl"});
+  EXPECT_EQ(std::count(expected.begin(), expected.end(), '\n'), 13);
+  EXPECT_EQ(merged({"two.jsonl"}), expected);
+  EXPECT_EQ(merged(parts), expected);
+  EXPECT_EQ(merged({"part3", "one.jsonl"}), expected) << "the same run twice is one run";
+}
+
+TEST_F(Sweep, GoesOnAfterItWasKilledInTheMiddleOfALine) {
+  ASSERT_TRUE(run("a.jsonl"));
+  const std::string whole = read(path("a.jsonl"));
+  const std::string expected = merged({"a.jsonl"});
+  for (const std::size_t size : {std::size_t{0}, std::size_t{10}, whole.size() / 2, whole.size() - 1}) {
+    std::ofstream(path("a.jsonl"), std::ios::trunc) << whole.substr(0, size);
+    const auto again = run("a.jsonl");
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(again->found + again->driven, 12U);
+    EXPECT_GT(again->driven, 0U);
+    EXPECT_EQ(merged({"a.jsonl"}), expected);
+  }
+  EXPECT_EQ(run("a.jsonl")->driven, 0U) << "nothing is left to do";
+}
+
+TEST_F(Sweep, StopsWithWhatIsDoneAndGoesOnLater) {
+  SweepOptions options{.jobs = 1, .file = path("a.jsonl")};
+  options.on_progress = [&](const Progress& progress) {
+    if (progress.driven == 5) stop_ = true;
+  };
+  const auto stopped = drive_plan(plan_, {}, options, stop_);
+  ASSERT_TRUE(stopped);
+  EXPECT_EQ(stopped->driven, 5U);
+  EXPECT_FALSE(stopped->is_complete());
+  EXPECT_THAT(merged({"a.jsonl"}), HasSubstr("7 of 12 runs are missing: 5-11"));
+  stop_ = false;
+  EXPECT_EQ(run("a.jsonl")->found, 5U);
+}
+
+TEST_F(Sweep, AFullDiskIsSaidAndLeavesNoHalfLine) {
+  ASSERT_TRUE(run("a.jsonl"));
+  const std::string expected = merged({"a.jsonl"});
+  const std::size_t size = read(path("a.jsonl")).size();
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  rlimit limit = before;
+  limit.rlim_cur = size / 2 + 20;  // in the middle of a line
+  setrlimit(RLIMIT_FSIZE, &limit);
+  const auto full = run("b.jsonl");
+  setrlimit(RLIMIT_FSIZE, &before);
+  ASSERT_FALSE(full);
+  EXPECT_EQ(full.error().code, ErrorCode::kIo);
+  EXPECT_THAT(full.error().message, HasSubstr("the results cannot be written"));
+  EXPECT_THAT(full.error().message, HasSubstr("of 12 runs are done"));
+  EXPECT_EQ(read(path("b.jsonl")).back(), '\n');
+  EXPECT_GT(run("b.jsonl")->found, 0U);
+  EXPECT_EQ(merged({"b.jsonl"}), expected);
+}
+
+TEST_F(Sweep, ARunThatCannotBeDrivenSaysWhyAndStopsNothing) {
+  plan_ =
+      parse_plan(
+          "settings: {laps: 0, time_limit_s: 1}\naxes: [{controller: [pid, cubic-mpc], speed_mph: [30, 30]}, "
+          "{track: [lakeside, nowhere]}]",
+          "p")
+          .value();
+  const auto done = run("a.jsonl", {}, 2);
+  ASSERT_TRUE(done);
+  EXPECT_EQ(done->failed, 2U);
+  EXPECT_THAT(merged({"a.jsonl"}), HasSubstr("\"error\":\"track: got \\\"nowhere\\\", expected"));
+}
+
+TEST_F(Sweep, ResultsOfAnotherPlanAreNotMixed) {
+  ASSERT_TRUE(run("a.jsonl"));
+  plan_ = parse_plan(std::string(kPlan) + "about: the same\n", "plan.yaml").value();
+  EXPECT_TRUE(run("a.jsonl")) << "the same plan in other words";
+  plan_.fixed.emplace_back("laps", "1");
+  EXPECT_THAT(run("a.jsonl").error().message, HasSubstr("got results of another plan or program"));
+  ASSERT_TRUE(run("b.jsonl"));
+  EXPECT_THAT(merged({"a.jsonl", "b.jsonl"}), HasSubstr("got the plan"));
+}
+
+TEST_F(Sweep, TwoResultsOfOneRunAreSaid) {
+  ASSERT_TRUE(run("a.jsonl"));
+  std::string other = read(path("a.jsonl"));
+  const std::size_t at = other.find("state_hash\":\"", other.find("{\"run\":4,")) + 13;
+  other[at] = other[at] == '0' ? '1' : '0';
+  std::ofstream(path("b.jsonl")) << other;
+  EXPECT_THAT(merged({"a.jsonl", "b.jsonl"}), HasSubstr("got other results of run 4 than"));
+  std::ofstream(path("b.jsonl")) << other.substr(0, other.find('\n') + 1) << "hello\n";
+  EXPECT_THAT(merged({"a.jsonl", "b.jsonl"}),
+              HasSubstr("b.jsonl:2: got hello, expected the results of a run"));
+}
+
+TEST_F(Sweep, AFileHasOneWriter) {
+  const auto first = ResultFile::open(path("a.jsonl"), plan_, {});
+  ASSERT_TRUE(first);
+  EXPECT_THAT(run("a.jsonl").error().message, HasSubstr("another process writes it"));
+}
+
+TEST_F(Sweep, TablesHaveAColumnForEachSettingAndResult) {
+  ASSERT_TRUE(run("a.jsonl"));
+  ASSERT_TRUE(write_csv(path("a.jsonl"), path("a.csv")));
+  const std::string csv = read(path("a.csv"));
+  EXPECT_EQ(csv.substr(0, csv.find("\r\n")),
+            "run,seed,latency_ms,top_speed_mps,lap_times_s,end_reason,error");
+  EXPECT_THAT(csv, HasSubstr("\r\n0,1,60,"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 13);
+}
+
+TEST(SweepOutcome, ColumnsAreFoundByTheirNames) {
+  for (const Column& column : columns()) EXPECT_EQ(find_column(column.name), &column);
+  EXPECT_EQ(find_column("wall_time_s"), nullptr) << "nothing that the clock has told";
+  telemetry::RunSummary run;
+  EXPECT_EQ(find_column("lap_time_s")->text(run), "null");
+  run.laps = {{.lap_time = 30.5}, {.lap_time = 25.25}, {.lap_time = 26.0}};
+  EXPECT_EQ(find_column("lap_time_s")->number(run), 26.0);
+  EXPECT_EQ(find_column("best_lap_time_s")->text(run), "25.25");
+  EXPECT_EQ(find_column("lap_times_s")->text(run), "[30.5,25.25,26]");
+}
+
+TEST_F(Sweep, ThePageSumsUpAxesAndPairsAndHasTheCommandOfEachRun) {
+  ASSERT_TRUE(run("a", {0, 2, "--shard"}));
+  ASSERT_TRUE(run("b", {1, 2, "--shard"}));
+  const auto page = write_page({path("a"), path("b")}, path("page.html"));
+  ASSERT_TRUE(page) << page.error().message;
+  EXPECT_EQ(page->runs, 12U);
+  const std::string text = read(path("page.html"));
+  for (const char* words :
+       {"<h1>plan</h1>", "12 of 12 runs, 12 clean", "<th>latency_ms", "seed \\ latency_ms",
+        "<code>chicane drive --fast --laps 0 --preset pid --seed 3 --latency-ms 140 --set time_limit_s=2"})
+    EXPECT_THAT(text, HasSubstr(words));
+  EXPECT_EQ(text.find("http://", text.find("http://localhost:4567/") + 5), std::string::npos)
+      << "needs no network";
+  EXPECT_THAT(write_page({path("a")}, path("page.html"))->runs, 6U) << "what is missing is left out";
+  std::ofstream(path("x")) << "hello\n";
+  EXPECT_FALSE(write_page({path("x")}, path("page.html")));
+}
+
+TEST_F(Sweep, ThePageShowsNothingThatAPlanCouldHaveWrittenAsMarkup) {
+  plan_ = parse_plan(
+              "name: <script>alert(1)</script>\nsettings: {laps: 0, time_limit_s: 1}\naxes: [{track: "
+              "['<b>x', oval]}]",
+              "p")
+              .value();
+  ASSERT_TRUE(run("a"));
+  ASSERT_TRUE(write_page({path("a")}, path("page.html")));
+  const std::string text = read(path("page.html"));
+  EXPECT_EQ(text.find("<script"), std::string::npos);
+  EXPECT_EQ(text.find("<b>x"), std::string::npos);
+}
+
+TEST(SweepMerge, NamesRanges) {
+  EXPECT_EQ(ranges_text({17, 18, 19, 20, 33}), "17-20, 33");
+  EXPECT_EQ(ranges_text({1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 22}),
+            "1, 3, 5, 7, 9, 11, 13, 15, 17, 19 and 2 more");
+}
+
+TEST(SweepTrial, TheCommandDrivesTheSameRun) {
+  EXPECT_EQ(command_of({{"preset", "weighted"},
+                        {"laps", "2"},
+                        {"speed_mph", "40"},
+                        {"guard.mode", "off"},
+                        {"laps", "3"},
+                        {"fault.name", "half_grip"},
+                        {"fault.at_s", "12"},
+                        {"track", "my track.csv"}}),
+            "chicane drive --fast --preset weighted --laps 3 --track 'my track.csv' --set guard.mode=off "
+            "--speed-mph 40 "
+            "--fault half_grip@12");
+  EXPECT_FALSE(check_setting("latency_ms", "900"));
+  EXPECT_FALSE(check_setting("speed_mph", "-3"));
+  EXPECT_FALSE(check_setting("fault.name", "half_gripp"));
+  EXPECT_FALSE(check_setting("fault.when_s", "3"));
+  EXPECT_TRUE(check_setting("scenario", "first-lap"));
+}
+
+/// How fast PID may be on the oval: a clean lap at slow speed, none at high speed.
+constexpr const char* kSearching = R"(
+settings: {laps: 1, time_limit_s: 200, preset: pid, track: oval, guard.mode: "off"}
+axes:
+  - grip: {cases: {dry: {}, wet: {plant_options.friction_scale: 0.5}}}
+search: {speed_mps: {from: 12, to: 80, factor: 1.5, within: 0.1}}
+keep: [completed, off_track_events, lap_time_s]
+)";
+
+TEST_F(Sweep, SearchesTheLargestValueThatIsClean) {
+  plan_ = parse_plan(kSearching, "plan.yaml").value();
+  ASSERT_EQ(plan_.size(), 2U);
+  run::Roads roads;
+  const auto found = find_largest(*plan_.search, plan_.settings_of(0), roads, stop_);
+  ASSERT_TRUE(found) << found.error().message;
+  const RunOutcome& best = **found;
+  EXPECT_TRUE(telemetry::completed_on_road(best.run));
+  EXPECT_GT(best.search_value, 12.0);
+  EXPECT_LT(best.search_value, 60.0) << "PID takes no more than 60 m/s: 80 is passed over";
+  Settings faster = plan_.settings_of(0);
+  faster.emplace_back("speed_mps", number_text(best.search_value * 1.5, 4));
+  const auto too_fast = drive(faster, roads, stop_);
+  ASSERT_TRUE(too_fast);
+  EXPECT_FALSE(telemetry::completed_on_road(**too_fast)) << "a rung of the ladder above";
+  const auto wet = find_largest(*plan_.search, plan_.settings_of(1), roads, stop_);
+  ASSERT_TRUE(wet);
+  EXPECT_LT((*wet)->search_value, best.search_value);
+}
+
+TEST_F(Sweep, ASearchIsALineWithValueTrialsAndColumns) {
+  plan_ = parse_plan(kSearching, "plan.yaml").value();
+  ASSERT_TRUE(run("one.jsonl"));
+  ASSERT_TRUE(run("two.jsonl", {}, 2));
+  EXPECT_EQ(merged({"one.jsonl"}), merged({"two.jsonl"}));
+  std::ifstream stream(path("one.jsonl"));
+  std::string line;
+  std::getline(stream, line);
+  const auto header = parse_header(line, "a");
+  ASSERT_TRUE(header);
+  EXPECT_EQ(header->search_key, "speed_mps");
+  EXPECT_EQ(header->columns.front(), "search_value");
+  EXPECT_EQ(header->cases.at("grip").at("wet").front().second, "0.5");
+  std::getline(stream, line);
+  const auto first = nlohmann::json::parse(line);
+  EXPECT_EQ(first["settings"], (nlohmann::json{{"grip", "dry"}}));
+  EXPECT_GT(first["search_value"], 12.0);
+  EXPECT_GT(first["search_trials"], 2);
+  EXPECT_EQ(first["off_track_events"], 0);
+  ASSERT_TRUE(write_page({path("one.jsonl")}, path("page.html")));
+  EXPECT_THAT(read(path("page.html")), HasSubstr("largest clean value"));
+  EXPECT_THAT(read(path("page.html")), HasSubstr("friction_scale=0.5"));
+}
+
+TEST_F(Sweep, ASearchThatFindsNothingSaysSoWithTheSlowestRun) {
+  plan_ = parse_plan(kSearching, "plan.yaml").value();
+  plan_.search->from = plan_.search->to = 55.0;
+  ASSERT_TRUE(run("a.jsonl"));
+  EXPECT_THAT(read(path("a.jsonl")), HasSubstr(R"("search_value":null,"search_trials":1,)"));
+  plan_.search->from = plan_.search->to = 70.0;
+  ASSERT_TRUE(run("b.jsonl"));
+  EXPECT_THAT(read(path("b.jsonl")), HasSubstr("expected a number in [0, 60]"));
+}
+
+}  // namespace
+}  // namespace chicane::sweep

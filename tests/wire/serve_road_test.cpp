@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// What serve makes of the road that it was told.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "protocol/hostile_telemetry.hpp"
+#include "wire/served.hpp"
+
+namespace chicane::wire {
+namespace {
+
+using test::kRealTelemetry;
+using test::RawSocket;
+using test::Served;
+using test::steer_of;
+
+/// A circle about the origin, 5 m to each edge.
+path::Track circle(double radius) {
+  std::vector<path::TrackPoint> points;
+  for (int i = 0; i < 100; ++i) {
+    const double angle = 2.0 * 3.14159265358979 * i / 100;
+    points.push_back({Vec2{radius * std::cos(angle), radius * std::sin(angle)}, 5.0, 5.0});
+  }
+  return path::Track::create("circle", points, true).value();
+}
+
+TEST(Serve, SaysOnceThatTheToldRoadIsAnotherOneAndJudgesNothingByIt) {
+  const path::Track track = circle(60.0);  // the message's waypoints are 118 m from the origin and less
+  ServeOptions options = Served::immediate();
+  options.track = &track;
+  Served served(options);
+  RawSocket client = served.connect();
+  for (int i = 0; i < 3; ++i) {
+    client.send(RawSocket::masked(kRealTelemetry));
+    EXPECT_GT(steer_of(client.frame())["throttle"].get<double>(), 0.0) << "it is driven";
+  }
+  EXPECT_TRUE(served.has_logged("another road at 59"));
+  served.stop();
+  EXPECT_EQ(served.count_logged("another road"), 1);
+  EXPECT_EQ(served.summary().run.track, "");
+  EXPECT_EQ(served.summary().run.off_track_events, 0);
+}
+
+TEST(Serve, JudgesByTheToldRoadWhereItFits) {
+  const path::Track track = circle(118.0);
+  ServeOptions options = Served::immediate();
+  options.track = &track;
+  Served served(options);
+  RawSocket client = served.connect();
+  client.send(RawSocket::masked(kRealTelemetry));
+  steer_of(client.frame());
+  served.stop();
+  EXPECT_EQ(served.count_logged("another road"), 0);
+  EXPECT_EQ(served.summary().run.track, "circle");
+}
+
+}  // namespace
+}  // namespace chicane::wire

@@ -1,0 +1,32 @@
+import { computed, effect, signal } from '@preact/signals';
+import { persisted } from './persisted';
+
+// Light or dark: as the system has it, or as chosen here.
+
+export const APPEARANCES = ['system', 'light', 'dark'] as const;
+export type Appearance = (typeof APPEARANCES)[number];
+
+const isAppearance = (value: unknown): value is Appearance => (APPEARANCES as readonly unknown[]).includes(value);
+
+export const appearance = persisted<Appearance>('appearance', 'system', isAppearance);
+
+const prefersDark = typeof matchMedia === 'undefined' ? null : matchMedia('(prefers-color-scheme: dark)');
+const isSystemDark = signal(prefersDark?.matches ?? false);
+prefersDark?.addEventListener('change', () => (isSystemDark.value = prefersDark.matches));
+
+/** What is shown. */
+export const scheme = computed<'light' | 'dark'>(() =>
+  appearance.value === 'system' ? (isSystemDark.value ? 'dark' : 'light') : appearance.value,
+);
+
+/** To the other one; back to the system's own when that is what it shows. */
+export function toggleScheme(): void {
+  const other = scheme.value === 'dark' ? 'light' : 'dark';
+  appearance.value = (isSystemDark.value ? 'dark' : 'light') === other ? 'system' : other;
+}
+
+if (typeof document !== 'undefined') {
+  effect(() => {
+    document.documentElement.dataset.theme = scheme.value;
+  });
+}

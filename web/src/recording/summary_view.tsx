@@ -1,0 +1,232 @@
+import './summary.css';
+import { signal } from '@preact/signals';
+import { speedColour, topOfScale } from '../draw/speed_colour';
+import { fixed, lapTime, UNKNOWN } from '../lib/format';
+import { inSpeedUnit, speedUnit } from '../lib/units';
+import { bestsOf } from '../state/lap_table';
+import { gapsToLimit } from '../state/limit';
+import { type RunReport, type Trace, verdictOf } from './summary';
+
+/** The runs that are reported; empty while they are read. */
+export const reports = signal<readonly RunReport[]>([]);
+export const isSummaryShown = signal(false);
+
+const WIDTH = 900; // of a picture's own units
+const MOST_POINTS = 700;
+
+/** Indices of at most `MOST_POINTS` evenly spread samples. */
+function spread(count: number): number[] {
+  const step = Math.max(1, count / MOST_POINTS);
+  return Array.from({ length: Math.ceil(count / step) }, (_, i) => Math.min(count - 1, Math.floor(i * step)));
+}
+
+function Curve({
+  title,
+  unit,
+  trace,
+  values,
+  factor = 1,
+  report,
+}: {
+  title: string;
+  unit: string;
+  trace: Trace;
+  values: readonly number[];
+  factor?: number;
+  report: RunReport;
+}) {
+  const known = values.filter(Number.isFinite).map((value) => value * factor);
+  if (known.length < 2) return null;
+  const [low, high] = known.reduce(([a, b], value) => [Math.min(a, value), Math.max(b, value)], [0, 0]);
+  const span = high - low || 1;
+  const [tall, from] = [120, trace.time[0] ?? 0];
+  const x = (time: number): number => (WIDTH * (time - from)) / ((trace.time.at(-1) ?? 1) - from || 1);
+  const y = (value: number): number => tall - (tall * (value * factor - low)) / span;
+  const points = spread(values.length).filter((i) => Number.isFinite(values[i]));
+  return (
+    <figure class="summary-curve">
+      <figcaption>
+        {title} <span class="unit">{unit}</span>{' '}
+        <span class="soft">
+          {fixed(low, 1)} to {fixed(high, 1)}
+        </span>
+      </figcaption>
+      <svg viewBox={`0 0 ${WIDTH} ${tall}`} role="img" aria-label={`${title} over the whole run`}>
+        {report.faults.map(({ time, name }) => (
+          <line key={`${name}${time}`} x1={x(time)} x2={x(time)} y1={0} y2={tall} class="summary-fault" />
+        ))}
+        <line x1={0} x2={WIDTH} y1={y(0)} y2={y(0)} class="summary-zero" />
+        <polyline points={points.map((i) => `${x(trace.time[i] ?? 0)},${y(values[i] ?? 0)}`).join(' ')} />
+      </svg>
+    </figure>
+  );
+}
+
+/** The way driven, in the colours of its speeds. */
+function SpeedMap({ report }: { report: RunReport }) {
+  const { trace, run } = report;
+  const at = spread(trace.x.length).filter((i) => Number.isFinite(trace.x[i]) && Number.isFinite(trace.y[i]));
+  if (at.length < 2) return null;
+  const [xs, ys] = [at.map((i) => trace.x[i] ?? 0), at.map((i) => trace.y[i] ?? 0)];
+  const [minX, maxX, minY, maxY] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+  const margin = 0.03 * Math.max(maxX - minX, maxY - minY, 1);
+  const top = topOfScale(run.body_length_m, speedUnit());
+  const size = Math.max(maxX - minX, maxY - minY, 1);
+  return (
+    <svg
+      class="summary-map"
+      viewBox={`${minX - margin} ${-maxY - margin} ${maxX - minX + 2 * margin} ${maxY - minY + 2 * margin}`}
+      role="img"
+      aria-label="The way driven, in the colours of its speeds"
+    >
+      {at.slice(1).map((index, i) => (
+        <line
+          key={index}
+          x1={xs[i]}
+          y1={-(ys[i] ?? 0)}
+          x2={xs[i + 1]}
+          y2={-(ys[i + 1] ?? 0)}
+          stroke={trace.isBad[index] ? 'var(--bad)' : speedColour((trace.speed[index] ?? 0) / top)}
+          stroke-width={size * (trace.isBad[index] ? 0.016 : 0.009)}
+          stroke-linecap="round"
+        />
+      ))}
+    </svg>
+  );
+}
+
+function LapTable({ report }: { report: RunReport }) {
+  const bests = bestsOf(report.laps);
+  if (report.laps.length === 0) return <p class="soft">No lap was completed.</p>;
+  return (
+    <table class="lap-table">
+      <thead>
+        <tr>
+          {['Lap', 'Time', 'Above the limit', 'S 1', 'S 2', 'S 3', `Top ${speedUnit().name}`, 'To the edge [m]'].map(
+            (head) => (
+              <th key={head} scope="col">
+                {head}
+              </th>
+            ),
+          )}
+        </tr>
+      </thead>
+      <tbody>
+        {report.laps.map((lap) => {
+          const gap = gapsToLimit(lap, report.limit).lap;
+          return (
+            <tr key={lap.lap} class={lap.lap === bests.lap ? 'best' : ''}>
+              <th scope="row">
+                {lap.lap}
+                {!lap.is_clean && <span class="badge bad">off road</span>}
+              </th>
+              <td class="time">{lapTime(lap.lap_time_s, 3)}</td>
+              <td>{Number.isFinite(gap) ? `${fixed(gap, 1)} %` : UNKNOWN}</td>
+              {[0, 1, 2].map((sector) => (
+                <td key={sector}>{fixed(lap.sector_times_s[sector] ?? NaN, 2)}</td>
+              ))}
+              <td>{fixed(inSpeedUnit(lap.top_speed_mps), 1)}</td>
+              <td>{fixed(lap.min_edge_distance_m, 2)}</td>
+            </tr>
+          );
+        })}
+      </tbody>
+    </table>
+  );
+}
+
+function RunSection({ report }: { report: RunReport }) {
+  const { run, trace, faults, changes, settings } = report;
+  const { severity, text } = verdictOf(report);
+  const unit = speedUnit();
+  return (
+    <section class="summary-run" aria-label={report.name}>
+      <h2>{report.name}</h2>
+      <p class="soft">
+        {run.controller} · {run.preset} · {run.car} · {run.track} · {fixed(run.latency_s * 1000, 0)} ms latency
+      </p>
+      <p class={`summary-verdict ${severity}`} data-testid="verdict">
+        {text}
+      </p>
+      <SpeedMap report={report} />
+      <LapTable report={report} />
+      <Curve title="Speed" unit={unit.name} trace={trace} values={trace.speed} factor={unit.perMps} report={report} />
+      <Curve title="Lateral error" unit="m, + left" trace={trace} values={trace.error} report={report} />
+      {faults.length > 0 && (
+        <p>
+          <b>Faults:</b> {faults.map(({ name, time }) => `${name} at ${fixed(time, 1)} s`).join(', ')}
+        </p>
+      )}
+      {changes.length > 0 && (
+        <p>
+          <b>Changed while driving:</b>{' '}
+          {changes.map(({ name, value, time }) => `${name} = ${value} at ${fixed(time, 1)} s`).join(', ')}
+        </p>
+      )}
+      {settings !== '' && (
+        <details>
+          <summary>Recorded settings</summary>
+          <pre tabIndex={0}>{settings}</pre>
+        </details>
+      )}
+    </section>
+  );
+}
+
+/** Runs side by side, where there are several. */
+function Comparison() {
+  const all = reports.value;
+  if (all.length < 2) return null;
+  const rows: readonly (readonly [string, (report: RunReport) => string])[] = [
+    ['Track', ({ run }) => run.track],
+    ['Controller', ({ run }) => `${run.controller} · ${run.preset}`],
+    ['Laps', ({ laps }) => String(laps.length)],
+    ['Best', ({ laps }) => lapTime(bestsOf(laps).time, 3)],
+    ['Off the road', ({ offTrackEvents }) => String(offTrackEvents)],
+    ['Others drove', ({ interventions }) => String(interventions)],
+    ['Commands changed', ({ gated }) => String(gated)],
+    ['Duration', ({ duration }) => `${fixed(duration, 1)} s`],
+  ];
+  return (
+    <div class="table-scroll" tabIndex={0} role="region" aria-label="Runs side by side">
+      <table data-testid="comparison">
+        <thead>
+          <tr>
+            <th scope="col">Run</th>
+            {all.map(({ name }) => (
+              <th key={name} scope="col">
+                {name}
+              </th>
+            ))}
+          </tr>
+        </thead>
+        <tbody>
+          {rows.map(([title, value]) => (
+            <tr key={title}>
+              <th scope="row">{title}</th>
+              {all.map((report) => (
+                <td key={report.name}>{value(report)}</td>
+              ))}
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </div>
+  );
+}
+
+/** What the recordings show, first in words: for reading and for print. */
+export function SummaryView() {
+  const all = reports.value;
+  return (
+    <main class={isSummaryShown.value ? 'summary-page' : 'summary-page hidden'} aria-label="Report" tabIndex={0}>
+      <div class="summary-sheet">
+        {all.length === 0 && <p class="empty">Reading the recording …</p>}
+        <Comparison />
+        {all.map((report) => (
+          <RunSection key={report.name} report={report} />
+        ))}
+      </div>
+    </main>
+  );
+}

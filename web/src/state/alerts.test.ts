@@ -1,0 +1,43 @@
+import { describe, expect, it } from 'vitest';
+import { UNKNOWN_FRAME } from '../protocol/messages';
+import type { Frame } from '../protocol/topics';
+import { alertsOf } from './alerts';
+import { COLUMN_COUNT, plotRow } from './columns';
+import { History } from './history';
+
+function alerts(...frames: Partial<Frame>[]): string[] {
+  const history = new History(COLUMN_COUNT, 100);
+  const all = frames.map((frame) => ({ ...UNKNOWN_FRAME, rung: 0, is_off_track: false, ...frame }));
+  for (const frame of all) history.push(plotRow(frame, []));
+  return alertsOf(all.at(-1) as Frame, history, ['half_grip', 'fault.link_lost']).map(
+    ({ severity, text }) => `${severity}: ${text}`,
+  );
+}
+
+describe('alerts on the picture', () => {
+  it('are none while all is well', () => {
+    expect(alerts({ time_s: 1, edge_distance_m: 2, front_tire_use: 0.9, rear_tire_use: 0.8 })).toEqual([]);
+  });
+
+  it('say how far the car is off the road', () => {
+    expect(alerts({ time_s: 1, is_off_track: true, edge_distance_m: -55.2 })).toEqual([
+      'bad: Off the road, 55.2 m beyond the edge',
+    ]);
+  });
+
+  it('name a near edge and sliding long enough to be read', () => {
+    const sliding = { time_s: 1, edge_distance_m: 0.12, front_tire_use: 1.08, rear_tire_use: 0.7 };
+    const well = { edge_distance_m: 1, front_tire_use: 0.6, rear_tire_use: 0.7 };
+    const said = ['warning: 0.12 m to the edge', 'warning: Sliding: 108 % of the grip'];
+    expect(alerts(sliding, { ...well, time_s: 1.5 })).toEqual(said);
+    expect(alerts(sliding, { ...well, time_s: 2 })).toEqual([]);
+  });
+
+  it('name who drives, and faults', () => {
+    expect(alerts({ time_s: 1, is_manual: true, active_faults: 3 })).toEqual([
+      'bad: Fault: half grip',
+      'bad: Fault: link lost',
+      'unknown: A person drives',
+    ]);
+  });
+});

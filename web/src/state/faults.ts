@@ -1,0 +1,50 @@
+import { signal } from '@preact/signals';
+import { hasBit } from '../lib/bits';
+import type { Change, Frame } from '../protocol/topics';
+import { entryOf } from './settings';
+
+// Faults of the run: until when each lasts, and where on the road they began.
+
+const MARKS_KEPT = 60;
+
+/** Where and when a fault began. */
+export interface FaultMark {
+  readonly name: string;
+  readonly time: number; // of the run [s]
+  readonly x: number; // in W [m]
+  readonly y: number;
+}
+
+export const faultMarks = signal<readonly FaultMark[]>([]);
+/** When each fault that was switched on will end [s], by its key. */
+const untils = new Map<string, number>();
+
+export function forgetFaults(): void {
+  if (faultMarks.value.length > 0) faultMarks.value = [];
+  untils.clear();
+}
+
+/** Takes from a change of a switch how long its fault will last: "true", or "+5*0.5". */
+export function noteFaultChange({ stamp, name, value }: Change): void {
+  if (!name.startsWith('fault.')) return;
+  const own = entryOf(name)?.fault?.duration_s ?? NaN;
+  const told = /^\+([\d.e-]+)/.exec(value)?.[1];
+  if (value === 'false') untils.delete(name);
+  else untils.set(name, stamp.sec + stamp.nsec / 1e9 + (told === undefined ? own : Number(told)));
+}
+
+export function noteFaultMarks(frame: Frame, before: Frame | null, names: readonly string[]): void {
+  const begun = frame.active_faults & ~(before?.active_faults ?? 0);
+  if (begun === 0) return;
+  const marks: FaultMark[] = [];
+  for (let bit = 0; bit < 32; ++bit)
+    if (hasBit(begun, bit))
+      marks.push({ name: names[bit] ?? `#${bit + 1}`, time: frame.time_s, x: frame.x_m, y: frame.y_m });
+  faultMarks.value = [...faultMarks.value, ...marks].slice(-MARKS_KEPT);
+}
+
+/** Seconds until a fault ends by itself; not-a-number where that is not known. */
+export function secondsLeft(key: string, now: number): number {
+  const left = (untils.get(key) ?? NaN) - now;
+  return left >= 0 ? left : NaN;
+}

@@ -1,0 +1,35 @@
+import { computed, signal } from '@preact/signals';
+import { requests } from './operate';
+import { run } from './run';
+
+// A program that is started again drives its own choice: the page says so, and can bring back the one before.
+
+const CHOICES = ['track', 'car', 'preset', 'controller'] as const;
+type Choice = Readonly<Record<(typeof CHOICES)[number], string>>;
+
+const before = signal<Choice | null>(null);
+
+/** The choice of the run that this page showed before, where the program now drives another one. */
+export const otherRun = computed<Choice | null>(() => {
+  const [old, now] = [before.value, run.value];
+  return old && now && CHOICES.some((key) => old[key] !== now[key]) ? old : null;
+});
+
+/** Another program will answer: remembers what the last one drove. */
+export function rememberRun(): void {
+  const now = run.value;
+  if (now) before.value = { track: now.track, car: now.car, preset: now.preset, controller: now.controller };
+}
+
+export function forgetOtherRun(): void {
+  before.value = null;
+}
+
+/** Chooses again what was driven before; several choices make one run. */
+export async function chooseBefore(): Promise<void> {
+  const old = before.value;
+  before.value = null;
+  for (const key of CHOICES) if (old && old[key] !== run.value?.[key]) await requests.set(key, old[key]);
+}
+
+export const inWords = ({ track, car, preset }: Choice): string => `${preset} with ${car} on ${track}`;

@@ -1,0 +1,56 @@
+import { computed, signal } from '@preact/signals';
+import { plural } from '../lib/format';
+import type { Severity } from '../lib/words';
+import { attempt, link } from './link';
+import { run } from './run';
+
+/** Why the run is not going on, as a card says it; null while it goes on. */
+export interface RunEnd {
+  readonly kind: 'finished' | 'stopped' | 'failed' | 'lost';
+  readonly severity: Severity;
+  readonly title: string;
+  readonly why: string;
+}
+
+/** Attempts to connect after which a lost connection is more than a hiccup. */
+const HICCUPS = 3;
+
+export const runEnd = computed<RunEnd | null>(() => {
+  const now = run.value;
+  if (!now || now.mode === 'replay') return null;
+  if (now.end !== '') return endOf(now.end, now.end_reason);
+  if (link.value !== 'lost' || attempt.value < HICCUPS) return null;
+  return {
+    kind: 'lost',
+    severity: 'bad',
+    title: 'Connection lost',
+    why:
+      'The program said no goodbye: it crashed, was killed, or the network between is cut. ' +
+      `Trying again (${plural(attempt.value, 'attempt')}).`,
+  };
+});
+
+function endOf(kind: string, reason: string): RunEnd {
+  if (kind === 'finished') return { kind, severity: 'good', title: 'Finished', why: 'All laps that were asked for.' };
+  if (kind === 'stopped') return { kind, severity: 'unknown', title: 'Stopped', why: sentence(reason) };
+  const isOff = /left the road/.test(reason);
+  return { kind: 'failed', severity: 'bad', title: isOff ? 'Off the road' : 'Not finished', why: sentence(reason) };
+}
+
+const sentence = (reason: string): string =>
+  reason === '' ? '' : `${reason[0]?.toUpperCase()}${reason.slice(1)}${reason.endsWith('.') ? '' : '.'}`;
+
+const closed = signal('');
+const nameOf = (end: RunEnd | null): string => (end ? `${end.kind} ${end.title}` : '');
+
+/** Whether the card is shown: until it is closed, or the run goes on. */
+export const showsEnd = computed(() => runEnd.value !== null && nameOf(runEnd.value) !== closed.value);
+
+export function closeEnd(): void {
+  closed.value = nameOf(runEnd.value);
+}
+
+/** A run that goes on will end another time. */
+export function reopenEnd(): void {
+  if (runEnd.value === null) closed.value = '';
+}

@@ -1,0 +1,138 @@
+import { effect, signal } from '@preact/signals';
+import type { SchemaEntry } from '../protocol/schema';
+import type { AskAnswer, Setting } from '../protocol/source';
+import { restartListeners } from './demultiplexer';
+import { live } from './live';
+import { ask as askRun, can } from './operate';
+import { cursorTime } from './plot_view';
+import { run } from './run';
+import { isControl, schema, settings } from './settings';
+import { readWhatIf, type WhatIfAnswer } from './what_if_answer';
+
+// "What if": another future of the run, from a moment on, with other settings.
+
+/** From when: now, where the cursor stands, or the line that this lap began with. */
+export type From = 'now' | 'cursor' | 'line';
+/** For how long: seconds, or a whole lap. */
+export type Span = '10' | '30' | 'lap';
+
+/** A setting that is changed in the question; the text as typed. */
+export interface Wish {
+  readonly key: string;
+  readonly value: Setting;
+}
+
+export const from = signal<From>('now');
+export const span = signal<Span>('lap');
+export const wishes = signal<readonly Wish[]>([]);
+
+/** The newest answer, and what it was asked. */
+export const answer = signal<WhatIfAnswer | null>(null);
+export const asked = signal<readonly Wish[]>([]);
+/** The share that is computed; null when nothing is. */
+export const progress = signal<number | null>(null);
+/** Why there is no answer; empty when nothing is wrong. */
+export const problem = signal('');
+
+/** A recording that is shown, for which the program answers; null in a live run. */
+export interface AskedLog {
+  /** Number of the recording. */
+  which(): number;
+  /** The position [s], on the recording's time line. */
+  position(): number;
+  ask(question: string): Promise<AskAnswer>;
+}
+export const askedLog = signal<AskedLog | null>(null);
+/** The settings of the recording that is shown; a live run has its own. */
+export const loggedSchema = signal<readonly SchemaEntry[]>([]);
+
+export const canAsk = (): boolean => askedLog.value !== null || can('/what_if');
+
+/** The settings that may change while a run goes on. */
+export const offered = (): readonly SchemaEntry[] =>
+  (askedLog.value ? loggedSchema.value : schema.value).filter(
+    ({ key, is_live, kind }) => is_live && !isControl(key) && kind !== 'text',
+  );
+
+/** The value in force. */
+export function valueInForce(entry: SchemaEntry): Setting | undefined {
+  return askedLog.value ? (entry.default ?? undefined) : settings.value.get(entry.key);
+}
+
+/** The moment that is asked for, on the time line of the run or the recording [s]; null: now. */
+export function moment(): number | null {
+  const frame = live.frame;
+  const log = askedLog.value;
+  const offset = log && frame ? log.position() - frame.time_s : 0; // a recording may have several runs
+  if (from.value === 'cursor' && cursorTime.value !== null) return cursorTime.value + offset;
+  if (from.value === 'line' && frame) return Math.max(0, frame.time_s - frame.lap_time_s) + offset;
+  return log ? log.position() : null;
+}
+
+/** The question as the program reads it. */
+export function question(): string {
+  const at = moment();
+  return JSON.stringify({
+    ...(at === null ? {} : { at_s: at }),
+    // From within a lap its rest comes first, then a whole one.
+    ...(span.value === 'lap' ? { laps: from.value === 'line' ? 1 : 2 } : { for_s: Number(span.value) }),
+    log: askedLog.value?.which() ?? 0,
+    settings: Object.fromEntries(wishes.value.map(({ key, value }) => [key, value])),
+  });
+}
+
+const pause = (ms: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, ms));
+const POLL_MS = 150;
+let newest = 0;
+
+/** Waits for the answer of a question by its number. */
+async function waitFor(id: number, mine: number): Promise<void> {
+  while (mine === newest) {
+    const reply = await fetch('what_if.json', { cache: 'no-store' });
+    const state = reply.ok ? readWhatIf(await reply.json()) : null;
+    if (mine !== newest) return;
+    if (state?.id !== id) throw new Error('another question took the place of this one');
+    if (state.kind === 'failed') throw new Error(state.why);
+    if (state.kind === 'done') {
+      answer.value = state.answer;
+      return;
+    }
+    progress.value = state.share;
+    await pause(POLL_MS);
+  }
+}
+
+/** Asks; the answer appears in `answer`. */
+export async function ask(): Promise<void> {
+  const mine = ++newest;
+  const sent = wishes.value;
+  problem.value = '';
+  progress.value = 0;
+  try {
+    const taken = await (askedLog.value?.ask(question()) ?? askRun(question()));
+    if (!taken.isTaken) throw new Error(taken.message);
+    await waitFor(Number(taken.message), mine);
+    if (mine === newest) asked.value = sent;
+  } catch (error) {
+    if (mine === newest) problem.value = error instanceof Error ? error.message : String(error);
+  } finally {
+    if (mine === newest) progress.value = null;
+  }
+}
+
+/** Forgets the answer, and one that is being computed. */
+export function forgetAnswer(): void {
+  ++newest;
+  answer.value = null;
+  progress.value = null;
+  problem.value = '';
+}
+
+// An answer is about one run.
+restartListeners.add(forgetAnswer);
+let known = '';
+effect(() => {
+  const now = `${run.value?.track} ${run.value?.car} ${run.value?.controller} ${run.value?.preset}`;
+  if (known !== '' && known !== now) forgetAnswer();
+  known = now;
+});

@@ -1,0 +1,63 @@
+import { effect } from '@preact/signals';
+import { RecordedDrive } from '../recording/recorded_drive';
+import { session } from '../scene3d/session';
+import { live } from './live';
+import { complete } from './message_fields';
+import { type Moment, showAgain } from './replay';
+import { answer } from './what_if';
+import type { Trace, WhatIfAnswer } from './what_if_answer';
+
+// The second future as a ghost on the picture: beside the car while the run comes to the same moments, and beside the
+// first future when both are watched.
+
+const column = (trace: Trace, name: keyof Trace, row: number): number => trace[name][row] ?? NaN;
+
+/** The second future by the time of the run. */
+function ghostOf({ trace }: WhatIfAnswer['branch']): RecordedDrive {
+  const rows = trace.time_s.flatMap((time, i) => [
+    time,
+    column(trace, 'x_m', i),
+    column(trace, 'y_m', i),
+    column(trace, 'yaw_rad', i),
+    column(trace, 'steer_rad', i),
+  ]);
+  return new RecordedDrive('what if', new Float64Array(rows), () => live.frame?.time_s ?? NaN);
+}
+
+/** The first future as frames of a replay. */
+export function momentsOf({ was: { trace } }: WhatIfAnswer): Moment[] {
+  const start = trace.time_s[0] ?? 0;
+  return trace.time_s.map((time, i) => ({
+    plan: null,
+    frame: complete('/chicane/frame', {
+      time_s: time,
+      lap_time_s: time - start,
+      has_truth: true,
+      x_m: column(trace, 'x_m', i),
+      y_m: column(trace, 'y_m', i),
+      yaw_rad: column(trace, 'yaw_rad', i),
+      vx_mps: column(trace, 'speed_mps', i),
+      vy_mps: 0,
+      yaw_rate_radps: 0,
+      speed_mps: column(trace, 'speed_mps', i),
+      steer_applied_rad: column(trace, 'steer_rad', i),
+      throttle_applied: column(trace, 'throttle', i),
+      lateral_error_m: column(trace, 'lateral_error_m', i),
+      edge_distance_m: column(trace, 'edge_distance_m', i),
+    }),
+  }));
+}
+
+/** Shows both futures on the picture, from their first moment on. */
+export const watchBoth = (found: WhatIfAnswer): void => showAgain(momentsOf(found));
+
+let shownBefore: typeof session.rival = null;
+effect(() => {
+  const found = answer.value;
+  if (found) {
+    if (!(session.rival instanceof RecordedDrive && session.rival.label === 'what if')) shownBefore = session.rival;
+    session.rival = ghostOf(found.branch);
+  } else if (session.rival?.label === 'what if') {
+    session.rival = shownBefore;
+  }
+});
