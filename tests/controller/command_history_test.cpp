@@ -8,6 +8,7 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
+#include "chicane/model/actuator.hpp"
 
 namespace chicane::controller {
 namespace {
@@ -54,6 +55,25 @@ TEST_F(Estimating, ReplaysACommandForExactlyTheFractionItActs) {
   sent.add(0.037, {.steer = 0.0, .throttle = 1.0});
   const StateEstimator::Prediction prediction = estimator.predict(0.1, sent);
   EXPECT_NEAR(prediction.state.vx, 0.063 * model.vehicle().drive_acceleration, 0.01);
+}
+
+/// Lag and rate limit as the actuator has them, whatever the steps are that it is replayed in.
+TEST(StateEstimator, TurnsTheWheelAsFastAsTheActuatorDoes) {
+  const model::VehicleParams car = model::road_car_params();
+  const model::Actuator wheel{
+      .low = -car.steer_limit, .high = car.steer_limit, .lag = car.steer_lag, .rate = car.steer_rate_limit};
+  StateEstimator estimator{model::PredictionModel{car}};
+  CommandHistory sent;
+  estimator.correct({.time = 0.0, .speed = 5.0}, sent);
+  sent.add(0.0, {.steer = car.steer_limit});
+  double steer = 0.0;
+  for (int i = 1; i <= 400; ++i) {
+    steer = wheel.next(steer, car.steer_limit, 0.001);
+    // A tenth of a degree for the steps of the replay.
+    if (i % 40 == 0) {
+      EXPECT_NEAR(estimator.predict(0.001 * i, sent).state.steer, steer, 0.006) << i;
+    }
+  }
 }
 
 TEST_F(Estimating, FindsYawRateAndSideslipThatTelemetryDoesNotHold) {

@@ -137,6 +137,18 @@ TEST(StopPlanner, NeedsTheRoadAsFarAsItStops) {
   EXPECT_FALSE(planner.plan(road, start_at(5.0, 40.0), {.share = 1.0}, stop).stands);
 }
 
+/// Behind its lag the wheel turns with its rate, not with what the lag leaves of it.
+TEST(StopPlanner, TurnsTheWheelAsFastAsTheActuatorDoes) {
+  const road::KnownRoad road = circle(1e5);
+  const model::VehicleParams car = kCars[1];
+  const StopPlanner planner(car);
+  double edge = 0.0;
+  const StopStart at = planner.advance(road, start_at(100.0, 5.0), {.steer = car.steer_limit}, 0.2, edge);
+  // The rate binds nearly all the way: what is left of the lag at the end is less than an eighth of it.
+  EXPECT_GT(at.body.steer, 0.85 * 0.2 * car.steer_rate_limit);
+  EXPECT_LE(at.body.steer, 0.2 * car.steer_rate_limit);
+}
+
 TEST(StopPlanner, AllocatesNothing) {
   const road::KnownRoad road = circle(60.0);
   const StopPlanner planner(kCars[1]);

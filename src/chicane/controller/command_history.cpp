@@ -78,7 +78,7 @@ void StateEstimator::advance(model::State& state, double& acceleration, double f
       lags = model_.lags(dt);
       lags_for = dt;
     }
-    const double reach = p.steer_rate_limit * dt;
+    const double reach = p.steer_rate_limit * dt / (1.0 - lags.steer.end);  // the wheel's, behind its lag
     const double steer = std::clamp(command.steer, state.steer - reach, state.steer + reach);
     const double asked = longitudinal_acceleration(p, command.throttle, state.vx);
     model::BodyMotion<double> body =

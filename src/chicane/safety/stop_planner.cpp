@@ -91,7 +91,7 @@ model::Command StopPlanner::law(const road::KnownRoad& road, const StopStart& at
 void StopPlanner::move(const road::KnownRoad& road, StopStart& at, const model::Command& command, double dt,
                        const model::PredictionModel::Lags& lags) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
-  const double reach = car.steer_rate_limit * dt;
+  const double reach = car.steer_rate_limit * dt / (1.0 - lags.steer.end);  // the wheel's, behind its lag
   const double steer = std::clamp(command.steer, at.body.steer - reach, at.body.steer + reach);
   const double asked = longitudinal_acceleration(car, command.throttle, at.body.vx);
   model::BodyMotion<double> to = model_.advance(at.body, steer, asked, dt, lags);
