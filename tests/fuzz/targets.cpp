@@ -17,10 +17,14 @@
 #include "chicane/net/server.hpp"
 #include "chicane/protocol/foxglove_codec.hpp"
 #include "chicane/protocol/ros_messages.hpp"
+#include "chicane/protocol/step_codec.hpp"
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/recording/reader.hpp"
+#include "chicane/sweep/claim.hpp"
+#include "chicane/sweep/league.hpp"
+#include "chicane/sweep/plan_codec.hpp"
 #include "net/raw_socket.hpp"
 
 namespace chicane::fuzz {
@@ -138,8 +142,58 @@ void mcap(std::string_view bytes) {
   if (!read) check(read.error());
 }
 
-constexpr std::array kTargets{Target{"telemetry", telemetry}, Target{"viewer", viewer}, Target{"http", http},
-                              Target{"yaml", yaml},           Target{"track", track},   Target{"mcap", mcap}};
+/// Messages of recordings and viewers in CDR. The first byte says which.
+void cdr(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const std::string_view message = bytes.substr(1);
+  switch (bytes[0] & 3) {
+    case 0:
+      if (const auto step = protocol::decode_step(message)) {
+        promise(step->measurement.waypoint_count >= 0 &&
+                step->measurement.waypoint_count <= model::Measurement::kMaxWaypoints);
+        promise(static_cast<std::size_t>(step->rung) < controller::kRungCount);
+      }
+      return;
+    case 1:
+      if (const auto change = protocol::decode_change(message)) {
+        const std::string again =
+            protocol::encode_change(change->time, change->cycle, change->name.view(), change->value.view());
+        const auto same = protocol::decode_change(again);
+        promise(same && same->cycle == change->cycle && same->name.view() == change->name.view() &&
+                same->value.view() == change->value.view());
+      }
+      return;
+    case 2:
+      if (const auto text = protocol::decode_ask(message)) promise(text->size() < message.size());
+      return;
+    default:
+      static_cast<void>(protocol::decode_set_bool(message));
+  }
+}
+
+/// Plans, leagues and claims. The first byte says which.
+void plan(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const std::string_view text = bytes.substr(1);
+  if ((bytes[0] & 3) == 0) {
+    const auto read = sweep::parse_plan(text, "f.yaml");
+    if (!read) return check(read.error());
+    promise(read->size() <= sweep::Plan::kMostRuns);
+    for (const std::uint64_t run : {std::uint64_t{0}, read->size() / 2, read->size() - 1})
+      promise(!read->settings_of(run).empty() || read->axes.empty());
+  } else if ((bytes[0] & 3) == 1) {
+    const auto league = sweep::parse_league(text, "f.yaml");
+    if (!league) return check(league.error());
+    for (const sweep::ExternalTrial& trial : league->external_trials())
+      promise(!trial.why_not.empty() || !sweep::filled(trial, 4567).empty());
+  } else if (const auto claims = sweep::parse_claims(text, "f.yaml"); !claims) {
+    check(claims.error());
+  }
+}
+
+constexpr std::array kTargets{
+    Target{"telemetry", telemetry}, Target{"viewer", viewer}, Target{"http", http}, Target{"yaml", yaml},
+    Target{"track", track},         Target{"mcap", mcap},     Target{"cdr", cdr},   Target{"plan", plan}};
 
 }  // namespace
 

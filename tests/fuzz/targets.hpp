@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-/// What reads a stranger's bytes, each as one function that takes any bytes. Driven by libFuzzer (fuzzer.cpp,
+/// What reads bytes from outside, each as one function that takes any bytes. Driven by libFuzzer (fuzzer.cpp,
 /// tools/fuzz.sh) and, over the kept corpora, by corpus_test.cpp. A target ends the program where a promise
 /// is broken.
 namespace chicane::fuzz {
