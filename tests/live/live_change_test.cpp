@@ -31,6 +31,13 @@ std::unique_ptr<ClosedLoop> loop_of(Settings settings) {
   return std::move(*ClosedLoop::create(*scenario));
 }
 
+Setting setting(const char* name, const char* value, bool starts_anew = false) {
+  if (starts_anew) return {.change = {.name = name, .value = value, .starts_anew = true}, .action = {}};
+  const Result<Setting> read = read_setting({.name = name, .value = value});
+  EXPECT_TRUE(read) << name;
+  return read.value_or(Setting{});
+}
+
 /// Control cycles one after another; the frame of the last one.
 const telemetry::Frame& drive(ClosedLoop& loop, int cycles) {
   for (int done = 0; done < cycles;) done += loop.advance() ? 1 : 0;
@@ -120,15 +127,17 @@ TEST(LiveChange, ReachesEveryController) {
 TEST(LiveChange, AllocatesNothing) {
   const auto loop = loop_of({{"track", "oval"}});
   drive_to_map(*loop);
-  const std::vector<Change> changes{{.name = "tracking_mpc.weight_lateral", .value = "4"},
-                                    {.name = "tracking_mpc.horizon_steps", .value = "60"},
-                                    {.name = "tracking_mpc.speed_limit_mps", .value = "25"},
-                                    {.name = "tracking_mpc.smoothing_width_m", .value = "0.5"},
-                                    {.name = "cubic_mpc.latency_handling", .value = "position-only"},
-                                    {.name = "vehicle.mass_kg", .value = "1100"},
-                                    {.name = "manual.is_on", .value = "true"}};
+  const std::vector<Setting> changes{setting("tracking_mpc.weight_lateral", "4"),
+                                     setting("tracking_mpc.horizon_steps", "60"),
+                                     setting("tracking_mpc.speed_limit_mps", "25"),
+                                     setting("tracking_mpc.smoothing_width_m", "0.5"),
+                                     setting("cubic_mpc.latency_handling", "position-only"),
+                                     setting("vehicle.mass_kg", "1100"),
+                                     setting("fault.ice_patch", "+0.5*0.9"),
+                                     setting("run.pace", "2"),
+                                     setting("manual.is_on", "true")};
   const test::AllocationGuard guard;
-  for (const Change& change : changes) {
+  for (const Setting& change : changes) {
     loop->apply(change);
     drive(*loop, 2);
   }
@@ -151,18 +160,18 @@ TEST(LiveChange, SurvivesARestart) {
 
 TEST(LiveChange, ComesOutTheSameFromTheQueueAndFromAScript) {
   const Settings settings{{"track", "oval"}, {"sensor.position_noise_m", "0.02"}};
-  const std::vector<std::pair<std::uint64_t, Change>> wishes{
-      {20, {.name = "tracking_mpc.weight_lateral", .value = "3"}},
-      {40, {.name = "latency_ms", .value = "220"}},
-      {60, {.name = "latency_ms", .value = "20"}},
-      {61, {.name = "tracking_mpc.horizon_steps", .value = "30"}},
-      {80, {.name = "plant_options.friction_scale", .value = "0.9"}},
-      {81, {.name = "sensor.heading_noise_deg", .value = "0.1"}},
-      {100, {.name = "manual.is_on", .value = "true"}},
-      {100, {.name = "manual.steer", .value = "0.03"}},
-      {110, {.name = "manual.throttle", .value = "-1"}},
-      {120, {.name = "manual.is_on", .value = "false"}},
-      {130, {.name = "tracking_mpc.speed_limit_mps", .value = "20"}}};
+  const std::vector<std::pair<std::uint64_t, Setting>> changes{
+      {20, setting("tracking_mpc.weight_lateral", "3")},
+      {40, setting("latency_ms", "220")},
+      {60, setting("latency_ms", "20")},
+      {61, setting("tracking_mpc.horizon_steps", "30")},
+      {80, setting("plant_options.friction_scale", "0.9")},
+      {81, setting("sensor.heading_noise_deg", "0.1")},
+      {100, setting("manual.is_on", "true")},
+      {100, setting("manual.steer", "0.03")},
+      {110, setting("manual.throttle", "-1")},
+      {120, setting("manual.is_on", "false")},
+      {130, setting("tracking_mpc.speed_limit_mps", "20")}};
   const auto live = loop_of(settings);
   live->apply({.name = "run.pace", .value = "20"});
   RunControls controls;
@@ -171,13 +180,13 @@ TEST(LiveChange, ComesOutTheSameFromTheQueueAndFromAScript) {
   static_cast<void>(run_realtime(*live, {.step_budget = 0.0}, controls,
                                  {.on_frame =
                                       [&](const telemetry::Frame& frame) {
-                                        for (; next < wishes.size() && wishes[next].first == frame.cycle;
+                                        for (; next < changes.size() && changes[next].first == frame.cycle;
                                              ++next)
-                                          EXPECT_TRUE(controls.wishes.push(wishes[next].second));
+                                          EXPECT_TRUE(controls.settings.push(changes[next].second));
                                         controls.wants_stop = frame.cycle == 200;
                                       },
                                   .on_change = [&](const Change& change) { script.push_back(change); }}));
-  ASSERT_EQ(script.size(), wishes.size());
+  ASSERT_EQ(script.size(), changes.size());
   EXPECT_EQ(script.front().cycle, 21U);
 
   const auto scripted = loop_of(settings);
@@ -210,7 +219,7 @@ TEST(LiveChange, OfFrictionAndMassIsThatOfACarBuiltSo) {
   }
 }
 
-TEST(ManualDriving, ReplacesTheControllersWishThroughGateAndDelay) {
+TEST(ManualDriving, ReplacesTheControllersCommandThroughGateAndDelay) {
   const auto loop = loop_of({{"track", "oval"}});
   drive(*loop, 100);
   loop->apply({.name = "manual.is_on", .value = "true"});
@@ -281,16 +290,16 @@ TEST(RealtimeLoop, TakesUpChangesWhilePausedAndComesBackToStartAnew) {
   const auto loop = loop_of({{"track", "oval"}});
   RunControls controls;
   controls.is_paused = true;
-  ASSERT_TRUE(controls.wishes.push({.name = "latency_ms", .value = "30"}));
-  ASSERT_TRUE(controls.wishes.push({.name = "track", .value = "lakeside", .starts_anew = true}));
+  ASSERT_TRUE(controls.settings.push(setting("latency_ms", "30")));
+  ASSERT_TRUE(controls.settings.push(setting("track", "lakeside", true)));
   int changes = 0;
   const telemetry::RunSummary run =
       run_realtime(*loop, {}, controls, {.on_change = [&](const Change&) { ++changes; }});
   EXPECT_EQ(run.cycles, 0U);
   EXPECT_EQ(changes, 1);
   EXPECT_EQ(loop->scenario().latency, 0.03);
-  ASSERT_NE(controls.wishes.front(), nullptr);
-  EXPECT_TRUE(controls.wishes.front()->starts_anew);
+  ASSERT_NE(controls.settings.front(), nullptr);
+  EXPECT_TRUE(controls.settings.front()->change.starts_anew);
 }
 
 TEST(RealtimeLoop, GoesAtThePaceThatIsAskedFor) {
@@ -305,7 +314,7 @@ TEST(RealtimeLoop, GoesAtThePaceThatIsAskedFor) {
 TEST(LiveSettings, MayBeSetWhileTheRunGoesOn) {
   const auto loop = loop_of({{"track", "oval"}});
   RunControls controls;
-  live::LiveSettings settings({.scenario = loop->scenario()}, controls.wishes);
+  live::LiveSettings settings({.scenario = loop->scenario()}, controls.settings);
   std::atomic<int> applied{0};
   std::thread control([&] {
     static_cast<void>(run_realtime(*loop, {}, controls, {.on_change = [&](const Change& change) {

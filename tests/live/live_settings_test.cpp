@@ -44,7 +44,7 @@ struct Live {
                   .on_building = [this](const std::string& what) { building = what; },
                   .say = [this](std::string_view line) { said += line; },
                   .on_accepted = [this](const scenario::Scenario& now) { accepted = now; }},
-                 wishes} {}
+                 requests} {}
 
   /// The build has ended, and the network thread looks.
   std::vector<std::string> end_of_build(Result<void> with = {}) {
@@ -53,20 +53,20 @@ struct Live {
     return settings.complaints();
   }
 
-  std::string refusal(const Parameter& wish) {
-    const Result<void> done = settings.set(wish);
-    EXPECT_FALSE(done) << wish.name;
-    EXPECT_EQ(wishes.front(), nullptr) << wish.name;
+  std::string refusal(const Parameter& parameter) {
+    const Result<void> done = settings.set(parameter);
+    EXPECT_FALSE(done) << parameter.name;
+    EXPECT_EQ(requests.front(), nullptr) << parameter.name;
     return done ? "" : done.error().message;
   }
   telemetry::Change next() {
-    const telemetry::Change* front = wishes.front();
+    const run::Setting* front = requests.front();
     if (front == nullptr) {
       ADD_FAILURE() << "no change waits";
       return {};
     }
-    const telemetry::Change change = *front;
-    wishes.pop();
+    const telemetry::Change change = front->change;
+    requests.pop();
     return change;
   }
   ParameterValue value(std::string_view name) {
@@ -74,7 +74,7 @@ struct Live {
     return parameter ? parameter->value : ParameterValue{};
   }
 
-  run::ChangeQueue wishes;
+  run::SettingQueue requests;
   std::vector<ChosenRun> started;
   std::optional<Result<void>> outcome;
   std::string building;
@@ -101,7 +101,7 @@ TEST(LiveSettings, OfferEveryTunableOfTheSchemaAndTheControlsOfTheRun) {
 
 TEST(LiveSettings, HandOverEachKindOfValueAsTheTextThatSetTakes) {
   Live live;
-  const std::vector<std::pair<Parameter, std::string>> wishes{
+  const std::vector<std::pair<Parameter, std::string>> values{
       {{"tracking_mpc.weight_lateral", 2.5}, "2.5"},
       {{"tracking_mpc.horizon_steps", 20.0}, "20"},
       {{"tracking_mpc.compensate_delay", false}, "false"},
@@ -112,13 +112,13 @@ TEST(LiveSettings, HandOverEachKindOfValueAsTheTextThatSetTakes) {
       {{"run.pace", 0.25}, "0.25"},
       {{"manual.is_on", true}, "true"},
       {{"manual.steer", -0.5}, "-0.5"}};
-  for (const auto& [wish, text] : wishes) {
-    ASSERT_TRUE(live.settings.set(wish)) << wish.name;
+  for (const auto& [parameter, text] : values) {
+    ASSERT_TRUE(live.settings.set(parameter)) << parameter.name;
     const telemetry::Change change = live.next();
-    EXPECT_EQ(change.name.view(), wish.name);
+    EXPECT_EQ(change.name.view(), parameter.name);
     EXPECT_EQ(change.value.view(), text);
     EXPECT_FALSE(change.starts_anew);
-    EXPECT_EQ(live.value(wish.name), wish.value) << wish.name;
+    EXPECT_EQ(live.value(parameter.name), parameter.value) << parameter.name;
   }
   ASSERT_TRUE(live.settings.set({"vehicle.drive_power_per_mass_wpkg", std::string("inf")}));
   EXPECT_EQ(live.next().value.view(), "inf");
@@ -153,7 +153,7 @@ TEST(LiveSettings, RefuseSettingsThatExcludeEachOther) {
 
 TEST(LiveSettings, SayWhenTooManyChangesWait) {
   Live live;
-  for (std::uint64_t i = 0; i < run::ChangeQueue::kCapacity; ++i)
+  for (std::uint64_t i = 0; i < run::SettingQueue::kCapacity; ++i)
     ASSERT_TRUE(live.settings.set({"manual.steer", 0.001 * static_cast<double>(i)}));
   const Result<void> one_more = live.settings.set({"latency_ms", 10.0});
   ASSERT_FALSE(one_more);
@@ -165,7 +165,7 @@ TEST(LiveSettings, SayWhenTooManyChangesWait) {
 TEST(LiveSettings, SendNothingForAValueThatHoldsAlreadyButEveryWordOfAPerson) {
   Live live;
   ASSERT_TRUE(live.settings.set({"latency_ms", 100.0}));
-  EXPECT_EQ(live.wishes.front(), nullptr);
+  EXPECT_EQ(live.requests.front(), nullptr);
   for (int i = 0; i < 2; ++i) {
     ASSERT_TRUE(live.settings.set({"manual.throttle", 0.5}));
     EXPECT_EQ(live.next().value.view(), "0.5");
@@ -184,7 +184,7 @@ TEST(LiveSettings, StartAnewWithAnotherTrackAndKeepWhatWasSet) {
   EXPECT_EQ(std::get<controller::TrackingMpcOptions>(live.started[0].scenario.controllers).grip_share, 0.5);
   EXPECT_EQ(live.building, "track = oval");
   EXPECT_TRUE(live.settings.complaints().empty());
-  EXPECT_EQ(live.wishes.front(), nullptr);  // the run before goes on
+  EXPECT_EQ(live.requests.front(), nullptr);  // the run before goes on
   EXPECT_EQ(live.settings.scenario().track, "lakeside");
   EXPECT_TRUE(live.end_of_build().empty());
   EXPECT_EQ(live.building, "");
@@ -193,7 +193,7 @@ TEST(LiveSettings, StartAnewWithAnotherTrackAndKeepWhatWasSet) {
   EXPECT_EQ(change.name.view(), "track");
   EXPECT_TRUE(change.starts_anew);
   EXPECT_EQ(live.next().name.view(), "run.pace");  // the new run hears of it again
-  EXPECT_EQ(live.wishes.front(), nullptr);
+  EXPECT_EQ(live.requests.front(), nullptr);
   EXPECT_THAT(live.refusal({"track", std::string("ovall")}), HasSubstr("did you mean oval?"));
   EXPECT_EQ(live.value("track"), ParameterValue(std::string("oval")));
 }
@@ -252,7 +252,7 @@ TEST(LiveSettings, ChangeNothingWhenTheRunCannotBeBuiltAndSaySo) {
   Live live;
   ASSERT_TRUE(live.settings.set({"seed", 2.0}));
   static_cast<void>(live.settings.news());
-  EXPECT_EQ(live.value("seed"), ParameterValue(2.0));  // what was wished for, while there is hope
+  EXPECT_EQ(live.value("seed"), ParameterValue(2.0));  // what was asked for, while it is being built
   const std::vector<std::string> said =
       live.end_of_build(fail(ErrorCode::kInvalidArgument, "no room in the garage"));
   EXPECT_EQ(said,
@@ -262,7 +262,7 @@ TEST(LiveSettings, ChangeNothingWhenTheRunCannotBeBuiltAndSaySo) {
   EXPECT_EQ(live.settings.scenario().seed, 1U);
   ASSERT_EQ(live.settings.news().size(), 1U);  // viewers hear that it is not so
   EXPECT_EQ(live.value("seed"), ParameterValue(1.0));
-  EXPECT_EQ(live.wishes.front(), nullptr);
+  EXPECT_EQ(live.requests.front(), nullptr);
 }
 
 // A viewer read the first lines of any file of the machine in such a message.
@@ -342,7 +342,7 @@ TEST(LiveSettings, TakeTheLastOfQuickChoicesWithThoseBefore) {
   EXPECT_EQ(change.name.view(), "track");
   EXPECT_EQ(change.value.view(), "hairpins");
   EXPECT_TRUE(change.starts_anew);
-  EXPECT_EQ(live.wishes.front(), nullptr);
+  EXPECT_EQ(live.requests.front(), nullptr);
   EXPECT_EQ(live.settings.scenario().car, "road-car");
 }
 
@@ -353,7 +353,7 @@ TEST(LiveSettings, CountForBothRunsWhileOneIsBuilt) {
   ASSERT_TRUE(live.settings.set({"latency_ms", 50.0}));
   EXPECT_EQ(live.next().value.view(), "40");  // the run that goes on
   EXPECT_EQ(live.next().value.view(), "50");
-  EXPECT_EQ(live.wishes.front(), nullptr);
+  EXPECT_EQ(live.requests.front(), nullptr);
   EXPECT_EQ(live.accepted.track, "lakeside");
   EXPECT_EQ(live.accepted.latency, 0.05);
   live.end_of_build();
@@ -362,7 +362,7 @@ TEST(LiveSettings, CountForBothRunsWhileOneIsBuilt) {
   EXPECT_EQ(again.name.view(), "latency_ms");
   EXPECT_EQ(again.value.view(), "50");
   EXPECT_FALSE(again.starts_anew);
-  EXPECT_EQ(live.wishes.front(), nullptr);
+  EXPECT_EQ(live.requests.front(), nullptr);
   EXPECT_EQ(live.settings.scenario().latency, 0.05);
   live.settings.tell({.name = "track", .value = "oval", .starts_anew = true});
   EXPECT_EQ(live.settings.applied().size(), 1U);
@@ -373,19 +373,19 @@ TEST(LiveSettings, CountForBothRunsWhileOneIsBuilt) {
 TEST(LiveSettings, WaitWithARunThatIsReadyUntilTheQueueHasRoom) {
   Live live;
   ASSERT_TRUE(live.settings.set({"track", std::string("oval")}));
-  for (std::uint64_t i = 0; i < run::ChangeQueue::kCapacity; ++i)
+  for (std::uint64_t i = 0; i < run::SettingQueue::kCapacity; ++i)
     ASSERT_TRUE(live.settings.set({"manual.steer", 0.001 * static_cast<double>(i)}));
   live.end_of_build();
   EXPECT_EQ(live.settings.scenario().track, "lakeside");
-  for (std::uint64_t i = 0; i < run::ChangeQueue::kCapacity; ++i) live.next();
+  for (std::uint64_t i = 0; i < run::SettingQueue::kCapacity; ++i) live.next();
   live.settings.update();
   EXPECT_TRUE(live.next().starts_anew);
   EXPECT_EQ(live.settings.scenario().track, "oval");
 }
 
 TEST(LiveSettings, OfferControllerAndVehicleOnlyForAnExternalSimulator) {
-  run::ChangeQueue wishes;
-  LiveSettings settings({.scenario = scenario_of({{"preset", "weighted"}}), .has_world = false}, wishes);
+  run::SettingQueue requests;
+  LiveSettings settings({.scenario = scenario_of({{"preset", "weighted"}}), .has_world = false}, requests);
   for (const Parameter& parameter : settings.list()) {
     EXPECT_TRUE(parameter.name.starts_with("cubic_mpc.") || parameter.name.starts_with("vehicle."))
         << parameter.name;
@@ -398,11 +398,11 @@ TEST(LiveSettings, OfferControllerAndVehicleOnlyForAnExternalSimulator) {
 }
 
 TEST(LiveSettings, TellWhatTheRunHasTakenUpAndFaultsThatEndByThemselves) {
-  run::ChangeQueue wishes;
+  run::SettingQueue requests;
   LiveSettings settings({.scenario = scenario_of({}),
                          .faults = {{"fault.link_lost", protocol::Kind::kBool, "", 0.0, 0.0, false,
                                      "Silence.", &sim::kind_of(*sim::fault_named("link_lost"))}}},
-                        wishes);
+                        requests);
   ASSERT_TRUE(settings.set({"fault.link_lost", true}));
   EXPECT_EQ(settings.get("fault.link_lost")->value, ParameterValue(true));
   EXPECT_EQ(settings.news().size(), 1U);

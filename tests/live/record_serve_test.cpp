@@ -73,10 +73,10 @@ recording::ReplayReport record_and_verify(const std::string& name, std::chrono::
   options.vehicle = scenario.vehicle;
   options.step_budget = step_budget;
   options.scenario = scenario;
-  run::ChangeQueue wishes;
+  run::SettingQueue settings;
   UdacityEndpoint endpoint(
       options, std::move(*controller),
-      {.wishes = &wishes,
+      {.settings = &settings,
        .on_change = [&](const telemetry::Change& change) { (*recorder)->record(change); },
        .on_frame = [&](const telemetry::Frame& frame) { (*recorder)->record(frame); }});
   Router router(&endpoint, nullptr);
@@ -84,7 +84,9 @@ recording::ReplayReport record_and_verify(const std::string& name, std::chrono::
   EXPECT_TRUE(server);
   const std::vector<std::string> messages = telemetry_of_a_drive();
   for (int session = 0; session < 2; ++session) {
-    EXPECT_TRUE(wishes.push({.name = "vehicle.steer_limit_deg", .value = session == 0 ? "3" : "20"}));
+    const auto limit =
+        run::read_setting({.name = "vehicle.steer_limit_deg", .value = session == 0 ? "3" : "20"});
+    EXPECT_TRUE(limit && settings.push(*limit));
     drive((*server)->port(), messages);
     std::this_thread::sleep_for(2 * options.quiet_after);
   }

@@ -28,7 +28,7 @@ protocol::Run describe(const run::ClosedLoop& loop) {
   return run;
 }
 
-/// What became of the newest wish.
+/// What became of the newest request.
 Result<std::unique_ptr<BuiltRun>> outcome(RunBuilder& builder) {
   for (int i = 0; i < 2000; ++i) {
     if (auto result = builder.take()) return std::move(*result);

@@ -69,7 +69,7 @@ LiveRun::LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop>
                          run.vehicle = vehicle;
                        });
                      }},
-                controls.wishes},
+                controls.settings},
       viewer_{{.run = live_description(*loop_),
                .services = services(controls, what_if_),
                .parameters = &settings_}},
@@ -172,7 +172,7 @@ telemetry::RunSummary LiveRun::drive(RunOutputs& outputs) {
   }
 }
 
-/// Faults that began or ended by themselves: nobody asked, so nobody has been told.
+/// Faults that began or ended by themselves: no change has been told of them.
 void LiveRun::note_faults(const telemetry::Frame& frame, RunOutputs& outputs) {
   const std::uint32_t changed = frame.active_faults ^ told_faults_;
   for (std::size_t i = 0; i < faults_.size() && changed != 0U; ++i) {
@@ -197,8 +197,8 @@ void LiveRun::note(const telemetry::Change& change, RunOutputs& outputs) {
 
 /// Goes on with the run that the next change begins. False when there is none.
 bool LiveRun::take_over(RunOutputs& outputs) {
-  const telemetry::Change* next = controls_.wishes.front();
-  if (next == nullptr || !next->starts_anew || controls_.wants_stop) return false;
+  const run::Setting* next = controls_.settings.front();
+  if (next == nullptr || !next->change.starts_anew || controls_.wants_stop) return false;
   std::unique_ptr<BuiltRun> run;
   {
     const std::lock_guard lock(mutex_);
@@ -210,7 +210,7 @@ bool LiveRun::take_over(RunOutputs& outputs) {
   viewer_.set_run(std::move(run->description));
   outputs.begin(std::move(run->recorded));
   for (const telemetry::Change& choice : run->choices) note(choice, outputs);
-  controls_.wishes.pop();
+  controls_.settings.pop();
   limit_.search(loop_->track(), loop_->scenario());
   return true;
 }

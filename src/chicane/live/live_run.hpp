@@ -39,12 +39,12 @@ struct LiveRunOptions {
 };
 
 /// A run with our simulator, paced by the clock, which people watch and change while it goes on: the loop,
-/// its viewers, recording, limit and settings, and who hands what to whom.
+/// its viewers, recording, limit and settings, and what each thread hands to which.
 ///
 /// Threads, and what each owns: the thread of run() the loop, the recorder's input and RunOutputs; the
 /// network thread LiveSettings, the viewers and RunBuilder's results; a builder, a searcher of the limit and
 /// the recorder's writer have one each, and so do the collector of the Journal and WhatIf. The network thread
-/// hands changes to the loop through RunControls::wishes and built runs through a queue under the one mutex
+/// hands changes to the loop through RunControls::settings and built runs through a queue under the one mutex
 /// here, which is held for a pointer's move. A setting that cannot change while a run goes on starts another
 /// one: built beside it, taken over between two cycles.
 class LiveRun {

@@ -11,10 +11,8 @@
 
 #include "chicane/base/text.hpp"
 #include "chicane/model/vehicle.hpp"
-#include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
-#include "chicane/run/closed_loop.hpp"
 
 namespace chicane::live {
 namespace {
@@ -115,9 +113,9 @@ std::string words(const std::vector<telemetry::Change>& choices) {
 
 }  // namespace
 
-LiveSettings::LiveSettings(LiveSettingsOptions options, run::ChangeQueue& wishes)
+LiveSettings::LiveSettings(LiveSettingsOptions options, run::SettingQueue& requests)
     : options_{std::move(options)},
-      wishes_{wishes},
+      requests_{requests},
       scenario_{options_.scenario},
       base_{composed(scenario_).value_or(scenario_)},
       start_{scenario_},
@@ -176,8 +174,7 @@ Result<void> LiveSettings::set_control(const Control& control, const foxglove::P
   std::string text;
   const auto* words = std::get_if<std::string>(&value);
   if (control.fault != nullptr && words != nullptr) {
-    if (const auto event = protocol::read_switch(control.fault->name, *words); !event)
-      return fail(event.error());
+    if (!telemetry::ShortText<256>::fits(*words)) return refuse(control.key, value, "a fault's switch");
     text = *words;
   } else if (control.kind == Kind::kBool) {
     const bool* flag = std::get_if<bool>(&value);
@@ -185,14 +182,15 @@ Result<void> LiveSettings::set_control(const Control& control, const foxglove::P
     text = *flag ? "true" : "false";
   } else {
     const double* number = std::get_if<double>(&value);
-    const bool is_in_range = number != nullptr && *number >= control.minimum && *number <= control.maximum;
-    if (!is_in_range) {
+    if (number == nullptr) {
       return refuse(control.key, value,
                     fmt::format("a number in [{}, {}]", control.minimum, control.maximum));
     }
     text = fmt::format("{}", *number);
   }
-  if (Result<void> sent = send(control.key, text, false); !sent) return sent;
+  const Result<run::Setting> setting = run::read_setting({.name = control.key, .value = text});
+  if (!setting) return fail(setting.error());
+  if (Result<void> sent = send(*setting); !sent) return sent;
   Value accepted = control.kind == Kind::kBool ? Value(text != "false") : Value(std::get<double>(value));
   control_values_.find(control.key)->second = std::move(accepted);
   has_news_ = true;
@@ -206,14 +204,16 @@ Result<void> LiveSettings::set_row(const protocol::Parameter& row, const foxglov
   if (Result<void> done = protocol::set(changed, row, *wanted); !done) return done;
   const std::string text = protocol::get_text(changed, row);
   if (text == protocol::get_text(shown_scenario(), row)) return {};
-  // The control thread reads the text: what is checked here is what it reads.
-  if (Result<void> done = protocol::set_text(changed, row.key, text); !done) return done;
   if (!protocol::is_live(row)) return start_anew(row.key, text, std::move(changed));
+  // The value is that of the text, to the last bit: recordings keep the text.
+  const Result<run::Setting> setting = run::read_setting({.name = row.key, .value = text});
+  if (!setting) return fail(setting.error());
+  run::write(changed, std::get<run::FieldValue>(setting->action));
   if (Result<void> valid = validated(changed); !valid) return valid;
-  if (Result<void> sent = change_live(row, text); !sent) return sent;
+  if (Result<void> sent = change_live(*setting); !sent) return sent;
   if (building_) {
     building_->run.scenario = std::move(changed);
-    building_->later[std::string(row.key)] = text;
+    building_->later.insert_or_assign(std::string(row.key), *setting);
   }
   has_news_ = true;
   if (options_.on_accepted) options_.on_accepted(scenario_);
@@ -221,12 +221,13 @@ Result<void> LiveSettings::set_row(const protocol::Parameter& row, const foxglov
 }
 
 /// Of the run that goes on. What only the one that is being built can take waits for it.
-Result<void> LiveSettings::change_live(const protocol::Parameter& row, const std::string& text) {
+Result<void> LiveSettings::change_live(const run::Setting& setting) {
+  const auto& field = std::get<run::FieldValue>(setting.action);
   scenario::Scenario changed = scenario_;
-  if (Result<void> done = protocol::set_text(changed, row.key, text); !done) return done;
-  if (text == protocol::get_text(scenario_, row)) return {};
+  run::write(changed, field);
+  if (protocol::get(changed, *field.row) == protocol::get(scenario_, *field.row)) return {};
   if (Result<void> valid = validated(changed); !valid) return building_ ? Result<void>{} : valid;
-  if (Result<void> sent = send(row.key, text, false); !sent) return sent;
+  if (Result<void> sent = send(setting); !sent) return sent;
   scenario_ = std::move(changed);
   return {};
 }
@@ -238,8 +239,8 @@ Result<void> LiveSettings::start_anew(std::string_view key, const std::string& v
                 fmt::format("{}: got {} bytes, expected at most 256", key, value.size()));
   }
   if (Result<void> chosen = check_choice(key, value); !chosen) return chosen;
-  // A queue with room for the change and for what a person holds in his hands now.
-  if (wishes_.room() < 1 + controls_.size())
+  // A queue with room for the change and for the controls that are set now.
+  if (requests_.room() < 1 + controls_.size())
     return fail(ErrorCode::kInvalidArgument, fmt::format("{}: too many changes wait; try again", key));
   const Result<scenario::Scenario> base = composed(changed);
   if (!base) return hide(fmt::format("{}: {} cannot be used here", key, value), base.error());
@@ -282,7 +283,7 @@ tl::unexpected<Error> LiveSettings::hide(std::string_view what, const Error& err
 
 void LiveSettings::update() {
   const bool has_room =
-      building_ && wishes_.room() >= 1 + building_->later.size() + controls_.size();  // else the next time
+      building_ && requests_.room() >= 1 + building_->later.size() + controls_.size();  // else the next time
   const auto built = has_room ? options_.built() : std::nullopt;
   if (!built) return;
   Building building = std::move(*building_);
@@ -301,10 +302,9 @@ std::vector<std::string> LiveSettings::complaints() { return std::exchange(compl
 /// The run that was built is the next one; what was changed meanwhile follows it.
 void LiveSettings::hand_over(Building building) {
   ++runs_;
-  const telemetry::Change& last = building.run.choices.back();
-  static_cast<void>(send(last.name.view(), last.value.view(), true));
-  for (const auto& [key, text] : building.later) static_cast<void>(send(key, text, false));
-  begin_with(building.run.scenario, building.later);
+  static_cast<void>(send({.change = building.run.choices.back(), .action = {}}));
+  for (const auto& [key, setting] : building.later) static_cast<void>(send(setting));
+  begin_with(building);
   scenario_ = std::move(building.run.scenario);
   base_ = std::move(building.base);
   hand_over_controls();
@@ -312,30 +312,33 @@ void LiveSettings::hand_over(Building building) {
 
 /// What the choice of another run brings along is how it started; what was changed before it, and while it
 /// was built, stays a change. A preset leaves nothing of before.
-void LiveSettings::begin_with(const scenario::Scenario& next,
-                              const std::map<std::string, std::string>& later) {
+void LiveSettings::begin_with(const Building& building) {
+  const scenario::Scenario& next = building.run.scenario;
   const bool is_other_preset = next.preset != scenario_.preset;
   for (const protocol::Parameter& row : protocol::list()) {
     const bool is_brought = protocol::get_text(next, row) != protocol::get_text(scenario_, row);
-    if ((!is_brought && !is_other_preset) || later.contains(std::string(row.key))) continue;
+    if ((!is_brought && !is_other_preset) || building.later.contains(row.key)) continue;
     static_cast<void>(protocol::set(start_, row, protocol::get(next, row)));
   }
 }
 
-/// The run that starts anew knows nothing of pace and hands; faults end with the old one.
+/// The run that starts anew knows neither its pace nor manual driving; faults end with the old one.
 void LiveSettings::hand_over_controls() {
   for (const Control& control : controls_) {
     Value& value = control_values_.find(control.key)->second;
     if (control.key.starts_with("fault.")) value = false;
     if (value == control.initial) continue;
     const auto* number = std::get_if<double>(&value);
-    static_cast<void>(send(control.key, number != nullptr ? fmt::format("{}", *number) : "true", false));
+    const auto setting = run::read_setting(
+        {.name = control.key, .value = number != nullptr ? fmt::format("{}", *number) : "true"});
+    if (setting) static_cast<void>(send(*setting));
   }
 }
 
-Result<void> LiveSettings::send(std::string_view name, std::string_view value, bool starts_anew) {
-  if (wishes_.push({.name = name, .value = value, .starts_anew = starts_anew})) return {};
-  return fail(ErrorCode::kInvalidArgument, fmt::format("{}: too many changes wait; try again", name));
+Result<void> LiveSettings::send(const run::Setting& setting) {
+  if (requests_.push(setting)) return {};
+  return fail(ErrorCode::kInvalidArgument,
+              fmt::format("{}: too many changes wait; try again", setting.change.name.view()));
 }
 
 std::vector<telemetry::Change> LiveSettings::applied() {

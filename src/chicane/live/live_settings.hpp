@@ -14,7 +14,7 @@
 #include "chicane/protocol/foxglove_codec.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/protocol/schema_json.hpp"
-#include "chicane/run/change_queue.hpp"
+#include "chicane/run/setting.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/change.hpp"
 
@@ -22,7 +22,7 @@ namespace chicane::live {
 
 struct LiveSettingsOptions {
   scenario::Scenario scenario;  ///< what runs
-  /// Whether we simulate: offers what concerns the world, its pace and a person's hands, too. Otherwise only
+  /// Whether we simulate: offers what concerns the world, its pace and manual driving, too. Otherwise only
   /// controller and vehicle.
   bool has_world = true;
   /// Faults to switch, beside the rest: "fault.…".
@@ -45,19 +45,19 @@ struct LiveSettingsOptions {
 /// The settings of a run that goes on, for viewers to read and set: every tunable of the schema under its own
 /// key, "run.pace", "manual.is_on", "manual.steer", "manual.throttle" and the faults (docs/viewer.md).
 ///
-/// A value is checked here, on the network thread, and then waits in a queue until the control thread applies
-/// it between two cycles. get() and list() show what was accepted last: what holds from the next control step
-/// on, or, for what starts the run anew, when the other run has been built. Until then the old one goes on,
-/// changes count for both, and another choice takes the place of the one before. All member functions but
-/// tell() are the network thread's.
+/// A value is read and checked here, on the network thread, and then waits as data in a queue until the
+/// control thread applies it between two cycles. get() and list() show what was accepted last: what holds
+/// from the next control step on, or, for what starts the run anew, when the other run has been built. Until
+/// then the old one goes on, changes count for both, and another choice takes the place of the one before.
+/// All member functions but tell() are the network thread's.
 ///
 /// Viewers are strangers. They choose presets, cars and tracks of the library by name, and no file but those
 /// the run was started with; no sentence for them quotes a file. The limits of actuators, which the command
 /// gate keeps, are not offered: a run has those that it was started with (docs/security.md).
 class LiveSettings final : public protocol::foxglove::ParameterStore {
  public:
-  /// `wishes` is drained by the control thread and outlives this.
-  LiveSettings(LiveSettingsOptions options, run::ChangeQueue& wishes);
+  /// `requests` is drained by the control thread and outlives this.
+  LiveSettings(LiveSettingsOptions options, run::SettingQueue& requests);
 
   [[nodiscard]] std::vector<protocol::foxglove::Parameter> list() const override;
   [[nodiscard]] std::optional<protocol::foxglove::Parameter> get(std::string_view name) const override;
@@ -65,8 +65,8 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   /// other, and when too many changes wait.
   [[nodiscard]] Result<void> set(const protocol::foxglove::Parameter& parameter) override;
 
-  /// The control thread: a change was applied, or happened by itself. Never waits; when nobody has listened
-  /// for long, viewers do not hear of it.
+  /// The control thread: a change was applied, or happened by itself. Never waits; when update() has not been
+  /// called for long, viewers do not hear of it.
   void tell(const telemetry::Change& change) noexcept { static_cast<void>(told_.push(change)); }
   [[nodiscard]] std::vector<telemetry::Change> applied() override;
   [[nodiscard]] std::vector<protocol::foxglove::Parameter> news() override;
@@ -87,9 +87,9 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
  private:
   /// Another run that is on its way.
   struct Building {
-    ChosenRun run;                             ///< changes since it was begun included
-    scenario::Scenario base{};                 ///< what its preset gives with its car
-    std::map<std::string, std::string> later;  ///< live changes since then: key and text
+    ChosenRun run;                                           ///< changes since it was begun included
+    scenario::Scenario base{};                               ///< what its preset gives with its car
+    std::map<std::string, run::Setting, std::less<>> later;  ///< live changes since then, by key
   };
 
   [[nodiscard]] const scenario::Scenario& shown_scenario() const {
@@ -100,18 +100,18 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
                                          const protocol::foxglove::ParameterValue& value);
   [[nodiscard]] Result<void> set_row(const protocol::Parameter& row,
                                      const protocol::foxglove::ParameterValue& value);
-  [[nodiscard]] Result<void> change_live(const protocol::Parameter& row, const std::string& text);
+  [[nodiscard]] Result<void> change_live(const run::Setting& setting);
   [[nodiscard]] Result<void> start_anew(std::string_view key, const std::string& value,
                                         scenario::Scenario changed);
   [[nodiscard]] Result<void> check_choice(std::string_view key, const std::string& value) const;
   [[nodiscard]] tl::unexpected<Error> hide(std::string_view what, const Error& error) const;
   void hand_over(Building building);
-  void begin_with(const scenario::Scenario& next, const std::map<std::string, std::string>& later);
+  void begin_with(const Building& building);
   void hand_over_controls();
-  [[nodiscard]] Result<void> send(std::string_view name, std::string_view value, bool starts_anew);
+  [[nodiscard]] Result<void> send(const run::Setting& setting);
 
   LiveSettingsOptions options_;
-  run::ChangeQueue& wishes_;
+  run::SettingQueue& requests_;
   run::ChangeQueue told_;
   scenario::Scenario scenario_;
   scenario::Scenario base_;   ///< what its preset gives with its car

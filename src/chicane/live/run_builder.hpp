@@ -34,8 +34,8 @@ struct BuiltRun {
 };
 
 /// Builds runs on a thread of its own, of low priority: neither the network nor control wait for a track to
-/// be read. Of several wishes the newest counts: one that waits is replaced, and what becomes of one that is
-/// being built then is thrown away. begin() and take() are one thread's.
+/// be read. Of several requests the newest counts: one that waits is replaced, and what becomes of one that
+/// is being built then is thrown away. begin() and take() are one thread's.
 class RunBuilder {
  public:
   using Describe = std::function<protocol::Run(const run::ClosedLoop&)>;
@@ -52,7 +52,7 @@ class RunBuilder {
   RunBuilder& operator=(const RunBuilder&) = delete;
 
   void begin(ChosenRun run);
-  /// What became of the newest wish, once; none while it is being built, and when there is none.
+  /// What became of the newest request, once; none while it is being built, and when there is none.
   [[nodiscard]] std::optional<Result<std::unique_ptr<BuiltRun>>> take();
 
  private:
@@ -64,7 +64,7 @@ class RunBuilder {
   std::mutex mutex_;  ///< of all below
   std::condition_variable changed_;
   std::optional<ChosenRun> wish_;
-  std::uint64_t newest_ = 0;  ///< number of the last wish
+  std::uint64_t newest_ = 0;  ///< number of the last request
   std::optional<Result<std::unique_ptr<BuiltRun>>> result_;
   bool is_ending_ = false;
   std::thread thread_;  // last: it starts when everything else is there

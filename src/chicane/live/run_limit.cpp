@@ -103,7 +103,7 @@ void RunLimit::compare(telemetry::RunSummary& run, const std::atomic<bool>& want
   if (begins_at_ && is_awaited(run)) begin();
   while (is_awaited(run) && !wants_stop) std::this_thread::sleep_for(kNap);
   const bool is_cut_short = is_searching();
-  end();  // from here on nobody writes the answer
+  end();  // from here on no thread writes the answer
   if (is_cut_short || answer_ == nullptr) {
     run.why_no_limit = "the run ended before it was computed";
   } else if (answer_->found == nullptr) {

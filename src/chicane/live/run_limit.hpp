@@ -34,7 +34,7 @@ class RunLimit {
 
   /// What viewers are told of a run on this road until there are news. An open road has no laps, nor a limit.
   [[nodiscard]] static lap_time::LimitAnswer first_answer(const path::Track& track);
-  /// Another run: forgets the one before, and begins to search where the road is closed. Does not wait.
+  /// Another run: gives up the one before, and begins to search where the road is closed. Does not wait.
   void search(const path::Track& track, const scenario::Scenario& scenario);
   /// After each control cycle of a run whose settings change while it goes on: with another grip or mass of
   /// the car, what was found no longer holds. Says so, and searches again for the laps that begin from then

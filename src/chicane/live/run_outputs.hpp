@@ -24,7 +24,7 @@ struct LiveHooks {
   std::function<void(std::string_view)> say{};  ///< one line for people; any thread
 };
 
-/// Hands what happens in a live run to all who want to know: the recording, viewers, the settings that
+/// Hands what happens in a live run to the recording, viewers, the settings that
 /// viewers see, and the program's own hooks. One thread, the control thread.
 class RunOutputs {
  public:

@@ -56,8 +56,8 @@ double ServedRun::step_budget() const { return std::chrono::duration<double>(opt
 Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const LiveHooks& hooks,
                                           const std::function<void(std::uint16_t)>& on_listening,
                                           const std::atomic<bool>& stop) {
-  run::ChangeQueue changes;
-  LiveSettings settings({.scenario = scenario_, .has_world = false}, changes);
+  run::SettingQueue requests;
+  LiveSettings settings({.scenario = scenario_, .has_world = false}, requests);
   wire::ViewerOptions viewing;
   viewing.run = description_;
   viewing.parameters = &settings;
@@ -66,7 +66,7 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
   if (!track_) limit.give_up(kUnknownRoad);
   RunOutputs outputs(recorder, viewer, settings, limit, hooks);
   wire::ServeHooks serving;
-  serving.wishes = &changes;
+  serving.settings = &requests;
   serving.on_change = [&](const telemetry::Change& change) { outputs.change(change); };
   serving.on_frame = [&](const telemetry::Frame& frame) { outputs.frame(frame); };
   serving.on_lap = [&](const telemetry::CompletedLap& lap) { outputs.lap(lap); };

@@ -14,15 +14,15 @@
 #include "chicane/path/track.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/recording/recorder.hpp"
-#include "chicane/run/change_queue.hpp"
+#include "chicane/run/setting.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/wire/serve.hpp"
 
 namespace chicane::live {
 
 /// A run in which the car is simulated by another program and the controller is ours: the endpoint for the
-/// simulator, viewers, recording, limit and settings, and who hands what to whom, as LiveRun does for a run
-/// with our simulator.
+/// simulator, viewers, recording, limit and settings, and what each thread hands to which, as LiveRun does
+/// for a run with our simulator.
 class ServedRun {
  public:
   /// `track`: the road that the simulator drives on, where it is known: laps are timed, and there is a limit.

@@ -148,14 +148,14 @@ class Rebuilt {
   }
   /// A fault that begins or ends by itself is in the recording too, after the step that showed it: the run
   /// that is computed again has it already.
-  void apply(const telemetry::Change& change) {
-    const std::vector<protocol::Control> faults = protocol::fault_controls();
-    for (std::size_t i = 0; i < faults.size(); ++i) {
-      const bool is_on = (loop_->frame().active_faults >> i & 1U) != 0U;
-      if (faults[i].key == change.name.view() && is_on == (change.value.view() != "false")) return;
+  void apply(const run::Setting& setting) {
+    if (const auto* fault = std::get_if<run::FaultSwitch>(&setting.action)) {
+      const auto bit = static_cast<unsigned>(fault->event.fault);
+      const bool is_on = (loop_->frame().active_faults >> bit & 1U) != 0U;
+      if (is_on == (fault->to != run::FaultSwitch::To::kOff)) return;
     }
     finish_cycle();  // changes come between two cycles
-    loop_->apply(change);
+    loop_->apply(setting);
   }
   const telemetry::Frame& follow(const protocol::Step& step) {
     if (step.begins && loop_->cycle() > 0) loop_->restart();
@@ -226,8 +226,10 @@ class Branching {
 
   Result<void> take(const telemetry::Change& change) {
     if (is_first_over_) return {};
-    first_.apply(change);
-    if (!has_branched_) change_second(change);
+    const Result<run::Setting> setting = run::read_setting(change);
+    if (setting) first_.apply(*setting);
+    if (setting && !has_branched_) second_.apply(*setting);
+    if (!has_branched_ && hooks_.on_change) hooks_.on_change(change);
     return {};
   }
 
@@ -240,7 +242,7 @@ class Branching {
       if (Result<void> branched = branch(recorded); !branched) return branched;
     }
     const bool is_seen = has_branched_ && is_within(recorded.log_time);
-    // Of two futures that are compared nobody asks for what follows, nor for another run.
+    // Of two futures that are compared, what follows is not needed, nor another run.
     if (ends_first(has_branched_ && !is_start && (!is_seen || recorded.step.begins))) return {};
     const telemetry::Frame& frame = first_.follow(recorded.step);
     if (!report_.first_difference && !is_same(frame, recorded.step)) {
@@ -285,11 +287,17 @@ class Branching {
     branch_time_ = loop.time();
     scenario::Scenario changed = loop.scenario();
     for (const auto& [key, text] : options_.settings) {
-      if (Result<void> set = check(key, text, changed); !set) return set;
-      change_second({.cycle = loop.cycle(),
-                     .time = loop.time(),
-                     .name = std::string_view(key),
-                     .value = std::string_view(text)});
+      if (!decltype(telemetry::Change::value)::fits(text))
+        return fail(ErrorCode::kInvalidArgument, key + ": is too long");
+      const telemetry::Change change{.cycle = loop.cycle(),
+                                     .time = loop.time(),
+                                     .name = std::string_view(key),
+                                     .value = std::string_view(text)};
+      const Result<run::Setting> setting = read_live(change);
+      if (!setting) return fail(setting.error());
+      if (const auto* field = std::get_if<run::FieldValue>(&setting->action)) run::write(changed, *field);
+      second_.apply(*setting);
+      if (hooks_.on_change) hooks_.on_change(change);
     }
     for (const protocol::Contradiction& found : protocol::contradictions(changed)) {
       return fail(ErrorCode::kInvalidArgument, fmt::format("{}: {}", found.key, found.message));
@@ -297,31 +305,19 @@ class Branching {
     return {};
   }
 
-  /// May this change while a run goes on? Settings are set in `scenario`, too.
-  static Result<void> check(const std::string& key, const std::string& text, scenario::Scenario& scenario) {
-    const std::vector<protocol::Control> faults = protocol::fault_controls();
-    const bool is_fault = std::any_of(faults.begin(), faults.end(),
-                                      [&](const protocol::Control& fault) { return fault.key == key; });
-    if (is_fault) {
-      if (text == "false") return {};
-      const auto event = protocol::read_switch(std::string_view(key).substr(key.find('.') + 1), text);
-      return event ? Result<void>{} : fail(event.error());
-    }
+  /// A setting or a fault that may change while a run goes on.
+  static Result<run::Setting> read_live(const telemetry::Change& change) {
+    const std::string_view key = change.name.view();
     const protocol::Parameter* row = protocol::find(key);
     if (row != nullptr && !protocol::is_live(*row)) {
       return fail(ErrorCode::kInvalidArgument,
-                  key +
+                  std::string(key) +
                       ": got a change while the run goes on, expected a setting that can change then "
                       "(docs/viewer.md)");
     }
-    if (!decltype(telemetry::Change::value)::fits(text))
-      return fail(ErrorCode::kInvalidArgument, key + ": is too long");
-    return protocol::set_text(scenario, key, text);
-  }
-
-  void change_second(const telemetry::Change& change) {
-    second_.apply(change);
-    if (hooks_.on_change) hooks_.on_change(change);
+    if (row == nullptr && !key.starts_with("fault."))
+      return fail(ErrorCode::kNotFound, fmt::format("{}: {}", printable(key), protocol::unknown_key(key)));
+    return run::read_setting(change);
   }
 
   /// A future, in virtual time, from where it has come to.

@@ -7,11 +7,11 @@
 #include <utility>
 #include <variant>
 
-#include "chicane/protocol/schema.hpp"
 #include "chicane/recording/reader.hpp"
 #include "chicane/run/control_cycle.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/racing.hpp"
+#include "chicane/run/setting.hpp"
 
 namespace chicane::recording {
 namespace {
@@ -31,7 +31,10 @@ class Recomputation {
 
   /// What concerns neither controller nor vehicle changes nothing here.
   void add(const telemetry::Change& change) {
-    if (!protocol::set_text(scenario_, change.name.view(), change.value.view())) return;
+    const Result<run::Setting> setting = run::read_setting(change);
+    const auto* field = setting ? std::get_if<run::FieldValue>(&setting->action) : nullptr;
+    if (field == nullptr) return;
+    run::write(scenario_, *field);
     cycle_.configure(scenario_);
   }
 

@@ -2,13 +2,11 @@
 #include "chicane/run/closed_loop.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <string_view>
 #include <utility>
 
-#include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/run/observe.hpp"
 
@@ -97,19 +95,17 @@ void ClosedLoop::move() noexcept {
   frame_.completed_lap = account_.completed_lap();
 }
 
-void ClosedLoop::apply(const telemetry::Change& change) noexcept {
-  if (manual_.apply(change)) return;
-  const std::string_view name = change.name.view();
-  const std::string_view value = change.value.view();
-  constexpr std::string_view kFault = "fault.";
-  if (name.starts_with(kFault)) return switch_fault(name.substr(kFault.size()), value);
-  if (name == "run.pace") {
-    std::from_chars(value.data(), value.data() + value.size(), pace_);
-    pace_ = std::clamp(pace_, kSlowestPace, kFastestPace);
-    return;
-  }
-  const protocol::Parameter* row = protocol::find(name);
-  if (row == nullptr || !protocol::is_live(*row) || !protocol::set_text(scenario_, name, value)) return;
+void ClosedLoop::apply(const telemetry::Change& change) {
+  if (const Result<Setting> setting = read_setting(change)) apply(*setting);
+}
+
+void ClosedLoop::apply(const Setting& setting) noexcept {
+  std::visit([this](const auto& action) { take(action); }, setting.action);
+}
+
+void ClosedLoop::take(const FieldValue& field) noexcept {
+  if (!protocol::is_live(*field.row)) return;
+  write(scenario_, field);
   cycle_.configure(scenario_);
   account_.set_terms(scenario_.laps, scenario_.time_limit, scenario_.latency);
   sensor_.configure(scenario_.sensor);
@@ -117,13 +113,12 @@ void ClosedLoop::apply(const telemetry::Change& change) noexcept {
                    .mass_scale = scenario_.plant_options.mass_scale});
 }
 
-/// What viewers and recordings say of a fault: "true", "false", or for how long and how strongly.
-void ClosedLoop::switch_fault(std::string_view name, std::string_view value) noexcept {
-  if (value == "true" || value == "false") return static_cast<void>(set_fault(name, value == "true"));
-  auto event = protocol::read_switch(name, value);
-  if (!event) return;
-  event->at = time();
-  faults_.set(*event);
+void ClosedLoop::take(const FaultSwitch& fault) noexcept {
+  if (fault.to != FaultSwitch::To::kAsGiven)
+    return faults_.set(fault.event.fault, fault.to == FaultSwitch::To::kOn, time());
+  sim::FaultEvent event = fault.event;
+  event.at = time();
+  faults_.set(event);
 }
 
 bool ClosedLoop::set_fault(std::string_view name, bool on) noexcept {
@@ -163,7 +158,7 @@ void ClosedLoop::control(double budget, const GivenStep* given) noexcept {
     frame_.measurement.delay = given->delay;
     input.deadline_spent_at = given->deadline_spent_at;
   }
-  if (manual_.is_on()) input.manual = manual_.wish(frame_.measurement, scenario_.vehicle);
+  if (manual_.is_on()) input.manual = manual_.command(frame_.measurement, scenario_.vehicle);
   observe(world_, frame_);
   frame_.pace = pace_;
   frame_.applied = acting();

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <variant>
 
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
@@ -14,6 +15,7 @@
 #include "chicane/run/make.hpp"
 #include "chicane/run/manual_drive.hpp"
 #include "chicane/run/roads.hpp"
+#include "chicane/run/setting.hpp"
 #include "chicane/safety/stop_player.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/actuation_delay.hpp"
@@ -26,10 +28,6 @@
 #include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::run {
-
-/// Run seconds per second of the clock.
-inline constexpr double kSlowestPace = 0.05;
-inline constexpr double kFastestPace = 20.0;
 
 /// What the clock did to a recorded control step: with it, a run in real time is computed again bit for bit.
 struct GivenStep {
@@ -61,10 +59,12 @@ class ClosedLoop {
   /// The next advance() begins with the control step number cycle().
   [[nodiscard]] bool is_control_due() const noexcept { return time() >= next_control_ - 1e-9; }
   [[nodiscard]] std::uint64_t cycle() const noexcept { return cycle_.next(); }
-  /// A setting changes before the next control step: a key of the schema that is_live(), "run.pace",
-  /// "manual.…" or "fault.…". What was learned and what is under way stay. A change that --set would refuse
-  /// changes nothing. Allocates nothing; call it between two advance().
-  void apply(const telemetry::Change& change) noexcept;
+  /// A setting changes before the next control step. What was learned and what is under way stay. A field of
+  /// the scenario that is not live (protocol::is_live) changes nothing. Allocates nothing; call it between
+  /// two advance().
+  void apply(const Setting& setting) noexcept;
+  /// The same for a change that is still text; one that read_setting() refuses changes nothing. Allocates.
+  void apply(const telemetry::Change& change);
   /// Run seconds that were asked for per second of the clock.
   [[nodiscard]] double pace() const noexcept { return pace_; }
   /// Switches a fault (sim/fault.hpp) on, for its own duration and with its own strength, or off. False, and
@@ -78,7 +78,7 @@ class ClosedLoop {
   /// More laps than were asked for: is_over() only when the car is lost, which starts it anew. Their laps are
   /// counted and remembered like the others.
   void drive_on();
-  /// Stands the car at the start; the controller forgets everything, the count begins anew. Allocates.
+  /// Puts the car at the start; the controller is reset, the account begins anew. Allocates.
   void restart();
 
   [[nodiscard]] double time() const noexcept { return world_.time(); }
@@ -93,7 +93,11 @@ class ClosedLoop {
   ClosedLoop(const scenario::Scenario& scenario, const Roads::Prepared& road,
              std::unique_ptr<sim::Plant> plant, std::unique_ptr<controller::Controller> controller);
   void control(double budget, const GivenStep* given) noexcept;
-  void switch_fault(std::string_view name, std::string_view value) noexcept;
+  void take(std::monostate) noexcept {}
+  void take(const FieldValue& field) noexcept;
+  void take(const Pace& pace) noexcept { pace_ = pace.value; }
+  void take(const ManualSetting& setting) noexcept { manual_.set(setting); }
+  void take(const FaultSwitch& fault) noexcept;
   void watch_faults() noexcept;
   [[nodiscard]] model::Command acting() noexcept;
   [[nodiscard]] model::Measurement measure() noexcept;

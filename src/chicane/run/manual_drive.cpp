@@ -2,9 +2,7 @@
 #include "chicane/run/manual_drive.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
 namespace chicane::run {
@@ -13,37 +11,30 @@ namespace {
 constexpr double kGentleBraking = 0.4;  // share of the useful braking, as in controller/fallback.hpp
 constexpr double kFadeSpeed = 2.5;      // [m/s] below, braking fades and a negative pedal is the reverse gear
 
-double share_of(std::string_view text) noexcept {
-  double value = 0.0;
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return std::isfinite(value) ? std::clamp(value, -1.0, 1.0) : 0.0;
-}
-
 }  // namespace
 
-bool ManualDrive::apply(const telemetry::Change& change) noexcept {
-  const std::string_view name = change.name.view();
-  const std::string_view value = change.value.view();
-  if (name == "manual.is_on") {
-    is_on_ = value == "true";
-  } else if (name == "manual.steer") {
-    steer_ = share_of(value);
-  } else if (name == "manual.throttle") {
-    throttle_ = share_of(value);
-  } else {
-    return false;
+void ManualDrive::set(const ManualSetting& setting) noexcept {
+  switch (setting.what) {
+    case ManualSetting::What::kIsOn:
+      is_on_ = setting.value != 0.0;
+      break;
+    case ManualSetting::What::kSteer:
+      steer_ = setting.value;
+      break;
+    case ManualSetting::What::kThrottle:
+      throttle_ = setting.value;
+      break;
   }
-  has_spoken_ = true;
-  return true;
+  has_news_ = true;
 }
 
-model::Command ManualDrive::wish(const model::Measurement& now,
-                                 const model::VehicleParams& vehicle) noexcept {
-  if (std::exchange(has_spoken_, false)) last_word_ = now.time;
+model::Command ManualDrive::command(const model::Measurement& now,
+                                    const model::VehicleParams& vehicle) noexcept {
+  if (std::exchange(has_news_, false)) last_set_ = now.time;
   const double speed = std::isfinite(now.speed) ? std::fabs(now.speed) : kFadeSpeed;
   const double useful = vehicle.brake_throttle_limit;
   double throttle = throttle_;
-  if (now.time - last_word_ > kPatience) {
+  if (now.time - last_set_ > kSilenceLimit) {
     throttle = -kGentleBraking * useful * std::min(1.0, speed / kFadeSpeed);
   } else if (throttle < 0.0 && speed >= kFadeSpeed) {
     throttle *= useful;
@@ -52,8 +43,8 @@ model::Command ManualDrive::wish(const model::Measurement& now,
 }
 
 void ManualDrive::restart() noexcept {
-  has_spoken_ = false;
-  last_word_ = 0.0;
+  has_news_ = false;
+  last_set_ = 0.0;
 }
 
 }  // namespace chicane::run

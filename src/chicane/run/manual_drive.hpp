@@ -4,34 +4,38 @@
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
-#include "chicane/telemetry/change.hpp"
 
 namespace chicane::run {
+
+/// What a person does.
+struct ManualSetting {
+  enum class What { kIsOn, kSteer, kThrottle } what = What::kIsOn;
+  double value = 0.0;  ///< kIsOn: 0 is off; else in [-1, 1]
+};
 
 /// A person at the wheel instead of the controller. Everything here happens in the time of the run, so a run
 /// with the same changes at the same cycles is the same run. No allocation; one thread.
 class ManualDrive {
  public:
-  /// Without a word from the person for so long the car brakes gently [s].
-  static constexpr double kPatience = 1.0;
+  /// When nothing is set for so long, the car brakes gently [s].
+  static constexpr double kSilenceLimit = 1.0;
 
-  /// "manual.is_on", "manual.steer" or "manual.throttle"; false, and nothing happens, for anything else.
-  bool apply(const telemetry::Change& change) noexcept;
+  void set(const ManualSetting& setting) noexcept;
   [[nodiscard]] bool is_on() const noexcept { return is_on_; }
-  /// What the person wants of a car that is measured so. The steering is a share of the lock. Full braking is
+  /// The person's command to a car that is measured so. The steering is a share of the lock. Full braking is
   /// all that is useful; near standstill a negative throttle is passed on as it is, which reverses cars that
   /// can.
-  [[nodiscard]] model::Command wish(const model::Measurement& now,
-                                    const model::VehicleParams& vehicle) noexcept;
+  [[nodiscard]] model::Command command(const model::Measurement& now,
+                                       const model::VehicleParams& vehicle) noexcept;
   /// A new run: time begins anew. The person keeps the wheel.
   void restart() noexcept;
 
  private:
   bool is_on_ = false;
-  double steer_ = 0.0;       ///< left positive; [-1, 1]
-  double throttle_ = 0.0;    ///< [-1, 1]
-  bool has_spoken_ = false;  ///< since the last wish
-  double last_word_ = 0.0;   ///< [s]
+  double steer_ = 0.0;     ///< left positive; [-1, 1]
+  double throttle_ = 0.0;  ///< [-1, 1]
+  bool has_news_ = false;  ///< since the last command
+  double last_set_ = 0.0;  ///< [s]
 };
 
 }  // namespace chicane::run

@@ -106,7 +106,7 @@ class Session {
     if (const auto lap = loop_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
   }
 
-  /// While paused: waits for the wish to go on, to stop or to step. True when one control cycle is to be
+  /// While paused: waits for a request to go on, to stop or to step. True when one control cycle is to be
   /// done.
   bool wait_while_paused() {
     take_up_changes();
@@ -120,14 +120,14 @@ class Session {
   }
 
   void take_up_changes() {
-    while (const telemetry::Change* next = controls_.wishes.front()) {
-      is_to_start_anew_ = next->starts_anew;
+    while (const Setting* next = controls_.settings.front()) {
+      is_to_start_anew_ = next->change.starts_anew;
       if (is_to_start_anew_) return;
-      telemetry::Change change = *next;
-      controls_.wishes.pop();
+      telemetry::Change change = next->change;
       change.cycle = loop_.cycle();
       change.time = loop_.time();
-      loop_.apply(change);
+      loop_.apply(*next);
+      controls_.settings.pop();
       if (hooks_.on_change) hooks_.on_change(change);
     }
   }

@@ -5,22 +5,22 @@
 #include <functional>
 #include <optional>
 
-#include "chicane/run/change_queue.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "chicane/run/setting.hpp"
 #include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::run {
 
-/// What other threads may ask of a run that is going on. Any thread; each wish is taken up at the next
+/// What other threads may ask of a run that is going on. Any thread; each request is taken up at the next
 /// control step.
 struct RunControls {
   std::atomic<bool> is_paused{false};
   std::atomic<int> steps{0};  ///< control cycles to do while paused
   std::atomic<bool> wants_restart{false};
   std::atomic<bool> wants_stop{false};
-  ChangeQueue wishes{};  ///< changes of settings, from one thread
+  SettingQueue settings{};  ///< that change, from one thread
 };
 
 struct RealtimeOptions {

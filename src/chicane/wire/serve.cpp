@@ -196,8 +196,9 @@ class UdacityEndpoint::Control {
     if (hooks_.on_frame) hooks_.on_frame(frame_);
   }
 
-  /// After a silence, ours too, the car has been stopped meanwhile, or has gone on with the last command;
-  /// nobody here knows. The first telemetry may have waited as long, so that the second one begins anew, too.
+  /// After a silence, ours too, the car has been stopped meanwhile, or has gone on with the last command:
+  /// it is not known which. The first telemetry may have waited as long, so that the second one begins anew,
+  /// too.
   void watch_gap(double gap) {
     const bool is_long = gap > seconds(options_.forget_after) + kGapInDelays * delay_.value();
     if (is_long || begins_again_) {
@@ -237,12 +238,15 @@ class UdacityEndpoint::Control {
   }
 
   void take_up_changes(double time) {
-    while (const telemetry::Change* next = hooks_.wishes == nullptr ? nullptr : hooks_.wishes->front()) {
-      telemetry::Change change = *next;
-      hooks_.wishes->pop();
+    while (const run::Setting* next = hooks_.settings == nullptr ? nullptr : hooks_.settings->front()) {
+      telemetry::Change change = next->change;
       change.cycle = cycle_.next();
       change.time = time;
-      if (protocol::set_text(scenario_, change.name.view(), change.value.view())) cycle_.configure(scenario_);
+      if (const auto* field = std::get_if<run::FieldValue>(&next->action)) {
+        run::write(scenario_, *field);
+        cycle_.configure(scenario_);
+      }
+      hooks_.settings->pop();
       if (hooks_.on_change) hooks_.on_change(change);
     }
   }

@@ -19,7 +19,7 @@
 #include "chicane/path/track.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/road/racing_road.hpp"
-#include "chicane/run/change_queue.hpp"
+#include "chicane/run/setting.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -34,7 +34,7 @@ struct ServeOptions {
   net::ServerOptions server;
   model::VehicleParams vehicle;  ///< bounds of what is sent
   scenario::Scenario scenario;   ///< what the controller was made from: needed to change it while it drives
-  /// The road that the simulator drives on, where somebody told: the car is judged by the positions it sends.
+  /// The road that the simulator drives on, where it is known: the car is judged by the positions it sends.
   /// Outlives the endpoint; null: not known, laps are timed all the same.
   const path::Track* track = nullptr;
   std::shared_ptr<const road::RacingRoad> lap{};  ///< planned, of a controller that races (run/racing.hpp)
@@ -53,7 +53,7 @@ struct ServeOptions {
 };
 
 struct ServeHooks {
-  run::ChangeQueue* wishes = nullptr;  ///< settings to change before the next answer; outlives the endpoint
+  run::SettingQueue* settings = nullptr;  ///< that change before the next answer; outlives the endpoint
   std::function<void(const telemetry::Change&)>
       on_change{};                                          ///< when one was taken up, on the control thread
   std::function<void(const telemetry::Frame&)> on_frame{};  ///< after each answer, on the control thread
@@ -112,7 +112,7 @@ class UdacityEndpoint final : public Endpoint {
 
   /// The one simulator that is driven. Network thread only.
   struct Session {
-    net::ConnectionId id = 0;      ///< 0 = nobody
+    net::ConnectionId id = 0;      ///< 0 = none
     std::string name{};            ///< for the log: its address
     bool is_stock = false;         ///< got our open packet: an Engine.IO client that expects pings and pongs
     bool is_version_3 = false;     ///< EIO=3: the server connects the namespace, the client pings

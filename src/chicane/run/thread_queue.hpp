@@ -6,20 +6,20 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "chicane/telemetry/change.hpp"
-
 namespace chicane::run {
 
-/// Changes from one thread to one other, in order. Neither waits; no allocation.
-class ChangeQueue {
+/// Values from one thread to one other, in order. Neither waits; no allocation beside what copying an Item
+/// takes.
+template <class Item>
+class ThreadQueue {
  public:
   static constexpr std::uint64_t kCapacity = 256;
 
   /// The sending thread. False, and nothing happens, when the queue is full.
-  bool push(const telemetry::Change& change) noexcept {
+  bool push(const Item& item) noexcept {
     const std::uint64_t number = put_.load(std::memory_order_relaxed);
     if (number - taken_.load(std::memory_order_acquire) >= kCapacity) return false;
-    slots_[static_cast<std::size_t>(number % kCapacity)] = change;
+    slots_[static_cast<std::size_t>(number % kCapacity)] = item;
     put_.store(number + 1, std::memory_order_release);
     return true;
   }
@@ -28,8 +28,8 @@ class ChangeQueue {
     return kCapacity - (put_.load(std::memory_order_relaxed) - taken_.load(std::memory_order_acquire));
   }
 
-  /// The receiving thread: the oldest one, nullptr when there is none.
-  [[nodiscard]] const telemetry::Change* front() const noexcept {
+  /// The receiving thread: the oldest one, nullptr when there is none. Valid until pop().
+  [[nodiscard]] const Item* front() const noexcept {
     const std::uint64_t number = taken_.load(std::memory_order_relaxed);
     if (number == put_.load(std::memory_order_acquire)) return nullptr;
     return &slots_[static_cast<std::size_t>(number % kCapacity)];
@@ -38,7 +38,7 @@ class ChangeQueue {
   void pop() noexcept { taken_.fetch_add(1, std::memory_order_release); }
 
  private:
-  std::array<telemetry::Change, kCapacity> slots_{};
+  std::array<Item, kCapacity> slots_{};
   std::atomic<std::uint64_t> put_{0};
   std::atomic<std::uint64_t> taken_{0};
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/run/change_queue.hpp"
+#include "chicane/run/thread_queue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,14 +7,18 @@
 #include <string>
 #include <thread>
 
+#include "chicane/telemetry/change.hpp"
+
 namespace chicane::run {
 namespace {
+
+using ChangeQueue = ThreadQueue<telemetry::Change>;
 
 telemetry::Change change(std::uint64_t number) {
   return {.cycle = number, .name = "run.pace", .value = std::to_string(number)};
 }
 
-TEST(ChangeQueue, GivesChangesInTheirOrder) {
+TEST(ThreadQueue, GivesChangesInTheirOrder) {
   const auto queue = std::make_unique<ChangeQueue>();
   EXPECT_EQ(queue->front(), nullptr);
   EXPECT_TRUE(queue->push(change(1)));
@@ -27,7 +31,7 @@ TEST(ChangeQueue, GivesChangesInTheirOrder) {
   EXPECT_EQ(queue->front(), nullptr);
 }
 
-TEST(ChangeQueue, RefusesWhatDoesNotFitAndKeepsTheRest) {
+TEST(ThreadQueue, RefusesWhatDoesNotFitAndKeepsTheRest) {
   const auto queue = std::make_unique<ChangeQueue>();
   for (std::uint64_t i = 0; i < ChangeQueue::kCapacity; ++i) {
     EXPECT_EQ(queue->room(), ChangeQueue::kCapacity - i);
@@ -40,7 +44,7 @@ TEST(ChangeQueue, RefusesWhatDoesNotFitAndKeepsTheRest) {
   EXPECT_TRUE(queue->push(change(1000)));
 }
 
-TEST(ChangeQueue, LosesNothingBetweenTwoThreads) {
+TEST(ThreadQueue, LosesNothingBetweenTwoThreads) {
   constexpr std::uint64_t kCount = 5000;
   const auto queue = std::make_unique<ChangeQueue>();
   std::thread sender{[&] {

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/run/setting.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include "chicane/base/text.hpp"
+#include "chicane/protocol/fault_codec.hpp"
+
+namespace chicane::run {
+namespace {
+
+using protocol::Parameter;
+
+tl::unexpected<Error> refuse_setting(std::string_view key, std::string_view got,
+                                     const std::string& expected) {
+  return fail(ErrorCode::kInvalidArgument,
+              std::string(key) + ": got " + printable(got) + ", expected " + expected);
+}
+
+Result<double> number_in(std::string_view key, std::string_view text, double low, double high) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_number = error == std::errc{} && end == text.data() + text.size();
+  if (is_number && value >= low && value <= high) return value;
+  return refuse_setting(key, text, "a number in [" + number_text(low) + ", " + number_text(high) + "]");
+}
+
+Result<Action> read_fault_switch(std::string_view key, std::string_view value) {
+  const std::string_view name = key.substr(key.find('.') + 1);
+  const Result<sim::FaultEvent> event = protocol::read_switch(name, value == "false" ? "true" : value);
+  if (!event) return fail(event.error());
+  const auto to = value == "false"  ? FaultSwitch::To::kOff
+                  : value == "true" ? FaultSwitch::To::kOn
+                                    : FaultSwitch::To::kAsGiven;
+  return FaultSwitch{.to = to, .event = *event};
+}
+
+Result<Action> read_manual(std::string_view key, std::string_view value) {
+  using What = ManualSetting::What;
+  if (key == "manual.is_on") {
+    if (value == "true" || value == "false")
+      return ManualSetting{.what = What::kIsOn, .value = value == "true" ? 1.0 : 0.0};
+    return refuse_setting(key, value, "true or false");
+  }
+  if (key != "manual.steer" && key != "manual.throttle")
+    return refuse_setting(key, value, "manual.is_on, manual.steer or manual.throttle");
+  const Result<double> share = number_in(key, value, -1.0, 1.0);
+  if (!share) return fail(share.error());
+  return ManualSetting{.what = key == "manual.steer" ? What::kSteer : What::kThrottle, .value = *share};
+}
+
+Result<Action> read_field(std::string_view key, std::string_view value) {
+  const Parameter* row = protocol::find(key);
+  scenario::Scenario scratch;
+  if (Result<void> set = protocol::set_text(scratch, key, value); !set) return fail(set.error());
+  const OptionValue field = row->option.read(row->owner(scratch));
+  if (const auto* number = std::get_if<double>(&field)) return FieldValue{.row = row, .value = *number};
+  if (const auto* flag = std::get_if<bool>(&field)) return FieldValue{.row = row, .value = *flag};
+  return fail(ErrorCode::kInvalidArgument, std::string(key) + ": is fixed when a run starts");
+}
+
+Result<Action> read_action(std::string_view key, std::string_view value) {
+  if (key.starts_with("fault.")) return read_fault_switch(key, value);
+  if (key.starts_with("manual.")) return read_manual(key, value);
+  if (key != "run.pace") return read_field(key, value);
+  const Result<double> pace = number_in(key, value, kSlowestPace, kFastestPace);
+  if (!pace) return fail(pace.error());
+  return Pace{*pace};
+}
+
+}  // namespace
+
+static_assert(std::is_trivially_copyable_v<Setting>);
+
+Result<Setting> read_setting(const telemetry::Change& change) {
+  Result<Action> action = read_action(change.name.view(), change.value.view());
+  if (!action) return fail(action.error());
+  return Setting{.change = change, .action = *action};
+}
+
+void write(scenario::Scenario& scenario, const FieldValue& field) noexcept {
+  const OptionValue value = std::visit([](auto each) { return OptionValue(each); }, field.value);
+  field.row->option.write(field.row->owner(scenario), value);
+}
+
+}  // namespace chicane::run

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <variant>
+
+#include "chicane/base/result.hpp"
+#include "chicane/protocol/schema.hpp"
+#include "chicane/run/manual_drive.hpp"
+#include "chicane/run/thread_queue.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/sim/fault.hpp"
+#include "chicane/telemetry/change.hpp"
+
+namespace chicane::run {
+
+/// Run seconds per second of the clock: the range of "run.pace".
+inline constexpr double kSlowestPace = 0.05;
+inline constexpr double kFastestPace = 20.0;
+
+/// A field of the scenario gets another value.
+struct FieldValue {
+  const protocol::Parameter* row = nullptr;  ///< of the schema; its field is no text
+  std::variant<double, bool> value;          ///< as the field has it: SI, an enum as its number
+};
+/// The run goes at another pace.
+struct Pace {
+  double value = 1.0;  ///< [kSlowestPace, kFastestPace]
+};
+/// A fault is switched.
+struct FaultSwitch {
+  enum class To { kOff, kOn, kAsGiven } to = To::kOff;  ///< kOn: with the kind's own duration and strength
+  sim::FaultEvent event{};  ///< which fault; kAsGiven: its duration and strength, from now on
+};
+
+/// What a change of a setting does to a run that goes on. std::monostate: nothing that can be done to it,
+/// because the run begins anew.
+using Action = std::variant<std::monostate, FieldValue, Pace, ManualSetting, FaultSwitch>;
+
+/// One change of a setting, read and checked: data that is handed from thread to thread and applied without
+/// reading a text again. Plain; no allocation.
+struct Setting {
+  telemetry::Change change;  ///< what recordings and viewers are told
+  Action action;
+};
+using SettingQueue = ThreadQueue<Setting>;
+using ChangeQueue = ThreadQueue<telemetry::Change>;
+
+/// Reads a change: a key of the schema whose value is no text, "run.pace", "manual.…" or "fault.…". Fails as
+/// --set does, with the key, what was got and what was expected. Allocates.
+[[nodiscard]] Result<Setting> read_setting(const telemetry::Change& change);
+
+/// Sets the field. No allocation.
+void write(scenario::Scenario& scenario, const FieldValue& field) noexcept;
+
+}  // namespace chicane::run

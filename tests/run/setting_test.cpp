@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/run/setting.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "chicane/sim/fault.hpp"
+
+namespace chicane::run {
+namespace {
+
+Result<Setting> read(std::string_view name, std::string_view value) {
+  return read_setting({.cycle = 7, .time = 0.28, .name = name, .value = value});
+}
+
+template <class Kind>
+Kind action(std::string_view name, std::string_view value) {
+  const Result<Setting> setting = read(name, value);
+  EXPECT_TRUE(setting) << name << " " << value;
+  const Kind* found = setting ? std::get_if<Kind>(&setting->action) : nullptr;
+  EXPECT_NE(found, nullptr) << name << " " << value;
+  return found != nullptr ? *found : Kind{};
+}
+
+std::string refusal(std::string_view name, std::string_view value) {
+  const Result<Setting> setting = read(name, value);
+  EXPECT_FALSE(setting) << name << " " << value;
+  return setting ? "" : setting.error().message;
+}
+
+TEST(Setting, OfEachFieldThatIsNoTextReadsAsSetTakesIt) {
+  const scenario::Scenario initial;
+  for (const protocol::Parameter& row : protocol::list()) {
+    SCOPED_TRACE(row.key);
+    const std::string text = protocol::get_text(initial, row);
+    const Result<Setting> setting = read(row.key, text);
+    if (!setting) {
+      EXPECT_TRUE(std::holds_alternative<std::string>(
+          row.option.read(row.owner(const_cast<scenario::Scenario&>(initial)))));
+      continue;
+    }
+    scenario::Scenario written;
+    write(written, std::get<FieldValue>(setting->action));
+    EXPECT_EQ(protocol::get_text(written, row), text);
+    EXPECT_EQ(setting->change.name.view(), row.key);
+    EXPECT_EQ(setting->change.cycle, 7U);
+  }
+}
+
+TEST(Setting, WritesItsFieldAndNoOther) {
+  const Result<Setting> setting = read("latency_ms", "33.3");
+  ASSERT_TRUE(setting);
+  scenario::Scenario written;
+  write(written, std::get<FieldValue>(setting->action));
+  for (const protocol::Parameter& row : protocol::list()) {
+    EXPECT_EQ(protocol::get_text(written, row),
+              row.key == "latency_ms" ? "33.3" : protocol::get_text(scenario::Scenario{}, row))
+        << row.key;
+  }
+}
+
+TEST(Setting, OfPaceHandsAndFaultsIsReadOnce) {
+  EXPECT_EQ(action<Pace>("run.pace", "0.25").value, 0.25);
+  EXPECT_EQ(action<ManualSetting>("manual.is_on", "true").value, 1.0);
+  EXPECT_EQ(action<ManualSetting>("manual.steer", "-0.5").value, -0.5);
+  EXPECT_EQ(action<ManualSetting>("manual.throttle", "1").what, ManualSetting::What::kThrottle);
+  const sim::Fault ice = *sim::fault_named("ice_patch");
+  const auto given = action<FaultSwitch>("fault.ice_patch", "+1.5*0.9");
+  EXPECT_EQ(given.to, FaultSwitch::To::kAsGiven);
+  EXPECT_EQ(given.event.fault, ice);
+  EXPECT_EQ(given.event.duration, 1.5);
+  EXPECT_EQ(given.event.strength, 0.9);
+  EXPECT_EQ(action<FaultSwitch>("fault.ice_patch", "true").to, FaultSwitch::To::kOn);
+  EXPECT_EQ(action<FaultSwitch>("fault.ice_patch", "false").to, FaultSwitch::To::kOff);
+}
+
+TEST(Setting, IsRefusedInOneSentence) {
+  EXPECT_EQ(refusal("latency_ms", "900"), "latency_ms: got 900, expected a number in [0, 500] ms");
+  EXPECT_EQ(refusal("run.pace", "nan"), "run.pace: got nan, expected a number in [0.05, 20]");
+  EXPECT_EQ(refusal("manual.steer", "-7"), "manual.steer: got -7, expected a number in [-1, 1]");
+  EXPECT_EQ(refusal("manual.steer", "left"), "manual.steer: got left, expected a number in [-1, 1]");
+  EXPECT_EQ(refusal("manual.is_on", "1"), "manual.is_on: got 1, expected true or false");
+  EXPECT_EQ(refusal("track", "oval"), "track: is fixed when a run starts");
+  EXPECT_TRUE(refusal("fault.ice_patch", "+1.5*9").starts_with("fault.ice_patch: got +1.5*9"));
+  for (const std::string name : {"", "nonsense", "fault.", "fault.nonsense", "manual.", "manual.gear"})
+    EXPECT_NE(refusal(name, "false"), "") << name;
+}
+
+}  // namespace
+}  // namespace chicane::run
