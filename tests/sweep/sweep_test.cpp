@@ -224,8 +224,9 @@ TEST_F(Sweep, ThePageSumsUpAxesAndPairsAndHasTheCommandOfEachRun) {
        {"<h1>plan</h1>", "12 of 12 runs, 12 clean", "<th>latency_ms", "seed \\ latency_ms",
         "<code>chicane drive --fast --laps 0 --preset pid --seed 3 --latency-ms 140 --set time_limit_s=2"})
     EXPECT_THAT(text, HasSubstr(words));
-  EXPECT_EQ(text.find("http://", text.find("http://localhost:4567/") + 5), std::string::npos)
-      << "needs no network";
+  EXPECT_THAT(text, HasSubstr("<a href='http://localhost:4567/#run?preset=pid&amp;seed=3&amp;latency_ms=140'>"));
+  for (std::size_t at = 0; (at = text.find("http", at)) != std::string::npos; ++at)
+    EXPECT_EQ(text.compare(at, 22, "http://localhost:4567/"), 0) << "needs no network";
   EXPECT_THAT(write_page({path("a")}, path("page.html"))->runs, 6U) << "what is missing is left out";
   std::ofstream(path("x")) << "hello\n";
   EXPECT_FALSE(write_page({path("x")}, path("page.html")));
@@ -267,6 +268,22 @@ TEST(SweepTrial, TheCommandDrivesTheSameRun) {
   EXPECT_FALSE(check_setting("fault.name", "half_gripp"));
   EXPECT_FALSE(check_setting("fault.when_s", "3"));
   EXPECT_TRUE(check_setting("scenario", "first-lap"));
+}
+
+TEST(SweepTrial, TheLinkHoldsTheSameRunWhereALinkCan) {
+  EXPECT_EQ(link_of({{"preset", "weighted"},
+                     {"laps", "2"},
+                     {"speed_mph", "40"},
+                     {"latency_ms", "90"},
+                     {"latency_ms", "130"},
+                     {"guard.mode", "off"}}),
+            "http://localhost:4567/#run?preset=weighted&latency_ms=130&guard.mode=off"
+            "&cubic_mpc.speed_reference_mps=17.8816");
+  EXPECT_EQ(link_of({{"preset", "a b&c"}}), "http://localhost:4567/#run?preset=a%20b%26c");
+  for (const Settings& none :
+       {Settings{{"track", "../lake.csv"}}, Settings{{"scenario", "first-lap"}},
+        Settings{{"fault", "half_grip@12"}}, Settings{{"preset", "nothing-like-this"}, {"speed_mph", "40"}}})
+    EXPECT_EQ(link_of(none), "");
 }
 
 /// How fast PID may be on the oval: a clean lap at slow speed, none at high speed.

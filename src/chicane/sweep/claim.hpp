@@ -10,7 +10,7 @@
 #include "chicane/sweep/plan.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
-/// A statement of somebody's, and how it is tried.
+/// A statement of a write-up, and how it is tried.
 namespace chicane::sweep {
 
 /// One run of the trial, beside what the claim says of all.

@@ -15,8 +15,8 @@ struct MergeSummary {
 };
 
 /// Joins the files of a sweep's shards, in whatever order and however many, into `output`: the first line,
-/// then one line for each run in the order of the plan, the same bytes whoever drove what. `output` appears
-/// whole or not at all, and may be one of the files.
+/// then one line for each run in the order of the plan, the same bytes whichever process drove which run.
+/// `output` appears whole or not at all, and may be one of the files.
 ///
 /// kInvalidArgument for files of different plans or programs, for missing runs, which are named, and for a
 /// run with two different results; kParse for lines that are none; kIo.

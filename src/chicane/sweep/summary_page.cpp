@@ -287,8 +287,9 @@ class Page {
 
   [[nodiscard]] std::string listing() const {
     std::string text = fmt::format(
-        "<h2>Runs</h2><p>{}Each with the command that drives it; without <code>--fast</code> it is "
-        "driven in the dashboard, at <code>http://localhost:4567/</code>.</p><div class=scroll>"
+        "<h2>Runs</h2><p>{}Each with the command that drives it, and a link that opens it in the dashboard "
+        "while "
+        "<code>chicane drive</code> runs on this machine.</p><div class=scroll>"
         "<table><tr><th>run<th>clean",
         runs_.size() > kMostListed ? fmt::format("The first {} of {}. ", kMostListed, runs_.size()) : "");
     for (std::size_t i = 0; i < kShown.size(); ++i)
@@ -306,7 +307,9 @@ class Page {
       for (auto& setting : expanded(varied, header_.cases)) settings.push_back(std::move(setting));
       if (!header_.search_key.empty() && std::isfinite(run.numbers[0]))
         settings.emplace_back(header_.search_key, number_text(run.numbers[0]));
-      text += fmt::format("<td style='text-align:left'><code>{}</code>{}", escaped(command_of(settings)),
+      const std::string link = link_of(settings);
+      text += fmt::format("<td style='text-align:left'><code>{}</code>{}{}", escaped(command_of(settings)),
+                          link.empty() ? "" : fmt::format(" <a href='{}'>open</a>", escaped(link)),
                           run.error.empty() ? "" : "<br>" + escaped(run.error));
     }
     return text + "</table></div>";

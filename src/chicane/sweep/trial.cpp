@@ -10,6 +10,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/text.hpp"
+#include "chicane/controller/registry.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/schema.hpp"
 
@@ -62,6 +63,36 @@ std::string shell_word(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
+}
+
+/// As a browser's URLSearchParams reads it.
+std::string url_encoded(std::string_view text) {
+  std::string encoded;
+  for (const char c : text) {
+    const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                          c == '-' || c == '_' || c == '.';
+    encoded += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return encoded;
+}
+
+/// Each key once, with the value that wins, at the place of its last setting.
+Settings winning(const Settings& settings) {
+  Settings last;
+  for (const auto& setting : settings) {
+    std::erase_if(last, [&](const auto& each) { return each.first == setting.first; });
+    last.push_back(setting);
+  }
+  return last;
+}
+
+/// The key and value of the reference speed of whichever controller drives.
+std::optional<std::pair<std::string, std::string>> speed_setting(const protocol::Request& request) {
+  const Result<scenario::Scenario> scenario = protocol::compose(request);
+  if (!scenario) return std::nullopt;
+  const auto* driver = controller::Registry::find(scenario->controller);
+  const protocol::Parameter* row = protocol::find_option(driver->name, driver->speed_option);
+  return std::pair{std::string(row->key), protocol::get_text(*scenario, *row)};
 }
 
 }  // namespace
@@ -126,11 +157,7 @@ std::string command_of(const Settings& settings) {
   const Result<protocol::Request> request = request_of(settings);
   if (!request) return command;
   if (!request->scenario_file.empty()) command += " " + shell_word(request->scenario_file);
-  Settings last;  // of each key the one that wins
-  for (const auto& setting : request->settings) {
-    std::erase_if(last, [&](const auto& each) { return each.first == setting.first; });
-    last.push_back(setting);
-  }
+  const Settings last = winning(request->settings);
   std::string rest;
   for (const auto& [key, text] : last) {
     const auto* const option = std::find_if(
@@ -142,6 +169,27 @@ std::string command_of(const Settings& settings) {
     if (is_speed(key)) rest += fmt::format(" --{}-{} {}", "speed", key.substr(6), text);
   for (const std::string& fault : request->faults) rest += " --fault " + shell_word(fault);
   return command + rest;
+}
+
+std::string link_of(const Settings& settings) {
+  const Result<protocol::Request> request = request_of(settings);
+  if (!request || !request->scenario_file.empty() || !request->faults.empty()) return "";
+  Settings held = winning(request->settings);
+  for (const auto& [key, text] : held) {
+    const bool is_name = key == "track" || key == "car" || key == "preset";
+    if (is_name && text.find_first_of("/.") != std::string::npos) return "";
+  }
+  if (!request->speed_mps.empty()) {
+    const auto speed = speed_setting(*request);
+    if (!speed) return "";
+    held.push_back(*speed);
+  }
+  std::string query;
+  for (const auto& [key, text] : winning(held)) {
+    if (key == "laps" || key == "time_limit_s") continue;  // how long it lasts is not what it is
+    query += fmt::format("{}{}={}", query.empty() ? "" : "&", url_encoded(key), url_encoded(text));
+  }
+  return "http://localhost:4567/#run?" + query;
 }
 
 }  // namespace chicane::sweep

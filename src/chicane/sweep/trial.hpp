@@ -27,4 +27,9 @@ namespace chicane::sweep {
 /// The command that drives it again: `chicane drive --fast --preset weighted --set laps=2 …`.
 [[nodiscard]] std::string command_of(const Settings& settings);
 
+/// The address at which the dashboard of `chicane drive` offers to drive it (docs/viewer.md):
+/// `http://localhost:4567/#run?preset=weighted&latency_ms=130`. Empty for what a link cannot hold: files,
+/// scenarios, faults, and settings that no run could take.
+[[nodiscard]] std::string link_of(const Settings& settings);
+
 }  // namespace chicane::sweep
