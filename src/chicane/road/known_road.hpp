@@ -19,13 +19,15 @@ namespace chicane::road {
 /// is reserved at construction; one thread.
 class KnownRoad {
  public:
+  /// Nothing is known, and nothing is learned: for a guard that is off.
+  KnownRoad() : line_{2} {}
   /// A track's road. Pre: `data` has at least two points.
   KnownRoad(const path::RoadData& data, const model::VehicleParams& vehicle);
   /// From waypoints; `half_width`: assumed each side of their line [m].
   KnownRoad(double half_width, const model::VehicleParams& vehicle);
 
-  /// Instead of the middle of the track, a line to race by: its places, the room beside it, and no wish to
-  /// leave it. Allocates; null changes nothing.
+  /// Instead of the middle of the track, a line to race by: its places, the room beside it, and the line
+  /// itself as target(). Allocates; null changes nothing.
   void use_line(const RacingRoad* lap);
 
   void reset() noexcept;
@@ -40,7 +42,7 @@ class KnownRoad {
     double right = 0.0;
   };
   [[nodiscard]] Edges edges(double s) const noexcept;
-  /// Where a car that has to stop had better be: that far to the left of the line, between `edges` [m]. In
+  /// Where a car that has to stop should be: that far to the left of the line, between `edges` [m]. In
   /// the middle of the road, or where a line is raced by on it, but at least `room` from the edges.
   [[nodiscard]] double target(const Edges& edges, double room) const noexcept {
     const double middle = 0.5 * (edges.left - edges.right);

@@ -32,7 +32,7 @@ constexpr double kMostLeniency = 3.0;       // [m]
 constexpr double kLongestHold = 0.5;        // [s]
 constexpr double kProjectionWindow = 30.0;  // [m] searched around the last place
 constexpr double kFarFromRoad = 20.0;       // [m] beside its line there is no stop along the road
-constexpr double kBlindStability = 1.6;     // of a car that nobody steers by what it does
+constexpr double kBlindStability = 1.6;     // of a car that is steered without feedback
 constexpr double kGentleStop = 0.8;         // share of the useful braking; all of it when that is too little
 
 bool is_finite(const model::Command& command) noexcept {
@@ -48,8 +48,8 @@ double act_time(const model::Measurement& seen, const controller::StepReport& re
 
 road::KnownRoad known_road(const GuardOptions& options, const path::RoadData* road,
                            const model::VehicleParams& vehicle) {
-  const bool knows_track = options.mode != GuardMode::kOff && options.road == GuardRoad::kTrack &&
-                           road != nullptr && road->points.size() > 1;
+  if (options.mode == GuardMode::kOff) return {};
+  const bool knows_track = options.road == GuardRoad::kTrack && road != nullptr && road->points.size() > 1;
   return knows_track ? road::KnownRoad{*road, vehicle} : road::KnownRoad{options.half_width, vehicle};
 }
 
@@ -199,7 +199,7 @@ void Guard::fall_back(const model::Measurement& seen, controller::StepResult& re
 
 /// The stop in the place of the controller's answer.
 void Guard::drive_stop(const StopStart& start, controller::StepResult& result) noexcept {
-  // Blind, the stop had better be short.
+  // Without measurements, a short stop is better.
   const bool is_blind = monitor_.findings().unmeasured || monitor_.findings().frozen;
   static_cast<void>(plan_stop(start, std::numeric_limits<double>::infinity(), is_blind, result.report));
   result.answer = Answer::kNone;
@@ -208,7 +208,7 @@ void Guard::drive_stop(const StopStart& start, controller::StepResult& result) n
   show_stop(start, result.plan);
 }
 
-/// The stop as a plan, for whoever draws it.
+/// The stop as a plan, for viewers.
 void Guard::show_stop(const StopStart& start, controller::Plan& plan) const noexcept {
   const road::ReferenceLine& line = road_.line();
   StopStart at = start;
@@ -290,7 +290,7 @@ bool Guard::leaves_a_stop(const StopStart& start, const model::Command& command,
 /// The gentle stop, or the hard one where that is too little. True when it keeps the margin.
 bool Guard::plan_stop(const StopStart& from, double edge_before, bool is_hard,
                       controller::StepReport& report) noexcept {
-  // Gently, hard, and last as hard as a driver would who sees where the car goes.
+  // Gently, hard, and last as hard as the measured state allows.
   constexpr Braking kStops[] = {{kGentleStop, kBlindStability}, {1.0, kBlindStability}, {1.0, 1.0}};
   bool is_good = false;
   for (const Braking& braking : kStops) {

@@ -36,14 +36,14 @@ namespace chicane::safety {
 /// With each answer that is sent there is a plan to standstill on the known road at hand, stop(). An answer
 /// that would leave none is not sent, and while the supervisor wants the car stopped, the stop is driven in
 /// its place. Without a known road the Fallback takes the stop's place. What was chosen, and why, is in the
-/// report: StepReport::rung, `reason` and `gated`, and nobody else sets these.
+/// report: StepReport::rung, `reason` and `gated`, and nothing else sets these.
 ///
 /// A person's command (Cycle::manual) is not checked: the person drives. Whatever is measured and whatever
 /// the controller does, what is sent is finite and inside the vehicle's range and rate limits. No allocation
 /// after construction; bounded time beside the controller's own; one thread.
 class Guard {
  public:
-  /// Pre: `controller` is not null. `vehicle`: the car that is believed in, and the limits of what is sent.
+  /// Pre: `controller` is not null. `vehicle`: the model's parameters, and the limits of what is sent.
   /// `road`: the track's; null, or GuardRoad::kWaypoints: the guard learns it from the waypoints it is shown.
   Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
         const GuardOptions& options = {}, const path::RoadData* road = nullptr);
@@ -67,7 +67,7 @@ class Guard {
   /// A planned lap for the controller to race by; the stops follow it, too, where the guard knows the track.
   /// It stays when a new run begins.
   void use_line(std::shared_ptr<const road::RacingRoad> lap);
-  /// Another car is believed in from now on. The limits of what is sent stay those of the beginning.
+  /// Other parameters of the model from now on. The limits of what is sent stay those of the beginning.
   void set_vehicle(const model::VehicleParams& vehicle) noexcept;
 
   /// The stop at hand after step(): from the moment at which the next command would act. Size 0: none.

@@ -16,7 +16,7 @@ struct StopPoint {
 };
 
 /// A way to standstill on the known road, to be driven without any further measurement (docs/safety.md). Data
-/// only; travels with each command to whoever has to stop the car when commands cease.
+/// only; travels with each command to the receiver, which stops the car when commands cease.
 struct StopPlan {
   static constexpr int kCapacity = 128;
   int size = 0;  ///< points in use, by rising time; 0: no plan
