@@ -4,7 +4,7 @@
 //     step_bench [CAR [TRACK [LAPS]]]        udacity lakeside 2
 //
 // The drive is recorded once and its measurements are given to fresh controllers again and again: they do the
-// same work every time, so the least of the repeats is what a step costs when nobody else wants the core.
+// same work every time, so the least of the repeats is what a step costs on an idle core.
 #include <fmt/format.h>
 
 #include <algorithm>

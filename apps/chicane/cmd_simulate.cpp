@@ -18,7 +18,7 @@
 namespace chicane::apps {
 namespace {
 
-/// Our road and car; who drives is not known.
+/// Our road and car; the controller is not known.
 protocol::Run description_of_external(const scenario::Scenario& scenario, const path::Track& track) {
   protocol::Run run;
   run.controller = run.preset = "external";

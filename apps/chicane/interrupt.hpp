@@ -6,8 +6,8 @@
 
 namespace chicane::apps {
 
-/// Signals closer to the first than this are the same wish: a terminal or a program like `timeout` may send
-/// one to the process and one to its group, and who presses Ctrl-C twice in anger takes longer.
+/// Signals closer to the first than this are the same request: a terminal or a program like `timeout` may
+/// send one to the process and one to its group, and a second Ctrl-C by hand takes longer.
 inline constexpr std::chrono::milliseconds kOneInterrupt{500};
 
 /// From now on Ctrl-C and SIGTERM set `flag`, for a run that ends itself with what it has; another one, more

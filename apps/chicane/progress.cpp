@@ -30,7 +30,7 @@ std::string line(const telemetry::Frame& frame) {
 }  // namespace
 
 std::string line_of(const telemetry::CompletedLap& lap) {
-  const std::string_view verdict = !std::isfinite(lap.min_edge_distance) ? ""  // nobody knows the road
+  const std::string_view verdict = !std::isfinite(lap.min_edge_distance) ? ""  // the road is not known
                                    : lap.is_clean                        ? ", clean"
                                                                          : ", off the road";
   return fmt::format("lap {}: {:.2f} s, {:.1f} mph in the mean{}", lap.lap, lap.lap_time,

@@ -33,7 +33,7 @@ struct BenchReport {
   bool was_interrupted = false;
 };
 
-/// One promise of docs/benchmarks.md beside what came out.
+/// One target of docs/benchmarks.md beside what was measured.
 struct Target {
   std::string what;
   double least = 0.0;  ///< to be kept

@@ -39,7 +39,7 @@ struct Outcome {
   std::string out, err;
 };
 
-/// A file of the current test that nobody else writes.
+/// A file of the current test alone.
 fs::path file_of_test(const std::string& kind) {
   const std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
   return fs::path(::testing::TempDir()) / ("chicane_" + test + "_" + kind + "_" + std::to_string(::getpid()));

@@ -28,7 +28,7 @@ using Lock = int (*)(pthread_mutex_t*);
 
 }  // namespace
 
-/// Replaces the C library's own, which std::mutex calls: locks that nobody contends make no system call.
+/// Replaces the C library's own, which std::mutex calls: uncontended locks make no system call.
 extern "C" int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
   static const Lock real = reinterpret_cast<Lock>(dlsym(RTLD_NEXT, "pthread_mutex_lock"));
   locks.fetch_add(1, std::memory_order_relaxed);

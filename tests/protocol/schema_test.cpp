@@ -236,7 +236,7 @@ TEST(Schema, DelayInsideTheModelMustBeOneStep) {
   std::get<controller::CubicMpcOptions>(scenario.controllers).step_length = 0.05;
   ASSERT_EQ(contradictions(scenario).size(), 1u);
   EXPECT_EQ(contradictions(scenario)[0].key, "cubic_mpc.latency_ms");
-  scenario.controller = "pid";  // then nobody is misled by it
+  scenario.controller = "pid";  // then it has no effect
   EXPECT_TRUE(contradictions(scenario).empty());
 }
 

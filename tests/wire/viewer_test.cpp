@@ -407,7 +407,7 @@ TEST_F(Viewer, TellsOfParametersThatChangeWithoutBeingSet) {
   EXPECT_EQ(told["parameters"][0]["value"], 3.0);
   server.pass_time();
   EXPECT_TRUE(server.take().empty());
-  // What else follows from a wish goes out with it, once.
+  // What else follows from a change goes out with it, once.
   store.waiting = {{"a", 7.0}, {"b", 4.0}};
   say(R"({"op":"setParameters","parameters":[{"name":"a","value":7}]})");
   told = answer();

@@ -87,7 +87,7 @@ enum class InstructionSet : std::uint8_t { kBaseline, kAvx2, kAvx512, kNeon };
 /// not have, and for one that was not built.
 [[nodiscard]] Result<InstructionSet> instruction_set_by_name(std::string_view name);
 
-/// Advice for who needs one that was left out: "In a clone `CHICANE_SIMD=avx2 ./run.sh` adds it; ...".
+/// Advice for users of a set that was left out: "In a clone `CHICANE_SIMD=avx2 ./run.sh` adds it; ...".
 [[nodiscard]] std::string how_to_build(std::string_view name);
 
 /// The one that solvers made from now on use: the last choice, else the environment's CHICANE_SIMD, else the

@@ -25,7 +25,7 @@ struct Witness {
 };
 
 /// The fastest lap of a simulated car on a closed road (docs/limit.md): the optimum of the plant's own
-/// equations, which nobody should beat, and the best lap that was driven. The truth lies between.
+/// equations, which no controller should beat, and the best lap that was driven. The truth lies between.
 struct PlantLimit {
   LapTimes bound;         ///< of the optimum [s]
   path::RacingLine line;  ///< of the optimum, without any reserve

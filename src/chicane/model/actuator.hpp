@@ -8,9 +8,9 @@
 
 namespace chicane::model {
 
-/// What stands between a wish and a wheel: range, first-order lag, rate limit, in this order (docs/model.md,
-/// eq. 13). Exact for a wish held over the step while the rate does not bind. Plain data and one function, no
-/// allocation.
+/// From the value asked for to the value at the wheel: range, first-order lag, rate limit, in this order
+/// (docs/model.md, eq. 13). Exact for a value asked for that is held over the step while the rate does not
+/// bind. Plain data and one function, no allocation.
 struct Actuator {
   double low = -1.0;  ///< range of the value
   double high = 1.0;
@@ -18,8 +18,8 @@ struct Actuator {
   double rate = std::numeric_limits<double>::infinity();  ///< largest change per second, > 0
 
   /// The value dt [s] later. Pre: dt >= 0, all finite.
-  [[nodiscard]] double next(double value, double wish, double dt) const noexcept {
-    const double target = std::clamp(wish, low, high);
+  [[nodiscard]] double next(double value, double asked, double dt) const noexcept {
+    const double target = std::clamp(asked, low, high);
     const double share = lag > 0.0 ? 1.0 - exp(-dt / lag) : 1.0;
     const double change = std::clamp((target - value) * share, -rate * dt, rate * dt);
     return std::clamp(value + change, low, high);

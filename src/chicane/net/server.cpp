@@ -2,7 +2,7 @@
 // The only file that includes Boost.Beast.
 #include "chicane/net/server.hpp"
 
-#include <utility>  // before Asio: Boost 1.74 forgets it
+#include <utility>  // before Asio: Boost 1.74 lacks the include
 
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/io_context.hpp>
@@ -332,7 +332,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
                       [self = shared_from_this(), keep_alive](ErrorCodeBoost ec, std::size_t) {
                         if (ec) return;
                         if (self->body_.next(self->piece_)) return self->write(keep_alive);
-                        if (self->body_.is_short()) return;  // less than was promised: end the connection
+                        if (self->body_.is_short())
+                          return;  // less than the announced length: end the connection
                         if (keep_alive) return self->read();
                         self->linger();
                       });

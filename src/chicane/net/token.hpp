@@ -8,8 +8,8 @@
 
 namespace chicane::net {
 
-/// A secret that nobody guesses: 192 bits of the system's, as 32 letters, digits, '-' and '_'. kIo where the
-/// system has none to give.
+/// A secret that cannot be guessed: 192 random bits of the system's, as 32 letters, digits, '-' and '_'. kIo
+/// where the system has none to give.
 [[nodiscard]] Result<std::string> make_token();
 
 /// Whether `given` is `token`, in a time that tells nothing but the length. Never for an empty token.

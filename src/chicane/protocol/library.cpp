@@ -69,7 +69,7 @@ std::vector<fs::path> folders(Shelf shelf) {
   return found;
 }
 
-/// The first comment line that speaks to people: no licence, no CSV header.
+/// The first comment line that describes the file: neither licence nor CSV header.
 std::string first_comment(const fs::path& file) {
   std::ifstream stream(file);
   std::string line;

@@ -25,7 +25,7 @@ struct Step {
 
   bool begins = false;                     ///< a run begins: controller and gate have forgotten everything
   bool has_measurement = true;             ///< false: what came was unusable, the controller was not asked
-  std::optional<model::Command> manual{};  ///< a person's wish, sent in the controller's place
+  std::optional<model::Command> manual{};  ///< a person's command, sent in the controller's place
   double gate_interval = 0.0;              ///< as the gate was told [s]
   std::uint32_t deadline_spent_at = 0;     ///< DeadlineLog::spent_at
 };

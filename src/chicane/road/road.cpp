@@ -75,7 +75,7 @@ void Road::add(const model::Measurement& now) noexcept {
   }
 }
 
-/// Shares of planning due at a measurement: who is asked rarely has the more time for each answer.
+/// Shares of planning due at a measurement: where measurements come rarely, there is more time for each.
 int Road::shares_until(double time) noexcept {
   const double shares = std::round((time - time_) / kShare);
   time_ = time;

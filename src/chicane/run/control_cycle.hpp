@@ -38,7 +38,7 @@ struct CycleInput {
 /// independent.
 class ControlCycle {
  public:
-  /// Pre: `controller` is not null. The scenario's vehicle is the car that is believed in, its guard watches.
+  /// Pre: `controller` is not null. The scenario's vehicle gives the model's parameters, its guard watches.
   /// `track`: the road, where the guard may know it; null: it is not known.
   ControlCycle(std::unique_ptr<controller::Controller> controller, const scenario::Scenario& scenario,
                const path::Track* track);
@@ -63,7 +63,7 @@ class ControlCycle {
   /// Number of the next cycle.
   [[nodiscard]] std::uint64_t next() const noexcept { return next_; }
   [[nodiscard]] const controller::Controller& controller() const noexcept { return guard_.controller(); }
-  /// The stop at hand after step(), for whoever has to stop the car when commands cease.
+  /// The stop at hand after step(), for the receiver, which stops the car when commands cease.
   [[nodiscard]] const safety::StopPlan& stop() const noexcept { return guard_.stop(); }
 
  private:

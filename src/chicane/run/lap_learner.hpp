@@ -7,7 +7,7 @@
 
 namespace chicane::run {
 
-/// Times the laps of a car on a road that nobody has told: its start line is the straight line across the car
+/// Times the laps of a car on a road that is not known: its start line is the straight line across the car
 /// where it was first seen, kReach to each side. A lap counts when the car crosses that line again in the
 /// same direction, after kLeast of way and 90 % of the first lap's; crossing back and forth counts for
 /// nothing. What would need the road stays unknown: place, edges, sectors.

@@ -21,7 +21,7 @@ struct SensorOptions {
   double position_quantum = 0.0;  ///< x and y are rounded to multiples of it [m]
   double heading_quantum = 0.0;   ///< [rad]
   double speed_quantum = 0.0;     ///< [m/s]
-  double latency = 0.0;           ///< so old is what is told, and nobody says so [s]
+  double latency = 0.0;           ///< age of what is measured, which the controller is not told [s]
 };
 /// The fields with their units and ranges, for files and messages.
 [[nodiscard]] std::span<const Option> sensor_options() noexcept;

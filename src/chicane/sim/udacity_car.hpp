@@ -53,11 +53,11 @@ struct UdacityCarParams {
 
 /// The plant `udacity`: planar, four wheels that spin on their own, friction curves of PhysX, 50 Hz.
 ///
-/// One step does, in the order of CarController.Move and FixedUpdate: clamp; front wheels to the wish at
-/// once; steer helper (velocity turned by 0.774 of the last yaw change, skipped when the original's yaw angle
-/// wraps); drive torque, brake or reverse with the original's quirk that a brake held down to 5 mph stays on
-/// until the throttle goes negative; speed cap; downforce; traction control; tyres. Tyre forces and wheel
-/// speeds advance in four parts of 5 ms, the force implicit in the wheel speed (docs/plants.md, eq. 1),
+/// One step does, in the order of CarController.Move and FixedUpdate: clamp; front wheels to the angle asked
+/// for at once; steer helper (velocity turned by 0.774 of the last yaw change, skipped when the original's
+/// yaw angle wraps); drive torque, brake or reverse with the original's quirk that a brake held down to 5 mph
+/// stays on until the throttle goes negative; speed cap; downforce; traction control; tyres. Tyre forces and
+/// wheel speeds advance in four parts of 5 ms, the force implicit in the wheel speed (docs/plants.md, eq. 1),
 /// because one explicit step of 20 ms is unstable below 8 m/s. No roll, pitch or load transfer: the centre of
 /// mass lies 0.06 m above the road.
 class UdacityCar final : public Plant {

@@ -32,9 +32,9 @@ struct Frame {
   bool has_truth = false;
   model::Measurement measurement;
   controller::StepResult result;  ///< its command is the one sent: after the gate
-  model::Command asked;           ///< the controller's own wish, before the gate
+  model::Command asked;           ///< the controller's own command, before the gate
   model::Command applied;         ///< what acts on the plant at `time`, after the delay
-  bool is_manual = false;         ///< a person drives; the controller's wish is `asked`
+  bool is_manual = false;         ///< a person drives; the controller's command is `asked`
   double step_time = 0.0;         ///< of the whole control step [s], wall clock
   double solve_time =
       0.0;  ///< of the optimisation in it [s], wall clock; 0 for controllers that solve nothing
@@ -64,7 +64,7 @@ struct Frame {
   // What else decided the command: with the settings and the measurement, enough to compute it again.
   bool begins = false;                  ///< controller and gate had forgotten everything
   bool has_measurement = true;          ///< false: what came was unusable, the controller was not asked
-  model::Command manual;                ///< a person's wish, while is_manual
+  model::Command manual;                ///< a person's command, while is_manual
   double gate_interval = 0.0;           ///< since the command before, as the gate was told [s]
   std::uint32_t deadline_spent_at = 0;  ///< DeadlineLog::spent_at of the control step
 };

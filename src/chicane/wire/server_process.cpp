@@ -64,7 +64,7 @@ constexpr unsigned kPatience = 1;  // of the guard, with a group that was asked 
     while ((ended = ::waitpid(-1, &status, WNOHANG)) > 0) {
       if (ended == shell && !is_ending) end_like(status, no_signals);
     }
-    if (ended < 0) ::_exit(0);  // nobody is left
+    if (ended < 0) ::_exit(0);  // none is left
   }
 }
 
@@ -73,7 +73,7 @@ constexpr unsigned kPatience = 1;  // of the guard, with a group that was asked 
 ServerProcess::~ServerProcess() {
   if (pid_ <= 0) return;
   ::kill(pid_, SIGTERM);
-  ::waitpid(pid_, nullptr, 0);  // within the guard's patience
+  ::waitpid(pid_, nullptr, 0);  // within the guard's time limit
 }
 
 void ServerProcess::keep_running(std::chrono::steady_clock::time_point now) {

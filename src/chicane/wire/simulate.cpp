@@ -31,7 +31,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr double kCatchUp = 1.0 / 3.0;  // physics forgets time it cannot catch up, as the original [s]
+constexpr double kCatchUp = 1.0 / 3.0;  // physics skips time it cannot catch up, as the original [s]
 constexpr milliseconds kConnectTimeout{1000};
 constexpr milliseconds kNap{5};
 constexpr double kStanding = 0.1;  // [m/s]
@@ -54,7 +54,7 @@ run::AccountTerms terms(const scenario::Scenario& scenario, const path::Track& t
   run::AccountTerms terms = run::terms_of(scenario, track.name());
   terms.controller = terms.preset = "external";
   terms.latency = 0.0;
-  terms.step_deadline = std::numeric_limits<double>::infinity();  // nobody promised one
+  terms.step_deadline = std::numeric_limits<double>::infinity();  // there is none
   return terms;
 }
 
@@ -177,7 +177,7 @@ class Simulation {
   }
 
  private:
-  /// Physics up to now; says when the car is stopped because nobody commands it, and when it stands.
+  /// Physics up to now; says when the car is stopped because no commands arrive, and when it stands.
   void move(Clock::time_point now) {
     const double speed = scene_.speed();
     began_ += duration(scene_.advance_to(seconds(now - began_)));

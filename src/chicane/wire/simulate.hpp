@@ -44,7 +44,7 @@ struct SimulateReport {
   std::uint64_t connections = 0;
   std::uint64_t answers = 0;         ///< usable ones
   std::uint64_t broken_answers = 0;  ///< that would have stalled the original for ever
-  std::uint64_t extra_answers = 0;   ///< that nobody had asked for
+  std::uint64_t extra_answers = 0;   ///< that were not asked for
   std::uint64_t silences = 0;        ///< telemetry without an answer within give_up_after
   std::uint64_t server_starts = 0;
   std::uint64_t stops = 0;         ///< times the car was stopped because no command came
@@ -60,7 +60,7 @@ struct SimulateReport {
 /// Uses of the scenario: track, car, plant_options, vehicle, guard.receiver, sensor, seed, laps, time_limit,
 /// turn_around, waypoints_sent. Ends when the laps are driven, the car is lost, time is up, the controller
 /// stays away, or `stop` is set: always with the results so far. Fails when the scenario cannot be built or
-/// nobody ever answers at `url`.
+/// nothing ever answers at `url`.
 [[nodiscard]] Result<SimulateReport> simulate(const SimulateOptions& options,
                                               const scenario::Scenario& scenario, const SimulateHooks& hooks,
                                               const std::atomic<bool>& stop);

@@ -9,7 +9,7 @@
 
 namespace chicane::wire {
 
-/// Lines for a person, which a stranger's messages must not turn into a flood. One thread.
+/// Lines for the terminal, at a bounded rate whatever a peer sends. One thread.
 class SparseLog {
  public:
   explicit SparseLog(std::function<void(std::string_view)> sink) : sink_{std::move(sink)} {}

@@ -63,7 +63,7 @@ std::uint32_t frame_channel() {
   return channel;
 }
 
-/// A person's hands move thirty times a second: nobody wants to read that later.
+/// Manual driving changes thirty times a second, which is of no interest later.
 bool is_worth_keeping(const telemetry::Change& change) {
   return change.name.view() != "manual.steer" && change.name.view() != "manual.throttle";
 }
@@ -427,11 +427,12 @@ void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::SetParameters&
   std::vector<foxglove::Parameter> values;
   const bool is_allowed = clients_[id].may_control;
   if (!is_allowed) warn(id, fmt::format("setParameters: {}", kWatchOnly));
-  for (const foxglove::Parameter& wish : message.parameters) {
-    if (const Result<void> result = is_allowed ? options_.parameters->set(wish) : Result<void>{}; !result)
+  for (const foxglove::Parameter& parameter : message.parameters) {
+    if (const Result<void> result = is_allowed ? options_.parameters->set(parameter) : Result<void>{};
+        !result)
       warn(id, result.error().message);
     // The value that holds now, also after a refusal: the viewer's slider must not show another.
-    if (auto now = options_.parameters->get(wish.name)) values.push_back(std::move(*now));
+    if (auto now = options_.parameters->get(parameter.name)) values.push_back(std::move(*now));
   }
   if (message.request) send_text(id, foxglove::parameter_values(values, message.request));
   // A choice of preset changes more than its own value.

@@ -22,7 +22,7 @@
 
 namespace chicane::wire {
 
-/// What viewers may ask of the run. Called on the network thread: hand the wish over and return. An empty
+/// What viewers may ask of the run. Called on the network thread: hand the request over and return. An empty
 /// function is not offered. A failure's sentence is shown to the operator.
 struct ViewerServices {
   std::function<Result<void>(bool paused)> pause;  ///< "/pause", std_srvs/srv/SetBool
@@ -70,8 +70,8 @@ class ViewerEndpoint final : public Endpoint {
   /// The run is over: why in a word ("finished", "stopped", "failed") and in a sentence. A run that begins
   /// anew is not over any more. Any thread, but not while on_start runs.
   void set_end(std::string kind, std::string reason);
-  /// Sends what is not sent yet and says goodbye; comes back when viewers have gone, or after `patience`. The
-  /// thread that runs the experiment, at its end.
+  /// Sends what is not sent yet and closes the connections; comes back when viewers have gone, or after
+  /// `patience`. The thread that runs the experiment, at its end.
   void dismiss(std::chrono::milliseconds patience = std::chrono::milliseconds{1000});
 
   void on_start(net::Server& server) override;

@@ -9,7 +9,7 @@
 
 namespace chicane::net {
 
-/// What a request says of who sends it. Empty where a header is absent.
+/// What a request says of its sender. Empty where a header is absent.
 struct Visitor {
   std::string_view target{};  ///< path and query
   std::string_view host{};
