@@ -1,180 +1,122 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs the experiments of docs/problem.md and of the pages on effects (latency, horizon, step_length, weights, friction), and
-writes their tables and figures.
+"""Writes the tables and figures of docs/problem.md and of the pages on effects (latency, horizon, step_length, weights, friction) from
+the results of plans/effects.yaml, whose runs are named TABLE: ROW.
 
-    /usr/bin/python3 tools/experiments.py [PROGRAM]
+    /usr/bin/python3 tools/experiments.py [PROGRAM]   drives the plan, and writes
+    /usr/bin/python3 tools/experiments.py RUNS.jsonl  writes from the results of `chicane sweep plans/effects.yaml`
 
 PROGRAM is build/release/apps/chicane/chicane when left out. All runs are in virtual time: the same on every machine with the same arithmetic.
 """
 import json
-import os
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
+import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-LAKE = "../shared/tracks/udacity/lake_scene.csv"
-LATENCIES = (0, 50, 100, 150, 200, 300)
+PLAN = "plans/effects.yaml"
 MPH = 0.44704
+NUMBERS = ("flying lap [s]", "mean [mph]", "top [mph]", "rms lateral error [m]", "tyre to edge, least [m]", "off the road")
+# page, table: what its first column is called
+EFFECTS = {
+    "horizon.md": {"own_steps": "N", "steps": "N", "steps_measured": "N"},
+    "step_length.md": {"own_length": "dt [s]", "length": "dt [s]", "preview": "N, dt [s]", "higher": "N, dt [s]"},
+    "weights.md": {"own_lateral": "weight_lateral", "knob": "w_a", "speed": "w_v", "product": "w_vδ", "unit": "`speed_in_mph`"},
+    "friction.md": {"friction_udacity": "grip of the road", "friction_road_car": "grip of the road", "grip_share": "grip_share"},
+}
+# figure: its axis, whether it is logarithmic, and the name and table of each curve
+FIGURES = {
+    "horizon": ("steps of the horizon, N", True, {"default": "own_steps", "weighted, 80 mph": "steps"}),
+    "step_length": ("step length [s]", True, {"default, N dt = 2 s": "own_length", "fast-short-step, N = 25": "length"}),
+    "weights": ("weight", True, {"default, weight_lateral": "own_lateral", "fast-short-step, weight_throttle": "knob"}),
+    "friction": ("grip of the road over that of the model", False,
+                 {"udacity": "friction_udacity", "road-car": "friction_road_car", "road-car, road 0.7, over grip_share": "grip_share"}),
+}
 
 
-class Runs:
-    """Drives each command once, a few at a time."""
-
-    def __init__(self, program):
-        self.program = program
-        self.pool = ThreadPoolExecutor(os.cpu_count())
-        self.started = {}
-
-    def start(self, command):
-        if command not in self.started:
-            self.started[command] = self.pool.submit(self.drive, command)
-        return self.started[command]
-
-    def drive(self, command):
-        result = subprocess.run([self.program, *command.split(), "--json"], capture_output=True, text=True, cwd=ROOT)
-        if not result.stdout:
-            raise RuntimeError(f"{command}: {result.stderr}")
-        return json.loads(result.stdout)
+def results_of(program):
+    """The lines of a sweep, as the program writes them."""
+    with tempfile.TemporaryDirectory() as folder:
+        results = Path(folder) / "effects.jsonl"
+        subprocess.run([program, "sweep", PLAN, "--jobs", "0", "-o", results], check=True, stderr=subprocess.DEVNULL, cwd=ROOT)
+        return results.read_text(encoding="utf-8")
 
 
-def command(preset, *settings, track="lakeside", laps=2, latency=100, mph=None, seconds=200, car=None):
-    """The command as a reader can type it. Measurements come as from the original: 20 ms after the last command arrived."""
-    period = [] if any(setting.startswith("control_period_ms=") for setting in settings) else [f"control_period_ms={latency + 20}"]
-    text = f"drive --fast --preset {preset} --track {track} --laps {laps} --latency-ms {latency}"
-    if car:
-        text += f" --car {car}"
-    if mph:
-        text += f" --speed-mph {mph}"
-    for setting in (*period, f"time_limit_s={seconds}", *settings):
-        text += f" --set {setting}"
-    return text
+def tables_of(lines):
+    """{table: {row: run}}, in the order of the plan. Runs that could not be driven are left out."""
+    runs = sorted((run for run in map(json.loads, lines.splitlines()) if "run" in run), key=lambda run: run["run"])
+    tables = {}
+    for run in runs:
+        if "error" not in run:
+            table, row = run["settings"]["run"].split(": ", 1)
+            tables.setdefault(table, {})[row] = run
+    return tables
 
 
-def outcome(report):
+def is_off(run):
+    return bool(run["off_track_events"]) or not run["completed"]
+
+
+def outcome(run):
     """How a run went, in a few characters."""
-    total = report["total"]
-    if report["off_track_events"] or not report["completed"]:
-        return f"**off** ({report['off_track_events']})"
-    return f"{total['rms_lateral_error_m']:.2f}"
+    return f"**off** ({run['off_track_events']})" if is_off(run) else f"{run['rms_lateral_error_m']:.2f}"
 
 
-def handling_settings(handling, latency):
-    if handling == "inside-model":  # one step is the delay; the shortest one is 20 ms
-        step = max(latency, 20)
-        return [f"cubic_mpc.latency_handling={handling}", f"cubic_mpc.latency_ms={step}", f"cubic_mpc.step_length_s={step / 1000}"]
-    return [f"cubic_mpc.latency_handling={handling}", f"cubic_mpc.latency_ms={latency}"]
+def markdown(head, rows, numbers):
+    """A table whose last columns are numbers."""
+    rule = ["---"] * (len(head) - numbers) + ["--:"] * numbers
+    line = ("| " + " | ".join(head) + " |\n").replace("|  |", "| |") + "|" + "|".join(rule) + "|\n"
+    return line + "".join("| " + " | ".join(row) + " |\n" for row in rows)
 
 
-HANDLINGS = ("none", "position-only", "roll-forward", "measured", "inside-model")
-TRACKING = {"`tracking-mpc`, delay ignored": "false", "`tracking-mpc`, commands replayed": "true"}
+def effect_table(rows, what):
+    def cells(run):
+        lap = f"{run['lap_time_s']:.2f}" if run["completed"] else "did not finish"
+        return [lap, f"{run['mean_speed_mps'] / MPH:.1f}", f"{run['top_speed_mps'] / MPH:.1f}", f"{run['rms_lateral_error_m']:.2f}",
+                f"{run['min_edge_distance_m']:.2f}", str(run["off_track_events"])]
+    return markdown((what, *NUMBERS), [[name, *cells(run)] for name, run in rows.items()], len(NUMBERS))
 
 
-def latency_commands():
-    """(row, latency) -> command, for the table of docs/latency.md."""
-    rows = {}
-    for latency in LATENCIES:
-        for handling in HANDLINGS:
-            rows[f"`{handling}`", latency] = command("weighted", *handling_settings(handling, latency), latency=latency, mph=40)
-        for name, value in TRACKING.items():
-            rows[name, latency] = command("default", f"tracking_mpc.compensate_delay={value}", latency=latency, mph=40)
-    return rows
+def preset_table(rows):
+    """The flying lap of each preset, on both lakes."""
+    lines = []
+    for name, run in rows.items():
+        preset, track = name.split(", ")
+        lines.append([f"`{preset}`", track, f"{run['lap_time_s']:.2f}", f"{run['lap_mean_speeds_mps'][-1] / MPH:.1f}",
+                      f"{run['lap_top_speeds_mps'][-1] / MPH:.1f}", f"{run['lap_rms_lateral_errors_m'][-1]:.2f}",
+                      f"{run['min_edge_distance_m']:.2f}", str(run["off_track_events"])])
+    return markdown(("preset", "track", *NUMBERS), lines, len(NUMBERS))
 
 
-def fast_commands():
-    """The same for our own controller at its own speed."""
-    return {(name, latency): command("default", f"tracking_mpc.compensate_delay={value}", latency=latency)
-            for latency in LATENCIES for name, value in TRACKING.items()}
+def by_latency(rows):
+    """{method: {latency [ms]: run}}"""
+    methods = {}
+    for name, run in rows.items():
+        method, latency = name.removesuffix(" ms").rsplit(", ", 1)
+        methods.setdefault(method, {})[int(latency)] = run
+    return methods
 
 
-def latency_table(runs, commands):
-    reports = {key: runs.start(line) for key, line in commands.items()}
-    names = dict.fromkeys(name for name, _ in reports)
-    text = "| | " + " | ".join(f"{latency} ms" for latency in LATENCIES) + " |\n|---|" + "--:|" * len(LATENCIES) + "\n"
-    for name in names:
-        cells = [outcome(reports[name, latency].result()) for latency in LATENCIES]
-        text += f"| {name} | " + " | ".join(cells) + " |\n"
-    return text
+def latency_table(rows):
+    methods = by_latency(rows)
+    latencies = list(next(iter(methods.values())))
+    lines = [["`" + method.replace(", ", "`, ", 1) + ("" if ", " in method else "`"), *map(outcome, runs.values())]
+             for method, runs in methods.items()]
+    return markdown(("", *(f"{latency} ms" for latency in latencies)), lines, len(latencies))
 
 
-OWN = {"measured-latency": "measured", "fast-short-step": "roll-forward", "sixty-mph": "position-only", "weighted": "roll-forward",
-       "delay-in-model": "inside-model"}
-
-
-def cure_table(runs):
+def cure_table(rows):
     """Each preset with and without its own compensation."""
-    text = "| preset | its method | rms lateral error with it | without | steering rate with it | without |\n|---|---|--:|--:|--:|--:|\n"
-    pairs = {preset: (runs.start(command(preset)), runs.start(command(preset, "cubic_mpc.latency_handling=none"))) for preset in OWN}
-    for preset, (own, none) in pairs.items():
-        own, none = own.result(), none.result()
-        errors = [outcome(own), outcome(none)]
-        rates = [f"{r['total']['steering_rate_rms_radps']:.2f}" for r in (own, none)]
-        text += f"| `{preset}` | `{OWN[preset]}` | {errors[0]} | {errors[1]} | {rates[0]} | {rates[1]} |\n"
-    return text
-
-
-def preset_table(runs):
-    text = ("| preset | track | flying lap [s] | mean [mph] | top [mph] | rms lateral error [m] | tyre to edge, least [m] | off the road |\n"
-            "|---|---|--:|--:|--:|--:|--:|--:|\n")
-    tracks = ["lakeside"] + ([LAKE] if (ROOT / LAKE).exists() else [])
-    lines = [(preset, track) for preset in OWN for track in tracks]
-    started = [runs.start(f"drive --fast --preset {preset} --car udacity --track {track} --laps 3 --latency-ms 100") for preset, track in lines]
-    for (preset, _), started_run in zip(lines, started):
-        report = started_run.result()
-        lap, total = report["laps"][-1], report["total"]
-        text += (f"| `{preset}` | {report['track']} | {lap['lap_time_s']:.2f} | {lap['mean_speed_mps'] / MPH:.1f} | {lap['top_speed_mph']:.1f} "
-                 f"| {lap['rms_lateral_error_m']:.2f} | {total['min_edge_distance_m']:.2f} | {report['off_track_events']} |\n")
-    return text
-
-
-def sweep_table(runs, preset, what, values, **options):
-    """One line for each value of a setting, or of several that go together."""
-    text = (f"| {what} | flying lap [s] | mean [mph] | top [mph] | rms lateral error [m] | tyre to edge, least [m] | off the road |\n"
-            "|---|--:|--:|--:|--:|--:|--:|\n")
-    started = {name: runs.start(command(preset, *settings, laps=3, seconds=400, **options)) for name, settings in values.items()}
-    for name, run in started.items():
-        report = run.result()
-        lap = f"{report['laps'][-1]['lap_time_s']:.2f}" if report["completed"] else "did not finish"
-        total = report["total"]
-        text += (f"| {name} | {lap} | {total['mean_speed_mps'] / MPH:.1f} | {total['top_speed_mph']:.1f} "
-                 f"| {total['rms_lateral_error_m']:.2f} | {total['min_edge_distance_m']:.2f} | {report['off_track_events']} |\n")
-    return text
-
-
-def values(key, numbers, of="cubic_mpc", *more):
-    return {f"{number}": [f"{of}.{key}={number}", *more] for number in numbers}
-
-
-def steps_and_lengths(pairs, of="cubic_mpc", *more):
-    return {f"{steps}, {length}": [f"{of}.horizon_steps={steps}", f"{of}.step_length_s={length}", *more] for steps, length in pairs}
-
-
-def draw_sweeps(runs, path, label, curves, logarithmic=False):
-    """Flying lap above, rms lateral error below, one curve for each (name, preset, {number: settings}, options); a cross where a tyre left the road."""
-    plt = plotting()
-    figure, (above, below) = plt.subplots(2, 1, figsize=(9.5, 6.5), sharex=True)
-    for name, preset, sweep, options in curves:
-        reports = {number: runs.start(command(preset, *settings, laps=3, seconds=400, **options)).result() for number, settings in sweep.items()}
-        numbers = list(reports)
-        laps = [r["laps"][-1]["lap_time_s"] if r["completed"] else float("nan") for r in reports.values()]
-        errors = [min(r["total"]["rms_lateral_error_m"], 6.0) for r in reports.values()]
-        off = [number for number, r in reports.items() if r["off_track_events"] or not r["completed"]]
-        above.plot(numbers, laps, marker="o", label=name)
-        (curve,) = below.plot(numbers, errors, marker="o", label=name)
-        below.plot(off, [errors[numbers.index(number)] for number in off], "x", color=curve.get_color(), markersize=11, markeredgewidth=2.5)
-    above.set_ylabel("flying lap [s]")
-    below.set_ylabel("rms lateral error [m], at most 6 drawn")
-    below.set_xlabel(label)
-    above.set_title("lakeside, 100 ms of latency: a cross is a run with a tyre off the road")
-    for axes in (above, below):
-        axes.grid(alpha=0.3)
-        if logarithmic:
-            axes.set_xscale("log")
-    above.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    figure.tight_layout()
-    figure.savefig(path, metadata={"Date": None, "Creator": None})
+    lines = []
+    for name, own in rows.items():
+        preset, method = name.split(", ")
+        if method != "without":
+            none = rows[f"{preset}, without"]
+            lines.append([f"`{preset}`", f"`{method}`", outcome(own), outcome(none),
+                          *(f"{run['steering_rate_rms_radps']:.2f}" for run in (own, none))])
+    head = ("preset", "its method", "rms lateral error with it", "without", "steering rate with it", "without")
+    return markdown(head, lines, 4)
 
 
 def plotting():
@@ -185,23 +127,50 @@ def plotting():
     return plt
 
 
-def draw_latency(runs, path):
-    """rms lateral error over latency, one curve for each method; a cross where a tyre left the road."""
-    plt = plotting()
-    figure, axes = plt.subplots(figsize=(9.5, 4.5))
-    reports = {key: runs.start(line).result() for key, line in latency_commands().items()}
-    for name in dict.fromkeys(name for name, _ in reports):
-        errors = [min(reports[name, latency]["total"]["rms_lateral_error_m"], 6.0) for latency in LATENCIES]
-        off = [latency for latency in LATENCIES if outcome(reports[name, latency]).startswith("**")]
-        (curve,) = axes.plot(LATENCIES, errors, marker="o", label=name.replace("`", ""))
-        axes.plot(off, [errors[LATENCIES.index(latency)] for latency in off], "x", color=curve.get_color(), markersize=11, markeredgewidth=2.5)
+def draw(axes, name, runs):
+    """rms lateral error over the numbers of `runs`; a cross where a tyre left the road."""
+    errors = {number: min(run["rms_lateral_error_m"], 6.0) for number, run in runs.items()}
+    off = [number for number, run in runs.items() if is_off(run)]
+    (curve,) = axes.plot(list(errors), list(errors.values()), marker="o", label=name)
+    axes.plot(off, [errors[number] for number in off], "x", color=curve.get_color(), markersize=11, markeredgewidth=2.5)
+
+
+def save(figure, name):
+    figure.tight_layout()
+    figure.savefig(ROOT / f"docs/figures/{name}.svg", metadata={"Date": None, "Creator": None})
+
+
+def draw_effect(tables, name):
+    """Flying lap above, rms lateral error below."""
+    label, is_logarithmic, curves = FIGURES[name]
+    figure, (above, below) = plotting().subplots(2, 1, figsize=(9.5, 6.5), sharex=True)
+    for curve, table in curves.items():
+        runs = {float(row): run for row, run in tables[table].items()}
+        laps = [run["lap_time_s"] if run["completed"] else float("nan") for run in runs.values()]
+        above.plot(list(runs), laps, marker="o", label=curve)
+        draw(below, curve, runs)
+    above.set_ylabel("flying lap [s]")
+    below.set_ylabel("rms lateral error [m], at most 6 drawn")
+    below.set_xlabel(label)
+    above.set_title("lakeside, 100 ms of latency: a cross is a run with a tyre off the road")
+    for axes in (above, below):
+        axes.grid(alpha=0.3)
+        if is_logarithmic:
+            axes.set_xscale("log")
+    above.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    save(figure, name)
+
+
+def draw_latency(rows):
+    figure, axes = plotting().subplots(figsize=(9.5, 4.5))
+    for method, runs in by_latency(rows).items():
+        draw(axes, method, runs)
     axes.set_xlabel("latency [ms]")
     axes.set_ylabel("rms lateral error [m], at most 6 drawn")
     axes.set_title("lakeside at 40 mph: a cross is a run with a tyre off the road")
     axes.grid(alpha=0.3)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    figure.tight_layout()
-    figure.savefig(path, metadata={"Date": None, "Creator": None})
+    save(figure, "latency")
 
 
 def write(page, marker, table):
@@ -213,70 +182,22 @@ def write(page, marker, table):
     path.write_text(head + begin + table + end + rest.split(end, 1)[1], encoding="utf-8")
 
 
-def effects(runs):
-    """One page for each effect."""
-    fast, weighted, own = "fast-short-step", "weighted", "default"
-    often = "control_period_ms=40"
-    steps = {n: [f"tracking_mpc.horizon_steps={n}", often] for n in (5, 8, 12, 20, 30, 40, 60, 100)}
-    lengths = {2.0 / n: [f"tracking_mpc.horizon_steps={n}", f"tracking_mpc.step_length_s={2.0 / n}", often] for n in (100, 80, 50, 40, 25, 20, 10)}
-    laterals = {w: [f"tracking_mpc.weight_lateral={w}", often] for w in (0.01, 0.03, 0.1, 0.3, 1, 3, 10)}
-    frictions = {f: [f"plant_options.friction_scale={f}", often] for f in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.3)}
-    shares = {g: [f"tracking_mpc.grip_share={g}", "plant_options.friction_scale=0.7", often] for g in (0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)}
-    cubic_steps = {n: [f"cubic_mpc.horizon_steps={n}"] for n in (5, 7, 10, 20, 50, 100)}
-    cubic_lengths = {dt: [f"cubic_mpc.step_length_s={dt}"] for dt in (0.005, 0.01, 0.025, 0.05, 0.1, 0.2)}
-    throttles = {w: [f"cubic_mpc.weight_throttle={w}"] for w in (160, 80, 64, 48, 32)}
-    road_car = {"car": "road-car"}
-    pages = {
-        "horizon.md": {
-            "own_steps": sweep_table(runs, own, "N", steps),
-            "steps": sweep_table(runs, weighted, "N", values("horizon_steps", (5, 7, 10, 20, 50, 100)), mph=80),
-            "steps_measured": sweep_table(runs, "measured-latency", "N", values("horizon_steps", (5, 7, 10, 20, 50))),
-        },
-        "step_length.md": {
-            "own_length": sweep_table(runs, own, "dt [s]", lengths),
-            "length": sweep_table(runs, fast, "dt [s]", values("step_length_s", (0.005, 0.01, 0.025, 0.05, 0.1, 0.2))),
-            "preview": sweep_table(runs, fast, "N, dt [s]", steps_and_lengths([(125, 0.005), (62, 0.01), (25, 0.025), (12, 0.05), (6, 0.1)])),
-            "higher": sweep_table(runs, "measured-latency", "N, dt [s]", steps_and_lengths([(20, 0.1), (10, 0.2), (10, 0.5)]), mph=60),
-        },
-        "weights.md": {
-            "own_lateral": sweep_table(runs, own, "weight_lateral", laterals),
-            "knob": sweep_table(runs, fast, "w_a", values("weight_throttle", (160, 80, 64, 48, 32))),
-            "speed": sweep_table(runs, weighted, "w_v", values("weight_speed", (0.02, 0.05, 0.1, 0.5, 1)), mph=60),
-            "product": sweep_table(runs, "delay-in-model", "w_vδ", values("weight_speed_steer", (0, 10, 30, 100, 300))),
-            "unit": sweep_table(runs, weighted, "`speed_in_mph`", values("speed_in_mph", ("false", "true")), mph=40),
-        },
-        "friction.md": {
-            "friction_udacity": sweep_table(runs, own, "grip of the road", frictions),
-            "friction_road_car": sweep_table(runs, own, "grip of the road", frictions, **road_car),
-            "grip_share": sweep_table(runs, own, "grip_share", shares, **road_car),
-        },
-    }
-    for page, tables in pages.items():
-        for marker, table in tables.items():
-            write(page, marker, table)
-    figures = ROOT / "docs/figures"
-    draw_sweeps(runs, figures / "horizon.svg", "steps of the horizon, N",
-                [("default", own, steps, {}), ("weighted, 80 mph", weighted, cubic_steps, {"mph": 80})], logarithmic=True)
-    draw_sweeps(runs, figures / "step_length.svg", "step length [s]",
-                [("default, N dt = 2 s", own, lengths, {}), ("fast-short-step, N = 25", fast, cubic_lengths, {})], logarithmic=True)
-    draw_sweeps(runs, figures / "weights.svg", "weight",
-                [("default, weight_lateral", own, laterals, {}), ("fast-short-step, weight_throttle", fast, throttles, {})], logarithmic=True)
-    draw_sweeps(runs, figures / "friction.svg", "grip of the road over that of the model",
-                [("udacity", own, frictions, {}), ("road-car", own, frictions, road_car),
-                 ("road-car, road 0.7, over grip_share", own, shares, road_car)])
-
-
 def main():
     if len(sys.argv) > 1 and sys.argv[1] in ("-h", "--help"):
         print(__doc__)
         return 0
-    runs = Runs(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release/apps/chicane/chicane")
-    write("problem.md", "presets", preset_table(runs))
-    write("latency.md", "latency", latency_table(runs, latency_commands()))
-    write("latency.md", "fast", latency_table(runs, fast_commands()))
-    write("latency.md", "cure", cure_table(runs))
-    draw_latency(runs, ROOT / "docs/figures/latency.svg")
-    effects(runs)
+    given = Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else ROOT / "build/release/apps/chicane/chicane"
+    tables = tables_of(given.read_text(encoding="utf-8") if given.suffix == ".jsonl" else results_of(given))
+    write("problem.md", "presets", preset_table(tables["presets"]))
+    for marker in ("latency", "fast"):
+        write("latency.md", marker, latency_table(tables[marker]))
+    write("latency.md", "cure", cure_table(tables["cure"]))
+    for page, markers in EFFECTS.items():
+        for marker, what in markers.items():
+            write(page, marker, effect_table(tables[marker], what))
+    for name in FIGURES:
+        draw_effect(tables, name)
+    draw_latency(tables["latency"])
     return 0
 
 
