@@ -224,7 +224,7 @@ TEST_F(Sweep, ThePageSumsUpAxesAndPairsAndHasTheCommandOfEachRun) {
        {"<h1>plan</h1>", "12 of 12 runs, 12 clean", "<th>latency_ms", "seed \\ latency_ms",
         "<code>chicane drive --fast --laps 0 --preset pid --seed 3 --latency-ms 140 --set time_limit_s=2"})
     EXPECT_THAT(text, HasSubstr(words));
-  EXPECT_THAT(text, HasSubstr("<a href='http://localhost:4567/#run?preset=pid&amp;seed=3&amp;latency_ms=140'>"));
+  EXPECT_THAT(text, HasSubstr("&amp;seed=3&amp;latency_ms=140'>open</a>"));
   for (std::size_t at = 0; (at = text.find("http", at)) != std::string::npos; ++at)
     EXPECT_EQ(text.compare(at, 22, "http://localhost:4567/"), 0) << "needs no network";
   EXPECT_THAT(write_page({path("a")}, path("page.html"))->runs, 6U) << "what is missing is left out";

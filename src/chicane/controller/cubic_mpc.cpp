@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
@@ -32,13 +33,15 @@ double rolled_unit(const CubicMpcOptions& options) noexcept {
 
 class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
  public:
-  CubicMpc(const CubicMpcOptions& options, const model::VehicleParams& vehicle)
+  CubicMpc(const CubicMpcOptions& options, const model::VehicleParams& vehicle,
+           std::unique_ptr<CubicSolver> solver)
       : uses_polar_{options.polar_waypoints},
         steer_sign_{options.steering_right_positive ? -1.0 : 1.0},
         stages_{options.horizon_steps - 1},
         roll_forward_{options.latency_handling, options.latency, vehicle.kinematic_length,
                       rolled_unit(options)},
-        problem_{options, vehicle} {
+        problem_{options, vehicle},
+        solver_{std::move(solver)} {
     reset();
   }
 
@@ -87,12 +90,6 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
   }
 
  private:
-  static std::unique_ptr<CubicSolver> make_solver() {
-    return with_instructions(chosen_instruction_set(), [&](auto instructions) {
-      return make_cubic_solver<decltype(instructions)>({.max_iterations = kMaxIterations});
-    });
-  }
-
   static bool is_finite(const model::Measurement& now) noexcept {
     return std::isfinite(now.time) && std::isfinite(now.x) && std::isfinite(now.y) &&
            std::isfinite(now.psi) && std::isfinite(now.speed) && std::isfinite(now.steer) &&
@@ -211,7 +208,7 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
   int stages_;         ///< intervals: one less than states
   RollForward roll_forward_;
   CubicProblem problem_;
-  std::unique_ptr<CubicSolver> solver_ = make_solver();
+  std::unique_ptr<CubicSolver> solver_;
   Motion start_;              ///< of the horizon
   double start_time_ = 0.0;   ///< [s]
   CubicTrajectory answer_;    ///< of the last usable solve, in the frame of its start
@@ -274,10 +271,22 @@ std::vector<OptionContradiction> CubicMpcEntry::contradictions(const CubicMpcOpt
                           " s), because latency_handling inside-model shifts by exactly one step"}};
 }
 
+std::unique_ptr<CubicSolver> make_cubic_solver() {
+  return with_instructions(chosen_instruction_set(), [&](auto instructions) {
+    return make_cubic_solver<decltype(instructions)>({.max_iterations = kMaxIterations});
+  });
+}
+
 Result<std::unique_ptr<Controller>> make_cubic_mpc(const CubicMpcOptions& options,
                                                    const model::VehicleParams& vehicle) {
+  return make_cubic_mpc_with(options, vehicle, make_cubic_solver());
+}
+
+Result<std::unique_ptr<Controller>> make_cubic_mpc_with(const CubicMpcOptions& options,
+                                                        const model::VehicleParams& vehicle,
+                                                        std::unique_ptr<CubicSolver> solver) {
   if (const auto valid = check<CubicMpcEntry>(options, vehicle); !valid) return fail(valid.error());
-  return std::make_unique<CubicMpc>(options, vehicle);
+  return std::make_unique<CubicMpc>(options, vehicle, std::move(solver));
 }
 
 }  // namespace chicane::controller

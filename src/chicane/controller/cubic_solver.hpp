@@ -26,4 +26,13 @@ class CubicSolver {
 template <class Arch>
 [[nodiscard]] std::unique_ptr<CubicSolver> make_cubic_solver(const solver::SolverOptions& options);
 
+/// For the instruction set of this machine (chosen_instruction_set()), with the options of `cubic-mpc`.
+[[nodiscard]] std::unique_ptr<CubicSolver> make_cubic_solver();
+
+/// The controller `cubic-mpc` with another solver of its problem, to compare solvers on the road. Pre:
+/// `solver` is not null.
+[[nodiscard]] Result<std::unique_ptr<Controller>> make_cubic_mpc_with(const CubicMpcOptions& options,
+                                                                      const model::VehicleParams& vehicle,
+                                                                      std::unique_ptr<CubicSolver> solver);
+
 }  // namespace chicane::controller
