@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 #include "chicane/run/make.hpp"
@@ -25,6 +26,17 @@ Result<void> keep(const std::string& file, const std::string& text) {
   return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
 }
 
+/// Before the search, which takes half a minute: that its line can be kept.
+Result<void> check_writable(const std::string& file) {
+  const bool is_new = !std::filesystem::exists(file);
+  const bool is_writable = std::ofstream(file, std::ios::app).is_open();
+  const int reason = errno;
+  std::error_code error;  // of a file that is gone already: no reason to stop
+  if (is_new && is_writable) std::filesystem::remove(file, error);
+  if (is_writable) return {};
+  return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, std::strerror(reason)));
+}
+
 Result<void> print_limit(const Options& options) {
   static std::atomic<bool> wants_stop{false};  // as long as signals may come
   catch_interrupts(wants_stop);
@@ -32,6 +44,9 @@ Result<void> print_limit(const Options& options) {
   if (!scenario) return fail(scenario.error());
   const Result<path::Track> track = run::make_track(*scenario);
   if (!track) return fail(track.error());
+  if (!options.csv_file.empty()) {
+    if (Result<void> writable = check_writable(options.csv_file); !writable) return writable;
+  }
   LimitRun told{.track = track->name(), .car = scenario->car};
   const auto tell = [&](const auto& limit) -> Result<void> {
     if (!options.csv_file.empty()) {

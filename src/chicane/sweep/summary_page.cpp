@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -200,7 +201,7 @@ class Page {
     const int bins = bins_for(runs_.size());
     for (std::size_t axis = 0; axis < header_.keys.size(); ++axis) {
       std::map<std::string, int, ByNumber> values;
-      double low = INFINITY, high = -INFINITY;
+      double low = std::numeric_limits<double>::infinity(), high = -low;
       bool are_numbers = true;
       for (const Run& run : runs_) {
         if (values.size() <= kMostValues) ++values[run.values[axis]];

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -24,7 +25,7 @@ std::size_t place_in(const std::vector<std::string>& values, const std::string& 
 std::size_t nearest_place(const std::vector<std::string>& values, const std::string& wanted) {
   const std::optional<double> number = ByNumber::number(wanted);
   std::size_t best = values.size();
-  double least = INFINITY;
+  double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::optional<double> value = ByNumber::number(values[i]);
     if (!number || !value) continue;
