@@ -8,9 +8,9 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
