@@ -20,6 +20,7 @@ constexpr Command kCommands[] = {
     {"league", "Controllers and programs on tracks, in cars and disturbances, compared on one page",
      compare_league},
     {"campaign", "Faults at every moment of a lap: where the car leaves the road", campaign},
+    {"recover", "From anywhere beside the road: whether the car comes back", recover},
     {"claims", "What five write-ups say, each tried on its own terms", try_claims},
     {"check", "Validate scenarios, presets, cars and tracks, and explain what is wrong", check},
     {"list", "Presets, tracks, cars, scenarios, controllers and parameters", list},

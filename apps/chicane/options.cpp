@@ -5,19 +5,19 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <string_view>
 
+#include "campaign_options.hpp"
 #include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/run/fault_campaign.hpp"
 #include "chicane/version.hpp"
 #include "command_text.hpp"
 #include "commands.hpp"
+#include "setting_options.hpp"
 #include "sweep_options.hpp"
 #include "video_options.hpp"
 
@@ -26,27 +26,6 @@ namespace {
 
 constexpr int kLongestHorizon =
     200;  ///< that of bench/problems/reference.hpp, which is not part of this program
-
-/// One option that is another name for a setting of the schema.
-void add_setting(CLI::App& command, Options& options, const std::string& name, const std::string& key,
-                 const std::string& type, const std::string& help) {
-  command
-      .add_option_function<std::string>(
-          name, [&options, key](const std::string& text) { options.settings.emplace_back(key, text); }, help)
-      ->type_name(type);
-}
-
-/// "2", or "inf" for a fault that lasts.
-double fault_duration(const std::string& text) {
-  double seconds = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-  if (text == "inf") return run::kLasting;
-  if (error == std::errc{} && end == text.data() + text.size() && seconds >= 0.001 &&
-      seconds <= run::kLasting)
-    return seconds;
-  throw CLI::ValidationError(
-      "--for-s", fmt::format("got {}, expected a number in [0.001, 1000000] or inf", printable(text)));
-}
 
 void add_speed(CLI::App& command, Options& options) {
   command.add_option("--speed-mps", options.speed_mps, "Speed reference of the controller [m/s]")
@@ -57,24 +36,6 @@ void add_speed(CLI::App& command, Options& options) {
           "Speed reference of the controller [mph]")
       ->type_name("X")
       ->excludes("--speed-mps");
-}
-
-/// --set comes after all named options: the last one wins.
-void add_set(CLI::App& command, Options& options) {
-  const auto take = [&options](const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) {
-      const std::size_t equals = text.find('=');
-      if (equals == std::string::npos || equals == 0) {
-        throw CLI::ValidationError("--set", fmt::format("got {}, expected key=value", printable(text)));
-      }
-      options.settings.emplace_back(text.substr(0, equals), text.substr(equals + 1));
-    }
-  };
-  command
-      .add_option_function<std::vector<std::string>>("--set", take,
-                                                     "Any of `chicane list parameters`; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
 }
 
 void add_controller(CLI::App& command, Options& options) {
@@ -263,41 +224,6 @@ void add_report(CLI::App& command, Options& options) {
   command.footer("Example: chicane report run.mcap -o run.html");
 }
 
-void add_campaign(CLI::App& command, Options& options) {
-  Options::Campaign& campaign = options.campaign;
-  command.add_option("--faults", campaign.faults, "With commas (chicane list faults); all when left out")
-      ->type_name("NAME,...")
-      ->delimiter(',');
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--for-s",
-          [&campaign](const std::vector<std::string>& texts) {
-            for (const std::string& text : texts) campaign.durations.push_back(fault_duration(text));
-          },
-          "How long the faults last [s], with commas; inf: to the end; each fault's own when left out")
-      ->type_name("S,...")
-      ->delimiter(',');
-  command.add_option("--every-s", campaign.step, "Between the moments of the flying lap [s]")
-      ->type_name("S")
-      ->check(CLI::Range(0.02, 1000.0))
-      ->capture_default_str();
-  command.add_option("--tracks", campaign.tracks, "Names or files, with commas")
-      ->type_name("NAME,...")
-      ->delimiter(',')
-      ->capture_default_str();
-  command.add_option("--cars", campaign.cars, "Names or files, with commas")
-      ->type_name("NAME,...")
-      ->delimiter(',')
-      ->capture_default_str();
-  add_setting(command, options, "--preset", "preset", "NAME",
-              "Controller and its settings (chicane list presets)");
-  add_jobs(command, options.jobs);
-  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
-  add_set(command, options);
-  command.footer(
-      "Example: chicane campaign --faults link_lost,nan_measurement --for-s 1,2,inf --tracks oval");
-}
-
 void add_check(CLI::App& command, Options& options) {
   command
       .add_option("files", options.files,
@@ -363,6 +289,7 @@ void add_commands(CLI::App& app, Options& options) {
     if (command.name == "tune") add_tune(*sub, options);
     if (command.name == "merge") add_merge(*sub, options);
     if (command.name == "campaign") add_campaign(*sub, options);
+    if (command.name == "recover") add_recover(*sub, options);
     if (command.name == "check") add_check(*sub, options);
     if (command.name == "list") add_list(*sub, options);
     if (command.name == "bench") add_bench(*sub, options);

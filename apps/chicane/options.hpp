@@ -120,6 +120,15 @@ struct Options {
   };
   Campaign campaign{};
 
+  struct Recover {
+    int starts = 120;        ///< for each car and track
+    std::uint64_t seed = 1;  ///< of the starts
+    int only = 0;            ///< this start alone, from 1; 0: all
+    std::vector<std::string> tracks{"lakeside", "oval", "hairpins", "speedway"};
+    std::vector<std::string> cars{"udacity", "road-car"};
+  };
+  Recover recover{};
+
   int instances = 100;                    ///< bench: of each family
   std::vector<int> horizons{10, 20, 50};  ///< bench
   std::string reference_folder;           ///< bench: problems with known optima; empty: none

@@ -8,12 +8,36 @@
 #include <string>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/protocol/frame_fields.hpp"
 
 namespace chicane::apps {
 namespace {
 
 constexpr std::chrono::milliseconds kTerminalPeriod{100};
 constexpr double kLinePeriod = 10.0;  // [s] of the run
+
+/// What a field of the frame that tells cases apart says, in words.
+std::string_view meaning(std::string_view field, int value) {
+  for (const protocol::FrameGroup& group : protocol::frame_groups()) {
+    for (const protocol::FrameField& each : group.fields) {
+      if (each.name != field) continue;
+      for (const protocol::FrameConstant& constant : each.constants)
+        if (constant.value == value) return constant.meaning;
+    }
+  }
+  return "";
+}
+
+/// Who drives, where it is not the controller by its plan, and why.
+std::string exception(const controller::StepReport& report) {
+  using controller::Rung;
+  if (report.rung == Rung::kController) return "";
+  const bool does_stop =
+      report.rung == Rung::kHoldAndBrake || report.rung == Rung::kBrake || report.rung == Rung::kGuardStop;
+  if (does_stop && report.reason != controller::GuardReason::kNone)
+    return fmt::format("  stopping: {}", meaning("guard_reason", static_cast<int>(report.reason)));
+  return fmt::format("  {}", meaning("rung", static_cast<int>(report.rung)));
+}
 
 std::string line(const telemetry::Frame& frame) {
   const double speed = frame.measurement.speed;
@@ -23,8 +47,8 @@ std::string line(const telemetry::Frame& frame) {
   const std::string off = frame.is_off_track ? "  OFF TRACK" : "";
   const std::string solve =
       frame.solve_time > 0.0 ? fmt::format("  solve {:5.0f} µs", 1e6 * frame.solve_time) : "";
-  return fmt::format("{:7.1f} s  {}{:6.1f} mph  error {:+6.2f} m{}{}", frame.time, place, mps_to_mph(speed),
-                     error, solve, off);
+  return fmt::format("{:7.1f} s  {}{:6.1f} mph  error {:+6.2f} m{}{}{}", frame.time, place, mps_to_mph(speed),
+                     error, solve, off, exception(frame.result.report));
 }
 
 }  // namespace

@@ -92,6 +92,46 @@ TEST_F(Estimating, FindsYawRateAndSideslipThatTelemetryDoesNotHold) {
   EXPECT_GT(truth.state().r, 0.2);
 }
 
+/// A car that moves with `speed` along its heading, negative backwards, for two seconds.
+bool rolls_back(double speed, double noise, double jump) {
+  DirectionWatch watch;
+  Random chance(3);
+  bool ever = false;
+  for (int i = 0; i <= 50; ++i) {
+    const double time = 0.04 * i;
+    const double along = speed * time + (i > 25 ? jump : 0.0) + noise * chance.normal();
+    watch.see({.time = time, .x = along, .y = noise * chance.normal(), .speed = std::fabs(speed)});
+    ever = ever || watch.rolls_back();
+  }
+  return ever;
+}
+
+TEST(DirectionWatch, TellsBackwardsFromForward) {
+  for (const double speed : {1.5, 5.0, 20.0}) {
+    EXPECT_TRUE(rolls_back(-speed, 0.0, 0.0)) << speed;
+    EXPECT_FALSE(rolls_back(speed, 0.0, 0.0)) << speed;
+    EXPECT_FALSE(rolls_back(speed, 0.3, 0.0)) << speed << ", a noisy place";
+    EXPECT_FALSE(rolls_back(speed, 0.0, -8.0)) << speed << ", a place that jumps back";
+  }
+  EXPECT_FALSE(rolls_back(0.0, 0.0, 0.0)) << "it stands";
+}
+
+TEST(DirectionWatch, ForgetsWhenTheCarStandsOrNothingIsMeasured) {
+  for (const double then : {0.0, std::numeric_limits<double>::quiet_NaN()}) {
+    DirectionWatch watch;
+    for (int i = 0; i < 30; ++i) watch.see({.time = 0.04 * i, .x = -0.2 * i, .speed = 5.0});
+    EXPECT_TRUE(watch.rolls_back());
+    watch.see({.time = 1.2, .x = -6.0, .speed = then});
+    EXPECT_FALSE(watch.rolls_back());
+  }
+}
+
+TEST(DirectionWatch, TheDriveStopsWhatTheReverseGearWouldNot) {
+  EXPECT_GT(throttle_against_rolling_back(model::udacity_params(), 5.0), 0.5);
+  EXPECT_LT(throttle_against_rolling_back(model::road_car_params(), 5.0), -0.5);
+  EXPECT_LT(throttle_against_rolling_back(model::udacity_params(), 0.2), 0.2) << "gently at the end";
+}
+
 TEST_F(Estimating, StartsAnewAfterAJump) {
   estimator.correct({.time = 0.0, .x = 0.0, .speed = 10.0}, sent);
   estimator.correct({.time = 0.05, .x = 80.0, .speed = 3.0}, sent);

@@ -83,6 +83,31 @@ TEST_F(GuardTest, SaysWhichAnswerWithoutAPlanWasGiven) {
   EXPECT_EQ(step(at(1.04)).report.rung, Rung::kStopOnRoad);
 }
 
+/// A way back is slow: whoever calls a fast drive one is checked like everybody.
+TEST(GuardOnARoad, RefusesAWayBackThatIsFast) {
+  path::RoadData straight;
+  straight.length = 400.0;
+  for (int i = 0; i <= 100; ++i)
+    straight.points.push_back({.s = 4.0 * i, .position = {4.0 * i, 0.0}, .left = 5.0, .right = 5.0});
+  Scripted scripted;
+  Guard guard{std::make_unique<test::Borrowed>(scripted), car(), {}, &straight};
+  scripted.result.answer = Answer::kReturnToRoad;
+  controller::StepResult result;
+  const auto rung_at = [&](double speed) {
+    guard.reset();
+    scripted.result.command = {.steer = 0.4, .throttle = 1.0};
+    for (int i = 1; i < 8; ++i) {
+      model::Measurement now = at(0.04 * i, speed);
+      now.x += 100.0;
+      guard.step(now, Deadline::never(), {.interval = 0.04}, result);
+    }
+    return result.report.rung;
+  };
+  EXPECT_EQ(rung_at(20.0), Rung::kGuardStop);
+  EXPECT_EQ(result.report.reason, controller::GuardReason::kNoWayToStop);
+  EXPECT_EQ(rung_at(2.0), Rung::kReturnToRoad);
+}
+
 TEST_F(GuardTest, BelievesNoRungThatAControllerClaims) {
   scripted_.result.report.rung = Rung::kBrake;
   scripted_.result.report.gated = true;

@@ -23,6 +23,7 @@ class Puppet final : public Plant {
     put(pose);
     output_.speed = speed;
   }
+  void set_motion(const Vec2& velocity, double) noexcept override { output_.speed = velocity.norm(); }
   void deviate(const PlantDeviation& /*deviation*/) noexcept override {}
   void advance(const model::Command&) noexcept override {
     const Vec2 before{state_.x, state_.y};

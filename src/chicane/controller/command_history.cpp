@@ -15,6 +15,11 @@ constexpr double kLostPosition = 3.0;   // [m] a measurement further from the pr
 constexpr double kMostSlideGain = 0.2;  // share of the sideways innovation per second taken as sideslip error
 constexpr double kForgetting = 0.1;     // of the means over innovations, in each measurement
 constexpr double kLeastVariance = 1e-12;
+constexpr double kAtRest = 0.3;         // [m/s] slower than that there is no direction
+constexpr double kMostlyAlong = 0.5;    // of the way, along the heading or against it
+constexpr double kMostDisplaced = 1.5;  // times the way that the speed says
+constexpr double kUncertain = 1.0;      // [m] more for a noisy sensor
+constexpr double kRestingSpeed = 2.0;   // [m/s] below which the drive that stops a car fades
 
 bool is_finite(const model::Measurement& m) {
   return std::isfinite(m.x) && std::isfinite(m.y) && std::isfinite(m.psi) && std::isfinite(m.speed);
@@ -99,8 +104,38 @@ void StateEstimator::advance(model::State& state, double& acceleration, double f
   }
 }
 
+void DirectionWatch::see(const model::Measurement& now) noexcept {
+  const double elapsed = now.time - time_;
+  if (has_last_ && elapsed <= 0.0) return;  // an old or repeated measurement
+  if (!is_finite(now) || now.speed < kAtRest) return reset();
+  const double dx = now.x - x_;
+  const double dy = now.y - y_;
+  const double way = now.speed * elapsed;
+  if (!has_last_ || elapsed > kLongestGap || hypot(dx, dy) > kMostDisplaced * way + kUncertain) {
+    path_ = along_ = 0.0;  // it begins, or was put elsewhere
+  } else {
+    path_ += way;
+    along_ += dx * cos(now.psi) + dy * sin(now.psi);
+  }
+  if (path_ >= kPath) {
+    if (std::fabs(along_) > kMostlyAlong * path_) rolls_back_ = along_ < 0.0;
+    path_ = along_ = 0.0;
+  }
+  has_last_ = true;
+  time_ = now.time;
+  x_ = now.x;
+  y_ = now.y;
+}
+
+double throttle_against_rolling_back(const model::VehicleParams& vehicle, double speed) noexcept {
+  if (vehicle.reverse_speed > 0.0) return std::clamp(speed / kRestingSpeed, 0.0, 1.0);
+  const double braking = longitudinal_acceleration(vehicle, -vehicle.brake_throttle_limit, speed);
+  return throttle_to_rest(vehicle, braking, speed);
+}
+
 void StateEstimator::correct(const model::Measurement& now, const CommandHistory& sent) noexcept {
   const double elapsed = now.time - time_;
+  direction_.see(now);
   if (!is_finite(now)) {
     if (is_started_ && elapsed > 0.0 && elapsed < kLongestGap) {
       advance(state_, acceleration_, time_, now.time, sent);

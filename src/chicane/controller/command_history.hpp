@@ -66,6 +66,23 @@ class InnovationGains {
   double velocity_ = kMostVelocity;
 };
 
+/// Whether a car rolls backwards: its speed is measured without a sign, so that only its displacement tells.
+class DirectionWatch {
+ public:
+  static constexpr double kPath = 2.0;  ///< [m] after which it is known
+  void reset() noexcept { *this = {}; }
+  void see(const model::Measurement& now) noexcept;
+  /// Over the last kPath the car has moved against its heading. False for a car that stands or slides across.
+  [[nodiscard]] bool rolls_back() const noexcept { return rolls_back_; }
+
+ private:
+  bool has_last_ = false;
+  double time_ = 0.0, x_ = 0.0, y_ = 0.0;  ///< of the measurement before
+  double path_ = 0.0;                      ///< by the measured speed [m]
+  double along_ = 0.0;                     ///< and what of it was along the heading [m]
+  bool rolls_back_ = false;
+};
+
 /// Where the car is, and where it will be when the next command acts: the prediction model driven by the
 /// commands that are really in flight, corrected by each measurement. Yaw rate and sideslip, which telemetry
 /// does not hold, come from here.
@@ -74,6 +91,7 @@ class StateEstimator {
   explicit StateEstimator(const model::PredictionModel& model) noexcept : model_{model} {}
   void reset() noexcept {
     is_started_ = false;
+    direction_.reset();
     place_gains_.reset();
     heading_gains_.reset();
   }
@@ -86,6 +104,8 @@ class StateEstimator {
   [[nodiscard]] const model::State& state() const noexcept { return state_; }
   [[nodiscard]] bool is_started() const noexcept { return is_started_; }
   [[nodiscard]] double acceleration() const noexcept { return acceleration_; }
+  /// What state() has for a speed forward is one backwards (DirectionWatch).
+  [[nodiscard]] bool rolls_back() const noexcept { return direction_.rolls_back(); }
 
   /// The state at `time` >= the last measurement's [s], commands in flight replayed for exactly the fractions
   /// they act.
@@ -112,6 +132,12 @@ class StateEstimator {
   double measured_ = 0.0;  ///< time of the last measurement with numbers [s]
   model::State state_;
   double acceleration_ = 0.0;
+  DirectionWatch direction_;
 };
+
+/// The throttle that brings a car to rest that rolls backwards with `speed` [m/s], > 0: where the brake pedal
+/// is the reverse gear then, its drive has to.
+[[nodiscard]] double throttle_against_rolling_back(const model::VehicleParams& vehicle,
+                                                   double speed) noexcept;
 
 }  // namespace chicane::controller

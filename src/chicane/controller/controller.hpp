@@ -52,12 +52,13 @@ enum class GuardReason : signed char {
   kHeadingJump = 5,    ///< measured yaw changed as no car turns
   kPositionJump = 6,   ///< measured position changed as no car moves
   kNoWayToStop = 7,    ///< after the answer the car could not be stopped on the road any more
+  kFarFromRoad = 8,    ///< there is no answer, and the car is far beside the road that is known
 };
-inline constexpr int kGuardReasonCount = 8;
+inline constexpr int kGuardReasonCount = 9;
 /// As reports name them.
 inline constexpr std::array<std::string_view, kGuardReasonCount> kGuardReasonNames{
-    "none",           "no_answer",    "not_measured",  "frozen",
-    "speed_mismatch", "heading_jump", "position_jump", "no_way_to_stop"};
+    "none",         "no_answer",     "not_measured",   "frozen",       "speed_mismatch",
+    "heading_jump", "position_jump", "no_way_to_stop", "far_from_road"};
 
 /// How one step went.
 struct StepReport {

@@ -13,6 +13,7 @@
 #include "chicane/controller/tracking_problem.hpp"
 #include "chicane/controller/tracking_solver.hpp"
 #include "chicane/controller/tunable.hpp"
+#include "chicane/controller/way_back.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "chicane/road/road.hpp"
@@ -28,10 +29,9 @@ using StageInput = std::array<double, Problem::kNu>;
 constexpr int kMostTurns = TrackingMpcOptions::kMostTurns;  // from a new guess, or with more time
 constexpr double kTimePerTurn = 0.04;       // [s] that a step must come later for one turn more
 constexpr double kFarFromLine = 15.0;       // [m] further away it returns to the road
-constexpr double kLost = 60.0;              // [m] further away it does not return by itself
+constexpr double kLost = 100.0;             // [m] further away it does not return by itself
 constexpr double kSlow = 6.0;               // [m/s] below which it may turn round
-constexpr double kWalkingPace = 3.0;        // [m/s]
-constexpr double kApproach = 8.0;           // [m] beside the line where the course back is at 45° to it
+constexpr double kJoining = 0.2;            // [rad] to the road at which a car that returns has joined it
 constexpr double kSpeedAhead = 4.0;         // [m/s] wanted at most beyond what the last answer reaches
 constexpr double kLongestHold = 0.3;        // [s] the first command is assumed to be held at most this long
 constexpr double kBlindAfter = 0.3;         // [s] without a measurement, or a waypoint: stop
@@ -66,7 +66,8 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     estimator_.correct(now, sent_);
     watch_sight(now);
     const StateEstimator::Prediction start = estimator_.predict(act_time, sent_);
-    if (!place_on_line(now, start)) return return_to_road(now, start, act_time);
+    is_returning_ = !place_on_line(now, start) || (is_returning_ && std::fabs(x0_[Problem::kE]) > kJoining);
+    if (is_returning_ || estimator_.rolls_back()) return return_to_road(now, start, act_time);
     if (start.state.vx < kCrawl && stopping_speed(0.0) < kCrawl) return no_answer(act_time);
     prepare(act_time);
     const double started = deadline.elapsed();
@@ -97,7 +98,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     estimator_.reset();
     sent_.clear();
     has_horizon_ = false;
-    has_place_ = false;
+    has_place_ = is_returning_ = false;
     blind_ = roadless_ = late_ = Absence{};
   }
 
@@ -404,41 +405,39 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     result_.command.steer = std::clamp(following(ahead, horizon_.x[0])[0], -car.steer_limit, car.steer_limit);
     result_.command.throttle = throttle_for(
         car, longitudinal_acceleration(car, -car.brake_throttle_limit, start.state.vx), start.state.vx);
-    result_.answer = Answer::kStopOnRoad;
-    result_.plan.size = 0;
-    result_.plan.reference_size = 0;
+    return without_plan(Answer::kStopOnRoad);
+  }
+
+  const StepResult& without_plan(Answer answer) noexcept {
     has_horizon_ = false;
+    result_.answer = answer;
+    result_.plan.size = result_.plan.reference_size = 0;
     return result_;
   }
 
-  /// A car that has spun, or is far from its line: it brakes first, then drives at walking pace on a course
-  /// that leads back.
+  /// A car that has spun, or is far from its line: it brakes first, then drives back at walking pace.
   const StepResult& return_to_road(const model::Measurement& now, const StateEstimator::Prediction& start,
                                    double act_time) noexcept {
     const road::ReferenceLine& line = this->line();
     const model::State& car = start.state;
     const bool is_known = std::isfinite(car.x + car.y + car.psi + car.vx + now.time + now.delay);
-    const bool must_stop = blind_.is_long || roadless_.is_long;
-    if (line.is_empty() || !is_known || must_stop || !(std::fabs(car.vx) < kSlow)) return no_answer(act_time);
+    if (line.is_empty() || !is_known) return no_answer(act_time);
     const road::ReferenceLine::Projection place = line.project({car.x, car.y});
-    if (!(place.distance < kLost)) return no_answer(act_time);
-    const double course = line.at(place.s).heading - atan(place.d / kApproach);
-    const double turn = std::clamp(2.0 * angle_difference(course, car.psi), -1.0, 1.0);
-    const double acceleration = std::clamp(kWalkingPace - car.vx, -2.0, 1.0);
-    has_horizon_ = false;
-    result_.command = {turn * model_.vehicle().steer_limit,
-                       throttle_for(model_.vehicle(), acceleration, car.vx)};
-    result_.answer = Answer::kReturnToRoad;
-    result_.plan.size = 0;
-    result_.plan.reference_size = 0;
-    return result_;
+    result_.report.lateral_error = std::copysign(place.distance, place.d);
+    result_.report.heading_error = angle_difference(car.psi, line.at(place.s).heading);
+    const bool must_stop = blind_.is_long || roadless_.is_long;
+    const bool rolls_back = estimator_.rolls_back();
+    if (must_stop || !(place.distance < kLost) || !(rolls_back || std::fabs(car.vx) < kSlow))
+      return no_answer(act_time);
+    result_.command = rolls_back
+                          ? model::Command{0.0, throttle_against_rolling_back(model_.vehicle(), now.speed)}
+                          : way_back(line, place, car, model_.vehicle());
+    return without_plan(Answer::kReturnToRoad);
   }
 
   const StepResult& no_answer(double act_time) noexcept {
-    has_horizon_ = false;
-    result_.answer = Answer::kNone;
     result_.report.act_time = act_time;
-    return result_;
+    return without_plan(Answer::kNone);
   }
 
   void fill_plan(double act_time) noexcept {
@@ -484,9 +483,10 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   unsigned revision_ = 0;
   bool has_place_ = false;
   bool has_horizon_ = false;
-  Absence blind_;     ///< of measurements that tell where the car is
-  Absence roadless_;  ///< of waypoints
-  Absence late_;      ///< of answers, for want of time
+  bool is_returning_ = false;  ///< to the road, and has not joined it yet
+  Absence blind_;              ///< of measurements that tell where the car is
+  Absence roadless_;           ///< of waypoints
+  Absence late_;               ///< of answers, for want of time
 };
 
 }  // namespace

@@ -154,6 +154,8 @@ constexpr std::array kGuardReasons{
     constant("REASON_POSITION_JUMP", GuardReason::kPositionJump, "the place changed as no car moves"),
     constant("REASON_NO_WAY_TO_STOP", GuardReason::kNoWayToStop,
              "after the answer the car could not be stopped on the road"),
+    constant("REASON_FAR_FROM_ROAD", GuardReason::kFarFromRoad,
+             "no answer, far beside the road that is known"),
 };
 
 constexpr std::array kStatuses{

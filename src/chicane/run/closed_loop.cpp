@@ -67,6 +67,11 @@ void ClosedLoop::restart() {
   step_time_ = 0.0;
 }
 
+void ClosedLoop::restart_at(const model::State& start) {
+  restart();
+  world_.reset(start);
+}
+
 void ClosedLoop::drive_on() {
   const bool is_lost = account_.is_lost();
   account_.drive_on();

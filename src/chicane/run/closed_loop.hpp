@@ -80,6 +80,8 @@ class ClosedLoop {
   void drive_on();
   /// Puts the car at the start; the controller is reset, the account begins anew. Allocates.
   void restart();
+  /// The same from any pose and motion, on the road or beside it.
+  void restart_at(const model::State& start);
 
   [[nodiscard]] double time() const noexcept { return world_.time(); }
   [[nodiscard]] const telemetry::Frame& frame() const noexcept { return frame_; }

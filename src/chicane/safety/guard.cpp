@@ -22,6 +22,7 @@ constexpr double kStandingSpeed = 0.6;      // [m/s]
 constexpr int kShown = 64;                  // points of a stop that is drawn
 constexpr double kShownStep = 0.1;          // [s]
 constexpr double kWalkingPace = 3.0;        // [m/s]
+constexpr double kFastestWayBack = 4.0;     // [m/s]
 constexpr double kMostUse = 0.75;           // of the tyres sideways, after a command that is sent
 constexpr double kGuessedWidth = 1.0;       // [m] that the assumed width may be too small by, for a slow car
 constexpr double kLeastEdge = 0.1;          // [m] that a car on the road keeps in any case
@@ -76,6 +77,7 @@ void Guard::reset() noexcept {
   gate_.reset();
   road_.reset();
   estimator_.reset();
+  direction_.reset();
   sent_.clear();
   stop_.size = 0;
   has_place_ = false;
@@ -122,7 +124,14 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
 /// What of a measurement can be believed; estimate and road take it in.
 const model::Measurement& Guard::look(const model::Measurement& measured) noexcept {
   std::optional<model::State> expected;
-  if (estimator_.is_started() && std::isfinite(measured.time))
+  const bool rolled_back = direction_.rolls_back();
+  direction_.see(measured);
+  // Nothing is expected of a car that rolls back: the estimate goes the other way.
+  if (direction_.rolls_back() != rolled_back) {
+    estimator_.reset();
+    monitor_.reset();
+  }
+  if (estimator_.is_started() && std::isfinite(measured.time) && !direction_.rolls_back())
     expected = estimator_.predict(measured.time, sent_).state;
   const model::Measurement& seen = monitor_.check(measured, expected ? &*expected : nullptr);
   if (monitor_.findings().is_reset) {
@@ -153,18 +162,32 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   report.reason = verdict.reason;
   const std::optional<StopStart> start = place_on_road(act);
   const bool has_answer = result.answer != Answer::kNone;
-  if (!has_answer && report.reason == GuardReason::kNone) report.reason = GuardReason::kNoAnswer;
+  if (!has_answer && report.reason == GuardReason::kNone)
+    report.reason = is_far_ ? GuardReason::kFarFromRoad : GuardReason::kNoAnswer;
   bool must_stop = verdict.must_stop || !has_answer;
-  // A way back to the road begins where there may be none: it is planned for the receiver, and not refused.
   if (start && !must_stop && !leaves_a_stop(*start, result.command, cycle.interval, report) &&
-      result.answer == Answer::kDrive) {
+      !is_way_back(*start, result)) {
     report.reason = GuardReason::kNoWayToStop;
     must_stop = true;
   }
+  if (result.answer == Answer::kReturnToRoad) floor_ = kNoFloor;  // it may lead further away at first
   if (options_.mode == GuardMode::kObserve) must_stop = !has_answer;
   if (!must_stop) return accept(seen, result);
-  if (start && options_.mode == GuardMode::kOn) return drive_stop(*start, result);
-  fall_back(seen, result);
+  if (start && options_.mode == GuardMode::kOn) {
+    drive_stop(*start, result);
+  } else {
+    fall_back(seen, result);
+  }
+  // What brakes a car that goes forward may be the reverse gear of one that rolls back.
+  if (direction_.rolls_back() && result.command.throttle < 0.0)
+    result.command.throttle = controller::throttle_against_rolling_back(model_.vehicle(), now.vx);
+}
+
+/// A way back to the road begins where there may be none: slow as it is, it is planned for the receiver, and
+/// not refused.
+bool Guard::is_way_back(const StopStart& start, const controller::StepResult& result) const noexcept {
+  if (result.answer == Answer::kDrive) return false;
+  return result.command.throttle <= 0.0 || start.body.vx < kFastestWayBack || direction_.rolls_back();
 }
 
 /// The controller's answer is sent.
@@ -234,6 +257,7 @@ void Guard::show_stop(const StopStart& start, controller::Plan& plan) const noex
 /// Where the car will be on the known road when the command acts; none when car or road are lost.
 std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   const road::ReferenceLine& line = road_.line();
+  is_far_ = false;
   if (line.is_empty() || !estimator_.is_started() || !std::isfinite(act_time)) return std::nullopt;
   const controller::StateEstimator::Prediction at = estimator_.predict(act_time, sent_);
   const model::State& car = at.state;
@@ -245,7 +269,8 @@ std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
       has_place_ ? line.project(position, s_, kProjectionWindow) : line.project(position);
   if (has_place_ && place.distance > 0.5 * kFarFromRoad) place = line.project(position);
   has_place_ = place.distance < kFarFromRoad;
-  if (!has_place_) return std::nullopt;
+  is_far_ = !has_place_;
+  if (is_far_) return std::nullopt;
   s_ = place.s;
   const double e = angle_difference(car.psi, line.at(place.s).heading);
   return StopStart{.time = act_time,

@@ -77,6 +77,7 @@ class Guard {
 
  private:
   void choose(const model::Measurement& seen, const Cycle& cycle, controller::StepResult& result) noexcept;
+  [[nodiscard]] bool is_way_back(const StopStart& start, const controller::StepResult& result) const noexcept;
   void accept(const model::Measurement& seen, controller::StepResult& result) noexcept;
   void fall_back(const model::Measurement& seen, controller::StepResult& result) noexcept;
   void drive_stop(const StopStart& start, controller::StepResult& result) noexcept;
@@ -96,6 +97,7 @@ class Guard {
   CommandGate gate_;
   road::KnownRoad road_;
   controller::StateEstimator estimator_;
+  controller::DirectionWatch direction_;  ///< by what is measured, plausible or not
   controller::CommandHistory sent_;
   StopPlanner planner_;
   model::PredictionModel model_;
@@ -106,6 +108,7 @@ class Guard {
   double s_ = 0.0;  ///< on the known road where the command acts [m]
   unsigned revision_ = 0;
   bool has_place_ = false;
+  bool is_far_ = false;     ///< the known road is, from the car
   double sent_from_ = 0.0;  ///< from which the command of this cycle acts [s]
 };
 

@@ -42,6 +42,9 @@ class Plant {
   [[nodiscard]] virtual double step_length() const noexcept = 0;  ///< [s]
   /// Stands the car at `pose` in W, moving forward with `speed` [m/s], wheels rolling freely.
   virtual void reset(const model::Pose& pose, double speed) noexcept = 0;
+  /// It slides and turns from now on: velocity in B [m/s], yaw rate [rad/s]. Its wheels roll as fast as it
+  /// moves along.
+  virtual void set_motion(const Vec2& velocity, double yaw_rate) noexcept = 0;
   /// Another deviation from the nominal car from the next step on; the car stays where it is, as fast as it
   /// is.
   virtual void deviate(const PlantDeviation& deviation) noexcept = 0;

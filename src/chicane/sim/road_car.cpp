@@ -63,6 +63,15 @@ void RoadCar::reset(const model::Pose& pose, double speed) noexcept {
   output_.speed = speed;
 }
 
+void RoadCar::set_motion(const Vec2& velocity, double yaw_rate) noexcept {
+  state_.vx = velocity.x();
+  state_.vy = velocity.y();
+  state_.r = yaw_rate;
+  velocity_ = turned(velocity, cos(state_.psi), sin(state_.psi));
+  for (Wheel& wheel : wheels_) wheel.speed = velocity.x() / params_.wheel_radius;
+  output_.speed = velocity.norm();
+}
+
 void RoadCar::deviate(const PlantDeviation& deviation) noexcept {
   params_.mass = nominal_.mass * deviation.mass_scale;
   params_.yaw_inertia = nominal_.yaw_inertia * deviation.mass_scale;

@@ -71,6 +71,7 @@ class RoadCar final : public Plant {
 
   [[nodiscard]] double step_length() const noexcept override { return kStepLength; }
   void reset(const model::Pose& pose, double speed) noexcept override;
+  void set_motion(const Vec2& velocity, double yaw_rate) noexcept override;
   void deviate(const PlantDeviation& deviation) noexcept override;
   void disturb(const Disturbance& disturbance) noexcept override { disturbance_ = disturbance; }
   void advance(const model::Command& command) noexcept override;

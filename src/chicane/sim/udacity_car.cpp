@@ -62,6 +62,15 @@ void UdacityCar::reset(const model::Pose& pose, double speed) noexcept {
   output_.speed = speed;
 }
 
+void UdacityCar::set_motion(const Vec2& velocity, double yaw_rate) noexcept {
+  state_.vx = velocity.x();
+  state_.vy = velocity.y();
+  state_.r = yaw_rate;
+  velocity_ = rotated(velocity, state_.psi);
+  for (Wheel& wheel : wheels_) wheel.speed = velocity.x() / wheel.radius;
+  output_.speed = velocity.norm();
+}
+
 void UdacityCar::deviate(const PlantDeviation& deviation) noexcept {
   params_.mass = nominal_.mass * deviation.mass_scale;
   params_.yaw_inertia = nominal_.yaw_inertia * deviation.mass_scale;

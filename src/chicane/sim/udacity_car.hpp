@@ -73,6 +73,7 @@ class UdacityCar final : public Plant {
   [[nodiscard]] double step_length() const noexcept override { return kStepLength; }
   /// From standstill the drive torque starts at 0, as when the scene starts; at speed > 0 it starts in full.
   void reset(const model::Pose& pose, double speed) noexcept override;
+  void set_motion(const Vec2& velocity, double yaw_rate) noexcept override;
   void deviate(const PlantDeviation& deviation) noexcept override;
   void disturb(const Disturbance& disturbance) noexcept override { disturbance_ = disturbance; }
   void advance(const model::Command& command) noexcept override;

@@ -34,6 +34,13 @@ void World::reset(const model::Pose& pose, double speed) noexcept {
   judge_.reset(0.0, sighting());
 }
 
+void World::reset(const model::State& start) noexcept {
+  plant_.reset({.x = start.x, .y = start.y, .psi = start.psi}, start.vx);
+  plant_.set_motion({start.vx, start.vy}, start.r);
+  step_count_ = 0;
+  judge_.reset(0.0, sighting());
+}
+
 void World::advance(const model::Command& command) noexcept {
   plant_.advance(command);
   ++step_count_;

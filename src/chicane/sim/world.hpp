@@ -23,6 +23,8 @@ class World {
   void place(double s, double offset, double speed = 0.0) noexcept;
   /// A new run from any pose.
   void reset(const model::Pose& pose, double speed) noexcept;
+  /// A new run from any pose and motion; the wheel stands straight.
+  void reset(const model::State& start) noexcept;
 
   /// One physics step of the plant with the command that acts.
   void advance(const model::Command& command) noexcept;

@@ -27,6 +27,8 @@ export function reasonInWords(reason: number): string {
       return 'the measured place jumped';
     case REASON.NO_WAY_TO_STOP:
       return 'after the command there would be no way to stop';
+    case REASON.FAR_FROM_ROAD:
+      return 'the road that is known is far away';
     default:
       return `unknown reason ${reason}`;
   }

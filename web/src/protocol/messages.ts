@@ -190,6 +190,8 @@ export const REASON = {
   POSITION_JUMP: 6,
   /** after the answer the car could not be stopped on the road */
   NO_WAY_TO_STOP: 7,
+  /** no answer, far beside the road that is known */
+  FAR_FROM_ROAD: 8,
 } as const;
 
 /** Frame.speed_limiter */

@@ -19,6 +19,9 @@ class Cart final : public Plant {
     state_ = {.x = pose.x, .y = pose.y, .psi = pose.psi, .vx = speed};
     output_.speed = speed;
   }
+  void set_motion(const Vec2& velocity, double /*yaw_rate*/) noexcept override {
+    state_.vx = output_.speed = velocity.x();
+  }
   void deviate(const PlantDeviation& /*deviation*/) noexcept override {}
   void advance(const model::Command& command) noexcept override {
     state_.steer = command.steer;

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "campaign_options.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <string>
+#include <vector>
+
+#include "chicane/base/text.hpp"
+#include "chicane/run/fault_campaign.hpp"
+#include "setting_options.hpp"
+#include "sweep_options.hpp"
+
+namespace chicane::apps {
+namespace {
+
+/// "2", or "inf" for a fault that lasts.
+double fault_duration(const std::string& text) {
+  double seconds = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+  if (text == "inf") return run::kLasting;
+  if (error == std::errc{} && end == text.data() + text.size() && seconds >= 0.001 &&
+      seconds <= run::kLasting)
+    return seconds;
+  throw CLI::ValidationError(
+      "--for-s", fmt::format("got {}, expected a number in [0.001, 1000000] or inf", printable(text)));
+}
+
+}  // namespace
+
+void add_campaign(CLI::App& command, Options& options) {
+  Options::Campaign& campaign = options.campaign;
+  command.add_option("--faults", campaign.faults, "With commas (chicane list faults); all when left out")
+      ->type_name("NAME,...")
+      ->delimiter(',');
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--for-s",
+          [&campaign](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) campaign.durations.push_back(fault_duration(text));
+          },
+          "How long the faults last [s], with commas; inf: to the end; each fault's own when left out")
+      ->type_name("S,...")
+      ->delimiter(',');
+  command.add_option("--every-s", campaign.step, "Between the moments of the flying lap [s]")
+      ->type_name("S")
+      ->check(CLI::Range(0.02, 1000.0))
+      ->capture_default_str();
+  command.add_option("--tracks", campaign.tracks, "Names or files, with commas")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->capture_default_str();
+  command.add_option("--cars", campaign.cars, "Names or files, with commas")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->capture_default_str();
+  add_setting(command, options, "--preset", "preset", "NAME",
+              "Controller and its settings (chicane list presets)");
+  add_jobs(command, options.jobs);
+  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  add_set(command, options);
+  command.footer(
+      "Example: chicane campaign --faults link_lost,nan_measurement --for-s 1,2,inf --tracks oval");
+}
+
+void add_recover(CLI::App& command, Options& options) {
+  Options::Recover& recover = options.recover;
+  command
+      .add_option("--starts", recover.starts,
+                  "For each car and track: standing, rolling, sliding, backwards, spun")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command.add_option("--seed", recover.seed, "Of the starts")->type_name("N")->capture_default_str();
+  command.add_option("--only", recover.only, "This one of the starts alone")
+      ->type_name("I")
+      ->check(CLI::Range(1, 100000));
+  command.add_option("--tracks", recover.tracks, "Names or files, with commas")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->capture_default_str();
+  command.add_option("--cars", recover.cars, "Names or files, with commas")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->capture_default_str();
+  add_setting(command, options, "--preset", "preset", "NAME",
+              "Controller and its settings (chicane list presets)");
+  add_jobs(command, options.jobs);
+  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  add_set(command, options);
+  command.footer("Example: chicane recover --tracks lakeside,oval --starts 120");
+}
+
+}  // namespace chicane::apps

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
+#include "chicane/model/state.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/road/reference_line.hpp"
+
+namespace chicane::controller {
+
+/// What leads a slow car back to a line, from anywhere beside it and in any direction: walking pace, on a
+/// course that is at 45° to the line kApproach beside it, and along it on it. `place`: where the car is along
+/// the line.
+[[nodiscard]] inline model::Command way_back(const road::ReferenceLine& line,
+                                             const road::ReferenceLine::Projection& place,
+                                             const model::State& car,
+                                             const model::VehicleParams& vehicle) noexcept {
+  constexpr double kApproach = 8.0;      // [m]
+  constexpr double kWalkingPace = 3.0;   // [m/s]
+  constexpr double kMostBraking = -2.0;  // [m/s²]
+  constexpr double kMostDrive = 1.0;     // [m/s²]
+  constexpr double kFullLock = 0.5;      // [rad] off its course the wheel is turned as far as it goes
+  const double course = line.at(place.s).heading - atan(place.d / kApproach);
+  const double turn = std::clamp(angle_difference(course, car.psi) / kFullLock, -1.0, 1.0);
+  const double acceleration = std::clamp(kWalkingPace - car.vx, kMostBraking, kMostDrive);
+  return {turn * vehicle.steer_limit, throttle_for(vehicle, acceleration, car.vx)};
+}
+
+}  // namespace chicane::controller

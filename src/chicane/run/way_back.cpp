@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/run/way_back.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <utility>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
+#include "chicane/base/random.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "chicane/run/parallel.hpp"
+
+namespace chicane::run {
+namespace {
+
+constexpr double kStandingSpeed = 0.3;  // [m/s]
+
+/// Velocity of a car that moves with `speed` in a direction `slip` to the left of where it points.
+void move(model::State& car, double speed, double slip, double yaw_rate) {
+  car.vx = speed * cos(slip);
+  car.vy = speed * sin(slip);
+  car.r = yaw_rate;
+}
+
+double either_sign(Random& chance, double low, double high) {
+  const double value = chance.uniform(low, high);
+  return chance.uniform() < 0.5 ? -value : value;
+}
+
+}  // namespace
+
+std::vector<StartPose> start_poses(const path::Track& track, int count, std::uint64_t seed) {
+  Random chance(seed);
+  std::vector<StartPose> starts;
+  starts.reserve(static_cast<std::size_t>(std::max(count, 0)));
+  for (int i = 0; i < count; ++i) {
+    const auto kind = static_cast<StartKind>(static_cast<std::size_t>(i) % kStartKindNames.size());
+    const double s = chance.uniform(0.0, track.length());
+    const path::PathPoint at = track.centre().at(s);
+    const double d = chance.uniform(-track.right_width(s) - kFarthest, track.left_width(s) + kFarthest);
+    StartPose start{.kind = kind};
+    start.state.x = at.position.x() - d * sin(at.heading);
+    start.state.y = at.position.y() + d * cos(at.heading);
+    start.state.psi = at.heading + chance.uniform(-kPi, kPi);
+    switch (kind) {
+      case StartKind::kStanding:
+        break;
+      case StartKind::kRolling:
+        move(start.state, chance.uniform(2.0, 25.0), 0.0, 0.0);
+        break;
+      case StartKind::kSliding:
+        move(start.state, chance.uniform(5.0, 25.0), chance.uniform(-kPi / 3.0, kPi / 3.0),
+             chance.uniform(-1.0, 1.0));
+        break;
+      case StartKind::kBackwards:
+        move(start.state, -chance.uniform(1.0, 8.0), 0.0, 0.0);
+        break;
+      case StartKind::kSpun:
+        move(start.state, chance.uniform(5.0, 20.0), either_sign(chance, kPi / 2.0, kPi),
+             chance.uniform(-3.0, 3.0));
+        break;
+    }
+    starts.push_back(start);
+  }
+  return starts;
+}
+
+Result<WayBackOutcome> drive_back(const scenario::Scenario& scenario, const StartPose& start, Roads& roads,
+                                  const ControllerFactory& make) {
+  scenario::Scenario one = scenario;
+  one.laps = 0;
+  one.time_limit = 0.0;
+  one.faults.clear();
+  auto created = ClosedLoop::create(one, roads, make);
+  if (!created) return fail(created.error());
+  ClosedLoop& loop = **created;
+  loop.restart_at(start.state);
+  WayBackOutcome outcome{.start = start};
+  constexpr double kNever = WayBackOutcome::kNever;
+  double along_since = kNever;
+  const auto end = [&] {
+    return outcome.lapping < kNever ? outcome.lapping + kWatched : WayBackOutcome::kInTime;
+  };
+  while (loop.time() < end()) {
+    const bool is_new = loop.advance();
+    const telemetry::Frame& frame = loop.frame();
+    const sim::WorldState& car = loop.world();
+    const double edge = car.edge_distance;
+    if (outcome.back < kNever) outcome.least_edge = std::min(outcome.least_edge, edge);
+    if (!is_new) continue;
+    const double speed = hypot(frame.truth.vx, frame.truth.vy);
+    const double slip = speed > kStandingSpeed ? atan2(frame.truth.vy, frame.truth.vx) : 0.0;
+    const double course = wrap_angle(car.heading_error + slip);
+    const bool is_along = edge >= 0.0 && std::fabs(course) < kAlong && std::fabs(car.heading_error) < kAlong;
+    if (!is_along) along_since = kNever;
+    if (is_along && along_since == kNever) along_since = loop.time();
+    if (outcome.back == kNever) {
+      outcome.farthest = std::max(outcome.farthest, -edge);
+      if (loop.time() - along_since > kBack || (is_along && speed < kStandingSpeed))
+        outcome.back = loop.time();
+    }
+    if (outcome.back < kNever && outcome.lapping == kNever && is_along && speed > kLapping)
+      outcome.lapping = loop.time();
+  }
+  return outcome;
+}
+
+Result<std::vector<WayBackOutcome>> drive_all_back(const scenario::Scenario& scenario,
+                                                   const std::vector<StartPose>& starts, int jobs,
+                                                   const std::function<bool(std::size_t)>& on_done,
+                                                   const ControllerFactory& make) {
+  std::vector<Result<WayBackOutcome>> outcomes(starts.size());
+  std::atomic<std::size_t> done{0};
+  for_each_run(starts.size(), jobs, [&](std::uint64_t i, Roads& roads) {
+    outcomes[i] = drive_back(scenario, starts[i], roads, make);
+    const std::size_t count = ++done;
+    return !on_done || on_done(count);
+  });
+  std::vector<WayBackOutcome> all;
+  all.reserve(done);
+  for (std::size_t i = 0; i < std::min<std::size_t>(done, outcomes.size()); ++i) {
+    if (!outcomes[i]) return fail(outcomes[i].error());
+    all.push_back(*outcomes[i]);
+  }
+  return all;
+}
+
+}  // namespace chicane::run
