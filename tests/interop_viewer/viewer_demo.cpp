@@ -48,7 +48,7 @@ class DemoParameters final : public protocol::foxglove::ParameterStore {
 };
 
 /// What the network thread asks of the loop below.
-struct Wishes {
+struct Requests {
   std::atomic<bool> is_paused{false};
   std::atomic<int> steps{0};
   std::atomic<bool> reset{false};
@@ -89,22 +89,22 @@ int main(int argc, char** argv) {
     std::from_chars(text.data(), text.data() + text.size(), server_options.port);
   }
 
-  Wishes wishes;
+  Requests requests;
   DemoParameters parameters;
   wire::ViewerOptions options;
   options.run = run_of(*track, kPeriod);
   options.parameters = &parameters;
   options.services.pause = [&](bool paused) -> Result<void> {
-    wishes.is_paused = paused;
+    requests.is_paused = paused;
     return {};
   };
   options.services.step = [&]() -> Result<void> {
-    if (!wishes.is_paused) return fail(ErrorCode::kInvalidArgument, "/step: pause first");
-    ++wishes.steps;
+    if (!requests.is_paused) return fail(ErrorCode::kInvalidArgument, "/step: pause first");
+    ++requests.steps;
     return {};
   };
   options.services.reset = [&]() -> Result<void> {
-    wishes.reset = true;
+    requests.reset = true;
     return {};
   };
   wire::ViewerEndpoint viewer{std::move(options)};
@@ -125,11 +125,11 @@ int main(int argc, char** argv) {
   while (!stdin_is_closed(0)) {
     next += std::chrono::milliseconds{40};
     std::this_thread::sleep_until(next);
-    if (wishes.reset.exchange(false)) {
+    if (requests.reset.exchange(false)) {
       drive.reset();
       viewer.publish(drive.frame());
-    } else if (!wishes.is_paused || wishes.steps.load() > 0) {
-      if (wishes.is_paused) --wishes.steps;
+    } else if (!requests.is_paused || requests.steps.load() > 0) {
+      if (requests.is_paused) --requests.steps;
       viewer.publish(drive.step());
     }
   }
