@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "chicane/base/dual.hpp"
+#include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/problem.hpp"
 
 namespace chicane::bench {
@@ -35,7 +36,30 @@ struct OverArrays : P {
     if constexpr (P::kNc > 0) return solver::to_array<T>(P::constraint(k, x, u));
     return {};
   }
+  template <class T>
+  std::array<T, solver::equality_count<P>()> equality(int k, const X<T>& x, const U<T>& u) const {
+    if constexpr (solver::equality_count<P>() > 0) return solver::to_array<T>(P::equality(k, x, u));
+    return {};
+  }
+  template <class T>
+  std::array<T, solver::terminal_equality_count<P>()> terminal_equality(const X<T>& x) const {
+    if constexpr (solver::terminal_equality_count<P>() > 0)
+      return solver::to_array<T>(P::terminal_equality(x));
+    return {};
+  }
+  template <class T>
+  std::array<T, solver::terminal_constraint_count<P>()> terminal_constraint(const X<T>& x) const {
+    if constexpr (solver::terminal_constraint_count<P>() > 0)
+      return solver::to_array<T>(P::terminal_constraint(x));
+    return {};
+  }
 };
+/// Whether constraint c must hold.
+template <class P>
+[[nodiscard]] bool is_hard([[maybe_unused]] const P& problem, [[maybe_unused]] int c) {
+  if constexpr (requires { problem.is_hard(0); }) return problem.is_hard(c);
+  return false;
+}
 
 /// How far a trajectory is from a point where no direction is downhill.
 struct KktResidual {
@@ -43,17 +67,25 @@ struct KktResidual {
   double stationarity = 0.0;  ///< ‖u − Proj(u − dL/du)‖∞
   double subgradient = 0.0;   ///< how far each price is from belonging to its constraint's value
   double outside = 0.0;       ///< of the bounds of inputs and of their changes
+  double miss = 0.0;          ///< of what must hold
   double rounding = 0.0;  ///< what it may leave of the stationarity here: one ulp in each product, added up
                           ///< along the horizon
   double cost = 0.0;      ///< with the exact penalties
 };
 
-/// Checks a trajectory with the prices of its soft constraints, `price(k, c)`, and of the bounds on changes
-/// of inputs, `rate_price(k, m)`. Everything else is computed here, by dual numbers, stage by stage: no line
+/// The multipliers of what must hold: of the equalities of stages, and at the end.
+struct NoHardPrices {
+  double equality_multiplier(int, int) const { return 0.0; }
+  double terminal_equality_multiplier(int) const { return 0.0; }
+  double terminal_constraint_multiplier(int) const { return 0.0; }
+};
+
+/// Checks a trajectory with the prices of its soft constraints, `price(k, c)`, of the bounds on changes
+/// of inputs, `rate_price(k, m)`, and of what must hold. Everything else is computed here, by dual numbers, stage by stage: no line
 /// is shared with the solver.
-template <solver::OcpProblem P, int Capacity, class Price, class RatePrice>
+template <solver::OcpProblem P, int Capacity, class Price, class RatePrice, class HardPrice = NoHardPrices>
 KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::kNx, P::kNu, Capacity>& t,
-                      const Price& price, const RatePrice& rate_price) {
+                      const Price& price, const RatePrice& rate_price, const HardPrice& hard = {}) {
   constexpr int kNx = P::kNx, kNu = P::kNu, kNz = kNx + kNu;
   using D = Dual<kNz>;
   constexpr double kUnit = 2.2e-16;
@@ -68,6 +100,24 @@ KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::
     for (const D& r : problem.template terminal_residual<D>(x)) {
       result.cost += 0.5 * r.v * r.v;
       for (std::size_t i = 0; i < kNx; ++i) adjoint[i] += r.v * r.d[i];
+    }
+    const auto add = [&](const D& row, double y) {
+      for (std::size_t i = 0; i < kNx; ++i) {
+        adjoint[i] += y * row.d[i];
+        error[i] += kUnit * std::fabs(y * row.d[i]);
+      }
+    };
+    int n = 0;
+    for (const D& h : problem.template terminal_equality<D>(x)) {
+      result.miss = std::max(result.miss, std::fabs(h.v));
+      add(h, hard.terminal_equality_multiplier(n++));
+    }
+    n = 0;
+    for (const D& g : problem.template terminal_constraint<D>(x)) {
+      const double y = hard.terminal_constraint_multiplier(n++);
+      result.miss = std::max(result.miss, g.v);
+      result.subgradient = std::max({result.subgradient, -y, std::min(-g.v, y)});
+      add(g, y);
     }
   }
   for (int stage = t.horizon; stage-- > 0;) {
@@ -98,6 +148,11 @@ KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::
       for (std::size_t v = 0; v < kNz; ++v)
         noise[v] += std::fabs(next[i].d[v]) * (error[i] + kUnit * std::fabs(adjoint[i]));
     }
+    int row = 0;
+    for (const D& h : problem.template equality<D>(stage, x, u)) {
+      result.miss = std::max(result.miss, std::fabs(h.v));
+      add(h, hard.equality_multiplier(stage, row++));
+    }
     if constexpr (P::kNc > 0) {
       const auto values = problem.template constraint<D>(stage, x, u);
       for (int c = 0; c < P::kNc; ++c) {
@@ -105,6 +160,12 @@ KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::
         const auto penalty = problem.soft_penalty(c);
         const double z = price(stage, c);
         const double beyond = std::max(value, 0.0);
+        if (is_hard(problem, c)) {
+          result.miss = std::max(result.miss, beyond);
+          result.subgradient = std::max({result.subgradient, std::min(-std::min(value, 0.0), z), -z});
+          add(values[static_cast<std::size_t>(c)], z);
+          continue;
+        }
         result.cost += beyond * (penalty.linear + 0.5 * penalty.quadratic * beyond);
         const double inside = std::min(std::fabs(std::min(value, 0.0)), std::fabs(z));
         const double kink = std::min(beyond, std::fabs(penalty.linear + penalty.quadratic * beyond - z));

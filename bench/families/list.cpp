@@ -18,12 +18,27 @@ Family arm_family();
 Family acrobot_family();
 Family reactor_family();
 Family glider_family();
+// With something that must hold (hard.hpp).
+Family hard_cart_pole_family();
+Family hard_rocket_landing_family();
+Family hard_planar_quadrotor_family();
+Family hard_parking_family();
+Family arm_on_a_line_family();
+Family crane_in_least_time_family();
+Family periodic_pendulum_family();
 
 std::span<const Family> all_families() {
   static const std::array families{cart_pole_family(),      planar_quadrotor_family(), quadrotor_family(),
                                    rocket_landing_family(), chain_of_masses_family(),  parking_family(),
                                    crane_family(),          double_pendulum_family(),  arm_family(),
-                                   acrobot_family(),        reactor_family(),          glider_family()};
+                                   acrobot_family(),        reactor_family(),          glider_family(),
+                                   hard_cart_pole_family(),
+                                   hard_rocket_landing_family(),
+                                   hard_planar_quadrotor_family(),
+                                   hard_parking_family(),
+                                   arm_on_a_line_family(),
+                                   crane_in_least_time_family(),
+                                   periodic_pendulum_family()};
   return families;
 }
 

@@ -57,6 +57,17 @@ class FamilyMeasurement {
     return t;
   }
 
+  /// Where the multipliers of what must hold are.
+  template <class Solver>
+  static const auto& hard_prices(const Solver& ocp) {
+    static constexpr NoHardPrices kNone;
+    if constexpr (solver::HardProblem<P>) {
+      return ocp;
+    } else {
+      return kNone;
+    }
+  }
+
   static FamilyRow measure(const FamilyRequest& request, NaiveStart start, References& references) {
     using Solver = solver::OcpSolver<P, kHorizon>;
     const auto ocp =
@@ -79,7 +90,7 @@ class FamilyMeasurement {
       const OverArrays<P> arrays{one.problem};
       const KktResidual kkt = check_kkt(
           arrays, *t, [&](int k, int c) { return ocp->constraint_multiplier(k, c); },
-          [&](int k, int m) { return -ocp->rate_multiplier(k, m); });
+          [&](int k, int m) { return -ocp->rate_multiplier(k, m); }, hard_prices(*ocp));
       const ReferenceAnswer reference = reference_of(request, references, one, arrays, start, i);
       times.push_back(time);
       turns.push_back(report.iterations);
@@ -90,7 +101,7 @@ class FamilyMeasurement {
       row.usable += solver::usable(report.status) ? 1 : 0;
       row.reference += reference.is_solved ? 1 : 0;
       row.both += reference.is_solved && is_optimal ? 1 : 0;
-      const double worst = std::max(kkt.stationarity, std::max(kkt.defect, kkt.outside));
+      const double worst = std::max({kkt.stationarity, kkt.defect, kkt.outside, kkt.miss});
       const bool is_false = is_optimal && !(worst <= 1.5 * request.tolerance + kkt.rounding &&
                                             kkt.subgradient <= 2.0 * std::sqrt(request.tolerance));
       row.false_optimal += is_false ? 1 : 0;
@@ -105,10 +116,10 @@ class FamilyMeasurement {
       if (request.each) {
         std::printf(
             "%s %s %d: %s turns %d sweeps %d cost %.8g stat %.2e defect %.2e | check stat %.2e defect %.2e "
-            "sub %.2e | ipopt %d cost %.8g turns %d%s\n",
+            "sub %.2e miss %.2e | ipopt %d cost %.8g turns %d%s\n",
             P::kName.data(), to_string(start).data(), i, to_string(report.status).data(), report.iterations,
             report.sweeps, kkt.cost, report.stationarity, report.defect, kkt.stationarity, kkt.defect,
-            kkt.subgradient, reference.is_solved ? 1 : 0, reference.cost, reference.turns,
+            kkt.subgradient, kkt.miss, reference.is_solved ? 1 : 0, reference.cost, reference.turns,
             is_false ? " FALSE" : "");
       }
     }

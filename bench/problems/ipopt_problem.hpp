@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "chicane/base/dual.hpp"
+#include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/problem.hpp"
 #include "problems/cpu_time.hpp"
 
@@ -23,7 +24,7 @@ struct Multipliers {
 /// Any OcpProblem as a sparse nonlinear program for Ipopt (Wächter, Biegler 2006): states and inputs as
 /// variables, dynamics as equations, soft constraints with explicit slacks, exact first and second
 /// derivatives by dual numbers. Variables: u_0, x_1, u_1, …, x_N, then the slacks. Equations: dynamics, then
-/// constraints with slacks, then changes of inputs where those are bounded.
+/// constraints with slacks, then changes of inputs where those are bounded, then what else must hold.
 template <solver::OcpProblem P>
 class IpoptProblem : public Ipopt::TNLP {
  public:
@@ -34,6 +35,9 @@ class IpoptProblem : public Ipopt::TNLP {
   static constexpr int kNc = P::kNc;
   static constexpr int kNz = kNx + kNu;
   static constexpr int kNd = solver::kHasRateBounds<P> ? kNu : 0;
+  static constexpr int kNh = solver::equality_count<P>();
+  static constexpr int kNeh = solver::terminal_equality_count<P>();
+  static constexpr int kNec = solver::terminal_constraint_count<P>();
 
   const P* problem = nullptr;
   std::array<double, kNx> x0{};
@@ -51,9 +55,14 @@ class IpoptProblem : public Ipopt::TNLP {
   /// The row of the change of input m of stage k.
   [[nodiscard]] int rate_row(int k, int m) const { return horizon * (kNx + kNc) + k * kNd + m; }
 
+  [[nodiscard]] int equality_row(int k, int n) const {
+    return horizon * (kNx + kNc + kNd) + k * kNh + n;
+  }
+  [[nodiscard]] int terminal_row(int n) const { return horizon * (kNx + kNc + kNd + kNh) + n; }
+
   bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
     n = horizon * (kNz + kNc);
-    m = horizon * (kNx + kNc + kNd);
+    m = horizon * (kNx + kNc + kNd + kNh) + kNeh + kNec;
     jacobian = visit_jacobian(nullptr, [](int, int, double) {});
     hessian = visit_hessian(nullptr, 0.0, nullptr, [](int, int, double) {});
     style = C_STYLE;
@@ -72,7 +81,7 @@ class IpoptProblem : public Ipopt::TNLP {
       }
       for (int c = 0; c < kNc; ++c) {
         low[at_s(k) + c] = 0.0;
-        high[at_s(k) + c] = 2e19;
+        high[at_s(k) + c] = must_hold(c) ? 0.0 : 2e19;
         g_low[horizon * kNx + k * kNc + c] = -2e19;
         g_high[horizon * kNx + k * kNc + c] = 0.0;
       }
@@ -84,6 +93,11 @@ class IpoptProblem : public Ipopt::TNLP {
           g_high[rate_row(k, m)] = is_bounded ? std::fmin(problem->input_rate_upper(k)[input], 2e19) : 2e19;
         }
       }
+      for (int i = 0; i < kNh; ++i) g_low[equality_row(k, i)] = g_high[equality_row(k, i)] = 0.0;
+    }
+    for (int i = 0; i < kNeh + kNec; ++i) {
+      g_low[terminal_row(i)] = i < kNeh ? 0.0 : -2e19;
+      g_high[terminal_row(i)] = 0.0;
     }
     return true;
   }
@@ -151,7 +165,12 @@ class IpoptProblem : public Ipopt::TNLP {
         }
       }
       for (int m = 0; m < kNd; ++m) g[rate_row(k, m)] = change<double>(x, u, m);
+      if constexpr (kNh > 0) {
+        int row = equality_row(k, 0);
+        for (const double h : problem->equality(k, x, u)) g[row++] = h;
+      }
     }
+    each_at_end(state<double>(w, horizon), [&](int row, double value) { g[row] = value; });
     return true;
   }
   bool eval_jac_g(Index, const Number* w, bool, Index, Index, Index* rows, Index* columns,
@@ -217,6 +236,22 @@ class IpoptProblem : public Ipopt::TNLP {
   /// Where variable v of (x_k, u_k) stands among the unknowns; −1 for the given x_0.
   static int position(int k, int v) { return v >= kNx ? at_u(k) + v - kNx : (k > 0 ? at_x(k) + v : -1); }
 
+  bool must_hold([[maybe_unused]] int c) const {
+    if constexpr (requires { problem->is_hard(0); }) return problem->is_hard(c);
+    return false;
+  }
+  /// Calls visit(row, value) for what must hold at the end.
+  template <class X, class Visit>
+  void each_at_end([[maybe_unused]] const X& x, [[maybe_unused]] const Visit& visit) const {
+    int row = terminal_row(0);
+    if constexpr (kNeh > 0) {
+      for (const auto& h : problem->terminal_equality(x)) visit(row++, h);
+    }
+    if constexpr (kNec > 0) {
+      for (const auto& c : problem->terminal_constraint(x)) visit(row++, c);
+    }
+  }
+
   template <class T>
   static T seed(double value, int index) {
     if constexpr (std::is_same_v<T, double>) {
@@ -281,6 +316,18 @@ class IpoptProblem : public Ipopt::TNLP {
           ++count;
         }
       }
+      if constexpr (kNh > 0) {
+        int at = equality_row(k, 0);
+        for (const D& h : problem->equality(k, x, u)) row(at++, k, h);
+      }
+    }
+    if constexpr (kNeh + kNec > 0) {
+      each_at_end(state<D>(w, horizon), [&](int at, const D& value) {
+        for (int i = 0; i < kNx; ++i) {
+          put(at, at_x(horizon) + i, value.d[static_cast<std::size_t>(i)]);
+          ++count;
+        }
+      });
     }
     return count;
   }
@@ -306,8 +353,13 @@ class IpoptProblem : public Ipopt::TNLP {
             ++count;
           }
         }
+        if constexpr (kNh > 0) {
+          int row = equality_row(k, 0);
+          for (const D& h : problem->equality(k, x, u)) lagrangian += price(row++) * h;
+        }
       } else {
         for (const D& r : problem->terminal_residual(x)) lagrangian += (0.5 * factor) * r * r;
+        each_at_end(x, [&](int row, const D& value) { lagrangian += price(row) * value; });
       }
       for (int a = 0; a < (k < horizon ? kNz : kNx); ++a) {
         for (int b = 0; b <= a; ++b) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/solution.hpp"
 
@@ -43,6 +44,40 @@ template <OcpProblem P>
   if constexpr (requires { problem.constraint_unit(0); })
     unit = problem.constraint_unit(report.worst_constraint);
   return text + ": " + name + " exceeded by " + detail::amount(report.violation, unit, report.worst_stage);
+}
+
+/// The same of a problem with something that must hold: "infeasible: height at the end missed by 0.3 at stage
+/// 40". What has no name is "equality 0", "terminal equality 1", "terminal constraint 2".
+template <HardProblem P>
+[[nodiscard]] std::string describe(const P& problem, const HardReport& report) {
+  using Kind = HardReport::Kind;
+  const int row = report.miss_row;
+  std::string name;
+  switch (report.kind) {
+    case Kind::kNone:
+      break;
+    case Kind::kEquality:
+      name = "equality " + std::to_string(row);
+      if constexpr (requires { problem.equality_name(0); }) name = problem.equality_name(row);
+      break;
+    case Kind::kTerminalEquality:
+      name = "terminal equality " + std::to_string(row);
+      if constexpr (requires { problem.terminal_equality_name(0); }) name = problem.terminal_equality_name(row);
+      break;
+    case Kind::kTerminalConstraint:
+      name = "terminal constraint " + std::to_string(row);
+      if constexpr (requires { problem.terminal_constraint_name(0); })
+        name = problem.terminal_constraint_name(row);
+      break;
+    case Kind::kConstraint:
+      name = "constraint " + std::to_string(row);
+      if constexpr (requires { problem.constraint_name(0); }) name = problem.constraint_name(row);
+      break;
+  }
+  if (name.empty() || (usable(report.status) && report.status != SolveStatus::kBudgetSpent))
+    return describe(problem, static_cast<const SolveReport&>(report));
+  return std::string{to_string(report.status)} + ": " + name + " missed by " +
+         detail::amount(report.miss, "", report.miss_stage);
 }
 
 }  // namespace chicane::solver

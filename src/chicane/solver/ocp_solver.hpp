@@ -53,6 +53,8 @@ class OcpSolver {
 
   /// From the next solve on: SolverOptions::max_iterations.
   void allow_iterations(int most) noexcept { options_.max_iterations = most; }
+  /// From the next solve on: SolverOptions::start_from_states.
+  void start_from_states(bool do_so) noexcept { options_.start_from_states = do_so; }
 
   /// Solves from x0. In: trajectory.horizon in [1, Capacity] and the inputs of the warm start (any values;
   /// states are recomputed, but for SolverOptions::start_from_states). Out: the solution, or the best
@@ -484,4 +486,5 @@ class OcpSolver {
 
 }  // namespace chicane::solver
 
+#include "chicane/solver/detail/hard_solver.hpp"
 #include "chicane/solver/detail/ocp_fallback.hpp"

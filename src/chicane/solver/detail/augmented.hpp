@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "chicane/base/inlining.hpp"
+#include "chicane/base/math.hpp"
+#include "chicane/base/math_pack.hpp"
+#include "chicane/solver/detail/problem_pattern.hpp"
+#include "chicane/solver/hard_constraints.hpp"
+#include "chicane/solver/problem.hpp"
+
+namespace chicane::solver {
+
+namespace detail {
+
+template <class Row, class Factor, std::size_t... n>
+CHICANE_INLINE inline auto scaled(const Row& row, const Factor& factor, std::index_sequence<n...>) {
+  return std::make_tuple(factor(n, std::get<n>(row))...);
+}
+/// map(n, entry) of each entry: a tuple, or an array where `row` is one.
+template <class Row, class Map>
+CHICANE_INLINE inline auto map_row(const Row& row, const Map& map) {
+  return scaled(row, map, std::make_index_sequence<std::tuple_size_v<Row>>{});
+}
+template <class T, std::size_t N, class Map>
+CHICANE_INLINE inline std::array<T, N> map_row(const std::array<T, N>& row, const Map& map) {
+  std::array<T, N> result;
+  for (std::size_t n = 0; n < N; ++n) result[n] = map(n, row[n]);
+  return result;
+}
+/// Both rows, one behind the other.
+template <class A, class B>
+CHICANE_INLINE inline auto join(const A& a, const B& b) {
+  return std::tuple_cat(a, b);
+}
+template <class T, std::size_t N, std::size_t M>
+CHICANE_INLINE inline std::array<T, N + M> join(const std::array<T, N>& a, const std::array<T, M>& b) {
+  std::array<T, N + M> result;
+  for (std::size_t n = 0; n < N; ++n) result[n] = a[n];
+  for (std::size_t n = 0; n < M; ++n) result[N + n] = b[n];
+  return result;
+}
+
+/// Which states hold previous inputs, where the problem says so.
+template <class P>
+struct PreviousInputs {};
+template <class P>
+requires kHasRateBounds<P>
+struct PreviousInputs<P> {
+  static constexpr std::array<int, P::kNu> kPreviousInput = P::kPreviousInput;
+};
+
+}  // namespace detail
+
+/// A problem whose equalities and terminal constraints are residuals √ρ (h + y/ρ) beside its own: its
+/// augmented Lagrangian, up to a constant (docs/solver.md, eq. 38). Everything else is as the problem has it.
+template <HardProblem P, int Capacity>
+class Augmented : public detail::PreviousInputs<P> {
+ public:
+  static constexpr int kNx = P::kNx, kNu = P::kNu, kNc = P::kNc;
+  static constexpr int kEqualities = equality_count<P>();
+  static constexpr int kEndEqualities = terminal_equality_count<P>();
+  static constexpr int kEndConstraints = terminal_constraint_count<P>();
+  static constexpr int kNr = P::kNr + kEqualities;
+  static constexpr int kNe = P::kNe + kEndEqualities + kEndConstraints;
+  static constexpr bool kGaussNewton = !has_hessians<P>();
+  static constexpr bool kRealTime = !has_filter_method<P>();
+
+  /// One row that must hold: √ρ, ρ and y/ρ.
+  struct Weight {
+    double root = 1.0;
+    double rho = 1.0;
+    void set(double weight) noexcept {
+      rho = weight;
+      root = std::sqrt(weight);
+    }
+  };
+  const P* problem = nullptr;
+  double cost_root = 1.0;  ///< root of the weight of the problem's own cost
+  std::array<Weight, kEqualities> equality_weight{};
+  std::array<StageData<Capacity>, kEqualities> equality_shift{};
+  std::array<Weight, kEndEqualities + kEndConstraints> terminal_weight{};
+  std::array<double, kEndEqualities + kEndConstraints> terminal_shift{};
+  std::array<double, kNc> price_factor{};  ///< of soft constraints, hard ones among them
+
+  template <class K, class X, class U>
+  requires requires(const P& p, K k, const X& x, const U& u) { p.dynamics(k, x, u); }
+  CHICANE_INLINE auto dynamics(K k, const X& x, const U& u) const { return problem->dynamics(k, x, u); }
+
+  template <class K, class X, class U>
+  requires requires(const P& p, K k, const X& x, const U& u) { p.residual(k, x, u); }
+  CHICANE_INLINE auto residual(K k, const X& x, const U& u) const {
+    const auto own = detail::map_row(problem->residual(k, x, u),
+                                     [&](std::size_t, const auto& r) CHICANE_INLINE { return cost_root * r; });
+    if constexpr (kEqualities > 0) {
+      const auto shifted = [&](std::size_t n, const auto& h) CHICANE_INLINE {
+        return equality_weight[n].root * (h + equality_shift[n].at(k));
+      };
+      return detail::join(own, detail::map_row(problem->equality(k, x, u), shifted));
+    } else {
+      return own;
+    }
+  }
+  template <class X>
+  requires requires(const P& p, const X& x) { p.terminal_residual(x); }
+  CHICANE_INLINE auto terminal_residual(const X& x) const {
+    const auto own = detail::map_row(problem->terminal_residual(x),
+                                     [&](std::size_t, const auto& r) CHICANE_INLINE { return cost_root * r; });
+    return detail::join(detail::join(own, equalities_at_end(x)), constraints_at_end(x));
+  }
+  template <class K, class X, class U>
+  requires(kNc > 0 && requires(const P& p, K k, const X& x, const U& u) { p.constraint(k, x, u); })
+  CHICANE_INLINE auto constraint(K k, const X& x, const U& u) const { return problem->constraint(k, x, u); }
+
+  [[nodiscard]] SoftPenalty soft_penalty(int c) const requires(kNc > 0) {
+    SoftPenalty price = problem->soft_penalty(c);
+    price.linear *= price_factor[static_cast<std::size_t>(c)];
+    price.quadratic *= price_factor[static_cast<std::size_t>(c)];
+    if constexpr (detail::SaysWhatIsHard<P>) {
+      if (problem->is_hard(c)) price.cap = 1e30;
+    }
+    return price;
+  }
+  [[nodiscard]] auto input_lower(int k) const { return problem->input_lower(k); }
+  [[nodiscard]] auto input_upper(int k) const { return problem->input_upper(k); }
+  [[nodiscard]] auto input_rate_lower(int k) const requires kHasRateBounds<P> {
+    return problem->input_rate_lower(k);
+  }
+  [[nodiscard]] auto input_rate_upper(int k) const requires kHasRateBounds<P> {
+    return problem->input_rate_upper(k);
+  }
+
+ private:
+  template <class X>
+  CHICANE_INLINE auto equalities_at_end(const X& x) const {
+    if constexpr (kEndEqualities > 0) {
+      return detail::map_row(problem->terminal_equality(x), [&](std::size_t n, const auto& h) CHICANE_INLINE {
+        return terminal_weight[n].root * (h + terminal_shift[n]);
+      });
+    } else {
+      return nothing(x);
+    }
+  }
+  template <class X>
+  CHICANE_INLINE auto constraints_at_end(const X& x) const {
+    if constexpr (kEndConstraints > 0) {
+      return detail::map_row(
+          problem->terminal_constraint(x), [&](std::size_t n, const auto& g) CHICANE_INLINE {
+            return terminal_weight[kEndEqualities + n].root * positive_part(g + terminal_shift[kEndEqualities + n]);
+          });
+    } else {
+      return nothing(x);
+    }
+  }
+  /// No entries, of the kind that goes with others.
+  template <class T, std::size_t N>
+  static std::array<T, 0> nothing(const std::array<T, N>&) {
+    return {};
+  }
+  template <class... T>
+  static std::tuple<> nothing(const std::tuple<T...>&) {
+    return {};
+  }
+};
+
+}  // namespace chicane::solver

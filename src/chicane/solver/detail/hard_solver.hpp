@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "chicane/base/deadline.hpp"
+#include "chicane/solver/detail/augmented.hpp"
+#include "chicane/solver/detail/evaluation.hpp"
+#include "chicane/solver/hard_constraints.hpp"
+#include "chicane/solver/ocp_solver.hpp"
+
+namespace chicane::solver {
+
+/// OcpSolver for problems with something that must hold beside dynamics and bounds (hard_constraints.hpp): an
+/// augmented Lagrangian around the solver for problems without (docs/solver.md, eq. 38–42). Each round is one
+/// solve, from the second on from the point before, and an update of multipliers, weights and prices. Where
+/// that gets nowhere, the misses alone are minimised: what cannot hold is reported, else the rounds go on
+/// from the point that keeps everything.
+template <HardProblem P, int Capacity, class Arch>
+class OcpSolver<P, Capacity, Arch> {
+ public:
+  using State = std::array<double, P::kNx>;
+  using Trajectory = solver::Trajectory<P::kNx, P::kNu, Capacity>;
+  using Prices = HardPrices<P, Capacity>;
+
+  explicit OcpSolver(const SolverOptions& options = {}) noexcept : options_{options}, inner_{options} {}
+
+  /// From the next solve on: SolverOptions::max_iterations, of all rounds together.
+  void allow_iterations(int most) noexcept { options_.max_iterations = most; }
+
+  /// As OcpSolver::solve of problems without. kOptimal and kAtFloor: no miss above `tolerance`;
+  /// kBudgetSpent: none above `loose_tolerance`; kInfeasible: the misses have a local minimum above zero here.
+  HardReport solve(const P& problem, const State& x0, Trajectory& trajectory,
+                   Deadline deadline = Deadline::never()) noexcept {
+    prices_.is_known = false;
+    return run(problem, x0, trajectory, deadline);
+  }
+  /// The same from multipliers and weights of an earlier solve, if they are known; then those of this one.
+  HardReport solve(const P& problem, const State& x0, Trajectory& trajectory, Prices& prices,
+                   Deadline deadline = Deadline::never()) noexcept {
+    prices_ = prices;
+    const HardReport report = run(problem, x0, trajectory, deadline);
+    prices = prices_;
+    return report;
+  }
+
+  /// After a solve: multipliers, d(cost)/d(right-hand side).
+  [[nodiscard]] double equality_multiplier(int k, int n) const noexcept {
+    return prices_.equality[static_cast<std::size_t>(n)].at(k);
+  }
+  [[nodiscard]] double terminal_equality_multiplier(int n) const noexcept {
+    return prices_.terminal[static_cast<std::size_t>(n)];
+  }
+  [[nodiscard]] double terminal_constraint_multiplier(int n) const noexcept {
+    return prices_.terminal[static_cast<std::size_t>(kNeh + n)];
+  }
+  /// As of problems without.
+  [[nodiscard]] double adjoint(int k, int i) const noexcept { return inner_.adjoint(k, i); }
+  [[nodiscard]] double bound_multiplier(int k, int m) const noexcept { return inner_.bound_multiplier(k, m); }
+  [[nodiscard]] double rate_multiplier(int k, int m) const noexcept { return inner_.rate_multiplier(k, m); }
+  [[nodiscard]] double constraint_multiplier(int k, int c) const noexcept {
+    return inner_.constraint_multiplier(k, c);
+  }
+
+ private:
+  using Problem = Augmented<P, Capacity>;
+  using Evaluate = Evaluation<Problem, Arch>;
+  using One = typename Evaluate::One;
+  using Kind = HardReport::Kind;
+  static constexpr std::size_t kNh = Problem::kEqualities;
+  static constexpr std::size_t kNeh = Problem::kEndEqualities;
+  static constexpr std::size_t kEnd = kNeh + Problem::kEndConstraints;
+  static constexpr std::size_t kNc = P::kNc;
+  static constexpr int kMostRounds = 40;
+  static constexpr double kFirstShare = 1000.0;  ///< of the guess's cost in its misses
+  static constexpr double kLeastWeight = 1e-2, kMostFirstWeight = 1e3, kMostWeight = 1e9;
+
+  /// What a trajectory misses, by rows: the largest of each.
+  struct Misses {
+    std::array<double, kNh> equality{};
+    std::array<double, kEnd> terminal{};
+    std::array<double, kNc> constraint{};
+    double cost = 0.0;  ///< the problem's own, with its first prices
+
+    [[nodiscard]] double worst() const noexcept {
+      double worst = 0.0;
+      const auto add = [&](const auto& rows) {
+        for (const double miss : rows) worst = std::max(worst, miss);
+      };
+      add(equality);
+      add(terminal);
+      add(constraint);
+      return worst;
+    }
+  };
+
+  HardReport run(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline) noexcept {
+    constexpr int kPatience = 3;
+    HardReport report;
+    start(problem, x0, trajectory);
+    inner_.start_from_states(options_.start_from_states);
+    int left = options_.max_iterations;
+    int idle = 0;
+    Misses before;
+    double best = std::numeric_limits<double>::infinity();
+    for (;;) {
+      const bool converged = round(x0, trajectory, deadline, left, report);
+      const Misses now = measure(problem, trajectory, &report);
+      if (report.status == SolveStatus::kNotFinite) return report;
+      const bool holds = now.worst() <= options_.tolerance;
+      update(now, report.rounds > 1 ? &before : nullptr, trajectory.horizon);
+      if (converged && holds) return finish(report.status, now, report);
+      if (!converged || left <= 0 || deadline.spent()) break;
+      idle = now.worst() <= 0.5 * best ? 0 : idle + 1;
+      best = std::min(best, now.worst());
+      before = now;
+      if (report.rounds >= kMostRounds) break;
+      if (idle < kPatience) continue;
+      idle = 0;
+      if (is_infeasible(problem, x0, trajectory, deadline, left, report))
+        return finish(SolveStatus::kInfeasible, measure(problem, trajectory, &report), report);
+      if (left <= 0 || deadline.spent()) break;
+      before = measure(problem, trajectory, nullptr);
+      best = before.worst();
+    }
+    const Misses now = measure(problem, trajectory, &report);
+    const bool is_close = usable(report.status) && now.worst() <= options_.loose_tolerance;
+    return finish(is_close ? SolveStatus::kBudgetSpent : SolveStatus::kStalled, now, report);
+  }
+
+  /// One solve. True when it converged.
+  bool round(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
+             HardReport& report) noexcept {
+    inner_.allow_iterations(left);
+    const SolveReport now = inner_.solve(problem_, x0, trajectory, deadline);
+    inner_.start_from_states(true);
+    const int iterations = report.iterations + now.iterations;
+    const int sweeps = report.sweeps + now.sweeps;
+    static_cast<SolveReport&>(report) = now;
+    report.iterations = iterations;
+    report.sweeps = sweeps;
+    ++report.rounds;
+    left -= std::max(1, now.iterations);
+    return now.status == SolveStatus::kOptimal || now.status == SolveStatus::kAtFloor ||
+           now.status == SolveStatus::kInfeasible;
+  }
+
+  // ---- weights and multipliers
+
+  void start(const P& problem, const State& x0, Trajectory& trajectory) noexcept {
+    problem_.problem = &problem;
+    problem_.cost_root = 1.0;
+    if (prices_.is_known) {
+      put_prices(trajectory.horizon);
+      return;
+    }
+    problem_.price_factor.fill(1.0);
+    if (!options_.start_from_states) roll_out(problem, x0, trajectory);
+    const Misses guess = measure(problem, trajectory, nullptr);
+    unit_ = std::isfinite(guess.cost) ? std::max(1.0, guess.cost) : 1.0;
+    for (std::size_t n = 0; n < kNh; ++n) {
+      problem_.equality_shift[n].values.fill(0.0);
+      problem_.equality_weight[n].set(first_weight(guess.equality[n] * trajectory.horizon));
+    }
+    for (std::size_t n = 0; n < kEnd; ++n) {
+      problem_.terminal_shift[n] = 0.0;
+      problem_.terminal_weight[n].set(first_weight(guess.terminal[n]));
+    }
+  }
+  [[nodiscard]] double first_weight(double miss) const noexcept {
+    const double weight = kFirstShare * unit_ / std::max(1e-12, 0.5 * miss * miss);
+    return std::isfinite(weight) ? std::min(std::max(weight, kLeastWeight), kMostFirstWeight) : 1.0;
+  }
+
+  /// y ← y + ρ h; a weight or price whose row has not come down enough rises (eq. 39, 40).
+  void update(const Misses& now, const Misses* before, int horizon) noexcept {
+    constexpr double kEnough = 0.1;
+    constexpr double kRise = 10.0;
+    const auto rises = [&](double miss, double last) {
+      return before != nullptr && miss > options_.tolerance && miss > kEnough * last;
+    };
+    const auto raise = [&](auto& weight, double miss, double last) {
+      const double old = weight.rho;
+      if (rises(miss, last)) weight.set(std::min(kRise * old, std::max(old, kMostWeight * unit_)));
+      return old / weight.rho;
+    };
+    for (std::size_t n = 0; n < kNh; ++n) {
+      const double share =
+          raise(problem_.equality_weight[n], now.equality[n], before != nullptr ? before->equality[n] : 0.0);
+      for (int k = 0; k < horizon; ++k) {
+        const auto stage = static_cast<std::size_t>(k);
+        problem_.equality_shift[n][stage] = share * (problem_.equality_shift[n][stage] + equality_[n][stage]);
+      }
+    }
+    for (std::size_t n = 0; n < kEnd; ++n) {
+      const double share =
+          raise(problem_.terminal_weight[n], now.terminal[n], before != nullptr ? before->terminal[n] : 0.0);
+      double& shift = problem_.terminal_shift[n];
+      shift += terminal_[n];
+      if (n >= kNeh) shift = std::max(0.0, shift);
+      shift *= share;
+    }
+    for (std::size_t c = 0; c < kNc; ++c) {
+      if (now.constraint[c] > options_.tolerance) problem_.price_factor[c] *= kRise;
+    }
+    keep_prices(horizon);
+  }
+  void keep_prices(int horizon) noexcept {
+    prices_.is_known = true;
+    for (std::size_t n = 0; n < kNh; ++n) {
+      prices_.equality_weight[n] = problem_.equality_weight[n].rho;
+      for (std::size_t k = 0; k < static_cast<std::size_t>(horizon); ++k)
+        prices_.equality[n][k] = problem_.equality_weight[n].rho * problem_.equality_shift[n][k];
+    }
+    for (std::size_t n = 0; n < kEnd; ++n) {
+      prices_.terminal_weight[n] = problem_.terminal_weight[n].rho;
+      prices_.terminal[n] = problem_.terminal_weight[n].rho * problem_.terminal_shift[n];
+    }
+    prices_.price_factor = problem_.price_factor;
+  }
+  void put_prices(int horizon) noexcept {
+    for (std::size_t n = 0; n < kNh; ++n) {
+      problem_.equality_weight[n].set(prices_.equality_weight[n]);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(horizon); ++k)
+        problem_.equality_shift[n][k] = prices_.equality[n][k] / prices_.equality_weight[n];
+    }
+    for (std::size_t n = 0; n < kEnd; ++n) {
+      problem_.terminal_weight[n].set(prices_.terminal_weight[n]);
+      problem_.terminal_shift[n] = prices_.terminal[n] / prices_.terminal_weight[n];
+    }
+    problem_.price_factor = prices_.price_factor;
+  }
+
+  // ---- what cannot hold
+
+  /// Minimises the misses with ever less of the cost (eq. 41). True when they have a minimum above zero that
+  /// does not depend on how much. Else weights and multipliers are those of the point that was found.
+  bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
+                     int& left, HardReport& report) noexcept {
+    constexpr double kShare = 1e-5, kLess = 1e-3;
+    const auto factors = problem_.price_factor;
+    double share = kShare / unit_;
+    double last = std::numeric_limits<double>::infinity();
+    for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
+    problem_.terminal_shift.fill(0.0);
+    for (int turn = 0; turn < 2; ++turn, share *= kLess) {
+      weigh_misses(problem, share);
+      const bool converged = round(x0, trajectory, deadline, left, report);
+      const double worst = measure(problem, trajectory, &report).worst();
+      const bool is_minimum = turn > 0 && converged && worst > options_.tolerance && worst > 0.5 * last;
+      last = worst;
+      if (is_minimum) return true;
+      if (!converged || worst <= options_.tolerance || left <= 0) break;
+    }
+    problem_.cost_root = 1.0;  // of the same point: all weights by the share
+    problem_.price_factor = factors;
+    const double weight = std::min(1.0 / share, kMostWeight * unit_);
+    for (std::size_t n = 0; n < kNh; ++n) {
+      problem_.equality_weight[n].set(weight);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(trajectory.horizon); ++k)
+        problem_.equality_shift[n][k] = equality_[n][k];
+    }
+    for (std::size_t n = 0; n < kEnd; ++n) {
+      problem_.terminal_weight[n].set(weight);
+      problem_.terminal_shift[n] = n < kNeh ? terminal_[n] : std::max(0.0, terminal_[n]);
+    }
+    return false;
+  }
+  void weigh_misses(const P& problem, double share) noexcept {
+    problem_.cost_root = std::sqrt(share);
+    for (auto& weight : problem_.equality_weight) weight.set(1.0);
+    for (auto& weight : problem_.terminal_weight) weight.set(1.0);
+    for (std::size_t c = 0; c < kNc; ++c)
+      problem_.price_factor[c] = is_hard(problem, c) ? 1.0 / std::max(1e-12, price_of(problem, c).linear) : share;
+  }
+
+  // ---- values
+
+  static bool is_hard([[maybe_unused]] const P& problem, [[maybe_unused]] std::size_t c) noexcept {
+    if constexpr (detail::SaysWhatIsHard<P>) return problem.is_hard(static_cast<int>(c));
+    return false;
+  }
+  /// Cost and misses of a trajectory; keeps the values of rows, and tells the worst.
+  Misses measure(const P& problem, const Trajectory& t, HardReport* report) noexcept {
+    Misses misses;
+    double worst = 0.0;
+    const auto note = [&](double& miss, double value, Kind kind, int stage, std::size_t row) {
+      miss = value > miss ? value : miss;
+      if (report == nullptr || !(value > worst)) return;
+      worst = value;
+      report->miss = value;
+      report->kind = kind;
+      report->miss_stage = stage;
+      report->miss_row = static_cast<int>(row);
+    };
+    if (report != nullptr) {
+      report->miss = 0.0;
+      report->kind = Kind::kNone;
+      report->miss_stage = report->miss_row = -1;
+    }
+    for (int k = 0; k < t.horizon; ++k) {
+      const auto stage = static_cast<std::size_t>(k);
+      const auto x = to_array<One>(t.x[stage]);
+      const auto u = to_array<One>(t.u[stage]);
+      add_squares(problem.residual(k, x, u), misses.cost);
+      if constexpr (kNh > 0) {
+        const auto h = to_array<One>(problem.equality(k, x, u));
+        for (std::size_t n = 0; n < kNh; ++n) {
+          equality_[n][stage] = Evaluate::number(h[n]);
+          note(misses.equality[n], std::fabs(equality_[n][stage]), Kind::kEquality, k, n);
+        }
+      }
+      if constexpr (kNc > 0) {
+        const auto c = to_array<One>(problem.constraint(k, x, u));
+        for (std::size_t n = 0; n < kNc; ++n) {
+          const double beyond = std::max(0.0, Evaluate::number(c[n]));
+          if (is_hard(problem, n)) {
+            note(misses.constraint[n], beyond, Kind::kConstraint, k, n);
+          } else {
+            const SoftPenalty price = price_of(problem, n);
+            misses.cost += beyond * (price.linear + 0.5 * price.quadratic * beyond);
+          }
+        }
+      }
+    }
+    const auto x = to_array<One>(t.x[static_cast<std::size_t>(t.horizon)]);
+    add_squares(problem.terminal_residual(x), misses.cost);
+    if constexpr (kNeh > 0) {
+      const auto h = to_array<One>(problem.terminal_equality(x));
+      for (std::size_t n = 0; n < kNeh; ++n) {
+        terminal_[n] = Evaluate::number(h[n]);
+        note(misses.terminal[n], std::fabs(terminal_[n]), Kind::kTerminalEquality, t.horizon, n);
+      }
+    }
+    if constexpr (kEnd > kNeh) {
+      const auto g = to_array<One>(problem.terminal_constraint(x));
+      for (std::size_t n = 0; n < kEnd - kNeh; ++n) {
+        terminal_[kNeh + n] = Evaluate::number(g[n]);
+        note(misses.terminal[kNeh + n], std::max(0.0, terminal_[kNeh + n]), Kind::kTerminalConstraint,
+             t.horizon, n);
+      }
+    }
+    return misses;
+  }
+  template <class Row>
+  static void add_squares(const Row& row, double& sum) noexcept {
+    for (const One& r : to_array<One>(row)) sum += 0.5 * Evaluate::number(r) * Evaluate::number(r);
+  }
+
+  static HardReport finish(SolveStatus status, const Misses& now, HardReport report) noexcept {
+    report.status = status;
+    report.cost = now.cost;
+    return report;
+  }
+
+  SolverOptions options_;
+  OcpSolver<Problem, Capacity, Arch> inner_;
+  Problem problem_;
+  Prices prices_;
+  double unit_ = 1.0;  ///< of costs
+  std::array<std::array<double, Capacity>, kNh> equality_{};  ///< values at the last measure()
+  std::array<double, kEnd> terminal_{};
+};
+
+}  // namespace chicane::solver

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+
+#include "chicane/solver/problem.hpp"
+#include "chicane/solver/solution.hpp"
+#include "chicane/solver/stage_data.hpp"
+
+namespace chicane::solver {
+
+/// **What must hold**, beside the dynamics and the bounds of inputs. A problem of either level may have any
+/// of
+///
+///     static constexpr int kNh;    template <…> auto equality(k, x, u) const;           // = 0, k < N
+///     static constexpr int kNeh;   template <…> auto terminal_equality(x) const;        // = 0 of x_N
+///     static constexpr int kNec;   template <…> auto terminal_constraint(x) const;      // <= 0 of x_N
+///     bool is_hard(int constraint) const;    // constraint() <= 0 that must hold, whatever its price
+///     std::string_view equality_name(int) const, terminal_equality_name(int) const,
+///         terminal_constraint_name(int) const;                                          // optional
+///
+/// written like constraint() and terminal_residual(). OcpSolver then solves it by an augmented Lagrangian
+/// (docs/solver.md, eq. 38–42), and its report says by how much and where they are missed. Choose units in
+/// which a miss of `tolerance` is one that you do not mind. The soft penalty of a hard constraint is the
+/// price that it starts with.
+
+/// How many of each a problem has.
+template <class P>
+[[nodiscard]] constexpr int equality_count() noexcept {
+  if constexpr (requires { P::kNh; }) return P::kNh;
+  return 0;
+}
+template <class P>
+[[nodiscard]] constexpr int terminal_equality_count() noexcept {
+  if constexpr (requires { P::kNeh; }) return P::kNeh;
+  return 0;
+}
+template <class P>
+[[nodiscard]] constexpr int terminal_constraint_count() noexcept {
+  if constexpr (requires { P::kNec; }) return P::kNec;
+  return 0;
+}
+namespace detail {
+template <class P>
+concept SaysWhatIsHard = requires(const P& p) {
+  { p.is_hard(0) } -> std::same_as<bool>;
+};
+}  // namespace detail
+
+/// A problem with something that must hold.
+template <class P>
+concept HardProblem = OcpProblem<P> && (equality_count<P>() + terminal_equality_count<P>() +
+                                                terminal_constraint_count<P>() >
+                                            0 ||
+                                        detail::SaysWhatIsHard<P>);
+
+/// Multipliers of what must hold, d(cost)/d(right-hand side), and the weights that a solve ended with: to
+/// start the next one with.
+template <class P, int Capacity>
+struct HardPrices {
+  static constexpr std::size_t kNh = equality_count<P>();
+  static constexpr std::size_t kEnd = terminal_equality_count<P>() + terminal_constraint_count<P>();
+  std::array<StageData<Capacity>, kNh> equality{};
+  std::array<double, kEnd> terminal{};  ///< equalities, then constraints
+  std::array<double, kNh> equality_weight{};
+  std::array<double, kEnd> terminal_weight{};
+  std::array<double, P::kNc> price_factor{};  ///< of hard constraints' first prices
+  bool is_known = false;                      ///< false: a solve begins without
+
+  /// The same for a horizon that begins `steps` stages later; the last ones are repeated.
+  void shift(int steps, int horizon) noexcept {
+    for (auto& row : equality) {
+      for (int k = 0; k < horizon; ++k)
+        row[static_cast<std::size_t>(k)] = row.at(k + steps < horizon ? k + steps : horizon - 1);
+    }
+  }
+};
+
+/// What a report says of what must hold.
+struct HardReport : SolveReport {
+  enum class Kind : std::uint8_t { kNone, kEquality, kTerminalEquality, kTerminalConstraint, kConstraint };
+  double miss = 0.0;       ///< the largest miss, in its own unit
+  Kind kind = Kind::kNone;  ///< of what; none where all hold exactly
+  int miss_stage = -1;
+  int miss_row = -1;  ///< which of its kind
+  int rounds = 0;     ///< updates of multipliers, one solve before each; iterations are those of all
+};
+
+}  // namespace chicane::solver
