@@ -81,8 +81,8 @@ struct NoHardPrices {
 };
 
 /// Checks a trajectory with the prices of its soft constraints, `price(k, c)`, of the bounds on changes
-/// of inputs, `rate_price(k, m)`, and of what must hold. Everything else is computed here, by dual numbers, stage by stage: no line
-/// is shared with the solver.
+/// of inputs, `rate_price(k, m)`, and of what must hold. Everything else is computed here, by dual numbers,
+/// stage by stage: no line is shared with the solver.
 template <solver::OcpProblem P, int Capacity, class Price, class RatePrice, class HardPrice = NoHardPrices>
 KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::kNx, P::kNu, Capacity>& t,
                       const Price& price, const RatePrice& rate_price, const HardPrice& hard = {}) {

@@ -28,10 +28,18 @@ Family crane_in_least_time_family();
 Family periodic_pendulum_family();
 
 std::span<const Family> all_families() {
-  static const std::array families{cart_pole_family(),      planar_quadrotor_family(), quadrotor_family(),
-                                   rocket_landing_family(), chain_of_masses_family(),  parking_family(),
-                                   crane_family(),          double_pendulum_family(),  arm_family(),
-                                   acrobot_family(),        reactor_family(),          glider_family(),
+  static const std::array families{cart_pole_family(),
+                                   planar_quadrotor_family(),
+                                   quadrotor_family(),
+                                   rocket_landing_family(),
+                                   chain_of_masses_family(),
+                                   parking_family(),
+                                   crane_family(),
+                                   double_pendulum_family(),
+                                   arm_family(),
+                                   acrobot_family(),
+                                   reactor_family(),
+                                   glider_family(),
                                    hard_cart_pole_family(),
                                    hard_rocket_landing_family(),
                                    hard_planar_quadrotor_family(),

@@ -55,9 +55,7 @@ class IpoptProblem : public Ipopt::TNLP {
   /// The row of the change of input m of stage k.
   [[nodiscard]] int rate_row(int k, int m) const { return horizon * (kNx + kNc) + k * kNd + m; }
 
-  [[nodiscard]] int equality_row(int k, int n) const {
-    return horizon * (kNx + kNc + kNd) + k * kNh + n;
-  }
+  [[nodiscard]] int equality_row(int k, int n) const { return horizon * (kNx + kNc + kNd) + k * kNh + n; }
   [[nodiscard]] int terminal_row(int n) const { return horizon * (kNx + kNc + kNd + kNh) + n; }
 
   bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {

@@ -4,6 +4,8 @@
 #include <memory>
 
 #include "chicane/solver/ocp_solver.hpp"
+#include "families/hard.hpp"
+#include "families/measure_family.hpp"
 #include "problems/corridor_problem.hpp"
 #include "problems/described_problem.hpp"
 #include "problems/optimality.hpp"
@@ -149,6 +151,29 @@ constexpr Family kFamilies[] = {
     {Start::kWarm, 1, 20},    {Start::kWarm, 2, 30},     {Start::kWarm, 7, 40},     {Start::kWarm, 10, 40},
     {Start::kWarm, 20, 40},   {Start::kWarm, 50, 20}};
 INSTANTIATE_TEST_SUITE_P(OcpSolver, AgainstIpopt, testing::ValuesIn(kFamilies), name_of);
+
+/// Ipopt from the answer: its optimum there has the same cost.
+template <class P>
+void expect_hard_optima(bench::NaiveStart start, int count) {
+  using Measurement = bench::FamilyMeasurement<P>;
+  const auto ocp = std::make_unique<solver::OcpSolver<P, P::kHorizon>>(
+      solver::SolverOptions{.tolerance = 1e-8, .start_from_states = start == bench::NaiveStart::kLine});
+  for (int seed = 0; seed < count; ++seed) {
+    const auto instance = Measurement::instance(seed);
+    const auto own = std::make_unique<typename Measurement::Trajectory>(Measurement::guess(instance, start));
+    const auto report = ocp->solve(instance.problem, instance.start, *own);
+    ASSERT_EQ(report.status, SolveStatus::kOptimal) << seed;
+    const bench::OverArrays<P> arrays{instance.problem};
+    const double cost = bench::solve_with_ipopt(arrays, instance.start, *own);
+    ASSERT_NEAR(report.cost, cost, 1e-6 * std::fabs(cost)) << seed;
+  }
+}
+TEST(HardAgainstIpopt, AgreesWhereAPoleMustStand) {
+  expect_hard_optima<bench::HardCartPole>(bench::NaiveStart::kIdle, 6);
+}
+TEST(HardAgainstIpopt, AgreesWhereARocketMustStandOnItsPad) {
+  expect_hard_optima<bench::HardRocketLanding>(bench::NaiveStart::kLine, 6);
+}
 
 #else
 

@@ -115,5 +115,6 @@ template void solve_lq<arch::Native, Compact<solver::FullPattern<8, 2>>>(const L
 template void solve_lq<arch::Native, solver::FullPattern<5, 3>>(const LqData&, LqAnswer&) noexcept;
 template void solve_lq<arch::Native, solver::FullPattern<2, 4>>(const LqData&, LqAnswer&) noexcept;
 template void solve_lq<arch::Native, solver::FullPattern<10, 2>>(const LqData&, LqAnswer&) noexcept;
+template void solve_lq<arch::Native, Compact<solver::FullPattern<23, 2>>>(const LqData&, LqAnswer&) noexcept;
 
 }  // namespace chicane::test

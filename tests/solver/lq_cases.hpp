@@ -11,7 +11,7 @@ namespace chicane::test {
 /// A linear-quadratic problem as plain numbers, big enough for every pattern below.
 struct LqData {
   static constexpr std::size_t kMostStages = 24;
-  static constexpr std::size_t kMostStates = 12;
+  static constexpr std::size_t kMostStates = 23;
   static constexpr std::size_t kMostInputs = 4;
   static constexpr std::size_t kMostZ = kMostStates + 1 + kMostInputs;
 

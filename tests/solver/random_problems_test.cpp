@@ -41,5 +41,10 @@ TEST(RandomProblems, GetNoAnswersWithDefectsThatAreNotNumbers) {
   expect_confirmed<bench::RandomStructured<1, 1, 0>>(7420, 40);
 }
 
+// At a cost of 3e22 rounding is larger than any slope: "budget spent" was no answer that may be used.
+TEST(RandomProblems, GetNoAnswersWhoseCostHasNoDigitsLeft) {
+  expect_confirmed<bench::RandomStructured<4, 2, 2>>(245, 24);
+}
+
 }  // namespace
 }  // namespace chicane

@@ -62,7 +62,8 @@ template <HardProblem P>
       break;
     case Kind::kTerminalEquality:
       name = "terminal equality " + std::to_string(row);
-      if constexpr (requires { problem.terminal_equality_name(0); }) name = problem.terminal_equality_name(row);
+      if constexpr (requires { problem.terminal_equality_name(0); })
+        name = problem.terminal_equality_name(row);
       break;
     case Kind::kTerminalConstraint:
       name = "terminal constraint " + std::to_string(row);

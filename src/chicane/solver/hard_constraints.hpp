@@ -23,7 +23,7 @@ namespace chicane::solver {
 ///         terminal_constraint_name(int) const;                                          // optional
 ///
 /// written like constraint() and terminal_residual(). OcpSolver then solves it by an augmented Lagrangian
-/// (docs/solver.md, eq. 38–42), and its report says by how much and where they are missed. Choose units in
+/// (docs/solver.md, eq. 38–41), and its report says by how much and where they are missed. Choose units in
 /// which a miss of `tolerance` is one that you do not mind. The soft penalty of a hard constraint is the
 /// price that it starts with.
 
@@ -52,10 +52,9 @@ concept SaysWhatIsHard = requires(const P& p) {
 
 /// A problem with something that must hold.
 template <class P>
-concept HardProblem = OcpProblem<P> && (equality_count<P>() + terminal_equality_count<P>() +
-                                                terminal_constraint_count<P>() >
-                                            0 ||
-                                        detail::SaysWhatIsHard<P>);
+concept HardProblem = OcpProblem<P> &&
+    (equality_count<P>() + terminal_equality_count<P>() + terminal_constraint_count<P>() > 0 ||
+     detail::SaysWhatIsHard<P>);
 
 /// Multipliers of what must hold, d(cost)/d(right-hand side), and the weights that a solve ended with: to
 /// start the next one with.
@@ -82,7 +81,7 @@ struct HardPrices {
 /// What a report says of what must hold.
 struct HardReport : SolveReport {
   enum class Kind : std::uint8_t { kNone, kEquality, kTerminalEquality, kTerminalConstraint, kConstraint };
-  double miss = 0.0;       ///< the largest miss, in its own unit
+  double miss = 0.0;        ///< the largest miss, in its own unit
   Kind kind = Kind::kNone;  ///< of what; none where all hold exactly
   int miss_stage = -1;
   int miss_row = -1;  ///< which of its kind

@@ -66,32 +66,18 @@ class OcpSolver {
     CHICANE_ASSERT(trajectory.horizon >= 1 && trajectory.horizon <= Capacity);
     SolveReport report;
     if (!start(problem, x0, trajectory)) return give_up(problem, x0, trajectory, report);
-    for (;; ++report.iterations, work_ += share_of_horizon()) {
-      if constexpr (kCanFilter) {
-        if (is_filtering_ && !filter_turn(problem, deadline, report)) break;
-        if (is_filtering_) continue;
-      }
-      look(problem, report);
-      if (!is_finite(report) && !has_best_) {
-        if (stand_still(problem, report)) continue;
-        return give_up(problem, x0, trajectory, report);
-      }
-      if (is_growing() && residual(report) <= kGoodEnoughToGrow) {
-        if (!grow(problem)) break;
-        continue;
-      }
-      if (has_converged(report)) return finish(SolveStatus::kOptimal, problem, trajectory, report);
-      const bool budget_spent = work_ >= options_.max_iterations || deadline.spent();
-      shows_best_ = keep_best(report);
-      if (!shows_best_ && !budget_spent && has_lost_its_way(report)) {
-        if (is_at_floor(report)) return finish(SolveStatus::kAtFloor, problem, trajectory, report);
-        if (!recover(problem, trajectory, report)) break;
-        continue;
-      }
-      if (budget_spent) break;
-      if (!(full_steps_ ? full_step(problem, deadline, report) : descend(problem, deadline, report))) break;
-    }
-    return finish(SolveStatus::kBudgetSpent, problem, trajectory, report);
+    return run(problem, x0, trajectory, deadline, report);
+  }
+  /// The same after a small change of the problem's functions, from where the last solve ended: iterate,
+  /// slacks, multipliers and working set are kept. Pre: that was usable; horizon, bounds and prices are the
+  /// same; `trajectory` is its answer.
+  SolveReport solve_again(const P& problem, const State& x0, Trajectory& trajectory,
+                          Deadline deadline = Deadline::never()) noexcept {
+    begin();
+    is_again_ = true;
+    is_fresh_ = false;
+    is_exact_ = options_.second_order;
+    return run(problem, x0, trajectory, deadline, {});
   }
 
   /// After a solve: the price of state i of x_{k+1}, i.e. d(cost)/dx of what follows; k < horizon.
@@ -126,6 +112,7 @@ class OcpSolver {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr double kDefectShare = 1e-7;   ///< of the tolerance: Hessians amplify defects
   static constexpr double kDefectFloor = 2e-15;  ///< what rounding leaves
+  static constexpr double kRounding = 2.2e-16;
   static constexpr bool kCanFilter = has_filter_method<P>();
   /// Steps this short: exact curvature from here on. Dense problems pay for it.
   static constexpr double kNear = StructuredProblem<P> ? 1e-1 : 1e-2;
@@ -140,13 +127,47 @@ class OcpSolver {
   static_assert(ProblemPattern<P>::keeps_previous_inputs(),
                 "dynamics() has to return input m as it is for the state kPreviousInput[m]");
 
-  bool start(const P& problem, const State& x0, const Trajectory& trajectory) noexcept {
+  /// All turns, from an iterate that is ready to be looked at.
+  CHICANE_INLINE SolveReport run(const P& problem, const State& x0, Trajectory& trajectory,
+                                 const Deadline& deadline, SolveReport report) noexcept {
+    for (;; ++report.iterations, work_ += share_of_horizon()) {
+      if constexpr (kCanFilter) {
+        if (is_filtering_ && !filter_turn(problem, deadline, report)) break;
+        if (is_filtering_) continue;
+      }
+      look(problem, report);
+      if (!is_finite(report) && !has_best_) {
+        if (stand_still(problem, report)) continue;
+        return give_up(problem, x0, trajectory, report);
+      }
+      if (is_growing() && residual(report) <= kGoodEnoughToGrow) {
+        if (!grow(problem)) break;
+        continue;
+      }
+      if (has_converged(report)) return finish(SolveStatus::kOptimal, problem, trajectory, report);
+      const bool budget_spent = work_ >= options_.max_iterations || deadline.spent();
+      shows_best_ = keep_best(report);
+      if (!shows_best_ && !budget_spent && has_lost_its_way(report)) {
+        if (is_at_floor(report)) return finish(SolveStatus::kAtFloor, problem, trajectory, report);
+        if (!recover(problem, trajectory, report)) break;
+        continue;
+      }
+      if (budget_spent) break;
+      if (!(full_steps_ ? full_step(problem, deadline, report) : descend(problem, deadline, report))) break;
+    }
+    return finish(SolveStatus::kBudgetSpent, problem, trajectory, report);
+  }
+
+  CHICANE_INLINE void begin() noexcept {
     full_steps_ = is_fresh_ = true;
     has_best_ = shows_best_ = is_exact_ = has_grown_ = false;
-    is_filtering_ = has_filtered_ = stands_still_ = false;
+    is_filtering_ = has_filtered_ = stands_still_ = is_again_ = false;
     work_ = 0.0;
     progress_.restart();
     descent_.start();
+  }
+  bool start(const P& problem, const State& x0, const Trajectory& trajectory) noexcept {
+    begin();
     target_ = static_cast<std::size_t>(trajectory.horizon);
     t_.horizon = target_;
     for (std::size_t i = 0; i < kNx; ++i) {
@@ -394,59 +415,12 @@ class OcpSolver {
   /// Within the loose tolerance; the barrier, too, which is what complementarity lacks to zero.
   [[nodiscard]] bool is_close(const SolveReport& report) const noexcept {
     const double gap = kCanFilter && P::kNc > 0 ? barrier_.mu() : 0.0;
-    return std::max(residual(report), gap) <= options_.loose_tolerance;
+    const double digits = kCanFilter ? kRounding * std::fabs(report.cost) : 0.0;  // that a cost has
+    return std::max({residual(report), gap, digits}) <= options_.loose_tolerance;
   }
-  /// Constraints and prices are to be of the answer, and the report of both.
-  void look_at_best(const P& problem, SolveReport& report) noexcept {
-    is_exact_ = false;
-    if constexpr (kCanFilter) {
-      full_steps_ = true;
-      is_fresh_ = false;
-      barrier_.restore(best_slacks_, t_.horizon);
-      look(problem, report);
-    } else {
-      full_steps_ = false;
-      SolveReport unused;
-      look(problem, unused);
-    }
-  }
-  /// Returns the best iterate, extended to the whole horizon; unless it is optimal, its residuals decide
-  /// the status.
+  void look_at_best(const P& problem, SolveReport& report) noexcept;
   SolveReport finish(SolveStatus status, const P& problem, Trajectory& trajectory,
-                     SolveReport report) noexcept {
-    if (status != SolveStatus::kOptimal) {
-      const int iterations = report.iterations;
-      const int sweeps = report.sweeps;
-      if (has_best_) {
-        t_ = best_;
-        report = best_report_;
-        if (!shows_best_) look_at_best(problem, report);
-      }
-      if (kCanFilter && !(has_best_ && is_close(report))) take_cheapest(problem, trajectory, report);
-      if (is_growing() || !has_best_) {
-        while (is_growing()) grow(problem);
-        look(problem, report);
-        if (!is_finite(report)) return give_up(problem, t_.template state<double>(0), trajectory, report);
-      }
-      report.iterations = iterations;
-      report.sweeps = sweeps;
-      if (status != SolveStatus::kAtFloor)
-        status = is_close(report) ? SolveStatus::kBudgetSpent : SolveStatus::kStalled;
-    } else if (barrier_.exceeds_a_cap(problem, t_.horizon)) {
-      status = SolveStatus::kInfeasible;
-    }
-    t_.write(trajectory);
-    for (std::size_t k = 0; k < t_.horizon; ++k) {  // u + (bound − u) may miss the bound by one rounding
-      for (std::size_t m = 0; m < kNu; ++m)
-        trajectory.u[k][m] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
-    }
-    now_.chains.admit(t_.horizon,
-                      [&](std::size_t k, std::size_t m) -> double& { return trajectory.u[k][m]; });
-    now_.chains.tell(report);
-    tell_violation(problem, barrier_, t_.horizon, report);
-    report.status = status;
-    return report;
-  }
+                     SolveReport report) noexcept;
 
   /// The data are not finite: leaves admissible inputs and finite states behind.
   SolveReport give_up(const P& problem, const State& x0, Trajectory& trajectory,
@@ -478,6 +452,7 @@ class OcpSolver {
   bool is_filtering_ = false;  ///< steps are the filter method's
   bool has_filtered_ = false;  ///< it has been used in this solve
   bool stands_still_ = false;  ///< the start could not be simulated
+  bool is_again_ = false;      ///< the start is near the solution
   bool is_fresh_ = true;       ///< slacks and working set are to be guessed anew
   std::size_t target_ = 0;     ///< horizon asked for
   double work_ = 0.0;          ///< turns so far, those of a shorter horizon by their share
@@ -487,4 +462,5 @@ class OcpSolver {
 }  // namespace chicane::solver
 
 #include "chicane/solver/detail/hard_solver.hpp"
+#include "chicane/solver/detail/ocp_endings.hpp"
 #include "chicane/solver/detail/ocp_fallback.hpp"

@@ -80,8 +80,12 @@ namespace chicane::solver {
 /// - they are called from several places: without CHICANE_INLINE on them and on what they call, jets
 /// may go through memory.
 ///
-/// A stage may have at most 24 variables (states and inputs). All functions are called on the thread that
-/// calls solve(), during the call, in any order; a problem that several threads solve at once is only read.
+/// **What must hold exactly**, equalities and constraints at the end among it: hard_constraints.hpp.
+///
+/// A stage may have at most 24 variables (states and inputs); about 60 where the functions are over arrays,
+/// as in level 1 with `class K`, and `static constexpr bool kGaussNewton = true`. All functions are called on
+/// the thread that calls solve(), during the call, in any order; a problem that several threads solve at once
+/// is only read.
 
 namespace detail {
 

@@ -96,8 +96,8 @@ class Augmented : public detail::PreviousInputs<P> {
   template <class K, class X, class U>
   requires requires(const P& p, K k, const X& x, const U& u) { p.residual(k, x, u); }
   CHICANE_INLINE auto residual(K k, const X& x, const U& u) const {
-    const auto own = detail::map_row(problem->residual(k, x, u),
-                                     [&](std::size_t, const auto& r) CHICANE_INLINE { return cost_root * r; });
+    const auto own = detail::map_row(
+        problem->residual(k, x, u), [&](std::size_t, const auto& r) CHICANE_INLINE { return cost_root * r; });
     if constexpr (kEqualities > 0) {
       const auto shifted = [&](std::size_t n, const auto& h) CHICANE_INLINE {
         return equality_weight[n].root * (h + equality_shift[n].at(k));
@@ -110,13 +110,16 @@ class Augmented : public detail::PreviousInputs<P> {
   template <class X>
   requires requires(const P& p, const X& x) { p.terminal_residual(x); }
   CHICANE_INLINE auto terminal_residual(const X& x) const {
-    const auto own = detail::map_row(problem->terminal_residual(x),
-                                     [&](std::size_t, const auto& r) CHICANE_INLINE { return cost_root * r; });
+    const auto own =
+        detail::map_row(problem->terminal_residual(x),
+                        [&](std::size_t, const auto& r) CHICANE_INLINE { return cost_root * r; });
     return detail::join(detail::join(own, equalities_at_end(x)), constraints_at_end(x));
   }
   template <class K, class X, class U>
   requires(kNc > 0 && requires(const P& p, K k, const X& x, const U& u) { p.constraint(k, x, u); })
-  CHICANE_INLINE auto constraint(K k, const X& x, const U& u) const { return problem->constraint(k, x, u); }
+      CHICANE_INLINE auto constraint(K k, const X& x, const U& u) const {
+    return problem->constraint(k, x, u);
+  }
 
   [[nodiscard]] SoftPenalty soft_penalty(int c) const requires(kNc > 0) {
     SoftPenalty price = problem->soft_penalty(c);
@@ -150,10 +153,11 @@ class Augmented : public detail::PreviousInputs<P> {
   template <class X>
   CHICANE_INLINE auto constraints_at_end(const X& x) const {
     if constexpr (kEndConstraints > 0) {
-      return detail::map_row(
-          problem->terminal_constraint(x), [&](std::size_t n, const auto& g) CHICANE_INLINE {
-            return terminal_weight[kEndEqualities + n].root * positive_part(g + terminal_shift[kEndEqualities + n]);
-          });
+      return detail::map_row(problem->terminal_constraint(x),
+                             [&](std::size_t n, const auto& g) CHICANE_INLINE {
+                               return terminal_weight[kEndEqualities + n].root *
+                                      positive_part(g + terminal_shift[kEndEqualities + n]);
+                             });
     } else {
       return nothing(x);
     }

@@ -17,6 +17,15 @@ namespace chicane::solver {
 /// Calls the functions of a problem for eight stages and returns jets over packs, whatever its level:
 /// structured ones in lanes with a type for each variable; those that take lanes of one type likewise; others
 /// stage by stage.
+/// Value and all first derivatives of a row of a problem with many variables.
+template <class V, int Count>
+struct WideRow {
+  static constexpr bool kIsDense = true;
+  V v;
+  std::array<V, static_cast<std::size_t>(Count)> slopes;
+  std::array<V, 0> curvatures;
+};
+
 template <OcpProblem P, class Arch>
 class Evaluation {
  public:
@@ -44,7 +53,9 @@ class Evaluation {
   /// Functions of the stages k0 … k0 + 7 with derivatives up to Order.
   template <int Order, class Point>
   CHICANE_INLINE static auto stages(const P& problem, const Point& t, std::size_t k0) noexcept {
-    if constexpr (kIsStructured) {
+    if constexpr (kIsLarge) {
+      return in_blocks(problem, t, k0);
+    } else if constexpr (kIsStructured) {
       return evaluate<Order>(problem, StageLanes<V>{static_cast<int>(k0)}, seeds<Order, 0, kNx>(t.x, k0),
                              seeds<Order, kNx, kNu>(t.u, k0));
     } else if constexpr (kTakesLanes) {
@@ -78,7 +89,13 @@ class Evaluation {
   /// Terminal residuals; their values through number() and slope_number().
   template <int Order, class Point>
   static auto end(const P& problem, const Point& t) noexcept {
-    if constexpr (kIsStructured) {
+    if constexpr (kIsLarge) {
+      Rows<double, P::kNe> rows;
+      blocks<double>([&](int begin, auto seed) {
+        put(problem.terminal_residual(seed.template operator()<0, kNx>(t.x, t.horizon)), begin, rows);
+      });
+      return rows;
+    } else if constexpr (kIsStructured) {
       StateJets<P, EndValue, Order> x;
       jet::repeat<kNx>([&](auto i) CHICANE_INLINE { std::get<i>(x).v = EndValue(t.x[i][t.horizon]); });
       return problem.terminal_residual(x);
@@ -98,8 +115,23 @@ class Evaluation {
   }
 
  private:
+  /// Problems of many variables: derivatives by one block of them after the other.
+  static constexpr bool kIsLarge = kVariables > static_cast<int>(kMostUnrolled);
+  static constexpr int kBlocks = kIsLarge ? (kVariables + 15) / 16 : 1;
+  static constexpr int kBlock = (kVariables + kBlocks - 1) / kBlocks;
+  template <class T>
+  using BlockJet = Jet<T, 1, first_variables(kBlock)>;
+
   template <class T, int Order>
-  using Dense = DenseJet<P, T, Order>;
+  struct DenseOf {
+    using Type = DenseJet<P, T, Order>;
+  };
+  template <class T, int Order>
+  requires(Order >= 0 && kIsLarge) struct DenseOf<T, Order> {
+    using Type = BlockJet<T>;
+  };
+  template <class T, int Order>
+  using Dense = typename DenseOf<T, Order>::Type;
   static constexpr bool kTakesLanes =
       !kIsStructured && requires(const P& p, StageLanes<V> k, const std::array<Dense<V, 1>, kNx>& x,
                                  const std::array<Dense<V, 1>, kNu>& u) {
@@ -107,6 +139,57 @@ class Evaluation {
     p.residual(k, x, u);
     requires kNc == 0 || requires { p.constraint(k, x, u); };
   };
+  static_assert(
+      !kIsLarge || (kTakesLanes && !has_hessians<P>()),
+      "more than 24 variables in a stage: functions over arrays of one scalar type, with `class K` for "
+      "the stage, and kGaussNewton = true");
+
+  template <class T, int Count>
+  using Rows = std::array<WideRow<T, kVariables>, static_cast<std::size_t>(Count)>;
+  /// Calls visit(begin, seed) for each block of variables; seed<Begin, Count>(values, k0): variables Begin …
+  /// as jets over it.
+  template <class T, class Visit>
+  static void blocks(const Visit& visit) noexcept {
+    for (int begin = 0; begin < kVariables; begin += kBlock) {
+      visit(begin, [begin]<int Begin, int Count, class Values>(const Values& values, std::size_t k0) {
+        std::array<BlockJet<T>, static_cast<std::size_t>(Count)> result;
+        for (int n = 0; n < Count; ++n) {
+          auto& jet = result[static_cast<std::size_t>(n)];
+          if constexpr (std::is_same_v<T, double>) {
+            jet = BlockJet<T>(values[n][k0]);
+          } else {
+            jet = BlockJet<T>(T::load(values[n] + k0));
+          }
+          const int at = Begin + n - begin;
+          if (at >= 0 && at < kBlock) jet.slopes[static_cast<std::size_t>(at)] = T(1.0);
+        }
+        return result;
+      });
+    }
+  }
+  /// What a function returned over the variables from `begin` on.
+  template <class T, std::size_t Count>
+  static void put(const std::array<BlockJet<T>, Count>& from, int begin,
+                  std::array<WideRow<T, kVariables>, Count>& rows) noexcept {
+    for (std::size_t i = 0; i < Count; ++i) {
+      rows[i].v = from[i].v;
+      for (int j = 0; j < kBlock && begin + j < kVariables; ++j)
+        rows[i].slopes[static_cast<std::size_t>(begin + j)] = from[i].slopes[static_cast<std::size_t>(j)];
+    }
+  }
+  template <class Point>
+  static auto in_blocks(const P& problem, const Point& t, std::size_t k0) noexcept {
+    StageRows<Rows<V, kNx>, Rows<V, P::kNr>, Rows<V, kNc>> all;
+    blocks<V>([&](int begin, auto seed) {
+      const StageLanes<V> k{static_cast<int>(k0)};
+      const auto x = seed.template operator()<0, kNx>(t.x, k0);
+      const auto u = seed.template operator()<kNx, kNu>(t.u, k0);
+      put(problem.dynamics(k, x, u), begin, all.next);
+      put(problem.residual(k, x, u), begin, all.residual);
+      if constexpr (kNc > 0) put(problem.constraint(k, x, u), begin, all.constraint);
+    });
+    return all;
+  }
 
   template <int Order, class K, class X, class U>
   CHICANE_INLINE static auto evaluate(const P& problem, K k, const X& x, const U& u) noexcept {

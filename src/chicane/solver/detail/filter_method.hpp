@@ -50,9 +50,9 @@ class FilterMethod {
   };
 
   /// Begins at `t`, whose inputs are moved off their bounds. The barrier will end at `final_mu` in the
-  /// problem's own unit of costs.
-  void start(const P& problem, double final_mu, bool is_exact, Look& now, Lq& lq, Slacks& slacks, Point& t,
-             SolveReport& report) noexcept {
+  /// problem's own unit of costs; it begins lower where `is_near` a solution.
+  void start(const P& problem, double final_mu, bool is_exact, bool is_near, Look& now, Lq& lq,
+             Slacks& slacks, Point& t, SolveReport& report) noexcept {
     for (std::size_t m = 0; m < kNu; ++m) {
       for (std::size_t k = 0; k < t.horizon; ++k)
         t.u[m][k] = Bounds::inside(t.u[m][k], now.lower[m][k], now.upper[m][k]);
@@ -70,7 +70,7 @@ class FilterMethod {
     }
     for (std::size_t i = 0; i < kNx; ++i) steepest = std::max(steepest, std::fabs(lq.lq.terminal[kNx][i]));
     unit_ = std::isfinite(steepest) ? std::max(1.0, steepest / kSteep) : 1.0;
-    mu_ = kFirstBarrier * unit_;
+    mu_ = (is_near ? kNearBarrier : kFirstBarrier) * unit_;
     final_mu_ = std::min(final_mu, mu_);
     slacks.set_mu(mu_);
     is_fresh_ = true;
@@ -132,6 +132,7 @@ class FilterMethod {
   }
 
  private:
+  static constexpr double kNearBarrier = 1e-3;
   static constexpr double kFirstBarrier = 0.1;  ///< where gradients are at most kSteep
   static constexpr double kSteep = 100.0;
   static constexpr double kSolvedAt = 10.0;  ///< a barrier's problem is solved at this many times the barrier

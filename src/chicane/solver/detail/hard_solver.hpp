@@ -16,7 +16,7 @@
 namespace chicane::solver {
 
 /// OcpSolver for problems with something that must hold beside dynamics and bounds (hard_constraints.hpp): an
-/// augmented Lagrangian around the solver for problems without (docs/solver.md, eq. 38–42). Each round is one
+/// augmented Lagrangian around the solver for problems without (docs/solver.md, eq. 38–41). Each round is one
 /// solve, from the second on from the point before, and an update of multipliers, weights and prices. Where
 /// that gets nowhere, the misses alone are minimised: what cannot hold is reported, else the rounds go on
 /// from the point that keeps everything.
@@ -33,7 +33,8 @@ class OcpSolver<P, Capacity, Arch> {
   void allow_iterations(int most) noexcept { options_.max_iterations = most; }
 
   /// As OcpSolver::solve of problems without. kOptimal and kAtFloor: no miss above `tolerance`;
-  /// kBudgetSpent: none above `loose_tolerance`; kInfeasible: the misses have a local minimum above zero here.
+  /// kBudgetSpent: none above `loose_tolerance`; kInfeasible: the misses have a local minimum above zero
+  /// here.
   HardReport solve(const P& problem, const State& x0, Trajectory& trajectory,
                    Deadline deadline = Deadline::never()) noexcept {
     prices_.is_known = false;
@@ -76,8 +77,9 @@ class OcpSolver<P, Capacity, Arch> {
   static constexpr std::size_t kEnd = kNeh + Problem::kEndConstraints;
   static constexpr std::size_t kNc = P::kNc;
   static constexpr int kMostRounds = 40;
-  static constexpr double kFirstShare = 1000.0;  ///< of the guess's cost in its misses
-  static constexpr double kLeastWeight = 1e-2, kMostFirstWeight = 1e3, kMostWeight = 1e9;
+  static constexpr double kFirstShare = 10.0;  ///< of the guess's cost in its misses
+  static constexpr double kLeastWeight = 1e-2, kMostFirstWeight = 10.0, kMostWeight = 1e9;
+  static constexpr double kHeavy = 1e3;  ///< times these, where the first ones lead nowhere
 
   /// What a trajectory misses, by rows: the largest of each.
   struct Misses {
@@ -98,46 +100,72 @@ class OcpSolver<P, Capacity, Arch> {
     }
   };
 
-  HardReport run(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline) noexcept {
+  HardReport run(const P& problem, const State& x0, Trajectory& trajectory,
+                 const Deadline& deadline) noexcept {
     constexpr int kPatience = 3;
     HardReport report;
+    guess_ = trajectory;
+    kept_miss_ = std::numeric_limits<double>::infinity();
     start(problem, x0, trajectory);
-    inner_.start_from_states(options_.start_from_states);
     int left = options_.max_iterations;
+    bool may_start_again = !prices_.is_known;
     int idle = 0;
+    bool is_first = true;
     Misses before;
     double best = std::numeric_limits<double>::infinity();
+    const auto is_spent = [&] { return left <= 0 || deadline.spent() || report.rounds >= kMostRounds; };
     for (;;) {
       const bool converged = round(x0, trajectory, deadline, left, report);
       const Misses now = measure(problem, trajectory, &report);
       if (report.status == SolveStatus::kNotFinite) return report;
-      const bool holds = now.worst() <= options_.tolerance;
-      update(now, report.rounds > 1 ? &before : nullptr, trajectory.horizon);
-      if (converged && holds) return finish(report.status, now, report);
-      if (!converged || left <= 0 || deadline.spent()) break;
+      update(now, is_first ? nullptr : &before, trajectory.horizon);
+      if (converged && now.worst() <= options_.tolerance) return finish(report.status, now, report);
+      if (is_spent()) break;
       idle = now.worst() <= 0.5 * best ? 0 : idle + 1;
       best = std::min(best, now.worst());
       before = now;
-      if (report.rounds >= kMostRounds) break;
-      if (idle < kPatience) continue;
-      idle = 0;
-      if (is_infeasible(problem, x0, trajectory, deadline, left, report))
+      is_first = false;
+      if (converged && idle < kPatience) continue;
+      if (may_start_again) {  // by another way: misses count from the start
+        may_start_again = false;
+        kept_ = trajectory;
+        kept_miss_ = now.worst();
+        trajectory = guess_;
+        start_with_weights(trajectory.horizon, kHeavy);
+        is_first = true;
+      } else if (take_better(now.worst(), trajectory); !converged) {
+        break;
+      } else if (is_infeasible(problem, x0, trajectory, deadline, left, report)) {
         return finish(SolveStatus::kInfeasible, measure(problem, trajectory, &report), report);
-      if (left <= 0 || deadline.spent()) break;
+      } else if (is_spent()) {
+        break;
+      }
+      idle = 0;
       before = measure(problem, trajectory, nullptr);
-      best = before.worst();
+      best = is_first ? std::numeric_limits<double>::infinity() : before.worst();
     }
+    const bool is_replaced = take_better(measure(problem, trajectory, nullptr).worst(), trajectory);
     const Misses now = measure(problem, trajectory, &report);
-    const bool is_close = usable(report.status) && now.worst() <= options_.loose_tolerance;
+    const bool is_close = !is_replaced && usable(report.status) && now.worst() <= options_.loose_tolerance;
     return finish(is_close ? SolveStatus::kBudgetSpent : SolveStatus::kStalled, now, report);
+  }
+
+  /// The point that the first weights led to, if it misses less than `miss`: true then.
+  bool take_better(double miss, Trajectory& trajectory) noexcept {
+    if (!(kept_miss_ < miss)) return false;
+    trajectory = kept_;
+    kept_miss_ = std::numeric_limits<double>::infinity();
+    return !(can_go_on_ = false);
   }
 
   /// One solve. True when it converged.
   bool round(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
              HardReport& report) noexcept {
     inner_.allow_iterations(left);
-    const SolveReport now = inner_.solve(problem_, x0, trajectory, deadline);
+    const SolveReport now = can_go_on_ ? inner_.solve_again(problem_, x0, trajectory, deadline)
+                                       : inner_.solve(problem_, x0, trajectory, deadline);
     inner_.start_from_states(true);
+    can_go_on_ = usable(now.status);
     const int iterations = report.iterations + now.iterations;
     const int sweeps = report.sweeps + now.sweeps;
     static_cast<SolveReport&>(report) = now;
@@ -154,21 +182,27 @@ class OcpSolver<P, Capacity, Arch> {
   void start(const P& problem, const State& x0, Trajectory& trajectory) noexcept {
     problem_.problem = &problem;
     problem_.cost_root = 1.0;
-    if (prices_.is_known) {
-      put_prices(trajectory.horizon);
-      return;
-    }
-    problem_.price_factor.fill(1.0);
+    can_go_on_ = false;
     if (!options_.start_from_states) roll_out(problem, x0, trajectory);
-    const Misses guess = measure(problem, trajectory, nullptr);
-    unit_ = std::isfinite(guess.cost) ? std::max(1.0, guess.cost) : 1.0;
+    first_ = measure(problem, trajectory, nullptr);
+    unit_ = std::isfinite(first_.cost) ? std::max(1.0, first_.cost) : 1.0;
+    if (!prices_.is_known) return start_with_weights(trajectory.horizon, 1.0);
+    inner_.start_from_states(options_.start_from_states);
+    put_prices(trajectory.horizon);
+  }
+  /// No multipliers, and the first weights of the guess, times `factor` (eq. 40).
+  void start_with_weights(int horizon, double factor) noexcept {
+    can_go_on_ = false;
+    inner_.start_from_states(options_.start_from_states);
+    problem_.cost_root = 1.0;
+    problem_.price_factor.fill(1.0);
     for (std::size_t n = 0; n < kNh; ++n) {
       problem_.equality_shift[n].values.fill(0.0);
-      problem_.equality_weight[n].set(first_weight(guess.equality[n] * trajectory.horizon));
+      problem_.equality_weight[n].set(factor * first_weight(first_.equality[n] * horizon));
     }
     for (std::size_t n = 0; n < kEnd; ++n) {
       problem_.terminal_shift[n] = 0.0;
-      problem_.terminal_weight[n].set(first_weight(guess.terminal[n]));
+      problem_.terminal_weight[n].set(factor * first_weight(first_.terminal[n]));
     }
   }
   [[nodiscard]] double first_weight(double miss) const noexcept {
@@ -205,7 +239,9 @@ class OcpSolver<P, Capacity, Arch> {
       shift *= share;
     }
     for (std::size_t c = 0; c < kNc; ++c) {
-      if (now.constraint[c] > options_.tolerance) problem_.price_factor[c] *= kRise;
+      if (now.constraint[c] <= options_.tolerance) continue;
+      problem_.price_factor[c] *= kRise;
+      can_go_on_ = false;
     }
     keep_prices(horizon);
   }
@@ -243,12 +279,15 @@ class OcpSolver<P, Capacity, Arch> {
                      int& left, HardReport& report) noexcept {
     constexpr double kShare = 1e-5, kLess = 1e-3;
     const auto factors = problem_.price_factor;
+    const double unit = std::max(options_.tolerance, measure(problem, trajectory, nullptr).worst());
     double share = kShare / unit_;
     double last = std::numeric_limits<double>::infinity();
     for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
     problem_.terminal_shift.fill(0.0);
-    for (int turn = 0; turn < 2; ++turn, share *= kLess) {
-      weigh_misses(problem, share);
+    for (int turn = 0; turn < 2; ++turn) {
+      if (turn > 0) share *= kLess;
+      weigh_misses(problem, share, unit);
+      can_go_on_ = false;
       const bool converged = round(x0, trajectory, deadline, left, report);
       const double worst = measure(problem, trajectory, &report).worst();
       const bool is_minimum = turn > 0 && converged && worst > options_.tolerance && worst > 0.5 * last;
@@ -256,9 +295,11 @@ class OcpSolver<P, Capacity, Arch> {
       if (is_minimum) return true;
       if (!converged || worst <= options_.tolerance || left <= 0) break;
     }
+    report.status = SolveStatus::kStalled;  // it converged, but not with the whole cost
+    can_go_on_ = false;
     problem_.cost_root = 1.0;  // of the same point: all weights by the share
     problem_.price_factor = factors;
-    const double weight = std::min(1.0 / share, kMostWeight * unit_);
+    const double weight = std::min(1.0 / (share * unit * unit), kMostWeight * unit_);
     for (std::size_t n = 0; n < kNh; ++n) {
       problem_.equality_weight[n].set(weight);
       for (std::size_t k = 0; k < static_cast<std::size_t>(trajectory.horizon); ++k)
@@ -270,12 +311,14 @@ class OcpSolver<P, Capacity, Arch> {
     }
     return false;
   }
-  void weigh_misses(const P& problem, double share) noexcept {
+  /// The cost by `share`, misses in multiples of `unit`: what is small counts, too.
+  void weigh_misses(const P& problem, double share, double unit) noexcept {
     problem_.cost_root = std::sqrt(share);
-    for (auto& weight : problem_.equality_weight) weight.set(1.0);
-    for (auto& weight : problem_.terminal_weight) weight.set(1.0);
+    for (auto& weight : problem_.equality_weight) weight.set(1.0 / (unit * unit));
+    for (auto& weight : problem_.terminal_weight) weight.set(1.0 / (unit * unit));
     for (std::size_t c = 0; c < kNc; ++c)
-      problem_.price_factor[c] = is_hard(problem, c) ? 1.0 / std::max(1e-12, price_of(problem, c).linear) : share;
+      problem_.price_factor[c] =
+          is_hard(problem, c) ? 1.0 / (unit * std::max(1e-12, price_of(problem, c).linear)) : share;
   }
 
   // ---- values
@@ -362,6 +405,11 @@ class OcpSolver<P, Capacity, Arch> {
   Problem problem_;
   Prices prices_;
   double unit_ = 1.0;  ///< of costs
+  Misses first_;       ///< of the guess
+  Trajectory guess_;
+  Trajectory kept_;         ///< of the first weights, where others were tried as well
+  double kept_miss_ = 0.0;  ///< largest of its misses
+  bool can_go_on_ = false;  ///< the next round differs little from the last one
   std::array<std::array<double, Capacity>, kNh> equality_{};  ///< values at the last measure()
   std::array<double, kEnd> terminal_{};
 };

@@ -126,7 +126,11 @@ class Linearisation {
     each_row<typename Evaluate::EndValue, Order>(rows, [&](auto, const auto& r) CHICANE_INLINE {
       const double value = Evaluate::number(r.v);
       cost += 0.5 * value * value;
-      add_end_row(r, value, lq);
+      if constexpr (Layout::is_large()) {
+        add_large_end_row(r, value, lq);
+      } else {
+        add_end_row(r, value, lq);
+      }
     });
     std::copy(lq.terminal[kNx], lq.terminal[kNx] + kNx, lambda);
     return cost;
@@ -150,6 +154,13 @@ class Linearisation {
         if constexpr (p.i != p.j) lq.terminal[p.j][p.i] += share;
       }
     });
+  }
+  template <class R>
+  static void add_large_end_row(const R& r, double value, Lq& lq) noexcept {
+    for (std::size_t i = 0; i < kNx; ++i) {
+      lq.terminal[kNx][i] += value * r.slopes[i];
+      for (std::size_t j = 0; j < kNx; ++j) lq.terminal[i][j] += r.slopes[i] * r.slopes[j];
+    }
   }
   /// Calls visit(i) for every state that a row depends on.
   template <class R, class Visit>
@@ -178,7 +189,8 @@ class Linearisation {
     if constexpr (kNc > 0)
       add_soft<Order>(problem, rows.constraint, k0, live, how.centre, slacks, gradient, l, sums);
     if (!has_filter_method<P>() || state_residual == nullptr) [[likely]] {
-      run_adjoint(t.horizon, k0, f, gradient, lambda);
+      if constexpr (Layout::is_large()) run_large_adjoint(t.horizon, k0, f, gradient, lambda);
+      if constexpr (!Layout::is_large()) run_adjoint(t.horizon, k0, f, gradient, lambda);
     } else {
       miss_adjoint(k0, f, gradient);
     }
@@ -278,19 +290,48 @@ class Linearisation {
     unroll<kNx>([&](auto i) CHICANE_INLINE { lambda[i] = now[i]; });
   }
 
+  /// The same in loops, where every entry counts.
+  void run_large_adjoint(std::size_t horizon, std::size_t k0, const Jacobians& f, const Gradient& gradient,
+                         double (&lambda)[kNx]) noexcept {
+    for (std::size_t lane = std::min<std::size_t>(8, horizon - k0); lane-- > 0;) {
+      double before[kNx];
+      for (std::size_t j = 0; j < kNx; ++j) {
+        adjoint[j][k0 + lane] = lambda[j];
+        before[j] = gradient[j][lane];
+      }
+      for (std::size_t i = 0; i < kNx; ++i) {
+        for (std::size_t j = 0; j < kNx; ++j)
+          before[j] = fused_multiply_add<Arch>(f[Layout::kF[i][j]][lane], lambda[i], before[j]);
+      }
+      std::copy(before, before + kNx, lambda);
+    }
+  }
+
   /// g_x + Aᵀ λ_{k+1} − λ_k of the group.
   void miss_adjoint(std::size_t k0, const Jacobians& f, const Gradient& gradient) noexcept {
-    unroll<kNx>([&](auto j) CHICANE_INLINE {
-      V sum = gradient[j];
-      unroll<kNx>([&](auto i) CHICANE_INLINE {
-        if constexpr (Pattern::kF[i][j] == Entry::kOne) sum += V::load(adjoint[i] + k0);
-        if constexpr (Pattern::kF[i][j] == Entry::kValue)
-          sum = fused_multiply_add(f[Layout::kF[i][j]], V::load(adjoint[i] + k0), sum);
-      });
+    const auto store = [&](std::size_t j, const V& sum) {
       sum.store(state_residual[j] + k0);
       for (std::size_t lane = k0 == 0 ? 1 : 0; lane < 8; ++lane)
         state_residual[j][k0 + lane] -= adjoint[j][k0 + lane - 1];
-    });
+    };
+    if constexpr (Layout::is_large()) {
+      for (std::size_t j = 0; j < kNx; ++j) {
+        V sum = gradient[j];
+        for (std::size_t i = 0; i < kNx; ++i)
+          sum = fused_multiply_add(f[Layout::kF[i][j]], V::load(adjoint[i] + k0), sum);
+        store(j, sum);
+      }
+    } else {
+      unroll<kNx>([&](auto j) CHICANE_INLINE {
+        V sum = gradient[j];
+        unroll<kNx>([&](auto i) CHICANE_INLINE {
+          if constexpr (Pattern::kF[i][j] == Entry::kOne) sum += V::load(adjoint[i] + k0);
+          if constexpr (Pattern::kF[i][j] == Entry::kValue)
+            sum = fused_multiply_add(f[Layout::kF[i][j]], V::load(adjoint[i] + k0), sum);
+        });
+        store(j, sum);
+      });
+    }
   }
 
   /// Slopes of the inputs, and how far they are from optimal (eq. 12); bounds on the step.

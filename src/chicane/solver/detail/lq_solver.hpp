@@ -92,7 +92,7 @@ class LqSolver {
     for (std::size_t k = 0; k < horizon; ++k) {
       double u[kNu];
       unroll<kNu>([&](auto m) CHICANE_INLINE {
-        const double value = dot_row(feedback[k].row[m], x, feedback[k].constant[m]);
+        const double value = Algebra::dot_row(feedback[k].row[m], x, feedback[k].constant[m]);
         const InputBounds bounds = bounds_of(k, m, x);
         if constexpr (has_rate(m)) {
           u[m] = with_rate(k, m, value, bounds, repair, carried[m], found);
@@ -101,7 +101,7 @@ class LqSolver {
         }
         du[k][m] = u[m];
       });
-      advance(lq.stage[k], x, u);
+      Algebra::advance(lq.stage[k], x, u);
       unroll<kNx>([&](auto i) CHICANE_INLINE { dx[k + 1][i] = x[i]; });
     }
     if (found.count == 0) return 0;
@@ -117,7 +117,7 @@ class LqSolver {
   void simulate(std::size_t horizon) noexcept {
     double x[kNx] = {};
     for (std::size_t k = 0; k < horizon; ++k) {
-      advance(lq.stage[k], x, du[k]);
+      Algebra::advance(lq.stage[k], x, du[k]);
       unroll<kNx>([&](auto i) CHICANE_INLINE { dx[k + 1][i] = x[i]; });
     }
   }
@@ -163,21 +163,37 @@ class LqSolver {
   template <class Choose, class ShiftStates>
   double sweep(std::size_t from, double shift, Choose choose, ShiftStates shift_states) noexcept {
     Value P;
-    unroll<kNx + 1>([&](auto i) CHICANE_INLINE { P.column[i] = Vector::load(value_[from][i]); });
+    load(from, P);
     double largest = 0.0;
     for (std::size_t k = from; k-- > 0;) {
       eliminate(k, P, shift, choose, largest);
-      if (k % kSymmetryPeriod == 0) {
-        if constexpr (kIsCompact) Algebra::make_symmetric_apart(P);
-        if constexpr (!kIsCompact) Algebra::make_symmetric(P);
+      if constexpr (!Layout::is_large()) {
+        if (k % kSymmetryPeriod == 0) {
+          if constexpr (kIsCompact) Algebra::make_symmetric_apart(P);
+          if constexpr (!kIsCompact) Algebra::make_symmetric(P);
+        }
+        unroll<kNx + 1>([&](auto i) CHICANE_INLINE { P.column[i].store(value_[k][i]); });
+      } else {
+        for (std::size_t i = 0; i <= kNx; ++i) P.column[i].store(value_[k][i]);
+        for (std::size_t i = 0; i < kNx; ++i) {
+          for (std::size_t j = 0; j < i; ++j)
+            value_[k][i][j] = value_[k][j][i] = 0.5 * (value_[k][i][j] + value_[k][j][i]);
+        }
+        load(k, P);
       }
-      unroll<kNx + 1>([&](auto i) CHICANE_INLINE { P.column[i].store(value_[k][i]); });
       if (shift_states) {
         for (std::size_t i = 0; i < kNx; ++i) value_[k][i][i] += shift;
-        unroll<kNx>([&](auto i) CHICANE_INLINE { P.column[i] = Vector::load(value_[k][i]); });
+        load(k, P);
       }
     }
     return largest;
+  }
+  CHICANE_INLINE void load(std::size_t k, Value& P) const noexcept {
+    if constexpr (Layout::is_large()) {
+      for (std::size_t i = 0; i <= kNx; ++i) P.column[i] = Vector::load(value_[k][i]);
+    } else {
+      unroll<kNx + 1>([&](auto i) CHICANE_INLINE { P.column[i] = Vector::load(value_[k][i]); });
+    }
   }
 
   /// One stage backwards: the value function P of stage k + 1 becomes that of stage k (eq. 9–11).
@@ -444,49 +460,6 @@ class LqSolver {
       }
     }
     return bounds;
-  }
-
-  // ---- forward
-
-  /// start + row · x
-  CHICANE_INLINE static double dot_row(const double* row, const double (&x)[kNx], double start) noexcept {
-    constexpr std::size_t kSums = kNx < 4 ? 1 : (kNx < 8 ? 2 : 4);
-    double sum[kSums] = {start};
-    unroll<kNx>([&](auto i) CHICANE_INLINE {
-      double& side = sum[i % kSums];
-      side = i > 0 && i < kSums ? row[i] * x[i] : fused_multiply_add<Arch>(row[i], x[i], side);
-    });
-    if constexpr (kSums == 4) return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-    if constexpr (kSums == 2) return sum[0] + sum[1];
-    return sum[0];
-  }
-
-  /// x becomes F z.
-  CHICANE_INLINE static void advance(const Stage& s, double (&x)[kNx], const double (&u)[kNu]) noexcept {
-    double next[kNx];
-    unroll<kNx>([&](auto i) CHICANE_INLINE {
-      double sum = s.defect(i);
-      double other = 0.0;
-      unroll<kNx>([&](auto j) CHICANE_INLINE {
-        if constexpr (Layout::kF[i][j] != Layout::kNone) {
-          double& side = j % 2 == 0 ? sum : other;
-          side = fused_multiply_add<Arch>(Algebra::template jacobian<i, j>(s), x[j], side);
-        } else if constexpr (Pattern::kF[i][j] == Entry::kOne) {
-          sum += x[j];
-        }
-      });
-      sum += other;
-      unroll<kNu>([&](auto m) CHICANE_INLINE {
-        constexpr std::size_t kU = kNx + 1 + m;
-        if constexpr (Layout::kF[i][kU] != Layout::kNone) {
-          sum = fused_multiply_add<Arch>(Algebra::template jacobian<i, kU>(s), u[m], sum);
-        } else if constexpr (Pattern::kF[i][kU] == Entry::kOne) {
-          sum += u[m];
-        }
-      });
-      next[i] = sum;
-    });
-    for (std::size_t i = 0; i < kNx; ++i) x[i] = next[i];
   }
 
   Value unused_{};

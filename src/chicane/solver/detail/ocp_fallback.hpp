@@ -27,7 +27,8 @@ bool OcpSolver<P, Capacity, Arch>::begin_filter(const P& problem, const Trajecto
     fill_inputs(0);
     hold_states();
   }
-  filter_.start(problem, options_.tolerance, options_.second_order, now_, lq_, barrier_, t_, report);
+  filter_.start(problem, options_.tolerance, options_.second_order, is_again_, now_, lq_, barrier_, t_,
+                report);
   return true;
 }
 

@@ -51,6 +51,9 @@ template <class Pattern>
   return false;
 }
 
+/// More variables than this in a stage: what is made of them works in blocks and loops.
+inline constexpr std::size_t kMostUnrolled = 24;
+
 /// Numbers the entries of a pattern that are stored.
 template <class Pattern>
 struct Layout {
@@ -103,6 +106,13 @@ struct Layout {
     return count;
   }();
 
+  /// Entries of a row that belong to states.
+  static constexpr std::size_t count(const std::array<std::size_t, kNz>& row) noexcept {
+    std::size_t stored = 0;
+    for (std::size_t j = 0; j < kNx; ++j) stored += row[j] != kNone ? 1 : 0;
+    return stored;
+  }
+
   /// Rows over the states that sweeps read as registers are kept as such where they are wide, with more than
   /// two entries; the others are put together from numbers.
   static constexpr std::size_t kNarrow = 2;
@@ -125,16 +135,14 @@ struct Layout {
   static constexpr bool is_wide_state(std::size_t i) noexcept { return count(kF[i]) > kNarrow; }
 
   /// The place of wide row i of F, and of L, among all.
-  static constexpr std::size_t wide_state(std::size_t i) noexcept {
-    std::size_t place = 0;
-    for (std::size_t r = 0; r < i; ++r) place += is_wide_state(r) ? 1 : 0;
-    return place;
-  }
-  static constexpr std::size_t wide_cost(std::size_t i) noexcept {
-    std::size_t place = wide_state(kNx);
-    for (std::size_t r = 0; r < i; ++r) place += is_wide_cost(r) ? 1 : 0;
-    return place;
-  }
+  static constexpr std::size_t wide_state(std::size_t i) noexcept { return kWidePlace[i]; }
+  static constexpr std::size_t wide_cost(std::size_t i) noexcept { return kWidePlace[kNx + i]; }
+  static constexpr auto kWidePlace = [] {
+    std::array<std::size_t, kNx + kNz + 1> places{};
+    for (std::size_t r = 0; r < kNx + kNz; ++r)
+      places[r + 1] = places[r] + ((r < kNx ? count(kF[r]) : count(kL[r - kNx])) > kNarrow ? 1 : 0);
+    return places;
+  }();
   static constexpr std::size_t kWideRows = wide_cost(kNz);
 
   /// All entries that sweeps read as numbers, in one series; F[i][kOne], the defects, come first.
@@ -165,12 +173,6 @@ struct Layout {
   }();
   static constexpr std::size_t kNumbers = (kNumber.count + 7) / 8 * 8;
 
-  /// Entries of a row that belong to states.
-  static constexpr std::size_t count(const std::array<std::size_t, kNz>& row) noexcept {
-    std::size_t stored = 0;
-    for (std::size_t j = 0; j < kNx; ++j) stored += row[j] != kNone ? 1 : 0;
-    return stored;
-  }
   /// Whether each entry of F and L counts, and each row over the states is kept as such.
   static constexpr bool is_full() noexcept {
     bool is_full = kNx > kNarrow && kFCount == kNx * kNz;
@@ -180,6 +182,7 @@ struct Layout {
     }
     return is_full;
   }
+  static constexpr bool is_large() noexcept { return kNx + kNu > kMostUnrolled; }
   static constexpr bool has_rate_bounds() noexcept {
     for (const int state : Pattern::kRateState) {
       if (state >= 0) return true;

@@ -164,7 +164,8 @@ struct StructuredPattern {
 template <OcpProblem P>
 struct DensePattern : FullPattern<P::kNx, P::kNu> {
   static constexpr auto kRateState = previous_inputs<P>();
-  static constexpr bool kIsCompact = has_filter_method<P>();
+  static constexpr bool kIsCompact =
+      has_filter_method<P>() || static_cast<std::size_t>(P::kNx + P::kNu) > kMostUnrolled;
   static constexpr bool keeps_previous_inputs() noexcept { return true; }
 };
 

@@ -160,27 +160,38 @@ class StageAlgebra {
   /// P F, column j.
   template <std::size_t J>
   CHICANE_INLINE static Vector times_jacobian(const Stage& s, const Value& P) noexcept {
-    constexpr Terms kOnes = rows_of(J, true);
-    constexpr Terms kValues = rows_of(J, false);
-    const auto factor = [&](auto t) CHICANE_INLINE { return jacobian<kValues.index[t], J>(s); };
-    const auto column = [&](auto t) CHICANE_INLINE { return P.column[kValues.index[t]]; };
-    if constexpr (J == kNx) {
-      return combine<kValues.count>(P.column[kNx], factor, column);
-    } else if constexpr (kOnes.count > 0) {
-      Vector start = P.column[kOnes.index[0]];
-      unroll<kOnes.count - 1>([&](auto t) CHICANE_INLINE { start.add(P.column[kOnes.index[t + 1]]); });
-      return combine<kValues.count>(start, factor, column);
+    if constexpr (Layout::is_large()) {
+      return times_jacobian_in_loops(s, P, J);
     } else {
-      const Vector start =
-          Vector::scaled(factor(std::integral_constant<std::size_t, 0>{}), P.column[kValues.index[0]]);
-      const auto later_factor = [&](auto t) CHICANE_INLINE {
-        return factor(std::integral_constant<std::size_t, t + 1>{});
-      };
-      const auto later_column = [&](auto t) CHICANE_INLINE {
-        return column(std::integral_constant<std::size_t, t + 1>{});
-      };
-      return combine<kValues.count - 1>(start, later_factor, later_column);
+      constexpr Terms kOnes = rows_of(J, true);
+      constexpr Terms kValues = rows_of(J, false);
+      const auto factor = [&](auto t) CHICANE_INLINE { return jacobian<kValues.index[t], J>(s); };
+      const auto column = [&](auto t) CHICANE_INLINE { return P.column[kValues.index[t]]; };
+      if constexpr (J == kNx) {
+        return combine<kValues.count>(P.column[kNx], factor, column);
+      } else if constexpr (kOnes.count > 0) {
+        Vector start = P.column[kOnes.index[0]];
+        unroll<kOnes.count - 1>([&](auto t) CHICANE_INLINE { start.add(P.column[kOnes.index[t + 1]]); });
+        return combine<kValues.count>(start, factor, column);
+      } else {
+        const Vector start =
+            Vector::scaled(factor(std::integral_constant<std::size_t, 0>{}), P.column[kValues.index[0]]);
+        const auto later_factor = [&](auto t) CHICANE_INLINE {
+          return factor(std::integral_constant<std::size_t, t + 1>{});
+        };
+        const auto later_column = [&](auto t) CHICANE_INLINE {
+          return column(std::integral_constant<std::size_t, t + 1>{});
+        };
+        return combine<kValues.count - 1>(start, later_factor, later_column);
+      }
     }
+  }
+
+  /// The same where every entry counts, in a loop; J: the constant or an input.
+  static Vector times_jacobian_in_loops(const Stage& s, const Value& P, std::size_t j) noexcept {
+    Vector sum = j == kNx ? P.column[kNx] : Vector::zero();
+    for (std::size_t i = 0; i < kNx; ++i) sum.add(s.number[Layout::kNumber.f[i][j]], P.column[i]);
+    return sum;
   }
 
   /// States whose next value is theirs and something, as lanes.
@@ -208,15 +219,21 @@ class StageAlgebra {
   /// Row i of Q over the states: L + Aᵀ w for a column w of P F, in registers and in memory.
   template <std::size_t I>
   CHICANE_INLINE static Vector row_of_q(const Stage& s, const Vector& w, const double* w_in_memory) noexcept {
-    constexpr Terms kRows = state_rows();
-    Vector start = cost_row<I>(s);
-    add_sums(start, w);
-    if constexpr (kRows.count == 0) {
-      return start;
+    if constexpr (Layout::is_large()) {
+      Vector sum = cost_row<I>(s);
+      for (std::size_t i = 0; i < kNx; ++i) sum.add(w_in_memory[i], Vector::load(s.wide[i]));
+      return sum;
     } else {
-      return combine<kRows.count>(
-          start, [&](auto t) CHICANE_INLINE { return w_in_memory[kRows.index[t]]; },
-          [&](auto t) CHICANE_INLINE { return state_row<kRows.index[t]>(s); });
+      constexpr Terms kRows = state_rows();
+      Vector start = cost_row<I>(s);
+      add_sums(start, w);
+      if constexpr (kRows.count == 0) {
+        return start;
+      } else {
+        return combine<kRows.count>(
+            start, [&](auto t) CHICANE_INLINE { return w_in_memory[kRows.index[t]]; },
+            [&](auto t) CHICANE_INLINE { return state_row<kRows.index[t]>(s); });
+      }
     }
   }
   /// Σ_m factor_m · v_m over the inputs.
@@ -273,40 +290,116 @@ class StageAlgebra {
   CHICANE_INLINE static void eliminate_full(const Stage& s, const Vector (&T)[kNu], double scale,
                                             const double (&r)[kNu][kLanes], Value& P) noexcept {
     alignas(64) double wx[kNx][kLanes];
-    for (std::size_t j = 0; j < kNx; ++j) {
-      const Vector start = Vector::scaled(s.wide[0][j], P.column[0]);
-      combine<kNx - 1>(
-          start, [&](auto t) CHICANE_INLINE { return s.wide[t + 1][j]; },
-          [&](auto t) CHICANE_INLINE { return P.column[t + 1]; })
-          .store(wx[j]);
-    }
-    settle(wx);
-    for (std::size_t j = 0; j < kNx; ++j) {
-      Vector column = combine<kNx>(
-          Vector::load(s.wide[kNx + j]), [&](auto t) CHICANE_INLINE { return wx[j][t]; },
-          [&](auto t) CHICANE_INLINE { return Vector::load(s.wide[t]); });
-      Vector sum = Vector::scaled(r[0][j], T[0]);
-      unroll<kNu - 1>([&](auto m) CHICANE_INLINE { sum.add(r[m + 1][j], T[m + 1]); });
-      column.add(-scale, sum);
-      P.column[j] = column;
+    if constexpr (Layout::is_large()) {
+      for (std::size_t j = 0; j < kNx; ++j) {
+        Vector w = Vector::zero();
+        for (std::size_t t = 0; t < kNx; ++t) w.add(s.wide[t][j], P.column[t]);
+        w.store(wx[j]);
+      }
+      for (std::size_t j = 0; j < kNx; ++j) {
+        Vector column = Vector::load(s.wide[kNx + j]);
+        for (std::size_t t = 0; t < kNx; ++t) column.add(wx[j][t], Vector::load(s.wide[t]));
+        for (std::size_t m = 0; m < kNu; ++m) column.add(-scale * r[m][j], T[m]);
+        P.column[j] = column;
+      }
+    } else {
+      for (std::size_t j = 0; j < kNx; ++j) {
+        const Vector start = Vector::scaled(s.wide[0][j], P.column[0]);
+        combine<kNx - 1>(
+            start, [&](auto t) CHICANE_INLINE { return s.wide[t + 1][j]; },
+            [&](auto t) CHICANE_INLINE { return P.column[t + 1]; })
+            .store(wx[j]);
+      }
+      settle(wx);
+      for (std::size_t j = 0; j < kNx; ++j) {
+        Vector column = combine<kNx>(
+            Vector::load(s.wide[kNx + j]), [&](auto t) CHICANE_INLINE { return wx[j][t]; },
+            [&](auto t) CHICANE_INLINE { return Vector::load(s.wide[t]); });
+        Vector sum = Vector::scaled(r[0][j], T[0]);
+        unroll<kNu - 1>([&](auto m) CHICANE_INLINE { sum.add(r[m + 1][j], T[m + 1]); });
+        column.add(-scale, sum);
+        P.column[j] = column;
+      }
     }
   }
 
   /// start + column J of F times w, number by number.
   template <std::size_t J>
   CHICANE_INLINE static double times_column(const Stage& s, const double* w, double start) noexcept {
-    constexpr Terms kOnes = rows_of(J, true);
-    constexpr Terms kValues = rows_of(J, false);
-    double sum = start;
-    unroll<kOnes.count>([&](auto t) CHICANE_INLINE { sum += w[kOnes.index[t]]; });
-    if constexpr (kValues.count == 0) return sum;
-    double other = jacobian<kValues.index[0], J>(s) * w[kValues.index[0]];
-    unroll<kValues.count == 0 ? 0 : kValues.count - 1>([&](auto t) CHICANE_INLINE {
-      constexpr std::size_t kI = kValues.index[t + 1];
-      double& side = t % 2 == 0 ? sum : other;
-      side = fused_multiply_add<Arch>(jacobian<kI, J>(s), w[kI], side);
-    });
-    return sum + other;
+    if constexpr (Layout::is_large()) {
+      double sum = start;
+      for (std::size_t i = 0; i < kNx; ++i)
+        sum = fused_multiply_add<Arch>(J < kNx ? s.wide[i][J] : s.number[Layout::kNumber.f[i][J]], w[i], sum);
+      return sum;
+    } else {
+      constexpr Terms kOnes = rows_of(J, true);
+      constexpr Terms kValues = rows_of(J, false);
+      double sum = start;
+      unroll<kOnes.count>([&](auto t) CHICANE_INLINE { sum += w[kOnes.index[t]]; });
+      if constexpr (kValues.count == 0) return sum;
+      double other = jacobian<kValues.index[0], J>(s) * w[kValues.index[0]];
+      unroll<kValues.count == 0 ? 0 : kValues.count - 1>([&](auto t) CHICANE_INLINE {
+        constexpr std::size_t kI = kValues.index[t + 1];
+        double& side = t % 2 == 0 ? sum : other;
+        side = fused_multiply_add<Arch>(jacobian<kI, J>(s), w[kI], side);
+      });
+      return sum + other;
+    }
+  }
+
+  /// start + row · x
+  CHICANE_INLINE static double dot_row(const double* row, const double (&x)[kNx], double start) noexcept {
+    constexpr std::size_t kSums = kNx < 4 ? 1 : (kNx < 8 ? 2 : 4);
+    double sum[kSums] = {start};
+    if constexpr (Layout::is_large()) {
+      for (std::size_t i = 0; i < kNx; ++i)
+        sum[i % kSums] = fused_multiply_add<Arch>(row[i], x[i], sum[i % kSums]);
+      return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    } else {
+      unroll<kNx>([&](auto i) CHICANE_INLINE {
+        double& side = sum[i % kSums];
+        side = i > 0 && i < kSums ? row[i] * x[i] : fused_multiply_add<Arch>(row[i], x[i], side);
+      });
+      if constexpr (kSums == 4) return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+      if constexpr (kSums == 2) return sum[0] + sum[1];
+      return sum[0];
+    }
+  }
+
+  /// x becomes F z.
+  CHICANE_INLINE static void advance(const Stage& s, double (&x)[kNx], const double (&u)[kNu]) noexcept {
+    double next[kNx];
+    if constexpr (Layout::is_large()) {
+      for (std::size_t i = 0; i < kNx; ++i) {
+        next[i] = dot_row(s.wide[i], x, s.defect(i));
+        for (std::size_t m = 0; m < kNu; ++m)
+          next[i] = fused_multiply_add<Arch>(s.number[Layout::kNumber.f[i][kNx + 1 + m]], u[m], next[i]);
+      }
+    } else {
+      unroll<kNx>([&](auto i) CHICANE_INLINE {
+        double sum = s.defect(i);
+        double other = 0.0;
+        unroll<kNx>([&](auto j) CHICANE_INLINE {
+          if constexpr (Layout::kF[i][j] != Layout::kNone) {
+            double& side = j % 2 == 0 ? sum : other;
+            side = fused_multiply_add<Arch>(jacobian<i, j>(s), x[j], side);
+          } else if constexpr (Pattern::kF[i][j] == Entry::kOne) {
+            sum += x[j];
+          }
+        });
+        sum += other;
+        unroll<kNu>([&](auto m) CHICANE_INLINE {
+          constexpr std::size_t kU = kNx + 1 + m;
+          if constexpr (Layout::kF[i][kU] != Layout::kNone) {
+            sum = fused_multiply_add<Arch>(jacobian<i, kU>(s), u[m], sum);
+          } else if constexpr (Pattern::kF[i][kU] == Entry::kOne) {
+            sum += u[m];
+          }
+        });
+        next[i] = sum;
+      });
+    }
+    for (std::size_t i = 0; i < kNx; ++i) x[i] = next[i];
   }
 
   /// Keeps the compiler from taking numbers out of registers that are cheaper to load from memory.

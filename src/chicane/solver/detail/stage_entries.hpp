@@ -16,7 +16,8 @@ namespace chicane::solver {
 
 template <class Row>
 inline constexpr bool kIsDenseRow = false;
-template <AnyJet J, std::size_t N>
+template <class J, std::size_t N>
+requires requires { J::kIsDense; }
 inline constexpr bool kIsDenseRow<std::array<J, N>> = J::kIsDense;
 
 /// Calls visit(n, jet) for each result of a problem's function. Of a tuple, n is a constant; of an array
@@ -49,7 +50,11 @@ struct StageEntries {
   template <class J>
   static void set_jacobian(std::size_t i, const J& row, const V& defect, Jacobians& f) noexcept {
     V* const to = f.data() + i * Layout::kNz;
-    unroll<kVariables>([&](auto j) CHICANE_INLINE { to[z(j)] = row.slopes[j]; });
+    if constexpr (Layout::is_large()) {
+      for (std::size_t j = 0; j < kVariables; ++j) to[z(j)] = row.slopes[j];
+    } else {
+      unroll<kVariables>([&](auto j) CHICANE_INLINE { to[z(j)] = row.slopes[j]; });
+    }
     to[Layout::kOne] = defect;
   }
   template <class Rows>
@@ -60,7 +65,11 @@ struct StageEntries {
   /// gradient += weight · dr
   template <class Rows, class J>
   static void add_gradient(std::size_t, const J& r, const V& weight, Gradient& gradient) noexcept {
-    unroll<kVariables>([&](auto i) CHICANE_INLINE { gradient[i] += weight * r.slopes[i]; });
+    if constexpr (Layout::is_large()) {
+      for (std::size_t i = 0; i < kVariables; ++i) gradient[i] += weight * r.slopes[i];
+    } else {
+      unroll<kVariables>([&](auto i) CHICANE_INLINE { gradient[i] += weight * r.slopes[i]; });
+    }
   }
   /// l += weight · drᵀ dr, over the variables that the row depends on in any of the eight stages.
   template <class Rows, class J>
@@ -76,7 +85,11 @@ struct StageEntries {
     }
   }
   static void set_gradient(const Gradient& gradient, Costs& l) noexcept {
-    unroll<kVariables>([&](auto i) CHICANE_INLINE { l[Layout::kL[z(i)][Layout::kOne]] = gradient[i]; });
+    if constexpr (Layout::is_large()) {
+      for (std::size_t i = 0; i < kVariables; ++i) l[Layout::kL[z(i)][Layout::kOne]] = gradient[i];
+    } else {
+      unroll<kVariables>([&](auto i) CHICANE_INLINE { l[Layout::kL[z(i)][Layout::kOne]] = gradient[i]; });
+    }
   }
   template <class J>
   static void add_to_gradient(const J& r, const V& weight, Costs& l) noexcept {

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "chicane/solver/detail/endings.hpp"
+#include "chicane/solver/ocp_solver.hpp"
+
+namespace chicane::solver {
+
+// How OcpSolver ends: the parts of it that make an answer of an iterate.
+
+/// Constraints and prices are to be of the answer, and the report of both.
+template <OcpProblem P, int Capacity, class Arch>
+void OcpSolver<P, Capacity, Arch>::look_at_best(const P& problem, SolveReport& report) noexcept {
+  is_exact_ = false;
+  if constexpr (kCanFilter) {
+    full_steps_ = true;
+    is_fresh_ = false;
+    barrier_.restore(best_slacks_, t_.horizon);
+    look(problem, report);
+  } else {
+    full_steps_ = false;
+    SolveReport unused;
+    look(problem, unused);
+  }
+}
+/// Returns the best iterate, extended to the whole horizon; unless it is optimal, its residuals decide
+/// the status.
+template <OcpProblem P, int Capacity, class Arch>
+SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& problem, Trajectory& trajectory,
+                                                 SolveReport report) noexcept {
+  if (status != SolveStatus::kOptimal) {
+    const int iterations = report.iterations;
+    const int sweeps = report.sweeps;
+    if (has_best_) {
+      t_ = best_;
+      report = best_report_;
+      if (!shows_best_) look_at_best(problem, report);
+    }
+    if (kCanFilter && !(has_best_ && is_close(report))) take_cheapest(problem, trajectory, report);
+    if (is_growing() || !has_best_) {
+      while (is_growing()) grow(problem);
+      look(problem, report);
+      if (!is_finite(report)) return give_up(problem, t_.template state<double>(0), trajectory, report);
+    }
+    report.iterations = iterations;
+    report.sweeps = sweeps;
+    if (status != SolveStatus::kAtFloor)
+      status = is_close(report) ? SolveStatus::kBudgetSpent : SolveStatus::kStalled;
+  } else if (barrier_.exceeds_a_cap(problem, t_.horizon)) {
+    status = SolveStatus::kInfeasible;
+  }
+  t_.write(trajectory);
+  for (std::size_t k = 0; k < t_.horizon; ++k) {  // u + (bound − u) may miss the bound by one rounding
+    for (std::size_t m = 0; m < kNu; ++m)
+      trajectory.u[k][m] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
+  }
+  now_.chains.admit(t_.horizon, [&](std::size_t k, std::size_t m) -> double& { return trajectory.u[k][m]; });
+  now_.chains.tell(report);
+  tell_violation(problem, barrier_, t_.horizon, report);
+  report.status = status;
+  return report;
+}
+
+}  // namespace chicane::solver

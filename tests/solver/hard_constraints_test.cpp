@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/solver/hard_constraints.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string_view>
+#include <tuple>
+
+#include "chicane/solver/describe.hpp"
+#include "chicane/solver/ocp_solver.hpp"
+#include "families/hard.hpp"
+#include "families/measure_family.hpp"
+#include "support/alloc_guard.hpp"
+
+namespace chicane::bench {
+namespace {
+
+using solver::HardReport;
+using solver::SolveStatus;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A mass is pushed from rest at 0 so that it is at `goal` with speed `end_speed` after N stages, for the
+/// least sum of squares of the push.
+struct Push {
+  static constexpr int kNx = 2, kNu = 1, kNr = 1, kNe = 0, kNc = 1, kNeh = 1, kNec = 1;
+  static constexpr double kStep = 0.1;
+  double goal = 1.0, end_speed = 0.0, most = kInfinity, fastest = kInfinity, first_price = 1.0;
+
+  template <class K, class X, class U>
+  auto dynamics(K, const X& x, const U& u) const {
+    const auto& [position, speed] = x;
+    return std::make_tuple(position + kStep * speed, speed + kStep * std::get<0>(u));
+  }
+  template <class K, class X, class U>
+  auto residual(K, const X&, const U& u) const {
+    return std::make_tuple(1.0 * std::get<0>(u));
+  }
+  template <class X>
+  auto terminal_residual(const X&) const {
+    return std::make_tuple();
+  }
+  template <class X>
+  auto terminal_equality(const X& x) const {
+    return std::make_tuple(std::get<0>(x) - goal);
+  }
+  template <class X>
+  auto terminal_constraint(const X& x) const {
+    return std::make_tuple(std::get<1>(x) - end_speed);
+  }
+  template <class K, class X, class U>
+  auto constraint(K, const X& x, const U&) const {
+    return std::make_tuple(std::get<1>(x) - std::min(fastest, 1e6));
+  }
+  [[nodiscard]] bool is_hard(int) const { return true; }
+  [[nodiscard]] solver::SoftPenalty soft_penalty(int) const {
+    return {.linear = first_price, .quadratic = 0.0};
+  }
+  [[nodiscard]] std::array<double, 1> input_lower(int) const { return {-most}; }
+  [[nodiscard]] std::array<double, 1> input_upper(int) const { return {most}; }
+  [[nodiscard]] std::string_view terminal_equality_name(int) const { return "the goal"; }
+};
+constexpr int kStages = 20;
+using PushSolver = solver::OcpSolver<Push, kStages>;
+using PushPlan = PushSolver::Trajectory;
+
+HardReport solve(const Push& problem, PushPlan& plan, PushSolver& ocp) {
+  plan = {.horizon = kStages};
+  return ocp.solve(problem, {0.0, 0.0}, plan);
+}
+
+TEST(HardConstraints, ReachAGoalForTheLeastPush) {
+  const auto ocp = std::make_unique<PushSolver>();
+  PushPlan plan;
+  const Push problem;
+  const HardReport report = solve(problem, plan, *ocp);
+  ASSERT_EQ(report.status, SolveStatus::kOptimal);
+  // Least squares: u = Cᵀ (C Cᵀ)⁻¹ (1, 0), where C has what each push does to position and speed at the end.
+  double pp = 0.0, ps = 0.0, ss = 0.0;
+  const auto position = [](int k) { return Push::kStep * Push::kStep * (kStages - 1 - k); };
+  for (int k = 0; k < kStages; ++k) {
+    pp += position(k) * position(k);
+    ps += position(k) * Push::kStep;
+    ss += Push::kStep * Push::kStep;
+  }
+  const double det = pp * ss - ps * ps;
+  for (int k = 0; k < kStages; ++k) {
+    const double u = position(k) * ss / det - Push::kStep * ps / det;
+    EXPECT_NEAR(plan.u[static_cast<std::size_t>(k)][0], u, 1e-5) << k;
+  }
+  EXPECT_NEAR(plan.x[kStages][0], 1.0, 1e-6);
+  EXPECT_LE(plan.x[kStages][1], 1e-6);
+  EXPECT_NEAR(report.cost, 0.5 * ss / det, 1e-6 * report.cost + 1e-5);
+}
+
+TEST(HardConstraints, HaveMultipliersThatSayWhatARightHandSideCosts) {
+  const auto ocp = std::make_unique<PushSolver>();
+  PushPlan plan;
+  const double cost = solve({}, plan, *ocp).cost;
+  const double by_goal = ocp->terminal_equality_multiplier(0);
+  const double by_speed = ocp->terminal_constraint_multiplier(0);
+  EXPECT_GT(by_speed, 0.0);
+  constexpr double kChange = 1e-3;
+  const double further = solve({.goal = 1.0 + kChange}, plan, *ocp).cost;
+  const double faster = solve({.end_speed = kChange}, plan, *ocp).cost;
+  EXPECT_NEAR((further - cost) / kChange, -by_goal, 0.01 * std::fabs(by_goal));  // h = p − goal
+  EXPECT_NEAR((faster - cost) / kChange, -by_speed, 0.01 * by_speed);
+  solve({.end_speed = 10.0}, plan, *ocp);  // out of reach: as if it were not there
+  EXPECT_EQ(ocp->terminal_constraint_multiplier(0), 0.0);
+}
+
+TEST(HardConstraints, KeepAHardLimitWhoseFirstPriceIsTooLow) {
+  const auto ocp = std::make_unique<PushSolver>();
+  PushPlan plan;
+  for (const double price : {1e-4, 1.0, 1e4}) {
+    const HardReport report = solve({.fastest = 0.6, .first_price = price}, plan, *ocp);
+    ASSERT_EQ(report.status, SolveStatus::kOptimal) << price;
+    double fastest = 0.0;
+    for (int k = 0; k < kStages; ++k) fastest = std::max(fastest, plan.x[static_cast<std::size_t>(k)][1]);
+    EXPECT_NEAR(fastest, 0.6, 1e-4) << price;
+    EXPECT_LE(fastest, 0.6 + 1e-6) << price;
+  }
+}
+
+TEST(HardConstraints, SayWhatCannotHoldAndWhere) {
+  const auto ocp = std::make_unique<PushSolver>();
+  PushPlan plan;
+  for (const double most : {0.01, 0.1, 0.5}) {  // pushing all the time brings it not even half the way
+    const Push problem{.most = most};
+    const HardReport report = solve(problem, plan, *ocp);
+    EXPECT_EQ(report.status, SolveStatus::kInfeasible) << most;
+    EXPECT_GT(report.miss, 0.05) << most;
+    EXPECT_EQ(report.miss_stage, kStages) << most;
+    EXPECT_LE(report.iterations, 300) << most;
+    const std::string text = describe(problem, report);
+    EXPECT_EQ(text.rfind("infeasible: ", 0), 0U) << text;
+    if (report.kind == HardReport::Kind::kTerminalEquality) {
+      EXPECT_NE(text.find("the goal missed by"), std::string::npos) << text;
+    }
+  }
+  const Push slow{.fastest = 0.3};  // 0.6 m in 2 s
+  const HardReport report = solve(slow, plan, *ocp);
+  EXPECT_EQ(report.status, SolveStatus::kInfeasible);
+}
+
+TEST(HardConstraints, GoOnFromMultipliersOfTheLastSolve) {
+  const auto ocp = std::make_unique<PushSolver>(solver::SolverOptions{.start_from_states = true});
+  PushPlan plan{.horizon = kStages};
+  PushSolver::Prices prices;
+  const HardReport first = ocp->solve({}, {0.0, 0.0}, plan, prices);
+  ASSERT_EQ(first.status, SolveStatus::kOptimal);
+  const HardReport second = ocp->solve({}, {0.0, 0.0}, plan, prices);
+  EXPECT_EQ(second.status, SolveStatus::kOptimal);
+  EXPECT_EQ(second.rounds, 1);
+  EXPECT_LT(second.iterations, first.iterations);
+  EXPECT_NEAR(second.cost, first.cost, 5e-5);  // misses of 1e-6 at multipliers of 15
+}
+
+TEST(HardConstraints, NeedNoMemoryAndStopInTime) {
+  const auto ocp = std::make_unique<PushSolver>();
+  PushPlan plan{.horizon = kStages};
+  const test::AllocationGuard guard;
+  ocp->solve({.fastest = 0.6}, {0.0, 0.0}, plan);
+  EXPECT_EQ(guard.count(), 0);
+  ocp->allow_iterations(2);
+  const HardReport report = ocp->solve({.fastest = 0.6}, {0.0, 0.0}, plan);
+  EXPECT_FALSE(report.status == SolveStatus::kOptimal);
+  EXPECT_LE(report.iterations, 3);
+}
+
+/// Solves instances of a family and checks each answer by dual numbers, with the multipliers that come with
+/// it.
+template <class P>
+void expect_optimal(std::initializer_list<int> seeds, NaiveStart start) {
+  using Measurement = FamilyMeasurement<P>;
+  const auto ocp = std::make_unique<solver::OcpSolver<P, P::kHorizon>>(
+      solver::SolverOptions{.start_from_states = start == NaiveStart::kLine});
+  for (const int seed : seeds) {
+    const auto instance = Measurement::instance(seed);
+    const auto t = std::make_unique<typename Measurement::Trajectory>(Measurement::guess(instance, start));
+    const HardReport report = ocp->solve(instance.problem, instance.start, *t);
+    ASSERT_EQ(report.status, SolveStatus::kOptimal) << seed;
+    const KktResidual kkt = check_kkt(
+        OverArrays<P>{instance.problem}, *t, [&](int k, int c) { return ocp->constraint_multiplier(k, c); },
+        [&](int k, int m) { return -ocp->rate_multiplier(k, m); }, *ocp);
+    EXPECT_LE(kkt.miss, 1e-6) << seed;
+    EXPECT_LE(kkt.stationarity, 1.5e-6 + kkt.rounding) << seed;
+    EXPECT_LE(kkt.defect, 1e-12) << seed;
+    EXPECT_LE(kkt.subgradient, 2e-3) << seed;  // the root of the last barrier
+    EXPECT_NEAR(kkt.cost, report.cost, 1e-9 * kkt.cost) << seed;
+  }
+}
+
+TEST(HardConstraints, SwingUpAPoleExactly) {
+  expect_optimal<HardCartPole>({0, 1, 2, 3, 4, 5}, NaiveStart::kIdle);
+  expect_optimal<HardCartPole>({0, 1, 2, 3, 4, 5}, NaiveStart::kLine);
+}
+TEST(HardConstraints, LeadAHandAlongALine) { expect_optimal<ArmOnALine>({0, 1, 3}, NaiveStart::kIdle); }
+TEST(HardConstraints, SetTheDurationAndTheFirstStateOfAMotion) {
+  expect_optimal<CraneInLeastTime>({0, 1, 2}, NaiveStart::kIdle);
+  expect_optimal<PeriodicPendulum>({0, 1, 2, 3, 4, 5}, NaiveStart::kIdle);
+}
+
+}  // namespace
+}  // namespace chicane::bench
