@@ -97,6 +97,18 @@ describe('the dashboard', () => {
     assert.equal(await dashboard.button('Step').isDisabled(), true);
   });
 
+  it('takes what is typed after the key of the search, however late the next picture comes', async () => {
+    await dashboard.show('tune');
+    await page.locator('#tune-search').waitFor(); // the settings are there
+    await dashboard.show('plots');
+    await page.evaluate(() => {
+      globalThis.requestAnimationFrame = () => 0;
+    });
+    await page.keyboard.press('/');
+    await page.keyboard.type('squared rust');
+    assert.equal(await page.locator('#tune-search').inputValue(), 'squared rust');
+  });
+
   it('holds plots while the run goes on, and zooms by dragging', async () => {
     await dashboard.show('plots');
     const plot = page.locator('.plot[aria-label="Speed"]');

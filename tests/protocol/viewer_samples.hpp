@@ -99,6 +99,11 @@ inline Run run() {
   run.cost_terms = {"lateral", "heading", "speed"};
   run.constraints = {"steer_limit", "throttle_max"};
   run.faults = {"link_lost", "half_grip"};
+  run.lap_setup = {.names = {"latency_ms"},
+                   .values = {"60"},
+                   .is_mixed = true,
+                   .by_hand_share = 0.25,
+                   .faults = {"half_grip"}};
   run.kerb_width = 0.75;
   run.road.left = {{0.0, 2.0}, {4.0, 2.0}, {0.0, 2.0}};
   run.road.right = {{0.0, -2.0}, {4.0, -2.0}, {0.0, -2.0}};

@@ -23,9 +23,11 @@ import { HeaderView } from './views/header_view';
 import { HelpView, isHelpOpen } from './views/help_view';
 import { handBack, listenToDriver, toggleManual } from './views/manual_view';
 import { RestartView } from './views/restart_view';
+import { listenForLinks, ShareView } from './views/share_view';
+import { tab } from './views/tab';
 import { nextView, toggleDimension, zoom } from './views/track_view';
 import { focusSearch } from './views/tune_view';
-import { isPanelAlone, TABS, tab, titleOf, toggleDock, WorkbenchView } from './views/workbench_view';
+import { isPanelAlone, TABS, titleOf, toggleDock, WorkbenchView } from './views/workbench_view';
 
 let session: string | null = null;
 
@@ -73,6 +75,7 @@ function live(): Source {
 void begin(live);
 refreshOnNewChoice(refresh);
 listenToDriver();
+listenForLinks();
 
 addShortcuts(
   { keys: [' '], label: 'Space', does: 'Pause, resume', group: 'Run', action: () => call('/pause', !isPaused.value) },
@@ -116,7 +119,7 @@ addShortcuts(
     group: 'Panels',
     action: () => {
       tab.value = 'tune';
-      requestAnimationFrame(focusSearch);
+      focusSearch();
     },
   },
   { keys: ['p'], label: 'P', does: 'Hold the plots, or follow again', group: 'Panels', action: toggleFrozen },
@@ -170,6 +173,7 @@ function App() {
       {!isReading.value() && <WorkbenchView />}
       <HelpView />
       <RestartView />
+      <ShareView />
     </>
   );
 }

@@ -106,6 +106,10 @@ std::string encode_lap(const Frame& frame, const Run& run) {
       .put(gap_percent(lap.sector_times[0], limit.sectors[0]),
            gap_percent(lap.sector_times[1], limit.sectors[1]),
            gap_percent(lap.sector_times[2], limit.sectors[2]))
+      .texts(run.lap_setup.names)
+      .texts(run.lap_setup.values)
+      .put(run.lap_setup.is_mixed, run.lap_setup.by_hand_share)
+      .texts(run.lap_setup.faults)
       .bytes();
 }
 

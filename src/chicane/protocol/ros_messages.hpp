@@ -13,6 +13,7 @@
 #include "chicane/model/vehicle.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/lap_ledger.hpp"
 
 namespace chicane::protocol {
 
@@ -45,6 +46,7 @@ struct Run {
   double kerb_width = 0.0;            ///< [m]
   RoadLines road;
   lap_time::LimitAnswer limit{};
+  telemetry::LapSetup lap_setup{};  ///< of the lap that is told next
   std::string building{};    ///< another run that is being built, in words: "track = oval"; empty: none
   std::string end{};         ///< "finished", "stopped" or "failed"; empty: it goes on
   std::string end_reason{};  ///< why it is over, in one sentence; empty when it finished

@@ -209,12 +209,14 @@ void Recorder::write(Entry& entry) {
   if (const auto run = std::move(entry.run)) {
     options_.run = run->run;
     options_.scenario = run->scenario;
+    ledger_.begin();
     is_undescribed_ = true;
     note(flush());  // so that all is in the file in its order
   }
 }
 
 void Recorder::write(const telemetry::Change& change) {
+  ledger_.add(change);
   const std::uint64_t time = protocol::to_nanoseconds(change.time);
   const std::uint64_t log_time = std::max(last_log_time_, time + earlier_runs_);
   std::uint16_t channel = 0;
@@ -230,6 +232,7 @@ void Recorder::write(const telemetry::Change& change) {
 void Recorder::write(const telemetry::CompletedLap& lap) {
   telemetry::Frame frame;
   frame.completed_lap = lap;
+  options_.run.lap_setup = ledger_.setup(last_time_, lap.lap_time);
   write(protocol::Cadence::kLap, frame);
 }
 
@@ -239,6 +242,8 @@ void Recorder::write(const telemetry::Frame& frame) {
     return;
   }
   const std::uint64_t time = protocol::to_nanoseconds(frame.time);
+  if (frame.time < last_time_) ledger_.restart();
+  last_time_ = frame.time;
   if (time + earlier_runs_ < last_log_time_) {  // the run was started anew
     earlier_runs_ = last_log_time_ + protocol::to_nanoseconds(options_.scenario.control_period) - time;
   }

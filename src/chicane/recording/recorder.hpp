@@ -16,6 +16,7 @@
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/lap_ledger.hpp"
 #include "chicane/telemetry/mcap_writer.hpp"
 
 namespace chicane::recording {
@@ -126,10 +127,12 @@ class Recorder {
   std::uint16_t step_channel_ = 0;
   std::uint64_t frames_ = 0;
   std::uint64_t last_log_time_ = 0;  ///< [ns]
-  std::uint64_t earlier_runs_ = 0;   ///< what log times are ahead of the run's own time [ns]
-  std::uint64_t missing_ = 0;        ///< frames
-  bool is_failing_ = false;          ///< the disk did not take what it was given last
-  bool is_undescribed_ = false;      ///< the run's description waits for room
+  double last_time_ = 0.0;           ///< of the run, of the last frame [s]
+  telemetry::LapLedger ledger_;
+  std::uint64_t earlier_runs_ = 0;  ///< what log times are ahead of the run's own time [ns]
+  std::uint64_t missing_ = 0;       ///< frames
+  bool is_failing_ = false;         ///< the disk did not take what it was given last
+  bool is_undescribed_ = false;     ///< the run's description waits for room
   Result<void> state_;
   std::thread thread_;
 };

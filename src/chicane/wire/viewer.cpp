@@ -218,6 +218,7 @@ void ViewerEndpoint::tick() {
 void ViewerEndpoint::note_frame() {
   if (has_frame_ && frame_.cycle < cycle_) {
     memory_.forget();
+    ledger_.restart();
     if (!options_.run.end.empty()) set_end("", "");
   }
   has_frame_ = true;
@@ -230,6 +231,7 @@ void ViewerEndpoint::note_frame() {
 void ViewerEndpoint::tell_changes() {
   if (options_.parameters == nullptr) return;
   for (const telemetry::Change& change : options_.parameters->applied()) {
+    ledger_.add(change);
     const std::string payload =
         protocol::encode_change(change.time, change.cycle, change.name.view(), change.value.view());
     if (is_worth_keeping(change)) {
@@ -268,6 +270,7 @@ void ViewerEndpoint::note_lap() {
   if (!latest_lap_.take(completed)) return;
   telemetry::Frame frame;
   frame.completed_lap = completed.lap;
+  options_.run.lap_setup = ledger_.setup(completed.time, completed.lap.lap_time);
   memory_.add_lap(completed.lap, completed.time,
                   protocol::ros_topics()[lap_channel()].encode(frame, options_.run));
 }

@@ -17,6 +17,7 @@
 #include "chicane/protocol/foxglove_codec.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/lap_ledger.hpp"
 #include "chicane/wire/endpoint.hpp"
 #include "chicane/wire/run_memory.hpp"
 
@@ -131,6 +132,7 @@ class ViewerEndpoint final : public Endpoint {
   telemetry::Frame frame_;
   bool has_frame_ = false;
   RunMemory memory_;
+  telemetry::LapLedger ledger_;
   std::uint64_t cycle_ = 0;  ///< of the last frame
   net::Server* server_ = nullptr;
   std::map<net::ConnectionId, Client> clients_;

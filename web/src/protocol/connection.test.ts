@@ -190,8 +190,38 @@ describe('connection', () => {
     expect(events.notice).not.toHaveBeenCalled();
     last().say({ op: 'status', level: 2, message: 'subscribe: there is no channel 99' });
     expect(events.notice).toHaveBeenCalledOnce();
+  });
+
+  it('sends what was not answered once more when it is soon back, and says so when it is not', async () => {
+    const { connection, last } = start();
+    last().introduce(['parameters']);
+    const pending = connection.set('latency_ms', 80);
+    const wheel = connection.set('manual.steer', 0.5);
+    last().close();
+    vi.advanceTimersByTime(250);
+    last().introduce(['parameters']);
+    expect((await wheel).sentence).toBe('the connection was lost');
+    const again = saidAs(last(), 'setParameters');
+    expect(again).toMatchObject([{ parameters: [{ name: 'latency_ms', value: 80, type: 'float64' }] }]);
+    last().say({ op: 'parameterValues', id: again[0]?.id, parameters: [{ name: 'latency_ms', value: 80 }] });
+    expect(await pending).toEqual({ value: 80, sentence: null });
+    const late = connection.set('latency_ms', 70);
+    last().close();
+    for (let seconds = 0; seconds < 14; seconds += 2) {
+      vi.advanceTimersByTime(2000);
+      last().close();
+    }
+    expect(await late).toEqual({ value: null, sentence: 'the connection was lost' });
+  });
+
+  it('sends another program nothing that was meant for the one before', async () => {
+    const { connection, last } = start();
+    last().introduce(['parameters']);
     const pending = connection.set('latency_ms', 80);
     last().close();
-    expect(await pending).toEqual({ value: null, sentence: 'the connection was lost' });
+    vi.advanceTimersByTime(250);
+    last().say({ op: 'serverInfo', name: 'chicane', sessionId: 'b2', capabilities: ['parameters'] });
+    expect((await pending).sentence).toBe('the connection was lost');
+    expect(saidAs(last(), 'setParameters')).toEqual([]);
   });
 });

@@ -11,12 +11,15 @@ export const retryDelay = (attempt: number): number => Math.min(2000, 250 * 2 **
 
 const ALL = 'all'; // request id
 const LOST = 'the connection was lost';
+/** A value that was not answered before a connection was lost is sent once more if the next one comes soon [ms]. */
+const PATIENCE = 10_000;
 
 const isSetting = (value: Parameter['value']): value is Setting =>
   ['number', 'boolean', 'string'].includes(typeof value);
 
 interface PendingSet {
   readonly name: string;
+  readonly value: Setting;
   sentence: string | null;
   resolve(answer: SetAnswer): void;
 }
@@ -34,6 +37,9 @@ export class Connection implements Source {
   #services = new Map<string, Service>();
   #calls = new Map<number, { service: Service; resolve: (answer: AskAnswer) => void }>();
   #sets = new Map<string, PendingSet>(); // by request id, in the order sent
+  #unanswered: readonly PendingSet[] = []; // when the connection was lost
+  #lostAt = 0; // performance.now() [ms]
+  #session = '';
   #nextCall = 1;
   #hasParameters = false;
 
@@ -77,12 +83,27 @@ export class Connection implements Source {
   set(name: string, value: Setting): Promise<SetAnswer> {
     if (!this.#client || !this.#hasParameters)
       return Promise.resolve({ value: null, sentence: `${name} cannot be changed in this run` });
+    return new Promise((resolve) => this.#sendSet({ name, value, sentence: null, resolve }));
+  }
+
+  #sendSet(request: PendingSet): void {
+    const { name, value } = request;
     const id = `set ${this.#nextCall++}`;
     // JSON does not distinguish 3 from 3.0: the type does.
     const parameter: Parameter = typeof value === 'number' ? { name, value, type: 'float64' } : { name, value };
-    const answer = new Promise<SetAnswer>((resolve) => this.#sets.set(id, { name, sentence: null, resolve }));
-    this.#client.setParameters([parameter], id);
-    return answer;
+    this.#sets.set(id, request);
+    this.#client?.setParameters([parameter], id);
+  }
+
+  /** The same program soon after takes what it has not answered; hands on the wheel are of their moment. */
+  #sendAgain(session: string): void {
+    const isSame = session === this.#session && performance.now() - this.#lostAt <= PATIENCE && this.#hasParameters;
+    this.#session = session;
+    for (const request of this.#unanswered) {
+      if (isSame && !request.name.startsWith('manual.')) this.#sendSet(request);
+      else request.resolve({ value: null, sentence: LOST });
+    }
+    this.#unanswered = [];
   }
 
   refresh(): void {
@@ -100,9 +121,10 @@ export class Connection implements Source {
       this.#attempt = 0;
       this.#hasParameters = capabilities.includes('parameters');
       this.#events.open(sessionId ?? '');
-      if (!this.#hasParameters) return;
+      if (!this.#hasParameters) return this.#sendAgain('');
       client.getParameters([], ALL);
       client.subscribeParameterUpdates([]);
+      this.#sendAgain(sessionId ?? '');
     });
     client.on('advertise', (channels) => {
       for (const channel of isCurrent() ? channels : []) this.#subscribe(client, channel, readers);
@@ -176,8 +198,10 @@ export class Connection implements Source {
     this.#services.clear();
     this.#events.services(new Set());
     for (const callId of [...this.#calls.keys()]) this.#finish(callId, { isTaken: false, message: LOST });
-    for (const { resolve } of this.#sets.values()) resolve({ value: null, sentence: LOST });
+    if (this.#sets.size > 0) this.#lostAt = performance.now();
+    this.#unanswered = [...this.#unanswered, ...this.#sets.values()];
     this.#sets.clear();
+    if (performance.now() - this.#lostAt > PATIENCE) this.#sendAgain('');
     const delay = retryDelay(++this.#attempt);
     this.#events.lost(this.#attempt, delay);
     this.#timer = setTimeout(() => this.#connect(), delay);

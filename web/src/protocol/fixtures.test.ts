@@ -128,6 +128,11 @@ describe('messages of the C++ side', () => {
       top_speed_mps: 49.25,
       min_edge_distance_m: 1.625,
       rms_lateral_error_m: 0.1875,
+      setting_names: ['latency_ms'],
+      setting_values: ['60'],
+      is_mixed: true,
+      by_hand_share: 0.25,
+      faults: ['half_grip'],
     });
     expect([...lap.sector_times_s]).toEqual([9.25, 9.5, 9.375]);
   });

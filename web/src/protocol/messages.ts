@@ -457,6 +457,16 @@ export interface Lap {
   gap_to_limit_percent: number;
   /** the same for the thirds */
   sector_gaps_to_limit_percent: Float64Array;
+  /** changed since the run began, as at the end of the lap */
+  setting_names: string[];
+  /** as --set takes them */
+  setting_values: string[];
+  /** one of them changed while the lap was driven */
+  is_mixed: boolean;
+  /** of its time, driven by a person */
+  by_hand_share: number;
+  /** that acted in it */
+  faults: string[];
 }
 
 /** What a Lap says when nothing is known. */
@@ -471,6 +481,11 @@ export const UNKNOWN_LAP: Lap = {
   rms_lateral_error_m: NaN,
   gap_to_limit_percent: NaN,
   sector_gaps_to_limit_percent: new Float64Array(3).fill(NaN),
+  setting_names: [],
+  setting_values: [],
+  is_mixed: false,
+  by_hand_share: NaN,
+  faults: [],
 };
 
 /** chicane_msgs/msg/Change. A setting that changed during the run, before this control cycle. */

@@ -3,6 +3,7 @@ import { signal } from '@preact/signals';
 import { speedColour, topOfScale } from '../draw/speed_colour';
 import { fixed, lapTime, UNKNOWN } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
+import { setupInWords } from '../state/lap_setup';
 import { bestsOf } from '../state/lap_table';
 import { gapsToLimit } from '../state/limit';
 import { type RunReport, type Trace, verdictOf } from './summary';
@@ -13,6 +14,8 @@ export const isSummaryShown = signal(false);
 
 const WIDTH = 900; // of a picture's own units
 const MOST_POINTS = 700;
+/** The settings at the start are told as text: whatever was changed is told. */
+const NO_START = new Map<string, never>();
 
 /** Indices of at most `MOST_POINTS` evenly spread samples. */
 function spread(count: number): number[] {
@@ -97,18 +100,27 @@ function SpeedMap({ report }: { report: RunReport }) {
 
 function LapTable({ report }: { report: RunReport }) {
   const bests = bestsOf(report.laps);
+  const hasSetups = report.laps.some((lap) => setupInWords(lap, NO_START).length > 0);
   if (report.laps.length === 0) return <p class="soft">No lap was completed.</p>;
   return (
     <table class="lap-table">
       <thead>
         <tr>
-          {['Lap', 'Time', 'Above the limit', 'S 1', 'S 2', 'S 3', `Top ${speedUnit().name}`, 'To the edge [m]'].map(
-            (head) => (
-              <th key={head} scope="col">
-                {head}
-              </th>
-            ),
-          )}
+          {[
+            'Lap',
+            'Time',
+            'Above the limit',
+            'S 1',
+            'S 2',
+            'S 3',
+            `Top ${speedUnit().name}`,
+            'To the edge [m]',
+            ...(hasSetups ? ['Driven with'] : []),
+          ].map((head) => (
+            <th key={head} scope="col">
+              {head}
+            </th>
+          ))}
         </tr>
       </thead>
       <tbody>
@@ -127,6 +139,7 @@ function LapTable({ report }: { report: RunReport }) {
               ))}
               <td>{fixed(inSpeedUnit(lap.top_speed_mps), 1)}</td>
               <td>{fixed(lap.min_edge_distance_m, 2)}</td>
+              {hasSetups && <td class="setup">{setupInWords(lap, NO_START).join(', ')}</td>}
             </tr>
           );
         })}

@@ -2,6 +2,7 @@ import type { Change, Frame, Lap, Limit, Path, Plan, Run, TopicName, Topics } fr
 import { forgetEvents, noteChange, noteEvents, setFaultNames } from './event_log';
 import { forgetFaults, noteFaultChange, noteFaultMarks } from './faults';
 import { forgetLaps, noteLap, receiveLap } from './laps';
+import { noteScore } from './leaderboard';
 import { forgetLimit, receiveLimit } from './limit';
 import { forgetHistory, keepFrame, keepPlan, live } from './live';
 import { complete } from './message_fields';
@@ -36,6 +37,7 @@ export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: num
       break;
     case '/chicane/lap':
       receiveLap(message as Lap);
+      noteScore(message as Lap);
       break;
     case '/chicane/limit':
       receiveLimit(message as Limit);

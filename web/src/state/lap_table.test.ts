@@ -1,9 +1,11 @@
 import { describe, expect, it } from 'vitest';
+import { UNKNOWN_LAP } from '../protocol/messages';
 import type { Lap } from '../protocol/topics';
 import { LapSamples } from './lap_samples';
 import { bestsOf, lapSamplesCsv, lapsCsv } from './lap_table';
 
 const lap = (number: number, sectors: [number, number, number], more: Partial<Lap> = {}): Lap => ({
+  ...UNKNOWN_LAP,
   lap: number,
   lap_time_s: sectors[0] + sectors[1] + sectors[2],
   sector_times_s: new Float64Array(sectors),
@@ -30,9 +32,10 @@ describe('the table of laps', () => {
   });
 
   it('is written as a file', () => {
-    const lines = lapsCsv([lap(1, [12, 9, 9])], null).split('\n');
-    expect(lines[0]?.split(',')).toHaveLength(11);
-    expect(lines[1]).toBe('1,30,12,9,9,true,40,46,1,0.2,12.5');
+    const driven = { by_hand_share: 0.5, setting_names: ['latency_ms', 'seed'], setting_values: ['60', '2'] };
+    const lines = lapsCsv([lap(1, [12, 9, 9], driven)], null).split('\n');
+    expect(lines[0]?.split(',')).toHaveLength(13);
+    expect(lines[1]).toBe('1,30,12,9,9,true,40,46,1,0.2,12.5,0.5,latency_ms=60 seed=2');
   });
 
   it('has a file for each lap along the road', () => {

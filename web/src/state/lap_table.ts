@@ -40,6 +40,8 @@ export const lapsCsv = (laps: readonly Lap[], limit: Limit | null): string =>
       'min_edge_distance_m',
       'rms_lateral_error_m',
       'gap_to_limit_percent',
+      'by_hand_share',
+      'settings',
     ],
     laps.map((lap) => [
       lap.lap,
@@ -51,6 +53,8 @@ export const lapsCsv = (laps: readonly Lap[], limit: Limit | null): string =>
       lap.min_edge_distance_m,
       lap.rms_lateral_error_m,
       gapsToLimit(lap, limit).lap,
+      lap.by_hand_share,
+      lap.setting_names.map((name, i) => `${name}=${lap.setting_values[i]}`).join(' '),
     ]),
   );
 

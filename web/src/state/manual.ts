@@ -8,7 +8,14 @@ export interface Stick {
 }
 
 /** Keys and pad held by the driver; plain data, read by ramp(). */
-export const held = { left: false, right: false, up: false, down: false, pad: null as Stick | null };
+export const held = {
+  left: false,
+  right: false,
+  up: false,
+  down: false,
+  pad: null as Stick | null,
+  gamepad: null as Stick | null,
+};
 /** The stick position that is sent; shown by the indicator. */
 export const stick = signal<Stick>({ steer: 0, throttle: 0 });
 
@@ -27,9 +34,10 @@ const towards = (value: number, target: number, step: number): number => value +
 
 /** The stick position `seconds` later. */
 export function ramp(now: Stick, seconds: number, speed: number): Stick {
-  if (held.pad) {
+  const analogue = held.pad ?? held.gamepad;
+  if (analogue) {
     const lock = Math.max(keyLock(speed) * 2, 0.06);
-    return { steer: held.pad.steer * Math.min(1, lock), throttle: held.pad.throttle };
+    return { steer: analogue.steer * Math.min(1, lock), throttle: analogue.throttle };
   }
   const side = Number(held.left) - Number(held.right);
   const pedal = Number(held.up) - Number(held.down);
@@ -58,6 +66,6 @@ export function holdKey(key: string, isDown: boolean): boolean {
 
 export function releaseAll(): void {
   held.left = held.right = held.up = held.down = false;
-  held.pad = null;
+  held.pad = held.gamepad = null;
   stick.value = { steer: 0, throttle: 0 };
 }

@@ -6,6 +6,7 @@ import { entryOf, schema, settings } from '../state/settings';
 import { ControllerView } from './controller_view';
 import { ManualView } from './manual_view';
 import { ChoiceBox, SettingRow } from './setting_row';
+import { openShare } from './share_view';
 
 const PACES = [0.25, 1, 4] as const;
 
@@ -71,9 +72,19 @@ function Choices() {
   if (entries.length === 0) return null;
   return (
     <section class="block" aria-label="Choose">
-      <h2>
-        Choose <span class="unit">restarts the run</span>
-      </h2>
+      <header class="with-button">
+        <h2>
+          Choose <span class="unit">restarts the run</span>
+        </h2>
+        <button
+          type="button"
+          class="small"
+          title="A link to this run: track, car, preset, seed and changes"
+          onClick={openShare}
+        >
+          Share
+        </button>
+      </header>
       <div class="choices">
         {entries.map(({ entry, label }) => (
           <label key={entry.key} data-key={entry.key}>

@@ -1,6 +1,5 @@
 import { useSignalEffect } from '@preact/signals';
 import { fixed, lapTime, plural } from '../lib/format';
-import type { Setting } from '../protocol/source';
 import { bestsOf } from '../state/lap_table';
 import { laps } from '../state/laps';
 import { gapsToLimit, limit } from '../state/limit';
@@ -9,25 +8,8 @@ import { call, can, retry } from '../state/operate';
 import { canReplay, endReplay, REPLAY_S, replayLeft, startReplay } from '../state/replay';
 import { isPaused, run } from '../state/run';
 import { closeEnd, reopenEnd, runEnd, showsEnd } from '../state/run_end';
-import { settingChanges } from '../state/settings';
+import { commandOf, sharedNow } from '../state/share';
 import { silence } from '../state/shown';
-
-const quoted = (value: Setting): string => (/^[\w.+-]+$/.test(String(value)) ? String(value) : `'${value}'`);
-
-/** The command that begins the same run again, with what was changed. */
-function commandAgain(): string {
-  const now = run.value;
-  if (!now) return 'chicane drive';
-  const words = [
-    'chicane drive',
-    `--preset ${quoted(now.preset)}`,
-    `--track ${quoted(now.track)}`,
-    `--car ${quoted(now.car)}`,
-  ];
-  const isChoice = (key: string): boolean => ['preset', 'track', 'car', 'controller'].includes(key);
-  for (const { key, to } of settingChanges.value) if (!isChoice(key)) words.push(`--set ${key}=${quoted(to)}`);
-  return words.join(' ');
-}
 
 function Results() {
   const all = laps.value;
@@ -62,7 +44,7 @@ function Results() {
 }
 
 function Buttons() {
-  const command = commandAgain();
+  const command = commandOf(sharedNow.value);
   // A program that waits for the limit, or ends, begins nothing any more.
   const canReset = can('/reset') && (isPaused.value || silence.value === 0);
   return (

@@ -9,6 +9,7 @@ import { replayLeft } from '../state/replay';
 import { isPaused, run } from '../state/run';
 import { shown, silence } from '../state/shown';
 import { isHelpOpen } from './help_view';
+import { TourButton } from './tour_view';
 
 function RunSummary() {
   const now = run.value;
@@ -159,6 +160,7 @@ export function HeaderView() {
           <LinkState />
         </div>
         <Buttons />
+        <TourButton />
         <button
           type="button"
           class="icon"

@@ -3,12 +3,17 @@ import { download, downloadPng, fileName } from '../lib/download';
 import { fixed, lapTime, UNKNOWN } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import type { Lap, Limit } from '../protocol/topics';
+import { differences, setupInWords } from '../state/lap_setup';
 import { bestsOf, type LapBests, lapSamplesCsv, lapsCsv } from '../state/lap_table';
 import { bestLap, lapSamples, laps, sampledLaps } from '../state/laps';
 import { gapsToLimit, limit, whyNoLimit } from '../state/limit';
+import { REPLAY_S } from '../state/replay';
 import { run } from '../state/run';
+import { startSettings } from '../state/settings';
 import { everyFrame } from '../state/ticker';
+import { canFilm, film, isFilming } from './clip';
 import { LapCompareView } from './lap_compare_view';
+import { LeaderboardView } from './leaderboard_view';
 
 /** Number of the limit, the fastest possible lap, in the table. */
 const LIMIT = 0;
@@ -47,7 +52,15 @@ function Picks({ lap, pair, name }: { lap: number; pair: readonly [number, numbe
 }
 
 /** The first row: the fastest possible lap. */
-function LimitRow({ fastest, pair }: { fastest: Limit; pair: readonly [number, number] }) {
+function LimitRow({
+  fastest,
+  pair,
+  hasSetups,
+}: {
+  fastest: Limit;
+  hasSetups: boolean;
+  pair: readonly [number, number];
+}) {
   return (
     <tr class="limit" data-testid="limit">
       <th scope="row">limit</th>
@@ -59,6 +72,7 @@ function LimitRow({ fastest, pair }: { fastest: Limit; pair: readonly [number, n
       <td>{fixed(inSpeedUnit(fastest.speed_mps.reduce((a, b) => Math.max(a, b), 0)), 1)}</td>
       <td>{UNKNOWN}</td>
       <td>{UNKNOWN}</td>
+      {hasSetups && <td />}
       <td>
         <Picks lap={LIMIT} pair={pair} name="the limit" />
       </td>
@@ -66,7 +80,29 @@ function LimitRow({ fastest, pair }: { fastest: Limit; pair: readonly [number, n
   );
 }
 
-function Row({ lap, bests, pair }: { lap: Lap; bests: LapBests; pair: readonly [number, number] }) {
+/** With what a lap was driven: the first two things, all of them in its title. */
+function SetupCell({ words }: { words: readonly string[] }) {
+  const more = words.length - SETUP_WORDS;
+  return (
+    <td class="setup" title={words.join('\n')}>
+      {words.slice(0, SETUP_WORDS).map((each) => (
+        <span key={each} class="badge">
+          {each}
+        </span>
+      ))}
+      {more > 0 && <span class="badge">{more} more</span>}
+    </td>
+  );
+}
+
+interface RowOptions {
+  readonly lap: Lap;
+  readonly bests: LapBests;
+  readonly pair: readonly [number, number];
+  readonly hasSetups: boolean;
+}
+
+function Row({ lap, bests, pair, hasSetups }: RowOptions) {
   const isBest = lap.lap === bests.lap;
   const gaps = gapsToLimit(lap, limit.value);
   return (
@@ -107,6 +143,7 @@ function Row({ lap, bests, pair }: { lap: Lap; bests: LapBests; pair: readonly [
       <td>{fixed(inSpeedUnit(lap.top_speed_mps), 1)}</td>
       <td>{fixed(lap.min_edge_distance_m, 2)}</td>
       <td>{fixed(lap.rms_lateral_error_m, 2)}</td>
+      {hasSetups && <SetupCell words={setupInWords(lap, startSettings.value)} />}
       <td>
         <Picks lap={lap.lap} pair={pair} name={`lap ${lap.lap}`} />
       </td>
@@ -115,6 +152,7 @@ function Row({ lap, bests, pair }: { lap: Lap; bests: LapBests; pair: readonly [
 }
 
 const ROWS = 40;
+const SETUP_WORDS = 2;
 const showsAll = signal(false);
 
 /** The newest laps and the best, or all laps. */
@@ -174,8 +212,35 @@ function Toolbar({ pair }: { pair: readonly [number, number] }) {
       <button type="button" onClick={savePicture}>
         Map as PNG
       </button>
+      <button type="button" disabled={!canFilm()} title="Shows them once more, and records the picture" onClick={film}>
+        {isFilming.value ? 'Filming …' : `Last ${REPLAY_S} s as video`}
+      </button>
     </div>
   );
+}
+
+/** What differed between the two laps that are compared. */
+function Differences({ all, pair }: { all: readonly Lap[]; pair: readonly [number, number] }) {
+  const [a, b] = pair.map((number) => all.find(({ lap }) => lap === number));
+  if (!a || !b || a === b) return null;
+  const found = differences(a, b, startSettings.value);
+  if (found.length === 0) return null;
+  return (
+    <p class="lap-difference" data-testid="lap-difference">
+      What differed, lap {a.lap} | lap {b.lap}:{' '}
+      {found.map(({ what, a: one, b: other }, i) => (
+        <span key={what}>
+          {i > 0 && ', '}
+          <code>{what}</code> <b>{one}</b> | <b>{other}</b>
+        </span>
+      ))}
+    </p>
+  );
+}
+
+function headsOf(hasSetups: boolean): string[] {
+  const heads = ['Lap', 'Time', 'Gap', 'S 1', 'S 2', 'S 3', `Top ${speedUnit().name}`, 'Edge', 'Error'];
+  return [...heads, ...(hasSetups ? ['Driven with'] : []), 'Compare'];
 }
 
 export function LapsView() {
@@ -183,6 +248,7 @@ export function LapsView() {
   void sampledLaps.value;
   const bests = bestsOf(all);
   const pair = compared(all, bests);
+  const hasSetups = all.some((lap) => setupInWords(lap, startSettings.value).length > 0);
   return (
     <div class="laps">
       <Toolbar pair={pair} />
@@ -202,19 +268,17 @@ export function LapsView() {
           <table class="lap-table">
             <thead>
               <tr>
-                {['Lap', 'Time', 'Gap', 'S 1', 'S 2', 'S 3', `Top ${speedUnit().name}`, 'Edge', 'Error', 'Compare'].map(
-                  (head) => (
-                    <th key={head} scope="col">
-                      {head}
-                    </th>
-                  ),
-                )}
+                {headsOf(hasSetups).map((head) => (
+                  <th key={head} scope="col">
+                    {head}
+                  </th>
+                ))}
               </tr>
             </thead>
             <tbody>
-              {limit.value && <LimitRow fastest={limit.value} pair={pair} />}
+              {limit.value && <LimitRow fastest={limit.value} pair={pair} hasSetups={hasSetups} />}
               {rowsOf(all, bests).map((lap) => (
-                <Row key={lap.lap} lap={lap} bests={bests} pair={pair} />
+                <Row key={lap.lap} lap={lap} bests={bests} pair={pair} hasSetups={hasSetups} />
               ))}
             </tbody>
           </table>
@@ -225,6 +289,8 @@ export function LapsView() {
           )}
         </div>
       )}
+      <LeaderboardView />
+      <Differences all={all} pair={pair} />
       {(all.length > 1 || pair.includes(LIMIT)) && <LapCompareView a={pair[0] - 1} b={pair[1] - 1} />}
     </div>
   );

@@ -1,13 +1,15 @@
-import { effect } from '@preact/signals';
+import { effect, signal } from '@preact/signals';
 import { useRef } from 'preact/hooks';
 import { fixed } from '../lib/format';
 import { isTakenBy } from '../lib/keys';
 import { clamp } from '../lib/math';
+import { asksForWheel, firstGamepad, gamepads, stickOf } from '../state/gamepad';
 import { link } from '../state/link';
 import { live } from '../state/live';
 import { held, holdKey, ramp, releaseAll, stick } from '../state/manual';
 import { canSet, set } from '../state/operate';
 import { settings } from '../state/settings';
+import { everyFrame } from '../state/ticker';
 
 const RATE_HZ = 30;
 const REMIND_MS = 250; // the program ends driving by hand after a second without a message
@@ -39,10 +41,14 @@ export function listenToDriver(): void {
   addEventListener('blur', releaseAll);
   document.addEventListener('visibilitychange', () => document.hidden && releaseAll());
 
+  everyFrame(() => watchGamepad());
+
   let timer: ReturnType<typeof setInterval> | undefined;
   let [last, said] = [0, 0];
   const turn = (): void => {
     const now = performance.now();
+    const pad = firstGamepad(gamepads());
+    held.gamepad = pad && stickOf(pad);
     const next = ramp(stick.value, Math.min(0.1, (now - last) / 1000), live.frame?.speed_mps ?? 0);
     last = now;
     const before = stick.value;
@@ -66,6 +72,23 @@ export function listenToDriver(): void {
     }
   });
 }
+
+let wasStartPressed = false;
+let hasGamepad = false;
+/** The name of the gamepad that is there; empty without one. */
+const gamepadName = signal('');
+
+/** Start takes the wheel and hands it back. */
+function watchGamepad(): void {
+  if (!hasGamepad) return;
+  const pad = firstGamepad(gamepads());
+  gamepadName.value = pad?.id ?? '';
+  const isPressed = pad !== null && asksForWheel(pad);
+  if (isPressed && !wasStartPressed) toggleManual();
+  wasStartPressed = isPressed;
+}
+
+if (typeof window !== 'undefined') addEventListener('gamepadconnected', () => (hasGamepad = true));
 
 /** A pad for finger or mouse: sideways steers, up is throttle, down is brake. */
 function Pad() {
@@ -124,7 +147,12 @@ export function ManualView() {
             wheel {fixed(stick.value.steer * 100, 0)} % · pedal {fixed(stick.value.throttle * 100, 0)} %
           </p>
         ) : (
-          <p class="soft">Arrow keys steer, drive and brake. The controller keeps computing in the background.</p>
+          <p class="soft">
+            {gamepadName.value === ''
+              ? 'Arrow keys steer, drive and brake; a gamepad does, too.'
+              : 'Gamepad: the left stick steers, the triggers drive and brake, Start takes the wheel.'}{' '}
+            The controller keeps computing in the background.
+          </p>
         )}
       </div>
       {isOn && <Pad />}

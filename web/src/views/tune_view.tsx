@@ -14,7 +14,20 @@ const onlyChanged = signal(false);
 /** Groups that were opened or closed by hand; others follow the active controller. */
 const isOpen = signal<ReadonlyMap<string, boolean>>(new Map());
 
-export const focusSearch = (): void => document.getElementById('tune-search')?.focus();
+let isSearchWanted = false;
+
+/** The search takes the next key, also where it is not there yet: it appears before another key can be pressed. */
+export function focusSearch(): void {
+  const box = document.getElementById('tune-search');
+  isSearchWanted = box === null;
+  box?.focus();
+}
+
+function takeFocus(box: HTMLInputElement | null): void {
+  if (!box || !isSearchWanted) return;
+  isSearchWanted = false;
+  box.focus();
+}
 
 const prefixOf = (key: string): string => (key.includes('.') ? (key.split('.')[0] ?? '') : 'run');
 
@@ -131,6 +144,7 @@ export function TuneView() {
       <div class="toolbar">
         <input
           id="tune-search"
+          ref={takeFocus}
           type="search"
           placeholder="Search: weight, delay, friction …"
           aria-label="Search settings"

@@ -11,6 +11,8 @@ import { FaultsView } from './faults_view';
 import { InstrumentsView } from './instruments_view';
 import { LapsView } from './laps_view';
 import { PlotsView } from './plots_view';
+import { tab } from './tab';
+import { TourView } from './tour_view';
 import { TrackView } from './track_view';
 import { TuneView } from './tune_view';
 import { WhatIfView } from './what_if_view';
@@ -34,7 +36,7 @@ export const titleOf = (name: Tab): string => PANELS.find((each) => each.name ==
 const isTab = (value: unknown): value is Tab => (TABS as readonly unknown[]).includes(value);
 
 /** The tab in the address has priority over the one shown last, so that links can open a tab. */
-export const tab = persisted<Tab>('tab', 'plots', isTab);
+if (!isTab(tab.value)) tab.value = 'plots';
 if (typeof location !== 'undefined' && isTab(location.hash.slice(1))) tab.value = location.hash.slice(1) as Tab;
 
 type Dock = 'right' | 'bottom';
@@ -178,6 +180,7 @@ export function WorkbenchView() {
       )}
       {!isPanelAlone.value && !isStageAlone.value && <Splitter />}
       <div class="panel side" hidden={isStageAlone.value}>
+        <TourView />
         <Tabs />
         <div
           class={`panel-body show-${tab.value}`}

@@ -143,6 +143,11 @@ float64 min_edge_distance_m             # of the outermost tyre, negative = off 
 float64 rms_lateral_error_m
 float64 gap_to_limit_percent            # lap time over the limit's, minus 100 %; not-a-number while unknown
 float64[3] sector_gaps_to_limit_percent # the same for the thirds
+string[] setting_names                  # changed since the run began, as at the end of the lap
+string[] setting_values                 # as --set takes them
+bool is_mixed                           # one of them changed while the lap was driven
+float64 by_hand_share                   # of its time, driven by a person
+string[] faults                         # that acted in it
 )"},
     RosDefinition{"chicane_msgs/Limit",
                   R"(# The physical limit of this road for this car: the fastest lap of the model

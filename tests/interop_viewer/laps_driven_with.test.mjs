@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+// With what laps were driven: told by the program with each lap, in the table, in comparison, in a recording; people
+// against controllers, with a gamepad; and a film of it.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, it } from 'node:test';
+import { launch } from './browser.mjs';
+import { startDrive, watch } from './chicane_drive.mjs';
+import { DashboardPage } from './dashboard_page.mjs';
+
+let browser;
+before(async () => {
+  browser = await launch();
+});
+after(() => browser.close());
+
+const lapRows = ({ page }) => page.locator('.lap-table tbody tr:not(.limit)');
+async function laps(dashboard, count) {
+  await dashboard.until(
+    () => lapRows(dashboard).count(),
+    (found) => found >= count,
+    `${count} laps`,
+  );
+}
+async function type(dashboard, key, value) {
+  const box = dashboard.page.locator(`.panel-body [data-key="${key}"] .number-box`);
+  await box.fill(String(value));
+  await box.press('Enter');
+}
+
+describe('a lap', () => {
+  const folder = mkdtempSync(join(tmpdir(), 'chicane-laps-'));
+  const recording = join(folder, 'laps.mcap');
+  let drive;
+  before(async () => {
+    drive = await startDrive(['--track', 'oval', '--pace', '10', '--record', recording]);
+  });
+  after(async () => {
+    await drive.stop();
+    rmSync(folder, { recursive: true });
+  });
+
+  it('remembers the settings it was driven with, for whoever looks', async () => {
+    const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'laps' });
+    const { page } = dashboard;
+    await laps(dashboard, 1);
+    assert.equal(await page.locator('.lap-table th', { hasText: 'Driven with' }).count(), 0, 'nothing to tell yet');
+    await dashboard.show('drive');
+    await type(dashboard, 'latency_ms', 60);
+    await dashboard.show('laps');
+    const before = await lapRows(dashboard).count();
+    await laps(dashboard, before + 2);
+    await lapRows(dashboard).first().locator('.setup', { hasText: 'latency ms 60' }).waitFor();
+    const [newest] = await lapRows(dashboard).locator('th').allInnerTexts();
+    assert.match(newest, /^\d+/);
+    await page.getByLabel('Compare lap 1 as B').check();
+    await page.getByLabel(`Compare lap ${parseInt(newest, 10)} as A`).check();
+    await dashboard.until(
+      () => dashboard.text('lap-difference'),
+      (text) => /latency_ms 60 \| 100/.test(text.replace(/\s+/g, ' ')),
+      'what differed',
+    );
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await dashboard.close();
+    const late = await DashboardPage.open(browser, drive.url, { tab: 'laps' });
+    await laps(late, before + 2);
+    await lapRows(late).first().locator('.setup', { hasText: 'latency ms 60' }).waitFor();
+    await late.close();
+  });
+
+  it('remembers them in the recording, too', async () => {
+    await drive.stop();
+    const page = join(folder, 'report.html');
+    execFileSync(process.env.CHICANE ?? 'chicane', ['report', recording, '-o', page], { stdio: 'pipe' });
+    const dashboard = await DashboardPage.open(browser, `file://${page}`, { tab: '', state: 'Recording' });
+    await dashboard.page.locator('.lap-table .setup', { hasText: 'latency ms 60' }).first().waitFor();
+    await dashboard.close();
+  });
+});
+
+describe('a gamepad', () => {
+  it('takes the wheel, drives, and hands back', async (t) => {
+    const drive = await startDrive(['--track', 'oval']);
+    t.after(() => drive.stop());
+    const other = await watch(drive.url);
+    const dashboard = await DashboardPage.open(browser, drive.url);
+    const { page } = dashboard;
+    await page.locator('button:enabled', { hasText: 'Take the wheel' }).waitFor();
+    await page.evaluate(() => {
+      const button = () => ({ value: 0, pressed: false, touched: false });
+      const pad = { id: 'A pad', mapping: 'standard', connected: true, axes: [0, 0, 0, 0] };
+      pad.buttons = Array.from({ length: 17 }, button);
+      globalThis.pad = pad;
+      navigator.getGamepads = () => [pad];
+      dispatchEvent(new Event('gamepadconnected'));
+    });
+    await page.getByText('the left stick steers, the triggers drive and brake', { exact: false }).waitFor();
+    const press = (index, value) =>
+      page.evaluate(
+        ([at, how]) => {
+          globalThis.pad.buttons[at] = { value: how, pressed: how > 0.5, touched: how > 0 };
+        },
+        [index, value],
+      );
+    await press(9, 1);
+    await page.getByText('By hand', { exact: true }).waitFor();
+    await press(9, 0);
+    await press(7, 1);
+    await page.evaluate(() => {
+      globalThis.pad.axes[0] = -1;
+    });
+    await dashboard.until(
+      () => other.newest,
+      ({ steer_applied_rad: steer, throttle_applied: throttle }) => steer > 0.005 && throttle > 0.5,
+      'wheels to the left, and throttle',
+    );
+    await press(9, 1);
+    await page.getByText('By hand', { exact: true }).waitFor({ state: 'detached' });
+    other.close();
+    await dashboard.close();
+  });
+});
+
+it('sets people against controllers, on one track', async (t) => {
+  const drive = await startDrive(['--track', 'oval', '--pace', '10']);
+  t.after(() => drive.stop());
+  const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'laps' });
+  const { page } = dashboard;
+  await laps(dashboard, 1);
+  assert.equal(await page.getByTestId('leaderboard').count(), 0, 'one alone is no race');
+  await dashboard.show('drive');
+  await page.locator('.choices').getByLabel('Controller', { exact: true }).selectOption('stanley');
+  await page.getByRole('dialog').getByText('Restart', { exact: true }).click();
+  await dashboard.until(
+    () => page.locator('.summary').innerText(),
+    (text) => /stanley/.test(text),
+    'the other controller',
+  );
+  await dashboard.show('laps');
+  const board = page.getByTestId('leaderboard');
+  await board.waitFor();
+  const [first, second] = await board.locator('li').allInnerTexts();
+  assert.match(first, /^tracking-mpc, default\n/);
+  assert.match(second, /stanley.*\+/s);
+  await page.reload();
+  await board.waitFor();
+  await board.getByText('Forget').click();
+  await board.waitFor({ state: 'detached' });
+  await dashboard.close();
+});
+
+it('makes a film of the last seconds', async (t) => {
+  const drive = await startDrive(['--track', 'oval']);
+  t.after(() => drive.stop());
+  const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'laps' });
+  const { page } = dashboard;
+  await dashboard.until(
+    () => dashboard.seconds(),
+    (now) => now > 2,
+    'something to show',
+  );
+  const [file] = await Promise.all([page.waitForEvent('download'), dashboard.button('Last 10 s as video').click()]);
+  assert.equal(file.suggestedFilename(), 'oval_last-seconds.webm');
+  const bytes = readFileSync(await file.path());
+  assert.equal(bytes.subarray(0, 4).toString('hex'), '1a45dfa3', 'a WebM file');
+  assert.ok(bytes.length > 10_000, `${bytes.length} bytes`);
+  await page.getByText('Live', { exact: true }).waitFor();
+  await dashboard.close();
+});

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+// The tour as a newcomer takes it: every step done on a real run, left and gone on with, with keyboard and on a phone.
+import assert from 'node:assert/strict';
+import { after, before, describe, it } from 'node:test';
+import { launch } from './browser.mjs';
+import { startDrive } from './chicane_drive.mjs';
+import { DashboardPage, PHONE } from './dashboard_page.mjs';
+
+let browser;
+let drive;
+before(async () => {
+  browser = await launch();
+  drive = await startDrive(['--track', 'lakeside']);
+});
+after(async () => {
+  await browser.close();
+  await drive.stop();
+});
+
+const tour = ({ page }) => page.getByTestId('tour');
+const heading = (dashboard) => tour(dashboard).getByRole('heading').innerText();
+const tasksDone = (dashboard) => tour(dashboard).locator('.tour-tasks .done').count();
+const isDone = (dashboard, count, what) =>
+  dashboard.until(
+    () => tasksDone(dashboard),
+    (done) => done >= count,
+    what,
+  );
+/** On to the next step, which has this heading. */
+async function next(dashboard, title) {
+  await dashboard.button('Next').click();
+  assert.equal(await heading(dashboard), title);
+  assert.equal(await tasksDone(dashboard), 0);
+  assert.ok(await dashboard.button('Next').isDisabled(), 'not before it is done');
+}
+
+describe('the tour', () => {
+  it('goes on when the thing was done, from the first step to the last', async () => {
+    let dashboard = await DashboardPage.open(browser, drive.url, { tab: 'plots' });
+    let { page } = dashboard;
+    await dashboard.button('Tour').click();
+    assert.equal(await heading(dashboard), '1 of 7: Drive it yourself');
+    assert.equal(await page.locator('#tab-drive').getAttribute('aria-selected'), 'true', 'on the panel of the step');
+    assert.ok(await dashboard.button('Next').isDisabled());
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await page.locator('button:enabled', { hasText: 'Take the wheel' }).waitFor();
+    await page.keyboard.press('m');
+    await page.keyboard.down('ArrowUp');
+    await isDone(dashboard, 2, 'thirty metres by hand');
+    await page.keyboard.up('ArrowUp');
+    assert.match(await tour(dashboard).getByRole('status').innerText(), /All done/);
+
+    await next(dashboard, '2 of 7: Let it drive');
+    await page.keyboard.press('Escape');
+    await isDone(dashboard, 1, 'the controller drives');
+    await dashboard.button('Reset').click();
+    await isDone(dashboard, 2, 'a car that drives by itself');
+
+    await next(dashboard, '3 of 7: Slow it');
+    await dashboard.button('0.25×').click();
+    await isDone(dashboard, 1, 'slow motion');
+    assert.match(await tour(dashboard).getByRole('status').innerText(), /^Done: .*Next: Press 1×/);
+    await dashboard.button('1×').click();
+    await isDone(dashboard, 2, 'the pace of before');
+
+    await next(dashboard, '4 of 7: Blind it');
+    await page.locator('[data-key="fault.link_lost"]').click();
+    await isDone(dashboard, 2, 'a controller that sees again');
+
+    await next(dashboard, '5 of 7: Break it');
+    await dashboard.button('Leave the tour').click();
+    await tour(dashboard).waitFor({ state: 'detached' });
+    await page.reload();
+    await dashboard.button('Go on with the tour, step 5 of 7').click();
+    assert.equal(await heading(dashboard), '5 of 7: Break it');
+    const stuck = page.locator('[data-key="fault.steering_stuck"]');
+    await dashboard.until(
+      async () => {
+        if ((await stuck.getAttribute('aria-pressed')) === 'false') await stuck.click();
+        return tasksDone(dashboard);
+      },
+      (done) => done >= 1,
+      'a car off the road',
+    );
+    await dashboard.button('Reset').click();
+    await isDone(dashboard, 2, 'a car that drives again');
+
+    await next(dashboard, '6 of 7: Tune it');
+    const box = page.locator('[data-key="tracking_mpc.speed_limit_mps"] .number-box');
+    await box.fill('15');
+    await box.press('Enter');
+    await isDone(dashboard, 2, 'a changed setting');
+
+    await next(dashboard, '7 of 7: Compare');
+    await page.getByLabel('Setting to change').fill('tracking_mpc.speed_limit_mps');
+    await page.getByLabel('What if: Speed limit').fill('60');
+    await page.getByText('Drive both', { exact: true }).click();
+    await isDone(dashboard, 1, 'two futures');
+
+    await dashboard.button('Next').click();
+    assert.equal(await heading(dashboard), 'The tour is over');
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await dashboard.button('Put everything back').click();
+    await dashboard.show('tune');
+    await page.getByText('No changes').waitFor();
+    await dashboard.button('Close').click();
+    await dashboard.button('Tour').waitFor();
+    await dashboard.close();
+    dashboard = await DashboardPage.open(browser, drive.url, { tab: 'tune' });
+    ({ page } = dashboard);
+    await page.getByText('No changes').waitFor();
+    await dashboard.close();
+  });
+
+  it('can be taken with the keyboard alone, and says what was left out', async () => {
+    const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'plots' });
+    const { page } = dashboard;
+    await dashboard.button('Tour').waitFor();
+    await page.keyboard.press('h');
+    const focused = () => page.evaluate(() => document.activeElement.textContent);
+    for (const title of ['Drive', 'Let', 'Slow', 'Blind', 'Break', 'Tune', 'Compare']) {
+      await dashboard.until(focused, (text) => text.includes(title), `the heading of ${title}`);
+      await page.keyboard.press('Tab'); // Leave
+      await page.keyboard.press('Tab');
+      assert.equal(await focused(), 'Skip');
+      await page.keyboard.press('Enter');
+    }
+    await dashboard.until(focused, (text) => text === 'The tour is over', 'the end');
+    assert.match(await tour(dashboard).innerText(), /Left out: Drive it yourself, .*, Compare\./);
+    await page.keyboard.press('h');
+    await tour(dashboard).waitFor({ state: 'detached' });
+    await dashboard.close();
+  });
+
+  it('shows where it is done, and fits a phone', async () => {
+    const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'plots', ...PHONE });
+    const { page } = dashboard;
+    await dashboard.button('Tour').click();
+    await dashboard.show('laps');
+    await dashboard.button('Show me where').click();
+    assert.equal(await page.locator('#tab-drive').getAttribute('aria-selected'), 'true');
+    const { across, down } = await dashboard.overflow();
+    assert.ok(across <= 0 && down <= 0, `${across} ${down}`);
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await dashboard.close();
+  });
+});

@@ -1,0 +1,34 @@
+import type { Stick } from './manual';
+
+// A gamepad as the wheel: the left stick steers, the right trigger drives, the left one brakes, Start takes the wheel
+// and hands it back. Browsers tell of a gamepad once one of its buttons was pressed.
+
+const DEAD = 0.08; // of the stick's way, about its middle
+const [LEFT_TRIGGER, RIGHT_TRIGGER, START] = [6, 7, 9]; // of the standard mapping
+
+type Pad = Pick<Gamepad, 'axes' | 'buttons' | 'mapping' | 'connected' | 'id'>;
+
+/** The first gamepad whose sticks are where everybody's are. */
+export function firstGamepad(all: readonly (Pad | null)[]): Pad | null {
+  return all.find((each) => each?.connected === true && each.mapping === 'standard') ?? null;
+}
+
+/** Gamepads of the browser; none where it offers none, or not to this page. */
+export function gamepads(): readonly (Pad | null)[] {
+  try {
+    return navigator.getGamepads?.() ?? [];
+  } catch {
+    return [];
+  }
+}
+
+/** What it asks for; null while it is let go. Left and drive positive; beyond the dead middle in proportion. */
+export function stickOf(pad: Pad): Stick | null {
+  const axis = pad.axes[0] ?? 0;
+  const away = Math.max(0, Math.abs(axis) - DEAD) / (1 - DEAD);
+  const steer = away === 0 ? 0 : -Math.sign(axis) * Math.min(1, away);
+  const throttle = (pad.buttons[RIGHT_TRIGGER]?.value ?? 0) - (pad.buttons[LEFT_TRIGGER]?.value ?? 0);
+  return steer === 0 && Math.abs(throttle) < 0.02 ? null : { steer, throttle };
+}
+
+export const asksForWheel = (pad: Pad): boolean => pad.buttons[START]?.pressed ?? false;

@@ -1,0 +1,170 @@
+import { computed, signal } from '@preact/signals';
+import type { SchemaEntry } from '../protocol/schema';
+import type { Setting } from '../protocol/source';
+import { link } from './link';
+import { call, refresh, requests } from './operate';
+import { isControl, refusals, schema, settings, startSettings } from './settings';
+
+// A link that holds a run: track, car, preset, controller, seed, and what differs from what these give. It lies in the
+// fragment of the address, which browsers send to no server, and it is followed by the settings' own requests, so that
+// the program checks each value as it checks one that is typed. Names only: a file of one machine is none of another.
+
+/** What makes a run, in the order in which it is chosen: a preset brings its controller. */
+const CHOICES = ['track', 'car', 'preset', 'controller', 'seed'] as const;
+/** How long a run lasts is not what it is. */
+const NOT_SHARED = new Set<string>([...CHOICES, 'laps', 'time_limit_s']);
+const PREFIX = '#run?';
+
+/** A run as a link holds it: the choices, and the settings that differ from what they give. */
+export interface SharedRun {
+  readonly choices: ReadonlyMap<string, Setting>;
+  readonly changes: ReadonlyMap<string, Setting>;
+}
+
+const isShared = ({ key, kind }: SchemaEntry): boolean => !isControl(key) && !NOT_SHARED.has(key) && kind !== 'text';
+
+/** What the chosen preset gives with the chosen car. */
+const givenBy = (entry: SchemaEntry): Setting => entry.default ?? 'inf';
+
+/** The run that goes on. */
+export const sharedNow = computed<SharedRun>(() => ({
+  choices: new Map(
+    CHOICES.flatMap((key) => {
+      const value = settings.value.get(key);
+      return value === undefined ? [] : [[key, value]];
+    }),
+  ),
+  changes: new Map(
+    schema.value.filter(isShared).flatMap((entry) => {
+      const value = settings.value.get(entry.key);
+      return value === undefined || Object.is(value, givenBy(entry)) ? [] : [[entry.key, value]];
+    }),
+  ),
+}));
+
+/** The choices that are files, which a link cannot name. */
+export const filesChosen = computed<readonly string[]>(() =>
+  (['track', 'car', 'preset'] as const).filter((key) => {
+    const value = settings.value.get(key);
+    const entry = schema.value.find((each) => each.key === key);
+    return value !== undefined && entry !== undefined && !entry.choices.includes(String(value));
+  }),
+);
+
+/** The address of a run, to be opened on any running `chicane drive`. `page`: where the page is, without fragment. */
+export function linkTo({ choices, changes }: SharedRun, page: string): string {
+  const query = new URLSearchParams([...choices, ...changes].map(([key, value]) => [key, String(value)]));
+  return `${page}${PREFIX}${query}`;
+}
+
+const quoted = (value: Setting): string => (/^[\w.+-]+$/.test(String(value)) ? String(value) : `'${value}'`);
+
+/** The command that begins a run. The controller is told where it is not the preset's. */
+export function commandOf({ choices, changes }: SharedRun): string {
+  const given = schema.value.find(({ key }) => key === 'controller')?.default;
+  const isTold = (key: string, value: Setting): boolean =>
+    key === 'controller' ? value !== given : key === 'seed' ? value !== 1 : true;
+  const words = ['chicane drive'];
+  for (const key of ['preset', 'track', 'car', 'controller', 'seed']) {
+    const value = choices.get(key);
+    if (value !== undefined && isTold(key, value)) words.push(`--${key} ${quoted(value)}`);
+  }
+  for (const [key, value] of changes) words.push(`--set ${key}=${quoted(value)}`);
+  return words.join(' ');
+}
+
+/** The value that a text stands for; the program says so if it is none of that setting. */
+function meant(text: string, entry: SchemaEntry | undefined): Setting {
+  if (entry?.kind === 'bool' && /^(true|false)$/.test(text)) return text === 'true';
+  const isNumber = entry?.kind === 'number' || entry?.kind === 'integer';
+  return isNumber && text.trim() !== '' && Number.isFinite(Number(text)) ? Number(text) : text;
+}
+
+/** What the fragment of an address holds; null when it is no run. */
+export function textsIn(fragment: string): ReadonlyMap<string, string> | null {
+  return fragment.startsWith(PREFIX) ? new Map(new URLSearchParams(fragment.slice(PREFIX.length))) : null;
+}
+
+/** What the address asked for, until the reader has answered. */
+export const wantedTexts = signal<ReadonlyMap<string, string> | null>(null);
+
+export interface Wanted {
+  readonly run: SharedRun;
+  /** What would be another than now. */
+  readonly differences: readonly { readonly key: string; readonly from: Setting; readonly to: Setting }[];
+  /** Keys that this program does not know, or does not take from a link. */
+  readonly unknown: readonly string[];
+}
+
+/** The run that the address asked for; null without one, or before the settings are known. */
+export const wanted = computed<Wanted | null>(() => {
+  const texts = wantedTexts.value;
+  if (!texts || schema.value.length === 0 || settings.value.size === 0) return null;
+  const choices = new Map<string, Setting>();
+  const changes = new Map<string, Setting>();
+  const unknown: string[] = [];
+  for (const [key, text] of texts) {
+    const entry = schema.value.find((each) => each.key === key);
+    const isChoice = (CHOICES as readonly string[]).includes(key);
+    if (!entry || !(isChoice || isShared(entry))) unknown.push(key);
+    else (isChoice ? choices : changes).set(key, meant(text, entry));
+  }
+  const now = sharedNow.value;
+  const differences = [...choices].flatMap(([key, to]) => {
+    const from = now.choices.get(key) ?? '';
+    return Object.is(from, to) ? [] : [{ key, from, to }];
+  });
+  for (const entry of schema.value.filter(isShared)) {
+    const from = settings.value.get(entry.key);
+    // With another preset or car the rest is what those give.
+    const to = changes.get(entry.key) ?? (differences.length === 0 ? givenBy(entry) : from);
+    if (from !== undefined && to !== undefined && !Object.is(from, to)) differences.push({ key: entry.key, from, to });
+  }
+  return { run: { choices, changes }, differences, unknown };
+});
+
+const pause = (milliseconds: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, milliseconds));
+
+/** Waits until the run that was chosen goes on; false when another one does. */
+async function hasBegun(chosen: ReadonlyMap<string, Setting>): Promise<boolean> {
+  for (;;) {
+    const isWanted = [...chosen].every(([key, value]) => settings.value.get(key) === value);
+    if (!isWanted || link.value !== 'live') return false;
+    if ([...chosen].every(([key, value]) => startSettings.value.get(key) === value)) return true;
+    refresh();
+    await pause(150);
+  }
+}
+
+/** Requests values one after another; what was refused is added to `sentences`. */
+async function setAll(values: ReadonlyMap<string, Setting>, sentences: string[]): Promise<void> {
+  for (const [key, value] of values) {
+    await requests.set(key, value);
+    const sentence = refusals.value.get(key);
+    if (sentence !== undefined) sentences.push(sentence);
+  }
+}
+
+/**
+ * Drives the run of a link, from its beginning: its choices, then all settings as they are in it, then the start once
+ * more. Resolves to what the program refused.
+ */
+export async function driveShared({ choices, changes }: SharedRun): Promise<string[]> {
+  const sentences: string[] = [];
+  const chosen = new Map([...choices].filter(([key, value]) => settings.value.get(key) !== value));
+  await setAll(chosen, sentences);
+  if (sentences.length > 0) return sentences;
+  if (!(await hasBegun(chosen))) return ['the program did not begin that run'];
+  const others = schema.value.filter(isShared).flatMap((entry) => {
+    const value = changes.get(entry.key) ?? givenBy(entry);
+    const now = settings.value.get(entry.key);
+    return now === undefined || Object.is(now, value) ? [] : [{ entry, value }];
+  });
+  const of = (isLive: boolean): Map<string, Setting> =>
+    new Map(others.filter(({ entry }) => entry.is_live === isLive).map(({ entry, value }) => [entry.key, value]));
+  await setAll(of(false), sentences);
+  await setAll(of(true), sentences);
+  if (sentences.length === 0 && !(await hasBegun(of(false)))) return ['the program did not begin that run'];
+  call('/reset');
+  return sentences;
+}

@@ -1,0 +1,165 @@
+import { signal } from '@preact/signals';
+import { plural } from '../lib/format';
+import { tidy } from '../lib/scale';
+import type { Setting } from '../protocol/source';
+import { notice } from '../state/link';
+import { canSet } from '../state/operate';
+import { commandOf, driveShared, filesChosen, linkTo, sharedNow, textsIn, wanted, wantedTexts } from '../state/share';
+import { Dialog } from './help_view';
+
+const isOpen = signal(false);
+
+export const openShare = (): void => {
+  isOpen.value = true;
+};
+
+/** Reads a link to a run from the address, now and when another one is opened in this tab, and cleans the address. */
+export function listenForLinks(): void {
+  const read = (): void => {
+    const texts = textsIn(location.hash);
+    if (!texts) return;
+    wantedTexts.value = texts;
+    history.replaceState(null, '', location.pathname + location.search);
+  };
+  addEventListener('hashchange', read);
+  read();
+}
+
+const asText = (value: Setting): string => (typeof value === 'number' ? tidy(value) : String(value));
+
+/** Where browsers allow no clipboard (addresses without TLS that are not this machine), the text is selected. */
+function copy(field: HTMLInputElement | null, said: (text: string) => void): void {
+  if (!field) return;
+  field.select();
+  const done = navigator.clipboard?.writeText(field.value) ?? Promise.reject(new Error('no clipboard'));
+  done.then(
+    () => said('Copied'),
+    () => said('Selected: Ctrl+C copies it'),
+  );
+}
+
+const said = signal<{ readonly id: string; readonly text: string } | null>(null);
+
+function Copied({ id, label, text }: { id: string; label: string; text: string }) {
+  return (
+    <div class="copied">
+      <label for={id}>{label}</label>
+      <div class="copied-row">
+        <input id={id} type="text" readOnly value={text} onFocus={(event) => event.currentTarget.select()} />
+        <button
+          type="button"
+          aria-label={`Copy the ${label.toLowerCase()}`}
+          onClick={() =>
+            copy(document.getElementById(id) as HTMLInputElement | null, (words) => (said.value = { id, text: words }))
+          }
+        >
+          Copy
+        </button>
+      </div>
+      <p class="soft" role="status">
+        {said.value?.id === id ? said.value.text : ''}
+      </p>
+    </div>
+  );
+}
+
+/** The link to the run that goes on, and the command that begins it. */
+function Offer() {
+  const close = (): void => {
+    isOpen.value = false;
+    said.value = null;
+  };
+  const shared = sharedNow.value;
+  const files = filesChosen.value;
+  const changes = shared.changes.size === 0 ? 'no changes' : plural(shared.changes.size, 'change');
+  return (
+    <Dialog isOpen={isOpen.value} title="Share this run" onClose={close}>
+      {files.length > 0 ? (
+        <p data-testid="share-problem">
+          The {files.join(' and the ')} of this run {files.length === 1 ? 'is a file' : 'are files'} of this machine: a
+          link can only name what the program brings along.
+        </p>
+      ) : (
+        <>
+          <p class="soft">
+            {[...shared.choices].map(([key, value]) => `${key} ${asText(value)}`).join(', ')}, {changes}. Whoever opens
+            it with <code>chicane drive</code> running is asked once, and drives the same.
+          </p>
+          <Copied id="share-link" label="Link" text={linkTo(shared, location.origin + location.pathname)} />
+          <Copied id="share-command" label="Command" text={commandOf(shared)} />
+        </>
+      )}
+      <div class="buttons end">
+        <button type="button" class="primary" onClick={close}>
+          Close
+        </button>
+      </div>
+    </Dialog>
+  );
+}
+
+async function accept(): Promise<void> {
+  const request = wanted.value;
+  wantedTexts.value = null;
+  if (!request) return;
+  const refused = await driveShared(request.run);
+  if (refused.length > 0) notice.value = `Not all that the link asks for is driven: ${refused.join('; ')}`;
+}
+
+/** Asks whether the run that the address holds is to be driven. */
+function Question() {
+  const decline = (): void => {
+    wantedTexts.value = null;
+  };
+  const request = wanted.value;
+  const mayDrive = canSet('track');
+  const isSame = request?.differences.length === 0;
+  return (
+    <Dialog isOpen={request !== null} title="Drive the run of this link?" onClose={decline}>
+      {request && (
+        <>
+          {isSame ? (
+            <p>It is what is driven now.</p>
+          ) : (
+            <>
+              <p>The run that goes on ends, and this one begins from standstill:</p>
+              <ul class="link-differences" data-testid="wanted">
+                {request.differences.map(({ key, from, to }) => (
+                  <li key={key}>
+                    <code>{key}</code> <span class="was">{asText(from)}</span>{' '}
+                    <span role="img" aria-label="to">
+                      →
+                    </span>{' '}
+                    <b>{asText(to)}</b>
+                  </li>
+                ))}
+              </ul>
+            </>
+          )}
+          {request.unknown.length > 0 && (
+            <p class="soft">Left out, since a link cannot set it here: {request.unknown.join(', ')}.</p>
+          )}
+          <div class="buttons end">
+            <button type="button" onClick={decline}>
+              {isSame ? 'Close' : 'Keep this run'}
+            </button>
+            {!isSame && (
+              <button type="button" class="primary" disabled={!mayDrive} onClick={() => void accept()}>
+                Drive it
+              </button>
+            )}
+          </div>
+        </>
+      )}
+    </Dialog>
+  );
+}
+
+export function ShareView() {
+  return (
+    <>
+      <Offer />
+      <Question />
+    </>
+  );
+}
