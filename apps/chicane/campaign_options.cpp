@@ -27,6 +27,24 @@ double fault_duration(const std::string& text) {
       "--for-s", fmt::format("got {}, expected a number in [0.001, 1000000] or inf", printable(text)));
 }
 
+/// On which tracks, in which cars, with which controller and settings many runs are driven.
+template <class Runs>
+void add_where(CLI::App& command, Runs& runs, Options& options) {
+  command.add_option("--tracks", runs.tracks, "Names or files, with commas")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->capture_default_str();
+  command.add_option("--cars", runs.cars, "Names or files, with commas")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->capture_default_str();
+  add_setting(command, options, "--preset", "preset", "NAME",
+              "Controller and its settings (chicane list presets)");
+  add_jobs(command, options.jobs);
+  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  add_set(command, options);
+}
+
 }  // namespace
 
 void add_campaign(CLI::App& command, Options& options) {
@@ -47,19 +65,7 @@ void add_campaign(CLI::App& command, Options& options) {
       ->type_name("S")
       ->check(CLI::Range(0.02, 1000.0))
       ->capture_default_str();
-  command.add_option("--tracks", campaign.tracks, "Names or files, with commas")
-      ->type_name("NAME,...")
-      ->delimiter(',')
-      ->capture_default_str();
-  command.add_option("--cars", campaign.cars, "Names or files, with commas")
-      ->type_name("NAME,...")
-      ->delimiter(',')
-      ->capture_default_str();
-  add_setting(command, options, "--preset", "preset", "NAME",
-              "Controller and its settings (chicane list presets)");
-  add_jobs(command, options.jobs);
-  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
-  add_set(command, options);
+  add_where(command, campaign, options);
   command.footer(
       "Example: chicane campaign --faults link_lost,nan_measurement --for-s 1,2,inf --tracks oval");
 }
@@ -76,19 +82,7 @@ void add_recover(CLI::App& command, Options& options) {
   command.add_option("--only", recover.only, "This one of the starts alone")
       ->type_name("I")
       ->check(CLI::Range(1, 100000));
-  command.add_option("--tracks", recover.tracks, "Names or files, with commas")
-      ->type_name("NAME,...")
-      ->delimiter(',')
-      ->capture_default_str();
-  command.add_option("--cars", recover.cars, "Names or files, with commas")
-      ->type_name("NAME,...")
-      ->delimiter(',')
-      ->capture_default_str();
-  add_setting(command, options, "--preset", "preset", "NAME",
-              "Controller and its settings (chicane list presets)");
-  add_jobs(command, options.jobs);
-  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
-  add_set(command, options);
+  add_where(command, recover, options);
   command.footer("Example: chicane recover --tracks lakeside,oval --starts 120");
 }
 

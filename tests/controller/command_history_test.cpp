@@ -206,5 +206,60 @@ TEST_F(Estimating, TakesWhatItMissedWhileBlindForADriftNotForAKick) {
   EXPECT_NEAR(estimator.state().vy, 0.2, 1e-6);
 }
 
+/// A car whose front tyres are softer than the model's in a bend that tightens, seen through its place and
+/// heading: what the model expects a tenth of a second ahead, and the disturbance at the end. `side` mirrors.
+struct SofterCar {
+  double worst_yaw_rate = 0.0, worst_slide = 0.0;
+  Disturbance disturbance;
+  explicit SofterCar(double side, bool with_disturbance = true) {
+    model::VehicleParams softer = model::road_car_params();
+    softer.cornering_front *= 0.8;
+    StateEstimator truth{model::PredictionModel{softer}};
+    StateEstimator believed{model::PredictionModel{model::road_car_params()}};
+    believed.estimate_disturbance(with_disturbance);
+    CommandHistory sent;
+    truth.correct({.time = 0.0, .speed = 30.0}, sent);
+    believed.correct({.time = 0.0, .speed = 30.0}, sent);
+    for (int i = 1; i <= 60; ++i) {
+      const double time = 0.04 * i;
+      sent.add(time - 0.04, {.steer = side * 0.0008 * i, .throttle = 0.2});
+      const model::State s = truth.predict(time, sent).state;
+      const model::Measurement seen{
+          .time = time, .x = s.x, .y = s.y, .psi = s.psi, .speed = hypot(s.vx, s.vy)};
+      truth.correct(seen, sent);
+      believed.correct(seen, sent);
+      if (i < 20) continue;  // until the disturbance is there
+      const model::State expected = believed.predict(time + 0.1, sent).state;
+      const model::State later = truth.predict(time + 0.1, sent).state;
+      worst_yaw_rate = std::max(worst_yaw_rate, std::fabs(expected.r - later.r));
+      worst_slide = std::max(worst_slide, std::fabs(expected.vy - later.vy));
+    }
+    disturbance = believed.disturbance();
+  }
+};
+
+TEST(StateEstimator, FindsWhatTheModelLacks) {
+  const SofterCar left(1.0);
+  EXPECT_LT(left.worst_yaw_rate, 0.5 * SofterCar(1.0, false).worst_yaw_rate);
+  EXPECT_LT(left.worst_slide, SofterCar(1.0, false).worst_slide);
+  EXPECT_LT(left.disturbance.yaw, -0.3) << "the car turns in less than the model";
+  const SofterCar right(-1.0);
+  EXPECT_NEAR(right.disturbance.yaw, -left.disturbance.yaw, 1e-9);
+  EXPECT_NEAR(right.disturbance.lateral, -left.disturbance.lateral, 1e-9);
+  EXPECT_NEAR(right.worst_yaw_rate, left.worst_yaw_rate, 1e-9);
+}
+
+TEST(StateEstimator, ForgetsADisturbanceThatIsNotMeasuredAnew) {
+  const model::PredictionModel model{model::road_car_params()};
+  StateEstimator estimator{model};
+  const CommandHistory sent;
+  estimator.estimate_disturbance(true);
+  estimator.correct({.time = 0.0, .speed = 20.0}, sent);
+  estimator.correct({.time = 0.04, .x = 0.8, .psi = 0.01, .speed = 20.0}, sent);
+  const double yaw = estimator.disturbance().yaw;
+  ASSERT_GT(yaw, 0.5);
+  EXPECT_NEAR(estimator.predict(0.54, sent).disturbance.yaw, yaw * std::exp(-0.5 / Disturbance::kTime), 1e-9);
+}
+
 }  // namespace
 }  // namespace chicane::controller

@@ -12,8 +12,12 @@ namespace {
 constexpr double kMaxStep = 0.01;       // [s] integration step of the estimator
 constexpr double kLongestGap = 1.0;     // [s] after a longer silence the estimate starts anew
 constexpr double kLostPosition = 3.0;   // [m] a measurement further from the prediction starts anew
-constexpr double kMostSlideGain = 0.2;  // share of the sideways innovation per second taken as sideslip error
+constexpr double kPartGain = 0.25;      // of a velocity where a part of the measurement is missing
+constexpr double kPartSlideGain = 0.2;  // and of the lateral one
 constexpr double kForgetting = 0.1;     // of the means over innovations, in each measurement
+constexpr double kForgettingDisturbed =
+    0.03;  // noise must not pass for a disturbance, also where a few innovations agree by chance
+constexpr double kMostSlideGain = 0.2;  // without a disturbance: of a lateral velocity
 constexpr double kLeastVariance = 1e-12;
 constexpr double kAtRest = 0.3;         // [m/s] slower than that there is no direction
 constexpr double kMostlyAlong = 0.5;    // of the way, along the heading or against it
@@ -52,42 +56,50 @@ double CommandHistory::next_change(double time, double limit) const noexcept {
 }
 
 void InnovationGains::note(double x, double y, double elapsed) noexcept {
-  square_ += kForgetting * (x * x + y * y - square_);
-  product_ += kForgetting * (x * last_x_ + y * last_y_ - product_);
+  const double forgetting = is_disturbed_ ? kForgettingDisturbed : kForgetting;
+  square_ += forgetting * (x * x + y * y - square_);
+  product_ += forgetting * (x * last_x_ + y * last_y_ - product_);
   last_x_ = x;
   last_y_ = y;
   const double noise = std::sqrt(std::max((1.0 - position_) * square_ - product_, kLeastVariance));
   const double index = acceleration_ * elapsed * elapsed / noise;
   const double root = 0.25 * (4.0 + index - std::sqrt(index * (8.0 + index)));
   position_ = std::min(1.0 - root * root, kMostPosition);
-  velocity_ = std::min(2.0 * (1.0 - root) * (1.0 - root), kMostVelocity);
+  velocity_ = std::min(2.0 * (1.0 - root) * (1.0 - root), most_velocity());
 }
 
 void InnovationGains::note_after_gap(double x, double y) noexcept {
   last_x_ = x;
   last_y_ = y;
   position_ = kMostPosition;
-  velocity_ = kMostVelocity;
+  velocity_ = most_velocity();
 }
 
-void StateEstimator::advance(model::State& state, double& acceleration, double from, double to,
+void StateEstimator::advance(Prediction& at, double from, double to,
                              const CommandHistory& sent) const noexcept {
   const model::VehicleParams& p = model_.vehicle();
+  model::State& state = at.state;
   double now = from;
   double lags_for = 0.0;  // [s]
+  double fade = 1.0;
   model::PredictionModel::Lags lags;
   while (now < to - 1e-9) {
     const double dt = std::min(sent.next_change(now + 1e-9, to) - now, kMaxStep);
     const model::Command command = sent.at(now + 1e-9);
     if (dt != lags_for) {
       lags = model_.lags(dt);
+      fade = exp(-dt / Disturbance::kTime);
       lags_for = dt;
     }
     const double reach = p.steer_rate_limit * dt / (1.0 - lags.steer.end);  // the wheel's, behind its lag
     const double steer = std::clamp(command.steer, state.steer - reach, state.steer + reach);
     const double asked = longitudinal_acceleration(p, command.throttle, state.vx);
     model::BodyMotion<double> body =
-        model_.advance({state.vx, state.vy, state.r, state.steer, acceleration}, steer, asked, dt, lags);
+        model_.advance({state.vx, state.vy, state.r, state.steer, at.acceleration}, steer, asked, dt, lags);
+    body.vy += dt * at.disturbance.lateral;
+    body.r += dt * at.disturbance.yaw;
+    at.disturbance.lateral *= fade;
+    at.disturbance.yaw *= fade;
     const double psi = state.psi + 0.5 * dt * (state.r + body.r);
     const double mean_psi = 0.5 * (state.psi + psi);
     const double vx = 0.5 * (state.vx + body.vx);
@@ -99,7 +111,7 @@ void StateEstimator::advance(model::State& state, double& acceleration, double f
     state.vy = body.vy;
     state.r = body.r;
     state.steer = body.steer;
-    acceleration = body.acceleration;
+    at.acceleration = body.acceleration;
     now += dt;
   }
 }
@@ -138,17 +150,17 @@ void StateEstimator::correct(const model::Measurement& now, const CommandHistory
   direction_.see(now);
   if (!is_finite(now)) {
     if (is_started_ && elapsed > 0.0 && elapsed < kLongestGap) {
-      advance(state_, acceleration_, time_, now.time, sent);
+      advance(now_, time_, now.time, sent);
       time_ = now.time;
       take_part(now, elapsed);
     }
     return;
   }
   if (is_started_ && elapsed > 0.0 && elapsed < kLongestGap) {
-    advance(state_, acceleration_, time_, now.time, sent);
-    const double dx = now.x - state_.x;
-    const double dy = now.y - state_.y;
-    const double dpsi = angle_difference(now.psi, state_.psi);
+    advance(now_, time_, now.time, sent);
+    const double dx = now.x - now_.state.x;
+    const double dy = now.y - now_.state.y;
+    const double dpsi = angle_difference(now.psi, now_.state.psi);
     if (dx * dx + dy * dy < kLostPosition * kLostPosition && std::fabs(dpsi) < 0.5) {
       take_over(now, dx, dy, dpsi, elapsed);
       return;
@@ -157,14 +169,14 @@ void StateEstimator::correct(const model::Measurement& now, const CommandHistory
     return;  // an old or repeated measurement
   }
   const double steer = std::isfinite(now.steer) ? now.steer : 0.0;
-  state_ = {.x = now.x,
-            .y = now.y,
-            .psi = now.psi,
-            .vx = now.speed,
-            .vy = 0.0,
-            .r = now.speed * tan(std::clamp(steer, -0.6, 0.6)) / model_.vehicle().wheelbase(),
-            .steer = steer};
-  acceleration_ = 0.0;
+  now_ = {};
+  now_.state = {.x = now.x,
+                .y = now.y,
+                .psi = now.psi,
+                .vx = now.speed,
+                .vy = 0.0,
+                .r = now.speed * tan(std::clamp(steer, -0.6, 0.6)) / model_.vehicle().wheelbase(),
+                .steer = steer};
   time_ = measured_ = now.time;
   is_started_ = true;
 }
@@ -180,13 +192,21 @@ void StateEstimator::take_over(const model::Measurement& now, double dx, double 
     place_gains_.note(dx, dy, elapsed);
     heading_gains_.note(dpsi, 0.0, elapsed);
   }
-  state_.x += place_gains_.position() * dx;
-  state_.y += place_gains_.position() * dy;
-  state_.psi += heading_gains_.position() * dpsi;
-  state_.r += heading_gains_.velocity() * dpsi / unseen;
-  const double slide = std::min(place_gains_.velocity(), kMostSlideGain);
-  state_.vy += slide * (dy * cos(state_.psi) - dx * sin(state_.psi)) / unseen;
-  state_.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state_.vy * state_.vy));
+  model::State& state = now_.state;
+  state.x += place_gains_.position() * dx;
+  state.y += place_gains_.position() * dy;
+  state.psi += heading_gains_.position() * dpsi;
+  state.r += heading_gains_.velocity() * dpsi / unseen;
+  const double aside = dy * cos(state.psi) - dx * sin(state.psi);
+  const double slide =
+      is_disturbed_ ? place_gains_.velocity() : std::min(place_gains_.velocity(), kMostSlideGain);
+  state.vy += slide * aside / unseen;
+  Disturbance& more = now_.disturbance;
+  const double per_square = 1.0 / (unseen * unseen);
+  more.lateral = std::clamp(more.lateral + place_gains_.acceleration() * aside * per_square, -kMostLateral,
+                            kMostLateral);
+  more.yaw = std::clamp(more.yaw + heading_gains_.acceleration() * dpsi * per_square, -kMostYaw, kMostYaw);
+  state.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state.vy * state.vy));
   time_ = measured_ = now.time;
 }
 
@@ -195,27 +215,28 @@ void StateEstimator::take_over(const model::Measurement& now, double dx, double 
 void StateEstimator::take_part(const model::Measurement& now, double elapsed) noexcept {
   const bool has_place = std::isfinite(now.x) && std::isfinite(now.y);
   const bool has_speed = std::isfinite(now.speed);
+  model::State& state = now_.state;
   if (std::isfinite(now.psi)) {
-    const double dpsi = angle_difference(now.psi, state_.psi);
-    state_.psi += InnovationGains::kMostPosition * dpsi;
-    state_.r += InnovationGains::kMostVelocity * dpsi / elapsed;
+    const double dpsi = angle_difference(now.psi, state.psi);
+    state.psi += InnovationGains::kMostPosition * dpsi;
+    state.r += kPartGain * dpsi / elapsed;
   }
   if (has_place && std::isfinite(now.psi)) {
-    const double dx = now.x - state_.x;
-    const double dy = now.y - state_.y;
-    const double along = dx * cos(state_.psi) + dy * sin(state_.psi);
-    const double aside = dy * cos(state_.psi) - dx * sin(state_.psi);
-    state_.x += InnovationGains::kMostPosition * dx;
-    state_.y += InnovationGains::kMostPosition * dy;
-    state_.vy += kMostSlideGain * aside / elapsed;
-    if (!has_speed) state_.vx = std::max(0.0, state_.vx + InnovationGains::kMostVelocity * along / elapsed);
+    const double dx = now.x - state.x;
+    const double dy = now.y - state.y;
+    const double along = dx * cos(state.psi) + dy * sin(state.psi);
+    const double aside = dy * cos(state.psi) - dx * sin(state.psi);
+    state.x += InnovationGains::kMostPosition * dx;
+    state.y += InnovationGains::kMostPosition * dy;
+    state.vy += kPartSlideGain * aside / elapsed;
+    if (!has_speed) state.vx = std::max(0.0, state.vx + kPartGain * along / elapsed);
   }
-  if (has_speed) state_.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state_.vy * state_.vy));
+  if (has_speed) state.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state.vy * state.vy));
 }
 
 StateEstimator::Prediction StateEstimator::predict(double time, const CommandHistory& sent) const noexcept {
-  Prediction result{state_, acceleration_};
-  advance(result.state, result.acceleration, time_, std::min(time, time_ + kLongestGap), sent);
+  Prediction result = now_;
+  advance(result, time_, std::min(time, time_ + kLongestGap), sent);
   return result;
 }
 

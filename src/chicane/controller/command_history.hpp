@@ -42,10 +42,21 @@ class InnovationGains {
  public:
   static constexpr double kMostPosition = 0.8;
   static constexpr double kMostVelocity = 0.25;
+  /// With a disturbance: that which belongs to kMostPosition, 2 (1 − √(1 − 0.8))².
+  static constexpr double kMostVelocityDisturbed = 0.61;
 
   /// `acceleration`: what the model may be wrong by [unit of the innovation per s²].
   explicit InnovationGains(double acceleration) noexcept : acceleration_{acceleration} {}
-  void reset() noexcept { *this = InnovationGains{acceleration_}; }
+  void reset() noexcept {
+    const bool is_disturbed = is_disturbed_;
+    *this = InnovationGains{acceleration_};
+    estimate_disturbance(is_disturbed);
+  }
+  /// Whether accelerations that the model lacks are estimated, too.
+  void estimate_disturbance(bool is_on) noexcept {
+    is_disturbed_ = is_on;
+    velocity_ = most_velocity();
+  }
   /// Takes in the innovation (x, y), `elapsed` [s] after the one before.
   void note(double x, double y, double elapsed) noexcept;
   /// The same after a time without measurements: it says how well the model counts on, not how noisy the
@@ -56,14 +67,22 @@ class InnovationGains {
   [[nodiscard]] double position() const noexcept { return position_; }
   /// Share per `elapsed` taken as an error of the velocity; (0, kMostVelocity].
   [[nodiscard]] double velocity() const noexcept { return velocity_; }
+  /// Share per `elapsed`² taken as an acceleration that the model lacks.
+  [[nodiscard]] double acceleration() const noexcept {
+    return is_disturbed_ ? 0.5 * velocity_ * velocity_ / position_ : 0.0;
+  }
 
  private:
+  [[nodiscard]] double most_velocity() const noexcept {
+    return is_disturbed_ ? kMostVelocityDisturbed : kMostVelocity;
+  }
   double acceleration_;
   double square_ = 0.0;   ///< mean of innovation²
   double product_ = 0.0;  ///< mean of innovation times the one before
   double last_x_ = 0.0, last_y_ = 0.0;
   double position_ = kMostPosition;
   double velocity_ = kMostVelocity;
+  bool is_disturbed_ = false;
 };
 
 /// Whether a car rolls backwards: its speed is measured without a sign, so that only its displacement tells.
@@ -83,9 +102,18 @@ class DirectionWatch {
   bool rolls_back_ = false;
 };
 
+/// What the car accelerates by beyond the model, as measurements have shown lately; less and less true later.
+struct Disturbance {
+  /// Time constant by which it fades where it is not measured anew [s].
+  static constexpr double kTime = 0.5;
+
+  double lateral = 0.0;  ///< of v_y [m/s²]
+  double yaw = 0.0;      ///< of the yaw rate [rad/s²]
+};
+
 /// Where the car is, and where it will be when the next command acts: the prediction model driven by the
-/// commands that are really in flight, corrected by each measurement. Yaw rate and sideslip, which telemetry
-/// does not hold, come from here.
+/// commands that are really in flight, and by a disturbance where one is asked for, corrected by each
+/// measurement. Yaw rate and sideslip, which telemetry does not hold, come from here.
 class StateEstimator {
  public:
   explicit StateEstimator(const model::PredictionModel& model) noexcept : model_{model} {}
@@ -95,15 +123,23 @@ class StateEstimator {
     place_gains_.reset();
     heading_gains_.reset();
   }
+  /// Whether a disturbance is estimated from now on; off at first.
+  void estimate_disturbance(bool is_on) noexcept {
+    place_gains_.estimate_disturbance(is_on);
+    heading_gains_.estimate_disturbance(is_on);
+    is_disturbed_ = is_on;
+    now_.disturbance = {};
+  }
   /// Another model from now on; the estimate stays.
   void set_model(const model::PredictionModel& model) noexcept { model_ = model; }
 
   /// Takes in a measurement. Afterwards state() is the estimate at now.time; what of it is not finite is
   /// replaced by what the model expects.
   void correct(const model::Measurement& now, const CommandHistory& sent) noexcept;
-  [[nodiscard]] const model::State& state() const noexcept { return state_; }
+  [[nodiscard]] const model::State& state() const noexcept { return now_.state; }
   [[nodiscard]] bool is_started() const noexcept { return is_started_; }
-  [[nodiscard]] double acceleration() const noexcept { return acceleration_; }
+  [[nodiscard]] double acceleration() const noexcept { return now_.acceleration; }
+  [[nodiscard]] const Disturbance& disturbance() const noexcept { return now_.disturbance; }
   /// What state() has for a speed forward is one backwards (DirectionWatch).
   [[nodiscard]] bool rolls_back() const noexcept { return direction_.rolls_back(); }
 
@@ -112,26 +148,28 @@ class StateEstimator {
   struct Prediction {
     model::State state;
     double acceleration = 0.0;  ///< net longitudinal acceleration then [m/s²]
+    Disturbance disturbance;
   };
   [[nodiscard]] Prediction predict(double time, const CommandHistory& sent) const noexcept;
 
  private:
   static constexpr double kPlaceAcceleration = 2.0;  ///< [m/s²] that the model may be wrong by
   static constexpr double kYawAcceleration = 1.0;    ///< [rad/s²]
+  static constexpr double kMostLateral = 6.0;        ///< of a disturbance [m/s²]
+  static constexpr double kMostYaw = 6.0;            ///< [rad/s²]
 
   void take_over(const model::Measurement& now, double dx, double dy, double dpsi, double elapsed) noexcept;
   void take_part(const model::Measurement& now, double elapsed) noexcept;
-  void advance(model::State& state, double& acceleration, double from, double to,
-               const CommandHistory& sent) const noexcept;
+  void advance(Prediction& at, double from, double to, const CommandHistory& sent) const noexcept;
 
   model::PredictionModel model_;
   InnovationGains place_gains_{kPlaceAcceleration};
   InnovationGains heading_gains_{kYawAcceleration};
   bool is_started_ = false;
+  bool is_disturbed_ = false;
   double time_ = 0.0;
   double measured_ = 0.0;  ///< time of the last measurement with numbers [s]
-  model::State state_;
-  double acceleration_ = 0.0;
+  Prediction now_;         ///< at time_
   DirectionWatch direction_;
 };
 

@@ -7,6 +7,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/controller/command_history.hpp"
 #include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/explain.hpp"
@@ -90,6 +91,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     racing_ = std::move(lap);
     ++lines_;
     has_horizon_ = false;
+    estimator_.estimate_disturbance(racing_ != nullptr);
     shape_edges();
   }
 
@@ -219,10 +221,10 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
         has_place_ ? line.project(position, s_, kProjectionWindow) : line.project(position);
     if (has_place_ && place.distance > 0.5 * kFarFromLine) place = line.project(position);
     if (!(place.distance < kFarFromLine)) return false;
-    const road::CurvePoint at = line.at(place.s);
-    const double heading_error = angle_difference(start.state.psi, at.heading);
+    const double heading_error = angle_difference(start.state.psi, line.at(place.s).heading);
     const double most = start.state.vx < kSlow ? 0.25 * kPi : 0.5 * kPi;
     if (std::fabs(heading_error) > most) return false;
+    disturbance_ = start.disturbance;
     s_ = place.s;
     has_place_ = true;
     revision_ = revision();
@@ -299,7 +301,8 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
       const double stage = std::min(stage_at(time), last - 1.0);
       const auto j = static_cast<std::size_t>(stage);
       const std::size_t next = std::min(j + 1, static_cast<std::size_t>(last - 1.0));
-      horizon_.u[i] = within_bounds(k, blend(old_.u[j], old_.u[next], stage - static_cast<double>(j)));
+      horizon_.u[i] =
+          problem_.within_bounds(k, blend(old_.u[j], old_.u[next], stage - static_cast<double>(j)));
     }
   }
 
@@ -310,7 +313,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     for (int k = 0; k < horizon_.horizon; ++k) {
       const auto i = static_cast<std::size_t>(k);
       ask_road(k, horizon_.x[i]);
-      horizon_.u[i] = within_bounds(k, following(k, horizon_.x[i]));
+      horizon_.u[i] = problem_.within_bounds(k, following(k, horizon_.x[i]));
       horizon_.x[i + 1] = solver::next_state(problem_, k, horizon_.x[i], horizon_.u[i]);
       keep_sane(horizon_.x[i + 1]);
     }
@@ -333,13 +336,6 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     const StageState exact = problem_.move_in_parts(0, x0_, u, parts);
     const StageState rough = solver::next_state(problem_, 0, x0_, u);
     for (std::size_t i = 0; i < exact.size(); ++i) problem_.first_correction[i] = exact[i] - rough[i];
-  }
-
-  [[nodiscard]] StageInput within_bounds(int k, StageInput u) const noexcept {
-    const StageInput low = problem_.input_lower(k);
-    const StageInput high = problem_.input_upper(k);
-    for (std::size_t q = 0; q < u.size(); ++q) u[q] = std::clamp(u[q], low[q], high[q]);
-    return u;
   }
 
   /// A guess far from the road is no place to linearise: pull it back.
@@ -375,6 +371,9 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     road.right[i] = room.right;
     road.tail_left[i] = behind.left;
     road.tail_right[i] = behind.right;
+    const double pushed = problem_.step(k).length * exp(-problem_.time(k) / Disturbance::kTime);
+    road.pushed_vy[i] = pushed * disturbance_.lateral;
+    road.pushed_r[i] = pushed * disturbance_.yaw;
     road.acceleration_min[i] = longitudinal_acceleration(car, -car.brake_throttle_limit, v);
     road.acceleration_max[i] = longitudinal_acceleration(car, 1.0, v);
   }
@@ -473,6 +472,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   Horizon horizon_;  ///< the last answer, then the guess, then the new answer
   Horizon old_;
   StageState x0_{};
+  Disturbance disturbance_;  ///< where the command acts
   StepResult result_;
   double s_ = 0.0;  ///< arc length on the line where the command acts
   double act_time_ = 0.0;

@@ -33,8 +33,9 @@ struct TrackingMpcOptions {
   bool compensate_delay = true;     ///< replay commands in flight; off only to show what happens
   bool racing_line = false;         ///< race by the minimum-time line of a known track
   double edge_margin = 0.2;         ///< that the tyres keep from the edges of a road that is raced on [m]
-  int turns = 3;                    ///< of the solver in a step, at least
-  bool remember_waypoints = true;   ///< close the waypoints seen into a map
+  double slip_share = 1.0;  ///< most slip of an axle in the plan to race by, over that of its peak force
+  int turns = 3;            ///< of the solver in a step, at least
+  bool remember_waypoints = true;  ///< close the waypoints seen into a map
 };
 
 /// kInvalidArgument names an option out of the range that its row states.

@@ -37,6 +37,8 @@ constexpr std::array kOptions{
     option<&T::weight_slip>("weight_slip", unit::kNone, 0, kHighestWeight,
                             "Price of slip beyond the useful, normalised and squared."),
     option<&T::racing_line>("racing_line", "Race by the minimum-time line of a known track."),
+    option<&T::slip_share>("slip_share", unit::kNone, 0.1, 2,
+                           "Most slip of an axle in the plan to race by, over that of its peak force."),
     option<&T::edge_margin>("edge_margin", unit::kMetre, 0, 5,
                             "What the tyres keep from the edges of a road that is raced on."),
     option<&T::turns>("turns", unit::kNone, 1, T::kMostTurns, "Of the solver in a step, at least."),

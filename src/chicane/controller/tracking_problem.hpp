@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <tuple>
@@ -36,7 +37,7 @@ struct TrackingProblem {
   using Input = std::array<double, kNu>;
   using Data = solver::StageData<kCapacity + 1>;
 
-  /// What the road asks at the stages 0..horizon, linear in arc length around `s`.
+  /// What the road asks at the stages 0..horizon, linear in arc length around `s`, and what else acts there.
   struct Road {
     Data s;                ///< where it was taken [m from the start]
     Data curvature;        ///< [1/m]
@@ -50,6 +51,8 @@ struct TrackingProblem {
     Data tail_right;
     Data acceleration_min;  ///< [m/s²]
     Data acceleration_max;
+    Data pushed_vy;  ///< what a disturbance adds to v_y over the stage [m/s]
+    Data pushed_r;   ///< and to the yaw rate [rad/s]
   };
 
   /// Square roots of the prices.
@@ -88,8 +91,8 @@ struct TrackingProblem {
     const State& more = first_correction;
     return std::make_tuple(s + select(is_first, more[kS], 0.0), d + select(is_first, more[kD], 0.0),
                            e + select(is_first, more[kE], 0.0), vx + select(is_first, more[kVx], 0.0),
-                           vy + select(is_first, more[kVy], 0.0), r + select(is_first, more[kR], 0.0), steer,
-                           a);
+                           vy + (select(is_first, more[kVy], 0.0) + road.pushed_vy.at(k)),
+                           r + (select(is_first, more[kR], 0.0) + road.pushed_r.at(k)), steer, a);
   }
 
   template <class K, class X, class U>
@@ -137,6 +140,13 @@ struct TrackingProblem {
   }
   [[nodiscard]] Input input_upper(int k) const noexcept {
     return {model->vehicle().steer_limit, road.acceleration_max.at(k)};
+  }
+  [[nodiscard]] Input within_bounds(int k, const Input& u) const noexcept {
+    const Input low = input_lower(k);
+    const Input high = input_upper(k);
+    Input inside{};
+    for (std::size_t q = 0; q < u.size(); ++q) inside[q] = std::clamp(u[q], low[q], high[q]);
+    return inside;
   }
 
  private:

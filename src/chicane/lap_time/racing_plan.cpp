@@ -9,7 +9,7 @@
 namespace chicane::lap_time {
 namespace {
 
-constexpr double kTolerance = 1e-5;  // of a plan: about a millisecond of a lap
+constexpr double kTolerance = 1e-4;  // of a plan: about a millisecond of a lap
 
 class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
  public:

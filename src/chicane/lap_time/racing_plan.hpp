@@ -14,8 +14,8 @@ namespace chicane::lap_time {
 struct RacingPlanOptions {
   double margin = 0.0;         ///< of each contact patch from its edge, kerb included [m], >= 0
   double grip_share = 1.0;     ///< of the friction, (0, 1]
-  double brake_share = 1.0;    ///< of the largest useful deceleration, (0, 1]
   double slip_share = 1.0;     ///< most slip of an axle over that of its peak force, (0, 2]
+  double brake_share = 1.0;    ///< of the largest useful deceleration, (0, 1]
   double speed_limit = 100.0;  ///< [m/s], > 3
   double time_step = 0.08;     ///< between nodes, about [s]; [0.01, 0.2]
   /// Told how far it has come, and the lap time, after each iteration; false ends the search. May be empty.

@@ -217,8 +217,8 @@ class PredictionModel {
     const T speed = sqrt(m.vx * m.vx + kSpeedFloor * kSpeedFloor);
     const T load_now = p.load_constant + p.load_per_speed * speed;
     const T transfer = (p.height / kGravity) * m.acceleration;
-    const T part_front = least(1.0 - (1.0 / p.rear_axle) * transfer);  // of its load at rest
-    const T part_rear = least(1.0 + (1.0 / p.front_axle) * transfer);
+    const T part_front = least<kSmooth>(1.0 - (1.0 / p.rear_axle) * transfer);  // of its load at rest
+    const T part_rear = least<kSmooth>(1.0 + (1.0 / p.front_axle) * transfer);
     const T load_front = (p.rear_axle * per_wheelbase) * load_now * part_front;
     const T load_rear = (p.front_axle * per_wheelbase) * load_now * part_rear;
     const T grip_front = 1.0 + p.load_sensitivity * (1.0 - part_front);  // friction over that at rest
@@ -245,49 +245,71 @@ class PredictionModel {
     const T brake = drive - m.acceleration;
     const T sideways = m.vx * m.r;
     const T side = 2.0 * positive<kSmooth>(sideways, kBlend) - sideways;
-    T lost_inner(0.0);
-    T lost_outer(0.0);
     // An inner wheel that is driven too hard spins; anti-lock keeps one that brakes.
     const T driving = (drive + kLeastSide) / (drive + brake + kLeastSide);
-    const auto axle = [&](double cornering, const T& slip, const T& pull, double rest, const T& part,
-                          double unloading, const T& grip, T& along, T& square, T& stiffness) CHICANE_INLINE {
-      const T z = (cornering / p.friction) * slip;
+    struct Axle {
+      double cornering, unloading, rest;
+      T slip, part, grip, pull, along, square, stiffness;
+    };
+    Axle axles[2] = {{p.cornering_front,
+                      unloading_front_,
+                      p.rear_axle * per_wheelbase,
+                      slip_front,
+                      part_front,
+                      grip_front,
+                      T(p.drive_share_front * drive + p.brake_share_front * brake),
+                      {},
+                      {},
+                      {}},
+                     {p.cornering_rear,
+                      unloading_rear_,
+                      p.front_axle * per_wheelbase,
+                      slip_rear,
+                      part_rear,
+                      grip_rear,
+                      T((1.0 - p.drive_share_front) * drive + (1.0 - p.brake_share_front) * brake),
+                      {},
+                      {},
+                      {}}};
+    T lost[2] = {T(0.0), T(0.0)};
+    // Loops that stay loops: code for one wheel, a quarter of what the compiler would have to work on.
+#pragma GCC unroll 1
+    for (Axle& axle : axles) {
+      const T z = (axle.cornering / p.friction) * axle.slip;
       const T z2 = z * z;
-      const T shift = unloading * side;
-      const auto wheel = [&](const T& its_part, T& use, T& its_square, T& its_stiffness,
-                             T& lost) CHICANE_INLINE {
-        const T load = (0.5 * rest) * load_now * its_part * (1.0 + p.load_sensitivity * (1.0 - its_part));
-        use = (0.5 * per_friction) * pull / load;
-        const T over = positive<kSmooth>(T(use - kMostAlong), kSmoothUse);
-        lost = lost + over * (p.friction * load);
+      const T shift = axle.unloading * side;
+      const T parts[2] = {least<kSmooth>(axle.part - shift),
+                          axle.part + shift};  // of the inner and of the outer wheel
+      T use[2], square[2], stiffness[2];
+#pragma GCC unroll 1
+      for (int i = 0; i < 2; ++i) {
+        const T load =
+            (0.5 * axle.rest) * load_now * parts[i] * (1.0 + p.load_sensitivity * (1.0 - parts[i]));
+        use[i] = (0.5 * per_friction) * axle.pull / load;
+        const T over = positive<kSmooth>(T(use[i] - kMostAlong), kSmoothUse);
+        lost[i] = lost[i] + over * (p.friction * load);
         // The slip along the tyre that gives this force beside the slip across, by similarity.
-        const T kept = use - over;
+        const T kept = use[i] - over;
         const T u2 = kept * kept;
         const T first = secant(z2 + u2 / sqrt(1.0 - u2 * u2));
-        its_square = z2 + u2 / (first * first);
-        its_stiffness = cornering * load * secant(its_square);
-      };
-      T use_inner, use_outer, square_inner, square_outer, inner, outer;
-      const T inner_part = least(part - shift);
-      const T outer_part = part + shift;
-      wheel(inner_part, use_inner, square_inner, inner, lost_inner);
-      wheel(outer_part, use_outer, square_outer, outer, lost_outer);
-      const T mean = (inner_part * square_inner + outer_part * square_outer) / (inner_part + outer_part);
-      square = mean + driving * (square_inner - mean);
-      const T together = (per_friction * pull) / (grip * (rest * load_now * part));
-      along = together + driving * (use_inner - together);
-      stiffness = inner + outer;
-    };
-    axle(p.cornering_front, slip_front, T(p.drive_share_front * drive + p.brake_share_front * brake),
-         p.rear_axle * per_wheelbase, part_front, unloading_front_, grip_front, t.along_front, t.square_front,
-         t.stiffness_front);
-    axle(p.cornering_rear, slip_rear,
-         T((1.0 - p.drive_share_front) * drive + (1.0 - p.brake_share_front) * brake),
-         p.front_axle * per_wheelbase, part_rear, unloading_rear_, grip_rear, t.along_rear, t.square_rear,
-         t.stiffness_rear);
+        square[i] = z2 + u2 / (first * first);
+        stiffness[i] = axle.cornering * load * secant(square[i]);
+      }
+      const T mean = (parts[0] * square[0] + parts[1] * square[1]) / (parts[0] + parts[1]);
+      axle.square = mean + driving * (square[0] - mean);
+      const T together = (per_friction * axle.pull) / (axle.grip * (axle.rest * load_now * axle.part));
+      axle.along = together + driving * (use[0] - together);
+      axle.stiffness = stiffness[0] + stiffness[1];
+    }
+    t.square_front = axles[0].square;
+    t.square_rear = axles[1].square;
+    t.along_front = axles[0].along;
+    t.along_rear = axles[1].along;
+    t.stiffness_front = axles[0].stiffness;
+    t.stiffness_rear = axles[1].stiffness;
     const T sign = select(m.acceleration < 0.0, T(-1.0), T(1.0));
-    t.lost = sign * (lost_inner + lost_outer);
-    t.twist = (0.5 * p.track_width) * sign * (sideways / (side + kLeastSide)) * (lost_inner - lost_outer);
+    t.lost = sign * (lost[0] + lost[1]);
+    t.twist = (0.5 * p.track_width) * sign * (sideways / (side + kLeastSide)) * (lost[0] - lost[1]);
     return t;
   }
 
@@ -318,9 +340,14 @@ class PredictionModel {
     const T drive = positive<kSmooth>(acceleration, kBlend);
     return vehicle_.drive_share_front * drive + vehicle_.brake_share_front * (acceleration - drive);
   }
-  template <class T>
-  CHICANE_INLINE static inline T least(const T& share) noexcept {
-    return select(share > kLeastLoad, share, T(kLeastLoad));
+  /// Of a wheel's load at rest, not less than kLeastLoad; smooth within about kSmoothLoad, or exact.
+  template <bool kSmooth, class T>
+  [[nodiscard]] CHICANE_INLINE static inline T least(const T& share) noexcept {
+    if constexpr (kSmooth) {
+      return kLeastLoad + positive<true>(T(share - kLeastLoad), kSmoothLoad);
+    } else {
+      return select(share > kLeastLoad, share, T(kLeastLoad));
+    }
   }
   /// What an inner wheel loses of its load at rest for each m/s² of lateral acceleration.
   static double unloading(const model::VehicleParams& p, double other_axle, double share) noexcept {
@@ -331,12 +358,13 @@ class PredictionModel {
     return p.tire_shape > 0.0 ? 1.0 / (p.tire_shape * tan(kHalfPi / p.tire_shape)) : 1.0;
   }
 
-  static constexpr double kMostSlip = 1.4;    ///< that steer_for() asks of the front tyres, as z in secant()
-  static constexpr double kMostAlong = 0.95;  ///< of the peak: the model asks for no more along the tyre
-  static constexpr double kSmoothUse = 0.02;  ///< of change()
-  static constexpr double kLeastSide = 1e-3;  ///< [m/s²]
-  static constexpr double kBlend = 0.3;       ///< [m/s²] of change()
-  static constexpr double kLeastLoad = 0.1;   ///< of the load at rest
+  static constexpr double kMostSlip = 1.4;     ///< that steer_for() asks of the front tyres, as z in secant()
+  static constexpr double kMostAlong = 0.95;   ///< of the peak: the model asks for no more along the tyre
+  static constexpr double kSmoothUse = 0.02;   ///< of change()
+  static constexpr double kLeastSide = 1e-3;   ///< [m/s²]
+  static constexpr double kBlend = 0.3;        ///< [m/s²] of change()
+  static constexpr double kLeastLoad = 0.1;    ///< of the load at rest
+  static constexpr double kSmoothLoad = 0.05;  ///< of change()
   static constexpr double kLeastSquare = 1e-8;           ///< of a slip: the curve's secant has a kink at 0
   double unloading_front_ = 0.0, unloading_rear_ = 0.0;  ///< [s²/m]
   double per_peak_ = 1.0;                                ///< one over the slip of the peak, as in secant()

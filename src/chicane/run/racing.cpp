@@ -21,6 +21,7 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenari
   const Result<path::RacingLine> lap = lap_time::plan_racing_line(*track, scenario.vehicle,
                                                                   {.margin = options.edge_margin,
                                                                    .grip_share = options.grip_share,
+                                                                   .slip_share = options.slip_share,
                                                                    .brake_share = options.brake_share,
                                                                    .speed_limit = options.speed_limit});
   if (!lap) return fail(lap.error());

@@ -22,6 +22,7 @@ constexpr double kMostShift = 1e10;
 constexpr double kBarrierFall = 0.2;
 constexpr double kBarrierError = 10.0;     // a barrier problem is solved well enough below this times μ
 constexpr double kMultiplierRange = 1e10;  // keeps ν near μ / s
+constexpr double kBarrierShare = 1e-2;     // of the tolerance: a smaller barrier may end the search
 constexpr int kHalvings = 12;
 constexpr double kKick = 0.1;
 
@@ -67,7 +68,8 @@ class Collocation::Search {
         report.is_stopped = true;
         break;
       }
-      if (error() <= options_.tolerance && mu <= options_.last_barrier * 1.0001) {
+      if (error() <= options_.tolerance &&
+          mu <= std::max(1.0001 * options_.last_barrier, kBarrierShare * options_.tolerance)) {
         report.is_solved = true;
         break;
       }

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kCoarse = 2.5;  // times the spacing, for the first solutions
 constexpr int kCoarseIterations = 260;
+constexpr double kCoarseTolerance = 1e-3;  // a start for the fine nodes needs no more
 constexpr int kFineIterations = 300;
 constexpr double kWarmBarrier = 1e-4;
 
@@ -83,7 +84,7 @@ std::vector<double> PlanSearch::first_guess(const RoadNodes& road, double share)
   return z;
 }
 
-bool PlanSearch::solve(NodePlan& plan, double barrier, int most_iterations) {
+bool PlanSearch::solve(NodePlan& plan, double barrier, int most_iterations, double tolerance) {
   const NodeFunctions& f = model_.functions();
   model_.set_road(plan.road);
   std::vector<double> changes(plan.road.s.size() * static_cast<std::size_t>(f.states), 0.0);
@@ -92,7 +93,7 @@ bool PlanSearch::solve(NodePlan& plan, double barrier, int most_iterations) {
   Collocation problem(f, plan.road.step, std::move(changes));
   Collocation::Options options;
   options.first_barrier = barrier;
-  options.tolerance = options_.tolerance;
+  options.tolerance = tolerance;
   options.most_iterations = most_iterations;
   options.go_on = [&](int, double cost, double) {
     ++iterations_;
@@ -118,7 +119,8 @@ Result<NodePlan> PlanSearch::find() {
     NodePlan plan;
     plan.road = lay_nodes(track_, model_.guess_car(), kCoarse * options_.time_step);
     plan.z = first_guess(plan.road, start.share);
-    const bool is_solved = solve(plan, start.barrier, kCoarseIterations);
+    const bool is_solved =
+        solve(plan, start.barrier, kCoarseIterations, std::max(kCoarseTolerance, options_.tolerance));
     if (is_stopped_) return fail(ErrorCode::kInvalidArgument, "limit: stopped");
     if (!is_solved) continue;
     if (++found == 1 || plan.lap_time < best.lap_time) best = std::move(plan);
@@ -130,7 +132,7 @@ Result<NodePlan> PlanSearch::find() {
     NodePlan fine;
     fine.road = lay_nodes(track_, model_.guess_car(), options_.time_step);
     fine.z = moved(best, fine.road, variables);
-    if (solve(fine, barrier, kFineIterations)) return fine;
+    if (solve(fine, barrier, kFineIterations, options_.tolerance)) return fine;
     if (is_stopped_) return fail(ErrorCode::kInvalidArgument, "limit: stopped");
   }
   return fail(ErrorCode::kInvalidArgument, "limit: an optimum on coarse nodes only");
@@ -140,7 +142,7 @@ Result<NodePlan> PlanSearch::near(const NodePlan& plan, const Reserve& reserve) 
   model_.set_reserve(reserve);
   for (const double barrier : {kWarmBarrier, 1e-2}) {
     NodePlan next = plan;
-    if (solve(next, barrier, kFineIterations)) return next;
+    if (solve(next, barrier, kFineIterations, options_.tolerance)) return next;
     if (is_stopped_) return fail(ErrorCode::kInvalidArgument, "limit: stopped");
   }
   return fail(ErrorCode::kInvalidArgument, "limit: no optimum with more in reserve");

@@ -51,7 +51,7 @@ class PlanSearch {
 
  private:
   [[nodiscard]] std::vector<double> first_guess(const RoadNodes& road, double share) const;
-  [[nodiscard]] bool solve(NodePlan& plan, double barrier, int most_iterations);
+  [[nodiscard]] bool solve(NodePlan& plan, double barrier, int most_iterations, double tolerance);
 
   const path::Track& track_;
   PlanModel& model_;

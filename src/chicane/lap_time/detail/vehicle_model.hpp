@@ -71,9 +71,9 @@ struct VehicleModel {
     *out++ = 0.2 * (car.drive_acceleration - force);
     *out++ = 0.2 * (std::min(car.drive_power_per_mass, kMostPower) / vx - force);
     *out++ = 0.1 * (force + brake_share * car.brake_throttle_limit * car.brake_acceleration);
-    const double per_square = 1.0 / (slip_share * slip_share);
-    *out++ = 1.0 - per_square * change.square_front;
-    *out++ = 1.0 - per_square * change.square_rear;
+    const T slip = slip_share * (1.0 - kSlipPerSpeed * vx);
+    *out++ = slip * slip - change.square_front;
+    *out++ = slip * slip - change.square_rear;
     *out++ = kMostAlong - change.along_front;
     *out++ = kMostAlong - change.along_rear;
     *out++ = 0.1 * (vx - kLeastSpeed);
@@ -84,6 +84,9 @@ struct VehicleModel {
   static constexpr double kMostPower = 1e4;       ///< [W/kg]; stands for none
   static constexpr double kMostAlong = 0.95;      ///< of a tyre's force: the rest keeps the car on its course
   static constexpr double kLeastSpeed = 2.5;      ///< [m/s]
+  /// Of slip_share [s/m]: the faster a car, the less its yaw motion is damped, and the further it goes before
+  /// a command acts. Three quarters are left at 50 m/s.
+  static constexpr double kSlipPerSpeed = 0.005;
 };
 
 }  // namespace chicane::lap_time
