@@ -23,7 +23,7 @@ namespace {
 using run::WayBackOutcome;
 
 /// All starts of one car on one track.
-struct Shore {
+struct CarOnTrack {
   std::string track, car;
   std::vector<WayBackOutcome> outcomes{};
 
@@ -44,10 +44,10 @@ std::string verdict(const WayBackOutcome& outcome) {
 }
 
 /// The command that drives one start again.
-std::string command_of(const Options& options, const Shore& shore, std::size_t index) {
+std::string command_of(const Options& options, const CarOnTrack& pair, std::size_t index) {
   std::string text =
-      fmt::format("chicane recover --tracks {} --cars {} --starts {} --seed {} --only {}", shore.track,
-                  shore.car, options.recover.starts, options.recover.seed, index + 1);
+      fmt::format("chicane recover --tracks {} --cars {} --starts {} --seed {} --only {}", pair.track,
+                  pair.car, options.recover.starts, options.recover.seed, index + 1);
   for (const auto& [key, value] : options.settings) text += fmt::format(" --set {}={}", key, value);
   return text;
 }
@@ -56,15 +56,15 @@ std::size_t number_of(const Options& options, std::size_t index) {
   return options.recover.only > 0 ? static_cast<std::size_t>(options.recover.only) - 1 : index;
 }
 
-void print_table(const Options& options, const std::vector<Shore>& shores) {
+void print_table(const Options& options, const std::vector<CarOnTrack>& pairs) {
   fmt::print("{:<10} {:<10} {:<10} {:>7} {:>5} {:>14} {:>14} {:>12}\n", "track", "car", "start", "starts",
              "back", "back [s]", "lapping [s]", "farthest [m]");
-  for (const Shore& shore : shores) {
+  for (const CarOnTrack& pair : pairs) {
     for (const std::string_view kind : run::kStartKindNames) {
       int starts = 0;
       int back = 0;
       double slowest_back = 0.0, slowest = 0.0, farthest = 0.0;
-      for (const WayBackOutcome& each : shore.outcomes) {
+      for (const WayBackOutcome& each : pair.outcomes) {
         if (kind_of(each) != kind) continue;
         ++starts;
         farthest = std::max(farthest, each.farthest);
@@ -74,16 +74,16 @@ void print_table(const Options& options, const std::vector<Shore>& shores) {
         slowest = std::max(slowest, each.lapping);
       }
       if (starts == 0) continue;
-      fmt::print("{:<10} {:<10} {:<10} {:>7} {:>5} {:>14.1f} {:>14.1f} {:>12.1f}\n", shore.track, shore.car,
+      fmt::print("{:<10} {:<10} {:<10} {:>7} {:>5} {:>14.1f} {:>14.1f} {:>12.1f}\n", pair.track, pair.car,
                  kind, starts, back, slowest_back, slowest, farthest);
     }
   }
-  for (const Shore& shore : shores) {
-    for (std::size_t i = 0; i < shore.outcomes.size(); ++i) {
-      const WayBackOutcome& each = shore.outcomes[i];
+  for (const CarOnTrack& pair : pairs) {
+    for (std::size_t i = 0; i < pair.outcomes.size(); ++i) {
+      const WayBackOutcome& each = pair.outcomes[i];
       if (each.has_come_back()) continue;
-      fmt::print("\n{} {}, start {}, {}: {}\n  {}\n", shore.track, shore.car, number_of(options, i) + 1,
-                 kind_of(each), verdict(each), command_of(options, shore, number_of(options, i)));
+      fmt::print("\n{} {}, start {}, {}: {}\n  {}\n", pair.track, pair.car, number_of(options, i) + 1,
+                 kind_of(each), verdict(each), command_of(options, pair, number_of(options, i)));
     }
   }
 }
@@ -92,12 +92,12 @@ nlohmann::ordered_json time_or_null(double time) {
   return std::isfinite(time) ? nlohmann::ordered_json(time) : nlohmann::ordered_json();
 }
 
-void print_json(const Options& options, const std::vector<Shore>& shores) {
+void print_json(const Options& options, const std::vector<CarOnTrack>& pairs) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const Shore& shore : shores) {
+  for (const CarOnTrack& pair : pairs) {
     nlohmann::ordered_json each = nlohmann::ordered_json::array();
-    for (std::size_t i = 0; i < shore.outcomes.size(); ++i) {
-      const WayBackOutcome& outcome = shore.outcomes[i];
+    for (std::size_t i = 0; i < pair.outcomes.size(); ++i) {
+      const WayBackOutcome& outcome = pair.outcomes[i];
       const model::State& start = outcome.start.state;
       each.push_back({{"number", number_of(options, i) + 1},
                       {"start", kind_of(outcome)},
@@ -113,17 +113,17 @@ void print_json(const Options& options, const std::vector<Shore>& shores) {
                       {"farthest_m", outcome.farthest},
                       {"least_edge_m", time_or_null(outcome.least_edge)}});
     }
-    all.push_back({{"track", shore.track},
-                   {"car", shore.car},
-                   {"starts", shore.outcomes.size()},
-                   {"back", shore.back()},
+    all.push_back({{"track", pair.track},
+                   {"car", pair.car},
+                   {"starts", pair.outcomes.size()},
+                   {"back", pair.back()},
                    {"outcomes", std::move(each)}});
   }
   fmt::print("{}\n", nlohmann::ordered_json{{"rows", std::move(all)}}.dump(2));
 }
 
-Result<Shore> drive_shore(const Options& options, const std::string& track, const std::string& car,
-                          const std::atomic<bool>& wants_stop) {
+Result<CarOnTrack> drive_starts(const Options& options, const std::string& track, const std::string& car,
+                                const std::atomic<bool>& wants_stop) {
   auto settings = options.settings;
   settings.emplace_back("track", track);
   settings.emplace_back("car", car);
@@ -143,22 +143,22 @@ Result<Shore> drive_shore(const Options& options, const std::string& track, cons
   auto outcomes = run::drive_all_back(*scenario, starts, run::threads_for(options.jobs),
                                       [&](std::size_t) { return !wants_stop; });
   if (!outcomes) return fail(outcomes.error());
-  return Shore{track, car, std::move(*outcomes)};
+  return CarOnTrack{track, car, std::move(*outcomes)};
 }
 
-Result<std::vector<Shore>> drive_shores(const Options& options, const std::atomic<bool>& wants_stop) {
-  std::vector<Shore> shores;
+Result<std::vector<CarOnTrack>> drive_all(const Options& options, const std::atomic<bool>& wants_stop) {
+  std::vector<CarOnTrack> pairs;
   for (const std::string& track : options.recover.tracks) {
     for (const std::string& car : options.recover.cars) {
-      if (wants_stop) return shores;
-      Result<Shore> shore = drive_shore(options, track, car, wants_stop);
-      if (!shore) return fail(shore.error());
+      if (wants_stop) return pairs;
+      Result<CarOnTrack> pair = drive_starts(options, track, car, wants_stop);
+      if (!pair) return fail(pair.error());
       if (isatty(STDERR_FILENO) != 1)
-        fmt::print(stderr, "{} {}: {} of {} back\n", track, car, shore->back(), shore->outcomes.size());
-      shores.push_back(std::move(*shore));
+        fmt::print(stderr, "{} {}: {} of {} back\n", track, car, pair->back(), pair->outcomes.size());
+      pairs.push_back(std::move(*pair));
     }
   }
-  return shores;
+  return pairs;
 }
 
 }  // namespace
@@ -167,15 +167,15 @@ ExitCode recover(const Options& options) {
   keep_memory();
   static std::atomic<bool> wants_stop{false};  // as long as signals may come
   catch_interrupts(wants_stop);
-  const Result<std::vector<Shore>> shores = drive_shores(options, wants_stop);
-  if (!shores) return report(shores.error());
+  const Result<std::vector<CarOnTrack>> pairs = drive_all(options, wants_stop);
+  if (!pairs) return report(pairs.error());
   if (options.is_json) {
-    print_json(options, *shores);
+    print_json(options, *pairs);
   } else {
-    print_table(options, *shores);
+    print_table(options, *pairs);
   }
-  const bool are_all_back = std::all_of(shores->begin(), shores->end(), [](const Shore& shore) {
-    return static_cast<std::size_t>(shore.back()) == shore.outcomes.size();
+  const bool are_all_back = std::all_of(pairs->begin(), pairs->end(), [](const CarOnTrack& pair) {
+    return static_cast<std::size_t>(pair.back()) == pair.outcomes.size();
   });
   return are_all_back ? kSuccess : kRunFailed;
 }
