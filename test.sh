@@ -25,16 +25,11 @@ result=0
 ctest --test-dir "$root/build/release" -j "$(nproc)" --output-on-failure --no-tests=error --no-label-summary \
   --output-log "$log" "${selection[@]}" "$@" || result=$?
 grep -E '^[0-9]+% tests passed' "$log" || true  # again, below the list of what was skipped
-# A browser beside another test on two cores can be too slow for any patience: those that failed run once more, alone.
-failed=$root/build/release/Testing/Temporary/LastTestsFailed.log
-if [ "$result" -ne 0 ] && [ -s "$failed" ] && ! grep -qv ':interop_viewer\.' "$failed"; then
-  say "chicane: once more, alone: $(cut -d: -f2 "$failed" | xargs)"
-  result=0
-  ctest --test-dir "$root/build/release" --rerun-failed --output-on-failure --no-tests=error || result=$?
-fi
 processor_seconds all
 "$root/tools/build_times.py" --count 5 || true
 awk "BEGIN { printf \"processor time: %.0f s to configure and build, %.0f s for the tests\n\", $built, $all - $built }"
 printf 'size: program %s, page %s compressed\n' "$(kilobytes <"$root/build/release/apps/chicane/chicane")" \
   "$(cat "$root"/build/release/web/dist/assets/* 2>/dev/null | gzip -9 | kilobytes)"
+# What failed, again, below all else.
+[ "$result" -eq 0 ] || grep -E -A 12 '^ *not ok |: Failure$|AssertionError|ERROR:' "$log" | tail -80 || true
 exit "$result"

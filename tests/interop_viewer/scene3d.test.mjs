@@ -242,11 +242,12 @@ it('is replaced by the map, with a note, where there is no WebGL', async () => {
   const browser = await launch('--disable-3d-apis');
   const { context, page, complaints } = await open(browser);
   await page.getByText('This browser offers no WebGL 2').waitFor();
-  const colours = await page.locator('canvas.map-2d').evaluate((canvas) => {
-    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-    return new Set(new Uint32Array(data.buffer)).size;
-  });
-  assert.ok(colours > 20, 'the map shows road and car');
+  const dashboard = new DashboardPage(page);
+  await dashboard.until(
+    () => dashboard.colours('canvas.map-2d'),
+    (colours) => colours > 20,
+    'the map shows road and car',
+  );
   assert.equal(await button(page, '2D').getAttribute('aria-pressed'), 'true');
   await button(page, 'Whole track').click();
   assert.deepEqual(await accessibilityFindings(page), []);
