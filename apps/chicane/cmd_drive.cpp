@@ -85,7 +85,8 @@ Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const ru
                                     (*kept)->record(frame);
                                     progress.show(frame);
                                   },
-                              .on_lap = [&](const telemetry::CompletedLap& lap) { (*kept)->record(lap); }},
+                              .on_lap = [&](const telemetry::CompletedLap& lap) { (*kept)->record(lap); },
+                              .on_change = [&](const telemetry::Change& change) { (*kept)->record(change); }},
                              [&] { return controls.wants_stop.load(); });
   }
   if (limit.found) telemetry::compare_with_limit(summary, limit.found->times);

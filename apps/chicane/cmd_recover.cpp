@@ -146,7 +146,7 @@ Result<CarOnTrack> drive_starts(const Options& options, const std::string& track
   return CarOnTrack{track, car, std::move(*outcomes)};
 }
 
-Result<std::vector<CarOnTrack>> drive_all(const Options& options, const std::atomic<bool>& wants_stop) {
+Result<std::vector<CarOnTrack>> recover_all(const Options& options, const std::atomic<bool>& wants_stop) {
   std::vector<CarOnTrack> pairs;
   for (const std::string& track : options.recover.tracks) {
     for (const std::string& car : options.recover.cars) {
@@ -167,7 +167,7 @@ ExitCode recover(const Options& options) {
   keep_memory();
   static std::atomic<bool> wants_stop{false};  // as long as signals may come
   catch_interrupts(wants_stop);
-  const Result<std::vector<CarOnTrack>> pairs = drive_all(options, wants_stop);
+  const Result<std::vector<CarOnTrack>> pairs = recover_all(options, wants_stop);
   if (!pairs) return report(pairs.error());
   if (options.is_json) {
     print_json(options, *pairs);

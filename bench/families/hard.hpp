@@ -30,71 +30,63 @@ FamilyInstance<Hard> with_same_data(const FamilyInstance<Soft>& from) {
 }
 }  // namespace detail
 
-/// The cart stands and the pole is upright after two seconds, inside the room.
-struct HardCartPole : CartPole {
-  static constexpr std::string_view kName = "cart-pole swing-up, exactly";
-  static constexpr int kNe = 0, kNeh = 4;
+/// A family whose end is met and whose limits hold exactly; terminal_equality() says what its end is.
+template <class Soft>
+struct Exactly : Soft {
+  static constexpr int kNe = 0;
   template <class X>
   CHICANE_INLINE auto terminal_residual(const X&) const {
     return std::make_tuple();
   }
+  [[nodiscard]] bool is_hard(int) const { return true; }
+};
+
+/// The cart stands and the pole is upright after two seconds, inside the room.
+struct HardCartPole : Exactly<CartPole> {
+  static constexpr std::string_view kName = "cart-pole swing-up, exactly";
+  static constexpr int kNeh = 4;
   template <class X>
   CHICANE_INLINE auto terminal_equality(const X& x) const {
     const auto& [position, angle, speed, rate] = x;
     return std::make_tuple(position, angle - kPi, speed, rate);
   }
-  [[nodiscard]] bool is_hard(int) const { return true; }
   static FamilyInstance<HardCartPole> make(Random& random) {
     return detail::with_same_data<HardCartPole>(CartPole::make(random));
   }
 };
 
 /// The rocket stands on the pad, and has never been below its cone.
-struct HardRocketLanding : RocketLanding {
+struct HardRocketLanding : Exactly<RocketLanding> {
   static constexpr std::string_view kName = "rocket landing, exactly";
-  static constexpr int kNe = 0, kNeh = 6;
-  template <class X>
-  CHICANE_INLINE auto terminal_residual(const X&) const {
-    return std::make_tuple();
-  }
+  static constexpr int kNeh = 6;
   template <class X>
   CHICANE_INLINE auto terminal_equality(const X& x) const {
     const auto& [px, pz, vx, vz, pitch, rate, mass] = x;
     return std::make_tuple(px, pz, vx, vz, pitch, rate);
   }
-  [[nodiscard]] bool is_hard(int) const { return true; }
   static FamilyInstance<HardRocketLanding> make(Random& random) {
     return detail::with_same_data<HardRocketLanding>(RocketLanding::make(random));
   }
 };
 
 /// The quadrotor hovers at its goal, and does not touch the obstacle.
-struct HardPlanarQuadrotor : PlanarQuadrotor {
+struct HardPlanarQuadrotor : Exactly<PlanarQuadrotor> {
   static constexpr std::string_view kName = "planar quadrotor, exactly";
-  static constexpr int kNe = 0, kNeh = 6;
-  template <class X>
-  CHICANE_INLINE auto terminal_residual(const X&) const {
-    return std::make_tuple();
-  }
+  static constexpr int kNeh = 6;
   template <class X>
   CHICANE_INLINE auto terminal_equality(const X& x) const {
     const auto& [px, pz, pitch, vx, vz, rate] = x;
     return std::make_tuple(px - goal_x, pz - goal_z, pitch, vx, vz, rate);
   }
-  [[nodiscard]] bool is_hard(int) const { return true; }
   static FamilyInstance<HardPlanarQuadrotor> make(Random& random) {
     return detail::with_same_data<HardPlanarQuadrotor>(PlanarQuadrotor::make(random));
   }
 };
 
 /// The cart stands in its place with its wheels nearly straight, and has touched no pillar.
-struct HardParking : Parking {
+struct HardParking : Exactly<Parking> {
   static constexpr std::string_view kName = "parking, exactly";
-  static constexpr int kNe = 0, kNeh = 4, kNec = 2;
-  template <class X>
-  CHICANE_INLINE auto terminal_residual(const X&) const {
-    return std::make_tuple();
-  }
+  static constexpr int kNeh = 4, kNec = 2;
   template <class X>
   CHICANE_INLINE auto terminal_equality(const X& x) const {
     const auto& [px, py, heading, speed, steering] = x;
@@ -104,7 +96,6 @@ struct HardParking : Parking {
   CHICANE_INLINE auto terminal_constraint(const X& x) const {
     return std::make_tuple(std::get<4>(x) - 0.05, -0.05 - std::get<4>(x));
   }
-  [[nodiscard]] bool is_hard(int) const { return true; }
   static FamilyInstance<HardParking> make(Random& random) {
     return detail::with_same_data<HardParking>(Parking::make(random));
   }

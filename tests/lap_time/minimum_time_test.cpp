@@ -96,10 +96,10 @@ TEST(MinimumTime, AMirroredRoadHasTheMirroredLine) {
     ASSERT_NEAR(mirrored->line[i].d, -limit.line[i].d, 0.1) << i;
 }
 
-TEST(MinimumTime, AFinerGridChangesLittle) {
-  const Result<Limit> finer = find_limit(bean(1.0), model::road_car_params(), {.spacing = 1.0});
-  ASSERT_TRUE(finer) << finer.error().message;
-  EXPECT_NEAR(finer->times.lap / bean_limit().times.lap, 1.0, 2e-3);  // first order in the spacing
+TEST(MinimumTime, ACoarserGridChangesLittle) {
+  const Result<Limit> coarser = find_limit(bean(1.0), model::road_car_params(), {.spacing = 3.0});
+  ASSERT_TRUE(coarser) << coarser.error().message;
+  EXPECT_NEAR(coarser->times.lap / bean_limit().times.lap, 1.0, 2e-3);  // first order in the spacing
 }
 
 TEST(MinimumTime, TheLineIsACurveThatIsDrivenAsFastAsItSays) {

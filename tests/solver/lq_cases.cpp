@@ -1,120 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "solver/lq_cases.hpp"
-
-#include <cstring>
-#include <memory>
-
-#include "chicane/solver/detail/adjoint.hpp"
-#include "chicane/solver/detail/interior_point.hpp"
-#include "chicane/solver/detail/lq_solver.hpp"
+// Patterns as users have them, compiled as users compile them.
+#include "solver/lq_cases_solve.hpp"
 
 namespace chicane::test {
-namespace {
-
-template <class Arch, class Pattern>
-void load(const LqData& data, solver::LqProblem<Pattern, LqData::kMostStages>& lq) noexcept {
-  using Layout = solver::Layout<Pattern>;
-  using Stages = Pack<Arch, 8>;
-  // Eight stages at once, as the linearisation does it.
-  for (std::size_t k = 0; k < data.horizon; k += 8) {
-    std::array<Stages, Layout::kFCount> f;
-    std::array<Stages, Layout::kLCount> l;
-    for (std::size_t lane = 0; lane < 8; ++lane) {
-      const std::size_t stage = k + lane < data.horizon ? k + lane : data.horizon - 1;
-      for (std::size_t i = 0; i < Layout::kNz; ++i) {
-        for (std::size_t j = 0; j < Layout::kNz; ++j) {
-          if (i < Layout::kNx && Layout::kF[i][j] != Layout::kNone)
-            f[Layout::kF[i][j]].set(lane, data.F[stage][i][j]);
-          if (Layout::kL[i][j] != Layout::kNone) l[Layout::kL[i][j]].set(lane, data.L[stage][i][j]);
-        }
-      }
-    }
-    lq.template set<Arch>(k, f, l);
-  }
-  for (std::size_t k = 0; k < data.horizon; ++k) {
-    for (std::size_t m = 0; m < Layout::kNu; ++m) {
-      lq.low[m][k] = data.low[k][m];
-      lq.high[m][k] = data.high[k][m];
-      lq.rate_low[m][k] = data.rate_low[k][m];
-      lq.rate_high[m][k] = data.rate_high[k][m];
-    }
-  }
-  for (std::size_t i = 0; i <= Layout::kNx; ++i) {
-    for (std::size_t j = 0; j < Layout::kNx; ++j) lq.terminal[i][j] = data.terminal[i][j];
-  }
-}
-
-}  // namespace
-
-template <class Arch, class Pattern>
-void solve_lq(const LqData& data, LqAnswer& answer) noexcept {
-  using Solver = solver::LqSolver<Arch, Pattern, LqData::kMostStages>;
-  constexpr std::size_t kNx = Pattern::kNx;
-  constexpr std::size_t kNu = Pattern::kNu;
-  const auto qp = std::make_unique<Solver>();
-  const auto check = std::make_unique<Solver>();
-  load<Arch>(data, qp->lq);
-  load<Arch>(data, check->lq);
-  answer.shift = qp->backward(data.horizon);
-  int fewest = 1000;
-  int chances = 3;
-  for (answer.sweeps = 1; answer.sweeps < 100; ++answer.sweeps) {
-    const int contradictions =
-        qp->forward(data.horizon, chances > 0 ? Solver::Repair::kAll : Solver::Repair::kLast);
-    if (contradictions == 0) break;
-    chances = contradictions < fewest ? 3 : chances - 1;
-    fewest = contradictions < fewest ? contradictions : fewest;
-    qp->backward_again();
-    std::memcpy(check->hold, qp->hold, sizeof qp->hold);
-    check->backward(data.horizon);
-    answer.again_is_same =
-        answer.again_is_same && std::memcmp(check->feedback, qp->feedback, sizeof qp->feedback) == 0;
-  }
-  if constexpr (Solver::kHasRates) {
-    if (answer.sweeps == 100) {
-      const auto interior = std::make_unique<solver::InteriorPoint<Solver>>();
-      const auto slope = [&](std::size_t k, std::size_t m) { return data.L[k][kNx][kNx + 1 + m]; };
-      answer.sweeps = interior->solve(*qp, data.horizon, slope, [] { return false; });
-      answer.ends_inside = true;
-      interior->put_step(*qp, data.horizon);
-      for (int turn = 0; turn < 20; ++turn) {
-        qp->backward(data.horizon);
-        if (qp->forward(data.horizon, turn < 5 ? Solver::Repair::kAll : Solver::Repair::kLast) > 0) continue;
-        answer.ends_inside = false;
-        break;
-      }
-      if (answer.ends_inside) interior->put_step(*qp, data.horizon);
-    }
-  }
-  const auto adjoint = std::make_unique<solver::Adjoint<Pattern, Solver::Lq::kStages>>();
-  for (std::size_t k = 0; k < data.horizon; ++k) {
-    for (std::size_t j = 0; j < kNx + kNu; ++j) adjoint->gradient[j][k] = data.L[k][kNx][j < kNx ? j : j + 1];
-  }
-  for (std::size_t i = 0; i < kNx; ++i) adjoint->terminal[i] = data.terminal[kNx][i];
-  adjoint->template solve<Arch>(qp->lq, data.horizon);
-  for (std::size_t k = 0; k < data.horizon; ++k) {
-    for (std::size_t i = 0; i < kNx; ++i) {
-      answer.dx[k + 1][i] = qp->dx[k + 1][i];
-      answer.price[k][i] = adjoint->price[i][k];
-    }
-    for (std::size_t m = 0; m < kNu; ++m) {
-      answer.du[k][m] = qp->du[k][m];
-      answer.slope[k][m] = adjoint->slope[m][k];
-    }
-  }
-}
 
 template void solve_lq<arch::Native, SparsePattern>(const LqData&, LqAnswer&) noexcept;
 template void solve_lq<arch::Native, RatePattern>(const LqData&, LqAnswer&) noexcept;
 template void solve_lq<arch::Native, MemorylessPattern>(const LqData&, LqAnswer&) noexcept;
 template void solve_lq<arch::Native, solver::FullPattern<2, 1>>(const LqData&, LqAnswer&) noexcept;
-template void solve_lq<arch::Native, solver::FullPattern<8, 2>>(const LqData&, LqAnswer&) noexcept;
 template void solve_lq<arch::Native, Compact<SparsePattern>>(const LqData&, LqAnswer&) noexcept;
 template void solve_lq<arch::Native, Compact<RatePattern>>(const LqData&, LqAnswer&) noexcept;
-template void solve_lq<arch::Native, Compact<solver::FullPattern<8, 2>>>(const LqData&, LqAnswer&) noexcept;
-template void solve_lq<arch::Native, solver::FullPattern<5, 3>>(const LqData&, LqAnswer&) noexcept;
-template void solve_lq<arch::Native, solver::FullPattern<2, 4>>(const LqData&, LqAnswer&) noexcept;
-template void solve_lq<arch::Native, solver::FullPattern<10, 2>>(const LqData&, LqAnswer&) noexcept;
-template void solve_lq<arch::Native, Compact<solver::FullPattern<23, 2>>>(const LqData&, LqAnswer&) noexcept;
 
 }  // namespace chicane::test
