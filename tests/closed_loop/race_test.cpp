@@ -2,9 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
-#include "chicane/lap_time/minimum_time.hpp"
-#include "chicane/run/make.hpp"
 #include "closed_loop/drive.hpp"
 
 namespace chicane::run {
@@ -13,27 +12,36 @@ namespace {
 struct Race {
   const char* car;
   const char* track;
-  double most_gap;  ///< to the quick limit: measured (docs/racing.md), and a half more
+  double lap_time;  ///< of the second lap [s]: measured, and half a per cent more
 };
 
-constexpr Race kRaces[] = {{"udacity", "lakeside", 0.01},  {"udacity", "oval", 0.01},
-                           {"udacity", "hairpins", 0.035}, {"udacity", "speedway", 0.01},
-                           {"road-car", "lakeside", 0.04}, {"road-car", "oval", 0.045},
-                           {"road-car", "hairpins", 0.06}};
+constexpr Race kRaces[] = {{"udacity", "lakeside", 23.2},   {"udacity", "oval", 13.5},
+                           {"udacity", "hairpins", 25.67},  {"udacity", "speedway", 64.32},
+                           {"road-car", "lakeside", 38.09}, {"road-car", "oval", 22.56},
+                           {"road-car", "hairpins", 47.58}, {"road-car", "speedway", 72.47}};
 
 TEST(Race, LapsCleanlyNearTheLimit) {
   for (const Race& race : kRaces) {
-    const Settings settings{{"preset", "race"}, {"car", race.car}, {"track", race.track}, {"laps", "3"}};
-    const auto run = drive(settings);
+    const auto run = drive({{"preset", "race"}, {"car", race.car}, {"track", race.track}, {"laps", "2"}});
     ASSERT_TRUE(run.completed) << race.car << ' ' << race.track << ": " << run.end_reason;
     EXPECT_EQ(run.off_track_events, 0) << race.car << ' ' << race.track;
     for (const telemetry::LapSummary& lap : run.laps)
-      EXPECT_GT(lap.min_edge_distance, 0.0) << race.car << ' ' << race.track;
-    const auto scenario = protocol::compose({.scenario_file = {}, .settings = settings});
-    const auto limit = lap_time::find_limit(make_track(*scenario).value(), scenario->vehicle);
-    ASSERT_TRUE(limit);
-    EXPECT_LT(run.laps.back().lap_time, (1.0 + race.most_gap) * limit->times.lap)
-        << race.car << ' ' << race.track;
+      EXPECT_GT(lap.min_edge_distance, 0.1) << race.car << ' ' << race.track;
+    EXPECT_LT(run.laps.back().lap_time, race.lap_time) << race.car << ' ' << race.track;
+  }
+}
+
+// The road is learned in the first lap, with an assumed width (docs/racing.md, section 3).
+TEST(Race, NeedsNoTrack) {
+  const std::pair<const char*, const char*> races[] = {{"udacity", "lakeside"}, {"road-car", "oval"}};
+  for (const auto& [car, track] : races) {
+    Settings settings{{"preset", "race"}, {"car", car}, {"track", track}, {"laps", "3"}};
+    const auto told = drive(settings);
+    settings.emplace_back("guard.road", "waypoints");
+    const auto run = drive(settings);
+    ASSERT_TRUE(run.completed) << car << ' ' << track << ": " << run.end_reason;
+    EXPECT_EQ(run.off_track_events, 0) << car << ' ' << track;
+    EXPECT_LT(run.laps.back().lap_time, 1.03 * told.laps.back().lap_time) << car << ' ' << track;
   }
 }
 

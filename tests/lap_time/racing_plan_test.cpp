@@ -85,6 +85,19 @@ TEST_P(RacingPlanOf, KeepsWhatItIsToldToAndMirrors) {
   EXPECT_LT(least, 0.4) << "it uses the road";
 }
 
+TEST_P(RacingPlanOf, UsesNoMoreSlipThanItIsToldTo) {
+  const model::VehicleParams car = car_named(GetParam());
+  const auto most_slip = [&](double share) {
+    const auto plan = plan_racing_line(bean(), car, {.slip_share = share});
+    EXPECT_TRUE(plan) << share;
+    double most = 0.0;
+    for (const path::RacingLinePoint& p : plan->points)
+      most = std::max(most, std::abs(std::atan2(p.vy - car.rear_axle * p.yaw_rate, p.vx)));
+    return most;
+  };
+  EXPECT_LT(most_slip(0.6), 0.85 * most_slip(1.0)) << "of the rear axle";
+}
+
 TEST_P(RacingPlanOf, IsTheSameEachTime) {
   const auto one = plan_racing_line(bean(), car_named(GetParam()));
   const auto two = plan_racing_line(bean(), car_named(GetParam()));

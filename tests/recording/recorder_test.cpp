@@ -44,7 +44,8 @@ RecorderReport record(run::ClosedLoop& loop, const std::string& path) {
   EXPECT_TRUE(recorder);
   static_cast<void>(run::run_closed_loop(
       loop, {.on_frame = [&](const telemetry::Frame& frame) { (*recorder)->record(frame); },
-             .on_lap = [&](const telemetry::CompletedLap& lap) { (*recorder)->record(lap); }}));
+             .on_lap = [&](const telemetry::CompletedLap& lap) { (*recorder)->record(lap); },
+             .on_change = [&](const telemetry::Change& change) { (*recorder)->record(change); }}));
   const Result<RecorderReport> report = (*recorder)->finish();
   EXPECT_TRUE(report);
   return report.value_or(RecorderReport{});
@@ -77,6 +78,21 @@ INSTANTIATE_TEST_SUITE_P(Controllers, RecordedController,
                            std::erase(name, '-');
                            return name;
                          });
+
+// The lap is planned again from what the controller had learned, and takes effect at the same step.
+TEST(Recorder, HasARaceOnALearnedRoad) {
+  const TemporaryFile file;
+  const auto loop = short_run({{"preset", "race"},
+                               {"track", "oval"},
+                               {"guard.road", "waypoints"},
+                               {"laps", "4"},
+                               {"time_limit_s", "45"}});
+  const RecorderReport recorded = record(*loop, file.path());
+  const Result<ReplayReport> replayed = verify_recording(file.path());
+  ASSERT_TRUE(replayed) << replayed.error().message;
+  EXPECT_EQ(replayed->identical, recorded.frames);
+  EXPECT_EQ(replayed->different, 0U);
+}
 
 TEST(Recorder, KeepsAScenarioThatIsAllDefaultsWhole) {
   const TemporaryFile file;

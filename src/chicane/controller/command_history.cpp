@@ -17,7 +17,6 @@ constexpr double kPartSlideGain = 0.2;  // and of the lateral one
 constexpr double kForgetting = 0.1;     // of the means over innovations, in each measurement
 constexpr double kForgettingDisturbed =
     0.03;  // noise must not pass for a disturbance, also where a few innovations agree by chance
-constexpr double kMostSlideGain = 0.2;  // without a disturbance: of a lateral velocity
 constexpr double kLeastVariance = 1e-12;
 constexpr double kAtRest = 0.3;         // [m/s] slower than that there is no direction
 constexpr double kMostlyAlong = 0.5;    // of the way, along the heading or against it
@@ -81,14 +80,12 @@ void StateEstimator::advance(Prediction& at, double from, double to,
   model::State& state = at.state;
   double now = from;
   double lags_for = 0.0;  // [s]
-  double fade = 1.0;
   model::PredictionModel::Lags lags;
   while (now < to - 1e-9) {
     const double dt = std::min(sent.next_change(now + 1e-9, to) - now, kMaxStep);
     const model::Command command = sent.at(now + 1e-9);
     if (dt != lags_for) {
       lags = model_.lags(dt);
-      fade = exp(-dt / Disturbance::kTime);
       lags_for = dt;
     }
     const double reach = p.steer_rate_limit * dt / (1.0 - lags.steer.end);  // the wheel's, behind its lag
@@ -98,8 +95,7 @@ void StateEstimator::advance(Prediction& at, double from, double to,
         model_.advance({state.vx, state.vy, state.r, state.steer, at.acceleration}, steer, asked, dt, lags);
     body.vy += dt * at.disturbance.lateral;
     body.r += dt * at.disturbance.yaw;
-    at.disturbance.lateral *= fade;
-    at.disturbance.yaw *= fade;
+    at.disturbance.fade(dt);
     const double psi = state.psi + 0.5 * dt * (state.r + body.r);
     const double mean_psi = 0.5 * (state.psi + psi);
     const double vx = 0.5 * (state.vx + body.vx);
@@ -198,9 +194,7 @@ void StateEstimator::take_over(const model::Measurement& now, double dx, double 
   state.psi += heading_gains_.position() * dpsi;
   state.r += heading_gains_.velocity() * dpsi / unseen;
   const double aside = dy * cos(state.psi) - dx * sin(state.psi);
-  const double slide =
-      is_disturbed_ ? place_gains_.velocity() : std::min(place_gains_.velocity(), kMostSlideGain);
-  state.vy += slide * aside / unseen;
+  state.vy += place_gains_.slide() * aside / unseen;
   Disturbance& more = now_.disturbance;
   const double per_square = 1.0 / (unseen * unseen);
   more.lateral = std::clamp(more.lateral + place_gains_.acceleration() * aside * per_square, -kMostLateral,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "chicane/model/measurement.hpp"
@@ -42,6 +43,7 @@ class InnovationGains {
  public:
   static constexpr double kMostPosition = 0.8;
   static constexpr double kMostVelocity = 0.25;
+  static constexpr double kMostSlide = 0.2;  ///< of a lateral velocity
   /// With a disturbance: that which belongs to kMostPosition, 2 (1 − √(1 − 0.8))².
   static constexpr double kMostVelocityDisturbed = 0.61;
 
@@ -67,6 +69,10 @@ class InnovationGains {
   [[nodiscard]] double position() const noexcept { return position_; }
   /// Share per `elapsed` taken as an error of the velocity; (0, kMostVelocity].
   [[nodiscard]] double velocity() const noexcept { return velocity_; }
+  /// The same for a lateral velocity: (0, kMostSlide] without a disturbance.
+  [[nodiscard]] double slide() const noexcept {
+    return is_disturbed_ ? velocity_ : std::min(velocity_, kMostSlide);
+  }
   /// Share per `elapsed`² taken as an acceleration that the model lacks.
   [[nodiscard]] double acceleration() const noexcept {
     return is_disturbed_ ? 0.5 * velocity_ * velocity_ / position_ : 0.0;
@@ -109,6 +115,13 @@ struct Disturbance {
 
   double lateral = 0.0;  ///< of v_y [m/s²]
   double yaw = 0.0;      ///< of the yaw rate [rad/s²]
+
+  /// Leaves what is true of it `dt` [s] later, to first order in dt.
+  void fade(double dt) noexcept {
+    const double left = kTime / (kTime + dt);
+    lateral *= left;
+    yaw *= left;
+  }
 };
 
 /// Where the car is, and where it will be when the next command acts: the prediction model driven by the
@@ -127,7 +140,6 @@ class StateEstimator {
   void estimate_disturbance(bool is_on) noexcept {
     place_gains_.estimate_disturbance(is_on);
     heading_gains_.estimate_disturbance(is_on);
-    is_disturbed_ = is_on;
     now_.disturbance = {};
   }
   /// Another model from now on; the estimate stays.
@@ -166,7 +178,6 @@ class StateEstimator {
   InnovationGains place_gains_{kPlaceAcceleration};
   InnovationGains heading_gains_{kYawAcceleration};
   bool is_started_ = false;
-  bool is_disturbed_ = false;
   double time_ = 0.0;
   double measured_ = 0.0;  ///< time of the last measurement with numbers [s]
   Prediction now_;         ///< at time_

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "chicane/base/deadline.hpp"
+#include "chicane/base/vec2.hpp"
 #include "chicane/controller/explanation.hpp"
 #include "chicane/controller/plan.hpp"
 #include "chicane/model/measurement.hpp"
@@ -105,7 +106,11 @@ class Controller {
   /// A planned lap to race by from the next step() on; null: none any more. Controllers that follow the
   /// waypoints do not care. Allocates nothing.
   virtual void use_line(std::shared_ptr<const road::RacingRoad> /*lap*/) noexcept {}
-  /// Forget everything learned (map, warm start): a new run begins. A planned lap stays.
+  /// The waypoints, in driving order, of a closed road that a lap to race by is wanted for: the controller
+  /// has learned it, and drives by no planned lap. Empty: none is wanted. Valid until the next step().
+  [[nodiscard]] virtual std::span<const Vec2> wants_lap_of() const noexcept { return {}; }
+  /// Forget everything learned (map, warm start): a new run begins. A planned lap stays, one of a road that
+  /// was learned does not.
   virtual void reset() noexcept = 0;
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
   /// Names of Explanation's cost terms and of the bits of its active constraints; empty for none.

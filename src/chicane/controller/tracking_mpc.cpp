@@ -7,7 +7,6 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
-#include "chicane/base/math.hpp"
 #include "chicane/controller/command_history.hpp"
 #include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/explain.hpp"
@@ -16,8 +15,7 @@
 #include "chicane/controller/tunable.hpp"
 #include "chicane/controller/way_back.hpp"
 #include "chicane/model/prediction.hpp"
-#include "chicane/road/racing_road.hpp"
-#include "chicane/road/road.hpp"
+#include "chicane/road/driven_road.hpp"
 
 namespace chicane::controller {
 namespace {
@@ -63,7 +61,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   [[nodiscard]] const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept override {
     sent_time_ = now.time + now.delay;
     const double act_time = now.time + (options_.compensate_delay ? now.delay : 0.0);
-    if (!racing_) road_.add(now);
+    if (!road_.add(now)) shape_raced();
     estimator_.correct(now, sent_);
     watch_sight(now);
     const StateEstimator::Prediction start = estimator_.predict(act_time, sent_);
@@ -88,15 +86,18 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   }
 
   void use_line(std::shared_ptr<const road::RacingRoad> lap) noexcept override {
-    racing_ = std::move(lap);
-    ++lines_;
-    has_horizon_ = false;
-    estimator_.estimate_disturbance(racing_ != nullptr);
-    shape_edges();
+    road_.race_by(std::move(lap));
+    shape_raced();
+  }
+
+  [[nodiscard]] std::span<const Vec2> wants_lap_of() const noexcept override {
+    if (!options_.racing_line || road_.is_raced()) return {};
+    return road_.seen().closed_waypoints();
   }
 
   void reset() noexcept override {
     road_.reset();
+    shape_raced();
     estimator_.reset();
     sent_.clear();
     has_horizon_ = false;
@@ -113,11 +114,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   }
 
  private:
-  [[nodiscard]] const road::ReferenceLine& line() const noexcept {
-    return racing_ ? racing_->line() : road_.line();
-  }
-  /// Changes with every other line.
-  [[nodiscard]] unsigned revision() const noexcept { return road_.revision() + lines_; }
+  [[nodiscard]] const road::ReferenceLine& line() const noexcept { return road_.line(); }
 
   static std::unique_ptr<TrackingSolver> make_solver() {
     const solver::SolverOptions options{.tolerance = 1e-2,
@@ -157,19 +154,26 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     shape_edges();
   }
 
-  /// Raced by, the edges are those of the road, and the axles stay inside; otherwise the centre of mass keeps
-  /// to an assumed width.
+  /// Raced by a planned lap, the edges are those of the road, and the axles stay inside; otherwise the centre
+  /// of mass keeps to an assumed width.
   void shape_edges() noexcept {
-    problem_.nose = racing_ ? model_.vehicle().front_axle : 0.0;
-    problem_.tail = racing_ ? model_.vehicle().rear_axle : 0.0;
+    problem_.nose = road_.is_raced() ? model_.vehicle().front_axle : 0.0;
+    problem_.tail = road_.is_raced() ? model_.vehicle().rear_axle : 0.0;
+  }
+
+  /// A planned lap begins to be raced by, or ends.
+  void shape_raced() noexcept {
+    has_horizon_ = false;
+    estimator_.estimate_disturbance(road_.is_raced());
+    shape_edges();
   }
 
   /// Room beside the line at s [m] ahead, where the line has moved sideways by `offset` [m].
   [[nodiscard]] road::Road::Room room_at(double s, double offset) const noexcept {
-    if (!racing_) return road_.room(offset);
+    if (!road_.is_raced()) return road_.seen().room(offset);
     const model::VehicleParams& car = model_.vehicle();
     const double taken = 0.5 * (car.track_width + car.tire_width) + options_.edge_margin;
-    const road::Road::Room room = racing_->room(s_ + s);
+    const road::Road::Room room = road_.lap()->room(s_ + s);
     return {room.left - taken, room.right - taken};
   }
 
@@ -216,7 +220,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     if (line.is_empty() || !std::isfinite(start.state.x + start.state.y + start.state.psi + start.state.vx))
       return false;
     const Vec2 position{start.state.x, start.state.y};
-    if (revision_ != revision()) has_place_ = false;
+    if (revision_ != road_.revision()) has_place_ = false;
     road::ReferenceLine::Projection place =
         has_place_ ? line.project(position, s_, kProjectionWindow) : line.project(position);
     if (has_place_ && place.distance > 0.5 * kFarFromLine) place = line.project(position);
@@ -227,7 +231,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     disturbance_ = start.disturbance;
     s_ = place.s;
     has_place_ = true;
-    revision_ = revision();
+    revision_ = road_.revision();
     x0_ = {0.0,           place.d,           heading_error,     start.state.vx, start.state.vy,
            start.state.r, start.state.steer, start.acceleration};
 
@@ -250,6 +254,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     const double first = can_shift ? std::clamp(elapsed, step, kLongestHold) : step;
     problem_.first = first == step ? problem_.others : Problem::Step{first, model_.lags(first)};
     problem_.first_correction = {};
+    problem_.push(disturbance_);
     turns_ = kMostTurns;
     if (can_shift) {
       const double more = std::min(elapsed / kTimePerTurn, static_cast<double>(kMostTurns));
@@ -334,7 +339,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     if (parts < 2) return;
     const StageInput& u = horizon_.u[0];
     const StageState exact = problem_.move_in_parts(0, x0_, u, parts);
-    const StageState rough = solver::next_state(problem_, 0, x0_, u);
+    const StageState rough = problem_.move_in_parts(0, x0_, u, 1);
     for (std::size_t i = 0; i < exact.size(); ++i) problem_.first_correction[i] = exact[i] - rough[i];
   }
 
@@ -366,14 +371,11 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     road.curvature_slope[i] = demand.curvature_slope;
     road.speed[i] = is_reachable ? demand.speed : v + kSpeedAhead;
     road.speed_slope[i] = is_reachable ? demand.speed_slope : 0.0;
-    road.sideslip[i] = racing_ ? racing_->sideslip(s_ + s) : 0.0;
+    road.sideslip[i] = road_.is_raced() ? road_.lap()->sideslip(s_ + s) : 0.0;
     road.left[i] = room.left;
     road.right[i] = room.right;
     road.tail_left[i] = behind.left;
     road.tail_right[i] = behind.right;
-    const double pushed = problem_.step(k).length * exp(-problem_.time(k) / Disturbance::kTime);
-    road.pushed_vy[i] = pushed * disturbance_.lateral;
-    road.pushed_r[i] = pushed * disturbance_.yaw;
     road.acceleration_min[i] = longitudinal_acceleration(car, -car.brake_throttle_limit, v);
     road.acceleration_max[i] = longitudinal_acceleration(car, 1.0, v);
   }
@@ -462,13 +464,11 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
 
   TrackingMpcOptions options_;
   model::PredictionModel model_;
-  road::Road road_;
+  road::DrivenRoad road_;
   StateEstimator estimator_;
   CommandHistory sent_;
   Problem problem_;
   std::unique_ptr<TrackingSolver> solver_;
-  std::shared_ptr<const road::RacingRoad> racing_;  ///< null: the road is what waypoints show
-  unsigned lines_ = 0;
   Horizon horizon_;  ///< the last answer, then the guess, then the new answer
   Horizon old_;
   StageState x0_{};

@@ -31,7 +31,7 @@ struct TrackingMpcOptions {
   double weight_edge = 200.0;       ///< price of leaving assumed_half_width, per m² [1/m²]
   double weight_slip = 100.0;       ///< price of slip beyond the useful, normalised²
   bool compensate_delay = true;     ///< replay commands in flight; off only to show what happens
-  bool racing_line = false;         ///< race by the minimum-time line of a known track
+  bool racing_line = false;         ///< race by the minimum-time line of track or learned road
   double edge_margin = 0.2;         ///< that the tyres keep from the edges of a road that is raced on [m]
   double slip_share = 1.0;  ///< most slip of an axle in the plan to race by, over that of its peak force
   int turns = 3;            ///< of the solver in a step, at least

@@ -36,7 +36,8 @@ constexpr std::array kOptions{
                             "Price of leaving assumed_half_width, squared."),
     option<&T::weight_slip>("weight_slip", unit::kNone, 0, kHighestWeight,
                             "Price of slip beyond the useful, normalised and squared."),
-    option<&T::racing_line>("racing_line", "Race by the minimum-time line of a known track."),
+    option<&T::racing_line>(
+        "racing_line", "Race by the minimum-time line of the track, or of the road learned from waypoints."),
     option<&T::slip_share>("slip_share", unit::kNone, 0.1, 2,
                            "Most slip of an axle in the plan to race by, over that of its peak force."),
     option<&T::edge_margin>("edge_margin", unit::kMetre, 0, 5,

@@ -9,6 +9,7 @@
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/jet.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/controller/command_history.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/solver/stage_data.hpp"
 
@@ -83,6 +84,16 @@ struct TrackingProblem {
     return k == 0 ? 0.0 : first.length + (k - 1) * others.length;
   }
   [[nodiscard]] const Step& step(int k) const noexcept { return k == 0 ? first : others; }
+
+  /// `now` acts on all stages from the start on, fading. Pre: horizon and lengths of stages are set.
+  void push(Disturbance now) noexcept {
+    for (int k = 0; k < horizon; ++k) {
+      const double length = step(k).length;
+      road.pushed_vy[static_cast<std::size_t>(k)] = length * now.lateral;
+      road.pushed_r[static_cast<std::size_t>(k)] = length * now.yaw;
+      now.fade(length);
+    }
+  }
 
   template <class K, class X, class U>
   [[nodiscard]] auto dynamics(K k, const X& x, const U& u) const noexcept {
@@ -205,7 +216,7 @@ struct TrackingProblem {
   static constexpr double kUsefulTireUse = 1.0;  ///< slip beyond this gives hardly more force
 
  public:
-  /// The motion over stage k in `parts` steps, without first_correction.
+  /// The motion over stage k in `parts` steps, without first_correction and what a disturbance adds.
   [[nodiscard]] State move_in_parts(int k, const State& x, const Input& u, int parts) const noexcept {
     const double h = step(k).length / parts;
     const model::PredictionModel::Lags lags = model->lags(h);

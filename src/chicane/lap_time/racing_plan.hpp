@@ -24,7 +24,7 @@ struct RacingPlanOptions {
 
 /// The fastest lap of a car as a controller believes it to be (model::PredictionModel), with its yaw motion,
 /// sideslip, lags and rates: a plan that such a controller can follow (docs/racing.md, section 1). Takes 0.2
-/// to 20 s and some 10 MB. Deterministic. Keeps nothing between calls.
+/// to 30 s and some 10 MB. Deterministic. Keeps nothing between calls.
 ///
 /// kInvalidArgument for an open road, a road too narrow for the car or with a bend too tight for its full
 /// lock (names the place and the radius), parameters or options out of range, and for a search that ended

@@ -14,6 +14,7 @@
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/schema.hpp"
+#include "chicane/run/lap_planner.hpp"
 #include "chicane/sim/judge.hpp"
 
 namespace chicane::recording {
@@ -175,6 +176,11 @@ class Rebuilt {
     tell_lap();
     return is_new;
   }
+  /// After a control step of advance(): what is planned beside a run that goes on by itself.
+  void race_by_learned_lap() {
+    if (auto lap = planner_.follow(loop_->controller(), loop_->scenario(), loop_->time()))
+      loop_->use_line(std::move(lap));
+  }
   [[nodiscard]] run::ClosedLoop& loop() { return *loop_; }
 
  private:
@@ -184,6 +190,7 @@ class Rebuilt {
 
   OnLap on_lap_;
   std::unique_ptr<run::ClosedLoop> loop_;
+  run::LapPlanner planner_{run::LapPlanner::Clock::kVirtual};
 };
 
 class Branching {
@@ -337,6 +344,7 @@ class Branching {
       if (has_all_laps(meter)) return {};
       if (loop.is_control_due() && loop.time() - start > duration + 1e-6) return {};
       if (!car.advance()) continue;
+      car.race_by_learned_lap();
       add(meter, loop, is_branch);
       if (!may_go_on(report_.at + loop.time() - start)) return fail(ErrorCode::kInvalidArgument, kGivenUp);
       if (is_branch && hooks_.on_frame) hooks_.on_frame(loop.frame());

@@ -32,7 +32,12 @@ class Recomputation {
   /// What concerns neither controller nor vehicle changes nothing here.
   void add(const telemetry::Change& change) {
     const Result<run::Setting> setting = run::read_setting(change);
-    const auto* field = setting ? std::get_if<run::FieldValue>(&setting->action) : nullptr;
+    if (!setting) return;
+    if (std::holds_alternative<run::LearnedLap>(setting->action)) {
+      const auto lap = run::plan_learned_lap(scenario_, cycle_.controller().wants_lap_of());
+      if (lap) cycle_.use_line(*lap);
+    }
+    const auto* field = std::get_if<run::FieldValue>(&setting->action);
     if (field == nullptr) return;
     run::write(scenario_, *field);
     cycle_.configure(scenario_);

@@ -17,8 +17,8 @@ class RacingRoad {
   static constexpr double kSpacing = 1.0;  ///< of the samples [m] at most
 
   /// From a lap by rising time, whose last point repeats the first. `kerb`: drivable beyond the edges [m].
-  /// Empty line for less than 8 points.
-  explicit RacingRoad(std::span<const path::LinePoint> lap, double kerb = 0.0);
+  /// Empty line for less than 8 points. `is_learned`: see is_learned().
+  explicit RacingRoad(std::span<const path::LinePoint> lap, double kerb = 0.0, bool is_learned = false);
 
   /// In W, closed. The offset of its samples is that from the road's centre line [m].
   [[nodiscard]] const ReferenceLine& line() const noexcept { return line_; }
@@ -26,6 +26,9 @@ class RacingRoad {
   [[nodiscard]] Road::Room room(double s) const noexcept;
   /// From the body's heading to the line's where the car is planned to slide [rad], left positive.
   [[nodiscard]] double sideslip(double s) const noexcept;
+  /// Planned for the road that the controller has learned from waypoints, with an assumed width: of no use
+  /// when the waypoints are forgotten.
+  [[nodiscard]] bool is_learned() const noexcept { return is_learned_; }
 
  private:
   /// Between two samples: the first, and the share of the second.
@@ -38,6 +41,7 @@ class RacingRoad {
   ReferenceLine line_;
   std::vector<Road::Room> rooms_;  ///< at the line's samples
   std::vector<double> sideslips_;
+  bool is_learned_ = false;
 };
 
 }  // namespace chicane::road

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/vehicle.hpp"
@@ -55,6 +56,10 @@ class Road {
   }
   /// Increases with every new line: positions along an older one mean nothing any more.
   [[nodiscard]] unsigned revision() const noexcept { return revision_; }
+  /// The waypoints of a closed road in driving order, once its lap is planned; empty before.
+  [[nodiscard]] std::span<const Vec2> closed_waypoints() const noexcept {
+    return is_lap_ ? map_.points() : std::span<const Vec2>{};
+  }
 
  private:
   static constexpr double kShare = 0.04;     ///< [s] of driving that pay for one share of planning

@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "chicane/protocol/schema.hpp"
+#include "chicane/run/lap_planner.hpp"
 #include "chicane/run/observe.hpp"
+#include "chicane/run/racing.hpp"
 
 namespace chicane::run {
 namespace {
@@ -126,6 +128,11 @@ void ClosedLoop::take(const FaultSwitch& fault) noexcept {
   faults_.set(event);
 }
 
+void ClosedLoop::take(LearnedLap /*lap*/) noexcept {
+  const auto lap = plan_learned_lap(scenario_, controller().wants_lap_of());
+  if (lap) use_line(*lap);
+}
+
 bool ClosedLoop::set_fault(std::string_view name, bool on) noexcept {
   const std::optional<sim::Fault> fault = sim::fault_named(name);
   if (fault) faults_.set(*fault, on, time());
@@ -186,11 +193,16 @@ telemetry::RunSummary ClosedLoop::summary() const { return account_.summary(worl
 telemetry::RunSummary run_closed_loop(ClosedLoop& loop, const RunHooks& hooks,
                                       const std::function<bool()>& stop) {
   const auto start = std::chrono::steady_clock::now();
+  LapPlanner planner(LapPlanner::Clock::kVirtual);
   while (!loop.is_over()) {
     const bool is_new = loop.advance();
     if (const auto lap = loop.take_lap(); lap && hooks.on_lap) hooks.on_lap(*lap);
     if (!is_new) continue;
     if (hooks.on_frame) hooks.on_frame(loop.frame());
+    if (auto lap = planner.follow(loop.controller(), loop.scenario(), loop.time())) {
+      loop.use_line(std::move(lap));
+      if (hooks.on_change) hooks.on_change(LapPlanner::lap_change(loop.cycle(), loop.time()));
+    }
     if (stop && stop()) break;
   }
   telemetry::RunSummary run = loop.summary();

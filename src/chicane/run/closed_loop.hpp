@@ -61,10 +61,12 @@ class ClosedLoop {
   [[nodiscard]] std::uint64_t cycle() const noexcept { return cycle_.next(); }
   /// A setting changes before the next control step. What was learned and what is under way stay. A field of
   /// the scenario that is not live (protocol::is_live) changes nothing. Allocates nothing; call it between
-  /// two advance().
+  /// two advance(). Only LearnedLap, of a recording, allocates and takes seconds.
   void apply(const Setting& setting) noexcept;
   /// The same for a change that is still text; one that read_setting() refuses changes nothing. Allocates.
   void apply(const telemetry::Change& change);
+  /// A planned lap to race by from the next control step on, where controller().wants_lap_of() a road.
+  void use_line(std::shared_ptr<const road::RacingRoad> lap) { cycle_.use_line(std::move(lap)); }
   /// Run seconds that were asked for per second of the clock.
   [[nodiscard]] double pace() const noexcept { return pace_; }
   /// Switches a fault (sim/fault.hpp) on, for its own duration and with its own strength, or off. False, and
@@ -100,6 +102,7 @@ class ClosedLoop {
   void take(const Pace& pace) noexcept { pace_ = pace.value; }
   void take(const ManualSetting& setting) noexcept { manual_.set(setting); }
   void take(const FaultSwitch& fault) noexcept;
+  void take(LearnedLap lap) noexcept;
   void watch_faults() noexcept;
   [[nodiscard]] model::Command acting() noexcept;
   [[nodiscard]] model::Measurement measure() noexcept;
@@ -127,7 +130,8 @@ class ClosedLoop {
 struct RunHooks {
   std::function<void(const telemetry::Frame&)> on_frame{};  ///< after each control cycle
   std::function<void(const telemetry::CompletedLap&)>
-      on_lap{};  ///< when a lap was completed, the last one too
+      on_lap{};                                               ///< when a lap was completed, the last one too
+  std::function<void(const telemetry::Change&)> on_change{};  ///< a learned lap is raced by (LapPlanner)
 };
 
 /// Runs to the end as fast as the machine can. `stop` is asked once per cycle and ends the run with what

@@ -46,7 +46,8 @@ class ControlCycle {
   ControlCycle(std::unique_ptr<controller::Controller> controller, const scenario::Scenario& scenario,
                road::KnownRoad road);
 
-  /// The planned lap of a scenario that races (run/racing.hpp), before the car drives; null changes nothing.
+  /// The planned lap of a scenario that races (run/racing.hpp): before the car drives, or between two cycles
+  /// where the controller wants_lap_of() a road. Null changes nothing.
   void use_line(std::shared_ptr<const road::RacingRoad> lap);
 
   /// A new run, or the same car after something unknown: everything learned is forgotten. The next cycle has

@@ -2,30 +2,59 @@
 #include "chicane/run/racing.hpp"
 
 #include <tuple>
+#include <vector>
 
 #include "chicane/controller/registry.hpp"
 #include "chicane/lap_time/racing_plan.hpp"
 
 namespace chicane::run {
+namespace {
+
+const controller::TrackingMpcOptions& options_of(const scenario::Scenario& scenario) {
+  return std::get<controller::TrackingMpcEntry::Options>(scenario.controllers);
+}
+
+Result<std::shared_ptr<const road::RacingRoad>> plan_on(const path::Track& track,
+                                                        const scenario::Scenario& scenario, bool is_learned,
+                                                        const std::function<bool()>& go_on) {
+  const controller::TrackingMpcOptions& options = options_of(scenario);
+  lap_time::RacingPlanOptions planning{.margin = options.edge_margin,
+                                       .grip_share = options.grip_share,
+                                       .slip_share = options.slip_share,
+                                       .brake_share = options.brake_share,
+                                       .speed_limit = options.speed_limit};
+  if (go_on) planning.go_on = [&](int, double) { return go_on(); };
+  const Result<path::RacingLine> lap = lap_time::plan_racing_line(track, scenario.vehicle, planning);
+  if (!lap) return fail(lap.error());
+  return std::make_shared<const road::RacingRoad>(path::line_points(track, *lap), track.kerb_width(),
+                                                  is_learned);
+}
+
+}  // namespace
 
 bool races(const scenario::Scenario& scenario) noexcept {
-  using Entry = controller::TrackingMpcEntry;
-  return scenario.controller == Entry::kName && std::get<Entry::Options>(scenario.controllers).racing_line;
+  return scenario.controller == controller::TrackingMpcEntry::kName && options_of(scenario).racing_line;
 }
 
 Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenario& scenario,
                                                          const path::Track* track) {
-  using Entry = controller::TrackingMpcEntry;
-  const auto& options = std::get<Entry::Options>(scenario.controllers);
-  if (!races(scenario) || track == nullptr) return std::shared_ptr<const road::RacingRoad>{};
-  const Result<path::RacingLine> lap = lap_time::plan_racing_line(*track, scenario.vehicle,
-                                                                  {.margin = options.edge_margin,
-                                                                   .grip_share = options.grip_share,
-                                                                   .slip_share = options.slip_share,
-                                                                   .brake_share = options.brake_share,
-                                                                   .speed_limit = options.speed_limit});
-  if (!lap) return fail(lap.error());
-  return std::make_shared<const road::RacingRoad>(path::line_points(*track, *lap), track->kerb_width());
+  const bool is_known = track != nullptr && scenario.guard.road == safety::GuardRoad::kTrack;
+  if (!races(scenario) || !is_known) return std::shared_ptr<const road::RacingRoad>{};
+  return plan_on(*track, scenario, false, {});
+}
+
+Result<std::shared_ptr<const road::RacingRoad>> plan_learned_lap(const scenario::Scenario& scenario,
+                                                                 std::span<const Vec2> waypoints,
+                                                                 const std::function<bool()>& go_on) {
+  const model::VehicleParams& car = scenario.vehicle;
+  const double beside = 0.5 * (car.track_width + car.tire_width);
+  const double half_width = options_of(scenario).assumed_half_width + beside;
+  std::vector<path::TrackPoint> points;
+  points.reserve(waypoints.size());
+  for (const Vec2& waypoint : waypoints) points.push_back({waypoint, half_width, half_width});
+  const Result<path::Track> track = path::Track::create("learned", points, true);
+  if (!track) return fail(track.error());
+  return plan_on(*track, scenario, true, go_on);
 }
 
 }  // namespace chicane::run

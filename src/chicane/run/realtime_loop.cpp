@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <chrono>
 #include <thread>
+#include <utility>
+
+#include "chicane/run/lap_planner.hpp"
 
 namespace chicane::run {
 namespace {
@@ -85,7 +88,15 @@ class Session {
     if (!is_new) return false;
     is_unseen_ = false;
     if (hooks_.on_frame) hooks_.on_frame(loop_.frame());
+    race_by_learned_lap();
     return true;
+  }
+
+  void race_by_learned_lap() {
+    auto lap = planner_.follow(loop_.controller(), loop_.scenario(), loop_.time());
+    if (!lap) return;
+    loop_.use_line(std::move(lap));
+    if (hooks_.on_change) hooks_.on_change(LapPlanner::lap_change(loop_.cycle(), loop_.time()));
   }
 
   void one_cycle() {
@@ -137,6 +148,7 @@ class Session {
   RunControls& controls_;
   const RealtimeHooks& hooks_;
   Pacer pacer_;
+  LapPlanner planner_{LapPlanner::Clock::kReal};
   bool is_to_start_anew_ = false;
   bool is_unseen_ = true;  ///< no frame since it began
 };

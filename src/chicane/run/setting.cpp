@@ -11,6 +11,7 @@
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/fault_codec.hpp"
+#include "chicane/run/lap_planner.hpp"
 
 namespace chicane::run {
 namespace {
@@ -68,6 +69,7 @@ Result<Action> read_field(std::string_view key, std::string_view value) {
 Result<Action> read_action(std::string_view key, std::string_view value) {
   if (key.starts_with("fault.")) return read_fault_switch(key, value);
   if (key.starts_with("manual.")) return read_manual(key, value);
+  if (key == LapPlanner::kChange && value == LapPlanner::kLearned) return LearnedLap{};
   if (key != "run.pace") return read_field(key, value);
   const Result<double> pace = number_in(key, value, kSlowestPace, kFastestPace);
   if (!pace) return fail(pace.error());

@@ -31,10 +31,12 @@ struct FaultSwitch {
   enum class To { kOff, kOn, kAsGiven } to = To::kOff;  ///< kOn: with the kind's own duration and strength
   sim::FaultEvent event{};  ///< which fault; kAsGiven: its duration and strength, from now on
 };
+/// The lap to race by that is planned for the road as the controller has learned it (LapPlanner).
+struct LearnedLap {};
 
 /// What a change of a setting does to a run that goes on. std::monostate: nothing that can be done to it,
 /// because the run begins anew.
-using Action = std::variant<std::monostate, FieldValue, Pace, ManualSetting, FaultSwitch>;
+using Action = std::variant<std::monostate, FieldValue, Pace, ManualSetting, FaultSwitch, LearnedLap>;
 
 /// One change of a setting, read and checked: data that is handed from thread to thread and applied without
 /// reading a text again. Plain; no allocation.
@@ -45,7 +47,8 @@ struct Setting {
 using SettingQueue = ThreadQueue<Setting>;
 using ChangeQueue = ThreadQueue<telemetry::Change>;
 
-/// Reads a change: a key of the schema whose value is no text, "run.pace", "manual.…" or "fault.…". Fails as
+/// Reads a change: a key of the schema whose value is no text, "run.pace", "manual.…" or "fault.…"; of a
+/// recording "run.racing_line", too. Fails as
 /// --set does, with the key, what was got and what was expected. Allocates.
 [[nodiscard]] Result<Setting> read_setting(const telemetry::Change& change);
 

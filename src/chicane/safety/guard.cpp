@@ -93,7 +93,7 @@ void Guard::forget_road() {
 }
 
 void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
-  if (options_.road == GuardRoad::kTrack) road_.use_line(lap.get());
+  if (options_.road == GuardRoad::kTrack && lap && !lap->is_learned()) road_.use_line(lap.get());
   has_place_ = false;
   controller_->use_line(std::move(lap));
 }

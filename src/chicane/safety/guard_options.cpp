@@ -16,8 +16,9 @@ constexpr std::array kOptions{
         "mode", kModes,
         "on: without a way to stop, or when sensors fail, the car is stopped on the road; observe: it "
         "is only reported; off: only range and rate of commands are limited."),
-    option<&G::road>("road", kRoads,
-                     "Where the guard knows the road from: the track, or the waypoints it is shown."),
+    option<&G::road>(
+        "road", kRoads,
+        "Where the road is known from, by the guard and to be raced on: the track, or waypoints."),
     option<&G::half_width>("half_width", unit::kMetre, 0.2, 100,
                            "Assumed from waypoints to edge where the road is known from waypoints."),
     option<&G::receiver>(

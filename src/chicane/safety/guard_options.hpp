@@ -14,7 +14,7 @@ enum class GuardMode : std::uint8_t {
   kObserve = 1,  ///< it is reported; the controller's answer is sent
   kOff = 2,      ///< nothing is checked but range and rate of the command
 };
-/// Where a guard knows the road from.
+/// Where the road is known from, by the guard and by a controller that races.
 enum class GuardRoad : std::uint8_t {
   kTrack = 0,      ///< the track's own, with its edges
   kWaypoints = 1,  ///< what telemetry has shown, with an assumed width

@@ -16,6 +16,7 @@
 #include "chicane/protocol/schema.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/run/control_cycle.hpp"
+#include "chicane/run/lap_planner.hpp"
 #include "chicane/run/roadside.hpp"
 #include "chicane/run/track_fit.hpp"
 
@@ -194,6 +195,14 @@ class UdacityEndpoint::Control {
     roadside_.judge(frame_);
     if (const auto lap = roadside_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
     if (hooks_.on_frame) hooks_.on_frame(frame_);
+    race_by_learned_lap();
+  }
+
+  void race_by_learned_lap() {
+    auto lap = planner_.follow(cycle_.controller(), scenario_, frame_.time);
+    if (!lap) return;
+    cycle_.use_line(std::move(lap));
+    if (hooks_.on_change) hooks_.on_change(run::LapPlanner::lap_change(cycle_.next(), frame_.time));
   }
 
   /// After a silence, ours too, the car has been stopped meanwhile, or has gone on with the last command:
@@ -267,6 +276,7 @@ class UdacityEndpoint::Control {
   Answer answer_;
   scenario::Scenario scenario_;
   run::ControlCycle cycle_;
+  run::LapPlanner planner_{run::LapPlanner::Clock::kReal};
   DelayMeter delay_;
   run::Roadside roadside_;
   telemetry::RunSummary run_;
