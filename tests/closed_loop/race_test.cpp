@@ -45,6 +45,23 @@ TEST(Race, NeedsNoTrack) {
   }
 }
 
+// docs/racing.md, Table 4: nobody told it how much grip there is.
+TEST(Race, LearnsTheGripWithoutLeavingTheRoad) {
+  const std::pair<const char*, double> grips[] = {{"0.8", 24.4}, {"1.1", 22.0}};
+  for (const auto& [grip, lap_time] : grips) {
+    const auto run = drive({{"preset", "race"},
+                            {"car", "road-car"},
+                            {"track", "oval"},
+                            {"laps", "2"},
+                            {"tracking_mpc.learn_grip", "true"},
+                            {"plant_options.friction_scale", grip}});
+    ASSERT_TRUE(run.completed) << grip << ": " << run.end_reason;
+    EXPECT_EQ(run.off_track_events, 0) << grip;
+    for (const telemetry::LapSummary& lap : run.laps) EXPECT_GT(lap.min_edge_distance, 0.05) << grip;
+    EXPECT_LT(run.laps.back().lap_time, lap_time) << grip;
+  }
+}
+
 TEST(Race, IsFasterThanTheDefault) {
   for (const char* car : {"udacity", "road-car"}) {
     const auto lap = [&](const char* preset) {

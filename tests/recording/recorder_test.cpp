@@ -80,18 +80,22 @@ INSTANTIATE_TEST_SUITE_P(Controllers, RecordedController,
                          });
 
 // The lap is planned again from what the controller had learned, and takes effect at the same step.
-TEST(Recorder, HasARaceOnALearnedRoad) {
-  const TemporaryFile file;
-  const auto loop = short_run({{"preset", "race"},
-                               {"track", "oval"},
-                               {"guard.road", "waypoints"},
-                               {"laps", "4"},
-                               {"time_limit_s", "45"}});
-  const RecorderReport recorded = record(*loop, file.path());
-  const Result<ReplayReport> replayed = verify_recording(file.path());
-  ASSERT_TRUE(replayed) << replayed.error().message;
-  EXPECT_EQ(replayed->identical, recorded.frames);
-  EXPECT_EQ(replayed->different, 0U);
+TEST(Recorder, HasARaceWithALearnedRoadAndGrip) {
+  for (const char* road : {"waypoints", "track"}) {
+    const TemporaryFile file;
+    const auto loop = short_run({{"preset", "race"},
+                                 {"track", "oval"},
+                                 {"guard.road", road},
+                                 {"tracking_mpc.learn_grip", "true"},
+                                 {"plant_options.friction_scale", "0.85"},
+                                 {"laps", "4"},
+                                 {"time_limit_s", "45"}});
+    const RecorderReport recorded = record(*loop, file.path());
+    const Result<ReplayReport> replayed = verify_recording(file.path());
+    ASSERT_TRUE(replayed) << replayed.error().message;
+    EXPECT_EQ(replayed->identical, recorded.frames) << road;
+    EXPECT_EQ(replayed->different, 0U) << road;
+  }
 }
 
 TEST(Recorder, KeepsAScenarioThatIsAllDefaultsWhole) {

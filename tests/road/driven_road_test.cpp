@@ -22,7 +22,7 @@ std::shared_ptr<const RacingRoad> lap(bool is_learned) {
     point.curvature = 1.0 / 80.0;
     points.push_back(point);
   }
-  return std::make_shared<const RacingRoad>(points, 0.0, is_learned);
+  return std::make_shared<const RacingRoad>(points, 0.0, RacingRoad::Basis{.is_learned = is_learned});
 }
 
 /// Drives round until the loop is closed and its lap is planned.

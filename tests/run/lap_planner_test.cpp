@@ -3,13 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <thread>
 #include <vector>
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "chicane/run/make.hpp"
 #include "chicane/run/racing.hpp"
 
 namespace chicane::run {
@@ -32,13 +35,14 @@ class Learner final : public controller::Controller {
                                                    Deadline /*deadline*/) noexcept override {
     return result_;
   }
-  [[nodiscard]] std::span<const Vec2> wants_lap_of() const noexcept override {
-    return is_wanted ? std::span<const Vec2>(waypoints_) : std::span<const Vec2>{};
+  [[nodiscard]] controller::LapWish wants_lap() const noexcept override {
+    return {.is_wanted = is_wanted, .waypoints = waypoints_, .grip = grip};
   }
   void reset() noexcept override {}
   [[nodiscard]] std::string_view name() const noexcept override { return "learner"; }
 
   bool is_wanted = true;
+  double grip = 1.0;
 
  private:
   std::vector<Vec2> waypoints_;
@@ -54,7 +58,7 @@ std::vector<Vec2> circle(double radius) {
 
 std::shared_ptr<const road::RacingRoad> wait_for_lap(LapPlanner& planner, const Learner& learner) {
   for (int i = 0; i < 12000; ++i) {
-    if (auto lap = planner.follow(learner, race_by_waypoints(), 0.0)) return lap;
+    if (auto lap = planner.follow(learner, race_by_waypoints(), nullptr, 0.0)) return lap;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   return {};
@@ -65,12 +69,12 @@ TEST(LapPlanner, PlansInVirtualTimeAsLateAsAPlanTakes) {
   const scenario::Scenario race = race_by_waypoints();
   LapPlanner planner(LapPlanner::Clock::kVirtual);
   for (double time = 3.0; time < 3.0 + LapPlanner::kPlanningTime; time += 0.04)
-    EXPECT_EQ(planner.follow(learner, race, time), nullptr) << time;
-  const auto lap = planner.follow(learner, race, 3.0 + LapPlanner::kPlanningTime);
+    EXPECT_EQ(planner.follow(learner, race, nullptr, time), nullptr) << time;
+  const auto lap = planner.follow(learner, race, nullptr, 3.0 + LapPlanner::kPlanningTime);
   ASSERT_NE(lap, nullptr);
   EXPECT_TRUE(lap->is_learned());
   EXPECT_NEAR(lap->line().length(), kTwoPi * 70.0, kTwoPi * 4.0);
-  EXPECT_EQ(planner.follow(learner, race, 20.0), nullptr) << "once";
+  EXPECT_EQ(planner.follow(learner, race, nullptr, 20.0), nullptr) << "once";
 }
 
 TEST(LapPlanner, PlansTheSameBesideARun) {
@@ -79,22 +83,45 @@ TEST(LapPlanner, PlansTheSameBesideARun) {
   LapPlanner planner(LapPlanner::Clock::kReal);
   const auto lap = wait_for_lap(planner, learner);
   ASSERT_NE(lap, nullptr);
-  const auto again = plan_learned_lap(race_by_waypoints(), points).value();
+  const auto again = plan_wanted_lap(race_by_waypoints(), nullptr, learner.wants_lap()).value();
   for (double s = 0.0; s < lap->line().length(); s += 7.0) {
     EXPECT_EQ(lap->line().at(s).position, again->line().at(s).position);
     EXPECT_EQ(lap->line().demand(s).speed, again->line().demand(s).speed);
   }
   learner.is_wanted = false;
-  EXPECT_EQ(planner.follow(learner, race_by_waypoints(), 1.0), nullptr);
+  EXPECT_EQ(planner.follow(learner, race_by_waypoints(), nullptr, 1.0), nullptr);
   learner.is_wanted = true;
   EXPECT_NE(wait_for_lap(planner, learner), nullptr) << "after a reset it plans anew";
+}
+
+TEST(LapPlanner, PlansOnTheTrackWithTheGripThatIsWanted) {
+  Learner learner({});
+  const scenario::Scenario race = race_by_waypoints("road-car");
+  const path::Track oval = make_track(race).value();
+  const auto least_speed = [&](double grip) {
+    learner.grip = grip;
+    LapPlanner planner(LapPlanner::Clock::kVirtual);
+    static_cast<void>(planner.follow(learner, race, &oval, 0.0));
+    const auto lap = planner.follow(learner, race, &oval, 10.0);
+    EXPECT_EQ(lap->grip(), grip);
+    EXPECT_FALSE(lap->is_learned());
+    EXPECT_EQ(LapPlanner::lap_change(*lap, 7, 1.0).value.view(), grip == 1.0 ? "1" : "0.8");
+    double slowest = 100.0;
+    for (double s = 0.0; s < lap->line().length(); s += 2.0)
+      slowest = std::min(slowest, lap->line().demand(s).speed);
+    return slowest;
+  };
+  EXPECT_LT(least_speed(0.8), 0.97 * least_speed(1.0));
+  LapPlanner planner(LapPlanner::Clock::kVirtual);
+  static_cast<void>(planner.follow(learner, race, nullptr, 0.0));
+  EXPECT_EQ(planner.follow(learner, race, nullptr, 10.0), nullptr) << "no track is known";
 }
 
 TEST(LapPlanner, HasNoneWhereTheRoadHasNone) {
   const Learner learner(circle(2.0));  // tighter than the car can turn
   LapPlanner planner(LapPlanner::Clock::kVirtual);
   for (double time = 0.0; time < 20.0; time += 1.0)
-    EXPECT_EQ(planner.follow(learner, race_by_waypoints(), time), nullptr);
+    EXPECT_EQ(planner.follow(learner, race_by_waypoints(), nullptr, time), nullptr);
 }
 
 TEST(LapPlanner, IsAskedByARunThatKnowsWaypointsOnly) {

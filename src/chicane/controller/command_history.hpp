@@ -149,6 +149,7 @@ class StateEstimator {
   /// replaced by what the model expects.
   void correct(const model::Measurement& now, const CommandHistory& sent) noexcept;
   [[nodiscard]] const model::State& state() const noexcept { return now_.state; }
+  [[nodiscard]] double time() const noexcept { return time_; }  ///< of state() [s]
   [[nodiscard]] bool is_started() const noexcept { return is_started_; }
   [[nodiscard]] double acceleration() const noexcept { return now_.acceleration; }
   [[nodiscard]] const Disturbance& disturbance() const noexcept { return now_.disturbance; }

@@ -91,6 +91,14 @@ struct StepResult {
   StepReport report;
 };
 
+/// A lap that a controller wants to be planned, from what it has learned of road and grip.
+struct LapWish {
+  bool is_wanted = false;
+  std::span<const Vec2> waypoints{};  ///< of the closed road that was learned, in driving order; empty: the
+                                      ///< track's, which is known
+  double grip = 1.0;                  ///< over the one that the vehicle's parameters tell
+};
+
 /// The contract every controller fulfils: a measurement goes in, an answer or none comes out. What happens
 /// without an answer is not the controller's concern: safety::Guard decides it, for all controllers alike.
 ///
@@ -106,9 +114,8 @@ class Controller {
   /// A planned lap to race by from the next step() on; null: none any more. Controllers that follow the
   /// waypoints do not care. Allocates nothing.
   virtual void use_line(std::shared_ptr<const road::RacingRoad> /*lap*/) noexcept {}
-  /// The waypoints, in driving order, of a closed road that a lap to race by is wanted for: the controller
-  /// has learned it, and drives by no planned lap. Empty: none is wanted. Valid until the next step().
-  [[nodiscard]] virtual std::span<const Vec2> wants_lap_of() const noexcept { return {}; }
+  /// The lap to race by that the controller would rather have than what it drives by. Valid until step().
+  [[nodiscard]] virtual LapWish wants_lap() const noexcept { return {}; }
   /// Forget everything learned (map, warm start): a new run begins. A planned lap stays, one of a road that
   /// was learned does not.
   virtual void reset() noexcept = 0;

@@ -6,14 +6,16 @@
 #include <limits>
 
 #include "chicane/base/angle.hpp"
-#include "chicane/base/instruction_set.hpp"
+#include "chicane/controller/absence.hpp"
 #include "chicane/controller/command_history.hpp"
 #include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/explain.hpp"
+#include "chicane/controller/grip_estimator.hpp"
 #include "chicane/controller/tracking_problem.hpp"
 #include "chicane/controller/tracking_solver.hpp"
 #include "chicane/controller/tunable.hpp"
 #include "chicane/controller/way_back.hpp"
+#include "chicane/model/grip.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/road/driven_road.hpp"
 
@@ -36,33 +38,35 @@ constexpr double kLongestHold = 0.3;        // [s] the first command is assumed 
 constexpr double kBlindAfter = 0.3;         // [s] without a measurement, or a waypoint: stop
 constexpr double kPreview = 0.3;            // [s] the car answers the wheel about so late
 constexpr double kCrawl = 3.0;              // [m/s] below it the fallback brings the car to rest
+constexpr double kGripStep = 0.03;          // a lap is planned anew where the grip differs by more
 constexpr double kProjectionWindow = 30.0;  // [m] searched around the last place
 
 class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> {
  public:
   TrackingMpc(const TrackingMpcOptions& options, const model::VehicleParams& vehicle)
       : options_{options},
+        told_{vehicle},
         model_{vehicle},
-        road_{road_options(options), vehicle},
+        road_{options.road(), vehicle},
         estimator_{model_},
-        solver_{make_solver()} {
+        solver_{make_tracking_solver(kMostTurns)} {
     problem_.model = &model_;
-    shape_problem();
+    shape_raced();
   }
 
   void configure(const TrackingMpcOptions& options, const model::VehicleParams& vehicle) noexcept override {
     options_ = options;
-    model_.set_vehicle(vehicle);
-    road_.configure(road_options(options), vehicle);
-    estimator_.set_model(model_);
-    shape_problem();
+    told_ = vehicle;
+    believe();
   }
 
   [[nodiscard]] const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept override {
     sent_time_ = now.time + now.delay;
     const double act_time = now.time + (options_.compensate_delay ? now.delay : 0.0);
     if (!road_.add(now)) shape_raced();
+    const double elapsed = now.time - estimator_.time();
     estimator_.correct(now, sent_);
+    if (options_.learns()) watch_grip(elapsed);
     watch_sight(now);
     const StateEstimator::Prediction start = estimator_.predict(act_time, sent_);
     is_returning_ = !place_on_line(now, start) || (is_returning_ && std::fabs(x0_[Problem::kE]) > kJoining);
@@ -90,9 +94,14 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     shape_raced();
   }
 
-  [[nodiscard]] std::span<const Vec2> wants_lap_of() const noexcept override {
-    if (!options_.racing_line || road_.is_raced()) return {};
-    return road_.seen().closed_waypoints();
+  [[nodiscard]] LapWish wants_lap() const noexcept override {
+    const road::RacingRoad* lap = road_.lap();
+    const std::span<const Vec2> waypoints = road_.seen().closed_waypoints();
+    if (!options_.racing_line || (lap == nullptr && waypoints.empty())) return {};
+    const double grip = std::floor(100.0 * believed_grip() * grip_.share() + 0.5) / 100.0;
+    return {.is_wanted = lap == nullptr || std::fabs(grip - lap->grip()) > kGripStep,
+            .waypoints = lap == nullptr || lap->is_learned() ? waypoints : std::span<const Vec2>{},
+            .grip = grip};
   }
 
   void reset() noexcept override {
@@ -102,7 +111,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     sent_.clear();
     has_horizon_ = false;
     has_place_ = is_returning_ = false;
-    blind_ = roadless_ = late_ = Absence{};
+    for (Absence* each : {&blind_, &roadless_, &late_}) each->reset();
   }
 
   [[nodiscard]] std::string_view name() const noexcept override { return TrackingMpcEntry::kName; }
@@ -115,27 +124,6 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
 
  private:
   [[nodiscard]] const road::ReferenceLine& line() const noexcept { return road_.line(); }
-
-  static std::unique_ptr<TrackingSolver> make_solver() {
-    const solver::SolverOptions options{.tolerance = 1e-2,
-                                        .loose_tolerance = 1e3,
-                                        .max_iterations = kMostTurns,
-                                        .may_start_short = false,
-                                        .start_from_states = true,
-                                        .second_order = false};
-    return with_instructions(chosen_instruction_set(), [&](auto instructions) {
-      return make_tracking_solver<decltype(instructions)>(options);
-    });
-  }
-
-  static road::RoadOptions road_options(const TrackingMpcOptions& options) noexcept {
-    return {.half_width = options.assumed_half_width,
-            .smoothing_width = options.smoothing_width,
-            .remember_waypoints = options.remember_waypoints,
-            .speed = {.speed_limit = options.speed_limit,
-                      .grip_share = options.grip_share,
-                      .brake_share = options.brake_share}};
-  }
 
   /// Horizon and prices, from the options.
   void shape_problem() noexcept {
@@ -164,8 +152,29 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   /// A planned lap begins to be raced by, or ends.
   void shape_raced() noexcept {
     has_horizon_ = false;
-    estimator_.estimate_disturbance(road_.is_raced());
-    shape_edges();
+    estimator_.estimate_disturbance(road_.is_raced() || options_.learns());
+    believe();
+  }
+
+  /// The grip of the model, over what was told.
+  [[nodiscard]] double believed_grip() const noexcept {
+    return road_.is_raced() ? road_.lap()->grip() : options_.first_grip();
+  }
+  /// Model, road and problem for options, vehicle and the believed grip.
+  void believe() noexcept {
+    const model::VehicleParams car = model::with_grip(told_, believed_grip());
+    model_.set_vehicle(car);
+    road_.configure(options_.road(), car);
+    estimator_.set_model(model_);
+    grip_.reset();
+    shape_problem();
+  }
+
+  void watch_grip(double elapsed) noexcept {
+    const model::State& car = estimator_.state();
+    const model::BodyMotion<double> body{car.vx, car.vy, car.r, car.steer, estimator_.acceleration()};
+    const double turned = (1.0 - told_.steer_helper) * car.vx * car.r;  // the rest is not by tyres
+    grip_.add(model_.change(body).vy + turned, estimator_.disturbance().lateral, elapsed);
   }
 
   /// Room beside the line at s [m] ahead, where the line has moved sideways by `offset` [m].
@@ -176,18 +185,6 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     const road::Road::Room room = road_.lap()->room(s_ + s);
     return {room.left - taken, room.right - taken};
   }
-
-  /// How long something has not been there that was.
-  struct Absence {
-    double since = 0.0;  ///< [s]
-    bool was_there = false;
-    bool is_long = false;
-    void note(bool is_there, double time) noexcept {
-      if (is_there) since = time;
-      was_there = was_there || is_there;
-      is_long = was_there && std::isfinite(time) && time - since > kBlindAfter;
-    }
-  };
 
   void watch_sight(const model::Measurement& now) noexcept {
     blind_.note(std::isfinite(now.x + now.y + now.psi + now.speed), now.time);
@@ -463,7 +460,9 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   }
 
   TrackingMpcOptions options_;
+  model::VehicleParams told_;  ///< whose grip may differ from the model's
   model::PredictionModel model_;
+  GripEstimator grip_;  ///< over the model's
   road::DrivenRoad road_;
   StateEstimator estimator_;
   CommandHistory sent_;
@@ -483,10 +482,10 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   unsigned revision_ = 0;
   bool has_place_ = false;
   bool has_horizon_ = false;
-  bool is_returning_ = false;  ///< to the road, and has not joined it yet
-  Absence blind_;              ///< of measurements that tell where the car is
-  Absence roadless_;           ///< of waypoints
-  Absence late_;               ///< of answers, for want of time
+  bool is_returning_ = false;      ///< to the road, and has not joined it yet
+  Absence blind_{kBlindAfter};     ///< of measurements that tell where the car is
+  Absence roadless_{kBlindAfter};  ///< of waypoints
+  Absence late_{kBlindAfter};      ///< of answers, for want of time
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/road/road.hpp"
 
 namespace chicane::controller {
 
@@ -35,7 +36,20 @@ struct TrackingMpcOptions {
   double edge_margin = 0.2;         ///< that the tyres keep from the edges of a road that is raced on [m]
   double slip_share = 1.0;  ///< most slip of an axle in the plan to race by, over that of its peak force
   int turns = 3;            ///< of the solver in a step, at least
+  bool learn_grip = false;  ///< race with the grip that the tyres have shown (docs/racing.md)
   bool remember_waypoints = true;  ///< close the waypoints seen into a map
+
+  /// That the first lap is planned with, over the one that the vehicle's parameters tell.
+  [[nodiscard]] double first_grip() const noexcept { return learns() ? kUnprovenGrip : 1.0; }
+  [[nodiscard]] bool learns() const noexcept { return racing_line && learn_grip; }
+  static constexpr double kUnprovenGrip = 0.8;
+  /// How waypoints become the road that is driven on.
+  [[nodiscard]] road::RoadOptions road() const noexcept {
+    return {.half_width = assumed_half_width,
+            .smoothing_width = smoothing_width,
+            .remember_waypoints = remember_waypoints,
+            .speed = {.speed_limit = speed_limit, .grip_share = grip_share, .brake_share = brake_share}};
+  }
 };
 
 /// kInvalidArgument names an option out of the range that its row states.

@@ -28,4 +28,7 @@ class TrackingSolver {
 template <class Arch>
 [[nodiscard]] std::unique_ptr<TrackingSolver> make_tracking_solver(const solver::SolverOptions& options);
 
+/// For the instruction set that was chosen; solves in real time, with `most_turns` in a step.
+[[nodiscard]] std::unique_ptr<TrackingSolver> make_tracking_solver(int most_turns);
+
 }  // namespace chicane::controller

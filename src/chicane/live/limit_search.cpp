@@ -5,15 +5,13 @@
 
 #include <utility>
 
+#include "chicane/model/grip.hpp"
+
 namespace chicane::live {
 
 model::VehicleParams limit_vehicle(const scenario::Scenario& scenario) {
-  model::VehicleParams car = scenario.vehicle;
-  const double grip = scenario.plant_options.friction_scale;
+  model::VehicleParams car = model::with_grip(scenario.vehicle, scenario.plant_options.friction_scale);
   const double mass = scenario.plant_options.mass_scale;
-  car.friction *= grip;
-  car.cornering_front *= grip;
-  car.cornering_rear *= grip;
   // Forces over mass; the yaw inertia deviates with the mass.
   car.mass *= mass;
   car.yaw_inertia *= mass;

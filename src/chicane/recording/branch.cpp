@@ -178,7 +178,7 @@ class Rebuilt {
   }
   /// After a control step of advance(): what is planned beside a run that goes on by itself.
   void race_by_learned_lap() {
-    if (auto lap = planner_.follow(loop_->controller(), loop_->scenario(), loop_->time()))
+    if (auto lap = planner_.follow(loop_->controller(), loop_->scenario(), &loop_->track(), loop_->time()))
       loop_->use_line(std::move(lap));
   }
   [[nodiscard]] run::ClosedLoop& loop() { return *loop_; }

@@ -24,8 +24,10 @@ bool is_same(double a, double b) {
 class Recomputation {
  public:
   Recomputation(const scenario::Scenario& scenario, std::unique_ptr<controller::Controller> controller,
-                const path::Track* track, std::shared_ptr<const road::RacingRoad> lap)
-      : scenario_{scenario}, cycle_{std::move(controller), scenario, track} {
+                std::optional<path::Track> track, std::shared_ptr<const road::RacingRoad> lap)
+      : scenario_{scenario},
+        track_{std::move(track)},
+        cycle_{std::move(controller), scenario, track_ ? &*track_ : nullptr} {
     cycle_.use_line(std::move(lap));
   }
 
@@ -33,8 +35,10 @@ class Recomputation {
   void add(const telemetry::Change& change) {
     const Result<run::Setting> setting = run::read_setting(change);
     if (!setting) return;
-    if (std::holds_alternative<run::LearnedLap>(setting->action)) {
-      const auto lap = run::plan_learned_lap(scenario_, cycle_.controller().wants_lap_of());
+    if (const auto* learned = std::get_if<run::LearnedLap>(&setting->action)) {
+      controller::LapWish wish = cycle_.controller().wants_lap();
+      wish.grip = learned->grip;
+      const auto lap = run::plan_wanted_lap(scenario_, track_ ? &*track_ : nullptr, wish);
       if (lap) cycle_.use_line(*lap);
     }
     const auto* field = std::get_if<run::FieldValue>(&setting->action);
@@ -72,6 +76,7 @@ class Recomputation {
   }
 
   scenario::Scenario scenario_;
+  std::optional<path::Track> track_;  ///< what guard and racing controller knew
   run::ControlCycle cycle_;
   telemetry::Frame frame_;
 };
@@ -94,7 +99,7 @@ Result<ReplayReport> verify_recording(const std::string& path, const run::Contro
       }
       auto lap = run::plan_lap(*scenario, track ? &*track : nullptr);
       if (!lap) return fail(lap.error());
-      again = std::make_unique<Recomputation>(*scenario, std::move(*controller), track ? &*track : nullptr,
+      again = std::make_unique<Recomputation>(*scenario, std::move(*controller), std::move(track),
                                               std::move(*lap));
     } else if (const auto* change = std::get_if<telemetry::Change>(&event)) {
       again->add(*change);

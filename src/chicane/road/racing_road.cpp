@@ -33,8 +33,8 @@ constexpr std::size_t kLeastPoints = 8;
 
 }  // namespace
 
-RacingRoad::RacingRoad(std::span<const path::LinePoint> lap, double kerb, bool is_learned)
-    : line_{0}, is_learned_{is_learned} {
+RacingRoad::RacingRoad(std::span<const path::LinePoint> lap, double kerb, const Basis& basis)
+    : line_{0}, basis_{basis} {
   if (lap.size() < kLeastPoints) return;
   const std::vector<double> s = arc_lengths(lap);
   const double length = s.back();

@@ -17,8 +17,15 @@ class RacingRoad {
   static constexpr double kSpacing = 1.0;  ///< of the samples [m] at most
 
   /// From a lap by rising time, whose last point repeats the first. `kerb`: drivable beyond the edges [m].
-  /// Empty line for less than 8 points. `is_learned`: see is_learned().
-  explicit RacingRoad(std::span<const path::LinePoint> lap, double kerb = 0.0, bool is_learned = false);
+  /// Empty line for less than 8 points.
+  explicit RacingRoad(std::span<const path::LinePoint> lap, double kerb = 0.0)
+      : RacingRoad(lap, kerb, Basis{}) {}
+  /// What a lap was planned from.
+  struct Basis {
+    bool is_learned = false;  ///< see is_learned()
+    double grip = 1.0;        ///< see grip()
+  };
+  RacingRoad(std::span<const path::LinePoint> lap, double kerb, const Basis& basis);
 
   /// In W, closed. The offset of its samples is that from the road's centre line [m].
   [[nodiscard]] const ReferenceLine& line() const noexcept { return line_; }
@@ -28,7 +35,9 @@ class RacingRoad {
   [[nodiscard]] double sideslip(double s) const noexcept;
   /// Planned for the road that the controller has learned from waypoints, with an assumed width: of no use
   /// when the waypoints are forgotten.
-  [[nodiscard]] bool is_learned() const noexcept { return is_learned_; }
+  [[nodiscard]] bool is_learned() const noexcept { return basis_.is_learned; }
+  /// The grip that it was planned with, over the one that the vehicle's parameters tell.
+  [[nodiscard]] double grip() const noexcept { return basis_.grip; }
 
  private:
   /// Between two samples: the first, and the share of the second.
@@ -41,7 +50,7 @@ class RacingRoad {
   ReferenceLine line_;
   std::vector<Road::Room> rooms_;  ///< at the line's samples
   std::vector<double> sideslips_;
-  bool is_learned_ = false;
+  Basis basis_;
 };
 
 }  // namespace chicane::road

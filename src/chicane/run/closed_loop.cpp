@@ -128,8 +128,10 @@ void ClosedLoop::take(const FaultSwitch& fault) noexcept {
   faults_.set(event);
 }
 
-void ClosedLoop::take(LearnedLap /*lap*/) noexcept {
-  const auto lap = plan_learned_lap(scenario_, controller().wants_lap_of());
+void ClosedLoop::take(LearnedLap learned) noexcept {
+  controller::LapWish wish = controller().wants_lap();
+  wish.grip = learned.grip;
+  const auto lap = plan_wanted_lap(scenario_, &track_, wish);
   if (lap) use_line(*lap);
 }
 
@@ -199,9 +201,9 @@ telemetry::RunSummary run_closed_loop(ClosedLoop& loop, const RunHooks& hooks,
     if (const auto lap = loop.take_lap(); lap && hooks.on_lap) hooks.on_lap(*lap);
     if (!is_new) continue;
     if (hooks.on_frame) hooks.on_frame(loop.frame());
-    if (auto lap = planner.follow(loop.controller(), loop.scenario(), loop.time())) {
-      loop.use_line(std::move(lap));
-      if (hooks.on_change) hooks.on_change(LapPlanner::lap_change(loop.cycle(), loop.time()));
+    if (const auto lap = planner.follow(loop.controller(), loop.scenario(), &loop.track(), loop.time())) {
+      loop.use_line(lap);
+      if (hooks.on_change) hooks.on_change(LapPlanner::lap_change(*lap, loop.cycle(), loop.time()));
     }
     if (stop && stop()) break;
   }

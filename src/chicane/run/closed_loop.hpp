@@ -65,7 +65,7 @@ class ClosedLoop {
   void apply(const Setting& setting) noexcept;
   /// The same for a change that is still text; one that read_setting() refuses changes nothing. Allocates.
   void apply(const telemetry::Change& change);
-  /// A planned lap to race by from the next control step on, where controller().wants_lap_of() a road.
+  /// A planned lap to race by from the next control step on, where controller().wants_lap().
   void use_line(std::shared_ptr<const road::RacingRoad> lap) { cycle_.use_line(std::move(lap)); }
   /// Run seconds that were asked for per second of the clock.
   [[nodiscard]] double pace() const noexcept { return pace_; }

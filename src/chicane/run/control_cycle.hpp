@@ -47,7 +47,7 @@ class ControlCycle {
                road::KnownRoad road);
 
   /// The planned lap of a scenario that races (run/racing.hpp): before the car drives, or between two cycles
-  /// where the controller wants_lap_of() a road. Null changes nothing.
+  /// where the controller wants_lap(). Null changes nothing.
   void use_line(std::shared_ptr<const road::RacingRoad> lap);
 
   /// A new run, or the same car after something unknown: everything learned is forgotten. The next cycle has

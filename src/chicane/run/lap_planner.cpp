@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "chicane/base/text.hpp"
 #include "chicane/run/racing.hpp"
 
 namespace chicane::run {
@@ -14,13 +15,17 @@ LapPlanner::~LapPlanner() {
   if (thread_.joinable()) thread_.join();
 }
 
+telemetry::Change LapPlanner::lap_change(const road::RacingRoad& lap, std::uint64_t cycle, double time) {
+  return {.cycle = cycle, .time = time, .name = kChange, .value = number_text(lap.grip())};
+}
+
 std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Controller& controller,
-                                                           const scenario::Scenario& scenario, double time) {
-  const std::span<const Vec2> waypoints = controller.wants_lap_of();
-  is_wanted_ = !waypoints.empty();
-  const bool is_searching = thread_.joinable();
-  if (is_searching && has_ended_.load(std::memory_order_acquire)) thread_.join();
-  if (waypoints.empty()) {
+                                                           const scenario::Scenario& scenario,
+                                                           const path::Track* track, double time) {
+  const controller::LapWish wish = controller.wants_lap();
+  is_wanted_ = wish.is_wanted;
+  if (thread_.joinable() && has_ended_.load(std::memory_order_acquire)) thread_.join();
+  if (!wish.is_wanted) {
     wanted_since_.reset();
     return {};
   }
@@ -31,27 +36,31 @@ std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Con
     has_ended_ = false;
     lap_.reset();
     if (clock_ == Clock::kReal)
-      thread_ = std::thread([this, points = std::vector<Vec2>(waypoints.begin(), waypoints.end()),
-                             scenario]() mutable { search(std::move(points), scenario); });
+      thread_ =
+          std::thread([this, scenario, track,
+                       points = std::vector(wish.waypoints.begin(), wish.waypoints.end()), grip = wish.grip] {
+            search(scenario, track, {.is_wanted = true, .waypoints = points, .grip = grip});
+          });
     return {};
   }
   if (has_answered_) return {};
   if (clock_ == Clock::kVirtual) {
     if (time - *wanted_since_ < kPlanningTime) return {};
-    search({waypoints.begin(), waypoints.end()}, scenario);
+    search(scenario, track, wish);
   }
   if (!has_ended_.load(std::memory_order_acquire)) return {};
   has_answered_ = true;
   return std::exchange(lap_, nullptr);
 }
 
-void LapPlanner::search(std::vector<Vec2> waypoints, const scenario::Scenario& scenario) {
+void LapPlanner::search(const scenario::Scenario& scenario, const path::Track* track,
+                        const controller::LapWish& wish) {
   if (clock_ == Clock::kReal) {
     // Behind everything else, yet not starved: on cores that others keep busy, a tenth of one thread's share.
     constexpr int kLowPriority = 10;
     static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // of this thread, on Linux
   }
-  auto lap = plan_learned_lap(scenario, waypoints, [this] { return is_wanted_.load(); });
+  auto lap = plan_wanted_lap(scenario, track, wish, [this] { return is_wanted_.load(); });
   if (lap) lap_ = std::move(*lap);
   has_ended_.store(true, std::memory_order_release);
 }

@@ -9,16 +9,17 @@
 
 #include "chicane/base/vec2.hpp"
 #include "chicane/controller/controller.hpp"
+#include "chicane/path/track.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/change.hpp"
 
 namespace chicane::run {
 
-/// Plans the lap to race by for a controller that has learned its road from waypoints (plan_learned_lap):
-/// beside a run in real time, on a thread of its own with low priority; in virtual time at once, taken up as
-/// late as kPlanningTime. What is planned depends on waypoints and scenario alone; when it takes effect is in
-/// recordings, as the change lap_change().
+/// Plans the lap to race by that a controller wants from what it has learned (Controller::wants_lap): beside
+/// a run in real time, on a thread of its own with low priority; in virtual time at once, taken up as late as
+/// kPlanningTime. What is planned depends on scenario, road and grip alone; with which grip, and when it
+/// takes effect, is in recordings, as the change lap_change().
 ///
 /// One thread, that of the run.
 class LapPlanner {
@@ -35,19 +36,19 @@ class LapPlanner {
   /// After each control cycle, at the run's time [s]: the lap that is to be used from the next one on, once.
   /// Null otherwise, and where the road has none. Allocates when a search begins; waits for none in real
   /// time.
+  /// `track`: the road, where it is known, or null; outlives this.
   [[nodiscard]] std::shared_ptr<const road::RacingRoad> follow(const controller::Controller& controller,
                                                                const scenario::Scenario& scenario,
-                                                               double time);
+                                                               const path::Track* track, double time);
 
-  /// What recordings and viewers are told where a lap is used from control cycle `cycle` on.
-  [[nodiscard]] static telemetry::Change lap_change(std::uint64_t cycle, double time) noexcept {
-    return {.cycle = cycle, .time = time, .name = kChange, .value = kLearned};
-  }
+  /// What recordings and viewers are told where `lap` is used from control cycle `cycle` on: the grip that it
+  /// is planned with. Allocates.
+  [[nodiscard]] static telemetry::Change lap_change(const road::RacingRoad& lap, std::uint64_t cycle,
+                                                    double time);
   static constexpr std::string_view kChange = "run.racing_line";
-  static constexpr std::string_view kLearned = "learned";
 
  private:
-  void search(std::vector<Vec2> waypoints, const scenario::Scenario& scenario);
+  void search(const scenario::Scenario& scenario, const path::Track* track, const controller::LapWish& wish);
 
   Clock clock_;
   std::optional<double> wanted_since_;  ///< [s]

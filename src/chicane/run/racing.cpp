@@ -6,6 +6,7 @@
 
 #include "chicane/controller/registry.hpp"
 #include "chicane/lap_time/racing_plan.hpp"
+#include "chicane/model/grip.hpp"
 
 namespace chicane::run {
 namespace {
@@ -15,7 +16,8 @@ const controller::TrackingMpcOptions& options_of(const scenario::Scenario& scena
 }
 
 Result<std::shared_ptr<const road::RacingRoad>> plan_on(const path::Track& track,
-                                                        const scenario::Scenario& scenario, bool is_learned,
+                                                        const scenario::Scenario& scenario,
+                                                        const road::RacingRoad::Basis& basis,
                                                         const std::function<bool()>& go_on) {
   const controller::TrackingMpcOptions& options = options_of(scenario);
   lap_time::RacingPlanOptions planning{.margin = options.edge_margin,
@@ -24,10 +26,10 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const path::Track& track
                                        .brake_share = options.brake_share,
                                        .speed_limit = options.speed_limit};
   if (go_on) planning.go_on = [&](int, double) { return go_on(); };
-  const Result<path::RacingLine> lap = lap_time::plan_racing_line(track, scenario.vehicle, planning);
+  const model::VehicleParams car = model::with_grip(scenario.vehicle, basis.grip);
+  const Result<path::RacingLine> lap = lap_time::plan_racing_line(track, car, planning);
   if (!lap) return fail(lap.error());
-  return std::make_shared<const road::RacingRoad>(path::line_points(track, *lap), track.kerb_width(),
-                                                  is_learned);
+  return std::make_shared<const road::RacingRoad>(path::line_points(track, *lap), track.kerb_width(), basis);
 }
 
 }  // namespace
@@ -40,21 +42,25 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenari
                                                          const path::Track* track) {
   const bool is_known = track != nullptr && scenario.guard.road == safety::GuardRoad::kTrack;
   if (!races(scenario) || !is_known) return std::shared_ptr<const road::RacingRoad>{};
-  return plan_on(*track, scenario, false, {});
+  return plan_on(*track, scenario, {.grip = options_of(scenario).first_grip()}, {});
 }
 
-Result<std::shared_ptr<const road::RacingRoad>> plan_learned_lap(const scenario::Scenario& scenario,
-                                                                 std::span<const Vec2> waypoints,
-                                                                 const std::function<bool()>& go_on) {
+Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::Scenario& scenario,
+                                                                const path::Track* track,
+                                                                const controller::LapWish& wish,
+                                                                const std::function<bool()>& go_on) {
+  const road::RacingRoad::Basis basis{.is_learned = !wish.waypoints.empty(), .grip = wish.grip};
+  if (!basis.is_learned && track == nullptr) return std::shared_ptr<const road::RacingRoad>{};
+  if (!basis.is_learned) return plan_on(*track, scenario, basis, go_on);
   const model::VehicleParams& car = scenario.vehicle;
   const double beside = 0.5 * (car.track_width + car.tire_width);
   const double half_width = options_of(scenario).assumed_half_width + beside;
   std::vector<path::TrackPoint> points;
-  points.reserve(waypoints.size());
-  for (const Vec2& waypoint : waypoints) points.push_back({waypoint, half_width, half_width});
-  const Result<path::Track> track = path::Track::create("learned", points, true);
-  if (!track) return fail(track.error());
-  return plan_on(*track, scenario, true, go_on);
+  points.reserve(wish.waypoints.size());
+  for (const Vec2& waypoint : wish.waypoints) points.push_back({waypoint, half_width, half_width});
+  const Result<path::Track> learned = path::Track::create("learned", points, true);
+  if (!learned) return fail(learned.error());
+  return plan_on(*learned, scenario, basis, go_on);
 }
 
 }  // namespace chicane::run

@@ -3,10 +3,9 @@
 
 #include <functional>
 #include <memory>
-#include <span>
 
 #include "chicane/base/result.hpp"
-#include "chicane/base/vec2.hpp"
+#include "chicane/controller/controller.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "chicane/scenario/scenario.hpp"
@@ -25,11 +24,12 @@ namespace chicane::run {
 [[nodiscard]] Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenario& scenario,
                                                                        const path::Track* track);
 
-/// The same on a road of which only its waypoints are known, closed and in driving order, with
-/// TrackingMpcOptions::assumed_half_width for the centre of mass each side of them. `go_on` is asked in each
-/// iteration; false ends the search. The same scenario and waypoints give the same bits.
-[[nodiscard]] Result<std::shared_ptr<const road::RacingRoad>> plan_learned_lap(
-    const scenario::Scenario& scenario, std::span<const Vec2> waypoints,
+/// The lap that a controller wants: with another grip, on `track`, or on a road through waypoints with
+/// TrackingMpcOptions::assumed_half_width for the centre of mass each side of them. Null where it is to be
+/// the track, and that is null. `go_on` is asked in each iteration; false ends the search. The same scenario,
+/// track and wish give the same bits.
+[[nodiscard]] Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(
+    const scenario::Scenario& scenario, const path::Track* track, const controller::LapWish& wish,
     const std::function<bool()>& go_on = {});
 
 }  // namespace chicane::run

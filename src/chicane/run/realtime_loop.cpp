@@ -93,10 +93,10 @@ class Session {
   }
 
   void race_by_learned_lap() {
-    auto lap = planner_.follow(loop_.controller(), loop_.scenario(), loop_.time());
+    const auto lap = planner_.follow(loop_.controller(), loop_.scenario(), &loop_.track(), loop_.time());
     if (!lap) return;
-    loop_.use_line(std::move(lap));
-    if (hooks_.on_change) hooks_.on_change(LapPlanner::lap_change(loop_.cycle(), loop_.time()));
+    loop_.use_line(lap);
+    if (hooks_.on_change) hooks_.on_change(LapPlanner::lap_change(*lap, loop_.cycle(), loop_.time()));
   }
 
   void one_cycle() {

@@ -31,8 +31,10 @@ struct FaultSwitch {
   enum class To { kOff, kOn, kAsGiven } to = To::kOff;  ///< kOn: with the kind's own duration and strength
   sim::FaultEvent event{};  ///< which fault; kAsGiven: its duration and strength, from now on
 };
-/// The lap to race by that is planned for the road as the controller has learned it (LapPlanner).
-struct LearnedLap {};
+/// The lap to race by that is planned for road and grip as the controller has learned them (LapPlanner).
+struct LearnedLap {
+  double grip = 1.0;  ///< LapWish::grip
+};
 
 /// What a change of a setting does to a run that goes on. std::monostate: nothing that can be done to it,
 /// because the run begins anew.

@@ -199,10 +199,11 @@ class UdacityEndpoint::Control {
   }
 
   void race_by_learned_lap() {
-    auto lap = planner_.follow(cycle_.controller(), scenario_, frame_.time);
+    const path::Track* track = is_other_road_ ? nullptr : options_.track;
+    const auto lap = planner_.follow(cycle_.controller(), scenario_, track, frame_.time);
     if (!lap) return;
-    cycle_.use_line(std::move(lap));
-    if (hooks_.on_change) hooks_.on_change(run::LapPlanner::lap_change(cycle_.next(), frame_.time));
+    cycle_.use_line(lap);
+    if (hooks_.on_change) hooks_.on_change(run::LapPlanner::lap_change(*lap, cycle_.next(), frame_.time));
   }
 
   /// After a silence, ours too, the car has been stopped meanwhile, or has gone on with the last command:
