@@ -18,9 +18,10 @@
 namespace chicane::run {
 namespace {
 
-scenario::Scenario race_by_waypoints() {
+scenario::Scenario race_by_waypoints(const char* car = "udacity") {
   return protocol::compose({.scenario_file = {},
                             .settings = {{"preset", "race"},
+                                         {"car", car},
                                          {"track", "oval"},
                                          {"guard.road", "waypoints"},
                                          {"laps", "3"}}})
