@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "chicane/live/live_settings.hpp"
 #include "chicane/live/run_limit.hpp"
 #include "chicane/recording/recorder.hpp"
+#include "chicane/run/lap_planner.hpp"
 #include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/wire/viewer.hpp"
@@ -55,6 +57,8 @@ class RunOutputs {
     record(change);
     if (journal_ != nullptr) journal_->note(change);
     settings_.tell(change);
+    if (change.name.view() == run::LapPlanner::kChange)
+      say("races by a new lap, planned with " + std::string(change.value.view()) + " of the believed grip");
   }
   /// The next frame is the first of another run.
   void begin(std::unique_ptr<const recording::RecordedRun> run) {

@@ -58,6 +58,8 @@ describe('event log', () => {
     noteChange({ stamp: { sec: 3, nsec: 500_000_000 }, cycle: 90n, name: 'latency_ms', value: '150' });
     noteChange({ stamp: { sec: 4, nsec: 0 }, cycle: 91n, name: 'manual.steer', value: '0.1' });
     expect(events.value).toMatchObject([{ text: 'latency_ms set to 150', time: 3.5 }]);
+    noteChange({ stamp: { sec: 5, nsec: 0 }, cycle: 92n, name: 'run.racing_line', value: '0.87' });
+    expect(events.value[0]?.text).toBe('Races by a new lap, planned with 87 % of the grip');
   });
 
   it('does not grow', () => {

@@ -87,11 +87,13 @@ export function noteEvents(frame: Frame, before: Frame | null): void {
 export const faultInWords = (name: string): string => nameInWords(name.replace(/^fault\./, ''));
 
 export function noteChange({ stamp, name, value }: Change): void {
-  if (/^(manual|fault|run)\./.test(name)) return; // noteEvents() or the page itself shows these
+  const isPlan = name === 'run.racing_line';
+  if (/^(manual|fault|run)\./.test(name) && !isPlan) return; // noteEvents() or the page itself shows these
+  const planned = `Races by a new lap, planned with ${Math.round(100 * Number(value))} % of the grip`;
   add({
     id: nextId++,
-    severity: 'unknown',
-    text: `${name} set to ${value}`,
+    severity: isPlan ? 'good' : 'unknown',
+    text: isPlan ? planned : `${name} set to ${value}`,
     time: stamp.sec + stamp.nsec / 1e9,
     duration: null,
   });
