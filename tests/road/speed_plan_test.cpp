@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "chicane/model/grip.hpp"
 #include "road/sample_loop.hpp"
 
 namespace chicane::road {
@@ -50,6 +51,27 @@ TEST(SpeedPlan, SaysWhatLimitsTheSpeedBeforeInAndBehindABend) {
   const model::VehicleParams car = uncoupled_car();
   // The middle of the bend, where curvature does not change: v² κ = share · friction · g.
   EXPECT_NEAR(samples[183].speed, std::sqrt(0.9 * car.cornering_friction() * car.load_constant * 40.0), 1e-9);
+}
+
+// Told the truth about a slippery road, the car braked as on a dry one and left the road (it did with 0.6 of
+// the grip).
+TEST(SpeedPlan, BrakesWithWhatTheSurfaceGives) {
+  const auto before_bend = [](double grip) {
+    ReferenceLine line = with_a_bend(40.0);
+    SpeedPlan speeds(401);
+    speeds.begin(model::with_grip(model::road_car_params(), grip), {.speed_limit = 60.0, .brake_share = 1.0});
+    for (int work = 1'000'000; !speeds.advance(work, line);) ADD_FAILURE();
+    const auto samples = line.samples();
+    const double v = samples[150].speed;
+    const double ahead = samples[151].speed;
+    EXPECT_EQ(samples[150].limiter, SpeedLimiter::kBraking);
+    return (v * v - ahead * ahead) / (2.0 * line.spacing());  // deceleration [m/s²]
+  };
+  const model::VehicleParams car = model::road_car_params();
+  const double drag = -longitudinal_acceleration(car, 0.0, 30.0);
+  EXPECT_NEAR(before_bend(1.0), car.brake_acceleration + drag, 0.2) << "what the brakes give";
+  const double grip = model::with_grip(car, 0.5).cornering_friction() * car.load_constant;
+  EXPECT_NEAR(before_bend(0.5), 0.85 * grip + drag, 0.2) << "what the road gives";
 }
 
 TEST(SpeedPlan, EndsAnOpenLineAtTheSpeedOfTheBendThatMayFollow) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "chicane/base/math.hpp"
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kSlopeReach = 3.0;   // [m] each way: shorter changes of curvature than a car are not felt
 constexpr double kLowestSpeed = 2.0;  // [m/s] the plan never asks to stop
+constexpr double kTraction = 0.85;    // of the grip: brakes are not all where the load is
 
 /// Largest v with v² demand <= share · friction · (load_0 + load_v v).
 double speed_for(double demand, const model::VehicleParams& p, double share) {
@@ -36,6 +38,13 @@ double longitudinal_share(double v, double demand, const model::VehicleParams& p
   const double use =
       v * v * demand / (grip * p.cornering_friction() * (p.load_constant + p.load_per_speed * v));
   return std::sqrt(std::max(0.0, 1.0 - p.friction_coupling * std::min(1.0, use * use)));
+}
+
+/// Longitudinal force over mass that tyres which share it between the directions give on a straight road,
+/// whatever drive and brakes could: where the grip is less than the car is built for [m/s²].
+double traction(double v, const model::VehicleParams& p) {
+  if (p.friction_coupling == 0.0) return std::numeric_limits<double>::infinity();
+  return kTraction * p.cornering_friction() * (p.load_constant + p.load_per_speed * v);
 }
 
 /// Lowers the speed to `limit` and remembers why.
@@ -110,7 +119,7 @@ void SpeedPlan::accelerate(ReferenceLine& line, int turn) noexcept {
   const double v = line.samples()[from].speed;
   const double share = longitudinal_share(v, demand_[from], vehicle_, options_.grip_share);
   const double drag = longitudinal_acceleration(vehicle_, 0.0, v);
-  const double drive = longitudinal_acceleration(vehicle_, 1.0, v) - drag;
+  const double drive = std::min(longitudinal_acceleration(vehicle_, 1.0, v) - drag, traction(v, vehicle_));
   const double a = options_.drive_share * share * drive + drag;
   const double squared = std::max(kLowestSpeed * kLowestSpeed, v * v + 2.0 * a * line.spacing());
   limit_to(std::sqrt(squared), SpeedLimiter::kPower, line.samples()[to]);
@@ -126,7 +135,8 @@ void SpeedPlan::brake(ReferenceLine& line, int turn) noexcept {
   const double v = ahead.speed;
   const double share = longitudinal_share(v, demand_[from], vehicle_, options_.grip_share);
   const double drag = longitudinal_acceleration(vehicle_, 0.0, v);
-  const double force = drag - longitudinal_acceleration(vehicle_, -vehicle_.brake_throttle_limit, v);
+  const double force = std::min(drag - longitudinal_acceleration(vehicle_, -vehicle_.brake_throttle_limit, v),
+                                traction(v, vehicle_));
   const double a = options_.brake_share * share * force - drag;
   // Braking for the end of sight is for want of sight.
   const bool is_blind = ahead.limiter == SpeedLimiter::kSight;
