@@ -30,6 +30,7 @@ struct DescribedTerms {
   double turn_per_metre = 0.0;      ///< ± 1 / L_f [1/m]
   double speed_reference = 0.0;     ///< as the model's v
   double error_sign = 1.0;          ///< of the last term of cte
+  double heading_reach = 1.0;       ///< of the desired yaw (controller/described_model.hpp)
   std::array<double, 8> weights{};  ///< of cte, eψ, v, δ, a, Δδ, Δa, v δ
   std::array<double, 4> line{};     ///< coefficients, from the constant on
   bool acts_late = false;           ///< the inputs of a stage act in the next one
@@ -102,7 +103,8 @@ class CppadProblem {
                                      : Number(terms_.last[1]);
     const Number turn = v * steer * (terms_.turn_per_metre * dt);
     const Number f = c[0] + c[1] * x + c[2] * pow(x, 2) + c[3] * pow(x, 3);
-    const Number desired = atan(c[1] + 2.0 * c[2] * x + 3.0 * c[3] * pow(x, 2));
+    const Number at = x * terms_.heading_reach;
+    const Number desired = atan(c[1] + 2.0 * c[2] * at + 3.0 * c[3] * pow(at, 2));
     fg[1 + at_.state(0, t)] = vars[at_.state(0, t)] - (x + v * cos(psi) * dt);
     fg[1 + at_.state(1, t)] = vars[at_.state(1, t)] - (y + v * sin(psi) * dt);
     fg[1 + at_.state(2, t)] = vars[at_.state(2, t)] - (psi + turn);

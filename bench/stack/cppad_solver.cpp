@@ -17,6 +17,7 @@ DescribedTerms terms_of(const CubicProblem& problem, const CubicProblem::State& 
                        .turn_per_metre = problem.turn_per_metre,
                        .speed_reference = problem.speed_reference,
                        .error_sign = problem.error_sign,
+                       .heading_reach = problem.heading_reach,
                        .line = problem.line.c,
                        .acts_late = problem.acts_late,
                        .last = {begin[5], begin[6]}};

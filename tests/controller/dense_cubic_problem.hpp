@@ -30,6 +30,8 @@ struct DenseCubicProblem {
         turn_per_metre{structured.turn_per_metre},
         steer_limit{structured.steer_limit},
         speed_reference{structured.speed_reference},
+        error_sign{structured.error_sign},
+        is_integrated{structured.heading_reach == 0.0},
         acts_late{structured.acts_late},
         root{structured.root},
         line{structured.line} {}
@@ -48,8 +50,8 @@ struct DenseCubicProblem {
             x[kY] + x[kV] * sin(x[kPsi]) * dt,
             x[kPsi] + turn,
             x[kV] + throttle * dt,
-            line.at(x[kX]) - x[kY] + x[kV] * sin(x[kEpsi]) * dt,
-            x[kPsi] - atan(line.slope(x[kX])) + turn,
+            line.at(x[kX]) - x[kY] + x[kV] * sin(x[kEpsi]) * (error_sign * dt),
+            (is_integrated ? x[kEpsi] : x[kPsi] - atan(line.slope(x[kX]))) + turn,
             u[kSteer],
             u[kThrottle]};
   }
@@ -80,6 +82,8 @@ struct DenseCubicProblem {
   double turn_per_metre;
   double steer_limit;
   double speed_reference;
+  double error_sign;
+  bool is_integrated;  ///< the heading error, from step to step
   bool acts_late;
   std::array<double, kNr> root;
   Cubic line;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "chicane/base/math.hpp"
 #include "chicane/controller/local_fit.hpp"
@@ -66,6 +67,22 @@ TEST(DescribedModel, WithTheErrorToTheLeftACarThatHeadsForTheLineGetsNearer) {
   right_of_it[4] = 0.04;  // heads to the left, where the line is
   EXPECT_LT(std::fabs(theirs.next_lateral_error(right_of_it)), line - 0.3);
   EXPECT_GT(std::fabs(model().next_lateral_error(right_of_it)), line - 0.3);
+}
+
+TEST(DescribedModel, AnIntegratedHeadingErrorIsTheOneBeforePlusTheTurn) {
+  // Write-up 1: eψ⁺ = eψ + v δ dt / L_f, from ψ = 0 and eψ = −arctan f′(0) on, whatever the line does.
+  DescribedModel<Cubic> theirs = model();
+  theirs.heading_reach = 0.0;
+  std::array<double, 7> state{0.0, 0.0, 0.0, 12.0, -std::atan(theirs.line.slope(0.0)), 0.0, 0.0};
+  double expected = state[4];
+  for (const double steer : {0.2, 0.1, -0.3, 0.0}) {
+    expected += state[3] * steer * theirs.turn_per_length;
+    const std::array input{steer, 0.5};
+    state = std::apply([](auto... value) { return std::array<double, 7>{value...}; },
+                       theirs.next(state, input, input));
+    EXPECT_NEAR(state[4], expected, kRounding);
+  }
+  EXPECT_GT(std::fabs(model().line.slope(state[0]) - model().line.slope(0.0)), 0.01) << "the line does bend";
 }
 
 }  // namespace

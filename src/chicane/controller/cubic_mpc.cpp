@@ -238,6 +238,9 @@ constexpr std::array kOptions{
     option<&C::lateral_error_to_left>(
         "lateral_error_to_left",
         "cte is y − f(x), as write-up 1 has it; in f(x) − y its step has v sin eψ with the other sign."),
+    option<&C::heading_error_integrated>(
+        "heading_error_integrated",
+        "The heading error is that of the beginning plus what the car turns, as write-up 1 has it."),
     option<&C::speed_in_mph>("speed_in_mph", "The model takes miles per hour for metres per second."),
     option<&C::roll_forward_in_mph>("roll_forward_in_mph", "The roll-forward over the latency does so, too."),
     option<&C::weight_lateral>("weight_lateral", unit::per("1/m²"), 0, kHighestWeight,

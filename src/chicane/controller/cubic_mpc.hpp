@@ -40,6 +40,8 @@ struct CubicMpcOptions {
   bool roll_forward_in_mph = false;
   /// Equation 5 with cte = y − f(x) (docs/problem.md).
   bool lateral_error_to_left = false;
+  /// Equation 6 as eψ⁺ = eψ + v δ dt / L_f from step to step: the bend ahead is seen by cte alone.
+  bool heading_error_integrated = false;
   double weight_lateral = 200.0;        ///< on cte² [1/m²]
   double weight_heading = 200.0;        ///< on eψ² [1/rad²]
   double weight_speed = 0.1;            ///< on (v − v_ref)² [s²/m²]

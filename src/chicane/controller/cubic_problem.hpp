@@ -46,6 +46,7 @@ struct CubicProblem {
         speed_unit{options.speed_in_mph ? mps_to_mph(1.0) : 1.0},
         speed_reference{options.speed_reference * speed_unit},
         error_sign{options.lateral_error_to_left ? -1.0 : 1.0},
+        heading_reach{options.heading_error_integrated ? 0.0 : 1.0},
         acts_late{options.latency_handling == LatencyHandling::kInsideModel},
         root{weight_root(options.weight_lateral),         weight_root(options.weight_heading),
              weight_root(options.weight_speed),           weight_root(options.weight_steer),
@@ -95,6 +96,7 @@ struct CubicProblem {
   double speed_unit;      ///< the model's v for 1 m/s
   double speed_reference;            ///< as the model's v
   double error_sign;                 ///< of the last term of equation 5
+  double heading_reach;              ///< of equation 6 (DescribedModel)
   bool acts_late;                    ///< the inputs of a stage act in the next one
   std::array<double, kNr> root;      ///< √(2 weight) of: cte, eψ, v, δ, a, Δδ, Δa, v δ
   Cubic line;                        ///< reference, renewed in every step
@@ -102,7 +104,11 @@ struct CubicProblem {
 
  private:
   [[nodiscard]] CHICANE_INLINE DescribedModel<Cubic> model() const noexcept {
-    return {.line = line, .dt = dt, .turn_per_length = turn_per_metre * dt, .error_sign = error_sign};
+    return {.line = line,
+            .dt = dt,
+            .turn_per_length = turn_per_metre * dt,
+            .error_sign = error_sign,
+            .heading_reach = heading_reach};
   }
   /// The input that drives a stage: its own, or inside the model that of the stage before (equation 13).
   template <class Last, class Own>

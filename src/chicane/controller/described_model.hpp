@@ -20,6 +20,9 @@ struct DescribedModel {
   /// Of the last term of equation 5: + where cte is f(x) − y, − where it is y − f(x), but for the sign of
   /// cte.
   double error_sign = 1.0;
+  /// Equation 6: 1 where the desired yaw is the line's beside the car; 0 where it is the line's at the
+  /// beginning, so that from eψ = ψ − arctan f′(0) on eψ⁺ = eψ ± v δ dt / L_f.
+  double heading_reach = 1.0;
 
   /// The state after one step, with the described recursion of the heading error. `acting`: the steering and
   /// acceleration that move the car meanwhile, `input` itself or what came before.
@@ -30,8 +33,8 @@ struct DescribedModel {
     const auto& [steer, acceleration] = input;
     const auto turn = v * acting_steer * turn_per_length;
     return std::make_tuple(x + v * cos(psi) * dt, y + v * sin(psi) * dt, psi + turn,
-                           v + acting_acceleration * dt, psi - atan(line.slope(x)) + turn, steer,
-                           acceleration);
+                           v + acting_acceleration * dt, psi - atan(line.slope(x * heading_reach)) + turn,
+                           steer, acceleration);
   }
 
   /// Equation 5: cte of the stage after this one [m], as f(x) − y.
