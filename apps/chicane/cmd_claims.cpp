@@ -13,6 +13,7 @@
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/library.hpp"
+#include "chicane/protocol/schema.hpp"
 #include "chicane/run/parallel.hpp"
 #include "chicane/sweep/claim.hpp"
 #include "chicane/sweep/sweep.hpp"
@@ -40,6 +41,17 @@ const std::array<Reading, 3>& readings() {
        {"mph in the model", {{"cubic_mpc.speed_in_mph", "true"}, {"cubic_mpc.roll_forward_in_mph", "false"}}},
        {"mph throughout", {{"cubic_mpc.speed_in_mph", "true"}, {"cubic_mpc.roll_forward_in_mph", "true"}}}}};
   return kReadings;
+}
+
+/// The reading that the claim's preset has.
+const Reading& own_reading(const Claim& claim) {
+  const auto request = sweep::request_of(claim.settings);
+  const auto scenario = request ? protocol::compose(*request) : fail(request.error());
+  const auto is_set = [&](const char* key) {
+    return scenario && protocol::get_text(*scenario, *protocol::find(key)) == "true";
+  };
+  const bool is_throughout = is_set("cubic_mpc.roll_forward_in_mph");
+  return readings()[is_throughout ? 2 : is_set("cubic_mpc.speed_in_mph") ? 1 : 0];
 }
 
 struct Lake {
@@ -211,7 +223,7 @@ std::string rows_of(const std::vector<Claim>& claims, const Trials& trials, cons
     const std::string original = all[1].is_there ? cell_of(marks[1]) : older_cell(older, claim.id, 5);
     text +=
         fmt::format("| {} | {} | {} | {} | {} | {} |\n", claim.id, claim.says, verdict_of(lakeside, original),
-                    lakeside, original, figures_of(claim, trials, all[0], readings()[1]));
+                    lakeside, original, figures_of(claim, trials, all[0], own_reading(claim)));
   }
   return text;
 }
@@ -236,7 +248,7 @@ std::string details_of(const std::vector<Claim>& claims, const Trials& trials) {
     }
     for (const sweep::Case& each : claim.cases)
       text += fmt::format("    {}: {}\n", each.name,
-                          sweep::command_of(settings_of(claim, each, all[0], readings()[1])));
+                          sweep::command_of(settings_of(claim, each, all[0], own_reading(claim))));
     text += '\n';
   }
   return text;

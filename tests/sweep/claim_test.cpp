@@ -82,12 +82,15 @@ TEST(Claim, AllSeventyEightStatementsAreThere) {
     ASSERT_TRUE(claims) << claims.error().message;
     for (const Claim& claim : *claims) {
       EXPECT_TRUE(ids.insert(claim.id).second) << claim.id;
-      EXPECT_TRUE(claim.is_tried() || !claim.see.empty()) << claim.id;
+      const bool has_command = claim.see.find("`ctest --preset release -R ") != std::string::npos ||
+                               claim.see.starts_with("`chicane") || claim.see.starts_with("`./run.sh");
+      EXPECT_TRUE(claim.is_tried() || has_command) << claim.id << ": " << claim.see;
+      EXPECT_TRUE(!claim.is_tried() || !claim.shows.empty()) << claim.id;
       if (claim.is_tried()) ++tried;
     }
   }
   EXPECT_EQ(ids.size(), 78U);
-  EXPECT_GE(tried, 35);
+  EXPECT_GE(tried, 41);
 }
 
 }  // namespace
