@@ -4,7 +4,7 @@
     tools/sync_snippets.py          writes the blocks
     tools/sync_snippets.py --check  only compares; exit code 1 and the names when a page is behind
 
-In the source: `// [name]` and `// [/name]` around the lines. In the page, a comment and the block that follows it:
+In the source: `// [name]` and `// [/name]` (or `#`) around the lines. In the page, a comment and the block that follows it:
 
     <!-- snippet: examples/01_drive_a_lap.cpp name -->
 """
@@ -22,7 +22,7 @@ def cut(root, file, name):
     text = (root / file).read_text(encoding="utf-8")
     if not name:
         return text
-    block = re.search(rf"^[ \t]*// \[{name}\]\n(.*?)^[ \t]*// \[/{name}\]", text, re.DOTALL | re.MULTILINE)
+    block = re.search(rf"^[ \t]*(?://|#) \[{name}\]\n(.*?)^[ \t]*(?://|#) \[/{name}\]", text, re.DOTALL | re.MULTILINE)
     if not block:
         raise SystemExit(f"{file}:1: no block // [{name}] ... // [/{name}]")
     return textwrap.dedent(block[1])

@@ -69,6 +69,17 @@ TEST_F(LeagueCommand, DrivesOurControllersAndAProgramOverTheWire) {
   EXPECT_THAT(read("err"), Not(HasSubstr("in real time")));
 }
 
+TEST_F(LeagueCommand, TakesAProgramInAnotherLanguage) {
+  if (std::system("python3 -c 'import asyncio' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
+  const std::string program =
+      "--server 'python3 examples/05_any_language.py --port {port} --latency-ms {latency_ms}'";
+  ASSERT_EQ(league("  ours: {preset: pid}\n", program + " --patience-s 60 --json"), 0) << read("err");
+  const auto rows = nlohmann::json::parse(read("out"));
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[1]["clean"], true) << read("err");
+  EXPECT_GT(rows[1]["top_speed_mps"], 1.0) << "it was driven, and not refused";
+}
+
 TEST_F(LeagueCommand, SaysInWordsWhyAProgramDoesNotDrive) {
   ASSERT_EQ(
       league("  ours: {preset: pid}\n  gone: {server: \"exit 3 # {port}\"}\n", "--patience-s 0.5 --json"), 0)
