@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/run/parallel.hpp"
@@ -20,10 +21,11 @@ namespace {
 std::string words(const sweep::Verdict& verdict) {
   const std::string lap =
       std::isfinite(verdict.lap_time) ? fmt::format("{:.2f} s", verdict.lap_time) : "no lap";
-  const std::string trials = verdict.is_clean() ? "clean in all trials"
-                                                : fmt::format("{} times off the road, {} trials not finished",
-                                                              verdict.off_track_events, verdict.unfinished);
-  return fmt::format("{}, margin {:.2f} m, steering {:.3f} rad/s, {}", lap, verdict.margin,
+  const std::string trials = verdict.is_clean()
+                                 ? fmt::format("clean in {} trials", verdict.driven)
+                                 : fmt::format("in {} trials {} times off the road, {} not finished",
+                                               verdict.driven, verdict.off_track_events, verdict.unfinished);
+  return fmt::format("{}, margin {:.3f} m, steering {:.3f} rad/s, {}", lap, verdict.margin,
                      verdict.steering_rate, trials);
 }
 
@@ -35,6 +37,33 @@ std::string description_of(const Options& options, const sweep::TuneTask& task, 
       "Tuning of {} for {} by `chicane tune`, {} with seed {}, {} evaluations: {}; by hand: {}", name,
       sweep::kObjectiveNames[static_cast<std::size_t>(task.objective)], options.tune.optimizer, task.seed,
       tuning.evaluations, words(tuning.found), words(tuning.by_hand));
+}
+
+nlohmann::ordered_json json_of(const sweep::Verdict& verdict) {
+  return {{"lap_time_s", verdict.lap_time},
+          {"margin_m", verdict.margin},
+          {"steering_rate_radps", verdict.steering_rate},
+          {"off_track_events", verdict.off_track_events},
+          {"unfinished", verdict.unfinished},
+          {"driven", verdict.driven}};
+}
+
+std::string json_of(const sweep::Tuning& tuning) {
+  nlohmann::ordered_json json{{"is_better", tuning.is_better},
+                              {"evaluations", tuning.evaluations},
+                              {"runs", tuning.runs},
+                              {"by_hand", json_of(tuning.by_hand)},
+                              {"found", json_of(tuning.found)}};
+  for (const auto& [key, text] : tuning.values) json["values"][key] = text;
+  return json.dump(2);
+}
+
+std::string text_of(const sweep::Tuning& tuning) {
+  std::string text = fmt::format("by hand  {}\nfound    {}\n{} evaluations, {} runs", words(tuning.by_hand),
+                                 words(tuning.found), tuning.evaluations, tuning.runs);
+  for (const auto& [key, value] : tuning.values) text += fmt::format("\n  {}={}", key, value);
+  if (!tuning.is_better) text += "\nno better tuning was found";
+  return text;
 }
 
 Result<void> keep(const Options& options, const sweep::TuneTask& task, const sweep::Tuning& tuning) {
@@ -59,7 +88,8 @@ ExitCode tune(const Options& options) {
                        .over = options.tune.over,
                        .evaluations = options.tune.evaluations,
                        .seed = options.tune.seed,
-                       .jobs = run::threads_for(options.jobs)};
+                       .jobs = run::threads_for(options.jobs),
+                       .log = options.tune.log};
   if (!options.speed_mps.empty()) task.settings.emplace_back("speed_mps", options.speed_mps);
   for (std::size_t i = 0; i < sweep::kObjectiveNames.size(); ++i)
     if (sweep::kObjectiveNames[i] == options.tune.objective)
@@ -71,12 +101,8 @@ ExitCode tune(const Options& options) {
     fmt::print(stderr, "{:6} {}\n", evaluation, words(verdict));
   });
   if (!tuning) return report(tuning.error());
-  fmt::print("by hand  {}\nfound    {}\n", words(tuning->by_hand), words(tuning->found));
-  for (const auto& [key, text] : tuning->values) fmt::print("  {}={}\n", key, text);
-  if (!tuning->is_better) {
-    fmt::print("no better tuning was found in {} evaluations\n", tuning->evaluations);
-    return kRunFailed;
-  }
+  fmt::print("{}\n", options.is_json ? json_of(*tuning) : text_of(*tuning));
+  if (!tuning->is_better) return kRunFailed;
   if (options.output_file.empty()) return kSuccess;
   const Result<void> kept = keep(options, task, *tuning);
   return kept ? kSuccess : report(kept.error());

@@ -77,6 +77,7 @@ struct Options {
     std::string objective = "lap", optimizer = "crs";
     int evaluations = 500;
     std::uint64_t seed = 1;
+    std::string log{};  ///< empty: none
   };
   Tune tune{};
 

@@ -59,13 +59,18 @@ void add_search(CLI::App& command, Options& options) {
       ->type_name("NAME")
       ->check(CLI::IsMember({"crs", "direct", "sbplx"}))
       ->capture_default_str();
-  command.add_option("--evaluations", tune.evaluations, "Of a tuning, five trials each")
+  command.add_option("--evaluations", tune.evaluations, "Of a tuning, up to six trials each")
       ->type_name("N")
       ->check(CLI::Range(1, 10000000))
       ->capture_default_str();
   command.add_option("--search-seed", tune.seed, "Of the random search")
       ->type_name("N")
       ->capture_default_str();
+  command
+      .add_option("--log", tune.log,
+                  "A line for each evaluation; a search that was ended goes on with its file")
+      ->type_name("FILE.jsonl");
+  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
   command.add_option("-o,--output", options.output_file, "Keep what was found as a preset")
       ->type_name("FILE.yaml");
   add_jobs(command, options.jobs);

@@ -4,6 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
 #include "chicane/protocol/library.hpp"
 
 namespace chicane::sweep {
@@ -45,6 +50,101 @@ TEST(Tune, FindsTheSameForTheSameSeedOnAnyNumberOfThreads) {
   EXPECT_EQ(again->values, first->values);
   EXPECT_EQ(again->found.margin, first->found.margin);
   EXPECT_TRUE(first->by_hand.lap_time > 0.0);
+}
+
+std::string file_of(const char* name) {
+  const std::string file =
+      (std::filesystem::temp_directory_path() / ("chicane_tune_" + std::string(name))).string();
+  std::filesystem::remove(file);
+  return file;
+}
+
+std::string text_of(const std::string& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+TEST(Tune, ASearchThatWasEndedGoesOnWithItsLogAndFindsTheSame) {
+  std::atomic<bool> stop{false};
+  TuneTask whole = task();
+  whole.evaluations = 12;
+  whole.log = file_of("whole.jsonl");
+  const auto expected = tune(whole, stop);
+  if (is_without_nlopt(expected)) GTEST_SKIP() << expected.error().message;
+  ASSERT_TRUE(expected) << expected.error().message;
+
+  TuneTask parts = whole;
+  parts.log = file_of("parts.jsonl");
+  parts.evaluations = 5;
+  ASSERT_TRUE(tune(parts, stop));
+  std::ofstream(parts.log, std::ios::app) << R"({"values":{"pure_purs)";  // a process was killed there
+  parts.evaluations = 12;
+  const auto found = tune(parts, stop);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->values, expected->values);
+  EXPECT_EQ(found->found.margin, expected->found.margin);
+  EXPECT_EQ(found->runs, expected->runs);
+  EXPECT_EQ(text_of(parts.log), text_of(whole.log));
+
+  const auto again = tune(whole, stop);  // all is known
+  ASSERT_TRUE(again);
+  EXPECT_EQ(text_of(parts.log), text_of(whole.log)) << "nothing was driven twice";
+
+  TuneTask other = whole;
+  other.settings.emplace_back("plant_options.friction_scale", "0.8");
+  EXPECT_THAT(tune(other, stop).error().message, HasSubstr("log of another search"));
+}
+
+TEST(Tune, ALogIsNotGoneOnWithWhenThePresetHasChanged) {
+  std::atomic<bool> stop{false};
+  TuneTask theirs = task();
+  theirs.evaluations = 1;
+  theirs.log = file_of("theirs.jsonl");
+  const std::string preset = file_of("theirs.yaml");
+  theirs.settings[0].second = preset;
+  std::ofstream(preset) << "controller: pure-pursuit\npure_pursuit: {lookahead_min_m: 5}\n";
+  const auto first = tune(theirs, stop);
+  if (is_without_nlopt(first)) GTEST_SKIP() << first.error().message;
+  ASSERT_TRUE(first) << first.error().message;
+  std::ofstream(preset) << "controller: pure-pursuit\npure_pursuit: {lookahead_min_m: 6}\n";
+  EXPECT_THAT(tune(theirs, stop).error().message, HasSubstr("log of another search"));
+}
+
+TEST(Tune, WhatCannotWinIsTriedNoFurther) {
+  std::atomic<bool> stop{false};
+  TuneTask hasty = task();
+  hasty.evaluations = 20;
+  hasty.log = file_of("hasty.jsonl");
+  const auto tuning = tune(hasty, stop);
+  if (is_without_nlopt(tuning)) GTEST_SKIP() << tuning.error().message;
+  ASSERT_TRUE(tuning);
+  const auto trials = static_cast<int>(tune_trials(0.1).size());
+  EXPECT_EQ(tuning->by_hand.driven, trials);
+  EXPECT_EQ(tuning->found.passed, trials);
+  EXPECT_LT(tuning->runs, trials * tuning->evaluations) << "some look ahead too short or too far";
+  const std::string log = text_of(hasty.log);
+  EXPECT_THAT(log, HasSubstr(R"("driven":1,"passed":0)"));
+  EXPECT_THAT(log, Not(HasSubstr(R"("driven":6,"passed":4)"))) << "ends with the first trial that is failed";
+}
+
+TEST(Tune, ASearchThatHasConvergedGoesOnUntilItHasTriedWhatWasAsked) {
+  std::atomic<bool> stop{false};
+  TuneTask local = task();
+  local.optimizer = Optimizer::kSbplx;
+  local.evaluations = 80;  // of one number: converges after 65
+  const auto tuning = tune(local, stop);
+  if (is_without_nlopt(tuning)) GTEST_SKIP() << tuning.error().message;
+  ASSERT_TRUE(tuning) << tuning.error().message;
+  EXPECT_EQ(tuning->evaluations, 80);
+}
+
+TEST(Tune, HasEachTrialOfItsOwn) {
+  const auto trials = tune_trials(0.02);
+  for (std::size_t i = 0; i < trials.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(trials[i].settings, trials[j].settings) << i << ' ' << j;
+  for (const TuneTrial& trial : trials)
+    EXPECT_TRUE(protocol::compose({"", trial.settings})) << trial.name << " is what every run takes";
 }
 
 TEST(Tune, AWorseTuningIsNeverCalledBetter) {

@@ -25,10 +25,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongestLine = 1U << 20U;
 
-std::string program_name() {
-  return fmt::format("chicane {}.{}.{}", CHICANE_VERSION_MAJOR, CHICANE_VERSION_MINOR, CHICANE_VERSION_PATCH);
-}
-
 tl::unexpected<Error> io_failure(const std::string& path, std::string_view what) {
   return fail(ErrorCode::kIo, fmt::format("{}: {}: {}", path, what, std::strerror(errno)));
 }
@@ -68,6 +64,10 @@ bool write_all(int descriptor, std::string_view bytes) {
 }
 
 }  // namespace
+
+std::string program_name() {
+  return fmt::format("chicane {}.{}.{}", CHICANE_VERSION_MAJOR, CHICANE_VERSION_MINOR, CHICANE_VERSION_PATCH);
+}
 
 std::string header_of(const Plan& plan) {
   std::vector<std::string> kept = plan.keep;

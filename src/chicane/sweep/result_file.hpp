@@ -16,6 +16,9 @@
 /// one run, `{"run":17,…}`, in the order in which they ended.
 namespace chicane::sweep {
 
+/// "chicane 0.2.0".
+[[nodiscard]] std::string program_name();
+
 /// The first line, without its line break: what has to agree for results to belong together.
 [[nodiscard]] std::string header_of(const Plan& plan);
 

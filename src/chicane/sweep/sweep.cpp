@@ -153,6 +153,11 @@ Result<std::optional<telemetry::RunSummary>> drive(const Settings& settings, run
   return drive_while(settings, roads, stop, false);
 }
 
+Result<std::optional<telemetry::RunSummary>> drive_while_on_road(const Settings& settings, run::Roads& roads,
+                                                                 const std::atomic<bool>& stop) {
+  return drive_while(settings, roads, stop, true);
+}
+
 Result<std::optional<RunOutcome>> find_largest(const Search& search, const Settings& settings,
                                                run::Roads& roads, const std::atomic<bool>& stop) {
   Searcher searcher(search, settings, roads, stop);

@@ -20,6 +20,11 @@ namespace chicane::sweep {
 [[nodiscard]] Result<std::optional<telemetry::RunSummary>> drive(const Settings& settings, run::Roads& roads,
                                                                  const std::atomic<bool>& stop);
 
+/// The same, and a run in which a tyre leaves the road ends there.
+[[nodiscard]] Result<std::optional<telemetry::RunSummary>> drive_while_on_road(const Settings& settings,
+                                                                               run::Roads& roads,
+                                                                               const std::atomic<bool>& stop);
+
 /// What a run of a plan has come to.
 struct RunOutcome {
   telemetry::RunSummary run;                      ///< of a search: the clean one, or else the slowest

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <set>
 
 #ifdef CHICANE_HAS_NLOPT
 #include <nlopt.h>
@@ -17,6 +19,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/run/parallel.hpp"
+#include "chicane/sweep/detail/tune_log.hpp"
 #include "chicane/sweep/sweep.hpp"
 #include "chicane/sweep/trial.hpp"
 
@@ -24,16 +27,8 @@ namespace chicane::sweep {
 namespace {
 
 constexpr int kTuningDigits = 6;
-
-/// The trials: the first is the nominal one.
-std::vector<Settings> trials_of(double latency) {
-  const auto text = [](double ms) { return number_text(std::max(ms, 0.0), kTuningDigits); };
-  return {{},
-          {{"latency_ms", text(latency + 30.0)}},
-          {{"latency_ms", text(latency - 30.0)}},
-          {{"plant_options.friction_scale", "0.9"}},
-          {{"sensor.position_noise_m", "0.05"}}};
-}
+constexpr double kTimeLimitByHand = 600.0;  // [s]
+constexpr double kPatience = 1.5;           // of what the tuning by hand takes
 
 /// A number to change, on a logarithmic scale.
 struct Knob {
@@ -65,131 +60,248 @@ Result<Knob> knob_of(const scenario::Scenario& scenario, const std::string& key)
 
 class Tuner {
  public:
-  Tuner(const TuneTask& task, std::vector<Knob> knobs, double latency, const std::atomic<bool>& stop,
-        const std::function<void(int, const Verdict&)>& on_better)
+  Tuner(const TuneTask& task, std::vector<Knob> knobs, double latency, detail::TuneLog& log,
+        const std::atomic<bool>& stop, const std::function<void(int, const Verdict&)>& on_better)
       : task_{task},
         knobs_{std::move(knobs)},
-        trials_{trials_of(latency)},
+        trials_{tune_trials(latency)},
+        by_hand_(trials_.size()),
+        roads_(trials_.size()),
+        log_{log},
         stop_{stop},
         on_better_{on_better} {}
 
-  void judge_by_hand() { tuning_.by_hand = tuning_.found = judge({}); }
+  /// First of all.
+  void judge_by_hand() {
+    is_by_hand_ = true;
+    for (std::size_t i = 0; i < trials_.size(); ++i) add(tuning_.by_hand, i, run(i, {}, kTimeLimitByHand));
+    is_by_hand_ = false;
+    tuning_.by_hand.passed = tuning_.by_hand.driven;
+    tuning_.found = tuning_.by_hand;
+  }
+
+  /// As many different tunings are tried as were asked for, or it was stopped.
+  [[nodiscard]] bool is_over() const { return stop_ || failure_ || tuning_.evaluations >= task_.evaluations; }
+  [[nodiscard]] int evaluations() const { return tuning_.evaluations; }
+  /// The best point so far; that of the tuning by hand when there is none.
+  [[nodiscard]] std::vector<double> best_point() const {
+    std::vector<double> point = best_point_;
+    if (point.empty())
+      for (const Knob& knob : knobs_) point.push_back(knob.share());
+    return point;
+  }
 
   /// The price of a point; keeps the best.
   double price(const double* shares) {
-    if (stop_) return kWorst;
+    if (is_over()) return kWorst;
     Settings values;
     for (std::size_t i = 0; i < knobs_.size(); ++i)
       values.emplace_back(knobs_[i].key, knobs_[i].at(shares[i]));
-    const Verdict verdict = judge(values);
-    ++tuning_.evaluations;
-    const double price = price_of(verdict);
+    const std::optional<Verdict> verdict = known_or_driven(values);
+    if (!verdict) return kWorst;
+    if (tried_.insert(values).second) {
+      ++tuning_.evaluations;
+      tuning_.runs += verdict->driven;
+    }
+    const double price = price_of(*verdict);
     if (price < best_) {
       best_ = price;
+      best_point_.assign(shares, shares + knobs_.size());
       tuning_.values = values;
-      tuning_.found = verdict;
-      if (on_better_) on_better_(tuning_.evaluations, verdict);
+      tuning_.found = *verdict;
+      if (on_better_) on_better_(tuning_.evaluations, *verdict);
     }
     return price;
   }
 
-  [[nodiscard]] Tuning result() {
-    tuning_.is_better = tuning_.found.is_clean() && tuning_.found.margin >= tuning_.by_hand.margin &&
-                        best_ < price_of(tuning_.by_hand);
+  [[nodiscard]] Result<Tuning> result() {
+    if (failure_) return fail(failure_->code, failure_->message);
+    tuning_.is_better = has_passed(tuning_.found) && tuning_.found.is_clean() &&
+                        objective(tuning_.found) < objective(tuning_.by_hand);
     return tuning_;
   }
 
  private:
   static constexpr double kWorst = 1e6;
+  using Run = Result<std::optional<telemetry::RunSummary>>;
+  /// What the trial of the tuning by hand has come to.
+  struct ByHand {
+    double distance = 0.0;    ///< [m]
+    double time_limit = 0.0;  ///< of others [s]
+  };
 
-  [[nodiscard]] double price_of(const Verdict& verdict) const {
-    double price = 0.0;
-    if (!verdict.is_clean())
-      price +=
-          1000.0 + 100.0 * verdict.unfinished + std::min(verdict.off_track_events, 1000) - verdict.margin;
-    price += 50.0 * std::max(0.0, tuning_.by_hand.margin - verdict.margin);
+  [[nodiscard]] bool has_passed(const Verdict& verdict) const {
+    return verdict.passed == static_cast<int>(trials_.size());
+  }
+
+  /// What more trials can only make worse: the lap and the steering are those of the first one.
+  [[nodiscard]] double objective(const Verdict& verdict) const {
     const double lap = std::isfinite(verdict.lap_time) ? verdict.lap_time : 1000.0;
     switch (task_.objective) {
       case Objective::kLap:
-        return price + lap;
+        return lap;
       case Objective::kComfort:
-        return price + 100.0 * verdict.steering_rate + 0.1 * lap;
+        return 100.0 * verdict.steering_rate + 0.1 * lap;
       case Objective::kRobust:
         break;
     }
-    return price - 10.0 * verdict.margin + 0.1 * lap;
+    return -10.0 * verdict.margin + 0.1 * lap;
   }
 
-  [[nodiscard]] Verdict judge(const Settings& values) {
-    std::vector<Result<std::optional<telemetry::RunSummary>>> runs(trials_.size());
-    run::for_each_run(trials_.size(), task_.jobs, [&](std::uint64_t i, run::Roads&) {
-      Settings settings{{"guard.mode", "off"}, {"laps", "2"}, {"time_limit_s", "300"}};
-      for (const Settings* more :
-           std::initializer_list<const Settings*>{&task_.settings, &values, &trials_[i]})
-        settings.insert(settings.end(), more->begin(), more->end());
-      run::Roads& roads = roads_[i];
-      runs[i] = drive(settings, roads, stop_);
-      return true;
-    });
-    Verdict verdict{.margin = std::numeric_limits<double>::infinity()};
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      if (!runs[i] || !*runs[i]) {
-        ++verdict.unfinished;
-        verdict.margin = std::min(verdict.margin, -100.0);
-        continue;
-      }
-      const telemetry::RunSummary& run = **runs[i];
-      if (i == 0) {
-        verdict.lap_time = run.completed ? run.laps.back().lap_time : telemetry::kNotMeasured;
-        verdict.steering_rate = run.total.steering_rate_rms;
-      }
-      if (!run.completed) ++verdict.unfinished;
-      verdict.off_track_events += run.off_track_events;
-      verdict.margin = std::min(verdict.margin, run.total.min_edge_distance);
+  /// Only the order counts: trials passed, then how the next one was failed, then how nearly.
+  [[nodiscard]] double price_of(const Verdict& verdict) const {
+    const int missing = static_cast<int>(trials_.size()) - verdict.passed;
+    if (missing == 0) return objective(verdict);
+    const double deficit = std::max(0.0, tuning_.by_hand.margin - verdict.margin);
+    const double failure = verdict.is_clean()
+                               ? std::min(objective(verdict), 2000.0) + (deficit > 0.0 ? 2000.0 : 0.0) +
+                                     std::min(100.0 * deficit, 2000.0)
+                               : 8000.0 - 1000.0 * verdict.progress;
+    return 1e4 * missing + failure;
+  }
+
+  [[nodiscard]] std::optional<Verdict> known_or_driven(const Settings& values) {
+    if (const Verdict* const known = log_.find(values)) return *known;
+    const Verdict verdict = judge(values);
+    if (stop_) return std::nullopt;
+    if (const Result<void> written = log_.add(values, verdict); !written) {
+      failure_ = written.error();
+      return std::nullopt;
     }
     return verdict;
   }
 
+  [[nodiscard]] Verdict judge(const Settings& values) {
+    Verdict verdict;
+    const auto passes = [&](std::size_t i, const Run& run) {
+      add(verdict, i, run);
+      const bool goes_on = verdict.is_clean() && verdict.margin >= tuning_.by_hand.margin &&
+                           objective(verdict) <= objective(tuning_.by_hand);
+      if (goes_on) ++verdict.passed;
+      return goes_on;
+    };
+    if (!passes(0, run(0, values, by_hand_[0].time_limit))) return verdict;
+    // On several threads trials are driven ahead; what counts does not depend on it.
+    std::vector<Run> ahead(trials_.size());
+    if (task_.jobs > 1) {
+      run::for_each_run(trials_.size() - 1, task_.jobs, [&](std::uint64_t i, run::Roads&) {
+        ahead[i + 1] = run(i + 1, values, by_hand_[i + 1].time_limit);
+        return true;
+      });
+    }
+    for (std::size_t i = 1; i < trials_.size(); ++i)
+      if (!passes(i, task_.jobs > 1 ? ahead[i] : run(i, values, by_hand_[i].time_limit))) break;
+    return verdict;
+  }
+
+  [[nodiscard]] Run run(std::size_t trial, const Settings& values, double time_limit) {
+    Settings settings{{"guard.mode", "off"}, {"laps", "2"}};
+    for (const Settings* more :
+         std::initializer_list<const Settings*>{&task_.settings, &values, &trials_[trial].settings})
+      settings.insert(settings.end(), more->begin(), more->end());
+    settings.emplace_back("time_limit_s", number_text(time_limit, kTuningDigits));
+    return is_by_hand_ ? drive(settings, roads_[trial], stop_)
+                       : drive_while_on_road(settings, roads_[trial], stop_);
+  }
+
+  void add(Verdict& verdict, std::size_t trial, const Run& run) {
+    if (verdict.driven++ == 0) verdict.margin = std::numeric_limits<double>::infinity();
+    if (!run || !*run) {
+      ++verdict.unfinished;
+      verdict.margin = std::min(verdict.margin, -100.0);
+      verdict.progress = 0.0;
+      return;
+    }
+    const telemetry::RunSummary& summary = **run;
+    const double distance = summary.total.mean_speed * summary.duration;
+    if (is_by_hand_)
+      by_hand_[trial] = {distance, summary.completed ? kPatience * summary.duration : kTimeLimitByHand};
+    verdict.progress = distance >= by_hand_[trial].distance ? 1.0 : distance / by_hand_[trial].distance;
+    if (trial == 0) {
+      verdict.lap_time = summary.completed ? summary.laps.back().lap_time : telemetry::kNotMeasured;
+      verdict.steering_rate = summary.total.steering_rate_rms;
+    }
+    if (!summary.completed) ++verdict.unfinished;
+    verdict.off_track_events += summary.off_track_events;
+    verdict.margin = std::min(verdict.margin, summary.total.min_edge_distance);
+  }
+
   const TuneTask& task_;
   std::vector<Knob> knobs_;
-  std::vector<Settings> trials_;
+  std::vector<TuneTrial> trials_;
+  std::vector<ByHand> by_hand_;    ///< of each trial
+  std::vector<run::Roads> roads_;  ///< one for each trial: no two of them share one
+  detail::TuneLog& log_;
   const std::atomic<bool>& stop_;
   const std::function<void(int, const Verdict&)>& on_better_;
-  std::array<run::Roads, 5> roads_;  ///< one for each trial: no two of them share one
+  bool is_by_hand_ = false;
+  std::optional<Error> failure_;
   Tuning tuning_;
+  std::set<Settings> tried_;
+  std::vector<double> best_point_;
   double best_ = std::numeric_limits<double>::infinity();
 };
 
 #ifdef CHICANE_HAS_NLOPT
-Result<void> search(const TuneTask& task, const std::vector<Knob>& knobs, Tuner& tuner) {
+/// One search from `point` on with first steps of `step`, until it converges or the tuner has enough.
+nlopt_result search_from(std::vector<double> point, double step, const TuneTask& task, Tuner& tuner) {
   constexpr std::array kAlgorithms{NLOPT_GN_CRS2_LM, NLOPT_GN_DIRECT_L, NLOPT_LN_SBPLX};
-  nlopt_srand(static_cast<unsigned long>(task.seed));
-  const auto count = static_cast<unsigned>(knobs.size());
-  nlopt_opt const search = nlopt_create(kAlgorithms[static_cast<std::size_t>(task.optimizer)], count);
-  std::vector<double> point(count);
-  for (std::size_t i = 0; i < knobs.size(); ++i) point[i] = knobs[i].share();
+  constexpr int kSameAgain = 20;  // NLopt counts a tuning that it asks for again
+  struct Context {
+    Tuner& tuner;
+    nlopt_opt search;
+  };
+  Context context{tuner, nlopt_create(kAlgorithms[static_cast<std::size_t>(task.optimizer)],
+                                      static_cast<unsigned>(point.size()))};
   nlopt_set_min_objective(
-      search,
-      [](unsigned, const double* x, double*, void* data) { return static_cast<Tuner*>(data)->price(x); },
-      &tuner);
-  nlopt_set_lower_bounds1(search, 0.0);
-  nlopt_set_upper_bounds1(search, 1.0);
-  nlopt_set_initial_step1(search, 0.1);
-  nlopt_set_maxeval(search, task.evaluations);
+      context.search,
+      [](unsigned, const double* x, double*, void* data) {
+        const Context& at = *static_cast<Context*>(data);
+        const double price = at.tuner.price(x);
+        if (at.tuner.is_over()) nlopt_force_stop(at.search);
+        return price;
+      },
+      &context);
+  nlopt_set_lower_bounds1(context.search, 0.0);
+  nlopt_set_upper_bounds1(context.search, 1.0);
+  nlopt_set_initial_step1(context.search, step);
+  nlopt_set_maxeval(context.search, kSameAgain * task.evaluations);
   double price = 0.0;
-  const nlopt_result result = nlopt_optimize(search, point.data(), &price);
-  nlopt_destroy(search);
-  if (result >= 0 || result == NLOPT_ROUNDOFF_LIMITED || result == NLOPT_FORCED_STOP) return {};
-  return fail(ErrorCode::kInvalidArgument, fmt::format("NLopt ended with {}", static_cast<int>(result)));
+  const nlopt_result result = nlopt_optimize(context.search, point.data(), &price);
+  nlopt_destroy(context.search);
+  return result;
+}
+
+/// A search that has converged begins again from the best that there is, with other first steps.
+Result<void> search(const TuneTask& task, Tuner& tuner) {
+  nlopt_srand(static_cast<unsigned long>(task.seed));
+  int before = -1;
+  for (double step = 0.1; !tuner.is_over() && tuner.evaluations() > before; step *= 0.7) {
+    before = tuner.evaluations();
+    const nlopt_result result = search_from(tuner.best_point(), step, task, tuner);
+    if (result < 0 && result != NLOPT_ROUNDOFF_LIMITED && result != NLOPT_FORCED_STOP)
+      return fail(ErrorCode::kInvalidArgument, fmt::format("NLopt ended with {}", static_cast<int>(result)));
+  }
+  return {};
 }
 #else
-Result<void> search(const TuneTask&, const std::vector<Knob>&, Tuner&) {
+Result<void> search(const TuneTask&, Tuner&) {
   return fail(ErrorCode::kIo,
               "this program was built without NLopt: install libnlopt-dev and build it again");
 }
 #endif
 
 }  // namespace
+
+std::vector<TuneTrial> tune_trials(double latency) {
+  const auto ms = [](double seconds) { return number_text(std::max(1e3 * seconds, 0.0), kTuningDigits); };
+  return {{"as it is", {}},
+          {"30 ms later", {{"latency_ms", ms(latency + 0.03)}}},
+          {"10 % less grip", {{"plant_options.friction_scale", "0.9"}}},
+          {"30 ms sooner", {{"latency_ms", ms(latency - 0.03)}}},
+          {"noise", {{"sensor.position_noise_m", "0.05"}}},
+          {"other noise", {{"sensor.position_noise_m", "0.05"}, {"seed", "2"}}}};
+}
 
 std::vector<std::string> default_keys(const scenario::Scenario& scenario) {
   std::vector<std::string> keys;
@@ -209,8 +321,9 @@ Result<Tuning> tune(const TuneTask& task, const std::atomic<bool>& stop,
   if (!request) return fail(request.error());
   const Result<scenario::Scenario> scenario = protocol::compose(*request);
   if (!scenario) return fail(scenario.error());
+  const std::vector<std::string> keys = task.over.empty() ? default_keys(*scenario) : task.over;
   std::vector<Knob> knobs;
-  for (const std::string& key : task.over.empty() ? default_keys(*scenario) : task.over) {
+  for (const std::string& key : keys) {
     Result<Knob> knob = knob_of(*scenario, key);
     if (!knob) return fail(knob.error());
     knobs.push_back(std::move(*knob));
@@ -218,9 +331,11 @@ Result<Tuning> tune(const TuneTask& task, const std::atomic<bool>& stop,
   if (knobs.empty())
     return fail(ErrorCode::kInvalidArgument,
                 fmt::format("--over: {} has nothing to tune", scenario->controller));
-  Tuner tuner(task, knobs, 1e3 * scenario->latency, stop, on_better);
+  Result<detail::TuneLog> log = detail::TuneLog::open(task.log, detail::tune_head(task, *scenario, keys));
+  if (!log) return fail(log.error());
+  Tuner tuner(task, knobs, scenario->latency, *log, stop, on_better);
   tuner.judge_by_hand();
-  if (const Result<void> done = search(task, knobs, tuner); !done) return fail(done.error());
+  if (const Result<void> done = search(task, tuner); !done) return fail(done.error());
   return tuner.result();
 }
 
