@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Tunes each of the five presets by two optimisers, and writes the table of docs/sweep.md: by hand, and what was found.
 
-    tools/tune_presets.py LOGS [--evaluations N] [--program PROGRAM]
+    tools/tune_presets.py LOGS [--evaluations N] [--presets NAME,...] [--program PROGRAM]
 
 LOGS is a folder for the searches' logs: a campaign that was ended goes on, and one that is over only writes the table. Deterministic. PROGRAM is
 build/release/apps/chicane/chicane when left out.
@@ -43,7 +43,7 @@ def row(preset, name, verdict, tuning):
 
 def table(program, options):
     lines = ["| preset | tuning | flying lap [s] | margin [m] | steering [rad/s] | evaluations | runs |\n", "|---|---|--:|--:|--:|--:|--:|\n"]
-    for preset in PRESETS:
+    for preset in options.presets.split(","):
         for optimizer in OPTIMIZERS:
             tuning = tuned(program, preset, optimizer, options)
             if optimizer == OPTIMIZERS[0]:
@@ -60,6 +60,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("logs")
     parser.add_argument("--evaluations", type=int, default=2000)
+    parser.add_argument("--presets", default=",".join(PRESETS))
     parser.add_argument("--program", default=str(ROOT / "build/release/apps/chicane/chicane"))
     options = parser.parse_args()
     Path(options.logs).mkdir(parents=True, exist_ok=True)
