@@ -65,6 +65,7 @@ void add_campaign(CLI::App& command, Options& options) {
       ->type_name("S")
       ->check(CLI::Range(0.02, 1000.0))
       ->capture_default_str();
+  command.add_flag("--markdown", options.is_markdown, "The table of docs/faults.md on stdout");
   add_where(command, campaign, options);
   command.footer(
       "Example: chicane campaign --faults link_lost,nan_measurement --for-s 1,2,inf --tracks oval");

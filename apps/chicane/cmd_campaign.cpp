@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/fault_codec.hpp"
@@ -76,6 +80,46 @@ void print_table(const Options& options, const std::vector<Row>& rows) {
     fmt::print("\n{} {} {} {}: off the road {} of {} times; the worst:\n  {}\n", row.track, row.car,
                row.fault, words(row.duration), row.off(), row.driven(),
                command_of(options, row, row.worst()));
+  }
+}
+
+/// One line for each car and fault, the tracks together; then the rows in which the road was left.
+void print_markdown(const Options& options, const std::vector<Row>& rows) {
+  std::vector<double> durations;
+  std::vector<std::pair<std::string, std::string>> lines;  // car and fault
+  for (const Row& row : rows) {
+    if (std::find(durations.begin(), durations.end(), row.duration) == durations.end())
+      durations.push_back(row.duration);
+    const std::pair line{row.car, row.fault};
+    if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+  }
+  fmt::print("| car | fault |");
+  for (const double duration : durations) fmt::print(" {}: off the road | to the edge [m] |", words(duration));
+  fmt::print(" standing at the end |\n|---|---|");
+  for (std::size_t i = 0; i < durations.size(); ++i) fmt::print("--:|--:|");
+  fmt::print("--:|\n");
+  for (const auto& [car, fault] : lines) {
+    fmt::print("| `{}` | `{}` |", car, fault);
+    std::string standing;
+    for (const double duration : durations) {
+      std::int64_t off = 0, driven = 0, stood = 0;
+      double least = std::numeric_limits<double>::infinity();
+      for (const Row& row : rows) {
+        if (row.car != car || row.fault != fault || row.duration != duration || row.driven() == 0) continue;
+        off += row.off();
+        driven += row.driven();
+        stood += row.standing();
+        least = std::min(least, row.worst().least_edge);
+      }
+      fmt::print(" {} of {} | {:.2f} |", off, driven, least);
+      if (duration >= run::kLasting) standing = fmt::format("{} of {}", stood, driven);
+    }
+    fmt::print(" {} |\n", standing);
+  }
+  for (const Row& row : rows) {
+    if (row.off() > 0)
+      fmt::print("\n{} with `{}`, `{}` {}: {} of {}\n\n    {}\n", row.track, row.car, row.fault,
+                 words(row.duration), row.off(), row.driven(), command_of(options, row, row.worst()));
   }
 }
 
@@ -180,6 +224,8 @@ ExitCode campaign(const Options& options) {
   if (!rows) return report(rows.error());
   if (options.is_json) {
     print_json(options, *rows);
+  } else if (options.is_markdown) {
+    print_markdown(options, *rows);
   } else {
     print_table(options, *rows);
   }

@@ -60,7 +60,7 @@ struct Options {
   std::string maps_page;               ///< report: Markdown, for the maps of a sweep; empty: none
   bool is_served = true;               ///< replay
   std::string shelf;                   ///< list; empty: an overview
-  bool is_markdown = false;            ///< list parameters, list faults
+  bool is_markdown = false;            ///< list parameters, list faults, campaign
   std::string shell;                   ///< completion
 
   int jobs = 0;  ///< sweep, tune, claims, campaign: threads; 0: as many as cores

@@ -31,7 +31,27 @@ TEST(FaultCampaign, TriesEveryMomentOfTheLap) {
   EXPECT_EQ(trials[4].strength, 0.5);
 }
 
-TEST(FaultCampaign, OutcomesDoNotDependOnTheNumberOfThreads) {
+/// What goes before the fault is driven once for all trials; nobody can tell.
+TEST(FaultCampaign, EachTrialIsAsIfDrivenAlone) {
+  const scenario::Scenario scenario = on_oval();
+  const auto lap = find_flying_lap(scenario);
+  ASSERT_TRUE(lap);
+  auto trials = trials_over_lap(*lap, *sim::fault_named("gps_noise"), 1.0, 7.3);
+  const auto more = trials_over_lap(*lap, *sim::fault_named("link_lost"), kLasting, 5.1);
+  trials.insert(trials.end(), more.begin(), more.end());
+  const auto together = drive_trials(scenario, *lap, trials, 2);
+  ASSERT_TRUE(together);
+  Roads roads;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    const auto alone = drive_trial(scenario, *lap, trials[i], roads);
+    ASSERT_TRUE(alone);
+    EXPECT_EQ((*together)[i].least_edge, alone->least_edge) << i;
+    EXPECT_EQ((*together)[i].end_speed, alone->end_speed) << i;
+    EXPECT_EQ((*together)[i].not_controller, alone->not_controller) << i;
+  }
+}
+
+TEST(FaultCampaign, OutcomesDoNotDependOnTheNumberOfProcesses) {
   const scenario::Scenario scenario = on_oval();
   const auto lap = find_flying_lap(scenario);
   ASSERT_TRUE(lap);

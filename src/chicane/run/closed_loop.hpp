@@ -73,6 +73,9 @@ class ClosedLoop {
   /// nothing changes, for a name that is none. Call it between two advance(). What is on is in
   /// Frame::active_faults.
   bool set_fault(std::string_view name, bool on) noexcept;
+  /// Switches a fault on as `event` says, as if the scenario had had it from the beginning. Pre: it begins in
+  /// the next advance().
+  void set_fault(const sim::FaultEvent& event) noexcept { faults_.set(event); }
   /// All laps driven, the car lost, or time up (Account).
   [[nodiscard]] bool is_over() const noexcept { return account_.is_over(); }
   /// A lap that the last advance() completed, once.

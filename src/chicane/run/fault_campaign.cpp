@@ -2,21 +2,28 @@
 #include "chicane/run/fault_campaign.hpp"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
+#include <cerrno>
 #include <cmath>
+#include <deque>
+#include <memory>
+#include <new>
+#include <numeric>
 #include <utility>
 
 #include "chicane/base/math.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/run/parallel.hpp"
 
 namespace chicane::run {
 namespace {
 
 constexpr double kStood = 1.0;         // [s] a car that stands so long has come to rest
 constexpr double kTimeToGetGoing = 5;  // [s] for a car that the fault has stopped
+constexpr double kRounding = 1e-9;     // [s] sums of step lengths round
 
 scenario::Scenario endless(const scenario::Scenario& scenario) {
   scenario::Scenario other = scenario;
@@ -24,6 +31,62 @@ scenario::Scenario endless(const scenario::Scenario& scenario) {
   other.time_limit = 0.0;
   other.faults.clear();
   return other;
+}
+
+/// Drives `loop` until the next step is the first with `trial` in it.
+void drive_up_to(ClosedLoop& loop, double at) noexcept {
+  while (loop.time() < at - kRounding && !loop.is_over()) loop.advance();
+}
+
+/// From there to the trial's end.
+FaultOutcome drive_on(ClosedLoop& loop, const FaultTrial& trial, double at) noexcept {
+  FaultOutcome outcome{.trial = trial, .at = at};
+  loop.set_fault({trial.fault, at, trial.duration, trial.strength});
+  const bool is_lasting = trial.duration >= kLasting;
+  const double end = at + (is_lasting ? kLongestWait : trial.duration + kSettling);
+  double standing_since = loop.time();
+  while (loop.time() < end && !loop.is_over()) {
+    const bool is_new = loop.advance();
+    const double speed = loop.frame().has_truth ? hypot(loop.frame().truth.vx, loop.frame().truth.vy) : 0.0;
+    if (speed > FaultOutcome::kStanding) standing_since = loop.time();
+    if (loop.time() <= at) continue;
+    outcome.least_edge = std::min(outcome.least_edge, loop.world().edge_distance);
+    outcome.end_speed = speed;
+    if (is_new && loop.frame().result.report.rung != controller::Rung::kController) ++outcome.not_controller;
+    if (is_lasting && loop.time() - standing_since > kStood && loop.time() > at + kTimeToGetGoing) break;
+  }
+  return outcome;
+}
+
+/// Memory that processes share with those that fork from them; all zero at first.
+class SharedOutcomes {
+ public:
+  struct Slot {
+    bool is_there;
+    FaultOutcome outcome;
+  };
+  explicit SharedOutcomes(std::size_t count)
+      : bytes_{std::max<std::size_t>(count, 1) * sizeof(Slot)},
+        memory_{mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)} {}
+  ~SharedOutcomes() {
+    if (is_there()) munmap(memory_, bytes_);
+  }
+  SharedOutcomes(const SharedOutcomes&) = delete;
+  SharedOutcomes& operator=(const SharedOutcomes&) = delete;
+
+  [[nodiscard]] bool is_there() const noexcept { return memory_ != MAP_FAILED; }
+  [[nodiscard]] Slot& operator[](std::size_t i) const noexcept { return static_cast<Slot*>(memory_)[i]; }
+
+ private:
+  std::size_t bytes_;
+  void* memory_;
+};
+
+/// Waits for the end of a process of ours.
+void wait_for(pid_t process) noexcept {
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
 }
 
 }  // namespace
@@ -51,27 +114,11 @@ Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario, const Cont
 
 Result<FaultOutcome> drive_trial(const scenario::Scenario& scenario, const FlyingLap& lap,
                                  const FaultTrial& trial, Roads& roads, const ControllerFactory& make) {
-  scenario::Scenario one = endless(scenario);
-  FaultOutcome outcome{.trial = trial, .at = lap.begins + trial.onset};
-  one.faults = {{trial.fault, outcome.at, trial.duration, trial.strength}};
-  auto created = ClosedLoop::create(one, roads, make);
-  if (!created) return fail(created.error());
-  ClosedLoop& loop = **created;
-  const bool is_lasting = trial.duration >= kLasting;
-  const double end = outcome.at + (is_lasting ? kLongestWait : trial.duration + kSettling);
-  double standing_since = loop.time();
-  while (loop.time() < end && !loop.is_over()) {
-    const bool is_new = loop.advance();
-    const double speed = loop.frame().has_truth ? hypot(loop.frame().truth.vx, loop.frame().truth.vy) : 0.0;
-    if (speed > FaultOutcome::kStanding || loop.time() < outcome.at) standing_since = loop.time();
-    if (loop.time() <= outcome.at) continue;
-    outcome.least_edge = std::min(outcome.least_edge, loop.world().edge_distance);
-    outcome.end_speed = speed;
-    if (is_new && loop.frame().result.report.rung != controller::Rung::kController) ++outcome.not_controller;
-    if (is_lasting && loop.time() - standing_since > kStood && loop.time() > outcome.at + kTimeToGetGoing)
-      break;
-  }
-  return outcome;
+  auto loop = ClosedLoop::create(endless(scenario), roads, make);
+  if (!loop) return fail(loop.error());
+  const double at = lap.begins + trial.onset;
+  drive_up_to(**loop, at);
+  return drive_on(**loop, trial, at);
 }
 
 std::vector<FaultTrial> trials_over_lap(const FlyingLap& lap, sim::Fault fault, double duration,
@@ -86,20 +133,54 @@ Result<std::vector<FaultOutcome>> drive_trials(const scenario::Scenario& scenari
                                                const std::vector<FaultTrial>& trials, int jobs,
                                                const std::function<bool(std::size_t)>& on_done,
                                                const ControllerFactory& make) {
-  std::vector<Result<FaultOutcome>> outcomes(trials.size());
-  for (std::size_t i = 0; i < trials.size(); ++i) outcomes[i] = FaultOutcome{.trial = trials[i]};
-  std::atomic<std::size_t> done{0};
-  for_each_run(trials.size(), jobs, [&](std::uint64_t i, Roads& roads) {
-    outcomes[i] = drive_trial(scenario, lap, trials[i], roads, make);
-    const std::size_t count = ++done;
-    return !on_done || on_done(count);
-  });
-  std::vector<FaultOutcome> all;
-  all.reserve(outcomes.size());
-  for (Result<FaultOutcome>& outcome : outcomes) {
-    if (!outcome) return fail(outcome.error());
-    all.push_back(*outcome);
+  const auto loop = ClosedLoop::create(endless(scenario), make);
+  if (!loop) return fail(loop.error());
+  const SharedOutcomes found(trials.size());
+  if (!found.is_there()) return fail(ErrorCode::kIo, "no memory for the outcomes of the trials");
+  std::vector<std::size_t> order(trials.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return trials[a].onset < trials[b].onset; });
+
+  struct Running {
+    pid_t process;
+    std::size_t trial;
+  };
+  std::deque<Running> running;
+  std::string trouble;
+  std::size_t done = 0;
+  bool goes_on = true;
+  const auto finish_oldest = [&] {
+    const Running oldest = running.front();
+    running.pop_front();
+    wait_for(oldest.process);
+    if (!found[oldest.trial].is_there && trouble.empty())
+      trouble = fmt::format("the trial at {} s broke off", lap.begins + trials[oldest.trial].onset);
+    if (on_done && !on_done(++done)) goes_on = false;
+  };
+  for (const std::size_t i : order) {
+    if (static_cast<int>(running.size()) >= std::max(jobs, 1)) finish_oldest();
+    if (!goes_on || !trouble.empty()) break;
+    const double at = lap.begins + trials[i].onset;
+    drive_up_to(**loop, at);
+    const pid_t process = fork();
+    if (process < 0) {
+      trouble = "no process for a trial";
+      break;
+    }
+    if (process == 0) {
+      found[i].outcome = drive_on(**loop, trials[i], at);
+      found[i].is_there = true;
+      _exit(0);  // nothing of the parent's is flushed or torn down
+    }
+    running.push_back({process, i});
   }
+  while (!running.empty()) finish_oldest();
+  if (!trouble.empty()) return fail(ErrorCode::kIo, trouble);
+  std::vector<FaultOutcome> all;
+  all.reserve(trials.size());
+  for (std::size_t i = 0; i < trials.size(); ++i)
+    all.push_back(found[i].is_there ? found[i].outcome : FaultOutcome{.trial = trials[i]});
   return all;
 }
 

@@ -45,10 +45,13 @@ struct FlyingLap {
 [[nodiscard]] Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario,
                                                 const ControllerFactory& make = make_controller);
 
-/// Drives one trial: `scenario` without its own faults, until kSettling after a fault that ends, or until the
-/// car has stood for a second, at most kLongestWait. Deterministic; independent of other trials.
+/// How long a trial goes on: so long after a fault that ends, or until the car has stood for a second, at most
+/// kLongestWait.
 inline constexpr double kSettling = 10.0;     ///< [s]
 inline constexpr double kLongestWait = 30.0;  ///< [s]
+
+/// Drives one trial from the start of the run: `scenario` without its own faults. Deterministic; independent
+/// of other trials.
 [[nodiscard]] Result<FaultOutcome> drive_trial(const scenario::Scenario& scenario, const FlyingLap& lap,
                                                const FaultTrial& trial, Roads& roads,
                                                const ControllerFactory& make = make_controller);
@@ -57,9 +60,12 @@ inline constexpr double kLongestWait = 30.0;  ///< [s]
 [[nodiscard]] std::vector<FaultTrial> trials_over_lap(const FlyingLap& lap, sim::Fault fault, double duration,
                                                       double step);
 
-/// Drives all trials with `jobs` threads; the outcomes are in the order of the trials, whatever the number of
-/// threads. `on_done` is told how many are done, on any thread; false ends early, with the outcomes so far
-/// (a trial that was not driven has an infinite least_edge).
+/// Drives all trials, each as drive_trial() does, bit for bit. What comes before a fault is driven once for
+/// all: from its onset on a trial is a copy of the process (fork), at most `jobs` of them at a time, and a
+/// trial that crashes is an error that names it. The outcomes are in the order of the trials, whatever the
+/// number of processes. `on_done` is told, in this process, how many are done; false ends early, with the
+/// outcomes so far (a trial that was not driven has an infinite least_edge). Pre: no other thread of this
+/// process holds a lock.
 [[nodiscard]] Result<std::vector<FaultOutcome>> drive_trials(
     const scenario::Scenario& scenario, const FlyingLap& lap, const std::vector<FaultTrial>& trials, int jobs,
     const std::function<bool(std::size_t)>& on_done = {}, const ControllerFactory& make = make_controller);
