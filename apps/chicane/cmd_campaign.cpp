@@ -94,7 +94,8 @@ void print_markdown(const Options& options, const std::vector<Row>& rows) {
     if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
   }
   fmt::print("| car | fault |");
-  for (const double duration : durations) fmt::print(" {}: off the road | to the edge [m] |", words(duration));
+  for (const double duration : durations)
+    fmt::print(" {}: off the road | to the edge [m] |", words(duration));
   fmt::print(" standing at the end |\n|---|---|");
   for (std::size_t i = 0; i < durations.size(); ++i) fmt::print("--:|--:|");
   fmt::print("--:|\n");

@@ -45,8 +45,8 @@ struct FlyingLap {
 [[nodiscard]] Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario,
                                                 const ControllerFactory& make = make_controller);
 
-/// How long a trial goes on: so long after a fault that ends, or until the car has stood for a second, at most
-/// kLongestWait.
+/// How long a trial goes on: so long after a fault that ends, or until the car has stood for a second, at
+/// most kLongestWait.
 inline constexpr double kSettling = 10.0;     ///< [s]
 inline constexpr double kLongestWait = 30.0;  ///< [s]
 
