@@ -2,10 +2,12 @@
 // The solver on families of problems that are no car, beside Ipopt: how many are solved, at what cost, in
 // what time.
 //
-//   chicane-robustness [-n INSTANCES] [-t TOLERANCE] [-m TURNS] [--each] [--references FILE] [NAME...]
-//   chicane-robustness --tolerances [-n INSTANCES] [NAME...]     a table of statuses and residuals, without
-//   Ipopt
+//   chicane-robustness [-n INSTANCES] [-f FIRST] [-i IPOPT] [-t TOLERANCE] [-m TURNS] [--each] [--references
+//   FILE] [NAME...] chicane-robustness --tolerances [-n INSTANCES] [NAME...]     a table of statuses and
+//   residuals, without Ipopt chicane-robustness --closed-loop [-n INSTANCES] [NAME...]    20 cycles of a
+//   controller for each instance
 //
+// FIRST: seed of the first instance. IPOPT: it solves so many of each, and what is not solved; all without.
 // NAME: families whose name contains it; all without. FILE keeps what Ipopt finds, which takes minutes;
 // without Ipopt (Debian: coinor-libipopt-dev) only what is in FILE is compared with.
 #include <algorithm>
@@ -104,11 +106,26 @@ int print_tolerances(FamilyRequest request, const std::vector<std::string_view>&
   return wrong == 0 ? 0 : 1;
 }
 
+/// Each family in closed loop, beside Ipopt from the same start.
+int print_loops(const FamilyRequest& request, const std::vector<std::string_view>& names) {
+  std::printf("%-34s %9s %4s %10s %4s %5s %8s %8s %6s %6s %6s\n", "family", "optimal", "near", "of Ipopt's",
+              "more", "turns", "ms", "p99", "ratio", "p1", "warm");
+  for (const Family& family : all_families()) {
+    if (!is_wanted(family, names) || family.drive == nullptr) continue;
+    const LoopRow row = family.drive(request);
+    std::printf("%-34s %4d/%-4d %4d %5d/%-4d %4d %5.0f %8.3f %8.3f %6.0f %6.0f %6.0f\n", row.family.data(),
+                row.optimal, row.solves, row.usable - row.optimal, row.both, row.reference, row.higher,
+                row.turns, 1e3 * row.time, 1e3 * row.most_time, row.ratio, row.least_ratio, row.warm_ratio);
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   FamilyRequest request{.with_ipopt = true};
-  bool are_tolerances = false;
+  bool are_tolerances = false, are_loops = false;
   std::string file;
   std::vector<std::string_view> names;
   for (int i = 1; i < argc; ++i) {
@@ -119,8 +136,14 @@ int main(int argc, char** argv) {
     } else if (word == "--tolerances") {
       are_tolerances = true;
       request.instances = 30;
-    } else if (word == "-n" || word == "-t" || word == "-m" || word == "--references") {
+    } else if (word == "--closed-loop") {
+      are_loops = true;
+      request.instances = 20;
+    } else if (word == "-n" || word == "-f" || word == "-i" || word == "-t" || word == "-m" ||
+               word == "--references") {
       if (word == "-n") request.instances = std::atoi(value);
+      if (word == "-i") request.ipopt_instances = std::atoi(value);
+      if (word == "-f") request.first = std::atoi(value);
       if (word == "-t") request.tolerance = std::atof(value);
       if (word == "-m") request.max_iterations = std::atoi(value);
       if (word == "--references") file = value;
@@ -130,6 +153,7 @@ int main(int argc, char** argv) {
     }
   }
   if (are_tolerances) return print_tolerances(request, names);
+  if (are_loops) return print_loops(request, names);
   References references = read(file);
   std::printf("%-34s %-4s %9s %4s %9s %4s %4s %5s %5s %8s %8s %6s %6s %8s\n", "family", "from", "optimal",
               "near", "of Ipopt's", "less", "more", "false", "turns", "ms", "p99", "ratio", "p1", "residual");

@@ -30,7 +30,8 @@ struct FamilyRequest {
   double tolerance = 1e-6;
   int max_iterations = 500;
   bool with_ipopt = false;
-  bool each = false;  ///< a line for each instance
+  int ipopt_instances = 1 << 30;  ///< Ipopt solves the first so many, and what is not solved
+  bool each = false;              ///< a line for each instance
 };
 
 /// One row of the table.
@@ -44,6 +45,17 @@ struct FamilyRow {
   double turns = 0.0, time = 0.0, most_time = 0.0, ratio = 0.0, least_ratio = 0.0;
   double worst_residual = 0.0;  ///< of those that are optimal, by the independent check
   double floor_residual = 0.0;  ///< and of those at the floor
+};
+
+/// A family in closed loop: each solve starts from the answer of the one before, a stage later.
+struct LoopRow {
+  std::string_view family;
+  int solves = 0, optimal = 0, usable = 0;
+  int reference = 0, both = 0;  ///< of those: solved by Ipopt from the same start; by both
+  int higher = 0;               ///< costs more than 1 % (and 1e-6) above Ipopt's
+  double turns = 0.0, time = 0.0, most_time = 0.0;
+  double ratio = 0.0, least_ratio = 0.0;  ///< Ipopt's time over ours: median, first percentile
+  double warm_ratio = 0.0;                ///< median with Ipopt's multipliers, too
 };
 
 }  // namespace chicane::bench

@@ -104,6 +104,7 @@ struct HardParking : Exactly<Parking> {
 /// The arm's hand goes to its target along the straight line from where it is.
 struct ArmOnALine : Arm {
   static constexpr std::string_view kName = "arm along a line";
+  static constexpr bool kRecedes = false;  ///< a disturbance leaves the line
   static constexpr int kNe = 0, kNc = 0, kNh = 1, kNeh = 4;
   std::array<double, 2> from{}, across{};
   solver::StageData<kHorizon> is_on;  ///< 0: the first stage is given, else 1
@@ -140,6 +141,7 @@ struct CraneInLeastTime {
   static constexpr std::string_view kName = "crane in least time";
   static constexpr int kNx = 5, kNu = 2, kNr = 2, kNe = 1, kNc = 2, kNeh = 4, kHorizon = 50;
   static constexpr double kGravity = 9.81, kSwing = 0.2;
+  static constexpr bool kRecedes = false;  ///< a duration cannot be set twice
   double goal = 4.0, rope = 2.0, most = 2.0;
 
   template <class K, class X, class U>
@@ -195,6 +197,7 @@ struct PeriodicPendulum {
   static constexpr std::string_view kName = "pendulum that repeats itself";
   static constexpr int kNx = 4, kNu = 3, kNr = 2, kNe = 0, kNc = 0, kNeh = 2, kHorizon = 50;
   static constexpr double kStep = 0.05;
+  static constexpr bool kRecedes = false;  ///< a period is a period
   double stiffness = 9.0, damping = 0.3, most = 6.0, effort = 0.1;
   solver::StageData<kHorizon> wanted;
 

@@ -102,6 +102,7 @@ KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::
       for (std::size_t i = 0; i < kNx; ++i) adjoint[i] += r.v * r.d[i];
     }
     const auto add = [&](const D& row, double y) {
+      if (std::isnan(row.v)) result.miss = HUGE_VAL;
       for (std::size_t i = 0; i < kNx; ++i) {
         adjoint[i] += y * row.d[i];
         error[i] += kUnit * std::fabs(y * row.d[i]);
@@ -150,6 +151,7 @@ KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::
     }
     int row = 0;
     for (const D& h : problem.template equality<D>(stage, x, u)) {
+      if (std::isnan(h.v)) result.miss = HUGE_VAL;
       result.miss = std::max(result.miss, std::fabs(h.v));
       add(h, hard.equality_multiplier(stage, row++));
     }

@@ -18,7 +18,7 @@ Family arm_family();
 Family acrobot_family();
 Family reactor_family();
 Family glider_family();
-// With something that must hold (hard.hpp).
+// With something that must hold.
 Family hard_cart_pole_family();
 Family hard_rocket_landing_family();
 Family hard_planar_quadrotor_family();
@@ -26,6 +26,8 @@ Family hard_parking_family();
 Family arm_on_a_line_family();
 Family crane_in_least_time_family();
 Family periodic_pendulum_family();
+Family goddard_rocket_family();
+Family lorry_family();
 
 std::span<const Family> all_families() {
   static const std::array families{cart_pole_family(),
@@ -46,7 +48,9 @@ std::span<const Family> all_families() {
                                    hard_parking_family(),
                                    arm_on_a_line_family(),
                                    crane_in_least_time_family(),
-                                   periodic_pendulum_family()};
+                                   periodic_pendulum_family(),
+                                   goddard_rocket_family(),
+                                   lorry_family()};
   return families;
 }
 

@@ -12,6 +12,7 @@ namespace chicane::bench {
 struct Family {
   std::string_view name;
   FamilyRow (*measure)(const FamilyRequest&, NaiveStart, References&);
+  LoopRow (*drive)(const FamilyRequest&);  ///< null: no problem that goes on
 };
 [[nodiscard]] std::span<const Family> all_families();
 

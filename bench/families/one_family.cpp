@@ -4,10 +4,11 @@
 #include FAMILY_HEADER
 #include "families/list.hpp"
 #include "families/measure_family.hpp"
+#include "families/measure_loop.hpp"
 
 namespace chicane::bench {
 
 Family FAMILY_FUNCTION();
-Family FAMILY_FUNCTION() { return {FAMILY::kName, &FamilyMeasurement<FAMILY>::measure}; }
+Family FAMILY_FUNCTION() { return {FAMILY::kName, &FamilyMeasurement<FAMILY>::measure, loop_of<FAMILY>()}; }
 
 }  // namespace chicane::bench

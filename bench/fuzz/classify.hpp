@@ -7,23 +7,25 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <type_traits>
 
 #include "chicane/solver/ocp_solver.hpp"
 #include "chicane/solver/warm_start.hpp"
 #include "families/kkt.hpp"
+#include "fuzz/misses.hpp"
 
 namespace chicane::bench {
 
 /// What is wrong with an answer.
 enum class Wrong {
   kNothing,
-  kInputs,         ///< not finite, or outside their bounds
-  kFalseOptimal,   ///< optimal, infeasible or at the floor, and the conditions of optimality do not hold
-  kFalseUsable,    ///< usable, and residuals are above the loose tolerance
-  kFalseFeasible,  ///< optimal, and a constraint is violated by more than its cap
-  kFalseInfeasible,
-  kDearer,       ///< not usable, and costs more than the guess
-  kNotFinite,    ///< though data and simulated guess are finite
+  kInputs,           ///< not finite, or outside their bounds
+  kFalseOptimal,     ///< optimal, infeasible or at the floor, and the conditions of optimality do not hold
+  kFalseUsable,      ///< usable, and residuals are above the loose tolerance
+  kFalseFeasible,    ///< optimal, and a constraint is violated by more than its cap
+  kFalseInfeasible,  ///< though no cap is exceeded, or what is missed can be lessened
+  kDearer,     ///< not usable, and costs more than the guess; with something that must hold: misses more, too
+  kNotFinite,  ///< though data and simulated guess are finite
   kOptimalData,  ///< usable, though the data are not finite
   kSlow,         ///< took seconds
   kCount
@@ -40,7 +42,7 @@ struct FuzzCase {
   solver::SolverOptions options;
   solver::Trajectory<P::kNx, P::kNu, Capacity> guess;
   solver::Trajectory<P::kNx, P::kNu, Capacity> answer;
-  solver::SolveReport report;
+  std::conditional_t<solver::HardProblem<P>, solver::HardReport, solver::SolveReport> report;
 };
 
 /// Judges an answer by functions of the problem alone, with dual numbers.
@@ -60,7 +62,13 @@ class Judge {
     const KktResidual kkt = check(case_.answer);
     const double tolerance = case_.options.tolerance, loose = case_.options.loose_tolerance;
     if (status == kOptimal || status == kInfeasible) {
-      if (!fulfils(kkt, tolerance)) return Wrong::kFalseOptimal;
+      if (!(kIsHard && status == kInfeasible) && !fulfils(kkt, tolerance)) return Wrong::kFalseOptimal;
+      if constexpr (kIsHard) {
+        if (status == kInfeasible && kkt.miss > tolerance) {
+          const double least = Misses<P, Capacity>(arrays_, case_.answer).worst_after_descent(tolerance);
+          return least > tolerance ? Wrong::kNothing : Wrong::kFalseInfeasible;
+        }
+      }
       const double excess = worst_violation() - case_.problem.soft_penalty(0).cap;
       if (status == kOptimal && excess > 1e-12) return Wrong::kFalseFeasible;
       if (status == kInfeasible && excess < -1e-12) return Wrong::kFalseInfeasible;
@@ -73,12 +81,18 @@ class Judge {
     return Wrong::kNothing;
   }
   [[nodiscard]] KktResidual check(const solver::Trajectory<P::kNx, P::kNu, Capacity>& t) const {
-    return check_kkt(
-        arrays_, t, [&](int k, int c) { return ocp_.constraint_multiplier(k, c); },
-        [&](int k, int m) { return -ocp_.rate_multiplier(k, m); });
+    const auto price = [&](int k, int c) { return ocp_.constraint_multiplier(k, c); };
+    const auto rate_price = [&](int k, int m) { return -ocp_.rate_multiplier(k, m); };
+    if constexpr (kIsHard) {
+      return check_kkt(arrays_, t, price, rate_price, ocp_);
+    } else {
+      return check_kkt(arrays_, t, price, rate_price);
+    }
   }
 
  private:
+  static constexpr bool kIsHard = solver::HardProblem<P>;
+
   [[nodiscard]] bool data_are_good() const {
     for (const double x : case_.start) {
       if (!std::isfinite(x)) return false;
@@ -103,7 +117,8 @@ class Judge {
   [[nodiscard]] bool fulfils(const KktResidual& kkt, double tolerance) const {
     const double steep = P::kNc > 0 ? case_.problem.soft_penalty(0).quadratic : 0.0;
     return kkt.stationarity <= 1.5 * tolerance + 4.0 * kkt.rounding &&
-           kkt.defect <= 1.5 * tolerance + 1e-13 && kkt.outside <= 0.0 + 1e-9 &&
+           kkt.defect <= 1.5 * tolerance + 1e-13 && kkt.miss <= 1.5 * tolerance &&
+           kkt.outside <= 0.0 + 1e-9 &&
            kkt.subgradient <= 3.0 * std::sqrt(tolerance) + tolerance * (1.0 + steep);
   }
   [[nodiscard]] double worst_violation() const {
@@ -111,9 +126,11 @@ class Judge {
     if constexpr (P::kNc > 0) {
       for (int k = 0; k < case_.answer.horizon; ++k) {
         const auto stage = static_cast<std::size_t>(k);
+        int row = 0;
         for (const auto& c : arrays_.template constraint<Dual<1>>(k, lift(case_.answer.x[stage]),
-                                                                  lift(case_.answer.u[stage])))
-          worst = std::max(worst, c.v);
+                                                                  lift(case_.answer.u[stage]))) {
+          if (!is_hard(arrays_, row++)) worst = std::max(worst, c.v);
+        }
       }
     }
     return worst;
@@ -129,18 +146,19 @@ class Judge {
     const auto t = std::make_unique<solver::Trajectory<P::kNx, P::kNu, Capacity>>(case_.guess);
     if (!solver::roll_out(case_.problem, case_.start, *t)) return false;
     const KktResidual kkt = check(*t);
-    return std::isfinite(kkt.cost + kkt.stationarity) && kkt.cost < 1e100;
+    return std::isfinite(kkt.cost + kkt.stationarity) && kkt.cost < 1e100 && kkt.miss < 1e50;
   }
   /// Both simulated.
   [[nodiscard]] bool costs_more_than_guess() const {
     const auto t = std::make_unique<solver::Trajectory<P::kNx, P::kNu, Capacity>>(case_.guess);
     const auto own = std::make_unique<solver::Trajectory<P::kNx, P::kNu, Capacity>>(case_.answer);
     if (!solver::roll_out(case_.problem, case_.start, *t)) return false;
-    const double before = check(*t).cost;
-    if (!std::isfinite(before)) return false;
+    const KktResidual before = check(*t);
+    if (!std::isfinite(before.cost)) return false;
     if (!solver::roll_out(case_.problem, case_.start, *own)) return true;
-    const double after = check(*own).cost;
-    return !(after <= before * (1.0 + 1e-6) + 1e-9);
+    const KktResidual after = check(*own);
+    if (kIsHard && after.miss <= before.miss * (1.0 + 1e-6) + 1e-9) return false;
+    return !(after.cost <= before.cost * (1.0 + 1e-6) + 1e-9);
   }
 
   const Case& case_;

@@ -40,11 +40,11 @@ FuzzTally run(long count, long first) {
     std::printf(
         "%s %ld: %s (%s, %d turns, tolerance %.0e, says %.2e %.2e %.2e; check: slope %.2e defect %.2e prices "
         "%.2e "
-        "outside %.2e rounding %.2e cost %.6g)\n",
+        "outside %.2e miss %.2e rounding %.2e cost %.6g)\n",
         KIND_NAME, seed, kWrongNames[static_cast<int>(wrong)], to_string(one->report.status).data(),
         one->report.iterations, one->options.tolerance, one->report.stationarity, one->report.defect,
-        one->report.complementarity, kkt.stationarity, kkt.defect, kkt.subgradient, kkt.outside, kkt.rounding,
-        kkt.cost);
+        one->report.complementarity, kkt.stationarity, kkt.defect, kkt.subgradient, kkt.outside, kkt.miss,
+        kkt.rounding, kkt.cost);
   }
   return tally;
 }

@@ -38,6 +38,8 @@ void make_case(Random& random, FuzzCase<P, Capacity>& one) {
                  .may_start_short = !chance(0.2),
                  .start_from_states = chance(0.3),
                  .second_order = !chance(0.2)};
+  if constexpr (requires { one.problem.make_hard(random, one.start, 1); })
+    one.problem.make_hard(random, one.start, one.guess.horizon);
   one.answer = one.guess;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <tuple>
@@ -9,7 +10,9 @@
 #include <utility>
 
 #include "chicane/base/random.hpp"
+#include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/problem.hpp"
+#include "chicane/solver/stage_data.hpp"
 
 namespace chicane::bench {
 
@@ -211,6 +214,116 @@ struct RandomRates : RandomStructured<Nx, Nu, Nc> {
     std::array<double, Nu> rates;
     rates.fill(most);
     return rates;
+  }
+};
+
+/// What must hold beside: hard limits, an equation of each stage, some at the end; some of them cannot.
+template <int Nx, int Nu, int Nc, int Nh, int Neh, int Nec>
+struct RandomHard : RandomStructured<Nx, Nu, Nc> {
+  using Base = RandomStructured<Nx, Nu, Nc>;
+  static constexpr int kNh = Nh, kNeh = Neh, kNec = Nec;
+  std::array<bool, Nc> must_hold{};
+  solver::StageData<64> is_on;  ///< 0: what the first stage cannot change
+  std::array<solver::StageData<64>, Nh> at{};
+  std::array<double, Nh> by_input{};
+  std::array<double, Neh> end_at{}, end_bend{};
+  std::array<double, Nec> end_most{};
+
+  [[nodiscard]] bool is_hard(int c) const { return must_hold[static_cast<std::size_t>(c)]; }
+  template <class K, class X, class U>
+  auto equality(K k, const X& x, const U& u) const {
+    return Base::template row<Nh>([&](auto n) {
+      return is_on.at(k) * (std::get<(n + 1) % Nx>(x) - at[n].at(k) + by_input[n] * std::get<n % Nu>(u));
+    });
+  }
+  template <class X>
+  auto terminal_equality(const X& x) const {
+    return Base::template row<Neh>([&](auto n) {
+      return std::get<n>(x) - end_at[n] + end_bend[n] * (std::get<n>(x) * std::get<(n + 1) % Nx>(x));
+    });
+  }
+  template <class X>
+  auto terminal_constraint(const X& x) const {
+    return Base::template row<Nec>([&](auto n) { return std::get<(n + 1) % Nx>(x) - end_most[n]; });
+  }
+  /// With data of which six in ten can hold: those of a motion from `start`.
+  void make_hard(Random& random, const std::array<double, Nx>& start, int horizon) {
+    const auto chance = [&](double share) { return random.uniform() < share; };
+    for (bool& hard : must_hold) hard = chance(0.7);
+    const double wide = chance(0.3) ? 3.0 : 0.5, scale = chance(0.2) ? 1e3 : 1.0;
+    for (std::size_t n = 0; n < Nh; ++n) {
+      by_input[n] = chance(0.2) ? 0.0 : scale * random.normal();
+      const double value = chance(0.3) ? 0.0 : 0.3 * random.normal();
+      for (std::size_t k = 0; k < 64; ++k) at[n][k] = value;
+    }
+    for (std::size_t k = 0; k < 64; ++k) is_on[k] = k > 0 ? 1.0 : 0.0;
+    for (std::size_t n = 0; n < Neh; ++n) {
+      end_at[n] = wide * random.normal();
+      end_bend[n] = chance(0.5) ? 0.0 : 0.5 * random.normal();
+    }
+    for (double& most : end_most) most = wide * random.normal();
+    if (chance(0.6)) make_possible(random, start, horizon);
+  }
+
+ private:
+  void make_possible(Random& random, std::array<double, Nx> x, int horizon) {
+    std::array<double, Nc> highest;
+    highest.fill(-1e30);
+    auto along = at;
+    for (int k = 0; k < horizon; ++k) {
+      std::array<double, Nu> u;
+      for (std::size_t m = 0; m < Nu; ++m)
+        u[m] = std::fmin(std::fmax(random.normal(), this->low[m]), this->high[m]);
+      const auto stage = static_cast<std::size_t>(k);
+      for (std::size_t n = 0; n < Nh; ++n) along[n][stage] = x[(n + 1) % Nx] + by_input[n] * u[n % Nu];
+      const auto limits = solver::to_array<double>(this->constraint(k, x, u));
+      for (std::size_t c = 0; c < Nc; ++c) highest[c] = std::fmax(highest[c], limits[c]);
+      x = solver::next_state(*this, k, x, u);
+    }
+    for (const double value : x) {
+      if (!(std::fabs(value) < 1e12)) return;
+    }
+    at = along;
+    for (std::size_t c = 0; c < Nc; ++c) this->edge[c] += highest[c];
+    for (std::size_t n = 0; n < Neh; ++n) end_at[n] = x[n] + end_bend[n] * (x[n] * x[(n + 1) % Nx]);
+    for (std::size_t n = 0; n < Nec; ++n) end_most[n] = x[(n + 1) % Nx];
+  }
+};
+
+/// The same functions over arrays of one scalar type.
+template <class Base>
+struct InArrays : Base {
+  template <class T>
+  using X = std::array<T, static_cast<std::size_t>(Base::kNx)>;
+  template <class T>
+  using U = std::array<T, static_cast<std::size_t>(Base::kNu)>;
+  template <class K, class T>
+  X<T> dynamics(K k, const X<T>& x, const U<T>& u) const {
+    return solver::to_array<T>(Base::dynamics(k, x, u));
+  }
+  template <class K, class T>
+  std::array<T, Base::kNr> residual(K k, const X<T>& x, const U<T>& u) const {
+    return solver::to_array<T>(Base::residual(k, x, u));
+  }
+  template <class T>
+  X<T> terminal_residual(const X<T>& x) const {
+    return solver::to_array<T>(Base::terminal_residual(x));
+  }
+  template <class K, class T>
+  std::array<T, Base::kNc> constraint(K k, const X<T>& x, const U<T>& u) const {
+    return solver::to_array<T>(Base::constraint(k, x, u));
+  }
+  template <class K, class T>
+  std::array<T, Base::kNh> equality(K k, const X<T>& x, const U<T>& u) const {
+    return solver::to_array<T>(Base::equality(k, x, u));
+  }
+  template <class T>
+  std::array<T, Base::kNeh> terminal_equality(const X<T>& x) const {
+    return solver::to_array<T>(Base::terminal_equality(x));
+  }
+  template <class T>
+  std::array<T, Base::kNec> terminal_constraint(const X<T>& x) const {
+    return solver::to_array<T>(Base::terminal_constraint(x));
   }
 };
 
