@@ -12,6 +12,7 @@
 
 #include "chicane/solver/describe.hpp"
 #include "chicane/solver/ocp_solver.hpp"
+#include "families/goddard_rocket.hpp"
 #include "families/hard.hpp"
 #include "families/measure_family.hpp"
 #include "support/alloc_guard.hpp"
@@ -200,6 +201,10 @@ TEST(HardConstraints, SwingUpAPoleExactly) {
   expect_optimal<HardCartPole>({0, 1, 2, 3, 4, 5}, NaiveStart::kLine);
 }
 TEST(HardConstraints, LeadAHandAlongALine) { expect_optimal<ArmOnALine>({0, 1, 3}, NaiveStart::kIdle); }
+// An inequality at the end that was active in early rounds only kept its multiplier: no optimum.
+TEST(HardConstraints, LetGoOfInequalitiesThatHoldWithRoomToSpare) {
+  expect_optimal<GoddardRocket>({4, 10, 12}, NaiveStart::kIdle);
+}
 TEST(HardConstraints, SetTheDurationAndTheFirstStateOfAMotion) {
   expect_optimal<CraneInLeastTime>({0, 1, 2}, NaiveStart::kIdle);
   expect_optimal<PeriodicPendulum>({0, 1, 2, 3, 4, 5}, NaiveStart::kIdle);

@@ -15,7 +15,7 @@ namespace chicane {
 namespace {
 
 template <class Problem>
-void expect_confirmed(std::uint64_t first, std::uint64_t count) {
+void expect_confirmed(std::uint64_t first, std::uint64_t count, std::uint64_t least_usable) {
   using Ocp = solver::OcpSolver<Problem, 40>;
   const auto one = std::make_unique<bench::FuzzCase<Problem, 40>>();
   std::uint64_t usable = 0;
@@ -28,22 +28,28 @@ void expect_confirmed(std::uint64_t first, std::uint64_t count) {
     const bench::Wrong wrong = bench::Judge<Problem, 40, Ocp>{*one, *ocp}.verdict();
     EXPECT_EQ(wrong, bench::Wrong::kNothing) << seed << ": " << bench::kWrongNames[static_cast<int>(wrong)];
   }
-  EXPECT_GT(usable, count / 2);  // the check has something to do
+  EXPECT_GE(usable, least_usable);  // the check has something to do
 }
 
 // Of these 1000 answers 15 were none: prices of another iterate than the one handed out, a barrier that was
 // still high, inputs that cost more than the guess.
 TEST(RandomProblems, GetAnswersThatAnIndependentCheckConfirms) {
-  expect_confirmed<bench::RandomStructured<2, 1, 1>>(0, 1000);
+  expect_confirmed<bench::RandomStructured<2, 1, 1>>(0, 1000, 500);
 }
 // Of these two were "optimal" or "at the floor" with defects that are not finite.
 TEST(RandomProblems, GetNoAnswersWithDefectsThatAreNotNumbers) {
-  expect_confirmed<bench::RandomStructured<1, 1, 0>>(7420, 40);
+  expect_confirmed<bench::RandomStructured<1, 1, 0>>(7420, 40, 20);
 }
 
 // At a cost of 3e22 rounding is larger than any slope: "budget spent" was no answer that may be used.
 TEST(RandomProblems, GetNoAnswersWhoseCostHasNoDigitsLeft) {
-  expect_confirmed<bench::RandomStructured<4, 2, 2>>(245, 24);
+  expect_confirmed<bench::RandomStructured<4, 2, 2>>(245, 24, 12);
+}
+
+// Of these 5 were "infeasible" though short steps from the answer lead to where everything holds, and of the
+// stalled 11 missed more and cost more than the guess.
+TEST(RandomProblems, AreInfeasibleOnlyWhereNoSmallChangeHelps) {
+  expect_confirmed<bench::RandomHard<2, 1, 1, 0, 1, 0>>(0, 800, 250);
 }
 
 }  // namespace

@@ -80,6 +80,24 @@ class OcpSolver {
     return run(problem, x0, trajectory, deadline, {});
   }
 
+  /// From the next solve on: gives up where full steps lose their way.
+  void use_full_steps_only(bool do_so) noexcept { has_full_steps_only_ = do_so; }
+
+  // ---- the filter method from barrier to barrier, for who changes the problem on the way
+
+  /// Begins it at a guess. False when that is of no use.
+  bool begin_path(const P& problem, const State& x0, const Trajectory& trajectory) noexcept;
+  /// At most `most` turns, counted in `report`. True when the problem of the present barrier is solved:
+  /// `trajectory` is where.
+  bool follow_path(const P& problem, Trajectory& trajectory, const Deadline& deadline, int most,
+                   SolveReport& report) noexcept;
+  /// To the next barrier; `centre`: prices of soft constraints have changed.
+  void lower_path(bool centre) noexcept { filter_.go_on(barrier_, centre); }
+  [[nodiscard]] double path_barrier() const noexcept { return filter_.mu(); }
+  [[nodiscard]] bool is_path_done() const noexcept { return filter_.is_at_last_barrier(); }
+  /// There: solve_again() goes on with full steps.
+  void end_path() noexcept;
+
   /// After a solve: the price of state i of x_{k+1}, i.e. d(cost)/dx of what follows; k < horizon.
   [[nodiscard]] double adjoint(int k, int i) const noexcept {
     double price = now_.adjoint[i][k];
@@ -322,6 +340,7 @@ class OcpSolver {
   /// What to do where full steps have lost their way. False when nothing helps.
   bool recover(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept {
     if constexpr (kCanFilter) {
+      if (has_full_steps_only_) return false;
       if (options_.may_start_short) return begin_filter(problem, trajectory, report);
     }
     return may_grow() ? start_short(problem) : go_back(problem);
@@ -452,10 +471,11 @@ class OcpSolver {
   bool is_filtering_ = false;  ///< steps are the filter method's
   bool has_filtered_ = false;  ///< it has been used in this solve
   bool stands_still_ = false;  ///< the start could not be simulated
-  bool is_again_ = false;      ///< the start is near the solution
-  bool is_fresh_ = true;       ///< slacks and working set are to be guessed anew
-  std::size_t target_ = 0;     ///< horizon asked for
-  double work_ = 0.0;          ///< turns so far, those of a shorter horizon by their share
+  bool has_full_steps_only_ = false;
+  bool is_again_ = false;   ///< the start is near the solution
+  bool is_fresh_ = true;    ///< slacks and working set are to be guessed anew
+  std::size_t target_ = 0;  ///< horizon asked for
+  double work_ = 0.0;       ///< turns so far, those of a shorter horizon by their share
   std::conditional_t<kCanFilter, typename Slacks::Memory, NoFilter> best_slacks_;  ///< of the best iterate
 };
 

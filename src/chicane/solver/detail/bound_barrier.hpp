@@ -6,7 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "chicane/base/math.hpp"
+#include "chicane/base/math_pack.hpp"
+#include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
 #include "chicane/solver/detail/rate_set.hpp"
 
@@ -20,30 +21,36 @@ struct StepLengths {
 
 /// The bounds on inputs and on their changes as barriers (docs/solver.md, eq. 30–33): each has a slack t > 0
 /// and a multiplier z > 0. Kept from iterate to iterate of the nonlinear problem, unlike those of
-/// InteriorPoint.
-template <class Solver, std::size_t Capacity>
+/// InteriorPoint. Eight stages at a time; what does not exist has z = 0 and t = 1, and counts for nothing.
+template <class Solver, std::size_t Capacity, class Arch>
 class BoundBarrier {
  public:
   static constexpr std::size_t kNu = Solver::kNu;
   using Lq = typename Solver::Lq;
   using Layout = typename Solver::Layout;
+  using V = Stages<Arch>;
 
   /// Slacks of the bounds as they are in `qp` at the present iterate, at least `push` of their width;
   /// multipliers on the central path of `mu`. Inputs whose bounds are equal are held there.
   void start(Solver& qp, std::size_t horizon, double mu) noexcept {
     horizon_ = horizon;
-    for (std::size_t k = 0; k < horizon; ++k) {
-      for (std::size_t m = 0; m < kNu; ++m) {
+    count_ = 0;
+    for (std::size_t m = 0; m < kNu; ++m) {
+      for (std::size_t k = 0; k < horizon; ++k)
         qp.hold[k][m] = has_width(qp, k, m) ? Hold::kFree : Hold::kLow;
-        for (std::size_t n = 0; n < kKinds; ++n) {
-          const auto kind = static_cast<Kind>(n);
-          Side& side = side_[k][m][n] = {};
+      for (std::size_t n = 0; n < kKinds; ++n) {
+        const auto kind = static_cast<Kind>(n);
+        Side& side = side_[m][n];
+        side = {};
+        for (std::size_t k = 0; k < kStride; ++k) side.t[k] = side.at[k] = 1.0;
+        for (std::size_t k = 0; k < horizon; ++k) {
           if (!has_bound(qp, k, m, kind)) continue;
           const double bound = bound_of(qp, k, m, kind);
           const double width = bound + bound_of(qp, k, m, static_cast<Kind>(n ^ 1U));
-          side.t = std::max(bound, kPush * std::min(width, kWide));
-          side.z = mu / side.t;
-          side.exists = true;
+          side.t[k] = std::max(bound, kPush * std::min(width, kWide));
+          side.z[k] = mu / side.t[k];
+          side.exists[k] = 1.0;
+          ++count_;
         }
       }
     }
@@ -55,121 +62,134 @@ class BoundBarrier {
     return std::min(std::max(u, low + push), high - push);
   }
 
-  /// Largest of the multipliers' conditions at the present iterate for barrier `mu`: products, and the
-  /// equations of slacks. Adds what the multipliers pull to `slope` of the inputs, and to `adjoint` of the
-  /// states that hold previous ones.
+  /// Largest of the multipliers' conditions at the present iterate for barrier `mu`.
   struct Residual {
     double product = 0.0;
     double multipliers = 0.0;  ///< sum of all
     int count = 0;
   };
   [[nodiscard]] Residual residual(double mu) const noexcept {
-    Residual r;
-    each([&](std::size_t, std::size_t, Kind, const Side& side) {
-      r.product = std::max(r.product, std::fabs(side.t * side.z - mu));
-      r.multipliers += side.z;
-      ++r.count;
+    V product(0.0);
+    V multipliers(0.0);
+    each([&](std::size_t, Kind, const Side& side, std::size_t k, const auto& exists) {
+      const V z = V::load(side.z + k);
+      product = max(product, select(exists, abs(V::load(side.t + k) * z - mu), V(0.0)));
+      multipliers += z;
     });
-    return r;
+    return {largest(product), sum(multipliers), count_};
   }
   /// What the multipliers of the bounds of input m of stage k pull at it, and at the state that its change
   /// starts from.
   [[nodiscard]] double pull(std::size_t k, std::size_t m) const noexcept {
     double sum = 0.0;
-    for (std::size_t n = 0; n < kKinds; ++n)
-      sum += side_[k][m][n].exists ? sign(static_cast<Kind>(n)) * side_[k][m][n].z : 0.0;
+    for (std::size_t n = 0; n < kKinds; ++n) sum += sign(static_cast<Kind>(n)) * side_[m][n].z[k];
     return sum;
   }
   [[nodiscard]] double rate_pull(std::size_t k, std::size_t m) const noexcept {
     double sum = 0.0;
-    for (std::size_t n = kRateLow; n < kKinds; ++n)
-      sum -= side_[k][m][n].exists ? sign(static_cast<Kind>(n)) * side_[k][m][n].z : 0.0;
-    return sum;
-  }
-  /// Sum of |bound − value − t|.
-  [[nodiscard]] double miss(const Solver& qp) const noexcept {
-    double sum = 0.0;
-    each([&](std::size_t k, std::size_t m, Kind kind, const Side& side) {
-      sum += std::fabs(bound_of(qp, k, m, kind) - side.t);
-    });
+    for (std::size_t n = kRateLow; n < kKinds; ++n) sum -= sign(static_cast<Kind>(n)) * side_[m][n].z[k];
     return sum;
   }
 
   /// Adds z + μ/t − D·bound and D = z/t to the stages (eq. 31).
   void add_to(Solver& qp, double mu) const noexcept {
-    each([&](std::size_t k, std::size_t m, Kind kind, const Side& side) {
-      const double D = side.z / side.t;
-      const double g = sign(kind) * (side.z + mu / side.t - D * bound_of(qp, k, m, kind));
+    each([&](std::size_t m, Kind kind, const Side& side, std::size_t k0, const auto& exists) {
+      const V z = V::load(side.z + k0), t = V::load(side.t + k0);
+      alignas(64) double D[8], g[8];
+      (z / t).store(D);
+      select(exists, sign(kind) * (z + mu / t - z / t * bounds_of(qp, k0, m, kind)), V(0.0)).store(g);
       const std::size_t u = Layout::kHead + m;
-      const auto add = [&](std::size_t i, std::size_t j, double amount) {
-        qp.lq.set_cost(k, i, j, qp.lq.cost(k, i, j) + amount);
-      };
-      add(u, u, D);
-      add(u, Layout::kOne, g);
-      if (!is_rate(kind)) return;
-      const std::size_t p = Solver::rate_state(m);
-      add(u, p, -D);
-      add(p, p, D);
-      add(Layout::kOne, p, -g);
+      for (std::size_t lane = 0; lane < 8 && k0 + lane < horizon_; ++lane) {
+        const auto add = [&](std::size_t i, std::size_t j, double amount) {
+          qp.lq.set_cost(k0 + lane, i, j, qp.lq.cost(k0 + lane, i, j) + amount);
+        };
+        if (D[lane] == 0.0) continue;
+        add(u, u, D[lane]);
+        add(u, Layout::kOne, g[lane]);
+        if (!is_rate(kind)) continue;
+        const std::size_t p = Solver::rate_state(m);
+        add(u, p, -D[lane]);
+        add(p, p, D[lane]);
+        add(Layout::kOne, p, -g[lane]);
+      }
     });
   }
 
-  /// The directions that belong to the step in `qp`; how far they may be followed.
-  StepLengths find(const Solver& qp, double mu, double fraction) noexcept {
-    double primal = 0.0;
-    double dual = 0.0;
-    each([&](std::size_t k, std::size_t m, Kind kind, Side& side) {
-      double value = qp.du[k][m];
-      if (is_rate(kind)) value -= qp.dx[k][Solver::rate_state(m)];
-      const double distance = bound_of(qp, k, m, kind) - sign(kind) * value;
-      side.dt = distance - side.t;
-      side.dz = (mu - side.z * distance) / side.t;
-      side.miss = bound_of(qp, k, m, kind) - side.t;
-      primal = std::max(primal, -side.dt / side.t);
-      dual = std::max(dual, -side.dz / side.z);
+  /// The directions that belong to a step from the present iterate, whose bounds are in `qp`; how far they
+  /// may be followed.
+  template <class Step>
+  StepLengths find(const Solver& qp, const Step& step, double mu, double fraction) noexcept {
+    V primal(0.0);
+    V dual(0.0);
+    each([&](std::size_t m, Kind kind, Side& side, std::size_t k, const auto& exists) {
+      V value = V::load(step.u[m] + k);
+      if (is_rate(kind)) value -= V::load(step.x[Solver::rate_state(m)] + k);
+      const V t = V::load(side.t + k), z = V::load(side.z + k);
+      const V bound = bounds_of(qp, k, m, kind);
+      const V distance = bound - sign(kind) * value;
+      const V dt = select(exists, distance - t, V(0.0));
+      const V dz = select(exists, (mu - z * distance) / t, V(0.0));
+      dt.store(side.dt + k);
+      dz.store(side.dz + k);
+      select(exists, bound - t, V(0.0)).store(side.miss + k);
+      primal = max(primal, -dt / t);
+      dual = max(dual, select(exists, -dz / z, V(0.0)));
     });
-    return {std::min(1.0, fraction / std::max(primal, 1e-30)),
-            std::min(1.0, fraction / std::max(dual, 1e-30))};
+    return {std::min(1.0, fraction / std::max(largest(primal), 1e-30)),
+            std::min(1.0, fraction / std::max(largest(dual), 1e-30))};
   }
   /// Slope of the barriers along the direction.
   [[nodiscard]] double slope(double mu) const noexcept {
-    double sum = 0.0;
-    each([&](std::size_t, std::size_t, Kind, const Side& side) { sum -= mu * side.dt / side.t; });
-    return sum;
+    V total(0.0);
+    each([&](std::size_t, Kind, const Side& side, std::size_t k, const auto&) {
+      total -= V::load(side.dt + k) / V::load(side.t + k);
+    });
+    return mu * sum(total);
   }
   /// Miss and barriers at `length` of the direction: bounds are linear.
   void measure(double length, double mu, double& miss, double& cost) noexcept {
-    each([&](std::size_t, std::size_t, Kind, Side& side) {
-      side.at = length > 0.0 ? side.t + length * side.dt : side.t;
-      miss += (1.0 - length) * std::fabs(side.miss);
-      cost -= mu * log(side.at);
+    V misses(0.0);
+    V logs(0.0);
+    each([&](std::size_t, Kind, Side& side, std::size_t k, const auto&) {
+      V at = V::load(side.t + k);
+      if (length > 0.0) at += length * V::load(side.dt + k);
+      at.store(side.at + k);
+      misses += abs(V::load(side.miss + k));
+      logs += log(at);
     });
+    miss += (1.0 - length) * sum(misses);
+    cost -= mu * sum(logs);
   }
-  /// The same where input m of stage k moves by `moved(k, m)`.
-  template <class Moved>
-  void measure_at(const Solver& qp, double mu, const Moved& moved, double& miss, double& cost) noexcept {
-    each([&](std::size_t k, std::size_t m, Kind kind, Side& side) {
-      double value = moved(k, m);
-      if (is_rate(kind)) value -= moved(k - 1, m);
-      const double distance = bound_of(qp, k, m, kind) - sign(kind) * value;
-      side.at = std::max(distance, 1e-3 * side.t);
-      miss += std::fabs(distance - side.at);
-      cost -= mu * log(side.at);
+  /// The same at another point than the step's, from where the bounds in `qp` are of.
+  template <class Point>
+  void measure_at(const Solver& qp, double mu, const Point& point, const Point& from, double& miss,
+                  double& cost) noexcept {
+    V misses(0.0);
+    V logs(0.0);
+    each([&](std::size_t m, Kind kind, Side& side, std::size_t k, const auto& exists) {
+      V moved = V::load(point.u[m] + k) - V::load(from.u[m] + k);
+      if (is_rate(kind)) {
+        const std::size_t p = Solver::rate_state(m);
+        moved -= V::load(point.x[p] + k) - V::load(from.x[p] + k);
+      }
+      const V distance = bounds_of(qp, k, m, kind) - sign(kind) * moved;
+      const V at = select(exists, max(distance, 1e-3 * V::load(side.t + k)), V(1.0));
+      at.store(side.at + k);
+      misses += select(exists, abs(distance - at), V(0.0));
+      logs += log(at);
     });
+    miss += sum(misses);
+    cost -= mu * sum(logs);
   }
   /// To where the last measure() was; multipliers by `dual_length` of their direction.
   void move(double dual_length, double mu) noexcept {
     constexpr double kFar = 1e10;
-    each([&](std::size_t, std::size_t, Kind, Side& side) {
-      side.t = side.at;
-      side.z += dual_length * side.dz;
-      side.z = std::min(std::max(side.z, mu / (kFar * side.t)), kFar * mu / side.t);
+    each([&](std::size_t, Kind, Side& side, std::size_t k, const auto& exists) {
+      const V t = V::load(side.at + k);
+      const V z = V::load(side.z + k) + dual_length * V::load(side.dz + k);
+      t.store(side.t + k);
+      select(exists, min(max(z, mu / (kFar * t)), kFar * mu / t), V(0.0)).store(side.z + k);
     });
-  }
-  /// `u` cut to a share of the way to its own bounds, from where it moved 0.
-  [[nodiscard]] double cut(const Solver& qp, std::size_t k, std::size_t m, double moved,
-                           double share) const noexcept {
-    return std::min(std::max(moved, share * qp.lq.low[m][k]), share * qp.lq.high[m][k]);
   }
 
   /// Bounds at a thousandth of their width or less become the working set of `qp`.
@@ -179,45 +199,58 @@ class BoundBarrier {
       for (std::size_t m = 0; m < kNu; ++m) {
         if (!has_width(qp, k, m)) continue;
         const auto is_active = [&](Kind kind) {
-          const Side& side = side_[k][m][kind];
-          const Side& other = side_[k][m][kind ^ 1U];
-          return side.exists && side.t < kActive * (other.exists ? side.t + other.t : 1.0);
+          const Side& side = side_[m][kind];
+          const Side& other = side_[m][kind ^ 1U];
+          return side.exists[k] != 0.0 &&
+                 side.t[k] < kActive * (other.exists[k] != 0.0 ? side.t[k] + other.t[k] : 1.0);
         };
         const Hold own = is_active(kOwnHigh) ? Hold::kHigh : (is_active(kOwnLow) ? Hold::kLow : Hold::kFree);
         Hold tie = Hold::kFree;
-        if (is_active(kRateHigh)) tie = Hold::kRateHigh;
-        if (is_active(kRateLow)) tie = Hold::kRateLow;
+        if constexpr (Solver::kHasRates) {
+          if (is_active(kRateHigh)) tie = Hold::kRateHigh;
+          if (is_active(kRateLow)) tie = Hold::kRateLow;
+        }
         RateSet<kNu>(qp.hold, m).set(k, own, tie);
       }
     }
   }
 
  private:
+  static constexpr std::size_t kStride = padded_stages(Capacity);
   static constexpr double kPush = 1e-2;  ///< of the width
   static constexpr double kWide = 1e2;
-  enum Kind : std::size_t { kOwnLow, kOwnHigh, kRateLow, kRateHigh, kKinds };
-  struct Side {
-    double t = 1.0, z = 1.0;
-    double dt = 0.0, dz = 0.0;
-    double at = 1.0;  ///< slack of a trial
-    double miss = 0.0;
-    bool exists = false;
+  enum Kind : std::size_t { kOwnLow, kOwnHigh, kRateLow, kRateHigh, kMostKinds };
+  static constexpr std::size_t kKinds = Solver::kHasRates ? kMostKinds : kRateLow;
+  /// One bound of one input, stage after stage.
+  struct alignas(64) Side {
+    double t[kStride]{}, z[kStride]{};
+    double dt[kStride]{}, dz[kStride]{};
+    double at[kStride]{};  ///< slack of a trial
+    double miss[kStride]{};
+    double exists[kStride]{};  ///< 1, else 0
   };
   static constexpr bool is_rate(Kind kind) noexcept { return kind == kRateLow || kind == kRateHigh; }
   static constexpr double sign(Kind kind) noexcept {
     return kind == kOwnHigh || kind == kRateHigh ? 1.0 : -1.0;
   }
-  static double bound_of(const Solver& qp, std::size_t k, std::size_t m, Kind kind) noexcept {
+  /// How far the bound is in its direction, of the stages from k on.
+  static const double* bound_at(const Solver& qp, std::size_t k, std::size_t m, Kind kind) noexcept {
     switch (kind) {
       case kOwnLow:
-        return -qp.lq.low[m][k];
+        return qp.lq.low[m] + k;
       case kOwnHigh:
-        return qp.lq.high[m][k];
+        return qp.lq.high[m] + k;
       case kRateLow:
-        return -qp.lq.rate_low[m][k];
+        return qp.lq.rate_low[m] + k;
       default:
-        return qp.lq.rate_high[m][k];
+        return qp.lq.rate_high[m] + k;
     }
+  }
+  static double bound_of(const Solver& qp, std::size_t k, std::size_t m, Kind kind) noexcept {
+    return sign(kind) * *bound_at(qp, k, m, kind);
+  }
+  static V bounds_of(const Solver& qp, std::size_t k, std::size_t m, Kind kind) noexcept {
+    return sign(kind) * V::load(bound_at(qp, k, m, kind));
   }
   static bool has_width(const Solver& qp, std::size_t k, std::size_t m) noexcept {
     return qp.lq.high[m][k] > qp.lq.low[m][k];
@@ -226,13 +259,14 @@ class BoundBarrier {
     if (is_rate(kind) && !Solver::has_rate(m)) return false;
     return has_width(qp, k, m) && std::isfinite(bound_of(qp, k, m, kind));
   }
+  /// Calls visit(input, kind, side, stage, which of the eight from it on exist).
   template <class Self, class Visit>
   static void visit_all(Self& self, const Visit& visit) noexcept {
-    for (std::size_t k = 0; k < self.horizon_; ++k) {
-      for (std::size_t m = 0; m < kNu; ++m) {
-        for (std::size_t n = 0; n < (Solver::kHasRates ? kKinds : kRateLow); ++n) {
-          if (self.side_[k][m][n].exists) visit(k, m, static_cast<Kind>(n), self.side_[k][m][n]);
-        }
+    for (std::size_t m = 0; m < kNu; ++m) {
+      for (std::size_t n = 0; n < kKinds; ++n) {
+        auto& side = self.side_[m][n];
+        for (std::size_t k = 0; k < self.horizon_; k += 8)
+          visit(m, static_cast<Kind>(n), side, k, V::load(side.exists + k) > V(0.0));
       }
     }
   }
@@ -245,8 +279,9 @@ class BoundBarrier {
     visit_all(*this, visit);
   }
 
-  Side side_[Lq::kStages][kNu][kKinds]{};
+  Side side_[kNu][kKinds]{};
   std::size_t horizon_ = 0;
+  int count_ = 0;
 };
 
 }  // namespace chicane::solver

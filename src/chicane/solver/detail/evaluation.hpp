@@ -72,6 +72,49 @@ class Evaluation {
     return to_array<One>(problem.dynamics(static_cast<int>(k), x, u));
   }
 
+  /// One stage, or one in each lane, without derivatives: what a line search needs.
+  template <class T>
+  struct ValuesOf {
+    T cost;  ///< ½‖r‖²
+    std::array<T, kNc> constraint;
+    std::array<T, kNx> next;
+  };
+  using Values = ValuesOf<V>;
+  template <class Point>
+  static Values values(const P& problem, const Point& t, std::size_t k0) noexcept {
+    if constexpr (kIsStructured || kTakesLanes) {
+      std::array<V, kNx> x;
+      std::array<V, kNu> u;
+      for (std::size_t i = 0; i < x.size(); ++i) x[i] = V::load(t.x[i] + k0);
+      for (std::size_t m = 0; m < u.size(); ++m) u[m] = V::load(t.u[m] + k0);
+      return values_of<V>(problem, StageLanes<V>{static_cast<int>(k0)}, x, u);
+    } else {
+      alignas(64) double numbers[1 + kNc + kNx][8] = {};
+      for (std::size_t lane = 0; lane < 8 && k0 + lane < t.horizon; ++lane) {
+        const auto one = values_of<One>(problem, static_cast<int>(k0 + lane),
+                                        t.template state<One>(k0 + lane), t.template input<One>(k0 + lane));
+        std::size_t at = 0;
+        numbers[at++][lane] = number(one.cost);
+        for (const One& c : one.constraint) numbers[at++][lane] = number(c);
+        for (const One& next : one.next) numbers[at++][lane] = number(next);
+      }
+      Values result;
+      std::size_t at = 0;
+      result.cost = V::load(numbers[at++]);
+      for (V& c : result.constraint) c = V::load(numbers[at++]);
+      for (V& next : result.next) next = V::load(numbers[at++]);
+      return result;
+    }
+  }
+  /// ½‖r‖² of the end.
+  template <class Point>
+  static double end_cost(const P& problem, const Point& t) noexcept {
+    double sum = 0.0;
+    for (const One& r : to_array<One>(problem.terminal_residual(t.template state<One>(t.horizon))))
+      sum += 0.5 * number(r) * number(r);
+    return sum;
+  }
+
   /// Largest violation of a soft constraint along `t`; 0 when all are kept.
   template <class Point>
   static double violation([[maybe_unused]] const P& problem, [[maybe_unused]] const Point& t) noexcept {
@@ -189,6 +232,16 @@ class Evaluation {
       if constexpr (kNc > 0) put(problem.constraint(k, x, u), begin, all.constraint);
     });
     return all;
+  }
+
+  template <class T, class K>
+  static ValuesOf<T> values_of(const P& problem, K k, const std::array<T, kNx>& x,
+                               const std::array<T, kNu>& u) noexcept {
+    ValuesOf<T> values{T(0.0), {}, to_array<T>(problem.dynamics(k, x, u))};
+    for (const T& r : to_array<T>(problem.residual(k, x, u))) values.cost += r * r;
+    values.cost = 0.5 * values.cost;
+    if constexpr (kNc > 0) values.constraint = to_array<T>(problem.constraint(k, x, u));
+    return values;
   }
 
   template <int Order, class K, class X, class U>

@@ -36,10 +36,11 @@ class FilterMethod {
   static constexpr std::size_t kNc = P::kNc;
   static constexpr std::size_t kNz = kNx + kNu;
   using Evaluate = Evaluation<P, Arch>;
+  using V = Stages<Arch>;
   using Point = Iterate<kNx, kNu, Capacity>;
   using Lq = LqSolver<Arch, ProblemPattern<P>, Capacity>;
   using Layout = typename Lq::Layout;
-  using Bounds = BoundBarrier<Lq, Capacity>;
+  using Bounds = BoundBarrier<Lq, Capacity, Arch>;
   using Slacks = Barrier<P, Capacity, Arch>;
   using Look = Linearisation<P, Capacity, Arch>;
   enum class Outcome {
@@ -76,8 +77,19 @@ class FilterMethod {
     is_fresh_ = true;
     last_shift_ = forced_shift_ = 0.0;
     failures_ = simulations_ = 0;
+    stops_at_barriers_ = false;
     candidate_ = t;
   }
+  /// After start(): turn() returns kSolved at the solution of each barrier's problem.
+  void stop_at_barriers() noexcept { stops_at_barriers_ = true; }
+  /// Goes on from there with the next barrier; the problem may have changed, with `centre` also the prices of
+  /// soft constraints.
+  void go_on(Slacks& slacks, bool centre) noexcept {
+    lower_barrier(slacks);
+    is_fresh_ = centre;
+  }
+  [[nodiscard]] double mu() const noexcept { return mu_; }
+  [[nodiscard]] bool is_at_last_barrier() const noexcept { return mu_ <= final_mu_; }
   /// The working set of the present point; what is needed to go on should that not be enough.
   void hand_over(const Look& now, Lq& lq) noexcept {
     bounds_.choose_working_set(lq);
@@ -106,9 +118,9 @@ class FilterMethod {
     if (are_sides_new_) bounds_.start(lq, t.horizon, mu_);
     are_sides_new_ = false;
     const double error = residual(now, lq, t, report);
-    if (error <= kSolvedAt * mu_) {
+    if (error <= (stops_at_barriers_ ? 1.0 : kSolvedAt) * mu_) {
       candidate_ = t;
-      if (mu_ <= final_mu_) return Outcome::kSolved;
+      if (mu_ <= final_mu_ || stops_at_barriers_) return Outcome::kSolved;
       lower_barrier(slacks);
       look(problem, now, lq, slacks, t, report);
     }
@@ -239,7 +251,7 @@ class FilterMethod {
                  const Deadline& deadline) noexcept {
     constexpr int kPatience = 4;
     const double fraction = std::max(0.99, 1.0 - mu_ / unit_);
-    const StepLengths own = bounds_.find(lq, mu_, fraction);
+    const StepLengths own = bounds_.find(lq, step_, mu_, fraction);
     const StepLengths soft = soft_.find(problem, slacks, step_, fraction);
     const double dual = std::min(own.dual, soft.dual);
     const double slope = slope_along(lq, t.horizon);
@@ -306,37 +318,25 @@ class FilterMethod {
   /// `from`, whose bounds are in `lq`: slacks of bounds as they are.
   Merit measure(const P& problem, const Slacks& slacks, const Point& point, double length,
                 const Lq* lq = nullptr, const Point* from = nullptr) noexcept {
-    using One = typename Evaluate::One;
-    Merit merit;
-    for (std::size_t k = 0; k < point.horizon; ++k) {
-      const auto x = point.template state<One>(k);
-      const auto u = point.template input<One>(k);
-      merit.cost += half_square(problem.residual(static_cast<int>(k), x, u));
-      if constexpr (kNc > 0) {
-        const auto values = to_array<One>(problem.constraint(static_cast<int>(k), x, u));
-        for (std::size_t c = 0; c < kNc; ++c)
-          soft_.measure(price_of(problem, c), slacks, c, k, Evaluate::number(values[c]), length, merit.miss,
-                        merit.cost);
-      }
-      const auto next = Evaluate::next(problem, k, x, u);
+    V cost(0.0);
+    V miss(0.0);
+    for (std::size_t k = 0; k < point.horizon; k += 8) {
+      const auto live =
+          stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(point.horizon));
+      const auto values = Evaluate::values(problem, point, k);
+      cost += select(live, values.cost, V(0.0));
+      for (std::size_t c = 0; c < kNc; ++c)
+        soft_.measure(price_of(problem, c), slacks, c, k, values.constraint[c], length, live, miss, cost);
       for (std::size_t i = 0; i < kNx; ++i)
-        merit.miss += std::fabs(Evaluate::number(next[i]) - point.x[i][k + 1]);
+        miss += select(live, abs(values.next[i] - V::load_unaligned(point.x[i] + k + 1)), V(0.0));
     }
-    merit.cost += half_square(problem.terminal_residual(point.template state<One>(point.horizon)));
+    Merit merit{sum(miss), sum(cost) + Evaluate::end_cost(problem, point)};
     if (from == nullptr) {
       bounds_.measure(length, mu_, merit.miss, merit.cost);
     } else {
-      const auto moved = [&](std::size_t k, std::size_t m) { return point.u[m][k] - from->u[m][k]; };
-      bounds_.measure_at(*lq, mu_, moved, merit.miss, merit.cost);
+      bounds_.measure_at(*lq, mu_, point, *from, merit.miss, merit.cost);
     }
     return merit;
-  }
-  template <class Row>
-  static double half_square(const Row& row) noexcept {
-    double sum = 0.0;
-    for (const auto& r : to_array<typename Evaluate::One>(row))
-      sum += 0.5 * Evaluate::number(r) * Evaluate::number(r);
-    return sum;
   }
 
   // ---- when no step is good
@@ -421,6 +421,7 @@ class FilterMethod {
   bool is_fresh_ = true;        ///< the slacks of soft constraints go to their central path
   bool is_new_barrier_ = true;  ///< the filter is of another problem
   bool are_sides_new_ = true;   ///< the slacks of bounds do not belong to the present point
+  bool stops_at_barriers_ = false;
   int failures_ = 0;
   int simulations_ = 0;
 };

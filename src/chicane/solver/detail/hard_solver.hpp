@@ -108,6 +108,7 @@ class OcpSolver<P, Capacity, Arch> {
     kept_miss_ = std::numeric_limits<double>::infinity();
     start(problem, x0, trajectory);
     int left = options_.max_iterations;
+    bool has_begun = prices_.is_known;
     bool may_start_again = !prices_.is_known;
     int idle = 0;
     bool is_first = true;
@@ -115,8 +116,10 @@ class OcpSolver<P, Capacity, Arch> {
     double best = std::numeric_limits<double>::infinity();
     const auto is_spent = [&] { return left <= 0 || deadline.spent() || report.rounds >= kMostRounds; };
     for (;;) {
-      const bool converged = round(x0, trajectory, deadline, left, report);
-      const Misses now = measure(problem, trajectory, &report);
+      const bool converged = has_begun ? round(x0, trajectory, deadline, left, report)
+                                       : first_round(x0, trajectory, deadline, left, report);
+      has_begun = true;
+      Misses now = measure(problem, trajectory, &report);
       if (report.status == SolveStatus::kNotFinite) return report;
       update(now, is_first ? nullptr : &before, trajectory.horizon);
       if (converged && now.worst() <= options_.tolerance) return finish(report.status, now, report);
@@ -130,8 +133,7 @@ class OcpSolver<P, Capacity, Arch> {
         may_start_again = false;
         kept_ = trajectory;
         kept_miss_ = now.worst();
-        trajectory = guess_;
-        start_with_weights(trajectory.horizon, kHeavy);
+        begin_again(trajectory, kHeavy);
         is_first = true;
       } else if (take_better(now.worst(), trajectory); !converged) {
         break;
@@ -145,9 +147,76 @@ class OcpSolver<P, Capacity, Arch> {
       best = is_first ? std::numeric_limits<double>::infinity() : before.worst();
     }
     const bool is_replaced = take_better(measure(problem, trajectory, nullptr).worst(), trajectory);
-    const Misses now = measure(problem, trajectory, &report);
+    Misses now = measure(problem, trajectory, &report);
+    for (std::size_t n = kNeh; n < kEnd; ++n) count_distance(now, n);
     const bool is_close = !is_replaced && usable(report.status) && now.worst() <= options_.loose_tolerance;
-    return finish(is_close ? SolveStatus::kBudgetSpent : SolveStatus::kStalled, now, report);
+    if (is_close) return finish(SolveStatus::kBudgetSpent, now, report);
+    if (take_guess(problem, x0, now, trajectory, report)) now = measure(problem, trajectory, &report);
+    return finish(SolveStatus::kStalled, now, report);
+  }
+
+  /// Full steps; where they lose their way, multipliers follow the barrier; where that gets nowhere, either,
+  /// a solve like any other.
+  bool first_round(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
+                   HardReport& report) noexcept {
+    if constexpr (has_filter_method<P>()) {
+      if (options_.may_start_short) {
+        inner_.use_full_steps_only(true);
+        const bool converged = round(x0, trajectory, deadline, left, report);
+        inner_.use_full_steps_only(false);
+        if (converged || left <= 0 || report.status == SolveStatus::kNotFinite) return converged;
+        begin_again(trajectory, 1.0);
+        if (!track(x0, trajectory, deadline, left, report)) begin_again(trajectory, 1.0);
+      }
+    }
+    return round(x0, trajectory, deadline, left, report);
+  }
+  /// From the guess, with the first weights times `factor`.
+  void begin_again(Trajectory& trajectory, double factor) noexcept {
+    trajectory = guess_;
+    start_with_weights(trajectory.horizon, factor);
+  }
+  /// Follows the filter method's barrier down, and brings multipliers, weights and prices up to date at the
+  /// solution of each barrier's problem. True when it has got to the end, in a fifth of the turns.
+  bool track(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
+             HardReport& report) noexcept {
+    if (!inner_.begin_path(problem_, x0, trajectory)) return false;
+    int most = std::min(left, options_.max_iterations / 5);
+    Misses before;
+    for (bool is_first = true;; is_first = false) {
+      SolveReport seen;
+      const bool is_solved = inner_.follow_path(problem_, trajectory, deadline, most, seen);
+      report.iterations += seen.iterations;
+      report.sweeps += seen.sweeps;
+      ++report.rounds;
+      left -= seen.iterations;
+      most -= seen.iterations;
+      if (!is_solved) return false;
+      Misses now = measure(*problem_.problem, trajectory, nullptr);
+      can_go_on_ = true;
+      update(now, is_first ? nullptr : &before, trajectory.horizon, inner_.path_barrier());
+      if (inner_.is_path_done()) break;
+      inner_.lower_path(!can_go_on_);
+      before = now;
+    }
+    inner_.end_path();
+    return can_go_on_ = true;
+  }
+
+  /// The guess, simulated, if it misses less than `now` and costs less, too: true then.
+  bool take_guess(const P& problem, const State& x0, const Misses& now, Trajectory& trajectory,
+                  HardReport& report) noexcept {
+    if (!roll_out(problem, x0, guess_)) return false;
+    const Misses guess = measure(problem, guess_, nullptr);
+    if (!(guess.worst() < now.worst() && guess.cost < now.cost)) return false;
+    trajectory = guess_;
+    inner_.allow_iterations(0);
+    inner_.start_from_states(false);
+    const SolveReport seen = inner_.solve(problem_, x0, trajectory);
+    report.stationarity = seen.stationarity;
+    report.defect = seen.defect;
+    report.complementarity = seen.complementarity;
+    return true;
   }
 
   /// The point that the first weights led to, if it misses less than `miss`: true then.
@@ -210,8 +279,9 @@ class OcpSolver<P, Capacity, Arch> {
     return std::isfinite(weight) ? std::min(std::max(weight, kLeastWeight), kMostFirstWeight) : 1.0;
   }
 
-  /// y ← y + ρ h; a weight or price whose row has not come down enough rises (eq. 39, 40).
-  void update(const Misses& now, const Misses* before, int horizon) noexcept {
+  /// y ← y + ρ h; a weight or price whose row has not come down enough rises (eq. 39, 40). `mu`: the barrier,
+  /// which leaves soft constraints a violation of mu over their price.
+  void update(Misses& now, const Misses* before, int horizon, double mu = 0.0) noexcept {
     constexpr double kEnough = 0.1;
     constexpr double kRise = 10.0;
     const auto rises = [&](double miss, double last) {
@@ -231,19 +301,24 @@ class OcpSolver<P, Capacity, Arch> {
       }
     }
     for (std::size_t n = 0; n < kEnd; ++n) {
-      const double share =
-          raise(problem_.terminal_weight[n], now.terminal[n], before != nullptr ? before->terminal[n] : 0.0);
       double& shift = problem_.terminal_shift[n];
       shift += terminal_[n];
       if (n >= kNeh) shift = std::max(0.0, shift);
-      shift *= share;
+      count_distance(now, n);
+      shift *=
+          raise(problem_.terminal_weight[n], now.terminal[n], before != nullptr ? before->terminal[n] : 0.0);
     }
     for (std::size_t c = 0; c < kNc; ++c) {
-      if (now.constraint[c] <= options_.tolerance) continue;
+      const double price = std::max(1e-12, price_of(problem_, c).linear);
+      if (now.constraint[c] <= std::max(options_.tolerance, 10.0 * mu / price)) continue;
       problem_.price_factor[c] *= kRise;
       can_go_on_ = false;
     }
     keep_prices(horizon);
+  }
+  /// An inequality whose multiplier is not zero has to hold with equality: its distance counts as a miss.
+  void count_distance(Misses& misses, std::size_t n) const noexcept {
+    if (problem_.terminal_shift[n] > 0.0) misses.terminal[n] = std::fabs(terminal_[n]);
   }
   void keep_prices(int horizon) noexcept {
     prices_.is_known = true;
@@ -274,51 +349,56 @@ class OcpSolver<P, Capacity, Arch> {
   // ---- what cannot hold
 
   /// Minimises the misses with ever less of the cost (eq. 41). True when they have a minimum above zero that
-  /// does not depend on how much. Else weights and multipliers are those of the point that was found.
+  /// does not depend on how much, nor on how steep they are. Else weights and multipliers are those of the
+  /// point that was found.
   bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
                      int& left, HardReport& report) noexcept {
-    constexpr double kShare = 1e-5, kLess = 1e-3;
+    constexpr double kShare = 1e-5, kLess = 1e-3, kFiner = 1e4;
     const auto factors = problem_.price_factor;
     const double unit = std::max(options_.tolerance, measure(problem, trajectory, nullptr).worst());
+    double factor = 1.0;
     double share = kShare / unit_;
     double last = std::numeric_limits<double>::infinity();
     for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
     problem_.terminal_shift.fill(0.0);
-    for (int turn = 0; turn < 2; ++turn) {
-      if (turn > 0) share *= kLess;
-      weigh_misses(problem, share, unit);
+    for (int turn = 0; turn < 3; ++turn) {
+      if (turn == 1) share *= kLess;
+      if (turn == 2) factor = kFiner;
+      weigh_misses(problem, share, unit, factor);
       can_go_on_ = false;
       const bool converged = round(x0, trajectory, deadline, left, report);
       const double worst = measure(problem, trajectory, &report).worst();
-      const bool is_minimum = turn > 0 && converged && worst > options_.tolerance && worst > 0.5 * last;
+      const bool is_minimum = turn > 1 && converged && worst > options_.tolerance && worst > 0.5 * last;
       last = worst;
       if (is_minimum) return true;
       if (!converged || worst <= options_.tolerance || left <= 0) break;
     }
     report.status = SolveStatus::kStalled;  // it converged, but not with the whole cost
     can_go_on_ = false;
-    problem_.cost_root = 1.0;  // of the same point: all weights by the share
+    problem_.cost_root = 1.0;
     problem_.price_factor = factors;
-    const double weight = std::min(1.0 / (share * unit * unit), kMostWeight * unit_);
+    const double multiplier = factor / (share * unit * unit);  // times a miss: of the same point
+    const double weight = std::min(multiplier, kHeavy * unit_ / (0.5 * unit * unit));
     for (std::size_t n = 0; n < kNh; ++n) {
       problem_.equality_weight[n].set(weight);
       for (std::size_t k = 0; k < static_cast<std::size_t>(trajectory.horizon); ++k)
-        problem_.equality_shift[n][k] = equality_[n][k];
+        problem_.equality_shift[n][k] = multiplier / weight * equality_[n][k];
     }
     for (std::size_t n = 0; n < kEnd; ++n) {
       problem_.terminal_weight[n].set(weight);
-      problem_.terminal_shift[n] = n < kNeh ? terminal_[n] : std::max(0.0, terminal_[n]);
+      problem_.terminal_shift[n] =
+          multiplier / weight * (n < kNeh ? terminal_[n] : std::max(0.0, terminal_[n]));
     }
     return false;
   }
-  /// The cost by `share`, misses in multiples of `unit`: what is small counts, too.
-  void weigh_misses(const P& problem, double share, double unit) noexcept {
+  /// The cost by `share`, misses in multiples of `unit`, by `factor`: what is small counts, too.
+  void weigh_misses(const P& problem, double share, double unit, double factor) noexcept {
     problem_.cost_root = std::sqrt(share);
-    for (auto& weight : problem_.equality_weight) weight.set(1.0 / (unit * unit));
-    for (auto& weight : problem_.terminal_weight) weight.set(1.0 / (unit * unit));
+    for (auto& weight : problem_.equality_weight) weight.set(factor / (unit * unit));
+    for (auto& weight : problem_.terminal_weight) weight.set(factor / (unit * unit));
     for (std::size_t c = 0; c < kNc; ++c)
       problem_.price_factor[c] =
-          is_hard(problem, c) ? 1.0 / (unit * std::max(1e-12, price_of(problem, c).linear)) : share;
+          is_hard(problem, c) ? factor / (unit * std::max(1e-12, price_of(problem, c).linear)) : share;
   }
 
   // ---- values

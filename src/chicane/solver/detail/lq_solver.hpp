@@ -65,7 +65,8 @@ class LqSolver {
     return choose ? sweep(horizon, shift, std::true_type{}, std::false_type{})
                   : sweep(horizon, shift, std::false_type{}, std::false_type{});
   }
-  /// The same with `shift` added to the curvature of all states as well, those of the horizon's end included.
+  /// The same with `shift` added to the curvature of all states as well, those of the horizon's end included;
+  /// ends at the first input block that is indefinite.
   double backward_shifted(std::size_t horizon, double shift) noexcept {
     std::copy(&lq.terminal[0][0], &lq.terminal[0][0] + (kNx + 1) * kLanes, &value_[horizon][0][0]);
     for (std::size_t i = 0; i < kNx; ++i) value_[horizon][i][i] += shift;
@@ -167,6 +168,7 @@ class LqSolver {
     double largest = 0.0;
     for (std::size_t k = from; k-- > 0;) {
       eliminate(k, P, shift, choose, largest);
+      if (shift_states && largest > 0.0) return largest;  // not convex: to be shifted more
       if constexpr (!Layout::is_large()) {
         if (k % kSymmetryPeriod == 0) {
           if constexpr (kIsCompact) Algebra::make_symmetric_apart(P);

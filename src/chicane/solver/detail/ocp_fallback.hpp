@@ -55,6 +55,33 @@ bool OcpSolver<P, Capacity, Arch>::filter_turn(const P& problem, const Deadline&
   return true;
 }
 
+template <OcpProblem P, int Capacity, class Arch>
+bool OcpSolver<P, Capacity, Arch>::begin_path(const P& problem, const State& x0,
+                                              const Trajectory& trajectory) noexcept {
+  SolveReport unused;
+  if (!start(problem, x0, trajectory) || !begin_filter(problem, trajectory, unused)) return false;
+  filter_.stop_at_barriers();
+  return true;
+}
+template <OcpProblem P, int Capacity, class Arch>
+bool OcpSolver<P, Capacity, Arch>::follow_path(const P& problem, Trajectory& trajectory,
+                                               const Deadline& deadline, int most,
+                                               SolveReport& report) noexcept {
+  using Outcome = typename Filter::Outcome;
+  for (; report.iterations < most; ++report.iterations) {
+    const Outcome outcome = filter_.turn(problem, now_, lq_, barrier_, t_, deadline, report);
+    if (outcome == Outcome::kGoing) continue;
+    if (outcome == Outcome::kSolved) t_.write(trajectory);
+    return outcome == Outcome::kSolved;
+  }
+  return false;
+}
+template <OcpProblem P, int Capacity, class Arch>
+void OcpSolver<P, Capacity, Arch>::end_path() noexcept {
+  filter_.hand_over(now_, lq_);
+  barrier_.set_mu(std::max(barrier_.mu(), options_.tolerance));
+}
+
 /// Steps have become as short as rounding lets them: the present iterate, whose slacks and prices are known,
 /// is as good as any.
 template <OcpProblem P, int Capacity, class Arch>

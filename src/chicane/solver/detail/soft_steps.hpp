@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "chicane/base/math.hpp"
+#include "chicane/base/math_pack.hpp"
 #include "chicane/solver/detail/barrier.hpp"
 #include "chicane/solver/detail/bound_barrier.hpp"
 #include "chicane/solver/detail/soft_constraint.hpp"
@@ -56,16 +56,24 @@ class SoftSteps {
   /// Slope along the direction of what the slacks cost, less what the stages' gradients have of it.
   [[nodiscard]] double slope() const noexcept { return slope_; }
 
-  /// Miss and cost of constraint c of stage k, which has `value` there, at `length` of the direction.
-  void measure(const SoftPenalty& price, const Slacks& slacks, std::size_t c, std::size_t k, double value,
-               double length, double& miss, double& cost) noexcept {
-    const double s = slacks.violation_slack(c, k) + (length > 0.0 ? length * s_[c][k] : 0.0);
-    double t = slacks.distance_slack(c, k) + (length > 0.0 ? length * t_[c][k] : 0.0);
-    if (length > 0.0 && s - value > t) t = s - value;  // more room costs nothing
-    s_at_[c][k] = s;
-    t_at_[c][k] = t;
-    miss += std::fabs(s - value - t);
-    cost += s * (price.linear + 0.5 * price.quadratic * s) - slacks.mu() * (log(s) + log(t));
+  /// Miss and cost of constraint c of the stages from k on, which has `value` there, at `length` of the
+  /// direction.
+  template <class Mask>
+  void measure(const SoftPenalty& price, const Slacks& slacks, std::size_t c, std::size_t k, const V& value,
+               double length, const Mask& live, V& miss, V& cost) noexcept {
+    const SoftConstraint<V> soft = slacks.load(c, k);
+    V s = soft.s;
+    V t = soft.t;
+    if (length > 0.0) {
+      s += length * V::load(s_[c] + k);
+      t += length * V::load(t_[c] + k);
+      t = select(s - value > t, s - value, t);  // more room costs nothing
+    }
+    s.store(s_at_[c] + k);
+    t.store(t_at_[c] + k);
+    miss += select(live, abs(s - value - t), V(0.0));
+    const V own = s * (price.linear + 0.5 * price.quadratic * s) - slacks.mu() * (log(s) + log(t));
+    cost += select(live, own, V(0.0));
   }
   /// To where the last measure() was; multipliers by `dual_length` of their direction.
   void move(Slacks& slacks, std::size_t horizon, double dual_length) noexcept {
