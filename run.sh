@@ -5,10 +5,18 @@
 #   ./run.sh --laps 1                             options alone mean `drive`
 #   ./run.sh drive --fast --laps 2 --json         any command of `chicane`; stdout carries its results only
 #   ./run.sh bench                                builds the benchmark, too, with Ipopt to compare with
+#   ./run.sh page --out DIR                       writes a page that drives without a program, in the browser alone (WebAssembly)
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 source "$root/tools/install_packages.sh"
 source "$root/tools/build.sh"
+
+if [ "${1:-}" = page ] && [[ " $* " != *' -h '* && " $* " != *' --help '* ]]; then
+  [ "${2:-}" = --out ] && [ -n "${3:-}" ] && [ $# -eq 3 ] || { say "usage: ./run.sh page --out DIR"; exit 2; }
+  mapfile -t node < <(node_packages)
+  install_packages "${run_packages[@]}" "${page_packages[@]}" "${node[@]}"
+  exec "$root/tools/build_page.sh" "$3"
+fi
 
 target=chicane_app
 extra=()

@@ -10,8 +10,10 @@ run_packages=(
 bench_packages=(libeigen3-dev coinor-libipopt-dev liblapack-dev libblas-dev)
 # To build and run the tests, on top of the first.
 test_packages=("${bench_packages[@]}" libgtest-dev libgmock-dev locales python3 groff fish parallel libnlopt-dev)
-# For the slow ones, on top of those.
-slow_test_packages=(openmpi-bin slurm-wlm munge)
+# For a page that drives without a program, on top of the first: 1 GB.
+page_packages=(emscripten)
+# For the slow tests, on top of all of those.
+slow_test_packages=(openmpi-bin slurm-wlm munge "${page_packages[@]}")
 # To run tools/check.sh, on top of those.
 check_packages=(clang-format clang-tidy)
 

@@ -1,8 +1,12 @@
 import { defineConfig } from 'vitest/config';
 
+// CHICANE_REPORT: the page of `chicane report`; CHICANE_PAGE: the page that needs no program (apps/page).
+const { CHICANE_REPORT, CHICANE_PAGE } = process.env;
+
 // The files are embedded in the program: few and small ones. three.js is in a file of its own, loaded when 3D is shown.
 export default defineConfig({
   base: './',
+  define: { __PAGE__: JSON.stringify(CHICANE_PAGE !== undefined) },
   esbuild: { jsx: 'automatic', jsxImportSource: 'preact' },
   build: {
     target: 'es2022',
@@ -10,8 +14,8 @@ export default defineConfig({
     reportCompressedSize: false,
     modulePreload: false,
     chunkSizeWarningLimit: 700,
-    // `chicane report` writes a page with a single script.
-    rollupOptions: process.env.CHICANE_REPORT ? { output: { inlineDynamicImports: true } } : {},
+    // Pages with a single script.
+    rollupOptions: CHICANE_REPORT || CHICANE_PAGE ? { output: { inlineDynamicImports: true } } : {},
   },
   server: {
     // `npm run dev` beside `chicane drive`: the page is Vite's, the data the program's.

@@ -148,6 +148,58 @@ TEST_F(Viewer, IsToldOfTheChangesThatWereBeforeItCame) {
   EXPECT_THAT(*messages[0].bytes, HasSubstr("latency_ms"));
 }
 
+/// What a viewer that comes now is told of changes, by their values.
+std::vector<std::string> changes_known(FakeServer& server, ViewerEndpoint& endpoint, net::ConnectionId id) {
+  net::UpgradeRequest request{.id = id, .target = "/viewer", .may_watch = true};
+  request.subprotocols = {"foxglove.sdk.v1"};
+  EXPECT_TRUE(endpoint.on_upgrade(request).accept);
+  endpoint.on_open(id);
+  server.take();
+  endpoint.on_message(id, subscribe(6, "/chicane/change"), false);
+  std::vector<std::string> known;
+  for (const auto& message : server.take()) {
+    for (const char* value : {"first", "second", "third"}) {
+      if (message.bytes->find(value) != std::string::npos) known.emplace_back(value);
+    }
+  }
+  return known;
+}
+
+TEST_F(Viewer, KeepsTheChangesOfARunThatBeginsAnewAndNoneOfTheOneBefore) {
+  using testing::ElementsAre;
+  Store store;
+  ViewerOptions options;
+  options.parameters = &store;
+  start(std::move(options));
+  telemetry::Frame frame = frame_at(40.0);
+  frame.cycle = 1000;
+  endpoint->publish(frame);
+  server.pass_time();
+  // The run before, its end, and the beginning of the next one within one look.
+  store.changes = {{.cycle = 1001, .time = 40.04, .name = "track", .value = "first"},
+                   {.cycle = 1, .time = 0.04, .name = "track", .value = "second"}};
+  frame.time = 0.08;
+  frame.cycle = 2;
+  endpoint->publish(frame);
+  server.pass_time();
+  EXPECT_THAT(changes_known(server, *endpoint, 2), ElementsAre("second"));
+  // Choices that begin a run are told before its first frame: with it, and looks before it.
+  for (const bool has_frame : {true, false}) {
+    frame.cycle = 500;
+    endpoint->publish(frame);
+    server.pass_time();
+    store.changes = {{.name = "track", .value = "first", .starts_anew = true},
+                     {.name = "car", .value = "third", .starts_anew = true}};
+    frame = frame_at(0.0);
+    if (has_frame) endpoint->publish(frame);
+    server.pass_time();
+    endpoint->publish(frame);
+    server.pass_time();
+    EXPECT_THAT(changes_known(server, *endpoint, has_frame ? 3 : 4), ElementsAre("first", "third"))
+        << has_frame;
+  }
+}
+
 TEST_F(Viewer, LearnsThatARunIsOverAndThatItBeganAnew) {
   start({});
   say(subscribe(5, "/chicane/run"));

@@ -1,8 +1,11 @@
+import type { IWebSocket } from '@foxglove/ws-protocol';
 import { render } from 'preact';
 import { toggleScheme } from './lib/appearance';
 import { addShortcuts, shortcutFor } from './lib/keys';
 import { nextSpeedUnit } from './lib/units';
+import { WorkerLink } from './page/worker_link';
 import { Connection, SUBPROTOCOLS } from './protocol/connection';
+import { answerBy, programPage } from './protocol/program_page';
 import { readSchema } from './protocol/schema';
 import type { Source } from './protocol/source';
 import { begin, isReading, summary, timeline } from './recording/begin';
@@ -33,18 +36,28 @@ let session: string | null = null;
 
 async function loadSchema(): Promise<void> {
   try {
-    const answer = await fetch('schema.json');
-    if (answer.ok) schema.value = readSchema(await answer.json());
+    const answer = await programPage('schema.json');
+    if (answer !== null) schema.value = readSchema(JSON.parse(answer));
   } catch {
     // The banner of the connection shows what is wrong.
   }
 }
 
-function live(): Source {
+/** Opens the connection to the program, or to the worker of a page that needs none. */
+function opener(): () => IWebSocket {
+  if (__PAGE__) {
+    const worker = new WorkerLink((sentence) => (notice.value = sentence));
+    answerBy((path) => worker.get(`/${path}`));
+    return () => worker.open();
+  }
   const url = new URL('viewer', location.href);
   url.search = '?past'; // the frames of the last minutes before the newest
   url.protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
-  return new Connection(() => new WebSocket(url, SUBPROTOCOLS), {
+  return () => new WebSocket(url, SUBPROTOCOLS);
+}
+
+function live(): Source {
+  return new Connection(opener(), {
     open(name) {
       // The program tells of its run from the beginning, whenever the page comes.
       const isOther = name !== session;

@@ -15,21 +15,8 @@ namespace chicane::live {
 namespace {
 
 wire::ViewerServices services(run::RunControls& controls, WhatIf& what_if) {
-  wire::ViewerServices services;
+  wire::ViewerServices services = run_services(controls);
   services.what_if = [&what_if](std::string_view question) { return what_if.ask(question); };
-  services.pause = [&controls](bool is_paused) -> Result<void> {
-    controls.is_paused = is_paused;
-    return {};
-  };
-  services.step = [&controls]() -> Result<void> {
-    if (!controls.is_paused) return fail(ErrorCode::kInvalidArgument, "the run is not paused");
-    ++controls.steps;
-    return {};
-  };
-  services.reset = [&controls]() -> Result<void> {
-    controls.wants_restart = true;
-    return {};
-  };
   return services;
 }
 
@@ -74,7 +61,6 @@ LiveRun::LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop>
                .services = services(controls, what_if_),
                .parameters = &settings_}},
       router_{nullptr, &viewer_},
-      faults_{protocol::fault_controls()},
       builder_{&live_description},
       what_if_{[this](const WhatIfQuestion& question,
                       const recording::BranchHooks& hooks) -> Result<recording::BranchReport> {
@@ -129,7 +115,7 @@ telemetry::RunSummary LiveRun::run(recording::Recorder* recorder, const LiveHook
   journal_.begin(loop_->scenario());
   limit_.search(loop_->track(), loop_->scenario());
   telemetry::RunSummary summary = drive(outputs);
-  tell_end(summary);
+  news_->end(summary);
   if (limit_.is_awaited(summary) && !controls_.wants_stop)
     outputs.say("the limit is still being computed; Ctrl-C does without");
   limit_.compare(summary, controls_.wants_stop);
@@ -138,32 +124,19 @@ telemetry::RunSummary LiveRun::run(recording::Recorder* recorder, const LiveHook
   return summary;
 }
 
-/// Once for each run: a run that is driven on stays over.
-void LiveRun::tell_end(const telemetry::RunSummary& summary) {
-  if (std::exchange(has_told_end_, true)) return;
-  if (summary.completed || summary.laps_wanted == 0) {
-    viewer_.set_end(summary.completed ? "finished" : "stopped",
-                    summary.completed ? "" : "stopped by its operator");
-  } else if (summary.end_reason == "stopped") {
-    viewer_.set_end("stopped", "stopped by its operator");
-  } else {
-    viewer_.set_end("failed", summary.end_reason);
-  }
-}
-
 telemetry::RunSummary LiveRun::drive(RunOutputs& outputs) {
+  news_.emplace(viewer_, [&](const telemetry::Change& change) { outputs.change(change); });
   const run::RealtimeHooks hooks{.on_frame =
                                      [&](const telemetry::Frame& frame) {
-                                       if (frame.begins && frame.cycle == 0) has_told_end_ = false;
                                        limit_.follow(loop_->scenario(), frame);
                                        outputs.frame(frame);
-                                       note_faults(frame, outputs);
+                                       news_->frame(frame);
                                      },
                                  .on_lap = [&](const telemetry::CompletedLap& lap) { outputs.lap(lap); },
                                  .on_change = [&](const telemetry::Change& change) { note(change, outputs); },
                                  .on_over =
                                      [&] {
-                                       if (!has_told_end_) tell_end(loop_->summary());
+                                       if (!news_->has_told_end()) news_->end(loop_->summary());
                                      }};
   for (;;) {
     telemetry::RunSummary summary = run::run_realtime(
@@ -172,26 +145,8 @@ telemetry::RunSummary LiveRun::drive(RunOutputs& outputs) {
   }
 }
 
-/// Faults that began or ended by themselves: no change has been told of them.
-void LiveRun::note_faults(const telemetry::Frame& frame, RunOutputs& outputs) {
-  const std::uint32_t changed = frame.active_faults ^ told_faults_;
-  for (std::size_t i = 0; i < faults_.size() && changed != 0U; ++i) {
-    if ((changed >> i & 1U) == 0U) continue;
-    const bool is_on = (frame.active_faults >> i & 1U) != 0U;
-    note({.cycle = frame.cycle + 1,
-          .time = frame.time,
-          .name = faults_[i].key,
-          .value = is_on ? "true" : "false"},
-         outputs);
-  }
-}
-
 void LiveRun::note(const telemetry::Change& change, RunOutputs& outputs) {
-  for (std::size_t i = 0; i < faults_.size(); ++i) {
-    if (faults_[i].key != change.name.view()) continue;
-    const bool is_on = change.value.view() != "false";
-    told_faults_ = (told_faults_ & ~(1U << i)) | (is_on ? 1U << i : 0U);
-  }
+  news_->change(change);
   outputs.change(change);
 }
 

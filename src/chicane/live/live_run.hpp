@@ -14,6 +14,7 @@
 #include "chicane/live/live_settings.hpp"
 #include "chicane/live/run_builder.hpp"
 #include "chicane/live/run_limit.hpp"
+#include "chicane/live/run_news.hpp"
 #include "chicane/live/run_outputs.hpp"
 #include "chicane/live/what_if.hpp"
 #include "chicane/net/server.hpp"
@@ -72,8 +73,6 @@ class LiveRun {
   LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop> loop, run::RunControls& controls);
   [[nodiscard]] Result<void> open();
   [[nodiscard]] telemetry::RunSummary drive(RunOutputs& outputs);
-  void tell_end(const telemetry::RunSummary& summary);
-  void note_faults(const telemetry::Frame& frame, RunOutputs& outputs);
   void note(const telemetry::Change& change, RunOutputs& outputs);
   [[nodiscard]] bool take_over(RunOutputs& outputs);
   [[nodiscard]] std::optional<Result<void>> built();
@@ -84,9 +83,7 @@ class LiveRun {
   LiveSettings settings_;
   wire::ViewerEndpoint viewer_;
   wire::Router router_;
-  const std::vector<protocol::Control> faults_;
-  std::uint32_t told_faults_ = 0;  ///< bits, as viewers know them
-  bool has_told_end_ = false;
+  std::optional<RunNews> news_;
   std::mutex mutex_;
   std::deque<std::unique_ptr<BuiltRun>> built_;  ///< one for each change that starts anew
   RunBuilder builder_;                           ///< the network thread's

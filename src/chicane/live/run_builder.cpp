@@ -45,17 +45,18 @@ void RunBuilder::work() {
     wish_.reset();
     const std::uint64_t number = newest_;
     lock.unlock();
-    auto built = build(std::move(run));
+    auto built = build(std::move(run), describe_, create_);
     lock.lock();
     if (number == newest_) result_ = std::move(built);
   }
 }
 
-Result<std::unique_ptr<BuiltRun>> RunBuilder::build(ChosenRun run) const {
-  Result<std::unique_ptr<run::ClosedLoop>> loop = create_(run.scenario);
+Result<std::unique_ptr<BuiltRun>> RunBuilder::build(ChosenRun run, const Describe& describe,
+                                                    const Create& create) {
+  Result<std::unique_ptr<run::ClosedLoop>> loop = create(run.scenario);
   if (!loop) return fail(loop.error());
   auto built = std::make_unique<BuiltRun>();
-  built->description = describe_(**loop);
+  built->description = describe(**loop);
   built->recorded = std::make_unique<const recording::RecordedRun>(
       recording::RecordedRun{.run = built->description, .scenario = std::move(run.scenario)});
   built->loop = std::move(*loop);

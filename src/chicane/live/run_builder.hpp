@@ -51,13 +51,18 @@ class RunBuilder {
   RunBuilder(const RunBuilder&) = delete;
   RunBuilder& operator=(const RunBuilder&) = delete;
 
+  /// What it makes, at once.
+  [[nodiscard]] static Result<std::unique_ptr<BuiltRun>> build(
+      ChosenRun run, const Describe& describe, const Create& create = [](const scenario::Scenario& scenario) {
+        return run::ClosedLoop::create(scenario);
+      });
+
   void begin(ChosenRun run);
   /// What became of the newest request, once; none while it is being built, and when there is none.
   [[nodiscard]] std::optional<Result<std::unique_ptr<BuiltRun>>> take();
 
  private:
   void work();
-  [[nodiscard]] Result<std::unique_ptr<BuiltRun>> build(ChosenRun run) const;
 
   Describe describe_;
   Create create_;

@@ -163,14 +163,6 @@ class TreeBuilder final : public YAML::EventHandler {
 
 }  // namespace
 
-std::vector<YamlEntry> YamlNode::entries() const {
-  std::vector<YamlEntry> all;
-  all.reserve(children.size() / 2);
-  for (std::size_t i = 0; is_map() && i + 1 < children.size(); i += 2)
-    all.push_back({*children[i], *children[i + 1]});
-  return all;
-}
-
 Result<YamlTree> parse_yaml(std::string_view text, const std::string& file) {
   if (const Result<void> checked = check_bytes(text, file); !checked) return fail(checked.error());
   const auto refuse = [&](int line, std::string_view what) {

@@ -36,6 +36,14 @@ struct YamlEntry {
   const YamlNode& value;
 };
 
+inline std::vector<YamlEntry> YamlNode::entries() const {
+  std::vector<YamlEntry> all;
+  all.reserve(children.size() / 2);
+  for (std::size_t i = 0; is_map() && i + 1 < children.size(); i += 2)
+    all.push_back({*children[i], *children[i + 1]});
+  return all;
+}
+
 /// The nodes of one document. An alias is the node it stands for: those who walk over a tree count their
 /// steps.
 struct YamlTree {

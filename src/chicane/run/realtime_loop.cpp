@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <thread>
-#include <utility>
 
-#include "chicane/run/lap_planner.hpp"
+#include "chicane/run/live_steps.hpp"
 
 namespace chicane::run {
 namespace {
@@ -50,26 +49,24 @@ class Session {
  public:
   Session(ClosedLoop& loop, const RealtimeOptions& options, RunControls& controls, const RealtimeHooks& hooks)
       : loop_{loop},
-        budget_{options.step_budget.value_or(options.budget_share * loop.scenario().control_period)},
         controls_{controls},
-        hooks_{hooks} {}
+        hooks_{hooks},
+        steps_{loop, options.step_budget.value_or(options.budget_share * loop.scenario().control_period),
+               controls, hooks} {}
 
   void run(bool stay_at_end) {
     pacer_.anchor(loop_.time());
-    while (!controls_.wants_stop && !is_to_start_anew_ && (stay_at_end || !loop_.is_over())) {
-      if (controls_.wants_restart.exchange(false)) {
-        loop_.restart();
-        pacer_.anchor(loop_.time());
-        is_unseen_ = true;
-      }
+    while (!controls_.wants_stop && !steps_.is_to_start_anew() && (stay_at_end || !loop_.is_over())) {
+      if (steps_.restart_if_wanted()) pacer_.anchor(loop_.time());
       if (controls_.is_paused) {
-        finish_cycle();
-        if (is_unseen_ || wait_while_paused()) one_cycle();  // viewers are to see where a run begins
+        steps_.finish_cycle();
+        // Viewers are to see where a run begins.
+        if (steps_.is_unseen() || wait_while_paused()) steps_.one_cycle();
         pacer_.anchor(loop_.time());
         continue;
       }
       const double until = loop_.time() + kNap;
-      while (loop_.time() < until && !loop_.is_over() && !is_to_start_anew_) advance();
+      while (loop_.time() < until && !loop_.is_over() && !steps_.is_to_start_anew()) steps_.advance();
       if (loop_.is_over() && stay_at_end) {
         if (hooks_.on_over) hooks_.on_over();
         loop_.drive_on();
@@ -79,78 +76,24 @@ class Session {
   }
 
  private:
-  /// True when there was a control step.
-  bool advance() {
-    if (loop_.is_control_due()) take_up_changes();
-    if (is_to_start_anew_) return false;
-    const bool is_new = loop_.advance(budget_);
-    tell_lap();
-    if (!is_new) return false;
-    is_unseen_ = false;
-    if (hooks_.on_frame) hooks_.on_frame(loop_.frame());
-    race_by_learned_lap();
-    return true;
-  }
-
-  void race_by_learned_lap() {
-    const auto lap = planner_.follow(loop_.controller(), loop_.scenario(), &loop_.track(), loop_.time());
-    if (!lap) return;
-    loop_.use_line(lap);
-    if (hooks_.on_change) hooks_.on_change(LapPlanner::lap_change(*lap, loop_.cycle(), loop_.time()));
-  }
-
-  void one_cycle() {
-    while (!is_to_start_anew_ && !advance()) {
-    }
-    finish_cycle();
-  }
-
-  /// Physics up to the next control step: that is where a run stands still.
-  void finish_cycle() {
-    while (!loop_.is_control_due()) {
-      loop_.advance();
-      tell_lap();
-    }
-  }
-
-  void tell_lap() {
-    if (const auto lap = loop_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
-  }
-
   /// While paused: waits for a request to go on, to stop or to step. True when one control cycle is to be
   /// done.
   bool wait_while_paused() {
-    take_up_changes();
-    while (controls_.is_paused && !controls_.wants_stop && !controls_.wants_restart && !is_to_start_anew_) {
-      int steps = controls_.steps.load();
-      if (steps > 0 && controls_.steps.compare_exchange_strong(steps, steps - 1)) return true;
+    steps_.take_up_changes();
+    while (controls_.is_paused && !controls_.wants_stop && !controls_.wants_restart &&
+           !steps_.is_to_start_anew()) {
+      if (steps_.take_step()) return true;
       std::this_thread::sleep_for(kPausePoll);
-      take_up_changes();
+      steps_.take_up_changes();
     }
     return false;
   }
 
-  void take_up_changes() {
-    while (const Setting* next = controls_.settings.front()) {
-      is_to_start_anew_ = next->change.starts_anew;
-      if (is_to_start_anew_) return;
-      telemetry::Change change = next->change;
-      change.cycle = loop_.cycle();
-      change.time = loop_.time();
-      loop_.apply(*next);
-      controls_.settings.pop();
-      if (hooks_.on_change) hooks_.on_change(change);
-    }
-  }
-
   ClosedLoop& loop_;
-  double budget_;
   RunControls& controls_;
   const RealtimeHooks& hooks_;
+  LiveSteps steps_;
   Pacer pacer_;
-  LapPlanner planner_{LapPlanner::Clock::kReal};
-  bool is_to_start_anew_ = false;
-  bool is_unseen_ = true;  ///< no frame since it began
 };
 
 }  // namespace

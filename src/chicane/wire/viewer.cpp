@@ -200,9 +200,11 @@ void ViewerEndpoint::schedule() {
 }
 
 void ViewerEndpoint::tick() {
-  tell_changes();
-  note_lap();
   const bool is_new = latest_.take(frame_);
+  const bool begins = is_new && has_frame_ && frame_.cycle < cycle_;
+  if (begins && !std::exchange(has_forgotten_, false)) forget();  // before the changes of the run that begins
+  tell_changes(begins);
+  note_lap(begins);
   if (is_new) note_frame();
   for (auto& [id, client] : clients_) send_kept(id, client);
   if (!is_new) return;
@@ -215,22 +217,26 @@ void ViewerEndpoint::tick() {
 }
 
 /// What was before a run began anew is not of this one.
+void ViewerEndpoint::forget() {
+  memory_.forget();
+  ledger_.restart();
+  if (!options_.run.end.empty()) set_end("", "");
+}
+
 void ViewerEndpoint::note_frame() {
-  if (has_frame_ && frame_.cycle < cycle_) {
-    memory_.forget();
-    ledger_.restart();
-    if (!options_.run.end.empty()) set_end("", "");
-  }
   has_frame_ = true;
   cycle_ = frame_.cycle;
   memory_.add_frame(frame_.time, protocol::ros_topics()[frame_channel()].encode(frame_, options_.run));
 }
 
 /// Changes that the run has taken up go out in order; parameters that have another value, to those who
-/// follow them.
-void ViewerEndpoint::tell_changes() {
+/// follow them. `begins`: the newest frame is of a run that began since the last look; of the changes since
+/// then, only those that are not before it are of that run.
+void ViewerEndpoint::tell_changes(bool begins) {
   if (options_.parameters == nullptr) return;
   for (const telemetry::Change& change : options_.parameters->applied()) {
+    if (begins && change.cycle > frame_.cycle + 1) continue;
+    if (change.starts_anew && !begins && !std::exchange(has_forgotten_, true)) forget();
     ledger_.add(change);
     const std::string payload =
         protocol::encode_change(change.time, change.cycle, change.name.view(), change.value.view());
@@ -265,9 +271,10 @@ void ViewerEndpoint::send_parameters(const std::vector<foxglove::Parameter>& val
 }
 
 /// Keeps the laps of this run for viewers that come later.
-void ViewerEndpoint::note_lap() {
+void ViewerEndpoint::note_lap(bool begins) {
   TimedLap completed;
   if (!latest_lap_.take(completed)) return;
+  if (begins && completed.time > frame_.time) return;  // of the run before
   telemetry::Frame frame;
   frame.completed_lap = completed.lap;
   options_.run.lap_setup = ledger_.setup(completed.time, completed.lap.lap_time);

@@ -101,9 +101,10 @@ class ViewerEndpoint final : public Endpoint {
              std::function<Result<std::string>(std::string_view)> call);
   void schedule();
   void tick();
-  void tell_changes();
+  void forget();
+  void tell_changes(bool begins);
   void send_parameters(const std::vector<protocol::foxglove::Parameter>& values);
-  void note_lap();
+  void note_lap(bool begins);
   void note_frame();
   void send_kept(net::ConnectionId id, Client& client);
   void send_cadence(protocol::Cadence cadence);
@@ -133,7 +134,8 @@ class ViewerEndpoint final : public Endpoint {
   bool has_frame_ = false;
   RunMemory memory_;
   telemetry::LapLedger ledger_;
-  std::uint64_t cycle_ = 0;  ///< of the last frame
+  std::uint64_t cycle_ = 0;     ///< of the last frame
+  bool has_forgotten_ = false;  ///< the next run begins, and its first frame has not come yet
   net::Server* server_ = nullptr;
   std::map<net::ConnectionId, Client> clients_;
   std::map<net::ConnectionId, Client> upgrades_;  ///< between on_upgrade and on_open

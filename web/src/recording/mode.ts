@@ -25,7 +25,7 @@ export function modeOf(answer: unknown): Mode {
 export async function findMode(): Promise<Mode> {
   const text = document.getElementById('chicane-report')?.textContent;
   if (text) return { name: 'report', text };
-  if (location.protocol === 'file:') return { name: 'live' };
+  if (__PAGE__ || location.protocol === 'file:') return { name: 'live' };
   const answer = await fetch('mode.json').catch(() => null);
   return answer?.ok ? modeOf(await answer.json().catch(() => null)) : { name: 'live' };
 }

@@ -1,4 +1,5 @@
 import { effect, signal } from '@preact/signals';
+import { programPage } from '../protocol/program_page';
 import type { SchemaEntry } from '../protocol/schema';
 import type { AskAnswer, Setting } from '../protocol/source';
 import { restartListeners } from './demultiplexer';
@@ -88,8 +89,8 @@ let newest = 0;
 /** Waits for the answer of a question by its number. */
 async function waitFor(id: number, mine: number): Promise<void> {
   while (mine === newest) {
-    const reply = await fetch('what_if.json', { cache: 'no-store' });
-    const state = reply.ok ? readWhatIf(await reply.json()) : null;
+    const reply = await programPage('what_if.json');
+    const state = reply === null ? null : readWhatIf(JSON.parse(reply));
     if (mine !== newest) return;
     if (state?.id !== id) throw new Error('another question took the place of this one');
     if (state.kind === 'failed') throw new Error(state.why);

@@ -1,5 +1,6 @@
 import { useSignalEffect } from '@preact/signals';
 import { fixed, lapTime, plural } from '../lib/format';
+import { HashView } from '../page/hash_view';
 import { bestsOf } from '../state/lap_table';
 import { laps } from '../state/laps';
 import { gapsToLimit, limit } from '../state/limit';
@@ -102,6 +103,7 @@ export function EndView() {
           : ''}
       </p>
       <Results />
+      {__PAGE__ && <HashView />}
       <Buttons />
     </section>
   );

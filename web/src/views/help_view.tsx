@@ -71,10 +71,14 @@ export function HelpView() {
         ))}
       </div>
       <p class="soft">On plots: drag to zoom, double-click to come back. On the map: the wheel zooms.</p>
-      <p class="soft">
-        The data comes over the Foxglove WebSocket protocol. Other viewers connect to <code>{location.host}</code>:
-        Foxglove, Lichtblick, your own scripts.
-      </p>
+      {__PAGE__ ? (
+        <p class="soft">This page needs no program and no network: simulator and controller run in a worker of it.</p>
+      ) : (
+        <p class="soft">
+          The data comes over the Foxglove WebSocket protocol. Other viewers connect to <code>{location.host}</code>:
+          Foxglove, Lichtblick, your own scripts.
+        </p>
+      )}
       <div class="buttons end">
         <button type="button" class="primary" onClick={close}>
           Close

@@ -85,7 +85,7 @@ function Offer() {
             {[...shared.choices].map(([key, value]) => `${key} ${asText(value)}`).join(', ')}, {changes}. Whoever opens
             it with <code>chicane drive</code> running is asked once, and drives the same.
           </p>
-          <Copied id="share-link" label="Link" text={linkTo(shared, location.origin + location.pathname)} />
+          <Copied id="share-link" label="Link" text={linkTo(shared, location.href.replace(/[?#].*/, ''))} />
           <Copied id="share-command" label="Command" text={commandOf(shared)} />
         </>
       )}

@@ -1,6 +1,8 @@
 import { computed, signal } from '@preact/signals';
+import { download } from '../lib/download';
 import { tidy } from '../lib/scale';
 import { nameInWords } from '../lib/words';
+import { programPage } from '../protocol/program_page';
 import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
 import { set } from '../state/operate';
@@ -62,6 +64,12 @@ function isOpenAtFirst(entries: readonly SchemaEntry[]): boolean {
 
 const asText = (value: Setting): string => (typeof value === 'number' ? tidy(value) : String(value));
 
+/** Where no program answers the link. */
+function savePreset(event: Event): void {
+  event.preventDefault();
+  void programPage('preset.yaml').then((text) => text !== null && download('my-preset.yaml', text));
+}
+
 function Changes() {
   const changes = settingChanges.value;
   return (
@@ -81,6 +89,7 @@ function Changes() {
             href="preset.yaml"
             download="my-preset.yaml"
             title="All settings that differ from the defaults, for chicane drive FILE"
+            onClick={__PAGE__ ? savePreset : undefined}
           >
             Save as preset
           </a>

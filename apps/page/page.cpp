@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// The run of a page that needs no program: functions that worker.js calls, in a browser's worker.
+#include <emscripten.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "chicane/live/worker_run.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/run/closed_loop.hpp"
+
+using namespace chicane;
+
+// What worker.js does with a message for the page.
+EM_JS(void, post_to_page, (const char* bytes, int size, bool binary),
+      { Module.postToPage(HEAPU8.slice(bytes, bytes + size), binary); });
+
+namespace {
+
+std::unique_ptr<live::WorkerRun> worker_run;
+std::string answer;  // of the last call that gives a text
+
+const char* tell(std::string text) {
+  answer = std::move(text);
+  return answer.c_str();
+}
+
+std::string_view view(const char* bytes, int size) { return {bytes, static_cast<std::size_t>(size)}; }
+
+}  // namespace
+
+extern "C" {
+
+/// Begins a run as `chicane drive` would. What went wrong; empty when nothing did.
+EMSCRIPTEN_KEEPALIVE const char* page_begin() {
+  const auto scenario = protocol::compose({});
+  if (!scenario) return tell(scenario.error().message);
+  auto run = live::WorkerRun::create(*scenario, [](std::string_view bytes, bool binary) {
+    post_to_page(bytes.data(), static_cast<int>(bytes.size()), binary);
+  });
+  if (!run) return tell(run.error().message);
+  worker_run = std::move(*run);
+  return tell("");
+}
+
+EMSCRIPTEN_KEEPALIVE void page_connect() { worker_run->connect(); }
+
+EMSCRIPTEN_KEEPALIVE void page_receive(const char* bytes, int size, bool binary) {
+  worker_run->receive(view(bytes, size), binary);
+}
+
+EMSCRIPTEN_KEEPALIVE void page_acknowledge(int count) {
+  worker_run->acknowledge(static_cast<std::size_t>(count));
+}
+
+/// Content of a page of the run, such as "/schema.json"; null when there is none.
+EMSCRIPTEN_KEEPALIVE const char* page_get(const char* path) {
+  const std::optional<net::Content> content = worker_run->get(path);
+  if (!content) return nullptr;
+  return tell(content->shared ? *content->shared : content->bytes);
+}
+
+/// Drives to where the run is at `now` [s], for at most `patience` [s] of the clock.
+EMSCRIPTEN_KEEPALIVE void page_advance(double now, double patience) {
+  const double end = emscripten_get_now() + 1e3 * patience;
+  worker_run->advance(now, [end] { return emscripten_get_now() < end; });
+}
+}

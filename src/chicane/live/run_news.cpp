@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/live/run_news.hpp"
+
+#include <utility>
+
+#include "chicane/protocol/fault_codec.hpp"
+
+namespace chicane::live {
+
+wire::ViewerServices run_services(run::RunControls& controls) {
+  wire::ViewerServices services;
+  services.pause = [&controls](bool is_paused) -> Result<void> {
+    controls.is_paused = is_paused;
+    return {};
+  };
+  services.step = [&controls]() -> Result<void> {
+    if (!controls.is_paused) return fail(ErrorCode::kInvalidArgument, "the run is not paused");
+    ++controls.steps;
+    return {};
+  };
+  services.reset = [&controls]() -> Result<void> {
+    controls.wants_restart = true;
+    return {};
+  };
+  return services;
+}
+
+RunNews::RunNews(wire::ViewerEndpoint& viewer, std::function<void(const telemetry::Change&)> note)
+    : viewer_{viewer}, note_{std::move(note)}, faults_{protocol::fault_controls()} {}
+
+void RunNews::frame(const telemetry::Frame& frame) {
+  if (frame.begins && frame.cycle == 0) has_told_end_ = false;
+  const std::uint32_t changed = frame.active_faults ^ told_faults_;
+  for (std::size_t i = 0; i < faults_.size() && changed != 0U; ++i) {
+    if ((changed >> i & 1U) == 0U) continue;
+    const bool is_on = (frame.active_faults >> i & 1U) != 0U;
+    const telemetry::Change happened{.cycle = frame.cycle + 1,
+                                     .time = frame.time,
+                                     .name = faults_[i].key,
+                                     .value = is_on ? "true" : "false"};
+    change(happened);
+    note_(happened);
+  }
+}
+
+void RunNews::change(const telemetry::Change& change) {
+  for (std::size_t i = 0; i < faults_.size(); ++i) {
+    if (faults_[i].key != change.name.view()) continue;
+    const bool is_on = change.value.view() != "false";
+    told_faults_ = (told_faults_ & ~(1U << i)) | (is_on ? 1U << i : 0U);
+  }
+}
+
+bool RunNews::end(const telemetry::RunSummary& summary) {
+  if (std::exchange(has_told_end_, true)) return false;
+  if (summary.completed || summary.laps_wanted == 0) {
+    viewer_.set_end(summary.completed ? "finished" : "stopped",
+                    summary.completed ? "" : "stopped by its operator");
+  } else if (summary.end_reason == "stopped") {
+    viewer_.set_end("stopped", "stopped by its operator");
+  } else {
+    viewer_.set_end("failed", summary.end_reason);
+  }
+  return true;
+}
+
+}  // namespace chicane::live

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/plain_yaml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace chicane::protocol {
+namespace {
+
+using Kind = YamlNode::Kind;
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \r");
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \r") - begin + 1);
+}
+
+/// A comment begins a line, or follows a space.
+std::string_view without_comment(std::string_view line) {
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '#' && (i == 0 || line[i - 1] == ' ')) return line.substr(0, i);
+  }
+  return line;
+}
+
+/// Something that only a whole YAML parser understands.
+bool is_special(std::string_view scalar) {
+  constexpr std::string_view kIndicators = "\"'[]{}&*!|>%@`,?-";
+  return !scalar.empty() && kIndicators.find(scalar.front()) != std::string_view::npos &&
+         !(scalar.front() == '-' && scalar.size() > 1 && scalar[1] != ' ' && scalar[1] != '-');
+}
+
+class PlainReader {
+ public:
+  explicit PlainReader(const std::string& file) : file_{file} {}
+
+  Result<void> read(std::string_view line) {
+    ++line_;
+    const std::string_view content = trimmed(without_comment(line));
+    if (line.find('\t') != std::string_view::npos) return refuse("a tab");
+    if (content.empty()) return {};
+    const std::size_t colon = std::min(content.find(": "), content.size());
+    const bool opens = colon == content.size() && content.back() == ':';
+    if (colon == content.size() && !opens) return refuse("a line without a key");
+    const std::string_view key = opens ? content.substr(0, content.size() - 1) : content.substr(0, colon);
+    const std::string_view value = opens ? std::string_view{} : trimmed(content.substr(colon + 1));
+    if (is_special(key) || is_special(value) || value.find(": ") != std::string_view::npos)
+      return refuse(fmt::format("{}", content));
+    return place(line.find_first_not_of(' '), key, value);
+  }
+
+  [[nodiscard]] YamlTree tree() && {
+    if (tree_.root == nullptr) tree_.root = &tree_.nodes.emplace_back();
+    return std::move(tree_);
+  }
+
+ private:
+  struct Open {
+    std::size_t indent;
+    YamlNode* map;
+  };
+
+  tl::unexpected<Error> refuse(std::string_view got) const {
+    return fail(ErrorCode::kParse,
+                fmt::format("{}:{}: text: got {}, expected `key: value`", file_, line_, got));
+  }
+  YamlNode* add(Kind kind, std::string_view text) {
+    return &tree_.nodes.emplace_back(YamlNode{.kind = kind,
+                                              .line = line_,
+                                              .text = std::string(text),
+                                              .tag = kind == Kind::kScalar ? "?" : "",
+                                              .children = {}});
+  }
+
+  /// A key belongs to the map of its own indentation; deeper than the last one, to that key's.
+  Result<void> place(std::size_t indent, std::string_view key, std::string_view value) {
+    while (!open_.empty() && open_.back().indent > indent) open_.pop_back();
+    if (open_.empty() || open_.back().indent < indent) {
+      const bool is_first = tree_.root == nullptr;
+      if (open_.empty() != is_first || (!is_first && waiting_ == nullptr))
+        return refuse("another indentation");
+      if (open_.size() == YamlTree::kMostDepth) return refuse("very deep nesting");
+      YamlNode* map = is_first ? add(Kind::kMap, "") : waiting_;
+      map->kind = Kind::kMap;
+      map->line = line_;
+      if (is_first) tree_.root = map;
+      open_.push_back({indent, map});
+    }
+    YamlNode* name = add(Kind::kScalar, key);
+    YamlNode* content = add(value.empty() ? Kind::kNothing : Kind::kScalar, value);
+    open_.back().map->children.push_back(name);
+    open_.back().map->children.push_back(content);
+    waiting_ = value.empty() ? content : nullptr;
+    return {};
+  }
+
+  const std::string& file_;
+  int line_ = 0;
+  YamlTree tree_;
+  std::vector<Open> open_;
+  YamlNode* waiting_ = nullptr;  ///< the value of the last key, where nothing stands behind it
+};
+
+}  // namespace
+
+Result<YamlTree> parse_plain_yaml(std::string_view text, const std::string& file) {
+  PlainReader reader(file);
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    if (const Result<void> read = reader.read(text.substr(0, end)); !read) return fail(read.error());
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return std::move(reader).tree();
+}
+
+}  // namespace chicane::protocol

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// The page that needs no program (CHICANE_PAGE: the file that tools/build_page.sh wrote), opened from the disk.
+import assert from 'node:assert/strict';
+import { execFile } from 'node:child_process';
+import { after, before, describe, it } from 'node:test';
+import { pathToFileURL } from 'node:url';
+import { promisify } from 'node:util';
+import { launch } from './browser.mjs';
+import { DashboardPage, PHONE } from './dashboard_page.mjs';
+
+const url = pathToFileURL(process.env.CHICANE_PAGE ?? 'index.html').href;
+let browser;
+before(async () => {
+  browser = await launch();
+});
+after(() => browser.close());
+
+async function type(dashboard, key, value) {
+  const box = dashboard.page.locator(`.panel-body [data-key="${key}"] .number-box`);
+  await box.fill(String(value));
+  await box.press('Enter');
+}
+
+/** What the program's own run gives with the arithmetic that WebAssembly has. */
+async function programHash(...args) {
+  const { stdout } = await promisify(execFile)(process.env.CHICANE, ['drive', '--fast', '--json', ...args], {
+    env: { ...process.env, CHICANE_SIMD: 'baseline' },
+  });
+  return JSON.parse(stdout).state_hash;
+}
+
+/** Seconds of the run for each second of the clock, as fast as the worker can, at pace 20. */
+const flatOut = (dashboard) =>
+  dashboard.page.workers()[0].evaluate(() => {
+    globalThis.later = (globalThis.later ?? 0) + 5; // a clock that says five seconds later asks for a hundred
+    const begin = performance.now();
+    globalThis._page_advance(begin / 1000 + globalThis.later, 1000);
+    return 100 / ((performance.now() - begin) / 1000);
+  });
+
+describe('the page that needs no program', () => {
+  it('drives the run of the program, bit for bit, at twenty times the pace', async (t) => {
+    const dashboard = await DashboardPage.open(browser, url);
+    await type(dashboard, 'run.pace', 20);
+    const card = dashboard.page.getByTestId('end-card');
+    await card.waitFor();
+    assert.equal(await dashboard.text('end-title'), 'Finished');
+    assert.equal(await dashboard.text('end-laps'), '3');
+    assert.equal(await dashboard.text('state-hash'), await programHash());
+    const paces = [];
+    for (let i = 0; i < 3; ++i) paces.push((await flatOut(dashboard)).toFixed(1));
+    t.diagnostic(`as fast as it can: ${paces.join(', ')} x real time`);
+    await dashboard.close();
+  });
+
+  it('takes another track and other settings, and gives that run', async () => {
+    const dashboard = await DashboardPage.open(browser, `${url}`);
+    await dashboard.page.locator('.panel-body [data-key="track"] select').selectOption('oval');
+    await type(dashboard, 'run.pace', 20);
+    await dashboard.page.getByTestId('end-card').waitFor();
+    assert.equal(await dashboard.text('state-hash'), await programHash('--track', 'oval'));
+    await dashboard.close();
+  });
+
+  it('pauses, steps, begins again, breaks and mends', async () => {
+    const dashboard = await DashboardPage.open(browser, url, { tab: 'faults' });
+    await dashboard.until(
+      () => dashboard.seconds(),
+      (seconds) => seconds > 1,
+      'it drives',
+    );
+    await dashboard.pause();
+    const time = await dashboard.seconds();
+    await dashboard.button('Step').click();
+    await dashboard.until(
+      () => dashboard.seconds(),
+      (seconds) => seconds > time,
+      'a step',
+    );
+    await dashboard.button('Reset').click();
+    await dashboard.until(
+      () => dashboard.seconds(),
+      (seconds) => seconds < time,
+      'the start',
+    );
+    await dashboard.resume();
+    await dashboard.page.locator('.fault').first().click();
+    await dashboard.page.locator('.events li').first().waitFor();
+    await dashboard.close();
+  });
+
+  it('shows a phone the same, with nothing beyond its edge and nothing for axe', async () => {
+    const dashboard = await DashboardPage.open(browser, url, PHONE);
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    assert.ok((await dashboard.overflow()).across <= 0);
+    await dashboard.close();
+  });
+});

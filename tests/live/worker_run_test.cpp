@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/live/worker_run.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "chicane/protocol/library.hpp"
+
+namespace chicane::live {
+namespace {
+
+using Json = nlohmann::json;
+
+scenario::Scenario short_run() {
+  auto scenario = protocol::compose({.scenario_file = {}, .settings = {{"track", "oval"}, {"laps", "1"}}});
+  return scenario.value();
+}
+
+class WorkerRuns : public testing::Test {
+ protected:
+  void start(const scenario::Scenario& scenario) {
+    run = std::move(*WorkerRun::create(scenario, [this](std::string_view bytes, bool binary) {
+      if (!binary) texts.emplace_back(bytes);
+    }));
+    ASSERT_TRUE(run->connect());
+  }
+  /// Lets the clock go on, and the page take everything.
+  void pass(double seconds, double turn = 0.01) {
+    for (const double end = clock + seconds; clock < end; clock += turn) {
+      run->advance(clock, [] { return true; });
+      run->acknowledge(1000);
+    }
+  }
+  void set(const std::string& name, const Json& value) {
+    Json parameter{{"name", name}, {"value", value}};
+    if (value.is_number()) parameter["type"] = "float64";
+    run->receive(Json{{"op", "setParameters"}, {"parameters", {parameter}}, {"id", "1"}}.dump(), false);
+  }
+  Json page() { return Json::parse(run->get("/run.json")->bytes); }
+
+  std::unique_ptr<WorkerRun> run;
+  std::vector<std::string> texts;
+  double clock = 100.0;
+};
+
+TEST_F(WorkerRuns, AreThoseOfTheProgramBitForBitAtWhateverPace) {
+  const auto loop = run::ClosedLoop::create(short_run());
+  ASSERT_TRUE(loop);
+  const telemetry::RunSummary expected = run::run_closed_loop(**loop);
+  ASSERT_TRUE(expected.completed);
+  for (const double pace : {1.0, 20.0}) {
+    start(short_run());
+    if (pace != 1.0) set("run.pace", pace);
+    pass(0.02);
+    EXPECT_TRUE(page()["state_hash"].is_null());
+    pass(expected.duration / pace + 1.0);
+    EXPECT_EQ(page()["state_hash"], fmt::format("{:016x}", expected.state_hash)) << pace;
+    EXPECT_EQ(page()["laps"], 1);
+    EXPECT_GT(run->loop().time(), expected.duration) << "it drives on";
+  }
+}
+
+TEST_F(WorkerRuns, FollowTheClockAndSkipWhatTheyMiss) {
+  start(short_run());
+  pass(2.0);
+  EXPECT_NEAR(run->loop().time(), 2.0, 0.05);
+  clock += 50.0;  // the browser had let it sleep
+  int cycles = 0;
+  run->advance(clock, [&] { return ++cycles < 5; });
+  EXPECT_EQ(cycles, 5);
+  EXPECT_LT(run->loop().time(), 2.5);
+  pass(1.0);
+  EXPECT_NEAR(run->loop().time(), 3.2, 0.15);
+}
+
+TEST_F(WorkerRuns, PauseStepAndGoOn) {
+  start(short_run());
+  pass(0.5);
+  run->receive(std::string("\x02\0\0\0\0\x07\0\0\0\x03\0\0\0cdr\0\1\0\0\1", 21), true);  // "/pause" with true
+  pass(0.1);
+  const double time = run->loop().time();
+  pass(1.0);
+  EXPECT_EQ(run->loop().time(), time);
+  run->receive(std::string("\x02\1\0\0\0\x08\0\0\0\x03\0\0\0cdr\0\1\0\0", 20), true);  // "/step"
+  pass(0.1);
+  EXPECT_NEAR(run->loop().time(), time + run->loop().scenario().control_period, 1e-9);
+  run->receive(std::string("\x02\0\0\0\0\x09\0\0\0\x03\0\0\0cdr\0\1\0\0\0", 21), true);
+  pass(1.0);
+  EXPECT_NEAR(run->loop().time(), time + 1.0, 0.1);
+}
+
+TEST_F(WorkerRuns, BuildAnotherRunWhenATrackIsChosenAndSayWhyTheyCannot) {
+  start(short_run());
+  pass(1.0);
+  set("track", "nowhere");
+  EXPECT_NE(texts.end()[-2].find("nowhere"), std::string::npos);
+  set("track", "lakeside");
+  pass(0.5);
+  EXPECT_EQ(run->loop().track().name(), "lakeside");
+  EXPECT_LT(run->loop().time(), 0.6);
+  EXPECT_NE(run->get("/schema.json")->shared->find("lakeside"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace chicane::live
