@@ -14,9 +14,11 @@
 namespace chicane::live {
 namespace {
 
-wire::ViewerServices services(run::RunControls& controls, WhatIf& what_if) {
+wire::ViewerServices services(run::RunControls& controls, WhatIf& what_if, Rival& rival,
+                              const LiveSettings& settings) {
   wire::ViewerServices services = run_services(controls);
   services.what_if = [&what_if](std::string_view question) { return what_if.ask(question); };
+  services.rival = [&](std::string_view question) { return rival.ask(question, settings.scenario()); };
   return services;
 }
 
@@ -58,7 +60,7 @@ LiveRun::LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop>
                      }},
                 controls.settings},
       viewer_{{.run = live_description(*loop_),
-               .services = services(controls, what_if_),
+               .services = services(controls, what_if_, rival_, settings_),
                .parameters = &settings_}},
       router_{nullptr, &viewer_},
       builder_{&live_description},
@@ -68,6 +70,7 @@ LiveRun::LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop>
         if (!events) return fail(events.error());
         return recording::branch_run(*events, question.options, hooks);
       }},
+      rival_{[this] { controls_.wants_restart = true; }},
       limit_{[this](const lap_time::LimitAnswer& news) {
         if (!news.found && hooks_.say) hooks_.say("no gap to the limit: " + news.why_not);
         viewer_.set_limit(news);
@@ -93,6 +96,7 @@ Result<void> LiveRun::open() {
   }
   wire::Pages pages = live_pages(settings_);
   add_what_if(pages, what_if_);
+  add_rival(pages, rival_);
   auto server = net::Server::create(options_.server, router_.handlers(std::move(pages)), options_.assets);
   if (!server) return fail(server.error());
   server_ = std::move(*server);
@@ -131,8 +135,13 @@ telemetry::RunSummary LiveRun::drive(RunOutputs& outputs) {
                                        limit_.follow(loop_->scenario(), frame);
                                        outputs.frame(frame);
                                        news_->frame(frame);
+                                       rival_.note(frame);
                                      },
-                                 .on_lap = [&](const telemetry::CompletedLap& lap) { outputs.lap(lap); },
+                                 .on_lap =
+                                     [&](const telemetry::CompletedLap& lap) {
+                                       outputs.lap(lap);
+                                       rival_.note(lap);
+                                     },
                                  .on_change = [&](const telemetry::Change& change) { note(change, outputs); },
                                  .on_over =
                                      [&] {
@@ -147,6 +156,7 @@ telemetry::RunSummary LiveRun::drive(RunOutputs& outputs) {
 
 void LiveRun::note(const telemetry::Change& change, RunOutputs& outputs) {
   news_->change(change);
+  rival_.note(change);
   outputs.change(change);
 }
 
@@ -166,6 +176,7 @@ bool LiveRun::take_over(RunOutputs& outputs) {
   outputs.begin(std::move(run->recorded));
   for (const telemetry::Change& choice : run->choices) note(choice, outputs);
   controls_.settings.pop();
+  rival_.end_race();
   limit_.search(loop_->track(), loop_->scenario());
   return true;
 }

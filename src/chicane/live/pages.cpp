@@ -49,6 +49,12 @@ void add_what_if(wire::Pages& pages, WhatIf& what_if) {
   };
 }
 
+void add_rival(wire::Pages& pages, const Rival& rival) {
+  pages["/rival.json"] = [&rival] {
+    return net::Content{.content_type = "application/json", .bytes = rival.answer()};
+  };
+}
+
 wire::Pages replay_pages(const std::vector<ServedLog>& logs, double start) {
   wire::Pages pages;
   Json list = Json::array();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "chicane/live/live_settings.hpp"
+#include "chicane/live/rival.hpp"
 #include "chicane/live/what_if.hpp"
 #include "chicane/wire/endpoint.hpp"
 
@@ -25,6 +26,8 @@ struct ServedLog {
 [[nodiscard]] wire::Pages live_pages(const LiveSettings& settings);
 /// GET /what_if.json of an answer that must outlive the server.
 void add_what_if(wire::Pages& pages, WhatIf& what_if);
+/// GET /rival.json, the same.
+void add_rival(wire::Pages& pages, const Rival& rival);
 /// GET /mode.json that names the logs, and each of them as /log/0.mcap, /log/1.mcap, ..., its settings as
 /// /log/0.settings.json; `start` is where the dashboard's time line begins [s].
 [[nodiscard]] wire::Pages replay_pages(const std::vector<ServedLog>& logs, double start);

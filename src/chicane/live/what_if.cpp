@@ -13,6 +13,7 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
+#include "chicane/live/detail/rounded.hpp"
 #include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
 
@@ -25,12 +26,6 @@ constexpr std::size_t kMostRows = 1500;  // of each trace
 
 tl::unexpected<Error> refuse(std::string_view what, std::string_view expected) {
   return fail(ErrorCode::kInvalidArgument, fmt::format("what if: {}: expected {}", what, expected));
-}
-
-/// Three digits behind the point are a millimetre and a millisecond.
-Json rounded(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  return std::round(value * 1e3) / 1e3;
 }
 
 /// The rows of one future, as columns.

@@ -92,6 +92,15 @@ std::function<Result<std::string>(std::string_view)> trigger(std::function<Resul
   };
 }
 
+std::function<Result<std::string>(std::string_view)> ask(
+    std::string_view name, std::function<Result<std::string>(std::string_view)> service) {
+  return [name, service = std::move(service)](std::string_view request) -> Result<std::string> {
+    const std::optional<std::string> question = protocol::decode_ask(request);
+    if (!question) return fail(ErrorCode::kParse, fmt::format("{}: expected one text in CDR", name));
+    return service(*question);
+  };
+}
+
 }  // namespace
 
 ViewerEndpoint::ViewerEndpoint(ViewerOptions options)
@@ -108,13 +117,8 @@ ViewerEndpoint::ViewerEndpoint(ViewerOptions options)
   }
   if (options_.services.step) offer("/step", kTrigger, trigger(options_.services.step, "one step"));
   if (options_.services.reset) offer("/reset", kTrigger, trigger(options_.services.reset, "reset"));
-  if (options_.services.what_if) {
-    offer("/what_if", kAsk, [this](std::string_view request) -> Result<std::string> {
-      const std::optional<std::string> question = protocol::decode_ask(request);
-      if (!question) return fail(ErrorCode::kParse, "/what_if: expected one text in CDR");
-      return options_.services.what_if(*question);
-    });
-  }
+  if (options_.services.what_if) offer("/what_if", kAsk, ask("/what_if", options_.services.what_if));
+  if (options_.services.rival) offer("/rival", kAsk, ask("/rival", options_.services.rival));
 }
 
 void ViewerEndpoint::offer(std::string_view name, std::string_view type,

@@ -31,6 +31,8 @@ struct ViewerServices {
   std::function<Result<void>()> reset;  ///< "/reset", std_srvs/srv/Trigger: the run starts anew
   /// "/what_if", chicane_msgs/srv/Ask: begins to compute another future; its number as a text.
   std::function<Result<std::string>(std::string_view question)> what_if{};
+  /// "/rival", chicane_msgs/srv/Ask: begins or ends a race against a second car; its number as a text.
+  std::function<Result<std::string>(std::string_view question)> rival{};
 };
 
 struct ViewerOptions {

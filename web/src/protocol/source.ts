@@ -3,12 +3,12 @@ import type { TopicName, Topics } from './topics';
 /** The value of a setting, in the unit of its key. */
 export type Setting = number | boolean | string;
 
-export type ServiceName = '/pause' | '/step' | '/reset' | '/what_if';
+export type ServiceName = '/pause' | '/step' | '/reset' | '/what_if' | '/rival';
 
 /** The server's answer to a question in words. */
 export interface AskAnswer {
   readonly isTaken: boolean;
-  /** What it says: of '/what_if' the number of the question, or why it was not taken. */
+  /** What it says: of '/what_if' and '/rival' the number of the question, or why it was not taken. */
   readonly message: string;
 }
 

@@ -36,6 +36,10 @@ export function call(name: ServiceName, data?: boolean): void {
 export const ask = (question: string): Promise<AskAnswer> =>
   source?.ask?.('/what_if', question) ?? Promise.resolve({ isTaken: false, message: 'nobody is there to ask' });
 
+/** Begins a race against a second car, or ends it. */
+export const askRival = (question: string): Promise<AskAnswer> =>
+  source?.ask?.('/rival', question) ?? Promise.resolve({ isTaken: false, message: 'nobody is there to ask' });
+
 /** Whether a setting can be changed now. */
 export const canSet = (key: string): boolean => link.value === 'live' && settings.value.has(key);
 

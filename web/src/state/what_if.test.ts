@@ -5,7 +5,7 @@ import { cursorTime } from './plot_view';
 import { frameWith as frame } from './test_messages';
 import { answer, ask, askedLog, forgetAnswer, from, problem, question, span, wishes } from './what_if';
 
-const told = (state: object) => ({ ok: true, json: () => Promise.resolve(state) });
+const told = (state: object) => ({ ok: true, text: () => Promise.resolve(JSON.stringify(state)) });
 
 beforeEach(() => {
   attach({ close: () => undefined, ask: () => Promise.resolve({ isTaken: true, message: '4' }) });

@@ -27,6 +27,7 @@ import {
 } from '../state/what_if';
 import { watchBoth } from '../state/what_if_ghost';
 import { DraftBox } from './draft_box';
+import { RaceView } from './race_view';
 import { labelOf, typed } from './setting_row';
 import { WhatIfResult } from './what_if_result';
 
@@ -298,6 +299,7 @@ export function WhatIfView() {
       <Wishes />
       <Moment />
       <Ask />
+      {!askedLog.value && <RaceView />}
       <Actions />
       {found && <WhatIfResult answer={found} />}
     </div>

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "chicane/run/setting.hpp"
+#include "chicane/run/thread_queue.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/telemetry/change.hpp"
+#include "chicane/telemetry/frame.hpp"
+
+namespace chicane::live {
+
+/// What a lap of one of two cars was like, third by third.
+struct LapNotes {
+  telemetry::CompletedLap lap;
+  std::array<double, 3> slowest{}, fastest{};  ///< [m/s]
+  std::array<double, 3> largest_error{};       ///< from the track's line [m]
+};
+
+/// Makes the notes of each lap of one car from its control cycles. Fixed memory but for a lap's rows.
+class LapNoter {
+ public:
+  void begin() { rows_.clear(); }
+  void add(double time, double speed, double lateral_error);
+  /// The lap that ended with the last row.
+  [[nodiscard]] LapNotes finish(const telemetry::CompletedLap& lap);
+
+ private:
+  static constexpr std::size_t kMostRows = 30'000;  ///< 20 minutes with 25 cycles a second
+  struct Row {
+    double time, speed, lateral_error;
+  };
+  std::deque<Row> rows_;
+};
+
+/// A second car on the stage of a live run: the same track, car, seed and faults, with other settings, from
+/// the start line on. Its loop is driven on a thread of its own, of low priority, up to where the run is; the
+/// run's thread only notes what it did, and never waits.
+///
+/// What acts on the world (faults, and settings of plant, sensor and latency) acts on both at the same cycle;
+/// settings of the controller that change meanwhile act on the run's own car alone. The race ends when the
+/// run begins with other choices, or when the rival is lost.
+class Rival {
+ public:
+  static constexpr std::size_t kMostLaps = 100;  ///< told of each car, the newest
+  static constexpr std::size_t kTrace = 125;     ///< poses told of the rival, the newest: five seconds
+
+  /// `begin_anew` is called on the rival's thread when it is ready: both begin at the line.
+  explicit Rival(std::function<void()> begin_anew);
+  ~Rival();
+  Rival(const Rival&) = delete;
+  Rival& operator=(const Rival&) = delete;
+
+  /// The network thread: {"settings":{"latency_ms":60}} begins a race of `scenario`, {} ends it. The number
+  /// of the race, as a text. kInvalidArgument in a sentence for viewers: for a setting that is unknown, out
+  /// of range, or cannot change while a run goes on.
+  [[nodiscard]] Result<std::string> ask(std::string_view json, const scenario::Scenario& scenario);
+  /// GET /rival.json (docs/viewer.md). Any thread.
+  [[nodiscard]] std::string answer() const;
+
+  /// The run's thread: after each control cycle, completed lap and change. Neither waits nor allocates.
+  void note(const telemetry::Frame& frame) noexcept;
+  void note(const telemetry::CompletedLap& lap) noexcept;
+  void note(const telemetry::Change& change) noexcept;
+  /// The run goes on with another track, car or controller.
+  void end_race() noexcept;
+
+ private:
+  enum class State { kNone, kBuilding, kWaiting, kRacing, kEnded, kFailed };
+  struct Entry {
+    enum class Kind { kCycle, kBegin, kLap, kChange, kEnd } kind = Kind::kCycle;
+    double time = 0.0;           ///< [s]
+    double speed = 0.0;          ///< [m/s]
+    double lateral_error = 0.0;  ///< [m]
+    telemetry::CompletedLap lap{};
+    telemetry::Change change{};
+  };
+  struct Wish {
+    scenario::Scenario scenario;
+    std::vector<std::pair<std::string, std::string>> settings;
+  };
+  struct Pose {
+    double time, x, y, yaw, steer, speed, distance;
+  };
+
+  void work();
+  void build(const Wish& wish);
+  void take(const Entry& entry);
+  void follow(double time);
+  void begin();
+  void end(State state, std::string why);
+  void keep(std::vector<LapNotes>& laps, const LapNotes& notes) const;
+
+  std::function<void()> begin_anew_;
+  run::ThreadQueue<Entry> entries_;
+  std::atomic<bool> has_lost_{false};  ///< an entry that counts did not fit
+
+  // The rival's thread:
+  std::unique_ptr<run::ClosedLoop> loop_;
+  std::vector<std::string> own_;  ///< keys of the settings that are the rival's own
+  std::deque<telemetry::Change> changes_;
+  LapNoter own_laps_, run_laps_;
+
+  mutable std::mutex mutex_;  ///< of all below
+  std::condition_variable changed_;
+  std::optional<Wish> wish_;
+  std::uint64_t newest_ = 0;
+  State state_ = State::kNone;
+  std::string why_;
+  std::vector<std::pair<std::string, std::string>> settings_;
+  std::vector<LapNotes> laps_of_run_, laps_;
+  std::deque<Pose> trace_;
+  bool is_ending_ = false;
+  std::thread thread_;  // last: it starts when everything else is there
+};
+
+}  // namespace chicane::live

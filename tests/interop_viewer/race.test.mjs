@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// Two settings as two cars on one stage: begun, followed, and the winner kept with one click.
+import assert from 'node:assert/strict';
+import { after, before, it } from 'node:test';
+import { launch } from './browser.mjs';
+import { startDrive } from './chicane_drive.mjs';
+import { DashboardPage } from './dashboard_page.mjs';
+
+let browser;
+let drive;
+before(async () => {
+  browser = await launch();
+  drive = await startDrive(['--track', 'oval', '--preset', 'pid', '--set', 'pid.speed_reference_mps=20']);
+});
+after(async () => {
+  await browser.close();
+  await drive.stop();
+});
+
+const race = async () => (await fetch(new URL('rival.json', drive.url))).json();
+
+it('drives a second car with other settings beside the run, tells where it gains, and keeps the winner', async () => {
+  const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'drive' });
+  const { page } = dashboard;
+  await page.locator('.panel-body [data-key="run.pace"] .number-box').fill('10');
+  await page.locator('.panel-body [data-key="run.pace"] .number-box').press('Enter');
+  await dashboard.show('whatif');
+  assert.ok(await dashboard.button('Race A against B').isDisabled(), 'nothing to race with');
+  await page.getByLabel('Setting to change').fill('pid.speed_reference_mps');
+  await page.getByLabel(/^What if: /).fill('24');
+  await page.getByLabel(/^What if: /).press('Enter');
+  await dashboard.button('Race A against B').click();
+  await dashboard.until(
+    () => page.getByTestId('race-table').locator('tbody tr').count(),
+    (rows) => rows >= 2,
+    'two laps of both cars',
+  );
+  assert.match(await dashboard.text('race-verdict'), /^Lap \d+: B is \d+\.\d{3} s faster\.$/);
+  assert.match(await dashboard.text('race-causes'), /sector 1: −\d+\.\d{3} s, B \d+\.\d mph more/);
+  await page.getByText('B', { exact: true }).first().waitFor(); // the ghost in the legend, and a column
+  const { run, rival } = await race();
+  assert.ok(rival[0].lap_time_s < run[0].lap_time_s - 1);
+  assert.deepEqual(await dashboard.accessibilityFindings(), []);
+  // A page that comes later shows the race, too.
+  const late = await DashboardPage.open(browser, drive.url, { tab: 'whatif' });
+  await late.page.getByTestId('race-table').waitFor();
+  await late.close();
+  await page.getByRole('button', { name: 'Keep B, the winner' }).click();
+  await page.getByTestId('race').waitFor({ state: 'detached' });
+  assert.equal((await race()).state, 'none');
+  await dashboard.show('tune');
+  await dashboard.until(
+    () => dashboard.text('changes'),
+    (text) => /pid\.speed_reference_mps 20 → 24/.test(text.replace(/\s+/g, ' ')),
+    'the setting of the winner',
+  );
+  await dashboard.close();
+});
+
+it('says why a setting cannot be raced with', async () => {
+  const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'whatif' });
+  await dashboard.page.getByLabel('Setting to change').fill('latency_ms');
+  await dashboard.page.getByLabel(/^What if: /).fill('60');
+  await dashboard.page.getByLabel(/^What if: /).press('Enter');
+  await dashboard.button('Race A against B').click();
+  await dashboard.page.getByRole('alert').filter({ hasText: 'a setting of the controller or its car' }).waitFor();
+  await dashboard.close();
+});

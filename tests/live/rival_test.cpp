@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/live/rival.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+
+#include "chicane/protocol/library.hpp"
+
+namespace chicane::live {
+namespace {
+
+using Json = nlohmann::json;
+
+class Race : public testing::Test {
+ protected:
+  void SetUp() override {
+    scenario =
+        protocol::compose({.scenario_file = {}, .settings = {{"track", "oval"}, {"laps", "0"}}}).value();
+    loop = std::move(*run::ClosedLoop::create(scenario));
+  }
+  /// A race that has begun.
+  void race(const std::string& question) {
+    const auto asked = rival.ask(question, scenario);
+    ASSERT_TRUE(asked) << asked.error().message;
+    while (!is_asked) std::this_thread::yield();
+    is_asked = false;
+    loop->restart();
+  }
+  /// The run as it is driven, with what is noted of it.
+  void drive(double until) {
+    while (loop->time() < until) {
+      const bool is_new = loop->advance();
+      if (const auto lap = loop->take_lap()) rival.note(*lap);
+      if (is_new) rival.note(loop->frame());
+      if (is_new && loop->cycle() % 32 == 0) wait();
+    }
+    wait();
+  }
+  void change(const std::string& name, const std::string& value) {
+    while (!loop->is_control_due()) loop->advance();
+    const telemetry::Change changed{
+        .cycle = loop->cycle(), .time = loop->time(), .name = name, .value = value};
+    loop->apply(changed);
+    rival.note(changed);
+  }
+  /// Until the rival is where the run is, or does not race.
+  void wait() {
+    for (;;) {
+      const Json now = answer();
+      if (now["state"] != "racing" && now["state"] != "building") return;
+      const Json& times = now["trace"]["time_s"];
+      if (!times.empty() && times.back().get<double>() >= loop->frame().time - 1e-3) return;
+      std::this_thread::yield();
+    }
+  }
+  Json answer() const { return Json::parse(rival.answer()); }
+
+  scenario::Scenario scenario;
+  std::unique_ptr<run::ClosedLoop> loop;
+  std::atomic<bool> is_asked{false};
+  Rival rival{[this] { is_asked = true; }};
+};
+
+TEST_F(Race, WithTheSameSettingsEndsInTheSameLapsBitForBitFaultsIncluded) {
+  // Its own value of a setting is the run's value.
+  race(R"({"settings":{"tracking_mpc.weight_lateral":)" +
+       protocol::get_text(scenario, *protocol::find("tracking_mpc.weight_lateral")) + "}}");
+  drive(3.0);
+  change("fault.side_wind", "true");
+  change("latency_ms", "60");
+  drive(40.0);
+  const Json now = answer();
+  EXPECT_EQ(now["state"], "racing");
+  ASSERT_GE(now["run"].size(), 2U);
+  EXPECT_EQ(now["run"], now["rival"]);
+  const Json& trace = now["trace"];
+  EXPECT_NEAR(trace["x_m"].back().get<double>(), loop->frame().truth.x, 1e-3);
+  EXPECT_NEAR(trace["speed_mps"].back().get<double>(),
+              std::hypot(loop->frame().truth.vx, loop->frame().truth.vy), 1e-3);
+}
+
+TEST_F(Race, WithOtherSettingsTellsBothCarsThirdByThird) {
+  race(R"({"settings":{"tracking_mpc.speed_limit_mps":25}})");
+  drive(45.0);
+  const Json now = answer();
+  EXPECT_EQ(now["settings"], (Json{{"tracking_mpc.speed_limit_mps", "25"}}));
+  ASSERT_FALSE(now["rival"].empty());
+  const Json& mine = now["run"][0];
+  const Json& other = now["rival"][0];
+  EXPECT_GT(other["lap_time_s"].get<double>(), mine["lap_time_s"].get<double>() + 1.0);
+  for (std::size_t third = 0; third < 3; ++third) {
+    EXPECT_LT(other["fastest_mps"][third].get<double>(), 26.0) << third;
+    EXPECT_GT(mine["fastest_mps"][third].get<double>(), 30.0) << third;
+    EXPECT_LE(other["slowest_mps"][third].get<double>(), other["fastest_mps"][third].get<double>());
+  }
+}
+
+TEST_F(Race, EndsWhenTheRunBeginsWithOtherChoicesAndWhenNobodyWantsIt) {
+  race(R"({"settings":{"tracking_mpc.speed_limit_mps":25}})");
+  drive(1.0);
+  rival.end_race();
+  while (answer()["state"] == "racing") std::this_thread::yield();
+  EXPECT_EQ(answer()["state"], "ended");
+  EXPECT_EQ(answer()["why"], "the run began with other choices");
+  ASSERT_TRUE(rival.ask("{}", scenario));
+  while (answer()["state"] != "none") std::this_thread::yield();
+  EXPECT_TRUE(answer()["rival"].empty());
+}
+
+TEST_F(Race, RefusesWhatIsNoSettingOfAController) {
+  for (const std::string question :
+       {R"(7)", R"({"settings":{"nothing":1}})", R"({"settings":{"track":"oval"}})",
+        R"({"settings":{"latency_ms":60}})", R"({"settings":{"fault.side_wind":true}})",
+        R"({"settings":{"tracking_mpc.weight_lateral":-1}})"}) {
+    EXPECT_FALSE(rival.ask(question, scenario)) << question;
+  }
+  EXPECT_EQ(answer()["state"], "none");
+}
+
+TEST(LapNoterRows, AreSplitByTheLapsOwnThirds) {
+  LapNoter noter;
+  for (int i = 0; i <= 60; ++i) noter.add(100.0 + i, i < 10 ? 1.0 : 10.0 + i, i == 40 ? -2.0 : 0.5);
+  const LapNotes notes = noter.finish({.lap = 1, .lap_time = 50.0, .sector_times = {10.0, 15.0, 25.0}});
+  EXPECT_EQ(notes.slowest, (std::array{20.0, 30.0, 45.0})) << "rows of the lap before do not count";
+  EXPECT_EQ(notes.fastest, (std::array{29.0, 44.0, 70.0}));
+  EXPECT_EQ(notes.largest_error, (std::array{0.5, 0.5, 2.0}));
+}
+
+}  // namespace
+}  // namespace chicane::live

@@ -1,0 +1,112 @@
+import { effect, signal } from '@preact/signals';
+import { wrapAngle } from '../lib/math';
+import { programPage } from '../protocol/program_page';
+import type { GhostPose, GhostSource } from '../scene3d/ghost';
+import { session } from '../scene3d/session';
+import { restartListeners } from './demultiplexer';
+import { link } from './link';
+import { live } from './live';
+import { askRival, can, canSet, requests } from './operate';
+import { type Poses, type Race, readRace } from './rival_answer';
+import type { Wish } from './what_if';
+
+// A race of two settings on one stage: the program drives a second car beside the run's own, the page draws it as the
+// ghost, and asks for its laps.
+
+/** What the program tells of the race; null without one. */
+export const race = signal<Race | null>(null);
+/** The settings of B. */
+export const raced = signal<readonly Wish[]>([]);
+export const raceProblem = signal('');
+
+export const canRace = (): boolean => can('/rival');
+
+const AHEAD_S = 0.6; // shown beyond the newest pose at most, by its speed [s]
+
+/** B's pose when the run's newest frame was; B is told a moment later, and goes on as it went until then. */
+export function poseOf(poses: Poses, time: number, into: GhostPose): boolean {
+  const times = poses.time_s;
+  const last = times.length - 1;
+  if (last < 0 || !(time >= (times[0] ?? NaN)) || time > (times[last] ?? NaN) + AHEAD_S) return false;
+  const at = (name: keyof Poses, row: number): number => poses[name][row] ?? NaN;
+  let row = last;
+  while (row > 0 && (times[row] ?? NaN) > time) --row;
+  const begin = at('time_s', row);
+  const yaw = at('yaw_rad', row);
+  if (row === last) {
+    const way = at('speed_mps', row) * (time - begin);
+    into.x = at('x_m', row) + way * Math.cos(yaw);
+    into.y = at('y_m', row) + way * Math.sin(yaw);
+    into.yaw = yaw;
+  } else {
+    const share = (time - begin) / (at('time_s', row + 1) - begin);
+    into.x = at('x_m', row) + share * (at('x_m', row + 1) - at('x_m', row));
+    into.y = at('y_m', row) + share * (at('y_m', row + 1) - at('y_m', row));
+    into.yaw = yaw + share * wrapAngle(at('yaw_rad', row + 1) - yaw);
+  }
+  into.steer = at('steer_rad', row);
+  return true;
+}
+
+const ghost: GhostSource = {
+  label: 'B',
+  lapTime: Infinity,
+  line: new Float32Array(0),
+  poseAt: (_time, into) => race.value !== null && poseOf(race.value.poses, live.frame?.time_s ?? NaN, into),
+};
+
+let shownBefore: GhostSource | null = null;
+effect(() => {
+  const isOnStage = race.value?.state === 'racing';
+  if (isOnStage && session.rival !== ghost) {
+    shownBefore = session.rival;
+    session.rival = ghost;
+  } else if (!isOnStage && session.rival === ghost) {
+    session.rival = shownBefore;
+  }
+});
+
+const POLL_MS = 200;
+let timer: ReturnType<typeof setTimeout> | undefined;
+
+async function look(): Promise<void> {
+  clearTimeout(timer);
+  timer = undefined;
+  if (!canRace()) return;
+  const text = await programPage('rival.json').catch(() => null);
+  const now = text === null ? null : readRace(JSON.parse(text));
+  race.value = now === null || now.state === 'none' ? null : now;
+  if (now && (now.state === 'racing' || now.state === 'building')) timer = setTimeout(() => void look(), POLL_MS);
+}
+
+// A page that comes while a race goes on shows it.
+effect(() => {
+  if (link.value === 'live' && canRace()) void look();
+});
+restartListeners.add(() => void look());
+
+/** Both cars begin at the line, B with these settings. */
+export async function startRace(wishes: readonly Wish[]): Promise<void> {
+  raceProblem.value = '';
+  const settings = Object.fromEntries(wishes.map(({ key, value }) => [key, value]));
+  const answer = await askRival(JSON.stringify({ settings }));
+  if (!answer.isTaken) {
+    raceProblem.value = answer.message;
+    return;
+  }
+  raced.value = wishes;
+  await look();
+}
+
+export async function endRace(): Promise<void> {
+  await askRival('{}');
+  race.value = null;
+}
+
+/** The run goes on with the settings of the winner, alone. */
+export async function keepWinner(winner: 'A' | 'B'): Promise<void> {
+  if (winner === 'B') {
+    for (const { key, value } of raced.value) if (canSet(key)) await requests.set(key, value);
+  }
+  await endRace();
+}
