@@ -18,6 +18,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "chicane/run/lap_planner.hpp"
 #include "chicane/run/setting.hpp"
 #include "chicane/run/thread_queue.hpp"
 #include "chicane/scenario/scenario.hpp"
@@ -113,6 +114,7 @@ class Rival {
 
   // The rival's thread:
   std::unique_ptr<run::ClosedLoop> loop_;
+  std::optional<run::LapPlanner> planner_;
   std::vector<std::string> own_;  ///< keys of the settings that are the rival's own
   std::deque<telemetry::Change> changes_;
   LapNoter own_laps_, run_laps_;

@@ -126,8 +126,7 @@ export function verdictOf(race: Race): { readonly winner: 'A' | 'B' | null; read
   const isB = gap < 0;
   if (Math.abs(gap) < SAME_S) return { winner: null, text: `Lap ${newest.lap}: as fast as each other.` };
   const unclean = (isB ? race.b : race.a).find(({ lap }) => lap === newest.lap)?.isClean === false;
-  return {
-    winner: isB ? 'B' : 'A',
-    text: `Lap ${newest.lap}: ${isB ? 'B' : 'A'} is ${Math.abs(gap).toFixed(3)} s faster${unclean ? ', off the road' : ''}.`,
-  };
+  const winner = isB ? 'B' : 'A';
+  const how = unclean ? ', off the road' : '';
+  return { winner, text: `Lap ${newest.lap}: ${winner} is ${Math.abs(gap).toFixed(3)} s faster${how}.` };
 }
