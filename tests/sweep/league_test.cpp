@@ -94,7 +94,7 @@ TEST(League, TheShippedOneIsReadAndHasAProgram) {
   EXPECT_EQ(league->tracks.size(), 4U);
   EXPECT_EQ(league->cars.size(), 2U);
   EXPECT_EQ(league->plan.size(), 10U * 4U * 2U * 4U);
-  EXPECT_EQ(league->externals.size(), 1U);
+  EXPECT_EQ(league->externals.size(), 2U);
   EXPECT_FALSE(read_league("nowhere.yaml"));
 }
 

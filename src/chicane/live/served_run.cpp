@@ -79,16 +79,14 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
                     track_->name(), distance));
   };
   serving.log = [&](std::string_view line) { outputs.say(line); };
-  serving.on_listening = [&](std::uint16_t port) {
-    if (on_listening) on_listening(port);
-    if (track_) limit.search(*track_, scenario_);
-  };
+  serving.on_listening = on_listening;
   serving.on_end = [&] {
     limit.end();
     viewer.set_end("stopped", "stopped by its operator");
     viewer.dismiss();
   };
   serving.pages = live_pages(settings);
+  if (track_) limit.search(*track_, scenario_);  // before there is a control thread, to which it belongs then
   auto summary =
       wire::serve(options_, std::move(controller_), std::move(serving), &viewer, std::move(assets_), stop);
   if (!summary) return summary;

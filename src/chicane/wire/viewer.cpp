@@ -147,10 +147,6 @@ void ViewerEndpoint::set_limit(lap_time::LimitAnswer answer) {
   });
 }
 
-void ViewerEndpoint::set_paused(bool paused) {
-  change_run([paused](protocol::Run& run) { run.is_paused = paused; });
-}
-
 void ViewerEndpoint::set_end(std::string kind, std::string reason) {
   change_run([kind = std::move(kind), reason = std::move(reason)](protocol::Run& run) {
     run.end = kind;
@@ -186,11 +182,14 @@ void ViewerEndpoint::change_run(std::function<void(protocol::Run&)> change) {
 }
 
 void ViewerEndpoint::on_network(std::function<void()> task) {
+  std::unique_lock lock(starting_);
   if (server_ == nullptr) return task();
+  lock.unlock();
   server_->run_after(std::chrono::nanoseconds{0}, std::move(task));
 }
 
 void ViewerEndpoint::on_start(net::Server& server) {
+  const std::lock_guard lock(starting_);
   server_ = &server;
   schedule();
 }

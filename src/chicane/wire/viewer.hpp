@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
@@ -64,14 +65,16 @@ class ViewerEndpoint final : public Endpoint {
   /// Another track, car or controller from now on; Run::building and is_paused stay as they are. Any thread,
   /// but not while on_start runs.
   void set_run(protocol::Run run);
-  /// There are news of the run's limit. Any thread, but not while on_start runs.
+  /// There are news of the run's limit. Any thread.
   void set_limit(lap_time::LimitAnswer answer);
-  /// Part of it changes, the road excepted. Any thread, but not while on_start runs.
+  /// Part of it changes, the road excepted. Any thread.
   void change_run(std::function<void(protocol::Run&)> change);
-  /// For runs that are paused by others than viewers. Any thread, but not while on_start runs.
-  void set_paused(bool paused);
+  /// For runs that are paused by others than viewers. Any thread.
+  void set_paused(bool paused) {
+    change_run([paused](protocol::Run& run) { run.is_paused = paused; });
+  }
   /// The run is over: why in a word ("finished", "stopped", "failed") and in a sentence. A run that begins
-  /// anew is not over any more. Any thread, but not while on_start runs.
+  /// anew is not over any more. Any thread.
   void set_end(std::string kind, std::string reason);
   /// Sends what is not sent yet and closes the connections; comes back when viewers have gone, or after
   /// `patience`. The thread that runs the experiment, at its end.
@@ -138,6 +141,7 @@ class ViewerEndpoint final : public Endpoint {
   telemetry::LapLedger ledger_;
   std::uint64_t cycle_ = 0;     ///< of the last frame
   bool has_forgotten_ = false;  ///< the next run begins, and its first frame has not come yet
+  std::mutex starting_;         ///< over server_ until it is set
   net::Server* server_ = nullptr;
   std::map<net::ConnectionId, Client> clients_;
   std::map<net::ConnectionId, Client> upgrades_;  ///< between on_upgrade and on_open
