@@ -70,7 +70,8 @@ TEST_F(LeagueCommand, DrivesOurControllersAndAProgramOverTheWire) {
 }
 
 TEST_F(LeagueCommand, TakesAProgramInAnotherLanguage) {
-  if (std::system("python3 -c 'import asyncio' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
+  if (std::system("python3 -c 'import asyncio' 2>/dev/null") != 0)
+    GTEST_SKIP() << "python3 is not installed, which the example is written in";
   const std::string program =
       "--server 'python3 examples/05_any_language.py --port {port} --latency-ms {latency_ms}'";
   ASSERT_EQ(league("  ours: {preset: pid}\n", program + " --patience-s 60 --json"), 0) << read("err");

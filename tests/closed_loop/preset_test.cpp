@@ -45,7 +45,8 @@ TEST(Presets, LapTheLakesideCleanlyAtTheSpeedTheyClaim) {
 }
 
 TEST(Presets, LapTheOriginalLakeCleanlyAtTheSpeedTheyClaim) {
-  if (!std::filesystem::exists(kOriginalLake)) GTEST_SKIP() << "no " << kOriginalLake;
+  if (!std::filesystem::exists(kOriginalLake))
+    GTEST_SKIP() << "the presets are not tried on the original's lake: no " << kOriginalLake;
   for (const Claim& claim : kClaims) {
     const auto run = drive({{"guard.mode", "off"},
                             {"preset", claim.preset},

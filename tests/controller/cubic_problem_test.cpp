@@ -244,7 +244,7 @@ std::vector<std::vector<double>> read_csv(const std::string& path) {
 /// instance.
 TEST(CubicProblem, HasTheOptimaThatIpoptFinds) {
   const std::string folder = std::string{CHICANE_SOURCE_DIR} + "/../shared/reference_nlp/";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "optima are not compared with Ipopt's: no " << folder;
   const auto answer = std::make_unique<CubicTrajectory>();
   int compared = 0;
   int unequal = 0;

@@ -17,11 +17,11 @@
 
 namespace chicane::run {
 
-/// What holds in a control cycle beside the measurement. Recorded in the frame: with it and the measurement a
-/// cycle is computed again bit for bit.
 /// The road as the scenario's guard knows it at first; `track`: where it may know it, or null. Milliseconds.
 [[nodiscard]] road::KnownRoad known_road(const scenario::Scenario& scenario, const path::Track* track);
 
+/// What holds in a control cycle beside the measurement. Recorded in the frame: with it and the measurement a
+/// cycle is computed again bit for bit.
 struct CycleInput {
   Deadline deadline = Deadline::stopwatch();  ///< of the controller's step
   std::uint32_t deadline_spent_at = 0;        ///< DeadlineLog::spent_at, where it is given
