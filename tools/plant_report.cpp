@@ -14,7 +14,7 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/sim/plant_registry.hpp"
-#include "chicane/sim/road_car.hpp"
+#include "chicane/sim/double_track.hpp"
 #include "chicane/sim/udacity_car.hpp"
 #include "chicane/sim/world.hpp"
 #include "sim/plant_experiment.hpp"
@@ -226,7 +226,7 @@ void write_tires(const std::string& path) {
   std::ofstream file(path);
   file << "slip,physx_forward,physx_sideways,road_front,road_rear\n";
   const sim::UdacityCarParams udacity;
-  const sim::RoadCarParams road;
+  const sim::DoubleTrackParams road;
   const model::MagicFormula front{
       .stiffness = road.stiffness_front, .shape = road.shape, .peak = road.friction};
   const model::MagicFormula rear{

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <utility>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/controller/registry.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
@@ -27,6 +29,30 @@ void print_entry(std::string_view name, std::string_view meaning) {
 template <Shelf shelf>
 void print_shelf(bool /*is_markdown*/) {
   for (const protocol::Entry& entry : protocol::entries(shelf)) print_entry(entry.name, entry.description);
+}
+
+/// docs/cars.md, Table 1.
+void print_cars(bool is_markdown) {
+  if (!is_markdown) return print_shelf<Shelf::kCar>(false);
+  fmt::print(
+      "| car | mass [kg] | length × width [m] | wheelbase [m] | smallest radius [m] | grip [m/s²] | "
+      "downforce "
+      "at 50 m/s | drive [m/s²], [W/kg] | brakes [m/s²] | steering [deg/s], lag [ms] |\n"
+      "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
+  for (const protocol::Entry& entry : protocol::entries(Shelf::kCar)) {
+    const Result<scenario::Scenario> scenario = protocol::compose({"", {{"car", entry.name}}});
+    if (!scenario) continue;  // `chicane check` says what is wrong with it
+    const model::VehicleParams& car = scenario->vehicle;
+    const double front = car.wheelbase() / std::tan(car.steer_limit);
+    fmt::print(
+        "| `{}` | {:.4g} | {:.3g} × {:.3g} | {:.3g} | {:.3g} | {:.3g} | {:.0f} % | {:.3g}, {:.3g} | {:.3g} | "
+        "{:.3g}, {:.3g} |\n",
+        entry.name, car.mass, car.length, car.width, car.wheelbase(), std::hypot(front, car.rear_axle),
+        car.cornering_friction() * car.load_constant, 100.0 * (car.load(50.0) / car.load_constant - 1.0),
+        car.drive_acceleration, car.drive_power_per_mass,
+        std::min(car.brake_acceleration, car.cornering_friction() * car.load_constant),
+        radians_to_degrees(car.steer_rate_limit), 1e3 * car.steer_lag);
+  }
 }
 
 void print_controllers(bool /*is_markdown*/) {
@@ -117,10 +143,14 @@ struct List {
   bool is_in_overview = true;
 };
 constexpr std::array kLists{
-    List{"presets", print_shelf<Shelf::kPreset>}, List{"tracks", print_shelf<Shelf::kTrack>},
-    List{"cars", print_shelf<Shelf::kCar>},       List{"scenarios", print_shelf<Shelf::kScenario>},
-    List{"controllers", print_controllers},       List{"plants", print_plants},
-    List{"faults", print_faults, false},          List{"parameters", print_parameters, false},
+    List{"presets", print_shelf<Shelf::kPreset>},
+    List{"tracks", print_shelf<Shelf::kTrack>},
+    List{"cars", print_cars},
+    List{"scenarios", print_shelf<Shelf::kScenario>},
+    List{"controllers", print_controllers},
+    List{"plants", print_plants},
+    List{"faults", print_faults, false},
+    List{"parameters", print_parameters, false},
 };
 
 }  // namespace

@@ -56,8 +56,8 @@ Result<lap_time::PlantLimit> plant_limit_of(const scenario::Scenario& scenario, 
     }
     return !wants_stop.load();
   };
-  Result<lap_time::PlantLimit> limit =
-      lap_time::find_plant_limit(track, scenario.plant, scenario.plant_options, options);
+  Result<lap_time::PlantLimit> limit = lap_time::find_plant_limit(
+      track, scenario.plant, scenario.plant_options, options, scenario.plant_params);
   wall_time = seconds();
   if (is_terminal && told > 0.0) fmt::print(stderr, "\r{:60}\r", "");
   return limit;

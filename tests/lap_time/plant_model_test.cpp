@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/lap_time/detail/double_track_model.hpp"
 #include "chicane/lap_time/detail/limit_model.hpp"
-#include "chicane/lap_time/detail/road_car_model.hpp"
 #include "chicane/lap_time/detail/udacity_model.hpp"
 #include "lap_time/derivatives.hpp"
 
@@ -69,22 +69,22 @@ TEST(UdacityModel, AcceleratesAndTurnsAsThePlantDoes) {
   EXPECT_NEAR(m.yaw, 0.0, 0.03);
 }
 
-TEST(RoadCarModel, HasTheForcesOfThePlantOnceItsTyresHaveSettled) {
-  RoadCarModel model;
-  sim::RoadCar car;
+TEST(DoubleTrackModel, HasTheForcesOfThePlantOnceItsTyresHaveSettled) {
+  DoubleTrackModel model;
+  sim::DoubleTrack car;
   car.reset({}, 25.0);
   const model::Command command{0.06, 0.3};
   double pedal = 0.0;
   Vec2 shift{};
-  const double dt = sim::RoadCar::kStepLength;
+  const double dt = sim::DoubleTrack::kStepLength;
   for (int i = 0; i < 2500; ++i) {
     car.advance(command);
-    pedal = model.car.pedal.next(pedal, command.throttle, dt);
+    pedal = model.car.pedal().next(pedal, command.throttle, dt);
     shift += dt / model.car.load_lag * (Vec2{car.output().ax, car.output().ay} - shift);
   }
   const model::State& x = car.state();
-  double z[RoadCarModel::kVariables] = {0.0, 0.0, x.vx, x.vy, x.r, x.steer, pedal, shift.x(), shift.y()};
-  for (std::size_t i = 0; i < 4; ++i) z[RoadCarModel::kSlip + i] = car.output().slip_ratio[i];
+  double z[DoubleTrackModel::kVariables] = {0.0, 0.0, x.vx, x.vy, x.r, x.steer, pedal, shift.x(), shift.y()};
+  for (std::size_t i = 0; i < 4; ++i) z[DoubleTrackModel::kSlip + i] = car.output().slip_ratio[i];
   const auto m = model.motion(z);
   EXPECT_NEAR(m.ax, car.output().ax, 0.02);
   EXPECT_NEAR(m.ay, car.output().ay, 0.05);

@@ -9,7 +9,7 @@ set(controller_line "                                SteadyEntry,       //\n")
 
 set(plant_list src/chicane/sim/plant_registry.cpp)
 set(plant_header chicane/sim/cart.hpp)
-set(plant_after "    plant<RoadCar>(),\n")
+set(plant_after "    kDoubleTrack,\n")
 set(plant_line "    plant<Cart>(),\n")
 
 set(fault_list src/chicane/sim/fault_registry.cpp)

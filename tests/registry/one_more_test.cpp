@@ -35,7 +35,7 @@ TEST(OneMorePlant, IsAChoiceOfTheSchemaAndInItsMessages) {
   scenario::Scenario scenario;
   EXPECT_TRUE(protocol::set_text(scenario, "plant", "cart"));
   EXPECT_EQ(protocol::set_text(scenario, "plant", "carts").error().message,
-            "plant: got carts, expected one of udacity, road-car, cart");
+            "plant: got carts, expected one of udacity, road-car, double-track, cart");
   EXPECT_EQ(sim::plants().back().meaning, "rolls where its wheels point");
 }
 

@@ -101,15 +101,16 @@ double PlantLimit::bracket() const noexcept {
 }
 
 Result<PlantLimit> find_plant_limit(const path::Track& track, std::string_view plant,
-                                    const sim::PlantDeviation& deviation, const PlantLimitOptions& options) {
+                                    const sim::PlantDeviation& deviation, const PlantLimitOptions& options,
+                                    const sim::DoubleTrackParams& params) {
   if (!track.centre().is_closed())
     return fail(ErrorCode::kInvalidArgument,
                 track.name() + ": the road is open, expected a closed one: a lap has no end");
   if (!(options.time_step >= 0.01 && options.time_step <= 0.2))
     return fail(ErrorCode::kInvalidArgument, "limit: time step: expected 0.01 to 0.2 s");
-  Result<std::unique_ptr<LimitModel>> model = make_limit_model(plant, deviation);
+  Result<std::unique_ptr<LimitModel>> model = make_limit_model(plant, deviation, params);
   if (!model) return fail(model.error());
-  Result<std::unique_ptr<sim::Plant>> car = sim::make_plant(plant, deviation);
+  Result<std::unique_ptr<sim::Plant>> car = sim::make_plant(plant, deviation, params);
   if (!car) return fail(car.error());
   if (Result<void> fits = fits_road(track, (*model)->size()); !fits) return fail(fits.error());
   return Finder(track, plant, deviation, options, **model, **car).run();

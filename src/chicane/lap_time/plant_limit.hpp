@@ -10,6 +10,7 @@
 #include "chicane/lap_time/lap_times.hpp"
 #include "chicane/path/racing_line.hpp"
 #include "chicane/path/track.hpp"
+#include "chicane/sim/double_track.hpp"
 #include "chicane/sim/plant.hpp"
 
 namespace chicane::lap_time {
@@ -50,11 +51,12 @@ struct PlantLimitOptions {
 
 /// Finds it. Takes 1 to 60 s and some 10 MB. Deterministic. Keeps nothing between calls.
 ///
-/// kNotFound for a plant that has no model here; kInvalidArgument for an open road, a road too narrow for the
-/// car or with a bend too tight for its full lock (names the place and the radius), options out of range, and
-/// for a search that ended without an optimum.
+/// `params`: of the plant `double-track`. kNotFound for a plant that has no model here; kInvalidArgument for
+/// an open road, a road too narrow for the car or with a bend too tight for its full lock (names the place
+/// and the radius), options out of range, and for a search that ended without an optimum.
 [[nodiscard]] Result<PlantLimit> find_plant_limit(const path::Track& track, std::string_view plant,
                                                   const sim::PlantDeviation& deviation = {},
-                                                  const PlantLimitOptions& options = {});
+                                                  const PlantLimitOptions& options = {},
+                                                  const sim::DoubleTrackParams& params = {});
 
 }  // namespace chicane::lap_time

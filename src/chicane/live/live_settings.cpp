@@ -255,6 +255,7 @@ Result<void> LiveSettings::start_anew(std::string_view key, const std::string& v
   } else if (key == "car") {
     changed.vehicle = base->vehicle;
     changed.plant = base->plant;
+    changed.plant_params = base->plant_params;
   }
   if (Result<void> valid = validated(changed); !valid) return valid;
   ChosenRun run{.scenario = std::move(changed)};

@@ -182,9 +182,7 @@ class PredictionModel {
   }
 
   /// Normal acceleration carried by the tyres at speed v [m/s²].
-  [[nodiscard]] double load(double v) const noexcept {
-    return vehicle_.load_constant + vehicle_.load_per_speed * v;
-  }
+  [[nodiscard]] double load(double v) const noexcept { return vehicle_.load(v); }
   [[nodiscard]] const model::VehicleParams& vehicle() const noexcept { return vehicle_; }
 
  private:
@@ -215,8 +213,10 @@ class PredictionModel {
     const model::VehicleParams& p = vehicle_;
     const double per_wheelbase = 1.0 / p.wheelbase();
     const T speed = sqrt(m.vx * m.vx + kSpeedFloor * kSpeedFloor);
-    const T load_now = p.load_constant + p.load_per_speed * speed;
-    const T transfer = (p.height / kGravity) * m.acceleration;
+    const T load_now = p.load_constant + (p.load_per_speed + p.load_quadratic * speed) * speed;
+    // Downforce loads the wheels, and moves nothing from one to the other.
+    const T rest = p.load_quadratic > 0.0 ? T(p.load_constant / load_now) : T(1.0);
+    const T transfer = (p.height / kGravity) * rest * m.acceleration;
     const T part_front = least<kSmooth>(1.0 - (1.0 / p.rear_axle) * transfer);  // of its load at rest
     const T part_rear = least<kSmooth>(1.0 + (1.0 / p.front_axle) * transfer);
     const T load_front = (p.rear_axle * per_wheelbase) * load_now * part_front;
@@ -243,7 +243,7 @@ class PredictionModel {
     // The wheels of an axle share its slip angle and its force along, not its load.
     const T drive = positive<kSmooth>(m.acceleration, kBlend);
     const T brake = drive - m.acceleration;
-    const T sideways = m.vx * m.r;
+    const T sideways = rest * m.vx * m.r;
     const T side = 2.0 * positive<kSmooth>(sideways, kBlend) - sideways;
     // An inner wheel that is driven too hard spins; anti-lock keeps one that brakes.
     const T driving = (drive + kLeastSide) / (drive + brake + kLeastSide);

@@ -12,6 +12,8 @@ namespace {
 using P = VehicleParams;
 constexpr std::array kOptions{
     option<&P::name>("name", "For reports."),
+    option<&P::scale>("scale", unit::kNone, 0.005, 1,
+                      "Of a model car, 0.1 for 1:10; its settings are those of the car in full size."),
     option<&P::front_axle>("front_axle", unit::kMetre, 0.01, 10, "Centre of mass to front axle."),
     option<&P::rear_axle>("rear_axle", unit::kMetre, 0.01, 10, "Centre of mass to rear axle."),
     option<&P::track_width>("track_width", unit::kMetre, 0.01, 10,
@@ -20,8 +22,8 @@ constexpr std::array kOptions{
     option<&P::length>("length", unit::kMetre, 0.01, 30, "Of the body."),
     option<&P::width>("width", unit::kMetre, 0.01, 10, "Of the body."),
     option<&P::kinematic_length>("kinematic_length", unit::kMetre, 0.01, 20, "L_f of the described model."),
-    option<&P::mass>("mass", unit::kKilogram, 0.1, 1e5, "Mass."),
-    option<&P::yaw_inertia>("yaw_inertia", unit::kInertia, 1e-4, 1e6,
+    option<&P::mass>("mass", unit::kKilogram, 1e-3, 1e5, "Mass."),
+    option<&P::yaw_inertia>("yaw_inertia", unit::kInertia, 1e-8, 1e6,
                             "Moment of inertia about the vertical axis."),
     option<&P::height>("height", unit::kMetre, 0, 5,
                        "Centre of mass above the road; 0 means no load transfer."),
@@ -42,6 +44,8 @@ constexpr std::array kOptions{
     option<&P::load_constant>("load_constant", unit::kAcceleration, 0.1, 100, "Normal acceleration at rest."),
     option<&P::load_per_speed>("load_per_speed", unit::per("1/s"), 0, 10,
                                "Growth of the normal acceleration with speed: downforce."),
+    option<&P::load_quadratic>("load_quadratic", unit::per("1/m"), 0, 1,
+                               "Growth of the normal acceleration with the square of the speed."),
     option<&P::steer_helper>("steer_helper", unit::kNone, 0, 0.99,
                              "Share of each yaw change by which the velocity turns along; 0 for a real car."),
     option<&P::drive_acceleration>("drive_acceleration", unit::kAcceleration, 0.01, 100,

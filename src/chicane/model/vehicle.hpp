@@ -16,6 +16,9 @@ namespace chicane::model {
 struct VehicleParams {
   std::string name = "udacity";
 
+  double scale = 1.0;  ///< of a model car, 0.1 for 1:10: settings of controller and guard in metres and
+                       ///< seconds are those of the car in full size (model/similarity.hpp)
+
   // Geometry.
   double front_axle = 1.27;        ///< centre of mass to front axle [m]
   double rear_axle = 1.60;         ///< centre of mass to rear axle [m]
@@ -35,8 +38,8 @@ struct VehicleParams {
   double steer_rate_limit = std::numeric_limits<double>::infinity();  ///< [rad/s]
   double steer_lag = 0.0;  ///< time constant of the steering actuator [s], 0 = instant
 
-  // Tyres: force = load · friction · curve(cornering · slip / friction), load = mass · (load_0 + load_v · v)
-  // by axle (docs/tracking.md, eq. 3).
+  // Tyres: force = load · friction · curve(cornering · slip / friction), load = mass · (load_0 + load_v · v +
+  // load_vv · v²) by axle (docs/tracking.md, eq. 3).
   double cornering_front = 5.0;   ///< normalised cornering stiffness [1/rad]
   double cornering_rear = 4.92;   ///< [1/rad]
   double friction = 1.08;         ///< peak force over load
@@ -46,6 +49,7 @@ struct VehicleParams {
       0.0;  ///< 1 = friction ellipse (a real tyre), 0 = braking and cornering do not share force
   double load_constant = 12.22;    ///< normal acceleration at rest [m/s²]
   double load_per_speed = 0.0923;  ///< its growth with speed (downforce) [1/s]
+  double load_quadratic = 0.0;     ///< and with its square [1/m]
   double steer_helper =
       0.768;  ///< share of each yaw change by which the car turns its velocity along; 0 = a real car
 
@@ -71,6 +75,10 @@ struct VehicleParams {
   double reverse_acceleration = 1.63;  ///< per unit of negative throttle then [m/s²]
 
   [[nodiscard]] double wheelbase() const noexcept { return front_axle + rear_axle; }
+  /// Normal acceleration carried by the tyres at speed v [m/s²].
+  [[nodiscard]] double load(double v) const noexcept {
+    return load_constant + load_per_speed * v + load_quadratic * v * v;
+  }
   /// Peak lateral force over load of the whole car: what load transfer to the outer wheels leaves of the
   /// friction (docs/tracking.md, eq. 3b).
   [[nodiscard]] double cornering_friction() const noexcept;

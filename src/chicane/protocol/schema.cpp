@@ -52,6 +52,7 @@ bool is_live(const Parameter& parameter) {
                                                       "waypoints_sent"};
   return parameter.option.kind != Kind::kText &&  // preset, track, car: names
          parameter.group != "guard" &&            // what watches over a run is fixed when it starts
+         parameter.group != "plant_params" &&     // and so is the car
          std::find(kWhatRuns.begin(), kWhatRuns.end(), parameter.key) == kWhatRuns.end();
 }
 
@@ -159,6 +160,11 @@ Result<void> set_text(Scenario& scenario, std::string_view key, std::string_view
 
 std::vector<Contradiction> contradictions(const Scenario& scenario) {
   std::vector<Contradiction> found;
+  const bool has_params = scenario.plant_params != sim::DoubleTrackParams{};
+  if (has_params && scenario.plant != sim::DoubleTrack::kName) {
+    found.push_back({"plant", "got " + scenario.plant + ", expected " + std::string(sim::DoubleTrack::kName) +
+                                  ", the only one with plant_params"});
+  }
   const auto* driver = controller::Registry::find(scenario.controller);
   if (driver == nullptr) return found;
   for (OptionContradiction& each : driver->contradictions(scenario.controllers))

@@ -55,6 +55,8 @@ Table make_table() {
               [](Scenario& s) -> void* { return &std::get<typename Entry::Options>(s.controllers); });
   });
   table.add("vehicle", "", model::vehicle_options(), [](Scenario& s) -> void* { return &s.vehicle; });
+  table.add("plant_params", "", sim::double_track_options(),
+            [](Scenario& s) -> void* { return &s.plant_params; });
   table.add("guard", "", safety::guard_options(), [](Scenario& s) -> void* { return &s.guard; });
   table.add("plant_options", "", sim::deviation_options(),
             [](Scenario& s) -> void* { return &s.plant_options; });

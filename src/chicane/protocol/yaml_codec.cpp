@@ -215,6 +215,28 @@ std::string write_faults(const scenario::Scenario& scenario) {
   return text;
 }
 
+/// Of a plant with parameters the model follows from them; what is set of it replaces that.
+void believe_plant(std::span<const Document> layers, scenario::Scenario& scenario) {
+  scenario::Scenario plant = scenario;
+  for (const Document& layer : layers) {
+    for (const Assignment& assignment : layer.assignments) {
+      const Parameter& row = *assignment.parameter;
+      // A value out of range is refused below, with its place.
+      if (row.key == "plant" || row.group == "plant_params")
+        static_cast<void>(set(plant, row, assignment.value));
+    }
+  }
+  if (plant.plant == sim::DoubleTrack::kName)
+    scenario.vehicle = sim::model_of(plant.plant_params, scenario.vehicle);
+}
+
+/// The settings that need no words: the defaults, and the model that follows from the plant.
+scenario::Scenario silent(const scenario::Scenario& of) {
+  scenario::Scenario silent;
+  if (of.plant == sim::DoubleTrack::kName) silent.vehicle = sim::model_of(of.plant_params, silent.vehicle);
+  return silent;
+}
+
 }  // namespace
 
 std::string place(const std::string& file, int line) {
@@ -234,6 +256,7 @@ Result<void> apply_layers(std::span<const Document> layers, scenario::Scenario& 
   scenario::Scenario changed = scenario;
   std::map<std::string_view, std::string> places;
   std::vector<std::string> faults;
+  believe_plant(layers, changed);
   for (const Document& layer : layers) {
     for (const Assignment& assignment : layer.assignments) {
       const std::string where = place(layer.file, assignment.line);
@@ -254,7 +277,7 @@ Result<void> apply_layers(std::span<const Document> layers, scenario::Scenario& 
 }
 
 std::string write_document(const scenario::Scenario& scenario, std::string_view description, bool is_whole) {
-  const scenario::Scenario defaults;
+  const scenario::Scenario defaults = silent(scenario);
   const std::string text = write(scenario, description, [&](const Parameter& parameter) {
     return parameter.key != "preset" && (is_whole || get(scenario, parameter) != get(defaults, parameter));
   });

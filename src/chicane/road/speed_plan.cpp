@@ -14,12 +14,12 @@ constexpr double kSlopeReach = 3.0;   // [m] each way: shorter changes of curvat
 constexpr double kLowestSpeed = 2.0;  // [m/s] the plan never asks to stop
 constexpr double kTraction = 0.85;    // of the grip: brakes are not all where the load is
 
-/// Largest v with v² demand <= share · friction · (load_0 + load_v v).
+/// Largest v with v² demand <= share · friction · load(v).
 double speed_for(double demand, const model::VehicleParams& p, double share) {
   const double grip = share * p.cornering_friction();
   const double g0 = grip * p.load_constant;
   const double g1 = grip * p.load_per_speed;
-  const double d = std::max(demand, 1e-6);
+  const double d = std::max(demand - grip * p.load_quadratic, 1e-6);
   return (g1 + std::sqrt(g1 * g1 + 4.0 * d * g0)) / (2.0 * d);
 }
 
@@ -35,8 +35,7 @@ double demand_of(double curvature, double slope, const model::VehicleParams& p) 
 /// tyres).
 double longitudinal_share(double v, double demand, const model::VehicleParams& p, double grip) {
   if (p.friction_coupling == 0.0) return 1.0;
-  const double use =
-      v * v * demand / (grip * p.cornering_friction() * (p.load_constant + p.load_per_speed * v));
+  const double use = v * v * demand / (grip * p.cornering_friction() * p.load(v));
   return std::sqrt(std::max(0.0, 1.0 - p.friction_coupling * std::min(1.0, use * use)));
 }
 
@@ -44,7 +43,7 @@ double longitudinal_share(double v, double demand, const model::VehicleParams& p
 /// whatever drive and brakes could: where the grip is less than the car is built for [m/s²].
 double traction(double v, const model::VehicleParams& p) {
   if (p.friction_coupling == 0.0) return std::numeric_limits<double>::infinity();
-  return kTraction * p.cornering_friction() * (p.load_constant + p.load_per_speed * v);
+  return kTraction * p.cornering_friction() * p.load(v);
 }
 
 /// Lowers the speed to `limit` and remembers why.

@@ -24,7 +24,7 @@ Result<std::unique_ptr<controller::Controller>> make_controller(const scenario::
 }
 
 Result<std::unique_ptr<sim::Plant>> make_plant(const scenario::Scenario& scenario) {
-  return sim::make_plant(scenario.plant, scenario.plant_options);
+  return sim::make_plant(scenario.plant, scenario.plant_options, scenario.plant_params);
 }
 
 Result<path::Track> make_track(const scenario::Scenario& scenario) {

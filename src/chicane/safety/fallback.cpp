@@ -111,7 +111,7 @@ double Fallback::steer_along_path() const noexcept {
   const double helped = 1.0 - vehicle_.steer_helper;
   const double compliance = helped * (1.0 / vehicle_.cornering_front - 1.0 / vehicle_.cornering_rear);
   const auto angle_per_curvature = [&](double v) {
-    return vehicle_.wheelbase() + compliance * v * v / (vehicle_.load_constant + vehicle_.load_per_speed * v);
+    return vehicle_.wheelbase() + compliance * v * v / vehicle_.load(v);
   };
   // A car that oversteers has a speed at which it needs no angle at all: stay away from it.
   const double least = 0.3 * vehicle_.wheelbase();

@@ -8,6 +8,7 @@
 #include "chicane/controller/registry.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/safety/guard_options.hpp"
+#include "chicane/sim/double_track.hpp"
 #include "chicane/sim/fault.hpp"
 #include "chicane/sim/plant.hpp"
 #include "chicane/sim/sensor.hpp"
@@ -34,6 +35,7 @@ struct Scenario {
 
   model::VehicleParams vehicle = model::udacity_params();  ///< the controller's model of it
   safety::GuardOptions guard;                              ///< what watches over the controller
+  sim::DoubleTrackParams plant_params;  ///< of the plant `double-track`, whose model follows from them
   sim::PlantDeviation plant_options;
   sim::SensorOptions sensor;
   std::vector<sim::FaultEvent> faults;  ///< that happen during the run; at most sim::FaultLab::kCapacity

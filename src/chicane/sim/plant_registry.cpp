@@ -5,7 +5,6 @@
 #include <string>
 
 #include "chicane/base/text.hpp"
-#include "chicane/sim/road_car.hpp"
 #include "chicane/sim/udacity_car.hpp"
 
 namespace chicane::sim {
@@ -13,13 +12,23 @@ namespace {
 
 template <class Car>
 constexpr PlantKind plant() {
-  return {Car::kName, Car::kMeaning, []() -> std::unique_ptr<Plant> { return std::make_unique<Car>(); }};
+  return {Car::kName, Car::kMeaning,
+          [](const DoubleTrackParams&) -> std::unique_ptr<Plant> { return std::make_unique<Car>(); }};
 }
+
+constexpr PlantKind kRoadCar{
+    DoubleTrack::kRoadCar, DoubleTrack::kRoadCarMeaning,
+    [](const DoubleTrackParams&) -> std::unique_ptr<Plant> { return std::make_unique<DoubleTrack>(); }};
+constexpr PlantKind kDoubleTrack{DoubleTrack::kName, DoubleTrack::kMeaning,
+                                 [](const DoubleTrackParams& params) -> std::unique_ptr<Plant> {
+                                   return std::make_unique<DoubleTrack>(params);
+                                 }};
 
 /// A new plant is a line here and its include.
 constexpr std::array kPlants{
     plant<UdacityCar>(),
-    plant<RoadCar>(),
+    kRoadCar,
+    kDoubleTrack,
 };
 
 constexpr auto kNames = [] {
@@ -40,12 +49,15 @@ std::span<const PlantKind> plants() noexcept { return kPlants; }
 std::span<const std::string_view> plant_names() noexcept { return kNames; }
 std::span<const Option> deviation_options() noexcept { return kOptions; }
 
-Result<std::unique_ptr<Plant>> make_plant(std::string_view name, const PlantDeviation& deviation) {
+Result<std::unique_ptr<Plant>> make_plant(std::string_view name, const PlantDeviation& deviation,
+                                          const DoubleTrackParams& params) {
+  if (const auto valid = check_options("plant_params", double_track_options(), &params); !valid)
+    return fail(valid.error());
   if (const auto valid = check_options("plant_options", kOptions, &deviation); !valid)
     return fail(valid.error());
   for (const PlantKind& kind : kPlants) {
     if (kind.name != name) continue;
-    std::unique_ptr<Plant> car = kind.make();
+    std::unique_ptr<Plant> car = kind.make(params);
     car->deviate(deviation);
     return car;
   }

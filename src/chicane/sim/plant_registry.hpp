@@ -7,6 +7,7 @@
 
 #include "chicane/base/option.hpp"
 #include "chicane/base/result.hpp"
+#include "chicane/sim/double_track.hpp"
 #include "chicane/sim/plant.hpp"
 
 namespace chicane::sim {
@@ -15,7 +16,7 @@ namespace chicane::sim {
 struct PlantKind {
   std::string_view name;     ///< "road-car": small letters and dashes
   std::string_view meaning;  ///< for `chicane list plants`
-  std::unique_ptr<Plant> (*make)() = nullptr;
+  std::unique_ptr<Plant> (*make)(const DoubleTrackParams&) = nullptr;
 };
 
 /// The plants that ship; files, command line and messages know these.
@@ -26,9 +27,10 @@ struct PlantKind {
 /// The fields of PlantDeviation with their ranges, for files and messages.
 [[nodiscard]] std::span<const Option> deviation_options() noexcept;
 
-/// The plant of that name. kNotFound "plant: got boat, expected one of ..." for another name,
-/// kInvalidArgument for a deviation out of range.
+/// The plant of that name; `params`: of `double-track`, no other has any. kNotFound "plant: got boat,
+/// expected one of ..." for another name, kInvalidArgument for a deviation or a parameter out of range.
 [[nodiscard]] Result<std::unique_ptr<Plant>> make_plant(std::string_view name,
-                                                        const PlantDeviation& deviation = {});
+                                                        const PlantDeviation& deviation = {},
+                                                        const DoubleTrackParams& params = {});
 
 }  // namespace chicane::sim

@@ -263,8 +263,8 @@ Result<double> bound_of(const Settings& settings, const std::atomic<bool>& stop)
   lap_time::PlantLimitOptions options;
   options.wants_witness = false;
   options.go_on = [&](std::string_view, int, double) { return !stop.load(); };
-  const Result<lap_time::PlantLimit> limit =
-      lap_time::find_plant_limit(*track, scenario->plant, scenario->plant_options, options);
+  const Result<lap_time::PlantLimit> limit = lap_time::find_plant_limit(
+      *track, scenario->plant, scenario->plant_options, options, scenario->plant_params);
   return limit ? Result<double>(limit->bound.lap) : fail(limit.error());
 }
 

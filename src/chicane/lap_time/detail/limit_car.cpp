@@ -28,6 +28,7 @@ LimitCar::LimitCar(const model::VehicleParams& p) noexcept
       rear_turn{p.yaw_inertia / (p.mass * p.front_axle)},
       grip_0{p.cornering_friction() * p.load_constant},
       grip_v{p.cornering_friction() * p.load_per_speed},
+      grip_vv{p.cornering_friction() * p.load_quadratic},
       brake_front{p.brake_share_front},
       drive_front{p.drive_share_front},
       front_part{p.wheelbase() / p.rear_axle},
@@ -49,6 +50,7 @@ LimitCar::LimitCar(const model::VehicleParams& p) noexcept
       slip_heading{stay / p.cornering_rear},
       load_0{p.load_constant},
       load_v{p.load_per_speed},
+      load_vv{p.load_quadratic},
       curvature_limit{tan(p.steer_limit) / p.wheelbase()},
       curvature_rate{std::min(p.steer_rate_limit, kMostSteerRate) / p.wheelbase()} {}
 

@@ -16,7 +16,7 @@ struct LimitCar {
   double half_width;                ///< to the outer edge of a contact patch [m]
   double stay;                      ///< 1 − h: share of the centripetal acceleration that tyres give
   double front_turn, rear_turn;     ///< what a change of curvature adds to the demand, I/(m b), I/(m a) [m]
-  double grip_0, grip_v;            ///< tyre force over mass: grip_0 + grip_v · v [m/s²], [1/s]
+  double grip_0, grip_v, grip_vv;   ///< tyre force over mass: grip_0 + (grip_v + grip_vv · v) · v
   double brake_front, drive_front;  ///< share of the brake and drive force at the front
   double front_part, rear_part;     ///< the car's load over that of an axle
   double front_roll, rear_roll;     ///< what an inner wheel loses of its load for each m/s² [s²/m]
@@ -27,18 +27,18 @@ struct LimitCar {
   double drag_0, drag_v, drag_vv;   ///< [m/s²], [1/s], [1/m]
   double slip_drag;                 ///< deceleration per (v² κ)² · load [s⁰], eq. 5
   double slip_heading;              ///< rear slip angle per v² κ · load [rad], eq. 6
-  double load_0, load_v;            ///< load over mass: load_0 + load_v · v [m/s²], [1/s]
+  double load_0, load_v, load_vv;   ///< load over mass, in the same way [m/s²], [1/s], [1/m]
   double curvature_limit;           ///< at full lock [1/m]
   double curvature_rate;            ///< fastest change of the path's curvature, from the steering [1/(m s)]
 
   /// Largest tyre force over mass at speed v [m/s²].
   template <class V>
   [[nodiscard]] CHICANE_INLINE inline auto grip(const V& v) const noexcept {
-    return grip_0 + grip_v * v;
+    return grip_0 + (grip_v + grip_vv * v) * v;
   }
   template <class V>
   [[nodiscard]] CHICANE_INLINE inline auto load(const V& v) const noexcept {
-    return load_0 + load_v * v;
+    return load_0 + (load_v + load_vv * v) * v;
   }
   /// Deceleration by drag at v > 0 [m/s²].
   template <class V>

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "chicane/lap_time/detail/road_car_model.hpp"
+#include "chicane/lap_time/detail/double_track_model.hpp"
 #include "chicane/lap_time/detail/udacity_model.hpp"
 
 namespace chicane::lap_time {
@@ -122,16 +122,17 @@ class UdacityLimit final : public WithModel<UdacityModel> {
   double friction_ = 1.0;
 };
 
-class RoadCarLimit final : public WithModel<RoadCarModel> {
+class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
  public:
-  explicit RoadCarLimit(const sim::PlantDeviation& deviation) {
+  DoubleTrackLimit(const sim::DoubleTrackParams& car, const sim::PlantDeviation& deviation) {
+    model_.car = car;
     model_.car.mass *= deviation.mass_scale;
     model_.car.yaw_inertia *= deviation.mass_scale;
     model_.car.friction *= deviation.friction_scale;
   }
   [[nodiscard]] CarSize size() const override {
-    return {model_.car.front_axle, model_.car.rear_axle, model_.car.half_track + model_.car.half_tire,
-            model_.car.steer.high};
+    return {model_.car.front_axle, model_.car.rear_axle, model_.car.half_track() + model_.car.half_tire(),
+            model_.car.steer_limit};
   }
   [[nodiscard]] std::span<const Reserve> reserves() const override {
     static constexpr Reserve kReserves[] = {{.margin = 0.05, .slip_share = 1.0},
@@ -156,7 +157,7 @@ class RoadCarLimit final : public WithModel<RoadCarModel> {
     model_.steer_price = reserve.steer_price;
   }
   void guess(double v, double a, double curvature, double* z) const override {
-    const sim::RoadCarParams& car = model_.car;
+    const sim::DoubleTrackParams& car = model_.car;
     const double wheelbase = car.front_axle + car.rear_axle;
     const double side = v * v * curvature;
     const double slope = kGravity * car.friction * car.shape;
@@ -167,27 +168,28 @@ class RoadCarLimit final : public WithModel<RoadCarModel> {
     z[kHeading] = -z[kVy] / v;
     z[kSteer] = wheelbase * curvature + side / (slope * car.stiffness_front) - rear_slip;
     z[kPedal] = a * car.mass / (a > 0.0 ? car.drive_force : car.brake_force);
-    z[RoadCarModel::kShiftX] = a;
-    z[RoadCarModel::kShiftY] = side;
+    z[DoubleTrackModel::kShiftX] = a;
+    z[DoubleTrackModel::kShiftY] = side;
     for (int i = 0; i < 4; ++i) {
       const double front = a > 0.0 ? car.drive_share_front : car.brake_share_front;
       const double share =
           i < 2 ? front * wheelbase / car.rear_axle : (1.0 - front) * wheelbase / car.front_axle;
-      z[RoadCarModel::kSlip + i] = share * a / (slope * (i < 2 ? car.stiffness_front : car.stiffness_rear));
+      z[DoubleTrackModel::kSlip + i] =
+          share * a / (slope * (i < 2 ? car.stiffness_front : car.stiffness_rear));
     }
   }
   [[nodiscard]] path::RacingLinePoint point(const double* z) const override {
     const auto m = model_.motion(z);
-    const sim::RoadCarParams& car = model_.car;
+    const sim::DoubleTrackParams& car = model_.car;
     return {.offset = z[kOffset],
             .heading = z[kHeading],
             .vx = z[kVx],
             .vy = z[kVy],
             .yaw_rate = z[kYawRate],
             .steer = z[kSteer],
-            .steer_asked = z[kSteer] + car.steer.lag * z[RoadCarModel::kSteerRate],
+            .steer_asked = z[kSteer] + car.steer_lag * z[DoubleTrackModel::kSteerRate],
             .acceleration = m.ax + z[kYawRate] * z[kVy],
-            .throttle = std::clamp(z[kPedal] + car.pedal.lag * z[RoadCarModel::kPedalRate], -1.0, 1.0)};
+            .throttle = std::clamp(z[kPedal] + car.drive_lag * z[DoubleTrackModel::kPedalRate], -1.0, 1.0)};
   }
 
   [[nodiscard]] std::vector<double> error_prices() const override {
@@ -200,8 +202,8 @@ class RoadCarLimit final : public WithModel<RoadCarModel> {
     return kTunings;
   }
   [[nodiscard]] bool is_spent(const double* z) const override {
-    const sim::RoadCarParams& car = model_.car;
-    const double asked = z[kPedal] + car.pedal.lag * z[RoadCarModel::kPedalRate];
+    const sim::DoubleTrackParams& car = model_.car;
+    const double asked = z[kPedal] + car.drive_lag * z[DoubleTrackModel::kPedalRate];
     return asked > kNearLimit || z[kPedal] * car.drive_force * z[kVx] > kNearLimit * car.drive_power;
   }
 
@@ -210,7 +212,7 @@ class RoadCarLimit final : public WithModel<RoadCarModel> {
     shift_x_ = shift_y_ = 0.0;
   }
   void see(const model::Command& asked, const sim::PlantOutput& output, double elapsed) override {
-    pedal_ = model_.car.pedal.next(pedal_, asked.throttle, elapsed);
+    pedal_ = model_.car.pedal().next(pedal_, asked.throttle, elapsed);
     shift_x_ += elapsed / model_.car.load_lag * (output.ax - shift_x_);
     shift_y_ += elapsed / model_.car.load_lag * (output.ay - shift_y_);
   }
@@ -220,20 +222,20 @@ class RoadCarLimit final : public WithModel<RoadCarModel> {
     x[kYawRate] = state.r;
     x[kSteer] = state.steer;
     x[kPedal] = pedal_;
-    x[RoadCarModel::kShiftX] = shift_x_;
-    x[RoadCarModel::kShiftY] = shift_y_;
+    x[DoubleTrackModel::kShiftX] = shift_x_;
+    x[DoubleTrackModel::kShiftY] = shift_y_;
   }
   [[nodiscard]] model::Command command(const model::State& state, const double* z,
                                        const double* inputs) const override {
-    const sim::RoadCarParams& car = model_.car;
+    const sim::DoubleTrackParams& car = model_.car;
     // More slip than that of the peak would give less force, not more.
     const auto course = [&](double vx, double vy, double r) { return (vy + car.front_axle * r) / vx; };
     const double planned = z[kSteer] - course(z[kVx], z[kVy], z[kYawRate]);
     const double most = std::max(kMostSlip * model_.peak_slip(true), std::fabs(planned));
     const double now = course(std::max(state.vx, 1.0), state.vy, state.r);
-    const double steer = std::clamp(state.steer + car.steer.lag * inputs[0], now - most, now + most);
-    return {std::clamp(steer, car.steer.low, car.steer.high),
-            std::clamp(pedal_ + car.pedal.lag * inputs[1], -1.0, 1.0)};
+    const double steer = std::clamp(state.steer + car.steer_lag * inputs[0], now - most, now + most);
+    return {std::clamp(steer, -car.steer_limit, car.steer_limit),
+            std::clamp(pedal_ + car.drive_lag * inputs[1], -1.0, 1.0)};
   }
 
  private:
@@ -244,11 +246,14 @@ class RoadCarLimit final : public WithModel<RoadCarModel> {
 }  // namespace
 
 Result<std::unique_ptr<LimitModel>> make_limit_model(std::string_view plant,
-                                                     const sim::PlantDeviation& deviation) {
+                                                     const sim::PlantDeviation& deviation,
+                                                     const sim::DoubleTrackParams& params) {
   if (plant == sim::UdacityCar::kName) return std::make_unique<UdacityLimit>(deviation);
-  if (plant == sim::RoadCar::kName) return std::make_unique<RoadCarLimit>(deviation);
-  return fail(ErrorCode::kNotFound,
-              "limit: got plant " + std::string(plant) + ", expected one with a model: udacity, road-car");
+  if (plant == sim::DoubleTrack::kRoadCar)
+    return std::make_unique<DoubleTrackLimit>(sim::DoubleTrackParams{}, deviation);
+  if (plant == sim::DoubleTrack::kName) return std::make_unique<DoubleTrackLimit>(params, deviation);
+  return fail(ErrorCode::kNotFound, "limit: got plant " + std::string(plant) +
+                                        ", expected one with a model: udacity, road-car, double-track");
 }
 
 }  // namespace chicane::lap_time

@@ -10,6 +10,7 @@
 #include "chicane/base/result.hpp"
 #include "chicane/lap_time/detail/plan_model.hpp"
 #include "chicane/model/state.hpp"
+#include "chicane/sim/double_track.hpp"
 #include "chicane/sim/plant.hpp"
 
 namespace chicane::lap_time {
@@ -47,8 +48,10 @@ class LimitModel : public PlanModel {
                                                const double* inputs) const = 0;
 };
 
-/// The model of that plant with that deviation. kNotFound for a plant without one.
+/// The model of that plant with that deviation, a double track of those parameters. kNotFound for a plant
+/// without one.
 [[nodiscard]] Result<std::unique_ptr<LimitModel>> make_limit_model(std::string_view plant,
-                                                                   const sim::PlantDeviation& deviation);
+                                                                   const sim::PlantDeviation& deviation,
+                                                                   const sim::DoubleTrackParams& params = {});
 
 }  // namespace chicane::lap_time

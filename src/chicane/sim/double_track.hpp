@@ -2,39 +2,45 @@
 #pragma once
 
 #include <array>
+#include <limits>
+#include <span>
 #include <string_view>
 
+#include "chicane/base/option.hpp"
 #include "chicane/base/vec2.hpp"
 #include "chicane/model/actuator.hpp"
 #include "chicane/model/tire.hpp"
+#include "chicane/model/vehicle.hpp"
 #include "chicane/sim/plant.hpp"
 
 namespace chicane::sim {
 
-/// An ordinary car of 1300 kg and 200 kW on summer tyres. Origin of each number: docs/plants.md, table 4.
-struct RoadCarParams {
+/// A car with four wheels on a plane, as data. The defaults are those of the plant `road-car`, an ordinary
+/// car of 1300 kg and 200 kW on summer tyres; origin of each number: docs/plants.md, table 4. Other cars:
+/// cars/*.yaml.
+struct DoubleTrackParams {
   double mass = 1300.0;            ///< [kg]
   double yaw_inertia = 2000.0;     ///< [kg m²]
-  double gravity = 9.81;           ///< [m/s²]
   double front_axle = 1.25;        ///< centre of mass to front axle [m]
   double rear_axle = 1.45;         ///< [m]
-  double half_track = 0.80;        ///< [m]
-  double half_tire = 0.1025;       ///< half the width of a contact patch [m]
+  double track_width = 1.60;       ///< between the centres of the wheels of an axle [m]
+  double tire_width = 0.205;       ///< of a contact patch [m]
   double height = 0.50;            ///< of the centre of mass [m]
   double roll_share_front = 0.58;  ///< of the lateral load transfer, by springs and anti-roll bars
   double load_lag = 0.06;          ///< time constant of the load transfer: the body rolls and pitches [s]
 
   double wheel_radius = 0.31;         ///< [m]
-  double wheel_inertia = 1.2;         ///< [kg m²]
+  double wheel_inertia = 1.2;         ///< of each of four, with what turns along with it [kg m²]
   double rolling_resistance = 0.013;  ///< torque over load · radius
   double drag = 0.39;                 ///< ½ ρ c_d A [kg/m]
+  double downforce_front = 0.0;       ///< ½ ρ c_l A that presses the front axle down [kg/m]
+  double downforce_rear = 0.0;        ///< and the rear one [kg/m]
 
   double friction = 1.20;          ///< peak force over load at the static load of a wheel
   double load_sensitivity = 0.08;  ///< friction lost per static load of a wheel added
   double stiffness_front = 9.0;    ///< magic formula B of slip; front less for compliance of the steering
   double stiffness_rear = 10.0;
   double shape = 1.5;               ///< magic formula C
-  double curvature = 0.0;           ///< magic formula E
   double relaxation_along = 0.15;   ///< relaxation length of forward slip [m]
   double relaxation_across = 0.30;  ///< of lateral slip [m]
   double creep_speed = 3.0;         ///< slip damping fades out up to this speed [m/s]
@@ -42,32 +48,63 @@ struct RoadCarParams {
 
   double drive_force = 7300.0;      ///< at full throttle [N]
   double drive_power = 200.0e3;     ///< [W]
-  double drive_share_front = 0.40;  ///< all-wheel drive, open differentials
+  double drive_share_front = 0.40;  ///< open differentials
   double brake_force = 12350.0;     ///< at throttle −1 [N]
   double brake_share_front =
       0.72;                      ///< bias; the front locks first up to 0.9 g, as UN R13-H asks of road cars
   double abs_slip_start = 0.10;  ///< anti-lock: brake torque falls from here ...
   double abs_slip_end = 0.18;    ///< ... to nothing here
   double abs_speed = 1.5;        ///< no anti-lock below [m/s]
+  double traction_slip_start = std::numeric_limits<double>::infinity();  ///< traction control: drive torque
+                                                                         ///< falls from here; infinite: none
+  double traction_slip_end = std::numeric_limits<double>::infinity();    ///< to nothing here
 
-  model::Actuator steer{.low = -0.4363323129985824,
-                        .high = 0.4363323129985824,
-                        .lag = 0.05,
-                        .rate = 1.5707963267948966};  ///< ±25°, 90°/s
-  model::Actuator pedal{.low = -1.0, .high = 1.0, .lag = 0.1};
+  double steer_limit = 0.4363323129985824;       ///< of the road wheels, 25° [rad]
+  double steer_rate_limit = 1.5707963267948966;  ///< 90°/s [rad/s]
+  double steer_lag = 0.05;                       ///< time constant [s]
+  double drive_lag = 0.1;                        ///< of drive and brakes [s]
+
+  static constexpr double kGravity = 9.81;  ///< [m/s²]
+  [[nodiscard]] double wheelbase() const noexcept { return front_axle + rear_axle; }
+  [[nodiscard]] bool has_traction_control() const noexcept {
+    return traction_slip_end < std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] double half_track() const noexcept { return 0.5 * track_width; }
+  [[nodiscard]] double half_tire() const noexcept { return 0.5 * tire_width; }
+  [[nodiscard]] model::Actuator steer() const noexcept {
+    return {.low = -steer_limit, .high = steer_limit, .lag = steer_lag, .rate = steer_rate_limit};
+  }
+  [[nodiscard]] model::Actuator pedal() const noexcept {
+    return {.low = -1.0, .high = 1.0, .lag = drive_lag};
+  }
+
+  friend bool operator==(const DoubleTrackParams&, const DoubleTrackParams&) = default;
 };
 
-/// The plant `road-car`: double track, planar with quasi-static load transfer, magic-formula tyres with
-/// combined slip and relaxation lengths, proportional brakes with anti-lock, lagging and rate-limited
-/// steering, 1 kHz. Equations: docs/plants.md, eq. 2–8. Valid from standstill (also in reverse rolling) to
-/// its top speed; its throttle never reverses.
-class RoadCar final : public Plant {
+/// The fields with their units and ranges, for files and messages.
+[[nodiscard]] std::span<const Option> double_track_options() noexcept;
+
+/// A controller's model of that car: what it is built of, and what follows from it, as the inertia of its
+/// wheels and the friction that its tyres lose under downforce (docs/plants.md, eq. 9-14). `name`, `length`
+/// and `width` are not the plant's: they stay as in `body`.
+[[nodiscard]] model::VehicleParams model_of(const DoubleTrackParams& plant, model::VehicleParams body = {});
+
+/// The plants `double-track` and `road-car`: planar with quasi-static load transfer and downforce,
+/// magic-formula tyres with combined slip and relaxation lengths, proportional brakes with anti-lock, lagging
+/// and rate-limited steering, 1 kHz; small cars, whose wheels answer faster, move in several parts of a step.
+/// Equations: docs/plants.md, eq. 2–8. Valid from standstill (also in reverse rolling) to its top speed; its
+/// throttle never reverses.
+class DoubleTrack final : public Plant {
  public:
-  static constexpr std::string_view kName = "road-car";
-  static constexpr std::string_view kMeaning = "an ordinary car: slides, pitches, steers with a lag; 1 kHz";
+  static constexpr std::string_view kName = "double-track";
+  static constexpr std::string_view kMeaning =
+      "four wheels that slide and lag; its car file gives the rest; 1 kHz";
+  static constexpr std::string_view kRoadCar = "road-car";  ///< the one with default parameters
+  static constexpr std::string_view kRoadCarMeaning =
+      "an ordinary car: slides, pitches, steers with a lag; 1 kHz";
   static constexpr double kStepLength = 0.001;  ///< [s]
 
-  explicit RoadCar(const RoadCarParams& params = {}) noexcept;
+  explicit DoubleTrack(const DoubleTrackParams& params = {}) noexcept;
 
   [[nodiscard]] double step_length() const noexcept override { return kStepLength; }
   void reset(const model::Pose& pose, double speed) noexcept override;
@@ -98,8 +135,11 @@ class RoadCar final : public Plant {
   void spin(Wheel& wheel, double force, double drive, double brake, double speed_along) const noexcept;
   void move() noexcept;
 
-  RoadCarParams nominal_;
-  RoadCarParams params_;  ///< those of this car, which may deviate
+  DoubleTrackParams nominal_;
+  DoubleTrackParams params_;  ///< those of this car, which may deviate
+  model::Actuator steer_, pedal_way_;
+  int parts_ = 1;            ///< of a step
+  double dt_ = kStepLength;  ///< of a part [s]
   Disturbance disturbance_;
   std::array<Wheel, 4> wheels_{};
   Vec2 velocity_{};     ///< in W [m/s]

@@ -3,15 +3,15 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/lap_time/detail/plant_model.hpp"
-#include "chicane/sim/road_car.hpp"
+#include "chicane/sim/double_track.hpp"
 
 namespace chicane::lap_time {
 
-/// The plant `road-car` (sim/road_car.hpp) with tyres that have settled to their slip, its wheels in balance
-/// (docs/limit.md, section 1). Variables: offset, heading, vx, vy, yaw rate, steering angle, pedal after its
-/// lag, the lagged accelerations that shift load; changes of steering and pedal by time; the forward slip of
-/// each wheel, which the balance of its torques decides.
-struct RoadCarModel {
+/// The plants `double-track` and `road-car` (sim/double_track.hpp) with tyres that have settled to their
+/// slip, its wheels in balance (docs/limit.md, section 1). Variables: offset, heading, vx, vy, yaw rate,
+/// steering angle, pedal after its lag, the lagged accelerations that shift load; changes of steering and
+/// pedal by time; the forward slip of each wheel, which the balance of its torques decides.
+struct DoubleTrackModel {
   static constexpr int kVariables = 15;
   static constexpr int kStates = 9;
   static constexpr int kEquations = 4;
@@ -23,7 +23,7 @@ struct RoadCarModel {
     return {2.0, 0.2, 20.0, 2.0, 1.0, 0.1, 1.0, 10.0, 10.0, 1.0, 10.0, 0.1, 0.1, 0.1, 0.1};
   }
 
-  sim::RoadCarParams car{};
+  sim::DoubleTrackParams car{};
   const RoadNodes* road = nullptr;
   double margin = 0.0;  ///< kept from the edges [m]
   double grip_share = 1.0;
@@ -44,9 +44,9 @@ struct RoadCarModel {
     const T& r = z[kYawRate];
     const T cs = cos(z[kSteer]);
     const T sn = sin(z[kSteer]);
-    const double wheelbase = car.front_axle + car.rear_axle;
+    const double wheelbase = car.wheelbase();
     const double along_share = 0.5 * car.mass * car.height / wheelbase;
-    const double across_share = car.mass * car.height / (2.0 * car.half_track);
+    const double across_share = car.mass * car.height / (2.0 * car.half_track());
     const T drive = (0.5 * car.drive_force) * smooth_positive(z[kPedal], kPedalCorner);
     const T brake = (0.5 * car.brake_force) * smooth_positive(T(-z[kPedal]), kPedalCorner);
     const T spin = (car.wheel_inertia / (car.wheel_radius * car.wheel_radius)) * (z[kShiftX] + r * vy);
@@ -57,9 +57,9 @@ struct RoadCarModel {
     for (std::size_t i = 0; i < 4; ++i) {
       const bool is_front = i < 2;
       const double x = is_front ? car.front_axle : -car.rear_axle;
-      const double y = i % 2 == 0 ? car.half_track : -car.half_track;
-      const double rest =
-          0.5 * car.mass * car.gravity * (is_front ? car.rear_axle : car.front_axle) / wheelbase;
+      const double y = i % 2 == 0 ? car.half_track() : -car.half_track();
+      const double rest = 0.5 * car.mass * sim::DoubleTrackParams::kGravity *
+                          (is_front ? car.rear_axle : car.front_axle) / wheelbase;
       const double roll = is_front ? car.roll_share_front : 1.0 - car.roll_share_front;
       const T load = smooth_positive(T(rest + (is_front ? -along_share : along_share) * z[kShiftX] +
                                        (i % 2 == 0 ? -roll : roll) * across_share * z[kShiftY]),
@@ -80,8 +80,9 @@ struct RoadCarModel {
       const T f_across = force * side;
       const double drive_share = is_front ? car.drive_share_front : 1.0 - car.drive_share_front;
       const double brake_share = is_front ? car.brake_share_front : 1.0 - car.brake_share_front;
-      m.balance[i] = (1.0 / rest) * (f_along - drive_share * drive + brake_share * brake * lock_share(slip) +
-                                     car.rolling_resistance * load + spin);
+      m.balance[i] =
+          (1.0 / rest) * (f_along - drive_share * drive * spin_share(slip) +
+                          brake_share * brake * lock_share(slip) + car.rolling_resistance * load + spin);
       const T bx = is_front ? T(cs * f_along - sn * f_across) : f_along;
       const T by = is_front ? T(sn * f_along + cs * f_across) : f_across;
       fx += bx;
@@ -100,6 +101,15 @@ struct RoadCarModel {
   [[nodiscard]] T lock_share(const T& slip) const {
     const double span = car.abs_slip_end - car.abs_slip_start;
     const T left = (1.0 / span) * (slip + car.abs_slip_end);
+    return smooth_positive(left, kLockCorner) - smooth_positive(T(left - 1.0), kLockCorner);
+  }
+
+  /// And traction control of the drive.
+  template <class T>
+  [[nodiscard]] T spin_share(const T& slip) const {
+    if (!car.has_traction_control()) return T(1.0);
+    const double span = car.traction_slip_end - car.traction_slip_start;
+    const T left = (1.0 / span) * (car.traction_slip_end - slip);
     return smooth_positive(left, kLockCorner) - smooth_positive(T(left - 1.0), kLockCorner);
   }
 
@@ -125,17 +135,17 @@ struct RoadCarModel {
     *out++ = (1.0 + steer_price * (z[kSteerRate] * z[kSteerRate]) +
               (0.01 * pedal_price) * (z[kPedalRate] * z[kPedalRate])) *
              on.slowness;
-    const double w = car.half_track + car.half_tire;
+    const double w = car.half_track() + car.half_tire();
     *out++ = at.front_left[k] - margin - on.offset_of(n, car.front_axle, w, at.front_bend[k]);
     *out++ = at.front_right[k] - margin + on.offset_of(n, car.front_axle, -w, at.front_bend[k]);
     *out++ = at.rear_left[k] - margin - on.offset_of(n, -car.rear_axle, w, at.rear_bend[k]);
     *out++ = at.rear_right[k] - margin + on.offset_of(n, -car.rear_axle, -w, at.rear_bend[k]);
-    const T steer_asked = (1.0 / car.steer.high) * (steer + car.steer.lag * z[kSteerRate]);
+    const T steer_asked = (1.0 / car.steer_limit) * (steer + car.steer_lag * z[kSteerRate]);
     *out++ = 1.0 - steer_asked;
     *out++ = 1.0 + steer_asked;
-    *out++ = 1.0 - (1.0 / car.steer.rate) * z[kSteerRate];
-    *out++ = 1.0 + (1.0 / car.steer.rate) * z[kSteerRate];
-    const T pedal_asked = pedal + car.pedal.lag * z[kPedalRate];
+    *out++ = 1.0 - (1.0 / car.steer_rate_limit) * z[kSteerRate];
+    *out++ = 1.0 + (1.0 / car.steer_rate_limit) * z[kSteerRate];
+    const T pedal_asked = pedal + car.drive_lag * z[kPedalRate];
     *out++ = 1.0 - pedal_asked;
     *out++ = 1.0 + pedal_asked;
     *out++ = 1.0 - (car.drive_force / car.drive_power) * (pedal * z[kVx]);

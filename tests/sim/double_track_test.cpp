@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sim/double_track.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "chicane/base/angle.hpp"
+#include "sim/plant_experiment.hpp"
+
+namespace chicane::sim {
+namespace {
+
+TEST(RoadCar, CornersAtAboutOneGAndNoMore) {
+  DoubleTrack car;
+  const double peak = experiment::peak_cornering(car, 20.0).lateral_acceleration / 9.81;
+  EXPECT_GT(peak, 0.98);
+  EXPECT_LT(peak, 1.20);  // the tyre's 1.2, less load transfer
+}
+
+TEST(RoadCar, AcceleratesLikeTwoHundredKilowatts) {
+  DoubleTrack car;
+  const auto run = experiment::drive_straight(car, 1.0, 60.0);
+  EXPECT_NEAR(experiment::time_to(run, 100.0 / 3.6), 5.5, 0.4);
+  for (const auto& [v, a] : experiment::accelerations(run, 1.0)) {
+    EXPECT_LE(a * v, 200.0e3 / 1300.0) << v;
+  }
+  EXPECT_GT(run.back().speed, 65.0);
+}
+
+TEST(RoadCar, BrakesInProportionWithoutLocking) {
+  DoubleTrack car;
+  const double full = experiment::braking_at(car, -1.0, 20.0);
+  const double half = experiment::braking_at(car, -0.5, 20.0);
+  EXPECT_LT(full, -8.5);
+  EXPECT_GT(full, -10.5);
+  const double drag = experiment::braking_at(car, 0.0, 20.0);
+  EXPECT_NEAR(half - drag, 0.5 * (full - drag), 0.15);
+}
+
+TEST(RoadCar, StopsAndStaysStopped) {
+  DoubleTrack car;
+  car.reset({}, 10.0);
+  experiment::drive_straight(car, -1.0, 4.0);
+  EXPECT_LT(car.output().speed, 1e-3);
+  const double x = car.state().x;
+  experiment::drive_straight(car, -1.0, 5.0);
+  EXPECT_NEAR(car.state().x, x, 1e-3);
+}
+
+TEST(RoadCar, SteersNoFasterThanNinetyDegreesASecond) {
+  DoubleTrack car;
+  car.reset({}, 10.0);
+  double before = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    car.advance({.steer = i < 250 ? 0.43 : -0.43, .throttle = 0.0});
+    EXPECT_LE(std::fabs(car.state().steer - before), degrees_to_radians(90.0) * 0.001 + 1e-12);
+    before = car.state().steer;
+  }
+}
+
+TEST(RoadCar, SteeringLagsByFiftyMilliseconds) {
+  DoubleTrack car;
+  for (int i = 0; i < 50; ++i) car.advance({.steer = 0.02, .throttle = 0.0});
+  EXPECT_NEAR(car.state().steer, 0.02 * (1.0 - std::exp(-1.0)), 1e-9);
+}
+
+TEST(RoadCar, Understeers) {
+  DoubleTrack car;
+  const double slow = experiment::steady_circle(car, 0.02, 5.0).curvature;
+  const double fast = experiment::steady_circle(car, 0.02, 25.0).curvature;
+  EXPECT_LT(fast, 0.95 * slow);
+  EXPECT_NEAR(slow, 0.02 / 2.70, 0.02 * 0.02 / 2.70);
+}
+
+TEST(RoadCar, BrakingInATurnTakesGripFromCornering) {
+  DoubleTrack turning;
+  turning.reset({}, 25.0);
+  DoubleTrack braking;
+  braking.reset({}, 25.0);
+  double most_turning = 0.0;
+  double most_braking = 0.0;
+  for (int i = 0; i < 1200; ++i) {
+    turning.advance({.steer = 0.12, .throttle = 0.3});
+    braking.advance({.steer = 0.12, .throttle = -1.0});
+    most_turning = std::max(most_turning, turning.output().ay);
+    if (i > 400) most_braking = std::max(most_braking, braking.output().ay);
+  }
+  EXPECT_GT(most_turning, 9.0);
+  EXPECT_LT(most_braking, 0.9 * most_turning);
+}
+
+// The values that were fitted to it (model/vehicle.cpp) are those that follow from what it is built of.
+TEST(DoubleTrack, TheModelThatFollowsFromTheRoadCarIsTheOneThatWasFitted) {
+  const model::VehicleParams fitted = model::road_car_params();
+  const model::VehicleParams followed = model_of({}, fitted);
+  for (const Option& option : model::vehicle_options()) {
+    if (option.kind != OptionKind::kNumber) continue;
+    const double a = std::get<double>(option.read(&fitted));
+    const double b = std::get<double>(option.read(&followed));
+    EXPECT_NEAR(a, b, 0.015 * std::fabs(a)) << option.name;  // of the drive: what slip takes at full throttle
+  }
+}
+
+TEST(DoubleTrack, DownforceLetsItCornerFaster) {
+  DoubleTrackParams params;
+  DoubleTrack without(params);
+  params.downforce_front = 1.2;
+  params.downforce_rear = 1.4;
+  DoubleTrack with(params);
+  const double v = 40.0;
+  const double more = experiment::peak_cornering(with, v).lateral_acceleration /
+                      experiment::peak_cornering(without, v).lateral_acceleration;
+  // Of the load at rest, and less friction at more load; the axles reach their peaks one after the other.
+  const double load = 2.6 * v * v / (params.mass * DoubleTrackParams::kGravity);
+  EXPECT_NEAR(more, 1.0 + (1.0 - params.load_sensitivity) * load, 0.07);
+}
+
+TEST(DoubleTrack, TractionControlKeepsTheDrivenWheelsFromSpinning) {
+  DoubleTrackParams params;
+  params.drive_force = 14000.0;
+  params.drive_share_front = 0.0;
+  DoubleTrack spinning(params);
+  params.traction_slip_start = 0.1;
+  params.traction_slip_end = 0.18;
+  DoubleTrack controlled(params);
+  experiment::drive_straight(spinning, 1.0, 1.0);
+  experiment::drive_straight(controlled, 1.0, 1.0);
+  EXPECT_GT(spinning.output().slip_ratio[2], 0.5);
+  EXPECT_LT(controlled.output().slip_ratio[2], 0.18);
+  EXPECT_GT(controlled.output().speed, spinning.output().speed);
+}
+
+// Its wheels are an oscillator of some 700 rad/s, which steps of 1 ms as a whole would shake apart.
+TEST(DoubleTrack, ASmallCarWithLightWheelsRollsCalmly) {
+  const DoubleTrackParams params{.mass = 0.04,
+                                 .yaw_inertia = 3e-5,
+                                 .front_axle = 0.03,
+                                 .rear_axle = 0.03,
+                                 .track_width = 0.03,
+                                 .tire_width = 0.005,
+                                 .height = 0.01,
+                                 .load_lag = 0.01,
+                                 .wheel_radius = 0.013,
+                                 .wheel_inertia = 1e-7,
+                                 .drag = 0.0,
+                                 .relaxation_along = 0.005,
+                                 .relaxation_across = 0.01,
+                                 .creep_speed = 0.2,
+                                 .creep_damping = 1.0,
+                                 .drive_force = 0.2,
+                                 .drive_power = 0.5,
+                                 .brake_force = 0.3,
+                                 .abs_speed = 0.1};
+  DoubleTrack car(params);
+  const auto run = experiment::drive_straight(car, 0.5, 2.0);
+  for (std::size_t i = 100; i < run.size(); ++i) ASSERT_NEAR(run[i].ax, run[i - 1].ax, 0.02) << run[i].time;
+  EXPECT_NEAR(run.back().ax, longitudinal_acceleration(model_of(params), 0.5, run.back().speed), 0.05);
+}
+
+}  // namespace
+}  // namespace chicane::sim
