@@ -76,8 +76,8 @@ class Profile:
 
         def gap_of():
             end = self.integrate()[-1]
-            turn = [100.0 * (self.turn() - 2.0 * math.pi)] if len(free) > 2 else []
-            return [end[1], end[2]] + turn + ([self.length() - length] if length else [])
+            turning = [100.0 * (self.turn() - 2.0 * math.pi)] if len(free) > 2 else []
+            return [end[1], end[2]] + turning + ([self.length() - length] if length else [])
 
         for _ in range(40):
             gap = gap_of()
@@ -134,11 +134,13 @@ def oval_profile():
     return Profile([(0, 75, 0.0), (30, arc, 1 / 45.0), (30, 150, 0.0), (30, arc, 1 / 45.0), (30, 75, 0.0)])
 
 
+def turn(radius, transition, angle):
+    """A bend by `angle` [rad]; the stretch behind it begins with the same transition."""
+    return (transition, abs(angle) * radius - transition, math.copysign(1.0 / radius, angle))
+
+
 def hairpins_profile():
     """Three ladders of U-turns down to R 8 m, then round the outside back to the start."""
-
-    def turn(radius, transition, angle):
-        return (transition, abs(angle) * radius - transition, math.copysign(1.0 / radius, angle))
 
     return Profile([
         (0, 50, 0.0),
@@ -176,11 +178,45 @@ def speedway_profile():
     ]).close(free=(1, 2, 6))
 
 
-def even_points(profile, spacing, left, right):
+def crossover_profile():
+    """A figure of eight: three quarters of a circle to the left, over the own road, and back by two right-handers."""
+    return Profile([
+        (0, 90, 0.0),           # 0 to the crossing and on
+        turn(60.0, 30, 1.5 * math.pi),
+        (30, 110, 0.0),         # 2 over the crossing
+        turn(36.0, 20, -0.5 * math.pi),
+        (20, 70, 0.0),
+        turn(30.0, 18, -math.pi),
+        (18, 110, 0.0),
+    ]).close(free=(0, 2))
+
+
+def stage_profile():
+    """An open road with bends of R 18 to 90 m, as a stage of a rally, with room to stop behind the finish."""
+    return Profile([
+        (0, 90, 0.0),
+        turn(70.0, 30, math.pi / 3),
+        (30, 80, 0.0),
+        turn(35.0, 20, -2.0 * math.pi / 3),
+        (20, 60, 0.0),
+        turn(25.0, 16, 0.7 * math.pi),
+        (16, 110, 0.0),
+        turn(50.0, 24, -math.pi / 2),
+        (24, 120, 0.0),
+        turn(18.0, 12, -0.9 * math.pi),
+        (12, 55, 0.0),
+        turn(30.0, 18, 0.8 * math.pi),
+        (18, 160, 0.0),
+        turn(90.0, 40, -math.pi / 4),
+        (40, 120, 0.0),
+    ])
+
+
+def even_points(profile, spacing, left, right, closed=True):
     """Centre line and widths about every `spacing` metres: wide enough that six points show the road ahead."""
     rows = profile.integrate()
     count = round(profile.length() / spacing)
-    return [(*rows[round(i * (len(rows) - 1) / count)][1:4], left, right) for i in range(count)]
+    return [(*rows[round(i * (len(rows) - 1) / count)][1:4], left, right) for i in range(count + (not closed))]
 
 
 # --- lakeside's waypoints: few, unevenly spaced, as if placed by hand -----------------------------------------------
@@ -264,6 +300,8 @@ def make_all():
     oval = oval_profile()
     hairpins = hairpins_profile()
     speedway = speedway_profile()
+    crossover = crossover_profile()
+    stage = stage_profile()
     exact = {"smoothing_sigma_m": 0.02, "kerb_width_m": 0.5}
     return {
         "lakeside": text_of(
@@ -276,6 +314,10 @@ def make_all():
                             even_points(hairpins, 5.0, 4.5, 4.5)),
         "speedway": text_of(["speedway: sweeping corners of R 90 to 200 m between long straights, 12 m wide, counter-clockwise"],
                             exact, even_points(speedway, 20.0, 6.0, 6.0)),
+        "crossover": text_of(["crossover: a figure of eight that crosses its own road, bends of R 60, 36 and 30 m, 10 m wide"],
+                             {**exact, "start_s_m": -80.0}, even_points(crossover, 10.0, 5.0, 5.0)),
+        "stage": text_of(["stage: an open road from a start to an end, bends of R 18 to 90 m, 8 m wide"],
+                         {**exact, "start_s_m": 10.0, "finish_s_m": 1310.0, "closed": "false"}, even_points(stage, 10.0, 4.0, 4.0, closed=False)),
     }
 
 

@@ -297,5 +297,36 @@ TEST(Path, SurvivesWildPointsWithFiniteNumbers) {
   }
 }
 
+// Where a curve passes a point twice, the direction decides, if neither pass is much nearer.
+TEST(Path, ProjectsAlongTheDirectionWhereItCrossesItself) {
+  std::vector<Vec2> points;
+  for (int i = 0; i < 200; ++i) {
+    const double angle = kTwoPi * i / 200.0;
+    points.push_back({100.0 * std::sin(angle), 60.0 * std::sin(2.0 * angle)});
+  }
+  const Path eight = Path::create(points, true).value();
+  const double half = 0.5 * eight.length();
+  for (const double first : {0.0, half}) {
+    for (double s = -12.0; s <= 12.0; s += 0.5) {
+      for (const double d : {-3.0, 0.0, 2.0}) {
+        const PathPoint at = eight.at(first + s);
+        const Vec2 point = at.position + d * Vec2{-std::sin(at.heading), std::cos(at.heading)};
+        const Projection there = eight.project_along(point, at.heading + 0.3, 5.0);
+        EXPECT_NEAR(eight.difference(there.s, first + s), 0.0, 1e-6) << first << ' ' << s << ' ' << d;
+        EXPECT_NEAR(there.d, d, 1e-6);
+      }
+    }
+  }
+  // Elsewhere, and without reach, it is the nearest point, bit for bit, whatever the direction.
+  for (double s = 0.0; s < eight.length(); s += 7.3) {
+    const Vec2 point = eight.at(s).position + Vec2{1.3, -0.4};
+    const Projection nearest = eight.project(point);
+    EXPECT_EQ(eight.project_along(point, 2.0, 0.0).s, nearest.s);
+    if (std::fabs(point.x()) > 20.0) {
+      EXPECT_EQ(eight.project_along(point, 2.0, 5.0).s, nearest.s) << s;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace chicane::path

@@ -29,7 +29,7 @@ void expect_road(const std::string& file, const Known& known) {
   std::vector<std::string> warnings;
   const Result<Track> track = protocol::read_track(file, {}, &warnings);
   ASSERT_TRUE(track) << track.error().message;
-  EXPECT_TRUE(track->centre().is_closed());
+  EXPECT_EQ(track->centre().is_closed(), !file.ends_with("stage.csv"));
   EXPECT_NEAR(track->length(), known.length, 0.002 * known.length)
       << "a smooth line is a little longer or shorter than the polygon";
   double radius = 1e9;
@@ -120,7 +120,9 @@ INSTANTIATE_TEST_SUITE_P(Tracks, ShippedTrack,
                          ::testing::Values(Known{"lakeside.csv", 1138.0, 8.05, 9.6, 18.7},
                                            Known{"oval.csv", 642.7, 10.0, 10.0, 45.0},
                                            Known{"hairpins.csv", 926.9, 9.0, 9.0, 8.0},
-                                           Known{"speedway.csv", 3348.4, 12.0, 12.0, 90.0}),
+                                           Known{"speedway.csv", 3348.4, 12.0, 12.0, 90.0},
+                                           Known{"crossover.csv", 793.7, 10.0, 10.0, 29.2},
+                                           Known{"stage.csv", 1432.1, 8.0, 8.0, 17.4}),
                          [](const auto& each) {
                            return std::filesystem::path{each.param.file}.stem().string();
                          });
@@ -168,11 +170,12 @@ std::string table_row(const std::string& name) {
   const std::size_t n = points.size();
   std::vector<double> gaps;
   double sight = 1e9;
-  for (std::size_t i = 0; i < n; ++i) {
+  const std::size_t last = track.centre().is_closed() ? n : n - 1;
+  for (std::size_t i = 0; i < last; ++i) {
     double ahead = 0.0;
     for (std::size_t k = 0; k < 4; ++k)
       ahead += (points[(i + k + 1) % n].position - points[(i + k) % n].position).norm();
-    sight = std::min(sight, ahead);
+    if (last == n || i + 4 < n) sight = std::min(sight, ahead);
     gaps.push_back((points[(i + 1) % n].position - points[i].position).norm());
   }
   std::sort(gaps.begin(), gaps.end());
@@ -199,12 +202,12 @@ std::string table_row(const std::string& name) {
                 "| `%s` | %.1f | %.2f / %.2f / %.2f | %s | %s | %s | %zu | %.1f / %.1f / %.1f | %.1f |\n",
                 name.c_str(), track.length(), widths.front(), widths[widths.size() / 2], widths.back(),
                 radius(left).c_str(), radius(right).c_str(), radius(window).c_str(), n, gaps.front(),
-                gaps[n / 2], gaps.back(), sight);
+                gaps[gaps.size() / 2], gaps.back(), sight);
   return row;
 }
 
 TEST(ShippedTrack, TheTableInTheDocsIsTrue) {
-  for (const char* name : {"lakeside", "oval", "hairpins", "speedway"}) {
+  for (const char* name : {"lakeside", "oval", "hairpins", "speedway", "crossover", "stage"}) {
     const std::string row = table_row(name);
     std::fputs(row.c_str(), stdout);
     EXPECT_NE(docs_page().find(row), std::string::npos) << "docs/tracks.md lacks this row: " << row;

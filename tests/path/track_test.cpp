@@ -214,16 +214,49 @@ TEST(Track, RefusesOptionsOutOfRange) {
   EXPECT_EQ(refusal(points, true, {.start_d = 6.0}), "start_d: got 6, expected a place on the road");
 }
 
-TEST(Track, RefusesACrossingLineAndNamesThePoint) {
+/// A figure of eight, `height` m high on each side, 4 m to each edge.
+std::vector<TrackPoint> eight_points(double height) {
   std::vector<TrackPoint> points;
   for (int i = 0; i < 200; ++i) {
     const double angle = kTwoPi * (i + 0.25) / 200.0;
+    points.push_back({{100.0 * std::sin(angle), height * std::sin(2.0 * angle)}, 4.0, 4.0});
+  }
+  return points;
+}
+
+TEST(Track, TakesARoadThatCrossesItself) {
+  const Track track = Track::create("eight", eight_points(60.0), true).value();
+  EXPECT_EQ(track.crossings(), 1);
+  EXPECT_NEAR(track.centre().turning(), 0.0, 1e-9);
+  EXPECT_EQ(Track::create("loop", loop_points(200, 0.0), true)->crossings(), 0);
+  // The seam may lie at the crossing itself, with a point of each passage in the same place.
+  std::vector<TrackPoint> points;
+  for (int i = 0; i < 200; ++i) {
+    const double angle = kTwoPi * i / 200.0;
     points.push_back({{100.0 * std::sin(angle), 60.0 * std::sin(2.0 * angle)}, 4.0, 4.0});
   }
-  const std::string message = refusal(points, true);
-  EXPECT_NE(message.find("crosses itself"), std::string::npos) << message;
+  EXPECT_EQ(Track::create("eight", points, true).value().crossings(), 1);
+}
+
+TEST(Track, RefusesRoadsThatMergeAndNamesThePoint) {
+  const std::string message = refusal(eight_points(12.0), true);  // cross at 27 degrees
   EXPECT_TRUE(message.starts_with("points[199]: got a line that crosses itself near (")) << message;
-  EXPECT_NE(message.find("after points[99],"), std::string::npos) << message;
+  EXPECT_NE(message.find("after points[99], expected no crossing, or one of at least 30 degrees"),
+            std::string::npos)
+      << message;
+  EXPECT_EQ(refusal(eight_points(15.0), true), "accepted");  // at 33 degrees
+}
+
+TEST(Track, RefusesALoopThatIsTooShortForTheRoad) {
+  std::vector<TrackPoint> points;
+  for (int i = 0; i < 40; ++i) points.push_back({{-200.0 + 5.0 * i, 0.0}, 4.0, 4.0});
+  for (int i = 0; i < 12; ++i) {  // a circle of 4.5 m, as measurements that jump back make it
+    const double angle = kTwoPi * i / 12.0;
+    points.push_back({{4.5 * std::sin(angle), 4.5 - 4.5 * std::cos(angle)}, 4.0, 4.0});
+  }
+  for (int i = 1; i < 40; ++i) points.push_back({{5.0 * i, 0.5 * i}, 4.0, 4.0});
+  EXPECT_NE(refusal(points, false, {.spacing = 0.5}).find("crosses itself"), std::string::npos)
+      << refusal(points, false, {.spacing = 0.5});
 }
 
 TEST(Track, RefusesPointsInTheWrongOrder) {

@@ -219,7 +219,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"three_columns_no_header.csv",
                ":1: header: got none for 3 columns, expected a line that names them"},
         Broken{"one_place.csv", ": points: got"},
-        Broken{"figure_of_eight.csv", ":61: points[59]: got a line that crosses itself near"},
+        Broken{"merging_roads.csv", ":61: points[59]: got a line that crosses itself near"},
         Broken{"wrong_order.csv", ":"},
         Broken{"start_in_words.csv", ":1: start_s_m: got soon, expected a number"},
         Broken{"closed_yes.csv", ":1: closed: got yes, expected true or false"},

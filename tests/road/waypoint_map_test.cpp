@@ -76,5 +76,24 @@ TEST(WaypointMap, TakesWaypointsNearerThanTelemetrysRoundingForOne) {
   EXPECT_EQ(map.points().size(), 6U);
 }
 
+// Both passages of a crossing may have a waypoint in the same place, also the first one of the map.
+TEST(WaypointMap, IsNotClosedByAnotherPassageOfACrossing) {
+  std::vector<Vec2> points;
+  for (int i = 0; i < 60; ++i) {
+    const double angle = kTwoPi * i / 60.0;
+    points.push_back({100.0 * std::sin(angle), 60.0 * std::sin(2.0 * angle)});
+  }
+  for (int start = 0; start < 60; ++start) {
+    WaypointMap map;
+    for (int i = start; i < start + 54; ++i) {
+      (void)map.add(seeing(points, i));
+      EXPECT_FALSE(map.is_closed()) << start << ", at " << i;
+    }
+    for (int i = start + 54; i < start + 62; ++i) (void)map.add(seeing(points, i));
+    EXPECT_TRUE(map.is_closed()) << start;
+    EXPECT_EQ(map.points().size(), points.size()) << start;
+  }
+}
+
 }  // namespace
 }  // namespace chicane::road

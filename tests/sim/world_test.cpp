@@ -286,6 +286,56 @@ TEST(SelectWaypoints, GoesAroundTheEndOfAClosedTrack) {
   EXPECT_NEAR(seen.waypoints[0].x(), kRadius * std::cos(119.0 * step), 1e-9);
 }
 
+path::Track eight() {
+  std::vector<path::TrackPoint> points;
+  for (int i = 0; i < 60; ++i) {
+    const double angle = kTwoPi * i / 60.0;
+    points.push_back({{100.0 * std::sin(angle), 60.0 * std::sin(2.0 * angle)}, 5.0, 5.0});
+  }
+  return path::Track::create("eight", points, true).value();
+}
+
+// Also for a car beside the line and not quite along it, and where both passages have a waypoint.
+TEST(SelectWaypoints, ShowsTheRoadThatIsDrivenWhereItCrossesItself) {
+  const path::Track track = eight();
+  for (const double side : {-4.0, 0.0, 4.0}) {
+    for (const double turn : {-0.3, 0.0, 0.3}) {
+      for (double s = 0.0; s < track.length(); s += 0.7) {
+        const path::PathPoint at = track.centre().at(s);
+        model::Measurement seen;
+        select_waypoints(track,
+                         {.x = at.position.x() - side * std::sin(at.heading),
+                          .y = at.position.y() + side * std::cos(at.heading),
+                          .psi = at.heading + turn},
+                         6, seen);
+        const double first = track.centre().project_along(seen.waypoints[1], at.heading, 5.0).s;
+        const double ahead = track.centre().difference(first, s);
+        EXPECT_TRUE(ahead > -12.0 && ahead < 18.0) << s << ' ' << side << ' ' << turn << ": " << ahead;
+      }
+    }
+  }
+}
+
+TEST(World, TimesLapsOfAFigureOfEightFromAnyPlace) {
+  const path::Track track = eight();
+  for (const double start : {0.0, 0.25, 0.5, 0.52, 0.98}) {  // of the lap; it crosses itself at 0 and 0.5
+    Puppet puppet{0.02};
+    World world{puppet, track};
+    const int lap_steps = 1000;
+    for (int i = 0; i <= 2 * lap_steps + 20; ++i) {
+      const path::PathPoint at =
+          track.centre().at(track.length() * (start + static_cast<double>(i) / lap_steps));
+      puppet.go({.x = at.position.x(), .y = at.position.y(), .psi = at.heading});
+      if (i == 0) world.reset({.x = at.position.x(), .y = at.position.y(), .psi = at.heading}, 0.0);
+      world.advance({});
+    }
+    EXPECT_EQ(world.state().off_track_events, 0) << start;
+    EXPECT_GE(world.state().lap, 1) << start;
+    EXPECT_NEAR(world.state().last_lap_time, lap_steps * 0.02, 0.05) << start;
+    EXPECT_LT(std::fabs(world.state().lateral_error), 0.01) << start;
+  }
+}
+
 TEST(SelectWaypoints, StopsAtTheEndOfAnOpenTrackAndKeepsItsBounds) {
   const path::Track track = straight();
   model::Measurement seen;

@@ -28,18 +28,17 @@ using StageState = std::array<double, Problem::kNx>;
 using StageInput = std::array<double, Problem::kNu>;
 
 constexpr int kMostTurns = TrackingMpcOptions::kMostTurns;  // from a new guess, or with more time
-constexpr double kTimePerTurn = 0.04;       // [s] that a step must come later for one turn more
-constexpr double kFarFromLine = 15.0;       // [m] further away it returns to the road
-constexpr double kLost = 100.0;             // [m] further away it does not return by itself
-constexpr double kSlow = 6.0;               // [m/s] below which it may turn round
-constexpr double kJoining = 0.2;            // [rad] to the road at which a car that returns has joined it
-constexpr double kSpeedAhead = 4.0;         // [m/s] wanted at most beyond what the last answer reaches
-constexpr double kLongestHold = 0.3;        // [s] the first command is assumed to be held at most this long
-constexpr double kBlindAfter = 0.3;         // [s] without a measurement, or a waypoint: stop
-constexpr double kPreview = 0.3;            // [s] the car answers the wheel about so late
-constexpr double kCrawl = 3.0;              // [m/s] below it the fallback brings the car to rest
-constexpr double kGripStep = 0.03;          // a lap is planned anew where the grip differs by more
-constexpr double kProjectionWindow = 30.0;  // [m] searched around the last place
+constexpr double kTimePerTurn = 0.04;  // [s] that a step must come later for one turn more
+constexpr double kFarFromLine = 15.0;  // [m] further away it returns to the road
+constexpr double kLost = 100.0;        // [m] further away it does not return by itself
+constexpr double kSlow = 6.0;          // [m/s] below which it may turn round
+constexpr double kJoining = 0.2;       // [rad] to the road at which a car that returns has joined it
+constexpr double kSpeedAhead = 4.0;    // [m/s] wanted at most beyond what the last answer reaches
+constexpr double kLongestHold = 0.3;   // [s] the first command is assumed to be held at most this long
+constexpr double kBlindAfter = 0.3;    // [s] without a measurement, or a waypoint: stop
+constexpr double kPreview = 0.3;       // [s] the car answers the wheel about so late
+constexpr double kCrawl = 3.0;         // [m/s] below it the fallback brings the car to rest
+constexpr double kGripStep = 0.03;     // a lap is planned anew where the grip differs by more
 
 class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> {
  public:
@@ -218,9 +217,9 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
       return false;
     const Vec2 position{start.state.x, start.state.y};
     if (revision_ != road_.revision()) has_place_ = false;
-    road::ReferenceLine::Projection place =
-        has_place_ ? line.project(position, s_, kProjectionWindow) : line.project(position);
-    if (has_place_ && place.distance > 0.5 * kFarFromLine) place = line.project(position);
+    const double* last = has_place_ ? &s_ : nullptr;
+    const road::ReferenceLine::Projection place =
+        line.find(position, start.state.psi, 2.0 * model_.vehicle().width, last, 0.5 * kFarFromLine);
     if (!(place.distance < kFarFromLine)) return false;
     const double heading_error = angle_difference(start.state.psi, line.at(place.s).heading);
     const double most = start.state.vx < kSlow ? 0.25 * kPi : 0.5 * kPi;
@@ -232,7 +231,8 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     x0_ = {0.0,           place.d,           heading_error,     start.state.vx, start.state.vy,
            start.state.r, start.state.steer, start.acceleration};
 
-    const road::ReferenceLine::Projection measured = line.project({now.x, now.y}, s_, kProjectionWindow);
+    const road::ReferenceLine::Projection measured =
+        line.project({now.x, now.y}, s_, road::ReferenceLine::kWindow);
     report.lateral_error = measured.d;
     report.heading_error = angle_difference(now.psi, line.at(measured.s).heading);
     report.speed_reference = line.demand(s_).speed;
@@ -420,7 +420,8 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
     const model::State& car = start.state;
     const bool is_known = std::isfinite(car.x + car.y + car.psi + car.vx + now.time + now.delay);
     if (line.is_empty() || !is_known) return no_answer(act_time);
-    const road::ReferenceLine::Projection place = line.project({car.x, car.y});
+    const road::ReferenceLine::Projection place =
+        line.project_along({car.x, car.y}, car.psi, 2.0 * model_.vehicle().width);
     result_.report.lateral_error = std::copysign(place.distance, place.d);
     result_.report.heading_error = angle_difference(car.psi, line.at(place.s).heading);
     const bool must_stop = blind_.is_long || roadless_.is_long;

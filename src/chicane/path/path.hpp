@@ -73,6 +73,10 @@ class Path {
 
   /// Nearest point of the whole curve. O(n).
   [[nodiscard]] Projection project(const Vec2& point) const noexcept;
+  /// For a point of something that goes with `heading` [rad]: where the curve passes the point more than
+  /// once, each time by less than `reach` [m] farther than the nearest time, the pass whose direction fits
+  /// best. Of a road that crosses itself, the one that is driven. O(n).
+  [[nodiscard]] Projection project_along(const Vec2& point, double heading, double reach) const noexcept;
   /// Nearest point within `window` [m] of arc length before and after s_guess. O(window).
   [[nodiscard]] Projection project(const Vec2& point, double s_guess, double window) const noexcept;
 

@@ -3,13 +3,15 @@
 #include <cmath>
 #include <limits>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/path/path.hpp"
 
 namespace chicane::path {
 namespace {
 
-constexpr int kSamples = 4;      // intervals scanned for the start of the refinement
-constexpr int kIterations = 30;  // of Newton's method with bisection as safeguard; 3 or 4 are typical
+constexpr double kBetterFit = 0.1;  // by which another pass has to fit better than the nearest [rad]
+constexpr int kSamples = 4;         // intervals scanned for the start of the refinement
+constexpr int kIterations = 30;     // of Newton's method with bisection as safeguard; 3 or 4 are typical
 
 struct Foot {
   double distance_squared = std::numeric_limits<double>::infinity();
@@ -118,6 +120,40 @@ Projection Path::search(const Vec2& point, double s_low, double s_high) const no
 Projection Path::project(const Vec2& point) const noexcept {
   if (is_empty()) return {};
   return search(point, 0.0, length_);
+}
+
+Projection Path::project_along(const Vec2& point, double heading, double reach) const noexcept {
+  if (is_empty()) return {};
+  const Projection nearest = search(point, 0.0, length_);
+  if (!std::isfinite(nearest.distance + heading)) return nearest;
+  const auto misfit = [&](double s) { return std::fabs(angle_difference(at(s).heading, heading)); };
+  const double most = nearest.distance + reach;
+  Projection best = nearest;
+  double least = misfit(nearest.s);
+  // A pass: the nearest of neighbouring segments that come near enough.
+  const Segment* pass = nullptr;
+  double pass_distance = 0.0;
+  const auto end_pass = [&] {
+    if (pass == nullptr) return;
+    const Projection there = project(point, pass->s0 + 0.5 * pass->h, pass->h + reach);
+    if (there.distance <= most && misfit(there.s) < least - kBetterFit) {
+      least = misfit(there.s);
+      best = there;
+    }
+    pass = nullptr;
+  };
+  for (int i = 0; i < count_; ++i) {
+    const Segment& segment = segments_[static_cast<std::size_t>(i)];
+    const double distance = chord_distance(segment, point);
+    if (distance - segment.bulge > most) {
+      end_pass();
+    } else if (pass == nullptr || distance < pass_distance) {
+      pass = &segment;
+      pass_distance = distance;
+    }
+  }
+  end_pass();
+  return best;
 }
 
 Projection Path::project(const Vec2& point, double s_guess, double window) const noexcept {

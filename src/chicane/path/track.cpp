@@ -12,8 +12,10 @@
 namespace chicane::path {
 namespace {
 
-constexpr double kMaxWidth = 1000.0;  // [m]
-constexpr double kMaxGap = 10'000.0;  // from point to point [m]
+constexpr double kMaxWidth = 1000.0;        // [m]
+constexpr double kMaxGap = 10'000.0;        // from point to point [m]
+constexpr double kLeastCrossingSine = 0.5;  // of the angle between roads that cross
+constexpr double kLeastLoop = 4.0;          // from crossing to crossing, in widths of the road
 
 Error invalid(const std::string& where, const std::string& got, const std::string& expected) {
   return {ErrorCode::kInvalidArgument, where + ": got " + got + ", expected " + expected};
@@ -32,6 +34,7 @@ std::optional<Error> check_options(const TrackOptions& options) {
   if (auto error = check("kerb_width", options.kerb_width, 0.0, 3.0)) return error;
   if (auto error = check("start_s", options.start_s, -Path::kMaxCoordinate, Path::kMaxCoordinate))
     return error;
+  if (auto error = check("finish_s", options.finish_s, 0.0, Path::kMaxCoordinate)) return error;
   return check("start_d", options.start_d, -kMaxWidth, kMaxWidth);
 }
 
@@ -60,21 +63,45 @@ std::optional<Error> check_points(const std::vector<TrackPoint>& points) {
   return std::nullopt;
 }
 
-/// The crossing of the smooth line in terms of the raw points.
-std::optional<Error> check_crossing(const SmoothLine& line, const std::vector<TrackPoint>& points,
-                                    bool closed) {
-  const std::optional<Crossing> crossing = find_crossing(line.knots, closed);
-  if (!crossing) return std::nullopt;
+/// Whether two stretches of road meet as a crossing: at an angle, and with a loop between them that a road of
+/// this width can make. Points in a wrong order and roads that run into one another do neither.
+bool is_crossing_of_roads(const SmoothLine& line, const Crossing& crossing, bool closed, double road_width) {
+  const std::size_t n = line.knots.size();
+  const auto along = [&](std::size_t i) -> Vec2 { return line.knots[(i + 1) % n] - line.knots[i]; };
+  const Vec2 first = along(crossing.first);
+  const Vec2 second = along(crossing.second);
+  const double sine =
+      (first.x() * second.y() - first.y() * second.x()) / std::max(first.norm() * second.norm(), 1e-12);
+  const double loop = line.spacing * static_cast<double>(crossing.second - crossing.first);
+  const double shorter = closed ? std::min(loop, line.length - loop) : loop;
+  return std::fabs(sine) >= kLeastCrossingSine && shorter >= kLeastLoop * road_width;
+}
+
+/// How often the smooth line crosses itself; a place where it must not, in terms of the raw points.
+Result<int> count_crossings(const SmoothLine& line, const std::vector<TrackPoint>& points, bool closed) {
   const auto raw_index = [&](std::size_t knot) {
     const double s = line.spacing * static_cast<double>(knot);
     const auto after = std::upper_bound(line.parameter.begin(), line.parameter.end(), s);
     return static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - line.parameter.begin() - 1, 0));
   };
-  const std::size_t index = raw_index(crossing->second);
-  return invalid(point_name(index),
-                 "a line that crosses itself near " + point_text(points[index].position) +
-                     ", where it passed after " + point_name(raw_index(crossing->first)),
-                 "a line without crossings");
+  const auto width = [&](std::size_t knot) {
+    return points[raw_index(knot)].left + points[raw_index(knot)].right;
+  };
+  int count = 0;
+  std::size_t last = 0;
+  for (const Crossing& crossing : find_crossings(line.knots, closed)) {
+    const double widest = std::max(width(crossing.first), width(crossing.second));
+    if (!is_crossing_of_roads(line, crossing, closed, widest)) {
+      const std::size_t index = raw_index(crossing.second);
+      return fail(invalid(point_name(index),
+                          "a line that crosses itself near " + point_text(points[index].position) +
+                              ", where it passed after " + point_name(raw_index(crossing.first)),
+                          "no crossing, or one of at least 30 degrees after four widths of way"));
+    }
+    if (count == 0 || crossing.second > last + 1) ++count;  // a crossing at a knot touches two pieces
+    last = crossing.second;
+  }
+  return count;
 }
 
 }  // namespace
@@ -91,7 +118,8 @@ Result<Track> Track::create(std::string name, const std::vector<TrackPoint>& poi
   if (!line) return fail(line.error());
   Result<Path> centre = Path::create(line->knots, closed);
   if (!centre) return fail(invalid("points", "a line that stands still or folds back", "a road"));
-  if (std::optional<Error> error = check_crossing(*line, points, closed)) return fail(std::move(*error));
+  const Result<int> crossings = count_crossings(*line, points, closed);
+  if (!crossings) return fail(crossings.error());
 
   Track track{std::move(name), std::move(*centre)};
   for (double& s : line->parameter) s *= track.length() / line->length;
@@ -102,12 +130,24 @@ Result<Track> Track::create(std::string name, const std::vector<TrackPoint>& poi
                         "less noise than width at s = " +
                             number_text(std::round(static_cast<double>(k) * track.width_spacing_)) + " m"));
   }
+  track.crossings_ = *crossings;
   track.kerb_width_ = options.kerb_width;
   track.start_s_ = track.centre_.wrap(options.start_s);
   track.start_d_ = options.start_d;
   if (options.start_d >= track.left_width(track.start_s_) ||
       -options.start_d >= track.right_width(track.start_s_)) {
     return fail(invalid("start_d", number_text(options.start_d), "a place on the road"));
+  }
+  track.lap_length_ = track.length();
+  if (closed && options.finish_s != 0.0)
+    return fail(invalid("finish_s", number_text(options.finish_s), "none on a closed road"));
+  if (!closed) {
+    const double finish = options.finish_s == 0.0 ? track.length() : options.finish_s;
+    if (!(finish > track.start_s_ && finish <= track.length()))
+      return fail(invalid("finish_s", number_text(options.finish_s),
+                          "a place behind the start at " + number_text(track.start_s_) +
+                              " and on the road of " + number_text(track.length()) + " m"));
+    track.lap_length_ = finish - track.start_s_;
   }
   track.raw_points_ = points;
   return track;

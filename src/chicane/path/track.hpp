@@ -24,6 +24,7 @@ struct TrackOptions {
   double kerb_width = 0.0;  ///< drivable kerb outside each edge [m]; touching it is not off-track; [0, 3]
   double start_s = 0.0;     ///< where a car waits for the start, along the line [m]; wrapped when closed
   double start_d = 0.0;     ///< and beside it, left positive [m]; within the road
+  double finish_s = 0.0;    ///< where an open road is timed to, along the line [m]; 0: to its end
 };
 
 /// A road: a reference line with the distances to its edges, open or closed. Immutable after create(), so
@@ -34,8 +35,9 @@ struct TrackOptions {
 class Track {
  public:
   /// Fails with kInvalidArgument and the index of the point, counted from 0, for: fewer than 4 different
-  /// points, non-finite numbers, widths <= 0 or > 1 km, gaps > 10 km, a line that crosses itself; also for
-  /// options out of range. 100,000 points take less than a second.
+  /// points, non-finite numbers, widths <= 0 or > 1 km, gaps > 10 km, a line that crosses itself at less than
+  /// 30 degrees or again within four widths of the road; also for options out of range. 100,000 points take
+  /// less than a second.
   [[nodiscard]] static Result<Track> create(std::string name, const std::vector<TrackPoint>& points,
                                             bool closed, const TrackOptions& options = {});
 
@@ -46,6 +48,8 @@ class Track {
   [[nodiscard]] double left_width(double s) const noexcept { return width_at(left_, s); }
   [[nodiscard]] double right_width(double s) const noexcept { return width_at(right_, s); }
   [[nodiscard]] double kerb_width() const noexcept { return kerb_width_; }
+  /// How often the road crosses itself, at grade: a figure of eight does once.
+  [[nodiscard]] int crossings() const noexcept { return crossings_; }
   /// Distance to the nearer edge of the road at the projection's s [m]: positive on the road, negative beyond
   /// the edge.
   [[nodiscard]] double edge_distance(const Projection& foot) const noexcept;
@@ -54,6 +58,8 @@ class Track {
   /// Where a car waits for the start, heading along the line.
   [[nodiscard]] double start_s() const noexcept { return start_s_; }
   [[nodiscard]] double start_d() const noexcept { return start_d_; }
+  /// Where a lap ends: at the start line again, or at the finish of an open road, behind which it may go on.
+  [[nodiscard]] double lap_length() const noexcept { return lap_length_; }
 
  private:
   Track(std::string name, Path centre) : name_{std::move(name)}, centre_{std::move(centre)} {}
@@ -62,9 +68,11 @@ class Track {
 
   std::string name_;
   Path centre_;
+  int crossings_ = 0;
   double kerb_width_ = 0.0;
   double start_s_ = 0.0;
   double start_d_ = 0.0;
+  double lap_length_ = 0.0;
   double width_spacing_ = 1.0;
   std::vector<double> left_;  // at s = k · width_spacing_, k = 0 … the last at s = length
   std::vector<double> right_;

@@ -189,6 +189,7 @@ class TrackParser {
     };
     static constexpr std::array kSettings{
         Setting{"start_s_m", &path::TrackOptions::start_s},
+        Setting{"finish_s_m", &path::TrackOptions::finish_s},
         Setting{"start_d_m", &path::TrackOptions::start_d},
         Setting{"spacing_m", &path::TrackOptions::spacing},
         Setting{"smoothing_sigma_m", &path::TrackOptions::smoothing_sigma},
@@ -405,6 +406,7 @@ std::string write_csv_track(const TrackFile& content, std::string_view descripti
       std::back_inserter(text),
       "# closed={}, start_s_m={}, start_d_m={}, spacing_m={}, smoothing_sigma_m={}, kerb_width_m={}\n",
       content.is_closed, o.start_s, o.start_d, o.spacing, o.smoothing_sigma, o.kerb_width);
+  if (o.finish_s != 0.0) fmt::format_to(std::back_inserter(text), "# finish_s_m={}\n", o.finish_s);
   text += "# x_m,y_m,w_tr_right_m,w_tr_left_m\n";
   for (const path::TrackPoint& p : content.points) {
     fmt::format_to(std::back_inserter(text), "{},{},{},{}\n", p.position.x(), p.position.y(), p.right,

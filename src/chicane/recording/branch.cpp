@@ -41,7 +41,7 @@ class Odometer {
   /// Distance from the start line of the lap in which the first frame is [m].
   double add(const telemetry::Frame& frame, const path::Track& track) {
     const bool is_closed = track.centre().is_closed();
-    const double length = track.centre().length() - (is_closed ? 0.0 : track.start_s());
+    const double length = track.lap_length();
     third_ = length / sim::WorldState::kSectors;
     if (!has_begun_) {
       begin(frame, frame.s - track.start_s(), is_closed ? length : 0.0);

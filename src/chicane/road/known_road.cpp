@@ -59,7 +59,8 @@ void KnownRoad::smooth(const path::RoadData& data, const model::VehicleParams& v
   std::vector<Edges> edges;
   edges.reserve(planned->line().samples().size());
   for (const ReferenceLine::Sample& sample : planned->line().samples()) {
-    const ReferenceLine::Projection place = centre.project(sample.curve.position);
+    const ReferenceLine::Projection place =
+        centre.project_along(sample.curve.position, sample.curve.heading, 2.0 * vehicle.width);
     const Edges here = this->edges(place.s);
     edges.push_back({here.left - place.d, here.right + place.d});
   }

@@ -5,7 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "chicane/base/angle.hpp"
+
 namespace chicane::road {
+namespace {
+
+constexpr double kBetterFit = 0.1;  // by which another pass has to fit better than the nearest [rad]
+
+}  // namespace
 
 CurvePoint between(const CurvePoint& from, const CurvePoint& to, double length, double share) noexcept {
   const double u = share;
@@ -83,6 +90,37 @@ ReferenceLine::Projection ReferenceLine::project(const Vec2& point) const noexce
   return refine(point, nearest);
 }
 
+ReferenceLine::Projection ReferenceLine::project_along(const Vec2& point, double heading,
+                                                       double reach) const noexcept {
+  const Projection nearest = project(point);
+  const auto misfit = [&](const Projection& place) {
+    return std::fabs(angle_difference(at(place.s).heading, heading));
+  };
+  const double most = nearest.distance + reach;
+  Projection best = nearest;
+  double least = misfit(nearest);
+  // A pass: the nearest of neighbouring samples that are near enough.
+  std::size_t pass = count_;
+  double pass_distance = 0.0;
+  for (std::size_t i = 0; i <= count_; ++i) {
+    const double distance = i < count_ ? (point - samples_[i].curve.position).norm() : most + 1.0;
+    if (distance <= most) {
+      if (pass == count_ || distance < pass_distance) {
+        pass = i;
+        pass_distance = distance;
+      }
+    } else if (pass != count_) {
+      const Projection there = refine(point, pass);
+      if (misfit(there) < least - kBetterFit) {
+        least = misfit(there);
+        best = there;
+      }
+      pass = count_;
+    }
+  }
+  return best;
+}
+
 ReferenceLine::Projection ReferenceLine::project(const Vec2& point, double guess,
                                                  double window) const noexcept {
   const auto reach = static_cast<std::size_t>(window / spacing_) + 1;
@@ -106,6 +144,15 @@ ReferenceLine::Projection ReferenceLine::project(const Vec2& point, double guess
     }
   }
   return refine(point, nearest);
+}
+
+ReferenceLine::Projection ReferenceLine::find(const Vec2& point, double heading, double reach,
+                                              const double* last, double far) const noexcept {
+  if (last != nullptr) {
+    const Projection near = project(point, *last, kWindow);
+    if (near.distance <= far) return near;
+  }
+  return project_along(point, heading, reach);
 }
 
 ReferenceLine::Projection ReferenceLine::refine(const Vec2& point, std::size_t nearest) const noexcept {

@@ -71,6 +71,14 @@ class ReferenceLine {
   [[nodiscard]] Demand demand(double s) const noexcept;
   /// Among all samples, O(n); pre: not empty, finite.
   [[nodiscard]] Projection project(const Vec2& point) const noexcept;
+  /// For a car that goes with `heading` [rad]: where the line passes the point more than once, each time by
+  /// less than `reach` [m] farther than the nearest time, the pass whose direction fits best. O(n).
+  [[nodiscard]] Projection project_along(const Vec2& point, double heading, double reach) const noexcept;
+  /// Where a car is: within kWindow of its `last` place when there is one and the line still passes nearer
+  /// than `far` [m] there; else anywhere (project_along()).
+  [[nodiscard]] Projection find(const Vec2& point, double heading, double reach, const double* last,
+                                double far) const noexcept;
+  static constexpr double kWindow = 30.0;  ///< [m]
   /// Within `window` [m] before and after `guess`.
   [[nodiscard]] Projection project(const Vec2& point, double guess, double window) const noexcept;
 

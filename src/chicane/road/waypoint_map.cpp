@@ -7,7 +7,8 @@
 namespace chicane::road {
 namespace {
 
-constexpr int kFewestForLoop = 8;  // waypoints of the shortest loop
+constexpr std::size_t kFewestForLoop = 8;  // waypoints of the shortest loop
+constexpr double kStraightOn = 0.9;        // cosine between the way to a waypoint and the way on from it
 
 bool is_same(const Vec2& a, const Vec2& b) {
   const double dx = a.x() - b.x();
@@ -39,6 +40,18 @@ int WaypointMap::find(const Vec2& point) const noexcept {
   return -1;
 }
 
+/// Whether waypoint `i` of a measurement is the map's first one come round again. On a road that crosses
+/// itself another passage may have a waypoint in the same place: the one that follows decides, where it is
+/// seen.
+WaypointMap::Loop WaypointMap::closes(std::span<const Vec2> seen, std::size_t i) const noexcept {
+  if (points_.size() < kFewestForLoop || !is_same(points_.front(), seen[i])) return Loop::kOpen;
+  if (i + 1 < seen.size()) return is_same(points_[1], seen[i + 1]) ? Loop::kClosed : Loop::kOpen;
+  const Vec2 arrival = seen[i] - points_.back();
+  const Vec2 departure = points_[1] - points_.front();
+  const double cosine = arrival.dot(departure) / std::max(arrival.norm() * departure.norm(), 1e-12);
+  return cosine >= kStraightOn ? Loop::kClosed : Loop::kUndecided;
+}
+
 bool WaypointMap::add(const model::Measurement& now) noexcept {
   const int count = std::clamp(now.waypoint_count, 0, model::Measurement::kMaxWaypoints);
   int known = -1;  // index in the map of waypoint `first` of the measurement
@@ -68,7 +81,10 @@ bool WaypointMap::add(const model::Measurement& now) noexcept {
       continue;
     }
     if (size > 0 && is_same(points_.back(), p)) continue;
-    if (size >= kFewestForLoop && is_same(points_.front(), p)) {
+    const Loop loop =
+        closes({now.waypoints.data(), static_cast<std::size_t>(count)}, static_cast<std::size_t>(i));
+    if (loop == Loop::kUndecided) break;
+    if (loop == Loop::kClosed) {
       is_closed_ = true;
       changed = true;
     } else {

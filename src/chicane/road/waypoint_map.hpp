@@ -34,6 +34,8 @@ class WaypointMap {
   [[nodiscard]] unsigned generation() const noexcept { return generation_; }
 
  private:
+  enum class Loop { kOpen, kClosed, kUndecided };
+  [[nodiscard]] Loop closes(std::span<const Vec2> seen, std::size_t i) const noexcept;
   [[nodiscard]] int find(const Vec2& point) const noexcept;
 
   std::vector<Vec2> points_;

@@ -46,7 +46,7 @@ void Account::restart() {
   laps_seen_ = 0;
   nearest_ = kNever;
   lost_for_ = 0.0;
-  is_over_ = false;
+  is_over_ = has_finished_ = false;
   end_reason_ = "";
 }
 
@@ -106,6 +106,7 @@ void Account::look_for_end(const sim::WorldState& car, double time, double step,
   const bool has_laps = terms_.laps > 0;
   if (has_laps && !is_endless_ && (metrics_.laps_completed() >= terms_.laps || car.is_finished)) {
     is_over_ = true;
+    has_finished_ = car.is_finished;
   } else if (has_laps && is_lost()) {
     is_over_ = true;
     end_reason_ = "the car left the road and did not come back";
@@ -135,7 +136,8 @@ telemetry::RunSummary Account::summary(std::optional<double> duration) const {
   run.latency = terms_.latency;
   run.laps_wanted = terms_.laps;
   if (duration) run.duration = *duration;
-  run.completed = terms_.laps > 0 && run.laps_completed >= terms_.laps;
+  if (has_finished_) run.laps_wanted = 1;  // an open road has no more
+  run.completed = terms_.laps > 0 && run.laps_completed >= run.laps_wanted;
   run.end_reason = end_reason_;
   if (!run.completed && run.end_reason.empty()) run.end_reason = "stopped";
   return run;

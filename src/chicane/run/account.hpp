@@ -28,10 +28,10 @@ struct AccountTerms {
 /// where that is kept: `drive`, `serve`, `simulate` and branches of recordings all use it, with a plant of
 /// ours (add_physics) or with a car that is only seen (add_sighting).
 ///
-/// A run is over when the laps that were asked for are driven or an open road has ended, when the time limit
-/// is reached, or when the car is lost: more than kLostDistance from the line for kLostTime without coming
-/// nearer. A run without a number of laps ends at a time limit that was given, or not at all; a car that a
-/// person drives is never lost.
+/// A run is over when the laps that were asked for are driven or an open road is finished (its one lap), when
+/// the time limit is reached, or when the car is lost: more than kLostDistance from the line for kLostTime
+/// without coming nearer. A run without a number of laps ends at a time limit that was given, or not at all;
+/// a car that a person drives is never lost.
 ///
 /// No allocation but in the constructor, restart() and summary(). One thread.
 class Account {
@@ -88,6 +88,7 @@ class Account {
   double lost_for_ = 0.0;                                     ///< far, and not coming nearer [s]
   bool is_endless_ = false;
   bool is_over_ = false;
+  bool has_finished_ = false;  ///< an open road
   const char* end_reason_ = "";
 };
 

@@ -15,26 +15,25 @@ using controller::Answer;
 using controller::GuardReason;
 using controller::Rung;
 
-constexpr double kAssumedCycle = 0.04;      // [s] where the interval between commands is not known
-constexpr double kShortestHold = 0.09;      // [s] a command is held for so long where no other one comes
-constexpr double kSlowStop = 6.0;           // [m] a car that stops within this is slow
-constexpr double kStandingSpeed = 0.6;      // [m/s]
-constexpr int kShown = 64;                  // points of a stop that is drawn
-constexpr double kShownStep = 0.1;          // [s]
-constexpr double kWalkingPace = 3.0;        // [m/s]
-constexpr double kFastestWayBack = 4.0;     // [m/s]
-constexpr double kMostUse = 0.75;           // of the tyres sideways, after a command that is sent
-constexpr double kGuessedWidth = 1.0;       // [m] that the assumed width may be too small by, for a slow car
-constexpr double kLeastEdge = 0.1;          // [m] that a car on the road keeps in any case
-constexpr double kNoFloor = -1e9;           // [m]
-constexpr double kLeniency = 0.05;          // [m] nearer to the edge, for a slow car beyond the margin
-constexpr double kLeniencyRate = 0.25;      // [m/s] more of it for one that stands
-constexpr double kMostLeniency = 3.0;       // [m]
-constexpr double kLongestHold = 0.5;        // [s]
-constexpr double kProjectionWindow = 30.0;  // [m] searched around the last place
-constexpr double kFarFromRoad = 20.0;       // [m] beside its line there is no stop along the road
-constexpr double kBlindStability = 1.6;     // of a car that is steered without feedback
-constexpr double kGentleStop = 0.8;         // share of the useful braking; all of it when that is too little
+constexpr double kAssumedCycle = 0.04;   // [s] where the interval between commands is not known
+constexpr double kShortestHold = 0.09;   // [s] a command is held for so long where no other one comes
+constexpr double kSlowStop = 6.0;        // [m] a car that stops within this is slow
+constexpr double kStandingSpeed = 0.6;   // [m/s]
+constexpr int kShown = 64;               // points of a stop that is drawn
+constexpr double kShownStep = 0.1;       // [s]
+constexpr double kWalkingPace = 3.0;     // [m/s]
+constexpr double kFastestWayBack = 4.0;  // [m/s]
+constexpr double kMostUse = 0.75;        // of the tyres sideways, after a command that is sent
+constexpr double kGuessedWidth = 1.0;    // [m] that the assumed width may be too small by, for a slow car
+constexpr double kLeastEdge = 0.1;       // [m] that a car on the road keeps in any case
+constexpr double kNoFloor = -1e9;        // [m]
+constexpr double kLeniency = 0.05;       // [m] nearer to the edge, for a slow car beyond the margin
+constexpr double kLeniencyRate = 0.25;   // [m/s] more of it for one that stands
+constexpr double kMostLeniency = 3.0;    // [m]
+constexpr double kLongestHold = 0.5;     // [s]
+constexpr double kFarFromRoad = 20.0;    // [m] beside its line there is no stop along the road
+constexpr double kBlindStability = 1.6;  // of a car that is steered without feedback
+constexpr double kGentleStop = 0.8;      // share of the useful braking; all of it when that is too little
 
 bool is_finite(const model::Command& command) noexcept {
   return std::isfinite(command.steer) && std::isfinite(command.throttle);
@@ -265,9 +264,9 @@ std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   if (revision_ != road_.revision()) has_place_ = false;
   revision_ = road_.revision();
   const Vec2 position{car.x, car.y};
-  road::ReferenceLine::Projection place =
-      has_place_ ? line.project(position, s_, kProjectionWindow) : line.project(position);
-  if (has_place_ && place.distance > 0.5 * kFarFromRoad) place = line.project(position);
+  const double* last = has_place_ ? &s_ : nullptr;
+  const road::ReferenceLine::Projection place =
+      line.find(position, car.psi, 2.0 * model_.vehicle().width, last, 0.5 * kFarFromRoad);
   has_place_ = place.distance < kFarFromRoad;
   is_far_ = !has_place_;
   if (is_far_) return std::nullopt;

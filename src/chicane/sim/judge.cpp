@@ -21,8 +21,7 @@ constexpr double kBackOnTrackTime = 0.2;  // ... once held so long [s]
 
 }  // namespace
 
-Judge::Judge(const path::Track& track) noexcept
-    : track_{track}, lap_length_{track.length() - (track.centre().is_closed() ? 0.0 : track.start_s())} {}
+Judge::Judge(const path::Track& track) noexcept : track_{track}, lap_length_{track.lap_length()} {}
 
 void Judge::reset(double time, const Sighting& car) noexcept {
   covered_ = off_track_at_lap_start_ = back_on_track_ = 0.0;
@@ -33,7 +32,7 @@ void Judge::reset(double time, const Sighting& car) noexcept {
   // A start on the line is timed from standstill; any other first drives to the line.
   constexpr double kOnTheLine = 1.0;  // [m]
   const path::Path& line = track_.centre();
-  state_.s = line.project({car.pose.x, car.pose.y}).s;
+  state_.s = project_anywhere(car.pose).s;
   state_.progress = line.difference(state_.s, track_.start_s());
   state_.is_timed = std::fabs(state_.progress) <= kOnTheLine;
   if (line.is_closed() && state_.progress > kOnTheLine) state_.progress -= lap_length_;
@@ -52,6 +51,13 @@ void Judge::see(double time, const Sighting& car) noexcept {
   time_laps(progress_before, elapsed);
 }
 
+path::Projection Judge::project_anywhere(const model::Pose& car) const noexcept {
+  // Of roads that cross under the car it is on the one it goes along.
+  const path::Path& line = track_.centre();
+  const double s = line.project({car.x, car.y}).s;
+  return line.project_along({car.x, car.y}, car.psi, 0.5 * (track_.left_width(s) + track_.right_width(s)));
+}
+
 void Judge::locate(double elapsed, const Sighting& car) noexcept {
   const path::Path& line = track_.centre();
   const Vec2 position{car.pose.x, car.pose.y};
@@ -62,7 +68,7 @@ void Judge::locate(double elapsed, const Sighting& car) noexcept {
   lost_for_ = is_far ? lost_for_ + 1 : 0;
   bool has_jumped = false;
   if (lost_for_ % kLostPatience == 1) {
-    const path::Projection anywhere = line.project(position);
+    const path::Projection anywhere = project_anywhere(car.pose);
     has_jumped = anywhere.distance < 0.5 * nearest.distance;
     if (has_jumped) nearest = anywhere;
   }

@@ -29,7 +29,7 @@ struct WorldState {
 
   int lap = 0;                      ///< laps completed; an open track has one
   bool is_timed = false;            ///< the start line has been crossed (or the run began on it)
-  bool is_finished = false;         ///< the end of an open track has been reached
+  bool is_finished = false;         ///< the finish of an open track has been reached
   double lap_time = 0.0;            ///< of the running lap [s]
   double last_lap_time = 0.0;       ///< 0 before the first completed lap [s]
   double best_lap_time = 0.0;       ///< shortest of the completed laps, 0 before the first [s]
@@ -71,6 +71,7 @@ class Judge {
   [[nodiscard]] const path::Track& track() const noexcept { return track_; }
 
  private:
+  [[nodiscard]] path::Projection project_anywhere(const model::Pose& car) const noexcept;
   void locate(double elapsed, const Sighting& car) noexcept;
   void measure_edges(double elapsed, const Sighting& car) noexcept;
   void time_laps(double progress_before, double elapsed) noexcept;
@@ -79,7 +80,7 @@ class Judge {
 
   const path::Track& track_;
   double covered_ = 0.0;       ///< of the line since the lap began, without jumps [m]
-  double lap_length_ = 0.0;    ///< from the start line to itself, or to the end of an open track [m]
+  double lap_length_ = 0.0;    ///< Track::lap_length()
   double next_line_ = 0.0;     ///< progress at the next crossing of the line [m]
   double lap_start_ = 0.0;     ///< [s]
   double sector_start_ = 0.0;  ///< [s]

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::sim {
@@ -12,6 +13,42 @@ namespace chicane::sim {
 namespace {
 
 constexpr double kJudgementPeriod = 0.005;  // [s]
+
+/// The waypoint nearest to the car. On a road that crosses itself one of the other road may be nearer than
+/// the next one of its own: there an angle between the car and the way on costs as much as kTurnCost spacings
+/// a radian, among the waypoints that are at most one spacing farther than the nearest.
+int nearest_waypoint(const path::Track& track, const model::Pose& pose) noexcept {
+  constexpr double kTurnCost = 2.0;
+  const auto& points = track.raw_points();
+  const int size = static_cast<int>(points.size());
+  const Vec2 position{pose.x, pose.y};
+  const auto point = [&](int i) -> const Vec2& { return points[static_cast<std::size_t>(i)].position; };
+  int nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < size; ++i) {
+    const double squared = (point(i) - position).squared_norm();
+    if (squared < least) {
+      least = squared;
+      nearest = i;
+    }
+  }
+  if (track.crossings() == 0) return nearest;
+  const double spacing = track.length() / size;
+  const double most = std::sqrt(least) + spacing;
+  double cheapest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < size; ++i) {
+    const double distance = (point(i) - position).norm();
+    if (distance > most) continue;
+    const Vec2 along = point((i + 1) % size) - point((i + size - 1) % size);
+    const double turn = std::fabs(angle_difference(atan2(along.y(), along.x()), pose.psi));
+    const double cost = distance + kTurnCost * spacing * turn;
+    if (cost < cheapest) {
+      cheapest = cost;
+      nearest = i;
+    }
+  }
+  return nearest;
+}
 
 }  // namespace
 
@@ -60,17 +97,9 @@ int select_waypoints(const path::Track& track, const model::Pose& pose, int coun
   const int size = static_cast<int>(points.size());
   const bool is_closed = track.centre().is_closed();
   const Vec2 position{pose.x, pose.y};
-  int next = 0;
-  double nearest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < size; ++i) {
-    const double squared = (points[static_cast<std::size_t>(i)].position - position).squared_norm();
-    if (squared < nearest) {
-      nearest = squared;
-      next = i;
-    }
-  }
   measurement.waypoint_count = 0;
   if (size == 0) return 0;
+  int next = nearest_waypoint(track, pose);
   const Vec2 direction{cos(pose.psi), sin(pose.psi)};
   if ((points[static_cast<std::size_t>(next)].position - position).dot(direction) < 0.0) ++next;
   int first = next - 1;

@@ -49,8 +49,9 @@ class World {
 /// Fills measurement.waypoints with the points telemetry shows for a car at (x, y, psi), by the rule of the
 /// original (udacity/self-driving-car-sim v1.45, WaypointTracker): the nearest waypoint, or its successor
 /// when that lies more than 90° off the car's direction, is next; shown are the one before it and those
-/// after, `count` in all, around the lap when the track is closed, fewer at the end of an open one. Returns
-/// how many. count is clamped to [0, kMaxWaypoints]. O(points), no allocation.
+/// after, `count` in all, around the lap when the track is closed, fewer at the end of an open one. Where a
+/// road crosses itself, which the original has nowhere, the waypoints of the road along the car come first.
+/// Returns how many. count is clamped to [0, kMaxWaypoints]. O(points), no allocation.
 int select_waypoints(const path::Track& track, const model::Pose& pose, int count,
                      model::Measurement& measurement) noexcept;
 

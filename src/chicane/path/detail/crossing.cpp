@@ -32,7 +32,7 @@ struct Entry {
 
 }  // namespace
 
-std::optional<Crossing> find_crossing(std::span<const Vec2> points, bool closed) {
+std::vector<Crossing> find_crossings(std::span<const Vec2> points, bool closed) {
   const std::size_t n = points.size();
   const std::size_t pieces = closed ? n : n - 1;
   const auto end_of = [&](std::size_t i) -> const Vec2& { return points[i + 1 == n ? 0 : i + 1]; };
@@ -43,7 +43,7 @@ std::optional<Crossing> find_crossing(std::span<const Vec2> points, bool closed)
     low = min(min(low, points[i]), end_of(i));
     width = std::max(width, (end_of(i) - points[i]).norm());
   }
-  if (!(width > 0.0)) return std::nullopt;
+  if (!(width > 0.0)) return {};
   std::vector<Entry> entries;
   entries.reserve(2 * pieces);
   for (std::size_t i = 0; i < pieces; ++i) {
@@ -59,24 +59,30 @@ std::optional<Crossing> find_crossing(std::span<const Vec2> points, bool closed)
     return a.cell != b.cell ? a.cell < b.cell : a.piece < b.piece;
   });
 
-  std::optional<Crossing> found;
-  const auto note = [&](std::size_t first, std::size_t second) {
-    if (!found || second < found->second) found = Crossing{first, second};
-  };
-  for (std::size_t start = 0, stop = 0; start < entries.size(); start = stop) {
+  std::vector<Crossing> found;
+  for (std::size_t start = 0, stop = 0; start < entries.size() && found.size() < kMostCrossings;
+       start = stop) {
     while (stop < entries.size() && entries[stop].cell == entries[start].cell) ++stop;
     if (stop - start > kMaxPiecesPerCell)
-      note(entries[start].piece, entries[start + kMaxPiecesPerCell].piece);
+      found.push_back({entries[start].piece, entries[start + kMaxPiecesPerCell].piece});
     const std::size_t last = std::min(stop, start + kMaxPiecesPerCell);
     for (std::size_t i = start; i < last; ++i) {
       for (std::size_t j = i + 1; j < last; ++j) {
         const std::size_t a = entries[i].piece;
         const std::size_t b = entries[j].piece;
         const bool are_neighbours = b - a <= 1 || (closed && a == 0 && b + 1 == n);
-        if (!are_neighbours && touches(points[a], end_of(a), points[b], end_of(b))) note(a, b);
+        if (!are_neighbours && touches(points[a], end_of(a), points[b], end_of(b))) found.push_back({a, b});
       }
     }
   }
+  const auto by_place = [](const Crossing& a, const Crossing& b) {
+    return a.second != b.second ? a.second < b.second : a.first < b.first;
+  };
+  const auto is_same = [](const Crossing& a, const Crossing& b) {
+    return a.first == b.first && a.second == b.second;
+  };
+  std::sort(found.begin(), found.end(), by_place);
+  found.erase(std::unique(found.begin(), found.end(), is_same), found.end());  // seen from several cells
   return found;
 }
 

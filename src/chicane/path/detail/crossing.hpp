@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
+#include <vector>
 
 #include "chicane/base/vec2.hpp"
 
@@ -16,10 +16,11 @@ struct Crossing {
   std::size_t second = 0;
 };
 
-/// A place where the polyline through `points` crosses or touches itself (neighbours sharing a point do not
-/// count), the one with the smallest `second`. Grid of cells as wide as the longest piece: O(n log n) for
-/// evenly spaced points. A line that comes by the same cell hundreds of times is no road either and is
-/// reported as crossing there.
-[[nodiscard]] std::optional<Crossing> find_crossing(std::span<const Vec2> points, bool closed);
+/// The places where the polyline through `points` crosses or touches itself (neighbours sharing a point do
+/// not count), by rising `second`. Grid of cells as wide as the longest piece: O(n log n) for evenly spaced
+/// points. A line that comes by the same cell hundreds of times is no road and is reported as crossing there,
+/// once for each such cell. Ends after kMostCrossings.
+inline constexpr std::size_t kMostCrossings = 10'000;
+[[nodiscard]] std::vector<Crossing> find_crossings(std::span<const Vec2> points, bool closed);
 
 }  // namespace chicane::path

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// Roads that cross themselves, and an open one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "chicane/base/angle.hpp"
+#include "closed_loop/drive.hpp"
+
+namespace chicane::run {
+namespace {
+
+/// A figure of eight, 4.5 m to each side, whose points begin at `start` of the lap; 0 is the crossing. The
+/// way over it is a mirror image for height < 0.
+std::string write_eight(double length, double height, double start) {
+  const std::string file =
+      (std::filesystem::temp_directory_path() / ("chicane_eight_" + std::to_string(::getpid()) + ".csv"))
+          .string();
+  std::ofstream out{file};
+  out << "# x_m,y_m,w_tr_right_m,w_tr_left_m\n";
+  constexpr int kPoints = 100;
+  for (int i = 0; i < kPoints; ++i) {
+    const double angle = kTwoPi * (start + static_cast<double>(i) / kPoints);
+    char row[96];
+    std::snprintf(row, sizeof row, "%.3f,%.3f,4.5,4.5\n", length * std::sin(angle),
+                  height * std::sin(2.0 * angle));
+    out << row;
+  }
+  return file;
+}
+
+void expect_clean(Settings settings, const std::string& what) {
+  settings.emplace_back("laps", "2");
+  const auto run = drive(settings);
+  EXPECT_TRUE(run.completed) << what << ": " << run.end_reason;
+  EXPECT_EQ(run.off_track_events, 0) << what;
+}
+
+// Also where both passages have a waypoint in the same place, and where the run starts there.
+TEST(CrossingRoad, IsDrivenFromTheTrackAndFromWaypoints) {
+  for (const double height : {120.0, -120.0}) {
+    for (const double start : {0.0, 0.13}) {
+      const std::string file = write_eight(200.0, height, start);
+      for (const char* car : {"udacity", "road-car"}) {
+        for (const char* road : {"track", "waypoints"}) {
+          const std::string what =
+              std::to_string(height) + ' ' + std::to_string(start) + ' ' + car + ' ' + road;
+          expect_clean({{"preset", "default"}, {"car", car}, {"track", file}, {"guard.road", road}}, what);
+        }
+      }
+      std::filesystem::remove(file);
+    }
+  }
+}
+
+TEST(CrossingRoad, IsRaced) {
+  for (const char* car : {"udacity", "road-car"})
+    expect_clean({{"preset", "race"}, {"car", car}, {"track", "crossover"}}, car);
+  expect_clean({{"preset", "race"}, {"track", "crossover"}, {"guard.road", "waypoints"}}, "learned");
+}
+
+TEST(OpenRoad, IsDrivenToItsFinishAndIsOneLap) {
+  for (const char* car : {"udacity", "road-car"}) {
+    const auto run = drive({{"preset", "default"}, {"car", car}, {"track", "stage"}, {"laps", "3"}});
+    EXPECT_TRUE(run.completed) << car << ": " << run.end_reason;
+    EXPECT_EQ(run.laps_completed, 1) << car;
+    EXPECT_EQ(run.laps_wanted, 1) << car;
+    EXPECT_EQ(run.off_track_events, 0) << car;
+    EXPECT_EQ(run.fallbacks, 0U) << car << ": the road behind the finish is long enough to stop";
+  }
+}
+
+}  // namespace
+}  // namespace chicane::run
