@@ -74,5 +74,25 @@ TEST(OpenRoad, IsDrivenToItsFinishAndIsOneLap) {
   }
 }
 
+TEST(OpenRoad, IsRacedAndEndsAtAStand) {
+  for (const char* car : {"udacity", "road-car"}) {
+    const Settings race{{"preset", "race"}, {"car", car}, {"track", "stage"}, {"laps", "1"}};
+    Settings slow = race;
+    slow[0].second = "default";
+    const auto run = drive(race);
+    EXPECT_TRUE(run.completed) << car << ": " << run.end_reason;
+    EXPECT_EQ(run.off_track_events, 0) << car;
+    EXPECT_LT(run.laps[0].lap_time, 0.95 * drive(slow).laps[0].lap_time) << car;
+    Settings on = race;
+    on[3].second = "0";
+    on.emplace_back("time_limit_s", "75");
+    const auto loop = ClosedLoop::create(protocol::compose({.scenario_file = "", .settings = on}).value());
+    ASSERT_TRUE(loop);
+    const auto longer = run_closed_loop(**loop);
+    EXPECT_EQ(longer.off_track_events, 0) << car;
+    EXPECT_LT((*loop)->frame().measurement.speed, 1.0) << car;
+  }
+}
+
 }  // namespace
 }  // namespace chicane::run

@@ -122,11 +122,26 @@ TEST(RacingPlan, SaysWhyThereIsNone) {
   EXPECT_NE(narrow.error().message.find("road"), std::string::npos) << narrow.error().message;
   EXPECT_FALSE(plan_racing_line(bean(), model::udacity_params(), {.grip_share = 0.0}));
   EXPECT_FALSE(plan_racing_line(bean(), model::udacity_params(), {.margin = -0.1}));
-  std::vector<path::TrackPoint> points;
+}
+
+TEST(RacingPlan, EntersAnOpenRoadAsItLeavesIt) {
+  std::vector<path::TrackPoint> points;  // a quarter of a circle between two straights
   for (int i = 0; i < 20; ++i) points.push_back({{10.0 * i, 0.0}, 4.0, 4.0});
-  const auto open = plan_racing_line(*path::Track::create("open", points, false), model::udacity_params());
-  ASSERT_FALSE(open);
-  EXPECT_NE(open.error().message.find("closed"), std::string::npos) << open.error().message;
+  for (int i = 1; i <= 10; ++i) {
+    const double angle = 0.5 * kPi * i / 10.0;
+    points.push_back({{190.0 + 40.0 * std::sin(angle), 40.0 - 40.0 * std::cos(angle)}, 4.0, 4.0});
+  }
+  for (int i = 1; i < 15; ++i) points.push_back({{230.0, 40.0 + 10.0 * i}, 4.0, 4.0});
+  const path::Track track = path::Track::create("open", points, false).value();
+  const auto plan = plan_racing_line(track, model::road_car_params());
+  ASSERT_TRUE(plan) << plan.error().message;
+  const path::RacingLinePoint &first = plan->points.front(), &last = plan->points.back();
+  EXPECT_NEAR(last.s, track.length(), 1e-9);
+  EXPECT_EQ(first.vx, last.vx);
+  EXPECT_EQ(first.offset, last.offset);
+  double slowest = first.vx;
+  for (const path::RacingLinePoint& p : plan->points) slowest = std::min(slowest, p.vx);
+  EXPECT_LT(slowest, first.vx - 3.0) << "the bend";
 }
 
 TEST(RacingPlan, StopsWhenToldTo) {

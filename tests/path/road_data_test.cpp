@@ -76,6 +76,20 @@ TEST(RoadData, HasItsTwoEndsHoweverWideTheSpacing) {
   EXPECT_EQ(road_data(straight(), 1e6).points.size(), 2u);
 }
 
+TEST(LinePoints, OfAnOpenRoadEndAsTheyGoOn) {
+  const Track track = straight();
+  RacingLine line;
+  line.length = track.length();
+  for (int i = 0; i <= 20; ++i)  // from left to right over the road, faster and faster
+    line.points.push_back({.s = 5.0 * i, .time = 0.25 * i, .offset = 1.0 - 0.1 * i, .vx = 20.0 + 0.5 * i});
+  const std::vector<LinePoint> points = line_points(track, line);
+  EXPECT_NEAR(points.back().heading, points.front().heading, 1e-9);
+  for (const LinePoint& point : points) {
+    EXPECT_NEAR(point.curvature, 0.0, 1e-9) << "no turn back to the beginning";
+    EXPECT_NEAR(point.longitudinal_acceleration, 2.0, 1e-9);
+  }
+}
+
 TEST(LinePoints, AreThePlannedCoursesPlacesAndRoom) {
   // Round a circle 1 m to the right of its line, sliding: the body looks into the bend by 0.1 rad.
   const Track track = circle();

@@ -74,9 +74,6 @@ class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
 Result<path::RacingLine> plan_racing_line(const path::Track& track, const model::VehicleParams& vehicle,
                                           const RacingPlanOptions& options) {
   if (Result<void> valid = model::validate(vehicle); !valid) return fail(valid.error());
-  if (!track.centre().is_closed())
-    return fail(ErrorCode::kInvalidArgument,
-                track.name() + ": the road is open, expected a closed one: a lap has no end");
   const auto is_share = [](double share, double most) { return share > 0.0 && share <= most; };
   if (!(options.margin >= 0.0 && is_share(options.grip_share, 1.0) && is_share(options.brake_share, 1.0) &&
         is_share(options.slip_share, 2.0) && options.speed_limit > 3.0 && options.time_step >= 0.01 &&

@@ -26,7 +26,9 @@ struct RacingPlanOptions {
 /// sideslip, lags and rates: a plan that such a controller can follow (docs/racing.md, section 1). Takes 0.2
 /// to 30 s and some 10 MB. Deterministic. Keeps nothing between calls.
 ///
-/// kInvalidArgument for an open road, a road too narrow for the car or with a bend too tight for its full
+/// An open road's plan enters as it leaves: the same speed and place across the road at both ends.
+///
+/// kInvalidArgument for a road too narrow for the car or with a bend too tight for its full
 /// lock (names the place and the radius), parameters or options out of range, and for a search that ended
 /// without an optimum.
 [[nodiscard]] Result<path::RacingLine> plan_racing_line(const path::Track& track,

@@ -50,12 +50,14 @@ std::vector<LinePoint> line_points(const Track& track, const RacingLine& line) {
     p.right = track.right_width(at.s) + at.offset;
     points.push_back(p);
   }
-  // Its end has the heading of its beginning, and what the road has turned in a lap.
   const std::size_t last = points.size() - 1;
-  points[last].heading =
-      points[0].heading + kTwoPi * std::round((points[last].heading - points[0].heading) / kTwoPi);
+  const bool is_closed = centre.is_closed();
+  // The end of a lap has the heading of its beginning, and what the road has turned.
+  if (is_closed)
+    points[last].heading =
+        points[0].heading + kTwoPi * std::round((points[last].heading - points[0].heading) / kTwoPi);
   for (std::size_t i = 0; i < last; ++i) {
-    const std::size_t before = i == 0 ? last - 1 : i - 1;
+    const std::size_t before = i > 0 ? i - 1 : (is_closed ? last - 1 : 0);
     const double turned = wrap_angle(points[i + 1].heading - points[before].heading);
     double taken = points[i + 1].time - points[before].time;
     if (taken < 0.0) taken += line.lap_time();
@@ -65,9 +67,10 @@ std::vector<LinePoint> line_points(const Track& track, const RacingLine& line) {
     const double faster = points[i + 1].speed - points[before].speed;
     p.longitudinal_acceleration = faster / taken;
   }
-  points[last].curvature = points[0].curvature;
-  points[last].lateral_acceleration = points[0].lateral_acceleration;
-  points[last].longitudinal_acceleration = points[0].longitudinal_acceleration;
+  const LinePoint& like = points[is_closed ? 0 : last - 1];
+  points[last].curvature = like.curvature;
+  points[last].lateral_acceleration = like.lateral_acceleration;
+  points[last].longitudinal_acceleration = like.longitudinal_acceleration;
   return points;
 }
 

@@ -30,6 +30,7 @@ std::vector<double> arc_lengths(std::span<const path::LinePoint> lap) {
 }
 
 constexpr std::size_t kLeastPoints = 8;
+constexpr double kBeforeTheEnd = 5.0;  // of an open road a car stands [m]
 
 }  // namespace
 
@@ -40,7 +41,7 @@ RacingRoad::RacingRoad(std::span<const path::LinePoint> lap, double kerb, const 
   const double length = s.back();
   const int intervals = static_cast<int>(std::ceil(length / kSpacing));
   line_ = ReferenceLine{intervals + 1};
-  if (!line_.shape(length, intervals, true)) return;
+  if (!line_.shape(length, intervals, basis.is_closed)) return;
   rooms_.resize(line_.samples().size());
   sideslips_.resize(rooms_.size());
   std::size_t from = 0;
@@ -60,10 +61,21 @@ RacingRoad::RacingRoad(std::span<const path::LinePoint> lap, double kerb, const 
     sideslips_[i] = blend(a.sideslip, b.sideslip);
     rooms_[i] = {blend(a.left, b.left) + kerb, blend(a.right, b.right) + kerb};
   }
+  if (!basis.is_closed) stop_at_end();
+}
+
+void RacingRoad::stop_at_end() noexcept {
+  const std::span<ReferenceLine::Sample> samples = line_.samples();
+  const double from = line_.length() - kBeforeTheEnd;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double way = std::max(0.0, from - static_cast<double>(i) * line_.spacing());
+    samples[i].speed = std::min(samples[i].speed, std::sqrt(2.0 * basis_.braking * way));
+  }
 }
 
 RacingRoad::Place RacingRoad::place(double s) const noexcept {
-  const double inside = s - line_.length() * std::floor(s / line_.length());
+  const double inside = line_.is_closed() ? s - line_.length() * std::floor(s / line_.length())
+                                          : std::clamp(s, 0.0, line_.length());
   const double position = inside / line_.spacing();
   const std::size_t i = std::min(static_cast<std::size_t>(position), rooms_.size() - 2);
   return {i, position - static_cast<double>(i)};

@@ -10,8 +10,9 @@
 
 namespace chicane::road {
 
-/// A planned lap to race by: a line with its speeds, and the road's edges beside it. Immutable: made beside
-/// the loop that drives by it, and handed over whole. Look-ups allocate nothing; several threads may read.
+/// A planned lap, or the one way along an open road, to race by: a line with its speeds, and the road's edges
+/// beside it. Immutable: made beside the loop that drives by it, and handed over whole. Look-ups allocate
+/// nothing; several threads may read.
 class RacingRoad {
  public:
   static constexpr double kSpacing = 1.0;  ///< of the samples [m] at most
@@ -24,10 +25,12 @@ class RacingRoad {
   struct Basis {
     bool is_learned = false;  ///< see is_learned()
     double grip = 1.0;        ///< see grip()
+    bool is_closed = true;    ///< the road; else the car is planned to stop at its end ...
+    double braking = 0.0;     ///< ... with this deceleration [m/s²]
   };
   RacingRoad(std::span<const path::LinePoint> lap, double kerb, const Basis& basis);
 
-  /// In W, closed. The offset of its samples is that from the road's centre line [m].
+  /// In W, closed as the road is. The offset of its samples is that from the road's centre line [m].
   [[nodiscard]] const ReferenceLine& line() const noexcept { return line_; }
   /// From the line to the edges, kerbs included, at arc length s on it, across the line [m].
   [[nodiscard]] Road::Room room(double s) const noexcept;
@@ -46,6 +49,7 @@ class RacingRoad {
     double share;
   };
   [[nodiscard]] Place place(double s) const noexcept;
+  void stop_at_end() noexcept;
 
   ReferenceLine line_;
   std::vector<Road::Room> rooms_;  ///< at the line's samples

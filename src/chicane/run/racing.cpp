@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/racing.hpp"
 
+#include <algorithm>
 #include <tuple>
 #include <vector>
 
@@ -29,7 +30,12 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const path::Track& track
   const model::VehicleParams car = model::with_grip(scenario.vehicle, basis.grip);
   const Result<path::RacingLine> lap = lap_time::plan_racing_line(track, car, planning);
   if (!lap) return fail(lap.error());
-  return std::make_shared<const road::RacingRoad>(path::line_points(track, *lap), track.kerb_width(), basis);
+  road::RacingRoad::Basis planned = basis;
+  planned.is_closed = track.centre().is_closed();
+  planned.braking =
+      0.5 * std::min(car.brake_acceleration * car.brake_throttle_limit, car.friction * car.load_constant);
+  return std::make_shared<const road::RacingRoad>(path::line_points(track, *lap), track.kerb_width(),
+                                                  planned);
 }
 
 }  // namespace

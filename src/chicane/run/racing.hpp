@@ -20,7 +20,7 @@ namespace chicane::run {
 /// settings do not ask for one, or let it know waypoints only (GuardRoad::kWaypoints). Takes 1 to 30 s
 /// (lap_time::plan_racing_line); the same scenario and track give the same bits.
 ///
-/// kInvalidArgument names why there is no such lap: an open road, one that is too narrow or too tight.
+/// kInvalidArgument names why there is no such lap: a road that is too narrow or too tight.
 [[nodiscard]] Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenario& scenario,
                                                                        const path::Track* track);
 
