@@ -37,17 +37,19 @@ Result<path::Track> make_waypoints(const path::Track& track) {
   const std::vector<path::TrackPoint>& raw = track.raw_points();
   const double mean_spacing = track.centre().length() / static_cast<double>(raw.size());
   if (mean_spacing > 0.6 * kWaypointSpacing) return track;
+  const bool is_closed = track.centre().is_closed();
   std::vector<path::TrackPoint> sparse{raw.front()};
-  double since = 0.0;
+  double along = 0.0;
+  double last = 0.0;
   for (std::size_t i = 1; i < raw.size(); ++i) {
-    since += (raw[i].position - raw[i - 1].position).norm();
-    const bool near_end =
-        (raw[i].position - raw.front().position).norm() < 0.5 * kWaypointSpacing && i > raw.size() / 2;
-    if (since < kWaypointSpacing || near_end) continue;
+    along += (raw[i].position - raw[i - 1].position).norm();
+    const bool is_end = !is_closed && i + 1 == raw.size();
+    const bool meets_first = is_closed && track.length() - along < 0.5 * kWaypointSpacing;
+    if (!is_end && (along - last < kWaypointSpacing || meets_first)) continue;
     sparse.push_back(raw[i]);
-    since = 0.0;
+    last = along;
   }
-  return path::Track::create(track.name(), sparse, track.centre().is_closed());
+  return path::Track::create(track.name(), sparse, is_closed);
 }
 
 }  // namespace chicane::run
