@@ -91,9 +91,9 @@ teams: 1
 TEST(League, TheShippedOneIsReadAndHasAProgram) {
   const auto league = read_league(CHICANE_SOURCE_DIR "/leagues/shipped.yaml");
   ASSERT_TRUE(league) << league.error().message;
-  EXPECT_EQ(league->tracks.size(), 4U);
+  EXPECT_EQ(league->tracks.size(), 6U);
   EXPECT_EQ(league->cars.size(), 2U);
-  EXPECT_EQ(league->plan.size(), 10U * 4U * 2U * 4U);
+  EXPECT_EQ(league->plan.size(), 10U * 6U * 2U * 4U);
   EXPECT_EQ(league->externals.size(), 2U);
   EXPECT_FALSE(read_league("nowhere.yaml"));
 }
