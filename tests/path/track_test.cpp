@@ -272,6 +272,28 @@ TEST(Track, RefusesAnOutAndBackOnTheSameLine) {
   EXPECT_NE(refusal(points, true).find("crosses itself"), std::string::npos) << refusal(points, true);
 }
 
+TEST(Track, ScaledIsTheSameRoadSmaller) {
+  const Track large =
+      *Track::create("loop", loop_points(100, 0.0), true, {.kerb_width = 0.5, .start_s = 20.0});
+  const Track small = large.scaled(0.1);
+  EXPECT_NEAR(small.length(), 0.1 * large.length(), 1e-12);
+  EXPECT_DOUBLE_EQ(small.kerb_width(), 0.05);
+  EXPECT_DOUBLE_EQ(small.start_s(), 2.0);
+  for (double s = 0.0; s < large.length(); s += 7.3) {
+    const PathPoint a = large.centre().at(s), b = small.centre().at(0.1 * s);
+    EXPECT_NEAR(b.position.x(), 0.1 * a.position.x(), 1e-9);
+    EXPECT_NEAR(b.position.y(), 0.1 * a.position.y(), 1e-9);
+    EXPECT_NEAR(b.heading, a.heading, 1e-9);
+    EXPECT_NEAR(b.curvature, 10.0 * a.curvature, 1e-7);
+    EXPECT_NEAR(small.left_width(0.1 * s), 0.1 * large.left_width(s), 1e-9);
+    const Vec2 beside = a.position + Vec2{0.4, -0.7};
+    const Projection on_large = large.centre().project(beside, s, 6.0);
+    const Projection on_small = small.centre().project(0.1 * beside, 0.1 * s, 0.6);
+    EXPECT_NEAR(on_small.s, 0.1 * on_large.s, 1e-9);
+    EXPECT_NEAR(on_small.d, 0.1 * on_large.d, 1e-9);
+  }
+}
+
 TEST(Track, JudgesAHundredThousandPoints) {
   // Also a time limit in effect: a comparison of all pairs would take minutes and trip the test's time-out.
   std::vector<TrackPoint> points = loop_points(100000, 0.0);

@@ -161,7 +161,7 @@ TEST_F(Library, ACarFileHoldsOnlyACar) {
   const std::string file = write("car.yaml", "plant: udacity\nlaps: 3\n");
   EXPECT_THAT(
       error_of({"", {{"car", file}}}),
-      HasSubstr("car.yaml:2: laps: got a setting of a run, expected only plant, plant_params and vehicle"));
+      HasSubstr("car.yaml:2: laps: got a setting of a run, expected only plant, plant_params, vehicle"));
 }
 
 TEST_F(Library, FilesNamedInAScenarioAreFoundBesideIt) {

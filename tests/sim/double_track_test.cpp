@@ -131,6 +131,38 @@ TEST(DoubleTrack, TractionControlKeepsTheDrivenWheelsFromSpinning) {
   EXPECT_GT(controlled.output().speed, spinning.output().speed);
 }
 
+// model/similarity.hpp: a quarter of the length, half of the time, the same acceleration.
+TEST(DoubleTrack, AModelCarMovesAsTheCarItIsAModelOf) {
+  constexpr double kScale = 0.25;
+  DoubleTrackParams p;
+  for (double* length : {&p.front_axle, &p.rear_axle, &p.track_width, &p.tire_width, &p.height,
+                         &p.wheel_radius, &p.relaxation_along, &p.relaxation_across})
+    *length *= kScale;
+  const double force = kScale * kScale * kScale, time = std::sqrt(kScale);
+  for (double* each : {&p.mass, &p.drive_force, &p.brake_force}) *each *= force;
+  p.yaw_inertia *= force * kScale * kScale;
+  p.wheel_inertia *= force * kScale * kScale;
+  p.drag *= force / kScale;
+  p.drive_power *= force * time;
+  for (double* each : {&p.load_lag, &p.steer_lag, &p.drive_lag, &p.creep_speed, &p.abs_speed}) *each *= time;
+  p.creep_damping /= time;
+  p.steer_rate_limit /= time;
+  DoubleTrack small(p);
+  DoubleTrack large;
+  small.reset({}, 20.0 * time);
+  large.reset({}, 20.0);
+  for (int i = 0; i < 3000; ++i) {
+    const double t = 0.001 * i;  // of the large one
+    const model::Command command{0.06 * std::sin(2.0 * t), t < 1.5 ? 0.5 : -0.4};
+    large.advance(command);
+    if (i % 2 == 0) small.advance(command);
+  }
+  // Steps of the small one are twice as long for it.
+  EXPECT_NEAR(small.state().x, kScale * large.state().x, 0.005 * kScale * large.state().x);
+  EXPECT_NEAR(small.state().y, kScale * large.state().y, 0.01 * kScale * std::fabs(large.state().y) + 0.01);
+  EXPECT_NEAR(small.output().speed, time * large.output().speed, 0.005 * large.output().speed);
+}
+
 // Its wheels are an oscillator of some 700 rad/s, which steps of 1 ms as a whole would shake apart.
 TEST(DoubleTrack, ASmallCarWithLightWheelsRollsCalmly) {
   const DoubleTrackParams params{.mass = 0.04,

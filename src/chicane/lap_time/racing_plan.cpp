@@ -2,6 +2,7 @@
 #include "chicane/lap_time/racing_plan.hpp"
 
 #include <cmath>
+#include <string_view>
 
 #include "chicane/lap_time/detail/plan_search.hpp"
 #include "chicane/lap_time/detail/vehicle_model.hpp"
@@ -70,6 +71,18 @@ class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
 };
 
 }  // namespace
+
+Result<void> can_be_driven(const path::Track& track, const model::VehicleParams& vehicle, double beside,
+                           double scale) {
+  if (!track.centre().is_closed()) return {};
+  const VehiclePlan model(vehicle, 60.0);
+  // A tenth of the lock steers; a middle of the road with a fifth more room is a line that can be driven.
+  const Fit fit{.reserve = 1.1, .surely = 1.32, .beside = beside, .scale = scale};
+  Result<void> fits = fits_road(track, model.size(), fit);
+  constexpr std::string_view kPrefix = "limit: ";
+  if (!fits) return fail(fits.error().code, fits.error().message.substr(kPrefix.size()));
+  return {};
+}
 
 Result<path::RacingLine> plan_racing_line(const path::Track& track, const model::VehicleParams& vehicle,
                                           const RacingPlanOptions& options) {

@@ -35,4 +35,11 @@ struct RacingPlanOptions {
                                                         const model::VehicleParams& vehicle,
                                                         const RacingPlanOptions& options = {});
 
+/// Whether a controller can take the car round: wide enough everywhere, and no bend so tight that nothing of
+/// its lock is left to steer by; its centre of mass is at most `beside` from the middle of the road [m].
+/// `scale` of the lengths in the message. True of any open road. kInvalidArgument "the bend at s = 211.2 m
+/// leaves room for a radius of 10.60 m, and the car's full lock drives no less than 10.44 m", or the width.
+[[nodiscard]] Result<void> can_be_driven(const path::Track& track, const model::VehicleParams& vehicle,
+                                         double beside, double scale = 1.0);
+
 }  // namespace chicane::lap_time

@@ -11,7 +11,7 @@ void describe(const path::Track& track, protocol::Run& run) {
   run.track_length = track.centre().length();
   run.is_closed = track.centre().is_closed();
   run.kerb_width = track.kerb_width();
-  run.road = protocol::road_lines(track, kRoadSpacing);
+  run.road = protocol::road_lines(track, kRoadSpacing * run.vehicle.scale);
 }
 
 protocol::Run description(const run::ClosedLoop& loop) {

@@ -52,6 +52,20 @@ Path Path::with_capacity(int capacity) {
   return path;
 }
 
+Path Path::scaled(double factor) const {
+  Path path = *this;
+  path.length_ *= factor;
+  for (Segment& segment : path.segments_) {
+    segment.s0 *= factor;
+    segment.h *= factor;
+    segment.bulge *= factor;
+    segment.a *= factor;
+    segment.c *= 1.0 / factor;
+    segment.e *= 1.0 / (factor * factor);
+  }
+  return path;
+}
+
 Result<Path> Path::create(std::span<const Vec2> points, bool closed) {
   if (const std::optional<Fault> fault = find_fault(points, closed)) {
     if (fault->expected == nullptr) {

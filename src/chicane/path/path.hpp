@@ -47,6 +47,9 @@ class Path {
   /// non-finite or beyond kMaxCoordinate, coincident neighbours (when closed also last and first).
   [[nodiscard]] static Result<Path> create(std::span<const Vec2> points, bool closed);
 
+  /// The same curve, `factor` > 0 times as large about the origin.
+  [[nodiscard]] Path scaled(double factor) const;
+
   /// Replaces the curve without allocating. False, and no change, for data that create() would refuse or too
   /// many points.
   [[nodiscard]] bool rebuild(std::span<const Vec2> points, bool closed) noexcept;

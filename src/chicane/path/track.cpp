@@ -153,6 +153,20 @@ Result<Track> Track::create(std::string name, const std::vector<TrackPoint>& poi
   return track;
 }
 
+Track Track::scaled(double factor) const {
+  Track track = *this;
+  track.centre_ = centre_.scaled(factor);
+  for (double* length :
+       {&track.kerb_width_, &track.start_s_, &track.start_d_, &track.lap_length_, &track.width_spacing_})
+    *length *= factor;
+  for (std::vector<double>* widths : {&track.left_, &track.right_}) {
+    for (double& width : *widths) width *= factor;
+  }
+  for (TrackPoint& point : track.raw_points_)
+    point = {factor * point.position, factor * point.left, factor * point.right};
+  return track;
+}
+
 void Track::set_widths(const std::vector<TrackPoint>& points, const std::vector<double>& guesses) {
   // A raw point at d left of the line has its left edge at d + left, its right edge at right − d.
   struct Sample {

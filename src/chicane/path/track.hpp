@@ -41,6 +41,9 @@ class Track {
   [[nodiscard]] static Result<Track> create(std::string name, const std::vector<TrackPoint>& points,
                                             bool closed, const TrackOptions& options = {});
 
+  /// The same road, `factor` > 0 times as large, for cars of that scale.
+  [[nodiscard]] Track scaled(double factor) const;
+
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const Path& centre() const noexcept { return centre_; }
   [[nodiscard]] double length() const noexcept { return centre_.length(); }

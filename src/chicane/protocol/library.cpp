@@ -224,12 +224,13 @@ std::optional<Document> read_car(const Wish& wish, RememberedFiles& files, Fault
   }
   for (const Assignment& assignment : car->assignments) {
     const std::string_view key = assignment.parameter->key;
-    if (key == "plant" || key.starts_with("vehicle.") || key.starts_with("plant_params.")) continue;
-    faults.add(
-        {ErrorCode::kParse,
-         fmt::format(
-             "{}:{}: {}: got a setting of a run, expected only plant, plant_params and vehicle in a car file",
-             car->file, assignment.line, key)});
+    if (key == "plant" || key.starts_with("vehicle.") || key.starts_with("plant_params.") ||
+        key == "latency_ms" || key == "control_period_ms")
+      continue;
+    faults.add({ErrorCode::kParse,
+                fmt::format("{}:{}: {}: got a setting of a run, expected only plant, plant_params, vehicle, "
+                            "latency_ms and control_period_ms in a car file",
+                            car->file, assignment.line, key)});
   }
   return std::move(*car);
 }

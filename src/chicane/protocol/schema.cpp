@@ -48,8 +48,8 @@ int edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 bool is_live(const Parameter& parameter) {
-  constexpr std::array<std::string_view, 5> kWhatRuns{"plant", "controller", "seed", "control_period_ms",
-                                                      "waypoints_sent"};
+  constexpr std::array<std::string_view, 7> kWhatRuns{
+      "track_scale", "vehicle.scale", "plant", "controller", "seed", "control_period_ms", "waypoints_sent"};
   return parameter.option.kind != Kind::kText &&  // preset, track, car: names
          parameter.group != "guard" &&            // what watches over a run is fixed when it starts
          parameter.group != "plant_params" &&     // and so is the car

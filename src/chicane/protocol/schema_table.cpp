@@ -17,6 +17,9 @@ auto run_options() {
   return std::array{
       option<&S::preset>("preset", "Named controller settings this run starts from."),
       option<&S::track>("track", "Shipped track by name, or a file."),
+      option<&S::track_scale>(
+          "track_scale", unit::kNone, 0, 10,
+          "Size of the track over that of its file; 0 is the car's scale: 1 but for model cars."),
       option<&S::car>("car", "Shipped car by name, or a file."),
       option<&S::plant>("plant", sim::plant_names(), "Simulated car; normally set by the car file."),
       option<&S::controller>("controller", controller::Registry::kNames, "Who drives."),

@@ -31,6 +31,7 @@ AccountTerms terms_of(const scenario::Scenario& scenario, const std::string& tra
           .controller = scenario.controller,
           .preset = scenario.preset,
           .seed = scenario.seed,
+          .scale = scenario.vehicle.scale,
           .latency = scenario.latency,
           .laps = scenario.laps,
           .time_limit = scenario.time_limit,
@@ -94,10 +95,10 @@ std::optional<telemetry::CompletedLap> Account::take_lap() noexcept {
 
 void Account::look_for_end(const sim::WorldState& car, double time, double step, bool is_manual) noexcept {
   const double distance = std::fabs(car.lateral_error);
-  if (distance <= kLostDistance || is_manual) {
+  if (distance <= kLostDistance * terms_.scale || is_manual) {
     nearest_ = kNever;
     lost_for_ = 0.0;
-  } else if (distance < nearest_ - kNearer) {
+  } else if (distance < nearest_ - kNearer * terms_.scale) {
     nearest_ = distance;
     lost_for_ = 0.0;
   } else {

@@ -47,6 +47,7 @@ Result<std::unique_ptr<ClosedLoop>> ClosedLoop::create(const scenario::Scenario&
                                                        const ControllerFactory& make) {
   const auto road = roads.of(scenario);
   if (!road) return fail(road.error());
+  if (const Result<void> fits = check_room(scenario, (*road)->track); !fits) return fail(fits.error());
   Result<std::unique_ptr<sim::Plant>> plant = make_plant(scenario);
   if (!plant) return fail(plant.error());
   Result<std::unique_ptr<controller::Controller>> controller = make(scenario);

@@ -16,9 +16,12 @@ constexpr double kRoadSpacing = 2.0;  // [m] of the road that the guard knows
 }  // namespace
 
 road::KnownRoad known_road(const scenario::Scenario& scenario, const path::Track* track) {
-  if (track == nullptr) return safety::known_road(scenario.guard, nullptr, scenario.vehicle);
-  const path::RoadData road = path::road_data(*track, kRoadSpacing);
-  return safety::known_road(scenario.guard, &road, scenario.vehicle);
+  const model::VehicleParams car = full_size(scenario);
+  if (track == nullptr) return safety::known_road(scenario.guard, nullptr, car);
+  const model::Similarity similarity(scenario.vehicle);
+  const path::RoadData road =
+      path::road_data(similarity.is_identity() ? *track : track->scaled(similarity.length()), kRoadSpacing);
+  return safety::known_road(scenario.guard, &road, car);
 }
 
 ControlCycle::ControlCycle(std::unique_ptr<controller::Controller> controller,
@@ -27,7 +30,8 @@ ControlCycle::ControlCycle(std::unique_ptr<controller::Controller> controller,
 
 ControlCycle::ControlCycle(std::unique_ptr<controller::Controller> controller,
                            const scenario::Scenario& scenario, road::KnownRoad road)
-    : guard_{std::move(controller), scenario.vehicle, scenario.guard, std::move(road)} {}
+    : similarity_{scenario.vehicle},
+      guard_{std::move(controller), full_size(scenario), scenario.guard, std::move(road)} {}
 
 void ControlCycle::use_line(std::shared_ptr<const road::RacingRoad> lap) {
   if (lap) guard_.use_line(std::move(lap));
@@ -35,6 +39,7 @@ void ControlCycle::use_line(std::shared_ptr<const road::RacingRoad> lap) {
 
 void ControlCycle::begin(std::uint64_t cycle) noexcept {
   guard_.reset();
+  stop_.size = 0;
   prediction_check_.reset();
   next_ = cycle;
   begins_ = true;
@@ -42,8 +47,42 @@ void ControlCycle::begin(std::uint64_t cycle) noexcept {
 
 void ControlCycle::configure(const scenario::Scenario& scenario) noexcept {
   run::configure(guard_.controller(), scenario);
-  guard_.set_vehicle(scenario.vehicle);
+  guard_.set_vehicle(full_size(scenario));
   if (scenario.guard.road == safety::GuardRoad::kWaypoints) guard_.forget_road();
+}
+
+/// From the car in full size to the car as it is.
+void ControlCycle::to_scale(controller::StepResult& result) const noexcept {
+  const double length = similarity_.length(), time = similarity_.time(), speed = similarity_.speed();
+  controller::Plan& plan = result.plan;
+  for (int i = 0; i < plan.size; ++i) {
+    controller::PlanPoint& point = plan.points[static_cast<std::size_t>(i)];
+    point.time /= time;
+    point.x /= length;
+    point.y /= length;
+    point.speed /= speed;
+  }
+  for (int i = 0; i < plan.reference_size; ++i) plan.reference[static_cast<std::size_t>(i)] /= length;
+  controller::StepReport& report = result.report;
+  report.act_time /= time;
+  report.delay /= time;
+  report.lateral_error /= length;
+  report.sight /= length;
+  report.stop_edge /= length;
+  report.stop_distance /= length;
+  report.speed_reference /= speed;
+  report.explanation.speed_limit /= speed;
+}
+
+void ControlCycle::keep_stop() noexcept {
+  const safety::StopPlan& stop = guard_.stop();
+  stop_.size = stop.size;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(stop.size); ++i) {
+    stop_.points[i] = stop.points[i];
+    stop_.points[i].time /= similarity_.time();
+    stop_.points[i].distance /= similarity_.length();
+    stop_.points[i].speed /= similarity_.speed();
+  }
 }
 
 void ControlCycle::step(const CycleInput& input, telemetry::Frame& frame) noexcept {
@@ -55,8 +94,16 @@ void ControlCycle::step(const CycleInput& input, telemetry::Frame& frame) noexce
   frame.gate_interval = frame.begins ? 0.0 : input.interval;
   frame.is_manual = input.manual.has_value();
   if (input.manual) frame.manual = *input.manual;
-  frame.asked = guard_.step(frame.measurement, input.deadline.counted_in(questions),
-                            {.interval = frame.gate_interval, .manual = input.manual}, frame.result);
+  const safety::Guard::Cycle cycle{.interval = similarity_.time() * frame.gate_interval,
+                                   .manual = input.manual};
+  const Deadline deadline = input.deadline.counted_in(questions);
+  if (similarity_.is_identity()) {
+    frame.asked = guard_.step(frame.measurement, deadline, cycle, frame.result);
+  } else {
+    frame.asked = guard_.step(similarity_.full_size(frame.measurement), deadline, cycle, frame.result);
+    to_scale(frame.result);
+    keep_stop();
+  }
   frame.deadline_spent_at = questions.spent_at;
   frame.step_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   frame.solve_time = frame.result.report.solve_time;

@@ -8,6 +8,7 @@
 #include "chicane/base/deadline.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/measurement.hpp"
+#include "chicane/model/similarity.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "chicane/safety/guard.hpp"
@@ -34,7 +35,8 @@ struct CycleInput {
 ///
 ///     measurement → plausibility → controller → fallback → gate → what is sent → frame
 ///
-/// What is between measurement and gate is safety::Guard's. No allocation; one thread; objects are
+/// What is between measurement and gate is safety::Guard's. A model car is seen by it in full size
+/// (model/similarity.hpp); frames and stops are of the car as it is. No allocation; one thread; objects are
 /// independent.
 class ControlCycle {
  public:
@@ -65,10 +67,17 @@ class ControlCycle {
   [[nodiscard]] std::uint64_t next() const noexcept { return next_; }
   [[nodiscard]] const controller::Controller& controller() const noexcept { return guard_.controller(); }
   /// The stop at hand after step(), for the receiver, which stops the car when commands cease.
-  [[nodiscard]] const safety::StopPlan& stop() const noexcept { return guard_.stop(); }
+  [[nodiscard]] const safety::StopPlan& stop() const noexcept {
+    return similarity_.is_identity() ? guard_.stop() : stop_;
+  }
 
  private:
+  void to_scale(controller::StepResult& result) const noexcept;
+  void keep_stop() noexcept;
+
+  model::Similarity similarity_;
   safety::Guard guard_;
+  safety::StopPlan stop_;  ///< of a model car
   telemetry::PredictionCheck prediction_check_;
   std::uint64_t next_ = 0;
   bool begins_ = true;

@@ -2,8 +2,10 @@
 #include "chicane/run/make.hpp"
 
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "chicane/model/similarity.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/sim/plant_registry.hpp"
@@ -15,12 +17,16 @@ constexpr double kWaypointSpacing = 12.0;  // [m] the median of the original's w
 
 }  // namespace
 
+model::VehicleParams full_size(const scenario::Scenario& scenario) {
+  return model::Similarity(scenario.vehicle).full_size(scenario.vehicle);
+}
+
 void configure(controller::Controller& controller, const scenario::Scenario& scenario) noexcept {
-  controller::Registry::configure(controller, scenario.controllers, scenario.vehicle);
+  controller::Registry::configure(controller, scenario.controllers, full_size(scenario));
 }
 
 Result<std::unique_ptr<controller::Controller>> make_controller(const scenario::Scenario& scenario) {
-  return controller::Registry::make(scenario.controller, scenario.controllers, scenario.vehicle);
+  return controller::Registry::make(scenario.controller, scenario.controllers, full_size(scenario));
 }
 
 Result<std::unique_ptr<sim::Plant>> make_plant(const scenario::Scenario& scenario) {
@@ -30,13 +36,16 @@ Result<std::unique_ptr<sim::Plant>> make_plant(const scenario::Scenario& scenari
 Result<path::Track> make_track(const scenario::Scenario& scenario) {
   Result<std::string> file = protocol::locate(protocol::Shelf::kTrack, scenario.track);
   if (!file) return fail(file.error());
-  return protocol::read_track(*file);
+  Result<path::Track> track = protocol::read_track(*file);
+  const double size = scenario.size_of_track();
+  return track && size != 1.0 ? track->scaled(size) : std::move(track);
 }
 
-Result<path::Track> make_waypoints(const path::Track& track) {
+Result<path::Track> make_waypoints(const path::Track& track, double scale) {
+  const double spacing = kWaypointSpacing * scale;
   const std::vector<path::TrackPoint>& raw = track.raw_points();
   const double mean_spacing = track.centre().length() / static_cast<double>(raw.size());
-  if (mean_spacing > 0.6 * kWaypointSpacing) return track;
+  if (mean_spacing > 0.6 * spacing) return track;
   const bool is_closed = track.centre().is_closed();
   std::vector<path::TrackPoint> sparse{raw.front()};
   double along = 0.0;
@@ -44,12 +53,16 @@ Result<path::Track> make_waypoints(const path::Track& track) {
   for (std::size_t i = 1; i < raw.size(); ++i) {
     along += (raw[i].position - raw[i - 1].position).norm();
     const bool is_end = !is_closed && i + 1 == raw.size();
-    const bool meets_first = is_closed && track.length() - along < 0.5 * kWaypointSpacing;
-    if (!is_end && (along - last < kWaypointSpacing || meets_first)) continue;
+    const bool meets_first = is_closed && track.length() - along < 0.5 * spacing;
+    if (!is_end && (along - last < spacing || meets_first)) continue;
     sparse.push_back(raw[i]);
     last = along;
   }
-  return path::Track::create(track.name(), sparse, is_closed);
+  // In full size: how smooth a road is depends on how large it is.
+  for (path::TrackPoint& point : sparse)
+    point = {(1.0 / scale) * point.position, point.left / scale, point.right / scale};
+  Result<path::Track> waypoints = path::Track::create(track.name(), sparse, is_closed);
+  return waypoints && scale != 1.0 ? waypoints->scaled(scale) : std::move(waypoints);
 }
 
 }  // namespace chicane::run

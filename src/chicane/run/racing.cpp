@@ -2,12 +2,15 @@
 #include "chicane/run/racing.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 #include <vector>
 
 #include "chicane/controller/registry.hpp"
 #include "chicane/lap_time/racing_plan.hpp"
 #include "chicane/model/grip.hpp"
+#include "chicane/model/similarity.hpp"
+#include "chicane/run/make.hpp"
 
 namespace chicane::run {
 namespace {
@@ -27,7 +30,7 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const path::Track& track
                                        .brake_share = options.brake_share,
                                        .speed_limit = options.speed_limit};
   if (go_on) planning.go_on = [&](int, double) { return go_on(); };
-  const model::VehicleParams car = model::with_grip(scenario.vehicle, basis.grip);
+  const model::VehicleParams car = model::with_grip(full_size(scenario), basis.grip);
   const Result<path::RacingLine> lap = lap_time::plan_racing_line(track, car, planning);
   if (!lap) return fail(lap.error());
   road::RacingRoad::Basis planned = basis;
@@ -38,17 +41,35 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const path::Track& track
                                                   planned);
 }
 
+/// As the controller of a model car sees the road.
+path::Track in_full_size(const path::Track& track, const scenario::Scenario& scenario) {
+  const model::Similarity similarity(scenario.vehicle);
+  return similarity.is_identity() ? track : track.scaled(similarity.length());
+}
+
 }  // namespace
 
 bool races(const scenario::Scenario& scenario) noexcept {
   return scenario.controller == controller::TrackingMpcEntry::kName && options_of(scenario).racing_line;
 }
 
+Result<void> check_room(const scenario::Scenario& scenario, const path::Track& track) {
+  const bool keeps_to_the_middle =
+      scenario.controller == controller::TrackingMpcEntry::kName && !races(scenario);
+  const double beside =
+      keeps_to_the_middle ? options_of(scenario).assumed_half_width : std::numeric_limits<double>::infinity();
+  const Result<void> fits = lap_time::can_be_driven(in_full_size(track, scenario), full_size(scenario),
+                                                    beside, scenario.vehicle.scale);
+  if (fits) return {};
+  return fail(fits.error().code, "track: " + track.name() + " is not for the car " + scenario.vehicle.name +
+                                     ": " + fits.error().message);
+}
+
 Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenario& scenario,
                                                          const path::Track* track) {
   const bool is_known = track != nullptr && scenario.guard.road == safety::GuardRoad::kTrack;
   if (!races(scenario) || !is_known) return std::shared_ptr<const road::RacingRoad>{};
-  return plan_on(*track, scenario, {.grip = options_of(scenario).first_grip()}, {});
+  return plan_on(in_full_size(*track, scenario), scenario, {.grip = options_of(scenario).first_grip()}, {});
 }
 
 Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::Scenario& scenario,
@@ -57,8 +78,8 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::
                                                                 const std::function<bool()>& go_on) {
   const road::RacingRoad::Basis basis{.is_learned = !wish.waypoints.empty(), .grip = wish.grip};
   if (!basis.is_learned && track == nullptr) return std::shared_ptr<const road::RacingRoad>{};
-  if (!basis.is_learned) return plan_on(*track, scenario, basis, go_on);
-  const model::VehicleParams& car = scenario.vehicle;
+  if (!basis.is_learned) return plan_on(in_full_size(*track, scenario), scenario, basis, go_on);
+  const model::VehicleParams car = full_size(scenario);
   const double beside = 0.5 * (car.track_width + car.tire_width);
   const double half_width = options_of(scenario).assumed_half_width + beside;
   std::vector<path::TrackPoint> points;

@@ -15,6 +15,11 @@ namespace chicane::run {
 /// Whether the scenario's controller races by a line that is planned for the whole road.
 [[nodiscard]] bool races(const scenario::Scenario& scenario) noexcept;
 
+/// Whether the scenario's car gets round `track` by what its controller may use of the width.
+/// kInvalidArgument "track: hairpins is not for the car indy: the bend at s = ..." names place and radius, or
+/// the width.
+[[nodiscard]] Result<void> check_room(const scenario::Scenario& scenario, const path::Track& track);
+
 /// The lap that a scenario's controller races by: the minimum-time line of the car it believes in on `track`,
 /// with the shares of grip and brakes and the margin to the edges that its settings leave. Null where the
 /// settings do not ask for one, or let it know waypoints only (GuardRoad::kWaypoints). Takes 1 to 30 s

@@ -26,7 +26,8 @@ bool plan_same_lap(const scenario::Scenario& a, const scenario::Scenario& b) {
 
 /// Whether the same road comes of both.
 bool is_same_road(const scenario::Scenario& a, const scenario::Scenario& b) {
-  return a.track == b.track && are_same(safety::guard_options(), &a.guard, &b.guard) && plan_same_lap(a, b) &&
+  return a.track == b.track && a.size_of_track() == b.size_of_track() && a.vehicle.scale == b.vehicle.scale &&
+         are_same(safety::guard_options(), &a.guard, &b.guard) && plan_same_lap(a, b) &&
          ((a.guard.mode == safety::GuardMode::kOff && !races(a)) ||
           are_same(model::vehicle_options(), &a.vehicle, &b.vehicle));
 }
@@ -39,7 +40,7 @@ Result<const Roads::Prepared*> Roads::of(const scenario::Scenario& scenario) {
   if (known != entries_.end()) return &known->prepared;
   Result<path::Track> track = make_track(scenario);
   if (!track) return fail(track.error());
-  Result<path::Track> waypoints = make_waypoints(*track);
+  Result<path::Track> waypoints = make_waypoints(*track, scenario.vehicle.scale);
   if (!waypoints) return fail(waypoints.error());
   road::KnownRoad road = known_road(scenario, &*track);
   auto lap = plan_lap(scenario, &*track);

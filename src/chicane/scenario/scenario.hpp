@@ -21,6 +21,7 @@ namespace chicane::scenario {
 struct Scenario {
   std::string preset = "default";
   std::string track = "lakeside";           ///< name of a shipped track, or a file
+  double track_scale = 0.0;                 ///< the track's size over that of its file; 0: the car's scale
   std::string car = "udacity";              ///< name of a shipped car, or a file
   std::string plant = "udacity";            ///< one of sim::plants(); set by the car
   std::string controller = "tracking-mpc";  ///< one of controller::Registry
@@ -39,6 +40,10 @@ struct Scenario {
   sim::PlantDeviation plant_options;
   sim::SensorOptions sensor;
   std::vector<sim::FaultEvent> faults;  ///< that happen during the run; at most sim::FaultLab::kCapacity
+
+  [[nodiscard]] double size_of_track() const noexcept {
+    return track_scale > 0.0 ? track_scale : vehicle.scale;
+  }
 
   /// Of every controller, whichever drives: std::get<controller::PidOptions>(controllers).
   controller::Registry::Options controllers;

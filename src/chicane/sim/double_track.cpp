@@ -79,6 +79,8 @@ constexpr std::array kOptions{
     option<&P::drive_force>("drive_force", kNewton, 1e-3, 1e6, "At full throttle, of all wheels."),
     option<&P::drive_power>("drive_power", kWatt, 1e-3, 1e8, "Cap of drive force times speed."),
     option<&P::drive_share_front>("drive_share_front", unit::kNone, 0, 1, "Of the drive force."),
+    option<&P::drive_friction>("drive_friction", kNewton, 0, 1e5,
+                               "Of motor and gears, on the driven wheels."),
     option<&P::brake_force>("brake_force", kNewton, 1e-3, 1e6, "At throttle -1, of all wheels."),
     option<&P::brake_share_front>("brake_share_front", unit::kNone, 0, 1, "Of the braking force."),
     option<&P::abs_slip_start>("abs_slip_start", unit::kNone, 0.01, 1,
@@ -133,7 +135,8 @@ model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams b
   const double inertia = p.mass + 4.0 * p.wheel_inertia / (p.wheel_radius * p.wheel_radius);
   m.drive_acceleration = p.drive_force / inertia;
   m.drive_power_per_mass = p.drive_power / inertia;
-  m.drag_constant = p.rolling_resistance * DoubleTrackParams::kGravity * p.mass / inertia;
+  m.drag_constant =
+      (p.rolling_resistance * DoubleTrackParams::kGravity * p.mass + p.drive_friction) / inertia;
   m.drag_linear = 0.0;
   m.drag_quadratic = (p.drag + p.rolling_resistance * (p.downforce_front + p.downforce_rear)) / inertia;
   m.brake_acceleration = p.brake_force / inertia;
@@ -269,7 +272,8 @@ void DoubleTrack::spin(Wheel& wheel, double force, double drive, double brake,
         (params_.traction_slip_end - slip) / (params_.traction_slip_end - params_.traction_slip_start), 0.0,
         1.0);
   }
-  const double resistance = brake + params_.rolling_resistance * wheel.load * params_.wheel_radius;
+  const double resistance =
+      brake + params_.rolling_resistance * wheel.load * params_.wheel_radius + wheel.friction;
   const double free = wheel.speed + dt_ * (drive - params_.wheel_radius * force) / params_.wheel_inertia;
   const double most = dt_ * resistance / params_.wheel_inertia;
   wheel.speed = std::fabs(free) <= most ? 0.0 : free - std::copysign(most, free);
@@ -298,6 +302,7 @@ void DoubleTrack::move() noexcept {
     const Vec2 force_wheel = tire_force(wheel, v_wheel);
     const double drive_share = is_front ? params_.drive_share_front : 1.0 - params_.drive_share_front;
     const double brake_share = is_front ? params_.brake_share_front : 1.0 - params_.brake_share_front;
+    wheel.friction = 0.5 * drive_share * params_.drive_friction * params_.wheel_radius;
     spin(wheel, force_wheel.x(), 0.5 * drive_share * drive_force * params_.wheel_radius,
          0.5 * brake_share * brake_force * params_.wheel_radius, v_wheel.x());
     const Vec2 force = turned(force_wheel, cw, sw);

@@ -49,6 +49,7 @@ struct DoubleTrackParams {
   double drive_force = 7300.0;      ///< at full throttle [N]
   double drive_power = 200.0e3;     ///< [W]
   double drive_share_front = 0.40;  ///< open differentials
+  double drive_friction = 0.0;      ///< of motor and gears, on the driven wheels [N]
   double brake_force = 12350.0;     ///< at throttle −1 [N]
   double brake_share_front =
       0.72;                      ///< bias; the front locks first up to 0.9 g, as UN R13-H asks of road cars
@@ -126,6 +127,7 @@ class DoubleTrack final : public Plant {
     double slip_across = 0.0;  ///< relaxed −v_y / |v_x|
     model::MagicFormula tire;
     double peak_slip = 0.0;  ///< combined slip of the largest force
+    double friction = 0.0;   ///< torque of the drive train [N m]
     double use = 0.0;        ///< of the grip, as PlantOutput::tire_use
   };
 

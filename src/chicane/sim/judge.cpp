@@ -18,6 +18,13 @@ constexpr int kLostPatience = 10;         // sightings between such looks
 constexpr double kCoveredShare = 0.95;    // of the line that a lap has to cover
 constexpr double kBackOnTrack = 0.05;     // distance that ends an off-track event [m] ...
 constexpr double kBackOnTrackTime = 0.2;  // ... once held so long [s]
+constexpr double kFullSize = 1.5;         // between the axles [m]; all lengths are less for shorter cars
+
+/// Over a car in full size.
+double size_of(const Sighting& car) noexcept {
+  const double wheelbase = car.contact_points[0].x() - car.contact_points[2].x();
+  return wheelbase > 0.0 ? std::min(wheelbase / kFullSize, 1.0) : 1.0;
+}
 
 }  // namespace
 
@@ -28,14 +35,15 @@ void Judge::reset(double time, const Sighting& car) noexcept {
   lap_start_ = sector_start_ = time;
   lost_for_ = 0;
   state_ = {};
+  size_ = size_of(car);
   state_.time = time;
   // A start on the line is timed from standstill; any other first drives to the line.
   constexpr double kOnTheLine = 1.0;  // [m]
   const path::Path& line = track_.centre();
   state_.s = project_anywhere(car.pose).s;
   state_.progress = line.difference(state_.s, track_.start_s());
-  state_.is_timed = std::fabs(state_.progress) <= kOnTheLine;
-  if (line.is_closed() && state_.progress > kOnTheLine) state_.progress -= lap_length_;
+  state_.is_timed = std::fabs(state_.progress) <= kOnTheLine * size_;
+  if (line.is_closed() && state_.progress > kOnTheLine * size_) state_.progress -= lap_length_;
   next_line_ = state_.is_timed || !line.is_closed() ? lap_length_ : 0.0;
   locate(0.0, car);
   state_.min_edge_distance = std::numeric_limits<double>::infinity();
@@ -61,10 +69,10 @@ path::Projection Judge::project_anywhere(const model::Pose& car) const noexcept 
 void Judge::locate(double elapsed, const Sighting& car) noexcept {
   const path::Path& line = track_.centre();
   const Vec2 position{car.pose.x, car.pose.y};
-  const double reachable = 2.0 * car.speed * elapsed + 0.01;
-  path::Projection nearest = line.project(position, state_.s, kSearch + reachable);
-  const bool is_far =
-      nearest.distance > kLost + std::max(track_.left_width(nearest.s), track_.right_width(nearest.s));
+  const double reachable = 2.0 * car.speed * elapsed + 0.01 * size_;
+  path::Projection nearest = line.project(position, state_.s, kSearch * size_ + reachable);
+  const bool is_far = nearest.distance >
+                      kLost * size_ + std::max(track_.left_width(nearest.s), track_.right_width(nearest.s));
   lost_for_ = is_far ? lost_for_ + 1 : 0;
   bool has_jumped = false;
   if (lost_for_ % kLostPatience == 1) {
@@ -95,12 +103,12 @@ void Judge::measure_edges(double elapsed, const Sighting& car) noexcept {
   double edge = std::numeric_limits<double>::infinity();
   for (const Vec2& patch : car.contact_points) {
     const Vec2 point{pose.x + c * patch.x() - s * patch.y(), pose.y + s * patch.x() + c * patch.y()};
-    const path::Projection at = track_.centre().project(point, state_.s, kSearch);
+    const path::Projection at = track_.centre().project(point, state_.s, kSearch * size_);
     edge = std::min(edge, track_.edge_distance(at));
   }
   state_.edge_distance = edge + track_.kerb_width();
   state_.min_edge_distance = std::min(state_.min_edge_distance, state_.edge_distance);
-  back_on_track_ = state_.edge_distance >= kBackOnTrack ? back_on_track_ + elapsed : 0.0;
+  back_on_track_ = state_.edge_distance >= kBackOnTrack * size_ ? back_on_track_ + elapsed : 0.0;
   if (state_.edge_distance < 0.0) {
     state_.off_track_time += elapsed;
     if (!state_.is_off_track) ++state_.off_track_events;

@@ -62,7 +62,8 @@ class Judge {
   explicit Judge(const path::Track& track) noexcept;
 
   /// A new run from any pose, at `time` [s]. Within 1 m of the start line the first lap is timed from now on,
-  /// otherwise from the first crossing.
+  /// otherwise from the first crossing. For cars shorter than 1.5 m between the axles all lengths are smaller
+  /// in proportion.
   void reset(double time, const Sighting& car) noexcept;
   /// Time rises from sighting to sighting.
   void see(double time, const Sighting& car) noexcept;
@@ -79,6 +80,7 @@ class Judge {
   void start_lap(double crossing_time) noexcept;
 
   const path::Track& track_;
+  double size_ = 1.0;          ///< of the car, over one in full size: what is far for it
   double covered_ = 0.0;       ///< of the line since the lap began, without jumps [m]
   double lap_length_ = 0.0;    ///< Track::lap_length()
   double next_line_ = 0.0;     ///< progress at the next crossing of the line [m]

@@ -363,7 +363,7 @@ Result<SimulateReport> simulate(const SimulateOptions& options, const scenario::
   if (auto url = net::parse_url(options.url); !url) return fail(url.error());
   Result<path::Track> track = run::make_track(scenario);
   if (!track) return fail(track.error());
-  Result<path::Track> waypoints = run::make_waypoints(*track);
+  Result<path::Track> waypoints = run::make_waypoints(*track, scenario.vehicle.scale);
   if (!waypoints) return fail(waypoints.error());
   Result<std::unique_ptr<sim::Plant>> plant = run::make_plant(scenario);
   if (!plant) return fail(plant.error());

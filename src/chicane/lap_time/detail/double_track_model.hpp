@@ -80,9 +80,9 @@ struct DoubleTrackModel {
       const T f_across = force * side;
       const double drive_share = is_front ? car.drive_share_front : 1.0 - car.drive_share_front;
       const double brake_share = is_front ? car.brake_share_front : 1.0 - car.brake_share_front;
-      m.balance[i] =
-          (1.0 / rest) * (f_along - drive_share * drive * spin_share(slip) +
-                          brake_share * brake * lock_share(slip) + car.rolling_resistance * load + spin);
+      m.balance[i] = (1.0 / rest) * (f_along - drive_share * drive * spin_share(slip) +
+                                     brake_share * brake * lock_share(slip) + car.rolling_resistance * load +
+                                     0.5 * drive_share * car.drive_friction + spin);
       const T bx = is_front ? T(cs * f_along - sn * f_across) : f_along;
       const T by = is_front ? T(sn * f_along + cs * f_across) : f_across;
       fx += bx;

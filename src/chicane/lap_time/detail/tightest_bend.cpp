@@ -49,13 +49,11 @@ struct BendModel {
   static constexpr double kSmooth = 1e-3;
 };
 
-constexpr double kSurelyWide = 4.0;  // times the radius at full lock: no bend of the centre line needs a look
-constexpr double kPace = 4.0;        // of the nodes [m/s]
-constexpr double kFits = 1.02;       // the power's optimum is not quite the least maximum
+constexpr double kPace = 4.0;  // of the nodes [m/s]
 
 template <class... Values>
 std::string text(const char* format, Values... values) {
-  std::array<char, 240> buffer{};
+  std::array<char, 320> buffer{};
   std::snprintf(buffer.data(), buffer.size(), format, values...);
   return buffer.data();
 }
@@ -67,14 +65,19 @@ double CarSize::most_curvature() const noexcept {
   return rear / std::sqrt(1.0 + rear_axle * rear_axle * rear * rear);
 }
 
-Result<void> fits_road(const path::Track& track, const CarSize& car) {
+Result<void> fits_road(const path::Track& track, const CarSize& car) { return fits_road(track, car, Fit{}); }
+
+Result<void> fits_road(const path::Track& track, const CarSize& car, const Fit& fit) {
   const GuessCar pace{.grip = 2.0,
                       .drive = 2.0,
                       .brake = 2.0,
                       .speed = kPace,
                       .front_axle = car.front_axle,
                       .rear_axle = car.rear_axle};
-  const RoadNodes road = lay_nodes(track, pace, 0.25);
+  RoadNodes road = lay_nodes(track, pace, 0.25);
+  for (std::vector<double>* room : {&road.front_left, &road.front_right, &road.rear_left, &road.rear_right}) {
+    for (double& each : *room) each = std::min(each, fit.beside + car.half_width);
+  }
   double sharpest = 0.0;
   for (std::size_t k = 0; k < road.s.size(); ++k) {
     const double width =
@@ -82,10 +85,10 @@ Result<void> fits_road(const path::Track& track, const CarSize& car) {
     if (width <= 2.0 * car.half_width)
       return fail(ErrorCode::kInvalidArgument,
                   text("limit: the road is %.2f m wide at s = %.1f m, expected more than the car's %.2f m",
-                       width, road.s[k], 2.0 * car.half_width));
+                       fit.scale * width, fit.scale * road.s[k], fit.scale * 2.0 * car.half_width));
     sharpest = std::max(sharpest, std::fabs(road.curvature[k]));
   }
-  if (sharpest * kSurelyWide < car.most_curvature()) return {};
+  if (sharpest * fit.surely < car.most_curvature()) return {};
 
   BendModel model;
   model.car = car;
@@ -109,12 +112,13 @@ Result<void> fits_road(const path::Track& track, const CarSize& car) {
   const auto curvature = [&](std::size_t k) { return std::fabs(z[k * BendModel::kVariables + 2]); };
   for (std::size_t k = 0; k < n; ++k)
     if (curvature(k) > curvature(worst)) worst = k;
-  if (curvature(worst) <= kFits * car.most_curvature()) return {};
+  if (fit.reserve * curvature(worst) <= car.most_curvature()) return {};
   return fail(
       ErrorCode::kInvalidArgument,
       text("limit: the bend at s = %.1f m leaves room for a radius of %.2f m, and the car's full lock "
-           "drives no less than %.2f m",
-           road.s[worst], 1.0 / curvature(worst), 1.0 / car.most_curvature()));
+           "drives no less than %.2f m%s",
+           fit.scale * road.s[worst], fit.scale / curvature(worst), fit.scale / car.most_curvature(),
+           fit.reserve > 1.0 ? ", of which something must be left to steer by" : ""));
 }
 
 }  // namespace chicane::lap_time

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <limits>
+
 #include "chicane/base/result.hpp"
 #include "chicane/path/track.hpp"
 
@@ -20,5 +22,14 @@ struct CarSize {
 /// its full lock can follow (docs/limit.md, section 4). kInvalidArgument with the place, and the radius there
 /// and of the full lock.
 [[nodiscard]] Result<void> fits_road(const path::Track& track, const CarSize& car);
+
+/// How tight is too tight.
+struct Fit {
+  double reserve = 1.0 / 1.02;  ///< of the radius that a bend leaves room for, over that of the full lock
+  double surely = 4.0;  ///< a middle of the road with so many times the radius at full lock needs no look
+  double beside = std::numeric_limits<double>::infinity();  ///< that the car may be from the middle [m]
+  double scale = 1.0;                                       ///< of the lengths in messages
+};
+[[nodiscard]] Result<void> fits_road(const path::Track& track, const CarSize& car, const Fit& fit);
 
 }  // namespace chicane::lap_time
