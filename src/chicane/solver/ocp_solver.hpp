@@ -53,6 +53,8 @@ class OcpSolver {
 
   /// From the next solve on: SolverOptions::max_iterations.
   void allow_iterations(int most) noexcept { options_.max_iterations = most; }
+  /// From the next solve on: SolverOptions::tolerance.
+  void ask_for(double tolerance) noexcept { options_.tolerance = tolerance; }
   /// From the next solve on: SolverOptions::start_from_states.
   void start_from_states(bool do_so) noexcept { options_.start_from_states = do_so; }
 

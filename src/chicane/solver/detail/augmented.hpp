@@ -72,6 +72,7 @@ class Augmented : public detail::PreviousInputs<P> {
   static constexpr bool kGaussNewton = !has_hessians<P>();
   static constexpr bool kRealTime = !has_filter_method<P>();
 
+  static constexpr double kNearlyNone = 1e-6;
   /// One row that must hold: √ρ, ρ and y/ρ.
   struct Weight {
     double root = 1.0;
@@ -88,6 +89,7 @@ class Augmented : public detail::PreviousInputs<P> {
   std::array<Weight, kEndEqualities + kEndConstraints> terminal_weight{};
   std::array<double, kEndEqualities + kEndConstraints> terminal_shift{};
   std::array<double, kNc> price_factor{};  ///< of soft constraints, hard ones among them
+  double square_price = 0.0;               ///< of hard ones in their place, if any: of ½ violation²
 
   template <class K, class X, class U>
   requires requires(const P& p, K k, const X& x, const U& u) { p.dynamics(k, x, u); }
@@ -126,7 +128,10 @@ class Augmented : public detail::PreviousInputs<P> {
     price.linear *= price_factor[static_cast<std::size_t>(c)];
     price.quadratic *= price_factor[static_cast<std::size_t>(c)];
     if constexpr (detail::SaysWhatIsHard<P>) {
-      if (problem->is_hard(c)) price.cap = 1e30;
+      if (problem->is_hard(c)) {
+        price.cap = 1e30;
+        if (square_price > 0.0) price = {kNearlyNone * square_price, square_price, price.cap};
+      }
     }
     return price;
   }

@@ -112,6 +112,7 @@ class OcpSolver<P, Capacity, Arch> {
     bool may_start_again = !prices_.is_known;
     int idle = 0;
     bool is_first = true;
+    bool is_replaced = false;  // by a point that `report` is not of
     Misses before;
     double best = std::numeric_limits<double>::infinity();
     const auto is_spent = [&] { return left <= 0 || deadline.spent() || report.rounds >= kMostRounds; };
@@ -128,6 +129,7 @@ class OcpSolver<P, Capacity, Arch> {
       best = std::min(best, now.worst());
       before = now;
       is_first = false;
+      if (converged && last_turns_ == 0 && ask_for_more()) idle = 0;
       if (converged && idle < kPatience) continue;
       if (may_start_again) {  // by another way: misses count from the start
         may_start_again = false;
@@ -135,7 +137,7 @@ class OcpSolver<P, Capacity, Arch> {
         kept_miss_ = now.worst();
         begin_again(trajectory, kHeavy);
         is_first = true;
-      } else if (take_better(now.worst(), trajectory); !converged) {
+      } else if (is_replaced = take_better(now.worst(), trajectory); !converged) {
         break;
       } else if (is_infeasible(problem, x0, trajectory, deadline, left, report)) {
         return finish(SolveStatus::kInfeasible, measure(problem, trajectory, &report), report);
@@ -143,10 +145,12 @@ class OcpSolver<P, Capacity, Arch> {
         break;
       }
       idle = 0;
+      is_replaced = false;
       before = measure(problem, trajectory, nullptr);
       best = is_first ? std::numeric_limits<double>::infinity() : before.worst();
     }
-    const bool is_replaced = take_better(measure(problem, trajectory, nullptr).worst(), trajectory);
+    is_replaced |= take_better(measure(problem, trajectory, nullptr).worst(), trajectory);
+    if (is_replaced) look_at(x0, trajectory, true, report);
     Misses now = measure(problem, trajectory, &report);
     for (std::size_t n = kNeh; n < kEnd; ++n) count_distance(now, n);
     const bool is_close = !is_replaced && usable(report.status) && now.worst() <= options_.loose_tolerance;
@@ -210,13 +214,17 @@ class OcpSolver<P, Capacity, Arch> {
     const Misses guess = measure(problem, guess_, nullptr);
     if (!(guess.worst() < now.worst() && guess.cost < now.cost)) return false;
     trajectory = guess_;
+    look_at(x0, trajectory, false, report);
+    return true;
+  }
+  /// The residuals of `trajectory`, simulated or with its states, become those of `report`.
+  void look_at(const State& x0, Trajectory& trajectory, bool with_states, HardReport& report) noexcept {
     inner_.allow_iterations(0);
-    inner_.start_from_states(false);
+    inner_.start_from_states(with_states);
     const SolveReport seen = inner_.solve(problem_, x0, trajectory);
     report.stationarity = seen.stationarity;
     report.defect = seen.defect;
     report.complementarity = seen.complementarity;
-    return true;
   }
 
   /// The point that the first weights led to, if it misses less than `miss`: true then.
@@ -241,9 +249,29 @@ class OcpSolver<P, Capacity, Arch> {
     report.iterations = iterations;
     report.sweeps = sweeps;
     ++report.rounds;
+    last_turns_ = now.iterations;
     left -= std::max(1, now.iterations);
+    if (now.status == SolveStatus::kAtFloor && residual(now) <= options_.tolerance)
+      report.status = SolveStatus::kOptimal;
     return now.status == SolveStatus::kOptimal || now.status == SolveStatus::kAtFloor ||
            now.status == SolveStatus::kInfeasible;
+  }
+
+  static double residual(const SolveReport& report) noexcept {
+    return std::max({report.stationarity, report.defect, report.complementarity});
+  }
+  /// The next round converges further: where bounds are close to each other, or slopes flat, a step that the
+  /// tolerance takes for none is what a miss needs. False when that is at an end.
+  bool ask_for_more() noexcept {
+    constexpr double kFiner = 1e-2, kLeast = 1e-13;
+    if (tolerance_ <= kLeast) return false;
+    ask_for(std::max(kLeast, kFiner * tolerance_));
+    return true;
+  }
+  void ask_for(double tolerance) noexcept {
+    if (tolerance != tolerance_) can_go_on_ = false;
+    tolerance_ = tolerance;
+    inner_.ask_for(tolerance);
   }
 
   // ---- weights and multipliers
@@ -251,7 +279,9 @@ class OcpSolver<P, Capacity, Arch> {
   void start(const P& problem, const State& x0, Trajectory& trajectory) noexcept {
     problem_.problem = &problem;
     problem_.cost_root = 1.0;
+    problem_.square_price = 0.0;
     can_go_on_ = false;
+    ask_for(options_.tolerance);
     if (!options_.start_from_states) roll_out(problem, x0, trajectory);
     first_ = measure(problem, trajectory, nullptr);
     unit_ = std::isfinite(first_.cost) ? std::max(1.0, first_.cost) : 1.0;
@@ -262,6 +292,7 @@ class OcpSolver<P, Capacity, Arch> {
   /// No multipliers, and the first weights of the guess, times `factor` (eq. 40).
   void start_with_weights(int horizon, double factor) noexcept {
     can_go_on_ = false;
+    ask_for(options_.tolerance);
     inner_.start_from_states(options_.start_from_states);
     problem_.cost_root = 1.0;
     problem_.price_factor.fill(1.0);
@@ -349,11 +380,12 @@ class OcpSolver<P, Capacity, Arch> {
   // ---- what cannot hold
 
   /// Minimises the misses with ever less of the cost (eq. 41). True when they have a minimum above zero that
-  /// does not depend on how much, nor on how steep they are. Else weights and multipliers are those of the
-  /// point that was found.
+  /// does not depend on how much, nor on how steep they are, nor on whether hard constraints may give way.
+  /// Else weights and multipliers are those of the point that was found.
   bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
                      int& left, HardReport& report) noexcept {
     constexpr double kShare = 1e-5, kLess = 1e-3, kFiner = 1e4;
+    constexpr int kSteep = 2, kSquares = 3;
     const auto factors = problem_.price_factor;
     const double unit = std::max(options_.tolerance, measure(problem, trajectory, nullptr).worst());
     double factor = 1.0;
@@ -361,18 +393,23 @@ class OcpSolver<P, Capacity, Arch> {
     double last = std::numeric_limits<double>::infinity();
     for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
     problem_.terminal_shift.fill(0.0);
-    for (int turn = 0; turn < 3; ++turn) {
+    ask_for(finest_tolerance(problem, trajectory.horizon));
+    bool is_minimum = false;
+    for (int turn = 0; turn <= (kNc > 0 ? kSquares : kSteep); ++turn) {
       if (turn == 1) share *= kLess;
-      if (turn == 2) factor = kFiner;
+      if (turn == kSteep) factor = kFiner;
       weigh_misses(problem, share, unit, factor);
+      if (turn == kSquares) problem_.square_price = factor / (unit * unit);
       can_go_on_ = false;
       const bool converged = round(x0, trajectory, deadline, left, report);
       const double worst = measure(problem, trajectory, &report).worst();
-      const bool is_minimum = turn > 1 && converged && worst > options_.tolerance && worst > 0.5 * last;
+      is_minimum = turn >= kSteep && converged && worst > options_.tolerance && worst > 0.5 * last;
       last = worst;
-      if (is_minimum) return true;
-      if (!converged || worst <= options_.tolerance || left <= 0) break;
+      if (!converged || worst <= options_.tolerance || left <= 0 || (turn >= kSteep && !is_minimum)) break;
     }
+    problem_.square_price = 0.0;
+    ask_for(options_.tolerance);
+    if (is_minimum) return true;
     report.status = SolveStatus::kStalled;  // it converged, but not with the whole cost
     can_go_on_ = false;
     problem_.cost_root = 1.0;
@@ -390,6 +427,19 @@ class OcpSolver<P, Capacity, Arch> {
           multiplier / weight * (n < kNeh ? terminal_[n] : std::max(0.0, terminal_[n]));
     }
     return false;
+  }
+  /// A ten thousandth of the narrowest bounds' distance, where that is less: steps from one to the other are
+  /// no longer than the distance, whatever the slope.
+  [[nodiscard]] double finest_tolerance(const P& problem, int horizon) const noexcept {
+    constexpr double kFiner = 1e-4, kLeast = 1e-13;
+    double width = options_.tolerance;
+    for (int k = 0; k < horizon; ++k) {
+      const auto low = problem.input_lower(k), high = problem.input_upper(k);
+      for (std::size_t m = 0; m < low.size(); ++m) {
+        if (high[m] > low[m]) width = std::min(width, high[m] - low[m]);
+      }
+    }
+    return std::max(kLeast, kFiner * width);
   }
   /// The cost by `share`, misses in multiples of `unit`, by `factor`: what is small counts, too.
   void weigh_misses(const P& problem, double share, double unit, double factor) noexcept {
@@ -489,6 +539,8 @@ class OcpSolver<P, Capacity, Arch> {
   Trajectory guess_;
   Trajectory kept_;         ///< of the first weights, where others were tried as well
   double kept_miss_ = 0.0;  ///< largest of its misses
+  double tolerance_ = 0.0;  ///< of the next round
+  int last_turns_ = 0;      ///< of the last round
   bool can_go_on_ = false;  ///< the next round differs little from the last one
   std::array<std::array<double, Capacity>, kNh> equality_{};  ///< values at the last measure()
   std::array<double, kEnd> terminal_{};
