@@ -72,6 +72,30 @@ std::vector<double> nearest(const Chain& chain, std::vector<double> v) {
   return v;
 }
 
+/// The multipliers of the last distance() explain what is left at v, the point nearest to `wanted`, with the
+/// right signs.
+void expect_multipliers_of(const Chain& chain, const std::vector<double>& v,
+                           const std::vector<double>& wanted, int trial) {
+  double last = chain.previous;
+  for (std::size_t k = 0; k < v.size(); ++k) {
+    const double price = chain.multiplier(k);
+    if (price > 1e-9) {
+      ASSERT_NEAR(v[k] - last, chain.rate_high[k], 1e-9) << trial << ' ' << k;
+    }
+    if (price < -1e-9) {
+      ASSERT_NEAR(v[k] - last, chain.rate_low[k], 1e-9) << trial << ' ' << k;
+    }
+    const double left = v[k] - wanted[k] + price - (k + 1 < v.size() ? chain.multiplier(k + 1) : 0.0);
+    if (left > 1e-8) {
+      ASSERT_NEAR(v[k], chain.low[k], 1e-9) << trial << ' ' << k;
+    }
+    if (left < -1e-8) {
+      ASSERT_NEAR(v[k], chain.high[k], 1e-9) << trial << ' ' << k;
+    }
+    last = v[k];
+  }
+}
+
 TEST(RateChain, FindsTheNearestAdmissibleInputs) {
   Random random{11};
   int unique = 0;
@@ -92,26 +116,32 @@ TEST(RateChain, FindsTheNearestAdmissibleInputs) {
     // way.
     if (chain.excess > 0.0) continue;
     ++unique;
-    double last = chain.previous;
-    for (std::size_t k = 0; k < n; ++k) {
-      const double price = chain.multiplier(k);
-      if (price > 1e-9) {
-        ASSERT_NEAR(v[k] - last, chain.rate_high[k], 1e-9) << trial << ' ' << k;
-      }
-      if (price < -1e-9) {
-        ASSERT_NEAR(v[k] - last, chain.rate_low[k], 1e-9) << trial << ' ' << k;
-      }
-      const double left = v[k] - wanted[k] + price - (k + 1 < n ? chain.multiplier(k + 1) : 0.0);
-      if (left > 1e-8) {
-        ASSERT_NEAR(v[k], chain.low[k], 1e-9) << trial << ' ' << k;
-      }
-      if (left < -1e-8) {
-        ASSERT_NEAR(v[k], chain.high[k], 1e-9) << trial << ' ' << k;
-      }
-      last = v[k];
-    }
+    expect_multipliers_of(chain, v, wanted, trial);
   }
   EXPECT_GT(unique, 50);
+}
+
+// Inputs that touch an own bound between two changes at their bounds: multipliers of one piece depend on
+// those of the pieces before and behind it.
+TEST(RateChain, FindsMultipliersOfInputsThatBounceOffABound) {
+  Random random{13};
+  for (int trial = 0; trial < 200; ++trial) {
+    const std::size_t n = 4 + static_cast<std::size_t>(trial) % 21;
+    Chain chain;
+    chain.horizon = n;
+    std::vector<double> u(n), slope(n), wanted(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      chain.low[k] = 0.0;
+      chain.high[k] = random.uniform() < 0.5 ? 1.0 : kInfinity;
+      chain.rate_low[k] = -1.0;
+      chain.rate_high[k] = 1.0;
+      wanted[k] = 8.0 * random.uniform(-1.0, 1.0);
+      slope[k] = u[k] - wanted[k];
+    }
+    chain.make_consistent();
+    chain.distance(u.data(), slope.data(), n);
+    expect_multipliers_of(chain, nearest(chain, wanted), wanted, trial);
+  }
 }
 
 TEST(RateChain, AdmitsAnyInputs) {

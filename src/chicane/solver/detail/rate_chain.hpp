@@ -194,8 +194,8 @@ class RateChain {
 
   // ---- multipliers (eq. 26)
 
-  /// Inputs tied by changes at their bounds are chains; between two that stand at bounds of their own, sums
-  /// of what is left of the slope are the multipliers.
+  /// Inputs tied by changes at their bounds are chains, in which the multipliers are sums of what is left of
+  /// the slope.
   void find_multipliers() noexcept {
     std::size_t begin = 0;
     while (begin < count_) {
@@ -226,55 +226,60 @@ class RateChain {
   }
   [[nodiscard]] double pull(std::size_t k) const noexcept { return nearest_[k] - wanted_[k]; }
 
-  /// Stages [begin, end) are tied to each other: ν_k − ν_{k+1} + pull_k = 0 where k is not fixed. Piece by
-  /// piece from the end; a piece is what stands between two fixed inputs. The one before the first stage is
-  /// given: as good as fixed.
-  void solve_chain(std::size_t begin, std::size_t end) noexcept {
-    const bool is_anchored = begin == 0 && is_tied(0);
-    double behind = 0.0;  // the multiplier behind the piece
-    while (end > begin) {
-      std::size_t first = end - 1;
-      while (first > begin && !is_fixed(first - 1)) --first;
-      const bool is_free = first == begin && !is_anchored;
-      double next = is_fixed(end - 1)
-                        ? (is_free ? forward_sum(first, end - 1) : choose({begin, first, end - 1}, behind))
-                        : behind - pull(end - 1);
-      for (std::size_t k = end; k-- > first;) {
-        if (k + 1 < end) next -= pull(k);
-        multiplier_[k] = next;
-      }
-      if (is_free) multiplier_[begin] = 0.0;
-      behind = next;
-      end = first;
-    }
-  }
-  [[nodiscard]] double forward_sum(std::size_t first, std::size_t last) const noexcept {
-    double sum = 0.0;
-    for (std::size_t k = first; k < last; ++k) sum += pull(k);
-    return sum;
-  }
-  struct Piece {
-    std::size_t begin;  ///< of its chain
-    std::size_t first, last;
-  };
-  /// The multiplier of `last`, which is fixed, as is the one before `first`: the value nearest to zero that
-  /// leaves all signs right.
-  [[nodiscard]] double choose(const Piece& piece, double behind) const noexcept {
-    const auto [begin, first, last] = piece;
+  /// What the multiplier of a stage may be.
+  struct Range {
     double least = -std::numeric_limits<double>::infinity();
     double most = std::numeric_limits<double>::infinity();
-    if (low[last] < high[last]) (is_high(last) ? most : least) = behind - pull(last);
-    double sum = 0.0;
-    for (std::size_t k = last + 1; k-- > first;) {
-      if (k < last) sum += pull(k);
-      if (side(k) == 1) least = std::max(least, sum);
-      if (side(k) == -1) most = std::min(most, sum);
+
+    /// The value nearest to zero.
+    [[nodiscard]] double nearest() const noexcept { return std::min(std::max(0.0, least), most); }
+    void cut(const Range& other) noexcept {
+      least = std::max(least, other.least);
+      most = std::min(most, other.most);
     }
-    if (first > begin && low[first - 1] < high[first - 1]) {  // nor may it push that one from its bound
-      if (is_high(first - 1) && side(first - 1) != -1) least = std::max(least, sum + pull(first - 1));
-      if (!is_high(first - 1) && side(first - 1) != 1) most = std::min(most, sum + pull(first - 1));
+  };
+  /// Of which sign the side at which a change stands lets it be.
+  [[nodiscard]] Range range_of_side(std::size_t k) const noexcept {
+    Range range;
+    if (side(k) == 1) range.least = 0.0;
+    if (side(k) == -1) range.most = 0.0;
+    return range;
+  }
+  /// Stages [begin, end) are tied to each other: ν_{k+1} = ν_k + pull_k where k is free, at most that at its
+  /// lower bound, at least that at its upper one. Forwards: what each may be, given those before it; then
+  /// from the end, where it is 0, one by one the value nearest to zero. The input before the first stage is
+  /// given.
+  void solve_chain(std::size_t begin, std::size_t end) noexcept {
+    Range range{0.0, 0.0};
+    if (begin == 0 && is_tied(0)) range = range_of_side(0);
+    for (std::size_t k = begin; k < end; ++k) {
+      range_[k] = range;
+      const double sum = pull(k);
+      range.least = may_fall(k) ? -std::numeric_limits<double>::infinity() : range.least + sum;
+      range.most = may_rise(k) ? std::numeric_limits<double>::infinity() : range.most + sum;
+      if (k + 1 < end) range.cut(range_of_side(k + 1));
     }
-    return std::min(std::max(0.0, least), most);
+    double next = 0.0;
+    for (std::size_t k = end; k-- > begin;) {
+      const double sum = next - pull(k);
+      if (is_fixed(k)) {
+        Range own = range_[k];
+        if (!may_fall(k)) own.most = std::min(own.most, sum);
+        if (!may_rise(k)) own.least = std::max(own.least, sum);
+        next = own.nearest();
+      } else {
+        next = sum;
+      }
+      multiplier_[k] = next;
+    }
+    if (!(begin == 0 && is_tied(0))) multiplier_[begin] = 0.0;
+  }
+  /// Whether the own bound of stage k lets the multiplier behind it be less, more than ν_k + pull_k.
+  [[nodiscard]] bool may_fall(std::size_t k) const noexcept {
+    return is_fixed(k) && (low[k] == high[k] || !is_high(k));
+  }
+  [[nodiscard]] bool may_rise(std::size_t k) const noexcept {
+    return is_fixed(k) && (low[k] == high[k] || is_high(k));
   }
 
   double open_low_[Stages]{};  ///< from here on the rest of the horizon can be reached
@@ -282,6 +287,7 @@ class RateChain {
   double wanted_[Stages]{};
   double nearest_[Stages]{};
   double multiplier_[Stages]{};
+  Range range_[Stages]{};
   double least_[Stages]{};
   std::size_t count_ = 0;  ///< stages looked at
   double best_ = 0.0;
