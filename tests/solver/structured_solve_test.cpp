@@ -139,6 +139,48 @@ TEST(StructuredSolve, FindsTheOptimumOfTheDescribedProblem) {
   }
 }
 
+// Control cycles of a lap (off the road, across it) from inputs of zero: full steps went on from a point of
+// half the cost and half the defects to where the car drives in circles, and stayed there, at 7.5 to 2000
+// times the cost.
+TEST(StructuredSolve, ReachesTheOptimumWhereFullStepsGoAstray) {
+  struct Cycle {
+    double speed, cte, epsi;
+    std::array<double, 4> path;
+    double optimum;  ///< Ipopt's, with bounds moved outwards by 1e-8
+  };
+  constexpr double kOptimum = 1e-6;
+  const Cycle cycles[] = {
+      {29.292514506649212,
+       -0.14921512788416713,
+       0.061509454119114522,
+       {-0.14921512788416713, -0.061587143582100302, 0.003444350632608624, 0.00045592215533555311},
+       50.5128819},
+      {30.823262893944872,
+       -5.9766017904393181,
+       -0.65432331645730568,
+       {-5.9766017904393181, 0.76704874384896393, 0.34440726602550092, -0.012767773082457926},
+       61089.5934},
+      {31.020719241006205,
+       -0.43577450363775289,
+       -0.087039685556922139,
+       {-0.43577450363775289, 0.087260155201049738, 0.0058831056585409046, 0.00034225722323718292},
+       197.264307}};
+  using Own = solver::OcpSolver<StructuredDescribedProblem, kCapacity>;
+  const auto own = std::make_unique<Own>();
+  for (const Cycle& cycle : cycles) {
+    bench::DescribedProblem described;
+    described.path = {cycle.path[0], cycle.path[1], cycle.path[2], cycle.path[3]};
+    described.speed_reference = 30.0;
+    const std::array<double, bench::DescribedProblem::kNx> start{0.0, 0.0, 0.0, cycle.speed, cycle.cte, cycle.epsi, 0.0, 0.0};
+    const StructuredDescribedProblem problem{described, start[4]};
+    Own::Trajectory answer;
+    answer.horizon = 19;
+    const auto report = own->solve(problem, problem.without_cte(start), answer);
+    EXPECT_EQ(report.status, SolveStatus::kOptimal);
+    EXPECT_NEAR(report.cost, cycle.optimum, kOptimum * cycle.optimum) << cycle.speed;
+  }
+}
+
 TEST(StructuredSolve, AgreesWithTheDensePathInACorridor) {
   using Own = solver::OcpSolver<StructuredCorridorProblem, kCapacity>;
   const auto own = std::make_unique<Own>();

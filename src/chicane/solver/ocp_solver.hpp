@@ -166,8 +166,9 @@ class OcpSolver {
       }
       if (has_converged(report)) return finish(SolveStatus::kOptimal, problem, trajectory, report);
       const bool budget_spent = work_ >= options_.max_iterations || deadline.spent();
-      shows_best_ = keep_best(report);
-      if (!shows_best_ && !budget_spent && has_lost_its_way(report)) {
+      const bool is_astray = goes_astray(report);
+      shows_best_ = keep_best(report) && !is_astray;
+      if (!shows_best_ && !budget_spent && (is_astray || has_lost_its_way(report))) {
         if (is_at_floor(report)) return finish(SolveStatus::kAtFloor, problem, trajectory, report);
         if (!recover(problem, trajectory, report)) break;
         continue;
@@ -184,6 +185,7 @@ class OcpSolver {
     is_filtering_ = has_filtered_ = stands_still_ = is_again_ = false;
     work_ = 0.0;
     progress_.restart();
+    course_ = {};
     descent_.start();
   }
   bool start(const P& problem, const State& x0, const Trajectory& trajectory) noexcept {
@@ -345,7 +347,7 @@ class OcpSolver {
       if (has_full_steps_only_) return false;
       if (options_.may_start_short) return begin_filter(problem, trajectory, report);
     }
-    return may_grow() ? start_short(problem) : go_back(problem);
+    return may_grow() ? start_short(problem, trajectory) : go_back(problem);
   }
   bool begin_filter(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept;
   bool filter_turn(const P& problem, const Deadline& deadline, SolveReport& report) noexcept;
@@ -371,6 +373,10 @@ class OcpSolver {
   [[nodiscard]] bool has_lost_its_way(const SolveReport& report) const noexcept {
     return !is_finite(report) || (full_steps_ && progress_.is_lost());
   }
+  bool goes_astray(const SolveReport& report) noexcept {
+    return options_.may_start_short && full_steps_ && !has_grown_ && !has_filtered_ &&
+           course_.leads_astray(report.cost, report.defect);
+  }
 
   /// Back to the best iterate, to descend from there. False when its inputs cannot be simulated.
   bool go_back(const P& problem) noexcept {
@@ -394,8 +400,8 @@ class OcpSolver {
   [[nodiscard]] double share_of_horizon() const noexcept {
     return static_cast<double>(t_.horizon) / static_cast<double>(target_);
   }
-  bool start_short(const P& problem) noexcept {
-    t_ = best_;
+  bool start_short(const P& problem, const Trajectory& trajectory) noexcept {
+    if (!take_guess(problem, trajectory)) t_ = best_;
     t_.horizon = kFirstHorizon;
     has_grown_ = true;
     const bool is_good = restart(problem);
@@ -459,6 +465,7 @@ class OcpSolver {
   Slacks barrier_;
   Descent<P, kSize, Arch> descent_;
   Progress progress_;
+  Course course_;
   using Filter = FilterMethod<P, kSize, Arch>;
   std::conditional_t<kCanFilter, Filter, NoFilter> filter_;
   Iterate<kNx, kNu, kSize> t_;     ///< the present iterate

@@ -252,13 +252,17 @@ class OcpSolver<P, Capacity, Arch> {
     last_turns_ = now.iterations;
     left -= std::max(1, now.iterations);
     if (now.status == SolveStatus::kAtFloor && residual(now) <= options_.tolerance)
-      report.status = SolveStatus::kOptimal;
+      report.status = exceeds_a_cap(now) ? SolveStatus::kInfeasible : SolveStatus::kOptimal;
     return now.status == SolveStatus::kOptimal || now.status == SolveStatus::kAtFloor ||
            now.status == SolveStatus::kInfeasible;
   }
 
   static double residual(const SolveReport& report) noexcept {
     return std::max({report.stationarity, report.defect, report.complementarity});
+  }
+  [[nodiscard]] bool exceeds_a_cap(const SolveReport& report) const noexcept {
+    const int c = report.worst_constraint;
+    return c >= 0 && report.violation > price_of(problem_, static_cast<std::size_t>(c)).cap;
   }
   /// The next round converges further: where bounds are close to each other, or slopes flat, a step that the
   /// tolerance takes for none is what a miss needs. False when that is at an end.

@@ -47,4 +47,24 @@ class Progress {
   int idle_ = 0;
 };
 
+/// Watches cost and defects of full steps: those that make both worse lead to a local optimum that nobody
+/// wants, or to none.
+class Course {
+ public:
+  /// Takes note of an iterate. Whether it costs ten times as much as the cheapest before it, with more
+  /// defects than that had.
+  bool leads_astray(double cost, double defect) noexcept {
+    if (cost < least_cost_) {
+      least_cost_ = cost;
+      its_defect_ = defect;
+    }
+    return its_defect_ > 0.0 && defect > its_defect_ && cost > kDearer * least_cost_;
+  }
+
+ private:
+  static constexpr double kDearer = 10.0;
+  double least_cost_ = std::numeric_limits<double>::infinity();
+  double its_defect_ = 0.0;
+};
+
 }  // namespace chicane::solver
