@@ -171,7 +171,8 @@ TEST(StructuredSolve, ReachesTheOptimumWhereFullStepsGoAstray) {
     bench::DescribedProblem described;
     described.path = {cycle.path[0], cycle.path[1], cycle.path[2], cycle.path[3]};
     described.speed_reference = 30.0;
-    const std::array<double, bench::DescribedProblem::kNx> start{0.0, 0.0, 0.0, cycle.speed, cycle.cte, cycle.epsi, 0.0, 0.0};
+    const std::array<double, bench::DescribedProblem::kNx> start{0.0,       0.0,        0.0, cycle.speed,
+                                                                 cycle.cte, cycle.epsi, 0.0, 0.0};
     const StructuredDescribedProblem problem{described, start[4]};
     Own::Trajectory answer;
     answer.horizon = 19;

@@ -174,7 +174,9 @@ class OcpSolver {
         continue;
       }
       if (budget_spent) break;
-      if (!(full_steps_ ? full_step(problem, deadline, report) : descend(problem, deadline, report))) break;
+      const bool goes_on =
+          full_steps_ ? full_step(problem, trajectory, deadline, report) : descend(problem, deadline, report);
+      if (!goes_on) break;
     }
     return finish(SolveStatus::kBudgetSpent, problem, trajectory, report);
   }
@@ -269,8 +271,7 @@ class OcpSolver {
   /// Simulates the inputs from x_0. True when every state is finite.
   bool roll_out(const P& problem) noexcept { return RollOut<P, Arch>::run(problem, t_); }
 
-  /// Linearises the iterate and measures it. Slacks start on the central path, and return to it while the
-  /// cost descends.
+  /// Linearises and measures. Slacks start on the central path, and return to it while the cost descends.
   void look(const P& problem, SolveReport& report) noexcept {
     const bool centre = is_fresh_ || !full_steps_;
     const double share = std::max(kDefectShare * options_.tolerance, kDefectFloor);
@@ -309,12 +310,16 @@ class OcpSolver {
     look(problem, unused);
   }
 
-  /// Takes the whole step of the quadratic program. False when the deadline came first.
-  bool full_step(const P& problem, const Deadline& deadline, SolveReport& report) noexcept {
-    const bool in_time = qp_.solve(
+  /// Takes the whole step of the quadratic program. False at the deadline, or where nothing helps.
+  bool full_step(const P& problem, const Trajectory& trajectory, const Deadline& deadline,
+                 SolveReport& report) noexcept {
+    using Outcome = typename WorkingSetQp<P, Lq>::Outcome;
+    const bool may_circle = kCanFilter && options_.may_start_short && !has_filtered_;
+    const Outcome outcome = qp_.solve(
         lq_, t_.horizon, is_exact_, [&] { take_gauss_newton(problem); },
-        [&](std::size_t k, std::size_t m) { return now_.slope[m][k]; }, deadline, report.sweeps);
-    if (!in_time) return false;
+        [&](std::size_t k, std::size_t m) { return now_.slope[m][k]; }, deadline, may_circle, report.sweeps);
+    if (outcome != Outcome::kSolved)
+      return outcome == Outcome::kCircles && recover(problem, trajectory, report);
     const double longest = collect_step<Arch, true>(lq_, t_.horizon, step_);
     now_.chains.cut(lq_, step_);
     const double length = barrier_.step(problem, step_);
@@ -375,7 +380,7 @@ class OcpSolver {
   }
   bool goes_astray(const SolveReport& report) noexcept {
     return options_.may_start_short && full_steps_ && !has_grown_ && !has_filtered_ &&
-           course_.leads_astray(report.cost, report.defect);
+           (kCanFilter || barrier_.is_final()) && course_.leads_astray(report.cost, report.defect);
   }
 
   /// Back to the best iterate, to descend from there. False when its inputs cannot be simulated.

@@ -51,7 +51,7 @@ class Progress {
 /// wants, or to none.
 class Course {
  public:
-  /// Takes note of an iterate. Whether it costs ten times as much as the cheapest before it, with more
+  /// Takes note of an iterate. Whether it costs five times as much as the cheapest before it, with more
   /// defects than that had.
   bool leads_astray(double cost, double defect) noexcept {
     if (cost < least_cost_) {
@@ -62,7 +62,7 @@ class Course {
   }
 
  private:
-  static constexpr double kDearer = 10.0;
+  static constexpr double kDearer = 5.0;
   double least_cost_ = std::numeric_limits<double>::infinity();
   double its_defect_ = 0.0;
 };

@@ -23,32 +23,37 @@ class WorkingSetQp {
   /// A fresh problem: the next backward sweep chooses the working set.
   void choose(bool chooses) noexcept { chooses_ = chooses; }
 
+  enum class Outcome {
+    kSolved,
+    kCircles,  ///< there is no step: the working set cycles
+    kSpent     ///< nor here: the deadline came first
+  };
+
   /// Leaves the step in `lq`; adds to `sweeps`. `is_exact`: the stages have exact Hessians, which
   /// `take_gauss_newton()` replaces where they are indefinite, and unsets. `slope(k, m)`: of the cost by
-  /// input m. False when the deadline came first.
+  /// input m. With `may_circle` nothing else is tried where the working set cycles.
   template <class TakeGaussNewton, class Slope>
-  bool solve(Lq& lq, std::size_t horizon, const bool& is_exact, const TakeGaussNewton& take_gauss_newton,
-             const Slope& slope, const Deadline& deadline, int& sweeps) noexcept {
+  Outcome solve(Lq& lq, std::size_t horizon, const bool& is_exact, const TakeGaussNewton& take_gauss_newton,
+                const Slope& slope, const Deadline& deadline, bool may_circle, int& sweeps) noexcept {
     const Outcome outcome = correct(lq, horizon, is_exact, take_gauss_newton, deadline, sweeps);
-    if (outcome != Outcome::kCircles) return outcome == Outcome::kSolved;
+    if (outcome != Outcome::kCircles || may_circle) return outcome;
     if constexpr (kHasRateBounds<P>) {
       if (is_exact) take_gauss_newton();
       sweeps += interior_.solve(lq, horizon, slope, [&] { return deadline.spent(); });
       const Outcome refined = correct(lq, horizon, is_exact, take_gauss_newton, deadline, sweeps);
       if (refined == Outcome::kCircles) interior_.put_step(lq, horizon);
-      return refined != Outcome::kSpent;
+      return refined == Outcome::kSpent ? refined : Outcome::kSolved;
     } else {
       ++sweeps;
       lq.backward(horizon, 0.0, true);
       lq.forward(horizon, Repair::kClip);
-      return true;
+      return Outcome::kSolved;
     }
   }
 
  private:
   /// Sweeps that may correct the whole working set in vain.
   static constexpr int kChances = kHasRateBounds<P> ? 3 : 5;
-  enum class Outcome { kSolved, kCircles, kSpent };
 
   /// All corrections at once as long as that lowers their number, then one by one if there are few. The first
   /// set of all is the one of the stages' own box problems.

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "chicane/base/deadline.hpp"
+#include "chicane/solver/detail/hard_solver.hpp"
+
+namespace chicane::solver {
+
+// What cannot hold: the parts of the solver of HardProblems that find out.
+
+/// Minimises the misses with ever less of the cost (eq. 41). True when they have a minimum above zero that
+/// does not depend on how much, nor on how steep they are, nor on whether hard constraints may give way.
+/// Else weights and multipliers are those of the point that was found.
+template <HardProblem P, int Capacity, class Arch>
+bool OcpSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
+                                                 const Deadline& deadline, int& left,
+                                                 HardReport& report) noexcept {
+  constexpr double kShare = 1e-5, kLess = 1e-3, kFiner = 1e4;
+  constexpr int kSteep = 2, kSquares = 3;
+  const auto factors = problem_.price_factor;
+  const double unit = std::max(options_.tolerance, measure(problem, trajectory, nullptr).worst());
+  double factor = 1.0;
+  double share = kShare / unit_;
+  double last = std::numeric_limits<double>::infinity();
+  for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
+  problem_.terminal_shift.fill(0.0);
+  ask_for(finest_tolerance(problem, trajectory.horizon));
+  bool is_minimum = false;
+  for (int turn = 0; turn <= (kNc > 0 ? kSquares : kSteep); ++turn) {
+    if (turn == 1) share *= kLess;
+    if (turn == kSteep) factor = kFiner;
+    weigh_misses(problem, share, unit, factor);
+    if (turn == kSquares) problem_.square_price = factor / (unit * unit);
+    can_go_on_ = false;
+    const bool converged = round(x0, trajectory, deadline, left, report);
+    const double worst = measure(problem, trajectory, &report).worst();
+    is_minimum = turn >= kSteep && converged && worst > options_.tolerance && worst > 0.5 * last;
+    last = worst;
+    if (!converged || worst <= options_.tolerance || left <= 0 || (turn >= kSteep && !is_minimum)) break;
+  }
+  problem_.square_price = 0.0;
+  ask_for(options_.tolerance);
+  if (is_minimum) return true;
+  report.status = SolveStatus::kStalled;  // it converged, but not with the whole cost
+  can_go_on_ = false;
+  problem_.cost_root = 1.0;
+  problem_.price_factor = factors;
+  const double multiplier = factor / (share * unit * unit);  // times a miss: of the same point
+  const double weight = std::min(multiplier, kHeavy * unit_ / (0.5 * unit * unit));
+  for (std::size_t n = 0; n < kNh; ++n) {
+    problem_.equality_weight[n].set(weight);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(trajectory.horizon); ++k)
+      problem_.equality_shift[n][k] = multiplier / weight * equality_[n][k];
+  }
+  for (std::size_t n = 0; n < kEnd; ++n) {
+    problem_.terminal_weight[n].set(weight);
+    problem_.terminal_shift[n] =
+        multiplier / weight * (n < kNeh ? terminal_[n] : std::max(0.0, terminal_[n]));
+  }
+  return false;
+}
+/// A ten thousandth of the narrowest bounds' distance, where that is less: steps from one to the other are
+/// no longer than the distance, whatever the slope.
+template <HardProblem P, int Capacity, class Arch>
+double OcpSolver<P, Capacity, Arch>::finest_tolerance(const P& problem, int horizon) const noexcept {
+  constexpr double kFiner = 1e-4, kLeast = 1e-13;
+  double width = options_.tolerance;
+  for (int k = 0; k < horizon; ++k) {
+    const auto low = problem.input_lower(k), high = problem.input_upper(k);
+    for (std::size_t m = 0; m < low.size(); ++m) {
+      if (high[m] > low[m]) width = std::min(width, high[m] - low[m]);
+    }
+  }
+  return std::max(kLeast, kFiner * width);
+}
+/// The cost by `share`, misses in multiples of `unit`, by `factor`: what is small counts, too.
+template <HardProblem P, int Capacity, class Arch>
+void OcpSolver<P, Capacity, Arch>::weigh_misses(const P& problem, double share, double unit,
+                                                double factor) noexcept {
+  problem_.cost_root = std::sqrt(share);
+  for (auto& weight : problem_.equality_weight) weight.set(factor / (unit * unit));
+  for (auto& weight : problem_.terminal_weight) weight.set(factor / (unit * unit));
+  for (std::size_t c = 0; c < kNc; ++c)
+    problem_.price_factor[c] =
+        is_hard(problem, c) ? factor / (unit * std::max(1e-12, price_of(problem, c).linear)) : share;
+}
+
+}  // namespace chicane::solver
