@@ -51,7 +51,8 @@ bool each_problem(const GoldenSet& set, const Visit& visit) {
   for (std::size_t i = 0; i < optima.size() && !cycles.empty(); ++i) {
     if (optima[i][1] != 1.0) continue;
     const auto& row = cycles[static_cast<std::size_t>(optima[i][0])];
-    bench::DescribedInstance instance{.start = {row[0], row[1], row[2], row[3], row[4], row[5], 0.0, 0.0}};
+    bench::DescribedInstance instance;
+    instance.start = {row[0], row[1], row[2], row[3], row[4], row[5], 0.0, 0.0};
     instance.problem.path = {row[6], row[7], row[8], row[9]};
     instance.problem.speed_reference = row[10];
     visit(i, instance, optima[i]);
