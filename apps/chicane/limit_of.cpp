@@ -41,6 +41,10 @@ Result<std::shared_ptr<const lap_time::Limit>> limit_of(const scenario::Scenario
 
 Result<lap_time::PlantLimit> plant_limit_of(const scenario::Scenario& scenario, const path::Track& track,
                                             const std::atomic<bool>& wants_stop, double& wall_time) {
+  if (scenario.vehicle.scale != 1.0)
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("limit: got a model car of scale {:g}, expected one in full size",
+                            scenario.vehicle.scale));
   using Clock = std::chrono::steady_clock;
   const bool is_terminal = isatty(STDERR_FILENO) == 1;
   const auto start = Clock::now();

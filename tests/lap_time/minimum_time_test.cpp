@@ -212,6 +212,14 @@ TEST(MinimumTime, RefusesWhatHasNoLimitAndSaysWhy) {
   EXPECT_NE(hasty.error().message.find("no optimum after 2 rounds"), std::string::npos);
 }
 
+TEST(MinimumTime, RefusesAModelCar) {
+  model::VehicleParams car = model::road_car_params();
+  car.scale = 0.1;
+  const Result<Limit> limit = find_limit(circle(60.0), car);
+  ASSERT_FALSE(limit);
+  EXPECT_EQ(limit.error().message, "limit: got a model car of scale 0.1, expected one in full size");
+}
+
 TEST(MinimumTime, CanBeStopped) {
   int rounds = 0;
   LimitOptions options;

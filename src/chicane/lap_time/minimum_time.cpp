@@ -294,6 +294,9 @@ class Search {
 Result<Limit> find_limit(const path::Track& track, const model::VehicleParams& vehicle,
                          const LimitOptions& options) {
   if (Result<void> valid = model::validate(vehicle); !valid) return fail(valid.error());
+  if (vehicle.scale != 1.0)
+    return fail(ErrorCode::kInvalidArgument,
+                text("limit: got a model car of scale %g, expected one in full size", vehicle.scale));
   if (!track.centre().is_closed())
     return fail(ErrorCode::kInvalidArgument,
                 track.name() + ": the road is open, expected a closed one: a lap has no end");

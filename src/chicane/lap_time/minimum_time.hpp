@@ -48,9 +48,9 @@ struct LimitOptions {
 /// Finds the limit. Takes 1 to 30 s; about 100 MB while it does. Deterministic: the same road, car and
 /// options give the same bits. Keeps nothing between calls: several threads may search at once.
 ///
-/// kInvalidArgument for an open road, a road narrower than the car (names the place), options out of range,
-/// parameters that validate() refuses, and for a search that ended without an optimum: the message says how
-/// far it came.
+/// kInvalidArgument for a model car, an open road, a road narrower than the car (names the place), options
+/// out of range, parameters that validate() refuses, and for a search that ended without an optimum: the
+/// message says how far it came.
 [[nodiscard]] Result<Limit> find_limit(const path::Track& track, const model::VehicleParams& vehicle,
                                        const LimitOptions& options = {});
 
