@@ -27,20 +27,20 @@ Result<std::string> check_track(const std::string& file) {
                      track->centre().is_closed() ? "closed" : "open", length, narrowest, 1.0 / sharpest);
 }
 
-/// A file that only describes a car is one; every other is what a run can start from.
+/// A file with a plant and nothing that a car file may not hold is a car; every other is what a run can start
+/// from.
 Result<std::string> check_settings(const std::string& file) {
   const Result<std::string> text = protocol::read_file(file);
   if (!text) return fail(text.error());
   const Result<protocol::Document> document = protocol::parse_document(*text, file);
   if (!document) return fail(document.error());
   const auto& settings = document->assignments;
-  const bool is_car =
-      !settings.empty() && !document->preset &&
-      std::all_of(settings.begin(), settings.end(), [](const protocol::Assignment& setting) {
-        return setting.parameter->key == "plant" || setting.parameter->key.starts_with("vehicle.");
-      });
-  const Result<scenario::Scenario> scenario =
-      is_car ? protocol::compose({"", {{"car", file}}}) : protocol::compose({file, {}});
+  const bool has_plant =
+      std::any_of(settings.begin(), settings.end(),
+                  [](const protocol::Assignment& setting) { return setting.parameter->key == "plant"; });
+  const Result<scenario::Scenario> car = protocol::compose({"", {{"car", file}}});
+  const bool is_car = has_plant && !document->preset && car;
+  const Result<scenario::Scenario> scenario = is_car ? car : protocol::compose({file, {}});
   if (!scenario) return fail(scenario.error());
   return fmt::format("{}, {} settings", is_car ? "car" : "preset or scenario", settings.size());
 }

@@ -248,6 +248,19 @@ TEST(LiveSettings, TakeACarsVehicleAndPlant) {
   EXPECT_EQ(live.settings.scenario().vehicle.name, "road-car");
 }
 
+TEST(LiveSettings, TakeTheDelayAndTheSamplingThatACarStates) {
+  Live live;
+  ASSERT_TRUE(live.settings.set({"car", std::string("f1tenth")}));
+  live.end_of_build();
+  EXPECT_EQ(live.settings.scenario().plant_params.mass, 3.54);
+  EXPECT_EQ(live.settings.scenario().latency, 0.02);
+  EXPECT_EQ(live.settings.scenario().control_period, 0.025);
+  ASSERT_TRUE(live.settings.set({"car", std::string("udacity")}));
+  live.end_of_build();
+  EXPECT_EQ(live.settings.scenario().latency, 0.1);
+  EXPECT_EQ(live.settings.scenario().control_period, 0.04);
+}
+
 TEST(LiveSettings, ChangeNothingWhenTheRunCannotBeBuiltAndSaySo) {
   Live live;
   ASSERT_TRUE(live.settings.set({"seed", 2.0}));

@@ -256,6 +256,13 @@ Result<void> LiveSettings::start_anew(std::string_view key, const std::string& v
     changed.vehicle = base->vehicle;
     changed.plant = base->plant;
     changed.plant_params = base->plant_params;
+    // Delay and sampling are the car's where its file, or that of the car before, states them.
+    scenario::Scenario before = changed;
+    before.car = shown_scenario().car;
+    if (const Result<scenario::Scenario> of = composed(before)) {
+      if (of->latency != base->latency) changed.latency = base->latency;
+      if (of->control_period != base->control_period) changed.control_period = base->control_period;
+    }
   }
   if (Result<void> valid = validated(changed); !valid) return valid;
   ChosenRun run{.scenario = std::move(changed)};

@@ -53,7 +53,7 @@ constexpr std::array kOptions{
     option<&P::drive_power_per_mass>("drive_power_per_mass", unit::kPowerPerMass, 0.1, 1e5,
                                      "Cap of drive acceleration times speed.")
         .or_infinite(),
-    option<&P::drag_constant>("drag_constant", unit::kAcceleration, 0, 10, "Rolling resistance."),
+    option<&P::drag_constant>("drag_constant", unit::kAcceleration, 0, 1000, "Rolling resistance."),
     option<&P::drag_linear>("drag_linear", unit::per("1/s"), 0, 10, "Deceleration for each m/s."),
     option<&P::drag_quadratic>("drag_quadratic", unit::per("1/m"), 0, 1, "Deceleration for each (m/s)²."),
     option<&P::brake_acceleration>("brake_acceleration", unit::kAcceleration, 0.01, 1000,
