@@ -240,25 +240,17 @@ TEST(LiveSettings, RememberWithWhatARunStarted) {
   EXPECT_EQ(start("latency_ms"), 80) << "a preset leaves nothing of before";
 }
 
-TEST(LiveSettings, TakeACarsVehicleAndPlant) {
-  Live live;
-  ASSERT_TRUE(live.settings.set({"car", std::string("road-car")}));
-  live.end_of_build();
-  EXPECT_EQ(live.settings.scenario().plant, "road-car");
-  EXPECT_EQ(live.settings.scenario().vehicle.name, "road-car");
-}
-
-TEST(LiveSettings, TakeTheDelayAndTheSamplingThatACarStates) {
+TEST(LiveSettings, TakeACarsVehicleAndPlantAndTheDelayThatItStates) {
   Live live;
   ASSERT_TRUE(live.settings.set({"car", std::string("f1tenth")}));
   live.end_of_build();
   EXPECT_EQ(live.settings.scenario().plant_params.mass, 3.54);
   EXPECT_EQ(live.settings.scenario().latency, 0.02);
-  EXPECT_EQ(live.settings.scenario().control_period, 0.025);
-  ASSERT_TRUE(live.settings.set({"car", std::string("udacity")}));
+  ASSERT_TRUE(live.settings.set({"car", std::string("road-car")}));
   live.end_of_build();
+  EXPECT_EQ(live.settings.scenario().plant, "road-car");
+  EXPECT_EQ(live.settings.scenario().vehicle.name, "road-car");
   EXPECT_EQ(live.settings.scenario().latency, 0.1);
-  EXPECT_EQ(live.settings.scenario().control_period, 0.04);
 }
 
 TEST(LiveSettings, ChangeNothingWhenTheRunCannotBeBuiltAndSaySo) {
