@@ -206,7 +206,7 @@ TEST(Schema, OnlyWhatMakesTheRunAnotherOneIsNotLive) {
             (std::vector<std::string_view>{"preset", "track", "track_scale", "car", "plant", "controller",
                                            "seed", "control_period_ms", "waypoints_sent", "vehicle.name",
                                            "vehicle.scale", "guard.mode", "guard.road", "guard.half_width_m",
-                                           "guard.receiver", "guard.margin_m"}));
+                                           "guard.receiver", "guard.margin_m", "guard.blind_time_s"}));
 }
 
 TEST(Schema, SuggestsWhatWasMeant) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/fault_campaign.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string_view>
+#include <vector>
 
 #include "chicane/protocol/library.hpp"
 
@@ -74,6 +77,31 @@ TEST(FaultCampaign, EndsEarlyWithWhatItHas) {
   ASSERT_TRUE(outcomes);
   EXPECT_TRUE(std::isfinite((*outcomes)[1].least_edge));
   EXPECT_FALSE(std::isfinite((*outcomes)[2].least_edge));
+}
+
+/// Where the stop is driven by wheel speed and steering alone, the car comes as far as the guard was told
+/// that it must (docs/safety.md).
+TEST(FaultCampaign, ASilenceMayLastAsLongAsTheGuardIsTold) {
+  const auto least_edges = [](const char* track, double silence, const char* blind_time,
+                              const std::vector<double>& onsets) {
+    const auto scenario = protocol::compose(
+        {.scenario_file = {},
+         .settings = {{"track", track}, {"car", "road-car"}, {"guard.blind_time_s", blind_time}}});
+    EXPECT_TRUE(scenario);
+    const auto lap = find_flying_lap(*scenario);
+    EXPECT_TRUE(lap);
+    std::vector<FaultTrial> trials;
+    for (const double onset : onsets)
+      trials.push_back({.fault = *sim::fault_named("link_lost"), .onset = onset, .duration = silence});
+    const auto outcomes = drive_trials(*scenario, *lap, trials, 2);
+    EXPECT_TRUE(outcomes);
+    std::vector<double> edges;
+    for (const FaultOutcome& outcome : outcomes.value_or(std::vector<FaultOutcome>{}))
+      edges.push_back(outcome.least_edge);
+    return edges;
+  };
+  EXPECT_THAT(least_edges("speedway", 2.0, "2", {16.0, 48.0}), testing::Each(testing::Gt(0.5)));
+  EXPECT_THAT(least_edges("lakeside", kLasting, "30", {4.0, 12.0}), testing::Each(testing::Gt(0.0)));
 }
 
 /// What the guard is for: without it the same trials leave the road.

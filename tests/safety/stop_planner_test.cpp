@@ -149,12 +149,61 @@ TEST(StopPlanner, TurnsTheWheelAsFastAsTheActuatorDoes) {
   EXPECT_LE(at.body.steer, 0.2 * car.steer_rate_limit);
 }
 
+/// What a receiver that drives the stop by itself can count on: less room than planned, and less the longer.
+TEST(StopPlanner, KnowsHowFarABlindDriverStrays) {
+  for (const double side : {1.0, -1.0}) {
+    const road::KnownRoad road = circle(120.0, side);
+    for (const model::VehicleParams& car : kCars) {
+      const StopPlanner planner(car);
+      StopPlan stop;
+      StopStart start = start_at(20.0, 24.0);
+      start.body.r = side * 24.0 / 120.0;
+      const StopCheck check = planner.plan(road, start, {.share = 0.8}, stop);
+      ASSERT_TRUE(check.stands);
+      double before = planner.played_edge(road, start, stop, 0.25);
+      EXPECT_LT(before, check.least_edge + 0.5);
+      EXPECT_GT(before, check.least_edge - 0.5);
+      for (const double time : {0.5, 1.0, 2.0, 60.0}) {
+        const double edge = planner.played_edge(road, start, stop, time);
+        EXPECT_LE(edge, before) << car.name << time;
+        before = edge;
+      }
+      EXPECT_LT(before, check.least_edge - 0.1) << car.name << " strays by some decimetres";
+      EXPECT_GT(before, check.least_edge - 3.0) << car.name;
+    }
+  }
+}
+
+/// What is stable on a straight may not be in a bend, where the rear axle has to hold the car: there the stop
+/// brakes less, and more again as the car gets slower.
+TEST(StopPlanner, BrakesNoHarderThanTheBendLetsItStayStable) {
+  const model::VehicleParams car = model::road_car_params();
+  const StopPlanner planner(car);
+  const auto braking = [&](double radius, double v) {
+    const road::KnownRoad road = circle(radius);
+    StopStart start = start_at(50.0, v);
+    start.body.r = v / radius;
+    double edge = 0.0;  // until it has settled in the bend
+    for (int i = 0; i < 20; ++i) {
+      model::Command command = planner.law(road, start, {.share = 1.0, .stability = 1.6});
+      command.throttle = 0.0;
+      start = planner.advance(road, start, command, 0.05, edge);
+      start.body.vx = v;
+    }
+    return -planner.law(road, start, {.share = 1.0, .stability = 1.6}).throttle;
+  };
+  EXPECT_GT(braking(1e5, 33.0), 2.0 * braking(150.0, 33.0));
+  EXPECT_GT(braking(150.0, 20.0), 2.0 * braking(150.0, 33.0));
+  EXPECT_GT(braking(150.0, 33.0), 0.0);
+}
+
 TEST(StopPlanner, AllocatesNothing) {
   const road::KnownRoad road = circle(60.0);
   const StopPlanner planner(kCars[1]);
   StopPlan stop;
   const test::AllocationGuard guard;
   static_cast<void>(planner.plan(road, start_at(20.0, 18.0), {.share = 0.8}, stop));
+  static_cast<void>(planner.played_edge(road, start_at(20.0, 18.0), stop, 2.0));
   EXPECT_EQ(guard.count(), 0);
 }
 

@@ -24,6 +24,8 @@ constexpr double kShownStep = 0.1;       // [s]
 constexpr double kWalkingPace = 3.0;     // [m/s]
 constexpr double kFastestWayBack = 4.0;  // [m/s]
 constexpr double kMostUse = 0.75;        // of the tyres sideways, after a command that is sent
+constexpr double kRecovery = 0.5;        // [s] after a silence, until the car is in hand again
+constexpr double kUnfit = 100.0;         // [m] worse than any stop that fits
 constexpr double kGuessedWidth = 1.0;    // [m] that the assumed width may be too small by, for a slow car
 constexpr double kLeastEdge = 0.1;       // [m] that a car on the road keeps in any case
 constexpr double kNoFloor = -1e9;        // [m]
@@ -34,6 +36,11 @@ constexpr double kLongestHold = 0.5;     // [s]
 constexpr double kFarFromRoad = 20.0;    // [m] beside its line there is no stop along the road
 constexpr double kBlindStability = 1.6;  // of a car that is steered without feedback
 constexpr double kGentleStop = 0.8;      // share of the useful braking; all of it when that is too little
+constexpr double kBarelyStable = 1.1;    // where that is too little, too
+constexpr double kHeldByHand = 0.7;      // of a car that is steered by what it does
+// What is tried in turn.
+constexpr Braking kStops[] = {
+    {kGentleStop, kBlindStability}, {1.0, kBlindStability}, {1.0, kBarelyStable}, {1.0, kHeldByHand}};
 
 bool is_finite(const model::Command& command) noexcept {
   return std::isfinite(command.steer) && std::isfinite(command.throttle);
@@ -311,22 +318,31 @@ bool Guard::leaves_a_stop(const StopStart& start, const model::Command& command,
   return !slides && report.stop_distance < kSlowStop && report.stop_edge >= allowed;
 }
 
-/// The gentle stop, or the hard one where that is too little. True when it keeps the margin.
+/// The first of the stops that keeps the margin, and the road when it is played blindly for as long as a
+/// silence may last; else the best of them, and false.
 bool Guard::plan_stop(const StopStart& from, double edge_before, bool is_hard,
                       controller::StepReport& report) noexcept {
-  // Gently, hard, and last as hard as the measured state allows.
-  constexpr Braking kStops[] = {{kGentleStop, kBlindStability}, {1.0, kBlindStability}, {1.0, 1.0}};
-  bool is_good = false;
+  const bool may_be_blind = options_.blind_time > 0.0;
+  double best = -std::numeric_limits<double>::infinity();
   for (const Braking& braking : kStops) {
     if (is_hard && braking.share < 1.0) continue;
-    braking_ = braking;
-    const StopCheck check = planner_.plan(road_, from, braking, stop_);
-    report.stop_edge = std::min(check.least_edge, edge_before);
-    report.stop_distance = check.distance;
-    is_good = check.stands && report.stop_edge >= options_.margin;
-    if (is_good || is_hard) break;
+    const StopCheck check = planner_.plan(road_, from, braking, tried_);
+    const double edge = std::min(check.least_edge, edge_before);
+    const bool fits = check.stands && edge >= options_.margin;
+    double worth = edge - kUnfit;
+    if (fits)
+      worth = may_be_blind ? planner_.played_edge(road_, from, tried_, options_.blind_time + kRecovery) : 0.0;
+    const bool is_good = fits && worth >= 0.0;
+    if (is_good || worth >= best) {
+      best = worth;
+      std::swap(stop_, tried_);
+      braking_ = braking;
+      report.stop_edge = edge;
+      report.stop_distance = check.distance;
+    }
+    if (is_good) return true;
   }
-  return is_good;
+  return false;
 }
 
 }  // namespace chicane::safety

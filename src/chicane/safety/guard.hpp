@@ -105,6 +105,7 @@ class Guard {
   double floor_ = -1e9;     ///< how far from the edge a car beyond the margin has been since [m]
   double leniency_ = 0.05;  ///< how much nearer to the edge it may come, slowly [m]
   StopPlan stop_;
+  StopPlan tried_;  ///< one that may become it
   double s_ = 0.0;  ///< on the known road where the command acts [m]
   unsigned revision_ = 0;
   bool has_place_ = false;

@@ -26,6 +26,10 @@ constexpr std::array kOptions{
         "What the actuators do when commands cease: the stop that came with the last one, all "
         "braking with the last steering, or the last command for ever, as the original game."),
     option<&G::margin>("margin", unit::kMetre, 0, 10, "From the edge, that the stop at hand keeps."),
+    option<&G::blind_time>(
+        "blind_time", unit::kSecond, 0, 60,
+        "How long a silence may last: the stop at hand keeps the road for so long when it is played "
+        "by a car that is a little other than believed; 0: not checked."),
 };
 
 }  // namespace

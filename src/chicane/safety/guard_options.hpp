@@ -34,6 +34,8 @@ struct GuardOptions {
   double half_width = 3.5;  ///< of the road, each side of the waypoints, where its edges are not known [m]
   Receiver receiver = Receiver::kStopPlan;
   double margin = 0.2;  ///< that the stop at hand keeps from the edge [m]
+  /// How long a receiver may have to drive the stop by itself without leaving the road; 0: not checked [s]
+  double blind_time = 2.0;
 
   friend bool operator==(const GuardOptions&, const GuardOptions&) = default;
 };

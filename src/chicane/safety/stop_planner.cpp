@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "chicane/base/math.hpp"
+#include "chicane/safety/stop_player.hpp"
 
 namespace chicane::safety {
 namespace {
@@ -15,16 +16,55 @@ constexpr int kStepsPerPoint = 2;   // of the simulation, in the plan
 constexpr double kStanding = 0.3;   // [m/s] slower than that the car counts as standing
 constexpr double kBandwidth = 1.0;  // [rad/s] of the feedback to the line
 constexpr double kDamping = 0.7;
-constexpr double kYawBandwidth = 6.0;   // [rad/s] of the feedback to the yaw rate
-constexpr double kPreview = 0.2;        // [s] the car answers the wheel about so late
-constexpr double kGripShare = 0.85;     // of the believed tyre force of the rear axle, used sideways
-constexpr double kGravity = 9.81;       // [m/s²]
-constexpr double kLeastBraking = 0.15;  // of the useful one, in any curve
-constexpr double kFeedbackShare = 0.4;  // of the grip, for coming back to the middle of the road
-constexpr double kStopMargin = 0.6;     // [m] wanted to the edge by a car that stops
-constexpr double kMostOffset = 20.0;    // [m] beside the line the stop is given up
+constexpr double kYawBandwidth = 6.0;      // [rad/s] of the feedback to the yaw rate
+constexpr double kPreview = 0.2;           // [s] the car answers the wheel about so late
+constexpr double kGripShare = 0.85;        // of the believed tyre force of the rear axle, used sideways
+constexpr double kGravity = 9.81;          // [m/s²]
+constexpr double kLeastBraking = 0.15;     // of the useful one, in any curve
+constexpr double kFeedbackShare = 0.4;     // of the grip, for coming back to the middle of the road
+constexpr double kStopMargin = 0.6;        // [m] wanted to the edge by a car that stops
+constexpr int kTurns = 3;                  // of the search for a stable deceleration
+constexpr double kSlipShift = 2e-3;        // [rad] to either side, for slopes of the axles' forces
+constexpr double kStiffnessDoubt = 0.015;  // of the rear axle's
+constexpr double kYawRateDoubt = 0.007;    // [rad/s]
+constexpr double kHeadingDoubt = 0.002;    // [rad]
+constexpr double kMostOffset = 20.0;       // [m] beside the line the stop is given up
 
 }  // namespace
+
+void StopPlanner::set_vehicle(const model::VehicleParams& vehicle) noexcept {
+  model_.set_vehicle(vehicle);
+  friction_ = vehicle.cornering_friction();
+  model::VehicleParams other = vehicle;
+  other.cornering_rear = (1.0 - kStiffnessDoubt) * vehicle.cornering_rear;
+  softer_.set_vehicle(other);
+  other.cornering_rear = (1.0 + kStiffnessDoubt) * vehicle.cornering_rear;
+  stiffer_.set_vehicle(other);
+}
+
+double StopPlanner::played_edge(const road::KnownRoad& road, const StopStart& start, const StopPlan& stop,
+                                double time) const noexcept {
+  const model::PredictionModel::Lags lags = model_.lags(kStep);
+  double least = std::numeric_limits<double>::infinity();
+  for (const double side : {1.0, -1.0}) {
+    const model::PredictionModel& car = side > 0.0 ? softer_ : stiffer_;
+    const double inwards = std::copysign(side, start.body.r);
+    StopStart at = start;
+    at.body.r += inwards * kYawRateDoubt;
+    at.e += inwards * kHeadingDoubt;
+    double driven = 0.0;
+    double speed = hypot(at.body.vx, at.body.vy);
+    for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity && at.time < start.time + time; ++i) {
+      if (speed < kStanding || !(std::fabs(at.d) < kMostOffset)) break;
+      const double before = speed;
+      move(car, road, at, played(stop, driven, speed, model_.vehicle()), kStep, lags);
+      speed = hypot(at.body.vx, at.body.vy);
+      driven += 0.5 * kStep * (before + speed);
+      least = std::min(least, edge(road, at));
+    }
+  }
+  return least;
+}
 
 double StopPlanner::edge(const road::KnownRoad& road, const StopStart& at) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
@@ -40,17 +80,60 @@ double StopPlanner::edge(const road::KnownRoad& road, const StopStart& at) const
   return least;
 }
 
+/// One over the static stability of a car that moves like `m` and brakes: (1 − h) v² (a k_f − b k_r) over
+/// k_f k_r L², with the slopes of the axles' forces at their slip angles. Above 1 it turns away from its path
+/// by itself; negative where it understeers, infinite where the rear axle slides.
+double StopPlanner::instability(model::BodyMotion<double> m, double deceleration) const noexcept {
+  const model::VehicleParams& car = model_.vehicle();
+  const double v = std::max(m.vx, 1.0);
+  const double shift = kSlipShift * v;  // of both slip angles
+  m.acceleration = -deceleration;
+  m.vy += shift;
+  const model::PredictionModel::Change<double> less = model_.change(m);
+  m.vy -= 2.0 * shift;
+  const model::PredictionModel::Change<double> more = model_.change(m);
+  const double force = (more.vy - less.vy) / (2.0 * kSlipShift);
+  const double moment = car.yaw_inertia / car.mass * (more.r - less.r) / (2.0 * kSlipShift);
+  const double front = (car.rear_axle * force + moment) / car.wheelbase();
+  const double rear = (car.front_axle * force - moment) / car.wheelbase();
+  if (!(rear > 0.0)) return std::numeric_limits<double>::infinity();
+  if (!(front > 0.0)) return -1.0;
+  return (1.0 - car.steer_helper) * v * v * (car.front_axle * front - car.rear_axle * rear) /
+         (front * rear * car.wheelbase() * car.wheelbase());
+}
+
+/// Share of a deceleration that leaves the car as stable as asked (5).
+double StopPlanner::stable_share(const model::BodyMotion<double>& m, double deceleration,
+                                 double stability) const noexcept {
+  if (!(stability > 0.0)) return 1.0;
+  const double most = 1.0 / stability;
+  double high = 1.0;
+  double at_high = instability(m, deceleration);
+  if (at_high <= most) return 1.0;
+  double low = kLeastBraking;
+  double at_low = instability(m, low * deceleration);
+  if (at_low >= most) return low;
+  // It rises nearly in a line with the deceleration, but for where the rear axle begins to slide.
+  for (int i = 0; i < kTurns; ++i) {
+    const double along = (most - at_low) / (at_high - at_low);
+    const double middle = low + (std::isfinite(at_high) ? std::clamp(along, 0.1, 0.9) : 0.5) * (high - low);
+    const double at_middle = instability(m, middle * deceleration);
+    (at_middle <= most ? low : high) = middle;
+    (at_middle <= most ? at_low : at_high) = at_middle;
+  }
+  return low;
+}
+
 /// Share of a deceleration that leaves the rear axle, unloaded by it, the force that holds the car sideways:
 /// equation 4.
-double StopPlanner::braking_share(double sideways, double deceleration, double v,
-                                  double stability) const noexcept {
+double StopPlanner::braking_share(double sideways, double deceleration, double v) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double grip = friction_ * model_.load(v);
   const auto holds = [&](double a) {
     const double along = std::min(a / grip, 1.0);
     const double ellipse = std::sqrt(std::max(1.0 - car.friction_coupling * along * along, 0.0));
     const double load = std::max(1.0 - car.height * a / (kGravity * car.front_axle), 0.0);
-    return kGripShare * grip * ellipse * load >= sideways && model_.stability(v, a) >= stability;
+    return kGripShare * grip * ellipse * load >= sideways;
   };
   if (holds(deceleration)) return 1.0;
   double low = kLeastBraking;
@@ -83,18 +166,20 @@ model::Command StopPlanner::law(const road::KnownRoad& road, const StopStart& at
   const double bend = std::max(std::fabs(ahead), std::fabs(road.line().demand(at.s).curvature));
   const double sideways = (1.0 - car.steer_helper) * std::max(bend * v * v, std::fabs(at.body.r) * v);
   const double useful = longitudinal_acceleration(car, lowest_throttle(car, v), v);
+  const double asked = useful * braking.share;
   const double along =
-      useful * braking.share * braking_share(sideways, -useful * braking.share, v, braking.stability);
+      asked * std::min(braking_share(sideways, -asked, v), stable_share(at.body, -asked, braking.stability));
   return {steer, throttle_to_rest(car, along, at.body.vx)};
 }
 
-void StopPlanner::move(const road::KnownRoad& road, StopStart& at, const model::Command& command, double dt,
-                       const model::PredictionModel::Lags& lags) const noexcept {
-  const model::VehicleParams& car = model_.vehicle();
+void StopPlanner::move(const model::PredictionModel& model, const road::KnownRoad& road, StopStart& at,
+                       const model::Command& command, double dt,
+                       const model::PredictionModel::Lags& lags) noexcept {
+  const model::VehicleParams& car = model.vehicle();
   const double reach = car.steer_rate_limit * dt / (1.0 - lags.steer.end);  // the wheel's, behind its lag
   const double steer = std::clamp(command.steer, at.body.steer - reach, at.body.steer + reach);
   const double asked = longitudinal_acceleration(car, command.throttle, at.body.vx);
-  model::BodyMotion<double> to = model_.advance(at.body, steer, asked, dt, lags);
+  model::BodyMotion<double> to = model.advance(at.body, steer, asked, dt, lags);
   to.vx = std::max(to.vx, 0.0);
   const double vx = 0.5 * (at.body.vx + to.vx);
   const double vy = 0.5 * (at.body.vy + to.vy);
@@ -118,7 +203,7 @@ StopStart StopPlanner::advance(const road::KnownRoad& road, const StopStart& fro
   const model::PredictionModel::Lags lags = model_.lags(dt);
   StopStart at = from;
   for (int i = 0; i < steps; ++i) {
-    move(road, at, command, dt, lags);
+    move(model_, road, at, command, dt, lags);
     least_edge = std::min(least_edge, edge(road, at));
   }
   return at;
@@ -133,14 +218,15 @@ StopCheck StopPlanner::plan(const road::KnownRoad& road, const StopStart& start,
   double driven = 0.0;
   double speed = hypot(at.body.vx, at.body.vy);
   out.size = 0;
+  model::Command command;
   for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity; ++i) {
-    const model::Command command = law(road, at, braking);
+    if (i % kStepsPerPoint == 0) command = law(road, at, braking);
     const bool has_ended = speed < kStanding || !(std::fabs(at.d) < kMostOffset) || !(at.s < end);
     if (i % kStepsPerPoint == 0 || (has_ended && out.size < StopPlan::kCapacity))
       out.points[static_cast<std::size_t>(out.size++)] = {at.time, driven, speed, command};
     if (has_ended) break;
     const double before = speed;
-    move(road, at, command, kStep, lags);
+    move(model_, road, at, command, kStep, lags);
     speed = hypot(at.body.vx, at.body.vy);
     driven += 0.5 * kStep * (before + speed);
     check.least_edge = std::min(check.least_edge, edge(road, at));

@@ -38,16 +38,20 @@ struct Braking {
 class StopPlanner {
  public:
   explicit StopPlanner(const model::VehicleParams& vehicle) noexcept
-      : model_{vehicle}, friction_{vehicle.cornering_friction()} {}
-  void set_vehicle(const model::VehicleParams& vehicle) noexcept {
-    model_.set_vehicle(vehicle);
-    friction_ = vehicle.cornering_friction();
+      : model_{vehicle}, softer_{vehicle}, stiffer_{vehicle} {
+    set_vehicle(vehicle);
   }
+  void set_vehicle(const model::VehicleParams& vehicle) noexcept;
 
   /// The stop from `start` on, no harder than `braking`. Pre: the road is not
   /// empty, `start` is finite.
   [[nodiscard]] StopCheck plan(const road::KnownRoad& road, const StopStart& start, const Braking& braking,
                                StopPlan& out) const noexcept;
+  /// How near to the edge [m] a receiver comes in the first `time` [s] that plays `stop` blindly, the car
+  /// being a little other than believed: its rear axle softer while it turns in more than estimated, and
+  /// stiffer while it turns in less.
+  [[nodiscard]] double played_edge(const road::KnownRoad& road, const StopStart& start, const StopPlan& stop,
+                                   double time) const noexcept;
   /// `command` for `time` [s] from `from` on: where the car is then, and how near to the edge it came.
   [[nodiscard]] StopStart advance(const road::KnownRoad& road, const StopStart& from,
                                   const model::Command& command, double time,
@@ -59,13 +63,17 @@ class StopPlanner {
   [[nodiscard]] double edge(const road::KnownRoad& road, const StopStart& at) const noexcept;
 
  private:
-  [[nodiscard]] double braking_share(double sideways, double deceleration, double v,
-                                     double stability) const noexcept;
-  void move(const road::KnownRoad& road, StopStart& at, const model::Command& command, double dt,
-            const model::PredictionModel::Lags& lags) const noexcept;
+  [[nodiscard]] double instability(model::BodyMotion<double> m, double deceleration) const noexcept;
+  [[nodiscard]] double stable_share(const model::BodyMotion<double>& m, double deceleration,
+                                    double stability) const noexcept;
+  [[nodiscard]] double braking_share(double sideways, double deceleration, double v) const noexcept;
+  static void move(const model::PredictionModel& model, const road::KnownRoad& road, StopStart& at,
+                   const model::Command& command, double dt,
+                   const model::PredictionModel::Lags& lags) noexcept;
 
   model::PredictionModel model_;
-  double friction_;  ///< sideways, of the whole car
+  model::PredictionModel softer_, stiffer_;  ///< the car as it may be, too
+  double friction_ = 0.0;                    ///< sideways, of the whole car
 };
 
 }  // namespace chicane::safety

@@ -12,6 +12,23 @@ constexpr double kStanding = 0.5;   // [m/s] a plan that ends faster is not comp
 
 }  // namespace
 
+model::Command played(const StopPlan& stop, double distance, double speed,
+                      const model::VehicleParams& vehicle) noexcept {
+  int i = 0;
+  while (i + 1 < stop.size && stop.points[static_cast<std::size_t>(i + 1)].distance <= distance) ++i;
+  const StopPoint& here = stop.points[static_cast<std::size_t>(i)];
+  const StopPoint& next = stop.points[static_cast<std::size_t>(std::min(i + 1, stop.size - 1))];
+  const double length = next.distance - here.distance;
+  const double share = length > 1e-6 ? std::clamp((distance - here.distance) / length, 0.0, 1.0) : 0.0;
+  const bool ends_rolling = i + 1 == stop.size && here.speed >= kStanding;  // where the known road ended
+  const double planned = ends_rolling ? 0.0 : here.speed + share * (next.speed - here.speed);
+  const double steer = here.command.steer + share * (next.command.steer - here.command.steer);
+  const double wanted =
+      longitudinal_acceleration(vehicle, here.command.throttle, speed) + (planned - speed) / kSpeedTime;
+  return {std::clamp(steer, -vehicle.steer_limit, vehicle.steer_limit),
+          throttle_to_rest(vehicle, wanted, speed)};
+}
+
 StopPlayer::StopPlayer(const model::VehicleParams& vehicle, double control_period, Receiver receiver) noexcept
     : vehicle_{vehicle},
       patience_{std::max(kPatience, kPatienceInPeriods * control_period)},
@@ -53,23 +70,7 @@ model::Command StopPlayer::guard(const model::Command& command, double time, dou
   }
   distance_ = is_stopping_ ? distance_ + elapsed * std::fabs(speed) : 0.0;
   is_stopping_ = true;
-  return has_plan ? play(acting.stop, speed) : brake(command, speed);
-}
-
-model::Command StopPlayer::play(const StopPlan& stop, double speed) const noexcept {
-  int i = 0;
-  while (i + 1 < stop.size && stop.points[static_cast<std::size_t>(i + 1)].distance <= distance_) ++i;
-  const StopPoint& here = stop.points[static_cast<std::size_t>(i)];
-  const StopPoint& next = stop.points[static_cast<std::size_t>(std::min(i + 1, stop.size - 1))];
-  const double length = next.distance - here.distance;
-  const double share = length > 1e-6 ? std::clamp((distance_ - here.distance) / length, 0.0, 1.0) : 0.0;
-  const bool ends_rolling = i + 1 == stop.size && here.speed >= kStanding;  // where the known road ended
-  const double planned = ends_rolling ? 0.0 : here.speed + share * (next.speed - here.speed);
-  const double steer = here.command.steer + share * (next.command.steer - here.command.steer);
-  const double wanted =
-      longitudinal_acceleration(vehicle_, here.command.throttle, speed) + (planned - speed) / kSpeedTime;
-  return {std::clamp(steer, -vehicle_.steer_limit, vehicle_.steer_limit),
-          throttle_to_rest(vehicle_, wanted, speed)};
+  return has_plan ? played(acting.stop, distance_, speed, vehicle_) : brake(command, speed);
 }
 
 model::Command StopPlayer::brake(const model::Command& command, double speed) const noexcept {

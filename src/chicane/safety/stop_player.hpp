@@ -11,6 +11,11 @@
 
 namespace chicane::safety {
 
+/// What the actuators do `distance` [m] after a stop began, at `speed` [m/s] by their own wheels: the planned
+/// steering of that place, and what meets the planned speed there again. Pre: stop.size > 0.
+[[nodiscard]] model::Command played(const StopPlan& stop, double distance, double speed,
+                                    const model::VehicleParams& vehicle) noexcept;
+
 /// The receiver's side of a broken link: what the actuators do when commands cease. A watchdog at the sender
 /// could not help. It knows the clock, its own wheel speed, and what has arrived; no position.
 ///
@@ -47,7 +52,6 @@ class StopPlayer {
   };
   static constexpr int kWaiting = 32;
 
-  [[nodiscard]] model::Command play(const StopPlan& stop, double speed) const noexcept;
   [[nodiscard]] model::Command brake(const model::Command& command, double speed) const noexcept;
 
   model::VehicleParams vehicle_;
