@@ -20,7 +20,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SOURCES = ["command_gate.cpp", "fallback.cpp", "guard.cpp", "measurement_monitor.cpp", "stop_planner.cpp", "stop_player.cpp",
+SOURCES = ["command_gate.cpp", "fallback.cpp", "guard.cpp", "measurement_monitor.cpp", "stop_planner.cpp", "stop_player.cpp", "stop_search.cpp",
            "supervisor.hpp"]
 FOLDER = "src/chicane/safety"
 TEST = "safety_test"

@@ -28,6 +28,8 @@ TEST(Race, LapsCleanlyNearTheLimit) {
     for (const telemetry::LapSummary& lap : run.laps)
       EXPECT_GT(lap.min_edge_distance, 0.1) << race.car << ' ' << race.track;
     EXPECT_LT(run.laps.back().lap_time, race.lap_time) << race.car << ' ' << race.track;
+    EXPECT_LT(run.guard_reasons[static_cast<std::size_t>(controller::GuardReason::kNoWayToStop)], 10U)
+        << race.car << ' ' << race.track << ": the guard is on, and lets the car race";
   }
 }
 
@@ -38,6 +40,7 @@ TEST(Race, NeedsNoTrack) {
     Settings settings{{"preset", "race"}, {"car", car}, {"track", track}, {"laps", "3"}};
     const auto told = drive(settings);
     settings.emplace_back("guard.road", "waypoints");
+    settings.emplace_back("guard.mode", "observe");
     const auto run = drive(settings);
     ASSERT_TRUE(run.completed) << car << ' ' << track << ": " << run.end_reason;
     EXPECT_EQ(run.off_track_events, 0) << car << ' ' << track;

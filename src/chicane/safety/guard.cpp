@@ -7,6 +7,9 @@
 #include <utility>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
+#include "chicane/safety/stop_player.hpp"
+#include "chicane/safety/stop_search.hpp"
 
 namespace chicane::safety {
 namespace {
@@ -23,7 +26,8 @@ constexpr int kShown = 64;               // points of a stop that is drawn
 constexpr double kShownStep = 0.1;       // [s]
 constexpr double kWalkingPace = 3.0;     // [m/s]
 constexpr double kFastestWayBack = 4.0;  // [m/s]
-constexpr double kMostUse = 0.75;        // of the tyres sideways, after a command that is sent
+constexpr double kMostUse = 0.75;        // of the tyres sideways, after a command: the law's stops
+constexpr double kMostUseEver = 1.2;     // and those that are searched for
 constexpr double kRecovery = 0.5;        // [s] after a silence, until the car is in hand again
 constexpr double kUnfit = 100.0;         // [m] worse than any stop that fits
 constexpr double kGuessedWidth = 1.0;    // [m] that the assumed width may be too small by, for a slow car
@@ -73,7 +77,10 @@ Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::Ve
       road_{std::move(road)},
       estimator_{model::PredictionModel{vehicle}},
       planner_{vehicle},
+      search_{std::make_unique<StopSearch>(vehicle)},
       model_{vehicle} {}
+
+Guard::~Guard() = default;
 
 void Guard::reset() noexcept {
   controller_->reset();
@@ -88,19 +95,22 @@ void Guard::reset() noexcept {
   stop_.size = 0;
   has_place_ = false;
   floor_ = kNoFloor;
+  search_->forget();
 }
 
 void Guard::forget_road() {
   if (options_.road == GuardRoad::kWaypoints) return;
   options_.road = GuardRoad::kWaypoints;
   road_ = known_road(options_, nullptr, model_.vehicle());
-  has_place_ = false;
+  has_place_ = races_ = false;
   controller_->use_line(nullptr);
 }
 
 void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
   if (options_.road == GuardRoad::kTrack && lap && !lap->is_learned()) road_.use_line(lap.get());
   has_place_ = false;
+  races_ = lap != nullptr;
+  search_->forget();
   controller_->use_line(std::move(lap));
 }
 
@@ -108,6 +118,7 @@ void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   fallback_.set_vehicle(vehicle);
   model_.set_vehicle(vehicle);
   planner_.set_vehicle(vehicle);
+  search_->set_vehicle(vehicle);
   estimator_.set_model(model_);
 }
 
@@ -230,7 +241,8 @@ void Guard::fall_back(const model::Measurement& seen, controller::StepResult& re
 void Guard::drive_stop(const StopStart& start, controller::StepResult& result) noexcept {
   // Without measurements, a short stop is better.
   const bool is_blind = monitor_.findings().unmeasured || monitor_.findings().frozen;
-  static_cast<void>(plan_stop(start, std::numeric_limits<double>::infinity(), is_blind, result.report));
+  static_cast<void>(plan_stop(start, std::numeric_limits<double>::infinity(),
+                              {.is_driven = true, .is_hard = is_blind}, result.report));
   result.answer = Answer::kNone;
   result.command = stop_.points[0].command;
   result.report.rung = Rung::kGuardStop;
@@ -242,9 +254,12 @@ void Guard::show_stop(const StopStart& start, controller::Plan& plan) const noex
   const road::ReferenceLine& line = road_.line();
   StopStart at = start;
   double edge = 0.0;
+  double driven = 0.0;
   plan.size = plan.reference_size = 0;
   while (plan.size < kShown) {
-    const model::Command command = planner_.law(road_, at, braking_);
+    const double speed = hypot(at.body.vx, at.body.vy);
+    const model::Command command = played(stop_, driven, speed, model_.vehicle());
+    driven += kShownStep * speed;
     const road::CurvePoint here = line.at(at.s);
     const auto i = static_cast<std::size_t>(plan.size++);
     plan.reference[i] = here.position;
@@ -298,8 +313,9 @@ bool Guard::leaves_a_stop(const StopStart& start, const model::Command& command,
   model::BodyMotion<double> undriven = next.body;  // a stop does not ask for its drive
   undriven.acceleration = std::min(undriven.acceleration, 0.0);
   const auto use = model_.tire_use(undriven);
-  const bool slides = start.body.vx > kWalkingPace && std::max(use.front, use.rear) > kMostUse;
-  if (plan_stop(next, least_edge, false, report) && !slides) {
+  const double most_use = start.body.vx > kWalkingPace ? std::max(use.front, use.rear) : 0.0;
+  const bool slides = most_use > kMostUse;
+  if (plan_stop(next, least_edge, {.slides = slides}, report) && most_use < kMostUseEver) {
     floor_ = kNoFloor;
     return true;
   }
@@ -319,30 +335,40 @@ bool Guard::leaves_a_stop(const StopStart& start, const model::Command& command,
 }
 
 /// The first of the stops that keeps the margin, and the road when it is played blindly for as long as a
-/// silence may last; else the best of them, and false.
-bool Guard::plan_stop(const StopStart& from, double edge_before, bool is_hard,
+/// silence may last; else the best of them, and false. One is searched for: at first where a car races, and
+/// last where one is being stopped. A car that `slides` is no longer one that the law knows.
+bool Guard::plan_stop(const StopStart& from, double edge_before, const StopWish& wish,
                       controller::StepReport& report) noexcept {
-  const bool may_be_blind = options_.blind_time > 0.0;
   double best = -std::numeric_limits<double>::infinity();
-  for (const Braking& braking : kStops) {
-    if (is_hard && braking.share < 1.0) continue;
-    const StopCheck check = planner_.plan(road_, from, braking, tried_);
+  const auto is_good = [&](const StopCheck& check) {
     const double edge = std::min(check.least_edge, edge_before);
     const bool fits = check.stands && edge >= options_.margin;
     double worth = edge - kUnfit;
-    if (fits)
-      worth = may_be_blind ? planner_.played_edge(road_, from, tried_, options_.blind_time + kRecovery) : 0.0;
-    const bool is_good = fits && worth >= 0.0;
-    if (is_good || worth >= best) {
+    if (fits) worth = played_edge(from);
+    if (worth >= best) {
       best = worth;
       std::swap(stop_, tried_);
-      braking_ = braking;
       report.stop_edge = edge;
       report.stop_distance = check.distance;
     }
-    if (is_good) return true;
+    return fits && worth >= 0.0;
+  };
+  const auto search = [&] {
+    const StopCheck found = search_->plan(road_, from, options_.margin, planner_, tried_);
+    return tried_.size > 0 && is_good(found);
+  };
+  if (races_ && search()) return true;
+  for (const Braking& braking : kStops) {
+    if (wish.is_hard && braking.share < 1.0) continue;
+    if (is_good(planner_.plan(road_, from, braking, tried_)) && !wish.slides) return true;
   }
-  return false;
+  return !races_ && wish.is_driven && search();
+}
+
+/// How near to the edge [m] the receiver comes with `tried_` in a silence of the length that is planned for.
+double Guard::played_edge(const StopStart& from) const noexcept {
+  if (!(options_.blind_time > 0.0)) return 0.0;
+  return planner_.played_edge(road_, from, tried_, options_.blind_time + kRecovery);
 }
 
 }  // namespace chicane::safety

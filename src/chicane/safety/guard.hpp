@@ -23,6 +23,8 @@
 
 namespace chicane::safety {
 
+class StopSearch;
+
 /// The road as a guard knows it at first: `road`, where it may, or nothing yet. A guard that is off has no
 /// use for one.
 [[nodiscard]] road::KnownRoad known_road(const GuardOptions& options, const path::RoadData* road,
@@ -50,6 +52,11 @@ class Guard {
   /// The same with what known_road() has made before: smoothing a road takes milliseconds.
   Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
         const GuardOptions& options, road::KnownRoad road);
+  ~Guard();
+  Guard(const Guard&) = delete;
+  Guard& operator=(const Guard&) = delete;
+  Guard(Guard&&) = delete;
+  Guard& operator=(Guard&&) = delete;
 
   /// What else holds in a cycle.
   struct Cycle {
@@ -86,8 +93,14 @@ class Guard {
   [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
   [[nodiscard]] bool leaves_a_stop(const StopStart& start, const model::Command& command, double interval,
                                    controller::StepReport& report) noexcept;
-  [[nodiscard]] bool plan_stop(const StopStart& from, double edge_before, bool is_hard,
+  struct StopWish {
+    bool is_driven = false;  ///< the car is being stopped
+    bool is_hard = false;    ///< as short as can be
+    bool slides = false;     ///< the tyres are used so much that only a stop that is searched for will do
+  };
+  [[nodiscard]] bool plan_stop(const StopStart& from, double edge_before, const StopWish& wish,
                                controller::StepReport& report) noexcept;
+  [[nodiscard]] double played_edge(const StopStart& from) const noexcept;
 
   std::unique_ptr<controller::Controller> controller_;
   GuardOptions options_;
@@ -100,8 +113,8 @@ class Guard {
   controller::DirectionWatch direction_;  ///< by what is measured, plausible or not
   controller::CommandHistory sent_;
   StopPlanner planner_;
+  std::unique_ptr<StopSearch> search_;
   model::PredictionModel model_;
-  Braking braking_;         ///< of the stop at hand
   double floor_ = -1e9;     ///< how far from the edge a car beyond the margin has been since [m]
   double leniency_ = 0.05;  ///< how much nearer to the edge it may come, slowly [m]
   StopPlan stop_;
@@ -110,6 +123,7 @@ class Guard {
   unsigned revision_ = 0;
   bool has_place_ = false;
   bool is_far_ = false;     ///< the known road is, from the car
+  bool races_ = false;      ///< by a planned lap: the law's stops are not enough
   double sent_from_ = 0.0;  ///< from which the command of this cycle acts [s]
 };
 
