@@ -46,6 +46,12 @@ TEST(RandomProblems, GetNoAnswersWhoseCostHasNoDigitsLeft) {
   expect_confirmed<bench::RandomStructured<4, 2, 2>>(245, 24, 12);
 }
 
+// One was "budget spent" with slacks and prices of another point: the filter method had begun where the
+// working set cycled, at the best iterate so far.
+TEST(RandomProblems, GetNoAnswersWithPricesOfAnotherPoint) {
+  expect_confirmed<bench::RandomStructured<4, 2, 2>>(1000205, 20, 8);
+}
+
 // Of these 5 were "infeasible" though short steps from the answer lead to where everything holds, and of the
 // stalled 11 missed more and cost more than the guess.
 TEST(RandomProblems, AreInfeasibleOnlyWhereNoSmallChangeHelps) {

@@ -21,7 +21,7 @@ bool OcpSolver<P, Capacity, Arch>::begin_filter(const P& problem, const Trajecto
   is_filtering_ = true;
   if (has_filtered_) return filter_.resume(now_, barrier_, t_);
   full_steps_ = is_fresh_ = has_filtered_ = true;
-  is_exact_ = false;
+  is_exact_ = shows_best_ = false;
   if (!take_guess(problem, trajectory)) return false;
   if (stands_still_) {
     fill_inputs(0);
