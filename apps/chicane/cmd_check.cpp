@@ -23,8 +23,15 @@ Result<std::string> check_track(const std::string& file) {
     narrowest = std::min(narrowest, track->left_width(s) + track->right_width(s));
     sharpest = std::max(sharpest, std::abs(track->centre().at(s).curvature));
   }
-  return fmt::format("{} track, {:.1f} m long, at least {:.1f} m wide, tightest radius {:.1f} m",
-                     track->centre().is_closed() ? "closed" : "open", length, narrowest, 1.0 / sharpest);
+  std::string text =
+      fmt::format("{} track, {:.1f} m long, at least {:.1f} m wide, tightest radius {:.1f} m",
+                  track->centre().is_closed() ? "closed" : "open", length, narrowest, 1.0 / sharpest);
+  if (track->crossings() > 0)
+    text += fmt::format(", crosses itself in {} {}", track->crossings(),
+                        track->crossings() == 1 ? "place" : "places");
+  if (!track->centre().is_closed())
+    text += fmt::format(", {:.1f} m from start to finish", track->lap_length());
+  return text;
 }
 
 /// A file with a plant and nothing that a car file may not hold is a car; every other is what a run can start
