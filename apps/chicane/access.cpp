@@ -49,6 +49,7 @@ Result<net::ServerOptions> server_options(const Options& options) {
   server.address = options.address;
   server.port = options.port;
   server.allowed_origins = options.allowed_origins;
+  server.goodbye = std::chrono::seconds{4};  // a page on a busy machine may be behind
   if (!options.needs_token) return server;
   Result<std::string> token = net::make_token();
   if (!token) return fail(token.error());

@@ -450,6 +450,30 @@ TEST(Server, SaysGoodbyeWhenItEnds) {
   EXPECT_EQ(frame->payload.substr(0, 2), "\x03\xe9");  // 1001 going away
 }
 
+// A page on a busy machine reads late: nothing that it was sent is lost, and it learns that the program
+// ended.
+TEST(Server, WaitsForAPeerThatIsBehindBeforeItEnds) {
+  auto recorder = std::make_unique<Recorder>(ServerOptions{.goodbye = std::chrono::seconds{20}});
+  RawSocket socket = upgraded(recorder->port());
+  const ConnectionId id = recorder->opened(1).front();
+  const std::string message(100'000, 'x');
+  constexpr int kMessages = 40;  // more than the kernel takes for a peer that does not read
+  for (int i = 0; i < kMessages; ++i)
+    recorder->server().send(id, std::make_shared<const std::string>(message), false, Delivery::kReliable, 0);
+  std::thread end([&] { recorder.reset(); });
+  for (int i = 0; i < kMessages; ++i) {
+    const auto frame = socket.frame();
+    ASSERT_TRUE(frame) << i;
+    EXPECT_EQ(frame->payload.size(), message.size()) << i;
+  }
+  const auto last = socket.frame();
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->opcode, 8);
+  socket.send(RawSocket::masked("\x03\xe9", 8));
+  socket.close();
+  end.join();
+}
+
 TEST(Server, RunsTasksInOrderOfTheirTimeAndServesMeanwhile) {
   Recorder recorder({}, {{.path = "/index.html", .content_type = "text/html", .content = "here"}});
   std::promise<std::string> order;

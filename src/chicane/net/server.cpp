@@ -45,7 +45,6 @@ using ErrorCodeBoost = boost::system::error_code;
 constexpr int kSendBuffer = 32 * 1024;  // a reader that stalls holds this much kernel memory, not megabytes
 constexpr std::chrono::seconds kAnswerTimeout{30};  // for one piece of an answer on a slow line
 constexpr std::chrono::seconds kLingerTimeout{1};   // so that a refusal is read before the socket goes
-constexpr std::chrono::milliseconds kGoodbye{200};  // for close frames when the server ends
 constexpr std::size_t kKeptBuffer = 4096;           // between two messages [byte]
 constexpr std::size_t kMostReserved = 8;            // connections that viewers leave to others
 std::string_view view(boost::string_view text) { return {text.data(), text.size()}; }
@@ -472,7 +471,7 @@ class BeastServer final : public Server {
     acceptor_.close(ignored);
     if (core_.connections.empty()) return core_.io.stop();
     for (const auto& [id, connection] : core_.connections) connection->close(1001, "the program ends");
-    auto timer = std::make_shared<asio::steady_timer>(core_.io, kGoodbye);
+    auto timer = std::make_shared<asio::steady_timer>(core_.io, core_.options.goodbye);
     timer->async_wait([this, timer](ErrorCodeBoost) { core_.io.stop(); });
   }
 

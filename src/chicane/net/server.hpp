@@ -70,6 +70,9 @@ struct ServerOptions {
   /// A WebSocket peer that has sent nothing for half of it is pinged; one that stays silent for all of it is
   /// closed. That also ends peers that stopped reading, because they never see the ping.
   std::chrono::milliseconds idle_timeout{10000};
+  /// When the server ends, so long it waits for peers to read what they were sent and to answer its close
+  /// frame. One that is behind loses what it has not read by then.
+  std::chrono::milliseconds goodbye{200};
   std::size_t max_queue = 256;  ///< messages waiting for one connection before it is closed
   /// Bytes waiting for all connections together; beyond, connections that hold more than others are closed
   /// when they are sent more.

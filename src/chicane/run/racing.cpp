@@ -15,6 +15,8 @@
 namespace chicane::run {
 namespace {
 
+constexpr double kShareAtTheEnd = 0.9;  // of the braking of the plan, where an open road ends
+
 const controller::TrackingMpcOptions& options_of(const scenario::Scenario& scenario) {
   return std::get<controller::TrackingMpcEntry::Options>(scenario.controllers);
 }
@@ -36,7 +38,8 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const path::Track& track
   road::RacingRoad::Basis planned = basis;
   planned.is_closed = track.centre().is_closed();
   planned.braking =
-      0.5 * std::min(car.brake_acceleration * car.brake_throttle_limit, car.friction * car.load_constant);
+      kShareAtTheEnd * options.brake_share *
+      std::min(car.brake_acceleration * car.brake_throttle_limit, car.friction * car.load_constant);
   return std::make_shared<const road::RacingRoad>(path::line_points(track, *lap), track.kerb_width(),
                                                   planned);
 }
