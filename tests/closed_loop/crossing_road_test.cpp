@@ -74,6 +74,25 @@ TEST(OpenRoad, IsDrivenToItsFinishAndIsOneLap) {
   }
 }
 
+// Without room behind its finish a race brakes before it, and passes it.
+TEST(OpenRoad, IsFinishedAlsoWhereItEnds) {
+  const std::string file =
+      (std::filesystem::temp_directory_path() / ("chicane_open_" + std::to_string(::getpid()) + ".csv"))
+          .string();
+  {
+    std::ofstream out{file};
+    out << "# closed=false\n# x_m,y_m,w_tr_right_m,w_tr_left_m\n";
+    for (int i = 0; i <= 40; ++i) out << 10.0 * i << ',' << 20.0 * std::sin(0.08 * i) << ",4.5,4.5\n";
+  }
+  for (const char* car : {"udacity", "road-car"}) {
+    const auto run =
+        drive({{"preset", "race"}, {"car", car}, {"track", file}, {"laps", "1"}, {"time_limit_s", "60"}});
+    EXPECT_TRUE(run.completed) << car << ": " << run.end_reason;
+    EXPECT_EQ(run.off_track_events, 0) << car;
+  }
+  std::filesystem::remove(file);
+}
+
 TEST(OpenRoad, IsRacedAndEndsAtAStand) {
   for (const char* car : {"udacity", "road-car"}) {
     const Settings race{{"preset", "race"}, {"car", car}, {"track", "stage"}, {"laps", "1"}};
@@ -91,6 +110,8 @@ TEST(OpenRoad, IsRacedAndEndsAtAStand) {
     const auto longer = run_closed_loop(**loop);
     EXPECT_EQ(longer.off_track_events, 0) << car;
     EXPECT_LT((*loop)->frame().measurement.speed, 1.0) << car;
+    const double place = (*loop)->track().start_s() + (*loop)->world().progress;
+    EXPECT_NEAR(place, (*loop)->track().length() - 7.5, 7.5) << car << ": in the last metres of the road";
   }
 }
 

@@ -259,6 +259,23 @@ TEST(Track, RefusesALoopThatIsTooShortForTheRoad) {
       << refusal(points, false, {.spacing = 0.5});
 }
 
+TEST(Track, OpenRoadsMayHaveAFinish) {
+  std::vector<TrackPoint> points;
+  for (int i = 0; i <= 30; ++i) points.push_back({{10.0 * i, 0.0}, 4.0, 4.0});
+  EXPECT_NEAR(Track::create("a", points, false, {.start_s = 10.0})->lap_length(), 290.0, 1e-6);
+  EXPECT_NEAR(Track::create("a", points, false, {.start_s = 10.0, .finish_s = 210.0})->lap_length(), 200.0,
+              1e-6);
+  EXPECT_EQ(refusal(points, false, {.start_s = 50.0, .finish_s = 40.0}),
+            "finish_s: got 40, expected a place behind the start at 50 and on the road of 300 m");
+  EXPECT_EQ(refusal(points, false, {.finish_s = 400.0}),
+            "finish_s: got 400, expected a place behind the start at 0 and on the road of 300 m");
+  EXPECT_EQ(refusal(loop_points(100, 0.0), true, {.finish_s = 40.0}),
+            "finish_s: got 40, expected none on a closed road");
+  const Track loop = Track::create("loop", loop_points(100, 0.0), true).value();
+  EXPECT_EQ(loop.lap_length(), loop.length());
+  EXPECT_NEAR(loop.scaled(0.1).lap_length(), 0.1 * loop.length(), 1e-9);
+}
+
 TEST(Track, RefusesPointsInTheWrongOrder) {
   std::vector<TrackPoint> points = loop_points(200, 0.0);
   std::reverse(points.begin() + 60, points.begin() + 120);

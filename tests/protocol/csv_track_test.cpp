@@ -149,6 +149,9 @@ TEST(CsvTrack, TakesTheStartAndOptionsFromComments) {
 }
 
 TEST(CsvTrack, WritesWhatItReadsBackBitForBit) {
+  TrackFile open =
+      parse_track(ring("# start_s_m=12.25, finish_s_m=99.5, closed=false\nx,y\n", ","), "a.csv").value();
+  EXPECT_EQ(parse_track(write_csv_track(open, "an open one"), "b.csv").value().options.finish_s, 99.5);
   TrackFile file = parse_track(ring("# start_s_m=12.25\nx,y\n", ","), "a.csv").value();
   file.points[3].left = 1.0 / 3.0;
   const TrackFile back = parse_track(write_csv_track(file, "a ring\nof two lines"), "b.csv").value();

@@ -54,17 +54,20 @@ TEST(RacingRoad, HasTheLapsLineItsSpeedsAndItsRoom) {
 }
 
 TEST(RacingRoad, StopsBeforeTheEndOfAnOpenRoad) {
-  const RacingRoad road(lap(1.0), 0.0, {.is_closed = false, .braking = 4.0});
+  const RacingRoad road(lap(1.0), 0.0, {.is_closed = false, .braking = 4.0, .room_behind = 60.0});
   const double length = road.line().length();
   EXPECT_FALSE(road.line().is_closed());
-  EXPECT_NEAR(road.line().demand(length - 5.0).speed, 0.0, 2.0);
+  EXPECT_NEAR(road.line().demand(length - 12.0).speed, 0.0, 2.0);
   EXPECT_EQ(road.line().demand(length + 50.0).speed, 0.0);
-  for (double s = 0.0; s < length - 6.0; s += 7.3) {
+  for (double s = 0.0; s < length - 14.0; s += 7.3) {
     const double planned = 20.0 + 5.0 * std::sin(s / kRadius);
-    const double stops = std::sqrt(2.0 * 4.0 * (length - 5.0 - s));
+    const double stops = std::sqrt(2.0 * 4.0 * (length - 12.0 - s));
     EXPECT_NEAR(road.line().demand(s).speed, std::min(planned, stops), 0.15) << s;
     EXPECT_GT(road.room(s).left, 2.9);
   }
+  const RacingRoad bare(lap(1.0), 0.0, {.is_closed = false, .braking = 4.0, .room_behind = 0.0});
+  EXPECT_NEAR(bare.line().demand(length - 2.0).speed, std::sqrt(2.0 * 4.0 * 4.0), 0.3) << "passes its finish";
+  EXPECT_EQ(bare.line().demand(length).speed, 0.0);
   EXPECT_EQ(road.room(-10.0).left, road.room(0.0).left) << "nothing comes round again";
 }
 

@@ -240,6 +240,29 @@ TEST(World, AnOpenTrackEndsWithOneLap) {
   EXPECT_NEAR(world.state().last_lap_time, 300.0 / 15.0, 1e-6);  // at 15 m/s
 }
 
+// From the start line to the finish, whatever lies before and behind; also for a car that comes up to the
+// start.
+TEST(World, TimesAnOpenRoadFromStartToFinish) {
+  std::vector<path::TrackPoint> points;
+  for (int i = 0; i <= 30; ++i) points.push_back({Vec2{10.0 * i, 0.0}, 5.0, 4.0});
+  const path::Track track = path::Track::create("straight", points, false,
+                                                {.smoothing_sigma = 0.0, .start_s = 40.0, .finish_s = 190.0})
+                                .value();
+  for (const double from : {10.0, 40.0}) {
+    Puppet puppet;
+    World world{puppet, track};
+    world.reset({.x = from, .y = 0.0, .psi = 0.0}, 0.0);
+    int steps = 0;
+    for (; !world.state().is_finished && steps < 2000; ++steps) {
+      puppet.go({.x = from + 0.3 * (steps + 1), .y = 0.0, .psi = 0.0});
+      world.advance({});
+    }
+    EXPECT_EQ(world.state().lap, 1) << from;
+    EXPECT_NEAR(world.state().last_lap_time, 150.0 / 15.0, 1e-6) << from;
+    EXPECT_NEAR(steps * 0.3, 190.0 - from, 0.6) << from;
+  }
+}
+
 TEST(World, JudgesAPlantOfOneMillisecondEveryFiveSteps) {
   const path::Track track = circle();
   Drive drive{track, 0.001};

@@ -87,21 +87,28 @@ Result<int> count_crossings(const SmoothLine& line, const std::vector<TrackPoint
   const auto width = [&](std::size_t knot) {
     return points[raw_index(knot)].left + points[raw_index(knot)].right;
   };
-  int count = 0;
-  std::size_t last = 0;
+  // A crossing at a knot touches the pieces on both sides of it.
+  const auto are_near = [&](std::size_t a, std::size_t b) {
+    const std::size_t apart = a > b ? a - b : b - a;
+    return apart <= 1 || (closed && apart + 1 >= line.knots.size());
+  };
+  std::vector<Crossing> different;
   for (const Crossing& crossing : find_crossings(line.knots, closed)) {
     const double widest = std::max(width(crossing.first), width(crossing.second));
-    if (!is_crossing_of_roads(line, crossing, closed, widest)) {
+    if (crossing.is_tangle || !is_crossing_of_roads(line, crossing, closed, widest)) {
       const std::size_t index = raw_index(crossing.second);
       return fail(invalid(point_name(index),
                           "a line that crosses itself near " + point_text(points[index].position) +
                               ", where it passed after " + point_name(raw_index(crossing.first)),
                           "no crossing, or one of at least 30 degrees after four widths of way"));
     }
-    if (count == 0 || crossing.second > last + 1) ++count;  // a crossing at a knot touches two pieces
-    last = crossing.second;
+    const bool is_known = std::any_of(different.begin(), different.end(), [&](const Crossing& known) {
+      return (are_near(known.first, crossing.first) && are_near(known.second, crossing.second)) ||
+             (are_near(known.first, crossing.second) && are_near(known.second, crossing.first));
+    });
+    if (!is_known) different.push_back(crossing);
   }
-  return count;
+  return static_cast<int>(different.size());
 }
 
 }  // namespace
@@ -146,7 +153,8 @@ Result<Track> Track::create(std::string name, const std::vector<TrackPoint>& poi
     if (!(finish > track.start_s_ && finish <= track.length()))
       return fail(invalid("finish_s", number_text(options.finish_s),
                           "a place behind the start at " + number_text(track.start_s_) +
-                              " and on the road of " + number_text(track.length()) + " m"));
+                              " and on the road of " + number_text(std::floor(track.length() + 1e-6)) +
+                              " m"));
     track.lap_length_ = finish - track.start_s_;
   }
   track.raw_points_ = points;
@@ -162,6 +170,7 @@ Track Track::scaled(double factor) const {
   for (std::vector<double>* widths : {&track.left_, &track.right_}) {
     for (double& width : *widths) width *= factor;
   }
+  for (double& place : track.raw_places_) place *= factor;
   for (TrackPoint& point : track.raw_points_)
     point = {factor * point.position, factor * point.left, factor * point.right};
   return track;
@@ -179,6 +188,7 @@ void Track::set_widths(const std::vector<TrackPoint>& points, const std::vector<
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Projection foot = centre_.project(points[i].position, guesses[i], 5.0);
     samples.push_back({foot.s, foot.d + points[i].left, points[i].right - foot.d});
+    raw_places_.push_back(foot.s);
   }
   std::sort(samples.begin(), samples.end(),
             [](const Sample& a, const Sample& b) { return a.s != b.s ? a.s < b.s : a.left < b.left; });

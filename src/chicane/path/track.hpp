@@ -58,6 +58,8 @@ class Track {
   [[nodiscard]] double edge_distance(const Projection& foot) const noexcept;
   /// The waypoints as given (before smoothing), which telemetry sends six of.
   [[nodiscard]] const std::vector<TrackPoint>& raw_points() const noexcept { return raw_points_; }
+  /// And where along the line each of them lies [m].
+  [[nodiscard]] const std::vector<double>& raw_places() const noexcept { return raw_places_; }
   /// Where a car waits for the start, heading along the line.
   [[nodiscard]] double start_s() const noexcept { return start_s_; }
   [[nodiscard]] double start_d() const noexcept { return start_d_; }
@@ -80,6 +82,7 @@ class Track {
   std::vector<double> left_;  // at s = k · width_spacing_, k = 0 … the last at s = length
   std::vector<double> right_;
   std::vector<TrackPoint> raw_points_;
+  std::vector<double> raw_places_;
 };
 
 }  // namespace chicane::path

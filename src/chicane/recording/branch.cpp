@@ -43,6 +43,7 @@ class Odometer {
     const bool is_closed = track.centre().is_closed();
     const double length = track.lap_length();
     third_ = length / sim::WorldState::kSectors;
+    most_thirds_ = is_closed ? std::numeric_limits<int>::max() : sim::WorldState::kSectors;
     if (!has_begun_) {
       begin(frame, frame.s - track.start_s(), is_closed ? length : 0.0);
     } else {
@@ -74,10 +75,13 @@ class Odometer {
                          .sector = (passed_ - 1) % sim::WorldState::kSectors + 1,
                          .time = time_ + share * (time - time_) - start_});
   }
-  [[nodiscard]] int thirds() const { return static_cast<int>(std::floor(distance_ / third_)); }
+  [[nodiscard]] int thirds() const {
+    return std::min(most_thirds_, static_cast<int>(std::floor(distance_ / third_)));
+  }
 
   bool has_begun_ = false;
   double third_ = 1.0;                                          // of the lap [m]
+  int most_thirds_ = 0;                                         // an open road is one lap
   double distance_ = 0.0, s_ = 0.0, time_ = 0.0, start_ = 0.0;  // as of the last frame
   int lap_ = 0, passed_ = 0;
   std::vector<Passage> passages_;
@@ -340,7 +344,7 @@ class Branching {
         if (is_branch) report_.end_reason = "the car left the road and did not come back";
         return {};
       }
-      if (options_.laps > 0 && loop.world().lap >= options_.laps) return {};
+      if (options_.laps > 0 && (loop.world().lap >= options_.laps || loop.world().is_finished)) return {};
       if (has_all_laps(meter)) return {};
       if (loop.is_control_due() && loop.time() - start > duration + 1e-6) return {};
       if (!car.advance()) continue;

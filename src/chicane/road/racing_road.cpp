@@ -30,7 +30,10 @@ std::vector<double> arc_lengths(std::span<const path::LinePoint> lap) {
 }
 
 constexpr std::size_t kLeastPoints = 8;
-constexpr double kBeforeTheEnd = 5.0;  // of an open road a car stands [m]
+// Where a car stops on an open road: kBeforeTheEnd of it where there is room behind the finish, else just
+// behind, so that the finish is passed [m].
+constexpr double kBeforeTheEnd = 14.0;
+constexpr double kBehindTheEnd = 2.0;
 
 }  // namespace
 
@@ -66,11 +69,12 @@ RacingRoad::RacingRoad(std::span<const path::LinePoint> lap, double kerb, const 
 
 void RacingRoad::stop_at_end() noexcept {
   const std::span<ReferenceLine::Sample> samples = line_.samples();
-  const double from = line_.length() - kBeforeTheEnd;
+  const double end = line_.length() - std::min(kBeforeTheEnd, basis_.room_behind) + kBehindTheEnd;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double way = std::max(0.0, from - static_cast<double>(i) * line_.spacing());
+    const double way = std::max(0.0, end - static_cast<double>(i) * line_.spacing());
     samples[i].speed = std::min(samples[i].speed, std::sqrt(2.0 * basis_.braking * way));
   }
+  samples.back().speed = 0.0;
 }
 
 RacingRoad::Place RacingRoad::place(double s) const noexcept {

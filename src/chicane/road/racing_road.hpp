@@ -23,10 +23,11 @@ class RacingRoad {
       : RacingRoad(lap, kerb, Basis{}) {}
   /// What a lap was planned from.
   struct Basis {
-    bool is_learned = false;  ///< see is_learned()
-    double grip = 1.0;        ///< see grip()
-    bool is_closed = true;    ///< the road; else the car is planned to stop at its end ...
-    double braking = 0.0;     ///< ... with this deceleration [m/s²]
+    bool is_learned = false;   ///< see is_learned()
+    double grip = 1.0;         ///< see grip()
+    bool is_closed = true;     ///< the road; else the car is planned to stop at its end ...
+    double braking = 0.0;      ///< ... with this deceleration [m/s²]
+    double room_behind = 0.0;  ///< the finish, to the end [m]
   };
   RacingRoad(std::span<const path::LinePoint> lap, double kerb, const Basis& basis);
 

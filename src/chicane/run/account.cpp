@@ -108,6 +108,7 @@ void Account::look_for_end(const sim::WorldState& car, double time, double step,
   if (has_laps && !is_endless_ && (metrics_.laps_completed() >= terms_.laps || car.is_finished)) {
     is_over_ = true;
     has_finished_ = car.is_finished;
+    if (metrics_.laps_completed() == 0) end_reason_ = "the finish was reached without a lap from the start";
   } else if (has_laps && is_lost()) {
     is_over_ = true;
     end_reason_ = "the car left the road and did not come back";

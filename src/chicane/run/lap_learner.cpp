@@ -4,15 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::run {
 namespace {
 
-constexpr double kShare = 0.9;   // of the first lap that a lap has to be long
-constexpr double kAcross = 0.5;  // of the way between two sightings, that has to lead across the line
-constexpr double kSlack = 5.0;   // [m] that a car may be farther than its speed tells
+constexpr double kShare = 0.9;        // of the first lap that a lap has to be long
+constexpr double kMostTurned = 0.45;  // against the first time [rad]: roads cross at 30° or more
+constexpr double kSlack = 5.0;        // [m] that a car may be farther than its speed tells
 
 Vec2 direction_of(double heading) noexcept { return {cos(heading), sin(heading)}; }
 
@@ -43,8 +44,11 @@ void LapLearner::see(double time, const model::Pose& car, double speed) noexcept
   state_.time = time;
   state_.lap_time = time - lap_start_;
   if ((before < 0.0) == (after < 0.0) || std::fabs(beside) > kReach) return;
-  // A road that crosses the line's own may lie along the line.
-  if (std::fabs(after - before) < kAcross * moved) return;
+  // A road that crosses the line's own goes over the line as well, in another direction.
+  const double turned = angle_difference(car.psi, atan2(direction_.y(), direction_.x()));
+  const double back =
+      std::min(std::fabs(turned), kPi - std::fabs(turned));  // also a car that has turned round
+  if ((after > 0.0 ? std::fabs(turned) : back) > kMostTurned) return;
   if (after < 0.0) {
     ++backward_;
   } else if (backward_ > 0) {

@@ -47,13 +47,15 @@ Result<path::Track> make_waypoints(const path::Track& track, double scale) {
   const double mean_spacing = track.centre().length() / static_cast<double>(raw.size());
   if (mean_spacing > 0.6 * spacing) return track;
   const bool is_closed = track.centre().is_closed();
+  double length = is_closed ? (raw.front().position - raw.back().position).norm() : 0.0;
+  for (std::size_t i = 1; i < raw.size(); ++i) length += (raw[i].position - raw[i - 1].position).norm();
   std::vector<path::TrackPoint> sparse{raw.front()};
   double along = 0.0;
   double last = 0.0;
   for (std::size_t i = 1; i < raw.size(); ++i) {
     along += (raw[i].position - raw[i - 1].position).norm();
     const bool is_end = !is_closed && i + 1 == raw.size();
-    const bool meets_first = is_closed && track.length() - along < 0.5 * spacing;
+    const bool meets_first = is_closed && length - along < 0.5 * spacing;
     if (!is_end && (along - last < spacing || meets_first)) continue;
     sparse.push_back(raw[i]);
     last = along;

@@ -37,6 +37,7 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const path::Track& track
   if (!lap) return fail(lap.error());
   road::RacingRoad::Basis planned = basis;
   planned.is_closed = track.centre().is_closed();
+  planned.room_behind = track.length() - track.start_s() - track.lap_length();
   planned.braking =
       kShareAtTheEnd * options.brake_share *
       std::min(car.brake_acceleration * car.brake_throttle_limit, car.friction * car.load_constant);

@@ -28,6 +28,12 @@ double size_of(const Sighting& car) noexcept {
 
 }  // namespace
 
+path::Projection project_anywhere(const path::Track& track, const model::Pose& car) noexcept {
+  const path::Path& line = track.centre();
+  const double s = line.project({car.x, car.y}).s;
+  return line.project_along({car.x, car.y}, car.psi, 0.5 * (track.left_width(s) + track.right_width(s)));
+}
+
 Judge::Judge(const path::Track& track) noexcept : track_{track}, lap_length_{track.lap_length()} {}
 
 void Judge::reset(double time, const Sighting& car) noexcept {
@@ -40,11 +46,11 @@ void Judge::reset(double time, const Sighting& car) noexcept {
   // A start on the line is timed from standstill; any other first drives to the line.
   constexpr double kOnTheLine = 1.0;  // [m]
   const path::Path& line = track_.centre();
-  state_.s = project_anywhere(car.pose).s;
+  state_.s = project_anywhere(track_, car.pose).s;
   state_.progress = line.difference(state_.s, track_.start_s());
   state_.is_timed = std::fabs(state_.progress) <= kOnTheLine * size_;
   if (line.is_closed() && state_.progress > kOnTheLine * size_) state_.progress -= lap_length_;
-  next_line_ = state_.is_timed || !line.is_closed() ? lap_length_ : 0.0;
+  next_line_ = state_.is_timed || state_.progress > kOnTheLine * size_ ? lap_length_ : 0.0;
   locate(0.0, car);
   state_.min_edge_distance = std::numeric_limits<double>::infinity();
   measure_edges(0.0, car);
@@ -59,13 +65,6 @@ void Judge::see(double time, const Sighting& car) noexcept {
   time_laps(progress_before, elapsed);
 }
 
-path::Projection Judge::project_anywhere(const model::Pose& car) const noexcept {
-  // Of roads that cross under the car it is on the one it goes along.
-  const path::Path& line = track_.centre();
-  const double s = line.project({car.x, car.y}).s;
-  return line.project_along({car.x, car.y}, car.psi, 0.5 * (track_.left_width(s) + track_.right_width(s)));
-}
-
 void Judge::locate(double elapsed, const Sighting& car) noexcept {
   const path::Path& line = track_.centre();
   const Vec2 position{car.pose.x, car.pose.y};
@@ -76,7 +75,7 @@ void Judge::locate(double elapsed, const Sighting& car) noexcept {
   lost_for_ = is_far ? lost_for_ + 1 : 0;
   bool has_jumped = false;
   if (lost_for_ % kLostPatience == 1) {
-    const path::Projection anywhere = project_anywhere(car.pose);
+    const path::Projection anywhere = project_anywhere(track_, car.pose);
     has_jumped = anywhere.distance < 0.5 * nearest.distance;
     if (has_jumped) nearest = anywhere;
   }
@@ -152,7 +151,7 @@ void Judge::cross_line(double crossing_time) noexcept {
     if (is_best) state_.best_lap_time = state_.last_lap_time;
     state_.last_lap_was_clean = state_.off_track_time == off_track_at_lap_start_;
   }
-  state_.is_finished = !track_.centre().is_closed();
+  state_.is_finished = !track_.centre().is_closed() && next_line_ > 0.0;
   next_line_ += lap_length_;
   start_lap(crossing_time);
 }

@@ -48,6 +48,9 @@ struct Sighting {
   std::array<Vec2, 4> contact_points{};  ///< Plant::contact_points()
 };
 
+/// Where a car is that nobody has followed: of roads that cross under it on the one it goes along.
+[[nodiscard]] path::Projection project_anywhere(const path::Track& track, const model::Pose& car) noexcept;
+
 /// Judges a car by what is seen of it, one sighting after the other: where it is on the track, whether all of
 /// it is on the road, its laps. Knows no plant: the car may be simulated here (World) or elsewhere.
 ///
@@ -72,7 +75,6 @@ class Judge {
   [[nodiscard]] const path::Track& track() const noexcept { return track_; }
 
  private:
-  [[nodiscard]] path::Projection project_anywhere(const model::Pose& car) const noexcept;
   void locate(double elapsed, const Sighting& car) noexcept;
   void measure_edges(double elapsed, const Sighting& car) noexcept;
   void time_laps(double progress_before, double elapsed) noexcept;

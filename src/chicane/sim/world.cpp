@@ -14,37 +14,21 @@ namespace {
 
 constexpr double kJudgementPeriod = 0.005;  // [s]
 
-/// The waypoint nearest to the car. On a road that crosses itself one of the other road may be nearer than
-/// the next one of its own: there an angle between the car and the way on costs as much as kTurnCost spacings
-/// a radian, among the waypoints that are at most one spacing farther than the nearest.
+/// The waypoint nearest to the car; on a road that crosses itself, the one nearest along the road that the
+/// car goes along.
 int nearest_waypoint(const path::Track& track, const model::Pose& pose) noexcept {
-  constexpr double kTurnCost = 2.0;
   const auto& points = track.raw_points();
-  const int size = static_cast<int>(points.size());
+  const path::Path& line = track.centre();
   const Vec2 position{pose.x, pose.y};
-  const auto point = [&](int i) -> const Vec2& { return points[static_cast<std::size_t>(i)].position; };
+  const double s = track.crossings() > 0 ? project_anywhere(track, pose).s : 0.0;
   int nearest = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < size; ++i) {
-    const double squared = (point(i) - position).squared_norm();
-    if (squared < least) {
-      least = squared;
-      nearest = i;
-    }
-  }
-  if (track.crossings() == 0) return nearest;
-  const double spacing = track.length() / size;
-  const double most = std::sqrt(least) + spacing;
-  double cheapest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < size; ++i) {
-    const double distance = (point(i) - position).norm();
-    if (distance > most) continue;
-    const Vec2 along = point((i + 1) % size) - point((i + size - 1) % size);
-    const double turn = std::fabs(angle_difference(atan2(along.y(), along.x()), pose.psi));
-    const double cost = distance + kTurnCost * spacing * turn;
-    if (cost < cheapest) {
-      cheapest = cost;
-      nearest = i;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double distance = track.crossings() > 0 ? std::fabs(line.difference(track.raw_places()[i], s))
+                                                  : (points[i].position - position).squared_norm();
+    if (distance < least) {
+      least = distance;
+      nearest = static_cast<int>(i);
     }
   }
   return nearest;

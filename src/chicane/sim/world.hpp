@@ -50,8 +50,8 @@ class World {
 /// original (udacity/self-driving-car-sim v1.45, WaypointTracker): the nearest waypoint, or its successor
 /// when that lies more than 90° off the car's direction, is next; shown are the one before it and those
 /// after, `count` in all, around the lap when the track is closed, fewer at the end of an open one. Where a
-/// road crosses itself, which the original has nowhere, the waypoints of the road along the car come first.
-/// Returns how many. count is clamped to [0, kMaxWaypoints]. O(points), no allocation.
+/// road crosses itself, which the original has nowhere, they are those of the passage along the car. Returns
+/// how many. count is clamped to [0, kMaxWaypoints]. O(points), no allocation.
 int select_waypoints(const path::Track& track, const model::Pose& pose, int count,
                      model::Measurement& measurement) noexcept;
 

@@ -64,7 +64,7 @@ std::vector<Crossing> find_crossings(std::span<const Vec2> points, bool closed) 
        start = stop) {
     while (stop < entries.size() && entries[stop].cell == entries[start].cell) ++stop;
     if (stop - start > kMaxPiecesPerCell)
-      found.push_back({entries[start].piece, entries[start + kMaxPiecesPerCell].piece});
+      found.push_back({entries[start].piece, entries[start + kMaxPiecesPerCell].piece, true});
     const std::size_t last = std::min(stop, start + kMaxPiecesPerCell);
     for (std::size_t i = start; i < last; ++i) {
       for (std::size_t j = i + 1; j < last; ++j) {
@@ -75,6 +75,7 @@ std::vector<Crossing> find_crossings(std::span<const Vec2> points, bool closed) 
       }
     }
   }
+  if (found.size() >= kMostCrossings) found.back().is_tangle = true;
   const auto by_place = [](const Crossing& a, const Crossing& b) {
     return a.second != b.second ? a.second < b.second : a.first < b.first;
   };

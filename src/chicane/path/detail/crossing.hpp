@@ -14,6 +14,7 @@ namespace chicane::path {
 struct Crossing {
   std::size_t first = 0;
   std::size_t second = 0;
+  bool is_tangle = false;  ///< not looked at closely: there are too many pieces in one place
 };
 
 /// The places where the polyline through `points` crosses or touches itself (neighbours sharing a point do
