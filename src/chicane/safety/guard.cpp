@@ -43,8 +43,11 @@ constexpr double kGentleStop = 0.8;      // share of the useful braking; all of 
 constexpr double kBarelyStable = 1.1;    // where that is too little, too
 constexpr double kHeldByHand = 0.7;      // of a car that is steered by what it does
 // What is tried in turn.
-constexpr Braking kStops[] = {
-    {kGentleStop, kBlindStability}, {1.0, kBlindStability}, {1.0, kBarelyStable}, {1.0, kHeldByHand}};
+constexpr Braking kStops[] = {{kGentleStop, kBlindStability},
+                              {1.0, kBlindStability},
+                              {1.0, kBarelyStable},
+                              {1.0, kHeldByHand},
+                              {1.0, 0.0}};
 
 bool is_finite(const model::Command& command) noexcept {
   return std::isfinite(command.steer) && std::isfinite(command.throttle);
