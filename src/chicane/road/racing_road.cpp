@@ -30,8 +30,8 @@ std::vector<double> arc_lengths(std::span<const path::LinePoint> lap) {
 }
 
 constexpr std::size_t kLeastPoints = 8;
-// Where a car stops on an open road: kBeforeTheEnd of it where there is room behind the finish, else just
-// behind, so that the finish is passed [m].
+// A car stops kBehindTheEnd behind a point: kBeforeTheEnd before the end of an open road, or its finish where
+// less room is behind that, so that it is passed [m].
 constexpr double kBeforeTheEnd = 14.0;
 constexpr double kBehindTheEnd = 2.0;
 
