@@ -4,8 +4,8 @@
 #   chicane_test(path SOURCES path_test.cpp LABELS slow)
 #
 # Without HEADERS and SOURCES all of the folder belong to the module: so in folders that get a file for each controller, plant, fault or
-# track format. SIMD_SOURCES are compiled once for each instruction set (InstructionSets.cmake). A test without SOURCES has every
-# *_test.cpp of its folder.
+# track format; PRIVATE_HEADERS are for our own sources and not installed. SIMD_SOURCES are compiled once for each instruction set
+# (InstructionSets.cmake). A test without SOURCES has every *_test.cpp of its folder.
 #
 # Most of a small source file's compile time goes into the headers that it includes. UNITY compiles the module's sources as one file,
 # and chicane_unity(TARGET GROUP FILE...) some of a target's, so names in their anonymous namespaces must differ; files that no group
@@ -23,12 +23,15 @@ function(chicane_light target)
 endfunction()
 
 function(chicane_module name)
-  cmake_parse_arguments(M "UNITY;LIGHT" "" "HEADERS;SOURCES;SIMD_SOURCES;DEPENDS;PRIVATE" ${ARGN})
+  cmake_parse_arguments(M "UNITY;LIGHT" "" "HEADERS;SOURCES;SIMD_SOURCES;DEPENDS;PRIVATE;PRIVATE_HEADERS" ${ARGN})
   if(NOT M_HEADERS AND NOT M_SOURCES)
     list(JOIN M_SIMD_SOURCES "|" simd_sources)
     file(GLOB M_HEADERS CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.hpp detail/*.hpp)
     file(GLOB M_SOURCES CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp detail/*.cpp)
     list(FILTER M_SOURCES EXCLUDE REGEX "^(${simd_sources})$")
+    if(M_PRIVATE_HEADERS)
+      list(REMOVE_ITEM M_HEADERS ${M_PRIVATE_HEADERS})
+    endif()
   endif()
   set(target chicane_${name})
   list(TRANSFORM M_DEPENDS PREPEND chicane_)

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/fault_codec.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/fault_campaign.hpp"
 #include "chicane/run/parallel.hpp"
@@ -125,16 +125,16 @@ void print_markdown(const Options& options, const std::vector<Row>& rows) {
 }
 
 void print_json(const Options& options, const std::vector<Row>& rows) {
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  protocol::Json all = protocol::Json::array();
   for (const Row& row : rows) {
-    nlohmann::ordered_json json{{"track", row.track}, {"car", row.car}, {"fault", row.fault}};
-    json["for_s"] = row.is_lasting() ? nlohmann::ordered_json() : nlohmann::ordered_json(row.duration);
+    protocol::Json json{{"track", row.track}, {"car", row.car}, {"fault", row.fault}};
+    json["for_s"] = row.is_lasting() ? protocol::Json() : protocol::Json(row.duration);
     json["trials"] = row.driven();
     json["off_road"] = row.off();
     json["standing"] = row.standing();
     json["least_edge_m"] = row.worst().least_edge;
     json["worst"] = command_of(options, row, row.worst());
-    nlohmann::ordered_json each = nlohmann::ordered_json::array();
+    protocol::Json each = protocol::Json::array();
     for (const FaultOutcome& outcome : row.outcomes) {
       if (!std::isfinite(outcome.least_edge)) continue;
       each.push_back({{"at_s", outcome.at},
@@ -145,7 +145,8 @@ void print_json(const Options& options, const std::vector<Row>& rows) {
     json["outcomes"] = std::move(each);
     all.push_back(std::move(json));
   }
-  fmt::print("{}\n", nlohmann::ordered_json{{"rows", std::move(all)}}.dump(2));
+  fmt::print("{}\n",
+             protocol::json_text(protocol::Json{{"rows", std::move(all)}}, protocol::JsonLayout::kIndented));
 }
 
 Result<std::vector<sim::Fault>> chosen_faults(const std::vector<std::string>& names) {

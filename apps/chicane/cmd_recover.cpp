@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/parallel.hpp"
@@ -88,14 +88,14 @@ void print_table(const Options& options, const std::vector<CarOnTrack>& pairs) {
   }
 }
 
-nlohmann::ordered_json time_or_null(double time) {
-  return std::isfinite(time) ? nlohmann::ordered_json(time) : nlohmann::ordered_json();
+protocol::Json time_or_null(double time) {
+  return std::isfinite(time) ? protocol::Json(time) : protocol::Json();
 }
 
 void print_json(const Options& options, const std::vector<CarOnTrack>& pairs) {
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  protocol::Json all = protocol::Json::array();
   for (const CarOnTrack& pair : pairs) {
-    nlohmann::ordered_json each = nlohmann::ordered_json::array();
+    protocol::Json each = protocol::Json::array();
     for (std::size_t i = 0; i < pair.outcomes.size(); ++i) {
       const WayBackOutcome& outcome = pair.outcomes[i];
       const model::State& start = outcome.start.state;
@@ -119,7 +119,8 @@ void print_json(const Options& options, const std::vector<CarOnTrack>& pairs) {
                    {"back", pair.back()},
                    {"outcomes", std::move(each)}});
   }
-  fmt::print("{}\n", nlohmann::ordered_json{{"rows", std::move(all)}}.dump(2));
+  fmt::print("{}\n",
+             protocol::json_text(protocol::Json{{"rows", std::move(all)}}, protocol::JsonLayout::kIndented));
 }
 
 Result<CarOnTrack> drive_starts(const Options& options, const std::string& track, const std::string& car,

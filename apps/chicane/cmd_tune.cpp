@@ -5,8 +5,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "chicane/protocol/json.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/run/parallel.hpp"
 #include "chicane/sweep/trial.hpp"
@@ -39,7 +39,7 @@ std::string description_of(const Options& options, const sweep::TuneTask& task, 
       tuning.evaluations, words(tuning.found), words(tuning.by_hand));
 }
 
-nlohmann::ordered_json json_of(const sweep::Verdict& verdict) {
+protocol::Json json_of(const sweep::Verdict& verdict) {
   return {{"lap_time_s", verdict.lap_time},
           {"margin_m", verdict.margin},
           {"steering_rate_radps", verdict.steering_rate},
@@ -49,13 +49,13 @@ nlohmann::ordered_json json_of(const sweep::Verdict& verdict) {
 }
 
 std::string json_of(const sweep::Tuning& tuning) {
-  nlohmann::ordered_json json{{"is_better", tuning.is_better},
-                              {"evaluations", tuning.evaluations},
-                              {"runs", tuning.runs},
-                              {"by_hand", json_of(tuning.by_hand)},
-                              {"found", json_of(tuning.found)}};
+  protocol::Json json{{"is_better", tuning.is_better},
+                      {"evaluations", tuning.evaluations},
+                      {"runs", tuning.runs},
+                      {"by_hand", json_of(tuning.by_hand)},
+                      {"found", json_of(tuning.found)}};
   for (const auto& [key, text] : tuning.values) json["values"][key] = text;
-  return json.dump(2);
+  return protocol::json_text(json, protocol::JsonLayout::kIndented);
 }
 
 std::string text_of(const sweep::Tuning& tuning) {

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/protocol/json.hpp"
 
 namespace chicane::apps {
 
@@ -32,26 +32,26 @@ std::string to_table(const LimitRun& run, const lap_time::Limit& limit) {
 
 std::string to_json(const LimitRun& run, const lap_time::Limit& limit) {
   const lap_time::LimitReport& report = limit.report;
-  const nlohmann::ordered_json json{{"track", run.track},
-                                    {"car", run.car},
-                                    {"lap_time_s", limit.times.lap},
-                                    {"sector_times_s", limit.times.sectors},
-                                    {"mean_speed_mps", limit.mean_speed},
-                                    {"least_speed_mps", limit.least_speed},
-                                    {"top_speed_mps", limit.top_speed},
-                                    {"line_length_m", limit.line_length},
-                                    {"stages", report.stages},
-                                    {"spacing_m", report.spacing},
-                                    {"rounds", report.rounds},
-                                    {"iterations", report.iterations},
-                                    {"stationarity", report.stationarity},
-                                    {"last_offset_m", report.last_offset},
-                                    {"last_change", report.last_change},
-                                    {"violation", report.violation},
-                                    {"seam_offset_m", report.seam_offset},
-                                    {"seam_speed_mps", report.seam_speed},
-                                    {"wall_time_s", run.wall_time}};
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  const protocol::Json json{{"track", run.track},
+                            {"car", run.car},
+                            {"lap_time_s", limit.times.lap},
+                            {"sector_times_s", limit.times.sectors},
+                            {"mean_speed_mps", limit.mean_speed},
+                            {"least_speed_mps", limit.least_speed},
+                            {"top_speed_mps", limit.top_speed},
+                            {"line_length_m", limit.line_length},
+                            {"stages", report.stages},
+                            {"spacing_m", report.spacing},
+                            {"rounds", report.rounds},
+                            {"iterations", report.iterations},
+                            {"stationarity", report.stationarity},
+                            {"last_offset_m", report.last_offset},
+                            {"last_change", report.last_change},
+                            {"violation", report.violation},
+                            {"seam_offset_m", report.seam_offset},
+                            {"seam_speed_mps", report.seam_speed},
+                            {"wall_time_s", run.wall_time}};
+  return protocol::json_text(json, protocol::JsonLayout::kIndented) + "\n";
 }
 
 std::string to_csv(const LimitRun& run, const path::Track& track, const lap_time::Limit& limit) {
@@ -111,7 +111,7 @@ std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit) {
 }
 
 std::string to_json(const LimitRun& run, const lap_time::PlantLimit& limit) {
-  using Json = nlohmann::ordered_json;
+  using protocol::Json;
   const LineExtent extent = extent_of(limit.line);
   Json witness;
   if (limit.witness)
@@ -135,7 +135,7 @@ std::string to_json(const LimitRun& run, const lap_time::PlantLimit& limit) {
                   {"stationarity", limit.stationarity},
                   {"violation", limit.violation},
                   {"wall_time_s", run.wall_time}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return protocol::json_text(json, protocol::JsonLayout::kIndented) + "\n";
 }
 
 std::string to_csv(const LimitRun& run, const path::Track& track, const lap_time::PlantLimit& limit) {

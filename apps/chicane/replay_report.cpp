@@ -5,19 +5,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
+
+#include "chicane/protocol/json.hpp"
 
 namespace chicane::apps {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using protocol::Json;
 
 Json cycle(const std::optional<std::uint64_t>& number) { return number ? Json(*number) : Json(nullptr); }
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 std::string dump(const Json& object) {
-  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return protocol::json_text(object, protocol::JsonLayout::kIndented) + "\n";
 }
 
 Json json_of(const recording::Future& future) {

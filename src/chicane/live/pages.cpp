@@ -5,17 +5,18 @@
 
 #include <cstdint>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
+
+#include "chicane/protocol/json.hpp"
 
 namespace chicane::live {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using protocol::Json;
 
 std::function<net::Content()> mode_page(const Json& mode) {
-  return [text = mode.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"] {
+  return [text = protocol::json_text(mode) + "\n"] {
     return net::Content{.content_type = "application/json", .bytes = text};
   };
 }

@@ -6,18 +6,18 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/live/detail/rounded.hpp"
 #include "chicane/live/what_if.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/protocol/schema.hpp"
 
 namespace chicane::live {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using protocol::Json;
 
 constexpr auto kLook = std::chrono::milliseconds(5);  // between two looks at what the run did
 constexpr std::uint64_t kSpare = 64;                  // places that cycles leave to laps and changes
@@ -139,7 +139,7 @@ std::string Rival::answer() const {
     trace[name] = std::move(values);
   }
   json["trace"] = std::move(trace);
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return protocol::json_text(json) + "\n";
 }
 
 void Rival::note(const telemetry::Frame& frame) noexcept {

@@ -7,20 +7,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/live/detail/rounded.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
 
 namespace chicane::live {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using protocol::Json;
 
 constexpr std::size_t kMostRows = 1500;  // of each trace
 
@@ -82,8 +82,6 @@ Json json_of(const WhatIfQuestion& question) {
   return {{"log", question.log}, {"settings", std::move(settings)}};
 }
 
-std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
 /// A number in [least, most]; absent and null: `otherwise`.
 Result<double> number_of(const Json& json, const char* name, double least, double most, double otherwise) {
   const auto found = json.find(name);
@@ -104,7 +102,7 @@ Result<std::string> text_of(const Json& value) {
 }  // namespace
 
 Result<WhatIfQuestion> read_question(std::string_view text) {
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = protocol::parse_json(text);
   if (!json.is_object()) return refuse("the question", "a JSON object");
   constexpr double kEver = 1e9;
   const auto at = number_of(json, "at_s", 0.0, kEver, kEver);
@@ -159,7 +157,8 @@ Result<std::string> WhatIf::ask(std::string_view json) {
 std::string WhatIf::answer() {
   const std::lock_guard lock(mutex_);
   if (answered_ == newest_) return answer_ + "\n";
-  return dump({{"id", newest_.load()}, {"state", "computing"}, {"share", rounded(share_)}}) + "\n";
+  return protocol::json_text({{"id", newest_.load()}, {"state", "computing"}, {"share", rounded(share_)}}) +
+         "\n";
 }
 
 void WhatIf::work() {
@@ -192,7 +191,7 @@ std::string WhatIf::computed(std::uint64_t number, const WhatIfQuestion& questio
   Json answer{{"id", number}, {"state", report ? "done" : "failed"}, {"asked", json_of(question)}};
   if (!report) {
     answer["why"] = report.error().message;
-    return dump(answer);
+    return protocol::json_text(answer);
   }
   answer["at_s"] = rounded(report->at);
   answer["cycle"] = report->cycle;
@@ -201,7 +200,7 @@ std::string WhatIf::computed(std::uint64_t number, const WhatIfQuestion& questio
   answer["end_reason"] = report->end_reason.empty() ? Json(nullptr) : Json(report->end_reason);
   answer["was"] = json_of(report->recorded, was);
   answer["branch"] = json_of(report->branched, branch);
-  return dump(answer);
+  return protocol::json_text(answer);
 }
 
 }  // namespace chicane::live

@@ -5,15 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
+#include "chicane/protocol/json.hpp"
 
 namespace chicane::protocol {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using telemetry::LapSummary;
 using telemetry::RunSummary;
 using telemetry::TimeSummary;
@@ -114,7 +113,7 @@ std::string to_json(const RunSummary& run) {
       {"wall_time_s", number(run.wall_time)},
       {"state_hash", fmt::format("{:016x}", run.state_hash)},
       {"arithmetic", arithmetic(chosen_instruction_set())}};
-  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(report, JsonLayout::kIndented) + "\n";
 }
 
 std::string to_table(const RunSummary& run) {

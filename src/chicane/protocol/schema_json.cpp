@@ -3,18 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"
 
 namespace chicane::protocol {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string_view name_of(Kind kind) {
   switch (kind) {
@@ -121,7 +119,7 @@ std::string schema_json(const scenario::Scenario& defaults, const scenario::Scen
     if (control.fault != nullptr) json["fault"] = described(*control.fault);
     list.push_back(std::move(json));
   }
-  return list.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(list) + "\n";
 }
 
 }  // namespace chicane::protocol

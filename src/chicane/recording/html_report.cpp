@@ -9,18 +9,18 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
+#include "chicane/protocol/json.hpp"
 #include "chicane/recording/excerpt.hpp"
 #include "chicane/recording/temporary_file.hpp"
 
 namespace chicane::recording {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using protocol::Json;
 
 // What the dashboard draws of a log. The standard messages beside them say the same to other viewers.
 const std::vector<std::string> kTopics{"/chicane/frame", "/chicane/plan",   "/chicane/run",
@@ -97,7 +97,7 @@ Result<std::string> logs_json(const ReportOptions& options, double rate) {
     logs.push_back({{"name", log.name}, {"mcap_base64", base64(*content)}});
   }
   const Json object{{"logs", std::move(logs)}};
-  std::string text = object.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = protocol::json_text(object);
   // The one way out of a script element, or into a comment that hides its end, begins with this character.
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += 6) {
     text.replace(at, 1, "\\u003c");

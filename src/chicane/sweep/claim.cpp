@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <sstream>
 
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/protocol/yaml_tree.hpp"
 #include "chicane/sweep/outcome.hpp"
@@ -187,7 +187,7 @@ double number_of(const telemetry::RunSummary& run, std::string_view column) {
   const Column* found = find_column(at.name);
   if (found == nullptr) return telemetry::kNotMeasured;
   if (!at.place) return found->number(run).value_or(telemetry::kNotMeasured);
-  const nlohmann::json list = nlohmann::json::parse(found->text(run), nullptr, false);
+  const protocol::Json list = protocol::parse_json(found->text(run));
   const int size = list.is_array() ? static_cast<int>(list.size()) : 0;
   const int place = *at.place < 0 ? size + *at.place : *at.place;
   if (place < 0 || place >= size || !list[static_cast<std::size_t>(place)].is_number())

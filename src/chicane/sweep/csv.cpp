@@ -6,17 +6,17 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "chicane/protocol/json.hpp"
 #include "chicane/sweep/detail/page_text.hpp"
 #include "chicane/sweep/result_file.hpp"
 
 namespace chicane::sweep {
 namespace {
 
-std::string cell_of(const nlohmann::json& value) {
+std::string cell_of(const protocol::Json& value) {
   if (value.is_null()) return "";
-  return detail::csv_cell(value.is_string() ? value.get<std::string>() : value.dump());
+  return detail::csv_cell(value.is_string() ? value.get<std::string>() : protocol::json_text(value));
 }
 
 }  // namespace
@@ -33,14 +33,14 @@ Result<void> write_csv(const std::string& results, const std::string& csv) {
   for (const std::string& column : header->columns) out << ',' << cell_of(column);
   out << ",error\r\n";
   const auto read = read_lines(results, [&](const LinePlace& place, const std::string& text) -> Result<void> {
-    const nlohmann::json run = nlohmann::json::parse(text, nullptr, false);
+    const protocol::Json run = protocol::parse_json(text);
     if (!run.is_object()) return fail(ErrorCode::kParse, "got no JSON object");
-    const nlohmann::json settings = run.value("settings", nlohmann::json::object());
+    const protocol::Json settings = run.value("settings", protocol::Json::object());
     out << place.run;
-    for (const std::string& key : header->keys) out << ',' << cell_of(settings.value(key, nlohmann::json()));
+    for (const std::string& key : header->keys) out << ',' << cell_of(settings.value(key, protocol::Json()));
     for (const std::string& column : header->columns)
-      out << ',' << cell_of(run.value(column, nlohmann::json()));
-    out << ',' << cell_of(run.value("error", nlohmann::json())) << "\r\n";
+      out << ',' << cell_of(run.value(column, protocol::Json()));
+    out << ',' << cell_of(run.value("error", protocol::Json())) << "\r\n";
     return {};
   });
   if (!read) return fail(read.error());

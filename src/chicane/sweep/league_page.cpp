@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/sweep/detail/page_text.hpp"
 #include "chicane/sweep/outcome.hpp"
 
@@ -300,7 +300,7 @@ std::string league_csv(const LeagueResults& results) {
 }
 
 std::string league_json(const LeagueResults& results) {
-  using Json = nlohmann::ordered_json;
+  using protocol::Json;
   Json list = Json::array();
   for (const LeagueCell& cell : results.cells) {
     Json row{{"entry", cell.entry},
@@ -317,7 +317,7 @@ std::string league_json(const LeagueResults& results) {
     row["why_not"] = cell.why;
     list.push_back(std::move(row));
   }
-  return list.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return protocol::json_text(list, protocol::JsonLayout::kIndented) + "\n";
 }
 
 }  // namespace chicane::sweep

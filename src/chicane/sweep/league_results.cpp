@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/sweep/outcome.hpp"
 #include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/trial.hpp"
@@ -16,18 +16,15 @@
 namespace chicane::sweep {
 namespace {
 
-using LeagueJson = nlohmann::ordered_json;
-
-std::string dumped(const LeagueJson& json) {
-  return json.dump(-1, ' ', false, LeagueJson::error_handler_t::replace);
-}
+using protocol::Json;
 
 std::string bound_key(const std::string& track, const std::string& car) {
-  return dumped(LeagueJson{{"track", track}, {"car", car}});
+  return protocol::json_text(Json{{"track", track}, {"car", car}});
 }
 std::string trial_key(const std::string& entry, const std::string& track, const std::string& car,
                       const std::string& disturbance) {
-  return dumped(LeagueJson{{"entry", entry}, {"track", track}, {"car", car}, {kDisturbanceKey, disturbance}});
+  return protocol::json_text(
+      Json{{"entry", entry}, {"track", track}, {"car", car}, {kDisturbanceKey, disturbance}});
 }
 std::string trial_key(const ExternalTrial& trial) {
   return trial_key(trial.entry, trial.track, trial.car, trial.disturbance);
@@ -35,17 +32,17 @@ std::string trial_key(const ExternalTrial& trial) {
 
 /// Of the plan and the commands: what else is in the file belongs to another league.
 std::string first_line(const League& league) {
-  LeagueJson programs = LeagueJson::object();
+  Json programs = Json::object();
   for (const ExternalEntry& entry : league.externals) programs[entry.name] = entry.command;
-  return dumped(LeagueJson{
+  return protocol::json_text(Json{
       {"league", league.name}, {"plan", fmt::format("{:016x}", league.plan.hash())}, {"programs", programs}});
 }
 
-LeagueJson times_of(const telemetry::TimeSummary& times) {
+Json times_of(const telemetry::TimeSummary& times) {
   return {{"p50", std::round(1e7 * times.p50) / 10.0}, {"p99", std::round(1e7 * times.p99) / 10.0}};
 }
 
-void read_numbers(const LeagueJson& json, LeagueCell& cell) {
+void read_numbers(const Json& json, LeagueCell& cell) {
   for (const auto& [name, value] : json.items()) {
     if (value.is_number()) cell.numbers[name] = value.get<double>();
     if (value.is_boolean()) cell.numbers[name] = value.get<bool>() ? 1.0 : 0.0;
@@ -55,7 +52,7 @@ void read_numbers(const LeagueJson& json, LeagueCell& cell) {
   }
 }
 
-std::string reason_in(const LeagueJson& json, const LeagueCell& cell) {
+std::string reason_in(const Json& json, const LeagueCell& cell) {
   if (const std::string error = json.value("error", ""); !error.empty()) return error;
   const double events = cell.number("off_track_events");
   if (events > 0.0) return fmt::format("{:g} times off the road", events);
@@ -77,10 +74,10 @@ Result<BesideFile> BesideFile::open(const std::string& path, const League& leagu
   std::getline(stream, line);
   const bool is_ours = line == wanted;
   while (is_ours && std::getline(stream, line)) {
-    const LeagueJson json = LeagueJson::parse(line, nullptr, false);
+    const Json json = protocol::parse_json(line);
     if (!json.is_object()) continue;
     for (const char* kind : {"limit", "external"})
-      if (json.contains(kind)) file.keys_.push_back(dumped(json[kind]));
+      if (json.contains(kind)) file.keys_.push_back(protocol::json_text(json[kind]));
   }
   stream.close();
   if (is_ours) return file;
@@ -109,22 +106,23 @@ Result<void> BesideFile::append(const std::string& line) {
 
 Result<void> BesideFile::add_bound(const std::string& track, const std::string& car,
                                    const Result<double>& bound) {
-  LeagueJson json{{"limit", LeagueJson{{"track", track}, {"car", car}}}};
+  Json json{{"limit", Json{{"track", track}, {"car", car}}}};
   if (bound) json["lap_time_s"] = *bound;
   if (!bound) json["error"] = bound.error().message;
-  return append(dumped(json));
+  return append(protocol::json_text(json));
 }
 
 Result<void> BesideFile::add_times(std::uint64_t run, const telemetry::RunSummary& summary) {
-  return append(dumped(LeagueJson{{"run", run}, {"solve_time_us", times_of(summary.solve_time)}}));
+  return append(protocol::json_text(Json{{"run", run}, {"solve_time_us", times_of(summary.solve_time)}}));
 }
 
 Result<void> BesideFile::add_trial(const ExternalTrial& trial, const Result<telemetry::RunSummary>& run) {
   std::string line = fmt::format("{{\"external\":{},\"clean\":{}", trial_key(trial),
                                  run && telemetry::completed_on_road(*run));
-  if (!run) return append(line + ",\"error\":" + dumped(LeagueJson(run.error().message)) + "}");
+  if (!run) return append(line + ",\"error\":" + protocol::json_text(Json(run.error().message)) + "}");
   for (const Column& column : columns()) line += fmt::format(",\"{}\":{}", column.name, column.text(*run));
-  return append(line + fmt::format(",\"answer_time_us\":{}}}", dumped(times_of(run->step_time))));
+  return append(line +
+                fmt::format(",\"answer_time_us\":{}}}", protocol::json_text(times_of(run->step_time))));
 }
 
 namespace {
@@ -136,7 +134,7 @@ Result<void> read_own(const League& league, const std::string& file, LeagueResul
       read_lines(file, [&](const LinePlace& place, const std::string& text) -> Result<void> {
         if (place.run >= seen.size())
           return fail(ErrorCode::kParse, "got a run that is none of the league's");
-        const LeagueJson json = LeagueJson::parse(text, nullptr, false);
+        const Json json = protocol::parse_json(text);
         if (!json.is_object()) return fail(ErrorCode::kParse, "got no JSON object");
         LeagueCell& cell = results.cells[place.run];
         seen[place.run] = true;
@@ -164,7 +162,7 @@ std::string simulate_command(const ExternalTrial& trial) {
                      trial.track, trial.car, rest);
 }
 
-void read_beside(const LeagueJson& json, LeagueResults& results) {
+void read_beside(const Json& json, LeagueResults& results) {
   if (json.contains("limit") && json.contains("lap_time_s"))
     results.bounds[{json["limit"].value("track", ""), json["limit"].value("car", "")}] = json["lap_time_s"];
   if (json.contains("run")) {
@@ -173,8 +171,8 @@ void read_beside(const LeagueJson& json, LeagueResults& results) {
   }
   if (!json.contains("external")) return;
   for (LeagueCell& cell : results.cells) {
-    if (!cell.is_external ||
-        dumped(json["external"]) != trial_key(cell.entry, cell.track, cell.car, cell.disturbance))
+    if (!cell.is_external || protocol::json_text(json["external"]) !=
+                                 trial_key(cell.entry, cell.track, cell.car, cell.disturbance))
       continue;
     read_numbers(json, cell);
     cell.is_clean = cell.number("clean") == 1.0;
@@ -206,7 +204,7 @@ Result<LeagueResults> read_results(const League& league, const std::string& resu
                              .command = simulate_command(trial)});
   std::ifstream stream(beside, std::ios::binary);
   for (std::string line; std::getline(stream, line);) {
-    const LeagueJson json = LeagueJson::parse(line, nullptr, false);
+    const Json json = protocol::parse_json(line);
     if (json.is_object()) read_beside(json, results);
   }
   return results;

@@ -7,9 +7,9 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <nlohmann/json.hpp>
 
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/json.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -58,10 +58,7 @@ constexpr std::array kColumns{
            [](const RunSummary& run) -> std::string { return run.completed ? "true" : "false"; },
            [](const RunSummary& run) { return std::optional(run.completed ? 1.0 : 0.0); }},
     Column{"end_reason", "Why it ended otherwise.",
-           [](const RunSummary& run) {
-             return nlohmann::json(run.end_reason)
-                 .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-           },
+           [](const RunSummary& run) { return protocol::json_text(protocol::Json(run.end_reason)); },
            [](const RunSummary&) { return std::optional<double>(); }},
     number<&RunSummary::laps_completed>("laps_completed", "Laps driven to their end."),
     number<&RunSummary::off_track_events>("off_track_events", "Times a tyre left the road."),

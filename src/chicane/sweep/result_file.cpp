@@ -9,19 +9,19 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/sweep/outcome.hpp"
 #include "chicane/version.hpp"
 
 namespace chicane::sweep {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using protocol::Json;
 
 constexpr std::size_t kLongestLine = 1U << 20U;
 
@@ -82,12 +82,12 @@ std::string header_of(const Plan& plan) {
   for (const Settings& mark : plan.marks) header["marks"].push_back(json_of(mark));
   for (const auto& [key, names] : plan.cases())
     for (const auto& [name, settings] : names) header["cases"][key][name] = json_of(settings);
-  return header.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return protocol::json_text(header);
 }
 
 Result<Header> parse_header(std::string_view line, const std::string& file) {
   try {
-    const Json json = Json::parse(line);
+    const Json json = protocol::parse_json(line);
     Header header{.name = json.at("sweep"),
                   .plan = json.at("plan"),
                   .program = json.at("program"),

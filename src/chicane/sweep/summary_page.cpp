@@ -12,10 +12,10 @@
 #include <fstream>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/sweep/detail/heat_map.hpp"
 #include "chicane/sweep/detail/page_text.hpp"
 #include "chicane/sweep/result_file.hpp"
@@ -27,7 +27,7 @@ namespace {
 using detail::ByNumber;
 using detail::colour;
 using detail::escaped;
-using nlohmann::json;
+using json = protocol::Json;
 
 constexpr std::size_t kMostValues = 60;  // of an axis in a table or a map; more are put into intervals
 constexpr int kMostBins = 12;
@@ -100,7 +100,7 @@ class Page {
           read_lines(file, [&](const LinePlace& place, const std::string& text) -> Result<void> {
             if (place.run >= seen.size())
               return fail(ErrorCode::kParse, "got a run that is none of the plan's");
-            if (!seen[place.run]) add(place.run, json::parse(text, nullptr, false));
+            if (!seen[place.run]) add(place.run, protocol::parse_json(text));
             seen[place.run] = true;
             return {};
           });
@@ -168,7 +168,7 @@ class Page {
     const json settings = line.is_object() ? line.value("settings", json::object()) : json::object();
     for (const std::string& key : header_.keys) {
       const json value = settings.value(key, json());
-      run.values.push_back(value.is_string() ? value.get<std::string>() : value.dump());
+      run.values.push_back(value.is_string() ? value.get<std::string>() : protocol::json_text(value));
     }
     for (std::size_t i = 0; i < kShown.size(); ++i) {
       const json value = line.is_object() ? line.value(kShown[i].column, json()) : json();

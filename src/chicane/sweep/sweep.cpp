@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/run/closed_loop.hpp"
@@ -24,16 +24,14 @@ namespace {
 
 constexpr int kSearchDigits = 4;  // of a value tried: 12.35
 
-std::string quoted(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
+std::string quoted(const std::string& text) { return protocol::json_text(protocol::Json(text)); }
 
 /// A number as a number, all else as text.
 std::string setting_json(const std::string& key, const std::string& text) {
   const protocol::Parameter* row = protocol::find(key);
   const bool is_text = row != nullptr && (row->option.kind == protocol::Kind::kText ||
                                           row->option.kind == protocol::Kind::kChoice);
-  const bool is_json = !is_text && nlohmann::json::accept(text);
+  const bool is_json = !is_text && !protocol::parse_json(text).is_discarded();
   return is_json ? text : quoted(text);
 }
 

@@ -7,17 +7,17 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/sweep/result_file.hpp"
 
 namespace chicane::sweep::detail {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using protocol::Json;
 
 Json json_of(const Settings& settings) {
   Json json = Json::object();
@@ -35,11 +35,11 @@ std::string line_of(const Settings& values, const Verdict& verdict) {
                   {"unfinished", verdict.unfinished},
                   {"driven", verdict.driven},
                   {"passed", verdict.passed}};
-  return json.dump();
+  return protocol::json_text(json);
 }
 
 std::pair<Settings, Verdict> read_line(const std::string& line) {
-  const Json json = Json::parse(line);
+  const Json json = protocol::parse_json(line);
   Settings values;
   for (const auto& [key, text] : json.at("values").items()) values.emplace_back(key, text);
   const Json& lap = json.at("lap_time_s");
@@ -116,7 +116,7 @@ std::string tune_head(const TuneTask& task, const scenario::Scenario& scenario,
                   {"objective", kObjectiveNames[static_cast<std::size_t>(task.objective)]},
                   {"program", program_name()},
                   {"arithmetic", arithmetic(chosen_instruction_set())}};
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return protocol::json_text(json);
 }
 
 }  // namespace chicane::sweep::detail

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+namespace chicane::protocol {
+namespace {
+
+TEST(Json, KeepsTheOrderOfItsKeys) {
+  const Json json{{"zeta", 1}, {"alpha", {1.5, "two", nullptr, true}}};
+  EXPECT_EQ(json_text(json), R"({"zeta":1,"alpha":[1.5,"two",null,true]})");
+  EXPECT_EQ(json_text(parse_json(json_text(json))), json_text(json));
+}
+
+TEST(Json, IsIndentedByTwoSpaces) {
+  EXPECT_EQ(json_text({{"a", {{"b", 1}}}}, JsonLayout::kIndented), "{\n  \"a\": {\n    \"b\": 1\n  }\n}");
+}
+
+TEST(Json, WritesAnyBytesAndAnyNumbers) {
+  EXPECT_EQ(json_text(Json("\xff|")), "\"\xEF\xBF\xBD|\"");
+  EXPECT_EQ(json_text(Json(std::numeric_limits<double>::infinity())), "null");
+}
+
+TEST(Json, SaysOfAnyTextWhetherItIsJson) {
+  for (const char* text : {"", "{", "[1,]", "1 2", "nan", "{\"a\":1}}", "\"\xff\""})
+    EXPECT_TRUE(parse_json(text).is_discarded()) << text;
+  for (const char* text : {"null", "-1e3", "{}", " [1, {\"a\": []}] ", "\"\\u00e9\""})
+    EXPECT_FALSE(parse_json(text).is_discarded()) << text;
+  const std::string deep(100'000, '[');
+  EXPECT_TRUE(parse_json(deep).is_discarded());
+  EXPECT_FALSE(parse_json(deep + std::string(100'000, ']')).is_discarded());
+}
+
+}  // namespace
+}  // namespace chicane::protocol
