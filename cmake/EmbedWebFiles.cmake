@@ -2,25 +2,15 @@
 
 include(${CMAKE_CURRENT_LIST_DIR}/NpmCi.cmake)
 
+# The dashboard, and the same in one script and one style for `chicane report`.
 function(build_pages)
-  execute_process(COMMAND ${NODE} node_modules/vite/bin/vite.js build --outDir ${BUILD}/dist --emptyOutDir --logLevel warn
-                  WORKING_DIRECTORY ${SOURCE} RESULT_VARIABLE failed)
-  if(failed)
-    message(FATAL_ERROR "Vite could not build the dashboard in ${SOURCE}")
-  endif()
-endfunction()
-
-# The same in one script and one style, for `chicane report`.
-function(build_report)
-  execute_process(COMMAND ${CMAKE_COMMAND} -E env CHICANE_REPORT=1 ${NODE} node_modules/vite/bin/vite.js build
-                          --outDir ${BUILD}/report --emptyOutDir --logLevel warn
-                  WORKING_DIRECTORY ${SOURCE} RESULT_VARIABLE failed)
+  execute_process(COMMAND ${NODE} build.mjs ${BUILD}/dist ${BUILD}/report WORKING_DIRECTORY ${SOURCE} RESULT_VARIABLE failed)
   file(GLOB scripts ${BUILD}/report/assets/*.js)
   file(GLOB styles ${BUILD}/report/assets/*.css)
   list(LENGTH scripts script_count)
   list(LENGTH styles style_count)
   if(failed OR NOT script_count EQUAL 1 OR NOT style_count EQUAL 1)
-    message(FATAL_ERROR "Vite could not build the report in ${SOURCE}: expected one script and one style")
+    message(FATAL_ERROR "Vite could not build the pages in ${SOURCE}: expected one script and one style of the report")
   endif()
   set(report_script ${scripts} PARENT_SCOPE)
   set(report_style ${styles} PARENT_SCOPE)
@@ -125,6 +115,5 @@ if(MISSING)
   write_plain_page()
 else()
   build_pages()
-  build_report()
 endif()
 write_source()

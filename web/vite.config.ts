@@ -1,7 +1,7 @@
 import { defineConfig } from 'vitest/config';
 
-// CHICANE_REPORT: the page of `chicane report`; CHICANE_PAGE: the page that needs no program (apps/page).
-const { CHICANE_REPORT, CHICANE_PAGE } = process.env;
+// CHICANE_PAGE: the page that needs no program (apps/page).
+const { CHICANE_PAGE } = process.env;
 
 // The files are embedded in the program: few and small ones. three.js is in a file of its own, loaded when 3D is shown.
 export default defineConfig({
@@ -14,8 +14,8 @@ export default defineConfig({
     reportCompressedSize: false,
     modulePreload: false,
     chunkSizeWarningLimit: 700,
-    // Pages with a single script.
-    rollupOptions: CHICANE_REPORT || CHICANE_PAGE ? { output: { inlineDynamicImports: true } } : {},
+    // One script in the place of several.
+    rollupOptions: CHICANE_PAGE ? { output: { inlineDynamicImports: true } } : {},
   },
   server: {
     // `npm run dev` beside `chicane drive`: the page is Vite's, the data the program's.

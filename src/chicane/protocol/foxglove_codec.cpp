@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
+
+#include "chicane/protocol/json.hpp"
 
 namespace chicane::protocol::foxglove {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr char kMessageData = 1;
 constexpr char kTime = 2;
@@ -20,7 +19,7 @@ constexpr char kServiceRequest = 2;  // from the client
 
 /// What a client wrote, short enough to be repeated to it.
 std::string shown(const Json& value) {
-  std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  std::string text = json_text(value, JsonLayout::kAscii);
   if (text.size() > 40) text = text.substr(0, 37) + "...";
   return text;
 }
@@ -115,7 +114,7 @@ Result<ClientMessage> with_names(const Json& message) {
 }
 
 Result<ClientMessage> parse_text(std::string_view bytes) {
-  const Json message = Json::parse(bytes, nullptr, false);
+  const Json message = parse_json(bytes);
   if (!message.is_object()) return fail(ErrorCode::kParse, "a text message must be one JSON object in UTF-8");
   const Json& op = member(message, "op");
   if (op == "subscribe") {
@@ -169,8 +168,6 @@ Result<ClientMessage> parse_binary(std::string_view bytes) {
                      std::string{bytes.substr(kHead + encoding_size)}};
 }
 
-std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
 Json to_json(const Parameter& parameter) {
   Json json{{"name", parameter.name}};
   if (const auto* flag = std::get_if<bool>(&parameter.value)) json["value"] = *flag;
@@ -197,12 +194,12 @@ std::string server_info(std::string_view name, std::string_view session, Capabil
   Json capabilities = {"time"};
   if (can.parameters) capabilities.insert(capabilities.end(), {"parameters", "parametersSubscribe"});
   if (can.services) capabilities.push_back("services");
-  return dump({{"op", "serverInfo"},
-               {"name", name},
-               {"capabilities", capabilities},
-               {"supportedEncodings", {"cdr"}},
-               {"metadata", {{"ROS_DISTRO", "jazzy"}}},
-               {"sessionId", session}});
+  return json_text({{"op", "serverInfo"},
+                    {"name", name},
+                    {"capabilities", capabilities},
+                    {"supportedEncodings", {"cdr"}},
+                    {"metadata", {{"ROS_DISTRO", "jazzy"}}},
+                    {"sessionId", session}});
 }
 
 std::string advertise(std::span<const Channel> channels) {
@@ -215,7 +212,7 @@ std::string advertise(std::span<const Channel> channels) {
                     {"schema", channel.schema},
                     {"schemaEncoding", "ros2msg"}});
   }
-  return dump({{"op", "advertise"}, {"channels", list}});
+  return json_text({{"op", "advertise"}, {"channels", list}});
 }
 
 std::string advertise_services(std::span<const Service> services) {
@@ -235,11 +232,11 @@ std::string advertise_services(std::span<const Service> services) {
                     {"request", side("_Request", service.request_schema)},
                     {"response", side("_Response", service.response_schema)}});
   }
-  return dump({{"op", "advertiseServices"}, {"services", list}});
+  return json_text({{"op", "advertiseServices"}, {"services", list}});
 }
 
 std::string status(StatusLevel level, std::string_view message) {
-  return dump({{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}});
+  return json_text({{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}});
 }
 
 std::string parameter_values(std::span<const Parameter> parameters,
@@ -248,14 +245,14 @@ std::string parameter_values(std::span<const Parameter> parameters,
   for (const Parameter& parameter : parameters) list.push_back(to_json(parameter));
   Json json{{"op", "parameterValues"}, {"parameters", list}};
   if (request) json["id"] = *request;
-  return dump(json);
+  return json_text(json);
 }
 
 std::string service_failure(const CallService& call, std::string_view message) {
-  return dump({{"op", "serviceCallFailure"},
-               {"serviceId", call.service},
-               {"callId", call.call},
-               {"message", message}});
+  return json_text({{"op", "serviceCallFailure"},
+                    {"serviceId", call.service},
+                    {"callId", call.call},
+                    {"message", message}});
 }
 
 std::string message_data(std::uint32_t subscription, std::uint64_t time, std::string_view payload) {

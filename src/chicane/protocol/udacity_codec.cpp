@@ -7,17 +7,15 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <tl/expected.hpp>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/assert.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/protocol/json.hpp"
 
 namespace chicane::protocol {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr double kSteerUnit =
     degrees_to_radians(25.0);                 // wheel angle at ±1 (CarController.cs, m_MaximumSteerAngle)
@@ -46,7 +44,7 @@ std::string shown(const Json& value) {
   if (value.is_discarded()) return "nothing";
   if (value.is_array()) return fmt::format("an array of {}", value.size());
   if (value.is_object()) return "an object";
-  std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  std::string text = json_text(value, JsonLayout::kAscii);
   if (text.size() <= kMaxWords) return text;
   return fmt::format("{}…", std::string_view(text).substr(0, kMaxWords));
 }
@@ -78,18 +76,16 @@ tl::expected<Event, UdacityBroken> parse_event(std::string_view text) {
   const std::size_t start = text.find_first_not_of("0123456789");
   if (start == std::string_view::npos || text[start] != '[')
     return tl::unexpected(UdacityBroken{"the event is no array"});
-  Json array;
-  try {
-    array = Json::parse(text.begin() + static_cast<std::ptrdiff_t>(start), text.end());
-  } catch (const Json::parse_error& error) {
+  tl::expected<Json, JsonError> read = read_json(text.substr(start));
+  if (!read && read.error().byte) {
     if (has_decimal_comma(text)) {
       return tl::unexpected(
           UdacityBroken{"decimal comma: the simulator runs with a comma locale; start it with LC_NUMERIC=C"});
     }
-    return tl::unexpected(UdacityBroken{fmt::format("not JSON at byte {}", error.byte + start)});
-  } catch (const Json::exception&) {
-    return tl::unexpected(UdacityBroken{"a number is too large for JSON"});
+    return tl::unexpected(UdacityBroken{fmt::format("not JSON at byte {}", *read.error().byte + start)});
   }
+  if (!read) return tl::unexpected(UdacityBroken{"a number is too large for JSON"});
+  Json& array = *read;
   if (array.empty() || array.size() > 2 || !array[0].is_string()) {
     return tl::unexpected(UdacityBroken{"the event is not an array of a name and one value"});
   }
