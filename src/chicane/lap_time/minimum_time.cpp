@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <string>
 
 #include "chicane/base/math.hpp"
 #include "chicane/lap_time/detail/limit_solver.hpp"
+#include "chicane/lap_time/detail/message.hpp"
 
 namespace chicane::lap_time {
 namespace {
@@ -47,12 +47,6 @@ struct Leg {
   std::size_t all = 0;  ///< of the problem
 };
 
-std::string text(const char* format, double a, double b = 0.0, double c = 0.0) {
-  std::array<char, 240> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, a, b, c);
-  return buffer.data();
-}
-
 class Search {
  public:
   Search(const path::Track& track, const model::VehicleParams& vehicle, const LimitOptions& options)
@@ -89,10 +83,11 @@ class Search {
       nearness *= is_solved ? kLooser : kNearer;
       if (nearness > kMostNearness) break;
     }
-    return fail(ErrorCode::kInvalidArgument,
-                text("limit: no optimum after %.0f rounds: lap time %.3f s, changed by %.1e in the last one",
-                     report_.rounds - 1, lap_time(now_), report_.last_change) +
-                    text("; seam open by %.3f m and %.3f m/s", report_.seam_offset, report_.seam_speed));
+    return fail(
+        ErrorCode::kInvalidArgument,
+        message("limit: no optimum after %.0f rounds: lap time %.3f s, changed by %.1e in the last one",
+                static_cast<double>(report_.rounds - 1), lap_time(now_), report_.last_change) +
+            message("; seam open by %.3f m and %.3f m/s", report_.seam_offset, report_.seam_speed));
   }
 
  private:
@@ -118,10 +113,11 @@ class Search {
       room(car.front_axle, road.front_left, road.front_right);
       room(-car.rear_axle, road.rear_left, road.rear_right);
       if (road.front_left[k] <= road.front_right[k]) {
-        return fail(ErrorCode::kInvalidArgument,
-                    text("limit: the road is %.2f m wide at s = %.1f m, expected more than the car's %.2f m",
-                         track_.left_width(s) + track_.right_width(s) + 2.0 * track_.kerb_width(),
-                         track_.centre().wrap(s), 2.0 * car.half_width));
+        return fail(
+            ErrorCode::kInvalidArgument,
+            message("limit: the road is %.2f m wide at s = %.1f m, expected more than the car's %.2f m",
+                    track_.left_width(s) + track_.right_width(s) + 2.0 * track_.kerb_width(),
+                    track_.centre().wrap(s), 2.0 * car.half_width));
       }
     }
     return {};
@@ -296,13 +292,13 @@ Result<Limit> find_limit(const path::Track& track, const model::VehicleParams& v
   if (Result<void> valid = model::validate(vehicle); !valid) return fail(valid.error());
   if (vehicle.scale != 1.0)
     return fail(ErrorCode::kInvalidArgument,
-                text("limit: got a model car of scale %g, expected one in full size", vehicle.scale));
+                message("limit: got a model car of scale %g, expected one in full size", vehicle.scale));
   if (!track.centre().is_closed())
     return fail(ErrorCode::kInvalidArgument,
                 track.name() + ": the road is open, expected a closed one: a lap has no end");
   if (!(options.spacing >= 0.5 && options.spacing <= 5.0))
     return fail(ErrorCode::kInvalidArgument,
-                text("limit: spacing: got %g m, expected 0.5 to 5", options.spacing));
+                message("limit: spacing: got %g m, expected 0.5 to 5", options.spacing));
   return std::make_unique<Search>(track, vehicle, options)->run();
 }
 

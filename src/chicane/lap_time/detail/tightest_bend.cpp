@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "chicane/lap_time/detail/collocation.hpp"
+#include "chicane/lap_time/detail/message.hpp"
 #include "chicane/lap_time/detail/plant_model.hpp"
 #include "chicane/lap_time/detail/road_nodes.hpp"
 
@@ -51,13 +51,6 @@ struct BendModel {
 
 constexpr double kPace = 4.0;  // of the nodes [m/s]
 
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  std::array<char, 320> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, values...);
-  return buffer.data();
-}
-
 }  // namespace
 
 double CarSize::most_curvature() const noexcept {
@@ -84,8 +77,8 @@ Result<void> fits_road(const path::Track& track, const CarSize& car, const Fit& 
         std::min(road.front_left[k] + road.front_right[k], road.rear_left[k] + road.rear_right[k]);
     if (width <= 2.0 * car.half_width)
       return fail(ErrorCode::kInvalidArgument,
-                  text("limit: the road is %.2f m wide at s = %.1f m, expected more than the car's %.2f m",
-                       fit.scale * width, fit.scale * road.s[k], fit.scale * 2.0 * car.half_width));
+                  message("limit: the road is %.2f m wide at s = %.1f m, expected more than the car's %.2f m",
+                          fit.scale * width, fit.scale * road.s[k], fit.scale * 2.0 * car.half_width));
     sharpest = std::max(sharpest, std::fabs(road.curvature[k]));
   }
   if (sharpest * fit.surely < car.most_curvature()) return {};
@@ -115,10 +108,10 @@ Result<void> fits_road(const path::Track& track, const CarSize& car, const Fit& 
   if (fit.reserve * curvature(worst) <= car.most_curvature()) return {};
   return fail(
       ErrorCode::kInvalidArgument,
-      text("limit: the bend at s = %.1f m leaves room for a radius of %.2f m, and the car's full lock "
-           "drives no less than %.2f m%s",
-           fit.scale * road.s[worst], fit.scale / curvature(worst), fit.scale / car.most_curvature(),
-           fit.reserve > 1.0 ? ", of which something must be left to steer by" : ""));
+      message("limit: the bend at s = %.1f m leaves room for a radius of %.2f m, and the car's full lock "
+              "drives no less than %.2f m",
+              fit.scale * road.s[worst], fit.scale / curvature(worst), fit.scale / car.most_curvature()) +
+          (fit.reserve > 1.0 ? ", of which something must be left to steer by" : ""));
 }
 
 }  // namespace chicane::lap_time
