@@ -253,9 +253,7 @@ void Rival::follow(double time) {
       const model::State& car = frame.truth;
       const double speed = hypot(car.vx, car.vy);
       own_laps_.add(frame.time, speed, frame.lateral_error);
-      if (auto line =
-              planner_->follow(loop_->controller(), loop_->scenario(), &loop_->track(), loop_->time()))
-        loop_->use_line(std::move(line));
+      planner_->advance(*loop_);
       const std::lock_guard lock(mutex_);
       trace_.push_back(
           {frame.time, car.x, car.y, car.psi, frame.applied.steer, speed, loop_->world().progress});

@@ -181,10 +181,7 @@ class Rebuilt {
     return is_new;
   }
   /// After a control step of advance(): what is planned beside a run that goes on by itself.
-  void race_by_learned_lap() {
-    if (auto lap = planner_.follow(loop_->controller(), loop_->scenario(), &loop_->track(), loop_->time()))
-      loop_->use_line(std::move(lap));
-  }
+  void race_by_learned_lap() { planner_.advance(*loop_); }
   [[nodiscard]] run::ClosedLoop& loop() { return *loop_; }
 
  private:

@@ -202,10 +202,8 @@ telemetry::RunSummary run_closed_loop(ClosedLoop& loop, const RunHooks& hooks,
     if (const auto lap = loop.take_lap(); lap && hooks.on_lap) hooks.on_lap(*lap);
     if (!is_new) continue;
     if (hooks.on_frame) hooks.on_frame(loop.frame());
-    if (const auto lap = planner.follow(loop.controller(), loop.scenario(), &loop.track(), loop.time())) {
-      loop.use_line(lap);
-      if (hooks.on_change) hooks.on_change(LapPlanner::lap_change(*lap, loop.cycle(), loop.time()));
-    }
+    const std::optional<telemetry::Change> planned = planner.advance(loop);
+    if (planned && hooks.on_change) hooks.on_change(*planned);
     if (stop && stop()) break;
   }
   telemetry::RunSummary run = loop.summary();

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "chicane/base/text.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "chicane/run/control_cycle.hpp"
 #include "chicane/run/racing.hpp"
 
 namespace chicane::run {
@@ -51,6 +53,21 @@ std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Con
   if (!has_ended_.load(std::memory_order_acquire)) return {};
   has_answered_ = true;
   return std::exchange(lap_, nullptr);
+}
+
+std::optional<telemetry::Change> LapPlanner::advance(ClosedLoop& loop) {
+  const auto lap = follow(loop.controller(), loop.scenario(), &loop.track(), loop.time());
+  if (!lap) return {};
+  loop.use_line(lap);
+  return lap_change(*lap, loop.cycle(), loop.time());
+}
+
+std::optional<telemetry::Change> LapPlanner::advance(ControlCycle& cycle, const scenario::Scenario& scenario,
+                                                     const path::Track* track, double time) {
+  const auto lap = follow(cycle.controller(), scenario, track, time);
+  if (!lap) return {};
+  cycle.use_line(lap);
+  return lap_change(*lap, cycle.next(), time);
 }
 
 void LapPlanner::search(const scenario::Scenario& scenario, const path::Track* track,

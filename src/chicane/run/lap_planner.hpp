@@ -16,6 +16,9 @@
 
 namespace chicane::run {
 
+class ClosedLoop;
+class ControlCycle;
+
 /// Plans the lap to race by that a controller wants from what it has learned (Controller::wants_lap): beside
 /// a run in real time, on a thread of its own with low priority; in virtual time at once, taken up as late as
 /// kPlanningTime. What is planned depends on scenario, road and grip alone; with which grip, and when it
@@ -40,6 +43,13 @@ class LapPlanner {
   [[nodiscard]] std::shared_ptr<const road::RacingRoad> follow(const controller::Controller& controller,
                                                                const scenario::Scenario& scenario,
                                                                const path::Track* track, double time);
+
+  /// follow() after a control cycle of a run: a lap that is ready is used from the next one on. Gives what
+  /// recordings and viewers are to be told of it then.
+  std::optional<telemetry::Change> advance(ClosedLoop& loop);
+  /// The same for a run without a plant, at its time [s].
+  std::optional<telemetry::Change> advance(ControlCycle& cycle, const scenario::Scenario& scenario,
+                                           const path::Track* track, double time);
 
   /// What recordings and viewers are told where `lap` is used from control cycle `cycle` on: the grip that it
   /// is planned with. Allocates.

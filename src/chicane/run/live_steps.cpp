@@ -11,15 +11,9 @@ bool LiveSteps::advance() {
   if (!is_new) return false;
   is_unseen_ = false;
   if (hooks_.on_frame) hooks_.on_frame(loop_.frame());
-  race_by_learned_lap();
+  const std::optional<telemetry::Change> planned = planner_.advance(loop_);
+  if (planned && hooks_.on_change) hooks_.on_change(*planned);
   return true;
-}
-
-void LiveSteps::race_by_learned_lap() {
-  const auto lap = planner_.follow(loop_.controller(), loop_.scenario(), &loop_.track(), loop_.time());
-  if (!lap) return;
-  loop_.use_line(lap);
-  if (hooks_.on_change) hooks_.on_change(LapPlanner::lap_change(*lap, loop_.cycle(), loop_.time()));
 }
 
 void LiveSteps::one_cycle() {

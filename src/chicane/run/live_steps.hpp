@@ -38,7 +38,6 @@ class LiveSteps {
 
  private:
   void tell_lap();
-  void race_by_learned_lap();
 
   ClosedLoop& loop_;
   double budget_;

@@ -195,15 +195,9 @@ class UdacityEndpoint::Control {
     roadside_.judge(frame_);
     if (const auto lap = roadside_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
     if (hooks_.on_frame) hooks_.on_frame(frame_);
-    race_by_learned_lap();
-  }
-
-  void race_by_learned_lap() {
     const path::Track* track = is_other_road_ ? nullptr : options_.track;
-    const auto lap = planner_.follow(cycle_.controller(), scenario_, track, frame_.time);
-    if (!lap) return;
-    cycle_.use_line(lap);
-    if (hooks_.on_change) hooks_.on_change(run::LapPlanner::lap_change(*lap, cycle_.next(), frame_.time));
+    const auto planned = planner_.advance(cycle_, scenario_, track, frame_.time);
+    if (planned && hooks_.on_change) hooks_.on_change(*planned);
   }
 
   /// After a silence, ours too, the car has been stopped meanwhile, or has gone on with the last command:
