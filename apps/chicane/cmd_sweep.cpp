@@ -37,6 +37,8 @@ ExitCode show(const sweep::Plan& plan, double number) {
     return report(Error{ErrorCode::kInvalidArgument,
                         fmt::format("--show: got {}, expected a run from 0 to {}", run, plan.size() - 1)});
   fmt::print("{}\n", sweep::command_of(plan.settings_of(run)));
+  if (plan.search)
+    fmt::print(stderr, "without {}, which is searched: search_value of its results\n", plan.search->key);
   return kSuccess;
 }
 
@@ -66,8 +68,9 @@ ExitCode drive_sweep(const Options& options) {
                         stop);
   counter.end();
   if (!done) return report(done.error());
-  fmt::print(stderr, "{}: {} of {} runs, {} of them found, {} that cannot be driven\n", file,
-             done->found + done->driven, done->runs, done->found, done->failed);
+  fmt::print(stderr, "{}: {} of {} runs{}\n", file, done->found + done->driven, done->runs,
+             done->found > 0 ? fmt::format(", {} of them from before", done->found) : "");
+  if (done->failed > 0) fmt::print(stderr, "{} cannot be driven: {}\n", done->failed, done->why);
   if (done->is_complete()) return kSuccess;
   fmt::print(stderr, "stopped: the same command goes on with what is missing\n");
   return kRunFailed;

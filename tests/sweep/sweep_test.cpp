@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sweep/sweep.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "chicane/base/text.hpp"
 #include "chicane/sweep/csv.hpp"
@@ -19,6 +22,7 @@
 #include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/summary_page.hpp"
 #include "chicane/sweep/trial.hpp"
+#include "chicane/version.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -161,6 +165,7 @@ TEST_F(Sweep, ARunThatCannotBeDrivenSaysWhyAndStopsNothing) {
   const auto done = run("a.jsonl", {}, 2);
   ASSERT_TRUE(done);
   EXPECT_EQ(done->failed, 2U);
+  EXPECT_THAT(done->why, HasSubstr("track: got \"nowhere\", expected"));
   EXPECT_THAT(merged({"a.jsonl"}), HasSubstr("\"error\":\"track: got \\\"nowhere\\\", expected"));
 }
 
@@ -169,9 +174,59 @@ TEST_F(Sweep, ResultsOfAnotherPlanAreNotMixed) {
   plan_ = parse_plan(std::string(kPlan) + "about: the same\n", "plan.yaml").value();
   EXPECT_TRUE(run("a.jsonl")) << "the same plan in other words";
   plan_.fixed.emplace_back("laps", "1");
-  EXPECT_THAT(run("a.jsonl").error().message, HasSubstr("got results of another plan or program"));
+  EXPECT_THAT(run("a.jsonl").error().message, HasSubstr("got results of the plan "));
   ASSERT_TRUE(run("b.jsonl"));
   EXPECT_THAT(merged({"a.jsonl", "b.jsonl"}), HasSubstr("got the plan"));
+}
+
+/// The version is the same in all of them.
+TEST_F(Sweep, ResultsOfAnotherBuildAreNotMixed) {
+  ASSERT_TRUE(run("a.jsonl"));
+  const std::string ours = program_name();
+  EXPECT_THAT(ours, testing::MatchesRegex("chicane [0-9.]+ \\([0-9a-f]+\\)"));
+  std::string other = read(path("a.jsonl"));
+  other.replace(other.find(ours), ours.size(), "chicane " CHICANE_VERSION " (0123456789ab)");
+  std::ofstream(path("b.jsonl")) << other;
+  EXPECT_THAT(
+      merged({"a.jsonl", "b.jsonl"}),
+      HasSubstr("b.jsonl: got the program chicane " CHICANE_VERSION " (0123456789ab), expected " + ours));
+  EXPECT_THAT(run("b.jsonl").error().message, HasSubstr("got results of the program chicane "));
+}
+
+TEST_F(Sweep, ResultsWithFilesOfOtherContentsAreNotMixed) {
+  const auto write = [&](const std::string& name, const std::string& text) {
+    std::ofstream(path(name)) << text;
+  };
+  write("inner.yaml", "controller: pid\npid: {speed_gain: 0.3}\n");
+  write("outer.yaml", "preset: inner.yaml\nlatency_ms: 80\n");
+  const std::string text =
+      fmt::format("settings: {{laps: 0, time_limit_s: 1, track: {}}}\naxes: [{{preset: [pid, {}]}}]",
+                  path("road.csv"), path("outer.yaml"));
+  plan_ = parse_plan(text, "plan.yaml").value();
+  const auto refusal = [&] {
+    const auto done = run("a.jsonl");
+    return done ? std::string() : done.error().message;
+  };
+  EXPECT_EQ(refusal(), "");
+  EXPECT_EQ(refusal(), "");
+  write("road.csv", "# x_m,y_m\n");
+  EXPECT_THAT(refusal(), HasSubstr("presets, cars or tracks of other contents"));
+  fs::remove(path("road.csv"));
+  EXPECT_EQ(refusal(), "");
+  write("inner.yaml", "controller: pid\npid: {speed_gain: 0.4}\n");  // which the preset builds on
+  EXPECT_THAT(refusal(), HasSubstr("presets, cars or tracks of other contents"));
+}
+
+TEST_F(Sweep, APipeIsWrittenToAndNotReplaced) {
+  ASSERT_TRUE(run("a.jsonl"));
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+  std::string got;
+  std::thread reader([&] { got = read(path("pipe")); });
+  const auto done = merge({path("a.jsonl")}, path("pipe"));
+  reader.join();
+  ASSERT_TRUE(done);
+  EXPECT_TRUE(fs::is_fifo(path("pipe")));
+  EXPECT_EQ(got, merged({"a.jsonl"}));
 }
 
 TEST_F(Sweep, TwoResultsOfOneRunAreSaid) {
@@ -200,6 +255,8 @@ TEST_F(Sweep, TablesHaveAColumnForEachSettingAndResult) {
             "run,seed,latency_ms,top_speed_mps,lap_times_s,end_reason,error");
   EXPECT_THAT(csv, HasSubstr("\r\n0,1,60,"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 13);
+  EXPECT_THAT(write_csv(path("a.jsonl"), path("nowhere/a.csv")).error().message,
+              HasSubstr("cannot be written: No such file or directory"));
 }
 
 TEST(SweepOutcome, ColumnsAreFoundByTheirNames) {
@@ -263,6 +320,9 @@ TEST(SweepTrial, TheCommandDrivesTheSameRun) {
             "chicane drive --fast --preset weighted --laps 3 --track 'my track.csv' --set guard.mode=off "
             "--speed-mph 40 "
             "--fault half_grip@12");
+  EXPECT_EQ(command_of({{"speed_mph", "30"}, {"speed_mps", "8"}, {"speed_mph", "20"}}),
+            "chicane drive --fast --speed-mph 20")
+      << "the last one wins, and drive takes one";
   EXPECT_FALSE(check_setting("latency_ms", "900"));
   EXPECT_FALSE(check_setting("speed_mph", "-3"));
   EXPECT_FALSE(check_setting("fault.name", "half_gripp"));

@@ -2,7 +2,6 @@
 #include "chicane/recording/html_report.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include "chicane/protocol/json.hpp"
+#include "chicane/protocol/library.hpp"
 #include "chicane/recording/excerpt.hpp"
 #include "chicane/recording/temporary_file.hpp"
 
@@ -106,17 +106,17 @@ Result<std::string> logs_json(const ReportOptions& options, double rate) {
 }
 
 Result<void> write_all(const std::string& file, std::initializer_list<std::string_view> parts) {
-  const std::string unfinished = fmt::format("{}.{}", file, ::getpid());
+  const std::string unfinished = protocol::unfinished_name(file);
   std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
   for (const std::string_view part : parts) {
     stream.write(part.data(), static_cast<std::streamsize>(part.size()));
   }
   stream.close();
   std::error_code error;
-  if (stream) std::filesystem::rename(unfinished, file, error);
+  if (stream && unfinished != file) std::filesystem::rename(unfinished, file, error);
   if (stream && !error) return {};
   const std::string why = error ? error.message() : std::strerror(errno);
-  std::filesystem::remove(unfinished, error);
+  if (unfinished != file) std::filesystem::remove(unfinished, error);
   return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, why));
 }
 

@@ -28,6 +28,7 @@ Result<void> write_csv(const std::string& results, const std::string& csv) {
   const Result<Header> header = parse_header(line, results);
   if (!header) return fail(header.error());
   std::ofstream out(csv, std::ios::binary | std::ios::trunc);
+  if (!out) return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", csv, std::strerror(errno)));
   out << "run";
   for (const std::string& key : header->keys) out << ',' << cell_of(key);
   for (const std::string& column : header->columns) out << ',' << cell_of(column);
@@ -45,7 +46,7 @@ Result<void> write_csv(const std::string& results, const std::string& csv) {
   });
   if (!read) return fail(read.error());
   out.close();
-  if (!out) return fail(ErrorCode::kIo, fmt::format("{}: {}", csv, std::strerror(errno)));
+  if (!out) return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: the disk is full or gone", csv));
   return {};
 }
 

@@ -2,13 +2,13 @@
 #include "chicane/sweep/merge.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
+#include "chicane/protocol/library.hpp"
 #include "chicane/sweep/result_file.hpp"
 
 namespace chicane::sweep {
@@ -38,7 +38,7 @@ class Merger {
   }
 
   Result<MergeSummary> write(const std::string& output) {
-    const std::string unfinished = fmt::format("{}.{}.part", output, ::getpid());
+    const std::string unfinished = protocol::unfinished_name(output);
     std::ofstream out(unfinished, std::ios::binary | std::ios::trunc);
     out << header_ << '\n';
     for (const Found& each : found_) out << line(each) << '\n';
@@ -46,10 +46,10 @@ class Merger {
     std::error_code error;
     if (!out) {
       const std::string why = std::strerror(errno);
-      std::filesystem::remove(unfinished, error);
+      if (unfinished != output) std::filesystem::remove(unfinished, error);
       return fail(ErrorCode::kIo, fmt::format("{}: {}", output, why));
     }
-    std::filesystem::rename(unfinished, output, error);
+    if (unfinished != output) std::filesystem::rename(unfinished, output, error);
     if (error) return fail(ErrorCode::kIo, fmt::format("{}: {}", output, error.message()));
     return MergeSummary{.runs = found_.size(), .repeated = repeated_};
   }
@@ -65,7 +65,9 @@ class Merger {
       header_ = first;
       found_.resize(header->runs);
     } else if (first != header_) {
-      return fail(ErrorCode::kInvalidArgument, difference(*header, file));
+      return fail(ErrorCode::kInvalidArgument,
+                  fmt::format("{}: got {} as in {}", file,
+                              difference_text(*header, parse_header(header_, files_[0]).value()), files_[0]));
     }
     const auto contents = read_lines(
         file, [&](const LinePlace& place, const std::string& text) { return take(place, text, index); });
@@ -95,18 +97,6 @@ class Merger {
     stream.seekg(static_cast<std::streamoff>(place.offset));
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
     return text;
-  }
-
-  [[nodiscard]] std::string difference(const Header& other, const std::string& file) const {
-    const Header first = parse_header(header_, files_[0]).value();
-    const auto words = [&](std::string_view what, const std::string& a, const std::string& b) {
-      return fmt::format("{}: got {} {}, expected {} as in {}", file, what, b, a, files_[0]);
-    };
-    if (first.plan != other.plan) return words("the plan", first.plan, other.plan);
-    if (first.program != other.program) return words("the program", first.program, other.program);
-    if (first.arithmetic != other.arithmetic)
-      return words("the arithmetic", first.arithmetic, other.arithmetic);
-    return fmt::format("{}:1: got another first line than {}", file, files_[0]);
   }
 
   [[nodiscard]] Result<void> check_complete() const {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chicane/base/fnv.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
+#include "chicane/sweep/detail/text_hash.hpp"
 #include "chicane/sweep/sampling.hpp"
 
 namespace chicane::sweep {
@@ -14,10 +14,7 @@ namespace {
 
 constexpr int kDigits = 12;  // of a computed value: 0.3, not 0.30000000000000004
 
-void add_text(Fnv& hash, const std::string& text) {
-  hash.add(static_cast<std::uint64_t>(text.size()));
-  for (const char c : text) hash.add(static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
-}
+using detail::add_text;
 
 void add_settings(Fnv& hash, const Settings& settings) {
   for (const auto& [key, text] : settings) {

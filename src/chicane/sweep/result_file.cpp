@@ -15,8 +15,8 @@
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
+#include "chicane/sweep/detail/named_files.hpp"
 #include "chicane/sweep/outcome.hpp"
-#include "chicane/version.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -65,19 +65,20 @@ bool write_all(int descriptor, std::string_view bytes) {
 
 }  // namespace
 
-std::string program_name() {
-  return fmt::format("chicane {}.{}.{}", CHICANE_VERSION_MAJOR, CHICANE_VERSION_MINOR, CHICANE_VERSION_PATCH);
-}
-
 std::string header_of(const Plan& plan) {
   std::vector<std::string> kept = plan.keep;
   if (kept.empty())
     for (const Column& column : columns()) kept.emplace_back(column.name);
   if (plan.search) kept.insert(kept.begin(), {std::string(kSearchValue), std::string(kSearchTrials)});
-  Json header{{"sweep", plan.name},        {"plan", fmt::format("{:016x}", plan.hash())},
-              {"runs", plan.size()},       {"settings", json_of(plan.fixed)},
-              {"axes", plan.keys()},       {"columns", kept},
-              {"program", program_name()}, {"arithmetic", arithmetic(chosen_instruction_set())}};
+  Json header{{"sweep", plan.name},
+              {"plan", fmt::format("{:016x}", plan.hash())},
+              {"runs", plan.size()},
+              {"settings", json_of(plan.fixed)},
+              {"axes", plan.keys()},
+              {"columns", kept},
+              {"program", program_name()},
+              {"arithmetic", arithmetic(chosen_instruction_set())},
+              {"files", detail::digest_of_files(plan)}};
   if (plan.search) header["search"] = plan.search->key;
   for (const Settings& mark : plan.marks) header["marks"].push_back(json_of(mark));
   for (const auto& [key, names] : plan.cases())
@@ -92,6 +93,7 @@ Result<Header> parse_header(std::string_view line, const std::string& file) {
                   .plan = json.at("plan"),
                   .program = json.at("program"),
                   .arithmetic = json.at("arithmetic"),
+                  .files = json.value("files", ""),
                   .runs = json.at("runs")};
     header.fixed = settings_in(json.at("settings"));
     header.search_key = json.value("search", "");
@@ -108,6 +110,19 @@ Result<Header> parse_header(std::string_view line, const std::string& file) {
   }
   return fail(ErrorCode::kParse, fmt::format("{}:1: got {}, expected the first line of a sweep's results",
                                              file, printable(line)));
+}
+
+std::string difference_text(const Header& got, const Header& expected) {
+  const auto words = [](std::string_view what, const std::string& a, const std::string& b) {
+    return fmt::format("{} {}, expected {}", what, a, b);
+  };
+  if (got.plan != expected.plan) return words("the plan", got.plan, expected.plan);
+  if (got.program != expected.program) return words("the program", got.program, expected.program);
+  if (got.arithmetic != expected.arithmetic)
+    return words("the arithmetic", got.arithmetic, expected.arithmetic);
+  if (got.files != expected.files)
+    return words("presets, cars or tracks of other contents,", got.files, expected.files);
+  return "another first line, expected the same";
 }
 
 Result<FileContents> read_lines(
@@ -168,11 +183,11 @@ Result<ResultFile> ResultFile::open(const std::string& path, const Plan& plan, c
   });
   if (!contents) return fail(contents.error());
   if (!contents->header.empty() && contents->header != header) {
-    return fail(
-        ErrorCode::kInvalidArgument,
-        fmt::format("{}: got results of another plan or program, expected those of {}; --output names "
-                    "another file",
-                    path, plan.name));
+    const Result<Header> got = parse_header(contents->header, path);
+    if (!got) return fail(got.error());
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("{}: got results of {}; --output names another file", path,
+                            difference_text(*got, parse_header(header, path).value())));
   }
   file.size_ = contents->whole;
   if (::ftruncate(descriptor, static_cast<off_t>(file.size_)) != 0)

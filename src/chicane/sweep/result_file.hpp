@@ -16,7 +16,7 @@
 /// one run, `{"run":17,…}`, in the order in which they ended.
 namespace chicane::sweep {
 
-/// "chicane 0.2.0".
+/// "chicane 0.2.0 (1f0c5e8a9b27)": the version, and a digest of the sources that runs can depend on.
 [[nodiscard]] std::string program_name();
 
 /// The first line, without its line break: what has to agree for results to belong together.
@@ -25,6 +25,7 @@ namespace chicane::sweep {
 /// What the first line says.
 struct Header {
   std::string name{}, plan{}, program{}, arithmetic{};
+  std::string files{};  ///< detail::digest_of_files()
   std::uint64_t runs = 0;
   Settings fixed{};
   std::vector<std::string> keys{}, columns{};
@@ -33,6 +34,9 @@ struct Header {
   std::string search_key{};  ///< whose largest clean value each run has looked for; empty: none
 };
 [[nodiscard]] Result<Header> parse_header(std::string_view line, const std::string& file);
+
+/// Why results of two different first lines do not belong together: "the plan 12, expected 17".
+[[nodiscard]] std::string difference_text(const Header& got, const Header& expected);
 
 /// Where a line stands in its file.
 struct LinePlace {

@@ -42,10 +42,9 @@ class Tally {
 
   void add(std::uint64_t run, const Result<RunOutcome>& result) {
     const std::lock_guard lock(mutex_);
-    const bool has_failed = !result;
     if (result && options_.on_run) options_.on_run(run, result->run);
     ++progress_.driven;
-    if (has_failed) ++progress_.failed;
+    if (!result && progress_.failed++ == 0) progress_.why = result.error().message;
     if (options_.on_progress) options_.on_progress(progress_);
   }
   void fail_with(const Error& error) {

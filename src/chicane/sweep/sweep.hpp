@@ -48,6 +48,7 @@ struct Progress {
   std::uint64_t found = 0;   ///< done when the sweep began
   std::uint64_t driven = 0;  ///< since
   std::uint64_t failed = 0;  ///< of them such as cannot be driven
+  std::string why{};         ///< the reason of one of those
   [[nodiscard]] bool is_complete() const noexcept { return found + driven == runs; }
 };
 

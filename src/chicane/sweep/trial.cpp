@@ -165,8 +165,9 @@ std::string command_of(const Settings& settings) {
     if (option != kOptions.end()) command += fmt::format(" {} {}", option->second, shell_word(text));
     if (option == kOptions.end()) rest += " --set " + shell_word(fmt::format("{}={}", key, text));
   }
-  for (const auto& [key, text] : settings)
-    if (is_speed(key)) rest += fmt::format(" --{}-{} {}", "speed", key.substr(6), text);
+  const auto speed = std::find_if(settings.rbegin(), settings.rend(),
+                                  [](const auto& setting) { return is_speed(setting.first); });
+  if (speed != settings.rend()) rest += fmt::format(" --speed-{} {}", speed->first.substr(6), speed->second);
   for (const std::string& fault : request->faults) rest += " --fault " + shell_word(fault);
   return command + rest;
 }

@@ -1,0 +1,13 @@
+# FILE defines CHICANE_SOURCES, a digest of all headers and sources in FOLDERS (with | between them) of ROOT, and changes only with them.
+string(REPLACE "|" ";" folders "${FOLDERS}")
+set(text "")
+foreach(folder IN LISTS folders)
+  file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${folder}/*.hpp ${ROOT}/${folder}/*.cpp)
+  foreach(file IN LISTS files)
+    file(SHA256 ${ROOT}/${file} digest)
+    string(APPEND text "${file} ${digest}\n")
+  endforeach()
+endforeach()
+string(SHA256 digest "${text}")
+string(SUBSTRING ${digest} 0 12 digest)
+file(CONFIGURE OUTPUT ${FILE} CONTENT "#define CHICANE_SOURCES \"${digest}\"\n")
