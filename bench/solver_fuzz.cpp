@@ -2,12 +2,13 @@
 // Random problems of any shape, most of them unpleasant: scales, bounds, functions that are not numbers,
 // jumps. Each answer of the solver is judged by a check that shares no line with it.
 //
-//   chicane-solver-fuzz [COUNT [FIRST]]     COUNT solves, default 100000; FIRST: seed of the first one,
-//   default 0
+//   chicane-solver-fuzz [COUNT [FIRST [NAME]]]     COUNT solves, default 100000; FIRST: seed of the first
+//   one, default 0; NAME: problems whose name contains it, default all
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
+#include <string_view>
+#include <vector>
 
 #include "fuzz/list.hpp"
 
@@ -15,7 +16,15 @@ int main(int argc, char** argv) {
   using namespace chicane::bench;
   const long count = argc > 1 ? std::atol(argv[1]) : 100000;
   const long first = argc > 2 ? std::atol(argv[2]) : 0;
-  const auto kinds = all_fuzz_kinds();
+  const std::string_view wanted = argc > 3 ? argv[3] : "";
+  std::vector<FuzzKind> kinds;
+  for (const FuzzKind& kind : all_fuzz_kinds()) {
+    if (std::string_view(kind.name).find(wanted) != std::string_view::npos) kinds.push_back(kind);
+  }
+  if (kinds.empty()) {
+    std::fprintf(stderr, "no problem is named like that\n");
+    return 2;
+  }
   FuzzTally total;
   std::printf("%-28s %8s %8s %8s %8s %8s %8s %8s %6s %8s\n", "problem", "solves", "optimal", "floor",
               "budget", "stalled", "infeas.", "no number", "wrong", "slowest");

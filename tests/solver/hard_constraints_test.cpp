@@ -201,6 +201,10 @@ TEST(HardConstraints, SwingUpAPoleExactly) {
   expect_optimal<HardCartPole>({0, 1, 2, 3, 4, 5}, NaiveStart::kLine);
 }
 TEST(HardConstraints, LeadAHandAlongALine) { expect_optimal<ArmOnALine>({0, 1, 3}, NaiveStart::kIdle); }
+// Misses that came down slowly, in rounds of a few turns each, were given up as going nowhere: stalled.
+TEST(HardConstraints, HavePatienceWithShortRounds) {
+  expect_optimal<ArmOnALine>({83, 117, 159, 183}, NaiveStart::kIdle);
+}
 // An inequality at the end that was active in early rounds only kept its multiplier: no optimum.
 TEST(HardConstraints, LetGoOfInequalitiesThatHoldWithRoomToSpare) {
   expect_optimal<GoddardRocket>({4, 10, 12}, NaiveStart::kIdle);

@@ -10,6 +10,7 @@
 #include "chicane/base/deadline.hpp"
 #include "chicane/solver/detail/augmented.hpp"
 #include "chicane/solver/detail/evaluation.hpp"
+#include "chicane/solver/detail/round_progress.hpp"
 #include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 
@@ -77,9 +78,11 @@ class OcpSolver<P, Capacity, Arch> {
   static constexpr std::size_t kEnd = kNeh + Problem::kEndConstraints;
   static constexpr std::size_t kNc = P::kNc;
   static constexpr int kMostRounds = 40;
+  static constexpr int kTrialSpent = -1;
   static constexpr double kFirstShare = 10.0;  ///< of the guess's cost in its misses
   static constexpr double kLeastWeight = 1e-2, kMostFirstWeight = 10.0, kMostWeight = 1e9;
-  static constexpr double kHeavy = 1e3;  ///< times these, where the first ones lead nowhere
+  static constexpr double kHeavier = 10.0;  ///< times these, where the first ones lead nowhere in short
+  static constexpr double kHeavy = 1e3;     ///< times these, where they lead nowhere at all
 
   /// What a trajectory misses, by rows: the largest of each.
   struct Misses {
@@ -102,19 +105,17 @@ class OcpSolver<P, Capacity, Arch> {
 
   HardReport run(const P& problem, const State& x0, Trajectory& trajectory,
                  const Deadline& deadline) noexcept {
-    constexpr int kPatience = 3;
     HardReport report;
     guess_ = trajectory;
     kept_miss_ = std::numeric_limits<double>::infinity();
+    trial_ = 0;
     start(problem, x0, trajectory);
     int left = options_.max_iterations;
     bool has_begun = prices_.is_known;
     bool may_start_again = !prices_.is_known;
-    int idle = 0;
-    bool is_first = true;
+    RoundProgress progress;
     bool is_replaced = false;  // by a point that `report` is not of
     Misses before;
-    double best = std::numeric_limits<double>::infinity();
     const auto is_spent = [&] { return left <= 0 || deadline.spent() || report.rounds >= kMostRounds; };
     for (;;) {
       const bool converged = has_begun ? round(x0, trajectory, deadline, left, report)
@@ -122,21 +123,26 @@ class OcpSolver<P, Capacity, Arch> {
       has_begun = true;
       Misses now = measure(problem, trajectory, &report);
       if (report.status == SolveStatus::kNotFinite) return report;
-      update(now, is_first ? nullptr : &before, trajectory.horizon);
+      update(now, progress.is_first() ? nullptr : &before, trajectory.horizon);
       if (converged && now.worst() <= options_.tolerance) return finish(report.status, now, report);
       if (is_spent()) break;
-      idle = now.worst() <= 0.5 * best ? 0 : idle + 1;
-      best = std::min(best, now.worst());
+      progress.note(now.worst(), converged, last_turns_);
       before = now;
-      is_first = false;
-      if (converged && last_turns_ == 0 && ask_for_more()) idle = 0;
-      if (converged && idle < kPatience) continue;
+      if (trial_ == kTrialSpent) {
+        trial_ = 0;
+        if (progress.is_good()) continue;
+        begin_again(trajectory, kHeavier);
+        progress = {};
+        continue;
+      }
+      if (converged && last_turns_ == 0 && ask_for_more()) progress.excuse();
+      if (converged && !progress.is_lost(now.worst(), first_.worst(), last_turns_)) continue;
       if (may_start_again) {  // by another way: misses count from the start
         may_start_again = false;
         kept_ = trajectory;
         kept_miss_ = now.worst();
         begin_again(trajectory, kHeavy);
-        is_first = true;
+        progress = {};
       } else if (is_replaced = take_better(now.worst(), trajectory); !converged) {
         break;
       } else if (is_infeasible(problem, x0, trajectory, deadline, left, report)) {
@@ -144,10 +150,9 @@ class OcpSolver<P, Capacity, Arch> {
       } else if (is_spent()) {
         break;
       }
-      idle = 0;
       is_replaced = false;
       before = measure(problem, trajectory, nullptr);
-      best = is_first ? std::numeric_limits<double>::infinity() : before.worst();
+      if (!progress.is_first()) progress.begin_at(before.worst());
     }
     is_replaced |= take_better(measure(problem, trajectory, nullptr).worst(), trajectory);
     if (is_replaced) look_at(x0, trajectory, true, report);
@@ -159,54 +164,15 @@ class OcpSolver<P, Capacity, Arch> {
     return finish(SolveStatus::kStalled, now, report);
   }
 
-  /// Full steps; where they lose their way, multipliers follow the barrier; where that gets nowhere, either,
-  /// a solve like any other.
   bool first_round(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
-                   HardReport& report) noexcept {
-    if constexpr (has_filter_method<P>()) {
-      if (options_.may_start_short) {
-        inner_.use_full_steps_only(true);
-        const bool converged = round(x0, trajectory, deadline, left, report);
-        inner_.use_full_steps_only(false);
-        if (converged || left <= 0 || report.status == SolveStatus::kNotFinite) return converged;
-        begin_again(trajectory, 1.0);
-        if (!track(x0, trajectory, deadline, left, report)) begin_again(trajectory, 1.0);
-      }
-    }
-    return round(x0, trajectory, deadline, left, report);
-  }
+                   HardReport& report) noexcept;
+  bool track(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
+             HardReport& report) noexcept;
   /// From the guess, with the first weights times `factor`.
   void begin_again(Trajectory& trajectory, double factor) noexcept {
     trajectory = guess_;
     start_with_weights(trajectory.horizon, factor);
   }
-  /// Follows the filter method's barrier down, and brings multipliers, weights and prices up to date at the
-  /// solution of each barrier's problem. True when it has got to the end, in a fifth of the turns.
-  bool track(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
-             HardReport& report) noexcept {
-    if (!inner_.begin_path(problem_, x0, trajectory)) return false;
-    int most = std::min(left, options_.max_iterations / 5);
-    Misses before;
-    for (bool is_first = true;; is_first = false) {
-      SolveReport seen;
-      const bool is_solved = inner_.follow_path(problem_, trajectory, deadline, most, seen);
-      report.iterations += seen.iterations;
-      report.sweeps += seen.sweeps;
-      ++report.rounds;
-      left -= seen.iterations;
-      most -= seen.iterations;
-      if (!is_solved) return false;
-      Misses now = measure(*problem_.problem, trajectory, nullptr);
-      can_go_on_ = true;
-      update(now, is_first ? nullptr : &before, trajectory.horizon, inner_.path_barrier());
-      if (inner_.is_path_done()) break;
-      inner_.lower_path(!can_go_on_);
-      before = now;
-    }
-    inner_.end_path();
-    return can_go_on_ = true;
-  }
-
   /// The guess, simulated, if it misses less than `now` and costs less, too: true then.
   bool take_guess(const P& problem, const State& x0, const Misses& now, Trajectory& trajectory,
                   HardReport& report) noexcept {
@@ -238,7 +204,7 @@ class OcpSolver<P, Capacity, Arch> {
   /// One solve. True when it converged.
   bool round(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
              HardReport& report) noexcept {
-    inner_.allow_iterations(left);
+    inner_.allow_iterations(trial_ > 0 ? std::min(left, trial_) : left);
     const SolveReport now = can_go_on_ ? inner_.solve_again(problem_, x0, trajectory, deadline)
                                        : inner_.solve(problem_, x0, trajectory, deadline);
     inner_.start_from_states(true);
@@ -251,6 +217,7 @@ class OcpSolver<P, Capacity, Arch> {
     ++report.rounds;
     last_turns_ = now.iterations;
     left -= std::max(1, now.iterations);
+    if (trial_ != 0) trial_ = trial_ > now.iterations ? trial_ - now.iterations : kTrialSpent;
     if (now.status == SolveStatus::kAtFloor && residual(now) <= options_.tolerance)
       report.status = exceeds_a_cap(now) ? SolveStatus::kInfeasible : SolveStatus::kOptimal;
     return now.status == SolveStatus::kOptimal || now.status == SolveStatus::kAtFloor ||
@@ -478,6 +445,7 @@ class OcpSolver<P, Capacity, Arch> {
   double kept_miss_ = 0.0;  ///< largest of its misses
   double tolerance_ = 0.0;  ///< of the next round
   int last_turns_ = 0;      ///< of the last round
+  int trial_ = 0;           ///< turns that are left for the first weights, kTrialSpent; 0: all of them
   bool can_go_on_ = false;  ///< the next round differs little from the last one
   std::array<std::array<double, Capacity>, kNh> equality_{};  ///< values at the last measure()
   std::array<double, kEnd> terminal_{};
@@ -485,4 +453,5 @@ class OcpSolver<P, Capacity, Arch> {
 
 }  // namespace chicane::solver
 
+#include "chicane/solver/detail/hard_first_round.hpp"
 #include "chicane/solver/detail/hard_infeasible.hpp"
