@@ -121,7 +121,6 @@ class Trials {
     });
     counter.end();
     if (failure) return fail(*failure);
-    if (stop) return fail(ErrorCode::kInvalidArgument, "stopped");
     return {};
   }
 
@@ -294,9 +293,15 @@ ExitCode try_claims(const Options& options) {
     }
   }
   if (!all[1].is_there) fmt::print(stderr, "{} is not there: tried on lakeside alone\n", all[1].track);
+  const std::string& page = options.claims.page;
+  if (const Result<void> writable = check_writable(options.claims.is_check ? "" : page); !writable)
+    return report(writable.error());
   if (const Result<void> driven = trials.drive(run::threads_for(options.jobs), stop); !driven)
     return report(driven.error());
-  const std::string& page = options.claims.page;
+  if (stop) {
+    fmt::print(stderr, "stopped: nothing was compared or written\n");
+    return kRunFailed;
+  }
   if (page.empty()) {
     fmt::print("{}", details_of(*claims, trials));
     return kSuccess;

@@ -209,6 +209,8 @@ ExitCode compare_league(const Options& options) {
   catch_interrupts(stop);
   Result<League> league = sweep::read_league(options.league.file);
   if (!league) return report(league.error());
+  for (const std::string& file : {options.output_file, options.csv_file, options.league.page})
+    if (const Result<void> writable = check_writable(file); !writable) return report(writable.error());
   for (const std::string& command : options.league.servers) sweep::add_external(*league, command);
   const std::string results = options.league.results.empty()
                                   ? std::filesystem::path(options.league.file).stem().string() + ".jsonl"

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 
 #include "chicane/run/make.hpp"
@@ -14,6 +13,7 @@
 #include "interrupt.hpp"
 #include "limit_of.hpp"
 #include "limit_report.hpp"
+#include "many_runs.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -24,17 +24,6 @@ Result<void> keep(const std::string& file, const std::string& text) {
   stream.close();
   if (stream) return {};
   return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
-}
-
-/// Before the search, which takes half a minute: that its line can be kept.
-Result<void> check_writable(const std::string& file) {
-  const bool is_new = !std::filesystem::exists(file);
-  const bool is_writable = std::ofstream(file, std::ios::app).is_open();
-  const int reason = errno;
-  std::error_code error;  // of a file that is gone already: no reason to stop
-  if (is_new && is_writable) std::filesystem::remove(file, error);
-  if (is_writable) return {};
-  return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, std::strerror(reason)));
 }
 
 Result<void> print_limit(const Options& options) {

@@ -97,6 +97,8 @@ ExitCode tune(const Options& options) {
   for (std::size_t i = 0; i < sweep::kOptimizerNames.size(); ++i)
     if (sweep::kOptimizerNames[i] == options.tune.optimizer)
       task.optimizer = static_cast<sweep::Optimizer>(i);
+  if (const Result<void> writable = check_writable(options.output_file); !writable)
+    return report(writable.error());
   const auto tuning = sweep::tune(task, stop, [](int evaluation, const sweep::Verdict& verdict) {
     fmt::print(stderr, "{:6} {}\n", evaluation, words(verdict));
   });

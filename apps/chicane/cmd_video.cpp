@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 #include "chicane/recording/driven_lap.hpp"
 #include "chicane/recording/lap_picture.hpp"
@@ -35,7 +36,8 @@ Result<std::vector<DrivenMoment>> chosen(const DrivenRun& run, const Options::Vi
   return fail(ErrorCode::kInvalidArgument, "--from-s: got a moment behind the end of what is shown");
 }
 
-Result<std::uint64_t> film(const Options& options) {
+/// The number of pictures; nothing when it was stopped.
+Result<std::optional<std::uint64_t>> film(const Options& options) {
   static std::atomic<bool> stop{false};  // as long as signals may come
   catch_interrupts(stop);
   const Options::Video& video = options.video;
@@ -65,14 +67,14 @@ Result<std::uint64_t> film(const Options& options) {
   const auto pictures = static_cast<std::uint64_t>(std::floor(drawing.duration() / step)) + 1;
   RunCounter counter("pictures");
   for (std::uint64_t i = 0; i < pictures; ++i) {
-    if (stop) return fail(ErrorCode::kInvalidArgument, "stopped: nothing was written");
+    if (stop) return std::optional<std::uint64_t>{};
     if (const auto added = encoder->add(drawing.at(static_cast<double>(i) * step).bytes()); !added)
       return fail(added.error());
     counter.show(i + 1, pictures, i + 1);
   }
   counter.end();
   const auto finished = encoder->finish();
-  return finished ? Result<std::uint64_t>(pictures) : fail(finished.error());
+  return finished ? Result<std::optional<std::uint64_t>>(pictures) : fail(finished.error());
 }
 
 }  // namespace
@@ -83,7 +85,11 @@ ExitCode make_video(const Options& options) {
     const ExitCode code = report(done.error());
     return done.error().message.starts_with("ffmpeg") ? kEnvironment : code;
   }
-  fmt::print("{}: {} pictures\n", options.output_file, *done);
+  if (!*done) {
+    fmt::print(stderr, "stopped: nothing was written\n");
+    return kRunFailed;
+  }
+  fmt::print("{}: {} pictures\n", options.output_file, **done);
   return kSuccess;
 }
 

@@ -7,7 +7,11 @@
 #endif
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 namespace chicane::apps {
@@ -26,6 +30,17 @@ void keep_memory() {
   ::mallopt(M_MMAP_THRESHOLD, 1 << 30);
   ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
 #endif
+}
+
+Result<void> check_writable(const std::string& file) {
+  if (file.empty()) return {};
+  const bool is_new = !std::filesystem::exists(file);
+  const bool is_writable = std::ofstream(file, std::ios::app).is_open();
+  const int reason = errno;
+  std::error_code error;  // of a file that is gone already: no reason to stop
+  if (is_new && is_writable) std::filesystem::remove(file, error);
+  if (is_writable) return {};
+  return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, std::strerror(reason)));
 }
 
 RunCounter::RunCounter(const char* what) : what_{what}, is_terminal_{isatty(STDERR_FILENO) == 1} {

@@ -3,11 +3,18 @@
 
 #include <chrono>
 #include <cstdint>
+#include <string>
+
+#include "chicane/base/result.hpp"
 
 namespace chicane::apps {
 
 /// Each run takes some megabytes and gives them back: the process keeps them for the next one.
 void keep_memory();
+
+/// Before what takes long: that its result can be kept in this file, which stays as it is. kIo; an empty name
+/// is no file.
+[[nodiscard]] Result<void> check_writable(const std::string& file);
 
 /// Tells on stderr how many of many runs are done, how fast, and how long the rest will take: on a terminal
 /// one line that renews itself, otherwise a line every ten seconds. One thread at a time.

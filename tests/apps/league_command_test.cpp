@@ -95,5 +95,11 @@ TEST_F(LeagueCommand, RefusesALeagueWithFaultsAndOneThatIsNotThere) {
   EXPECT_THAT(read("err"), HasSubstr("l.yaml:6: nonsense"));
 }
 
+TEST_F(LeagueCommand, SaysAtOnceThatAPageCannotBeWritten) {
+  EXPECT_EQ(league("  ours: {preset: pid}\n", "-o /nowhere/l.html"), 3);
+  EXPECT_THAT(read("err"), HasSubstr("/nowhere/l.html: cannot be written: No such file or directory"));
+  EXPECT_THAT(read("err"), testing::Not(HasSubstr("1 of 1 runs"))) << "before anything is driven";
+}
+
 }  // namespace
 }  // namespace chicane

@@ -69,5 +69,20 @@ TEST_F(VideoCommand, FilmsALapWithAGhost) {
   EXPECT_FALSE(fs::exists(folder_ / "lap.mp4"));
 }
 
+TEST_F(VideoCommand, AFilmThatIsStoppedLeavesTheOlderOneAlone) {
+  static_cast<void>(program(
+      "drive --fast --track oval --laps 1 --set time_limit_s=6 --record " + quoted("a.mcap"), usual()));
+  std::ofstream(folder_ / "lap.gif") << "older";
+  std::ofstream(folder_ / "bin" / "ffmpeg") << "#!/bin/sh\nkill -INT $PPID\nexec cat > /dev/null\n";
+  EXPECT_EQ(program("video " + quoted("a.mcap") + " --pace 0.05 -o " + quoted("lap.gif"), usual()), 1)
+      << said_;
+  EXPECT_THAT(said_, HasSubstr("stopped: nothing was written"));
+  std::ofstream(folder_ / "bin" / "ffmpeg") << "#!/bin/sh\nexit 1\n";
+  EXPECT_EQ(program("video " + quoted("a.mcap") + " -o " + quoted("lap.gif"), usual()), 3) << said_;
+  std::string kept;
+  std::ifstream(folder_ / "lap.gif") >> kept;
+  EXPECT_EQ(kept, "older");
+}
+
 }  // namespace
 }  // namespace chicane

@@ -23,6 +23,13 @@ std::string ending_of(const std::string& output) {
   return std::filesystem::path(output).extension().string();
 }
 
+/// Beside the output, with its ending, which says how to encode.
+std::string unfinished_of(const std::string& output) {
+  std::filesystem::path path(output);
+  path.replace_extension(fmt::format("{}.part{}", ::getpid(), ending_of(output)));
+  return path.string();
+}
+
 }  // namespace
 
 Result<void> check_video_name(const std::string& output) {
@@ -78,7 +85,9 @@ Result<VideoEncoder> VideoEncoder::start(const VideoFormat& format) {
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
   ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  std::vector<std::string> words = encoder_command(format);
+  VideoFormat unfinished = format;
+  unfinished.output = unfinished_of(format.output);
+  std::vector<std::string> words = encoder_command(unfinished);
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -86,7 +95,7 @@ Result<VideoEncoder> VideoEncoder::start(const VideoFormat& format) {
   const int failure = ::posix_spawnp(&process, "ffmpeg", &actions, nullptr, arguments.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
   ::close(ends[0]);
-  if (failure == 0) return VideoEncoder(format.output, process, ends[1]);
+  if (failure == 0) return VideoEncoder(format.output, unfinished.output, process, ends[1]);
   ::close(ends[1]);
   if (failure == ENOENT)
     return fail(ErrorCode::kNotFound,
@@ -96,6 +105,7 @@ Result<VideoEncoder> VideoEncoder::start(const VideoFormat& format) {
 
 VideoEncoder::VideoEncoder(VideoEncoder&& other) noexcept
     : output_{std::move(other.output_)},
+      unfinished_{std::move(other.unfinished_)},
       process_{std::exchange(other.process_, -1)},
       pipe_{std::exchange(other.pipe_, -1)} {}
 
@@ -104,7 +114,7 @@ VideoEncoder::~VideoEncoder() {
   if (process_ < 0) return;
   ::waitpid(process_, nullptr, 0);
   std::error_code error;  // it may not be there yet
-  std::filesystem::remove(output_, error);
+  std::filesystem::remove(unfinished_, error);
 }
 
 Result<void> VideoEncoder::add(std::span<const std::uint8_t> picture) {
@@ -121,9 +131,12 @@ Result<void> VideoEncoder::finish() {
   ::close(std::exchange(pipe_, -1));
   int status = 0;
   ::waitpid(std::exchange(process_, -1), &status, 0);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
   std::error_code error;
-  std::filesystem::remove(output_, error);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+    std::filesystem::rename(unfinished_, output_, error);
+    if (!error) return {};
+  }
+  std::filesystem::remove(unfinished_, error);
   return fail(ErrorCode::kIo, fmt::format("{}: ffmpeg could not write it", output_));
 }
 

@@ -23,11 +23,11 @@ struct VideoFormat {
 [[nodiscard]] std::vector<std::string> encoder_command(const VideoFormat& format);
 
 /// A film under construction: the program `ffmpeg` of the system, fed with pictures through a pipe. What it
-/// writes is complete after finish(); without, the file is removed.
+/// writes takes its name in finish(); without, nothing is left of it.
 class VideoEncoder {
  public:
   /// kNotFound with the package's name where there is no ffmpeg; kInvalidArgument for another ending; kIo.
-  /// An older file is replaced.
+  /// An older file is replaced in the end.
   [[nodiscard]] static Result<VideoEncoder> start(const VideoFormat& format);
   VideoEncoder(VideoEncoder&& other) noexcept;
   VideoEncoder& operator=(VideoEncoder&&) = delete;
@@ -39,10 +39,10 @@ class VideoEncoder {
   [[nodiscard]] Result<void> finish();
 
  private:
-  VideoEncoder(std::string output, int process, int pipe)
-      : output_{std::move(output)}, process_{process}, pipe_{pipe} {}
+  VideoEncoder(std::string output, std::string unfinished, int process, int pipe)
+      : output_{std::move(output)}, unfinished_{std::move(unfinished)}, process_{process}, pipe_{pipe} {}
 
-  std::string output_;
+  std::string output_, unfinished_;
   int process_;  ///< -1: it has ended
   int pipe_;
 };
