@@ -201,6 +201,18 @@ TEST(HardConstraints, SwingUpAPoleExactly) {
   expect_optimal<HardCartPole>({0, 1, 2, 3, 4, 5}, NaiveStart::kLine);
 }
 TEST(HardConstraints, LeadAHandAlongALine) { expect_optimal<ArmOnALine>({0, 1, 3}, NaiveStart::kIdle); }
+// Multipliers of rounds as loose as the tolerance led a third of these astray.
+TEST(HardConstraints, AreMetToALooseTolerance) {
+  const auto ocp = std::make_unique<solver::OcpSolver<CraneInLeastTime, CraneInLeastTime::kHorizon>>(
+      solver::SolverOptions{.tolerance = 1e-4});
+  for (int seed = 0; seed < 12; ++seed) {
+    const auto instance = FamilyMeasurement<CraneInLeastTime>::instance(seed);
+    auto t = FamilyMeasurement<CraneInLeastTime>::guess(instance, NaiveStart::kIdle);
+    const HardReport report = ocp->solve(instance.problem, instance.start, t);
+    EXPECT_EQ(report.status, SolveStatus::kOptimal) << seed;
+    EXPECT_LE(report.miss, 1e-4) << seed;
+  }
+}
 // Misses that came down slowly, in rounds of a few turns each, were given up as going nowhere: stalled.
 TEST(HardConstraints, HavePatienceWithShortRounds) {
   expect_optimal<ArmOnALine>({83, 117, 159, 183}, NaiveStart::kIdle);

@@ -44,7 +44,7 @@ bool OcpSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State& 
     if (!converged || worst <= options_.tolerance || left <= 0 || (turn >= kSteep && !is_minimum)) break;
   }
   problem_.square_price = 0.0;
-  ask_for(options_.tolerance);
+  ask_for(round_tolerance());
   if (is_minimum) return true;
   report.status = SolveStatus::kStalled;  // it converged, but not with the whole cost
   can_go_on_ = false;

@@ -239,6 +239,8 @@ class OcpSolver<P, Capacity, Arch> {
     ask_for(std::max(kLeast, kFiner * tolerance_));
     return true;
   }
+  /// Of rounds: multipliers are as good as the round that they come from, so that loose ones lead astray.
+  [[nodiscard]] double round_tolerance() const noexcept { return std::min(options_.tolerance, 1e-6); }
   void ask_for(double tolerance) noexcept {
     if (tolerance != tolerance_) can_go_on_ = false;
     tolerance_ = tolerance;
@@ -252,7 +254,7 @@ class OcpSolver<P, Capacity, Arch> {
     problem_.cost_root = 1.0;
     problem_.square_price = 0.0;
     can_go_on_ = false;
-    ask_for(options_.tolerance);
+    ask_for(round_tolerance());
     if (!options_.start_from_states) roll_out(problem, x0, trajectory);
     first_ = measure(problem, trajectory, nullptr);
     unit_ = std::isfinite(first_.cost) ? std::max(1.0, first_.cost) : 1.0;
@@ -263,7 +265,7 @@ class OcpSolver<P, Capacity, Arch> {
   /// No multipliers, and the first weights of the guess, times `factor` (eq. 40).
   void start_with_weights(int horizon, double factor) noexcept {
     can_go_on_ = false;
-    ask_for(options_.tolerance);
+    ask_for(round_tolerance());
     inner_.start_from_states(options_.start_from_states);
     problem_.cost_root = 1.0;
     problem_.price_factor.fill(1.0);
