@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Starts `chicane drive` (its path in CHICANE) and listens to it as a second viewer, by the protocol's reference
-// client.
+// Starts `chicane` (its path in CHICANE) with a page, and listens to it as a second viewer, by the protocol's
+// reference client.
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
 import rosmsg from '@foxglove/rosmsg';
@@ -8,12 +8,19 @@ import cdr from '@foxglove/rosmsg2-serialization';
 import foxglove from '@foxglove/ws-protocol';
 import WebSocket from 'ws';
 
-export async function startDrive(args = [], port = 0) {
+/** A run with our simulator. */
+export function startDrive(args = [], port = 0) {
   const laps = args.includes('--laps') ? [] : ['--laps', '10000'];
-  const child = spawn(process.env.CHICANE ?? 'chicane', ['drive', '--port', String(port), ...laps, ...args], {
-    stdio: ['ignore', 'ignore', 'pipe'],
+  return startProgram('drive', [...laps, ...args], port);
+}
+
+/** Any command that has a page. */
+export async function startProgram(command, args, port = 0) {
+  const child = spawn(process.env.CHICANE ?? 'chicane', [command, '--port', String(port), ...args], {
+    stdio: ['ignore', args.includes('--json') ? 'pipe' : 'ignore', 'pipe'],
   });
-  let said = '';
+  let [said, out] = ['', ''];
+  child.stdout?.on('data', (data) => (out += data));
   const address = new Promise((resolve, reject) => {
     child.stderr.on('data', (data) => {
       said = (said + data).slice(-4000);
@@ -21,18 +28,26 @@ export async function startDrive(args = [], port = 0) {
       if (found) resolve(Number(found[1]));
     });
     child.on('error', reject);
-    child.on('exit', (code) => reject(new Error(`chicane drive ended with ${code}: ${said}`)));
+    child.on('exit', (code) => reject(new Error(`chicane ${command} ended with ${code}: ${said}`)));
   });
   const listening = await address;
-  return {
+  const program = {
+    pid: child.pid,
     port: listening,
     url: `http://127.0.0.1:${listening}/`,
     async stop(signal = 'SIGTERM') {
       if (child.exitCode !== null || child.signalCode !== null) return;
       child.kill(signal);
       await once(child, 'exit');
+      return child.exitCode;
+    },
+    /** Ends it, and gives what it printed for `--json`. */
+    async result() {
+      await program.stop('SIGINT');
+      return JSON.parse(out);
     },
   };
+  return program;
 }
 
 /** Frames by cycle, the newest 2000 of them, and all changes. */

@@ -1,32 +1,22 @@
 // SPDX-License-Identifier: MIT
 // The dashboard keeps up with sixty frames a second. What that costs is measured by performance.mjs, not asserted here.
 import assert from 'node:assert/strict';
-import { after, before, it } from 'node:test';
-import { launch } from './browser.mjs';
-import { startDrive } from './chicane_drive.mjs';
+import { it } from 'node:test';
 import { DashboardPage } from './dashboard_page.mjs';
+import { browserAndDrive } from './here.mjs';
 import { arrivals, meter, notePaints, SIXTY_A_SECOND } from './paints.mjs';
 
 const FRAMES = 300;
 
-let browser;
-let drive;
-before(async () => {
-  browser = await launch();
-  drive = await startDrive(SIXTY_A_SECOND);
-});
-after(async () => {
-  await browser.close();
-  await drive.stop();
-});
+const here = browserAndDrive(SIXTY_A_SECOND);
 
 for (const tab of ['plots', 'explain']) {
   it(`paints the newest of many frames, in bounded memory: ${tab}`, async () => {
-    const context = await browser.newContext({ viewport: { width: 1366, height: 768 } });
+    const context = await here.browser.newContext({ viewport: { width: 1366, height: 768 } });
     const page = await context.newPage();
     await page.addInitScript(() => localStorage.setItem('chicane.dimension', '"2d"'));
     await page.addInitScript(notePaints);
-    await page.goto(`${drive.url}#${tab}`);
+    await page.goto(`${here.drive.url}#${tab}`);
     await page.getByText('Live', { exact: true }).waitFor();
     const dashboard = new DashboardPage(page, []);
     const paints = () => page.evaluate(() => [...globalThis.paints.keys()]);
@@ -34,7 +24,7 @@ for (const tab of ['plots', 'explain']) {
     await dashboard.until(paints, ({ length }) => length > 100, 'first pictures'); // code is compiled
     const { heap } = await read();
 
-    const other = await arrivals(drive.url);
+    const other = await arrivals(here.drive.url);
     await dashboard.until(
       () => other.times.size,
       (count) => count >= FRAMES,

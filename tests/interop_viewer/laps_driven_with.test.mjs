@@ -7,15 +7,11 @@ import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { launch } from './browser.mjs';
 import { startDrive, watch } from './chicane_drive.mjs';
 import { DashboardPage } from './dashboard_page.mjs';
+import { browserAlone } from './here.mjs';
 
-let browser;
-before(async () => {
-  browser = await launch();
-});
-after(() => browser.close());
+const here = browserAlone();
 
 const lapRows = ({ page }) => page.locator('.lap-table tbody tr:not(.limit)');
 async function laps(dashboard, count) {
@@ -44,7 +40,7 @@ describe('a lap', () => {
   });
 
   it('remembers the settings it was driven with, for whoever looks', async () => {
-    const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'laps' });
+    const dashboard = await DashboardPage.open(here.browser, drive.url, { tab: 'laps' });
     const { page } = dashboard;
     await laps(dashboard, 1);
     assert.equal(await page.locator('.lap-table th', { hasText: 'Driven with' }).count(), 0, 'nothing to tell yet');
@@ -65,7 +61,7 @@ describe('a lap', () => {
     );
     assert.deepEqual(await dashboard.accessibilityFindings(), []);
     await dashboard.close();
-    const late = await DashboardPage.open(browser, drive.url, { tab: 'laps' });
+    const late = await DashboardPage.open(here.browser, drive.url, { tab: 'laps' });
     await laps(late, before + 2);
     await lapRows(late).first().locator('.setup', { hasText: 'latency ms 60' }).waitFor();
     await late.close();
@@ -75,7 +71,7 @@ describe('a lap', () => {
     await drive.stop();
     const page = join(folder, 'report.html');
     execFileSync(process.env.CHICANE ?? 'chicane', ['report', recording, '-o', page], { stdio: 'pipe' });
-    const dashboard = await DashboardPage.open(browser, `file://${page}`, { tab: '', state: 'Recording' });
+    const dashboard = await DashboardPage.open(here.browser, `file://${page}`, { tab: '', state: 'Recording' });
     await dashboard.page.locator('.lap-table .setup', { hasText: 'latency ms 60' }).first().waitFor();
     await dashboard.close();
   });
@@ -86,7 +82,7 @@ describe('a gamepad', () => {
     const drive = await startDrive(['--track', 'oval']);
     t.after(() => drive.stop());
     const other = await watch(drive.url);
-    const dashboard = await DashboardPage.open(browser, drive.url);
+    const dashboard = await DashboardPage.open(here.browser, drive.url);
     const { page } = dashboard;
     await page.locator('button:enabled', { hasText: 'Take the wheel' }).waitFor();
     await page.evaluate(() => {
@@ -127,7 +123,7 @@ describe('a gamepad', () => {
 it('sets people against controllers, on one track', async (t) => {
   const drive = await startDrive(['--track', 'oval', '--pace', '10']);
   t.after(() => drive.stop());
-  const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'laps' });
+  const dashboard = await DashboardPage.open(here.browser, drive.url, { tab: 'laps' });
   const { page } = dashboard;
   await laps(dashboard, 1);
   assert.equal(await page.getByTestId('leaderboard').count(), 0, 'one alone is no race');
@@ -155,7 +151,7 @@ it('sets people against controllers, on one track', async (t) => {
 it('makes a film of the last seconds', async (t) => {
   const drive = await startDrive(['--track', 'oval']);
   t.after(() => drive.stop());
-  const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'laps' });
+  const dashboard = await DashboardPage.open(here.browser, drive.url, { tab: 'laps' });
   const { page } = dashboard;
   await dashboard.until(
     () => dashboard.seconds(),

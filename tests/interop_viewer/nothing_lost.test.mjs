@@ -2,18 +2,14 @@
 // What a page knows of a run, whenever it was opened, and when the run is over: laps, plots, changes, settings, end.
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
-import { launch } from './browser.mjs';
 import { startDrive } from './chicane_drive.mjs';
 import { DashboardPage } from './dashboard_page.mjs';
+import { browserAlone } from './here.mjs';
 
-let browser;
-before(async () => {
-  browser = await launch();
-});
-after(() => browser.close());
+const here = browserAlone();
 
 const isAboutSocket = (text) => text.startsWith('WebSocket connection to') || /ERR_CONNECTION_REFUSED/.test(text);
-const open = (drive, tab, state = 'Live') => DashboardPage.open(browser, drive.url, { tab, state });
+const open = (drive, tab, state = 'Live') => DashboardPage.open(here.browser, drive.url, { tab, state });
 const lapRows = (dashboard) => dashboard.page.locator('.lap-table tbody tr:not(.limit)').count();
 const box = (dashboard, key) => dashboard.page.locator(`.panel-body [data-key="${key}"] .number-box`);
 async function type(dashboard, key, value) {

@@ -2,18 +2,14 @@
 // The page that needs no program (CHICANE_PAGE: the file that tools/build_page.sh wrote), opened from the disk.
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
-import { after, before, describe, it } from 'node:test';
+import { describe, it } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { promisify } from 'node:util';
-import { launch } from './browser.mjs';
 import { DashboardPage, PHONE } from './dashboard_page.mjs';
+import { browserAlone } from './here.mjs';
 
 const url = pathToFileURL(process.env.CHICANE_PAGE ?? 'index.html').href;
-let browser;
-before(async () => {
-  browser = await launch();
-});
-after(() => browser.close());
+const here = browserAlone();
 
 async function type(dashboard, key, value) {
   const box = dashboard.page.locator(`.panel-body [data-key="${key}"] .number-box`);
@@ -31,7 +27,7 @@ async function programHash(...args) {
 
 describe('the page that needs no program', () => {
   it('drives the run of the program, bit for bit, at twenty times the pace', async () => {
-    const dashboard = await DashboardPage.open(browser, url);
+    const dashboard = await DashboardPage.open(here.browser, url);
     await type(dashboard, 'run.pace', 20);
     const card = dashboard.page.getByTestId('end-card');
     await card.waitFor();
@@ -42,7 +38,7 @@ describe('the page that needs no program', () => {
   });
 
   it('takes another track and other settings, and gives that run', async () => {
-    const dashboard = await DashboardPage.open(browser, `${url}`);
+    const dashboard = await DashboardPage.open(here.browser, `${url}`);
     await dashboard.page.locator('.panel-body [data-key="track"] select').selectOption('oval');
     await dashboard.button('Restart').click();
     await type(dashboard, 'run.pace', 20);
@@ -52,7 +48,7 @@ describe('the page that needs no program', () => {
   });
 
   it('pauses, steps, begins again, breaks and mends', async () => {
-    const dashboard = await DashboardPage.open(browser, url, { tab: 'faults' });
+    const dashboard = await DashboardPage.open(here.browser, url, { tab: 'faults' });
     await dashboard.until(
       () => dashboard.seconds(),
       (seconds) => seconds > 1,
@@ -79,7 +75,7 @@ describe('the page that needs no program', () => {
   });
 
   it('shows a phone the same, with nothing beyond its edge and nothing for axe', async () => {
-    const dashboard = await DashboardPage.open(browser, url, PHONE);
+    const dashboard = await DashboardPage.open(here.browser, url, PHONE);
     assert.deepEqual(await dashboard.accessibilityFindings(), []);
     assert.ok((await dashboard.overflow()).across <= 0);
     await dashboard.close();

@@ -1,26 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Two settings as two cars on one stage: begun, followed, and the winner kept with one click.
 import assert from 'node:assert/strict';
-import { after, before, it } from 'node:test';
-import { launch } from './browser.mjs';
-import { startDrive } from './chicane_drive.mjs';
+import { it } from 'node:test';
 import { DashboardPage } from './dashboard_page.mjs';
+import { browserAndDrive } from './here.mjs';
 
-let browser;
-let drive;
-before(async () => {
-  browser = await launch();
-  drive = await startDrive(['--track', 'oval', '--preset', 'pid', '--set', 'pid.speed_reference_mps=20']);
-});
-after(async () => {
-  await browser.close();
-  await drive.stop();
-});
+const here = browserAndDrive(['--track', 'oval', '--preset', 'pid', '--set', 'pid.speed_reference_mps=20']);
 
-const race = async () => (await fetch(new URL('rival.json', drive.url))).json();
+const race = async () => (await fetch(new URL('rival.json', here.drive.url))).json();
 
 it('drives a second car with other settings beside the run, tells where it gains, and keeps the winner', async () => {
-  const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'drive' });
+  const dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'drive' });
   const { page } = dashboard;
   await page.locator('.panel-body [data-key="run.pace"] .number-box').fill('10');
   await page.locator('.panel-body [data-key="run.pace"] .number-box').press('Enter');
@@ -42,7 +32,7 @@ it('drives a second car with other settings beside the run, tells where it gains
   assert.ok(rival[0].lap_time_s < run[0].lap_time_s - 1);
   assert.deepEqual(await dashboard.accessibilityFindings(), []);
   // A page that comes later shows the race, too.
-  const late = await DashboardPage.open(browser, drive.url, { tab: 'whatif' });
+  const late = await DashboardPage.open(here.browser, here.drive.url, { tab: 'whatif' });
   await late.page.getByTestId('race-table').waitFor();
   await late.close();
   await page.getByRole('button', { name: 'Keep B, the winner' }).click();
@@ -58,7 +48,7 @@ it('drives a second car with other settings beside the run, tells where it gains
 });
 
 it('says why a setting cannot be raced with', async () => {
-  const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'whatif' });
+  const dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'whatif' });
   await dashboard.page.getByLabel('Setting to change').fill('latency_ms');
   await dashboard.page.getByLabel(/^What if: /).fill('60');
   await dashboard.page.getByLabel(/^What if: /).press('Enter');

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The line of the fastest lap, as the page draws it: on the map and in three dimensions, for who wants it.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, beforeEach, it } from 'node:test';
-import { launch } from './browser.mjs';
+import { afterEach, beforeEach, it } from 'node:test';
 import { startDrive } from './chicane_drive.mjs';
 import { DashboardPage, PHONE } from './dashboard_page.mjs';
+import { browserAlone } from './here.mjs';
 
-let browser;
+const here = browserAlone();
 let drive;
-before(async () => {
-  browser = await launch();
-});
-after(() => browser.close());
 beforeEach(async () => {
   drive = await startDrive(['--track', 'hairpins']);
 });
@@ -22,7 +18,7 @@ const isOn = (page) => line(page).getAttribute('aria-pressed');
 
 /** The page with a run that stands still, once the program has found the line. */
 async function open(options) {
-  const dashboard = await DashboardPage.open(browser, drive.url, options);
+  const dashboard = await DashboardPage.open(here.browser, drive.url, options);
   const { page } = dashboard;
   await line(page).waitFor();
   await dashboard.until(

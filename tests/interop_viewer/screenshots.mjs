@@ -40,6 +40,22 @@ const PICTURES = [
         .click({ timeout: 1000 })
         .catch(() => undefined),
   },
+  {
+    name: 'dashboard_tour',
+    tab: 'drive',
+    size: LAPTOP,
+    colorScheme: 'light',
+    prepare: (page) => page.keyboard.press('h'),
+    undo: (page) => page.getByRole('button', { name: 'Leave the tour' }).click(),
+  },
+  {
+    name: 'dashboard_share',
+    tab: 'drive',
+    size: LAPTOP,
+    colorScheme: 'light',
+    prepare: (page) => page.getByRole('button', { name: 'Share', exact: true }).click(),
+    undo: (page) => page.getByRole('button', { name: 'Close', exact: true }).click(),
+  },
   { name: 'dashboard_what_if', tab: 'whatif', size: [1366, 900], colorScheme: 'light', prepare: whatIf },
   {
     name: 'dashboard_phone',

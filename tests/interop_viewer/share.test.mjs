@@ -2,15 +2,11 @@
 // A link to a run: made on one page, opened on another program.
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
-import { launch } from './browser.mjs';
 import { startDrive } from './chicane_drive.mjs';
 import { DashboardPage } from './dashboard_page.mjs';
+import { browserAlone } from './here.mjs';
 
-let browser;
-before(async () => {
-  browser = await launch();
-});
-after(() => browser.close());
+const here = browserAlone();
 
 const box = ({ page }, key) => page.locator(`.panel-body [data-key="${key}"] .number-box`);
 async function type(dashboard, key, value) {
@@ -28,7 +24,7 @@ describe('a link to a run', () => {
   after(() => from.stop());
 
   it('is made by a button, with what was changed on the command line and on the page', async () => {
-    const dashboard = await DashboardPage.open(browser, from.url);
+    const dashboard = await DashboardPage.open(here.browser, from.url);
     const { page } = dashboard;
     await type(dashboard, 'plant_options.friction_scale', 0.9);
     await dashboard.button('Share').click();
@@ -58,7 +54,7 @@ describe('a link to a run', () => {
   it('asks once on another program, and drives the same from the start there', async (t) => {
     const to = await startDrive(['--track', 'oval', '--set', 'tracking_mpc.speed_limit_mps=20']);
     t.after(() => to.stop());
-    const dashboard = await DashboardPage.open(browser, to.url, { tab: new URL(link).hash.slice(1) });
+    const dashboard = await DashboardPage.open(here.browser, to.url, { tab: new URL(link).hash.slice(1) });
     const { page } = dashboard;
     const asked = page.getByTestId('wanted');
     await asked.waitFor();
@@ -92,7 +88,7 @@ describe('a link to a run', () => {
   });
 
   it('names nothing but what the program brings along', async () => {
-    const dashboard = await DashboardPage.open(browser, from.url);
+    const dashboard = await DashboardPage.open(here.browser, from.url);
     const { page } = dashboard;
     const before = await summary(dashboard);
     // Opened in a tab that is there already.
@@ -109,7 +105,7 @@ describe('a link to a run', () => {
   });
 
   it('can be declined', async () => {
-    const dashboard = await DashboardPage.open(browser, from.url, { tab: 'run?track=oval' });
+    const dashboard = await DashboardPage.open(here.browser, from.url, { tab: 'run?track=oval' });
     await dashboard.button('Keep this run').click();
     await dashboard.page.getByTestId('wanted').waitFor({ state: 'detached' });
     assert.match(await summary(dashboard), /hairpins/);

@@ -1,23 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The picture and what lies on it: speed, why, alerts, the cursor; and how the page fits windows, fingers and eyes.
 import assert from 'node:assert/strict';
-import { after, before, describe, it } from 'node:test';
-import { launch } from './browser.mjs';
-import { startDrive } from './chicane_drive.mjs';
+import { describe, it } from 'node:test';
 import { DashboardPage, PHONE, TABS } from './dashboard_page.mjs';
+import { browserAndDrive } from './here.mjs';
 
-let browser;
-let drive;
-before(async () => {
-  browser = await launch();
-  drive = await startDrive(['--track', 'oval']);
-});
-after(async () => {
-  await browser.close();
-  await drive.stop();
-});
+const here = browserAndDrive(['--track', 'oval']);
 
-const open = (options = {}) => DashboardPage.open(browser, drive.url, { tab: 'laps', ...options });
+const open = (options = {}) => DashboardPage.open(here.browser, here.drive.url, { tab: 'laps', ...options });
 const box = (dashboard, selector) => dashboard.page.locator(selector).first().boundingBox();
 const background = (page) => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
 

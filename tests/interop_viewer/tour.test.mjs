@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The tour as a newcomer takes it: every step done on a real run, left and gone on with, with keyboard and on a phone.
 import assert from 'node:assert/strict';
-import { after, before, describe, it } from 'node:test';
-import { launch } from './browser.mjs';
-import { startDrive } from './chicane_drive.mjs';
+import { describe, it } from 'node:test';
 import { DashboardPage, PHONE } from './dashboard_page.mjs';
+import { browserAndDrive } from './here.mjs';
 
-let browser;
-let drive;
-before(async () => {
-  browser = await launch();
-  drive = await startDrive(['--track', 'lakeside']);
-});
-after(async () => {
-  await browser.close();
-  await drive.stop();
-});
+const here = browserAndDrive(['--track', 'lakeside']);
 
 const tour = ({ page }) => page.getByTestId('tour');
 const heading = (dashboard) => tour(dashboard).getByRole('heading').innerText();
@@ -36,7 +26,7 @@ async function next(dashboard, title) {
 
 describe('the tour', () => {
   it('goes on when the thing was done, from the first step to the last', async () => {
-    let dashboard = await DashboardPage.open(browser, drive.url, { tab: 'plots' });
+    let dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'plots' });
     let { page } = dashboard;
     await dashboard.button('Tour').click();
     assert.equal(await heading(dashboard), '1 of 7: Drive it yourself');
@@ -106,14 +96,14 @@ describe('the tour', () => {
     await dashboard.button('Close').click();
     await dashboard.button('Tour').waitFor();
     await dashboard.close();
-    dashboard = await DashboardPage.open(browser, drive.url, { tab: 'tune' });
+    dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'tune' });
     ({ page } = dashboard);
     await page.getByText('No changes').waitFor();
     await dashboard.close();
   });
 
   it('can be taken with the keyboard alone, and says what was left out', async () => {
-    const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'plots' });
+    const dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'plots' });
     const { page } = dashboard;
     await dashboard.button('Tour').waitFor();
     await page.keyboard.press('h');
@@ -133,7 +123,7 @@ describe('the tour', () => {
   });
 
   it('shows where it is done, and fits a phone', async () => {
-    const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'plots', ...PHONE });
+    const dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'plots', ...PHONE });
     const { page } = dashboard;
     await dashboard.button('Tour').click();
     await dashboard.show('laps');

@@ -7,17 +7,13 @@ import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { launch } from './browser.mjs';
-import { startDrive } from './chicane_drive.mjs';
+import { startDrive, startProgram } from './chicane_drive.mjs';
 import { DashboardPage, PHONE } from './dashboard_page.mjs';
+import { browserAlone } from './here.mjs';
 
 const SPEED = 'tracking_mpc.speed_limit_mps';
 
-let browser;
-before(async () => {
-  browser = await launch();
-});
-after(() => browser.close());
+const here = browserAlone();
 
 /** Asks for another future with a lower speed limit, and waits for the answer. */
 async function askForLess({ page }, limit = 15) {
@@ -35,7 +31,7 @@ describe('what if, in a live run', () => {
   let dashboard;
   before(async () => {
     drive = await startDrive(['--track', 'oval']);
-    dashboard = await DashboardPage.open(browser, drive.url, { tab: 'whatif' });
+    dashboard = await DashboardPage.open(here.browser, drive.url, { tab: 'whatif' });
     await dashboard.until(
       () => dashboard.number('speed'),
       (mph) => mph > 60,
@@ -116,16 +112,8 @@ it('another future of a recording begins at the moment that is shown', async () 
   execFileSync(process.env.CHICANE, ['drive', '--fast', '--track', 'oval', '--laps', '2', '--record', log], {
     stdio: 'ignore',
   });
-  const server = spawn(process.env.CHICANE, ['replay', log, '--port', '0'], { stdio: ['ignore', 'ignore', 'pipe'] });
-  let said = '';
-  const port = await new Promise((resolve) => {
-    server.stderr.on('data', (data) => {
-      said += data;
-      const found = /http:\/\/localhost:(\d+)\//.exec(said);
-      if (found) resolve(found[1]);
-    });
-  });
-  const dashboard = await DashboardPage.open(browser, `http://127.0.0.1:${port}/`, {
+  const replay = await startProgram('replay', [log]);
+  const dashboard = await DashboardPage.open(here.browser, replay.url, {
     ...PHONE,
     tab: 'whatif',
     state: 'Recording',
@@ -150,7 +138,64 @@ it('another future of a recording begins at the moment that is shown', async () 
   assert.deepEqual(await dashboard.accessibilityFindings(), []);
   assert.ok((await dashboard.overflow()).across <= 0);
   await dashboard.close((each) => /GPU|WebGL|GL Driver/i.test(each));
-  server.kill('SIGINT');
-  await once(server, 'exit');
+  await replay.stop();
   rmSync(folder, { recursive: true });
+});
+
+describe('what if, of a car that another program simulates', () => {
+  /** `serve` and a simulator that drives to it. */
+  async function startServed(...args) {
+    const serve = await startProgram('serve', args);
+    const simulator = spawn(
+      process.env.CHICANE,
+      [
+        'simulate',
+        ...['--connect', `ws://127.0.0.1:${serve.port}/socket.io/?EIO=4&transport=websocket`],
+        ...['--track', 'oval', '--laps', '0'],
+      ],
+      { stdio: 'ignore' },
+    );
+    return {
+      ...serve,
+      async stop() {
+        simulator.kill('SIGINT');
+        await once(simulator, 'exit');
+        await serve.stop();
+      },
+    };
+  }
+
+  it('is driven by our own car, and the page says so, and how far that is to be trusted', async () => {
+    // Slow enough for a controller that a busy machine asks late.
+    const served = await startServed('--track', 'oval', '--set', `${SPEED}=20`);
+    const dashboard = await DashboardPage.open(here.browser, served.url, { tab: 'whatif' });
+    const { page } = dashboard;
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph > 20,
+      'a car that drives',
+    );
+    await page.getByText(/our own car stands in for it/).waitFor();
+    assert.equal(await dashboard.button('Race A against B').count(), 0, 'there is no second car of theirs');
+    await dashboard.button('10 s').click();
+    await askForLess(dashboard);
+    assert.match(await dashboard.text('what-if-verdict'), /s slower to the same place/);
+    assert.match(
+      await page.locator('.what-if-result').innerText(),
+      /Both futures are driven by our own car \(udacity\).*from the same place, it came up to \d+\.\d\d m from yours/,
+    );
+    assert.match(await page.getByTestId('what-if-table').locator('thead').innerText(), /As it is/i);
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await dashboard.close();
+    await served.stop();
+  });
+
+  it('is not there without the road, and the page says what would help', async () => {
+    const served = await startServed();
+    const dashboard = await DashboardPage.open(here.browser, served.url, { tab: 'whatif' });
+    await dashboard.page.getByText('chicane serve --track FILE').waitFor();
+    assert.equal(await dashboard.button('Drive both').count(), 0);
+    await dashboard.close();
+    await served.stop();
+  });
 });

@@ -3,27 +3,17 @@
 // page.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
-import { launch } from './browser.mjs';
+import { afterEach, beforeEach, describe, it } from 'node:test';
 import { startDrive, watch } from './chicane_drive.mjs';
 import { DashboardPage, differentFrom, LAPTOP } from './dashboard_page.mjs';
+import { browserAndDrive } from './here.mjs';
 
-let browser;
-let drive;
+const here = browserAndDrive(['--track', 'lakeside']);
 let dashboard;
 let page;
 
-before(async () => {
-  browser = await launch();
-  drive = await startDrive(['--track', 'lakeside']);
-});
-after(async () => {
-  await browser.close();
-  await drive.stop();
-});
-
 async function open(tab) {
-  dashboard = await DashboardPage.open(browser, drive.url, { tab });
+  dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab });
   page = dashboard.page;
 }
 
@@ -31,7 +21,7 @@ const setting = (key) => page.locator(`.panel-body [data-key="${key}"]`);
 const choice = (label) => page.locator('.choices').getByLabel(label, { exact: true });
 const box = (key) => setting(key).locator('.number-box');
 /** The settings that the program itself has: the page shows at once what it has only asked for. */
-const settingsOfTheRun = async () => (await page.request.get(new URL('preset.yaml', drive.url).href)).text();
+const settingsOfTheRun = async () => (await page.request.get(new URL('preset.yaml', here.drive.url).href)).text();
 const equals = (value) => (now) => now === value;
 /** Types a value, as a reader would. */
 async function type(key, value) {
@@ -70,7 +60,7 @@ describe('the workbench', () => {
   afterEach(() => dashboard.close());
 
   it('changes the command from the next control step on', async () => {
-    const other = await watch(drive.url);
+    const other = await watch(here.drive.url);
     const before = await pauseWhileItGathersSpeed(other);
     await dashboard.show('tune');
     await type('tracking_mpc.speed_limit_mps', 3);
@@ -408,10 +398,10 @@ it('takes another run of a restarted server for another run', async () => {
   await dashboard.show('tune');
   await page.getByText('No changes').waitFor();
   await dashboard.show('plots');
-  const { port } = drive;
-  await drive.stop();
+  const { port } = here.drive;
+  await here.drive.stop();
   await page.getByTestId('end-card').waitFor();
-  drive = await startDrive(['--track', 'hairpins', '--controller', 'pid'], port);
+  here.drive = await startDrive(['--track', 'hairpins', '--controller', 'pid'], port);
   await page.getByTestId('end-card').waitFor({ state: 'detached' });
   await dashboard.until(
     () => page.locator('.summary').innerText(),

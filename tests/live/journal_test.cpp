@@ -49,7 +49,7 @@ class Driven {
   Result<BranchReport> branch(const recording::BranchOptions& options) {
     const auto events = journal.history();
     if (!events) return fail(events.error());
-    return recording::branch_run(*events, options, {});
+    return recording::branch_run(events->events, options, {});
   }
 
   std::unique_ptr<run::ClosedLoop> loop = loop_of();

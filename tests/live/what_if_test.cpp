@@ -79,7 +79,7 @@ TEST(WhatIf, AnswersTheNewestQuestionWithBothFutures) {
   std::atomic<int> computed{0};
   WhatIf what_if([&](const WhatIfQuestion& question, const recording::BranchHooks& hooks) {
     ++computed;
-    return recording::branch_run(*journal.history(), question.options, hooks);
+    return recording::branch_run(journal.history()->events, question.options, hooks);
   });
   EXPECT_EQ(Json::parse(what_if.answer())["state"], "none");
   ASSERT_TRUE(what_if.ask(R"({"at_s":0})"));

@@ -35,8 +35,8 @@ Planned plan(const Source& source, double from, double to, bool is_lap, double w
   LinePlanner planner(kKnots);
   planner.configure({.smoothing_width = width}, model::road_car_params());
   Planned planned;
-  EXPECT_TRUE(planner.begin(source.line, from, to, is_lap));
-  while (!planner.advance(share, planned.line)) ++planned.cycles;
+  EXPECT_TRUE(planner.begin(from, to, is_lap));
+  while (!planner.advance(share, source.line, planned.line)) ++planned.cycles;
   return planned;
 }
 
@@ -89,11 +89,11 @@ TEST(LinePlanner, RefusesAStretchWithoutLengthOrWithTooManyKnots) {
   const Source source;
   LinePlanner planner(50);
   planner.configure({}, model::road_car_params());
-  EXPECT_FALSE(planner.begin(source.line, 30.0, 30.0, false));
-  EXPECT_FALSE(planner.begin(source.line, 60.0, 30.0, false));
-  EXPECT_FALSE(planner.begin(source.line, 0.0, std::nan(""), false));
-  EXPECT_FALSE(planner.begin(source.line, 0.0, 50 * WaypointLine::kSpacing, false));
-  EXPECT_TRUE(planner.begin(source.line, 0.0, 49 * WaypointLine::kSpacing, false));
+  EXPECT_FALSE(planner.begin(30.0, 30.0, false));
+  EXPECT_FALSE(planner.begin(60.0, 30.0, false));
+  EXPECT_FALSE(planner.begin(0.0, std::nan(""), false));
+  EXPECT_FALSE(planner.begin(0.0, 50 * WaypointLine::kSpacing, false));
+  EXPECT_TRUE(planner.begin(0.0, 49 * WaypointLine::kSpacing, false));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/controller/controller_list.hpp"
+#include "chicane/controller/copyable.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/speed_hold.hpp"
 #include "chicane/controller/tunable.hpp"
@@ -50,7 +51,7 @@ class WaypointLine {
 /// All that the baselines share: the line, the speed, the report. `Law` steers: double steer(const View&),
 /// void configure(const Options&, const VehicleParams&), void reset().
 template <class Law>
-class Baseline final : public Controller, public Tunable<typename Law::Options> {
+class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<typename Law::Options> {
  public:
   using Options = typename Law::Options;
 

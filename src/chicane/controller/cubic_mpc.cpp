@@ -9,8 +9,10 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/base/owned.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/controller/controller_list.hpp"
+#include "chicane/controller/copyable.hpp"
 #include "chicane/controller/cubic_problem.hpp"
 #include "chicane/controller/cubic_solver.hpp"
 #include "chicane/controller/explain.hpp"
@@ -31,7 +33,7 @@ double rolled_unit(const CubicMpcOptions& options) noexcept {
   return options.roll_forward_in_mph ? mps_to_mph(1.0) : 1.0;
 }
 
-class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
+class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<CubicMpcOptions> {
  public:
   CubicMpc(const CubicMpcOptions& options, const model::VehicleParams& vehicle,
            std::unique_ptr<CubicSolver> solver)
@@ -208,7 +210,7 @@ class CubicMpc final : public Controller, public Tunable<CubicMpcOptions> {
   int stages_;         ///< intervals: one less than states
   RollForward roll_forward_;
   CubicProblem problem_;
-  std::unique_ptr<CubicSolver> solver_;
+  Owned<CubicSolver> solver_;
   Motion start_;              ///< of the horizon
   double start_time_ = 0.0;   ///< [s]
   CubicTrajectory answer_;    ///< of the last usable solve, in the frame of its start

@@ -10,14 +10,18 @@ namespace {
 template <class Arch>
 class ArchSolver final : public CubicSolver {
  public:
-  explicit ArchSolver(const solver::SolverOptions& options) : solver_{options} {}
+  explicit ArchSolver(const solver::SolverOptions& options) : options_{options}, solver_{options} {}
 
   solver::SolveReport solve(const CubicProblem& problem, const CubicProblem::State& start,
                             CubicTrajectory& trajectory, Deadline deadline) noexcept override {
     return solver_.solve(problem, start, trajectory, deadline);
   }
+  [[nodiscard]] std::unique_ptr<CubicSolver> copy() const override {
+    return std::make_unique<ArchSolver>(options_);
+  }
 
  private:
+  solver::SolverOptions options_;
   solver::OcpSolver<CubicProblem, CubicProblem::kCapacity, Arch> solver_;
 };
 

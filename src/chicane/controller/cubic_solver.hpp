@@ -20,7 +20,10 @@ class CubicSolver {
   /// As OcpSolver::solve().
   virtual solver::SolveReport solve(const CubicProblem& problem, const CubicProblem::State& start,
                                     CubicTrajectory& trajectory, Deadline deadline) noexcept = 0;
+  /// One like it: nothing is remembered from solve to solve.
+  [[nodiscard]] virtual std::unique_ptr<CubicSolver> copy() const = 0;
 };
+[[nodiscard]] inline std::unique_ptr<CubicSolver> copy_of(const CubicSolver& solver) { return solver.copy(); }
 
 /// For one instruction set; defined in cubic_solver.cpp, which is compiled for each.
 template <class Arch>

@@ -6,14 +6,14 @@
 #include <limits>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/base/owned.hpp"
 #include "chicane/controller/absence.hpp"
 #include "chicane/controller/command_history.hpp"
 #include "chicane/controller/controller_list.hpp"
+#include "chicane/controller/copyable.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/grip_estimator.hpp"
-#include "chicane/controller/tracking_problem.hpp"
 #include "chicane/controller/tracking_solver.hpp"
-#include "chicane/controller/tunable.hpp"
 #include "chicane/controller/way_back.hpp"
 #include "chicane/model/grip.hpp"
 #include "chicane/model/prediction.hpp"
@@ -40,7 +40,7 @@ constexpr double kPreview = 0.3;       // [s] the car answers the wheel about so
 constexpr double kCrawl = 3.0;         // [m/s] below it the fallback brings the car to rest
 constexpr double kGripStep = 0.03;     // a lap is planned anew where the grip differs by more
 
-class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> {
+class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable<TrackingMpcOptions> {
  public:
   TrackingMpc(const TrackingMpcOptions& options, const model::VehicleParams& vehicle)
       : options_{options},
@@ -49,7 +49,6 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
         road_{options.road(), vehicle},
         estimator_{model_},
         solver_{make_tracking_solver(kMostTurns)} {
-    problem_.model = &model_;
     shape_raced();
   }
 
@@ -244,6 +243,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   /// The problem of this step and its first guess: the last answer, moved on by the time that has passed, or
   /// what a path-following law does where there is none.
   void prepare(double act_time) noexcept {
+    problem_.model = &model_;  // here, so that a copy asks its own
     const double elapsed = act_time - act_time_;
     const double old_end = old_first_ + (horizon_.horizon - 1) * old_step_;
     const bool can_shift = has_horizon_ && elapsed >= 0.0 && elapsed < 0.5 * old_end;
@@ -468,7 +468,7 @@ class TrackingMpc final : public Controller, public Tunable<TrackingMpcOptions> 
   StateEstimator estimator_;
   CommandHistory sent_;
   Problem problem_;
-  std::unique_ptr<TrackingSolver> solver_;
+  Owned<TrackingSolver> solver_;
   Horizon horizon_;  ///< the last answer, then the guess, then the new answer
   Horizon old_;
   StageState x0_{};

@@ -10,15 +10,19 @@ namespace {
 template <class Arch>
 class ArchSolver final : public TrackingSolver {
  public:
-  explicit ArchSolver(const solver::SolverOptions& options) : solver_{options} {}
+  explicit ArchSolver(const solver::SolverOptions& options) : options_{options}, solver_{options} {}
 
   solver::SolveReport solve(const TrackingProblem& problem, const TrackingProblem::State& start,
                             TrackingTrajectory& trajectory, int turns, Deadline deadline) noexcept override {
     solver_.allow_iterations(turns);
     return solver_.solve(problem, start, trajectory, deadline);
   }
+  [[nodiscard]] std::unique_ptr<TrackingSolver> copy() const override {
+    return std::make_unique<ArchSolver>(options_);
+  }
 
  private:
+  solver::SolverOptions options_;
   solver::OcpSolver<TrackingProblem, TrackingProblem::kCapacity, Arch> solver_;
 };
 

@@ -22,7 +22,12 @@ class TrackingSolver {
   virtual solver::SolveReport solve(const TrackingProblem& problem, const TrackingProblem::State& start,
                                     TrackingTrajectory& trajectory, int turns,
                                     Deadline deadline) noexcept = 0;
+  /// One like it: nothing is remembered from solve to solve.
+  [[nodiscard]] virtual std::unique_ptr<TrackingSolver> copy() const = 0;
 };
+[[nodiscard]] inline std::unique_ptr<TrackingSolver> copy_of(const TrackingSolver& solver) {
+  return solver.copy();
+}
 
 /// For one instruction set; defined in tracking_solver.cpp, which is compiled for each.
 template <class Arch>

@@ -10,7 +10,8 @@ namespace chicane::live {
 namespace {
 
 constexpr auto kCollectEvery = std::chrono::milliseconds(200);
-constexpr const char* kTooLong = "the run has become too long to be computed again; reset it first";
+constexpr const char* kTooLong =
+    "the run has become too long to be computed again from its start; reset it first";
 constexpr const char* kTooBusy = "the machine was too busy to keep what happened in this run; reset it first";
 
 }  // namespace
@@ -86,26 +87,30 @@ void Journal::take(const Entry& entry) {
       has_begun_ = true;
       why_unknown_ = nullptr;
       events_.clear();
+      first_ = {.run = first_.run + 1, .event = 0};
       return;
     case Entry::Kind::kChange:
-      events_.emplace_back(ChangeNote{.cycle = entry.change.cycle,
-                                      .time = entry.change.time,
-                                      .name = std::string(entry.change.name.view()),
-                                      .value = std::string(entry.change.value.view())});
+      add(ChangeNote{.cycle = entry.change.cycle,
+                     .time = entry.change.time,
+                     .name = std::string(entry.change.name.view()),
+                     .value = std::string(entry.change.value.view())});
       return;
     case Entry::Kind::kStep:
       if (entry.step.begins) start_anew(entry.step);
-      if (events_.size() < kMostEvents) {
-        events_.emplace_back(entry.step);
-      } else if (why_unknown_ == nullptr) {
-        why_unknown_ = kTooLong;
-      }
+      add(entry.step);
   }
+}
+
+void Journal::add(Event event) {
+  events_.push_back(std::move(event));
+  if (events_.size() <= kMostEvents) return;
+  events_.pop_front();
+  ++first_.event;
 }
 
 /// The car stands at the start again: settings stay, faults and what was driven do not.
 void Journal::start_anew(const StepNote& first) {
-  std::vector<Event> kept;
+  std::deque<Event> kept;
   for (Event& event : events_) {
     auto* change = std::get_if<ChangeNote>(&event);
     if (change == nullptr) continue;
@@ -117,6 +122,7 @@ void Journal::start_anew(const StepNote& first) {
     kept.push_back(std::move(event));
   }
   events_ = std::move(kept);
+  first_ = {.run = first_.run + 1, .event = 0};
   why_unknown_ = has_begun_ ? nullptr : why_unknown_;
 }
 
@@ -146,19 +152,33 @@ recording::RecordedEvent Journal::told(const Event& event) {
   return recorded;
 }
 
-Result<recording::RunEvents> Journal::history() {
+Result<Journal::Excerpt> Journal::history(Place from) {
   const std::lock_guard lock(mutex_);
   collect();
   if (!has_begun_) return fail(ErrorCode::kInvalidArgument, "the run has not begun");
   if (why_unknown_ != nullptr) return fail(ErrorCode::kInvalidArgument, why_unknown_);
-  auto events = std::make_shared<const std::vector<Event>>(events_);
-  return [scenario = scenario_, events](const auto& visit) -> Result<void> {
-    if (Result<void> begun = visit(scenario); !begun) return begun;
+  const Place end{.run = first_.run, .event = first_.event + events_.size()};
+  const bool goes_on = from.run == first_.run && from.event >= first_.event && from.event <= end.event;
+  if (!goes_on && first_.event > 0) return fail(ErrorCode::kInvalidArgument, kTooLong);
+  const Place begin = goes_on ? from : first_;
+  auto events = std::make_shared<const std::vector<Event>>(
+      events_.begin() + static_cast<std::ptrdiff_t>(begin.event - first_.event), events_.end());
+  const auto tell = [begin, scenario = scenario_, events](const auto& visit) -> Result<void> {
+    if (begin.event == 0) {
+      if (Result<void> begun = visit(scenario); !begun) return begun;
+    }
     for (const Event& event : *events) {
       if (Result<void> taken = visit(told(event)); !taken) return taken;
     }
     return {};
   };
+  return Excerpt{.begin = begin, .end = end, .events = tell};
+}
+
+Journal::Place Journal::oldest() {
+  const std::lock_guard lock(mutex_);
+  collect();
+  return first_;
 }
 
 }  // namespace chicane::live

@@ -26,8 +26,9 @@ namespace chicane::live {
 /// be branched without a recording (what_if.hpp).
 ///
 /// The control thread notes; it neither waits nor allocates, but in begin(). A thread of its own collects
-/// what was noted. A run that is longer than kMostEvents, or of which something could not be noted in time,
-/// is not known any more until the next one begins: told in words by history().
+/// what was noted. Of a run that is longer than kMostEvents the newest are known, to go on from a checkpoint
+/// (recording/checkpoints.hpp). One of which something could not be noted in time is not known any more until
+/// the next one begins: told in words by history().
 class Journal {
  public:
   static constexpr std::size_t kRing = 4096;           ///< steps and changes that wait for the collector
@@ -44,9 +45,23 @@ class Journal {
   void note(const telemetry::Frame& frame) noexcept;
   void note(const telemetry::Change& change) noexcept;
 
-  /// Any thread: the events so far, for recording::branch_run(); its time line is the run's. A run that was
-  /// started anew is known from there on. kInvalidArgument with the reason when it is not known.
-  [[nodiscard]] Result<recording::RunEvents> history();
+  /// A place between two events of a run, counted from its beginning.
+  struct Place {
+    std::uint64_t run = 0;  ///< each beginning has a number of its own, from 1
+    std::uint64_t event = 0;
+    friend bool operator==(const Place&, const Place&) = default;
+  };
+  struct Excerpt {
+    Place begin, end;  ///< `begin.event` 0: the whole run, its scenario first
+    recording::RunEvents events;
+  };
+  /// Any thread: the events from `from` on, or, where that is no place in the present run, of the whole run,
+  /// for recording::branch_run(); its time line is the run's. A run that was started anew is known from there
+  /// on. kInvalidArgument with the reason when it is not known.
+  [[nodiscard]] Result<Excerpt> history(Place from);
+  [[nodiscard]] Result<Excerpt> history() { return history(Place{}); }
+  /// Any thread: the oldest place from which events are known.
+  [[nodiscard]] Place oldest();
 
  private:
   struct StepNote {
@@ -73,6 +88,7 @@ class Journal {
   bool push(const Entry& entry) noexcept;
   void collect();
   void take(const Entry& entry);
+  void add(Event event);
   void start_anew(const StepNote& first);
   static recording::RecordedEvent told(const Event& event);
 
@@ -88,7 +104,8 @@ class Journal {
   scenario::Scenario scenario_;
   bool has_begun_ = false;
   const char* why_unknown_ = nullptr;
-  std::vector<Event> events_;
+  std::deque<Event> events_;
+  Place first_;         ///< before the first of events_
   std::thread thread_;  // last: it starts when everything else is there
 };
 

@@ -64,11 +64,8 @@ LiveRun::LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop>
                .parameters = &settings_}},
       router_{nullptr, &viewer_},
       builder_{&live_description},
-      what_if_{[this](const WhatIfQuestion& question,
-                      const recording::BranchHooks& hooks) -> Result<recording::BranchReport> {
-        const Result<recording::RunEvents> events = journal_.history();
-        if (!events) return fail(events.error());
-        return recording::branch_run(*events, question.options, hooks);
+      what_if_{[this](const WhatIfQuestion& question, const recording::BranchHooks& hooks) {
+        return follower_.branch(question.options, hooks);
       }},
       rival_{[this] { controls_.wants_restart = true; }},
       limit_{[this](const lap_time::LimitAnswer& news) {

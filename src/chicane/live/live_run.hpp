@@ -14,6 +14,7 @@
 #include "chicane/live/live_settings.hpp"
 #include "chicane/live/rival.hpp"
 #include "chicane/live/run_builder.hpp"
+#include "chicane/live/run_follower.hpp"
 #include "chicane/live/run_limit.hpp"
 #include "chicane/live/run_news.hpp"
 #include "chicane/live/run_outputs.hpp"
@@ -45,10 +46,10 @@ struct LiveRunOptions {
 ///
 /// Threads, and what each owns: the thread of run() the loop, the recorder's input and RunOutputs; the
 /// network thread LiveSettings, the viewers and RunBuilder's results; a builder, a searcher of the limit and
-/// the recorder's writer have one each, and so do the collector of the Journal, WhatIf and Rival. The network
-/// thread hands changes to the loop through RunControls::settings and built runs through a queue under the
-/// one mutex here, which is held for a pointer's move. A setting that cannot change while a run goes on
-/// starts another one: built beside it, taken over between two cycles.
+/// the recorder's writer have one each, and so do the collector of the Journal, RunFollower, WhatIf and
+/// Rival. The network thread hands changes to the loop through RunControls::settings and built runs through a
+/// queue under the one mutex here, which is held for a pointer's move. A setting that cannot change while a
+/// run goes on starts another one: built beside it, taken over between two cycles.
 class LiveRun {
  public:
   /// Opens the port. `controls` belongs to whoever may stop the run, and outlives this. kIo with the sentence
@@ -90,6 +91,7 @@ class LiveRun {
   RunBuilder builder_;                           ///< the network thread's
   LiveHooks hooks_;
   Journal journal_;
+  RunFollower follower_{journal_};
   WhatIf what_if_;
   Rival rival_;
   RunLimit limit_;                       ///< ends before everything it tells

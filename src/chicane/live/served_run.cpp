@@ -10,6 +10,8 @@
 #include "chicane/live/live_settings.hpp"
 #include "chicane/live/pages.hpp"
 #include "chicane/live/run_limit.hpp"
+#include "chicane/live/served_futures.hpp"
+#include "chicane/live/what_if.hpp"
 #include "chicane/wire/viewer.hpp"
 
 namespace chicane::live {
@@ -58,13 +60,25 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
                                           const std::atomic<bool>& stop) {
   run::SettingQueue requests;
   LiveSettings settings({.scenario = scenario_, .has_world = false}, requests);
+  Journal journal;
+  ServedFutures futures(journal);
+  WhatIf what_if([&futures](const WhatIfQuestion& question, const recording::BranchHooks& branching) {
+    return futures.branch(question.options, branching);
+  });
   wire::ViewerOptions viewing;
   viewing.run = description_;
   viewing.parameters = &settings;
+  if (track_) {
+    viewing.services.what_if = [&](std::string_view question) {
+      futures.believe(settings.scenario());
+      return what_if.ask(question);
+    };
+  }
   wire::ViewerEndpoint viewer(std::move(viewing));
   RunLimit limit([&](const lap_time::LimitAnswer& news) { viewer.set_limit(news); });
   if (!track_) limit.give_up(kUnknownRoad);
-  RunOutputs outputs(recorder, viewer, settings, limit, hooks);
+  RunOutputs outputs(recorder, viewer, settings, limit, hooks, track_ ? &journal : nullptr);
+  if (track_) journal.begin(scenario_);
   wire::ServeHooks serving;
   serving.settings = &requests;
   serving.on_change = [&](const telemetry::Change& change) { outputs.change(change); };
@@ -72,6 +86,7 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
   serving.on_lap = [&](const telemetry::CompletedLap& lap) { outputs.lap(lap); };
   serving.on_other_road = [&](double distance) {
     limit.give_up(kOtherRoad);
+    futures.give_up(kOtherRoad);
     viewer.set_limit({.why_not = kOtherRoad});
     outputs.say(
         fmt::format("the simulator drives on another road than {}, up to {:.0f} m away: --track is not "
@@ -86,6 +101,7 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
     viewer.dismiss();
   };
   serving.pages = live_pages(settings);
+  add_what_if(serving.pages, what_if);
   if (track_) limit.search(*track_, scenario_);  // before there is a control thread, to which it belongs then
   auto summary =
       wire::serve(options_, std::move(controller_), std::move(serving), &viewer, std::move(assets_), stop);

@@ -183,21 +183,30 @@ std::string WhatIf::computed(std::uint64_t number, const WhatIfQuestion& questio
   Trace was, branch;
   recording::BranchHooks hooks;
   hooks.on_future = [&](const recording::FutureStep& step) { (step.is_branch ? branch : was).add(step); };
+  std::optional<double> begin;
   hooks.go_on = [&](double time) {
-    share_ = std::min(1.0, time / (std::min(question.options.at, time) + question.options.duration));
+    if (!begin) begin = time;
+    const double way = std::max(0.0, std::min(question.options.at, time) - *begin);
+    share_ = std::min(1.0, (time - *begin) / (way + question.options.duration));
     return number == newest_;
   };
-  const Result<recording::BranchReport> report = compute_(question, hooks);
-  Json answer{{"id", number}, {"state", report ? "done" : "failed"}, {"asked", json_of(question)}};
-  if (!report) {
-    answer["why"] = report.error().message;
+  const Result<Answer> found = compute_(question, hooks);
+  Json answer{{"id", number}, {"state", found ? "done" : "failed"}, {"asked", json_of(question)}};
+  if (!found) {
+    answer["why"] = found.error().message;
     return protocol::json_text(answer);
   }
+  const recording::BranchReport* report = &found->report;
   answer["at_s"] = rounded(report->at);
   answer["cycle"] = report->cycle;
   answer["known_until_s"] = rounded(report->known_until);
   answer["is_exact"] = !report->first_difference;
   answer["end_reason"] = report->end_reason.empty() ? Json(nullptr) : Json(report->end_reason);
+  if (const auto& stand_in = found->stand_in) {
+    answer["stand_in"] = {{"plant", stand_in->plant},
+                          {"compared_s", rounded(stand_in->compared)},
+                          {"apart_m", rounded(stand_in->apart)}};
+  }
   answer["was"] = json_of(report->recorded, was);
   answer["branch"] = json_of(report->branched, branch);
   return protocol::json_text(answer);

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
 
 #include "chicane/base/result.hpp"
 #include "chicane/recording/branch.hpp"
@@ -35,9 +36,21 @@ struct WhatIfQuestion {
 /// answer() are one thread's, the network thread.
 class WhatIf {
  public:
+  /// What stood in for a car that others simulate.
+  struct StandIn {
+    std::string plant;      ///< of ours
+    double compared = 0.0;  ///< so long before the moment both drove from the same place [s]; 0: not compared
+    double apart = 0.0;     ///< and came so far from each other [m]
+  };
+  struct Answer {
+    recording::BranchReport report{};
+    std::optional<StandIn> stand_in{};
+    Answer() = default;
+    Answer(recording::BranchReport told) : report{std::move(told)} {}  // NOLINT(*-explicit-*)
+  };
   /// Computes a question; called on the other thread. `hooks` are handed on to recording::branch_run().
-  using Compute = std::function<Result<recording::BranchReport>(const WhatIfQuestion& question,
-                                                                const recording::BranchHooks& hooks)>;
+  using Compute =
+      std::function<Result<Answer>(const WhatIfQuestion& question, const recording::BranchHooks& hooks)>;
 
   explicit WhatIf(Compute compute);
   /// Gives up what is being computed.

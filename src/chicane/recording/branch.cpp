@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -14,26 +13,11 @@
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/schema.hpp"
-#include "chicane/run/lap_planner.hpp"
+#include "chicane/recording/rebuilt_run.hpp"
 #include "chicane/sim/judge.hpp"
 
 namespace chicane::recording {
 namespace {
-
-bool is_same(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
-/// What was measured and sent tells of everything before it, plant and controller: a difference anywhere
-/// shows up here.
-bool is_same(const telemetry::Frame& frame, const protocol::Step& step) {
-  const model::Measurement &now = frame.measurement, &then = step.measurement;
-  const model::Command &sent = frame.result.command, &sent_then = step.command;
-  return is_same(now.x, then.x) && is_same(now.y, then.y) && is_same(now.psi, then.psi) &&
-         is_same(now.speed, then.speed) && is_same(now.steer, then.steer) &&
-         is_same(now.throttle, then.throttle) && is_same(sent.steer, sent_then.steer) &&
-         is_same(sent.throttle, sent_then.throttle);
-}
 
 /// The road of a future from the branch on: how far, and when which third of the lap was passed.
 class Odometer {
@@ -136,70 +120,13 @@ class FutureMeter {
   int events_ = 0;
 };
 
-/// A run that is computed again, step by recorded step.
-class Rebuilt {
- public:
-  using OnLap = std::function<void(const telemetry::CompletedLap&)>;
-
-  /// `on_lap` hears of each lap that is completed.
-  explicit Rebuilt(OnLap on_lap) : on_lap_{std::move(on_lap)} {}
-
-  Result<void> begin(const scenario::Scenario& scenario, const run::ControllerFactory& make) {
-    auto loop = run::ClosedLoop::create(scenario, make);
-    if (!loop) return fail(loop.error());
-    loop_ = std::move(*loop);
-    loop_->drive_on();
-    return {};
-  }
-  /// A fault that begins or ends by itself is in the recording too, after the step that showed it: the run
-  /// that is computed again has it already.
-  void apply(const run::Setting& setting) {
-    if (const auto* fault = std::get_if<run::FaultSwitch>(&setting.action)) {
-      const auto bit = static_cast<unsigned>(fault->event.fault);
-      const bool is_on = (loop_->frame().active_faults >> bit & 1U) != 0U;
-      if (is_on == (fault->to != run::FaultSwitch::To::kOff)) return;
-    }
-    finish_cycle();  // changes come between two cycles
-    loop_->apply(setting);
-  }
-  const telemetry::Frame& follow(const protocol::Step& step) {
-    if (step.begins && loop_->cycle() > 0) loop_->restart();
-    const run::GivenStep given{.delay = step.measurement.delay, .deadline_spent_at = step.deadline_spent_at};
-    finish_cycle();
-    static_cast<void>(loop_->advance(given));
-    tell_lap();
-    return loop_->frame();
-  }
-  /// Physics up to the next control step.
-  void finish_cycle() {
-    while (loop_ && !loop_->is_control_due()) static_cast<void>(advance());
-  }
-  /// One physics step of a run that goes on by itself. True when there was a control step.
-  bool advance() {
-    const bool is_new = loop_->advance();
-    tell_lap();
-    return is_new;
-  }
-  /// After a control step of advance(): what is planned beside a run that goes on by itself.
-  void race_by_learned_lap() { planner_.advance(*loop_); }
-  [[nodiscard]] run::ClosedLoop& loop() { return *loop_; }
-
- private:
-  void tell_lap() {
-    if (const auto lap = loop_->take_lap()) on_lap_(*lap);
-  }
-
-  OnLap on_lap_;
-  std::unique_ptr<run::ClosedLoop> loop_;
-  run::LapPlanner planner_{run::LapPlanner::Clock::kVirtual};
-};
-
 class Branching {
  public:
   Branching(const BranchOptions& options, const BranchHooks& hooks, const run::ControllerFactory& make)
       : options_{options}, hooks_{hooks}, make_{make} {}
 
   Result<BranchReport> run(const RunEvents& events) {
+    if (options_.from) go_on_from(*options_.from);
     const Result<void> read = events([this](const RecordedEvent& event) {
       return std::visit([this](const auto& one) { return take(one); }, event);
     });
@@ -224,6 +151,14 @@ class Branching {
   }
 
  private:
+  void go_on_from(const Checkpoint& from) {
+    first_.begin(from.loop->copy());
+    second_.begin(from.loop->copy());
+    last_log_time_ = from.time;
+    next_cycle_ = from.next_cycle;
+    report_.first_difference = from.first_difference;
+  }
+
   Result<void> take(const scenario::Scenario& scenario) {
     if (ends_first(has_branched_)) return {};
     if (Result<void> begun = first_.begin(scenario, make_); !begun) return begun;
@@ -329,7 +264,7 @@ class Branching {
   }
 
   /// A future, in virtual time, from where it has come to.
-  Result<void> drive_on(Rebuilt& car, FutureMeter& meter, bool is_branch) {
+  Result<void> drive_on(RebuiltRun& car, FutureMeter& meter, bool is_branch) {
     run::ClosedLoop& loop = car.loop();
     const double rest = last_log_time_ - report_.at;
     const bool has_laps_only = options_.laps + options_.more_laps > 0 && options_.duration == 0.0;
@@ -379,10 +314,10 @@ class Branching {
   const BranchOptions& options_;
   const BranchHooks& hooks_;
   const run::ControllerFactory& make_;
-  Rebuilt first_{[this](const telemetry::CompletedLap& lap) {
+  RebuiltRun first_{[this](const telemetry::CompletedLap& lap) {
     if (has_branched_ && is_within(last_log_time_)) recorded_.add(lap);
   }};
-  Rebuilt second_{[this](const telemetry::CompletedLap& lap) {
+  RebuiltRun second_{[this](const telemetry::CompletedLap& lap) {
     if (has_branched_) branched_.add(lap);
     if (hooks_.on_lap) hooks_.on_lap(lap);
   }};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/recording/checkpoints.hpp"
 #include "chicane/recording/reader.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -26,6 +27,8 @@ struct BranchOptions {
   int more_laps = 0;      ///< until the line was crossed so often from `at` on; 0: no matter
   /// The first future is driven on, too, where what is known of it ends before the second one does.
   bool drives_both = false;
+  /// Where to begin instead of at the start, with the events behind it; before `at`. Null: at the start.
+  std::shared_ptr<const Checkpoint> from{};
 };
 
 /// The end of a third of a lap that was passed.
@@ -89,7 +92,8 @@ using RunEvents = std::function<Result<void>(const std::function<Result<void>(co
 [[nodiscard]] Result<BranchReport> branch_recording(
     const BranchOptions& options, const BranchHooks& hooks,
     const run::ControllerFactory& make = run::make_controller);
-/// The same of a run that is not a file; `options.log` is not used.
+/// The same of a run that is not a file; `options.log` is not used. Without a checkpoint to begin with the
+/// events are those of the whole run.
 [[nodiscard]] Result<BranchReport> branch_run(const RunEvents& events, const BranchOptions& options,
                                               const BranchHooks& hooks,
                                               const run::ControllerFactory& make = run::make_controller);

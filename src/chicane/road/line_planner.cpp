@@ -33,8 +33,7 @@ void LinePlanner::configure(const LinePlannerOptions& options, const model::Vehi
   smoother_.configure(options.smoothing_width, slope_length(vehicle));
 }
 
-bool LinePlanner::begin(const WaypointLine& source, double from, double to, bool is_lap) noexcept {
-  source_ = &source;
+bool LinePlanner::begin(double from, double to, bool is_lap) noexcept {
   from_ = from;
   length_ = to - from;
   is_lap_ = is_lap;
@@ -49,11 +48,11 @@ bool LinePlanner::begin(const WaypointLine& source, double from, double to, bool
   return true;
 }
 
-bool LinePlanner::advance(int work, ReferenceLine& line) noexcept {
+bool LinePlanner::advance(int work, const WaypointLine& source, ReferenceLine& line) noexcept {
   while (work > 0) {
     switch (instalments_.phase()) {
       case kTake:
-        instalments_.loop(intervals_ + 1, 3, work, [&](int k) { take(k); });
+        instalments_.loop(intervals_ + 1, 3, work, [&](int k) { take(source, k); });
         break;
       case kSmooth:
         if (smoother_.advance(work)) instalments_.enter(kMove);
@@ -78,9 +77,9 @@ bool LinePlanner::advance(int work, ReferenceLine& line) noexcept {
   return instalments_.phase() == kDone;
 }
 
-void LinePlanner::take(int k) noexcept {
+void LinePlanner::take(const WaypointLine& source, int k) noexcept {
   const auto i = static_cast<std::size_t>(k);
-  knots_[i] = source_->at(from_ + k * spacing_);
+  knots_[i] = source.at(from_ + k * spacing_);
   const auto curvature = smoother_.curvature();
   curvature[static_cast<std::size_t>(k + extra_)] = knots_[i].curvature;
   if (!is_lap_) return;

@@ -33,11 +33,12 @@ class LinePlanner {
   explicit LinePlanner(int knots);
   void configure(const LinePlannerOptions& options, const model::VehicleParams& vehicle) noexcept;
 
-  /// The stretch from `from` to `to` [m] of `source`, which must not change there until it is planned. A lap
-  /// ends where it begins. False when it has no length, or too many knots.
-  [[nodiscard]] bool begin(const WaypointLine& source, double from, double to, bool is_lap) noexcept;
-  /// Does up to `work`. True when `line` is planned; until then it is not to be used.
-  [[nodiscard]] bool advance(int work, ReferenceLine& line) noexcept;
+  /// The stretch from `from` to `to` [m] of a waypoint line. A lap ends where it begins. False when it has no
+  /// length, or too many knots.
+  [[nodiscard]] bool begin(double from, double to, bool is_lap) noexcept;
+  /// Does up to `work`. True when `line` is planned; until then it is not to be used, and `source` must not
+  /// change there.
+  [[nodiscard]] bool advance(int work, const WaypointLine& source, ReferenceLine& line) noexcept;
 
   /// Samples of a line planned from so many knots.
   [[nodiscard]] static constexpr int samples_for(int knots) noexcept { return 5 * knots / 2 + 2; }
@@ -48,7 +49,7 @@ class LinePlanner {
     double offset = 0.0;
     double s = 0.0;  ///< along the new line [m]
   };
-  void take(int k) noexcept;
+  void take(const WaypointLine& source, int k) noexcept;
   [[nodiscard]] double offset(int k) const noexcept;
   void move(int k) noexcept;
   bool shape(ReferenceLine& line) noexcept;
@@ -61,7 +62,6 @@ class LinePlanner {
   Instalments instalments_;
   std::vector<CurvePoint> knots_;
   std::vector<Moved> moved_;
-  const WaypointLine* source_ = nullptr;
   double from_ = 0.0;
   double length_ = 0.0;
   double spacing_ = 1.0;

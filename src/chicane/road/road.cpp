@@ -110,8 +110,8 @@ void Road::plan_stretch() noexcept {
   const double to = std::min(waypoints_.along(waypoints_.newest()), knot + most);
   stretch_.clear();
   ++revision_;
-  if (!stretch_planner_.begin(waypoints_, knot, to, false)) return;
-  (void)stretch_planner_.advance(std::numeric_limits<int>::max(), stretch_);
+  if (!stretch_planner_.begin(knot, to, false)) return;
+  (void)stretch_planner_.advance(std::numeric_limits<int>::max(), waypoints_, stretch_);
 }
 
 void Road::plan_lap(int shares) noexcept {
@@ -119,12 +119,12 @@ void Road::plan_lap(int shares) noexcept {
   if (!is_lap_begun_) {
     const int count = static_cast<int>(map_.points().size());
     is_lap_begun_ = true;
-    if (!lap_planner_.begin(waypoints_, waypoints_.along(kSeam), waypoints_.along(kSeam + count), true)) {
+    if (!lap_planner_.begin(waypoints_.along(kSeam), waypoints_.along(kSeam + count), true)) {
       is_lap_begun_ = false;
       return;
     }
   }
-  if (!lap_planner_.advance(shares * kLapWork, laps_[other])) return;
+  if (!lap_planner_.advance(shares * kLapWork, waypoints_, laps_[other])) return;
   is_lap_begun_ = false;
   if (laps_[other].is_empty()) return;
   current_lap_ = other;

@@ -56,6 +56,15 @@ Result<std::unique_ptr<ClosedLoop>> ClosedLoop::create(const scenario::Scenario&
       new ClosedLoop(scenario, **road, std::move(*plant), std::move(*controller)));
 }
 
+std::unique_ptr<ClosedLoop> ClosedLoop::copy() const {
+  const bool is_copyable = dynamic_cast<const controller::Copyable*>(&controller()) != nullptr;
+  if (!is_copyable) return nullptr;
+  std::unique_ptr<ClosedLoop> other(new ClosedLoop(*this));
+  if (!other->plant_) return nullptr;
+  other->world_.stand_on(*other->plant_, other->track_);
+  return other;
+}
+
 void ClosedLoop::restart() {
   world_.place(track_.start_s(), track_.start_d());
   cycle_.begin();
@@ -93,6 +102,15 @@ bool ClosedLoop::advance(const GivenStep& given) noexcept {
   if (is_due) control(0.0, &given);
   move();
   return is_due;
+}
+
+void ClosedLoop::follow(double time, const model::State& car, double delay,
+                        const model::Command& sent) noexcept {
+  world_.see(time, car);
+  next_control_ = time;
+  const GivenStep given{.delay = delay};
+  control(0.0, &given, &sent);
+  account_.add_physics(world_, true);
 }
 
 /// One physics step.
@@ -165,7 +183,7 @@ model::Measurement ClosedLoop::measure() noexcept {
   return now;
 }
 
-void ClosedLoop::control(double budget, const GivenStep* given) noexcept {
+void ClosedLoop::control(double budget, const GivenStep* given, const model::Command* sent) noexcept {
   faults_.update(time());
   frame_.measurement = measure();
   CycleInput input{.deadline_spent_at = faults_.deadline_questions(), .interval = scenario_.control_period};
@@ -174,6 +192,7 @@ void ClosedLoop::control(double budget, const GivenStep* given) noexcept {
     input.deadline_spent_at = given->deadline_spent_at;
   }
   if (manual_.is_on()) input.manual = manual_.command(frame_.measurement, scenario_.vehicle);
+  if (sent != nullptr) input.manual = *sent;
   observe(world_, frame_);
   frame_.pace = pace_;
   frame_.applied = acting();

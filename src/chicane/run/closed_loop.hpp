@@ -7,6 +7,7 @@
 #include <string_view>
 #include <variant>
 
+#include "chicane/base/owned.hpp"
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/path/track.hpp"
@@ -88,6 +89,15 @@ class ClosedLoop {
   /// The same from any pose and motion, on the road or beside it.
   void restart_at(const model::State& start);
 
+  /// A control step of a car that others drove: at `time` [s] it was seen moving like `car`, and was sent
+  /// `sent`, which acts `delay` [s] later. The controller plans beside that and learns, as beside a person's
+  /// commands; from the last one on advance() drives. Times rise. Does not allocate.
+  void follow(double time, const model::State& car, double delay, const model::Command& sent) noexcept;
+
+  /// The same run once more, as far as it has come: both do the same from then on, bit for bit. Null where
+  /// controller or plant cannot be copied (controller/copyable.hpp). Allocates some 8 MB.
+  [[nodiscard]] std::unique_ptr<ClosedLoop> copy() const;
+
   [[nodiscard]] double time() const noexcept { return world_.time(); }
   [[nodiscard]] const telemetry::Frame& frame() const noexcept { return frame_; }
   [[nodiscard]] const path::Track& track() const noexcept { return track_; }
@@ -97,9 +107,10 @@ class ClosedLoop {
   [[nodiscard]] telemetry::RunSummary summary() const;
 
  private:
+  ClosedLoop(const ClosedLoop& other) = default;  ///< whose world stands on `other`: copy()
   ClosedLoop(const scenario::Scenario& scenario, const Roads::Prepared& road,
              std::unique_ptr<sim::Plant> plant, std::unique_ptr<controller::Controller> controller);
-  void control(double budget, const GivenStep* given) noexcept;
+  void control(double budget, const GivenStep* given, const model::Command* sent = nullptr) noexcept;
   void take(std::monostate) noexcept {}
   void take(const FieldValue& field) noexcept;
   void take(const Pace& pace) noexcept { pace_ = pace.value; }
@@ -114,7 +125,7 @@ class ClosedLoop {
   scenario::Scenario scenario_;
   path::Track track_;
   path::Track waypoints_;
-  std::unique_ptr<sim::Plant> plant_;
+  Owned<sim::Plant> plant_;
   ControlCycle cycle_;
   sim::World world_;
   sim::Sensor sensor_;

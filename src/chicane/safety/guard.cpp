@@ -60,6 +60,10 @@ double act_time(const model::Measurement& seen, const controller::StepReport& re
 
 }  // namespace
 
+static std::unique_ptr<StopSearch> copy_of(const StopSearch& search) {
+  return std::make_unique<StopSearch>(search);
+}
+
 road::KnownRoad known_road(const GuardOptions& options, const path::RoadData* road,
                            const model::VehicleParams& vehicle) {
   if (options.mode == GuardMode::kOff) return {};
@@ -82,6 +86,8 @@ Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::Ve
       planner_{vehicle},
       search_{std::make_unique<StopSearch>(vehicle)},
       model_{vehicle} {}
+
+Guard::Guard(const Guard& other) = default;
 
 Guard::~Guard() = default;
 

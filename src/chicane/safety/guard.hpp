@@ -5,8 +5,10 @@
 #include <optional>
 
 #include "chicane/base/deadline.hpp"
+#include "chicane/base/owned.hpp"
 #include "chicane/controller/command_history.hpp"
 #include "chicane/controller/controller.hpp"
+#include "chicane/controller/copyable.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/state.hpp"
@@ -53,10 +55,9 @@ class Guard {
   Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
         const GuardOptions& options, road::KnownRoad road);
   ~Guard();
-  Guard(const Guard&) = delete;
+  /// All it knows, the controller included. Pre: the controller is Copyable.
+  Guard(const Guard& other);
   Guard& operator=(const Guard&) = delete;
-  Guard(Guard&&) = delete;
-  Guard& operator=(Guard&&) = delete;
 
   /// What else holds in a cycle.
   struct Cycle {
@@ -102,7 +103,7 @@ class Guard {
                                controller::StepReport& report) noexcept;
   [[nodiscard]] double played_edge(const StopStart& from) const noexcept;
 
-  std::unique_ptr<controller::Controller> controller_;
+  Owned<controller::Controller> controller_;
   GuardOptions options_;
   MeasurementMonitor monitor_;
   Supervisor supervisor_;
@@ -113,7 +114,7 @@ class Guard {
   controller::DirectionWatch direction_;  ///< by what is measured, plausible or not
   controller::CommandHistory sent_;
   StopPlanner planner_;
-  std::unique_ptr<StopSearch> search_;
+  Owned<StopSearch> search_;
   model::PredictionModel model_;
   double floor_ = -1e9;     ///< how far from the edge a car beyond the margin has been since [m]
   double leniency_ = 0.05;  ///< how much nearer to the edge it may come, slowly [m]

@@ -27,7 +27,6 @@ constexpr int kLeastStages = 8;
 
 StopSearch::StopSearch(const model::VehicleParams& vehicle)
     : model_{vehicle}, solver_{controller::make_tracking_solver(kMostTurns)} {
-  problem_.model = &model_;
   set_vehicle(vehicle);
 }
 
@@ -172,6 +171,7 @@ StopCheck StopSearch::plan(const road::KnownRoad& road, const StopStart& start, 
   out.size = 0;
   StopCheck check{.least_edge = kNone};
   if (!(start.body.vx > 2.0 * kSlow)) return check;
+  problem_.model = &model_;  // here, so that a copy asks its own
   problem_.horizon = now_.horizon = stages(road, start);
   now_.x[0] = {0.0,           start.d,      start.e,          start.body.vx,
                start.body.vy, start.body.r, start.body.steer, start.body.acceleration};

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "chicane/base/owned.hpp"
 #include "chicane/controller/tracking_problem.hpp"
 #include "chicane/controller/tracking_solver.hpp"
 #include "chicane/model/prediction.hpp"
@@ -41,7 +42,7 @@ class StopSearch {
 
   model::PredictionModel model_;
   Problem problem_;
-  std::unique_ptr<controller::TrackingSolver> solver_;
+  Owned<controller::TrackingSolver> solver_;
   controller::TrackingTrajectory now_, last_;
   double s_ = 0.0;     ///< where last_ begins [m]
   double time_ = 0.0;  ///< and when [s]

@@ -116,6 +116,7 @@ class DoubleTrack final : public Plant {
   [[nodiscard]] const model::State& state() const noexcept override { return state_; }
   [[nodiscard]] const PlantOutput& output() const noexcept override { return output_; }
   [[nodiscard]] std::array<Vec2, 4> contact_points() const noexcept override;
+  [[nodiscard]] std::unique_ptr<Plant> copy() const override { return std::make_unique<DoubleTrack>(*this); }
 
  private:
   struct Wheel {

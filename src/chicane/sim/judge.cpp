@@ -34,7 +34,7 @@ path::Projection project_anywhere(const path::Track& track, const model::Pose& c
   return line.project_along({car.x, car.y}, car.psi, 0.5 * (track.left_width(s) + track.right_width(s)));
 }
 
-Judge::Judge(const path::Track& track) noexcept : track_{track}, lap_length_{track.lap_length()} {}
+Judge::Judge(const path::Track& track) noexcept : track_{&track}, lap_length_{track.lap_length()} {}
 
 void Judge::reset(double time, const Sighting& car) noexcept {
   covered_ = off_track_at_lap_start_ = back_on_track_ = 0.0;
@@ -45,9 +45,9 @@ void Judge::reset(double time, const Sighting& car) noexcept {
   state_.time = time;
   // A start on the line is timed from standstill; any other first drives to the line.
   constexpr double kOnTheLine = 1.0;  // [m]
-  const path::Path& line = track_.centre();
-  state_.s = project_anywhere(track_, car.pose).s;
-  state_.progress = line.difference(state_.s, track_.start_s());
+  const path::Path& line = track_->centre();
+  state_.s = project_anywhere(*track_, car.pose).s;
+  state_.progress = line.difference(state_.s, track_->start_s());
   state_.is_timed = std::fabs(state_.progress) <= kOnTheLine * size_;
   if (line.is_closed() && state_.progress > kOnTheLine * size_) state_.progress -= lap_length_;
   next_line_ = state_.is_timed || state_.progress > kOnTheLine * size_ ? lap_length_ : 0.0;
@@ -66,16 +66,16 @@ void Judge::see(double time, const Sighting& car) noexcept {
 }
 
 void Judge::locate(double elapsed, const Sighting& car) noexcept {
-  const path::Path& line = track_.centre();
+  const path::Path& line = track_->centre();
   const Vec2 position{car.pose.x, car.pose.y};
   const double reachable = 2.0 * car.speed * elapsed + 0.01 * size_;
   path::Projection nearest = line.project(position, state_.s, kSearch * size_ + reachable);
   const bool is_far = nearest.distance >
-                      kLost * size_ + std::max(track_.left_width(nearest.s), track_.right_width(nearest.s));
+                      kLost * size_ + std::max(track_->left_width(nearest.s), track_->right_width(nearest.s));
   lost_for_ = is_far ? lost_for_ + 1 : 0;
   bool has_jumped = false;
   if (lost_for_ % kLostPatience == 1) {
-    const path::Projection anywhere = project_anywhere(track_, car.pose);
+    const path::Projection anywhere = project_anywhere(*track_, car.pose);
     has_jumped = anywhere.distance < 0.5 * nearest.distance;
     if (has_jumped) nearest = anywhere;
   }
@@ -86,7 +86,7 @@ void Judge::locate(double elapsed, const Sighting& car) noexcept {
     const Vec2 tangent{cos(foot.heading), sin(foot.heading)};
     const double beyond = (position - foot.position).dot(tangent);
     const bool is_end = nearest.s <= 0.0 || nearest.s >= line.length();
-    advanced = nearest.s + (is_end ? beyond : 0.0) - track_.start_s() - state_.progress;
+    advanced = nearest.s + (is_end ? beyond : 0.0) - track_->start_s() - state_.progress;
   }
   if (!has_jumped) covered_ += std::clamp(advanced, -reachable, reachable);
   state_.progress += advanced;
@@ -102,10 +102,10 @@ void Judge::measure_edges(double elapsed, const Sighting& car) noexcept {
   double edge = std::numeric_limits<double>::infinity();
   for (const Vec2& patch : car.contact_points) {
     const Vec2 point{pose.x + c * patch.x() - s * patch.y(), pose.y + s * patch.x() + c * patch.y()};
-    const path::Projection at = track_.centre().project(point, state_.s, kSearch * size_);
-    edge = std::min(edge, track_.edge_distance(at));
+    const path::Projection at = track_->centre().project(point, state_.s, kSearch * size_);
+    edge = std::min(edge, track_->edge_distance(at));
   }
-  state_.edge_distance = edge + track_.kerb_width();
+  state_.edge_distance = edge + track_->kerb_width();
   state_.min_edge_distance = std::min(state_.min_edge_distance, state_.edge_distance);
   back_on_track_ = state_.edge_distance >= kBackOnTrack * size_ ? back_on_track_ + elapsed : 0.0;
   if (state_.edge_distance < 0.0) {
@@ -151,7 +151,7 @@ void Judge::cross_line(double crossing_time) noexcept {
     if (is_best) state_.best_lap_time = state_.last_lap_time;
     state_.last_lap_was_clean = state_.off_track_time == off_track_at_lap_start_;
   }
-  state_.is_finished = !track_.centre().is_closed() && next_line_ > 0.0;
+  state_.is_finished = !track_->centre().is_closed() && next_line_ > 0.0;
   next_line_ += lap_length_;
   start_lap(crossing_time);
 }

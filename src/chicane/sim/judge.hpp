@@ -71,8 +71,11 @@ class Judge {
   /// Time rises from sighting to sighting.
   void see(double time, const Sighting& car) noexcept;
 
+  /// The same judgement on a copy of the track, which must outlive the judge.
+  void stand_on(const path::Track& track) noexcept { track_ = &track; }
+
   [[nodiscard]] const WorldState& state() const noexcept { return state_; }
-  [[nodiscard]] const path::Track& track() const noexcept { return track_; }
+  [[nodiscard]] const path::Track& track() const noexcept { return *track_; }
 
  private:
   void locate(double elapsed, const Sighting& car) noexcept;
@@ -81,7 +84,7 @@ class Judge {
   void cross_line(double crossing_time) noexcept;
   void start_lap(double crossing_time) noexcept;
 
-  const path::Track& track_;
+  const path::Track* track_;
   double size_ = 1.0;          ///< of the car, over one in full size: what is far for it
   double covered_ = 0.0;       ///< of the line since the lap began, without jumps [m]
   double lap_length_ = 0.0;    ///< Track::lap_length()

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 
 #include "chicane/base/vec2.hpp"
 #include "chicane/model/state.hpp"
@@ -57,6 +58,10 @@ class Plant {
   [[nodiscard]] virtual const PlantOutput& output() const noexcept = 0;
   /// Outer corners of the contact patches in B [m]: front left, front right, rear left, rear right.
   [[nodiscard]] virtual std::array<Vec2, 4> contact_points() const noexcept = 0;
+  /// Another one in the same state; null: this plant cannot be copied, nor a run with it.
+  [[nodiscard]] virtual std::unique_ptr<Plant> copy() const { return nullptr; }
 };
+
+[[nodiscard]] inline std::unique_ptr<Plant> copy_of(const Plant& plant) { return plant.copy(); }
 
 }  // namespace chicane::sim

@@ -36,13 +36,18 @@ int nearest_waypoint(const path::Track& track, const model::Pose& pose) noexcept
 
 }  // namespace
 
-World::World(Plant& plant, const path::Track& track) noexcept : plant_{plant}, judge_{track} {
+World::World(Plant& plant, const path::Track& track) noexcept : plant_{&plant}, judge_{track} {
   // A model car lives faster: the time scale of its size (model/similarity.hpp).
   const auto patches = plant.contact_points();
   const double pace = std::min(std::sqrt(patches[0].x() - patches[2].x()), 1.0);
   steps_per_judgement_ =
       std::max(1, static_cast<int>(std::lround(pace * kJudgementPeriod / plant.step_length())));
   place(track.start_s(), track.start_d());
+}
+
+void World::stand_on(Plant& plant, const path::Track& track) noexcept {
+  plant_ = &plant;
+  judge_.stand_on(track);
 }
 
 void World::place(double s, double offset, double speed) noexcept {
@@ -54,29 +59,39 @@ void World::place(double s, double offset, double speed) noexcept {
 }
 
 void World::reset(const model::Pose& pose, double speed) noexcept {
-  plant_.reset(pose, speed);
+  plant_->reset(pose, speed);
+  begin_ = 0.0;
   step_count_ = 0;
   judge_.reset(0.0, sighting());
 }
 
 void World::reset(const model::State& start) noexcept {
-  plant_.reset({.x = start.x, .y = start.y, .psi = start.psi}, start.vx);
-  plant_.set_motion({start.vx, start.vy}, start.r);
+  plant_->reset({.x = start.x, .y = start.y, .psi = start.psi}, start.vx);
+  plant_->set_motion({start.vx, start.vy}, start.r);
+  begin_ = 0.0;
   step_count_ = 0;
   judge_.reset(0.0, sighting());
 }
 
+void World::see(double time, const model::State& car) noexcept {
+  plant_->reset({.x = car.x, .y = car.y, .psi = car.psi}, car.vx);
+  plant_->set_motion({car.vx, car.vy}, car.r);
+  begin_ = time;
+  step_count_ = 0;
+  judge_.see(time, sighting());
+}
+
 void World::advance(const model::Command& command) noexcept {
-  plant_.advance(command);
+  plant_->advance(command);
   ++step_count_;
   if (step_count_ % steps_per_judgement_ == 0) judge_.see(time(), sighting());
 }
 
 Sighting World::sighting() const noexcept {
-  const model::State& car = plant_.state();
+  const model::State& car = plant_->state();
   return {.pose = {.x = car.x, .y = car.y, .psi = car.psi},
-          .speed = plant_.output().speed,
-          .contact_points = plant_.contact_points()};
+          .speed = plant_->output().speed,
+          .contact_points = plant_->contact_points()};
 }
 
 int select_waypoints(const path::Track& track, const model::Pose& pose, int count,

@@ -26,23 +26,31 @@ class World {
   /// A new run from any pose and motion; the wheel stands straight.
   void reset(const model::State& start) noexcept;
 
+  /// The car is there at `time` [s] of the run that goes on, moving like this: it was driven elsewhere, and
+  /// only seen. Times rise.
+  void see(double time, const model::State& car) noexcept;
+
+  /// A copy of a world goes on with copies of its plant and its track, which must outlive it.
+  void stand_on(Plant& plant, const path::Track& track) noexcept;
+
   /// One physics step of the plant with the command that acts.
   void advance(const model::Command& command) noexcept;
 
   [[nodiscard]] const WorldState& state() const noexcept { return judge_.state(); }
-  [[nodiscard]] const Plant& plant() const noexcept { return plant_; }
+  [[nodiscard]] const Plant& plant() const noexcept { return *plant_; }
   [[nodiscard]] const path::Track& track() const noexcept { return judge_.track(); }
   /// Since reset() [s].
   [[nodiscard]] double time() const noexcept {
-    return static_cast<double>(step_count_) * plant_.step_length();
+    return begin_ + static_cast<double>(step_count_) * plant_->step_length();
   }
 
  private:
   [[nodiscard]] Sighting sighting() const noexcept;
 
-  Plant& plant_;
+  Plant* plant_;
   Judge judge_;
-  long long step_count_ = 0;
+  double begin_ = 0.0;        ///< steps count from there [s]: 0, or where the car was last seen
+  long long step_count_ = 0;  ///< since then
   int steps_per_judgement_ = 1;
 };
 

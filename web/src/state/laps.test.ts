@@ -1,10 +1,18 @@
-import { beforeEach, describe, expect, it, vi } from 'vitest';
+import { effect } from '@preact/signals';
+import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import * as lapsOfThePage from './laps';
 import { forgetLaps, lapSamples, laps, noteLap, receiveLap } from './laps';
 import { receiveRun } from './run';
 import { frameWith, lapWith, runWith } from './test_messages';
 
-beforeEach(forgetLaps);
+beforeEach(() => {
+  vi.useFakeTimers();
+  forgetLaps();
+});
+afterEach(() => {
+  vi.runAllTimers();
+  vi.useRealTimers();
+});
 
 /** The frames of a lap of 10 s on a road of 100 m, and the first frame of the next lap. */
 function driveLap(page: Pick<typeof lapsOfThePage, 'noteLap'>, lap: number): void {
@@ -15,6 +23,7 @@ function driveLap(page: Pick<typeof lapsOfThePage, 'noteLap'>, lap: number): voi
 describe('laps', () => {
   it('are kept by number', () => {
     for (const each of [lapWith(2, 27), lapWith(1, 30), lapWith(2, 27.5)]) receiveLap(each);
+    vi.runAllTimers();
     expect(laps.value.map(({ lap, lap_time_s }) => [lap, lap_time_s])).toEqual([
       [1, 30],
       [2, 27.5],
@@ -25,8 +34,26 @@ describe('laps', () => {
 
   it('are the newest thousand, and the best', () => {
     for (let lap = 1; lap <= 2000; ++lap) receiveLap(lapWith(lap, lap === 7 ? 20 : 30));
+    vi.runAllTimers();
     expect(laps.value.map(({ lap }) => lap).slice(0, 3)).toEqual([7, 1001, 1002]);
     expect(laps.value).toHaveLength(1001);
+  });
+
+  it('are shown at once when they come one by one, and together when they come at once', () => {
+    let published = -1; // the effect runs once by itself
+    const end = effect(() => {
+      void laps.value;
+      ++published;
+    });
+    receiveLap(lapWith(1, 30));
+    expect(published).toBe(1);
+    vi.runAllTimers();
+    expect(published).toBe(1);
+    for (let lap = 2; lap <= 1000; ++lap) receiveLap(lapWith(lap, 30));
+    vi.runAllTimers();
+    expect(published).toBeLessThanOrEqual(3);
+    expect(laps.value).toHaveLength(1000);
+    end();
   });
 
   it('have a best time, from the frames', () => {

@@ -5,6 +5,8 @@ import { bestsOf } from './lap_table';
 import { run } from './run';
 
 const LAPS_KEPT = 1000;
+/** Views follow no more often: a page that is opened late in a run hears of a thousand laps at once [ms]. */
+const PUBLISHED_EVERY_MS = 100;
 
 /** Completed laps as the server sends them, by number: the newest ones and the best. */
 export const laps = signal<readonly Lap[]>([]);
@@ -24,14 +26,28 @@ export function keepAllLaps(): void {
   hasAllLaps = true;
 }
 
+let kept: readonly Lap[] = [];
+let isHeldBack = false;
+
+function publish(): void {
+  if (isHeldBack) return;
+  isHeldBack = true;
+  laps.value = kept;
+  setTimeout(() => {
+    isHeldBack = false;
+    if (laps.peek() !== kept) publish();
+  }, PUBLISHED_EVERY_MS);
+}
+
 export function forgetLaps(): void {
-  laps.value = [];
+  kept = [];
+  laps.value = kept;
   bestSeen.value = NaN;
   if (!hasAllLaps) lapSamples.clear();
 }
 
 export function receiveLap(lap: Lap): void {
-  const before = laps.value;
+  const before = kept;
   const isNext = before.length === 0 || (before.at(-1)?.lap ?? 0) < lap.lap;
   const all = isNext
     ? [...before, lap]
@@ -39,7 +55,8 @@ export function receiveLap(lap: Lap): void {
   lapSamples.complete(lap.lap - 1, lap.lap_time_s); // after the last lap no frame says so
   sampledLaps.value = lapSamples.completed;
   const best = all.length > LAPS_KEPT ? bestsOf(all).lap : NaN;
-  laps.value = all.filter((each, i) => i >= all.length - LAPS_KEPT || each.lap === best);
+  kept = all.filter((each, i) => i >= all.length - LAPS_KEPT || each.lap === best);
+  publish();
 }
 
 /** Adds a frame to the samples of its lap. */

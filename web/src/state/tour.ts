@@ -73,7 +73,7 @@ export const STEPS: readonly Step[] = [
       'Hand back with the button or Esc: the controller goes on from where you are. From far off the ' +
       'road, Reset (R) puts the car back to the start.',
     tab: 'drive',
-    tasks: ['Hand back', `Let it drive ${ALONE_S} s on the road`],
+    tasks: ['Hand back', `Let it drive ${ALONE_S} s on the road; from far off it, press Reset first`],
     isPossible: () => settings.value.has('manual.is_on'),
     watch() {
       let alone = 0;

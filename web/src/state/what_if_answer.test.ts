@@ -7,6 +7,7 @@ import {
   readWhatIf,
   stretchesOf,
   TRACE_COLUMNS,
+  trustOf,
   verdictOf,
   type WhatIfAnswer,
 } from './what_if_answer';
@@ -38,6 +39,22 @@ function answerOf(was: object, branch: object): WhatIfAnswer {
 }
 
 describe('an answer', () => {
+  it('says whose car drove where another program simulates the car, and how far it is to be trusted', () => {
+    const told = (more: object) =>
+      readWhatIf({ id: 1, state: 'done', at_s: 10, was: steady(10, 5), branch: steady(10, 5), ...more });
+    const standIn = (more: object) => {
+      const state = told(more);
+      return state?.kind === 'done' ? state.answer.standIn : undefined;
+    };
+    expect(standIn({})).toBeNull();
+    const found = standIn({ stand_in: { plant: 'udacity', compared_s: 9.96, apart_m: 0.413 } });
+    expect(found).toEqual({ plant: 'udacity', compared: 9.96, apart: 0.413 });
+    expect(found && trustOf(found)).toMatch(
+      /our own car \(udacity\).* Over the 10 s before, .* up to 0\.41 m from yours/,
+    );
+    expect(trustOf({ plant: 'udacity', compared: 0.4, apart: 0 })).toMatch(/too young/);
+  });
+
   it('is read, and so is that there is none yet, or why there is none', () => {
     expect(readWhatIf({ id: 0, state: 'none' })).toBeNull();
     expect(readWhatIf('nonsense')).toBeNull();

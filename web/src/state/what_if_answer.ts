@@ -37,6 +37,15 @@ export interface Future {
   readonly trace: Trace;
 }
 
+/** The simulator of ours that stood in for a car that another program simulates. */
+export interface StandIn {
+  readonly plant: string;
+  /** For so long before the moment ours drove from the same place, to be compared [s]. */
+  readonly compared: number;
+  /** And came so far from the car that was driven [m]. */
+  readonly apart: number;
+}
+
 export interface WhatIfAnswer {
   readonly id: number;
   /** The moment of the branch, on the run's time line [s]. */
@@ -47,6 +56,8 @@ export interface WhatIfAnswer {
   readonly isExact: boolean;
   /** Why the second future ended early; empty when it did not. */
   readonly endReason: string;
+  /** Null where the run's own car drove both futures. */
+  readonly standIn: StandIn | null;
   readonly was: Future;
   readonly branch: Future;
 }
@@ -81,6 +92,11 @@ function readFuture(value: unknown): Future {
   };
 }
 
+function readStandIn(value: unknown): StandIn | null {
+  const { plant, compared_s, apart_m } = fields(value);
+  return typeof plant === 'string' ? { plant, compared: number(compared_s), apart: number(apart_m) } : null;
+}
+
 /** Reads a parsed /what_if.json; null for one without a question. */
 export function readWhatIf(json: unknown): WhatIfState | null {
   const all = fields(json);
@@ -93,6 +109,7 @@ export function readWhatIf(json: unknown): WhatIfState | null {
     at: number(all.at_s),
     knownUntil: number(all.known_until_s),
     isExact: all.is_exact === true,
+    standIn: readStandIn(all.stand_in),
     endReason: typeof all.end_reason === 'string' ? all.end_reason : '',
     was: readFuture(all.was),
     branch: readFuture(all.branch),
@@ -160,6 +177,14 @@ export function stretchesOf({ was, branch }: WhatIfAnswer): Stretch[] {
 export function finalGap(answer: WhatIfAnswer): number {
   const end = Math.min(answer.was.trace.distance_m.at(-1) ?? NaN, answer.branch.trace.distance_m.at(-1) ?? NaN);
   return gapAt(answer, end);
+}
+
+/** Whose car drove both futures, and how far it is to be trusted, for a car that another program simulates. */
+export function trustOf({ plant, compared, apart }: StandIn): string {
+  const whose = `Both futures are driven by our own car (${plant}), from where your simulator's car was.`;
+  if (!(compared >= 1)) return `${whose} The run is too young to say how well it stands in.`;
+  const over = `Over the ${compared.toFixed(0)} s before, from the same place`;
+  return `${whose} ${over}, it came up to ${apart.toFixed(2)} m from yours.`;
 }
 
 /** What the change comes to, in one sentence. */

@@ -9,6 +9,7 @@ import {
   placesOf,
   stretchesOf,
   type TraceColumn,
+  trustOf,
   verdictOf,
   type WhatIfAnswer,
 } from '../state/what_if_answer';
@@ -163,6 +164,7 @@ export function WhatIfResult({ answer }: { answer: WhatIfAnswer }) {
         {verdictOf(answer)}
       </p>
       {answer.endReason !== '' && <p class="soft">The changed run ended: {answer.endReason}.</p>}
+      {answer.standIn && <p class="soft">{trustOf(answer.standIn)}</p>}
       {!answer.isExact && (
         <p class="soft">
           The run did not come out the same when it was computed again: the first column is what this program computes.

@@ -6,6 +6,7 @@ import type { Setting } from '../protocol/source';
 import { canSet, set } from '../state/operate';
 import { cursorTime } from '../state/plot_view';
 import { endReplay, replayLeft } from '../state/replay';
+import { run } from '../state/run';
 import { settingChanges } from '../state/settings';
 import {
   answer,
@@ -279,27 +280,44 @@ function Actions() {
   );
 }
 
-/** Another future of the run: a question, and its answer beside what was. */
-export function WhatIfView() {
-  const found = answer.value;
-  if (offered().length === 0 || !canAsk()) {
+function WhyNot({ isServed }: { isServed: boolean }) {
+  if (isServed) {
     return (
       <p class="empty">
-        Another future is driven by the program that has our simulator: <code>chicane drive</code>, or{' '}
-        <code>chicane replay LOG</code> for its recordings.
+        The car is simulated by another program, which cannot be driven twice. Our own car can stand in for it where the
+        road is known: start <code>chicane serve --track FILE</code>.
       </p>
     );
   }
+  return (
+    <p class="empty">
+      Another future is driven by the program that has our simulator: <code>chicane drive</code>, or{' '}
+      <code>chicane replay LOG</code> for its recordings.
+    </p>
+  );
+}
+
+/** Another future of the run: a question, and its answer beside what was. */
+export function WhatIfView() {
+  const found = answer.value;
+  const isServed = run.value?.mode === 'serve' && !askedLog.value;
+  if (offered().length === 0 || !canAsk()) return <WhyNot isServed={isServed} />;
   return (
     <div class="blocks what-if">
       <p class="soft">
         Change a number, and see both futures from the same moment on: the run as it is, and as it would be. The run
         that goes on is not disturbed.
       </p>
+      {isServed && (
+        <p class="soft">
+          Your simulator cannot be driven twice: our own car stands in for it, from where yours was, on the road that
+          --track told.
+        </p>
+      )}
       <Wishes />
       <Moment />
       <Ask />
-      {!askedLog.value && <RaceView />}
+      {!askedLog.value && !isServed && <RaceView />}
       <Actions />
       {found && <WhatIfResult answer={found} />}
     </div>

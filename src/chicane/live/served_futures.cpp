@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/live/served_futures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
+
+namespace chicane::live {
+namespace {
+
+constexpr double kLeast = 1.0;       // [s] of a run before anything can be said of it
+constexpr double kLongestGap = 0.5;  // [s] between measurements of one car
+constexpr double kShortestPeriod = 0.02, kLongestPeriod = 0.2;  // [s] of the control cycle
+constexpr double kMostDelay = 0.5;                              // [s]
+
+/// The middle one of the times between the newest measurements.
+double usual_period(const std::vector<Seen>& seen, std::size_t to, double otherwise) {
+  constexpr std::size_t kLooked = 100;
+  std::vector<double> periods;
+  for (std::size_t i = to; i > 0 && periods.size() < kLooked; --i)
+    periods.push_back(seen[i].time - seen[i - 1].time);
+  if (periods.empty()) return otherwise;
+  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
+  std::nth_element(periods.begin(), middle, periods.end());
+  return std::clamp(*middle, kShortestPeriod, kLongestPeriod);
+}
+
+/// Where the car was at `time` [s], which the run has come to.
+Vec2 place_at(const std::vector<Seen>& seen, double time) {
+  const auto after =
+      std::find_if(seen.begin() + 1, seen.end() - 1, [&](const Seen& each) { return each.time >= time; });
+  const Seen &b = *after, &a = *(after - 1);
+  const double share = (time - a.time) / (b.time - a.time);
+  return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
+}
+
+}  // namespace
+
+model::State moving(const std::vector<Seen>& seen, std::size_t i) {
+  const Seen &now = seen[i], &before = seen[i - 1];
+  const double elapsed = now.time - before.time;
+  const double turned = angle_difference(now.psi, before.psi);
+  const Vec2 way{now.x - before.x, now.y - before.y};
+  constexpr double kSlow = 3.0;  // [m/s] below it the direction of the way is not known well enough
+  const double slip =
+      now.speed < kSlow ? 0.0 : angle_difference(atan2(way.y(), way.x()), before.psi + 0.5 * turned);
+  constexpr double kMostSlip = 0.5;  // [rad] more is the car put elsewhere
+  const double kept = std::fabs(slip) < kMostSlip ? slip : 0.0;
+  return {.x = now.x,
+          .y = now.y,
+          .psi = now.psi,
+          .vx = now.speed * cos(kept),
+          .vy = now.speed * sin(kept),
+          .r = turned / elapsed,
+          .steer = before.sent.steer};
+}
+
+void ServedFutures::believe(const scenario::Scenario& scenario) {
+  const std::lock_guard lock(mutex_);
+  scenario_ = scenario;
+}
+
+void ServedFutures::give_up(std::string why) {
+  const std::lock_guard lock(mutex_);
+  why_not_ = std::move(why);
+}
+
+Result<ServedFutures::Known> ServedFutures::known_at(double time) {
+  const Result<Journal::Excerpt> excerpt = journal_.history(journal_.oldest());
+  if (!excerpt) return fail(excerpt.error());
+  Known known;
+  const Result<void> read = excerpt->events([&](const recording::RecordedEvent& event) -> Result<void> {
+    const auto* step = std::get_if<recording::RecordedStep>(&event);
+    if (step == nullptr) return {};
+    const model::Measurement& now = step->step.measurement;
+    if (!std::isfinite(now.x + now.y + now.psi + now.speed)) return {};
+    if (!known.seen.empty() && now.time <= known.seen.back().time) return {};
+    // Another car, or one that was put elsewhere.
+    if (!known.seen.empty() && now.time - known.seen.back().time > kLongestGap) known.seen.clear();
+    known.seen.push_back({now.time, std::clamp(now.delay, 0.0, kMostDelay), now.x, now.y, now.psi, now.speed,
+                          step->step.command});
+    return {};
+  });
+  if (!read) return fail(read.error());
+  const auto after = std::find_if(known.seen.begin(), known.seen.end(),
+                                  [&](const Seen& each) { return each.time > time + 1e-9; });
+  const auto count = static_cast<std::size_t>(after - known.seen.begin());
+  if (count < 2 || known.seen[count - 1].time - known.seen.front().time < kLeast)
+    return fail(ErrorCode::kInvalidArgument,
+                "there is no second of this car's run before that moment that is known without a gap");
+  known.at = count - 1;
+  return known;
+}
+
+/// A run of ours that has seen what this one saw up to `to`, and goes on from there.
+Result<std::unique_ptr<run::ClosedLoop>> ServedFutures::followed(scenario::Scenario scenario,
+                                                                 const std::vector<Seen>& seen,
+                                                                 std::size_t to) {
+  scenario.laps = 0;
+  scenario.time_limit = 0.0;
+  scenario.faults.clear();
+  scenario.control_period = usual_period(seen, to, scenario.control_period);
+  scenario.latency = seen[to].delay;
+  auto loop = run::ClosedLoop::create(scenario, roads_);
+  if (!loop) return loop;
+  (*loop)->drive_on();
+  std::size_t from = to;
+  while (from > 1 && seen[to].time - seen[from].time < kFollowed) --from;
+  (*loop)->restart_at(moving(seen, from));
+  for (std::size_t i = from; i <= to; ++i)
+    (*loop)->follow(seen[i].time, moving(seen, i), seen[i].delay, seen[i].sent);
+  return loop;
+}
+
+Result<WhatIf::Answer> ServedFutures::branch(const recording::BranchOptions& options,
+                                             const recording::BranchHooks& hooks) {
+  std::unique_lock lock(mutex_);
+  if (!why_not_.empty()) return fail(ErrorCode::kInvalidArgument, why_not_);
+  if (!scenario_) return fail(ErrorCode::kInvalidArgument, "the simulator's road is not known");
+  const scenario::Scenario scenario = *scenario_;
+  lock.unlock();
+  const Result<Known> known = known_at(options.at);
+  if (!known) return fail(known.error());
+  const std::vector<Seen>& seen = known->seen;
+
+  WhatIf::StandIn stand_in{.plant = scenario.plant};
+  std::size_t before = known->at;
+  while (before > 1 && seen[known->at].time - seen[before].time < kCompared) --before;
+  auto check = followed(scenario, seen, before);
+  if (!check) return fail(check.error());
+  stand_in.compared = seen[known->at].time - seen[before].time;
+  while ((*check)->time() < seen[known->at].time) {
+    if (hooks.go_on && !hooks.go_on((*check)->time())) return fail(ErrorCode::kInvalidArgument, "given up");
+    if (!(*check)->advance()) continue;
+    const telemetry::Frame& frame = (*check)->frame();
+    const Vec2 driven = place_at(seen, frame.time);
+    stand_in.apart = std::max(stand_in.apart, hypot(frame.truth.x - driven.x(), frame.truth.y - driven.y()));
+  }
+
+  auto loop = followed(scenario, seen, known->at);
+  if (!loop) return fail(loop.error());
+  recording::BranchOptions from_there = options;
+  from_there.at = seen[known->at].time + 1.0;  // behind all that is told: the futures begin where it ends
+  from_there.drives_both = true;
+  const std::uint64_t next = (*loop)->cycle();
+  from_there.from = std::make_shared<const recording::Checkpoint>(
+      recording::Checkpoint{.loop = std::move(*loop), .time = seen[known->at].time, .next_cycle = next});
+  const recording::RunEvents nothing = [](const auto&) { return Result<void>{}; };
+  auto report = recording::branch_run(nothing, from_there, hooks);
+  if (!report) return fail(report.error());
+  WhatIf::Answer answer{std::move(*report)};
+  answer.stand_in = std::move(stand_in);
+  return answer;
+}
+
+}  // namespace chicane::live

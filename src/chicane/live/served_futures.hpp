@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/live/journal.hpp"
+#include "chicane/live/what_if.hpp"
+#include "chicane/model/state.hpp"
+#include "chicane/recording/branch.hpp"
+#include "chicane/run/roads.hpp"
+#include "chicane/scenario/scenario.hpp"
+
+namespace chicane::live {
+
+/// A moment of a car that others simulate, as it was measured.
+struct Seen {
+  double time = 0.0;   ///< [s]
+  double delay = 0.0;  ///< from the measurement to the actuators [s]
+  double x = 0.0, y = 0.0, psi = 0.0, speed = 0.0;
+  model::Command sent;
+};
+/// How it moved at `seen[i]`, with what is not measured, sideslip and yaw rate, from where it was before.
+/// Pre: i > 0.
+[[nodiscard]] model::State moving(const std::vector<Seen>& seen, std::size_t i);
+
+/// Futures of a run whose car others simulate: both are driven by the simulator that we have of that car, on
+/// the road that is known, from where the car was. Our controller sees the minutes before once more, so that
+/// it knows what it knew: the road that it learned, and the commands on their way. How far our car is to be
+/// trusted is measured: over the ten seconds before the moment it is driven, too, and compared with the one
+/// that was driven.
+class ServedFutures {
+ public:
+  static constexpr double kFollowed = 150.0;  ///< of the run before the moment [s]
+  static constexpr double kCompared = 10.0;   ///< [s]
+
+  /// `journal` must outlive it.
+  explicit ServedFutures(Journal& journal) : journal_{journal} {}
+
+  /// Any thread: the settings that hold from now on; the scenario's track is the simulator's road.
+  void believe(const scenario::Scenario& scenario);
+  /// Any thread: the road is not the simulator's; branch() says why from now on.
+  void give_up(std::string why);
+
+  /// One thread at a time: both futures from `options.at` on, with the settings that hold now, and with those
+  /// of `options`. Fails as recording::branch_run() does, and while less than a second is known.
+  [[nodiscard]] Result<WhatIf::Answer> branch(const recording::BranchOptions& options,
+                                              const recording::BranchHooks& hooks);
+
+ private:
+  struct Known {
+    std::vector<Seen> seen;  ///< of the newest car
+    std::size_t at = 0;      ///< the moment
+  };
+  [[nodiscard]] Result<Known> known_at(double time);
+  [[nodiscard]] Result<std::unique_ptr<run::ClosedLoop>> followed(scenario::Scenario scenario,
+                                                                  const std::vector<Seen>& seen,
+                                                                  std::size_t to);
+
+  Journal& journal_;
+  run::Roads roads_;
+  std::mutex mutex_;  ///< of all below
+  std::optional<scenario::Scenario> scenario_;
+  std::string why_not_;
+};
+
+}  // namespace chicane::live

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+// The dashboard's figures, all by one command: what a page and its program cost, how soon a page is there, early and
+// late in a run, how soon another future is, and what a second car costs the control step. Prints a table for the
+// documentation; no test asserts it, because it depends on what else the machine does.
+//   CHICANE=/path/to/chicane node measure.mjs [laps of the long run, 1000] [minutes of the hour, 60] [only these parts]
+// Parts: page, program, late, hour, race. The long run takes 13 s / 20 a lap, the hour some minutes.
+import { execFileSync, spawnSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { availableParallelism, cpus, loadavg } from 'node:os';
+import { argv } from 'node:process';
+import { setTimeout as sleep } from 'node:timers/promises';
+import { launch } from './browser.mjs';
+import { startDrive } from './chicane_drive.mjs';
+import { DashboardPage } from './dashboard_page.mjs';
+import { pageCost, quantile } from './page_cost.mjs';
+import { SIXTY_A_SECOND } from './paints.mjs';
+
+const LAPS = Number(argv[2] ?? 1000);
+const MINUTES = Number(argv[3] ?? 60);
+const PARTS = argv.slice(4);
+const isWanted = (part) => PARTS.length === 0 || PARTS.includes(part);
+
+const row = (what, value, aim = '') => console.log(`| ${what} | ${value} | ${aim} |`);
+const ms = (value) => (value >= 1000 ? `${(value / 1000).toFixed(2)} s` : `${value.toFixed(0)} ms`);
+
+/** Processor time of a program [s], all of its threads. */
+function processorTime(pid) {
+  const fields = readFileSync(`/proc/${pid}/stat`, 'utf8').replace(/.*\) /, '').split(' ');
+  return (Number(fields[11]) + Number(fields[12])) / Number(execFileSync('getconf', ['CLK_TCK']));
+}
+const memory = (pid) => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, 'utf8'))[1]) / 1e3;
+
+/**
+ * From the beginning of a cold visit, nothing cached, until `isThere` is true in the page [ms], by the page's own
+ * clock; asked at each of its repaints.
+ */
+async function timeUntil(browser, address, isThere, argument) {
+  const context = await browser.newContext({ viewport: { width: 1366, height: 768 } });
+  const page = await context.newPage();
+  await page.addInitScript(() => localStorage.setItem('chicane.dimension', '"2d"'));
+  await page.addInitScript(
+    ({ text, argument }) => {
+      const isThere = new Function(`return ${text}`)();
+      globalThis.wasThere = new Promise((resolve) => {
+        const look = () => {
+          if (document.body && isThere(argument)) resolve(performance.now());
+          else requestAnimationFrame(look);
+        };
+        requestAnimationFrame(look);
+      });
+    },
+    { text: isThere.toString(), argument },
+  );
+  await page.goto(address);
+  const time = await page.evaluate(() => globalThis.wasThere);
+  await context.close();
+  return time;
+}
+/** The map with road and car: more colours than an empty ground has. */
+const hasPicture = () => {
+  const canvas = document.querySelector('canvas.map-2d');
+  if (!canvas || canvas.width === 0) return false;
+  const copy = new OffscreenCanvas(160, 90).getContext('2d');
+  copy.drawImage(canvas, 0, 0, 160, 90);
+  return new Set(new Uint32Array(copy.getImageData(0, 0, 160, 90).data.buffer)).size > 8;
+};
+/** The table of laps with this one, the newest on top. */
+const hasLap = (lap) =>
+  Number.parseInt(document.querySelector('.laps .lap-table tbody tr:not(.limit) th')?.textContent ?? '', 10) >= lap;
+
+async function several(times, measure) {
+  const values = [];
+  for (let i = 0; i < times; ++i) values.push(await measure());
+  return `${ms(quantile(values, 0.5))} (${ms(Math.min(...values))} to ${ms(Math.max(...values))})`;
+}
+
+/** From the click on "Drive both" to the verdict, of ten seconds from now on [ms]. */
+async function timeToAnswer(browser, url) {
+  const dashboard = await DashboardPage.open(browser, url, { tab: 'whatif' });
+  const { page } = dashboard;
+  await page.getByLabel('Setting to change').fill('latency_ms');
+  await page.getByLabel('What if: latency').fill('60');
+  await page.getByLabel('What if: latency').press('Enter');
+  await dashboard.button('10 s').click();
+  const time = await page.evaluate(async () => {
+    const begin = performance.now();
+    [...document.querySelectorAll('button')].find((each) => each.textContent === 'Drive both').click();
+    while (!document.querySelector('[data-testid="what-if-verdict"]'))
+      await new Promise((resolve) => requestAnimationFrame(resolve));
+    return performance.now() - begin;
+  });
+  await page.context().close();
+  return time;
+}
+
+/** The control step of a run in real time [µs], with a second car or without; a page begins it and goes. */
+async function stepTimes(browser, withRival, seconds) {
+  const drive = await startDrive(['--track', 'oval', '--pace', '4', '--json']);
+  const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'whatif' });
+  const { page } = dashboard;
+  if (withRival) {
+    await page.getByLabel('Setting to change').fill('tracking_mpc.weight_lateral');
+    await page.getByLabel(/^What if: /).fill('4');
+    await page.getByLabel(/^What if: /).press('Enter');
+    await dashboard.button('Race A against B').click();
+    await page.getByTestId('race').waitFor();
+  } else {
+    await dashboard.button('Reset').click();
+  }
+  await page.context().close();
+  await sleep(seconds * 1000);
+  return (await drive.result()).step_time_us;
+}
+
+const browser = await launch();
+const model = cpus()[0]?.model ?? 'unknown';
+console.log(`${model}, ${availableParallelism()} cores, load ${loadavg()[0].toFixed(1)} at the beginning\n`);
+console.log('| | measured | aim |\n|---|--:|--:|');
+
+if (isWanted('page')) {
+  const drive = await startDrive(['--track', 'oval', ...SIXTY_A_SECOND]);
+  await pageCost(browser, drive.url, 'plots', 1); // the program's page is read once
+  row('first picture of a cold page', await several(5, () => timeUntil(browser, drive.url, hasPicture)), '≤ 1 s');
+  for (const tab of ['plots', 'explain']) {
+    const cost = await pageCost(browser, drive.url, tab, 10);
+    const rate = `${tab}, ${cost.framesPerSecond.toFixed(0)} frames a second`;
+    row(`main thread of the page, ${rate}`, `${(100 * cost.mainThread).toFixed(0)} %`, '< 50 %');
+    row(`message to screen p95, ${rate}`, ms(cost.p95), '≤ 100 ms');
+  }
+  await drive.stop();
+}
+if (isWanted('program')) {
+  for (const preset of ['default', 'race']) {
+    const drive = await startDrive(['--track', 'oval', '--preset', preset]);
+    let share = 0;
+    await pageCost(browser, drive.url, 'plots', 30, async () => {
+      const [begin, used] = [performance.now(), processorTime(drive.pid)];
+      await sleep(30_000);
+      share = (processorTime(drive.pid) - used) / ((performance.now() - begin) / 1000);
+    });
+    row(`program, ${preset}, real time, one page`, `${(100 * share).toFixed(1)} % of a core`, '≤ 2 %');
+    await drive.stop();
+  }
+}
+if (isWanted('late')) {
+  const drive = await startDrive(['--track', 'oval', '--pace', '20']);
+  for (const lap of [1, 50, LAPS]) {
+    const watching = await DashboardPage.open(browser, drive.url, { tab: 'laps' });
+    while (!(await watching.page.evaluate(hasLap, lap))) await sleep(500);
+    await watching.page.context().close();
+    const table = await several(5, () => timeUntil(browser, `${drive.url}#laps`, hasLap, lap));
+    row(`table of laps, of a page opened at lap ${lap}`, table, '≤ 1 s');
+    row(`another future from now on, asked at lap ${lap}`, await several(5, () => timeToAnswer(browser, drive.url)));
+    row(`memory of the program at lap ${lap}`, `${memory(drive.pid).toFixed(0)} MB`);
+  }
+  await drive.stop();
+}
+if (isWanted('race')) {
+  const seconds = 60;
+  const all = { alone: [], both: [] };
+  for (let i = 0; i < 2; ++i) {
+    all.alone.push(await stepTimes(browser, false, seconds));
+    all.both.push(await stepTimes(browser, true, seconds));
+  }
+  for (const [name, times] of Object.entries(all)) {
+    const told = (key) => times.map((each) => each[key].toFixed(0)).join(', ');
+    row(
+      `control step p50 / p99.9 of ${name === 'both' ? 'two cars' : 'one car'}, each run [µs]`,
+      `${told('p50')} / ${told('p999')}`,
+    );
+  }
+  const moved =
+    quantile(
+      all.both.map((each) => each.p999),
+      0,
+    ) -
+    quantile(
+      all.alone.map((each) => each.p999),
+      0,
+    );
+  row('p99.9 of the control step moves by, better run of each', `${(moved / 1000).toFixed(3)} ms`, '< 1 ms');
+}
+await browser.close();
+if (isWanted('hour')) {
+  const found = spawnSync('node', ['hour.mjs', String(MINUTES)], { encoding: 'utf8' });
+  row(
+    `heap and arrays of a page after ${MINUTES} minutes more than after a sixth of them`,
+    found.stdout.trim().split('\n').at(-1),
+    '< 1 MB',
+  );
+}
+console.log(`\nload ${loadavg()[0].toFixed(1)} at the end`);

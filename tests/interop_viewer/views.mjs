@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// Every view that the dashboard has, and how to come to it: for pictures of all of them (look.mjs).
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { startDrive, startProgram } from './chicane_drive.mjs';
+import { DashboardPage, PHONE, TABS } from './dashboard_page.mjs';
+
+export const SIZES = {
+  phone: PHONE,
+  tablet: { viewport: { width: 768, height: 1024 }, hasTouch: true },
+  laptop: { viewport: { width: 1280, height: 720 } },
+  screen: { viewport: { width: 1920, height: 1080 } },
+};
+export const THEMES = ['light', 'dark'];
+
+const tab = (name) => ({
+  name,
+  async show(dashboard) {
+    await dashboard.show(name);
+    if (name === 'laps') await dashboard.page.locator('.lap-table .picks').nth(1).waitFor();
+  },
+});
+const overlay = (name, key, selector) => ({
+  name,
+  async show({ page }) {
+    await page.locator('body').press(key);
+    await page.locator(selector).first().waitFor();
+  },
+  async leave({ page }) {
+    await page.locator('body').press(key === '?' ? 'Escape' : key);
+  },
+});
+
+/** Of a run that goes on. Each begins where the one before it was left. */
+const LIVE = [
+  ...TABS.filter((name) => name !== 'whatif').map(tab),
+  {
+    name: 'track plots',
+    async show(dashboard) {
+      await dashboard.show('plots');
+      await dashboard.button('Track').click();
+      await dashboard.page.locator('.track-plots .plot').first().waitFor();
+    },
+    leave: (dashboard) => dashboard.button('Time').click(),
+  },
+  {
+    name: 'what if',
+    async show(dashboard) {
+      const { page } = dashboard;
+      await dashboard.show('whatif');
+      await page.getByLabel('Setting to change').fill('latency_ms');
+      await page.getByLabel('What if: latency').fill('250');
+      await page.getByLabel('What if: latency').press('Enter');
+      await dashboard.button('10 s').click();
+      await dashboard.button('Drive both').click();
+      await page.getByTestId('what-if-verdict').waitFor();
+    },
+    leave: (dashboard) => dashboard.button('Forget it').click(),
+  },
+  {
+    name: 'share',
+    async show(dashboard) {
+      await dashboard.show('drive');
+      await dashboard.button('Share').click();
+      await dashboard.page.getByLabel('Link', { exact: true }).waitFor();
+    },
+    leave: (dashboard) => dashboard.button('Close').click(),
+  },
+  {
+    name: 'wanted run',
+    async show({ page }) {
+      await page.evaluate(() => {
+        location.hash = '#run?track=hairpins&latency_ms=60';
+      });
+      await page.getByTestId('wanted').waitFor();
+    },
+    leave: (dashboard) => dashboard.button('Keep this run').click(),
+  },
+  {
+    name: 'tour',
+    async show(dashboard) {
+      await dashboard.page.locator('body').press('h');
+      await dashboard.page.getByTestId('tour').waitFor();
+    },
+    leave: (dashboard) => dashboard.button('Leave the tour').click(),
+  },
+  overlay('help', '?', 'dialog[open]'),
+  overlay('presentation', 'g', '.workbench.stage-alone'),
+];
+
+const ENDED = [
+  {
+    name: 'end card',
+    async show({ page }) {
+      const pace = page.locator('.panel-body [data-key="run.pace"] .number-box');
+      await pace.fill('20'); // not before the page is there: the run must not end earlier
+      await pace.press('Enter');
+      await page.getByTestId('end-card').waitFor();
+      await page.getByText('Program ended', { exact: true }).waitFor();
+    },
+  },
+];
+const RECORDED = [
+  { name: 'recording', show: (dashboard) => dashboard.show('plots') },
+  { name: 'recorded laps', show: (dashboard) => dashboard.show('laps') },
+];
+const REPORTED = [{ name: 'report', show: ({ page }) => page.getByTestId('verdict').nth(1).waitFor() }];
+
+/** Runs, recordings and a report to look at; stop() ends and removes them. */
+export async function startScenes() {
+  const folder = mkdtempSync(join(tmpdir(), 'chicane-views-'));
+  const program = process.env.CHICANE ?? 'chicane';
+  const [log, other, report] = ['run.mcap', 'slow.mcap', 'report.html'].map((name) => join(folder, name));
+  const run = (...words) => execFileSync(program, words, { stdio: 'ignore' });
+  run('drive', '--fast', '--track', 'oval', '--laps', '2', '--record', log);
+  run('drive', '--fast', '--track', 'oval', '--laps', '2', '--preset', 'pid', '--record', other);
+  run('report', log, other, '--output', report);
+  const live = await startDrive(['--track', 'oval', '--pace', '10']);
+  const replay = await startProgram('replay', [log]);
+  const ending = async () => (await startDrive(['--track', 'oval', '--laps', '3'])).url;
+  return {
+    /** All views, by where they are found. */
+    groups: [
+      { address: async () => live.url, state: 'Live', views: LIVE },
+      { address: ending, state: 'Live', views: ENDED },
+      { address: async () => replay.url, state: 'Recording', views: RECORDED },
+      { address: async () => pathToFileURL(report).href, state: 'Recording', views: REPORTED },
+    ],
+    async stop() {
+      await live.stop();
+      await replay.stop();
+      rmSync(folder, { recursive: true });
+    },
+  };
+}
+
+/** What browsers say of software graphics, and of a program that has ended. */
+export const isExpected = (text) => /GPU|WebGL|GL Driver|WebSocket connection to|ERR_CONNECTION_REFUSED/i.test(text);
+
+/** Goes through all views of a group at one size in one theme; `look` is called at each. */
+export async function walk(browser, { address, state, views }, options, look) {
+  const dashboard = await DashboardPage.open(browser, await address(), { tab: 'drive', state, ...options });
+  for (const view of views) {
+    await view.show(dashboard);
+    await look(dashboard, view.name);
+    await view.leave?.(dashboard);
+  }
+  await dashboard.close(isExpected);
+}
