@@ -16,9 +16,9 @@ struct Race {
 };
 
 constexpr Race kRaces[] = {{"udacity", "lakeside", 23.2},   {"udacity", "oval", 13.5},
-                           {"udacity", "hairpins", 25.67},  {"udacity", "speedway", 64.32},
-                           {"road-car", "lakeside", 38.09}, {"road-car", "oval", 22.56},
-                           {"road-car", "hairpins", 47.58}, {"road-car", "speedway", 72.47}};
+                           {"udacity", "hairpins", 25.45},  {"udacity", "speedway", 64.32},
+                           {"road-car", "lakeside", 37.93}, {"road-car", "oval", 22.41},
+                           {"road-car", "hairpins", 47.26}, {"road-car", "speedway", 72.05}};
 
 TEST(Race, LapsCleanlyNearTheLimit) {
   for (const Race& race : kRaces) {
@@ -63,6 +63,37 @@ TEST(Race, LearnsTheGripWithoutLeavingTheRoad) {
     for (const telemetry::LapSummary& lap : run.laps) EXPECT_GT(lap.min_edge_distance, 0.05) << grip;
     EXPECT_LT(run.laps.back().lap_time, lap_time) << grip;
   }
+}
+
+// docs/tracking.md, eq. 18a: more speed where there is grip and room, less in neither.
+TEST(Race, IsFasterWhereSpeedHasAPrice) {
+  const auto race = [](const char* progress) {
+    return drive({{"preset", "race"},
+                  {"car", "road-car"},
+                  {"track", "oval"},
+                  {"laps", "2"},
+                  {"tracking_mpc.weight_progress", progress}});
+  };
+  const auto with = race("0.7");
+  const auto without = race("0");
+  EXPECT_LT(with.laps.back().lap_time, 0.996 * without.laps.back().lap_time);
+  for (const auto& run : {with, without}) {
+    EXPECT_EQ(run.off_track_events, 0);
+    for (const telemetry::LapSummary& lap : run.laps) EXPECT_GT(lap.min_edge_distance, 0.15);
+  }
+}
+
+TEST(Race, HastensOnlyWhereItIsWorthItAndThePlanDoesNotBrake) {
+  controller::TrackingMpcOptions options;
+  EXPECT_EQ(options.haste(0.0), 0.0);
+  options.weight_progress = 0.7;
+  options.weight_speed = 0.5;
+  EXPECT_DOUBLE_EQ(options.haste(0.0), 0.7);
+  EXPECT_DOUBLE_EQ(options.haste(5.0), 0.7);
+  EXPECT_DOUBLE_EQ(options.haste(-1.5), 0.35);
+  EXPECT_EQ(options.haste(-8.0), 0.0);
+  options.weight_speed = 0.0;
+  EXPECT_EQ(options.haste(0.0), 0.0);
 }
 
 TEST(Race, IsFasterThanTheDefault) {

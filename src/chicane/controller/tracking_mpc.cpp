@@ -37,8 +37,8 @@ constexpr double kSpeedAhead = 4.0;    // [m/s] wanted at most beyond what the l
 constexpr double kLongestHold = 0.3;   // [s] the first command is assumed to be held at most this long
 constexpr double kBlindAfter = 0.3;    // [s] without a measurement, or a waypoint: stop
 constexpr double kPreview = 0.3;       // [s] the car answers the wheel about so late
-constexpr double kCrawl = 3.0;         // [m/s] below it the fallback brings the car to rest
-constexpr double kGripStep = 0.03;     // a lap is planned anew where the grip differs by more
+constexpr double kCrawl = 3.0;      // [m/s] below it the fallback brings the car to rest, and no plan races
+constexpr double kGripStep = 0.03;  // a lap is planned anew where the grip differs by more
 
 class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable<TrackingMpcOptions> {
  public:
@@ -351,9 +351,11 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   void ask_road(int k, const StageState& x) noexcept {
     const double s = x[Problem::kS];
     road::ReferenceLine::Demand demand = line().demand(s_ + s);
+    double haste = options_.haste(demand.speed * demand.speed_slope);
+    if (!road_.is_raced() || k == problem_.horizon || demand.speed < kCrawl) haste = 0.0;
     if (const double stop = stopping_speed(s); stop < demand.speed) {
       demand.speed = stop;
-      demand.speed_slope = 0.0;
+      demand.speed_slope = haste = 0.0;
     }
     const road::Road::Room room = room_at(s + problem_.nose, demand.offset);
     const road::Road::Room behind = room_at(s - problem_.tail, demand.offset);
@@ -366,7 +368,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     road.s[i] = s;
     road.curvature[i] = demand.curvature;
     road.curvature_slope[i] = demand.curvature_slope;
-    road.speed[i] = is_reachable ? demand.speed : v + kSpeedAhead;
+    road.speed[i] = haste + (is_reachable ? demand.speed : v + kSpeedAhead);
     road.speed_slope[i] = is_reachable ? demand.speed_slope : 0.0;
     road.sideslip[i] = road_.is_raced() ? road_.lap()->sideslip(s_ + s) : 0.0;
     road.left[i] = room.left;
@@ -381,9 +383,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     has_horizon_ = true;
     result_.answer = Answer::kDrive;
     fill_plan(act_time);
-    model::Command& command = result_.command;
-    command.steer = horizon_.u[0][0];
-    command.throttle = throttle_for(model_.vehicle(), horizon_.u[0][1], start.state.vx);
+    result_.command = {horizon_.u[0][0], throttle_for(model_.vehicle(), horizon_.u[0][1], start.state.vx)};
     explain_answer(start.state.vx);
     return result_;
   }
@@ -400,9 +400,9 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   const StepResult& stop_on_road(const StateEstimator::Prediction& start) noexcept {
     const model::VehicleParams& car = model_.vehicle();
     const int ahead = std::min(static_cast<int>(kPreview / options_.step_length), options_.horizon_steps - 1);
-    result_.command.steer = std::clamp(following(ahead, horizon_.x[0])[0], -car.steer_limit, car.steer_limit);
-    result_.command.throttle = throttle_for(
-        car, longitudinal_acceleration(car, -car.brake_throttle_limit, start.state.vx), start.state.vx);
+    const double v = start.state.vx, braking = longitudinal_acceleration(car, -car.brake_throttle_limit, v);
+    result_.command = {std::clamp(following(ahead, horizon_.x[0])[0], -car.steer_limit, car.steer_limit),
+                       throttle_for(car, braking, v)};
     return without_plan(Answer::kStopOnRoad);
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -27,6 +28,7 @@ struct TrackingMpcOptions {
   double weight_lateral = 1.0;      ///< on the lateral error² [1/m²]
   double weight_heading = 5.0;      ///< on the heading error² [1/rad²]
   double weight_speed = 0.5;        ///< on (v − v_ref)² [s²/m²]
+  double weight_progress = 0.0;     ///< of −v where a planned lap is raced by, if weight_speed > 0 [s/m]
   double weight_steer_rate = 10.0;  ///< on (steering rate)² [s²/rad²]
   double weight_jerk = 0.02;        ///< on (change of acceleration per second)² [s⁶/m²]
   double weight_edge = 200.0;       ///< price of leaving assumed_half_width, per m² [1/m²]
@@ -39,6 +41,13 @@ struct TrackingMpcOptions {
   bool learn_grip = false;  ///< race with the grip that the tyres have shown (docs/racing.md)
   bool remember_waypoints = true;  ///< close the waypoints seen into a map
 
+  /// By how much the speed that is asked for is above the planned one where that changes by `acceleration`
+  /// [m/s²], for weight_progress (docs/tracking.md, eq. 18a) [m/s].
+  [[nodiscard]] double haste(double acceleration) const noexcept {
+    constexpr double kBraking = 3.0;  // [m/s²] from which on there is none
+    if (!(weight_speed > 0.0)) return 0.0;
+    return weight_progress / (2.0 * weight_speed) * std::clamp(1.0 + acceleration / kBraking, 0.0, 1.0);
+  }
   /// That the first lap is planned with, over the one that the vehicle's parameters tell.
   [[nodiscard]] double first_grip() const noexcept { return learns() ? kUnprovenGrip : 1.0; }
   [[nodiscard]] bool learns() const noexcept { return racing_line && learn_grip; }

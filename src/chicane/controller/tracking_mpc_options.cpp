@@ -28,6 +28,8 @@ constexpr std::array kOptions{
                                "Price of the squared heading error."),
     option<&T::weight_speed>("weight_speed", unit::per("s²/m²"), 0, kHighestWeight,
                              "Price of the squared speed error."),
+    option<&T::weight_progress>("weight_progress", unit::per("s/m"), 0, kHighestWeight,
+                                "What speed is worth where a planned lap is raced by; needs weight_speed."),
     option<&T::weight_steer_rate>("weight_steer_rate", unit::per("s²/rad²"), 0, kHighestWeight,
                                   "Price of the squared steering rate."),
     option<&T::weight_jerk>("weight_jerk", unit::per("s⁶/m²"), 0, kHighestWeight,
