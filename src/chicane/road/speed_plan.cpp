@@ -31,11 +31,14 @@ double demand_of(double curvature, double slope, const model::VehicleParams& p) 
   return std::max(front, rear);
 }
 
-/// Share of the longitudinal force left beside the lateral use of the friction ellipse (1 for uncoupled
-/// tyres).
-double longitudinal_share(double v, double demand, const model::VehicleParams& p, double grip) {
+/// Share of the grip that is planned with which the tyres use sideways.
+double use_of(double v, double demand, const model::VehicleParams& p, double grip) {
+  return v * v * demand / (grip * p.cornering_friction() * p.load(v));
+}
+
+/// Share of the longitudinal force that the friction ellipse leaves beside it (1 for uncoupled tyres).
+double longitudinal_share(double use, const model::VehicleParams& p) {
   if (p.friction_coupling == 0.0) return 1.0;
-  const double use = v * v * demand / (grip * p.cornering_friction() * p.load(v));
   return std::sqrt(std::max(0.0, 1.0 - p.friction_coupling * std::min(1.0, use * use)));
 }
 
@@ -57,6 +60,7 @@ void limit_to(double limit, SpeedLimiter reason, ReferenceLine::Sample& sample) 
 
 void SpeedPlan::begin(const model::VehicleParams& vehicle, const SpeedPlanOptions& options) noexcept {
   vehicle_ = vehicle;
+  if (!(vehicle == stability_.vehicle())) stability_ = model::BrakingStability(vehicle);
   options_ = options;
   instalments_.restart();
 }
@@ -116,7 +120,7 @@ void SpeedPlan::accelerate(ReferenceLine& line, int turn) noexcept {
   const auto from = static_cast<std::size_t>(at);
   const std::size_t to = line.is_closed() && at + 1 == laps ? 0 : from + 1;
   const double v = line.samples()[from].speed;
-  const double share = longitudinal_share(v, demand_[from], vehicle_, options_.grip_share);
+  const double share = longitudinal_share(use_of(v, demand_[from], vehicle_, options_.grip_share), vehicle_);
   const double drag = longitudinal_acceleration(vehicle_, 0.0, v);
   const double drive = std::min(longitudinal_acceleration(vehicle_, 1.0, v) - drag, traction(v, vehicle_));
   const double a = options_.drive_share * share * drive + drag;
@@ -132,11 +136,14 @@ void SpeedPlan::brake(ReferenceLine& line, int turn) noexcept {
   const std::size_t to = at == 0 ? static_cast<std::size_t>(laps - 1) : from - 1;
   const ReferenceLine::Sample& ahead = line.samples()[from];
   const double v = ahead.speed;
-  const double share = longitudinal_share(v, demand_[from], vehicle_, options_.grip_share);
+  const double use = use_of(v, demand_[from], vehicle_, options_.grip_share);
+  const double share = longitudinal_share(use, vehicle_);
   const double drag = longitudinal_acceleration(vehicle_, 0.0, v);
   const double force = std::min(drag - longitudinal_acceleration(vehicle_, -vehicle_.brake_throttle_limit, v),
                                 traction(v, vehicle_));
-  const double a = options_.brake_share * share * force - drag;
+  const double a =
+      std::min(options_.brake_share * share * force, stability_.most_braking(v, options_.grip_share * use)) -
+      drag;
   // Braking for the end of sight is for want of sight.
   const bool is_blind = ahead.limiter == SpeedLimiter::kSight;
   limit_to(std::sqrt(v * v + 2.0 * a * line.spacing()),

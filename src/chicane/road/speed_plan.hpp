@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "chicane/model/braking_stability.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/road/instalments.hpp"
 #include "chicane/road/reference_line.hpp"
@@ -21,9 +22,9 @@ struct SpeedPlanOptions {
 };
 
 /// Fastest speed along a line within the modelled grip: a limit for each place from curvature and its slope,
-/// then a forward pass for the drive and a backward pass for the brakes (docs/tracking.md, eq. 10–14). A
-/// point mass cannot do better; a car whose yaw lags must not either, hence the curvature slope: turning the
-/// body takes tyre force, too,
+/// then a forward pass for the drive and a backward pass for the brakes, which leaves the car stable
+/// (docs/tracking.md, eq. 10–14c). A point mass cannot do better; a car whose yaw lags must not either, hence
+/// the curvature slope: turning the body takes tyre force, too,
 ///
 ///     v² |(1 − h) κ + i κ'| <= grip · friction · load(v),   i = I/(m b) at the front axle, −I/(m a) at the
 ///     rear.
@@ -33,7 +34,7 @@ class SpeedPlan {
  public:
   explicit SpeedPlan(int capacity) { demand_.resize(static_cast<std::size_t>(capacity)); }
 
-  /// A new plan, for this car.
+  /// A new plan, for this car. One that is not the last one's takes 0.1 ms.
   void begin(const model::VehicleParams& vehicle, const SpeedPlanOptions& options) noexcept;
   /// Does up to `work` and takes it off; true when every sample of the line has its speed and limiter. Pre:
   /// the same line, at most of the capacity, from begin() on.
@@ -46,6 +47,7 @@ class SpeedPlan {
   void brake(ReferenceLine& line, int turn) noexcept;
 
   model::VehicleParams vehicle_;
+  model::BrakingStability stability_{vehicle_};
   SpeedPlanOptions options_;
   Instalments instalments_;
   std::vector<double> demand_;  ///< tyre force per v² [1/m], by sample

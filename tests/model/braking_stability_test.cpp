@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/model/braking_stability.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "chicane/model/prediction.hpp"
+
+namespace chicane::model {
+namespace {
+
+/// A tall car whose brakes and centre of mass ask much of the rear axle: as cars/vw-vanagon.yaml.
+VehicleParams van() {
+  VehicleParams car = road_car_params();
+  car.mass = 1479.0;
+  car.yaw_inertia = 2473.0;
+  car.front_axle = 1.15;
+  car.rear_axle = 1.32;
+  car.height = 0.75;
+  car.brake_share_front = 0.64;
+  car.friction = 1.05;
+  car.tire_shape = 1.35;
+  car.load_sensitivity = 0.05;
+  car.cornering_front = 18.9;
+  car.cornering_rear = 20.9;
+  return car;
+}
+
+/// The right-most pole of the model that controllers predict with, straight on, by differences.
+double pole_of_model(const VehicleParams& car, double v, double force) {
+  const PredictionModel model(car);
+  const auto change = [&](double vy, double r) {
+    return model.change(BodyMotion<double>{v, vy, r, 0.0, -force});
+  };
+  constexpr double kStep = 1e-5;
+  const auto slope = [&](double vy, double r) {
+    const auto up = change(vy, r);
+    const auto down = change(-vy, -r);
+    return std::pair{(up.vy - down.vy) / (2.0 * kStep), (up.r - down.r) / (2.0 * kStep)};
+  };
+  const auto [a11, a21] = slope(kStep, 0.0);
+  const auto [a12, a22] = slope(0.0, kStep);
+  const double half = 0.5 * (a11 + a22);
+  return half + std::sqrt(std::max(half * half - (a11 * a22 - a12 * a21), 0.0));
+}
+
+TEST(BrakingStability, HasThePolesOfThePredictionModelOnAStraight) {
+  for (const VehicleParams& car : {road_car_params(), van()}) {
+    const BrakingStability stability(car);
+    for (const double v : {15.0, 30.0, 50.0}) {
+      for (const double force : {0.0, 2.0, 4.0, 6.0}) {
+        const double expected = pole_of_model(car, v, force);
+        // The model's wheels share an axle's load, and the friction here is the cornering car's, 3 % less:
+        // near the rear axle's peak, 6 m/s² for the van, slopes are small differences.
+        EXPECT_NEAR(stability.pole(v, 0.0, force), expected, std::max(0.2 * std::fabs(expected), 0.25))
+            << car.mass << " kg, " << v << " m/s, " << force << " m/s²";
+      }
+    }
+  }
+}
+
+TEST(BrakingStability, AllowsTheForceAtWhichThePoleIsWhatIsLeftToTheController) {
+  const VehicleParams car = van();
+  const BrakingStability stability(car);
+  for (const double v : {32.0, 40.0, 56.0}) {  // rows of the table
+    for (const double use : {0.0, 0.25, 0.5, 0.75}) {
+      const double most = stability.most_braking(v, use);
+      EXPECT_LE(stability.pole(v, use, most), BrakingStability::kMostPole) << v << ' ' << use;
+      // A bisection of 10 m/s² in eight turns leaves 0.04.
+      EXPECT_GT(stability.pole(v, use, most + 0.05), BrakingStability::kMostPole) << v << ' ' << use;
+    }
+  }
+}
+
+TEST(BrakingStability, BrakesLessTheFasterTheCarIsAndTheMoreItTurns) {
+  const BrakingStability stability(van());
+  for (double v = 24.0; v < 60.0; v += 4.0)
+    for (double use = 0.0; use < 0.95; use += 0.05) {
+      EXPECT_LE(stability.most_braking(v + 4.0, use), stability.most_braking(v, use) + 0.05)
+          << v << ' ' << use;
+      EXPECT_LE(stability.most_braking(v, use + 0.05), stability.most_braking(v, use) + 0.05)
+          << v << ' ' << use;
+    }
+  EXPECT_LT(stability.most_braking(50.0, 0.9), 0.5);
+  EXPECT_GT(stability.most_braking(15.0, 0.0), 6.0);
+}
+
+TEST(BrakingStability, DoesNotBrakeWhereTheRearAxleIsUsedUp) {
+  const BrakingStability stability(van());
+  for (const double v : {10.0, 30.0, 60.0}) {
+    EXPECT_TRUE(std::isinf(stability.pole(v, 1.0, 1.0))) << v;
+    EXPECT_TRUE(std::isinf(stability.pole(v, 0.5, 9.0))) << v;
+    EXPECT_EQ(stability.most_braking(v, 1.0), 0.0) << v;
+  }
+}
+
+TEST(BrakingStability, LeavesTyresAloneThatDoNotShareForce) {
+  EXPECT_EQ(BrakingStability(udacity_params()).most_braking(40.0, 0.9),
+            std::numeric_limits<double>::infinity());
+}
+
+}  // namespace
+}  // namespace chicane::model
