@@ -31,9 +31,12 @@ std::string_view meaning(std::string_view field, int value) {
 /// Who drives, where it is not the controller by its plan, and why.
 std::string exception(const controller::StepReport& report) {
   using controller::Rung;
-  if (report.rung == Rung::kController) return "";
+  if (report.rung == Rung::kController && report.reason != controller::GuardReason::kTooFastForSilence)
+    return "";
   const bool does_stop =
       report.rung == Rung::kHoldAndBrake || report.rung == Rung::kBrake || report.rung == Rung::kGuardStop;
+  const bool is_held_back = report.rung == Rung::kController;
+  if (is_held_back) return fmt::format("  {}", meaning("guard_reason", static_cast<int>(report.reason)));
   if (does_stop && report.reason != controller::GuardReason::kNone)
     return fmt::format("  stopping: {}", meaning("guard_reason", static_cast<int>(report.reason)));
   return fmt::format("  {}", meaning("rung", static_cast<int>(report.rung)));

@@ -73,13 +73,6 @@ std::vector<Case> cases() {
   };
 }
 
-/// How far beyond the edge the car comes [m]: not at all, but where the wheel is thrown about at speed and
-/// the car slides further than its model says (docs/safety.md). Measured worst plus a fifth.
-double beyond_edge(std::string_view car, std::string_view name) {
-  if (car != "road-car") return 0.0;
-  return name == "random" ? 1.3 : 0.0;
-}
-
 TEST(Adversary, StaysOnTheRoad) {
   for (const char* car : {"udacity", "road-car"}) {
     for (const char* track : {"lakeside", "oval"}) {
@@ -99,7 +92,7 @@ TEST(Adversary, StaysOnTheRoad) {
           least = std::min(least, (*loop)->world().edge_distance);
           fastest = std::max(fastest, (*loop)->frame().truth.vx);
         }
-        EXPECT_GE(least, -beyond_edge(car, each.name)) << car << " on " << track << ", " << each.name;
+        EXPECT_GE(least, 0.0) << car << " on " << track << ", " << each.name;
         EXPECT_GT(fastest, 0.5) << "it drives at all: " << each.name;
       }
     }

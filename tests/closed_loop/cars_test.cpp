@@ -86,11 +86,16 @@ TEST_P(EveryCar, TurnsLeftAsItTurnsRight) {
   EXPECT_DOUBLE_EQ(plant_->state().r, -mirrored->state().r);
 }
 
+// Three laps: the guard's stops once drove a car off the road in the third. The guard that is on refuses
+// nothing: its stops fit cars of much drag, too, and those that are hardly stable. vw-vanagon slides in two
+// bends of either track, its rear axle beyond the peak.
 TEST_P(EveryCar, LapsCleanlyWithTheDefaultSettings) {
   for (const char* track : {"oval", "lakeside"}) {
-    const auto run = drive({{"car", GetParam()}, {"track", track}, {"laps", "2"}});
+    const auto run = drive({{"car", GetParam()}, {"track", track}, {"laps", "3"}});
     ASSERT_TRUE(run.completed) << track << ": " << run.end_reason;
     EXPECT_EQ(run.off_track_events, 0) << track;
+    const auto refused = run.guard_reasons[static_cast<std::size_t>(controller::GuardReason::kNoWayToStop)];
+    EXPECT_LE(refused, GetParam() == "vw-vanagon" ? 30U : 0U) << track;
   }
 }
 

@@ -38,7 +38,7 @@ TEST(StopPlanner, StopsOnAStraightRoadAsFastAsItBrakes) {
   const road::KnownRoad road = circle(1e5);
   for (const model::VehicleParams& car : kCars) {
     const StopPlanner planner(car);
-    StopPlan stop;
+    StopCourse stop;
     for (const double speed : {10.0, 20.0, 30.0}) {
       const StopCheck check = planner.plan(road, start_at(100.0, speed), {.share = 1.0}, stop);
       EXPECT_TRUE(check.stands) << car.name << speed;
@@ -54,19 +54,19 @@ TEST(StopPlanner, StopsOnAStraightRoadAsFastAsItBrakes) {
 TEST(StopPlanner, PlanIsWhatAReceiverCanDrive) {
   const road::KnownRoad road = circle(80.0);
   const StopPlanner planner(kCars[0]);
-  StopPlan stop;
+  StopCourse stop;
   const StopCheck check = planner.plan(road, start_at(10.0, 25.0), {.share = 0.8}, stop);
   ASSERT_TRUE(check.stands);
-  ASSERT_GT(stop.size, 10);
-  EXPECT_EQ(stop.points[0].time, 2.0);
-  for (int i = 1; i < stop.size; ++i) {
+  ASSERT_GT(stop.stop.size, 10);
+  EXPECT_EQ(stop.stop.points[0].time, 2.0);
+  for (int i = 1; i < stop.stop.size; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    EXPECT_GT(stop.points[k].time, stop.points[k - 1].time);
-    EXPECT_GE(stop.points[k].distance, stop.points[k - 1].distance);
-    EXPECT_LE(stop.points[k].command.throttle, 0.0);
-    EXPECT_LE(std::fabs(stop.points[k].command.steer), kCars[0].steer_limit);
+    EXPECT_GT(stop.stop.points[k].time, stop.stop.points[k - 1].time);
+    EXPECT_GE(stop.stop.points[k].distance, stop.stop.points[k - 1].distance);
+    EXPECT_LE(stop.stop.points[k].command.throttle, 0.0);
+    EXPECT_LE(std::fabs(stop.stop.points[k].command.steer), kCars[0].steer_limit);
   }
-  EXPECT_NEAR(stop.points[static_cast<std::size_t>(stop.size - 1)].distance, check.distance, 1.0);
+  EXPECT_NEAR(stop.stop.points[static_cast<std::size_t>(stop.stop.size - 1)].distance, check.distance, 1.0);
 }
 
 TEST(StopPlanner, IsTheSameInAMirror) {
@@ -74,17 +74,17 @@ TEST(StopPlanner, IsTheSameInAMirror) {
   const road::KnownRoad right = circle(60.0, -1.0);
   for (const model::VehicleParams& car : kCars) {
     const StopPlanner planner(car);
-    StopPlan one;
-    StopPlan other;
+    StopCourse one;
+    StopCourse other;
     const StopCheck a = planner.plan(left, start_at(20.0, 18.0, 1.0, -0.05), {.share = 0.8}, one);
     const StopCheck b = planner.plan(right, start_at(20.0, 18.0, -1.0, 0.05), {.share = 0.8}, other);
     EXPECT_NEAR(a.least_edge, b.least_edge, 1e-9);
     EXPECT_NEAR(a.distance, b.distance, 1e-9);
-    ASSERT_EQ(one.size, other.size);
-    for (int i = 0; i < one.size; ++i) {
+    ASSERT_EQ(one.stop.size, other.stop.size);
+    for (int i = 0; i < one.stop.size; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      EXPECT_NEAR(one.points[k].command.steer, -other.points[k].command.steer, 1e-9) << i;
-      EXPECT_NEAR(one.points[k].command.throttle, other.points[k].command.throttle, 1e-9);
+      EXPECT_NEAR(one.stop.points[k].command.steer, -other.stop.points[k].command.steer, 1e-9) << i;
+      EXPECT_NEAR(one.stop.points[k].command.throttle, other.stop.points[k].command.throttle, 1e-9);
     }
   }
 }
@@ -92,7 +92,7 @@ TEST(StopPlanner, IsTheSameInAMirror) {
 TEST(StopPlanner, SaysWhenTheCarIsTooFastForTheBend) {
   const road::KnownRoad road = circle(40.0);
   const StopPlanner planner(model::road_car_params());
-  StopPlan stop;
+  StopCourse stop;
   EXPECT_GT(planner.plan(road, start_at(10.0, 12.0), {.share = 0.8}, stop).least_edge, 1.0);
   const StopCheck fast = planner.plan(road, start_at(10.0, 35.0), {.share = 1.0}, stop);  // 3.1 g
   EXPECT_TRUE(fast.least_edge < 0.0 || !fast.stands);
@@ -132,7 +132,7 @@ TEST(StopPlanner, NeedsTheRoadAsFarAsItStops) {
     data.points.push_back({.s = 2.0 * i, .position = {2.0 * i, 0.0}, .left = 5.0, .right = 5.0});
   const road::KnownRoad road(data, kCars[0]);
   const StopPlanner planner(kCars[0]);
-  StopPlan stop;
+  StopCourse stop;
   EXPECT_TRUE(planner.plan(road, start_at(5.0, 20.0), {.share = 1.0}, stop).stands);
   EXPECT_FALSE(planner.plan(road, start_at(5.0, 40.0), {.share = 1.0}, stop).stands);
 }
@@ -155,16 +155,16 @@ TEST(StopPlanner, KnowsHowFarABlindDriverStrays) {
     const road::KnownRoad road = circle(120.0, side);
     for (const model::VehicleParams& car : kCars) {
       const StopPlanner planner(car);
-      StopPlan stop;
+      StopCourse stop;
       StopStart start = start_at(20.0, 24.0);
       start.body.r = side * 24.0 / 120.0;
       const StopCheck check = planner.plan(road, start, {.share = 0.8}, stop);
       ASSERT_TRUE(check.stands);
-      double before = planner.played_edge(road, start, stop, 0.25);
+      double before = planner.played_edge(road, start, stop.stop, 0.25);
       EXPECT_LT(before, check.least_edge + 0.5);
       EXPECT_GT(before, check.least_edge - 0.5);
       for (const double time : {0.5, 1.0, 2.0, 60.0}) {
-        const double edge = planner.played_edge(road, start, stop, time);
+        const double edge = planner.played_edge(road, start, stop.stop, time);
         EXPECT_LE(edge, before) << car.name << time;
         before = edge;
       }
@@ -197,13 +197,97 @@ TEST(StopPlanner, BrakesNoHarderThanTheBendLetsItStayStable) {
   EXPECT_GT(braking(150.0, 33.0), 0.0);
 }
 
+/// Who is where a stop says drives it; who is beside it comes back to it, and not to the middle of the road.
+TEST(StopPlanner, FollowsAStopFromItsPlacesAndFromBesideThem) {
+  for (const double side : {1.0, -1.0}) {
+    const road::KnownRoad road = circle(120.0, side);
+    for (const model::VehicleParams& car : kCars) {
+      const StopPlanner planner(car);
+      StopCourse stop;
+      StopStart start = start_at(300.0, 24.0, side * 1.5);
+      start.body.r = side * 24.0 / 120.0;
+      const StopCheck planned = planner.plan(road, start, {.share = 0.6}, stop);
+      ASSERT_TRUE(planned.stands);
+      StopCourse same;
+      const StopCheck followed = planner.follow(road, start, stop, same);
+      EXPECT_TRUE(followed.stands);
+      EXPECT_NEAR(followed.distance, planned.distance, 1.0) << car.name;
+      EXPECT_NEAR(followed.least_edge, planned.least_edge, 0.1) << car.name;
+      // A second later, and half a metre beside.
+      StopStart later = stop.places[10];
+      later.d += 0.5;
+      StopCourse back;
+      EXPECT_TRUE(planner.follow(road, later, stop, back).stands);
+      const auto at_end = static_cast<std::size_t>(back.stop.size - 1);
+      const double strayed =
+          back.places[at_end].d - stop.places[static_cast<std::size_t>(stop.stop.size - 1)].d;
+      EXPECT_LT(std::fabs(strayed), 0.35) << car.name;
+    }
+  }
+}
+
+/// A driver who sees loses less of the road than one who plays blindly.
+TEST(StopPlanner, KnowsThatADriverWhoSeesStraysLess) {
+  const road::KnownRoad road = circle(120.0);
+  for (const model::VehicleParams& car : kCars) {
+    const StopPlanner planner(car);
+    StopCourse stop;
+    StopStart start = start_at(20.0, 24.0);
+    start.body.r = 24.0 / 120.0;
+    const StopCheck check = planner.plan(road, start, {.share = 0.8}, stop);
+    ASSERT_TRUE(check.stands);
+    const double seen = planner.followed_edge(road, start, stop);
+    EXPECT_GT(seen, planner.played_edge(road, start, stop.stop, 60.0)) << car.name;
+    EXPECT_GT(seen, check.least_edge - 1.0) << car.name;
+    EXPECT_LT(seen, check.least_edge + 0.5) << car.name;
+  }
+}
+
+/// The stop that begins later drives on as intended, without its drive.
+TEST(StopPlanner, BeginsAStopLaterAsTheControllerIntends) {
+  const road::KnownRoad road = circle(1e5);
+  const StopPlanner planner(kCars[1]);
+  controller::Plan intended;
+  const StopStart start = start_at(100.0, 25.0);
+  for (int i = 0; i < 40; ++i)
+    intended.points[static_cast<std::size_t>(intended.size++)] = {
+        .time = start.time + 0.05 * i, .speed = 25.0, .command = {.steer = 0.001, .throttle = 0.7}};
+  StopCourse at_once, later;
+  const StopCheck now = planner.plan(road, start, {.share = 1.0}, at_once);
+  const StopCheck then = planner.plan_later(road, start, intended, 1.0, {.share = 1.0}, later);
+  EXPECT_TRUE(then.stands);
+  EXPECT_EQ(later.stop.points[3].command.steer, 0.001);
+  EXPECT_EQ(later.stop.points[3].command.throttle, 0.0) << "a stop does not ask for its drive";
+  EXPECT_LT(later.stop.points[12].command.throttle, 0.0);
+  EXPECT_NEAR(then.distance - now.distance, 24.0, 4.0) << "a second at 25 m/s, less its drag";
+  intended.size = 0;
+  EXPECT_EQ(planner.plan_later(road, start, intended, 1.0, {.share = 1.0}, later).distance, now.distance);
+}
+
+/// What the air brakes takes nothing of the tyres: a car of much drag brakes as hard beside it.
+TEST(StopPlanner, CountsDragNotAsForceOfTheTyres) {
+  model::VehicleParams light = kCars[1];
+  model::VehicleParams draggy = light;
+  draggy.height = light.height = 0.0;  // no load moves
+  draggy.drag_quadratic = 6.0 / (30.0 * 30.0);
+  const road::KnownRoad road = circle(100.0);
+  StopStart start = start_at(50.0, 30.0);
+  start.body.r = 0.2;
+  const auto by_tyres = [&](const model::VehicleParams& car) {
+    const double slowing = StopPlanner(car).slowing(road, start, {.share = 1.0, .stability = 0.0});
+    return longitudinal_acceleration(car, 0.0, 30.0) - slowing;
+  };
+  EXPECT_GT(by_tyres(light), 1.0);
+  EXPECT_NEAR(by_tyres(draggy), by_tyres(light), 0.5);
+}
+
 TEST(StopPlanner, AllocatesNothing) {
   const road::KnownRoad road = circle(60.0);
   const StopPlanner planner(kCars[1]);
-  StopPlan stop;
+  StopCourse stop;
   const test::AllocationGuard guard;
   static_cast<void>(planner.plan(road, start_at(20.0, 18.0), {.share = 0.8}, stop));
-  static_cast<void>(planner.played_edge(road, start_at(20.0, 18.0), stop, 2.0));
+  static_cast<void>(planner.played_edge(road, start_at(20.0, 18.0), stop.stop, 2.0));
   EXPECT_EQ(guard.count(), 0);
 }
 

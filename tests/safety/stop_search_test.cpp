@@ -51,12 +51,12 @@ TEST(StopSearch, BrakesBeforeTheBendWhereTheLawLeavesTheRoad) {
     const road::KnownRoad road = bend_ahead(40.0, side);
     const StopStart start = start_at(80.0, 31.0);
     StopSearch search(kCar);
-    StopPlan stop;
+    StopCourse stop;
     const StopCheck found = search.plan(road, start, 0.1, planner, stop);
     EXPECT_TRUE(found.stands) << side;
     EXPECT_GT(found.least_edge, 0.5) << side;
     for (const Braking& braking : {Braking{}, Braking{1.0, 1.6}}) {
-      StopPlan by_law;
+      StopCourse by_law;
       const StopCheck law = planner.plan(road, start, braking, by_law);
       EXPECT_LT(law.least_edge, found.least_edge - 0.5) << side;
     }
@@ -65,7 +65,7 @@ TEST(StopSearch, BrakesBeforeTheBendWhereTheLawLeavesTheRoad) {
 
 TEST(StopSearch, IsTheSameInAMirror) {
   const StopPlanner planner(kCar);
-  StopPlan stops[2];
+  StopCourse stops[2];
   StopCheck found[2];
   for (const int i : {0, 1}) {
     const double side = i == 0 ? 1.0 : -1.0;
@@ -80,11 +80,12 @@ TEST(StopSearch, IsTheSameInAMirror) {
   }
   EXPECT_NEAR(found[0].distance, found[1].distance, 0.01);
   EXPECT_NEAR(found[0].least_edge, found[1].least_edge, 1e-3);
-  ASSERT_EQ(stops[0].size, stops[1].size);
-  for (int k = 0; k < stops[0].size; ++k) {
+  ASSERT_EQ(stops[0].stop.size, stops[1].stop.size);
+  for (int k = 0; k < stops[0].stop.size; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    EXPECT_NEAR(stops[0].points[i].command.steer, -stops[1].points[i].command.steer, 1e-3) << k;
-    EXPECT_NEAR(stops[0].points[i].command.throttle, stops[1].points[i].command.throttle, 1e-3) << k;
+    EXPECT_NEAR(stops[0].stop.points[i].command.steer, -stops[1].stop.points[i].command.steer, 1e-3) << k;
+    EXPECT_NEAR(stops[0].stop.points[i].command.throttle, stops[1].stop.points[i].command.throttle, 1e-3)
+        << k;
   }
 }
 
@@ -93,30 +94,30 @@ TEST(StopSearch, TellsWhatAReceiverDrives) {
   const road::KnownRoad road = bend_ahead(60.0, 1.0);
   const StopPlanner planner(kCar);
   StopSearch search(kCar);
-  StopPlan stop;
+  StopCourse stop;
   const StopStart start = start_at(85.0, 28.0);
   const StopCheck found = search.plan(road, start, 0.1, planner, stop);
   ASSERT_TRUE(found.stands);
-  ASSERT_GT(stop.size, 10);
-  EXPECT_DOUBLE_EQ(stop.points[0].time, start.time);
-  for (int k = 1; k < stop.size; ++k) {
+  ASSERT_GT(stop.stop.size, 10);
+  EXPECT_DOUBLE_EQ(stop.stop.points[0].time, start.time);
+  for (int k = 1; k < stop.stop.size; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    EXPECT_GE(stop.points[i].time, stop.points[i - 1].time);
-    EXPECT_GE(stop.points[i].distance, stop.points[i - 1].distance);
-    EXPECT_LE(stop.points[i].speed, stop.points[i - 1].speed + 0.1);
-    EXPECT_LE(std::fabs(stop.points[i].command.steer), kCar.steer_limit);
-    EXPECT_LE(stop.points[i].command.throttle, 0.0);
+    EXPECT_GE(stop.stop.points[i].time, stop.stop.points[i - 1].time);
+    EXPECT_GE(stop.stop.points[i].distance, stop.stop.points[i - 1].distance);
+    EXPECT_LE(stop.stop.points[i].speed, stop.stop.points[i - 1].speed + 0.1);
+    EXPECT_LE(std::fabs(stop.stop.points[i].command.steer), kCar.steer_limit);
+    EXPECT_LE(stop.stop.points[i].command.throttle, 0.0);
   }
-  EXPECT_NEAR(planner.played_edge(road, start, stop, 0.5), planner.edge(road, start), 0.3);
+  EXPECT_NEAR(planner.played_edge(road, start, stop.stop, 0.5), planner.edge(road, start), 0.3);
 }
 
 TEST(StopSearch, FindsNothingForACarThatIsSlowAndForgets) {
   const road::KnownRoad road = bend_ahead(60.0, 1.0);
   const StopPlanner planner(kCar);
   StopSearch search(kCar);
-  StopPlan stop;
+  StopCourse stop;
   EXPECT_FALSE(search.plan(road, start_at(10.0, 2.0), 0.1, planner, stop).stands);
-  EXPECT_EQ(stop.size, 0);
+  EXPECT_EQ(stop.stop.size, 0);
   const StopCheck first = search.plan(road, start_at(60.0, 25.0), 0.1, planner, stop);
   search.forget();
   const StopCheck again = search.plan(road, start_at(60.0, 25.0), 0.1, planner, stop);
@@ -128,7 +129,7 @@ TEST(StopSearch, AllocatesNothing) {
   const road::KnownRoad road = bend_ahead(60.0, 1.0);
   const StopPlanner planner(kCar);
   StopSearch search(kCar);
-  StopPlan stop;
+  StopCourse stop;
   const test::AllocationGuard guard;
   for (int i = 0; i < 3; ++i) {
     StopStart start = start_at(80.0 + i, 28.0);

@@ -46,20 +46,21 @@ inline constexpr int kRungCount = 7;
 /// conditions). The worst one holds: later ones win.
 enum class GuardReason : signed char {
   kNone = 0,
-  kNoAnswer = 1,       ///< the controller had none
-  kNotMeasured = 2,    ///< position, yaw or speed unknown for longer than is tolerated
-  kFrozen = 3,         ///< measurements repeat although the car moves
-  kSpeedMismatch = 4,  ///< measured speed and measured displacement contradict each other
-  kHeadingJump = 5,    ///< measured yaw changed as no car turns
-  kPositionJump = 6,   ///< measured position changed as no car moves
-  kNoWayToStop = 7,    ///< after the answer the car could not be stopped on the road any more
-  kFarFromRoad = 8,    ///< there is no answer, and the car is far beside the road that is known
+  kNoAnswer = 1,           ///< the controller had none
+  kNotMeasured = 2,        ///< position, yaw or speed unknown for longer than is tolerated
+  kFrozen = 3,             ///< measurements repeat although the car moves
+  kSpeedMismatch = 4,      ///< measured speed and measured displacement contradict each other
+  kHeadingJump = 5,        ///< measured yaw changed as no car turns
+  kPositionJump = 6,       ///< measured position changed as no car moves
+  kNoWayToStop = 7,        ///< after the answer the car could not be stopped on the road any more
+  kFarFromRoad = 8,        ///< there is no answer, and the car is far beside the road that is known
+  kTooFastForSilence = 9,  ///< after the answer a receiver left alone could not: it is sent, braking
 };
-inline constexpr int kGuardReasonCount = 9;
+inline constexpr int kGuardReasonCount = 10;
 /// As reports name them.
 inline constexpr std::array<std::string_view, kGuardReasonCount> kGuardReasonNames{
-    "none",         "no_answer",     "not_measured",   "frozen",       "speed_mismatch",
-    "heading_jump", "position_jump", "no_way_to_stop", "far_from_road"};
+    "none",         "no_answer",     "not_measured",   "frozen",        "speed_mismatch",
+    "heading_jump", "position_jump", "no_way_to_stop", "far_from_road", "too_fast_for_silence"};
 
 /// How one step went.
 struct StepReport {

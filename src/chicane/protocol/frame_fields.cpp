@@ -156,6 +156,8 @@ constexpr std::array kGuardReasons{
              "after the answer the car could not be stopped on the road"),
     constant("REASON_FAR_FROM_ROAD", GuardReason::kFarFromRoad,
              "no answer, far beside the road that is known"),
+    constant("REASON_TOO_FAST_FOR_SILENCE", GuardReason::kTooFastForSilence,
+             "a receiver that is left alone could not stop the car on the road"),
 };
 
 constexpr std::array kStatuses{

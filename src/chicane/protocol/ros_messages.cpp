@@ -235,7 +235,9 @@ constexpr std::array<std::string_view, controller::kGuardReasonCount> kReasons{
     "stopping on the road: measured speed and measured place contradict each other",
     "stopping on the road: the measured yaw jumped as no car turns",
     "stopping on the road: the measured place jumped as no car moves",
-    "braking: the controller's command would leave no way to stop on the road"};
+    "braking: the controller's command would leave no way to stop on the road",
+    "stopping: no answer, and the road that is known is far away",
+    "braking: a receiver that is left alone could not stop the car on the road"};
 
 Diagnosis diagnose_controller(const controller::StepReport& report) {
   switch (report.rung) {
@@ -254,6 +256,8 @@ Diagnosis diagnose_controller(const controller::StepReport& report) {
     case controller::Rung::kController:
       break;
   }
+  if (report.reason == controller::GuardReason::kTooFastForSilence)
+    return {1, kReasons[static_cast<std::size_t>(report.reason)]};
   if (report.gated) return {1, "the command gate changed the command"};
   return {0, "in control"};
 }

@@ -18,18 +18,19 @@ using controller::Answer;
 using controller::GuardReason;
 using controller::Rung;
 
-constexpr double kAssumedCycle = 0.04;   // [s] where the interval between commands is not known
-constexpr double kShortestHold = 0.09;   // [s] a command is held for so long where no other one comes
-constexpr double kSlowStop = 6.0;        // [m] a car that stops within this is slow
-constexpr double kStandingSpeed = 0.6;   // [m/s]
-constexpr int kShown = 64;               // points of a stop that is drawn
-constexpr double kShownStep = 0.1;       // [s]
-constexpr double kWalkingPace = 3.0;     // [m/s]
-constexpr double kFastestWayBack = 4.0;  // [m/s]
-constexpr double kMostUse = 0.75;        // of the tyres sideways, after a command: the law's stops
-constexpr double kMostUseEver = 1.2;     // and those that are searched for
-constexpr double kRecovery = 0.5;        // [s] after a silence, until the car is in hand again
-constexpr double kUnfit = 100.0;         // [m] worse than any stop that fits
+constexpr double kAssumedCycle = 0.04;           // [s] where the interval between commands is not known
+constexpr double kShortestHold = 0.09;           // [s] a command is held for so long where no other one comes
+constexpr double kSlowStop = 6.0;                // [m] a car that stops within this is slow
+constexpr double kStandingSpeed = 0.6;           // [m/s]
+constexpr int kShown = 64;                       // points of a stop that is drawn
+constexpr double kShownStep = 0.1;               // [s]
+constexpr double kWalkingPace = 3.0;             // [m/s]
+constexpr double kFastestWayBack = 4.0;          // [m/s]
+constexpr double kMostUse = 0.75;                // of the tyres sideways, after a command: the law's stops
+constexpr double kMostUseEver = 1.2;             // and those that are searched for
+constexpr double kDrivesOn[] = {0.5, 1.0, 1.5};  // [s] as the controller plans, before a stop
+constexpr double kRecovery = 0.5;                // [s] after a silence, until the car is in hand again
+constexpr double kUnfit = 100.0;                 // [m] worse than any stop that fits
 constexpr double kGuessedWidth = 1.0;    // [m] that the assumed width may be too small by, for a slow car
 constexpr double kLeastEdge = 0.1;       // [m] that a car on the road keeps in any case
 constexpr double kNoFloor = -1e9;        // [m]
@@ -42,6 +43,8 @@ constexpr double kBlindStability = 1.6;  // of a car that is steered without fee
 constexpr double kGentleStop = 0.8;      // share of the useful braking; all of it when that is too little
 constexpr double kBarelyStable = 1.1;    // where that is too little, too
 constexpr double kHeldByHand = 0.7;      // of a car that is steered by what it does
+// Of a car that is too fast for a silence.
+constexpr Braking kHeldBack{kGentleStop, kBlindStability};
 // What is tried in turn.
 constexpr Braking kStops[] = {{kGentleStop, kBlindStability},
                               {1.0, kBlindStability},
@@ -85,7 +88,10 @@ Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::Ve
       estimator_{model::PredictionModel{vehicle}},
       planner_{vehicle},
       search_{std::make_unique<StopSearch>(vehicle)},
-      model_{vehicle} {}
+      model_{vehicle},
+      stop_{std::make_unique<StopCourse>()},
+      tried_{std::make_unique<StopCourse>()},
+      last_{std::make_unique<StopCourse>()} {}
 
 Guard::Guard(const Guard& other) = default;
 
@@ -101,7 +107,7 @@ void Guard::reset() noexcept {
   estimator_.reset();
   direction_.reset();
   sent_.clear();
-  stop_.size = 0;
+  stop_->stop.size = last_->stop.size = 0;
   has_place_ = false;
   floor_ = kNoFloor;
   search_->forget();
@@ -173,7 +179,8 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
                    controller::StepResult& result) noexcept {
   const double act = act_time(seen, result.report);
   sent_from_ = seen.time + seen.delay;
-  stop_.size = 0;
+  std::swap(stop_, last_);
+  stop_->stop.size = 0;
   if (options_.mode == GuardMode::kOff || cycle.manual) {
     if (cycle.manual) supervisor_.rearm();
     return result.answer == Answer::kNone ? fall_back(seen, result) : accept(seen, result);
@@ -191,10 +198,14 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   if (!has_answer && report.reason == GuardReason::kNone)
     report.reason = is_far_ ? GuardReason::kFarFromRoad : GuardReason::kNoAnswer;
   bool must_stop = verdict.must_stop || !has_answer;
-  if (start && !must_stop && !leaves_a_stop(*start, result.command, cycle.interval, report) &&
-      !is_way_back(*start, result)) {
-    report.reason = GuardReason::kNoWayToStop;
-    must_stop = true;
+  if (start && !must_stop) {
+    const Fit fit = leaves_a_stop(*start, result.command, result.plan, cycle.interval, report);
+    must_stop = fit == Fit::kNone && !is_way_back(*start, result);
+    if (fit == Fit::kSeen) {
+      report.reason = GuardReason::kTooFastForSilence;
+      must_stop = options_.mode == GuardMode::kOn && !hold_back(*start, cycle.interval, result);
+    }
+    if (must_stop) report.reason = GuardReason::kNoWayToStop;
   }
   if (result.answer == Answer::kReturnToRoad) floor_ = kNoFloor;  // it may lead further away at first
   if (options_.mode == GuardMode::kObserve) must_stop = !has_answer;
@@ -207,6 +218,20 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   // What brakes a car that goes forward may be the reverse gear of one that rolls back.
   if (direction_.rolls_back() && result.command.throttle < 0.0)
     result.command.throttle = controller::throttle_against_rolling_back(model_.vehicle(), now.vx);
+}
+
+/// The car could be stopped while it is seen, but not by a receiver that is left alone: steered by its
+/// controller it is slowed down, as gently as it stays stable, until it could. False where that leaves no
+/// stop at all.
+bool Guard::hold_back(const StopStart& start, double interval, controller::StepResult& result) noexcept {
+  model::Command slower = result.command;
+  const double slowing = planner_.slowing(road_, start, kHeldBack);
+  slower.throttle = std::min(slower.throttle, throttle_for(model_.vehicle(), slowing, start.body.vx));
+  if (slower.throttle < result.command.throttle &&
+      leaves_a_stop(start, slower, result.plan, interval, result.report) == Fit::kNone)
+    return false;
+  result.command = slower;
+  return true;
 }
 
 /// A way back to the road begins where there may be none: slow as it is, it is planned for the receiver, and
@@ -253,7 +278,7 @@ void Guard::drive_stop(const StopStart& start, controller::StepResult& result) n
   static_cast<void>(plan_stop(start, std::numeric_limits<double>::infinity(),
                               {.is_driven = true, .is_hard = is_blind}, result.report));
   result.answer = Answer::kNone;
-  result.command = stop_.points[0].command;
+  result.command = stop_->stop.points[0].command;
   result.report.rung = Rung::kGuardStop;
   show_stop(start, result.plan);
 }
@@ -267,7 +292,7 @@ void Guard::show_stop(const StopStart& start, controller::Plan& plan) const noex
   plan.size = plan.reference_size = 0;
   while (plan.size < kShown) {
     const double speed = hypot(at.body.vx, at.body.vy);
-    const model::Command command = played(stop_, driven, speed, model_.vehicle());
+    const model::Command command = played(stop_->stop, driven, speed, model_.vehicle());
     driven += kShownStep * speed;
     const road::CurvePoint here = line.at(at.s);
     const auto i = static_cast<std::size_t>(plan.size++);
@@ -292,7 +317,10 @@ std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   const controller::StateEstimator::Prediction at = estimator_.predict(act_time, sent_);
   const model::State& car = at.state;
   if (!std::isfinite(car.x + car.y + car.psi + car.vx + car.vy + car.r)) return std::nullopt;
-  if (revision_ != road_.revision()) has_place_ = false;
+  if (revision_ != road_.revision()) {
+    has_place_ = false;
+    last_->stop.size = 0;
+  }
   revision_ = road_.revision();
   const Vec2 position{car.x, car.y};
   const double* last = has_place_ ? &s_ : nullptr;
@@ -310,9 +338,10 @@ std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
                    .body = {car.vx, car.vy, car.r, car.steer, at.acceleration}};
 }
 
-/// Whether the car can still be stopped on the road after `command` has acted for a cycle.
-bool Guard::leaves_a_stop(const StopStart& start, const model::Command& command, double interval,
-                          controller::StepReport& report) noexcept {
+/// How the car can still be stopped on the road after `command` has acted for a cycle.
+Guard::Fit Guard::leaves_a_stop(const StopStart& start, const model::Command& command,
+                                const controller::Plan& intended, double interval,
+                                controller::StepReport& report) noexcept {
   // The receiver holds the command until the stop begins: time enough for the next one to come late.
   const double cycle = interval > 0.0 ? interval : kAssumedCycle;
   const double held = std::clamp(cycle, kShortestHold, kLongestHold);
@@ -324,9 +353,10 @@ bool Guard::leaves_a_stop(const StopStart& start, const model::Command& command,
   const auto use = model_.tire_use(undriven);
   const double most_use = start.body.vx > kWalkingPace ? std::max(use.front, use.rear) : 0.0;
   const bool slides = most_use > kMostUse;
-  if (plan_stop(next, least_edge, {.slides = slides}, report) && most_use < kMostUseEver) {
+  const Fit fit = plan_stop(next, least_edge, {.intended = &intended, .slides = slides}, report);
+  if (fit != Fit::kNone && most_use < kMostUseEver) {
     floor_ = kNoFloor;
-    return true;
+    return fit;
   }
   // A car that is beyond the margin already may move slowly, if it comes no nearer to the edge than it was.
   // One that stands and would wait for ever may use up the margin; one that is off the road may come further,
@@ -340,44 +370,69 @@ bool Guard::leaves_a_stop(const StopStart& start, const model::Command& command,
   const double least = options_.road == GuardRoad::kWaypoints ? -kGuessedWidth : kLeastEdge;
   const double lowest = floor_ < 0.0 ? floor_ - kMostLeniency : least;
   const double allowed = std::max(std::min(floor_, options_.margin) - leniency_, lowest);
-  return !slides && report.stop_distance < kSlowStop && report.stop_edge >= allowed;
+  const bool is_slow = !slides && report.stop_distance < kSlowStop && report.stop_edge >= allowed;
+  return is_slow ? Fit::kBlind : Fit::kNone;
 }
 
 /// The first of the stops that keeps the margin, and the road when it is played blindly for as long as a
-/// silence may last; else the best of them, and false. One is searched for: at first where a car races, and
-/// last where one is being stopped. A car that `slides` is no longer one that the law knows.
-bool Guard::plan_stop(const StopStart& from, double edge_before, const StopWish& wish,
-                      controller::StepReport& report) noexcept {
+/// silence may last; else the best of them. A car that `slides` is no longer one that the law knows. A stop
+/// for which the model has to be right to the last is enough for who shows that he plans, too: he stays away
+/// from where it is needed (docs/safety.md, "The invariant").
+Guard::Fit Guard::plan_stop(const StopStart& from, double edge_before, const StopWish& wish,
+                            controller::StepReport& report) noexcept {
+  const bool plans = wish.intended != nullptr && wish.intended->size > 1 && !wish.slides;
   double best = -std::numeric_limits<double>::infinity();
-  const auto is_good = [&](const StopCheck& check) {
+  Fit best_fit = Fit::kNone;
+  // Takes `tried_` where it is better than what there is. True: no other one is needed.
+  const auto suffices = [&](const StopCheck& check, bool is_known) {
     const double edge = std::min(check.least_edge, edge_before);
-    const bool fits = check.stands && edge >= options_.margin;
     double worth = edge - kUnfit;
-    if (fits) worth = played_edge(from);
+    Fit fit = Fit::kNone;
+    if (check.stands && edge >= options_.margin) {
+      worth = played_edge(from);
+      if (worth >= 0.0) {
+        fit = Fit::kBlind;
+      } else if (!wish.is_hard) {
+        worth = std::min(planner_.followed_edge(road_, from, *tried_), 0.0);
+        if (worth >= 0.0 || plans) fit = Fit::kSeen;
+      }
+    }
     if (worth >= best) {
       best = worth;
+      best_fit = is_known ? fit : Fit::kNone;
       std::swap(stop_, tried_);
       report.stop_edge = edge;
       report.stop_distance = check.distance;
     }
-    return fits && worth >= 0.0;
+    return is_known && fit == Fit::kBlind;
   };
   const auto search = [&] {
-    const StopCheck found = search_->plan(road_, from, options_.margin, planner_, tried_);
-    return tried_.size > 0 && is_good(found);
+    const StopCheck found = search_->plan(road_, from, options_.margin, planner_, *tried_);
+    return tried_->stop.size > 0 && suffices(found, true);
   };
-  if (races_ && search()) return true;
+  const auto follow = [&] {
+    return last_->stop.size > 0 && suffices(planner_.follow(road_, from, *last_, *tried_), !wish.slides);
+  };
+  if (races_ && search()) return best_fit;
+  if (wish.is_driven && !wish.is_hard && follow()) return best_fit;
   for (const Braking& braking : kStops) {
     if (wish.is_hard && braking.share < 1.0) continue;
-    if (is_good(planner_.plan(road_, from, braking, tried_)) && !wish.slides) return true;
+    if (suffices(planner_.plan(road_, from, braking, *tried_), !wish.slides)) return best_fit;
   }
-  return !races_ && wish.is_driven && search();
+  if (wish.is_driven && wish.is_hard && follow()) return best_fit;
+  for (const double time : kDrivesOn) {
+    if (!plans || best_fit != Fit::kNone) break;
+    if (suffices(planner_.plan_later(road_, from, *wish.intended, time, kStops[1], *tried_), true))
+      return best_fit;
+  }
+  if (!races_ && best_fit == Fit::kNone && (wish.is_driven || plans)) static_cast<void>(search());
+  return best_fit;
 }
 
 /// How near to the edge [m] the receiver comes with `tried_` in a silence of the length that is planned for.
 double Guard::played_edge(const StopStart& from) const noexcept {
   if (!(options_.blind_time > 0.0)) return 0.0;
-  return planner_.played_edge(road_, from, tried_, options_.blind_time + kRecovery);
+  return planner_.played_edge(road_, from, tried_->stop, options_.blind_time + kRecovery);
 }
 
 }  // namespace chicane::safety

@@ -79,7 +79,7 @@ class Guard {
   void set_vehicle(const model::VehicleParams& vehicle) noexcept;
 
   /// The stop at hand after step(): from the moment at which the next command would act. Size 0: none.
-  [[nodiscard]] const StopPlan& stop() const noexcept { return stop_; }
+  [[nodiscard]] const StopPlan& stop() const noexcept { return stop_->stop; }
   [[nodiscard]] controller::Controller& controller() noexcept { return *controller_; }
   [[nodiscard]] const controller::Controller& controller() const noexcept { return *controller_; }
 
@@ -92,15 +92,25 @@ class Guard {
   void show_stop(const StopStart& start, controller::Plan& plan) const noexcept;
   [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
   [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
-  [[nodiscard]] bool leaves_a_stop(const StopStart& start, const model::Command& command, double interval,
-                                   controller::StepReport& report) noexcept;
-  struct StopWish {
-    bool is_driven = false;  ///< the car is being stopped
-    bool is_hard = false;    ///< as short as can be
-    bool slides = false;     ///< the tyres are used so much that only a stop that is searched for will do
+  /// What kind of stop is at hand.
+  enum class Fit : std::uint8_t {
+    kNone,   ///< none that keeps the margin
+    kSeen,   ///< one that does while it is known where the car is
+    kBlind,  ///< and when a receiver plays it blindly for as long as a silence may last
   };
-  [[nodiscard]] bool plan_stop(const StopStart& from, double edge_before, const StopWish& wish,
-                               controller::StepReport& report) noexcept;
+  [[nodiscard]] Fit leaves_a_stop(const StopStart& start, const model::Command& command,
+                                  const controller::Plan& intended, double interval,
+                                  controller::StepReport& report) noexcept;
+  [[nodiscard]] bool hold_back(const StopStart& start, double interval,
+                               controller::StepResult& result) noexcept;
+  struct StopWish {
+    bool is_driven = false;                      ///< the car is being stopped
+    bool is_hard = false;                        ///< as short as can be
+    const controller::Plan* intended = nullptr;  ///< by the controller
+    bool slides = false;  ///< the tyres are used so much that only a stop that is searched for will do
+  };
+  [[nodiscard]] Fit plan_stop(const StopStart& from, double edge_before, const StopWish& wish,
+                              controller::StepReport& report) noexcept;
   [[nodiscard]] double played_edge(const StopStart& from) const noexcept;
 
   Owned<controller::Controller> controller_;
@@ -116,11 +126,12 @@ class Guard {
   StopPlanner planner_;
   Owned<StopSearch> search_;
   model::PredictionModel model_;
-  double floor_ = -1e9;     ///< how far from the edge a car beyond the margin has been since [m]
-  double leniency_ = 0.05;  ///< how much nearer to the edge it may come, slowly [m]
-  StopPlan stop_;
-  StopPlan tried_;  ///< one that may become it
-  double s_ = 0.0;  ///< on the known road where the command acts [m]
+  double floor_ = -1e9;                ///< how far from the edge a car beyond the margin has been since [m]
+  double leniency_ = 0.05;             ///< how much nearer to the edge it may come, slowly [m]
+  std::unique_ptr<StopCourse> stop_;   ///< at hand
+  std::unique_ptr<StopCourse> tried_;  ///< one that may become it
+  std::unique_ptr<StopCourse> last_;   ///< that of the cycle before
+  double s_ = 0.0;                     ///< on the known road where the command acts [m]
   unsigned revision_ = 0;
   bool has_place_ = false;
   bool is_far_ = false;     ///< the known road is, from the car

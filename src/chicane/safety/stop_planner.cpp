@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "chicane/base/math.hpp"
@@ -42,8 +43,11 @@ void StopPlanner::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   stiffer_.set_vehicle(other);
 }
 
-double StopPlanner::played_edge(const road::KnownRoad& road, const StopStart& start, const StopPlan& stop,
-                                double time) const noexcept {
+/// The least distance to the edge [m] of the two cars that are a little other than believed, in the first
+/// `time` [s] of what `command_at` says at a place, after `driven` [m] and at `speed` [m/s].
+template <class Law>
+double StopPlanner::doubted_edge(const road::KnownRoad& road, const StopStart& start, double time,
+                                 const Law& command_at) const noexcept {
   const model::PredictionModel::Lags lags = model_.lags(kStep);
   double least = std::numeric_limits<double>::infinity();
   for (const double side : {1.0, -1.0}) {
@@ -57,13 +61,34 @@ double StopPlanner::played_edge(const road::KnownRoad& road, const StopStart& st
     for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity && at.time < start.time + time; ++i) {
       if (speed < kStanding || !(std::fabs(at.d) < kMostOffset)) break;
       const double before = speed;
-      move(car, road, at, played(stop, driven, speed, model_.vehicle()), kStep, lags);
+      move(car, road, at, command_at(i, at, driven, speed), kStep, lags);
       speed = hypot(at.body.vx, at.body.vy);
       driven += 0.5 * kStep * (before + speed);
       least = std::min(least, edge(road, at));
     }
   }
   return least;
+}
+
+double StopPlanner::played_edge(const road::KnownRoad& road, const StopStart& start, const StopPlan& stop,
+                                double time) const noexcept {
+  return doubted_edge(road, start, time, [&](int, const StopStart&, double driven, double speed) {
+    return played(stop, driven, speed, model_.vehicle());
+  });
+}
+
+double StopPlanner::followed_edge(const road::KnownRoad& road, const StopStart& start,
+                                  const StopCourse& stop) const noexcept {
+  std::size_t place = 0;
+  model::Command command;
+  const auto last = static_cast<std::size_t>(stop.stop.size - 1);
+  constexpr double kForEver = 1e9;
+  return doubted_edge(road, start, kForEver, [&](int i, const StopStart& at, double, double) {
+    if (i == 0) place = 0;
+    if (i % kStepsPerPoint == 0)
+      command = at.s < stop.places[last].s ? along(stop, place, 0.0, at) : law(road, at, {});
+    return command;
+  });
 }
 
 double StopPlanner::edge(const road::KnownRoad& road, const StopStart& at) const noexcept {
@@ -129,8 +154,9 @@ double StopPlanner::stable_share(const model::BodyMotion<double>& m, double dece
 double StopPlanner::braking_share(double sideways, double deceleration, double v) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double grip = friction_ * model_.load(v);
+  const double drag = -longitudinal_acceleration(car, 0.0, v);  // takes nothing of the tyres
   const auto holds = [&](double a) {
-    const double along = std::min(a / grip, 1.0);
+    const double along = std::clamp((a - drag) / grip, 0.0, 1.0);
     const double ellipse = std::sqrt(std::max(1.0 - car.friction_coupling * along * along, 0.0));
     const double load = std::max(1.0 - car.height * a / (kGravity * car.front_axle), 0.0);
     return kGripShare * grip * ellipse * load >= sideways;
@@ -154,22 +180,25 @@ model::Command StopPlanner::law(const road::KnownRoad& road, const StopStart& at
   // Towards the middle of the road, where there is most room on both sides, or the line that is raced by.
   const double beside =
       at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) + kStopMargin);
-  const double grip = kGripShare * friction_ * model_.load(v);
-  const double most = kFeedbackShare * grip / ((1.0 - car.steer_helper) * v * v);
-  const double curvature = ahead + std::clamp(-kBandwidth * kBandwidth * beside / (v * v) -
-                                                  2.0 * kDamping * kBandwidth * course / v,
-                                              -most, most);
+  const double curvature = ahead + back_to(beside, course, v);
   // The wheel that gives the yaw rate this asks for, by the model: a braking car oversteers.
   const double yaw_acceleration = kYawBandwidth * (v * curvature - at.body.r);
   const double steer =
       std::clamp(model_.steer_for(at.body, yaw_acceleration), -car.steer_limit, car.steer_limit);
+  return {steer, throttle_to_rest(car, slowing(road, at, braking), at.body.vx)};
+}
+
+double StopPlanner::slowing(const road::KnownRoad& road, const StopStart& at,
+                            const Braking& braking) const noexcept {
+  const model::VehicleParams& car = model_.vehicle();
+  const double v = std::max(at.body.vx, 1.0);
+  const double ahead = road.line().demand(at.s + kPreview * v).curvature;
   const double bend = std::max(std::fabs(ahead), std::fabs(road.line().demand(at.s).curvature));
   const double sideways = (1.0 - car.steer_helper) * std::max(bend * v * v, std::fabs(at.body.r) * v);
   const double useful = longitudinal_acceleration(car, lowest_throttle(car, v), v);
   const double asked = useful * braking.share;
-  const double along =
-      asked * std::min(braking_share(sideways, -asked, v), stable_share(at.body, -asked, braking.stability));
-  return {steer, throttle_to_rest(car, along, at.body.vx)};
+  return asked *
+         std::min(braking_share(sideways, -asked, v), stable_share(at.body, -asked, braking.stability));
 }
 
 void StopPlanner::move(const model::PredictionModel& model, const road::KnownRoad& road, StopStart& at,
@@ -209,21 +238,88 @@ StopStart StopPlanner::advance(const road::KnownRoad& road, const StopStart& fro
   return at;
 }
 
+/// The curvature that brings a car back that is `beside` its place [m] and has another `course` [rad].
+double StopPlanner::back_to(double beside, double course, double v) const noexcept {
+  const double grip = kGripShare * friction_ * model_.load(v);
+  const double most = kFeedbackShare * grip / ((1.0 - model_.vehicle().steer_helper) * v * v);
+  return std::clamp(-kBandwidth * kBandwidth * beside / (v * v) - 2.0 * kDamping * kBandwidth * course / v,
+                    -most, most);
+}
+
+/// The command of `before` where the car is at `at`, a point or more after `place`, with what brings it back.
+model::Command StopPlanner::along(const StopCourse& before, std::size_t& place, double lap,
+                                  const StopStart& at) const noexcept {
+  const auto last = static_cast<std::size_t>(before.stop.size - 1);
+  while (place + 1 < last && before.places[place + 1].s <= at.s - lap) ++place;
+  const StopStart& from = before.places[place];
+  const StopStart& to = before.places[place + 1];
+  const double share = std::clamp((at.s - lap - from.s) / std::max(to.s - from.s, 1e-3), 0.0, 1.0);
+  const auto between = [share](double a, double b) { return a + share * (b - a); };
+  const double v = std::max(at.body.vx, 1.0);
+  const double v_then = std::max(between(from.body.vx, to.body.vx), 1.0);
+  const double course_then = between(from.e, to.e) + between(from.body.vy, to.body.vy) / v_then;
+  const double curvature = back_to(at.d - between(from.d, to.d), at.e + at.body.vy / v - course_then, v);
+  const double r = between(from.body.r, to.body.r) * v / v_then + v * curvature;
+  const double distance = between(before.stop.points[place].distance, before.stop.points[place + 1].distance);
+  model::Command command = played(before.stop, distance, hypot(at.body.vx, at.body.vy), model_.vehicle());
+  const double limit = model_.vehicle().steer_limit;
+  command.steer = std::clamp(command.steer + model_.steer_for(at.body, kYawBandwidth * (r - at.body.r)) -
+                                 model_.steer_for(at.body, 0.0),
+                             -limit, limit);
+  return command;
+}
+
 StopCheck StopPlanner::plan(const road::KnownRoad& road, const StopStart& start, const Braking& braking,
-                            StopPlan& out) const noexcept {
+                            StopCourse& out) const noexcept {
+  return drive(
+      road, start, [&](const StopStart& at) { return law(road, at, braking); }, out);
+}
+
+StopCheck StopPlanner::follow(const road::KnownRoad& road, const StopStart& start, const StopCourse& before,
+                              StopCourse& out) const noexcept {
+  const double length = road.line().length();
+  const double lap =
+      road.line().is_closed() ? length * std::round((start.s - before.places[0].s) / length) : 0.0;
+  const auto last = static_cast<std::size_t>(before.stop.size - 1);
+  std::size_t place = 0;
+  const auto command_at = [&](const StopStart& at) {
+    const bool goes_on = last > 0 && at.s - lap < before.places[last].s;
+    return goes_on ? along(before, place, lap, at) : law(road, at, {});
+  };
+  return drive(road, start, command_at, out);
+}
+
+StopCheck StopPlanner::plan_later(const road::KnownRoad& road, const StopStart& start,
+                                  const controller::Plan& intended, double time, const Braking& braking,
+                                  StopCourse& out) const noexcept {
+  const auto size = static_cast<std::size_t>(std::clamp(intended.size, 0, controller::Plan::kCapacity));
+  std::size_t i = 0;
+  const auto command_at = [&](const StopStart& at) {
+    while (i + 1 < size && intended.points[i + 1].time <= at.time) ++i;
+    if (!(at.time < start.time + time) || i + 1 >= size) return law(road, at, braking);
+    const model::Command& there = intended.points[i].command;
+    const double limit = model_.vehicle().steer_limit;
+    return model::Command{std::clamp(there.steer, -limit, limit), std::clamp(there.throttle, -1.0, 0.0)};
+  };
+  return drive(road, start, command_at, out);
+}
+
+/// To standstill with what `command_at` says every 100 ms.
+template <class Law>
+StopCheck StopPlanner::drive(const road::KnownRoad& road, const StopStart& start, const Law& command_at,
+                             StopCourse& out) const noexcept {
   const model::PredictionModel::Lags lags = model_.lags(kStep);
   const double end = road.line().is_closed() ? start.s + road.line().length() : road.line().length();
   StopCheck check{.least_edge = edge(road, start)};
   StopStart at = start;
   double driven = 0.0;
   double speed = hypot(at.body.vx, at.body.vy);
-  out.size = 0;
+  out.stop.size = 0;
   model::Command command;
   for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity; ++i) {
-    if (i % kStepsPerPoint == 0) command = law(road, at, braking);
+    if (i % kStepsPerPoint == 0) command = command_at(at);
     const bool has_ended = speed < kStanding || !(std::fabs(at.d) < kMostOffset) || !(at.s < end);
-    if (i % kStepsPerPoint == 0 || (has_ended && out.size < StopPlan::kCapacity))
-      out.points[static_cast<std::size_t>(out.size++)] = {at.time, driven, speed, command};
+    if (i % kStepsPerPoint == 0 || has_ended) out.add(at, driven, speed, command);
     if (has_ended) break;
     const double before = speed;
     move(model_, road, at, command, kStep, lags);

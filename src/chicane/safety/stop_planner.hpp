@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cstddef>
+
+#include "chicane/controller/controller.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
@@ -25,6 +29,20 @@ struct StopCheck {
   bool stands = false;      ///< it ends at standstill before the end of the known road
 };
 
+/// A stop, and where the car is at each of its points.
+struct StopCourse {
+  StopPlan stop;
+  std::array<StopStart, StopPlan::kCapacity> places{};
+
+  /// One more point, of a car that is at `place` after `distance` [m]; nothing where it is full.
+  void add(const StopStart& place, double distance, double speed, const model::Command& command) noexcept {
+    if (stop.size == StopPlan::kCapacity) return;
+    const auto i = static_cast<std::size_t>(stop.size++);
+    stop.points[i] = {place.time, distance, speed, command};
+    places[i] = place;
+  }
+};
+
 /// How hard a stop may brake.
 struct Braking {
   double share = 0.8;      ///< of the useful braking, (0, 1]
@@ -46,12 +64,26 @@ class StopPlanner {
   /// The stop from `start` on, no harder than `braking`. Pre: the road is not
   /// empty, `start` is finite.
   [[nodiscard]] StopCheck plan(const road::KnownRoad& road, const StopStart& start, const Braking& braking,
-                               StopPlan& out) const noexcept;
+                               StopCourse& out) const noexcept;
+  /// From `start` on along another stop: its commands by place, corrected where the car is not as planned
+  /// there, and the law where it ends. Pre: as plan(), before.stop.size > 0.
+  [[nodiscard]] StopCheck follow(const road::KnownRoad& road, const StopStart& start,
+                                 const StopCourse& before, StopCourse& out) const noexcept;
+  /// The stop that first drives on for `time` [s] as a controller plans, without its drive, and then brakes
+  /// by the law: a plan that slows down for the bend ahead knows more of it than the law does. Pre: as
+  /// plan().
+  [[nodiscard]] StopCheck plan_later(const road::KnownRoad& road, const StopStart& start,
+                                     const controller::Plan& intended, double time, const Braking& braking,
+                                     StopCourse& out) const noexcept;
   /// How near to the edge [m] a receiver comes in the first `time` [s] that plays `stop` blindly, the car
   /// being a little other than believed: its rear axle softer while it turns in more than estimated, and
   /// stiffer while it turns in less.
   [[nodiscard]] double played_edge(const road::KnownRoad& road, const StopStart& start, const StopPlan& stop,
                                    double time) const noexcept;
+  /// The same of a car that is seen all the time: until it stands, with what brings it back to the stop.
+  /// Pre: `stop` begins at `start`.
+  [[nodiscard]] double followed_edge(const road::KnownRoad& road, const StopStart& start,
+                                     const StopCourse& stop) const noexcept;
   /// `command` for `time` [s] from `from` on: where the car is then, and how near to the edge it came.
   [[nodiscard]] StopStart advance(const road::KnownRoad& road, const StopStart& from,
                                   const model::Command& command, double time,
@@ -59,6 +91,10 @@ class StopPlanner {
   /// The law: the command of a stop at `at`.
   [[nodiscard]] model::Command law(const road::KnownRoad& road, const StopStart& at,
                                    const Braking& braking) const noexcept;
+  /// And its acceleration [m/s²], negative: what the bend, and a car that shall stay stable, leave of the
+  /// braking. A car of much drag may need its drive for that.
+  [[nodiscard]] double slowing(const road::KnownRoad& road, const StopStart& at,
+                               const Braking& braking) const noexcept;
   /// Of the outermost contact patch to the believed edge [m].
   [[nodiscard]] double edge(const road::KnownRoad& road, const StopStart& at) const noexcept;
 
@@ -67,6 +103,15 @@ class StopPlanner {
   [[nodiscard]] double stable_share(const model::BodyMotion<double>& m, double deceleration,
                                     double stability) const noexcept;
   [[nodiscard]] double braking_share(double sideways, double deceleration, double v) const noexcept;
+  template <class Law>
+  [[nodiscard]] double doubted_edge(const road::KnownRoad& road, const StopStart& start, double time,
+                                    const Law& command_at) const noexcept;
+  template <class Law>
+  [[nodiscard]] StopCheck drive(const road::KnownRoad& road, const StopStart& start, const Law& command_at,
+                                StopCourse& out) const noexcept;
+  [[nodiscard]] model::Command along(const StopCourse& before, std::size_t& place, double lap,
+                                     const StopStart& at) const noexcept;
+  [[nodiscard]] double back_to(double beside, double course, double v) const noexcept;
   static void move(const model::PredictionModel& model, const road::KnownRoad& road, StopStart& at,
                    const model::Command& command, double dt,
                    const model::PredictionModel::Lags& lags) noexcept;

@@ -166,9 +166,9 @@ int StopSearch::stages(const road::KnownRoad& road, const StopStart& start) cons
 }
 
 StopCheck StopSearch::plan(const road::KnownRoad& road, const StopStart& start, double margin,
-                           const StopPlanner& planner, StopPlan& out) noexcept {
+                           const StopPlanner& planner, StopCourse& out) noexcept {
   constexpr double kNone = -std::numeric_limits<double>::infinity();
-  out.size = 0;
+  out.stop.size = 0;
   StopCheck check{.least_edge = kNone};
   if (!(start.body.vx > 2.0 * kSlow)) return check;
   problem_.model = &model_;  // here, so that a copy asks its own
@@ -202,10 +202,10 @@ StopCheck StopSearch::plan(const road::KnownRoad& road, const StopStart& start, 
 
 /// What was found: places and speeds of the search, the law from its end on.
 StopCheck StopSearch::tell(const road::KnownRoad& road, const StopStart& start, const StopPlanner& planner,
-                           StopPlan& out) const noexcept {
+                           StopCourse& out) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   StopCheck check{.least_edge = planner.edge(road, start)};
-  out.size = 0;
+  out.stop.size = 0;
   StopStart at = start;
   double driven = 0.0;
   double speed = hypot(start.body.vx, start.body.vy);
@@ -227,15 +227,13 @@ StopCheck StopSearch::tell(const road::KnownRoad& road, const StopStart& start, 
     Problem::Input u = now_.u[i];
     if (k > 0)
       for (std::size_t q = 0; q < u.size(); ++q) u[q] = 0.5 * (u[q] + now_.u[i - 1][q]);
-    out.points[static_cast<std::size_t>(out.size++)] = {
-        at.time, driven, speed, {u[0], throttle_to_rest(car, u[1], at.body.vx)}};
+    out.add(at, driven, speed, {u[0], throttle_to_rest(car, u[1], at.body.vx)});
   }
-  StopPlan tail;
+  StopCourse tail;
   const StopCheck end = planner.plan(road, at, {}, tail);
-  for (int q = 0; q < tail.size && out.size < StopPlan::kCapacity; ++q) {
-    StopPoint point = tail.points[static_cast<std::size_t>(q)];
-    point.distance += driven;
-    out.points[static_cast<std::size_t>(out.size++)] = point;
+  for (std::size_t q = 0; q < static_cast<std::size_t>(tail.stop.size); ++q) {
+    const StopPoint& point = tail.stop.points[q];
+    out.add(tail.places[q], driven + point.distance, point.speed, point.command);
   }
   check.least_edge = std::min(check.least_edge, end.least_edge);
   check.distance = driven + end.distance;

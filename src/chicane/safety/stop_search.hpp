@@ -27,7 +27,7 @@ class StopSearch {
   /// The stop from `start` on; `planner` ends it where the car is slow, and begins the search where there is
   /// no last stop. Pre: the road is not empty, `start` is finite.
   [[nodiscard]] StopCheck plan(const road::KnownRoad& road, const StopStart& start, double margin,
-                               const StopPlanner& planner, StopPlan& out) noexcept;
+                               const StopPlanner& planner, StopCourse& out) noexcept;
 
  private:
   using Problem = controller::TrackingProblem;
@@ -37,7 +37,7 @@ class StopSearch {
   [[nodiscard]] int stages(const road::KnownRoad& road, const StopStart& start) const noexcept;
   [[nodiscard]] double aimed(const road::KnownRoad& road, double s0, const Problem::State& x) const noexcept;
   [[nodiscard]] StopCheck tell(const road::KnownRoad& road, const StopStart& start,
-                               const StopPlanner& planner, StopPlan& out) const noexcept;
+                               const StopPlanner& planner, StopCourse& out) const noexcept;
   void ask_road(const road::KnownRoad& road, double s0, int k) noexcept;
 
   model::PredictionModel model_;

@@ -29,6 +29,8 @@ export function reasonInWords(reason: number): string {
       return 'after the command there would be no way to stop';
     case REASON.FAR_FROM_ROAD:
       return 'the road that is known is far away';
+    case REASON.TOO_FAST_FOR_SILENCE:
+      return 'it is too fast for a lost link';
     default:
       return `unknown reason ${reason}`;
   }
@@ -44,7 +46,9 @@ export const driverInWords = (frame: Pick<Frame, 'is_manual' | 'rung' | 'guard_r
 export function rungInWords(rung: number, reason = 0): Sentence {
   switch (rung) {
     case RUNG.CONTROLLER:
-      return { severity: 'good', text: 'The controller drives' };
+      return reason === REASON.TOO_FAST_FOR_SILENCE
+        ? { severity: 'warning', text: `The controller drives; ${reasonInWords(reason)}` }
+        : { severity: 'good', text: 'The controller drives' };
     case RUNG.SHIFTED_PLAN:
       return { severity: 'warning', text: 'No new answer: following the last plan' };
     case RUNG.HOLD_AND_BRAKE:

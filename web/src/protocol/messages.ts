@@ -192,6 +192,8 @@ export const REASON = {
   NO_WAY_TO_STOP: 7,
   /** no answer, far beside the road that is known */
   FAR_FROM_ROAD: 8,
+  /** a receiver that is left alone could not stop the car on the road */
+  TOO_FAST_FOR_SILENCE: 9,
 } as const;
 
 /** Frame.speed_limiter */
