@@ -67,6 +67,10 @@ static std::unique_ptr<StopSearch> copy_of(const StopSearch& search) {
   return std::make_unique<StopSearch>(search);
 }
 
+static std::unique_ptr<StopCourse> copy_of(const StopCourse& course) {
+  return std::make_unique<StopCourse>(course);
+}
+
 road::KnownRoad known_road(const GuardOptions& options, const path::RoadData* road,
                            const model::VehicleParams& vehicle) {
   if (options.mode == GuardMode::kOff) return {};

@@ -126,12 +126,12 @@ class Guard {
   StopPlanner planner_;
   Owned<StopSearch> search_;
   model::PredictionModel model_;
-  double floor_ = -1e9;                ///< how far from the edge a car beyond the margin has been since [m]
-  double leniency_ = 0.05;             ///< how much nearer to the edge it may come, slowly [m]
-  std::unique_ptr<StopCourse> stop_;   ///< at hand
-  std::unique_ptr<StopCourse> tried_;  ///< one that may become it
-  std::unique_ptr<StopCourse> last_;   ///< that of the cycle before
-  double s_ = 0.0;                     ///< on the known road where the command acts [m]
+  double floor_ = -1e9;      ///< how far from the edge a car beyond the margin has been since [m]
+  double leniency_ = 0.05;   ///< how much nearer to the edge it may come, slowly [m]
+  Owned<StopCourse> stop_;   ///< at hand
+  Owned<StopCourse> tried_;  ///< one that may become it
+  Owned<StopCourse> last_;   ///< that of the cycle before
+  double s_ = 0.0;           ///< on the known road where the command acts [m]
   unsigned revision_ = 0;
   bool has_place_ = false;
   bool is_far_ = false;     ///< the known road is, from the car
