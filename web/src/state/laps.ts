@@ -30,7 +30,8 @@ let kept: readonly Lap[] = [];
 let isHeldBack = false;
 
 function publish(): void {
-  if (isHeldBack) return;
+  if (hasAllLaps) laps.value = kept; // a moment of a recording is shown as a whole
+  if (hasAllLaps || isHeldBack) return;
   isHeldBack = true;
   laps.value = kept;
   setTimeout(() => {
