@@ -1,6 +1,7 @@
 import { fixed } from '../lib/format';
 import { inSpeedUnit, nextSpeedUnit, speedUnit } from '../lib/units';
-import { limiterInWords } from '../lib/words';
+import { driverInWords, limiterInWords } from '../lib/words';
+import { RUNG } from '../protocol/messages';
 import { alertsOf } from '../state/alerts';
 import { lapSamples } from '../state/laps';
 import { limit, limitTimeAt } from '../state/limit';
@@ -65,7 +66,17 @@ function Deltas() {
 
 /** The one sentence why the car is not faster. */
 function Why() {
-  const limiter = shown.value?.speed_limiter ?? 0;
+  const frame = shown.value;
+  if (!frame) return null;
+  // What limits the controller's plan is no reason for the speed of a car that something else drives.
+  if (frame.is_manual || frame.rung !== RUNG.CONTROLLER) {
+    return (
+      <p class="why" data-testid="why">
+        <b>{driverInWords(frame).text}.</b>
+      </p>
+    );
+  }
+  const limiter = frame.speed_limiter;
   if (limiter === 0) return null;
   const { title, why } = limiterInWords(limiter);
   return (
