@@ -87,4 +87,19 @@ void add_recover(CLI::App& command, Options& options) {
   command.footer("Example: chicane recover --tracks lakeside,oval --starts 120");
 }
 
+void add_lane_change(CLI::App& command, Options& options) {
+  Options::LaneChange& change = options.lane_change;
+  command.add_option("--cars", change.cars, "Names or files, with commas")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->capture_default_str();
+  command.add_option("--presets", change.presets, "Who steers: names or files, with commas")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->capture_default_str();
+  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  add_set(command, options);
+  command.footer("Example: chicane lane-change --cars road-car --presets default,stanley");
+}
+
 }  // namespace chicane::apps

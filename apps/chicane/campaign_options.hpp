@@ -10,5 +10,6 @@ namespace chicane::apps {
 
 void add_campaign(CLI::App& command, Options& options);
 void add_recover(CLI::App& command, Options& options);
+void add_lane_change(CLI::App& command, Options& options);
 
 }  // namespace chicane::apps

@@ -21,6 +21,7 @@ constexpr Command kCommands[] = {
      compare_league},
     {"campaign", "Faults at every moment of a lap: where the car leaves the road", campaign},
     {"recover", "From anywhere beside the road: whether the car comes back", recover},
+    {"lane-change", "Highest entry speed of the severe double lane change, ISO 3888-2", lane_change},
     {"claims", "What five write-ups say, each tried on its own terms", try_claims},
     {"check", "Validate scenarios, presets, cars and tracks, and explain what is wrong", check},
     {"list", "Presets, tracks, cars, scenarios, controllers and parameters", list},

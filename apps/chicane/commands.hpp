@@ -34,6 +34,7 @@ struct Command {
 [[nodiscard]] ExitCode tune(const Options& options);
 [[nodiscard]] ExitCode campaign(const Options& options);
 [[nodiscard]] ExitCode recover(const Options& options);
+[[nodiscard]] ExitCode lane_change(const Options& options);
 [[nodiscard]] ExitCode check(const Options& options);
 [[nodiscard]] ExitCode list(const Options& options);
 /// What `chicane list` takes.

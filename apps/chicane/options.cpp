@@ -290,6 +290,7 @@ void add_commands(CLI::App& app, Options& options) {
     if (command.name == "merge") add_merge(*sub, options);
     if (command.name == "campaign") add_campaign(*sub, options);
     if (command.name == "recover") add_recover(*sub, options);
+    if (command.name == "lane-change") add_lane_change(*sub, options);
     if (command.name == "check") add_check(*sub, options);
     if (command.name == "list") add_list(*sub, options);
     if (command.name == "bench") add_bench(*sub, options);

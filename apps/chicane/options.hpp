@@ -130,6 +130,12 @@ struct Options {
   };
   Recover recover{};
 
+  struct LaneChange {
+    std::vector<std::string> cars{"udacity", "road-car", "bmw-320i"};
+    std::vector<std::string> presets{"race", "pure-pursuit", "stanley"};
+  };
+  LaneChange lane_change{};
+
   int instances = 100;                    ///< bench: of each family
   std::vector<int> horizons{10, 20, 50};  ///< bench
   std::string reference_folder;           ///< bench: problems with known optima; empty: none

@@ -47,13 +47,19 @@ Result<std::unique_ptr<ClosedLoop>> ClosedLoop::create(const scenario::Scenario&
                                                        const ControllerFactory& make) {
   const auto road = roads.of(scenario);
   if (!road) return fail(road.error());
-  if (const Result<void> fits = check_room(scenario, (*road)->track); !fits) return fail(fits.error());
+  return create(scenario, **road, make);
+}
+
+Result<std::unique_ptr<ClosedLoop>> ClosedLoop::create(const scenario::Scenario& scenario,
+                                                       const Roads::Prepared& road,
+                                                       const ControllerFactory& make) {
+  if (const Result<void> fits = check_room(scenario, road.track); !fits) return fail(fits.error());
   Result<std::unique_ptr<sim::Plant>> plant = make_plant(scenario);
   if (!plant) return fail(plant.error());
   Result<std::unique_ptr<controller::Controller>> controller = make(scenario);
   if (!controller) return fail(controller.error());
   return std::unique_ptr<ClosedLoop>(
-      new ClosedLoop(scenario, **road, std::move(*plant), std::move(*controller)));
+      new ClosedLoop(scenario, road, std::move(*plant), std::move(*controller)));
 }
 
 std::unique_ptr<ClosedLoop> ClosedLoop::copy() const {

@@ -51,6 +51,10 @@ class ClosedLoop {
   /// The same for one of many runs: what is the same for all on a road is taken from `roads`.
   [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(
       const scenario::Scenario& scenario, Roads& roads, const ControllerFactory& make = make_controller);
+  /// The same on a road that was prepared (Roads::prepare), whatever scenario.track says.
+  [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(
+      const scenario::Scenario& scenario, const Roads::Prepared& road,
+      const ControllerFactory& make = make_controller);
 
   /// One physics step, preceded by a control step when one is due. True when there was a control step:
   /// frame() is new. `budget` [s] bounds the control step; 0 = no bound.
@@ -102,6 +106,8 @@ class ClosedLoop {
   [[nodiscard]] const telemetry::Frame& frame() const noexcept { return frame_; }
   [[nodiscard]] const path::Track& track() const noexcept { return track_; }
   [[nodiscard]] const sim::WorldState& world() const noexcept { return world_.state(); }
+  /// The car as it is now, after the last physics step.
+  [[nodiscard]] const model::State& car() const noexcept { return plant_->state(); }
   [[nodiscard]] const scenario::Scenario& scenario() const noexcept { return scenario_; }
   [[nodiscard]] const controller::Controller& controller() const noexcept { return cycle_.controller(); }
   [[nodiscard]] telemetry::RunSummary summary() const;

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/run/lane_change.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "chicane/base/math.hpp"
+#include "chicane/controller/registry.hpp"
+#include "chicane/lap_time/racing_plan.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "chicane/run/control_cycle.hpp"
+#include "chicane/run/racing.hpp"
+
+namespace chicane::run {
+namespace {
+
+constexpr double kReleased = 2.0;       // [m] behind the entry
+constexpr double kWayStep = 5.0 / 3.6;  // [m/s] between speeds that a way is planned for
+constexpr double kUsedRoom = 0.2;  // of the space beside the body in the entry lane, by the way that is shown
+constexpr double kPlanStep = 0.04;      // [s] between nodes of a plan, about
+constexpr double kStopping = 10.0;      // [m/s²] at the end of the road, which no car reaches
+constexpr double kShown = 6.0;          // [m] of road beside the waypoints that are shown
+constexpr double kWaypoints = 3.0;      // [m] between waypoints in the course
+constexpr double kFarWaypoints = 20.0;  // [m] and before and behind it
+constexpr double kSpeedGain = 2.0;      // [1/s]
+constexpr double kNoPedal = 0.01;       // [m/s²] that drive and brakes give, as the controller is told
+constexpr double kMostTime = 60.0;      // [s]
+constexpr double kHasStopped = 1.0;     // [m/s]
+
+double kmph(double speed) { return speed / 3.6; }
+
+/// Holds the speed, then releases the throttle; the controller in it steers.
+class ReleasesThrottle final : public controller::Controller {
+ public:
+  ReleasesThrottle(std::unique_ptr<Controller> driver, const model::VehicleParams& vehicle, double speed)
+      : driver_(std::move(driver)), vehicle_(vehicle), speed_(speed) {}
+  [[nodiscard]] const controller::StepResult& step(const model::Measurement& now,
+                                                   Deadline deadline) noexcept override {
+    result_ = driver_->step(now, deadline);
+    result_.command.throttle =
+        now.x > kReleased ? 0.0 : throttle_for(vehicle_, kSpeedGain * (speed_ - now.speed), now.speed);
+    return result_;
+  }
+  void note_sent(const model::Command& command) noexcept override { driver_->note_sent(command); }
+  void use_line(std::shared_ptr<const road::RacingRoad> lap) noexcept override {
+    driver_->use_line(std::move(lap));
+  }
+  void reset() noexcept override { driver_->reset(); }
+  [[nodiscard]] std::string_view name() const noexcept override { return driver_->name(); }
+
+ private:
+  std::unique_ptr<Controller> driver_;
+  model::VehicleParams vehicle_;
+  double speed_;
+  controller::StepResult result_;
+};
+
+/// That the tyres keep from the cones when the body keeps all but kUsedRoom [m].
+double margin_of(const model::VehicleParams& car) {
+  const LaneChangeCourse::Lane entry = LaneChangeCourse(car.width).lanes()[0];
+  const double beside_tyres = 0.5 * (entry.left - entry.right - car.track_width - car.tire_width);
+  const double beside_body = 0.5 * (entry.left - entry.right - car.width);
+  return beside_tyres - kUsedRoom * beside_body;
+}
+
+/// The scenario as it is driven there: without an end, faults and guard.
+scenario::Scenario on_course(scenario::Scenario scenario) {
+  scenario.laps = 0;
+  scenario.time_limit = 0.0;
+  scenario.faults.clear();
+  scenario.guard.mode = safety::GuardMode::kOff;
+  std::get<controller::TrackingMpcEntry::Options>(scenario.controllers).edge_margin =
+      margin_of(scenario.vehicle);
+  return scenario;
+}
+
+/// Each point of the way that telemetry shows.
+Result<path::Track> waypoints_on(const road::ReferenceLine& way) {
+  std::vector<path::TrackPoint> points;
+  for (double s = 0.0; s < way.length();) {
+    const Vec2 position = way.at(s).position;
+    points.push_back({position, kShown, kShown});
+    const bool is_in_course = position.x() > -kFarWaypoints && position.x() < LaneChangeCourse::kLength;
+    s += is_in_course ? kWaypoints : kFarWaypoints;
+  }
+  return path::Track::create("double lane change", points, false);
+}
+
+}  // namespace
+
+Result<LaneChange> LaneChange::create(const model::VehicleParams& vehicle) {
+  if (vehicle.scale != 1.0)
+    return fail(ErrorCode::kInvalidArgument, "lane change: got a model car, expected one in full size");
+  const LaneChangeCourse course(vehicle.width);
+  Result<path::Track> road = course.road();
+  if (!road) return fail(road.error());
+  LaneChange change(vehicle, course, std::move(*road));
+  const Result<path::RacingLine> fastest = change.plan(1.0);
+  if (!fastest) return fail(fastest.error());
+  const double time = fastest->at(LaneChangeCourse::kRunUp + LaneChangeCourse::kLength).time -
+                      fastest->at(LaneChangeCourse::kRunUp).time;
+  change.full_speed_ = LaneChangeCourse::kLength / time;
+  return change;
+}
+
+Result<path::RacingLine> LaneChange::plan(double grip_share) const {
+  return lap_time::plan_racing_line(
+      road_, vehicle_, {.margin = margin_of(vehicle_), .grip_share = grip_share, .time_step = kPlanStep});
+}
+
+Result<LaneChange::Way> LaneChange::way_at(double speed) {
+  Result<path::RacingLine> line = fail(ErrorCode::kInvalidArgument, "");
+  // Where the grip of a walking pace has no optimum, that of the next speed has.
+  for (int step = static_cast<int>(std::ceil(speed / kWayStep));; ++step) {
+    if (const auto known = ways_.find(step); known != ways_.end()) return known->second;
+    const double of_way = std::min(step * kWayStep, full_speed_);
+    const double share = of_way / full_speed_;
+    line = plan(share * share);
+    if (!line && of_way < full_speed_) continue;
+    if (!line) return fail(line.error());
+    const road::RacingRoad::Basis basis{.is_closed = false, .braking = kStopping};
+    Way way = std::make_shared<const road::RacingRoad>(path::line_points(road_, *line), 0.0, basis);
+    ways_.emplace(step, way);
+    return way;
+  }
+}
+
+Result<LaneChangeOutcome> LaneChange::drive(const scenario::Scenario& scenario, double speed,
+                                            const ControllerFactory& make) {
+  const scenario::Scenario one = on_course(scenario);
+  const Result<Way> way = way_at(speed);
+  if (!way) return fail(way.error());
+  Result<path::Track> waypoints = waypoints_on((*way)->line());
+  if (!waypoints) return fail(waypoints.error());
+  const Roads::Prepared road{road_, std::move(*waypoints), known_road(one, &road_),
+                             races(one) ? *way : nullptr};
+  const auto releasing =
+      [&](const scenario::Scenario& each) -> Result<std::unique_ptr<controller::Controller>> {
+    scenario::Scenario steering = each;
+    steering.vehicle.drive_acceleration = steering.vehicle.brake_acceleration = kNoPedal;
+    auto driver = make(steering);
+    if (!driver) return fail(driver.error());
+    return std::make_unique<ReleasesThrottle>(std::move(*driver), each.vehicle, speed);
+  };
+  auto created = ClosedLoop::create(one, road, releasing);
+  if (!created) return fail(created.error());
+  ClosedLoop& loop = **created;
+  loop.restart_at({.x = -LaneChangeCourse::kStart, .vx = speed});
+
+  LaneChangeOutcome outcome;
+  const double to_middle = 0.5 * (one.vehicle.front_axle - one.vehicle.rear_axle);
+  while (loop.time() < kMostTime) {
+    (void)loop.advance();
+    const model::State& car = loop.car();
+    const double now = hypot(car.vx, car.vy);
+    if (outcome.entry_speed == 0.0 && car.x >= 0.0) outcome.entry_speed = now;
+    const model::Pose middle{car.x + to_middle * cos(car.psi), car.y + to_middle * sin(car.psi), car.psi};
+    outcome.room = std::min(outcome.room, course_.room(middle, one.vehicle.length, one.vehicle.width));
+    if (now < kHasStopped) break;
+    if (car.x < LaneChangeCourse::kLength + 0.5 * one.vehicle.length) continue;
+    outcome.exit_speed = now;
+    break;
+  }
+  return outcome;
+}
+
+Result<LaneChangeLimit> LaneChange::find_limit(const scenario::Scenario& scenario,
+                                               const ControllerFactory& make) {
+  LaneChangeLimit limit;
+  for (int speed = kSlowest; speed <= kFastest; ++speed) {
+    const Result<LaneChangeOutcome> outcome = drive(scenario, kmph(speed), make);
+    if (!outcome) return fail(outcome.error());
+    limit.failed = *outcome;
+    if (!outcome->has_passed()) break;
+    limit.passed_kmph = speed;
+    limit.passed = *outcome;
+  }
+  return limit;
+}
+
+}  // namespace chicane::run
