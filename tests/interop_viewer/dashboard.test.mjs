@@ -223,20 +223,6 @@ describe('the dashboard', () => {
   });
 });
 
-for (const colorScheme of ['light', 'dark']) {
-  it(`has nothing that axe objects to, on any tab, ${colorScheme}`, async () => {
-    await open({ colorScheme });
-    for (const tab of TABS) {
-      await dashboard.show(tab);
-      assert.deepEqual(await dashboard.accessibilityFindings(), [], tab);
-      assert.deepEqual(await dashboard.overflow(), { across: 0, down: 0 }, `${tab} fits the window`);
-    }
-    await page.keyboard.press('?');
-    assert.deepEqual(await dashboard.accessibilityFindings(), [], 'help');
-    await dashboard.close();
-  });
-}
-
 it('is dark for readers who like it dark', async () => {
   await open({ colorScheme: 'dark' });
   const ground = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
@@ -266,7 +252,6 @@ it('fits a phone', async () => {
       .locator('p, dd, dt, button, td, th, label')
       .evaluateAll((all) => all.map((each) => parseFloat(getComputedStyle(each).fontSize)));
     assert.ok(Math.min(...sizes) >= 12, `smallest text ${Math.min(...sizes)} px`);
-    assert.deepEqual(await dashboard.accessibilityFindings(), [], tab);
   }
   await dashboard.close();
 });

@@ -134,9 +134,11 @@ export class DashboardPage {
       });
   }
 
-  async accessibilityFindings() {
+  /** What axe objects to; `rules`: only these. */
+  async accessibilityFindings(rules) {
     if (!(await this.page.evaluate(() => 'axe' in globalThis))) await this.page.evaluate(axe);
-    const { violations } = await this.page.evaluate(() => globalThis.axe.run());
+    const options = rules ? { runOnly: rules } : {};
+    const { violations } = await this.page.evaluate((given) => globalThis.axe.run(given), options);
     return violations.map(
       ({ id, nodes }) =>
         `${id}: ${nodes.map(({ target, failureSummary }) => `${target} ${failureSummary}`).join(', ')}`,

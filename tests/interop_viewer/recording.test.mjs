@@ -161,6 +161,63 @@ describe('a recording in the page', () => {
   });
 });
 
+it('is played slower and faster', async () => {
+  const page = await open(url);
+  const position = async () => {
+    const [minutes, seconds] = (await time(page)).split(':').map((text) => Number.parseFloat(text));
+    return 60 * minutes + seconds;
+  };
+  /** What is played in a second of the page's own clock, over two of them [s/s]. */
+  async function rate() {
+    const [from, begin] = [await position(), performance.now()];
+    await page.waitForTimeout(2000);
+    return ((await position()) - from) / ((performance.now() - begin) / 1000);
+  }
+  await page.locator('body').press('[');
+  await page.locator('body').press('[');
+  await page.getByText('0.25× speed', { exact: true }).waitFor();
+  await dashboard.button('Play').click();
+  const slow = await rate();
+  await dashboard.show('drive');
+  await dashboard.button('4×').click();
+  await page.getByText('4× speed', { exact: true }).waitFor();
+  const fast = await rate();
+  assert.ok(slow > 0 && fast > 3 * slow, `${slow}, then ${fast}`); // sixteen times, were the machine not busy
+  await dashboard.close(isAboutGraphics);
+});
+
+it('is shown when its file is dropped on a page that watches a run; what is none, is refused in words', async () => {
+  const drive = await startDrive(['--track', 'oval']);
+  dashboard = await DashboardPage.open(browser, drive.url, { tab: 'laps' });
+  const { page } = dashboard;
+  const drop = (name, bytes) =>
+    page.evaluate(
+      ({ name: called, base64 }) => {
+        const data = new DataTransfer();
+        data.items.add(new File([Uint8Array.from(atob(base64), (each) => each.charCodeAt(0))], called));
+        const options = { dataTransfer: data, bubbles: true, cancelable: true };
+        document.body.dispatchEvent(new DragEvent('dragover', options));
+        document.body.dispatchEvent(new DragEvent('drop', options));
+      },
+      { name, base64: bytes.toString('base64') },
+    );
+  await drop('broken.mcap', Buffer.from('this is none'));
+  await page.getByTestId('notice').waitFor();
+  await page.getByText('Live', { exact: true }).waitFor();
+  await drop('of yesterday.mcap', readFileSync(log));
+  await page.getByText('Recording', { exact: true }).waitFor();
+  await page.locator('.timeline-name', { hasText: 'of yesterday.mcap' }).waitFor();
+  await dashboard.until(
+    () => page.locator('.laps .lap-table tbody tr:not(.limit)').count(),
+    (count) => count === 2,
+    'both of its laps',
+  );
+  assert.match(await page.locator('.summary').innerText(), /lakeside/, 'not the oval of the run');
+  assert.deepEqual(await dashboard.accessibilityFindings(), []);
+  await dashboard.close(isAboutGraphics);
+  await drive.stop();
+});
+
 describe('a report', () => {
   afterEach(() => dashboard.close(isAboutGraphics));
 

@@ -57,6 +57,11 @@ const LIVE = [
       await dashboard.button('10 s').click();
       await dashboard.button('Drive both').click();
       await page.getByTestId('what-if-verdict').waitFor();
+      await dashboard.until(
+        () => page.getByTestId('what-if-verdict').evaluate((each) => innerHeight - each.getBoundingClientRect().bottom),
+        (room) => room >= 0,
+        'the verdict comes into sight',
+      );
     },
     leave: (dashboard) => dashboard.button('Forget it').click(),
   },

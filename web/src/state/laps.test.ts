@@ -76,6 +76,14 @@ describe('laps', () => {
     expect(lapSamples.laps).toEqual([]);
   });
 
+  it('of a recording are all known as soon as they are sampled', async () => {
+    vi.resetModules(); // the page keeps all laps for good
+    const page = await import('./laps');
+    for (const lap of [1, 2, 3]) page.receiveLap(lapWith(lap, 30));
+    page.keepAllLaps();
+    expect(page.laps.value.map(({ lap }) => lap)).toEqual([1, 2, 3]);
+  });
+
   it('of a recording stay sampled, whatever moment of it is shown', async () => {
     vi.resetModules(); // the page keeps all laps for good
     const page = await import('./laps');

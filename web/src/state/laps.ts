@@ -24,6 +24,7 @@ export const sampledLaps = signal(0);
 let hasAllLaps = false;
 export function keepAllLaps(): void {
   hasAllLaps = true;
+  publish(); // none of them is held back any more: who samples them needs all
 }
 
 let kept: readonly Lap[] = [];

@@ -7,6 +7,7 @@ import { chooseBefore, forgetOtherRun, inWords, otherRun } from '../state/other_
 import { isStageAlone } from '../state/presentation';
 import { replayLeft } from '../state/replay';
 import { isPaused, run } from '../state/run';
+import { settings } from '../state/settings';
 import { shown, silence } from '../state/shown';
 import { isHelpOpen } from './help_view';
 import { TourButton } from './tour_view';
@@ -40,7 +41,8 @@ function LinkState() {
 /** Marks for unusual states: next run, driving by hand, faults, pace. */
 function Marks() {
   const frame = shown.value;
-  const pace = frame?.pace ?? NaN;
+  const asked = settings.value.get('run.pace'); // a paused recording has no frame that tells a new one
+  const pace = typeof asked === 'number' ? asked : (frame?.pace ?? NaN);
   return (
     <>
       {(run.value?.building ?? '') !== '' && (

@@ -167,8 +167,11 @@ function rowsOf(all: readonly Lap[], bests: LapBests): Lap[] {
 function compared(all: readonly Lap[], bests: LapBests): [number, number] {
   const seen = all.filter(({ lap }) => lapSamples.laps.includes(lap - 1)).map(({ lap }) => lap);
   const newest = seen.at(-1) ?? all.at(-1)?.lap ?? -1;
+  const isOther = ({ lap }: Lap): boolean => lap !== newest;
   const other =
-    bests.lap !== newest && seen.includes(bests.lap) ? bests.lap : (seen.at(-2) ?? all.at(-2)?.lap ?? newest);
+    bests.lap !== newest && seen.includes(bests.lap)
+      ? bests.lap
+      : (seen.at(-2) ?? all.filter(isOther).at(-1)?.lap ?? newest);
   const isKnown = (lap: number | null): lap is number =>
     (lap === LIMIT && limit.value !== null) || all.some((each) => each.lap === lap);
   return [isKnown(chosen.value[0]) ? chosen.value[0] : newest, isKnown(chosen.value[1]) ? chosen.value[1] : other];

@@ -272,7 +272,8 @@ class Painter {
     }
     if (view.value === 'above') return above(car, width, height, metresAcross.value);
     // Smoothed over a quarter of a second, so that the view does not follow every steering movement.
-    const share = Number.isNaN(this.#heading) ? 1 : 1 - Math.exp(-(now - this.#lastPaint) / 250);
+    const elapsed = (now - this.#lastPaint) * Math.max(1, live.frame?.pace || 1); // a fast run turns as fast
+    const share = Number.isNaN(this.#heading) ? 1 : 1 - Math.exp(-elapsed / 250);
     const from = Number.isNaN(this.#heading) ? car.yaw : this.#heading;
     this.#heading = from + wrapAngle(car.yaw - from) * share;
     return behind(car, this.#heading, width, height, metresAcross.value);

@@ -1,4 +1,4 @@
-import { useMemo } from 'preact/hooks';
+import { useEffect, useMemo, useRef } from 'preact/hooks';
 import { rangeAboutZero, rangeInSteps } from '../draw/axis';
 import { fixed, lapTime, UNKNOWN } from '../lib/format';
 import { inSpeedUnit, type SpeedUnit, speedUnit } from '../lib/units';
@@ -148,16 +148,27 @@ function curvesOf(answer: WhatIfAnswer, unit: SpeedUnit): DistanceCurves[] {
   ];
 }
 
+/** Scrolls a part of the panel into sight, unless it is. */
+function showInPanel(part: HTMLElement | null): void {
+  const panel = part?.closest('.panel-body');
+  if (!part || !panel) return;
+  const [inside, frame] = [part.getBoundingClientRect(), panel.getBoundingClientRect()];
+  if (inside.bottom > frame.bottom) panel.scrollTop += inside.top - frame.top;
+}
+
 /** Both futures: what the change comes to, in a sentence, a table, and along the road. */
 export function WhatIfResult({ answer }: { answer: WhatIfAnswer }) {
   const unit = speedUnit();
   const curves = useMemo(() => curvesOf(answer, unit), [answer, unit]);
   const first = nameOfFirst(answer);
   const gap = finalGap(answer);
+  const verdict = useRef<HTMLParagraphElement>(null);
+  useEffect(() => showInPanel(verdict.current), [answer]);
   return (
     <section class="what-if-result" aria-label="What would be">
       <p
         class={`verdict ${gap < -0.005 ? 'better' : gap > 0.005 ? 'worse' : ''}`}
+        ref={verdict}
         role="status"
         data-testid="what-if-verdict"
       >

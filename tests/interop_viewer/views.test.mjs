@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Every view at every size in both themes: nothing that axe objects to, nothing cut off, covered or printed over, nothing
+// on the browser's console.
+import assert from 'node:assert/strict';
+import { after, before, it } from 'node:test';
+import { misfits } from './fit.mjs';
+import { browserAlone } from './here.mjs';
+import { SIZES, startScenes, THEMES, walk } from './views.mjs';
+
+const here = browserAlone();
+let scenes;
+before(async () => {
+  scenes = await startScenes();
+});
+after(() => scenes?.stop());
+
+for (const [size, shape] of Object.entries(SIZES)) {
+  it(`shows every view well at ${shape.viewport.width} x ${shape.viewport.height}, a ${size}`, async () => {
+    const findings = {};
+    const note = (name, found) => {
+      if (found.length > 0) findings[name] = found;
+    };
+    for (const group of scenes.groups) {
+      await walk(here.browser, group, shape, async (dashboard, name) => {
+        const { page } = dashboard;
+        assert.ok((await dashboard.overflow()).across <= 0, `${name} fits the window`);
+        note(name, await page.evaluate(misfits));
+        for (const theme of THEMES) {
+          await page.emulateMedia({ colorScheme: theme });
+          // The theme changes colours alone: all rules once, those of colours in both.
+          const rules = theme === THEMES[0] ? undefined : ['color-contrast'];
+          note(`${name}, ${theme}`, await dashboard.accessibilityFindings(rules));
+        }
+      });
+    }
+    assert.deepEqual(findings, {});
+  });
+}
