@@ -7,8 +7,10 @@
  */
 export function misfits() {
   const found = [];
-  const named = (element) =>
-    `${element.tagName.toLowerCase()}.${element.className?.baseVal ?? element.className} "${(element.ariaLabel ?? element.textContent).trim().slice(0, 40)}"`;
+  const named = (element) => {
+    const text = (element.ariaLabel ?? element.textContent).trim().slice(0, 40);
+    return `${element.tagName.toLowerCase()}.${element.className?.baseVal ?? element.className} "${text}"`;
+  };
   const isShown = (element) => element.checkVisibility({ checkVisibilityCSS: true, checkOpacity: true });
   const dialog = document.querySelector('dialog[open]');
   const isInPlay = (element) =>

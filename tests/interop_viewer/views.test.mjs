@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every view at every size in both themes: nothing that axe objects to, nothing cut off, covered or printed over, nothing
-// on the browser's console.
+// Every view at every size in both themes: nothing that axe objects to, nothing cut off, covered or printed over, and
+// nothing on the browser's console.
 import assert from 'node:assert/strict';
 import { after, before, it } from 'node:test';
 import { misfits } from './fit.mjs';
