@@ -135,12 +135,17 @@ TEST(Registry, EveryControllerRefusesEachOptionBeyondItsRowsRange) {
   });
 }
 
-TEST(Registry, WhatSetsTheSpeedIsAnOptionOfTheController) {
+TEST(Registry, WhatSetsTheSpeedIsAnOptionOfTheControllerUpTo230MilesPerHour) {
+  constexpr double kMost = 230.0 * 0.44704;
   EXPECT_EQ(List::find("from-scratch")->speed_option, "");
   Registry::for_each([]<class Entry>() {
     const std::string_view speed = Registry::find(Entry::kName)->speed_option;
     bool is_known = speed.empty();
-    for (const Option& row : Entry::options()) is_known = is_known || row.name == speed;
+    for (const Option& row : Entry::options()) {
+      if (row.name != speed) continue;
+      is_known = true;
+      EXPECT_GE(row.maximum, kMost) << Entry::kName;
+    }
     EXPECT_TRUE(is_known) << Entry::kName;
   });
 }

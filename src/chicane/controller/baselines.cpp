@@ -260,7 +260,7 @@ template <auto Speed, std::size_t N>
 constexpr std::array<Option, N + 3> with_speed_hold(const std::array<Option, N>& law) {
   std::array<Option, N + 3> all{};
   std::copy(law.begin(), law.end(), all.begin());
-  all[N] = option<Speed, &SpeedHoldOptions::speed_reference>("speed_reference", unit::kSpeed, 0, 60,
+  all[N] = option<Speed, &SpeedHoldOptions::speed_reference>("speed_reference", unit::kSpeed, 0, 110,
                                                              "Speed to hold.");
   all[N + 1] = option<Speed, &SpeedHoldOptions::speed_gain>("speed_gain", unit::per("s/m"), 0, 10,
                                                             "Throttle for the speed error.");

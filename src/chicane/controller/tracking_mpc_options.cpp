@@ -13,7 +13,7 @@ constexpr std::array kOptions{
     option<&T::horizon_steps>("horizon_steps", unit::kNone, 5, TrackingProblem::kCapacity,
                               "Steps the plan looks ahead."),
     option<&T::step_length>("step_length", unit::kSecond, 0.01, 0.2, "Time between two points of the plan."),
-    option<&T::speed_limit>("speed_limit", unit::kSpeed, 1, 100, "Never planned above."),
+    option<&T::speed_limit>("speed_limit", unit::kSpeed, 1, 110, "Never planned above."),
     option<&T::grip_share>("grip_share", unit::kNone, 0.01, 1,
                            "Share of the modelled tyre force the speed plan uses."),
     option<&T::brake_share>("brake_share", unit::kNone, 0.01, 1,
