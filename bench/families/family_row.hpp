@@ -28,7 +28,7 @@ struct FamilyRequest {
   int instances = 200;
   int first = 0;
   double tolerance = 1e-6;
-  int max_iterations = 500;
+  int max_iterations = 1000;
   bool with_ipopt = false;
   int ipopt_instances = 1 << 30;  ///< Ipopt solves the first so many, and what is not solved
   bool each = false;              ///< a line for each instance

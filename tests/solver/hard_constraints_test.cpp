@@ -176,10 +176,10 @@ TEST(HardConstraints, NeedNoMemoryAndStopInTime) {
 /// Solves instances of a family and checks each answer by dual numbers, with the multipliers that come with
 /// it.
 template <class P>
-void expect_optimal(std::initializer_list<int> seeds, NaiveStart start) {
+void expect_optimal(std::initializer_list<int> seeds, NaiveStart start, solver::SolverOptions options = {}) {
   using Measurement = FamilyMeasurement<P>;
-  const auto ocp = std::make_unique<solver::OcpSolver<P, P::kHorizon>>(
-      solver::SolverOptions{.start_from_states = start == NaiveStart::kLine});
+  options.start_from_states = start == NaiveStart::kLine;
+  const auto ocp = std::make_unique<solver::OcpSolver<P, P::kHorizon>>(options);
   for (const int seed : seeds) {
     const auto instance = Measurement::instance(seed);
     const auto t = std::make_unique<typename Measurement::Trajectory>(Measurement::guess(instance, start));
@@ -216,6 +216,12 @@ TEST(HardConstraints, AreMetToALooseTolerance) {
 // Misses that came down slowly, in rounds of a few turns each, were given up as going nowhere: stalled.
 TEST(HardConstraints, HavePatienceWithShortRounds) {
   expect_optimal<ArmOnALine>({83, 117, 159, 183}, NaiveStart::kIdle);
+}
+// The first ways took a fifth of the turns each: of more than 500, more than was good for them, and these
+// were lost again.
+TEST(HardConstraints, LoseNothingByMoreTurns) {
+  for (const int turns : {500, 1000, 2000})
+    expect_optimal<ArmOnALine>({4, 10, 14, 26, 38}, NaiveStart::kIdle, {.max_iterations = turns});
 }
 // An inequality at the end that was active in early rounds only kept its multiplier: no optimum.
 TEST(HardConstraints, LetGoOfInequalitiesThatHoldWithRoomToSpare) {

@@ -251,8 +251,8 @@ struct Trajectory {
 struct SolverOptions {
   double tolerance = 1e-6;        ///< stationarity accepted as optimal; (0, 1e-2]
   double loose_tolerance = 1e-2;  ///< stationarity accepted when the budget is spent; [tolerance, 1e3]
-  int max_iterations = 500;  ///< SQP turns, those of a shorter horizon by their share; worst-case time is
-                             ///< proportional to it; [1, 2000]. Controllers ask for fewer
+  int max_iterations = 1000;  ///< SQP turns, those of a shorter horizon by their share; worst-case time is
+                              ///< proportional to it; [1, 10000]. Controllers ask for fewer
   bool may_start_short =
       true;  ///< when full steps fail, the filter method, or for kRealTime a growing horizon: reaches optima
              ///< from poor guesses, at the price of tens of turns; off where the budget is a few turns

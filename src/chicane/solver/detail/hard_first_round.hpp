@@ -25,19 +25,19 @@ bool OcpSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& traj
       begin_again(trajectory, 1.0);
       if (!track(x0, trajectory, deadline, left, report)) {
         begin_again(trajectory, 1.0);
-        trial_ = std::max(1, options_.max_iterations / 5);
+        trial_ = most_of_a_trial();
       }
     }
   }
   return round(x0, trajectory, deadline, left, report);
 }
 /// Follows the filter method's barrier down, and brings multipliers, weights and prices up to date at the
-/// solution of each barrier's problem. True when it has got to the end, in a fifth of the turns.
+/// solution of each barrier's problem. True when it has got to the end within a trial's turns.
 template <HardProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::track(const State& x0, Trajectory& trajectory, const Deadline& deadline,
                                          int& left, HardReport& report) noexcept {
   if (!inner_.begin_path(problem_, x0, trajectory)) return false;
-  int most = std::min(left, options_.max_iterations / 5);
+  int most = std::min(left, most_of_a_trial());
   Misses before;
   for (bool is_first = true;; is_first = false) {
     SolveReport seen;
