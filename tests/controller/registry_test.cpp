@@ -11,6 +11,7 @@ namespace chicane::controller {
 namespace {
 
 const model::VehicleParams kCar;
+constexpr double kMostSpeed = 230.0 * 0.44704;  // [m/s]
 
 /// A controller that is in no list but this test's.
 struct ScratchOptions {
@@ -136,7 +137,6 @@ TEST(Registry, EveryControllerRefusesEachOptionBeyondItsRowsRange) {
 }
 
 TEST(Registry, WhatSetsTheSpeedIsAnOptionOfTheControllerUpTo230MilesPerHour) {
-  constexpr double kMost = 230.0 * 0.44704;
   EXPECT_EQ(List::find("from-scratch")->speed_option, "");
   Registry::for_each([]<class Entry>() {
     const std::string_view speed = Registry::find(Entry::kName)->speed_option;
@@ -144,7 +144,7 @@ TEST(Registry, WhatSetsTheSpeedIsAnOptionOfTheControllerUpTo230MilesPerHour) {
     for (const Option& row : Entry::options()) {
       if (row.name != speed) continue;
       is_known = true;
-      EXPECT_GE(row.maximum, kMost) << Entry::kName;
+      EXPECT_GE(row.maximum, kMostSpeed) << Entry::kName;
     }
     EXPECT_TRUE(is_known) << Entry::kName;
   });
