@@ -276,6 +276,7 @@ void add_completion(CLI::App& command, Options& options) {
 void add_commands(CLI::App& app, Options& options) {
   for (const Command& command : commands()) {
     CLI::App* const sub = app.add_subcommand(std::string(command.name), std::string(command.summary));
+    sub->footer("Example: chicane " + std::string(command.name));  // of a command without options
     if (command.name == "drive") add_drive(*sub, options);
     if (command.name == "serve") add_serve(*sub, options);
     if (command.name == "simulate") add_simulate(*sub, options);

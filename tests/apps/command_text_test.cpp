@@ -74,6 +74,15 @@ std::string without_dashes_of_roff(std::string page) {
   return page;
 }
 
+TEST(CommandText, EveryCommandHasAnExampleOfItsOwnAndARowInTheDocs) {
+  const std::string page = bash("cat docs/cli.md");
+  for (const std::string& command : commands()) {
+    const std::string help = bash(kProgram + " " + command + " --help");
+    EXPECT_TRUE(std::regex_search(help, std::regex("Example: .*chicane " + command + "\\b"))) << command;
+    EXPECT_TRUE(std::regex_search(page, std::regex("\\| `chicane " + command + "[ `]"))) << command;
+  }
+}
+
 TEST(CommandText, TheHelpIsRead) {
   EXPECT_THAT(commands(), IsSupersetOf({"drive", "serve", "replay", "list", "completion", "manual"}));
   EXPECT_THAT(options_of("drive"), IsSupersetOf({"--preset", "--laps", "--fast", "--set"}));
