@@ -38,8 +38,11 @@ export function reasonInWords(reason: number): string {
 
 /** Who drives: a person, or what Frame.rung says. */
 export const driverInWords = (frame: Pick<Frame, 'is_manual' | 'rung' | 'guard_reason'>): Sentence =>
-  frame.is_manual && frame.rung === RUNG.CONTROLLER
-    ? { severity: 'good', text: 'A person drives; the controller plans beside' }
+  frame.is_manual
+    ? {
+        severity: 'good',
+        text: `A person drives; the controller ${frame.rung === RUNG.CONTROLLER ? 'plans beside' : 'has no plan from here'}`,
+      }
     : rungInWords(frame.rung, frame.guard_reason);
 
 /** The source of the command, by Frame.rung. */

@@ -25,6 +25,17 @@ describe('alerts on the picture', () => {
     ]);
   });
 
+  it('name what helps, far off the road, where it can be done', () => {
+    const far = { ...UNKNOWN_FRAME, rung: 0, is_off_track: true, edge_distance_m: -326.7 };
+    const said = (canReset: boolean) => alertsOf(far, new History(COLUMN_COUNT, 100), [], canReset)[0]?.text;
+    expect(said(true)).toBe('Off the road, 326.7 m beyond the edge: Reset brings it back');
+    expect(said(false)).toBe('Off the road, 326.7 m beyond the edge');
+  });
+
+  it('do not say of a car that a person drives what the controller would do', () => {
+    expect(alerts({ time_s: 1, is_manual: true, rung: 2 })).toEqual(['unknown: A person drives']);
+  });
+
   it('name a near edge and sliding long enough to be read', () => {
     const sliding = { time_s: 1, edge_distance_m: 0.12, front_tire_use: 1.08, rear_tire_use: 0.7 };
     const well = { edge_distance_m: 1, front_tire_use: 0.6, rear_tire_use: 0.7 };

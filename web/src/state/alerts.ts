@@ -12,6 +12,8 @@ import type { History } from './history';
 const HELD_S = 0.7;
 /** Nearer to the edge than this is close [m]. */
 export const CLOSE_TO_EDGE_M = 0.3;
+/** From farther off the road than this no controller of ours comes back [m]. */
+const FAR_OFF_M = 30;
 
 /** An alert for the picture, with a name that stays while its numbers change. */
 export interface Alert extends Sentence {
@@ -34,8 +36,11 @@ function faultText(name: string, now: number): string {
   return `Fault: ${faultInWords(name)}${rest}`;
 }
 
-/** What the reader of the picture must know now, the worst first. `history` holds the last frames. */
-export function alertsOf(frame: Frame, history: History, faultNames: readonly string[]): Alert[] {
+/**
+ * What the reader of the picture must know now, the worst first. `history` holds the last frames; `canReset`: the car
+ * can be put back to the start.
+ */
+export function alertsOf(frame: Frame, history: History, faultNames: readonly string[], canReset = false): Alert[] {
   const alerts: Alert[] = [];
   const edge = extremeOf(history, Column.edge_distance_m, Math.min);
   const use = Math.max(
@@ -44,9 +49,12 @@ export function alertsOf(frame: Frame, history: History, faultNames: readonly st
   );
   if (frame.is_off_track) {
     const beyond = Math.max(0, -frame.edge_distance_m);
-    alerts.push({ name: 'road', severity: 'bad', text: `Off the road, ${fixed(beyond, 1)} m beyond the edge` });
+    const help = canReset && beyond > FAR_OFF_M ? ': Reset brings it back' : '';
+    alerts.push({ name: 'road', severity: 'bad', text: `Off the road, ${fixed(beyond, 1)} m beyond the edge${help}` });
   }
-  if (frame.rung !== 0) alerts.push({ name: 'driver', ...rungInWords(frame.rung, frame.guard_reason) });
+  // A person's command is sent, whatever the controller's would be.
+  if (frame.rung !== 0 && !frame.is_manual)
+    alerts.push({ name: 'driver', ...rungInWords(frame.rung, frame.guard_reason) });
   for (let bit = 0; bit < 32; ++bit)
     if (hasBit(frame.active_faults, bit))
       alerts.push({ name: 'fault', severity: 'bad', text: faultText(faultNames[bit] ?? `#${bit + 1}`, frame.time_s) });

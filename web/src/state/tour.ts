@@ -54,7 +54,7 @@ export const STEPS: readonly Step[] = [
     title: 'Drive it yourself',
     text:
       'Take the wheel with the button or the key M. Then the arrow keys steer, drive and brake; a ' +
-      'finger or the mouse does it on the pad.',
+      'finger or the mouse does it on the pad. At speed that is hard: Reset (R) puts the car to the start, at rest.',
     tab: 'drive',
     tasks: ['Take the wheel', `Drive ${BY_HAND_M} m`],
     isPossible: () => settings.value.has('manual.is_on'),
@@ -98,7 +98,7 @@ export const STEPS: readonly Step[] = [
     name: 'blind',
     title: 'Blind it',
     text:
-      'Take its measurements away: click “link lost”. It drives on by what it knew, and brakes if it ' +
+      'Take its measurements away: click the card “Link lost” below. It drives on by what it knew, and brakes if it ' +
       'has to wait for long.',
     tab: 'faults',
     tasks: ['Inject a fault of the sensors or the link', 'Wait until it is over and the controller drives again'],
@@ -109,8 +109,8 @@ export const STEPS: readonly Step[] = [
     name: 'break',
     title: 'Break it',
     text:
-      'Some things no controller can mend: click “steering stuck” before a bend. The frame of the ' +
-      'picture turns red.',
+      'Some things no controller can mend: click the card “Steering stuck” below, shortly before a bend. The frame ' +
+      'of the picture turns red.',
     tab: 'faults',
     tasks: ['Let the car leave the road, or the guard stop it', 'Wait until it drives again, or press Reset'],
     isPossible: () => hasFault(['actuator', 'road']),
@@ -142,8 +142,8 @@ export const STEPS: readonly Step[] = [
     name: 'compare',
     title: 'Compare',
     text:
-      'Was that better? Choose a setting and another value for it, then “Drive both”: the program ' +
-      'drives both futures from the same moment, and sets them side by side.',
+      'Was that better? “As at the start” undoes your change, or choose a setting and another value for it; then ' +
+      '“Drive both”: the program drives both futures from the same moment, and sets them side by side.',
     tab: 'whatif',
     tasks: ['Get an answer'],
     isPossible: () => services.value.has('/what_if'),

@@ -154,7 +154,16 @@ export function FaultsView() {
   return (
     <div class="blocks">
       <div class="toolbar">
-        <p class="soft">Click to inject a fault into the running car, click again to clear it.</p>
+        {/* In one place, so that no card moves when a fault begins. */}
+        {active.length > 0 && frame ? (
+          <p class={`fault-answer ${driverInWords(frame).severity}`} role="status" data-testid="fault-answer">
+            <span>
+              What is done about it: <b>{driverInWords(frame).text}</b>
+            </span>
+          </p>
+        ) : (
+          <p class="fault-answer none soft">Click to inject a fault into the running car, click again to clear it.</p>
+        )}
         <button
           type="button"
           disabled={active.length === 0}
@@ -163,11 +172,6 @@ export function FaultsView() {
           Clear all
         </button>
       </div>
-      {active.length > 0 && frame && (
-        <p class={`fault-answer ${driverInWords(frame).severity}`} role="status" data-testid="fault-answer">
-          What is done about it: <b>{driverInWords(frame).text}</b>
-        </p>
-      )}
       {GROUPS.map(({ name: group, title }) => {
         const members = all.filter(({ entry }) => (entry?.group ?? '') === group);
         if (members.length === 0) return null;

@@ -6,6 +6,7 @@ import { alertsOf } from '../state/alerts';
 import { lapSamples } from '../state/laps';
 import { limit, limitTimeAt } from '../state/limit';
 import { live } from '../state/live';
+import { can } from '../state/operate';
 import { run } from '../state/run';
 import { shown } from '../state/shown';
 
@@ -28,7 +29,7 @@ function Speed() {
         {unit.name}
       </button>
       <span class="wanted">
-        of <b>{fixed(inSpeedUnit(wanted), 0)}</b>
+        of <b>{fixed(inSpeedUnit(wanted), 0)}</b> allowed
       </span>
     </p>
   );
@@ -101,7 +102,8 @@ export function HudView() {
 /** On the picture, when something matters: off the road, near an edge, sliding, faults, and who drives. */
 export function AlertsView() {
   const frame = shown.value;
-  const alerts = frame ? alertsOf(frame, live.plots, run.value?.fault_names ?? []) : [];
+  const canReset = run.value?.mode !== 'replay' && can('/reset');
+  const alerts = frame ? alertsOf(frame, live.plots, run.value?.fault_names ?? [], canReset) : [];
   return (
     <div class="alerts" role="status" data-testid="alerts">
       {alerts.map(({ name, severity, text }) => (
