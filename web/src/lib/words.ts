@@ -41,7 +41,7 @@ export const driverInWords = (frame: Pick<Frame, 'is_manual' | 'rung' | 'guard_r
   frame.is_manual
     ? {
         severity: 'good',
-        text: `A person drives; the controller ${frame.rung === RUNG.CONTROLLER ? 'plans beside' : 'has no plan from here'}`,
+        text: `A person drives; the controller ${frame.rung === RUNG.CONTROLLER ? 'plans beside' : 'has no plan here'}`,
       }
     : rungInWords(frame.rung, frame.guard_reason);
 
