@@ -13,9 +13,9 @@ namespace chicane::solver {
 /// Full steps; where they lose their way, multipliers follow the barrier; where that gets nowhere, either,
 /// a solve like any other.
 template <HardProblem P, int Capacity, class Arch>
-bool OcpSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& trajectory,
-                                               const Deadline& deadline, int& left,
-                                               HardReport& report) noexcept {
+bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& trajectory,
+                                                const Deadline& deadline, int& left,
+                                                HardReport& report) noexcept {
   if constexpr (has_filter_method<P>()) {
     if (options_.may_start_short) {
       inner_.use_full_steps_only(true);
@@ -34,8 +34,8 @@ bool OcpSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& traj
 /// Follows the filter method's barrier down, and brings multipliers, weights and prices up to date at the
 /// solution of each barrier's problem. True when it has got to the end within a trial's turns.
 template <HardProblem P, int Capacity, class Arch>
-bool OcpSolver<P, Capacity, Arch>::track(const State& x0, Trajectory& trajectory, const Deadline& deadline,
-                                         int& left, HardReport& report) noexcept {
+bool HardSolver<P, Capacity, Arch>::track(const State& x0, Trajectory& trajectory, const Deadline& deadline,
+                                          int& left, HardReport& report) noexcept {
   if (!inner_.begin_path(problem_, x0, trajectory)) return false;
   int most = std::min(left, most_of_a_trial());
   Misses before;

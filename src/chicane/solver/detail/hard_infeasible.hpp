@@ -17,9 +17,9 @@ namespace chicane::solver {
 /// does not depend on how much, nor on how steep they are, nor on whether hard constraints may give way.
 /// Else weights and multipliers are those of the point that was found.
 template <HardProblem P, int Capacity, class Arch>
-bool OcpSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
-                                                 const Deadline& deadline, int& left,
-                                                 HardReport& report) noexcept {
+bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
+                                                  const Deadline& deadline, int& left,
+                                                  HardReport& report) noexcept {
   constexpr double kShare = 1e-5, kLess = 1e-3, kFiner = 1e4;
   constexpr int kSteep = 2, kSquares = 3;
   const auto factors = problem_.price_factor;
@@ -67,7 +67,7 @@ bool OcpSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State& 
 /// A ten thousandth of the narrowest bounds' distance, where that is less: steps from one to the other are
 /// no longer than the distance, whatever the slope.
 template <HardProblem P, int Capacity, class Arch>
-double OcpSolver<P, Capacity, Arch>::finest_tolerance(const P& problem, int horizon) const noexcept {
+double HardSolver<P, Capacity, Arch>::finest_tolerance(const P& problem, int horizon) const noexcept {
   constexpr double kFiner = 1e-4, kLeast = 1e-13;
   double width = options_.tolerance;
   for (int k = 0; k < horizon; ++k) {
@@ -80,8 +80,8 @@ double OcpSolver<P, Capacity, Arch>::finest_tolerance(const P& problem, int hori
 }
 /// The cost by `share`, misses in multiples of `unit`, by `factor`: what is small counts, too.
 template <HardProblem P, int Capacity, class Arch>
-void OcpSolver<P, Capacity, Arch>::weigh_misses(const P& problem, double share, double unit,
-                                                double factor) noexcept {
+void HardSolver<P, Capacity, Arch>::weigh_misses(const P& problem, double share, double unit,
+                                                 double factor) noexcept {
   problem_.cost_root = std::sqrt(share);
   for (auto& weight : problem_.equality_weight) weight.set(factor / (unit * unit));
   for (auto& weight : problem_.terminal_weight) weight.set(factor / (unit * unit));

@@ -22,13 +22,13 @@ namespace chicane::solver {
 /// that gets nowhere, the misses alone are minimised: what cannot hold is reported, else the rounds go on
 /// from the point that keeps everything.
 template <HardProblem P, int Capacity, class Arch>
-class OcpSolver<P, Capacity, Arch> {
+class HardSolver {
  public:
   using State = std::array<double, P::kNx>;
   using Trajectory = solver::Trajectory<P::kNx, P::kNu, Capacity>;
   using Prices = HardPrices<P, Capacity>;
 
-  explicit OcpSolver(const SolverOptions& options = {}) noexcept : options_{options}, inner_{options} {}
+  explicit HardSolver(const SolverOptions& options = {}) noexcept : options_{options}, inner_{options} {}
 
   /// From the next solve on: SolverOptions::max_iterations, of all rounds together.
   void allow_iterations(int most) noexcept { options_.max_iterations = most; }
@@ -456,6 +456,14 @@ class OcpSolver<P, Capacity, Arch> {
   bool can_go_on_ = false;  ///< the next round differs little from the last one
   std::array<std::array<double, Capacity>, kNh> equality_{};  ///< values at the last measure()
   std::array<double, kEnd> terminal_{};
+};
+
+/// A class of its own does the work: compilers differ in how members of a constrained specialisation are told
+/// from those of the class itself.
+template <HardProblem P, int Capacity, class Arch>
+class OcpSolver<P, Capacity, Arch> : public HardSolver<P, Capacity, Arch> {
+ public:
+  using HardSolver<P, Capacity, Arch>::HardSolver;
 };
 
 }  // namespace chicane::solver
