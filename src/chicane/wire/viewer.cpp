@@ -22,8 +22,7 @@ constexpr std::size_t kMostWaiting = 100;  // viewers between the upgrade and it
 
 // Kept messages that are sent before the viewer has read those before; with what else waits they stay below
 // net::ServerOptions::max_queue.
-constexpr std::size_t kLapPage = 32;
-constexpr std::size_t kFramePage = 192;
+constexpr std::size_t kPage = 192;
 
 constexpr std::uint16_t kGoingAway = 1001;  // RFC 6455 §7.4.1
 
@@ -288,10 +287,10 @@ void ViewerEndpoint::note_lap(bool begins) {
 /// A page of what it has not been sent; the next one when it has read this. All at once would be more than
 /// may wait for a connection.
 void ViewerEndpoint::send_kept(net::ConnectionId id, Client& client) {
-  const auto send_page = [&](std::uint32_t channel, std::size_t page, std::uint64_t& next, auto from) {
+  const auto send_page = [&](std::uint32_t channel, std::uint64_t& next, auto from) {
     const auto wanted = client.subscriptions.find(channel);
     if (wanted == client.subscriptions.end()) return true;
-    for (std::size_t room = page - std::min(page, server_->waiting(id)); room > 0; --room) {
+    for (std::size_t room = kPage - std::min(kPage, server_->waiting(id)); room > 0; --room) {
       const KeptMessage* message = (memory_.*from)(next);
       if (message == nullptr) return true;
       server_->send(
@@ -302,10 +301,10 @@ void ViewerEndpoint::send_kept(net::ConnectionId id, Client& client) {
     }
     return false;
   };
-  const bool has_laps = send_page(lap_channel(), kLapPage, client.next_lap, &RunMemory::lap_from);
-  send_page(change_channel(), kLapPage, client.next_change, &RunMemory::change_from);
+  const bool has_laps = send_page(lap_channel(), client.next_lap, &RunMemory::lap_from);
+  send_page(change_channel(), client.next_change, &RunMemory::change_from);
   if (!client.next_frame || !has_laps) return;  // the table before the curves
-  const bool has_all = send_page(frame_channel(), kFramePage, *client.next_frame, &RunMemory::frame_from);
+  const bool has_all = send_page(frame_channel(), *client.next_frame, &RunMemory::frame_from);
   if (has_all) client.next_frame.reset();
 }
 
