@@ -80,7 +80,7 @@ TEST_F(Viewer, GetsAThousandLapsInPages) {
   EXPECT_EQ(got.size(), 194U);
   server.unread = 0;
   endpoint->publish(telemetry::CompletedLap{},
-                    1001.0);  // one comes meanwhile, and takes the first one's place
+                    1001.0);     // one comes meanwhile, and takes the first one's place
   for (int i = 0; i < 6; ++i) {  // a tenth of a second
     server.pass_time();
     const std::vector<double> page = laps_of(server.take());
