@@ -33,6 +33,18 @@ TEST(Race, LapsCleanlyNearTheLimit) {
   }
 }
 
+// Braking makes these cars unstable: plans that did not know it left the guard no stop in fast bends, and
+// those that it drove instead spun them (docs/racing.md, "The other cars").
+TEST(Race, IsCleanForCarsThatBrakingMakesUnstable) {
+  const std::pair<const char*, const char*> races[] = {{"vw-vanagon", "lakeside"}, {"bmw-320i", "oval"}};
+  for (const auto& [car, track] : races) {
+    const auto run =
+        drive({{"preset", "race"}, {"car", car}, {"track", track}, {"laps", "3"}, {"time_limit_s", "200"}});
+    ASSERT_TRUE(run.completed) << car << ' ' << track << ": " << run.end_reason;
+    EXPECT_EQ(run.off_track_events, 0) << car << ' ' << track;
+  }
+}
+
 // The road is learned in the first lap, with an assumed width (docs/racing.md, section 3).
 TEST(Race, NeedsNoTrack) {
   const std::pair<const char*, const char*> races[] = {{"udacity", "lakeside"}, {"road-car", "oval"}};

@@ -42,6 +42,8 @@ TEST_P(RacingPlanOf, ItsModelHasTheDerivativesOfDifferences) {
   vehicle.model.set_vehicle(car_named(GetParam()));
   RoadNodes road = lay_nodes(bean(), {}, 0.1);
   vehicle.road = &road;
+  vehicle.stability = model::BrakingStability(car_named(GetParam()));
+  vehicle.is_steered_slowly = car_named(GetParam()).friction_coupling > 0.0;
   const ModelFunctions<VehicleModel> f(vehicle);
   // Coasting, braking and driving in bends to both sides.
   for (const double side : {1.0, -1.0}) {
@@ -51,6 +53,36 @@ TEST_P(RacingPlanOf, ItsModelHasTheDerivativesOfDifferences) {
           f, 3, {0.4, 0.03 * side, 22.0, -0.6 * side, 0.36 * side, 0.06 * side, net, 0.1, 4.0});
     }
   }
+}
+
+/// By how much a plan brakes harder in bends than leaves a pole of kMostPole [m/s²].
+double most_excess_of_braking(const path::RacingLine& plan, const model::VehicleParams& car) {
+  const model::BrakingStability stability(car);
+  double most = -100.0;
+  for (const path::RacingLinePoint& at : plan.points) {
+    const double drag = car.drag_constant + car.drag_quadratic * at.vx * at.vx;
+    const double use = stability.use(std::fabs(at.vx * at.yaw_rate), at.vx);
+    const double force =
+        at.vy * at.yaw_rate - at.acceleration - drag;  // and what the front wheels' turn adds
+    most = std::max(most, force - stability.most_braking(at.vx, use));
+  }
+  return most;
+}
+
+TEST(RacingPlan, BrakesNoHarderThanASlowSteeringCanCatch) {
+  model::VehicleParams van = model::road_car_params();
+  van.front_axle = 1.15;
+  van.rear_axle = 1.32;
+  van.height = 0.75;
+  van.brake_share_front = 0.64;
+  const RacingPlanOptions options{.margin = 0.25, .grip_share = 0.93, .time_step = 0.12};
+  const auto quick = plan_racing_line(bean(), van, options);
+  ASSERT_TRUE(quick) << quick.error().message;
+  EXPECT_GT(most_excess_of_braking(*quick, van), 1.5);
+  van.steer_rate_limit = 0.4;
+  const auto slow = plan_racing_line(bean(), van, options);
+  ASSERT_TRUE(slow) << slow.error().message;
+  EXPECT_LT(most_excess_of_braking(*slow, van), 1.0);
 }
 
 TEST_P(RacingPlanOf, WithoutReserveIsAsFastAsThePlantCanBe) {

@@ -102,5 +102,26 @@ TEST(BrakingStability, LeavesTyresAloneThatDoNotShareForce) {
             std::numeric_limits<double>::infinity());
 }
 
+TEST(BrakingStability, AllowsMoreForceWhereMoreIsLeftToTheController) {
+  const BrakingStability careful(van());
+  const BrakingStability bold(van(), 4.0);
+  EXPECT_GT(bold.most_braking(40.0, 0.5), careful.most_braking(40.0, 0.5) + 0.1);
+}
+
+TEST(BrakingStability, HasASmoothFormThroughTheSameValues) {
+  const BrakingStability stability(van());
+  for (const double v : {8.0, 24.0, 48.0, 80.0, 96.0})
+    for (const double use : {0.0, 0.25, 0.5, 0.75, 1.0})
+      EXPECT_NEAR(stability.smooth_most_braking(v, use), stability.most_braking(v, use), 1e-9)
+          << v << ' ' << use;
+  constexpr double kStep = 1e-6;
+  const auto slope = [&](double v, double use) {
+    return (stability.smooth_most_braking(v + kStep, use) - stability.smooth_most_braking(v - kStep, use)) /
+           (2.0 * kStep);
+  };
+  for (const double v : {16.0, 32.0, 56.0})
+    EXPECT_NEAR(slope(v - 1e-4, 0.3), slope(v + 1e-4, 0.3), 1e-3) << v;
+}
+
 }  // namespace
 }  // namespace chicane::model

@@ -10,12 +10,15 @@
 namespace chicane::lap_time {
 namespace {
 
-constexpr double kTolerance = 1e-4;  // of a plan: about a millisecond of a lap
+constexpr double kQuickSteering = 1.2;  // [rad/s] catches a car whose braking turns it, without a bound
+constexpr double kTolerance = 1e-4;     // of a plan: about a millisecond of a lap
 
 class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
  public:
   VehiclePlan(const model::VehicleParams& vehicle, double speed_limit) : vehicle_{vehicle} {
     model_.speed_limit = speed_limit;
+    model_.stability = model::BrakingStability(vehicle);
+    model_.is_steered_slowly = vehicle.friction_coupling > 0.0 && vehicle.steer_rate_limit < kQuickSteering;
     set_reserve({.slip_share = 1.0});
   }
   [[nodiscard]] CarSize size() const override {

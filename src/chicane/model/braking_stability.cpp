@@ -20,7 +20,7 @@ constexpr double kMostAngle = 1.57;  // [rad] c arctan(z / c) ends there
 
 }  // namespace
 
-BrakingStability::BrakingStability(const VehicleParams& car) noexcept
+BrakingStability::BrakingStability(const VehicleParams& car, double most_pole) noexcept
     : car_(car), friction_(car.cornering_friction()) {
   const double front = car.rear_axle / car.wheelbase();
   const double rear = car.front_axle / car.wheelbase();
@@ -36,10 +36,10 @@ BrakingStability::BrakingStability(const VehicleParams& car) noexcept
       const double use = k / (kUses - 1.0);
       double low = 0.0;
       double high = friction_ * car.load(v);
-      if (pole(v, use, high) <= kMostPole) low = high;
+      if (pole(v, use, high) <= most_pole) low = high;
       for (int turn = 0; turn < kHalvings && low < high; ++turn) {
         const double middle = 0.5 * (low + high);
-        (pole(v, use, middle) <= kMostPole ? low : high) = middle;
+        (pole(v, use, middle) <= most_pole ? low : high) = middle;
       }
       most_[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] = low;
     }

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <utility>
 
+#include "chicane/base/dual.hpp"
 #include "chicane/model/vehicle.hpp"
 
 namespace chicane::model {
@@ -15,13 +19,33 @@ class BrakingStability {
   /// The unstable pole that is left to the controller: in 100 ms an error grows by a tenth [1/s].
   static constexpr double kMostPole = 1.0;
 
-  /// Takes some 0.1 ms.
-  explicit BrakingStability(const VehicleParams& car) noexcept;
+  /// `most_pole`: that is left to the controller [1/s]. Takes some 0.1 ms.
+  explicit BrakingStability(const VehicleParams& car, double most_pole = kMostPole) noexcept;
 
-  /// Largest braking force over mass [m/s²] that leaves the car at speed v [m/s] no pole above kMostPole.
+  /// Largest braking force over mass [m/s²] that leaves the car at speed v [m/s] no pole above that.
   /// `use` is the share of its grip that it uses sideways; more than 1 counts as 1. From a table, in 10 ns.
   /// Infinite where the tyres do not share force between the directions.
   [[nodiscard]] double most_braking(double v, double use) const noexcept;
+  /// The same with continuous slopes, for searches: equal at the table's values, elsewhere through them by
+  /// cubics. T is double, or holds derivatives. Pre: the tyres share force.
+  template <class T>
+  [[nodiscard]] T smooth_most_braking(const T& v, const T& use) const noexcept {
+    const auto [i, up] = cell<kSpeeds>(T((v - kLeastSpeed) * (1.0 / kSpeedStep)));
+    const auto [k, on] = cell<kUses>(T(use * (kUses - 1.0)));
+    T at[4];
+    for (int q = -1; q <= 2; ++q) {
+      T along[4];
+      for (int p = -1; p <= 2; ++p) along[p + 1] = T(value(i + q, k + p));
+      at[q + 1] = cubic(along, on);
+    }
+    return cubic(at, up);
+  }
+  /// The share of its grip that the car uses sideways with a lateral acceleration by tyres [m/s²] at speed v.
+  template <class T>
+  [[nodiscard]] T use(const T& lateral, const T& v) const noexcept {
+    const T load = car_.load_constant + (car_.load_per_speed + car_.load_quadratic * v) * v;
+    return lateral / (friction_ * load);
+  }
   /// The right-most real part of the poles of yaw and sideslip [1/s] at speed v > 0 [m/s] and braking force
   /// over mass `force` >= 0 [m/s²], with the slopes that the tyres' curves have there;
   /// infinite where the rear axle slides.
@@ -39,6 +63,32 @@ class BrakingStability {
   };
   /// Change of the axle's lateral force by its slip angle over the car's load [1/rad].
   [[nodiscard]] double slope(const Axle& axle, double use, double force_over_load) const noexcept;
+
+  /// Where in a table of kSize values: the first of a cell, and the share of the second.
+  template <int kSize, class T>
+  [[nodiscard]] static std::pair<int, T> cell(const T& position) noexcept {
+    if (!(value_of(position) > 0.0)) return {0, T(0.0)};
+    if (!(value_of(position) < kSize - 1.0)) return {kSize - 2, T(1.0)};
+    const int i = std::min(static_cast<int>(value_of(position)), kSize - 2);
+    return {i, position - static_cast<double>(i)};
+  }
+  /// Of the table, continued straight by one row and column.
+  [[nodiscard]] double value(int i, int k) const noexcept {
+    if (i < 0) return 2.0 * value(0, k) - value(1, k);
+    if (i >= kSpeeds) return 2.0 * value(kSpeeds - 1, k) - value(kSpeeds - 2, k);
+    const auto& row = most_[static_cast<std::size_t>(i)];
+    if (k < 0) return 2.0 * row[0] - row[1];
+    if (k >= kUses) return 2.0 * row[kUses - 1] - row[kUses - 2];
+    return row[static_cast<std::size_t>(k)];
+  }
+  /// From at[1] to at[2], with the slopes of their neighbours (Catmull, Rom 1974).
+  template <class T>
+  [[nodiscard]] static T cubic(const T* at, const T& share) noexcept {
+    const T out = 0.5 * (at[2] - at[0]);
+    const T in = 0.5 * (at[3] - at[1]);
+    const T rise = at[2] - at[1];
+    return at[1] + share * (out + share * ((3.0 * rise - 2.0 * out - in) + share * (out + in - 2.0 * rise)));
+  }
 
   static constexpr int kSpeeds = 12;
   static constexpr int kUses = 9;

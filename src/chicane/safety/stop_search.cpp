@@ -23,15 +23,19 @@ constexpr double kJoining = 0.5;      // [s] in which a guess joins the line
 constexpr double kMostSlip = 0.12;    // [rad] of a guess
 constexpr int kLeastStages = 8;
 
+/// What a search begins with: the last stop, or the line and a braking that is aimed at.
+enum class Begin : signed char { kLast, kLine, kLineCarefully };
+
 }  // namespace
 
 StopSearch::StopSearch(const model::VehicleParams& vehicle)
-    : model_{vehicle}, solver_{controller::make_tracking_solver(kMostTurns)} {
+    : model_{vehicle}, stability_{vehicle}, solver_{controller::make_tracking_solver(kMostTurns)} {
   set_vehicle(vehicle);
 }
 
 void StopSearch::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   model_.set_vehicle(vehicle);
+  if (!(vehicle == stability_.vehicle())) stability_ = model::BrakingStability(vehicle);
   problem_.others = {kStage, model_.lags(kStage)};
   problem_.first = problem_.others;
   problem_.weight = {.lateral = 1.0,
@@ -140,7 +144,7 @@ void StopSearch::guess_from_line(const road::KnownRoad& road, const StopStart& s
   }
 }
 
-/// The deceleration that is aimed at: what the bend leaves of the braking.
+/// The deceleration that is aimed at: what the bend leaves of the braking, and a car that feedback can catch.
 double StopSearch::aimed(const road::KnownRoad& road, double s0, const Problem::State& x) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double v = std::max(x[Problem::kVx], 0.0);
@@ -150,7 +154,8 @@ double StopSearch::aimed(const road::KnownRoad& road, double s0, const Problem::
       (1.0 - car.steer_helper) * v * v * curvature / (car.cornering_friction() * model_.load(v));
   const double left =
       car.friction_coupling > 0.0 ? std::sqrt(std::max(1.0 - use * use, kLeastShare * kLeastShare)) : 1.0;
-  return kBraking * useful * left;
+  const double most = kBraking * useful * left;
+  return is_careful_ ? std::min(most, stability_.most_braking(v, std::fabs(use))) : most;
 }
 
 /// Until the car is slow.
@@ -172,14 +177,16 @@ StopCheck StopSearch::plan(const road::KnownRoad& road, const StopStart& start, 
   StopCheck check{.least_edge = kNone};
   if (!(start.body.vx > 2.0 * kSlow)) return check;
   problem_.model = &model_;  // here, so that a copy asks its own
-  problem_.horizon = now_.horizon = stages(road, start);
-  now_.x[0] = {0.0,           start.d,      start.e,          start.body.vx,
-               start.body.vy, start.body.r, start.body.steer, start.body.acceleration};
   const double age = start.time - time_;
   const bool can_go_on = has_last_ && age >= 0.0 && age < kMostAge;
   has_last_ = false;
-  for (const bool goes_on : {true, false}) {
+  for (const Begin begin : {Begin::kLast, Begin::kLine, Begin::kLineCarefully}) {
+    const bool goes_on = begin == Begin::kLast;
     if (goes_on && !can_go_on) continue;
+    if (!goes_on) is_careful_ = begin == Begin::kLineCarefully;
+    problem_.horizon = now_.horizon = stages(road, start);
+    now_.x[0] = {0.0,           start.d,      start.e,          start.body.vx,
+                 start.body.vy, start.body.r, start.body.steer, start.body.acceleration};
     if (goes_on) {
       guess_from_last(road, start);
     } else {

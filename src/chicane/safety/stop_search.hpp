@@ -6,6 +6,7 @@
 #include "chicane/base/owned.hpp"
 #include "chicane/controller/tracking_problem.hpp"
 #include "chicane/controller/tracking_solver.hpp"
+#include "chicane/model/braking_stability.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/road/known_road.hpp"
 #include "chicane/safety/stop_planner.hpp"
@@ -41,12 +42,14 @@ class StopSearch {
   void ask_road(const road::KnownRoad& road, double s0, int k) noexcept;
 
   model::PredictionModel model_;
+  model::BrakingStability stability_;
   Problem problem_;
   Owned<controller::TrackingSolver> solver_;
   controller::TrackingTrajectory now_, last_;
   double s_ = 0.0;     ///< where last_ begins [m]
   double time_ = 0.0;  ///< and when [s]
   bool has_last_ = false;
+  bool is_careful_ = false;  ///< braking that leaves a pole that feedback can catch is aimed at, and no more
 };
 
 }  // namespace chicane::safety

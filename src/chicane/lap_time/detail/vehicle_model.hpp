@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "chicane/lap_time/detail/plan_model.hpp"
+#include "chicane/model/braking_stability.hpp"
 #include "chicane/model/prediction.hpp"
 
 namespace chicane::lap_time {
@@ -15,12 +16,14 @@ struct VehicleModel {
   static constexpr int kVariables = 9;
   static constexpr int kStates = 7;
   static constexpr int kEquations = 0;
-  static constexpr int kInequalities = 17;
+  static constexpr int kInequalities = 18;
   static constexpr std::array<double, kVariables> scale() {
     return {2.0, 0.2, 20.0, 2.0, 1.0, 0.1, 5.0, 1.0, 50.0};
   }
 
   model::PredictionModel model{model::VehicleParams{}};
+  model::BrakingStability stability{model::VehicleParams{}};  ///< with all of the grip
+  bool is_steered_slowly = false;                             ///< then the plan keeps to it
   const RoadNodes* road = nullptr;
   double margin = 0.0;         ///< kept from the edges [m]
   double slip_share = 1.0;     ///< most slip of an axle over that of its peak
@@ -76,10 +79,21 @@ struct VehicleModel {
     *out++ = slip * slip - change.square_rear;
     *out++ = kMostAlong - change.along_front;
     *out++ = kMostAlong - change.along_rear;
+    *out++ = stable_braking(T(net + drag(vx)), vx, z[kYawRate]);
     *out++ = 0.1 * (vx - kLeastSpeed);
     *out++ = 0.1 * (speed_limit - vx);
   }
 
+  /// Not negative where the steering can still catch a car that brakes with this force over mass.
+  template <class T>
+  [[nodiscard]] T stable_braking(const T& force, const T& vx, const T& yaw_rate) const {
+    if (!is_steered_slowly) return T(1.0);
+    const T lateral = (1.0 - model.vehicle().steer_helper) * vx * yaw_rate;
+    const T use = stability.use(T(sqrt(lateral * lateral + kLeastLateral * kLeastLateral)), vx);
+    return 0.1 * (force + stability.smooth_most_braking(vx, use));
+  }
+
+  static constexpr double kLeastLateral = 0.1;    ///< [m/s²]
   static constexpr double kMostSteerRate = 10.0;  ///< [rad/s]; stands for at once
   static constexpr double kMostPower = 1e4;       ///< [W/kg]; stands for none
   static constexpr double kMostAlong = 0.95;      ///< of a tyre's force: the rest keeps the car on its course
