@@ -83,7 +83,7 @@ TEST(FaultCampaign, EndsEarlyWithWhatItHas) {
 /// that it must (docs/safety.md).
 TEST(FaultCampaign, ASilenceMayLastAsLongAsTheGuardIsTold) {
   const auto least_edges = [](const char* track, double silence, const char* blind_time,
-                              const std::vector<double>& onsets) {
+                              const std::vector<double>& onsets, const char* fault = "link_lost") {
     const auto scenario = protocol::compose(
         {.scenario_file = {},
          .settings = {{"track", track}, {"car", "road-car"}, {"guard.blind_time_s", blind_time}}});
@@ -92,7 +92,7 @@ TEST(FaultCampaign, ASilenceMayLastAsLongAsTheGuardIsTold) {
     EXPECT_TRUE(lap);
     std::vector<FaultTrial> trials;
     for (const double onset : onsets)
-      trials.push_back({.fault = *sim::fault_named("link_lost"), .onset = onset, .duration = silence});
+      trials.push_back({.fault = *sim::fault_named(fault), .onset = onset, .duration = silence});
     const auto outcomes = drive_trials(*scenario, *lap, trials, 2);
     EXPECT_TRUE(outcomes);
     std::vector<double> edges;
@@ -102,6 +102,9 @@ TEST(FaultCampaign, ASilenceMayLastAsLongAsTheGuardIsTold) {
   };
   EXPECT_THAT(least_edges("speedway", 2.0, "2", {16.0, 48.0}), testing::Each(testing::Gt(0.5)));
   EXPECT_THAT(least_edges("lakeside", kLasting, "30", {4.0, 12.0}), testing::Each(testing::Gt(0.0)));
+  // Where a car that brakes into a bend was lost by up to 60 m.
+  EXPECT_THAT(least_edges("speedway", kLasting, "30", {6.0, 27.0, 48.0, 69.0}, "dead_controller"),
+              testing::Each(testing::Gt(0.0)));
 }
 
 /// What the guard is for: without it the same trials leave the road.

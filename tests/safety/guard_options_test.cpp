@@ -10,7 +10,7 @@ TEST(GuardOptions, AreOnUnlessSaidOtherwise) {
   const GuardOptions options;
   EXPECT_EQ(options.mode, GuardMode::kOn);
   EXPECT_EQ(options.receiver, Receiver::kStopPlan);
-  EXPECT_EQ(options.blind_time, 2.0);
+  EXPECT_EQ(options.blind_time, 30.0);
 }
 
 TEST(GuardOptions, HaveTheirNamesInTheOrderOfTheEnumerations) {

@@ -108,6 +108,46 @@ TEST(GuardOnARoad, RefusesAWayBackThatIsFast) {
   EXPECT_EQ(rung_at(2.0), Rung::kReturnToRoad);
 }
 
+/// Who sees nothing has nothing to plan anew by: the stop of the last cycle that saw is driven to its end, as
+/// a receiver would that is left alone.
+TEST(GuardOnARoad, DrivesTheStopAtHandWhereNothingIsMeasured) {
+  path::RoadData straight;
+  straight.length = 800.0;
+  for (int i = 0; i <= 200; ++i)
+    straight.points.push_back({.s = 4.0 * i, .position = {4.0 * i, 0.0}, .left = 5.0, .right = 5.0});
+  Scripted scripted;
+  Guard guard{std::make_unique<test::Borrowed>(scripted), model::road_car_params(), {}, &straight};
+  controller::StepResult result;
+  double time = 1.0;
+  for (; time < 1.5; time += 0.04) {
+    model::Measurement now = at(time);
+    now.y = 1.0;
+    guard.step(now, Deadline::never(), {.interval = 0.04}, result);
+  }
+  int stopping = 0;
+  StopPlan before = guard.stop();
+  for (; time < 3.5; time += 0.04) {
+    model::Measurement now = at(time);
+    now.x = now.y = now.psi = now.speed = kNaN;
+    guard.step(now, Deadline::never(), {.interval = 0.04}, result);
+    const StopPlan& stop = guard.stop();
+    ASSERT_GT(stop.size, 1);
+    if (result.report.rung == Rung::kGuardStop && ++stopping > 1) {
+      const StopPoint& end = stop.points[static_cast<std::size_t>(stop.size - 1)];
+      const StopPoint& end_before = before.points[static_cast<std::size_t>(before.size - 1)];
+      EXPECT_EQ(end.time, end_before.time) << "it ends when it would have ended";
+      EXPECT_NEAR(stop.points[0].time, time + 0.1, 0.05);
+      int i = 0;
+      while (i + 1 < before.size && before.points[static_cast<std::size_t>(i + 1)].time <= time + 0.1) ++i;
+      EXPECT_EQ(stop.points[0].command.steer, before.points[static_cast<std::size_t>(i)].command.steer);
+      EXPECT_EQ(stop.points[0].command.throttle, before.points[static_cast<std::size_t>(i)].command.throttle);
+      EXPECT_NEAR(end.distance, end_before.distance - 0.04 * before.points[0].speed, 1.0);
+    }
+    before = stop;
+  }
+  EXPECT_GT(stopping, 20);
+}
+
 TEST_F(GuardTest, BelievesNoRungThatAControllerClaims) {
   scripted_.result.report.rung = Rung::kBrake;
   scripted_.result.report.gated = true;

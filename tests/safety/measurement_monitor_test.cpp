@@ -118,6 +118,24 @@ TEST(MeasurementMonitor, DisbelievesAJumpHoweverLongItLasts) {
   }
 }
 
+/// What is expected drifts while the place is not believed, and may come upon a place that is still wrong.
+TEST(MeasurementMonitor, BelievesAPlaceAgainOnlyWhenItJumpsBack) {
+  for (const double side : {5.0, -5.0}) {
+    MeasurementMonitor monitor;
+    for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
+    for (int i = 10; i < 150; ++i) {
+      model::Measurement jumped = at(i);
+      jumped.y += side;
+      model::State drifted = expected(i);
+      drifted.y += side * (i - 10) / 140.0;
+      EXPECT_TRUE(look(monitor, jumped, drifted).position_jump) << i;
+    }
+    model::State drifted = expected(150);
+    drifted.y += 0.4 * side;
+    EXPECT_FALSE(look(monitor, at(150), drifted).position_jump) << "it jumps back";
+  }
+}
+
 TEST(MeasurementMonitor, KeepsWhatIsPlausibleBesideAJump) {
   MeasurementMonitor monitor;
   for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));

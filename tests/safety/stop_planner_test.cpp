@@ -160,11 +160,14 @@ TEST(StopPlanner, KnowsHowFarABlindDriverStrays) {
       start.body.r = side * 24.0 / 120.0;
       const StopCheck check = planner.plan(road, start, {.share = 0.8}, stop);
       ASSERT_TRUE(check.stands);
-      double before = planner.played_edge(road, start, stop.stop, 0.25);
+      double before = planner.played_edge(road, start, stop.stop, 0.25).edge_for;
       EXPECT_LT(before, check.least_edge + 0.5);
       EXPECT_GT(before, check.least_edge - 0.5);
       for (const double time : {0.5, 1.0, 2.0, 60.0}) {
-        const double edge = planner.played_edge(road, start, stop.stop, time);
+        const BlindCheck blind = planner.played_edge(road, start, stop.stop, time);
+        const double edge = blind.edge_for;
+        EXPECT_LE(blind.edge, edge);
+        EXPECT_EQ(blind.speed, 0.0);
         EXPECT_LE(edge, before) << car.name << time;
         before = edge;
       }
@@ -172,6 +175,48 @@ TEST(StopPlanner, KnowsHowFarABlindDriverStrays) {
       EXPECT_GT(before, check.least_edge - 3.0) << car.name;
     }
   }
+}
+
+/// A blind driver who leaves the road does so at a speed, and later than in the time asked for.
+TEST(StopPlanner, KnowsHowFastABlindDriverLeavesTheRoad) {
+  const road::KnownRoad road = circle(120.0);
+  const StopPlanner planner(kCars[1]);
+  StopCourse stop;
+  const StopStart start = start_at(20.0, 24.0);
+  static_cast<void>(planner.plan(road, start, {.share = 0.5}, stop));
+  for (int i = 0; i < stop.stop.size; ++i) stop.stop.points[static_cast<std::size_t>(i)].command.steer = 0.0;
+  const BlindCheck blind = planner.played_edge(road, start, stop.stop, 0.5);
+  EXPECT_GT(blind.edge_for, 0.0);
+  EXPECT_LT(blind.edge, 0.0);
+  EXPECT_GT(blind.speed, 8.0);
+  EXPECT_LT(blind.speed, 24.0);
+  EXPECT_LT(planner.played_edge(road, start, stop.stop, 10.0).edge_for, 0.0);
+}
+
+/// On a straight before a bend that it is too fast for, a car brakes harder than would leave it stable
+/// without a driver, and gently again where the road ahead does not ask for it.
+TEST(StopPlanner, BrakesForTheBendsAhead) {
+  const model::VehicleParams car = kCars[1];
+  const StopPlanner planner(car);
+  const auto braking = [&](double radius, double foreseen) {
+    path::RoadData data;
+    constexpr double kStraight = 120.0;
+    data.length = kStraight + 0.5 * kPi * radius;
+    for (double s = 0.0; s <= data.length; s += 2.0) {
+      const double angle = std::max(s - kStraight, 0.0) / radius;
+      data.points.push_back(
+          {.s = s,
+           .position = {std::min(s, kStraight) + radius * std::sin(angle), radius * (1.0 - std::cos(angle))},
+           .heading = angle,
+           .curvature = s > kStraight ? 1.0 / radius : 0.0,
+           .left = 5.0,
+           .right = 5.0});
+    }
+    const road::KnownRoad road(data, car);
+    return -planner.slowing(road, start_at(20.0, 45.0), {.stability = 1.6, .foreseen = foreseen});
+  };
+  EXPECT_GT(braking(80.0, 0.7), 1.2 * braking(80.0, 1.6));
+  EXPECT_EQ(braking(1e4, 0.7), braking(1e4, 1.6));
 }
 
 /// What is stable on a straight may not be in a bend, where the rear axle has to hold the car: there the stop
@@ -237,7 +282,7 @@ TEST(StopPlanner, KnowsThatADriverWhoSeesStraysLess) {
     const StopCheck check = planner.plan(road, start, {.share = 0.8}, stop);
     ASSERT_TRUE(check.stands);
     const double seen = planner.followed_edge(road, start, stop);
-    EXPECT_GT(seen, planner.played_edge(road, start, stop.stop, 60.0)) << car.name;
+    EXPECT_GT(seen, planner.played_edge(road, start, stop.stop, 60.0).edge_for) << car.name;
     EXPECT_GT(seen, check.least_edge - 1.0) << car.name;
     EXPECT_LT(seen, check.least_edge + 0.5) << car.name;
   }

@@ -58,6 +58,16 @@ TEST(StopPlayer, DrivesTheStopByTheDistanceWhenNothingComes) {
   }
 }
 
+/// As planned, the wheel is held from one place to the next: a receiver that turned it earlier would leave
+/// the planned course by half a degree.
+TEST(StopPlayer, HoldsTheWheelFromOnePlaceToTheNext) {
+  const StopPlan stop = sample_stop(0.0);
+  const auto steer = [&](double distance) { return played(stop, distance, 15.0, car()).steer; };
+  const StopPoint& fifth = stop.points[5];
+  EXPECT_EQ(steer(fifth.distance), fifth.command.steer);
+  EXPECT_EQ(steer(stop.points[6].distance - 0.01), fifth.command.steer);
+}
+
 TEST(StopPlayer, KeepsTheStopsThatWaitForTheirCommands) {
   StopPlayer player(car(), kCycle, Receiver::kStopPlan);
   for (int i = 0; i < 5; ++i) player.arrived(1.0 + kCycle * i, sample_stop(1.1 + kCycle * i));  // in flight

@@ -108,7 +108,7 @@ TEST(StopSearch, TellsWhatAReceiverDrives) {
     EXPECT_LE(std::fabs(stop.stop.points[i].command.steer), kCar.steer_limit);
     EXPECT_LE(stop.stop.points[i].command.throttle, 0.0);
   }
-  EXPECT_NEAR(planner.played_edge(road, start, stop.stop, 0.5), planner.edge(road, start), 0.3);
+  EXPECT_NEAR(planner.played_edge(road, start, stop.stop, 0.5).edge_for, planner.edge(road, start), 0.3);
 }
 
 TEST(StopSearch, FindsNothingForACarThatIsSlowAndForgets) {

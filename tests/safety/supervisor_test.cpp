@@ -54,15 +54,28 @@ TEST(Supervisor, NamesTheWorstCondition) {
   EXPECT_EQ(after(supervisor, {.unmeasured = true, .position_jump = true}, time, 1.0).reason, kPositionJump);
 }
 
-TEST(Supervisor, BelievesASensorAnewOnceWhenTheCarHasStood) {
+TEST(Supervisor, BelievesASpeedAnewOnceWhenTheCarHasStood) {
   Supervisor supervisor;
   double time = 0.0;
-  const Findings jump{.position_jump = true};
-  EXPECT_FALSE(after(supervisor, jump, time, 20.0, 5.0).may_begin_anew) << "it moves";
-  EXPECT_TRUE(after(supervisor, jump, time, Supervisor::kStanding + 0.2, 0.0).may_begin_anew);
-  EXPECT_FALSE(after(supervisor, jump, time, 20.0, 0.0).may_begin_anew) << "not twice within a minute";
+  const Findings wrong{.speed_mismatch = true};
+  EXPECT_FALSE(after(supervisor, wrong, time, 20.0, 5.0).may_begin_anew) << "it moves";
+  EXPECT_TRUE(after(supervisor, wrong, time, Supervisor::kStanding + 0.2, 0.0).may_begin_anew);
+  EXPECT_FALSE(after(supervisor, wrong, time, 20.0, 0.0).may_begin_anew) << "not twice within a minute";
   supervisor.rearm();
-  EXPECT_TRUE(after(supervisor, jump, time, Supervisor::kStanding + 0.2, 0.0).may_begin_anew) << "a person";
+  EXPECT_TRUE(after(supervisor, wrong, time, Supervisor::kStanding + 0.2, 0.0).may_begin_anew) << "a person";
+}
+
+/// Believed after three seconds, a place that had jumped by 5 m led a car off the road that it stood on.
+TEST(Supervisor, BelievesAPlaceThatJumpedOnlyWhenAPersonHasTakenOver) {
+  for (const Findings& jump : {Findings{.heading_jump = true}, Findings{.position_jump = true}}) {
+    Supervisor supervisor;
+    double time = 0.0;
+    EXPECT_FALSE(after(supervisor, jump, time, 200.0, 0.0).may_begin_anew);
+    supervisor.rearm();
+    EXPECT_FALSE(after(supervisor, jump, time, 5.0, 5.0).may_begin_anew) << "it moves";
+    EXPECT_TRUE(after(supervisor, jump, time, Supervisor::kStanding + 0.2, 0.0).may_begin_anew);
+    EXPECT_FALSE(after(supervisor, jump, time, 200.0, 0.0).may_begin_anew);
+  }
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ constexpr double kMostUse = 0.75;                // of the tyres sideways, after
 constexpr double kMostUseEver = 1.2;             // and those that are searched for
 constexpr double kDrivesOn[] = {0.5, 1.0, 1.5};  // [s] as the controller plans, before a stop
 constexpr double kRecovery = 0.5;                // [s] after a silence, until the car is in hand again
-constexpr double kUnfit = 100.0;                 // [m] worse than any stop that fits
+constexpr double kDrivenBlind = 2.0;             // [s] of a silence while the car is being stopped
+constexpr double kUnfit = 200.0;                 // worse than any stop that fits, in m and m/s
 constexpr double kGuessedWidth = 1.0;    // [m] that the assumed width may be too small by, for a slow car
 constexpr double kLeastEdge = 0.1;       // [m] that a car on the road keeps in any case
 constexpr double kNoFloor = -1e9;        // [m]
@@ -44,10 +45,10 @@ constexpr double kGentleStop = 0.8;      // share of the useful braking; all of 
 constexpr double kBarelyStable = 1.1;    // where that is too little, too
 constexpr double kHeldByHand = 0.7;      // of a car that is steered by what it does
 // Of a car that is too fast for a silence.
-constexpr Braking kHeldBack{kGentleStop, kBlindStability};
+constexpr Braking kHeldBack{kGentleStop, kBlindStability, kHeldByHand};
 // What is tried in turn.
-constexpr Braking kStops[] = {{kGentleStop, kBlindStability},
-                              {1.0, kBlindStability},
+constexpr Braking kStops[] = {{kGentleStop, kBlindStability, kHeldByHand},
+                              {1.0, kBlindStability, kHeldByHand},
                               {1.0, kBarelyStable},
                               {1.0, kHeldByHand},
                               {1.0, 0.0}};
@@ -95,7 +96,9 @@ Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::Ve
       model_{vehicle},
       stop_{std::make_unique<StopCourse>()},
       tried_{std::make_unique<StopCourse>()},
-      last_{std::make_unique<StopCourse>()} {}
+      last_{std::make_unique<StopCourse>()} {
+  estimator_.estimate_disturbance(planner_.has_wheels());
+}
 
 Guard::Guard(const Guard& other) = default;
 
@@ -277,14 +280,38 @@ void Guard::fall_back(const model::Measurement& seen, controller::StepResult& re
 
 /// The stop in the place of the controller's answer.
 void Guard::drive_stop(const StopStart& start, controller::StepResult& result) noexcept {
-  // Without measurements, a short stop is better.
   const bool is_blind = monitor_.findings().unmeasured || monitor_.findings().frozen;
-  static_cast<void>(plan_stop(start, std::numeric_limits<double>::infinity(),
-                              {.is_driven = true, .is_hard = is_blind}, result.report));
+  // Without measurements there is nothing to plan anew by that counts on better than the stop does.
+  if (!is_blind || !planner_.has_wheels() || !keep_stop(start.time, result.report))
+    static_cast<void>(plan_stop(start, std::numeric_limits<double>::infinity(),
+                                {.is_driven = true, .is_hard = is_blind}, result.report));
   result.answer = Answer::kNone;
   result.command = stop_->stop.points[0].command;
   result.report.rung = Rung::kGuardStop;
   show_stop(start, result.plan);
+}
+
+/// The stop of the cycle before goes on from `time` [s] on; false where there is none.
+bool Guard::keep_stop(double time, controller::StepReport& report) noexcept {
+  const auto size = static_cast<std::size_t>(last_->stop.size);
+  std::size_t i = 0;
+  while (i + 1 < size && last_->stop.points[i + 1].time <= time) ++i;
+  if (i + 1 >= size) return false;
+  const StopPoint& here = last_->stop.points[i];
+  const StopPoint& next = last_->stop.points[i + 1];
+  const double share = std::max(time - here.time, 0.0) / (next.time - here.time);
+  const double driven = here.distance + share * (next.distance - here.distance);
+  const double speed = here.speed + share * (next.speed - here.speed);
+  stop_->stop.size = 0;
+  StopStart place = last_->places[i];
+  place.time = std::max(time, here.time);
+  stop_->add(place, 0.0, speed, here.command);
+  for (++i; i < size; ++i) {
+    const StopPoint& point = last_->stop.points[i];
+    stop_->add(last_->places[i], point.distance - driven, point.speed, point.command);
+  }
+  report.stop_distance = last_->stop.points[size - 1].distance - driven;
+  return true;
 }
 
 /// The stop as a plan, for viewers.
@@ -339,7 +366,9 @@ std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
                    .s = place.s,
                    .d = place.d,
                    .e = e,
-                   .body = {car.vx, car.vy, car.r, car.steer, at.acceleration}};
+                   .body = {car.vx, car.vy, car.r, car.steer, at.acceleration},
+                   .load_along = at.acceleration,
+                   .load_across = car.vx * car.r};
 }
 
 /// How the car can still be stopped on the road after `command` has acted for a cycle.
@@ -392,13 +421,17 @@ Guard::Fit Guard::plan_stop(const StopStart& from, double edge_before, const Sto
     const double edge = std::min(check.least_edge, edge_before);
     double worth = edge - kUnfit;
     Fit fit = Fit::kNone;
+    bool lasts = false;
     if (check.stands && edge >= options_.margin) {
-      worth = played_edge(from);
-      if (worth >= 0.0) {
+      const BlindCheck blind = played_edge(from, wish.is_driven ? kDrivenBlind : options_.blind_time);
+      lasts = blind.edge >= 0.0;
+      if (blind.edge_for >= 0.0) {
         fit = Fit::kBlind;
+        worth = lasts ? kUnfit + blind.edge : kUnfit - blind.speed;
       } else if (!wish.is_hard) {
-        worth = std::min(planner_.followed_edge(road_, from, *tried_), 0.0);
-        if (worth >= 0.0 || plans) fit = Fit::kSeen;
+        const double followed = std::min(planner_.followed_edge(road_, from, *tried_), 0.0);
+        if (followed >= 0.0 || plans) fit = Fit::kSeen;
+        worth = followed - blind.speed;
       }
     }
     if (worth >= best) {
@@ -408,7 +441,7 @@ Guard::Fit Guard::plan_stop(const StopStart& from, double edge_before, const Sto
       report.stop_edge = edge;
       report.stop_distance = check.distance;
     }
-    return is_known && fit == Fit::kBlind;
+    return is_known && fit == Fit::kBlind && (lasts || wish.is_driven);
   };
   const auto search = [&] {
     const StopCheck found = search_->plan(road_, from, options_.margin, planner_, *tried_);
@@ -421,6 +454,7 @@ Guard::Fit Guard::plan_stop(const StopStart& from, double edge_before, const Sto
   if (wish.is_driven && !wish.is_hard && follow()) return best_fit;
   for (const Braking& braking : kStops) {
     if (wish.is_hard && braking.share < 1.0) continue;
+    if (best_fit == Fit::kBlind && braking.stability < kBarelyStable) break;
     if (suffices(planner_.plan(road_, from, braking, *tried_), !wish.slides)) return best_fit;
   }
   if (wish.is_driven && wish.is_hard && follow()) return best_fit;
@@ -433,10 +467,11 @@ Guard::Fit Guard::plan_stop(const StopStart& from, double edge_before, const Sto
   return best_fit;
 }
 
-/// How near to the edge [m] the receiver comes with `tried_` in a silence of the length that is planned for.
-double Guard::played_edge(const StopStart& from) const noexcept {
-  if (!(options_.blind_time > 0.0)) return 0.0;
-  return planner_.played_edge(road_, from, tried_->stop, options_.blind_time + kRecovery);
+/// How near to the edge [m] the receiver comes with `tried_` in a silence of `time` [s], or of the length
+/// that is planned for where that is shorter.
+BlindCheck Guard::played_edge(const StopStart& from, double time) const noexcept {
+  if (!(options_.blind_time > 0.0)) return {};
+  return planner_.played_edge(road_, from, tried_->stop, std::min(time, options_.blind_time) + kRecovery);
 }
 
 }  // namespace chicane::safety

@@ -89,6 +89,7 @@ class Guard {
   void accept(const model::Measurement& seen, controller::StepResult& result) noexcept;
   void fall_back(const model::Measurement& seen, controller::StepResult& result) noexcept;
   void drive_stop(const StopStart& start, controller::StepResult& result) noexcept;
+  [[nodiscard]] bool keep_stop(double time, controller::StepReport& report) noexcept;
   void show_stop(const StopStart& start, controller::Plan& plan) const noexcept;
   [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
   [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
@@ -111,7 +112,7 @@ class Guard {
   };
   [[nodiscard]] Fit plan_stop(const StopStart& from, double edge_before, const StopWish& wish,
                               controller::StepReport& report) noexcept;
-  [[nodiscard]] double played_edge(const StopStart& from) const noexcept;
+  [[nodiscard]] BlindCheck played_edge(const StopStart& from, double time) const noexcept;
 
   Owned<controller::Controller> controller_;
   GuardOptions options_;

@@ -35,7 +35,7 @@ struct GuardOptions {
   Receiver receiver = Receiver::kStopPlan;
   double margin = 0.2;  ///< that the stop at hand keeps from the edge [m]
   /// How long a receiver may have to drive the stop by itself without leaving the road; 0: not checked [s]
-  double blind_time = 2.0;
+  double blind_time = 30.0;
 
   friend bool operator==(const GuardOptions&, const GuardOptions&) = default;
 };

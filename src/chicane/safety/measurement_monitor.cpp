@@ -17,6 +17,7 @@ constexpr double kMismatch = 2.0;       // [m] between displacement and integrat
 constexpr double kMismatchShare = 0.3;  // and of the larger one
 constexpr double kBlindSpeedDrift =
     6.0;                             // [m/s²] that the expected speed may be wrong by, without measurements
+constexpr double kJumpBack = 1.0;    // [m] otherwise than the car moved, between two measurements
 constexpr double kResetSpeed = 1.0;  // [m/s] a car that was put elsewhere stands
 constexpr double kResetTime = 0.3;   // [s] for so long
 constexpr double kResetPlace = 0.5;  // [m] within this
@@ -52,6 +53,8 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
                              kHeadingJump + kYawAcceleration * step * step + 0.1 * other_drift_;
     findings_.position_jump =
         hypot(now.x - expected->x, now.y - expected->y) > kJump + kAcceleration * step * step + place_drift_;
+    // A place that jumped is right again when it jumps back, not when what is expected has drifted up to it.
+    findings_.position_jump |= before.position_jump && !jumps(now, elapsed);
     look_for_reset(now);
   }
   // While something is missing, what is expected drifts away from the car.
@@ -89,6 +92,15 @@ bool MeasurementMonitor::is_frozen(const model::Measurement& now, double elapsed
                        now.psi == last_.psi && now.speed == last_.speed;
   if (!is_same) same_since_ = now.time;
   return now.speed * (now.time - same_since_) > kUnmoved;
+}
+
+/// Whether the measured place has moved otherwise than the car did since the last measurement.
+bool MeasurementMonitor::jumps(const model::Measurement& now, double elapsed) const noexcept {
+  if (!has_last_ || !(elapsed < kLongestGap)) return true;
+  const double driven = 0.5 * elapsed * (now.speed + last_.speed);
+  const double x = now.x - last_.x - driven * cos(now.psi);
+  const double y = now.y - last_.y - driven * sin(now.psi);
+  return hypot(x, y) > kJumpBack + kMismatchShare * driven;
 }
 
 /// Equation 8: over the last second, or what there is of it.

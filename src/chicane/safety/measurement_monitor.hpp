@@ -20,8 +20,8 @@ struct Findings {
 
 /// Checks whether measurements are plausible (docs/safety.md, eq. 7 and 8). What is not plausible is handed
 /// on as not measured (NaN), the rest of the measurement stays: a car that knows two of place, yaw and speed
-/// can count on. A finding ends when the sensor agrees again with what is expected; it is never believed
-/// because it lasts. No allocation; one thread.
+/// can count on. A finding ends when the sensor agrees again with what is expected, that of a place when
+/// it jumps back, too; it is never believed because it lasts. No allocation; one thread.
 class MeasurementMonitor {
  public:
   static constexpr double kJump = 3.0;          ///< [m] from where the car is expected
@@ -54,6 +54,7 @@ class MeasurementMonitor {
   static constexpr int kSamples = 16;
   static constexpr double kSampleSpacing = 0.06;  ///< [s]
 
+  [[nodiscard]] bool jumps(const model::Measurement& now, double elapsed) const noexcept;
   [[nodiscard]] bool is_frozen(const model::Measurement& now, double elapsed) noexcept;
   [[nodiscard]] bool contradicts_displacement(const model::Measurement& now, double elapsed) noexcept;
   void look_for_reset(const model::Measurement& now) noexcept;

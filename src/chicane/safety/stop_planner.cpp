@@ -29,49 +29,61 @@ constexpr double kSlipShift = 2e-3;        // [rad] to either side, for slopes o
 constexpr double kStiffnessDoubt = 0.015;  // of the rear axle's
 constexpr double kYawRateDoubt = 0.007;    // [rad/s]
 constexpr double kHeadingDoubt = 0.002;    // [rad]
+constexpr double kDoubtWithWheels = 0.6;   // of these, where the car is simulated with its four wheels
+constexpr double kForeseenUse = 0.55;      // of the grip, in the bends ahead
+constexpr double kStride = 10.0;           // [m] between the places ahead
+constexpr double kHorizon = 200.0;         // [m]
 constexpr double kMostOffset = 20.0;       // [m] beside the line the stop is given up
 
 }  // namespace
 
 void StopPlanner::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   model_.set_vehicle(vehicle);
+  car_.set_vehicle(vehicle);
   friction_ = vehicle.cornering_friction();
   model::VehicleParams other = vehicle;
-  other.cornering_rear = (1.0 - kStiffnessDoubt) * vehicle.cornering_rear;
+  doubt_ = car_.has_wheels() ? kDoubtWithWheels : 1.0;
+  other.cornering_rear = (1.0 - doubt_ * kStiffnessDoubt) * vehicle.cornering_rear;
   softer_.set_vehicle(other);
-  other.cornering_rear = (1.0 + kStiffnessDoubt) * vehicle.cornering_rear;
+  other.cornering_rear = (1.0 + doubt_ * kStiffnessDoubt) * vehicle.cornering_rear;
   stiffer_.set_vehicle(other);
 }
 
 /// The least distance to the edge [m] of the two cars that are a little other than believed, in the first
 /// `time` [s] of what `command_at` says at a place, after `driven` [m] and at `speed` [m/s].
 template <class Law>
-double StopPlanner::doubted_edge(const road::KnownRoad& road, const StopStart& start, double time,
-                                 const Law& command_at) const noexcept {
-  const model::PredictionModel::Lags lags = model_.lags(kStep);
-  double least = std::numeric_limits<double>::infinity();
+BlindCheck StopPlanner::doubted_edge(const road::KnownRoad& road, const StopStart& start, double time,
+                                     const Law& command_at) const noexcept {
+  const double reach = steer_reach(kStep);
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  BlindCheck check{.edge_for = kFar, .edge = kFar};
   for (const double side : {1.0, -1.0}) {
-    const model::PredictionModel& car = side > 0.0 ? softer_ : stiffer_;
+    const StopCar& car = side > 0.0 ? softer_ : stiffer_;
     const double inwards = std::copysign(side, start.body.r);
     StopStart at = start;
-    at.body.r += inwards * kYawRateDoubt;
-    at.e += inwards * kHeadingDoubt;
+    at.body.r += inwards * doubt_ * kYawRateDoubt;
+    at.e += inwards * doubt_ * kHeadingDoubt;
     double driven = 0.0;
     double speed = hypot(at.body.vx, at.body.vy);
-    for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity && at.time < start.time + time; ++i) {
-      if (speed < kStanding || !(std::fabs(at.d) < kMostOffset)) break;
+    for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity && speed >= kStanding; ++i) {
       const double before = speed;
-      move(car, road, at, command_at(i, at, driven, speed), kStep, lags);
+      move(car, road, at, command_at(i, at, driven, speed), kStep, reach);
       speed = hypot(at.body.vx, at.body.vy);
       driven += 0.5 * kStep * (before + speed);
-      least = std::min(least, edge(road, at));
+      const double now = edge(road, at);
+      check.edge = std::min(check.edge, now);
+      if (at.time < start.time + time + 0.5 * kStep) check.edge_for = std::min(check.edge_for, now);
+      if (now < 0.0) {
+        check.speed = std::max(check.speed, speed);
+        break;
+      }
     }
   }
-  return least;
+  return check;
 }
 
-double StopPlanner::played_edge(const road::KnownRoad& road, const StopStart& start, const StopPlan& stop,
-                                double time) const noexcept {
+BlindCheck StopPlanner::played_edge(const road::KnownRoad& road, const StopStart& start, const StopPlan& stop,
+                                    double time) const noexcept {
   return doubted_edge(road, start, time, [&](int, const StopStart&, double driven, double speed) {
     return played(stop, driven, speed, model_.vehicle());
   });
@@ -83,12 +95,15 @@ double StopPlanner::followed_edge(const road::KnownRoad& road, const StopStart& 
   model::Command command;
   const auto last = static_cast<std::size_t>(stop.stop.size - 1);
   constexpr double kForEver = 1e9;
-  return doubted_edge(road, start, kForEver, [&](int i, const StopStart& at, double, double) {
-    if (i == 0) place = 0;
-    if (i % kStepsPerPoint == 0)
-      command = at.s < stop.places[last].s ? along(stop, place, 0.0, at) : law(road, at, {});
-    return command;
-  });
+  return doubted_edge(road, start, kForEver,
+                      [&](int i, const StopStart& at, double, double) {
+                        if (i == 0) place = 0;
+                        if (i % kStepsPerPoint == 0)
+                          command =
+                              at.s < stop.places[last].s ? along(stop, place, 0.0, at) : law(road, at, {});
+                        return command;
+                      })
+      .edge;
 }
 
 double StopPlanner::edge(const road::KnownRoad& road, const StopStart& at) const noexcept {
@@ -197,18 +212,33 @@ double StopPlanner::slowing(const road::KnownRoad& road, const StopStart& at,
   const double sideways = (1.0 - car.steer_helper) * std::max(bend * v * v, std::fabs(at.body.r) * v);
   const double useful = longitudinal_acceleration(car, lowest_throttle(car, v), v);
   const double asked = useful * braking.share;
-  return asked *
-         std::min(braking_share(sideways, -asked, v), stable_share(at.body, -asked, braking.stability));
+  const double held = braking_share(sideways, -asked, v);
+  const double stable = std::min(held, stable_share(at.body, -asked, braking.stability));
+  if (!(braking.foreseen < braking.stability) || stable >= held) return asked * stable;
+  const double wanted = foreseen(road, at, -asked) / -asked;
+  if (wanted <= stable) return asked * stable;
+  return asked * std::clamp(wanted, stable, std::min(held, stable_share(at.body, -asked, braking.foreseen)));
 }
 
-void StopPlanner::move(const model::PredictionModel& model, const road::KnownRoad& road, StopStart& at,
-                       const model::Command& command, double dt,
-                       const model::PredictionModel::Lags& lags) noexcept {
-  const model::VehicleParams& car = model.vehicle();
-  const double reach = car.steer_rate_limit * dt / (1.0 - lags.steer.end);  // the wheel's, behind its lag
-  const double steer = std::clamp(command.steer, at.body.steer - reach, at.body.steer + reach);
-  const double asked = longitudinal_acceleration(car, command.throttle, at.body.vx);
-  model::BodyMotion<double> to = model.advance(at.body, steer, asked, dt, lags);
+/// The deceleration [m/s²], no more than `most`, that brings the car to the bends ahead at a speed at which
+/// they use no more than kForeseenUse of its grip.
+double StopPlanner::foreseen(const road::KnownRoad& road, const StopStart& at, double most) const noexcept {
+  const double v = std::max(at.body.vx, 1.0);
+  const double grip = kForeseenUse * friction_ * model_.load(v) / (1.0 - model_.vehicle().steer_helper);
+  double wanted = 0.0;
+  for (double x = kStride; x < kHorizon && wanted < most; x += kStride) {
+    const double curvature = std::fabs(road.line().demand(at.s + x).curvature);
+    wanted = std::max(wanted, (v * v - grip / std::max(curvature, 1e-6)) / (2.0 * x));
+  }
+  return std::min(wanted, most);
+}
+
+void StopPlanner::move(const StopCar& car, const road::KnownRoad& road, StopStart& at,
+                       const model::Command& command, double dt, double steer_reach) noexcept {
+  const double steer = std::clamp(command.steer, at.body.steer - steer_reach, at.body.steer + steer_reach);
+  const double asked = longitudinal_acceleration(car.vehicle(), command.throttle, at.body.vx);
+  StopMotion moved = car.advance({at.body, at.load_along, at.load_across}, steer, asked, dt);
+  model::BodyMotion<double>& to = moved.body;
   to.vx = std::max(to.vx, 0.0);
   const double vx = 0.5 * (at.body.vx + to.vx);
   const double vy = 0.5 * (at.body.vy + to.vy);
@@ -221,7 +251,14 @@ void StopPlanner::move(const model::PredictionModel& model, const road::KnownRoa
   at.d += dt * (vx * sin(e) + vy * cos(e));
   at.e += turned - curvature * along;
   at.body = to;
+  at.load_along = moved.load_along;
+  at.load_across = moved.load_across;
   at.time += dt;
+}
+
+/// How far the wheel asked for may be from the wheel in a step of dt [s], behind its lag [rad].
+double StopPlanner::steer_reach(double dt) const noexcept {
+  return model_.vehicle().steer_rate_limit * dt / (1.0 - model_.lags(dt).steer.end);
 }
 
 StopStart StopPlanner::advance(const road::KnownRoad& road, const StopStart& from,
@@ -229,10 +266,10 @@ StopStart StopPlanner::advance(const road::KnownRoad& road, const StopStart& fro
                                double& least_edge) const noexcept {
   const int steps = std::max(1, static_cast<int>(std::ceil(time / kStep)));
   const double dt = time / steps;
-  const model::PredictionModel::Lags lags = model_.lags(dt);
+  const double reach = steer_reach(dt);
   StopStart at = from;
   for (int i = 0; i < steps; ++i) {
-    move(model_, road, at, command, dt, lags);
+    move(car_, road, at, command, dt, reach);
     least_edge = std::min(least_edge, edge(road, at));
   }
   return at;
@@ -308,7 +345,7 @@ StopCheck StopPlanner::plan_later(const road::KnownRoad& road, const StopStart& 
 template <class Law>
 StopCheck StopPlanner::drive(const road::KnownRoad& road, const StopStart& start, const Law& command_at,
                              StopCourse& out) const noexcept {
-  const model::PredictionModel::Lags lags = model_.lags(kStep);
+  const double reach = steer_reach(kStep);
   const double end = road.line().is_closed() ? start.s + road.line().length() : road.line().length();
   StopCheck check{.least_edge = edge(road, start)};
   StopStart at = start;
@@ -322,7 +359,7 @@ StopCheck StopPlanner::drive(const road::KnownRoad& road, const StopStart& start
     if (i % kStepsPerPoint == 0 || has_ended) out.add(at, driven, speed, command);
     if (has_ended) break;
     const double before = speed;
-    move(model_, road, at, command, kStep, lags);
+    move(car_, road, at, command, kStep, reach);
     speed = hypot(at.body.vx, at.body.vy);
     driven += 0.5 * kStep * (before + speed);
     check.least_edge = std::min(check.least_edge, edge(road, at));

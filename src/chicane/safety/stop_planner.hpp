@@ -9,6 +9,7 @@
 #include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/road/known_road.hpp"
+#include "chicane/safety/stop_car.hpp"
 #include "chicane/safety/stop_plan.hpp"
 
 namespace chicane::safety {
@@ -20,6 +21,7 @@ struct StopStart {
   double d = 0.0;     ///< beside it, left positive [m]
   double e = 0.0;     ///< yaw minus the line's heading [rad]
   model::BodyMotion<double> body{};
+  double load_along = 0.0, load_across = 0.0;  ///< as in StopMotion [m/s²]
 };
 
 /// How a stop comes out.
@@ -47,19 +49,29 @@ struct StopCourse {
 struct Braking {
   double share = 0.8;      ///< of the useful braking, (0, 1]
   double stability = 1.6;  ///< least static stability that it leaves (PredictionModel::stability)
+  double foreseen = 1e9;   ///< the same where the bends ahead ask for harder braking
+};
+
+/// How a stop comes out that is played blindly by a car that is a little other than believed.
+struct BlindCheck {
+  double edge_for = 0.0;  ///< least distance to the edge in the time asked for [m]
+  double edge = 0.0;      ///< until it stands, or leaves the road later [m]
+  double speed = 0.0;     ///< at which it left the road later; 0: it did not [m/s]
 };
 
 /// Plans the stop along a line: path-following steering and as much braking as the curve leaves, simulated
 /// with the car the controller believes in until it stands (docs/safety.md, eq. 1–5). The plan and the check
-/// come from the same simulation. Bounded time, about 25 µs for a stop from 45 m/s; no allocation; one
+/// come from the same simulation. Bounded time, tens of µs for a stop from 45 m/s; no allocation; one
 /// thread.
 class StopPlanner {
  public:
   explicit StopPlanner(const model::VehicleParams& vehicle) noexcept
-      : model_{vehicle}, softer_{vehicle}, stiffer_{vehicle} {
+      : model_{vehicle}, car_{vehicle}, softer_{vehicle}, stiffer_{vehicle} {
     set_vehicle(vehicle);
   }
   void set_vehicle(const model::VehicleParams& vehicle) noexcept;
+  /// Whether the car is simulated with its four wheels (StopCar), and so closer than an estimate counts on.
+  [[nodiscard]] bool has_wheels() const noexcept { return car_.has_wheels(); }
 
   /// The stop from `start` on, no harder than `braking`. Pre: the road is not
   /// empty, `start` is finite.
@@ -78,8 +90,8 @@ class StopPlanner {
   /// How near to the edge [m] a receiver comes in the first `time` [s] that plays `stop` blindly, the car
   /// being a little other than believed: its rear axle softer while it turns in more than estimated, and
   /// stiffer while it turns in less.
-  [[nodiscard]] double played_edge(const road::KnownRoad& road, const StopStart& start, const StopPlan& stop,
-                                   double time) const noexcept;
+  [[nodiscard]] BlindCheck played_edge(const road::KnownRoad& road, const StopStart& start,
+                                       const StopPlan& stop, double time) const noexcept;
   /// The same of a car that is seen all the time: until it stands, with what brings it back to the stop.
   /// Pre: `stop` begins at `start`.
   [[nodiscard]] double followed_edge(const road::KnownRoad& road, const StopStart& start,
@@ -102,23 +114,26 @@ class StopPlanner {
   [[nodiscard]] double instability(model::BodyMotion<double> m, double deceleration) const noexcept;
   [[nodiscard]] double stable_share(const model::BodyMotion<double>& m, double deceleration,
                                     double stability) const noexcept;
+  [[nodiscard]] double foreseen(const road::KnownRoad& road, const StopStart& at, double most) const noexcept;
   [[nodiscard]] double braking_share(double sideways, double deceleration, double v) const noexcept;
   template <class Law>
-  [[nodiscard]] double doubted_edge(const road::KnownRoad& road, const StopStart& start, double time,
-                                    const Law& command_at) const noexcept;
+  [[nodiscard]] BlindCheck doubted_edge(const road::KnownRoad& road, const StopStart& start, double time,
+                                        const Law& command_at) const noexcept;
   template <class Law>
   [[nodiscard]] StopCheck drive(const road::KnownRoad& road, const StopStart& start, const Law& command_at,
                                 StopCourse& out) const noexcept;
   [[nodiscard]] model::Command along(const StopCourse& before, std::size_t& place, double lap,
                                      const StopStart& at) const noexcept;
   [[nodiscard]] double back_to(double beside, double course, double v) const noexcept;
-  static void move(const model::PredictionModel& model, const road::KnownRoad& road, StopStart& at,
-                   const model::Command& command, double dt,
-                   const model::PredictionModel::Lags& lags) noexcept;
+  static void move(const StopCar& car, const road::KnownRoad& road, StopStart& at,
+                   const model::Command& command, double dt, double steer_reach) noexcept;
+  [[nodiscard]] double steer_reach(double dt) const noexcept;
 
   model::PredictionModel model_;
-  model::PredictionModel softer_, stiffer_;  ///< the car as it may be, too
-  double friction_ = 0.0;                    ///< sideways, of the whole car
+  StopCar car_;               ///< that is stopped
+  StopCar softer_, stiffer_;  ///< and as it may be, too
+  double doubt_ = 1.0;        ///< how much other
+  double friction_ = 0.0;     ///< sideways, of the whole car
 };
 
 }  // namespace chicane::safety

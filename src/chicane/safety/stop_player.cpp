@@ -22,10 +22,9 @@ model::Command played(const StopPlan& stop, double distance, double speed,
   const double share = length > 1e-6 ? std::clamp((distance - here.distance) / length, 0.0, 1.0) : 0.0;
   const bool ends_rolling = i + 1 == stop.size && here.speed >= kStanding;  // where the known road ended
   const double planned = ends_rolling ? 0.0 : here.speed + share * (next.speed - here.speed);
-  const double steer = here.command.steer + share * (next.command.steer - here.command.steer);
   const double wanted =
       longitudinal_acceleration(vehicle, here.command.throttle, speed) + (planned - speed) / kSpeedTime;
-  return {std::clamp(steer, -vehicle.steer_limit, vehicle.steer_limit),
+  return {std::clamp(here.command.steer, -vehicle.steer_limit, vehicle.steer_limit),
           throttle_to_rest(vehicle, wanted, speed)};
 }
 

@@ -12,12 +12,13 @@ namespace chicane::safety {
 ///     not measured     0.12            by itself
 ///     frozen           0               by itself
 ///     speed mismatch   0.1             by itself when the sensor agrees again; else as below
-///     heading jump     0.1             the same
+///     heading jump     0.1             by itself when the sensor agrees again, else by a person
 ///     position jump    0.1             the same
 ///
-/// A sensor that still disagrees when the car has stood for kStanding is believed anew, once in kOnceIn;
-/// after that a person has to: by a reset of the run, or by taking over. Worst condition wins. No allocation;
-/// one thread.
+/// A speed that still disagrees when the car has stood for kStanding is believed anew, once in kOnceIn; after
+/// that, and where the place jumped, a person has to: by a reset of the run, or by taking over. A place that
+/// is believed because it lasts leads a car off the road that it stands on. Worst condition wins. No
+/// allocation; one thread.
 class Supervisor {
  public:
   static constexpr double kTolerated = 0.1;      ///< [s] of a sensor that disagrees
@@ -28,7 +29,10 @@ class Supervisor {
 
   void reset() noexcept { *this = {}; }
   /// A person has taken over: what was latched is forgotten.
-  void rearm() noexcept { rearmed_ = kNever; }
+  void rearm() noexcept {
+    rearmed_ = kNever;
+    has_person_ = true;
+  }
 
   struct Verdict {
     controller::GuardReason reason = controller::GuardReason::kNone;
@@ -53,9 +57,11 @@ class Supervisor {
     const bool is_latched =
         verdict.reason == kSpeedMismatch || verdict.reason == kHeadingJump || verdict.reason == kPositionJump;
     if (!is_latched || !(speed < kStandingSpeed)) stood_ = time;
-    if (is_latched && time - stood_ > kStanding && time - rearmed_ > kOnceIn) {
+    const bool is_due = verdict.reason == kSpeedMismatch ? time - rearmed_ > kOnceIn : has_person_;
+    if (is_latched && is_due && time - stood_ > kStanding) {
       verdict.may_begin_anew = true;
       rearmed_ = time;
+      has_person_ = false;
     }
     return verdict;
   }
@@ -65,6 +71,7 @@ class Supervisor {
   double unmeasured_ = 0.0, frozen_ = 0.0, speed_ = 0.0, heading_ = 0.0, position_ = 0.0;  ///< since [s]
   double stood_ = 0.0;
   double rearmed_ = kNever;
+  bool has_person_ = false;  ///< has taken over since
 };
 
 }  // namespace chicane::safety

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/stop_car.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "chicane/base/math.hpp"
+
+namespace chicane::safety {
+namespace {
+
+constexpr double kLoadLag = 0.06;      // [s] of the loads behind the accelerations: springs and dampers
+constexpr double kLeastLoad = 0.05;    // of a wheel's load at rest
+constexpr double kMostAlong = 0.95;    // of a tyre's peak: anti-lock leaves no more
+constexpr double kLeastSquare = 1e-8;  // of a slip: the curve's secant has a kink at 0
+constexpr double kShortestLag = 1e-4;  // [s]
+
+double left_of(double time_constant, double dt) noexcept {
+  return time_constant > kShortestLag ? exp(-dt / time_constant) : 0.0;
+}
+
+}  // namespace
+
+void StopCar::set_vehicle(const model::VehicleParams& vehicle) noexcept {
+  model_.set_vehicle(vehicle);
+  const model::VehicleParams& p = vehicle;
+  has_wheels_ = p.friction_coupling > 0.0 && p.tire_shape > 0.0 && !(p.steer_helper > 0.0);
+  const double front = p.rear_axle / p.wheelbase();
+  const double rear = p.front_axle / p.wheelbase();
+  axles_[0] = {p.front_axle,
+               p.cornering_front / p.friction,
+               0.5 * front * p.load_constant,
+               front,
+               p.roll_share_front,
+               p.drive_share_front,
+               p.brake_share_front};
+  axles_[1] = {-p.rear_axle,
+               p.cornering_rear / p.friction,
+               0.5 * rear * p.load_constant,
+               rear,
+               1.0 - p.roll_share_front,
+               1.0 - p.drive_share_front,
+               1.0 - p.brake_share_front};
+}
+
+StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
+  const model::VehicleParams& p = vehicle();
+  const model::BodyMotion<double>& m = at.body;
+  const double drag = -longitudinal_acceleration(p, 0.0, m.vx);
+  const double pedal = m.acceleration + drag;
+  const double rolling = p.drag_constant / p.load_constant;
+  const double down = 0.5 * (p.load(m.vx) - p.load_constant);
+  const double pitch = 0.5 * p.height / p.wheelbase() * at.load_along;
+  const double roll = p.height / p.track_width * at.load_across;
+  double along = p.drag_constant - drag;  // what the air brakes
+  double across = 0.0;
+  double moment = 0.0;  // over mass
+  for (int i = 0; i < 2; ++i) {
+    const Axle& axle = axles_[i];
+    const double steer = i == 0 ? m.steer : 0.0;
+    const double asked = 0.5 * pedal * (pedal > 0.0 ? axle.drive_share : axle.brake_share);
+    for (const double side : {1.0, -1.0}) {
+      const double beside = 0.5 * side * p.track_width;
+      const double moved =
+          std::max((i == 0 ? -pitch : pitch) - side * axle.roll_share * roll, (kLeastLoad - 1.0) * axle.rest);
+      const double load = axle.rest + moved + axle.share * down;
+      const double most = p.friction * (1.0 - p.load_sensitivity * moved / axle.rest) * load;
+      const double forward = std::max(m.vx - m.r * beside, 0.25 * m.vx);  // of a car that spins, too
+      const double slip = steer - (m.vy + m.r * axle.place) / forward;
+      // The slip along that gives the force asked for beside the slip across, by similarity.
+      const double use = std::clamp((asked - rolling * load) / most, -kMostAlong, kMostAlong);
+      const double z = axle.cornering * slip;
+      const auto secant = [&p](double square) {
+        const double size = std::sqrt(square + kLeastSquare);
+        return sin(p.tire_shape * atan(size / p.tire_shape)) / size;
+      };
+      const double square = use * use;
+      const double first = secant(z * z + square / std::sqrt(1.0 - square * square));
+      const double force_across = most * z * secant(z * z + square / (first * first));
+      const double force_along = most * use;
+      const double x = force_along - steer * force_across;
+      const double y = force_across + steer * force_along;
+      along += x;
+      across += y;
+      moment += axle.place * y - beside * x;
+    }
+  }
+  return {along + m.r * m.vy, across - m.r * m.vx, p.mass / p.yaw_inertia * moment, along, across};
+}
+
+StopMotion StopCar::advance(const StopMotion& from, double steer_asked, double acceleration_asked,
+                            double dt) const noexcept {
+  const model::VehicleParams& p = vehicle();
+  const model::BodyMotion<double>& m = from.body;
+  if (!has_wheels_ || !(m.vx > kSlowest)) {
+    StopMotion to{.body = model_.advance(m, steer_asked, acceleration_asked, dt, model_.lags(dt))};
+    to.load_along = to.body.acceleration;
+    to.load_across = to.body.vx * to.body.r;
+    return to;
+  }
+  // The midpoint rule, with the lags' exact solutions.
+  const auto later = [&](double h, const Change& change) {
+    const double followed = left_of(kLoadLag, h);
+    return StopMotion{
+        .body = {m.vx + h * change.vx, m.vy + h * change.vy, m.r + h * change.r,
+                 steer_asked + (m.steer - steer_asked) * left_of(p.steer_lag, h),
+                 acceleration_asked + (m.acceleration - acceleration_asked) * left_of(p.drive_lag, h)},
+        .load_along = change.along + (from.load_along - change.along) * followed,
+        .load_across = change.across + (from.load_across - change.across) * followed};
+  };
+  return later(dt, change(later(0.5 * dt, change(from))));
+}
+
+}  // namespace chicane::safety

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "chicane/model/prediction.hpp"
+#include "chicane/model/vehicle.hpp"
+
+namespace chicane::safety {
+
+/// A car that is stopped, as far as that does not depend on where it is.
+struct StopMotion {
+  model::BodyMotion<double> body{};
+  /// Acceleration that the wheels' loads have followed, along and across [m/s²].
+  double load_along = 0.0;
+  double load_across = 0.0;
+};
+
+/// The car that a stop is simulated with (docs/safety.md, eq. 3a–3d). Nobody corrects what it has wrong when
+/// the stop is played blindly, so it is closer to a car than PredictionModel: four wheels with their own
+/// loads, which follow the body's accelerations with a lag, and the yaw moment of forces that differ from
+/// left to right; second order in the step. Slower than kSlowest, and for cars whose tyres do not share
+/// force between the directions, it is the PredictionModel. No allocation, no failure for finite input.
+class StopCar {
+ public:
+  explicit StopCar(const model::VehicleParams& vehicle) noexcept : model_{vehicle} { set_vehicle(vehicle); }
+  void set_vehicle(const model::VehicleParams& vehicle) noexcept;
+
+  /// The motion after dt [s], 0 < dt <= 0.1, towards a road-wheel angle and a net acceleration as asked for.
+  [[nodiscard]] StopMotion advance(const StopMotion& from, double steer_asked, double acceleration_asked,
+                                   double dt) const noexcept;
+  /// Whether it is more than the PredictionModel.
+  [[nodiscard]] bool has_wheels() const noexcept { return has_wheels_; }
+  [[nodiscard]] const model::VehicleParams& vehicle() const noexcept { return model_.vehicle(); }
+
+ private:
+  struct Change {
+    double vx, vy, r;      ///< [m/s²], [rad/s²]
+    double along, across;  ///< of the body [m/s²]
+  };
+  struct Axle {
+    double place = 0.0;        ///< before the centre of mass [m]
+    double cornering = 0.0;    ///< over friction [1/rad]
+    double rest = 0.0;         ///< load of a wheel at rest over the car's mass [m/s²]
+    double share = 0.0;        ///< of the car's load
+    double roll_share = 0.0;   ///< of the load that moves across
+    double drive_share = 0.0;  ///< of the drive
+    double brake_share = 0.0;  ///< and of the brakes
+  };
+  [[nodiscard]] Change change(const StopMotion& at) const noexcept;
+
+  static constexpr double kSlowest = 12.0;  ///< [m/s] stiff tyres would need shorter steps
+
+  model::PredictionModel model_;
+  bool has_wheels_ = false;
+  Axle axles_[2];
+};
+
+}  // namespace chicane::safety
