@@ -27,6 +27,7 @@ constexpr double kShownStep = 0.1;               // [s]
 constexpr double kWalkingPace = 3.0;             // [m/s]
 constexpr double kFastestWayBack = 4.0;          // [m/s]
 constexpr double kMostUse = 0.75;                // of the tyres sideways, after a command: the law's stops
+constexpr double kMostUseUnplanned = 0.65;       // the same where the controller shows no plan
 constexpr double kMostUseEver = 1.2;             // and those that are searched for
 constexpr double kDrivesOn[] = {0.5, 1.0, 1.5};  // [s] as the controller plans, before a stop
 constexpr double kRecovery = 0.5;                // [s] after a silence, until the car is in hand again
@@ -385,7 +386,7 @@ Guard::Fit Guard::leaves_a_stop(const StopStart& start, const model::Command& co
   undriven.acceleration = std::min(undriven.acceleration, 0.0);
   const auto use = model_.tire_use(undriven);
   const double most_use = start.body.vx > kWalkingPace ? std::max(use.front, use.rear) : 0.0;
-  const bool slides = most_use > kMostUse;
+  const bool slides = most_use > (intended.size > 1 ? kMostUse : kMostUseUnplanned);
   const Fit fit = plan_stop(next, least_edge, {.intended = &intended, .slides = slides}, report);
   if (fit != Fit::kNone && most_use < kMostUseEver) {
     floor_ = kNoFloor;
