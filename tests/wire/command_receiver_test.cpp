@@ -88,7 +88,7 @@ TEST(CommandReceiver, PlaysThePlanThatCameByTimeAndDistance) {
   EXPECT_TRUE(receiver.sampled(5.1));
   EXPECT_EQ(receiver.act(5.29, 8.0).throttle, 1.0);  // 0.3 s after the telemetry that was sampled at 5.0
   EXPECT_DOUBLE_EQ(receiver.act(5.31, 8.0).steer, 0.1);
-  EXPECT_DOUBLE_EQ(receiver.act(5.81, 8.0).steer, 0.1);  // half of the way: held up to the next place
+  EXPECT_NEAR(receiver.act(5.81, 8.0).steer, 0.2, 1e-9);  // half of the way
   EXPECT_LT(receiver.acting().throttle, 0.0);
 }
 

@@ -22,9 +22,14 @@ model::Command played(const StopPlan& stop, double distance, double speed,
   const double share = length > 1e-6 ? std::clamp((distance - here.distance) / length, 0.0, 1.0) : 0.0;
   const bool ends_rolling = i + 1 == stop.size && here.speed >= kStanding;  // where the known road ended
   const double planned = ends_rolling ? 0.0 : here.speed + share * (next.speed - here.speed);
+  // Stops of cars with four wheels are planned with the wheel held from place to place (stop_car.hpp).
+  const bool is_held =
+      vehicle.friction_coupling > 0.0 && vehicle.tire_shape > 0.0 && !(vehicle.steer_helper > 0.0);
+  const double steer =
+      here.command.steer + (is_held ? 0.0 : share * (next.command.steer - here.command.steer));
   const double wanted =
       longitudinal_acceleration(vehicle, here.command.throttle, speed) + (planned - speed) / kSpeedTime;
-  return {std::clamp(here.command.steer, -vehicle.steer_limit, vehicle.steer_limit),
+  return {std::clamp(steer, -vehicle.steer_limit, vehicle.steer_limit),
           throttle_to_rest(vehicle, wanted, speed)};
 }
 
