@@ -110,7 +110,7 @@ describe('the tour', () => {
     await page.keyboard.press('h');
     const focused = () => page.evaluate(() => document.activeElement.textContent);
     for (const title of ['Drive', 'Let', 'Slow', 'Blind', 'Break', 'Tune', 'Compare']) {
-      await dashboard.until(focused, (text) => text.includes(title), `the heading of ${title}`);
+      await dashboard.until(focused, (text) => text.match(/^\d of 7: (\w+)/)?.[1] === title, `the heading of ${title}`);
       await page.keyboard.press('Tab'); // Leave
       await page.keyboard.press('Tab');
       assert.equal(await focused(), 'Skip');

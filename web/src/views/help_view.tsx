@@ -1,5 +1,5 @@
 import { signal } from '@preact/signals';
-import { useEffect, useRef } from 'preact/hooks';
+import { useLayoutEffect, useRef } from 'preact/hooks';
 import { allShortcuts, type Shortcut } from '../lib/keys';
 
 export const isHelpOpen = signal(false);
@@ -19,7 +19,8 @@ export function Dialog({
   children: preact.ComponentChildren;
 }) {
   const element = useRef<HTMLDialogElement>(null);
-  useEffect(() => {
+  // With the page, not after its next picture: keys pressed in between would still be the dialog's.
+  useLayoutEffect(() => {
     const dialog = element.current;
     if (!dialog) return;
     if (isOpen && !dialog.open) dialog.showModal();

@@ -1,5 +1,5 @@
 import { effect } from '@preact/signals';
-import { useEffect, useRef } from 'preact/hooks';
+import { useLayoutEffect, useRef } from 'preact/hooks';
 import { addShortcuts } from '../lib/keys';
 import { link } from '../state/link';
 import { call, set } from '../state/operate';
@@ -61,7 +61,7 @@ function putBack(): void {
 
 function Heading({ text }: { text: string }) {
   const element = useRef<HTMLHeadingElement>(null);
-  useEffect(() => element.current?.focus(), [text]);
+  useLayoutEffect(() => element.current?.focus(), [text]);
   return (
     <h2 ref={element} tabIndex={-1}>
       {text}
