@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include "campaign_options.hpp"
 #include "chicane/base/angle.hpp"
@@ -273,30 +274,25 @@ void add_completion(CLI::App& command, Options& options) {
   command.footer("Example: source <(chicane completion bash)");
 }
 
+void add_manual(CLI::App& command, Options&) { command.footer("Example: chicane manual | man -l -"); }
+
+/// The options of each command.
+constexpr std::pair<std::string_view, void (*)(CLI::App&, Options&)> kOptionsOf[] = {
+    {"drive", add_drive},           {"serve", add_serve},     {"simulate", add_simulate},
+    {"limit", add_limit},           {"replay", add_replay},   {"report", add_report},
+    {"video", add_video},           {"sweep", add_sweep},     {"league", add_league},
+    {"claims", add_claims},         {"tune", add_tune},       {"merge", add_merge},
+    {"campaign", add_campaign},     {"recover", add_recover}, {"lane-change", add_lane_change},
+    {"check", add_check},           {"list", add_list},       {"bench", add_bench},
+    {"completion", add_completion}, {"manual", add_manual},
+};
+
 void add_commands(CLI::App& app, Options& options) {
   for (const Command& command : commands()) {
     CLI::App* const sub = app.add_subcommand(std::string(command.name), std::string(command.summary));
     sub->footer("Example: chicane " + std::string(command.name));  // of a command without options
-    if (command.name == "drive") add_drive(*sub, options);
-    if (command.name == "serve") add_serve(*sub, options);
-    if (command.name == "simulate") add_simulate(*sub, options);
-    if (command.name == "limit") add_limit(*sub, options);
-    if (command.name == "replay") add_replay(*sub, options);
-    if (command.name == "report") add_report(*sub, options);
-    if (command.name == "video") add_video(*sub, options);
-    if (command.name == "sweep") add_sweep(*sub, options);
-    if (command.name == "league") add_league(*sub, options);
-    if (command.name == "claims") add_claims(*sub, options);
-    if (command.name == "tune") add_tune(*sub, options);
-    if (command.name == "merge") add_merge(*sub, options);
-    if (command.name == "campaign") add_campaign(*sub, options);
-    if (command.name == "recover") add_recover(*sub, options);
-    if (command.name == "lane-change") add_lane_change(*sub, options);
-    if (command.name == "check") add_check(*sub, options);
-    if (command.name == "list") add_list(*sub, options);
-    if (command.name == "bench") add_bench(*sub, options);
-    if (command.name == "completion") add_completion(*sub, options);
-    if (command.name == "manual") sub->footer("Example: chicane manual | man -l -");
+    for (const auto& [name, add] : kOptionsOf)
+      if (name == command.name) add(*sub, options);
   }
 }
 

@@ -37,7 +37,11 @@ describe('the dashboard', () => {
       await page.locator('.summary').innerText(),
       /tracking-mpc · default · udacity · demo road · 100 ms latency/,
     );
-    assert.equal(await dashboard.text('rung'), 'The controller drives');
+    await dashboard.until(
+      () => dashboard.text('rung'),
+      (text) => text === 'The controller drives',
+      'who drives',
+    );
     assert.equal(await dashboard.text('status'), 'Optimal, 3 iterations');
     assert.equal(await dashboard.text('gate'), 'Passed the command unchanged');
     assert.equal(await dashboard.text('road'), 'On the road, never left it');

@@ -22,14 +22,9 @@ model::Command played(const StopPlan& stop, double distance, double speed,
   const double share = length > 1e-6 ? std::clamp((distance - here.distance) / length, 0.0, 1.0) : 0.0;
   const bool ends_rolling = i + 1 == stop.size && here.speed >= kStanding;  // where the known road ended
   const double planned = ends_rolling ? 0.0 : here.speed + share * (next.speed - here.speed);
-  // Stops of cars with four wheels are planned with the wheel held from place to place (stop_car.hpp).
-  const bool is_held =
-      vehicle.friction_coupling > 0.0 && vehicle.tire_shape > 0.0 && !(vehicle.steer_helper > 0.0);
-  const double steer =
-      here.command.steer + (is_held ? 0.0 : share * (next.command.steer - here.command.steer));
   const double wanted =
       longitudinal_acceleration(vehicle, here.command.throttle, speed) + (planned - speed) / kSpeedTime;
-  return {std::clamp(steer, -vehicle.steer_limit, vehicle.steer_limit),
+  return {std::clamp(here.command.steer, -vehicle.steer_limit, vehicle.steer_limit),
           throttle_to_rest(vehicle, wanted, speed)};
 }
 
@@ -56,7 +51,7 @@ void StopPlayer::arrived(double time, const StopPlan& stop) noexcept {
 }
 
 model::Command StopPlayer::guard(const model::Command& command, double time, double speed) noexcept {
-  const double elapsed = std::max(time - last_time_, 0.0);
+  const double before = last_time_;
   last_time_ = time;
   while (count_ > 1 && arrivals_[static_cast<std::size_t>((first_ + 1) % kWaiting)].time <= time) {
     first_ = (first_ + 1) % kWaiting;
@@ -72,7 +67,8 @@ model::Command StopPlayer::guard(const model::Command& command, double time, dou
     is_stopping_ = false;
     return command;
   }
-  distance_ = is_stopping_ ? distance_ + elapsed * std::fabs(speed) : 0.0;
+  if (!is_stopping_) distance_ = 0.0;
+  distance_ += (time - std::max(before, begins)) * std::fabs(speed);
   is_stopping_ = true;
   return has_plan ? played(acting.stop, distance_, speed, vehicle_) : brake(command, speed);
 }
