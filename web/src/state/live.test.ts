@@ -28,6 +28,12 @@ describe('the history', () => {
     expect(live.plots.newest(costColumn(COST_TERMS - 1))).toBe(COST_TERMS + 1);
   });
 
+  it('has no layers of the cost where there is no plan', () => {
+    keep({ cost_terms: new Float64Array(COST_TERMS).fill(1) });
+    keep({ time_s: 1, cost_terms: new Float64Array(COST_TERMS) });
+    for (let term = 0; term < COST_TERMS; ++term) expect(live.plots.newest(costColumn(term))).toBeNaN();
+  });
+
   it('leaves out a frame that is no new one, and notes when it came', () => {
     keep({ time_s: 3 }, 100);
     keep({ time_s: 3 }, 200, false);

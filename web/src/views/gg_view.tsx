@@ -19,6 +19,10 @@ export function gripRadius(lateral: number, frontUse: number, rearUse: number): 
   return use > 0.5 && Math.abs(lateral) > 3 ? Math.abs(lateral) / use : NaN;
 }
 
+/** What the diagram reaches to, so that trail and grip circle lie within it, in the unit of both. */
+export const reachOf = (most: number, radius: number): number =>
+  niceCeil(Math.max(0.5, most * 1.08, Number.isFinite(radius) ? radius * 1.02 : 0));
+
 let radius = NaN; // smoothed [g]
 
 function paint(context: CanvasRenderingContext2D, width: number, height: number): void {
@@ -29,10 +33,10 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number)
   const [first, end] = [firstSince(times, from), firstSince(times, to + 1e-9)];
   const across = history.column(Column.lateral_acceleration_mps2).subarray(first, end);
   const along = history.column(Column.longitudinal_acceleration_mps2).subarray(first, end);
-  const reach = Math.max(...[across, along].flatMap((values) => (extent(values) ?? [0, 0]).map(Math.abs))) / G;
+  const most = Math.max(...[across, along].flatMap((values) => (extent(values) ?? [0, 0]).map(Math.abs))) / G;
   const newest = across.length - 1;
   renewGrip(newest + first);
-  const scale = niceCeil(Math.max(0.5, reach * 1.08, Number.isFinite(radius) ? radius * 1.02 : 0));
+  const scale = reachOf(most, radius);
   const [middleX, middleY] = [width / 2, height / 2];
   const pixels = (Math.min(width, height) / 2 - 16) / scale;
 
