@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # Configures and builds build/release. Sourced by run.sh and test.sh, after install_packages.sh.
 
-# As many compilers as cores, but no more than memory holds: the largest file takes 1.5 GB.
+# As many compilers as cores, but no more than memory holds: the largest file takes 1.4 GB.
 build_jobs() {
   local cores memory
   cores=$(nproc)

@@ -27,17 +27,15 @@ double fault_duration(const std::string& text) {
       "--for-s", fmt::format("got {}, expected a number in [0.001, 1000000] or inf", printable(text)));
 }
 
+void add_names(CLI::App& command, const char* option, std::vector<std::string>& names, const char* help) {
+  command.add_option(option, names, help)->type_name("NAME,...")->delimiter(',')->capture_default_str();
+}
+
 /// On which tracks, in which cars, with which controller and settings many runs are driven.
 template <class Runs>
 void add_where(CLI::App& command, Runs& runs, Options& options) {
-  command.add_option("--tracks", runs.tracks, "Names or files, with commas")
-      ->type_name("NAME,...")
-      ->delimiter(',')
-      ->capture_default_str();
-  command.add_option("--cars", runs.cars, "Names or files, with commas")
-      ->type_name("NAME,...")
-      ->delimiter(',')
-      ->capture_default_str();
+  add_names(command, "--tracks", runs.tracks, "Names or files, with commas");
+  add_names(command, "--cars", runs.cars, "Names or files, with commas");
   add_setting(command, options, "--preset", "preset", "NAME",
               "Controller and its settings (chicane list presets)");
   add_jobs(command, options.jobs);
@@ -89,14 +87,8 @@ void add_recover(CLI::App& command, Options& options) {
 
 void add_lane_change(CLI::App& command, Options& options) {
   Options::LaneChange& change = options.lane_change;
-  command.add_option("--cars", change.cars, "Names or files, with commas")
-      ->type_name("NAME,...")
-      ->delimiter(',')
-      ->capture_default_str();
-  command.add_option("--presets", change.presets, "Who steers: names or files, with commas")
-      ->type_name("NAME,...")
-      ->delimiter(',')
-      ->capture_default_str();
+  add_names(command, "--cars", change.cars, "Names or files, with commas");
+  add_names(command, "--presets", change.presets, "Who steers: names or files, with commas");
   command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
   add_set(command, options);
   command.footer("Example: chicane lane-change --cars road-car --presets default,stanley");

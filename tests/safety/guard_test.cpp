@@ -67,6 +67,15 @@ class GuardTest : public ::testing::Test {
   model::Command asked_;
 };
 
+/// `intervals` of 4 m, 10 m wide.
+path::RoadData straight_road(int intervals) {
+  path::RoadData road;
+  road.length = 4.0 * intervals;
+  for (int i = 0; i <= intervals; ++i)
+    road.points.push_back({.s = 4.0 * i, .position = {4.0 * i, 0.0}, .left = 5.0, .right = 5.0});
+  return road;
+}
+
 TEST_F(GuardTest, PassesAnAnswerOnUnchanged) {
   scripted_.result.command = {.steer = 0.123, .throttle = 0.456};
   const controller::StepResult& result = step(at(1.0));
@@ -85,10 +94,7 @@ TEST_F(GuardTest, SaysWhichAnswerWithoutAPlanWasGiven) {
 
 /// A way back is slow: whoever calls a fast drive one is checked like everybody.
 TEST(GuardOnARoad, RefusesAWayBackThatIsFast) {
-  path::RoadData straight;
-  straight.length = 400.0;
-  for (int i = 0; i <= 100; ++i)
-    straight.points.push_back({.s = 4.0 * i, .position = {4.0 * i, 0.0}, .left = 5.0, .right = 5.0});
+  const path::RoadData straight = straight_road(100);
   Scripted scripted;
   Guard guard{std::make_unique<test::Borrowed>(scripted), car(), {}, &straight};
   scripted.result.answer = Answer::kReturnToRoad;
@@ -111,10 +117,7 @@ TEST(GuardOnARoad, RefusesAWayBackThatIsFast) {
 /// Who sees nothing has nothing to plan anew by: the stop of the last cycle that saw is driven to its end, as
 /// a receiver would that is left alone.
 TEST(GuardOnARoad, DrivesTheStopAtHandWhereNothingIsMeasured) {
-  path::RoadData straight;
-  straight.length = 800.0;
-  for (int i = 0; i <= 200; ++i)
-    straight.points.push_back({.s = 4.0 * i, .position = {4.0 * i, 0.0}, .left = 5.0, .right = 5.0});
+  const path::RoadData straight = straight_road(200);
   Scripted scripted;
   Guard guard{std::make_unique<test::Borrowed>(scripted), model::road_car_params(), {}, &straight};
   controller::StepResult result;
