@@ -44,6 +44,22 @@ describe('what if, in a live run', () => {
     await drive.stop();
   });
 
+  it('takes a setting by its name, and says when words fit none or several', async () => {
+    const { page } = dashboard;
+    const search = page.getByLabel('Setting to change');
+    const says = (text) => page.getByRole('status').filter({ hasText: text }).waitFor();
+    await search.fill('no such thing');
+    await search.press('Enter');
+    await says('No setting that a run can change is called so.');
+    await search.fill('weight');
+    await search.press('Enter');
+    await says(/^\d+ settings fit: /);
+    await search.fill('grip share');
+    await search.press('Enter');
+    await page.getByLabel('What if: grip share').waitFor();
+    await dashboard.button('Do not change grip share').click();
+  });
+
   it('drives both futures from now on, and sets them side by side', async () => {
     const { page } = dashboard;
     await dashboard.button('30 s').click();

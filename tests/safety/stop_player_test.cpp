@@ -68,6 +68,16 @@ TEST(StopPlayer, HoldsTheWheelFromOnePlaceToTheNext) {
   EXPECT_EQ(steer(stop.points[6].distance - 0.01), fifth.command.steer);
 }
 
+/// Between two looks at the clock the car has driven on: what was driven since the stop began counts.
+TEST(StopPlayer, CountsTheWayFromWhereTheStopBegan) {
+  StopPlayer player(car(), kCycle, Receiver::kStopPlan);
+  player.arrived(1.0, sample_stop(1.1));
+  static_cast<void>(player.guard({0.0, 0.5}, 1.09, 20.0));
+  const StopPlan stop = sample_stop(1.1);
+  const StopPoint& third = stop.points[3];
+  EXPECT_EQ(player.guard({0.0, 0.5}, 1.1 + third.distance / 20.0 + 1e-6, 20.0).steer, third.command.steer);
+}
+
 TEST(StopPlayer, KeepsTheStopsThatWaitForTheirCommands) {
   StopPlayer player(car(), kCycle, Receiver::kStopPlan);
   for (int i = 0; i < 5; ++i) player.arrived(1.0 + kCycle * i, sample_stop(1.1 + kCycle * i));  // in flight

@@ -81,14 +81,16 @@ TEST(CommandReceiver, PlaysThePlanThatCameByTimeAndDistance) {
   CommandReceiver receiver(kCar, safety::Receiver::kStopPlan);
   static_cast<void>(receiver.sampled(5.0));
   protocol::UdacitySteer steer = straight(1.0);
-  steer.stop.size = 2;
+  steer.stop.size = 3;
   steer.stop.points[0] = {.time = 0.3, .distance = 0.0, .speed = 8.0, .command = {0.1, -0.2}};
-  steer.stop.points[1] = {.time = 2.3, .distance = 8.0, .speed = 0.0, .command = {0.3, -0.2}};
+  steer.stop.points[1] = {.time = 0.9, .distance = 4.0, .speed = 5.0, .command = {0.2, -0.2}};
+  steer.stop.points[2] = {.time = 2.3, .distance = 8.0, .speed = 0.0, .command = {0.3, -0.2}};
   receiver.answered(steer);
   EXPECT_TRUE(receiver.sampled(5.1));
   EXPECT_EQ(receiver.act(5.29, 8.0).throttle, 1.0);  // 0.3 s after the telemetry that was sampled at 5.0
   EXPECT_DOUBLE_EQ(receiver.act(5.31, 8.0).steer, 0.1);
-  EXPECT_NEAR(receiver.act(5.81, 8.0).steer, 0.2, 1e-9);  // half of the way
+  EXPECT_DOUBLE_EQ(receiver.act(5.79, 8.0).steer, 0.1);
+  EXPECT_DOUBLE_EQ(receiver.act(5.81, 8.0).steer, 0.2);  // half of the way
   EXPECT_LT(receiver.acting().throttle, 0.0);
 }
 

@@ -113,7 +113,11 @@ export function sightInWords(hasMap: boolean, metres: number): Sentence {
 export const LIMITERS: readonly { readonly title: string; readonly why: string; readonly short: string }[] = [
   { title: 'Not known', why: 'The controller does not report what limits the speed.', short: 'unknown' },
   { title: 'Reference speed', why: 'The car may drive no faster than its speed reference.', short: 'reference' },
-  { title: 'Grip in the bend', why: 'Any faster, and the tyres could not hold the bend.', short: 'grip' },
+  {
+    title: 'Grip in the bend',
+    why: 'Any faster, and the bend would take more of the grip than the plan may use.',
+    short: 'grip',
+  },
   {
     title: 'Braking for a bend',
     why: 'Any faster, and the car could not brake in time for the bend.',

@@ -1,5 +1,5 @@
 import { effect, signal } from '@preact/signals';
-import { useRef } from 'preact/hooks';
+import { useEffect, useRef } from 'preact/hooks';
 import { fixed } from '../lib/format';
 import { isTakenBy } from '../lib/keys';
 import { clamp } from '../lib/math';
@@ -93,6 +93,7 @@ if (typeof window !== 'undefined') addEventListener('gamepadconnected', () => (h
 /** A pad for finger or mouse: sideways steers, up is throttle, down is brake. */
 function Pad() {
   const element = useRef<HTMLDivElement>(null);
+  useEffect(() => element.current?.scrollIntoView({ block: 'nearest' }), []);
   const { steer, throttle } = stick.value;
   const move = (event: PointerEvent): void => {
     const box = element.current?.getBoundingClientRect();
@@ -149,7 +150,8 @@ export function ManualView() {
         ) : (
           <p class="soft">
             {gamepadName.value === ''
-              ? 'Arrow keys steer, drive and brake; a gamepad does, too.'
+              ? 'The arrow keys steer, drive and brake; so do a gamepad and a finger on the pad. At speed this is hard: ' +
+                'Reset (R) first, or 0.25×.'
               : 'Gamepad: the left stick steers, the triggers drive and brake, Start takes the wheel.'}{' '}
             The controller keeps computing in the background.
           </p>

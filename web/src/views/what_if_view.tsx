@@ -30,6 +30,7 @@ import { watchBoth } from '../state/what_if_ghost';
 import { DraftBox } from './draft_box';
 import { RaceView } from './race_view';
 import { labelOf, typed } from './setting_row';
+import { isFound } from './tune_view';
 import { WhatIfResult } from './what_if_result';
 
 const MOST_WISHES = 8;
@@ -48,6 +49,19 @@ function addWish(key: string): boolean {
   if (value === undefined || wishes.value.length >= MOST_WISHES) return false;
   if (!wishes.value.some((each) => each.key === key)) wishes.value = [...wishes.value, { key, value }];
   return true;
+}
+
+/** Why the words of the search chose no setting; empty where they did. */
+const unclear = signal('');
+
+/** The one setting that is called so, or of which all words tell. */
+function addFound(words: string): void {
+  const named = offered().filter((entry) => labelOf(entry).toLowerCase() === words.trim().toLowerCase());
+  const found = named.length === 1 ? named : offered().filter((entry) => isFound(entry, words));
+  const [first, ...others] = found;
+  if (first && others.length === 0) unclear.value = addWish(first.key) ? '' : 'No more than eight at a time.';
+  else if (first) unclear.value = `${found.length} settings fit: ${found.slice(0, 3).map(labelOf).join(', ')} …`;
+  else unclear.value = 'No setting that a run can change is called so.';
 }
 
 function Value({ entry, value }: { entry: SchemaEntry; value: Setting }) {
@@ -128,7 +142,13 @@ function Wishes() {
           placeholder="A setting: speed limit, latency …"
           aria-label="Setting to change"
           onInput={(event) => {
+            unclear.value = '';
             if (addWish(event.currentTarget.value)) event.currentTarget.value = '';
+          }}
+          onKeyDown={(event) => {
+            if (event.key !== 'Enter') return;
+            addFound(event.currentTarget.value);
+            if (unclear.value === '') event.currentTarget.value = '';
           }}
         />
         <datalist id="what-if-settings">
@@ -150,6 +170,9 @@ function Wishes() {
           </button>
         )}
       </div>
+      <p class="soft" role="status">
+        {unclear.value}
+      </p>
     </section>
   );
 }
