@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
@@ -211,7 +210,8 @@ TEST_F(Estimating, TakesWhatItMissedWhileBlindForADriftNotForAKick) {
 struct SofterCar {
   double worst_yaw_rate = 0.0, worst_slide = 0.0;
   Disturbance disturbance;
-  explicit SofterCar(double side, bool with_disturbance = true) {
+  enum class Lacks { kNothing, kSpeed, kPlace };
+  explicit SofterCar(double side, bool with_disturbance = true, Lacks lacks = Lacks::kNothing) {
     model::VehicleParams softer = model::road_car_params();
     softer.cornering_front *= 0.8;
     StateEstimator truth{model::PredictionModel{softer}};
@@ -227,7 +227,10 @@ struct SofterCar {
       const model::Measurement seen{
           .time = time, .x = s.x, .y = s.y, .psi = s.psi, .speed = hypot(s.vx, s.vy)};
       truth.correct(seen, sent);
-      believed.correct(seen, sent);
+      model::Measurement part = seen;
+      if (lacks == Lacks::kSpeed) part.speed = std::nan("");
+      if (lacks == Lacks::kPlace) part.x = part.y = std::nan("");
+      believed.correct(part, sent);
       if (i < 20) continue;  // until the disturbance is there
       const model::State expected = believed.predict(time + 0.1, sent).state;
       const model::State later = truth.predict(time + 0.1, sent).state;
@@ -247,6 +250,16 @@ TEST(StateEstimator, FindsWhatTheModelLacks) {
   EXPECT_NEAR(right.disturbance.yaw, -left.disturbance.yaw, 1e-9);
   EXPECT_NEAR(right.disturbance.lateral, -left.disturbance.lateral, 1e-9);
   EXPECT_NEAR(right.worst_yaw_rate, left.worst_yaw_rate, 1e-9);
+}
+
+TEST(StateEstimator, FindsItWithoutTheSpeedToo) {
+  const SofterCar all(1.0);
+  const SofterCar no_speed(1.0, true, SofterCar::Lacks::kSpeed);
+  EXPECT_NEAR(no_speed.disturbance.yaw, all.disturbance.yaw, 0.1 * std::fabs(all.disturbance.yaw));
+  EXPECT_LT(no_speed.worst_yaw_rate, 1.2 * all.worst_yaw_rate);
+  EXPECT_LT(no_speed.worst_slide, 1.2 * all.worst_slide);
+  const SofterCar no_place(1.0, true, SofterCar::Lacks::kPlace);
+  EXPECT_LT(no_place.worst_yaw_rate, SofterCar(1.0, false).worst_yaw_rate);
 }
 
 TEST(StateEstimator, ForgetsADisturbanceThatIsNotMeasuredAnew) {

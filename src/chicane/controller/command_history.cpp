@@ -3,18 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "chicane/base/angle.hpp"
 
 namespace chicane::controller {
 namespace {
 
-constexpr double kMaxStep = 0.01;       // [s] integration step of the estimator
-constexpr double kLongestGap = 1.0;     // [s] after a longer silence the estimate starts anew
-constexpr double kLostPosition = 3.0;   // [m] a measurement further from the prediction starts anew
-constexpr double kPartGain = 0.25;      // of a velocity where a part of the measurement is missing
-constexpr double kPartSlideGain = 0.2;  // and of the lateral one
-constexpr double kForgetting = 0.1;     // of the means over innovations, in each measurement
+constexpr double kMaxStep = 0.01;      // [s] integration step of the estimator
+constexpr double kLongestGap = 1.0;    // [s] after a longer silence the estimate starts anew
+constexpr double kLostPosition = 3.0;  // [m] a measurement further from the prediction starts anew
+constexpr double kForgetting = 0.1;    // of the means over innovations, in each measurement
 constexpr double kForgettingDisturbed =
     0.03;  // noise must not pass for a disturbance, also where a few innovations agree by chance
 constexpr double kLeastVariance = 1e-12;
@@ -144,21 +143,16 @@ double throttle_against_rolling_back(const model::VehicleParams& vehicle, double
 void StateEstimator::correct(const model::Measurement& now, const CommandHistory& sent) noexcept {
   const double elapsed = now.time - time_;
   direction_.see(now);
-  if (!is_finite(now)) {
-    if (is_started_ && elapsed > 0.0 && elapsed < kLongestGap) {
-      advance(now_, time_, now.time, sent);
-      time_ = now.time;
-      take_part(now, elapsed);
-    }
-    return;
-  }
-  if (is_started_ && elapsed > 0.0 && elapsed < kLongestGap) {
+  const bool goes_on = is_started_ && elapsed > 0.0 && elapsed < kLongestGap;
+  if (!is_finite(now) && !goes_on) return;
+  if (goes_on) {
     advance(now_, time_, now.time, sent);
     const double dx = now.x - now_.state.x;
     const double dy = now.y - now_.state.y;
     const double dpsi = angle_difference(now.psi, now_.state.psi);
-    if (dx * dx + dy * dy < kLostPosition * kLostPosition && std::fabs(dpsi) < 0.5) {
-      take_over(now, dx, dy, dpsi, elapsed);
+    const bool is_near = dx * dx + dy * dy < kLostPosition * kLostPosition && std::fabs(dpsi) < 0.5;
+    if (!is_finite(now) || is_near) {
+      take_over(now, dx, dy, dpsi);
       return;
     }
   } else if (is_started_ && elapsed <= 0.0 && elapsed > -kLongestGap) {
@@ -173,59 +167,50 @@ void StateEstimator::correct(const model::Measurement& now, const CommandHistory
                 .vy = 0.0,
                 .r = now.speed * tan(std::clamp(steer, -0.6, 0.6)) / model_.vehicle().wheelbase(),
                 .steer = steer};
-  time_ = measured_ = now.time;
+  time_ = place_seen_ = heading_seen_ = now.time;
   is_started_ = true;
 }
 
-/// The innovation of a measurement that is near what was expected: docs/tracking.md, eq. 21.
-void StateEstimator::take_over(const model::Measurement& now, double dx, double dy, double dpsi,
-                               double elapsed) noexcept {
-  const double unseen = now.time - measured_;
-  if (time_ > measured_) {
-    place_gains_.note_after_gap(dx, dy);
-    heading_gains_.note_after_gap(dpsi, 0.0);
-  } else {
-    place_gains_.note(dx, dy, elapsed);
-    heading_gains_.note(dpsi, 0.0, elapsed);
-  }
+/// The innovation of a measurement, docs/tracking.md, eq. 21: of what there is of it. Where the speed is
+/// missing, the place says how fast the car is.
+void StateEstimator::take_over(const model::Measurement& now, double dx, double dy, double dpsi) noexcept {
+  const double before = std::exchange(time_, now.time);
+  const auto note = [&](InnovationGains& gains, double x, double y, double seen) {
+    if (before > seen) {
+      gains.note_after_gap(x, y);
+    } else {
+      gains.note(x, y, now.time - before);
+    }
+  };
   model::State& state = now_.state;
-  state.x += place_gains_.position() * dx;
-  state.y += place_gains_.position() * dy;
-  state.psi += heading_gains_.position() * dpsi;
-  state.r += heading_gains_.velocity() * dpsi / unseen;
-  const double aside = dy * cos(state.psi) - dx * sin(state.psi);
-  state.vy += place_gains_.slide() * aside / unseen;
   Disturbance& more = now_.disturbance;
-  const double per_square = 1.0 / (unseen * unseen);
-  more.lateral = std::clamp(more.lateral + place_gains_.acceleration() * aside * per_square, -kMostLateral,
-                            kMostLateral);
-  more.yaw = std::clamp(more.yaw + heading_gains_.acceleration() * dpsi * per_square, -kMostYaw, kMostYaw);
-  state.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state.vy * state.vy));
-  time_ = measured_ = now.time;
-}
-
-/// Of a measurement that lacks something: what it has, with the gains of a model that is a little wrong.
-/// Where the speed is missing, the place says how fast the car is.
-void StateEstimator::take_part(const model::Measurement& now, double elapsed) noexcept {
-  const bool has_place = std::isfinite(now.x) && std::isfinite(now.y);
-  const bool has_speed = std::isfinite(now.speed);
-  model::State& state = now_.state;
-  if (std::isfinite(now.psi)) {
-    const double dpsi = angle_difference(now.psi, state.psi);
-    state.psi += InnovationGains::kMostPosition * dpsi;
-    state.r += kPartGain * dpsi / elapsed;
+  if (std::isfinite(dpsi)) {
+    const bool has_place = std::isfinite(dx) && std::isfinite(dy);
+    if (has_place) {
+      note(place_gains_, dx, dy, place_seen_);
+      state.x += place_gains_.position() * dx;
+      state.y += place_gains_.position() * dy;
+    }
+    note(heading_gains_, dpsi, 0.0, heading_seen_);
+    const double unturned = now.time - std::exchange(heading_seen_, now.time);
+    state.psi += heading_gains_.position() * dpsi;
+    state.r += heading_gains_.velocity() * dpsi / unturned;
+    more.yaw = std::clamp(more.yaw + heading_gains_.acceleration() * dpsi * (1.0 / (unturned * unturned)),
+                          -kMostYaw, kMostYaw);
+    if (has_place) {
+      const double unseen = now.time - std::exchange(place_seen_, now.time);
+      const double aside = dy * cos(state.psi) - dx * sin(state.psi);
+      state.vy += place_gains_.slide() * aside / unseen;
+      more.lateral =
+          std::clamp(more.lateral + place_gains_.acceleration() * aside * (1.0 / (unseen * unseen)),
+                     -kMostLateral, kMostLateral);
+      const double along = dx * cos(state.psi) + dy * sin(state.psi);
+      if (!std::isfinite(now.speed))
+        state.vx = std::max(0.0, state.vx + place_gains_.velocity() * along / unseen);
+    }
   }
-  if (has_place && std::isfinite(now.psi)) {
-    const double dx = now.x - state.x;
-    const double dy = now.y - state.y;
-    const double along = dx * cos(state.psi) + dy * sin(state.psi);
-    const double aside = dy * cos(state.psi) - dx * sin(state.psi);
-    state.x += InnovationGains::kMostPosition * dx;
-    state.y += InnovationGains::kMostPosition * dy;
-    state.vy += kPartSlideGain * aside / elapsed;
-    if (!has_speed) state.vx = std::max(0.0, state.vx + kPartGain * along / elapsed);
-  }
-  if (has_speed) state.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state.vy * state.vy));
+  if (std::isfinite(now.speed))
+    state.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state.vy * state.vy));
 }
 
 StateEstimator::Prediction StateEstimator::predict(double time, const CommandHistory& sent) const noexcept {

@@ -171,8 +171,7 @@ class StateEstimator {
   static constexpr double kMostLateral = 6.0;        ///< of a disturbance [m/s²]
   static constexpr double kMostYaw = 6.0;            ///< [rad/s²]
 
-  void take_over(const model::Measurement& now, double dx, double dy, double dpsi, double elapsed) noexcept;
-  void take_part(const model::Measurement& now, double elapsed) noexcept;
+  void take_over(const model::Measurement& now, double dx, double dy, double dpsi) noexcept;
   void advance(Prediction& at, double from, double to, const CommandHistory& sent) const noexcept;
 
   model::PredictionModel model_;
@@ -180,8 +179,9 @@ class StateEstimator {
   InnovationGains heading_gains_{kYawAcceleration};
   bool is_started_ = false;
   double time_ = 0.0;
-  double measured_ = 0.0;  ///< time of the last measurement with numbers [s]
-  Prediction now_;         ///< at time_
+  double place_seen_ = 0.0;    ///< time of the last place that was measured together with a heading [s]
+  double heading_seen_ = 0.0;  ///< and of the last heading
+  Prediction now_;             ///< at time_
   DirectionWatch direction_;
 };
 
