@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
