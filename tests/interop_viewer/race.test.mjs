@@ -26,7 +26,7 @@ it('drives a second car with other settings beside the run, tells where it gains
     'two laps of both cars',
   );
   assert.match(await dashboard.text('race-verdict'), /^Lap \d+: B is \d+\.\d{3} s faster\.$/);
-  assert.match(await dashboard.text('race-causes'), /sector 1: −\d+\.\d{3} s, B \d+\.\d mph more/);
+  assert.match(await dashboard.text('race-causes'), /sector 1: −\d+\.\d{3} s, B \d+\.\d mph (more|less)/);
   await page.getByText('B', { exact: true }).first().waitFor(); // the ghost in the legend, and a column
   const { run, rival } = await race();
   assert.ok(rival[0].lap_time_s < run[0].lap_time_s - 1);

@@ -45,7 +45,7 @@ describe('on the picture', () => {
     const dashboard = await open({ tab: 'explain' });
     const { page } = dashboard;
     await page.locator('body').press('m');
-    await page.getByText('A person drives', { exact: true }).waitFor();
+    await page.getByTestId('alerts').getByText('A person drives', { exact: true }).waitFor();
     await page.locator('.rows dd', { hasText: 'A person drives; the controller plans beside' }).waitFor();
     await page.keyboard.down('ArrowUp');
     await page.keyboard.down('ArrowLeft');

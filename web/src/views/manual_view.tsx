@@ -150,8 +150,8 @@ export function ManualView() {
         ) : (
           <p class="soft">
             {gamepadName.value === ''
-              ? 'The arrow keys steer, drive and brake; so do a gamepad and a finger on the pad. At speed this is hard: ' +
-                'Reset (R) first, or 0.25×.'
+              ? 'The arrow keys steer, drive and brake; so do a gamepad and a finger on the pad. ' +
+                'At speed this is hard: Reset (R) first, or 0.25×.'
               : 'Gamepad: the left stick steers, the triggers drive and brake, Start takes the wheel.'}{' '}
             The controller keeps computing in the background.
           </p>
