@@ -271,6 +271,29 @@ TEST(StopPlanner, FollowsAStopFromItsPlacesAndFromBesideThem) {
   }
 }
 
+/// Each of these stops begins with the first command of the one before: with the wheel held until the next
+/// place, which none of them reaches, it stood still, and `road-car` came 6 m from where it was to stop.
+TEST(StopPlanner, TurnsTheWheelOnWhereAStopIsFollowedAnewInEachCycle) {
+  for (const double side : {1.0, -1.0}) {
+    const road::KnownRoad road = circle(150.0, side);
+    for (const model::VehicleParams& car : kCars) {
+      const StopPlanner planner(car);
+      StopStart at = start_at(20.0, 22.0, 1.5 * side, -0.03 * side);
+      StopCourse stop, next;
+      ASSERT_TRUE(planner.plan(road, at, {.share = 0.4}, stop).stands);
+      const StopStart planned = stop.places[static_cast<std::size_t>(stop.stop.size - 1)];
+      double edge = 5.0;
+      while (at.body.vx > 2.0) {
+        static_cast<void>(planner.follow(road, at, stop, next));
+        at = planner.advance(road, at, next.stop.points[0].command, 0.04, edge);
+        std::swap(stop, next);
+        ASSERT_LT(at.time, 20.0) << car.name;
+      }
+      EXPECT_NEAR(at.d, planned.d, 0.5) << car.name << ' ' << side;
+    }
+  }
+}
+
 /// A driver who sees loses less of the road than one who plays blindly.
 TEST(StopPlanner, KnowsThatADriverWhoSeesStraysLess) {
   const road::KnownRoad road = circle(120.0);

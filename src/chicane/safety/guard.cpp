@@ -452,13 +452,12 @@ Guard::Fit Guard::plan_stop(const StopStart& from, double edge_before, const Sto
     return last_->stop.size > 0 && suffices(planner_.follow(road_, from, *last_, *tried_), !wish.slides);
   };
   if (races_ && search()) return best_fit;
-  if (wish.is_driven && !wish.is_hard && follow()) return best_fit;
   for (const Braking& braking : kStops) {
     if (wish.is_hard && braking.share < 1.0) continue;
     if (best_fit == Fit::kBlind && braking.stability < kBarelyStable) break;
     if (suffices(planner_.plan(road_, from, braking, *tried_), !wish.slides)) return best_fit;
   }
-  if (wish.is_driven && wish.is_hard && follow()) return best_fit;
+  if (wish.is_driven && follow()) return best_fit;
   for (const double time : kDrivesOn) {
     if (!plans || best_fit != Fit::kNone) break;
     if (suffices(planner_.plan_later(road_, from, *wish.intended, time, kStops[1], *tried_), true))

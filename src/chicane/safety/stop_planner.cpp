@@ -299,10 +299,14 @@ model::Command StopPlanner::along(const StopCourse& before, std::size_t& place, 
   const double r = between(from.body.r, to.body.r) * v / v_then + v * curvature;
   const double distance = between(before.stop.points[place].distance, before.stop.points[place + 1].distance);
   model::Command command = played(before.stop, distance, hypot(at.body.vx, at.body.vy), model_.vehicle());
+  // Between the wheels of both places: a stop that is followed anew in each cycle begins a new place each
+  // time, and with the wheel of the old one it would never come to the next.
+  const double steer =
+      between(before.stop.points[place].command.steer, before.stop.points[place + 1].command.steer);
   const double limit = model_.vehicle().steer_limit;
-  command.steer = std::clamp(command.steer + model_.steer_for(at.body, kYawBandwidth * (r - at.body.r)) -
-                                 model_.steer_for(at.body, 0.0),
-                             -limit, limit);
+  command.steer = std::clamp(
+      steer + model_.steer_for(at.body, kYawBandwidth * (r - at.body.r)) - model_.steer_for(at.body, 0.0),
+      -limit, limit);
   return command;
 }
 
