@@ -9,7 +9,7 @@
 #
 # Most of a small source file's compile time goes into the headers that it includes. UNITY compiles the module's sources as one file,
 # and chicane_unity(TARGET GROUP FILE...) some of a target's, so names in their anonymous namespaces must differ; files that no group
-# names, such as those of a new controller, are compiled alone. LIGHT is for what no control step waits for: -O1; all tests are.
+# names, such as those of a new controller, are compiled alone. LIGHT is for what no control step waits for: -O1. Tests have -Og.
 # docs/build_times.md says what this is good for.
 option(CHICANE_UNITY "Compile groups of sources as one file; OFF, as in the preset dev: each alone" ON)
 
@@ -75,7 +75,7 @@ function(chicane_test name)
   list(TRANSFORM T_DEPENDS PREPEND chicane_)
   set(target ${name}_test)
   add_executable(${target} ${T_SOURCES})
-  chicane_light(${target})
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Og>)
   target_link_libraries(${target} PRIVATE ${T_DEPENDS} chicane_options chicane_test_support ${T_PRIVATE})
   target_compile_definitions(${target} PRIVATE CHICANE_ENABLE_ASSERT CHICANE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   # One label with all words in it, which `ctest -L` and `-LE` find: gtest_discover_tests takes lists apart.

@@ -48,6 +48,9 @@ check_bits() {
 }
 
 parts=("$@")
+for part in "${parts[@]}"; do
+  declare -F "check_$part" >/dev/null || { say "tools/check.sh: got $part, expected parts of those at the top of this file"; exit 2; }
+done
 [ $# -gt 0 ] || parts=(format web layers tidy release dev clang asan tsan bits)
 mapfile -t others < <(node_packages; browser_packages)
 install_packages "${run_packages[@]}" "${test_packages[@]}" "${check_packages[@]}" "${others[@]}" || exit 3

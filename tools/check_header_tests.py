@@ -51,6 +51,14 @@ def reaches(root, source, header, seen=None):
     return False
 
 
+def is_listed(file, keyword):
+    """Whether the CMakeLists.txt beside `file` names it, or lists no files after `keyword` itself."""
+    cmake_file = file.parent / "CMakeLists.txt"
+    text = re.sub(r"#.*", "", cmake_file.read_text(encoding="utf-8")) if cmake_file.exists() else ""
+    takes_all = keyword not in text.split() or "GLOB" in text
+    return takes_all or re.search(rf"(?<![\w/]){re.escape(file.name)}(?!\w)", text) is not None
+
+
 def why_no_test(root, test, header):
     """Why `test` is no test of `header`; nothing when it is."""
     if not test.exists():
@@ -102,6 +110,10 @@ def check(root):
             yield f"{where}: got no test, expected {test.relative_to(root)} or a line in {LIST}"
         elif why := why_no_test(root, test, header):
             yield f"{where}: {test.relative_to(root)} {why}"
+        elif not is_listed(test, "SOURCES"):
+            yield f"{where}: {test.relative_to(root)} is not compiled: add it to {test.parent.relative_to(root)}/CMakeLists.txt"
+        if not is_listed(header, "HEADERS"):
+            yield f"{where}: is not installed: add it to HEADERS in {header.parent.relative_to(root)}/CMakeLists.txt"
 
 
 def main():

@@ -22,6 +22,8 @@ def main():
         sys.exit(__doc__)
     root = Path(__file__).resolve().parent.parent
     tests = names(sys.argv[1])
+    if unbuilt := [test for test in tests if test.endswith("_NOT_BUILT")]:
+        sys.exit(f"{len(unbuilt)} test programs are not built, so that their tests are not known: build all first")
     pages = sorted([*root.glob("*.md"), *root.glob("docs/**/*.md"), *root.glob("claims/*.yaml")])
     unknown, commands = 0, 0
     for page in pages:

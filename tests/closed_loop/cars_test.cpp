@@ -97,7 +97,10 @@ TEST_P(EveryCar, LapsCleanlyWithTheDefaultSettings) {
     const auto refused = run.guard_reasons[static_cast<std::size_t>(controller::GuardReason::kNoWayToStop)];
     // Cars that are hardly stable by themselves at their speed: a stop that fits has to be found anew at
     // times.
-    EXPECT_LE(refused, GetParam() == "vw-vanagon" ? 30U : GetParam() == "formula-student" ? 3U : 0U) << track;
+    EXPECT_LE(refused, GetParam() == "vw-vanagon"        ? 30U
+                       : GetParam() == "formula-student" ? 3U
+                                                         : 0U)
+        << track << ": answers refused by the guard; a car that ships laps without, or has its number here";
   }
 }
 

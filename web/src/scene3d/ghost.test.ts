@@ -76,8 +76,10 @@ describe('the ghost', () => {
     drive(recorder, [10, 3]);
     drive(recorder, [9, 3]); // from time 0 again
     expect(recorder.best?.lapTime).toBe(9);
+    expect(recorder.best?.label).toBe('best lap 0:09.000');
     drive(recorder, [11, 3]);
     expect(recorder.best?.lapTime).toBe(9);
+    expect(recorder.best?.label).toBe('best lap before the reset 0:09.000');
     recorder.clear();
     expect(recorder.best).toBeNull();
   });

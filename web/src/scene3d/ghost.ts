@@ -50,6 +50,11 @@ export class RecordedLap implements GhostSource {
     this.line = new Float32Array(line);
   }
 
+  /** The same lap under another name. */
+  named(label: string): RecordedLap {
+    return new RecordedLap(this.#rows, this.lapTime, label);
+  }
+
   poseAt(time: number, into: GhostPose): boolean {
     const rows = this.#rows;
     const count = rows.length / ROW;
@@ -89,8 +94,7 @@ export class LapRecorder {
 
   push(frame: Frame): void {
     if (frame.time_s === this.#time) return;
-    // A reset discards the lap in progress; the best lap stays.
-    if (frame.time_s < this.#time) this.#begin(NaN, false, 0);
+    if (frame.time_s < this.#time) this.#reset();
     if (frame.time_s - this.#time > LONGEST_SILENCE_S) this.#isWhole = false;
     this.#time = frame.time_s;
     if (!Number.isFinite(frame.lap_time_s)) return;
@@ -101,6 +105,12 @@ export class LapRecorder {
       this.#begin(frame.lap, isNext || frame.lap_time_s < 0.5, frame.off_track_events);
     }
     this.#add(frame);
+  }
+
+  /** A reset discards the lap in progress; the best lap stays, but the run's own count begins anew. */
+  #reset(): void {
+    this.#begin(NaN, false, 0);
+    if (this.best) this.best = this.best.named(`best lap before the reset ${lapTime(this.best.lapTime, 3)}`);
   }
 
   #begin(lap: number, isWhole: boolean, events: number): void {

@@ -32,7 +32,7 @@ function extremeOf(history: History, column: number, pick: (a: number, b: number
 
 function faultText(name: string, now: number): string {
   const left = secondsLeft(`fault.${name.replace(/^fault\./, '')}`, now);
-  const rest = Number.isFinite(left) ? `, ${fixed(left, 0)} s left` : '';
+  const rest = Number.isFinite(left) ? `, ${Math.ceil(left)} s left` : '';
   return `Fault: ${faultInWords(name)}${rest}`;
 }
 
