@@ -5,7 +5,8 @@
 #
 # Without HEADERS and SOURCES all of the folder belong to the module: so in folders that get a file for each controller, plant, fault or
 # track format; PRIVATE_HEADERS are for our own sources and not installed. SIMD_SOURCES are compiled once for each instruction set
-# (InstructionSets.cmake). A test without SOURCES has every *_test.cpp of its folder.
+# (InstructionSets.cmake). A test without SOURCES has every *_test.cpp of its folder; each of its tests is a process of its own, but those
+# of a suite in SUITES, which share what takes long to make.
 #
 # Most of a small source file's compile time goes into the headers that it includes. UNITY compiles the module's sources as one file,
 # and chicane_unity(TARGET GROUP FILE...) some of a target's, so names in their anonymous namespaces must differ; files that no group
@@ -65,7 +66,7 @@ function(chicane_module name)
 endfunction()
 
 function(chicane_test name)
-  cmake_parse_arguments(T "" "" "SOURCES;DEPENDS;LABELS;PRIVATE" ${ARGN})
+  cmake_parse_arguments(T "" "" "SOURCES;DEPENDS;LABELS;PRIVATE;SUITES" ${ARGN})
   if(NOT T_DEPENDS)
     set(T_DEPENDS ${name})
   endif()
@@ -80,6 +81,16 @@ function(chicane_test name)
   target_compile_definitions(${target} PRIVATE CHICANE_ENABLE_ASSERT CHICANE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   # One label with all words in it, which `ctest -L` and `-LE` find: gtest_discover_tests takes lists apart.
   string(JOIN ":" labels ${name} ${T_LABELS})
-  gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST
+  set(others ${T_SUITES})
+  foreach(suite IN LISTS T_SUITES)
+    add_test(NAME ${suite} COMMAND ${target} --gtest_filter=${suite}.*:*/${suite}.*)
+    set_tests_properties(${suite} PROPERTIES LABELS "${labels}" TIMEOUT 300)
+  endforeach()
+  if(others)
+    list(TRANSFORM others REPLACE "(.+)" "\\1.*:*/\\1.*")
+    list(JOIN others ":" others)
+    set(others TEST_FILTER "-${others}")
+  endif()
+  gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST ${others}
                        PROPERTIES LABELS "${labels}" TIMEOUT 300)
 endfunction()

@@ -51,8 +51,8 @@ class Plant {
   virtual void deviate(const PlantDeviation& deviation) noexcept = 0;
   /// Acts from the next step on, until told otherwise; survives reset().
   virtual void disturb(const Disturbance& /*disturbance*/) noexcept {}
-  /// One physics step with `command` acting on the actuators from its beginning. Any finite command; clamped
-  /// inside.
+  /// One physics step with `command` acting on the actuators from its beginning. Any command, also one
+  /// that is not finite; clamped inside.
   virtual void advance(const model::Command& command) noexcept = 0;
   [[nodiscard]] virtual const model::State& state() const noexcept = 0;
   [[nodiscard]] virtual const PlantOutput& output() const noexcept = 0;
