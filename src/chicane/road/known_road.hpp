@@ -49,6 +49,8 @@ class KnownRoad {
     if (!is_raced_ || edges.left + edges.right < 2.0 * room) return middle;
     return std::clamp(0.0, room - edges.right, edges.left - room);
   }
+  /// A line to race by takes the place of the road's own: its demand().speed is that of the planned lap.
+  [[nodiscard]] bool is_raced() const noexcept { return is_raced_; }
   /// Increases with every new line: positions along an older one mean nothing any more.
   [[nodiscard]] unsigned revision() const noexcept { return seen_ ? seen_->revision() : lines_; }
 

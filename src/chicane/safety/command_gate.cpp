@@ -27,7 +27,7 @@ constexpr int severity(GateReason reason) noexcept {
 
 }  // namespace
 
-GateResult CommandGate::pass(const model::Command& asked, double elapsed) noexcept {
+GateResult CommandGate::limited(const model::Command& asked, double elapsed) const noexcept {
   GateResult result{asked, GateReason::kNone};
   model::Command& command = result.command;
   const auto note = [&](GateReason reason) {
@@ -64,7 +64,12 @@ GateResult CommandGate::pass(const model::Command& asked, double elapsed) noexce
     }
   }
 
-  last_ = command;
+  return result;
+}
+
+GateResult CommandGate::pass(const model::Command& asked, double elapsed) noexcept {
+  const GateResult result = limited(asked, elapsed);
+  last_ = result.command;
   return result;
 }
 

@@ -23,6 +23,8 @@ class CommandGate {
   explicit CommandGate(const model::VehicleParams& vehicle) noexcept : vehicle_{vehicle} {}
   /// `elapsed` [s] since the last command, for the rate limit; <= 0 or non-finite skips the rate check.
   [[nodiscard]] GateResult pass(const model::Command& asked, double elapsed) noexcept;
+  /// What pass() would send.
+  [[nodiscard]] GateResult limited(const model::Command& asked, double elapsed) const noexcept;
   void reset() noexcept { last_ = {}; }
   /// Another car's limits from now on; the last command stays.
   void set_vehicle(const model::VehicleParams& vehicle) noexcept { vehicle_ = vehicle; }

@@ -8,8 +8,8 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/controller/way_back.hpp"
 #include "chicane/safety/stop_player.hpp"
-#include "chicane/safety/stop_search.hpp"
 
 namespace chicane::safety {
 namespace {
@@ -18,60 +18,40 @@ using controller::Answer;
 using controller::GuardReason;
 using controller::Rung;
 
-constexpr double kAssumedCycle = 0.04;           // [s] where the interval between commands is not known
-constexpr double kShortestHold = 0.09;           // [s] a command is held for so long where no other one comes
-constexpr double kSlowStop = 6.0;                // [m] a car that stops within this is slow
-constexpr double kStandingSpeed = 0.6;           // [m/s]
-constexpr int kShown = 64;                       // points of a stop that is drawn
-constexpr double kShownStep = 0.1;               // [s]
-constexpr double kWalkingPace = 3.0;             // [m/s]
-constexpr double kFastestWayBack = 4.0;          // [m/s]
-constexpr double kMostUse = 0.75;                // of the tyres sideways, after a command: the law's stops
-constexpr double kMostUseUnplanned = 0.65;       // the same where the controller shows no plan
-constexpr double kMostUseEver = 1.2;             // and those that are searched for
-constexpr double kDrivesOn[] = {0.5, 1.0, 1.5};  // [s] as the controller plans, before a stop
-constexpr double kRecovery = 0.5;                // [s] after a silence, until the car is in hand again
-constexpr double kDrivenBlind = 2.0;             // [s] of a silence while the car is being stopped
-constexpr double kUnfit = 200.0;                 // worse than any stop that fits, in m and m/s
-constexpr double kGuessedWidth = 1.0;    // [m] that the assumed width may be too small by, for a slow car
-constexpr double kLeastEdge = 0.1;       // [m] that a car on the road keeps in any case
-constexpr double kNoFloor = -1e9;        // [m]
-constexpr double kLeniency = 0.05;       // [m] nearer to the edge, for a slow car beyond the margin
-constexpr double kLeniencyRate = 0.25;   // [m/s] more of it for one that stands
-constexpr double kMostLeniency = 3.0;    // [m]
-constexpr double kLongestHold = 0.5;     // [s]
-constexpr double kFarFromRoad = 20.0;    // [m] beside its line there is no stop along the road
-constexpr double kBlindStability = 1.6;  // of a car that is steered without feedback
-constexpr double kGentleStop = 0.8;      // share of the useful braking; all of it when that is too little
-constexpr double kBarelyStable = 1.1;    // where that is too little, too
-constexpr double kHeldByHand = 0.7;      // of a car that is steered by what it does
-// Of a car that is too fast for a silence.
-constexpr Braking kHeldBack{kGentleStop, kBlindStability, kHeldByHand};
-// What is tried in turn.
-constexpr Braking kStops[] = {{kGentleStop, kBlindStability, kHeldByHand},
-                              {1.0, kBlindStability, kHeldByHand},
-                              {1.0, kBarelyStable},
-                              {1.0, kHeldByHand},
-                              {1.0, 0.0}};
+constexpr double kStandingSpeed = 0.5;  // [m/s]
+constexpr int kShown = 64;              // points of a backup that is drawn
+constexpr double kShownStep = 0.1;      // [s]
+constexpr double kLedBackSpeed = 6.0;   // [m/s] below which a car that is off the road is led back
+constexpr double kFarFromRoad = 20.0;   // [m] beside its line there is no stop along the road
+constexpr double kLost = 100.0;         // [m] farther away the car is not led back
+constexpr double kAcross = 0.8;         // [rad] off the road's direction the car is across it
+constexpr double kAlong = 0.2;          // [rad] within which it is along it again
+constexpr double kRefusedTime = 1.0;    // [s] of refused commands after which a standing car is led back
+constexpr double kGuessedWidth = 1.0;   // [m] by which an assumed width may be too small
+constexpr double kReleaseTime = 0.5;    // [s] a car that should move may stand before its brake is released
+constexpr double kDrives = 0.1;         // pedal from which on a car should move
+constexpr double kRelease = 0.02;       // pedal, negative, that releases a latched brake
+constexpr double kMostDoubt = 0.5;      // [s] by which a controller's own time may differ from the measured
+constexpr double kRollsBackAtMost = 3.0;    // [m/s] faster a car does not roll back: its heading is wrong
+constexpr double kMostAgainstRolling = 0.3;  // pedal against rolling back
+// Braking of a car that is too fast for a silence: gentle, and stable without feedback.
+constexpr Braking kHeldBack{0.8, 1.6, 0.7};
 
 bool is_finite(const model::Command& command) noexcept {
   return std::isfinite(command.steer) && std::isfinite(command.throttle);
 }
 
-/// When the command of this cycle acts [s], where the controller does not say.
+bool is_same(const model::Command& a, const model::Command& b) noexcept {
+  return a.steer == b.steer && a.throttle == b.throttle;
+}
+
+/// When the command of this cycle acts [s]: what the controller says, where that is near what was measured.
 double act_time(const model::Measurement& seen, const controller::StepReport& report) noexcept {
-  return std::isnan(report.act_time) ? seen.time + seen.delay : report.act_time;
+  const double usual = seen.time + seen.delay;
+  return std::fabs(report.act_time - usual) < kMostDoubt ? report.act_time : usual;
 }
 
 }  // namespace
-
-static std::unique_ptr<StopSearch> copy_of(const StopSearch& search) {
-  return std::make_unique<StopSearch>(search);
-}
-
-static std::unique_ptr<StopCourse> copy_of(const StopCourse& course) {
-  return std::make_unique<StopCourse>(course);
-}
 
 road::KnownRoad known_road(const GuardOptions& options, const path::RoadData* road,
                            const model::VehicleParams& vehicle) {
@@ -92,13 +72,12 @@ Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::Ve
       gate_{vehicle},
       road_{std::move(road)},
       estimator_{model::PredictionModel{vehicle}},
-      planner_{vehicle},
-      search_{std::make_unique<StopSearch>(vehicle)},
-      model_{vehicle},
-      stop_{std::make_unique<StopCourse>()},
-      tried_{std::make_unique<StopCourse>()},
-      last_{std::make_unique<StopCourse>()} {
-  estimator_.estimate_disturbance(planner_.has_wheels());
+      filter_{vehicle,
+              {.margin = options.margin,
+               .least_edge = options.road == GuardRoad::kWaypoints ? -kGuessedWidth : 0.0,
+               .open_time = options.blind_time}},
+      model_{vehicle} {
+  estimator_.estimate_disturbance(filter_.planner().has_wheels());
 }
 
 Guard::Guard(const Guard& other) = default;
@@ -115,33 +94,32 @@ void Guard::reset() noexcept {
   estimator_.reset();
   direction_.reset();
   sent_.clear();
-  stop_->stop.size = last_->stop.size = 0;
-  has_place_ = false;
-  floor_ = kNoFloor;
-  search_->forget();
+  filter_.forget();
+  has_place_ = is_astray_ = false;
+  is_led_ = false;
+  refused_since_ = stuck_since_ = 0.0;
 }
 
 void Guard::forget_road() {
   if (options_.road == GuardRoad::kWaypoints) return;
   options_.road = GuardRoad::kWaypoints;
   road_ = known_road(options_, nullptr, model_.vehicle());
-  has_place_ = races_ = false;
+  has_place_ = false;
+  filter_.forget();
   controller_->use_line(nullptr);
 }
 
 void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
   if (options_.road == GuardRoad::kTrack && lap && !lap->is_learned()) road_.use_line(lap.get());
   has_place_ = false;
-  races_ = lap != nullptr;
-  search_->forget();
+  filter_.forget();
   controller_->use_line(std::move(lap));
 }
 
 void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   fallback_.set_vehicle(vehicle);
   model_.set_vehicle(vehicle);
-  planner_.set_vehicle(vehicle);
-  search_->set_vehicle(vehicle);
+  filter_.set_vehicle(vehicle);
   estimator_.set_model(model_);
 }
 
@@ -153,9 +131,13 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   if (!is_finite(result.command)) result.answer = Answer::kNone;
   choose(seen, cycle, result);
   const model::Command asked = result.command;
-  const GateResult gated = gate_.pass(cycle.manual.value_or(asked), cycle.interval);
+  if (options_.mode == GuardMode::kOn && !cycle.manual) {
+    release_brake(seen.time, result.command);
+    result.command = limited(result.command, cycle.interval);
+  }
+  const GateResult gated = gate_.pass(cycle.manual.value_or(result.command), cycle.interval);
   result.command = gated.command;
-  result.report.gated = gated.reason != GateReason::kNone;
+  result.report.gated = gated.reason != GateReason::kNone || !is_same(gated.command, cycle.manual.value_or(asked));
   controller_->note_sent(result.command);
   if (!is_off && std::isfinite(sent_from_)) sent_.add(sent_from_, result.command);
   return asked;
@@ -187,66 +169,142 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
                    controller::StepResult& result) noexcept {
   const double act = act_time(seen, result.report);
   sent_from_ = seen.time + seen.delay;
-  std::swap(stop_, last_);
-  stop_->stop.size = 0;
+  const bool has_answer = result.answer != Answer::kNone;
   if (options_.mode == GuardMode::kOff || cycle.manual) {
     if (cycle.manual) supervisor_.rearm();
-    return result.answer == Answer::kNone ? fall_back(seen, result) : accept(seen, result);
+    filter_.forget();
+    return has_answer ? accept(seen, result) : fall_back(seen, result);
   }
-  const model::State& now = estimator_.state();
-  const Supervisor::Verdict verdict = supervisor_.judge(monitor_.findings(), seen.time, now.vx);
+
+  const Supervisor::Verdict verdict = supervisor_.judge(monitor_.findings(), seen.time, estimator_.state().vx);
   if (verdict.may_begin_anew) {
     monitor_.reset();
     estimator_.reset();
   }
+  const std::optional<StopStart> start = place_on_road(act);
+  watch_course(start);
   controller::StepReport& report = result.report;
   report.reason = verdict.reason;
-  const std::optional<StopStart> start = place_on_road(act);
-  const bool has_answer = result.answer != Answer::kNone;
   if (!has_answer && report.reason == GuardReason::kNone)
     report.reason = is_far_ ? GuardReason::kFarFromRoad : GuardReason::kNoAnswer;
-  bool must_stop = verdict.must_stop || !has_answer;
-  if (start && !must_stop) {
-    const Fit fit = leaves_a_stop(*start, result.command, result.plan, cycle.interval, report);
-    must_stop = fit == Fit::kNone && !is_way_back(*start, result);
-    if (fit == Fit::kSeen) {
-      report.reason = GuardReason::kTooFastForSilence;
-      must_stop = options_.mode == GuardMode::kOn && !hold_back(*start, cycle.interval, result);
-    }
-    if (must_stop) report.reason = GuardReason::kNoWayToStop;
+
+  bool may_send = has_answer && !verdict.must_stop;
+  if (may_send && start) may_send = filter(*start, cycle, result);
+  if (options_.mode == GuardMode::kObserve) return has_answer ? accept(seen, result) : fall_back(seen, result);
+  if (may_send && !is_astray_) {
+    is_led_ = false;
+    refused_since_ = seen.time;
+    return accept(seen, result);
   }
-  if (result.answer == Answer::kReturnToRoad) floor_ = kNoFloor;  // it may lead further away at first
-  if (options_.mode == GuardMode::kObserve) must_stop = !has_answer;
-  if (!must_stop) return accept(seen, result);
-  if (start && options_.mode == GuardMode::kOn) {
-    drive_stop(*start, result);
+  if (!verdict.must_stop && should_lead_back(seen.time, has_answer) && lead_back(act, cycle, result)) return;
+  if (start) {
+    drive_backup(*start, result);
   } else {
     fall_back(seen, result);
   }
   // What brakes a car that goes forward may be the reverse gear of one that rolls back.
   if (direction_.rolls_back() && result.command.throttle < 0.0)
-    result.command.throttle = controller::throttle_against_rolling_back(model_.vehicle(), now.vx);
+    result.command.throttle = against_rolling_back();
 }
 
-/// The car could be stopped while it is seen, but not by a receiver that is left alone: steered by its
-/// controller it is slowed down, as gently as it stays stable, until it could. False where that leaves no
-/// stop at all.
-bool Guard::hold_back(const StopStart& start, double interval, controller::StepResult& result) noexcept {
+/// Whether the answer may be sent; slowed down where it leaves only a closed-loop backup.
+bool Guard::filter(const StopStart& start, const Cycle& cycle, controller::StepResult& result) noexcept {
+  const Fit fit = verify(start, cycle, result.command, result);
+  if (fit == Fit::kOpen) return true;
+  result.report.reason = GuardReason::kTooFastForSilence;
+  if (fit == Fit::kSeen && (options_.mode == GuardMode::kObserve || slow_down(start, cycle, result)))
+    return true;
+  result.report.reason = GuardReason::kNoWayToStop;
+  return false;
+}
+
+/// Of the command as the gate would send it.
+Fit Guard::verify(const StopStart& start, const Cycle& cycle, const model::Command& command,
+                  controller::StepResult& result) noexcept {
+  return filter_.verify({.road = road_,
+                         .start = start,
+                         .command = limited(command, cycle.interval),
+                         .intended = result.plan,
+                         .interval = cycle.interval},
+                        result.report);
+}
+
+/// The controller steers; the pedal is limited to gentle braking. False where that leaves no backup at all.
+bool Guard::slow_down(const StopStart& start, const Cycle& cycle, controller::StepResult& result) noexcept {
   model::Command slower = result.command;
-  const double slowing = planner_.slowing(road_, start, kHeldBack);
+  const double slowing = filter_.planner().slowing(road_, start, kHeldBack);
   slower.throttle = std::min(slower.throttle, throttle_for(model_.vehicle(), slowing, start.body.vx));
-  if (slower.throttle < result.command.throttle &&
-      leaves_a_stop(start, slower, result.plan, interval, result.report) == Fit::kNone)
+  if (slower.throttle < result.command.throttle && verify(start, cycle, slower, result) == Fit::kNone)
     return false;
   result.command = slower;
   return true;
 }
 
-/// A way back to the road begins where there may be none: slow as it is, it is planned for the receiver, and
-/// not refused.
-bool Guard::is_way_back(const StopStart& start, const controller::StepResult& result) const noexcept {
-  if (result.answer == Answer::kDrive) return false;
-  return result.command.throttle <= 0.0 || start.body.vx < kFastestWayBack || direction_.rolls_back();
+/// The command inside range and rate, without the reverse gear: a stop ends in standstill.
+model::Command Guard::limited(const model::Command& command, double interval) const noexcept {
+  model::Command inside = gate_.limited(command, interval).command;
+  const model::VehicleParams& car = model_.vehicle();
+  const double v = act_speed_;
+  if (v < car.reverse_speed && inside.throttle < 0.0)
+    inside.throttle = std::max(inside.throttle, throttle_to_rest(car, -car.reverse_acceleration, v));
+  return inside;
+}
+
+/// A car off the road or across it is astray until it is along the road again.
+void Guard::watch_course(const std::optional<StopStart>& start) noexcept {
+  const double least = options_.road == GuardRoad::kWaypoints ? -kGuessedWidth : 0.0;
+  if (!start) {
+    is_astray_ = is_far_;
+    return;
+  }
+  const bool is_on_road = filter_.planner().edge(road_, *start) >= least;
+  const double off = std::fabs(start->e);
+  if (!is_on_road || off > kAcross) is_astray_ = true;
+  if (is_on_road && off < kAlong) is_astray_ = false;
+}
+
+/// A car that is astray, or that stands while its controller's commands are refused.
+bool Guard::should_lead_back(double time, bool has_answer) noexcept {
+  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed;
+  if (!has_answer || !(stands || is_led_)) refused_since_ = time;
+  if (time - refused_since_ > kRefusedTime) is_led_ = true;
+  return is_astray_ || (is_led_ && has_answer);
+}
+
+/// Walking pace on a course that meets the road; false where the car is too fast or lost.
+bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& result) noexcept {
+  const road::ReferenceLine& line = road_.line();
+  if (line.is_empty() || !estimator_.is_started() || !std::isfinite(act)) return false;
+  const model::State car = estimator_.predict(act, sent_).state;
+  if (!std::isfinite(car.x + car.y + car.psi + car.vx)) return false;
+  const bool rolls_back = direction_.rolls_back();
+  if (!rolls_back && !(std::fabs(car.vx) < kLedBackSpeed)) return false;
+  const road::ReferenceLine::Projection place =
+      line.project_along({car.x, car.y}, car.psi, 2.0 * model_.vehicle().width);
+  if (!(place.distance < kLost)) return false;
+  result.command = rolls_back ? model::Command{0.0, against_rolling_back()}
+                              : controller::way_back(line, place, car, model_.vehicle());
+  filter_.forget();
+  if (const auto start = place_on_road(act)) static_cast<void>(verify(*start, cycle, result.command, result));
+  result.answer = Answer::kNone;
+  result.plan.size = result.plan.reference_size = 0;
+  result.report.rung = Rung::kReturnToRoad;
+  return true;
+}
+
+double Guard::against_rolling_back() const noexcept {
+  const double speed = std::fabs(estimator_.state().vx);
+  if (speed > kRollsBackAtMost) return 0.0;
+  return std::min(controller::throttle_against_rolling_back(model_.vehicle(), speed), kMostAgainstRolling);
+}
+
+/// A car whose brake stays on at rest until the pedal has been released moves again after a short release.
+void Guard::release_brake(double time, model::Command& command) noexcept {
+  const bool should_move = command.throttle > kDrives && std::fabs(estimator_.state().vx) < kStandingSpeed;
+  if (!should_move) stuck_since_ = time;
+  if (!(time - stuck_since_ > kReleaseTime) || !(model_.vehicle().reverse_speed > 0.0)) return;
+  command.throttle = -kRelease;
+  stuck_since_ = time;
 }
 
 /// The controller's answer is sent.
@@ -279,44 +337,18 @@ void Guard::fall_back(const model::Measurement& seen, controller::StepResult& re
   result.plan.reference_size = 0;
 }
 
-/// The stop in the place of the controller's answer.
-void Guard::drive_stop(const StopStart& start, controller::StepResult& result) noexcept {
-  const bool is_blind = monitor_.findings().unmeasured || monitor_.findings().frozen;
-  // Without measurements there is nothing to plan anew by that counts on better than the stop does.
-  if (!is_blind || !planner_.has_wheels() || !keep_stop(start.time, result.report))
-    static_cast<void>(plan_stop(start, std::numeric_limits<double>::infinity(),
-                                {.is_driven = true, .is_hard = is_blind}, result.report));
+/// The stored backup goes on.
+void Guard::drive_backup(const StopStart& start, controller::StepResult& result) noexcept {
+  const bool is_open = monitor_.findings().unmeasured || monitor_.findings().frozen;
+  static_cast<void>(filter_.drive(road_, start, is_open, result.report));
   result.answer = Answer::kNone;
-  result.command = stop_->stop.points[0].command;
+  result.command = filter_.stop().points[0].command;
   result.report.rung = Rung::kGuardStop;
-  show_stop(start, result.plan);
+  show_backup(start, result.plan);
 }
 
-/// The stop of the cycle before goes on from `time` [s] on; false where there is none.
-bool Guard::keep_stop(double time, controller::StepReport& report) noexcept {
-  const auto size = static_cast<std::size_t>(last_->stop.size);
-  std::size_t i = 0;
-  while (i + 1 < size && last_->stop.points[i + 1].time <= time) ++i;
-  if (i + 1 >= size) return false;
-  const StopPoint& here = last_->stop.points[i];
-  const StopPoint& next = last_->stop.points[i + 1];
-  const double share = std::max(time - here.time, 0.0) / (next.time - here.time);
-  const double driven = here.distance + share * (next.distance - here.distance);
-  const double speed = here.speed + share * (next.speed - here.speed);
-  stop_->stop.size = 0;
-  StopStart place = last_->places[i];
-  place.time = std::max(time, here.time);
-  stop_->add(place, 0.0, speed, here.command);
-  for (++i; i < size; ++i) {
-    const StopPoint& point = last_->stop.points[i];
-    stop_->add(last_->places[i], point.distance - driven, point.speed, point.command);
-  }
-  report.stop_distance = last_->stop.points[size - 1].distance - driven;
-  return true;
-}
-
-/// The stop as a plan, for viewers.
-void Guard::show_stop(const StopStart& start, controller::Plan& plan) const noexcept {
+/// The backup as a plan, for viewers.
+void Guard::show_backup(const StopStart& start, controller::Plan& plan) const noexcept {
   const road::ReferenceLine& line = road_.line();
   StopStart at = start;
   double edge = 0.0;
@@ -324,7 +356,7 @@ void Guard::show_stop(const StopStart& start, controller::Plan& plan) const noex
   plan.size = plan.reference_size = 0;
   while (plan.size < kShown) {
     const double speed = hypot(at.body.vx, at.body.vy);
-    const model::Command command = played(stop_->stop, driven, speed, model_.vehicle());
+    const model::Command command = played(filter_.stop(), driven, speed, model_.vehicle());
     driven += kShownStep * speed;
     const road::CurvePoint here = line.at(at.s);
     const auto i = static_cast<std::size_t>(plan.size++);
@@ -336,7 +368,7 @@ void Guard::show_stop(const StopStart& start, controller::Plan& plan) const noex
                       .speed = at.body.vx,
                       .command = command};
     if (at.body.vx < kStandingSpeed) break;
-    at = planner_.advance(road_, at, command, kShownStep, edge);
+    at = filter_.planner().advance(road_, at, command, kShownStep, edge);
   }
   plan.reference_size = plan.size;
 }
@@ -345,13 +377,15 @@ void Guard::show_stop(const StopStart& start, controller::Plan& plan) const noex
 std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   const road::ReferenceLine& line = road_.line();
   is_far_ = false;
+  act_speed_ = estimator_.state().vx;
   if (line.is_empty() || !estimator_.is_started() || !std::isfinite(act_time)) return std::nullopt;
   const controller::StateEstimator::Prediction at = estimator_.predict(act_time, sent_);
   const model::State& car = at.state;
   if (!std::isfinite(car.x + car.y + car.psi + car.vx + car.vy + car.r)) return std::nullopt;
+  act_speed_ = car.vx;
   if (revision_ != road_.revision()) {
     has_place_ = false;
-    last_->stop.size = 0;
+    filter_.forget();
   }
   revision_ = road_.revision();
   const Vec2 position{car.x, car.y};
@@ -370,108 +404,6 @@ std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
                    .body = {car.vx, car.vy, car.r, car.steer, at.acceleration},
                    .load_along = at.acceleration,
                    .load_across = car.vx * car.r};
-}
-
-/// How the car can still be stopped on the road after `command` has acted for a cycle.
-Guard::Fit Guard::leaves_a_stop(const StopStart& start, const model::Command& command,
-                                const controller::Plan& intended, double interval,
-                                controller::StepReport& report) noexcept {
-  // The receiver holds the command until the stop begins: time enough for the next one to come late.
-  const double cycle = interval > 0.0 ? interval : kAssumedCycle;
-  const double held = std::clamp(cycle, kShortestHold, kLongestHold);
-  double least_edge = planner_.edge(road_, start);
-  const double edge_now = least_edge;
-  const StopStart next = planner_.advance(road_, start, command, held, least_edge);
-  model::BodyMotion<double> undriven = next.body;  // a stop does not ask for its drive
-  undriven.acceleration = std::min(undriven.acceleration, 0.0);
-  const auto use = model_.tire_use(undriven);
-  const double most_use = start.body.vx > kWalkingPace ? std::max(use.front, use.rear) : 0.0;
-  const bool slides = most_use > (intended.size > 1 ? kMostUse : kMostUseUnplanned);
-  const Fit fit = plan_stop(next, least_edge, {.intended = &intended, .slides = slides}, report);
-  if (fit != Fit::kNone && most_use < kMostUseEver) {
-    floor_ = kNoFloor;
-    return fit;
-  }
-  // A car that is beyond the margin already may move slowly, if it comes no nearer to the edge than it was.
-  // One that stands and would wait for ever may use up the margin; one that is off the road may come further,
-  // the more the longer it has stood.
-  if (start.body.vx > kWalkingPace) floor_ = kNoFloor;  // it has not come to rest yet
-  if (edge_now > floor_ + kLeniency) {
-    floor_ = edge_now;
-    leniency_ = kLeniency;
-  }
-  if (std::fabs(start.body.vx) < kStandingSpeed) leniency_ += kLeniencyRate * cycle;
-  const double least = options_.road == GuardRoad::kWaypoints ? -kGuessedWidth : kLeastEdge;
-  const double lowest = floor_ < 0.0 ? floor_ - kMostLeniency : least;
-  const double allowed = std::max(std::min(floor_, options_.margin) - leniency_, lowest);
-  const bool is_slow = !slides && report.stop_distance < kSlowStop && report.stop_edge >= allowed;
-  return is_slow ? Fit::kBlind : Fit::kNone;
-}
-
-/// The first of the stops that keeps the margin, and the road when it is played blindly for as long as a
-/// silence may last; else the best of them. A car that `slides` is no longer one that the law knows. A stop
-/// for which the model has to be right to the last is enough for who shows that he plans, too: he stays away
-/// from where it is needed (docs/safety.md, "The invariant").
-Guard::Fit Guard::plan_stop(const StopStart& from, double edge_before, const StopWish& wish,
-                            controller::StepReport& report) noexcept {
-  const bool plans = wish.intended != nullptr && wish.intended->size > 1 && !wish.slides;
-  double best = -std::numeric_limits<double>::infinity();
-  Fit best_fit = Fit::kNone;
-  // Takes `tried_` where it is better than what there is. True: no other one is needed.
-  const auto suffices = [&](const StopCheck& check, bool is_known) {
-    const double edge = std::min(check.least_edge, edge_before);
-    double worth = edge - kUnfit;
-    Fit fit = Fit::kNone;
-    bool lasts = false;
-    if (check.stands && edge >= options_.margin) {
-      const BlindCheck blind = played_edge(from, wish.is_driven ? kDrivenBlind : options_.blind_time);
-      lasts = blind.edge >= 0.0;
-      if (blind.edge_for >= 0.0) {
-        fit = Fit::kBlind;
-        worth = lasts ? kUnfit + blind.edge : kUnfit - blind.speed;
-      } else if (!wish.is_hard) {
-        const double followed = std::min(planner_.followed_edge(road_, from, *tried_), 0.0);
-        if (followed >= 0.0 || plans) fit = Fit::kSeen;
-        worth = followed - blind.speed;
-      }
-    }
-    if (worth >= best) {
-      best = worth;
-      best_fit = is_known ? fit : Fit::kNone;
-      std::swap(stop_, tried_);
-      report.stop_edge = edge;
-      report.stop_distance = check.distance;
-    }
-    return is_known && fit == Fit::kBlind && (lasts || wish.is_driven);
-  };
-  const auto search = [&] {
-    const StopCheck found = search_->plan(road_, from, options_.margin, planner_, *tried_);
-    return tried_->stop.size > 0 && suffices(found, true);
-  };
-  const auto follow = [&] {
-    return last_->stop.size > 0 && suffices(planner_.follow(road_, from, *last_, *tried_), !wish.slides);
-  };
-  if (races_ && search()) return best_fit;
-  for (const Braking& braking : kStops) {
-    if (wish.is_hard && braking.share < 1.0) continue;
-    if (best_fit == Fit::kBlind && braking.stability < kBarelyStable) break;
-    if (suffices(planner_.plan(road_, from, braking, *tried_), !wish.slides)) return best_fit;
-  }
-  if (wish.is_driven && follow()) return best_fit;
-  for (const double time : kDrivesOn) {
-    if (!plans || best_fit != Fit::kNone) break;
-    if (suffices(planner_.plan_later(road_, from, *wish.intended, time, kStops[1], *tried_), true))
-      return best_fit;
-  }
-  if (!races_ && best_fit == Fit::kNone && (wish.is_driven || plans)) static_cast<void>(search());
-  return best_fit;
-}
-
-/// How near to the edge [m] the receiver comes with `tried_` in a silence of `time` [s], or of the length
-/// that is planned for where that is shorter.
-BlindCheck Guard::played_edge(const StopStart& from, double time) const noexcept {
-  if (!(options_.blind_time > 0.0)) return {};
-  return planner_.played_edge(road_, from, tried_->stop, std::min(time, options_.blind_time) + kRecovery);
 }
 
 }  // namespace chicane::safety

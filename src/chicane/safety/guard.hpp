@@ -19,13 +19,12 @@
 #include "chicane/safety/fallback.hpp"
 #include "chicane/safety/guard_options.hpp"
 #include "chicane/safety/measurement_monitor.hpp"
+#include "chicane/safety/predictive_filter.hpp"
 #include "chicane/safety/stop_plan.hpp"
 #include "chicane/safety/stop_planner.hpp"
 #include "chicane/safety/supervisor.hpp"
 
 namespace chicane::safety {
-
-class StopSearch;
 
 /// The road as a guard knows it at first: `road`, where it may, or nothing yet. A guard that is off has no
 /// use for one.
@@ -79,40 +78,30 @@ class Guard {
   void set_vehicle(const model::VehicleParams& vehicle) noexcept;
 
   /// The stop at hand after step(): from the moment at which the next command would act. Size 0: none.
-  [[nodiscard]] const StopPlan& stop() const noexcept { return stop_->stop; }
+  [[nodiscard]] const StopPlan& stop() const noexcept { return filter_.stop(); }
   [[nodiscard]] controller::Controller& controller() noexcept { return *controller_; }
   [[nodiscard]] const controller::Controller& controller() const noexcept { return *controller_; }
 
  private:
   void choose(const model::Measurement& seen, const Cycle& cycle, controller::StepResult& result) noexcept;
-  [[nodiscard]] bool is_way_back(const StopStart& start, const controller::StepResult& result) const noexcept;
+  [[nodiscard]] bool filter(const StopStart& start, const Cycle& cycle,
+                            controller::StepResult& result) noexcept;
+  [[nodiscard]] Fit verify(const StopStart& start, const Cycle& cycle, const model::Command& command,
+                           controller::StepResult& result) noexcept;
+  [[nodiscard]] bool slow_down(const StopStart& start, const Cycle& cycle,
+                               controller::StepResult& result) noexcept;
+  [[nodiscard]] model::Command limited(const model::Command& command, double interval) const noexcept;
   void accept(const model::Measurement& seen, controller::StepResult& result) noexcept;
   void fall_back(const model::Measurement& seen, controller::StepResult& result) noexcept;
-  void drive_stop(const StopStart& start, controller::StepResult& result) noexcept;
-  [[nodiscard]] bool keep_stop(double time, controller::StepReport& report) noexcept;
-  void show_stop(const StopStart& start, controller::Plan& plan) const noexcept;
+  void drive_backup(const StopStart& start, controller::StepResult& result) noexcept;
+  void show_backup(const StopStart& start, controller::Plan& plan) const noexcept;
+  void watch_course(const std::optional<StopStart>& start) noexcept;
+  [[nodiscard]] bool should_lead_back(double time, bool has_answer) noexcept;
+  [[nodiscard]] bool lead_back(double act, const Cycle& cycle, controller::StepResult& result) noexcept;
+  [[nodiscard]] double against_rolling_back() const noexcept;
+  void release_brake(double time, model::Command& command) noexcept;
   [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
   [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
-  /// What kind of stop is at hand.
-  enum class Fit : std::uint8_t {
-    kNone,   ///< none that keeps the margin
-    kSeen,   ///< one that does while it is known where the car is
-    kBlind,  ///< and when a receiver plays it blindly for as long as a silence may last
-  };
-  [[nodiscard]] Fit leaves_a_stop(const StopStart& start, const model::Command& command,
-                                  const controller::Plan& intended, double interval,
-                                  controller::StepReport& report) noexcept;
-  [[nodiscard]] bool hold_back(const StopStart& start, double interval,
-                               controller::StepResult& result) noexcept;
-  struct StopWish {
-    bool is_driven = false;                      ///< the car is being stopped
-    bool is_hard = false;                        ///< as short as can be
-    const controller::Plan* intended = nullptr;  ///< by the controller
-    bool slides = false;  ///< the tyres are used so much that only a stop that is searched for will do
-  };
-  [[nodiscard]] Fit plan_stop(const StopStart& from, double edge_before, const StopWish& wish,
-                              controller::StepReport& report) noexcept;
-  [[nodiscard]] BlindCheck played_edge(const StopStart& from, double time) const noexcept;
 
   Owned<controller::Controller> controller_;
   GuardOptions options_;
@@ -124,20 +113,18 @@ class Guard {
   controller::StateEstimator estimator_;
   controller::DirectionWatch direction_;  ///< by what is measured, plausible or not
   controller::CommandHistory sent_;
-  StopPlanner planner_;
-  Owned<StopSearch> search_;
+  PredictiveFilter filter_;
   model::PredictionModel model_;
-  double floor_ = -1e9;      ///< how far from the edge a car beyond the margin has been since [m]
-  double leniency_ = 0.05;   ///< how much nearer to the edge it may come, slowly [m]
-  Owned<StopCourse> stop_;   ///< at hand
-  Owned<StopCourse> tried_;  ///< one that may become it
-  Owned<StopCourse> last_;   ///< that of the cycle before
-  double s_ = 0.0;           ///< on the known road where the command acts [m]
+  double s_ = 0.0;  ///< on the known road where the command acts [m]
   unsigned revision_ = 0;
   bool has_place_ = false;
-  bool is_far_ = false;     ///< the known road is, from the car
-  bool races_ = false;      ///< by a planned lap: the law's stops are not enough
-  double sent_from_ = 0.0;  ///< from which the command of this cycle acts [s]
+  bool is_far_ = false;         ///< the car is far from the known road
+  bool is_astray_ = false;      ///< it is off the road or across it
+  bool is_led_ = false;         ///< it stood while commands were refused, and is led back to the line
+  double refused_since_ = 0.0;  ///< commands of a standing car [s]
+  double stuck_since_ = 0.0;    ///< a car that should move stands [s]
+  double act_speed_ = 0.0;      ///< estimated where the command acts [m/s]
+  double sent_from_ = 0.0;      ///< from which the command of this cycle acts [s]
 };
 
 }  // namespace chicane::safety

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/safety/stop_player.hpp"
 
@@ -24,6 +25,7 @@ constexpr double kGravity = 9.81;          // [m/s²]
 constexpr double kLeastBraking = 0.15;     // of the useful one, in any curve
 constexpr double kFeedbackShare = 0.4;     // of the grip, for coming back to the middle of the road
 constexpr double kStopMargin = 0.6;        // [m] wanted to the edge by a car that stops
+constexpr double kRacedMargin = 0.3;       // [m] the same along a line that is raced by
 constexpr int kTurns = 3;                  // of the search for a stable deceleration
 constexpr double kSlipShift = 2e-3;        // [rad] to either side, for slopes of the axles' forces
 constexpr double kStiffnessDoubt = 0.015;  // of the rear axle's
@@ -33,6 +35,8 @@ constexpr double kDoubtWithWheels = 0.6;   // of these, where the car is simulat
 constexpr double kForeseenUse = 0.55;      // of the grip, in the bends ahead
 constexpr double kStride = 10.0;           // [m] between the places ahead
 constexpr double kHorizon = 200.0;         // [m]
+constexpr double kSpeedTime = 0.4;         // [s] in which a planned speed is met again
+constexpr double kPlanSpacing = 0.08;     // [s] between the places of a controller's plan
 constexpr double kMostOffset = 20.0;       // [m] beside the line the stop is given up
 
 }  // namespace
@@ -194,7 +198,7 @@ model::Command StopPlanner::law(const road::KnownRoad& road, const StopStart& at
   const double course = at.e + at.body.vy / v;
   // Towards the middle of the road, where there is most room on both sides, or the line that is raced by.
   const double beside =
-      at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) + kStopMargin);
+      at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) + (road.is_raced() ? kRacedMargin : kStopMargin));
   const double curvature = ahead + back_to(beside, course, v);
   // The wheel that gives the yaw rate this asks for, by the model: a braking car oversteers.
   const double yaw_acceleration = kYawBandwidth * (v * curvature - at.body.r);
@@ -210,14 +214,24 @@ double StopPlanner::slowing(const road::KnownRoad& road, const StopStart& at,
   const double ahead = road.line().demand(at.s + kPreview * v).curvature;
   const double bend = std::max(std::fabs(ahead), std::fabs(road.line().demand(at.s).curvature));
   const double sideways = (1.0 - car.steer_helper) * std::max(bend * v * v, std::fabs(at.body.r) * v);
+  const double raced = raced_slowing(road, at);
   const double useful = longitudinal_acceleration(car, lowest_throttle(car, v), v);
   const double asked = useful * braking.share;
   const double held = braking_share(sideways, -asked, v);
   const double stable = std::min(held, stable_share(at.body, -asked, braking.stability));
-  if (!(braking.foreseen < braking.stability) || stable >= held) return asked * stable;
+  if (!(braking.foreseen < braking.stability) || stable >= held) return std::min(asked * stable, raced);
   const double wanted = foreseen(road, at, -asked) / -asked;
-  if (wanted <= stable) return asked * stable;
-  return asked * std::clamp(wanted, stable, std::min(held, stable_share(at.body, -asked, braking.foreseen)));
+  if (wanted <= stable) return std::min(asked * stable, raced);
+  return std::min(
+      asked * std::clamp(wanted, stable, std::min(held, stable_share(at.body, -asked, braking.foreseen))), raced);
+}
+
+/// The acceleration [m/s²] that keeps the car no faster than the planned lap: a car that drives its line more
+/// slowly needs less grip everywhere. Infinite where no lap is raced by.
+double StopPlanner::raced_slowing(const road::KnownRoad& road, const StopStart& at) const noexcept {
+  if (!road.is_raced()) return std::numeric_limits<double>::infinity();
+  const road::ReferenceLine::Demand demand = road.line().demand(at.s);
+  return demand.speed * demand.speed_slope + (demand.speed - at.body.vx) / kSpeedTime;
 }
 
 /// The deceleration [m/s²], no more than `most`, that brings the car to the bends ahead at a speed at which
@@ -299,6 +313,12 @@ model::Command StopPlanner::along(const StopCourse& before, std::size_t& place, 
   const double r = between(from.body.r, to.body.r) * v / v_then + v * curvature;
   const double distance = between(before.stop.points[place].distance, before.stop.points[place + 1].distance);
   model::Command command = played(before.stop, distance, hypot(at.body.vx, at.body.vy), model_.vehicle());
+  if (const double drive = before.stop.points[place].command.throttle; drive > 0.0) {
+    const double lost = between(from.body.vx, to.body.vx) - at.body.vx;
+    const double wanted =
+        longitudinal_acceleration(model_.vehicle(), drive, at.body.vx) + lost / kSpeedTime;
+    command.throttle = throttle_for(model_.vehicle(), wanted, at.body.vx);
+  }
   // Between the wheels of both places: a stop that is followed anew in each cycle begins a new place each
   // time, and with the wheel of the old one it would never come to the next.
   const double steer =
@@ -330,17 +350,44 @@ StopCheck StopPlanner::follow(const road::KnownRoad& road, const StopStart& star
   return drive(road, start, command_at, out);
 }
 
-StopCheck StopPlanner::plan_later(const road::KnownRoad& road, const StopStart& start,
-                                  const controller::Plan& intended, double time, const Braking& braking,
-                                  StopCourse& out) const noexcept {
+void StopPlanner::course_of(const road::KnownRoad& road, const StopStart& start,
+                            const controller::Plan& intended, StopCourse& out) const noexcept {
+  out.stop.size = 0;
+  const road::ReferenceLine& line = road.line();
   const auto size = static_cast<std::size_t>(std::clamp(intended.size, 0, controller::Plan::kCapacity));
-  std::size_t i = 0;
+  double s = start.s, driven = 0.0, next = 0.0;
+  for (std::size_t i = 0; i + 1 < size; ++i) {
+    const controller::PlanPoint& from = intended.points[i];
+    const controller::PlanPoint& to = intended.points[i + 1];
+    const double dt = to.time - from.time, dx = to.x - from.x, dy = to.y - from.y;
+    const double length = hypot(dx, dy);
+    if (!(dt > 0.0) || !(length < kStride) || !std::isfinite(from.psi + from.speed + to.psi)) return;
+    if (from.time - start.time > kLongestDriveOn) return;
+    if (from.time >= next && length > 0.0) {
+      next = from.time + kPlanSpacing;
+      const road::ReferenceLine::Projection place = line.project({from.x, from.y}, s, kStride);
+      s = line.is_closed() ? place.s + line.length() * std::round((s - place.s) / line.length()) : place.s;
+      const double e = angle_difference(from.psi, line.at(s).heading);
+      const double slide = angle_difference(atan2(dy, dx), from.psi + 0.5 * angle_difference(to.psi, from.psi));
+      StopStart at{.time = from.time, .s = s, .d = place.d, .e = e, .body = {}};
+      at.body.vx = from.speed;
+      at.body.vy = from.speed * std::clamp(slide, -0.5, 0.5);
+      at.body.r = angle_difference(to.psi, from.psi) / dt;
+      at.body.steer = from.command.steer;
+      out.add(at, driven, from.speed, from.command);
+    }
+    driven += length;
+  }
+}
+
+StopCheck StopPlanner::plan_later(const road::KnownRoad& road, const StopStart& start,
+                                  const StopCourse& intended, double time, const Braking& braking,
+                                  StopCourse& out) const noexcept {
+  const auto last = static_cast<std::size_t>(intended.stop.size - 1);
+  std::size_t place = 0;
   const auto command_at = [&](const StopStart& at) {
-    while (i + 1 < size && intended.points[i + 1].time <= at.time) ++i;
-    if (!(at.time < start.time + time) || i + 1 >= size) return law(road, at, braking);
-    const model::Command& there = intended.points[i].command;
-    const double limit = model_.vehicle().steer_limit;
-    return model::Command{std::clamp(there.steer, -limit, limit), std::clamp(there.throttle, -1.0, 0.0)};
+    const bool drives_on = at.time < start.time + time && at.s < intended.places[last].s;
+    return drives_on ? along(intended, place, 0.0, at) : law(road, at, braking);
   };
   return drive(road, start, command_at, out);
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/prediction.hpp"
@@ -45,6 +46,10 @@ struct StopCourse {
   }
 };
 
+[[nodiscard]] inline std::unique_ptr<StopCourse> copy_of(const StopCourse& course) {
+  return std::make_unique<StopCourse>(course);
+}
+
 /// How hard a stop may brake.
 struct Braking {
   double share = 0.8;      ///< of the useful braking, (0, 1]
@@ -81,12 +86,15 @@ class StopPlanner {
   /// there, and the law where it ends. Pre: as plan(), before.stop.size > 0.
   [[nodiscard]] StopCheck follow(const road::KnownRoad& road, const StopStart& start,
                                  const StopCourse& before, StopCourse& out) const noexcept;
-  /// The stop that first drives on for `time` [s] as a controller plans, without its drive, and then brakes
-  /// by the law: a plan that slows down for the bend ahead knows more of it than the law does. Pre: as
-  /// plan().
+  /// The motion that a controller publishes, in coordinates along the line: a course to drive on along. At most
+  /// kLongestDriveOn long. Pre: as plan().
+  void course_of(const road::KnownRoad& road, const StopStart& start, const controller::Plan& intended,
+                 StopCourse& out) const noexcept;
+  /// Drives on along `intended` for `time` [s], then brakes by the law. Pre: as plan(); intended.stop.size > 1.
   [[nodiscard]] StopCheck plan_later(const road::KnownRoad& road, const StopStart& start,
-                                     const controller::Plan& intended, double time, const Braking& braking,
+                                     const StopCourse& intended, double time, const Braking& braking,
                                      StopCourse& out) const noexcept;
+  static constexpr double kLongestDriveOn = 3.0;  ///< [s]
   /// How near to the edge [m] a receiver comes in the first `time` [s] that plays `stop` blindly, the car
   /// being a little other than believed: its rear axle softer while it turns in more than estimated, and
   /// stiffer while it turns in less.
@@ -114,6 +122,7 @@ class StopPlanner {
   [[nodiscard]] double instability(model::BodyMotion<double> m, double deceleration) const noexcept;
   [[nodiscard]] double stable_share(const model::BodyMotion<double>& m, double deceleration,
                                     double stability) const noexcept;
+  [[nodiscard]] double raced_slowing(const road::KnownRoad& road, const StopStart& at) const noexcept;
   [[nodiscard]] double foreseen(const road::KnownRoad& road, const StopStart& at, double most) const noexcept;
   [[nodiscard]] double braking_share(double sideways, double deceleration, double v) const noexcept;
   template <class Law>

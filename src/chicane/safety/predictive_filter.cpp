@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/predictive_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "chicane/base/math.hpp"
+#include "chicane/model/grip.hpp"
+
+namespace chicane::safety {
+namespace {
+
+constexpr double kAssumedCycle = 0.04;  // [s] between commands where that is not known
+constexpr double kShortestHold = 0.09;  // [s] a command is held where the next one comes late
+constexpr double kLongestHold = 0.5;    // [s]
+constexpr double kRecovery = 0.5;       // [s] after a silence until the car is controlled again
+constexpr double kDrivenOpen = 2.0;     // [s] of silence for which a backup that is being driven is verified
+constexpr double kLawUse = 0.75;        // tyre use up to which the stop law's model holds; 1: peak slip
+constexpr double kRacedUse = 1.0;       // the same along a planned lap, which the stop drives more slowly
+constexpr double kLawUseUnplanned = 0.65;  // the same without a published plan: no reserve for its error
+constexpr double kMostUse = 1.2;           // tyre use beyond which no command is sent: the car slides
+constexpr double kWalkingPace = 3.0;       // [m/s] below it slip angles say little
+constexpr double kDriveOn[] = {0.5, 1.0, 1.5, 2.0, 2.5};  // [s] along the controller's plan before the stop
+
+// The tube of the stored backup: deviations that its feedback takes back within the margin.
+constexpr double kTubeOffset = 0.1;    // [m]
+constexpr double kTubeAcross = 0.6;    // [m/s]
+constexpr double kTubeFaster = 0.5;    // [m/s]
+constexpr double kTubeSlower = 2.0;    // [m/s]
+constexpr double kTubeYawRate = 0.08;  // [rad/s]
+
+// The tube of a planned lap: deviations from which the car comes back to it, measured in laps of `race`.
+constexpr double kLapOffset = 0.5;  // [m]
+constexpr double kLapAcross = 1.5;  // [m/s]
+constexpr double kLapFaster = 1.0;  // [m/s]
+constexpr double kWideLap = 4.0;    // times as much where no verified backup is in store
+
+// What a stop brakes with, tried in turn: gently and stable without feedback, hard, hard with less and less
+// static stability left (docs/safety.md, eq. 5).
+constexpr double kGentle = 0.8;
+constexpr double kOpenStability = 1.6;
+constexpr double kBarelyStable = 1.1;
+constexpr double kHeldByFeedback = 0.7;
+constexpr Braking kStops[] = {{kGentle, kOpenStability, kHeldByFeedback},
+                              {1.0, kOpenStability, kHeldByFeedback},
+                              {1.0, kBarelyStable},
+                              {1.0, kHeldByFeedback},
+                              {1.0, 0.0}};
+constexpr double kUnfit = 200.0;  // [m] worse than any candidate that fits
+
+}  // namespace
+
+PredictiveFilter::Candidate PredictiveFilter::judge(const road::KnownRoad& road, const StopStart& from,
+                                                    const StopCheck& check,
+                                                    const Goal& goal) const noexcept {
+  Candidate candidate{.check = check};
+  candidate.check.least_edge = std::min(check.least_edge, goal.edge_before);
+  candidate.worth = candidate.check.least_edge - kUnfit;
+  if (!check.stands || !(candidate.check.least_edge >= goal.margin)) return candidate;
+
+  candidate.fit = Fit::kOpen;
+  candidate.worth = candidate.check.least_edge;
+  if (!(goal.open_time > 0.0)) return candidate;
+  const BlindCheck open = planner_.played_edge(road, from, tried_->stop, goal.open_time + kRecovery);
+  if (!(open.edge_for >= 0.0)) candidate.fit = Fit::kSeen;
+  candidate.worth = open.edge >= 0.0 ? open.edge : -open.speed;
+  return candidate;
+}
+
+/// The candidate that was simulated last becomes the backup.
+void PredictiveFilter::store(const Candidate& candidate, controller::StepReport& report) noexcept {
+  std::swap(backup_, tried_);
+  backup_fit_ = candidate.fit;
+  report.stop_edge = candidate.check.least_edge;
+  report.stop_distance = candidate.check.distance;
+}
+
+Fit PredictiveFilter::verify(const Request& request, controller::StepReport& report) noexcept {
+  const road::KnownRoad& road = request.road;
+  const double cycle = request.interval > 0.0 ? request.interval : kAssumedCycle;
+  const double held = std::clamp(cycle, kShortestHold, kLongestHold);
+  const double edge_now = planner_.edge(road, request.start);
+  Goal goal{.edge_before = edge_now, .margin = terms_.margin, .open_time = terms_.open_time};
+  const StopStart next = planner_.advance(road, request.start, request.command, held, goal.edge_before);
+  // A slow car that is within the margin already may move on if it comes no nearer to the edge.
+  if (next.body.vx < kWalkingPace)
+    goal.margin = std::min(terms_.margin, std::max(edge_now, terms_.least_edge));
+
+  model::BodyMotion<double> undriven = next.body;  // a stop does not ask for its drive
+  undriven.acceleration = std::min(undriven.acceleration, 0.0);
+  const auto tires = model_.tire_use(undriven);
+  const double use = next.body.vx > kWalkingPace ? std::max(tires.front, tires.rear) : 0.0;
+  planner_.course_of(road, request.start, request.intended, *intended_);
+  const bool plans = intended_->stop.size > 1;
+
+  Fit fit = Fit::kNone;
+  if (use < kMostUse) {
+    if (use < (!plans ? kLawUseUnplanned : road.is_raced() ? kRacedUse : kLawUse)) fit = stop_now(road, next, goal, report);
+    if (fit == Fit::kNone && plans) fit = stop_later(road, next, goal, report);
+  }
+  if (fit == Fit::kNone && is_in_tube(road, next)) {
+    shift_to_place(road, next);
+    fit = backup_fit_;
+  }
+  if (fit != Fit::kNone || !plans) return fit;
+  // Without a verified backup to drive there is nothing better than the planned lap.
+  const double wide = backup_fit_ == Fit::kNone || backup_->stop.size == 0 ? kWideLap : 1.0;
+  if (!drives_planned_lap(road, next, wide)) return fit;
+  forget();
+  return Fit::kOpen;
+}
+
+/// Whether the car drives a planned lap: near its line, along it, no faster than planned. The lap itself is a
+/// way to drive on; in fast changes of direction the stop law does not find one to stop.
+bool PredictiveFilter::drives_planned_lap(const road::KnownRoad& road, const StopStart& at,
+                                          double wide) const noexcept {
+  if (!road.is_raced()) return false;
+  const double course = at.e + at.body.vy / std::max(at.body.vx, 1.0);
+  return std::fabs(at.d) < wide * kLapOffset && std::fabs(course) * at.body.vx < wide * kLapAcross &&
+         at.body.vx < road.line().demand(at.s).speed + wide * kLapFaster &&
+         planner_.edge(road, at) >= terms_.margin / wide;
+}
+
+/// The first stop that fits open loop, else the first that fits.
+Fit PredictiveFilter::stop_now(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
+                               controller::StepReport& report) noexcept {
+  Fit best = Fit::kNone;
+  for (const Braking& braking : kStops) {
+    const StopCheck check = planner_.plan(road, from, braking, *tried_);
+    const Candidate candidate = judge(road, from, check, goal);
+    if (candidate.fit <= best) continue;
+    best = candidate.fit;
+    store(candidate, report);
+    if (best == Fit::kOpen) break;
+  }
+  return best;
+}
+
+Fit PredictiveFilter::stop_later(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
+                                 controller::StepReport& report) noexcept {
+  for (const double time : kDriveOn) {
+    const StopCheck check = planner_.plan_later(road, from, *intended_, time, kStops[1], *tried_);
+    const Candidate candidate = judge(road, from, check, goal);
+    if (candidate.fit == Fit::kNone) continue;
+    store(candidate, report);
+    return candidate.fit;
+  }
+  return Fit::kNone;
+}
+
+bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start, bool is_open,
+                             controller::StepReport& report) noexcept {
+  // Open loop the estimate's model is less accurate than the backup's: nothing is planned anew.
+  if (is_open && planner_.has_wheels() && shift_to(start.time)) return true;
+
+  Candidate best{.check = {}, .fit = Fit::kNone, .worth = -std::numeric_limits<double>::infinity()};
+  StopCourse before = *backup_;
+  const Goal goal{.edge_before = std::numeric_limits<double>::infinity(),
+                  .margin = terms_.margin,
+                  .open_time = std::min(kDrivenOpen, terms_.open_time)};
+  const auto consider = [&](const StopCheck& check) {
+    const Candidate candidate = judge(road, start, check, goal);
+    const bool is_better =
+        candidate.fit > best.fit || (candidate.fit == best.fit && candidate.worth > best.worth);
+    if (!is_better) return;
+    best = candidate;
+    store(candidate, report);
+  };
+  const auto use = model_.tire_use(start.body);
+  const bool law_holds = std::max(use.front, use.rear) < (road.is_raced() ? kRacedUse : kLawUse) || before.stop.size == 0;
+  if (law_holds) {
+    for (const Braking& braking : kStops) {
+      if (best.fit == Fit::kOpen) break;
+      if (is_open && braking.share < 1.0) continue;
+      consider(planner_.plan(road, start, braking, *tried_));
+    }
+  }
+  if (best.fit < Fit::kOpen && before.stop.size > 0) consider(planner_.follow(road, start, before, *tried_));
+  return backup_->stop.size > 0;
+}
+
+/// Whether the car is where the backup is at that place, and as fast.
+bool PredictiveFilter::is_in_tube(const road::KnownRoad& road, const StopStart& at) const noexcept {
+  const auto size = static_cast<std::size_t>(backup_->stop.size);
+  if (size < 2) return false;
+  const double length = road.line().length();
+  const double lap =
+      road.line().is_closed() ? length * std::round((at.s - backup_->places[0].s) / length) : 0.0;
+  std::size_t i = 0;
+  while (i + 2 < size && backup_->places[i + 1].s <= at.s - lap) ++i;
+  const StopStart& from = backup_->places[i];
+  const StopStart& to = backup_->places[i + 1];
+  const double share = (at.s - lap - from.s) / std::max(to.s - from.s, 1e-3);
+  if (!(share > -1.0 && share <= 1.0)) return false;
+  const auto off = [share](double value, double a, double b) { return value - (a + share * (b - a)); };
+  const double course = at.e + at.body.vy / std::max(at.body.vx, 1.0);
+  const auto course_of = [](const StopStart& p) { return p.e + p.body.vy / std::max(p.body.vx, 1.0); };
+  const double faster = off(at.body.vx, from.body.vx, to.body.vx);
+  return std::fabs(off(at.d, from.d, to.d)) < kTubeOffset &&
+         std::fabs(off(course, course_of(from), course_of(to))) * std::max(at.body.vx, 1.0) < kTubeAcross &&
+         std::fabs(off(at.body.r, from.body.r, to.body.r)) < kTubeYawRate && faster < kTubeFaster &&
+         faster > -kTubeSlower;
+}
+
+/// The backup begins at the car's place from now on.
+void PredictiveFilter::shift_to_place(const road::KnownRoad& road, const StopStart& at) noexcept {
+  const double length = road.line().length();
+  const double lap =
+      road.line().is_closed() ? length * std::round((at.s - backup_->places[0].s) / length) : 0.0;
+  const auto size = static_cast<std::size_t>(backup_->stop.size);
+  std::size_t i = 0;
+  while (i + 2 < size && backup_->places[i + 1].s <= at.s - lap) ++i;
+  const StopPoint& from = backup_->stop.points[i];
+  const StopPoint& to = backup_->stop.points[i + 1];
+  const double share = std::clamp((at.s - lap - backup_->places[i].s) /
+                                      std::max(backup_->places[i + 1].s - backup_->places[i].s, 1e-3),
+                                  0.0, 1.0);
+  const double late = at.time - (from.time + share * (to.time - from.time));
+  const double driven = from.distance + share * (to.distance - from.distance);
+  tried_->stop.size = 0;
+  StopStart here = at;
+  here.s -= lap;
+  tried_->add(here, 0.0, at.body.vx, from.command);
+  for (++i; i < size; ++i) {
+    const StopPoint& point = backup_->stop.points[i];
+    StopStart place = backup_->places[i];
+    place.time += late;
+    tried_->add(place, point.distance - driven, point.speed, point.command);
+  }
+  std::swap(backup_, tried_);
+}
+
+/// The backup begins at `time` [s] from now on; false where it is over.
+bool PredictiveFilter::shift_to(double time) noexcept {
+  const auto size = static_cast<std::size_t>(backup_->stop.size);
+  std::size_t i = 0;
+  while (i + 1 < size && backup_->stop.points[i + 1].time <= time) ++i;
+  if (i + 1 >= size) return false;
+  const StopPoint& here = backup_->stop.points[i];
+  const StopPoint& next = backup_->stop.points[i + 1];
+  const double share = std::max(time - here.time, 0.0) / (next.time - here.time);
+  const double driven = here.distance + share * (next.distance - here.distance);
+  const double speed = here.speed + share * (next.speed - here.speed);
+  tried_->stop.size = 0;
+  StopStart place = backup_->places[i];
+  place.time = std::max(time, here.time);
+  tried_->add(place, 0.0, speed, here.command);
+  for (++i; i < size; ++i) {
+    const StopPoint& point = backup_->stop.points[i];
+    tried_->add(backup_->places[i], point.distance - driven, point.speed, point.command);
+  }
+  std::swap(backup_, tried_);
+  return true;
+}
+
+}  // namespace chicane::safety

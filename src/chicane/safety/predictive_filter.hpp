@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "chicane/base/owned.hpp"
+#include "chicane/controller/controller.hpp"
+#include "chicane/model/prediction.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/road/known_road.hpp"
+#include "chicane/safety/stop_plan.hpp"
+#include "chicane/safety/stop_planner.hpp"
+
+namespace chicane::safety {
+
+/// What a backup was verified for, weakest first.
+enum class Fit : std::uint8_t {
+  kNone,  ///< no backup keeps the margin
+  kSeen,  ///< one does while the car is measured (closed loop)
+  kOpen,  ///< one does also when the receiver plays it without measurements (open loop)
+};
+
+/// The predictive safety filter (docs/safety.md, section 2): a command may be sent if, after it, a backup
+/// trajectory to standstill on the known road exists that was verified by simulation; the last verified one
+/// is stored and driven when it may not.
+///
+/// A backup is the controller's published plan for 0 to 3 s, then the stop law. Deterministic; no allocation
+/// after construction; one thread; at most kCandidates simulations to standstill a call.
+class PredictiveFilter {
+ public:
+  /// Fixed for a run.
+  struct Terms {
+    double margin = 0.2;      ///< of the tyres from the edge in a backup [m]
+    double least_edge = 0.0;  ///< the same of a slow car that is nearer to the edge already [m]
+    double open_time = 30.0;  ///< length of a silence for which backups are verified open loop [s]; 0: none
+  };
+
+  PredictiveFilter(const model::VehicleParams& vehicle, const Terms& terms)
+      : planner_{vehicle},
+        model_{vehicle},
+        terms_{terms},
+        backup_{std::make_unique<StopCourse>()},
+        tried_{std::make_unique<StopCourse>()},
+        intended_{std::make_unique<StopCourse>()} {}
+
+  void set_vehicle(const model::VehicleParams& vehicle) noexcept {
+    planner_.set_vehicle(vehicle);
+    model_.set_vehicle(vehicle);
+  }
+  /// Forgets the stored backup: its places belong to another line or another run.
+  void forget() noexcept { backup_->stop.size = 0; }
+
+  /// A command that shall act from `start` on, held until the next one.
+  struct Request {
+    const road::KnownRoad& road;
+    const StopStart& start;
+    model::Command command;
+    const controller::Plan& intended;  ///< published by the controller; size 0: none
+    double interval = 0.0;             ///< between two commands [s]; <= 0: not known
+  };
+  /// Verifies a backup from where `request` leads and stores it. Writes stop_edge and stop_distance. The
+  /// stored backup stays when none is verified; it counts as verified where the command leads into its tube.
+  [[nodiscard]] Fit verify(const Request& request, controller::StepReport& report) noexcept;
+
+  /// The command of the backup at `start`, after it was verified from there or brought up to date. `is_open`:
+  /// the car is not measured, `start` comes from the model. False: no backup is stored and none was found.
+  [[nodiscard]] bool drive(const road::KnownRoad& road, const StopStart& start, bool is_open,
+                           controller::StepReport& report) noexcept;
+
+  /// The backup in store, from the moment at which the next command would act. Size 0: none.
+  [[nodiscard]] const StopPlan& stop() const noexcept { return backup_->stop; }
+  [[nodiscard]] const StopPlanner& planner() const noexcept { return planner_; }
+
+ private:
+  /// What a backup has to keep.
+  struct Goal {
+    double edge_before = 0.0;  ///< least distance to the edge until it begins [m]
+    double margin = 0.0;       ///< [m]
+    double open_time = 0.0;    ///< [s]
+  };
+  /// One simulated candidate.
+  struct Candidate {
+    StopCheck check;
+    Fit fit = Fit::kNone;
+    double worth = 0.0;  ///< to choose between candidates that do not fit [m]
+  };
+  [[nodiscard]] Candidate judge(const road::KnownRoad& road, const StopStart& from, const StopCheck& check,
+                                const Goal& goal) const noexcept;
+  void store(const Candidate& candidate, controller::StepReport& report) noexcept;
+  [[nodiscard]] Fit stop_now(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
+                             controller::StepReport& report) noexcept;
+  [[nodiscard]] Fit stop_later(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
+                               controller::StepReport& report) noexcept;
+  [[nodiscard]] bool is_in_tube(const road::KnownRoad& road, const StopStart& at) const noexcept;
+  [[nodiscard]] bool drives_planned_lap(const road::KnownRoad& road, const StopStart& at,
+                                        double wide) const noexcept;
+  [[nodiscard]] bool shift_to(double time) noexcept;
+  void shift_to_place(const road::KnownRoad& road, const StopStart& at) noexcept;
+
+  StopPlanner planner_;
+  model::PredictionModel model_;
+  Terms terms_;
+  Owned<StopCourse> backup_;    ///< in store
+  Owned<StopCourse> tried_;     ///< the candidate being simulated, then the spare
+  Owned<StopCourse> intended_;  ///< the controller's plan along the line
+  Fit backup_fit_ = Fit::kNone;
+};
+
+}  // namespace chicane::safety
