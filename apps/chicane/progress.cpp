@@ -8,7 +8,7 @@
 #include <string>
 
 #include "chicane/base/angle.hpp"
-#include "chicane/protocol/frame_fields.hpp"
+#include "chicane/controller/guard_words.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -16,30 +16,10 @@ namespace {
 constexpr std::chrono::milliseconds kTerminalPeriod{100};
 constexpr double kLinePeriod = 10.0;  // [s] of the run
 
-/// What a field of the frame that tells cases apart says, in words.
-std::string_view meaning(std::string_view field, int value) {
-  for (const protocol::FrameGroup& group : protocol::frame_groups()) {
-    for (const protocol::FrameField& each : group.fields) {
-      if (each.name != field) continue;
-      for (const protocol::FrameConstant& constant : each.constants)
-        if (constant.value == value) return constant.meaning;
-    }
-  }
-  return "";
-}
-
-/// Who drives, where it is not the controller by its plan, and why.
+/// Who drives and why, where it is not the controller alone.
 std::string exception(const controller::StepReport& report) {
-  using controller::Rung;
-  if (report.rung == Rung::kController && report.reason != controller::GuardReason::kTooFastForSilence)
-    return "";
-  const bool does_stop =
-      report.rung == Rung::kHoldAndBrake || report.rung == Rung::kBrake || report.rung == Rung::kGuardStop;
-  const bool is_held_back = report.rung == Rung::kController;
-  if (is_held_back) return fmt::format("  {}", meaning("guard_reason", static_cast<int>(report.reason)));
-  if (does_stop && report.reason != controller::GuardReason::kNone)
-    return fmt::format("  stopping: {}", meaning("guard_reason", static_cast<int>(report.reason)));
-  return fmt::format("  {}", meaning("rung", static_cast<int>(report.rung)));
+  const controller::DriverWords words = controller::describe_driver(report.rung, report.reason);
+  return words.severity == Severity::kOk ? "" : "  " + controller::sentence_of(words);
 }
 
 std::string line(const telemetry::Frame& frame) {

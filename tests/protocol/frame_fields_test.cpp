@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <regex>
 #include <set>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -193,6 +196,35 @@ TEST(FrameFields, EachValueHasTheTypeOfItsRowWhateverTheFrameHolds) {
                 std::size_t{controller::Explanation::kMaxCostTerms});
     }
   }
+}
+
+/// Of a field by its name, in its order.
+std::span<const FrameConstant> constants_of(std::string_view name) {
+  for (const FrameField& row : rows())
+    if (row.name == name) return row.constants;
+  return {};
+}
+
+template <class Enum, std::size_t N>
+void expect_constants(std::string_view field, std::string_view prefix,
+                      const std::array<Word<Enum>, N>& words) {
+  const std::span<const FrameConstant> found = constants_of(field);
+  ASSERT_EQ(found.size(), N) << field;
+  for (std::size_t i = 0; i < N; ++i) {
+    std::string name{prefix};
+    for (const char letter : words[i].name)
+      name += static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+    EXPECT_EQ(found[i].name, name);
+    EXPECT_EQ(found[i].value, static_cast<int>(words[i].value)) << name;
+    EXPECT_EQ(found[i].meaning, words[i].sentence) << name;
+    EXPECT_EQ(found[i].severity, words[i].severity) << name;
+  }
+}
+
+TEST(FrameFields, HaveAConstantForEverySourceReasonAndStatus) {
+  expect_constants("rung", "RUNG_", controller::kRungWords);
+  expect_constants("guard_reason", "REASON_", controller::kGuardReasonWords);
+  expect_constants("solve_status", "STATUS_", solver::kSolveStatusWords);
 }
 
 }  // namespace

@@ -265,13 +265,30 @@ TEST(RosMessages, DiagnosticsSayInWordsWhoIsInControl) {
     EXPECT_EQ(reader.text(), "chicane: controller");
     return std::pair{level, reader.text()};
   };
-  EXPECT_EQ(first(), std::pair(1, std::string("no answer: following the last plan")));
+  EXPECT_EQ(first(), std::pair(1, std::string("the car follows the last plan")));
   frame.result.report.rung = controller::Rung::kBrake;
-  EXPECT_EQ(first(), std::pair(2, std::string("no answer: steering along the last plan, full braking")));
+  EXPECT_EQ(first(), std::pair(2, std::string("the car follows the last plan and brakes fully")));
   frame.result.report.rung = controller::Rung::kController;
   EXPECT_EQ(first(), std::pair(1, std::string("the command gate changed the command")));
   frame.result.report.gated = false;
-  EXPECT_EQ(first(), std::pair(0, std::string("in control")));
+  EXPECT_EQ(first(), std::pair(0, std::string("the controller drives")));
+}
+
+TEST(RosMessages, DiagnosticsKnowEverySourceAndEveryReason) {
+  telemetry::Frame frame = samples::frame();
+  frame.result.report.gated = false;
+  for (const Word<controller::Rung>& rung : controller::kRungWords) {
+    for (const Word<controller::GuardReason>& reason : controller::kGuardReasonWords) {
+      frame.result.report.rung = rung.value;
+      frame.result.report.reason = reason.value;
+      const std::string bytes = encode("/diagnostics", frame);
+      EXPECT_NE(bytes.find(rung.sentence), std::string::npos) << rung.name;
+      const bool is_shown = bytes.find(reason.sentence) != std::string::npos;
+      if (rung.value != controller::Rung::kController && reason.value != controller::GuardReason::kNone) {
+        EXPECT_TRUE(is_shown) << rung.name << " " << reason.name;
+      }
+    }
+  }
 }
 
 TEST(RosMessages, EveryTopicEncodesAFrameFullOfNotANumber) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "chicane/protocol/frame_fields.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 #include "protocol/message_definition.hpp"
 
@@ -82,6 +83,12 @@ std::size_t common_prefix(const std::vector<MessageLine>& constants) {
   return prefix.size();
 }
 
+/// As Biome writes it: in single quotes unless there is one inside.
+std::string quoted(std::string_view text) {
+  const char quote = text.find('\'') == std::string_view::npos ? '\'' : '"';
+  return fmt::format("{}{}{}", quote, text, quote);
+}
+
 std::string constants_object(const std::vector<MessageLine>& constants, std::string_view field) {
   const std::size_t prefix = common_prefix(constants);
   std::string text = fmt::format("/** {} */\nexport const {} = {{\n", field,
@@ -91,6 +98,47 @@ std::string constants_object(const std::vector<MessageLine>& constants, std::str
     text += fmt::format("  {}: {},\n", std::string_view{each.name}.substr(prefix), each.constant);
   }
   return text + "} as const;\n\n";
+}
+
+std::string_view severity_of(Severity severity) {
+  switch (severity) {
+    case Severity::kOk:
+      return "good";
+    case Severity::kWarning:
+      return "warning";
+    case Severity::kError:
+      return "bad";
+  }
+  return "unknown";
+}
+
+/// The states of a field of Frame in words: "RUNG_WORDS" for the constants "RUNG_BRAKE" and so on.
+std::string words_object(const protocol::FrameField& field) {
+  std::vector<MessageLine> lines;
+  for (const protocol::FrameConstant& each : field.constants) lines.emplace_back().name = each.name;
+  const std::size_t prefix = common_prefix(lines);
+  const std::string_view object = field.constants.front().name.substr(0, prefix - 1);
+  std::string text =
+      fmt::format("\n/** Frame.{} in words. */\nexport const {}_WORDS: Words = {{\n", field.name, object);
+  for (const protocol::FrameConstant& each : field.constants) {
+    text += fmt::format("  [{}.{}]: {{\n    severity: '{}',\n    text: {},\n  }},\n", object,
+                        each.name.substr(prefix), severity_of(each.severity.value()), quoted(each.meaning));
+  }
+  return text + "};\n";
+}
+
+std::string words() {
+  std::string text =
+      "\n/** Each value of a state, for people: without capital and full stop. */\n"
+      "export type Words = Readonly<\n"
+      "  Record<number, { readonly severity: 'good' | 'warning' | 'bad'; readonly text: string } | "
+      "undefined>\n"
+      ">;\n";
+  for (const protocol::FrameGroup& group : protocol::frame_groups()) {
+    for (const protocol::FrameField& field : group.fields)
+      if (!field.constants.empty() && field.constants.front().severity) text += words_object(field);
+  }
+  return text;
 }
 
 }  // namespace
@@ -140,7 +188,7 @@ std::string typescript_messages() {
     text +=
         "\n/** The numbers of a frame, and what is yes or no, in its order. */\nexport const FRAME_NUMBERS = "
         "[\n" +
-        columns + "] as const;\n";
+        columns + "] as const;\n" + words();
   }
   return text;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <limits>
 #include <memory>
 #include <span>
@@ -10,6 +9,7 @@
 #include "chicane/base/deadline.hpp"
 #include "chicane/base/vec2.hpp"
 #include "chicane/controller/explanation.hpp"
+#include "chicane/controller/guard_words.hpp"
 #include "chicane/controller/plan.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
@@ -28,39 +28,6 @@ enum class Answer : signed char {
   kStopOnRoad = 2,    ///< no plan: the command stops the car along the known road
   kReturnToRoad = 3,  ///< no plan: the command leads back to the road at walking pace
 };
-
-/// Who chose the command of a cycle, worst last but for the two that a controller chooses without a plan. Set
-/// by safety::Guard alone.
-enum class Rung : signed char {
-  kController = 0,    ///< the controller's own answer
-  kShiftedPlan = 1,   ///< the last usable plan, at the time that has come
-  kHoldAndBrake = 2,  ///< steering along the last plan's path, gentle braking
-  kBrake = 3,         ///< the same steering, all useful braking
-  kReturnToRoad = 4,  ///< the controller's own: Answer::kReturnToRoad
-  kStopOnRoad = 5,    ///< the controller's own: Answer::kStopOnRoad
-  kGuardStop = 6,     ///< the guard's verified stop on the known road (safety/stop_planner.hpp)
-};
-inline constexpr int kRungCount = 7;
-
-/// Why the guard did not send the controller's answer, or would not have (docs/safety.md, table of
-/// conditions). The worst one holds: later ones win.
-enum class GuardReason : signed char {
-  kNone = 0,
-  kNoAnswer = 1,           ///< the controller had none
-  kNotMeasured = 2,        ///< position, yaw or speed unknown for longer than is tolerated
-  kFrozen = 3,             ///< measurements repeat although the car moves
-  kSpeedMismatch = 4,      ///< measured speed and measured displacement contradict each other
-  kHeadingJump = 5,        ///< measured yaw changed as no car turns
-  kPositionJump = 6,       ///< measured position changed as no car moves
-  kNoWayToStop = 7,        ///< after the answer the car could not be stopped on the road any more
-  kFarFromRoad = 8,        ///< there is no answer, and the car is far beside the road that is known
-  kTooFastForSilence = 9,  ///< after the answer a receiver left alone could not: it is sent, braking
-};
-inline constexpr int kGuardReasonCount = 10;
-/// As reports name them.
-inline constexpr std::array<std::string_view, kGuardReasonCount> kGuardReasonNames{
-    "none",         "no_answer",     "not_measured",   "frozen",        "speed_mismatch",
-    "heading_jump", "position_jump", "no_way_to_stop", "far_from_road", "too_fast_for_silence"};
 
 /// How one step went.
 struct StepReport {

@@ -9,15 +9,13 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/controller/controller.hpp"
+#include "chicane/controller/guard_words.hpp"
 #include "chicane/solver/solution.hpp"
 
 namespace chicane::protocol {
 namespace {
 
-using controller::GuardReason;
-using controller::Rung;
 using controller::SpeedLimiter;
-using solver::SolveStatus;
 using telemetry::Frame;
 using Numbers = std::span<const double>;
 
@@ -49,7 +47,36 @@ constexpr FrameField field(std::string_view name, std::string_view meaning, Valu
 
 template <class Enum>
 constexpr FrameConstant constant(std::string_view name, Enum value, std::string_view meaning = {}) {
-  return {name, static_cast<int>(value), meaning};
+  return {.name = name, .value = static_cast<int>(value), .meaning = meaning};
+}
+
+using ConstantName = std::array<char, 40>;  // ends with a zero
+
+/// "RUNG_" and "guard_stop": "RUNG_GUARD_STOP".
+template <class Enum, std::size_t N>
+consteval std::array<ConstantName, N> capital_names(std::string_view prefix,
+                                                    const std::array<Word<Enum>, N>& words) {
+  std::array<ConstantName, N> names{};
+  for (std::size_t i = 0; i < N; ++i) {
+    std::size_t at = 0;
+    for (const char letter : prefix) names[i].at(at++) = letter;
+    for (const char letter : words[i].name)
+      names[i].at(at++) = letter == '_' ? letter : static_cast<char>(letter - 'a' + 'A');
+  }
+  return names;
+}
+
+template <class Enum, std::size_t N>
+constexpr std::array<FrameConstant, N> constants(const std::array<ConstantName, N>& names,
+                                                 const std::array<Word<Enum>, N>& words) {
+  std::array<FrameConstant, N> rows{};
+  for (std::size_t i = 0; i < N; ++i) {
+    rows[i] = {.name = names[i].data(),
+               .value = static_cast<int>(words[i].value),
+               .meaning = words[i].sentence,
+               .severity = words[i].severity};
+  }
+  return rows;
 }
 
 /// What only a judge of the road knows: an external simulator tells none of it.
@@ -130,43 +157,12 @@ constexpr std::array kCommands{
     field<double>("throttle_applied", "", [](const Frame& f) { return f.applied.throttle; }),
 };
 
-constexpr std::array kRungs{
-    constant("RUNG_CONTROLLER", Rung::kController, "the controller's own answer"),
-    constant("RUNG_SHIFTED_PLAN", Rung::kShiftedPlan, "the last usable plan, at the time that has come"),
-    constant("RUNG_HOLD_AND_BRAKE", Rung::kHoldAndBrake,
-             "steering along the last plan's path, gentle braking"),
-    constant("RUNG_BRAKE", Rung::kBrake, "the same steering, all useful braking"),
-    constant("RUNG_RETURN_TO_ROAD", Rung::kReturnToRoad,
-             "the controller finds back to the road at walking pace"),
-    constant("RUNG_GUARD_STOP", Rung::kGuardStop, "the guard stops the car on the known road"),
-    constant("RUNG_STOP_ON_ROAD", Rung::kStopOnRoad,
-             "the controller stops along the road, without a plan in time"),
-};
-
-constexpr std::array kGuardReasons{
-    constant("REASON_NONE", GuardReason::kNone, "nothing found"),
-    constant("REASON_NO_ANSWER", GuardReason::kNoAnswer, "the controller had no answer"),
-    constant("REASON_NOT_MEASURED", GuardReason::kNotMeasured, "nothing is measured"),
-    constant("REASON_FROZEN", GuardReason::kFrozen, "measurements repeat although the car moves"),
-    constant("REASON_SPEED_MISMATCH", GuardReason::kSpeedMismatch,
-             "measured speed and displacement contradict"),
-    constant("REASON_HEADING_JUMP", GuardReason::kHeadingJump, "the yaw changed as no car turns"),
-    constant("REASON_POSITION_JUMP", GuardReason::kPositionJump, "the place changed as no car moves"),
-    constant("REASON_NO_WAY_TO_STOP", GuardReason::kNoWayToStop,
-             "after the answer the car could not be stopped on the road"),
-    constant("REASON_FAR_FROM_ROAD", GuardReason::kFarFromRoad,
-             "no answer, far beside the road that is known"),
-    constant("REASON_TOO_FAST_FOR_SILENCE", GuardReason::kTooFastForSilence,
-             "a receiver that is left alone could not stop the car on the road"),
-};
-
-constexpr std::array kStatuses{
-    constant("STATUS_OPTIMAL", SolveStatus::kOptimal),
-    constant("STATUS_BUDGET_SPENT", SolveStatus::kBudgetSpent),
-    constant("STATUS_STALLED", SolveStatus::kStalled),
-    constant("STATUS_INFEASIBLE", SolveStatus::kInfeasible),
-    constant("STATUS_NOT_FINITE", SolveStatus::kNotFinite),
-};
+constexpr auto kRungNames = capital_names("RUNG_", controller::kRungWords);
+constexpr auto kRungs = constants(kRungNames, controller::kRungWords);
+constexpr auto kReasonNames = capital_names("REASON_", controller::kGuardReasonWords);
+constexpr auto kGuardReasons = constants(kReasonNames, controller::kGuardReasonWords);
+constexpr auto kStatusNames = capital_names("STATUS_", solver::kSolveStatusWords);
+constexpr auto kStatuses = constants(kStatusNames, solver::kSolveStatusWords);
 
 constexpr std::array kStep{
     field<std::uint8_t>(

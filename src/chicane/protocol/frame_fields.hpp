@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <variant>
 
+#include "chicane/base/word.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/telemetry/frame.hpp"
 
@@ -25,6 +27,7 @@ struct FrameConstant {
   std::string_view name;  ///< "RUNG_BRAKE"
   int value = 0;
   std::string_view meaning;
+  std::optional<Severity> severity{};  ///< of a state: source of the command, its reason, the solver's status
 };
 
 /// One field of chicane_msgs/msg/Frame.

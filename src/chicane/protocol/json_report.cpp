@@ -75,7 +75,7 @@ Json guard_reasons(const telemetry::RunSummary& run) {
   Json reasons = Json::object();
   for (std::size_t i = 1; i < run.guard_reasons.size(); ++i) {
     if (run.guard_reasons[i] > 0)
-      reasons[std::string(controller::kGuardReasonNames[i])] = run.guard_reasons[i];
+      reasons[std::string(controller::kGuardReasonWords[i].name)] = run.guard_reasons[i];
   }
   return reasons;
 }

@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "chicane/base/math.hpp"
+#include "chicane/controller/guard_words.hpp"
 #include "chicane/protocol/detail/cdr_writer.hpp"
 #include "chicane/protocol/detail/ros_schemas.hpp"
 #include "chicane/protocol/detail/scene_message.hpp"
@@ -223,43 +224,13 @@ std::string encode_clock(const Frame& frame, const Run&) { return CdrWriter{}.st
 
 struct Diagnosis {
   std::uint8_t level;  ///< 0 fine, 1 warning, 2 error, 3 unknown
-  std::string_view message;
+  std::string message;
 };
 
-/// What the guard found, by controller::GuardReason.
-constexpr std::array<std::string_view, controller::kGuardReasonCount> kReasons{
-    "stopping on the road",
-    "stopping on the road: the controller has no answer",
-    "stopping on the road: nothing is measured",
-    "stopping on the road: measurements repeat although the car moves",
-    "stopping on the road: measured speed and measured place contradict each other",
-    "stopping on the road: the measured yaw jumped as no car turns",
-    "stopping on the road: the measured place jumped as no car moves",
-    "braking: the controller's command would leave no way to stop on the road",
-    "stopping: no answer, and the road that is known is far away",
-    "braking: a receiver that is left alone could not stop the car on the road"};
-
 Diagnosis diagnose_controller(const controller::StepReport& report) {
-  switch (report.rung) {
-    case controller::Rung::kGuardStop:
-      return {2, kReasons[static_cast<std::size_t>(report.reason)]};
-    case controller::Rung::kShiftedPlan:
-      return {1, "no answer: following the last plan"};
-    case controller::Rung::kHoldAndBrake:
-      return {2, "no answer: steering along the last plan, gentle braking"};
-    case controller::Rung::kBrake:
-      return {2, "no answer: steering along the last plan, full braking"};
-    case controller::Rung::kReturnToRoad:
-      return {1, "finding back to the road at walking pace"};
-    case controller::Rung::kStopOnRoad:
-      return {2, "no plan in time: stopping along the road"};
-    case controller::Rung::kController:
-      break;
-  }
-  if (report.reason == controller::GuardReason::kTooFastForSilence)
-    return {1, kReasons[static_cast<std::size_t>(report.reason)]};
-  if (report.gated) return {1, "the command gate changed the command"};
-  return {0, "in control"};
+  const controller::DriverWords words = controller::describe_driver(report.rung, report.reason);
+  if (words.severity == Severity::kOk && report.gated) return {1, "the command gate changed the command"};
+  return {static_cast<std::uint8_t>(words.severity), controller::sentence_of(words)};
 }
 
 Diagnosis diagnose_road(const Frame& frame) {
@@ -270,7 +241,7 @@ Diagnosis diagnose_road(const Frame& frame) {
 std::string encode_diagnostics(const Frame& frame, const Run& run) {
   const controller::StepReport& report = frame.result.report;
   CdrWriter writer;
-  const auto status = [&](Diagnosis diagnosis, std::string_view name, std::string_view hardware,
+  const auto status = [&](const Diagnosis& diagnosis, std::string_view name, std::string_view hardware,
                           std::initializer_list<std::pair<std::string_view, std::string>> values) {
     writer.put(diagnosis.level).text(name).text(diagnosis.message).text(hardware).count(values.size());
     for (const auto& [key, value] : values) writer.text(key).text(value);

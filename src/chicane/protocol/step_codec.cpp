@@ -24,7 +24,7 @@ constexpr std::string_view kSchema =
     "float64 command_steer    # sent [rad], left positive\n"
     "float64 command_throttle # sent [-1, 1]\n"
     "float64 step_time        # of the control step [s], wall clock\n"
-    "int8 rung                # who chose: 0 controller, 1 shifted plan, 2 hold and brake, 3 brake\n"
+    "int8 rung                # source of the command, as in Frame\n"
     "bool gated               # the command gate changed it\n"
     "float64[] waypoints      # x and y in turn, world frame [m]\n"
     "float64 gate_interval    # since the command before [s]; 0 skips the rate limit\n"

@@ -1,42 +1,47 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
 #include "chicane/base/inlining.hpp"
+#include "chicane/base/word.hpp"
 
 namespace chicane::solver {
 
+/// The table of SolveStatus. Columns: enumerator, number, name, severity, sentence (base/word.hpp).
+// clang-format off
+#define CHICANE_SOLVE_STATUSES(ROW)                                                                              \
+  /* all residuals <= tolerance */                                                                               \
+  ROW(kOptimal, 0, "optimal", kOk, "the solver converged")                                                       \
+  /* deadline or max_iterations reached; input bounds hold, residuals <= loose_tolerance */                      \
+  ROW(kBudgetSpent, 1, "budget_spent", kOk, "the solver stopped at its limit, close enough to the optimum")       \
+  /* steps are as short as rounding lets them; a residual above tolerance is what is left of it */               \
+  ROW(kAtFloor, 2, "at_floor", kOk, "the solver converged as far as rounding allows")                            \
+  /* no further progress, or budget spent, before loose_tolerance */                                             \
+  ROW(kStalled, -1, "stalled", kError, "the solver did not converge")                                            \
+  /* converged, but a soft constraint is violated by more than its cap */                                        \
+  ROW(kInfeasible, -2, "infeasible", kError, "the constraints cannot all hold")                                  \
+  /* a NaN or infinity in the data or an iterate */                                                              \
+  ROW(kNotFinite, -3, "not_finite", kError, "the problem contains a number that is not finite")
+// clang-format on
+
+#define CHICANE_ENUMERATOR(enumerator, number, name, severity, sentence) enumerator = (number),
 /// How a solve ended. Zero and above: the solution may be used. Below zero: it must not be.
-enum class SolveStatus : std::int8_t {
-  kOptimal = 0,      ///< all residuals <= tolerance
-  kBudgetSpent = 1,  ///< deadline or max_iterations reached; input bounds hold, residuals <= loose_tolerance
-  kAtFloor =
-      2,  ///< steps are as short as rounding lets them; a residual above tolerance is what is left of it
-  kStalled = -1,     ///< no further progress, or budget spent, before loose_tolerance
-  kInfeasible = -2,  ///< converged, but a soft constraint is violated by more than its cap
-  kNotFinite = -3,   ///< a NaN or infinity in the data or an iterate
-};
+enum class SolveStatus : std::int8_t { CHICANE_SOLVE_STATUSES(CHICANE_ENUMERATOR) };
+#undef CHICANE_ENUMERATOR
+
+#define CHICANE_WORD(enumerator, number, name, severity, sentence) \
+  Word<SolveStatus>{SolveStatus::enumerator, name, Severity::severity, sentence},
+inline constexpr std::array kSolveStatusWords{CHICANE_SOLVE_STATUSES(CHICANE_WORD)};
+#undef CHICANE_WORD
 
 [[nodiscard]] constexpr bool usable(SolveStatus status) noexcept { return static_cast<int>(status) >= 0; }
 [[nodiscard]] constexpr std::string_view to_string(SolveStatus status) noexcept {
-  switch (status) {
-    case SolveStatus::kOptimal:
-      return "optimal";
-    case SolveStatus::kBudgetSpent:
-      return "budget_spent";
-    case SolveStatus::kAtFloor:
-      return "at_floor";
-    case SolveStatus::kStalled:
-      return "stalled";
-    case SolveStatus::kInfeasible:
-      return "infeasible";
-    case SolveStatus::kNotFinite:
-      return "not_finite";
-  }
-  return "unknown";
+  const Word<SolveStatus>* const word = find_word<SolveStatus>(kSolveStatusWords, status);
+  return word != nullptr ? word->name : "unknown";
 }
 
 /// What one solve did.

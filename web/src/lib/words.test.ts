@@ -1,10 +1,11 @@
 import { describe, expect, it } from 'vitest';
-import { RUNG, SPEED_LIMITER, STATUS } from '../protocol/messages';
+import { REASON, RUNG, SPEED_LIMITER, STATUS } from '../protocol/messages';
 import {
   gateInWords,
   LIMITERS,
   limiterInWords,
   nameInWords,
+  reasonInWords,
   roadInWords,
   rungInWords,
   sightInWords,
@@ -18,13 +19,24 @@ describe('words', () => {
     expect(rungInWords(9).text).toContain('9');
   });
 
-  it('knows every rung and every status that is sent', () => {
-    for (const rung of Object.values(RUNG)) expect(rungInWords(rung).text).not.toMatch(/^Unknown/);
-    for (const status of Object.values(STATUS)) expect(statusInWords(status).text).not.toMatch(/^Unknown/);
+  it('knows every rung, reason and status that is sent', () => {
+    for (const rung of Object.values(RUNG)) expect(rungInWords(rung).text).not.toMatch(/unknown/i);
+    for (const reason of Object.values(REASON)) expect(reasonInWords(reason)).not.toMatch(/unknown/i);
+    for (const status of Object.values(STATUS)) expect(statusInWords(status).text).not.toMatch(/unknown/i);
+    expect(statusInWords(2).text).toBe('The solver converged as far as rounding allows');
+  });
+
+  it('gives the reason for a rung that is not the controller, and for a controller that is held back', () => {
+    const text = rungInWords(RUNG.GUARD_STOP, REASON.NO_ANSWER).text;
+    expect(text).toBe('The guard stops the car on the known road: the controller has no answer');
+    expect(rungInWords(RUNG.CONTROLLER, REASON.TOO_FAST_FOR_SILENCE).severity).toBe('warning');
+    expect(rungInWords(RUNG.CONTROLLER, REASON.FROZEN).text).toBe('The controller drives');
+    expect(rungInWords(RUNG.BRAKE, 99).text).toContain('99');
   });
 
   it('calls usable solutions good, and no others', () => {
-    expect([0, 1, -1, -2, -3, 7].map((status) => statusInWords(status).severity)).toEqual([
+    expect([0, 1, 2, -1, -2, -3, 7].map((status) => statusInWords(status).severity)).toEqual([
+      'good',
       'good',
       'good',
       'bad',

@@ -1,4 +1,4 @@
-import { REASON, RUNG, STATUS } from '../protocol/messages';
+import { REASON, REASON_WORDS, RUNG, RUNG_WORDS, STATUS_WORDS } from '../protocol/messages';
 import type { Frame } from '../protocol/topics';
 
 export type Severity = 'good' | 'warning' | 'bad' | 'unknown';
@@ -8,83 +8,41 @@ export interface Sentence {
   readonly text: string;
 }
 
+const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
+
 /** What the guard found, by Frame.guard_reason. */
-export function reasonInWords(reason: number): string {
-  switch (reason) {
-    case REASON.NONE:
-      return 'nothing found';
-    case REASON.NO_ANSWER:
-      return 'the controller has no answer';
-    case REASON.NOT_MEASURED:
-      return 'nothing is measured';
-    case REASON.FROZEN:
-      return 'measurements repeat although it moves';
-    case REASON.SPEED_MISMATCH:
-      return 'measured speed and place contradict each other';
-    case REASON.HEADING_JUMP:
-      return 'the measured yaw jumped';
-    case REASON.POSITION_JUMP:
-      return 'the measured place jumped';
-    case REASON.NO_WAY_TO_STOP:
-      return 'after the command there would be no way to stop';
-    case REASON.FAR_FROM_ROAD:
-      return 'the road that is known is far away';
-    case REASON.TOO_FAST_FOR_SILENCE:
-      return 'it is too fast for a lost link';
-    default:
-      return `unknown reason ${reason}`;
-  }
-}
+export const reasonInWords = (reason: number): string => REASON_WORDS[reason]?.text ?? `unknown reason ${reason}`;
 
 /** Who drives: a person, or what Frame.rung says. */
 export const driverInWords = (frame: Pick<Frame, 'is_manual' | 'rung' | 'guard_reason'>): Sentence =>
   frame.is_manual
     ? {
         severity: 'good',
-        text: `A person drives; the controller ${frame.rung === RUNG.CONTROLLER ? 'plans beside' : 'has no plan here'}`,
+        text: `A person drives: the controller ${frame.rung === RUNG.CONTROLLER ? 'plans beside' : 'has no plan here'}`,
       }
     : rungInWords(frame.rung, frame.guard_reason);
 
-/** The source of the command, by Frame.rung. */
-export function rungInWords(rung: number, reason = 0): Sentence {
-  switch (rung) {
-    case RUNG.CONTROLLER:
-      return reason === REASON.TOO_FAST_FOR_SILENCE
-        ? { severity: 'warning', text: `The controller drives; ${reasonInWords(reason)}` }
-        : { severity: 'good', text: 'The controller drives' };
-    case RUNG.SHIFTED_PLAN:
-      return { severity: 'warning', text: 'No new answer: following the last plan' };
-    case RUNG.HOLD_AND_BRAKE:
-      return { severity: 'bad', text: 'No answer: following the last plan, braking gently' };
-    case RUNG.BRAKE:
-      return { severity: 'bad', text: 'No answer: following the last plan, braking fully' };
-    case RUNG.RETURN_TO_ROAD:
-      return { severity: 'warning', text: 'Returning to the road at walking pace' };
-    case RUNG.GUARD_STOP:
-      return { severity: 'bad', text: `The guard stops the car on the road: ${reasonInWords(reason)}` };
-    case RUNG.STOP_ON_ROAD:
-      return { severity: 'bad', text: 'No plan in time: stopping along the road' };
-    default:
-      return { severity: 'bad', text: `Unknown rung ${rung}` };
-  }
+/**
+ * The source of the command, by Frame.rung, and why. A reason explains every source but the controller, and that one
+ * where it holds the car back (controller/guard_words.hpp has the same rule).
+ */
+export function rungInWords(rung: number, reason: number = REASON.NONE): Sentence {
+  const source = RUNG_WORDS[rung];
+  if (!source) return { severity: 'bad', text: `Unknown rung ${rung}` };
+  const text = capital(source.text);
+  const why = REASON_WORDS[reason]?.severity ?? 'bad';
+  const isReplaced = rung !== RUNG.CONTROLLER;
+  const isHeldBack = !isReplaced && why === 'warning';
+  if (reason === REASON.NONE || !(isReplaced || isHeldBack)) return { severity: source.severity, text };
+  return { severity: isHeldBack ? why : source.severity, text: `${text}: ${reasonInWords(reason)}` };
 }
 
 /** How the solve ended, by Frame.solve_status. */
 export function statusInWords(status: number): Sentence {
-  switch (status) {
-    case STATUS.OPTIMAL:
-      return { severity: 'good', text: 'Optimal' };
-    case STATUS.BUDGET_SPENT:
-      return { severity: 'good', text: 'Good enough: stopped at its limit of time or iterations, within tolerance' };
-    case STATUS.STALLED:
-      return { severity: 'bad', text: 'Did not converge' };
-    case STATUS.INFEASIBLE:
-      return { severity: 'bad', text: 'Infeasible: not all constraints can hold' };
-    case STATUS.NOT_FINITE:
-      return { severity: 'bad', text: 'Invalid number (NaN) in the problem' };
-    default:
-      return { severity: 'bad', text: `Unknown status ${status}` };
-  }
+  const words = STATUS_WORDS[status];
+  return words
+    ? { severity: words.severity, text: capital(words.text) }
+    : { severity: 'bad', text: `Unknown status ${status}` };
 }
 
 export const gateInWords = (isGated: boolean): Sentence =>

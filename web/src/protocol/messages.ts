@@ -147,52 +147,59 @@ export interface Frame {
 
 /** Frame.rung */
 export const RUNG = {
-  /** the controller's own answer */
+  /** the controller drives */
   CONTROLLER: 0,
-  /** the last usable plan, at the time that has come */
+  /** the car follows the last plan */
   SHIFTED_PLAN: 1,
-  /** steering along the last plan's path, gentle braking */
+  /** the car follows the last plan and brakes gently */
   HOLD_AND_BRAKE: 2,
-  /** the same steering, all useful braking */
+  /** the car follows the last plan and brakes fully */
   BRAKE: 3,
-  /** the controller finds back to the road at walking pace */
+  /** the controller returns to the road at walking pace */
   RETURN_TO_ROAD: 4,
+  /** the controller has no plan and stops the car along the road */
+  STOP_ON_ROAD: 5,
   /** the guard stops the car on the known road */
   GUARD_STOP: 6,
-  /** the controller stops along the road, without a plan in time */
-  STOP_ON_ROAD: 5,
 } as const;
 
 /** Frame.solve_status */
 export const STATUS = {
+  /** the solver converged */
   OPTIMAL: 0,
+  /** the solver stopped at its limit, close enough to the optimum */
   BUDGET_SPENT: 1,
+  /** the solver converged as far as rounding allows */
+  AT_FLOOR: 2,
+  /** the solver did not converge */
   STALLED: -1,
+  /** the constraints cannot all hold */
   INFEASIBLE: -2,
+  /** the problem contains a number that is not finite */
   NOT_FINITE: -3,
 } as const;
 
 /** Frame.guard_reason */
 export const REASON = {
-  /** nothing found */
+  /** the guard found nothing */
   NONE: 0,
-  /** the controller had no answer */
+  /** the controller has no answer */
   NO_ANSWER: 1,
-  /** nothing is measured */
+  /** position, yaw or speed has not been measured for too long */
   NOT_MEASURED: 2,
-  /** measurements repeat although the car moves */
+  /** the measurements repeat although the car moves */
   FROZEN: 3,
-  /** measured speed and displacement contradict */
+  /** measured speed and measured displacement contradict each other */
   SPEED_MISMATCH: 4,
-  /** the yaw changed as no car turns */
+  /** the measured yaw changed faster than a car can turn */
   HEADING_JUMP: 5,
-  /** the place changed as no car moves */
+  /** the measured position changed faster than a car can move */
   POSITION_JUMP: 6,
-  /** after the answer the car could not be stopped on the road */
+  /** the controller's command would leave no way to stop on the road */
   NO_WAY_TO_STOP: 7,
-  /** no answer, far beside the road that is known */
+  /** the controller has no answer and the known road is far away */
   FAR_FROM_ROAD: 8,
-  /** a receiver that is left alone could not stop the car on the road */
+  /** a receiver left alone could not stop the car on the road */
   TOO_FAST_FOR_SILENCE: 9,
 } as const;
 
@@ -342,6 +349,115 @@ export const FRAME_NUMBERS = [
   'worst_constraint',
   'prediction_error_m',
 ] as const;
+
+/** Each value of a state, for people: without capital and full stop. */
+export type Words = Readonly<
+  Record<number, { readonly severity: 'good' | 'warning' | 'bad'; readonly text: string } | undefined>
+>;
+
+/** Frame.rung in words. */
+export const RUNG_WORDS: Words = {
+  [RUNG.CONTROLLER]: {
+    severity: 'good',
+    text: 'the controller drives',
+  },
+  [RUNG.SHIFTED_PLAN]: {
+    severity: 'warning',
+    text: 'the car follows the last plan',
+  },
+  [RUNG.HOLD_AND_BRAKE]: {
+    severity: 'bad',
+    text: 'the car follows the last plan and brakes gently',
+  },
+  [RUNG.BRAKE]: {
+    severity: 'bad',
+    text: 'the car follows the last plan and brakes fully',
+  },
+  [RUNG.RETURN_TO_ROAD]: {
+    severity: 'warning',
+    text: 'the controller returns to the road at walking pace',
+  },
+  [RUNG.STOP_ON_ROAD]: {
+    severity: 'bad',
+    text: 'the controller has no plan and stops the car along the road',
+  },
+  [RUNG.GUARD_STOP]: {
+    severity: 'bad',
+    text: 'the guard stops the car on the known road',
+  },
+};
+
+/** Frame.solve_status in words. */
+export const STATUS_WORDS: Words = {
+  [STATUS.OPTIMAL]: {
+    severity: 'good',
+    text: 'the solver converged',
+  },
+  [STATUS.BUDGET_SPENT]: {
+    severity: 'good',
+    text: 'the solver stopped at its limit, close enough to the optimum',
+  },
+  [STATUS.AT_FLOOR]: {
+    severity: 'good',
+    text: 'the solver converged as far as rounding allows',
+  },
+  [STATUS.STALLED]: {
+    severity: 'bad',
+    text: 'the solver did not converge',
+  },
+  [STATUS.INFEASIBLE]: {
+    severity: 'bad',
+    text: 'the constraints cannot all hold',
+  },
+  [STATUS.NOT_FINITE]: {
+    severity: 'bad',
+    text: 'the problem contains a number that is not finite',
+  },
+};
+
+/** Frame.guard_reason in words. */
+export const REASON_WORDS: Words = {
+  [REASON.NONE]: {
+    severity: 'good',
+    text: 'the guard found nothing',
+  },
+  [REASON.NO_ANSWER]: {
+    severity: 'bad',
+    text: 'the controller has no answer',
+  },
+  [REASON.NOT_MEASURED]: {
+    severity: 'bad',
+    text: 'position, yaw or speed has not been measured for too long',
+  },
+  [REASON.FROZEN]: {
+    severity: 'bad',
+    text: 'the measurements repeat although the car moves',
+  },
+  [REASON.SPEED_MISMATCH]: {
+    severity: 'bad',
+    text: 'measured speed and measured displacement contradict each other',
+  },
+  [REASON.HEADING_JUMP]: {
+    severity: 'bad',
+    text: 'the measured yaw changed faster than a car can turn',
+  },
+  [REASON.POSITION_JUMP]: {
+    severity: 'bad',
+    text: 'the measured position changed faster than a car can move',
+  },
+  [REASON.NO_WAY_TO_STOP]: {
+    severity: 'bad',
+    text: "the controller's command would leave no way to stop on the road",
+  },
+  [REASON.FAR_FROM_ROAD]: {
+    severity: 'bad',
+    text: 'the controller has no answer and the known road is far away',
+  },
+  [REASON.TOO_FAST_FOR_SILENCE]: {
+    severity: 'warning',
+    text: 'a receiver left alone could not stop the car on the road',
+  },
+};
 
 /**
  * chicane_msgs/msg/Plan. What the controller intends: predicted motion of the centre of mass with its commands, all

@@ -71,11 +71,11 @@ function Why() {
   if (!frame) return null;
   // What limits the controller's plan is no reason for the speed of a car that something else drives.
   if (frame.is_manual || frame.rung !== RUNG.CONTROLLER) {
-    const [who, more] = driverInWords(frame).text.split('; ');
+    const [who, more] = driverInWords(frame).text.split(': ');
     return (
       <p class="why" data-testid="why">
         <b>{who}</b>
-        {more && <span class="why-long">; {more}</span>}.
+        {more && <span class="why-long">: {more}</span>}.
       </p>
     );
   }

@@ -1,6 +1,6 @@
 import type uPlot from 'uplot';
 import { firstSince } from '../draw/axis';
-import { RUNG } from '../protocol/messages';
+import { RUNG_WORDS } from '../protocol/messages';
 import { Column } from '../state/columns';
 import { plotted } from '../state/plot_view';
 import type { ChartColours } from './plot_colours';
@@ -9,9 +9,9 @@ const HEIGHT = 5; // CSS pixels
 
 /** Severity of a control step: 0 usable and sent unchanged, 1 changed or replaced, 2 not the controller's. */
 export function stepSeverity(status: number, rung: number, isGated: number): 0 | 1 | 2 {
-  const isMild = rung === RUNG.CONTROLLER || rung === RUNG.SHIFTED_PLAN || rung === RUNG.RETURN_TO_ROAD;
-  if (status < 0 || !isMild) return 2;
-  return rung > 0 || isGated > 0 ? 1 : 0;
+  const who = RUNG_WORDS[rung]?.severity ?? 'bad';
+  if (status < 0 || who === 'bad') return 2;
+  return who === 'warning' || isGated > 0 ? 1 : 0;
 }
 
 /** A band at the bottom of a plot: green while the controller's answer was usable and sent unchanged. */

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "chicane/base/word.hpp"
+
+/// The tables of Rung and GuardReason. A row makes the enumerator, its name in JSON, its constant in the
+/// messages, its sentence in terminal and dashboard, and its severity in /diagnostics. Rows are numbered in
+/// order; recordings keep the numbers, so a new row goes to the end.
+/// Columns: enumerator, name, severity, sentence (base/word.hpp).
+// clang-format off
+#define CHICANE_RUNGS(ROW)                                                                                       \
+  ROW(kController, "controller", kOk, "the controller drives")                                                   \
+  ROW(kShiftedPlan, "shifted_plan", kWarning, "the car follows the last plan")                                   \
+  ROW(kHoldAndBrake, "hold_and_brake", kError, "the car follows the last plan and brakes gently")                \
+  ROW(kBrake, "brake", kError, "the car follows the last plan and brakes fully")                                 \
+  ROW(kReturnToRoad, "return_to_road", kWarning, "the controller returns to the road at walking pace")           \
+  ROW(kStopOnRoad, "stop_on_road", kError, "the controller has no plan and stops the car along the road")        \
+  ROW(kGuardStop, "guard_stop", kError, "the guard stops the car on the known road")
+
+/// kWarning: the controller goes on driving, with less throttle. kError: it does not.
+#define CHICANE_GUARD_REASONS(ROW)                                                                               \
+  ROW(kNone, "none", kOk, "the guard found nothing")                                                             \
+  ROW(kNoAnswer, "no_answer", kError, "the controller has no answer")                                            \
+  ROW(kNotMeasured, "not_measured", kError, "position, yaw or speed has not been measured for too long")         \
+  ROW(kFrozen, "frozen", kError, "the measurements repeat although the car moves")                               \
+  ROW(kSpeedMismatch, "speed_mismatch", kError, "measured speed and measured displacement contradict each other") \
+  ROW(kHeadingJump, "heading_jump", kError, "the measured yaw changed faster than a car can turn")               \
+  ROW(kPositionJump, "position_jump", kError, "the measured position changed faster than a car can move")        \
+  ROW(kNoWayToStop, "no_way_to_stop", kError, "the controller's command would leave no way to stop on the road")  \
+  ROW(kFarFromRoad, "far_from_road", kError, "the controller has no answer and the known road is far away")      \
+  ROW(kTooFastForSilence, "too_fast_for_silence", kWarning,                                                      \
+      "a receiver left alone could not stop the car on the road")
+// clang-format on
+
+namespace chicane::controller {
+
+#define CHICANE_ENUMERATOR(enumerator, name, severity, sentence) enumerator,
+/// Source of the command of a cycle. Set by safety::Guard alone.
+enum class Rung : signed char { CHICANE_RUNGS(CHICANE_ENUMERATOR) };
+/// Why the guard did not send the controller's answer, or would not have (docs/safety.md, table of
+/// conditions). The worst one holds: later ones win.
+enum class GuardReason : signed char { CHICANE_GUARD_REASONS(CHICANE_ENUMERATOR) };
+#undef CHICANE_ENUMERATOR
+
+#define CHICANE_WORD(enumerator, name, severity, sentence) \
+  Word<Rung>{Rung::enumerator, name, Severity::severity, sentence},
+inline constexpr std::array kRungWords{CHICANE_RUNGS(CHICANE_WORD)};
+#undef CHICANE_WORD
+#define CHICANE_WORD(enumerator, name, severity, sentence) \
+  Word<GuardReason>{GuardReason::enumerator, name, Severity::severity, sentence},
+inline constexpr std::array kGuardReasonWords{CHICANE_GUARD_REASONS(CHICANE_WORD)};
+#undef CHICANE_WORD
+
+inline constexpr std::size_t kRungCount = kRungWords.size();
+inline constexpr std::size_t kGuardReasonCount = kGuardReasonWords.size();
+
+[[nodiscard]] constexpr const Word<Rung>& word_of(Rung rung) noexcept {
+  return kRungWords[static_cast<std::size_t>(rung)];
+}
+[[nodiscard]] constexpr const Word<GuardReason>& word_of(GuardReason reason) noexcept {
+  return kGuardReasonWords[static_cast<std::size_t>(reason)];
+}
+
+/// Who drives and why, for people.
+struct DriverWords {
+  Severity severity = Severity::kOk;
+  std::string_view source;  ///< the sentence of the rung
+  std::string_view reason;  ///< the sentence of the reason; empty where it explains nothing
+};
+
+/// A reason explains every rung but the controller's own, and that one where it holds the car back.
+[[nodiscard]] constexpr DriverWords describe_driver(Rung rung, GuardReason reason) noexcept {
+  const Word<Rung>& source = word_of(rung);
+  const Word<GuardReason>& why = word_of(reason);
+  const bool is_replaced = rung != Rung::kController;
+  const bool is_held_back = !is_replaced && why.severity == Severity::kWarning;
+  const bool has_reason = reason != GuardReason::kNone && (is_replaced || is_held_back);
+  return {.severity = is_held_back ? why.severity : source.severity,
+          .source = source.sentence,
+          .reason = has_reason ? why.sentence : std::string_view{}};
+}
+
+/// "the guard stops the car on the known road: the controller has no answer"
+[[nodiscard]] inline std::string sentence_of(const DriverWords& words) {
+  std::string text{words.source};
+  if (!words.reason.empty()) text.append(": ").append(words.reason);
+  return text;
+}
+
+}  // namespace chicane::controller

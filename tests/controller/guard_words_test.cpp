@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/controller/guard_words.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <regex>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "chicane/solver/solution.hpp"
+
+namespace chicane::controller {
+namespace {
+
+/// Names, and sentences short enough for one line of a terminal.
+template <class Enum, std::size_t N>
+void expect_readable(const std::array<Word<Enum>, N>& words) {
+  std::set<std::string_view> names, sentences;
+  for (const Word<Enum>& row : words) {
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    EXPECT_TRUE(sentences.insert(row.sentence).second) << row.name;
+    EXPECT_TRUE(std::regex_match(std::string{row.name}, std::regex("[a-z]+(_[a-z]+)*"))) << row.name;
+    EXPECT_TRUE(std::regex_match(std::string{row.sentence}, std::regex("[a-z][A-Za-z,' ]*[a-z]")))
+        << row.sentence;
+    const auto spaces = std::count(row.sentence.begin(), row.sentence.end(), ' ');
+    EXPECT_LE(spaces + 1, 14) << row.sentence;
+    EXPECT_GE(spaces + 1, 3) << row.sentence;
+  }
+}
+
+TEST(GuardWords, AreReadableAndTellEveryValueApart) {
+  expect_readable(kRungWords);
+  expect_readable(kGuardReasonWords);
+  expect_readable(solver::kSolveStatusWords);
+}
+
+TEST(GuardWords, NumbersAndNamesThatRecordingsKeep) {
+  EXPECT_EQ(static_cast<int>(Rung::kGuardStop), 6);
+  EXPECT_EQ(static_cast<int>(GuardReason::kTooFastForSilence), 9);
+  EXPECT_EQ(word_of(GuardReason::kNoAnswer).name, "no_answer");
+  EXPECT_EQ(word_of(GuardReason::kTooFastForSilence).name, "too_fast_for_silence");
+}
+
+TEST(GuardWords, AReasonExplainsWhatReplacesTheController) {
+  const DriverWords words = describe_driver(Rung::kGuardStop, GuardReason::kNoAnswer);
+  EXPECT_EQ(words.severity, Severity::kError);
+  EXPECT_EQ(sentence_of(words), "the guard stops the car on the known road: the controller has no answer");
+  EXPECT_EQ(sentence_of(describe_driver(Rung::kShiftedPlan, GuardReason::kNone)),
+            "the car follows the last plan");
+}
+
+TEST(GuardWords, AReasonExplainsTheControllerOnlyWhereItHoldsTheCarBack) {
+  const DriverWords held = describe_driver(Rung::kController, GuardReason::kTooFastForSilence);
+  EXPECT_EQ(held.severity, Severity::kWarning);
+  EXPECT_EQ(sentence_of(held),
+            "the controller drives: a receiver left alone could not stop the car on the road");
+  const DriverWords observed = describe_driver(Rung::kController, GuardReason::kFrozen);
+  EXPECT_EQ(observed.severity, Severity::kOk);
+  EXPECT_EQ(sentence_of(observed), "the controller drives");
+}
+
+}  // namespace
+}  // namespace chicane::controller
