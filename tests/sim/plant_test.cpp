@@ -11,7 +11,9 @@
 #include "chicane/base/fnv.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/base/text.hpp"
+#include "chicane/model/vehicle.hpp"
 #include "chicane/sim/plant_registry.hpp"
+#include "chicane/sim/udacity_car.hpp"
 
 namespace chicane::sim {
 namespace {
@@ -50,6 +52,24 @@ TEST_P(EveryPlant, StandsStillWithoutCommands) {
   EXPECT_EQ(plant->state().x, 3.0);
   EXPECT_EQ(plant->state().y, -2.0);
   EXPECT_EQ(plant->output().speed, 0.0);
+}
+
+TEST_P(EveryPlant, DrivesOffAfterAStopAsItsModelSays) {
+  const model::VehicleParams car =
+      std::string_view{GetParam()} == UdacityCar::kName ? model::udacity_params() : model::road_car_params();
+  const auto plant = make();
+  const auto drive = [&](double throttle, double seconds) {
+    for (int i = 0; i < steps(*plant, seconds); ++i) plant->advance({.steer = 0.0, .throttle = throttle});
+  };
+  plant->reset({}, 10.0);
+  const double stopped = std::max(car.brake_latch_speed, 1.0);  // [m/s]
+  for (int i = 0; i < steps(*plant, 10.0) && plant->output().speed > stopped; ++i)
+    plant->advance({.steer = 0.0, .throttle = -car.brake_throttle_limit});
+  drive(1.0, 3.0);
+  EXPECT_EQ(plant->output().speed < 0.1, car.latches_brakes());  // [m/s]; a free car is at 15 m/s by then
+  drive(car.brake_release_throttle, 0.02);                       // the shortest control period of a preset
+  drive(1.0, 3.0);
+  EXPECT_GT(plant->output().speed, 5.0);
 }
 
 TEST_P(EveryPlant, MirrorsWhenTheSteeringFlips) {

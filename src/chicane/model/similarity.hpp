@@ -40,6 +40,7 @@ class Similarity {
     car.drag_linear /= time_;
     car.drag_quadratic /= length_;
     car.reverse_speed *= speed();
+    car.brake_latch_speed *= speed();
     return car;
   }
 

@@ -73,6 +73,12 @@ constexpr std::array kOptions{
                               "Below it a negative throttle is the reverse gear; 0 where it never is."),
     option<&P::reverse_acceleration>("reverse_acceleration", unit::kAcceleration, 0.01, 100,
                                      "For each unit of negative throttle then."),
+    option<&P::brake_latch_speed>(
+        "brake_latch_speed", unit::kSpeed, 0, 10,
+        "Brakes applied down to this speed stay applied until they are released; 0: they "
+        "follow the pedal."),
+    option<&P::brake_release_throttle>("brake_release_throttle", unit::kNone, -1, 0,
+                                       "Throttle that releases latched brakes."),
 };
 
 /// Deceleration by drag [m/s²]; has the sign of v.
@@ -139,6 +145,7 @@ VehicleParams road_car_params() {
   p.load_sensitivity = 0.08;
   p.tire_shape = 1.5;
   p.reverse_speed = 0.0;
+  p.brake_latch_speed = 0.0;
   p.front_axle = 1.25;
   p.rear_axle = 1.45;
   p.track_width = 1.60;

@@ -74,11 +74,20 @@ struct VehicleParams {
   double reverse_speed = 2.235;  ///< below it a negative throttle is the reverse gear [m/s]; 0: it never is
   double reverse_acceleration = 1.63;  ///< per unit of negative throttle then [m/s²]
 
+  // Driving off again.
+  double brake_latch_speed =
+      2.235;  ///< brakes applied when the car falls to this speed stay applied, whatever
+              ///< the pedal does, until they are released [m/s]; 0: they follow the pedal
+  double brake_release_throttle = -0.01;  ///< a throttle that releases them, sent for one control period at
+                                          ///< or below brake_latch_speed
+
   [[nodiscard]] double wheelbase() const noexcept { return front_axle + rear_axle; }
   /// Normal acceleration carried by the tyres at speed v [m/s²].
   [[nodiscard]] double load(double v) const noexcept {
     return load_constant + load_per_speed * v + load_quadratic * v * v;
   }
+  /// Whether brakes that stopped the car have to be released before it drives off.
+  [[nodiscard]] bool latches_brakes() const noexcept { return brake_latch_speed > 0.0; }
   /// Peak lateral force over load of the whole car: what load transfer to the outer wheels leaves of the
   /// friction (docs/tracking.md, eq. 3b).
   [[nodiscard]] double cornering_friction() const noexcept;

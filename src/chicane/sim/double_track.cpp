@@ -146,6 +146,7 @@ model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams b
   m.brake_share_front = p.brake_share_front;
   m.drive_share_front = p.drive_share_front;
   m.reverse_speed = 0.0;
+  m.brake_latch_speed = 0.0;
   return m;
 }
 
