@@ -171,5 +171,34 @@ TEST(RealtimeLoop, ShowsWhereAPausedRunBegins) {
   EXPECT_EQ(times, (std::vector<double>{0.0, 0.0}));
 }
 
+TEST(ClosedLoop, ChangesSignalsByAnInterceptor) {
+  scenario::Scenario scenario = scenario_of("udacity", "oval", 0);
+  scenario.guard.mode = safety::GuardMode::kOff;
+  const auto loop = std::move(*ClosedLoop::create(scenario));
+  loop->intercept({.measured = [](model::Measurement& now) { now.speed = 3.0; },
+                   .actuated =
+                       [](double time, model::Command& command) {
+                         if (time < 2.0) command.throttle = 0.0;
+                       }});
+  while (loop->time() < 2.0) loop->advance();
+  EXPECT_EQ(loop->frame().measurement.speed, 3.0);
+  EXPECT_LT(loop->frame().truth.vx, 0.1);
+  while (loop->time() < 4.0) loop->advance();
+  EXPECT_GT(loop->frame().truth.vx, 1.0);
+}
+
+TEST(ClosedLoop, PutsTheCarSomewhereWithoutTellingTheController) {
+  const auto loop = std::move(*ClosedLoop::create(scenario_of("udacity", "oval", 0)));
+  const model::State start = loop->car();
+  while (loop->time() < 8.0) loop->advance();
+  const std::uint64_t cycle = loop->cycle();
+  loop->put_car({.x = start.x, .y = start.y, .psi = start.psi});
+  loop->advance();
+  EXPECT_NEAR(loop->car().x, start.x, 0.1);
+  EXPECT_LT(loop->car().vx, 0.5);
+  EXPECT_NEAR(loop->time(), 8.0, 0.05);
+  EXPECT_GE(loop->cycle(), cycle);
+}
+
 }  // namespace
 }  // namespace chicane::run

@@ -371,5 +371,24 @@ TEST(SelectWaypoints, StopsAtTheEndOfAnOpenTrackAndKeepsItsBounds) {
   EXPECT_EQ(select_waypoints(track, {}, -1, seen), 0);
 }
 
+/// Another place on the road is no way off it, and the clock goes on.
+TEST(World, PutsTheCarElsewhereInTheSameRun) {
+  const path::Track track = circle();
+  Puppet puppet;
+  World world(puppet, track);
+  puppet.go({.x = kRadius, .y = 0.0, .psi = 0.5 * kPi});
+  for (int i = 0; i < 50; ++i) world.advance({});
+  const double before = world.time();
+  const model::Pose opposite{.x = -kRadius, .y = 0.0, .psi = -0.5 * kPi};
+  world.put(opposite);
+  puppet.go(opposite);
+  EXPECT_EQ(world.time(), before);
+  for (int i = 0; i < 50; ++i) world.advance({});
+  EXPECT_NEAR(world.time(), 2.0 * before, 1e-9);
+  EXPECT_NEAR(world.state().s, 0.5 * track.centre().length(), 0.1);
+  EXPECT_GT(world.state().min_edge_distance, 2.0);
+  EXPECT_EQ(world.state().lap, 0);
+}
+
 }  // namespace
 }  // namespace chicane::sim

@@ -176,7 +176,9 @@ void ClosedLoop::watch_faults() noexcept {
 model::Command ClosedLoop::acting() noexcept {
   const double late = faults_.extra_delay(scenario_.latency);
   const model::Command& arrived = in_flight_.at(time() + 1e-9 - late);
-  return faults_.done(receiver_.guard(arrived, time() - late, plant_->output().speed));
+  model::Command command = faults_.done(receiver_.guard(arrived, time() - late, plant_->output().speed));
+  if (interceptor_.actuated) interceptor_.actuated(time(), command);
+  return command;
 }
 
 /// What the controller is told now.
@@ -184,6 +186,7 @@ model::Measurement ClosedLoop::measure() noexcept {
   model::Measurement now = sensor_.sample(time(), *plant_);
   sim::select_waypoints(waypoints_, {now.x, now.y, now.psi}, scenario_.waypoints_sent, now);
   now = faults_.seen(now);
+  if (interceptor_.measured) interceptor_.measured(now);
   // Commands act in the order they are sent: behind a latency that has just been shortened they still wait.
   now.delay = std::max(scenario_.latency + step_time_, in_flight_.last_time() - now.time);
   return now;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <variant>
 
 #include "chicane/base/owned.hpp"
@@ -34,6 +35,14 @@ namespace chicane::run {
 struct GivenStep {
   double delay = 0.0;                   ///< that was measured [s]
   std::uint32_t deadline_spent_at = 0;  ///< DeadlineLog::spent_at
+};
+
+/// Changes signals between car and control cycle that no fault of the list changes (sim/fault.hpp): the seam
+/// for experiments that attack the guard. Called after the scenario's faults; empty functions are not called.
+/// Must not throw.
+struct Interceptor {
+  std::function<void(model::Measurement&)> measured{};           ///< once in each control cycle
+  std::function<void(double time, model::Command&)> actuated{};  ///< in each physics step and control cycle
 };
 
 /// One experiment: controller against plant, in virtual time. The same object is run flat out
@@ -81,6 +90,11 @@ class ClosedLoop {
   /// Switches a fault on as `event` says, as if the scenario had had it from the beginning. Pre: it begins in
   /// the next advance().
   void set_fault(const sim::FaultEvent& event) noexcept { faults_.set(event); }
+  /// From the next advance() on. A copy() calls the same functions.
+  void intercept(Interceptor interceptor) { interceptor_ = std::move(interceptor); }
+  /// Stands the car at `pose`, as a simulator's reset does: controller and guard are not told. Call it
+  /// between two advance().
+  void put_car(const model::Pose& pose) noexcept { world_.put(pose); }
   /// All laps driven, the car lost, or time up (Account).
   [[nodiscard]] bool is_over() const noexcept { return account_.is_over(); }
   /// A lap that the last advance() completed, once.
@@ -139,6 +153,7 @@ class ClosedLoop {
   ManualDrive manual_;
   double pace_ = 1.0;
   sim::FaultLab faults_;
+  Interceptor interceptor_;
   safety::StopPlayer receiver_;
   Account account_;
   telemetry::Frame frame_;

@@ -81,6 +81,13 @@ void World::see(double time, const model::State& car) noexcept {
   judge_.see(time, sighting());
 }
 
+void World::put(const model::Pose& pose) noexcept {
+  begin_ = time();
+  step_count_ = 0;
+  plant_->reset(pose, 0.0);
+  judge_.reset(begin_, sighting());
+}
+
 void World::advance(const model::Command& command) noexcept {
   plant_->advance(command);
   ++step_count_;

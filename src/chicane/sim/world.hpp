@@ -30,6 +30,10 @@ class World {
   /// only seen. Times rise.
   void see(double time, const model::State& car) noexcept;
 
+  /// The car stands at `pose` from now on, in the run that goes on: a simulator has reset it. Laps begin
+  /// anew.
+  void put(const model::Pose& pose) noexcept;
+
   /// A copy of a world goes on with copies of its plant and its track, which must outlive it.
   void stand_on(Plant& plant, const path::Track& track) noexcept;
 

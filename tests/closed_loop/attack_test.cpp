@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// A sample of the attacks of guard_attack.cpp, which drives all of them.
+#include "closed_loop/attack.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace chicane::attack {
+namespace {
+
+/// The program's adversaries do attack: without a guard they leave the road.
+TEST(Attack, LeavesTheRoadWithoutAGuard) {
+  run::Roads roads;
+  const auto scenario = scenario_of({.settings = {{"guard.mode", "off"}}});
+  ASSERT_TRUE(scenario);
+  for (const char* name : {"lock", "random_hold", "hold", "swerve", "brake", "false_plan", "everything"}) {
+    const auto outcome = drive_adversary(*scenario, roads, *adversary_named(name), 2, 40.0);
+    ASSERT_TRUE(outcome);
+    EXPECT_LT(outcome->least_edge, 0.0) << name;
+  }
+}
+
+TEST(Attack, OfTheSameSeedIsTheSame) {
+  run::Roads roads;
+  const auto scenario = scenario_of({});
+  ASSERT_TRUE(scenario);
+  const auto once = drive_adversary(*scenario, roads, *adversary_named("everything"), 5, 20.0);
+  const auto again = drive_adversary(*scenario, roads, *adversary_named("everything"), 5, 20.0);
+  ASSERT_TRUE(once && again);
+  EXPECT_EQ(once->least_edge, again->least_edge);
+  EXPECT_EQ(once->end_speed, again->end_speed);
+}
+
+/// The measurement after a second of driving under a false signal, beside the car's place.
+telemetry::Frame under(const char* name) {
+  const auto loop = std::move(*run::ClosedLoop::create(*scenario_of({.settings = {{"guard.mode", "off"}}})));
+  const auto memory = remember(*loop, 3);
+  while (loop->time() < 10.0) loop->advance();
+  for (const FalseSignal& signal : false_signals())
+    if (signal.name == name) make_false(*loop, signal, memory, kLasting);
+  while (loop->time() < 11.0) loop->advance();
+  return loop->frame();
+}
+
+double place_error(const telemetry::Frame& frame) {
+  return std::hypot(frame.measurement.x - frame.truth.x, frame.measurement.y - frame.truth.y);
+}
+
+TEST(FalseSignals, AreAsTheirNamesSay) {
+  EXPECT_NEAR(place_error(under("drift_1mps")), 1.0, 0.1);
+  EXPECT_EQ(under("place_of_zeros").measurement.x, 0.0);
+  const telemetry::Frame late = under("late_0.3s");
+  EXPECT_NEAR(place_error(late), 0.3 * late.truth.vx, 0.1 * late.truth.vx);
+  const telemetry::Frame fast = under("speed_double");
+  EXPECT_NEAR(fast.measurement.speed, 2.0 * fast.truth.vx, 0.3);
+  const telemetry::Frame turned = under("heading+180");
+  EXPECT_NEAR(std::cos(turned.measurement.psi - turned.truth.psi), -1.0, 1e-6);
+  const telemetry::Frame swapped = under("x_and_y_swapped");
+  EXPECT_NEAR(swapped.measurement.x, swapped.truth.y, 1e-6);
+}
+
+TEST(FalseSignals, EndWhenTheirTimeIsOver) {
+  const auto loop = std::move(*run::ClosedLoop::create(*scenario_of({})));
+  const auto memory = remember(*loop, 3);
+  while (loop->time() < 5.0) loop->advance();
+  FalseSignal shift{.name = "shift",
+                    .measured = [](SignalMemory&, model::Measurement& now) { now.x += 1.0; }};
+  make_false(*loop, shift, memory, 1.0);
+  loop->advance();
+  while (loop->time() < 5.9) loop->advance();
+  EXPECT_NEAR(place_error(loop->frame()), 1.0, 1e-9);
+  while (loop->time() < 6.5) loop->advance();
+  EXPECT_NEAR(place_error(loop->frame()), 0.0, 1e-9);
+}
+
+TEST(Processes, TellOutcomesInOrderAndNameACrash) {
+  std::vector<double> edges;
+  std::vector<bool> there;
+  drive_in_processes(
+      4, 2, {},
+      [](std::size_t i) {
+        if (i == 2) std::_Exit(1);
+        return Outcome{.is_there = true, .least_edge = static_cast<double>(i)};
+      },
+      [&](std::size_t i, const Outcome& outcome) {
+        edges.push_back(static_cast<double>(i));
+        there.push_back(outcome.is_there);
+        EXPECT_TRUE(!outcome.is_there || outcome.least_edge == static_cast<double>(i));
+      });
+  EXPECT_EQ(edges, (std::vector<double>{0.0, 1.0, 2.0, 3.0}));
+  EXPECT_EQ(there, (std::vector<bool>{true, true, false, true}));
+}
+
+}  // namespace
+}  // namespace chicane::attack
