@@ -177,15 +177,17 @@ export class LapSamples {
       return;
     }
     const line = between(last, moment, Math.min(1, Math.max(0, rest / (rest + moment.time_s))));
-    if (isHeard) this.#fill(last, { ...line, time_s: lastLapTime });
+    if (!Number.isFinite(this.#line)) this.#line = this.#onRoad(line.s_m);
+    // Each crossing is found a little elsewhere: the first point belongs to the new lap, whatever this one says.
+    const first = this.#after(last, { ...line, s_m: this.#firstPoint * this.#spacing }).s_m;
+    if (isHeard) this.#fill(last, { ...line, time_s: lastLapTime }, -Infinity, first);
     if (this.#current) {
       if (!this.#current.isComplete) ++this.completed;
       this.#current.isComplete = true;
       this.#current.time = lastLapTime;
     }
-    if (!Number.isFinite(this.#line)) this.#line = this.#onRoad(line.s_m);
     this.#begin(lap);
-    if (isHeard) this.#fill({ ...line, time_s: 0 }, moment);
+    if (isHeard) this.#fill({ ...line, time_s: 0 }, moment, first);
   }
 
   /** Discards the lap in progress, which will not be complete. */
@@ -209,11 +211,13 @@ export class LapSamples {
     return this.#done.filter((slot) => slot.lap !== best).reduce((a, b) => (b.lap < a.lap ? b : a));
   }
 
-  #fill(from: LapMoment, to: LapMoment): void {
+  /** Fills the points between two samples, of those from `first` to before `end` [m]. */
+  #fill(from: LapMoment, to: LapMoment, first = -Infinity, end = Infinity): void {
     const slot = this.#current;
     const span = to.s_m - from.s_m;
     if (!slot || !(span > 0)) return;
-    for (let point = Math.ceil(from.s_m / this.#spacing - 1e-9); point * this.#spacing < to.s_m - 1e-9; ++point) {
+    const [begin, stop] = [Math.max(from.s_m, first), Math.min(to.s_m, end)];
+    for (let point = Math.ceil(begin / this.#spacing - 1e-9); point * this.#spacing < stop - 1e-9; ++point) {
       const share = (point * this.#spacing - from.s_m) / span;
       for (const name of LAP_CHANNELS) slot.channels[name][index(point)] = mix(from[name], to[name], share);
     }

@@ -1,8 +1,17 @@
+import { readdirSync, readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
 import { UNKNOWN_LIMIT } from '../protocol/messages';
 import type { Limit } from '../protocol/topics';
-import { LapSamples } from './lap_samples';
-import { forgetLimit, gapsToLimit, limitChannel, limit as limitOfThePage, receiveLimit, whyNoLimit } from './limit';
+import { LapSamples, timeGap } from './lap_samples';
+import {
+  forgetLimit,
+  gapsToLimit,
+  limitChannel,
+  limit as limitOfThePage,
+  limitTimeAt,
+  receiveLimit,
+  whyNoLimit,
+} from './limit';
 import { lapWith } from './test_messages';
 
 const limit: Limit = {
@@ -10,10 +19,11 @@ const limit: Limit = {
   is_known: true,
   lap_time_s: 20,
   sector_times_s: Float64Array.of(5, 5, 10),
-  s_m: Float64Array.of(0, 250, 500, 750, 1000),
-  n_m: Float64Array.of(0, 1, 2, 1, 0),
-  speed_mps: Float64Array.of(40, 50, 60, 50, 40),
-  time_s: Float64Array.of(10, 15, 0, 5, 10), // the start line is at 500 m
+  // In the order of the lap: the start line is at 500 m.
+  s_m: Float64Array.of(500, 750, 0, 250, 500),
+  n_m: Float64Array.of(2, 1, 0, 1, 2),
+  speed_mps: Float64Array.of(60, 50, 40, 50, 60),
+  time_s: Float64Array.of(0, 5, 10, 15, 20),
 };
 
 /** One lap at 50 m/s round 1 km, seen from 500 m on, where laps begin. */
@@ -88,5 +98,102 @@ describe('the limit', () => {
     expect([time?.[1], time?.[250], time?.[625]]).toEqual([0.02, 5, 12.5].map((each) => expect.closeTo(each, 9)));
     expect(limitChannel(limit, all, 'throttle')).toBeNull();
     expect(limitChannel(limit, new LapSamples(), 'speed_mps')).toBeNull();
+  });
+});
+
+/** A shipped track: its length and a lap whose speed follows from its bends. */
+interface Track {
+  readonly name: string;
+  readonly length: number; // [m]
+  speedAt(s: number): number; // [m/s]
+}
+
+const FOLDER = new URL('../../../tracks/', import.meta.url);
+
+/** A speed that the bends allow at 12 m/s², between 8 and 60 m/s: abrupt changes are what the comparison has to stand. */
+function trackOf(file: string): Track {
+  const points = readFileSync(new URL(file, FOLDER), 'utf8')
+    .split('\n')
+    .filter((line) => /^-?\d/.test(line))
+    .map((line) => line.split(',').map(Number) as [number, number]);
+  const at = (i: number): [number, number] => points[i % points.length] as [number, number];
+  const step = (i: number): number => Math.hypot(at(i + 1)[0] - at(i)[0], at(i + 1)[1] - at(i)[1]);
+  const yaw = (i: number): number => Math.atan2(at(i + 1)[1] - at(i)[1], at(i + 1)[0] - at(i)[0]);
+  const places = points.map((_, i) => points.slice(0, i).reduce((sum, _point, j) => sum + step(j), 0));
+  const speeds = points.map((_, i) => {
+    const turn = Math.abs(Math.sin((yaw(i + 1) - yaw(i)) / 2)) * 2;
+    return Math.min(60, Math.max(8, Math.sqrt((12 * step(i)) / Math.max(turn, 1e-6))));
+  });
+  const length = (places.at(-1) ?? 0) + step(points.length - 1);
+  return { name: file, length, speedAt: (s) => speeds[places.findLastIndex((place) => place <= s)] ?? 8 };
+}
+
+/** The lap in steps of half a metre from a line on: place along the road and time since the line. */
+function drive({ length, speedAt }: Track, line: number) {
+  const steps = Math.floor(2 * length);
+  const [s, time, speed] = [new Float64Array(steps + 1), new Float64Array(steps + 1), new Float64Array(steps + 1)];
+  for (let i = 0; i <= steps; ++i) {
+    s[i] = (line + (i * length) / steps) % length;
+    speed[i] = speedAt(s[i] ?? 0);
+    time[i] = i === 0 ? 0 : (time[i - 1] ?? 0) + length / steps / (speed[i] ?? 8);
+  }
+  return { s, time, speed, lapTime: time[steps] ?? NaN };
+}
+
+describe('a lap against itself as the limit', () => {
+  const tracks = readdirSync(FOLDER)
+    .filter((file) => file.endsWith('.csv') && file !== 'stage.csv') // stage is open
+    .map(trackOf);
+
+  it.each(tracks)('has no gap on $name, wherever the line is', (track) => {
+    for (let part = 0; part < 24; ++part) {
+      const line = (part / 24) * track.length;
+      const { s, time, speed, lapTime } = drive(track, line);
+      const itself: Limit = {
+        ...UNKNOWN_LIMIT,
+        is_known: true,
+        lap_time_s: lapTime,
+        s_m: s,
+        time_s: time,
+        speed_mps: speed,
+        x_m: s,
+        y_m: s,
+        n_m: s,
+      };
+      const all = new LapSamples();
+      all.setLength(track.length);
+      // Frames 40 ms apart see the line within rounding, some of them on the other side of it.
+      const moment = (lap: number, i: number, since: number) =>
+        all.push(
+          lap,
+          {
+            s_m: s[i] ?? NaN,
+            time_s: since,
+            speed_mps: speed[i] ?? NaN,
+            lateral_error_m: 0,
+            steer_rad: 0,
+            throttle: 0,
+            x_m: 0,
+            y_m: 0,
+          },
+          lap === 0 ? 0 : lapTime,
+        );
+      moment(0, s.length - 2, lapTime - 0.01);
+      for (let i = 1; i < s.length - 1; ++i) moment(1, i, time[i] ?? NaN);
+      moment(2, 1, time[1] ?? NaN);
+
+      const driven = all.channel(1, 'time_s') as Float64Array;
+      const best = limitChannel(itself, all, 'time_s') as Float64Array;
+      const gaps = timeGap(driven, best).filter(Number.isFinite);
+      expect(gaps.length).toBeGreaterThan(990);
+      expect(Math.max(...gaps.map(Math.abs)), `line at ${line} m`).toBeLessThan(0.05);
+      // Distance and time of the picture's numbers.
+      for (let i = 0; i < s.length - 1; i += 7) {
+        const told = (time[i] ?? NaN) - limitTimeAt(itself, track.length, s[i] ?? NaN, time[i] ?? NaN);
+        expect(Math.abs(told), `at ${s[i]} m`).toBeLessThan(0.05);
+      }
+      const speeds = limitChannel(itself, all, 'speed_mps') as Float64Array;
+      expect(speeds.every((value) => value > 7.9 && value < 60.1)).toBe(true);
+    }
   });
 });

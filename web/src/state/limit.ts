@@ -46,16 +46,46 @@ export function gapsToLimit(lap: Lap, limit: Limit | null): { lap: number; secto
   };
 }
 
-/** Time of the fastest possible lap at a distance along the road [s]; not-a-number outside of it. */
-export function limitTimeAt({ s_m: places, time_s: times }: Limit, s: number): number {
-  if (places.length < 2 || !Number.isFinite(s)) return NaN;
-  // Points are in the order of the lap, whose start need not be where s is 0.
-  for (let i = 1; i < places.length; ++i) {
-    const [from, to] = [places[i - 1] ?? NaN, places[i] ?? NaN];
-    if (!(s >= from && s <= to)) continue;
-    return mix(times[i - 1] ?? NaN, times[i] ?? NaN, to > from ? (s - from) / (to - from) : 0);
-  }
-  return NaN;
+/** Distance from `from` on to `to` along a closed road of this length [m], in [0, length). */
+const forward = (from: number, to: number, length: number): number =>
+  to - from - length * Math.floor((to - from) / length);
+
+const drivenTo = new WeakMap<Limit, Float64Array>();
+
+/**
+ * Distance from the start line to each point of the limit [m]. Points are in the order of the lap, which may begin
+ * anywhere along the road: `s_m` starts again from 0 on the way.
+ */
+function drivenDistances(limit: Limit, length: number): Float64Array {
+  const known = drivenTo.get(limit);
+  if (known) return known;
+  const distances = new Float64Array(limit.s_m.length);
+  for (let i = 1; i < distances.length; ++i)
+    distances[i] = (distances[i - 1] ?? NaN) + forward(limit.s_m[i - 1] ?? NaN, limit.s_m[i] ?? NaN, length);
+  drivenTo.set(limit, distances);
+  return distances;
+}
+
+/** A column of the limit at a place along the centre line, from its origin [m]; NaN where the limit does not reach. */
+function valueAt(limit: Limit, column: ArrayLike<number>, length: number, place: number): number {
+  if (limit.s_m.length < 2 || !(length > 0) || !Number.isFinite(place)) return NaN;
+  const distances = drivenDistances(limit, length);
+  const driven = forward(limit.s_m[0] ?? NaN, place, length);
+  if (driven > (distances.at(-1) ?? NaN) + 1e-3) return NaN; // 1 mm: the lap is closed up to rounding
+  const next = Math.min(Math.max(1, firstSince(distances, driven)), distances.length - 1);
+  const [from, to] = [distances[next - 1] ?? NaN, distances[next] ?? NaN];
+  const share = to > from ? Math.min(1, (driven - from) / (to - from)) : 0;
+  return mix(column[next - 1] ?? NaN, column[next] ?? NaN, share);
+}
+
+/**
+ * Time of the fastest possible lap at a place along a road of this length [s]; not-a-number outside of it. `elapsed`:
+ * of the lap that is compared with it; no lap is half a lap ahead of the limit, so just before and behind the line it
+ * decides between the end of a lap and its beginning.
+ */
+export function limitTimeAt(limit: Limit, length: number, place: number, elapsed: number): number {
+  const time = valueAt(limit, limit.time_s, length, place);
+  return time - elapsed > limit.lap_time_s / 2 ? time - limit.lap_time_s : time;
 }
 
 /**
@@ -65,13 +95,11 @@ export function limitTimeAt({ s_m: places, time_s: times }: Limit, s: number): n
 export function limitChannel(limit: Limit, samples: LapSamples, name: LapChannel): Float64Array | null {
   const column = COLUMNS[name];
   if (!column || limit.s_m.length < 2 || !Number.isFinite(samples.place(0))) return null;
-  const [values, places, times] = [limit[column], limit.s_m, limit.time_s];
   return Float64Array.from({ length: samples.points }, (_, point) => {
-    const s = samples.place(point);
-    const above = Math.min(Math.max(1, firstSince(places, s)), places.length - 1);
-    const at = (row: ArrayLike<number>, i: number): number => row[i] ?? NaN;
-    const isOverTheLine = at(times, above) < at(times, above - 1);
-    const share = (s - at(places, above - 1)) / (at(places, above) - at(places, above - 1));
-    return isOverTheLine && column === 'time_s' ? NaN : mix(at(values, above - 1), at(values, above), share);
+    const value = valueAt(limit, limit[column], samples.length, samples.place(point));
+    if (column !== 'time_s') return value;
+    // Lines that were found from frames lie up to a few centimetres beside the limit's.
+    const expected = (limit.lap_time_s * samples.s(point)) / samples.length;
+    return value - limit.lap_time_s * Math.round((value - expected) / limit.lap_time_s);
   });
 }

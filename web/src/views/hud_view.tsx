@@ -55,7 +55,9 @@ function Deltas() {
   if (!frame) return null;
   const { best } = lapSamples;
   const toBest = best < 0 ? NaN : frame.lap_time_s - lapSamples.at(best, 'time_s', frame.s_m);
-  const toLimit = limit.value ? frame.lap_time_s - limitTimeAt(limit.value, frame.s_m) : NaN;
+  const toLimit = limit.value
+    ? frame.lap_time_s - limitTimeAt(limit.value, lapSamples.length, frame.s_m, frame.lap_time_s)
+    : NaN;
   // The first lap begins from standstill: it is no measure.
   return (
     <p class="deltas">
