@@ -191,7 +191,7 @@ describe('the dashboard', () => {
     await page.keyboard.press('Space');
     await page.getByText('Live', { exact: true }).waitFor();
     await dashboard.button('Pause').focus();
-    await page.keyboard.press('Space'); // presses the button, once
+    await page.keyboard.press('Space'); // pauses, once
     await page.getByText('Paused', { exact: true }).waitFor();
     await page.keyboard.press('Enter');
     await page.getByText('Live', { exact: true }).waitFor();

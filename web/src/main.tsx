@@ -1,7 +1,7 @@
 import type { IWebSocket } from '@foxglove/ws-protocol';
 import { render } from 'preact';
 import { toggleScheme } from './lib/appearance';
-import { addShortcuts, shortcutFor } from './lib/keys';
+import { addShortcuts, shortcutFor, ticks } from './lib/keys';
 import { nextSpeedUnit } from './lib/units';
 import { WorkerLink } from './page/worker_link';
 import { Connection, SUBPROTOCOLS } from './protocol/connection';
@@ -9,10 +9,11 @@ import { answerBy, programPage } from './protocol/program_page';
 import { readSchema } from './protocol/schema';
 import type { Source } from './protocol/source';
 import { begin, isReading, summary, timeline } from './recording/begin';
+import { isReport } from './recording/mode';
 import { beginSession, receive } from './state/demultiplexer';
 import { toggleLayer } from './state/layers';
 import { attempt, link, notice, services } from './state/link';
-import { call, refresh } from './state/operate';
+import { call, can, refresh } from './state/operate';
 import { rememberRun } from './state/other_run';
 import { toggleFrozen } from './state/plot_view';
 import { togglePresentation } from './state/presentation';
@@ -20,6 +21,7 @@ import { isPaused } from './state/run';
 import { schema } from './state/settings';
 import { beginSettings, refreshOnNewChoice, takeSettings } from './state/settings_session';
 import { refreshText } from './state/shown';
+import { followAddress, TABS, tab } from './state/tab';
 import { everyFrame } from './state/ticker';
 import { changePace } from './views/drive_view';
 import { HeaderView } from './views/header_view';
@@ -27,10 +29,9 @@ import { HelpView, isHelpOpen } from './views/help_view';
 import { handBack, listenToDriver, toggleManual } from './views/manual_view';
 import { RestartView } from './views/restart_view';
 import { listenForLinks, ShareView } from './views/share_view';
-import { tab } from './views/tab';
 import { nextView, toggleDimension, zoom } from './views/track_view';
 import { focusSearch } from './views/tune_view';
-import { isPanelAlone, TABS, titleOf, toggleDock, WorkbenchView } from './views/workbench_view';
+import { isPanelAlone, titleOf, toggleDock, WorkbenchView } from './views/workbench_view';
 
 let session: string | null = null;
 
@@ -89,9 +90,17 @@ void begin(live);
 refreshOnNewChoice(refresh);
 listenToDriver();
 listenForLinks();
+if (!isReport()) followAddress();
 
 addShortcuts(
-  { keys: [' '], label: 'Space', does: 'Pause, resume', group: 'Run', action: () => call('/pause', !isPaused.value) },
+  {
+    keys: [' '],
+    label: 'Space',
+    does: 'Pause, resume',
+    group: 'Run',
+    isPossible: () => can('/pause'),
+    action: () => call('/pause', !isPaused.value),
+  },
   { keys: ['s'], label: 'S', does: 'One control step while paused', group: 'Run', action: () => call('/step') },
   { keys: ['r'], label: 'R', does: 'Back to the start of the run', group: 'Run', action: () => call('/reset') },
   { keys: ['[', ','], label: '[ ,', does: 'Halve the pace', group: 'Run', action: () => changePace(0.5) },
@@ -169,10 +178,18 @@ addShortcuts(
 
 addEventListener('keydown', (event) => {
   if (document.querySelector('dialog[open]')) return;
-  const shortcut = shortcutFor(event, event.target instanceof HTMLElement ? event.target : null);
+  const target = event.target instanceof HTMLElement ? event.target : null;
+  if (target && ticks(target, event.key)) target.click();
+  const shortcut = shortcutFor(event, target);
   if (!shortcut) return;
   event.preventDefault();
   shortcut.action();
+});
+// A button that has the focus is pressed when Space is let go.
+addEventListener('keyup', (event) => {
+  const target = event.target instanceof HTMLElement ? event.target : null;
+  if (event.key === ' ' && !document.querySelector('dialog[open]') && shortcutFor(event, target))
+    event.preventDefault();
 });
 
 function App() {

@@ -1,5 +1,5 @@
 import { describe, expect, it, vi } from 'vitest';
-import { addShortcuts, allShortcuts, isTakenBy, shortcutFor } from './keys';
+import { addShortcuts, allShortcuts, isTakenBy, shortcutFor, ticks } from './keys';
 
 const press = (key: string, more: object = {}) => ({
   key,
@@ -36,7 +36,7 @@ describe('keys', () => {
   });
 
   it('leaves the focused element what it answers to', () => {
-    expect(isTakenBy({ tagName: 'BUTTON' }, ' ')).toBe(true);
+    expect(isTakenBy({ tagName: 'BUTTON' }, 'enter')).toBe(true);
     expect(isTakenBy({ tagName: 'BUTTON' }, 's')).toBe(false);
     expect(isTakenBy(input('text'), 's')).toBe(true);
     expect(isTakenBy(input('number'), '1')).toBe(true);
@@ -47,5 +47,15 @@ describe('keys', () => {
     expect(isTakenBy({ tagName: 'DIV' }, 'arrowdown')).toBe(false);
     expect(isTakenBy({ tagName: 'BUTTON', getAttribute: () => 'tab' }, 'arrowleft')).toBe(true);
     expect(isTakenBy(null, 's')).toBe(false);
+  });
+
+  it('pauses by Space wherever nothing is typed', () => {
+    const tab = { tagName: 'BUTTON', getAttribute: () => 'tab' };
+    for (const target of [{ tagName: 'BUTTON' }, { tagName: 'SUMMARY' }, { tagName: 'A' }, tab, input('checkbox')])
+      expect(isTakenBy(target, ' '), target.tagName).toBe(false);
+    for (const target of [input('text'), input('search'), { tagName: 'SELECT' }, { tagName: 'TEXTAREA' }])
+      expect(isTakenBy(target, ' '), target.tagName).toBe(true);
+    expect(ticks(input('checkbox'), 'Enter')).toBe(true);
+    expect(ticks(input('text'), 'Enter')).toBe(false);
   });
 });

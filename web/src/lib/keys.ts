@@ -7,6 +7,8 @@ export interface Shortcut {
   readonly does: string;
   readonly group: 'Run' | 'Camera' | 'Panels' | 'Driving by hand';
   action(): void;
+  /** False: the key is left to the element that has the focus. */
+  isPossible?(): boolean;
 }
 
 const shortcuts: Shortcut[] = [];
@@ -30,22 +32,30 @@ export interface KeyTarget {
 }
 
 const ON_SLIDER = new Set(['arrowleft', 'arrowright', 'arrowup', 'arrowdown', 'home', 'end', 'pageup', 'pagedown']);
-const ON_BUTTON = new Set([' ', 'enter']);
 
-/** Whether the focused element handles this key itself, so that no shortcut applies. */
+const TICKED = new Set(['checkbox', 'radio']);
+
+/**
+ * Whether the focused element handles this key itself, so that no shortcut applies. Space pauses wherever nothing is
+ * typed, whatever was clicked last: buttons answer to Enter.
+ */
 export function isTakenBy(target: KeyTarget | null, key: string): boolean {
   const tag = target?.tagName?.toLowerCase();
   if (key === 'escape' || !tag || !target) return false;
   if (target.isContentEditable || tag === 'textarea' || tag === 'select') return true;
   if (target.getAttribute?.('role') === 'separator' || target.getAttribute?.('role') === 'tab')
-    return ON_SLIDER.has(key) || ON_BUTTON.has(key);
+    return ON_SLIDER.has(key) || key === 'enter';
   if (tag === 'input') {
     if (target.type === 'range') return ON_SLIDER.has(key);
-    if (target.type === 'checkbox' || target.type === 'radio') return ON_BUTTON.has(key) || ON_SLIDER.has(key);
+    if (TICKED.has(target.type ?? '')) return ON_SLIDER.has(key);
     return true;
   }
-  return (tag === 'button' || tag === 'a' || tag === 'summary') && ON_BUTTON.has(key);
+  return (tag === 'button' || tag === 'a' || tag === 'summary') && key === 'enter';
 }
+
+/** Enter ticks a box, because Space pauses. */
+export const ticks = (target: KeyTarget | null, key: string): boolean =>
+  key.toLowerCase() === 'enter' && target?.tagName?.toLowerCase() === 'input' && TICKED.has(target.type ?? '');
 
 /** The shortcut of a key press; null when there is none or the focused element handles the key itself. */
 export function shortcutFor(
@@ -54,5 +64,6 @@ export function shortcutFor(
 ): Shortcut | null {
   const key = event.key.toLowerCase();
   if (event.ctrlKey || event.metaKey || event.altKey || event.repeat || isTakenBy(target, key)) return null;
-  return shortcuts.filter(({ keys }) => keys.includes(key)).at(-1) ?? null;
+  const found = shortcuts.filter(({ keys }) => keys.includes(key)).at(-1);
+  return found && (found.isPossible?.() ?? true) ? found : null;
 }

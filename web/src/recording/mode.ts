@@ -22,8 +22,13 @@ export function modeOf(answer: unknown): Mode {
   return { name: 'replay', logs, start: typeof answer.start_s === 'number' ? answer.start_s : 0 };
 }
 
+const reportText = (): string => document.getElementById('chicane-report')?.textContent ?? '';
+
+/** Whether the page is that of `chicane report`. */
+export const isReport = (): boolean => reportText() !== '';
+
 export async function findMode(): Promise<Mode> {
-  const text = document.getElementById('chicane-report')?.textContent;
+  const text = reportText();
   if (text) return { name: 'report', text };
   if (__PAGE__ || location.protocol === 'file:') return { name: 'live' };
   const answer = await fetch('mode.json').catch(() => null);

@@ -125,7 +125,7 @@ function trackOf(file: string): Track {
     return Math.min(60, Math.max(8, Math.sqrt((12 * step(i)) / Math.max(turn, 1e-6))));
   });
   const length = (places.at(-1) ?? 0) + step(points.length - 1);
-  return { name: file, length, speedAt: (s) => speeds[places.findLastIndex((place) => place <= s)] ?? 8 };
+  return { name: file, length, speedAt: (s) => speeds[places.filter((place) => place <= s).length - 1] ?? 8 };
 }
 
 /** The lap in steps of half a metre from a line on: place along the road and time since the line. */

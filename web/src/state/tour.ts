@@ -6,6 +6,7 @@ import { frameListeners, restartListeners } from './demultiplexer';
 import { services } from './link';
 import { run } from './run';
 import { schema, settingChanges, settings } from './settings';
+import type { Tab } from './tab';
 import { answer } from './what_if';
 
 // A tour of the dashboard for newcomers: seven things to do. What was done is read from the run, not from clicks.
@@ -18,7 +19,9 @@ export interface Step {
   readonly title: string;
   readonly text: string;
   /** The panel on which it is done. */
-  readonly tab: 'drive' | 'faults' | 'tune' | 'whatif';
+  readonly tab: Tab;
+  /** What the step is about, on that panel: a selector, as in tour.css, which marks it. */
+  readonly where: string;
   /** In their order: a task counts when those before it are done. */
   readonly tasks: readonly string[];
   isPossible(): boolean;
@@ -56,6 +59,7 @@ export const STEPS: readonly Step[] = [
       'Take the wheel with the button or the key M. Then the arrow keys steer, drive and brake; a ' +
       'finger or the mouse does it on the pad. At speed that is hard: Reset (R) puts the car to the start, at rest.',
     tab: 'drive',
+    where: '.manual-row button',
     tasks: ['Take the wheel', `Drive ${BY_HAND_M} m`],
     isPossible: () => settings.value.has('manual.is_on'),
     watch() {
@@ -73,6 +77,7 @@ export const STEPS: readonly Step[] = [
       'Hand back with the button or Esc: the controller goes on from where you are. From far off the ' +
       'road, Reset (R) puts the car back to the start.',
     tab: 'drive',
+    where: '.manual-row button',
     tasks: ['Hand back', `Let it drive ${ALONE_S} s on the road; from far off it, press Reset first`],
     isPossible: () => settings.value.has('manual.is_on'),
     watch() {
@@ -90,6 +95,7 @@ export const STEPS: readonly Step[] = [
       'In slow motion you see it think: the coloured band is where the car will be during the next two ' +
       'seconds, the sentence on the picture says why it is no faster.',
     tab: 'drive',
+    where: '.pace .segments',
     tasks: ['Press 0.25× or twice the key [', 'Press 1× again'],
     isPossible: () => settings.value.has('run.pace'),
     watch: () => (frame) => [frame.pace <= 0.5, frame.pace >= 1],
@@ -101,6 +107,7 @@ export const STEPS: readonly Step[] = [
       'Take its measurements away: click the card “Link lost” below. It drives on by what it knew, and brakes if it ' +
       'has to wait for long.',
     tab: 'faults',
+    where: '.fault-card:has([data-key="fault.link_lost"])',
     tasks: ['Inject a fault of the sensors or the link', 'Wait until it is over and the controller drives again'],
     isPossible: () => hasFault(['sensor', 'link']),
     watch: () => (frame) => [isFaulty(frame, ['sensor', 'link']), frame.active_faults === 0 && isDriving(frame)],
@@ -112,6 +119,7 @@ export const STEPS: readonly Step[] = [
       'Some things no controller can mend: click the card “Steering stuck” below, shortly before a bend. The frame ' +
       'of the picture turns red.',
     tab: 'faults',
+    where: '.fault-card:has([data-key="fault.steering_stuck"])',
     tasks: ['Let the car leave the road, or the guard stop it', 'Wait until it drives again, or press Reset'],
     isPossible: () => hasFault(['actuator', 'road']),
     watch: () => (frame) => [
@@ -126,6 +134,7 @@ export const STEPS: readonly Step[] = [
       'Every setting acts at once. Search for “speed limit” and set it to 15 m/s, or move any slider: ' +
       'the list of changes keeps what you did, and takes it back.',
     tab: 'tune',
+    where: '#tune-search',
     tasks: ['Change a setting', `Watch it for ${TUNED_S} s`],
     isPossible: () => schema.value.some(({ key, is_live }) => is_live && settings.value.has(key)),
     watch() {
@@ -145,6 +154,7 @@ export const STEPS: readonly Step[] = [
       'Was that better? “As at the start” undoes your change, or choose a setting and another value for it; then ' +
       '“Drive both”: the program drives both futures from the same moment, and sets them side by side.',
     tab: 'whatif',
+    where: '.what-if-search',
     tasks: ['Get an answer'],
     isPossible: () => services.value.has('/what_if'),
     watch() {

@@ -5,6 +5,7 @@ import type { Setting } from '../protocol/source';
 import { notice } from '../state/link';
 import { canSet } from '../state/operate';
 import { commandOf, driveShared, filesChosen, linkTo, sharedNow, textsIn, wanted, wantedTexts } from '../state/share';
+import { tab } from '../state/tab';
 import { Dialog } from './help_view';
 
 const isOpen = signal(false);
@@ -19,7 +20,7 @@ export function listenForLinks(): void {
     const texts = textsIn(location.hash);
     if (!texts) return;
     wantedTexts.value = texts;
-    history.replaceState(null, '', location.pathname + location.search);
+    history.replaceState(null, '', `#${tab.value}`);
   };
   addEventListener('hashchange', read);
   read();

@@ -1,10 +1,11 @@
 import { effect } from '@preact/signals';
-import { useLayoutEffect, useRef } from 'preact/hooks';
+import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import { addShortcuts } from '../lib/keys';
 import { link } from '../state/link';
 import { call, set } from '../state/operate';
 import { run } from '../state/run';
 import { entryOf, settingChanges, settings } from '../state/settings';
+import { tab } from '../state/tab';
 import {
   done,
   goOn,
@@ -18,7 +19,6 @@ import {
   step,
   stepNumber,
 } from '../state/tour';
-import { tab } from './tab';
 
 /** Opens the tour at its step, on the panel of that step. */
 function open(): void {
@@ -96,12 +96,17 @@ function announcement({ tasks }: Step): string {
 
 function StepCard({ of }: { of: Step }) {
   const isPossible = link.value !== 'live' || of.isPossible();
+  const isThere = tab.value === of.tab;
+  // What the step is about comes into sight with its panel, also where the reader had scrolled.
+  useEffect(() => {
+    if (isThere) document.querySelector(of.where)?.scrollIntoView({ block: 'nearest' });
+  }, [of, isThere]);
   return (
     <>
       <p>{isPossible ? of.text : 'This run does not offer it.'}</p>
       {isPossible && <Tasks of={of} />}
       <div class="buttons">
-        {isPossible && tab.value !== of.tab && (
+        {isPossible && !isThere && (
           <button type="button" onClick={showWhere}>
             Show me where
           </button>

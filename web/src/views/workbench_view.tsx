@@ -1,9 +1,11 @@
 import { signal } from '@preact/signals';
 import type { ComponentType } from 'preact';
+import { useLayoutEffect, useRef } from 'preact/hooks';
 import { clamp } from '../lib/math';
 import { persisted } from '../lib/persisted';
 import { link } from '../state/link';
 import { isStageAlone } from '../state/presentation';
+import { TABS, type Tab, tab } from '../state/tab';
 import { DriveView } from './drive_view';
 import { EndView } from './end_view';
 import { ExplainView } from './explain_view';
@@ -11,13 +13,12 @@ import { FaultsView } from './faults_view';
 import { InstrumentsView } from './instruments_view';
 import { LapsView } from './laps_view';
 import { PlotsView } from './plots_view';
-import { tab } from './tab';
 import { TourView } from './tour_view';
 import { TrackView } from './track_view';
 import { TuneView } from './tune_view';
 import { WhatIfView } from './what_if_view';
 
-/** The panels, in the order of their tabs and of the keys 1, 2, ... A panel is a view of its own and one row here. */
+/** A panel is a view of its own, one row here, and its name in TABS. */
 const PANELS = [
   { name: 'drive', title: 'Drive', View: DriveView },
   { name: 'plots', title: 'Plots', View: PlotsView },
@@ -26,18 +27,9 @@ const PANELS = [
   { name: 'laps', title: 'Laps', View: LapsView },
   { name: 'faults', title: 'Faults', View: FaultsView },
   { name: 'whatif', title: 'What if', View: WhatIfView },
-] as const;
-
-export type Tab = (typeof PANELS)[number]['name'];
-export const TABS: readonly Tab[] = PANELS.map(({ name }) => name);
+] as const satisfies readonly { name: Tab; title: string; View: ComponentType }[];
 
 export const titleOf = (name: Tab): string => PANELS.find((each) => each.name === name)?.title ?? name;
-
-const isTab = (value: unknown): value is Tab => (TABS as readonly unknown[]).includes(value);
-
-/** The tab in the address has priority over the one shown last, so that links can open a tab. */
-if (!isTab(tab.value)) tab.value = 'plots';
-if (typeof location !== 'undefined' && isTab(location.hash.slice(1))) tab.value = location.hash.slice(1) as Tab;
 
 type Dock = 'right' | 'bottom';
 const dock = persisted<Dock>('dock', 'right', (value) => value === 'right' || value === 'bottom');
@@ -158,7 +150,23 @@ function Tabs() {
   );
 }
 
+/** Each panel keeps how far it was scrolled. */
+function useScrollOf(name: Tab) {
+  const body = useRef<HTMLDivElement>(null);
+  const places = useRef(new Map<Tab, number>());
+  useLayoutEffect(() => {
+    const element = body.current;
+    if (!element) return undefined;
+    element.scrollTop = places.current.get(name) ?? 0;
+    const note = (): void => void places.current.set(name, element.scrollTop);
+    element.addEventListener('scroll', note, { passive: true });
+    return () => element.removeEventListener('scroll', note);
+  }, [name]);
+  return body;
+}
+
 export function WorkbenchView() {
+  const body = useScrollOf(tab.value);
   const View: ComponentType = PANELS[TABS.indexOf(tab.value)]?.View ?? PlotsView;
   const share = dock.value === 'right' ? shareRight.value : shareBottom.value;
   const classes = [
@@ -184,6 +192,7 @@ export function WorkbenchView() {
         <Tabs />
         <div
           class={`panel-body show-${tab.value}`}
+          ref={body}
           id="panel"
           role="tabpanel"
           aria-labelledby={`tab-${tab.value}`}

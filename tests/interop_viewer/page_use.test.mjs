@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// The page in the hands of a reader: keys, tabs, addresses, searches and explanations do what they say.
+import assert from 'node:assert/strict';
+import { afterEach, beforeEach, describe, it } from 'node:test';
+import { DashboardPage } from './dashboard_page.mjs';
+import { browserAndDrive } from './here.mjs';
+
+const here = browserAndDrive(['--track', 'lakeside']);
+let dashboard;
+let page;
+
+async function open(options) {
+  dashboard = await DashboardPage.open(here.browser, here.drive.url, options);
+  page = dashboard.page;
+}
+
+describe('the page', () => {
+  beforeEach(() => open());
+  afterEach(() => dashboard.close());
+
+  it('pauses by Space, whatever was clicked last', async () => {
+    await dashboard.show('faults');
+    const fault = page.locator('.panel-body button[aria-pressed]').first();
+    await fault.click();
+    const name = await fault.innerText();
+    await page.keyboard.press('Space');
+    await page.getByText('Paused', { exact: true }).waitFor();
+    assert.equal(await fault.getAttribute('aria-pressed'), 'true', `${name} goes on`);
+    await page.keyboard.press('Space');
+    await page.getByText('Live', { exact: true }).waitFor();
+  });
+
+  it('keeps how far each panel was scrolled', async () => {
+    const body = page.locator('#panel');
+    const scrolled = () => body.evaluate((element) => element.scrollTop);
+    await dashboard.show('tune');
+    await page.locator('#tune-search').waitFor();
+    await body.evaluate((element) => element.scrollTo(0, 400));
+    await dashboard.show('faults');
+    await page.locator('.fault-card').first().waitFor();
+    assert.equal(await scrolled(), 0);
+    await dashboard.show('tune');
+    await dashboard.until(scrolled, (now) => now === 400, 'the settings as they were scrolled');
+  });
+
+  it('has its tab in the address, for back, forward, reload and links', async () => {
+    const chosen = () => page.locator('[role="tab"][aria-selected="true"]').innerText();
+    const is = (title) => dashboard.until(chosen, (now) => now === title, title);
+    await dashboard.show('tune');
+    await dashboard.show('laps');
+    assert.match(page.url(), /#laps$/);
+    await page.goBack();
+    await is('Tune');
+    await page.goBack();
+    await is('Drive');
+    await page.goForward();
+    await is('Tune');
+    await page.reload();
+    await is('Tune');
+    await page.evaluate(() => {
+      location.hash = 'faults';
+    });
+    await is('Faults');
+  });
+
+  it('brings into sight what a step of the tour is about', async () => {
+    await page.evaluate(() => localStorage.setItem('chicane.tour.step', '4'));
+    await page.reload();
+    await dashboard.button('Go on with the tour, step 5 of 7').click();
+    const card = page.locator('[data-key="fault.steering_stuck"]');
+    const isSeen = () =>
+      card.evaluate((element) => {
+        const panel = document.getElementById('panel').getBoundingClientRect();
+        const { top, bottom } = element.getBoundingClientRect();
+        return top >= panel.top && bottom <= panel.bottom;
+      });
+    await dashboard.until(isSeen, Boolean, 'the card of step 5');
+    await page.locator('#panel').evaluate((element) => element.scrollTo(0, 0));
+    await dashboard.show('tune');
+    await page.locator('#panel').evaluate((element) => element.scrollTo(0, 600));
+    await dashboard.button('Skip').click();
+    const search = () =>
+      page.locator('#tune-search').evaluate((element) => {
+        const panel = document.getElementById('panel').getBoundingClientRect();
+        return element.getBoundingClientRect().top >= panel.top;
+      });
+    await dashboard.until(search, Boolean, 'the search of step 6');
+  });
+});
