@@ -63,6 +63,23 @@ describe('the page', () => {
     await is('Faults');
   });
 
+  it('says what a setting means to touch and keyboard', async () => {
+    const name = page.locator('[data-key="latency_ms"] .meaning');
+    const note = page.getByRole('note').filter({ hasText: /delay.*0 to 500 ms.*latency_ms/s });
+    await name.focus();
+    await page.keyboard.press('Enter');
+    await note.waitFor();
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await page.keyboard.press('Escape');
+    await note.waitFor({ state: 'hidden' });
+    await name.click();
+    await note.waitFor();
+    const { x, y, width, height } = await note.boundingBox();
+    assert.ok(x >= 0 && y >= 0 && x + width <= 1366 && y + height <= 768, 'inside the window');
+    await page.mouse.click(5, 5);
+    await note.waitFor({ state: 'hidden' });
+  });
+
   it('brings into sight what a step of the tour is about', async () => {
     await page.evaluate(() => localStorage.setItem('chicane.tour.step', '4'));
     await page.reload();

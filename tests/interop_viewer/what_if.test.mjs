@@ -44,16 +44,32 @@ describe('what if, in a live run', () => {
     await drive.stop();
   });
 
-  it('takes a setting by its name, and says when words fit none or several', async () => {
+  it('takes a setting by its name, and offers the choice where words fit several', async () => {
     const { page } = dashboard;
     const search = page.getByLabel('Setting to change');
     const says = (text) => page.getByRole('status').filter({ hasText: text }).waitFor();
+    const offered = page.getByRole('option');
     await search.fill('no such thing');
     await search.press('Enter');
     await says('No setting that a run can change is called so.');
     await search.fill('weight');
+    await says(/^\d+ settings fit\./);
+    await search.press('Enter'); // which of them: leads into the list
+    assert.equal(await offered.first().getAttribute('aria-selected'), 'true');
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await search.press('ArrowDown');
+    const second = await offered.nth(1).locator('b').innerText();
     await search.press('Enter');
-    await says(/^\d+ settings fit: /);
+    await dashboard.button(`Do not change ${second}`).click();
+    await search.fill('latency'); // of the car, of a controller, of the sensor
+    await search.press('Enter');
+    await search.press('Enter');
+    await dashboard.button('Do not change latency').click();
+    await search.fill('weight');
+    const last = offered.last();
+    const name = await last.locator('b').innerText();
+    await last.click();
+    await dashboard.button(`Do not change ${name}`).click();
     await search.fill('grip share');
     await search.press('Enter');
     await page.getByLabel('What if: grip share').waitFor();

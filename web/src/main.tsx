@@ -178,6 +178,7 @@ addShortcuts(
 
 addEventListener('keydown', (event) => {
   if (document.querySelector('dialog[open]')) return;
+  if (event.key === 'Escape' && document.querySelector(':popover-open')) return; // closes that first
   const target = event.target instanceof HTMLElement ? event.target : null;
   if (target && ticks(target, event.key)) target.click();
   const shortcut = shortcutFor(event, target);

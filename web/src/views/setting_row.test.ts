@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { SchemaEntry } from '../protocol/schema';
-import { labelOf, rangeOf } from './setting_row';
+import { labelOf } from '../state/setting_search';
+import { rangeOf } from './setting_row';
 
 const entry = (change: Partial<SchemaEntry>): SchemaEntry => ({
   key: 'a.b',

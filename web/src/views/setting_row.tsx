@@ -1,31 +1,13 @@
 import { type Range, scaleOf, shareOf, tidy, valueAt } from '../lib/scale';
-import { nameInWords } from '../lib/words';
 import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
 import { canSet, set } from '../state/operate';
+import { labelOf } from '../state/setting_search';
 import { isControl, refusals, settings, startSettings } from '../state/settings';
 import { DraftBox } from './draft_box';
+import { Meaning } from './meaning';
 
 const STEPS = 1000; // of a slider's travel
-
-/** The last part of a key in words, without the unit, which is shown beside it. */
-export function labelOf({ key, unit }: Pick<SchemaEntry, 'key' | 'unit'>): string {
-  const name = key.split('.').at(-1) ?? key;
-  const suffix = {
-    'm/s': 'mps',
-    'm/s²': 'mps2',
-    deg: 'deg',
-    'deg/s': 'degps',
-    ms: 'ms',
-    s: 's',
-    m: 'm',
-    kg: 'kg',
-    'kg m²': 'kgm2',
-    'W/kg': 'wpkg',
-  }[unit];
-  const bare = suffix !== undefined && name.endsWith(`_${suffix}`) ? name.slice(0, -suffix.length - 1) : name;
-  return nameInWords(bare);
-}
 
 export function rangeOf({ minimum, maximum, kind }: SchemaEntry, usual: Setting | undefined): Range | null {
   if (minimum === null || maximum === null || !(maximum > minimum) || maximum > 1e12) return null;
@@ -149,6 +131,20 @@ function TextBox({ entry, label }: { entry: SchemaEntry; label: string }) {
   );
 }
 
+/** The name of a setting; pressed, it says what the setting means. */
+export function SettingMeaning({ entry, label }: { entry: SchemaEntry; label: string }) {
+  const { minimum, maximum, unit, meaning, is_live, key } = entry;
+  const hasRange = minimum !== null && maximum !== null && maximum > minimum;
+  return (
+    <Meaning of={label}>
+      {meaning}
+      {hasRange && <span>{`${tidy(minimum)} to ${tidy(maximum)} ${unit}`}</span>}
+      {!is_live && <span>A change restarts the run.</span>}
+      <code>{key}</code>
+    </Meaning>
+  );
+}
+
 /** A setting: name, control, unit, the reason of a refusal, and a button back to the value at the start. */
 export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string }) {
   const label = name ?? labelOf(entry);
@@ -157,17 +153,10 @@ export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string 
   const start = startSettings.value.get(entry.key) ?? (isControl(entry.key) ? (entry.default ?? undefined) : undefined);
   const isChanged = start !== undefined && !Object.is(value, start);
   const refusal = refusals.value.get(entry.key);
-  const bounds =
-    entry.minimum !== null && entry.maximum !== null && entry.maximum > entry.minimum
-      ? `${tidy(entry.minimum)} to ${tidy(entry.maximum)} ${entry.unit}`
-      : '';
-  const about = [entry.meaning, bounds, entry.is_live ? '' : 'A change restarts the run.', entry.key]
-    .filter(Boolean)
-    .join('\n');
   return (
-    <div class={`setting kind-${entry.kind}${isChanged ? ' changed' : ''}`} data-key={entry.key} title={about}>
+    <div class={`setting kind-${entry.kind}${isChanged ? ' changed' : ''}`} data-key={entry.key}>
       <span class="setting-name">
-        {label}
+        <SettingMeaning entry={entry} label={label} />
         {!entry.is_live && (
           <span class="restarts" role="img" title="A change restarts the run" aria-label="restarts the run">
             ↻

@@ -7,6 +7,7 @@ import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
 import { set } from '../state/operate';
 import { run } from '../state/run';
+import { isFound } from '../state/setting_search';
 import { isControl, schema, settingChanges, settings } from '../state/settings';
 import { NothingToSet } from './drive_view';
 import { SettingRow } from './setting_row';
@@ -32,15 +33,6 @@ function takeFocus(box: HTMLInputElement | null): void {
 }
 
 const prefixOf = (key: string): string => (key.includes('.') ? (key.split('.')[0] ?? '') : 'run');
-
-/** Every word of the search must be in the name, meaning or unit. */
-export function isFound(entry: Pick<SchemaEntry, 'key' | 'meaning' | 'group'>, words: string): boolean {
-  const text = `${entry.key} ${nameInWords(entry.key)} ${entry.meaning} ${entry.group}`.toLowerCase();
-  return words
-    .toLowerCase()
-    .split(/\s+/)
-    .every((word) => text.includes(word));
-}
 
 const groups = computed(() => {
   const changed = new Set(settingChanges.value.map(({ key }) => key));

@@ -7,6 +7,7 @@ import { canSet, set } from '../state/operate';
 import { cursorTime } from '../state/plot_view';
 import { endReplay, replayLeft } from '../state/replay';
 import { run } from '../state/run';
+import { labelOf } from '../state/setting_search';
 import { settingChanges } from '../state/settings';
 import {
   answer,
@@ -29,8 +30,8 @@ import {
 import { watchBoth } from '../state/what_if_ghost';
 import { DraftBox } from './draft_box';
 import { RaceView } from './race_view';
-import { labelOf, typed } from './setting_row';
-import { isFound } from './tune_view';
+import { SettingCombo } from './setting_combo';
+import { SettingMeaning, typed } from './setting_row';
 import { WhatIfResult } from './what_if_result';
 
 const MOST_WISHES = 8;
@@ -43,25 +44,14 @@ function wish(key: string, value: Setting): void {
   wishes.value = wishes.value.map((each) => (each.key === key ? { key, value } : each));
 }
 
-function addWish(key: string): boolean {
+/** Adds a setting with its value in force; says why it is not taken. */
+function addWish(key: string): string {
   const entry = offered().find((each) => each.key === key);
   const value = entry && valueInForce(entry);
-  if (value === undefined || wishes.value.length >= MOST_WISHES) return false;
+  if (value === undefined) return 'This run does not have that setting.';
+  if (wishes.value.length >= MOST_WISHES) return 'No more than eight at a time.';
   if (!wishes.value.some((each) => each.key === key)) wishes.value = [...wishes.value, { key, value }];
-  return true;
-}
-
-/** Why the words of the search chose no setting; empty where they did. */
-const unclear = signal('');
-
-/** The one setting that is called so, or of which all words tell. */
-function addFound(words: string): void {
-  const named = offered().filter((entry) => labelOf(entry).toLowerCase() === words.trim().toLowerCase());
-  const found = named.length === 1 ? named : offered().filter((entry) => isFound(entry, words));
-  const [first, ...others] = found;
-  if (first && others.length === 0) unclear.value = addWish(first.key) ? '' : 'No more than eight at a time.';
-  else if (first) unclear.value = `${found.length} settings fit: ${found.slice(0, 3).map(labelOf).join(', ')} …`;
-  else unclear.value = 'No setting that a run can change is called so.';
+  return '';
 }
 
 function Value({ entry, value }: { entry: SchemaEntry; value: Setting }) {
@@ -104,8 +94,10 @@ function Value({ entry, value }: { entry: SchemaEntry; value: Setting }) {
 function WishRow({ entry, value }: { entry: SchemaEntry; value: Setting }) {
   const now = valueInForce(entry);
   return (
-    <li class="wish" data-key={entry.key} title={`${entry.meaning}\n${entry.key}`}>
-      <span class="setting-name">{labelOf(entry)}</span>
+    <li class="wish" data-key={entry.key}>
+      <span class="setting-name">
+        <SettingMeaning entry={entry} label={labelOf(entry)} />
+      </span>
       <Value entry={entry} value={value} />
       <span class="unit">
         {entry.unit} {Object.is(now, value) ? 'as now' : `now ${asText(now)}`}
@@ -135,29 +127,12 @@ function Wishes() {
         })}
       </ul>
       <div class="toolbar">
-        <input
-          type="search"
-          list="what-if-settings"
-          class="what-if-search"
+        <SettingCombo
+          label="Setting to change"
           placeholder="A setting: speed limit, latency …"
-          aria-label="Setting to change"
-          onInput={(event) => {
-            unclear.value = '';
-            if (addWish(event.currentTarget.value)) event.currentTarget.value = '';
-          }}
-          onKeyDown={(event) => {
-            if (event.key !== 'Enter') return;
-            addFound(event.currentTarget.value);
-            if (unclear.value === '') event.currentTarget.value = '';
-          }}
+          entries={all}
+          onChosen={addWish}
         />
-        <datalist id="what-if-settings">
-          {all.map((entry) => (
-            <option key={entry.key} value={entry.key}>
-              {labelOf(entry)}
-            </option>
-          ))}
-        </datalist>
         {changes.length > 0 && (
           <button
             type="button"
@@ -170,9 +145,6 @@ function Wishes() {
           </button>
         )}
       </div>
-      <p class="soft" role="status">
-        {unclear.value}
-      </p>
     </section>
   );
 }

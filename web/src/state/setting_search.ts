@@ -1,0 +1,59 @@
+import { nameInWords } from '../lib/words';
+import type { SchemaEntry } from '../protocol/schema';
+
+type Described = Pick<SchemaEntry, 'key' | 'meaning' | 'group' | 'unit'>;
+
+const SUFFIXES: Readonly<Record<string, string>> = {
+  'm/s': 'mps',
+  'm/s²': 'mps2',
+  deg: 'deg',
+  'deg/s': 'degps',
+  ms: 'ms',
+  s: 's',
+  m: 'm',
+  kg: 'kg',
+  'kg m²': 'kgm2',
+  'W/kg': 'wpkg',
+};
+
+/** The last part of a key in words, without the unit, which is shown beside it. */
+export function labelOf({ key, unit }: Pick<SchemaEntry, 'key' | 'unit'>): string {
+  const name = key.split('.').at(-1) ?? key;
+  const suffix = SUFFIXES[unit];
+  const bare = suffix !== undefined && name.endsWith(`_${suffix}`) ? name.slice(0, -suffix.length - 1) : name;
+  return nameInWords(bare);
+}
+
+const wordsOf = (text: string): string[] => text.toLowerCase().trim().split(/\s+/);
+
+/** Every word of the search must be in the name, meaning or unit. */
+export function isFound(entry: Pick<Described, 'key' | 'meaning' | 'group'>, words: string): boolean {
+  const text = `${entry.key} ${nameInWords(entry.key)} ${entry.meaning} ${entry.group}`.toLowerCase();
+  return wordsOf(words).every((word) => text.includes(word));
+}
+
+/** How well words name a setting: 0 as it is called, 1 and 2 by words of its name, 3 by its meaning. */
+function distance(entry: Described, words: string): number {
+  const label = labelOf(entry).toLowerCase();
+  const text = words.toLowerCase().trim();
+  if (label === text || entry.key === text) return 0;
+  if (label.startsWith(text)) return 1;
+  return wordsOf(words).every((word) => label.includes(word)) ? 2 : 3;
+}
+
+/** The settings of which all words tell, the best names first. */
+export function settingsFound<T extends Described>(all: readonly T[], words: string): readonly T[] {
+  if (words.trim() === '') return all;
+  return all
+    .filter((entry) => isFound(entry, words))
+    .map((entry) => ({ entry, far: distance(entry, words) }))
+    .sort((a, b) => a.far - b.far)
+    .map(({ entry }) => entry);
+}
+
+/** The one setting that words mean: the only one that is called so, or the only one found; null for several. */
+export function settingMeant<T extends Described>(found: readonly T[], words: string): T | null {
+  const named = found.filter((entry) => distance(entry, words) === 0);
+  const one = named.length > 0 ? named : found;
+  return one.length === 1 ? (one[0] ?? null) : null;
+}
