@@ -51,4 +51,22 @@ describe('alerts on the picture', () => {
       'unknown: A person drives',
     ]);
   });
+
+  it('name a car that stands although it should drive, and what frees it', () => {
+    const stands = (seconds: number, more: Partial<Frame> = {}) =>
+      Array.from({ length: 10 * seconds + 1 }, (_, i) => ({
+        time_s: i / 10,
+        speed_mps: 0.4,
+        speed_reference_mps: 30,
+        edge_distance_m: 2,
+        ...more,
+      }));
+    expect(alerts(...stands(4))).toEqual(['bad: The car stands and should drive']);
+    expect(alerts(...stands(4, { active_faults: 1 }))[0]).toBe(
+      'bad: The car stands and should drive: it may go on when the fault ends',
+    );
+    expect(alerts(...stands(2))).toEqual([]);
+    expect(alerts(...stands(4, { speed_reference_mps: 0 }))).toEqual([]);
+    expect(alerts(...stands(4, { speed_mps: 2 }))).toEqual([]);
+  });
 });

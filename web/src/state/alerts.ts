@@ -1,6 +1,7 @@
 import { hasBit } from '../lib/bits';
 import { fixed } from '../lib/format';
 import { rungInWords, type Sentence } from '../lib/words';
+import { RUNG } from '../protocol/messages';
 import type { Frame } from '../protocol/topics';
 import { Column } from './columns';
 import { faultInWords } from './event_log';
@@ -17,7 +18,7 @@ const FAR_OFF_M = 30;
 
 /** An alert for the picture, with a name that stays while its numbers change. */
 export interface Alert extends Sentence {
-  readonly name: 'road' | 'edge' | 'grip' | 'driver' | 'fault' | 'person';
+  readonly name: 'stuck' | 'road' | 'edge' | 'grip' | 'driver' | 'fault' | 'person';
 }
 
 function extremeOf(history: History, column: number, pick: (a: number, b: number) => number): number {
@@ -28,6 +29,21 @@ function extremeOf(history: History, column: number, pick: (a: number, b: number
     if (Number.isFinite(value)) extreme = Number.isNaN(extreme) ? value : pick(extreme, value);
   }
   return extreme;
+}
+
+/** A car that stands this long although it should drive is stuck [s]. */
+const STUCK_S = 3;
+/** Slower than this a car stands [m/s]. */
+const STANDING_MPS = 0.5;
+
+/** Whether the car has stood for the last seconds although the controller wants it to move. */
+export function isStuck(frame: Frame, history: History): boolean {
+  const from = rowsSince(history, STUCK_S);
+  const [times, speeds] = [history.column(Column.time_s), history.column(Column.speed_mps)];
+  const shouldMove =
+    frame.rung === RUNG.RETURN_TO_ROAD || (frame.rung === RUNG.CONTROLLER && frame.speed_reference_mps > STANDING_MPS);
+  if (frame.is_manual || !shouldMove || !(frame.time_s - (times[from] ?? NaN) >= 0.9 * STUCK_S)) return false;
+  return speeds.subarray(from).every((speed) => speed < STANDING_MPS);
 }
 
 function faultText(name: string, now: number): string {
@@ -42,6 +58,10 @@ function faultText(name: string, now: number): string {
  */
 export function alertsOf(frame: Frame, history: History, faultNames: readonly string[], canReset = false): Alert[] {
   const alerts: Alert[] = [];
+  if (isStuck(frame, history)) {
+    const help = frame.active_faults !== 0 ? 'it may go on when the fault ends' : canReset ? 'Reset frees it' : '';
+    alerts.push({ name: 'stuck', severity: 'bad', text: `The car stands and should drive${help && `: ${help}`}` });
+  }
   const edge = extremeOf(history, Column.edge_distance_m, Math.min);
   const use = Math.max(
     extremeOf(history, Column.front_tire_use, Math.max) || 0,

@@ -12,7 +12,9 @@ import { shown } from '../state/shown';
 
 function Speed() {
   const unit = speedUnit();
-  const wanted = shown.value?.speed_reference_mps ?? NaN;
+  const frame = shown.value;
+  // The speed that the controller aims at means nothing while another drives.
+  const aim = frame && !frame.is_manual && frame.rung === RUNG.CONTROLLER ? frame.speed_reference_mps : NaN;
   return (
     <p class="big">
       <span class="value" data-testid="speed">
@@ -28,9 +30,11 @@ function Speed() {
       >
         {unit.name}
       </button>
-      <span class="wanted">
-        of <b>{fixed(inSpeedUnit(wanted), 0)}</b> allowed
-      </span>
+      {Number.isFinite(aim) && (
+        <span class="wanted">
+          aims at <b>{fixed(inSpeedUnit(aim), 0)}</b>
+        </span>
+      )}
     </p>
   );
 }
