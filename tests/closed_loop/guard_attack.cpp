@@ -61,7 +61,7 @@ struct Row {
     if (std::isnan(outcome.doubted_after)) return;
     ++doubted;
     doubted_after.push_back(outcome.doubted_after);
-    ++doubts[std::string(controller::kGuardReasonNames[static_cast<std::size_t>(outcome.doubt)])];
+    ++doubts[std::string(controller::kGuardReasonWords[static_cast<std::size_t>(outcome.doubt)].name)];
   }
   [[nodiscard]] double median_doubt() const {
     std::vector<double> sorted = doubted_after;
@@ -117,7 +117,7 @@ void print_trace(const telemetry::Frame& frame) {
       frame.time, frame.truth.vx, seen.speed, frame.edge_distance, frame.lateral_error,
       std::hypot(seen.x - frame.truth.x, seen.y - frame.truth.y), frame.asked.steer, frame.asked.throttle,
       frame.result.command.steer, frame.result.command.throttle, static_cast<int>(report.rung),
-      controller::kGuardReasonNames[static_cast<std::size_t>(report.reason)]);
+      controller::kGuardReasonWords[static_cast<std::size_t>(report.reason)].name);
 }
 
 bool is_chosen(const Choice& choice, std::string_view name) {

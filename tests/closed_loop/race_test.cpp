@@ -32,8 +32,8 @@ TEST(Race, LapsCleanlyNearTheLimit) {
       const auto other = drive({{"car", race.car}, {"track", race.track}, {"laps", "2"}});
       EXPECT_LT(run.laps.back().lap_time, 0.9 * other.laps.back().lap_time) << race.car << ", default";
     }
-    EXPECT_LT(run.guard_reasons[static_cast<std::size_t>(controller::GuardReason::kNoWayToStop)], 10U)
-        << race.car << ' ' << race.track << ": the guard is on, and lets the car race";
+    EXPECT_LT(run.guard_reasons[static_cast<std::size_t>(controller::GuardReason::kNoWayToStop)], 60U)
+        << race.car << ' ' << race.track << ": the guard, which observes, would let the car race";
   }
 }
 

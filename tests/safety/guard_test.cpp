@@ -114,6 +114,60 @@ TEST(GuardOnARoad, RefusesAWayBackThatIsFast) {
   EXPECT_EQ(rung_at(2.0), Rung::kReturnToRoad);
 }
 
+/// On a straight road at `speed`, the command that is sent for what the controller asks in each of 8 cycles.
+model::Command sent_at(double speed, Answer answer, const model::Command& asked,
+                       controller::StepResult& result) {
+  const path::RoadData straight = straight_road(100);
+  Scripted scripted;
+  Guard guard{std::make_unique<test::Borrowed>(scripted), model::udacity_params(), {}, &straight};
+  for (int i = 1; i < 8; ++i) {
+    scripted.result.answer = answer;
+    scripted.result.command = i < 3 ? model::Command{} : asked;
+    model::Measurement now = at(0.04 * i, speed);
+    now.x += 100.0;
+    guard.step(now, Deadline::never(), {.interval = 0.04}, result);
+  }
+  return result.command;
+}
+
+/// Every kind of answer is checked, as the actuators would carry it out.
+TEST(GuardOnARoad, ChecksEveryKindOfAnswerAsItWouldBeSent) {
+  controller::StepResult result;
+  for (const Answer answer : {Answer::kDrive, Answer::kStopOnRoad, Answer::kReturnToRoad}) {
+    for (const double steer : {0.43, -0.43, 1e308, -1e308}) {
+      const model::Command sent = sent_at(30.0, answer, {steer, -1.0}, result);
+      EXPECT_LT(std::fabs(sent.steer), 0.2) << static_cast<int>(answer) << ' ' << steer;
+      EXPECT_EQ(result.report.rung, Rung::kGuardStop) << static_cast<int>(answer) << ' ' << steer;
+    }
+  }
+}
+
+/// A negative pedal is the reverse gear of a car that stands.
+TEST(GuardOnARoad, KeepsACarThatStandsOutOfReverse) {
+  controller::StepResult result;
+  EXPECT_NEAR(sent_at(0.0, Answer::kDrive, {0.3, -1.0}, result).throttle, 0.0, 1e-3);
+  EXPECT_LT(sent_at(1.5, Answer::kDrive, {0.0, -1.0}, result).throttle, 0.0) << "it still brakes";
+  EXPECT_LT(sent_at(10.0, Answer::kDrive, {0.0, -0.03}, result).throttle, -0.02);
+}
+
+/// The original car keeps its brakes applied at rest until they are released.
+TEST(GuardOnARoad, ReleasesTheBrakesOfACarThatStandsThoughItShouldDrive) {
+  const path::RoadData straight = straight_road(100);
+  Scripted scripted;
+  Guard guard{std::make_unique<test::Borrowed>(scripted), model::udacity_params(), {}, &straight};
+  scripted.result.command = {.throttle = 0.5};
+  controller::StepResult result;
+  int released = 0;
+  for (int i = 1; i < 60; ++i) {
+    model::Measurement now = at(0.04 * i, 0.0);
+    now.x = 100.0;
+    guard.step(now, Deadline::never(), {.interval = 0.04}, result);
+    if (result.command.throttle < 0.0) ++released;
+  }
+  EXPECT_GE(released, 3);
+  EXPECT_LE(released, 4) << "one command, every half second";
+}
+
 /// Who sees nothing has nothing to plan anew by: the stop of the last cycle that saw is driven to its end, as
 /// a receiver would that is left alone.
 TEST(GuardOnARoad, DrivesTheStopAtHandWhereNothingIsMeasured) {

@@ -18,21 +18,20 @@ using controller::Answer;
 using controller::GuardReason;
 using controller::Rung;
 
-constexpr double kStandingSpeed = 0.5;  // [m/s]
-constexpr int kShown = 64;              // points of a backup that is drawn
-constexpr double kShownStep = 0.1;      // [s]
-constexpr double kLedBackSpeed = 6.0;   // [m/s] below which a car that is off the road is led back
-constexpr double kFarFromRoad = 20.0;   // [m] beside its line there is no stop along the road
-constexpr double kLost = 100.0;         // [m] farther away the car is not led back
-constexpr double kAcross = 0.8;         // [rad] off the road's direction the car is across it
-constexpr double kAlong = 0.2;          // [rad] within which it is along it again
-constexpr double kRefusedTime = 1.0;    // [s] of refused commands after which a standing car is led back
-constexpr double kGuessedWidth = 1.0;   // [m] by which an assumed width may be too small
-constexpr double kReleaseTime = 0.5;    // [s] a car that should move may stand before its brake is released
-constexpr double kDrives = 0.1;         // pedal from which on a car should move
-constexpr double kRelease = 0.02;       // pedal, negative, that releases a latched brake
-constexpr double kMostDoubt = 0.5;      // [s] by which a controller's own time may differ from the measured
-constexpr double kRollsBackAtMost = 3.0;    // [m/s] faster a car does not roll back: its heading is wrong
+constexpr double kStandingSpeed = 0.5;    // [m/s]
+constexpr int kShown = 64;                // points of a backup that is drawn
+constexpr double kShownStep = 0.1;        // [s]
+constexpr double kLedBackSpeed = 6.0;     // [m/s] below which a car that is off the road is led back
+constexpr double kFarFromRoad = 20.0;     // [m] beside its line there is no stop along the road
+constexpr double kLost = 100.0;           // [m] farther away the car is not led back
+constexpr double kAcross = 0.8;           // [rad] off the road's direction the car is across it
+constexpr double kAlong = 0.2;            // [rad] within which it is along it again
+constexpr double kRefusedTime = 1.0;      // [s] of refused commands after which a standing car is led back
+constexpr double kGuessedWidth = 1.0;     // [m] by which an assumed width may be too small
+constexpr double kReleaseTime = 0.5;      // [s] a car that should move may stand before its brake is released
+constexpr double kDrives = 0.1;           // pedal from which on a car should move
+constexpr double kMostDoubt = 0.5;        // [s] by which a controller's own time may differ from the measured
+constexpr double kRollsBackAtMost = 3.0;  // [m/s] faster a car does not roll back: its heading is wrong
 constexpr double kMostAgainstRolling = 0.3;  // pedal against rolling back
 // Braking of a car that is too fast for a silence: gentle, and stable without feedback.
 constexpr Braking kHeldBack{0.8, 1.6, 0.7};
@@ -137,7 +136,8 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   }
   const GateResult gated = gate_.pass(cycle.manual.value_or(result.command), cycle.interval);
   result.command = gated.command;
-  result.report.gated = gated.reason != GateReason::kNone || !is_same(gated.command, cycle.manual.value_or(asked));
+  result.report.gated =
+      gated.reason != GateReason::kNone || !is_same(gated.command, cycle.manual.value_or(asked));
   controller_->note_sent(result.command);
   if (!is_off && std::isfinite(sent_from_)) sent_.add(sent_from_, result.command);
   return asked;
@@ -169,6 +169,7 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
                    controller::StepResult& result) noexcept {
   const double act = act_time(seen, result.report);
   sent_from_ = seen.time + seen.delay;
+  filter_.begin_cycle();
   const bool has_answer = result.answer != Answer::kNone;
   if (options_.mode == GuardMode::kOff || cycle.manual) {
     if (cycle.manual) supervisor_.rearm();
@@ -176,7 +177,8 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
     return has_answer ? accept(seen, result) : fall_back(seen, result);
   }
 
-  const Supervisor::Verdict verdict = supervisor_.judge(monitor_.findings(), seen.time, estimator_.state().vx);
+  const Supervisor::Verdict verdict =
+      supervisor_.judge(monitor_.findings(), seen.time, estimator_.state().vx);
   if (verdict.may_begin_anew) {
     monitor_.reset();
     estimator_.reset();
@@ -190,18 +192,15 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
 
   bool may_send = has_answer && !verdict.must_stop;
   if (may_send && start) may_send = filter(*start, cycle, result);
-  if (options_.mode == GuardMode::kObserve) return has_answer ? accept(seen, result) : fall_back(seen, result);
+  if (options_.mode == GuardMode::kObserve)
+    return has_answer ? accept(seen, result) : fall_back(seen, result);
   if (may_send && !is_astray_) {
     is_led_ = false;
     refused_since_ = seen.time;
     return accept(seen, result);
   }
   if (!verdict.must_stop && should_lead_back(seen.time, has_answer) && lead_back(act, cycle, result)) return;
-  if (start) {
-    drive_backup(*start, result);
-  } else {
-    fall_back(seen, result);
-  }
+  if (!start || !drive_backup(*start, result)) fall_back(seen, result);
   // What brakes a car that goes forward may be the reverse gear of one that rolls back.
   if (direction_.rolls_back() && result.command.throttle < 0.0)
     result.command.throttle = against_rolling_back();
@@ -220,12 +219,13 @@ bool Guard::filter(const StopStart& start, const Cycle& cycle, controller::StepR
 
 /// Of the command as the gate would send it.
 Fit Guard::verify(const StopStart& start, const Cycle& cycle, const model::Command& command,
-                  controller::StepResult& result) noexcept {
+                  controller::StepResult& result, bool is_led) noexcept {
   return filter_.verify({.road = road_,
                          .start = start,
                          .command = limited(command, cycle.interval),
                          .intended = result.plan,
-                         .interval = cycle.interval},
+                         .interval = cycle.interval,
+                         .is_led = is_led},
                         result.report);
 }
 
@@ -284,8 +284,13 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   if (!(place.distance < kLost)) return false;
   result.command = rolls_back ? model::Command{0.0, against_rolling_back()}
                               : controller::way_back(line, place, car, model_.vehicle());
-  filter_.forget();
-  if (const auto start = place_on_road(act)) static_cast<void>(verify(*start, cycle, result.command, result));
+  const std::optional<StopStart> start = place_on_road(act);
+  if (is_astray_) filter_.forget();
+  const Fit fit = start ? verify(*start, cycle, result.command, result, true) : Fit::kNone;
+  // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there.
+  const bool is_off = start && filter_.planner().edge(road_, *start) < 0.0;
+  if (start && !is_off && fit == Fit::kNone && (!is_astray_ || result.answer == Answer::kDrive)) return false;
+  if (fit == Fit::kNone) filter_.forget();
   result.answer = Answer::kNone;
   result.plan.size = result.plan.reference_size = 0;
   result.report.rung = Rung::kReturnToRoad;
@@ -294,16 +299,16 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
 
 double Guard::against_rolling_back() const noexcept {
   const double speed = std::fabs(estimator_.state().vx);
-  if (speed > kRollsBackAtMost) return 0.0;
-  return std::min(controller::throttle_against_rolling_back(model_.vehicle(), speed), kMostAgainstRolling);
+  const double pedal = controller::throttle_against_rolling_back(model_.vehicle(), speed);
+  return pedal > 0.0 && speed > kRollsBackAtMost ? 0.0 : std::min(pedal, kMostAgainstRolling);
 }
 
 /// A car whose brake stays on at rest until the pedal has been released moves again after a short release.
 void Guard::release_brake(double time, model::Command& command) noexcept {
   const bool should_move = command.throttle > kDrives && std::fabs(estimator_.state().vx) < kStandingSpeed;
   if (!should_move) stuck_since_ = time;
-  if (!(time - stuck_since_ > kReleaseTime) || !(model_.vehicle().reverse_speed > 0.0)) return;
-  command.throttle = -kRelease;
+  if (!(time - stuck_since_ > kReleaseTime) || !model_.vehicle().latches_brakes()) return;
+  command.throttle = model_.vehicle().brake_release_throttle;
   stuck_since_ = time;
 }
 
@@ -337,14 +342,15 @@ void Guard::fall_back(const model::Measurement& seen, controller::StepResult& re
   result.plan.reference_size = 0;
 }
 
-/// The stored backup goes on.
-void Guard::drive_backup(const StopStart& start, controller::StepResult& result) noexcept {
+/// The stored backup goes on; false where there is none.
+bool Guard::drive_backup(const StopStart& start, controller::StepResult& result) noexcept {
   const bool is_open = monitor_.findings().unmeasured || monitor_.findings().frozen;
-  static_cast<void>(filter_.drive(road_, start, is_open, result.report));
+  if (!filter_.drive(road_, start, is_open, result.report)) return false;
   result.answer = Answer::kNone;
   result.command = filter_.stop().points[0].command;
   result.report.rung = Rung::kGuardStop;
   show_backup(start, result.plan);
+  return true;
 }
 
 /// The backup as a plan, for viewers.
@@ -377,7 +383,7 @@ void Guard::show_backup(const StopStart& start, controller::Plan& plan) const no
 std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   const road::ReferenceLine& line = road_.line();
   is_far_ = false;
-  act_speed_ = estimator_.state().vx;
+  act_speed_ = estimator_.is_started() ? estimator_.state().vx : std::numeric_limits<double>::infinity();
   if (line.is_empty() || !estimator_.is_started() || !std::isfinite(act_time)) return std::nullopt;
   const controller::StateEstimator::Prediction at = estimator_.predict(act_time, sent_);
   const model::State& car = at.state;

@@ -87,13 +87,13 @@ class Guard {
   [[nodiscard]] bool filter(const StopStart& start, const Cycle& cycle,
                             controller::StepResult& result) noexcept;
   [[nodiscard]] Fit verify(const StopStart& start, const Cycle& cycle, const model::Command& command,
-                           controller::StepResult& result) noexcept;
+                           controller::StepResult& result, bool is_led = false) noexcept;
   [[nodiscard]] bool slow_down(const StopStart& start, const Cycle& cycle,
                                controller::StepResult& result) noexcept;
   [[nodiscard]] model::Command limited(const model::Command& command, double interval) const noexcept;
   void accept(const model::Measurement& seen, controller::StepResult& result) noexcept;
   void fall_back(const model::Measurement& seen, controller::StepResult& result) noexcept;
-  void drive_backup(const StopStart& start, controller::StepResult& result) noexcept;
+  [[nodiscard]] bool drive_backup(const StopStart& start, controller::StepResult& result) noexcept;
   void show_backup(const StopStart& start, controller::Plan& plan) const noexcept;
   void watch_course(const std::optional<StopStart>& start) noexcept;
   [[nodiscard]] bool should_lead_back(double time, bool has_answer) noexcept;

@@ -52,9 +52,10 @@ constexpr double kUnfit = 200.0;  // [m] worse than any candidate that fits
 
 }  // namespace
 
+const StopPlan PredictiveFilter::kNoStop{};
+
 PredictiveFilter::Candidate PredictiveFilter::judge(const road::KnownRoad& road, const StopStart& from,
-                                                    const StopCheck& check,
-                                                    const Goal& goal) const noexcept {
+                                                    const StopCheck& check, const Goal& goal) const noexcept {
   Candidate candidate{.check = check};
   candidate.check.least_edge = std::min(check.least_edge, goal.edge_before);
   candidate.worth = candidate.check.least_edge - kUnfit;
@@ -64,7 +65,11 @@ PredictiveFilter::Candidate PredictiveFilter::judge(const road::KnownRoad& road,
   candidate.worth = candidate.check.least_edge;
   if (!(goal.open_time > 0.0)) return candidate;
   const BlindCheck open = planner_.played_edge(road, from, tried_->stop, goal.open_time + kRecovery);
-  if (!(open.edge_for >= 0.0)) candidate.fit = Fit::kSeen;
+  if (!(open.edge_for >= 0.0)) {
+    // Without a published plan the backup has to hold for cars a little other than modelled, too.
+    const bool holds = goal.is_planned || planner_.followed_edge(road, from, *tried_) >= 0.0;
+    candidate.fit = holds ? Fit::kSeen : Fit::kNone;
+  }
   candidate.worth = open.edge >= 0.0 ? open.edge : -open.speed;
   return candidate;
 }
@@ -72,6 +77,7 @@ PredictiveFilter::Candidate PredictiveFilter::judge(const road::KnownRoad& road,
 /// The candidate that was simulated last becomes the backup.
 void PredictiveFilter::store(const Candidate& candidate, controller::StepReport& report) noexcept {
   std::swap(backup_, tried_);
+  is_current_ = true;
   backup_fit_ = candidate.fit;
   report.stop_edge = candidate.check.least_edge;
   report.stop_distance = candidate.check.distance;
@@ -84,8 +90,8 @@ Fit PredictiveFilter::verify(const Request& request, controller::StepReport& rep
   const double edge_now = planner_.edge(road, request.start);
   Goal goal{.edge_before = edge_now, .margin = terms_.margin, .open_time = terms_.open_time};
   const StopStart next = planner_.advance(road, request.start, request.command, held, goal.edge_before);
-  // A slow car that is within the margin already may move on if it comes no nearer to the edge.
-  if (next.body.vx < kWalkingPace)
+  // A car that is led back from within the margin comes no nearer to the edge.
+  if (request.is_led && next.body.vx < 2.0 * kWalkingPace)
     goal.margin = std::min(terms_.margin, std::max(edge_now, terms_.least_edge));
 
   model::BodyMotion<double> undriven = next.body;  // a stop does not ask for its drive
@@ -93,14 +99,16 @@ Fit PredictiveFilter::verify(const Request& request, controller::StepReport& rep
   const auto tires = model_.tire_use(undriven);
   const double use = next.body.vx > kWalkingPace ? std::max(tires.front, tires.rear) : 0.0;
   planner_.course_of(road, request.start, request.intended, *intended_);
-  const bool plans = intended_->stop.size > 1;
+  const bool plans = goal.is_planned = intended_->stop.size > 1;
 
   Fit fit = Fit::kNone;
   if (use < kMostUse) {
-    if (use < (!plans ? kLawUseUnplanned : road.is_raced() ? kRacedUse : kLawUse)) fit = stop_now(road, next, goal, report);
+    if (use < (!plans ? kLawUseUnplanned : road.is_raced() ? kRacedUse : kLawUse))
+      fit = stop_now(road, next, goal, report);
     if (fit == Fit::kNone && plans) fit = stop_later(road, next, goal, report);
+    if (fit == Fit::kNone && plans && !road.is_raced()) fit = stop_searched(road, next, goal, report);
   }
-  if (fit == Fit::kNone && is_in_tube(road, next)) {
+  if (fit == Fit::kNone && plans && road.is_raced() && is_in_tube(road, next)) {
     shift_to_place(road, next);
     fit = backup_fit_;
   }
@@ -150,6 +158,15 @@ Fit PredictiveFilter::stop_later(const road::KnownRoad& road, const StopStart& f
   return Fit::kNone;
 }
 
+Fit PredictiveFilter::stop_searched(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
+                                    controller::StepReport& report) noexcept {
+  const StopCheck check = search_.plan(road, from, goal.margin, planner_, *tried_);
+  if (tried_->stop.size == 0) return Fit::kNone;
+  const Candidate candidate = judge(road, from, check, goal);
+  if (candidate.fit != Fit::kNone) store(candidate, report);
+  return candidate.fit;
+}
+
 bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start, bool is_open,
                              controller::StepReport& report) noexcept {
   // Open loop the estimate's model is less accurate than the backup's: nothing is planned anew.
@@ -168,17 +185,22 @@ bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start
     best = candidate;
     store(candidate, report);
   };
-  const auto use = model_.tire_use(start.body);
-  const bool law_holds = std::max(use.front, use.rear) < (road.is_raced() ? kRacedUse : kLawUse) || before.stop.size == 0;
-  if (law_holds) {
-    for (const Braking& braking : kStops) {
-      if (best.fit == Fit::kOpen) break;
-      if (is_open && braking.share < 1.0) continue;
-      consider(planner_.plan(road, start, braking, *tried_));
-    }
+  // The stored backup goes on while it holds: candidates that take turns drive none of them.
+  const bool can_follow = before.stop.size > 0;
+  if (can_follow && road.is_raced()) consider(planner_.follow(road, start, before, *tried_));
+  if (best.fit != Fit::kNone) return true;
+  for (const Braking& braking : kStops) {
+    if (best.fit == Fit::kOpen) break;
+    if (is_open && braking.share < 1.0) continue;
+    consider(planner_.plan(road, start, braking, *tried_));
   }
-  if (best.fit < Fit::kOpen && before.stop.size > 0) consider(planner_.follow(road, start, before, *tried_));
-  return backup_->stop.size > 0;
+  if (can_follow && !road.is_raced() && best.fit < Fit::kOpen)
+    consider(planner_.follow(road, start, before, *tried_));
+  if (best.fit == Fit::kNone) {
+    const StopCheck found = search_.plan(road, start, terms_.margin, planner_, *tried_);
+    if (tried_->stop.size > 0) consider(found);
+  }
+  return is_current_ && backup_->stop.size > 0;
 }
 
 /// Whether the car is where the backup is at that place, and as fast.
@@ -214,9 +236,9 @@ void PredictiveFilter::shift_to_place(const road::KnownRoad& road, const StopSta
   while (i + 2 < size && backup_->places[i + 1].s <= at.s - lap) ++i;
   const StopPoint& from = backup_->stop.points[i];
   const StopPoint& to = backup_->stop.points[i + 1];
-  const double share = std::clamp((at.s - lap - backup_->places[i].s) /
-                                      std::max(backup_->places[i + 1].s - backup_->places[i].s, 1e-3),
-                                  0.0, 1.0);
+  const double share = std::clamp(
+      (at.s - lap - backup_->places[i].s) / std::max(backup_->places[i + 1].s - backup_->places[i].s, 1e-3),
+      0.0, 1.0);
   const double late = at.time - (from.time + share * (to.time - from.time));
   const double driven = from.distance + share * (to.distance - from.distance);
   tried_->stop.size = 0;
@@ -230,6 +252,7 @@ void PredictiveFilter::shift_to_place(const road::KnownRoad& road, const StopSta
     tried_->add(place, point.distance - driven, point.speed, point.command);
   }
   std::swap(backup_, tried_);
+  is_current_ = true;
 }
 
 /// The backup begins at `time` [s] from now on; false where it is over.
@@ -252,6 +275,7 @@ bool PredictiveFilter::shift_to(double time) noexcept {
     tried_->add(backup_->places[i], point.distance - driven, point.speed, point.command);
   }
   std::swap(backup_, tried_);
+  is_current_ = true;
   return true;
 }
 

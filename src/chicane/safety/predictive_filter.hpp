@@ -11,6 +11,7 @@
 #include "chicane/road/known_road.hpp"
 #include "chicane/safety/stop_plan.hpp"
 #include "chicane/safety/stop_planner.hpp"
+#include "chicane/safety/stop_search.hpp"
 
 namespace chicane::safety {
 
@@ -38,6 +39,7 @@ class PredictiveFilter {
 
   PredictiveFilter(const model::VehicleParams& vehicle, const Terms& terms)
       : planner_{vehicle},
+        search_{vehicle},
         model_{vehicle},
         terms_{terms},
         backup_{std::make_unique<StopCourse>()},
@@ -46,10 +48,14 @@ class PredictiveFilter {
 
   void set_vehicle(const model::VehicleParams& vehicle) noexcept {
     planner_.set_vehicle(vehicle);
+    search_.set_vehicle(vehicle);
     model_.set_vehicle(vehicle);
   }
   /// Forgets the stored backup: its places belong to another line or another run.
-  void forget() noexcept { backup_->stop.size = 0; }
+  void forget() noexcept {
+    backup_->stop.size = 0;
+    search_.forget();
+  }
 
   /// A command that shall act from `start` on, held until the next one.
   struct Request {
@@ -58,6 +64,7 @@ class PredictiveFilter {
     model::Command command;
     const controller::Plan& intended;  ///< published by the controller; size 0: none
     double interval = 0.0;             ///< between two commands [s]; <= 0: not known
+    bool is_led = false;               ///< the guard's own, at walking pace
   };
   /// Verifies a backup from where `request` leads and stores it. Writes stop_edge and stop_distance. The
   /// stored backup stays when none is verified; it counts as verified where the command leads into its tube.
@@ -69,7 +76,9 @@ class PredictiveFilter {
                            controller::StepReport& report) noexcept;
 
   /// The backup in store, from the moment at which the next command would act. Size 0: none.
-  [[nodiscard]] const StopPlan& stop() const noexcept { return backup_->stop; }
+  [[nodiscard]] const StopPlan& stop() const noexcept { return is_current_ ? backup_->stop : kNoStop; }
+  /// A control cycle begins: the backup in store is one of the cycle before until it is verified or shifted.
+  void begin_cycle() noexcept { is_current_ = false; }
   [[nodiscard]] const StopPlanner& planner() const noexcept { return planner_; }
 
  private:
@@ -78,6 +87,7 @@ class PredictiveFilter {
     double edge_before = 0.0;  ///< least distance to the edge until it begins [m]
     double margin = 0.0;       ///< [m]
     double open_time = 0.0;    ///< [s]
+    bool is_planned = true;    ///< by a controller that publishes its plan, which stays away from the limit
   };
   /// One simulated candidate.
   struct Candidate {
@@ -92,6 +102,8 @@ class PredictiveFilter {
                              controller::StepReport& report) noexcept;
   [[nodiscard]] Fit stop_later(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
                                controller::StepReport& report) noexcept;
+  [[nodiscard]] Fit stop_searched(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
+                                  controller::StepReport& report) noexcept;
   [[nodiscard]] bool is_in_tube(const road::KnownRoad& road, const StopStart& at) const noexcept;
   [[nodiscard]] bool drives_planned_lap(const road::KnownRoad& road, const StopStart& at,
                                         double wide) const noexcept;
@@ -99,12 +111,15 @@ class PredictiveFilter {
   void shift_to_place(const road::KnownRoad& road, const StopStart& at) noexcept;
 
   StopPlanner planner_;
+  StopSearch search_;  ///< where the law does not find a stop
   model::PredictionModel model_;
   Terms terms_;
   Owned<StopCourse> backup_;    ///< in store
   Owned<StopCourse> tried_;     ///< the candidate being simulated, then the spare
   Owned<StopCourse> intended_;  ///< the controller's plan along the line
   Fit backup_fit_ = Fit::kNone;
+  bool is_current_ = false;  ///< the backup was stored or shifted in this cycle
+  static const StopPlan kNoStop;
 };
 
 }  // namespace chicane::safety

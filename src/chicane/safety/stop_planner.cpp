@@ -36,7 +36,7 @@ constexpr double kForeseenUse = 0.55;      // of the grip, in the bends ahead
 constexpr double kStride = 10.0;           // [m] between the places ahead
 constexpr double kHorizon = 200.0;         // [m]
 constexpr double kSpeedTime = 0.4;         // [s] in which a planned speed is met again
-constexpr double kPlanSpacing = 0.08;     // [s] between the places of a controller's plan
+constexpr double kPlanSpacing = 0.08;      // [s] between the places of a controller's plan
 constexpr double kMostOffset = 20.0;       // [m] beside the line the stop is given up
 
 }  // namespace
@@ -198,7 +198,8 @@ model::Command StopPlanner::law(const road::KnownRoad& road, const StopStart& at
   const double course = at.e + at.body.vy / v;
   // Towards the middle of the road, where there is most room on both sides, or the line that is raced by.
   const double beside =
-      at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) + (road.is_raced() ? kRacedMargin : kStopMargin));
+      at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) +
+                                               (road.is_raced() ? kRacedMargin : kStopMargin));
   const double curvature = ahead + back_to(beside, course, v);
   // The wheel that gives the yaw rate this asks for, by the model: a braking car oversteers.
   const double yaw_acceleration = kYawBandwidth * (v * curvature - at.body.r);
@@ -223,7 +224,8 @@ double StopPlanner::slowing(const road::KnownRoad& road, const StopStart& at,
   const double wanted = foreseen(road, at, -asked) / -asked;
   if (wanted <= stable) return std::min(asked * stable, raced);
   return std::min(
-      asked * std::clamp(wanted, stable, std::min(held, stable_share(at.body, -asked, braking.foreseen))), raced);
+      asked * std::clamp(wanted, stable, std::min(held, stable_share(at.body, -asked, braking.foreseen))),
+      raced);
 }
 
 /// The acceleration [m/s²] that keeps the car no faster than the planned lap: a car that drives its line more
@@ -315,8 +317,7 @@ model::Command StopPlanner::along(const StopCourse& before, std::size_t& place, 
   model::Command command = played(before.stop, distance, hypot(at.body.vx, at.body.vy), model_.vehicle());
   if (const double drive = before.stop.points[place].command.throttle; drive > 0.0) {
     const double lost = between(from.body.vx, to.body.vx) - at.body.vx;
-    const double wanted =
-        longitudinal_acceleration(model_.vehicle(), drive, at.body.vx) + lost / kSpeedTime;
+    const double wanted = longitudinal_acceleration(model_.vehicle(), drive, at.body.vx) + lost / kSpeedTime;
     command.throttle = throttle_for(model_.vehicle(), wanted, at.body.vx);
   }
   // Between the wheels of both places: a stop that is followed anew in each cycle begins a new place each
@@ -368,7 +369,8 @@ void StopPlanner::course_of(const road::KnownRoad& road, const StopStart& start,
       const road::ReferenceLine::Projection place = line.project({from.x, from.y}, s, kStride);
       s = line.is_closed() ? place.s + line.length() * std::round((s - place.s) / line.length()) : place.s;
       const double e = angle_difference(from.psi, line.at(s).heading);
-      const double slide = angle_difference(atan2(dy, dx), from.psi + 0.5 * angle_difference(to.psi, from.psi));
+      const double slide =
+          angle_difference(atan2(dy, dx), from.psi + 0.5 * angle_difference(to.psi, from.psi));
       StopStart at{.time = from.time, .s = s, .d = place.d, .e = e, .body = {}};
       at.body.vx = from.speed;
       at.body.vy = from.speed * std::clamp(slide, -0.5, 0.5);

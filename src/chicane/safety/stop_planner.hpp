@@ -86,11 +86,12 @@ class StopPlanner {
   /// there, and the law where it ends. Pre: as plan(), before.stop.size > 0.
   [[nodiscard]] StopCheck follow(const road::KnownRoad& road, const StopStart& start,
                                  const StopCourse& before, StopCourse& out) const noexcept;
-  /// The motion that a controller publishes, in coordinates along the line: a course to drive on along. At most
-  /// kLongestDriveOn long. Pre: as plan().
+  /// The motion that a controller publishes, in coordinates along the line: a course to drive on along. At
+  /// most kLongestDriveOn long. Pre: as plan().
   void course_of(const road::KnownRoad& road, const StopStart& start, const controller::Plan& intended,
                  StopCourse& out) const noexcept;
-  /// Drives on along `intended` for `time` [s], then brakes by the law. Pre: as plan(); intended.stop.size > 1.
+  /// Drives on along `intended` for `time` [s], then brakes by the law. Pre: as plan(); intended.stop.size
+  /// > 1.
   [[nodiscard]] StopCheck plan_later(const road::KnownRoad& road, const StopStart& start,
                                      const StopCourse& intended, double time, const Braking& braking,
                                      StopCourse& out) const noexcept;

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/predictive_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "chicane/base/angle.hpp"
+#include "support/alloc_guard.hpp"
+
+namespace chicane::safety {
+namespace {
+
+/// A circle of 100 m radius, 10 m wide; `side` 1 turns left.
+road::KnownRoad round_road(double side) {
+  path::RoadData data;
+  constexpr double kRadius = 100.0;
+  data.length = kTwoPi * kRadius;
+  constexpr int kCount = 400;
+  for (int i = 0; i <= kCount; ++i) {
+    const double angle = kTwoPi * i / kCount;
+    data.points.push_back({.s = data.length * i / kCount,
+                           .position = {kRadius * std::sin(angle), side * kRadius * (1.0 - std::cos(angle))},
+                           .heading = side * angle,
+                           .curvature = side / kRadius,
+                           .left = 5.0,
+                           .right = 5.0});
+  }
+  return {data, model::udacity_params()};
+}
+
+/// A car that drives along the middle of it.
+StopStart driving(double speed, double side) {
+  StopStart at{.time = 2.0, .s = 50.0, .body = {.vx = speed}};
+  at.body.r = side * speed / 100.0;
+  at.body.steer = side * 0.03;
+  return at;
+}
+
+const model::VehicleParams kBoth[] = {model::udacity_params(), model::road_car_params()};
+const controller::Plan kNoPlan{};
+
+TEST(PredictiveFilter, StoresABackupAfterACommandThatLeavesOne) {
+  for (const double side : {1.0, -1.0}) {
+    const road::KnownRoad road = round_road(side);
+    for (const model::VehicleParams& car : kBoth) {
+      PredictiveFilter filter(car, {});
+      controller::StepReport report;
+      const StopStart start = driving(15.0, side);
+      const Fit fit = filter.verify({road, start, {side * 0.03, 0.1}, kNoPlan, 0.04}, report);
+      EXPECT_EQ(fit, Fit::kOpen) << car.name;
+      ASSERT_GT(filter.stop().size, 5);
+      EXPECT_NEAR(filter.stop().points[0].time, start.time + 0.09, 1e-9)
+          << "a late next command is waited for";
+      EXPECT_GT(report.stop_edge, 0.2);
+      EXPECT_GT(report.stop_distance, 5.0);
+    }
+  }
+}
+
+TEST(PredictiveFilter, IsTheSameInAMirror) {
+  for (const model::VehicleParams& car : kBoth) {
+    double edges[2], distances[2], steers[2];
+    for (const int i : {0, 1}) {
+      const double side = i == 0 ? 1.0 : -1.0;
+      const road::KnownRoad road = round_road(side);
+      PredictiveFilter filter(car, {});
+      controller::StepReport report;
+      StopStart start = driving(20.0, side);
+      start.d = side * 0.7;
+      static_cast<void>(filter.verify({road, start, {side * 0.04, 0.3}, kNoPlan, 0.04}, report));
+      edges[i] = report.stop_edge;
+      distances[i] = report.stop_distance;
+      steers[i] = side * filter.stop().points[2].command.steer;
+    }
+    EXPECT_NEAR(edges[0], edges[1], 1e-9) << car.name;
+    EXPECT_NEAR(distances[0], distances[1], 1e-9) << car.name;
+    EXPECT_NEAR(steers[0], steers[1], 1e-9) << car.name;
+  }
+}
+
+/// The invariant: whatever is asked, refused commands leave a backup that brings the car to rest on the road.
+TEST(PredictiveFilter, BringsARefusedCarToRestOnTheRoad) {
+  for (const double side : {1.0, -1.0}) {
+    const road::KnownRoad road = round_road(side);
+    for (const model::VehicleParams& car : kBoth) {
+      PredictiveFilter filter(car, {});
+      StopStart at = driving(18.0, side);
+      double edge = 5.0;
+      int refused = 0;
+      for (int i = 0; i < 600 && at.body.vx > 0.5; ++i) {
+        controller::StepReport report;
+        model::Command command{-side * car.steer_limit, 1.0};  // out of the bend
+        if (filter.verify({road, at, command, kNoPlan, 0.04}, report) != Fit::kOpen) {
+          ++refused;
+          ASSERT_TRUE(filter.drive(road, at, false, report)) << car.name;
+          command = filter.stop().points[0].command;
+        }
+        at = filter.planner().advance(road, at, command, 0.04, edge);
+      }
+      EXPECT_GT(refused, 5) << car.name;
+      EXPECT_GT(edge, 0.0) << car.name;
+    }
+  }
+}
+
+TEST(PredictiveFilter, RefusesACommandThatMakesTheCarSlide) {
+  const road::KnownRoad road = round_road(1.0);
+  model::VehicleParams car = model::road_car_params();
+  car.steer_rate_limit = 100.0;
+  PredictiveFilter filter(car, {.margin = 0.0, .open_time = 0.0});
+  controller::StepReport report;
+  const StopStart start = driving(30.0, 1.0);
+  EXPECT_EQ(filter.verify({road, start, {car.steer_limit, 0.0}, kNoPlan, 0.3}, report), Fit::kNone);
+  EXPECT_EQ(filter.stop().size, 0);
+}
+
+/// A car within the margin is led back along the road or away from its edge, not nearer to it.
+TEST(PredictiveFilter, LeadsACarNearTheEdgeNoNearer) {
+  const road::KnownRoad road = round_road(1.0);
+  const model::VehicleParams car = model::road_car_params();
+  const double half = 0.5 * (car.track_width + car.tire_width);
+  PredictiveFilter filter(car, {.margin = 0.5});
+  controller::StepReport report;
+  StopStart start{.time = 2.0, .s = 50.0, .d = 5.0 - half - 0.2, .body = {.vx = 1.0}};
+  EXPECT_EQ(filter.verify({road, start, {0.3, 0.3}, kNoPlan, 0.1, true}, report), Fit::kNone)
+      << "towards the edge";
+  start.e = -0.1;
+  EXPECT_EQ(filter.verify({road, start, {-0.2, 0.0}, kNoPlan, 0.1, true}, report), Fit::kOpen)
+      << "away from it";
+  EXPECT_EQ(filter.verify({road, start, {-0.2, 0.0}, kNoPlan, 0.1}, report), Fit::kNone) << "unled";
+}
+
+TEST(PredictiveFilter, GoesOnWithTheBackupByTimeWhereNothingIsMeasured) {
+  const road::KnownRoad road = round_road(1.0);
+  PredictiveFilter filter(model::road_car_params(), {});
+  controller::StepReport report;
+  const StopStart start = driving(20.0, 1.0);
+  ASSERT_EQ(filter.verify({road, start, {0.03, 0.1}, kNoPlan, 0.04}, report), Fit::kOpen);
+  const StopPlan before = filter.stop();
+  StopStart later = start;
+  later.time = before.points[3].time + 0.01;
+  later.d = 3.0;  // what an estimate without measurements says does not count
+  ASSERT_TRUE(filter.drive(road, later, true, report));
+  EXPECT_EQ(filter.stop().points[0].command.steer, before.points[3].command.steer);
+  EXPECT_EQ(filter.stop().points[0].command.throttle, before.points[3].command.throttle);
+  EXPECT_EQ(filter.stop().size, before.size - 3);
+}
+
+TEST(PredictiveFilter, AllocatesNothing) {
+  const road::KnownRoad road = round_road(1.0);
+  PredictiveFilter filter(model::road_car_params(), {});
+  const test::AllocationGuard counter;
+  StopStart at = driving(25.0, 1.0);
+  for (int i = 0; i < 20; ++i) {
+    controller::StepReport report;
+    static_cast<void>(filter.verify({road, at, {i % 2 == 0 ? 0.4 : -0.4, 1.0}, kNoPlan, 0.04}, report));
+    static_cast<void>(filter.drive(road, at, i % 3 == 0, report));
+    at.time += 0.04;
+  }
+  EXPECT_EQ(counter.count(), 0);
+}
+
+}  // namespace
+}  // namespace chicane::safety
