@@ -110,7 +110,7 @@ interface Track {
 
 const FOLDER = new URL('../../../tracks/', import.meta.url);
 
-/** A speed that the bends allow at 12 m/s², between 8 and 60 m/s: abrupt changes are what the comparison has to stand. */
+/** A speed that the bends allow at 12 m/s², between 8 and 60 m/s: abrupt changes are what it has to stand. */
 function trackOf(file: string): Track {
   const points = readFileSync(new URL(file, FOLDER), 'utf8')
     .split('\n')
