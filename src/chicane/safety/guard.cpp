@@ -32,7 +32,7 @@ constexpr double kReleaseTime = 0.5;      // [s] a car that should move may stan
 constexpr double kDrives = 0.1;           // pedal from which on a car should move
 constexpr double kMostDoubt = 0.5;        // [s] by which a controller's own time may differ from the measured
 constexpr double kRollsBackAtMost = 3.0;  // [m/s] faster a car does not roll back: its heading is wrong
-constexpr double kMostAgainstRolling = 0.3;  // pedal against rolling back
+constexpr double kMostAgainstRolling = 0.7;  // pedal against rolling back
 // Braking of a car that is too fast for a silence: gentle, and stable without feedback.
 constexpr Braking kHeldBack{0.8, 1.6, 0.7};
 
