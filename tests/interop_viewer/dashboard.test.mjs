@@ -42,7 +42,7 @@ describe('the dashboard', () => {
       (text) => text === 'The controller drives',
       'who drives',
     );
-    assert.equal(await dashboard.text('status'), 'Optimal, 3 iterations');
+    assert.equal(await dashboard.text('status'), 'The solver converged, 3 iterations');
     assert.equal(await dashboard.text('gate'), 'Passed the command unchanged');
     assert.equal(await dashboard.text('road'), 'On the road, never left it');
   });
