@@ -21,7 +21,7 @@ import { isPaused } from './state/run';
 import { schema } from './state/settings';
 import { beginSettings, refreshOnNewChoice, takeSettings } from './state/settings_session';
 import { refreshText } from './state/shown';
-import { followAddress, TABS, tab } from './state/tab';
+import { followAddress, readAddress, TABS, tab } from './state/tab';
 import { everyFrame } from './state/ticker';
 import { changePace } from './views/drive_view';
 import { HeaderView } from './views/header_view';
@@ -90,7 +90,9 @@ void begin(live);
 refreshOnNewChoice(refresh);
 listenToDriver();
 listenForLinks();
-if (!isReport()) followAddress();
+// A report may lie in a frame, where browsers refuse to write the address.
+if (isReport()) readAddress();
+else followAddress();
 
 addShortcuts(
   {

@@ -16,16 +16,18 @@ export function tabIn(hash: string): Tab | null {
   return isTab(name) ? name : null;
 }
 
-/**
- * Keeps the tab in the address: links and reload open it, back and forward go through the tabs that were shown. The
- * tab in the address has priority over the one shown last.
- */
-export function followAddress(): void {
+/** Shows the tab that the address names, now and whenever it changes: it has priority over the one shown last. */
+export function readAddress(): void {
   const follow = (): void => {
     tab.value = tabIn(location.hash) ?? tab.value;
   };
   follow();
   addEventListener('popstate', follow);
+}
+
+/** Keeps the tab in the address: links and reload open it, back and forward go through the tabs that were shown. */
+export function followAddress(): void {
+  readAddress();
   effect(() => {
     const shown = tab.value;
     if (tabIn(location.hash) === shown) return;
