@@ -16,92 +16,17 @@
 #include <vector>
 
 #include "chicane/protocol/library.hpp"
+#include "live/settings_of_a_run.hpp"
 
 namespace chicane::live {
 namespace {
 
 using protocol::foxglove::Parameter;
 using protocol::foxglove::ParameterValue;
+using test::another_value;
+using test::Live;
+using test::scenario_of;
 using testing::HasSubstr;
-
-scenario::Scenario scenario_of(std::vector<std::pair<std::string, std::string>> settings) {
-  Result<scenario::Scenario> scenario =
-      protocol::compose({.scenario_file = {}, .settings = std::move(settings)});
-  EXPECT_TRUE(scenario) << (scenario ? "" : scenario.error().message);
-  return scenario.value_or(scenario::Scenario{});
-}
-
-/// Another value than the one that holds, which may stand beside the others.
-std::string another_value(const protocol::Parameter& row, const scenario::Scenario& scenario) {
-  if (row.key == "preset") return "sixty-mph";
-  if (row.key == "track") return "oval";
-  if (row.key == "car") return "road-car";
-  const protocol::Value now = protocol::get(scenario, row);
-  if (const auto* flag = std::get_if<bool>(&now)) return *flag ? "false" : "true";
-  if (row.option.kind == protocol::Kind::kText) return "something else";
-  if (row.option.kind == protocol::Kind::kChoice)
-    return std::string(row.option.choices[std::get<std::string>(now) == row.option.choices[1] ? 0 : 1]);
-  if (row.option.kind == protocol::Kind::kInteger)
-    return std::get<double>(now) == row.option.minimum + 1.0
-               ? std::to_string(static_cast<int>(row.option.minimum) + 2)
-               : std::to_string(static_cast<int>(row.option.minimum) + 1);
-  scenario::Scenario other = scenario;
-  double value = row.option.minimum + (row.option.maximum - row.option.minimum) / 7.0;
-  // A double track's parameters make the model's: a car that is about as it was has one within its ranges.
-  const double current = std::get<double>(now);
-  if (row.key.starts_with("plant_params.") && std::isfinite(current) && current != 0.0)
-    value = 0.97 * current;
-  EXPECT_TRUE(protocol::set(other, row, value)) << row.key;
-  return protocol::get_text(other, row);
-}
-
-/// Settings of a default run beside which another one is built whenever that is asked for.
-struct Live {
-  explicit Live(const scenario::Scenario& scenario = scenario_of({}))
-      : settings{{.scenario = scenario,
-                  .build = [this](const ChosenRun& next) { started.push_back(next); },
-                  .built = [this] { return std::exchange(outcome, std::nullopt); },
-                  .on_building = [this](const std::string& what) { building = what; },
-                  .say = [this](std::string_view line) { said += line; },
-                  .on_accepted = [this](const scenario::Scenario& now) { accepted = now; }},
-                 requests} {}
-
-  /// The build has ended, and the network thread looks.
-  std::vector<std::string> end_of_build(Result<void> with = {}) {
-    outcome = std::move(with);
-    settings.update();
-    return settings.complaints();
-  }
-
-  std::string refusal(const Parameter& parameter) {
-    const Result<void> done = settings.set(parameter);
-    EXPECT_FALSE(done) << parameter.name;
-    EXPECT_EQ(requests.front(), nullptr) << parameter.name;
-    return done ? "" : done.error().message;
-  }
-  telemetry::Change next() {
-    const run::Setting* front = requests.front();
-    if (front == nullptr) {
-      ADD_FAILURE() << "no change waits";
-      return {};
-    }
-    const telemetry::Change change = front->change;
-    requests.pop();
-    return change;
-  }
-  ParameterValue value(std::string_view name) {
-    const auto parameter = settings.get(name);
-    return parameter ? parameter->value : ParameterValue{};
-  }
-
-  run::SettingQueue requests;
-  std::vector<ChosenRun> started;
-  std::optional<Result<void>> outcome;
-  std::string building;
-  std::string said;  ///< to whoever started the program
-  scenario::Scenario accepted;
-  LiveSettings settings;
-};
 
 TEST(LiveSettings, OfferEveryTunableOfTheSchemaAndTheControlsOfTheRun) {
   Live live;
@@ -334,51 +259,6 @@ TEST(LiveSettings, TellWhatAFileHoldsToWhoStartedTheProgramOnly) {
             std::vector<std::string>{"no run with track = oval: it cannot be built; the program's own output "
                                      "says why; the one before goes on"});
   EXPECT_THAT(other.said, HasSubstr("oval.csv:3: x_m: got the secret word"));
-}
-
-TEST(LiveSettings, KeepTheGuardAndTheModelThatItBelievesOutOfReach) {
-  EXPECT_EQ(Live().refusal({"guard.mode", std::string("off")}),
-            "guard.mode is fixed when the run starts; set it on the command line: --set guard.mode=off");
-  EXPECT_EQ(Live().refusal({"vehicle.friction", 2.5}),
-            "vehicle.friction is fixed when the run starts; set it on the command line: --set "
-            "vehicle.friction=2.5");
-  EXPECT_EQ(Live().refusal({"guard.mode", std::string("no")}),
-            "guard.mode: got no, expected one of on, observe, off");
-  const scenario::Scenario plain = scenario_of({});
-  for (const protocol::Parameter& row : protocol::list()) {
-    if (row.group != "guard" && row.group != "vehicle") continue;
-    Live live;
-    const ParameterValue before = live.value(row.key);
-    EXPECT_THAT(live.refusal({std::string(row.key), another_value(row, plain)}),
-                HasSubstr(" is fixed when the run starts; set it on the command line: --set "));
-    EXPECT_EQ(live.value(row.key), before) << row.key;
-    EXPECT_TRUE(live.started.empty()) << row.key;
-    EXPECT_TRUE(live.settings.set({std::string(row.key), before})) << "the value that holds";
-  }
-}
-
-TEST(LiveSettings, LeaveTheSimulatedWorldToViewers) {
-  Live live;
-  EXPECT_TRUE(live.settings.set({"plant_options.friction_scale", 0.8}));
-  EXPECT_TRUE(live.settings.set({"plant_options.mass_scale", 1.1}));
-}
-
-TEST(LiveSettings, KeepTheGuardAndTheModelOfTheCommandLineWhateverPresetOrCarIsChosen) {
-  const scenario::Scenario given =
-      scenario_of({{"guard.mode", "observe"}, {"guard.margin_m", "0.7"}, {"vehicle.friction", "0.6"}});
-  Live live(given);
-  for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{
-           {"preset", "race"}, {"car", "road-car"}, {"preset", "weighted"}, {"car", "udacity"}}) {
-    SCOPED_TRACE(key + " = " + value);
-    ASSERT_TRUE(live.settings.set({key, value}));
-    live.end_of_build();
-    while (live.requests.front() != nullptr) live.next();
-    EXPECT_EQ(live.settings.scenario().guard, given.guard);
-    EXPECT_EQ(live.settings.scenario().vehicle.friction,
-              live.settings.scenario().car == "udacity"
-                  ? 0.6
-                  : scenario_of({{"car", "road-car"}}).vehicle.friction);
-  }
 }
 
 TEST(LiveSettings, TakeTheLastOfQuickChoicesWithThoseBefore) {
