@@ -97,9 +97,7 @@ Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const ru
 Result<Outcome> run(const Options& options) {
   static run::RunControls controls;  // as long as signals may come
   catch_interrupts(controls.wants_stop);
-  const Result<scenario::Scenario> scenario = experiment(options);
-  if (!scenario) return fail(scenario.error());
-  Result<std::unique_ptr<run::ClosedLoop>> loop = run::ClosedLoop::create(*scenario);
+  Result<std::unique_ptr<run::ClosedLoop>> loop = prepared(request_of(options));
   if (!loop) return fail(loop.error());
   return options.is_fast ? run_fast(options, **loop, controls)
                          : run_live(options, std::move(*loop), controls);
