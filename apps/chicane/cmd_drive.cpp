@@ -15,6 +15,7 @@
 #include "chicane/run/realtime_loop.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
+#include "guard_notice.hpp"
 #include "interrupt.hpp"
 #include "limit_of.hpp"
 #include "progress.hpp"
@@ -99,6 +100,7 @@ Result<Outcome> run(const Options& options) {
   catch_interrupts(controls.wants_stop);
   Result<std::unique_ptr<run::ClosedLoop>> loop = prepared(request_of(options));
   if (!loop) return fail(loop.error());
+  print_guard_notice(options, (*loop)->scenario().guard);
   return options.is_fast ? run_fast(options, **loop, controls)
                          : run_live(options, std::move(*loop), controls);
 }
