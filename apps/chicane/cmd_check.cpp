@@ -9,6 +9,7 @@
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 #include "commands.hpp"
+#include "experiment.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -36,29 +37,62 @@ Result<std::string> check_track(const std::string& file) {
 
 /// A file with a plant and nothing that a car file may not hold is a car; every other is what a run can start
 /// from.
-Result<std::string> check_settings(const std::string& file) {
+bool is_car(const protocol::Document& document, const std::string& file) {
+  const auto& settings = document.assignments;
+  const bool has_plant =
+      std::any_of(settings.begin(), settings.end(),
+                  [](const protocol::Assignment& setting) { return setting.parameter->key == "plant"; });
+  return has_plant && !document.preset && protocol::compose({"", {{"car", file}}}).has_value();
+}
+
+/// What the file is, in words; makes it a part of the request.
+Result<std::string> add_file(const std::string& file, protocol::Request& request) {
+  if (protocol::track_format_of(file) != nullptr) {
+    request.settings.emplace_back("track", file);
+    return check_track(file);
+  }
   const Result<std::string> text = protocol::read_file(file);
   if (!text) return fail(text.error());
   const Result<protocol::Document> document = protocol::parse_document(*text, file);
   if (!document) return fail(document.error());
-  const auto& settings = document->assignments;
-  const bool has_plant =
-      std::any_of(settings.begin(), settings.end(),
-                  [](const protocol::Assignment& setting) { return setting.parameter->key == "plant"; });
-  const Result<scenario::Scenario> car = protocol::compose({"", {{"car", file}}});
-  const bool is_car = has_plant && !document->preset && car;
-  const Result<scenario::Scenario> scenario = is_car ? car : protocol::compose({file, {}});
-  if (!scenario) return fail(scenario.error());
-  return fmt::format("{}, {} settings", is_car ? "car" : "preset or scenario", settings.size());
+  const bool car = is_car(*document, file);
+  if (car) {
+    request.settings.emplace_back("car", file);
+  } else {
+    request.scenario_file = file;
+  }
+  return fmt::format("{}, {} settings", car ? "car" : "preset or scenario", document->assignments.size());
+}
+
+/// With the other files and settings of the command line as `drive` would take them.
+Result<std::string> check_file(const std::string& file, protocol::Request request) {
+  Result<std::string> found = add_file(file, request);
+  if (!found) return found;
+  const auto run = prepared(request);
+  if (run) return found;
+  const std::string& message = run.error().message;
+  return fail(run.error().code, message.starts_with(file) ? message : fmt::format("{}: {}", file, message));
+}
+
+ExitCode check_experiment(const protocol::Request& request) {
+  if (request.settings.empty() && request.speed_mps.empty() && request.faults.empty())
+    return report({ErrorCode::kInvalidArgument, "check: got nothing, expected files or settings"});
+  const auto run = prepared(request);
+  if (!run) return report(run.error());
+  const scenario::Scenario& scenario = (*run)->scenario();
+  fmt::print("ok, {} ({}) drives {} on {}\n", scenario.preset, scenario.controller, scenario.car,
+             scenario.track);
+  return kSuccess;
 }
 
 }  // namespace
 
 ExitCode check(const Options& options) {
+  const protocol::Request request = request_of(options);
+  if (options.files.empty()) return check_experiment(request);
   ExitCode worst = kSuccess;
   for (const std::string& file : options.files) {
-    const bool is_track = protocol::track_format_of(file) != nullptr;
-    const Result<std::string> found = is_track ? check_track(file) : check_settings(file);
+    const Result<std::string> found = check_file(file, request);
     if (found) {
       fmt::print("{}: ok, {}\n", file, *found);
     } else {

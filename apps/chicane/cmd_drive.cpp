@@ -15,6 +15,7 @@
 #include "chicane/run/realtime_loop.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
+#include "guard_notice.hpp"
 #include "interrupt.hpp"
 #include "limit_of.hpp"
 #include "progress.hpp"
@@ -97,10 +98,9 @@ Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const ru
 Result<Outcome> run(const Options& options) {
   static run::RunControls controls;  // as long as signals may come
   catch_interrupts(controls.wants_stop);
-  const Result<scenario::Scenario> scenario = experiment(options);
-  if (!scenario) return fail(scenario.error());
-  Result<std::unique_ptr<run::ClosedLoop>> loop = run::ClosedLoop::create(*scenario);
+  Result<std::unique_ptr<run::ClosedLoop>> loop = prepared(request_of(options));
   if (!loop) return fail(loop.error());
+  print_guard_notice(options, (*loop)->scenario().guard);
   return options.is_fast ? run_fast(options, **loop, controls)
                          : run_live(options, std::move(*loop), controls);
 }

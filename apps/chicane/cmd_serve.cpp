@@ -15,6 +15,7 @@
 #include "chicane/run/racing.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
+#include "guard_notice.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "record.hpp"
@@ -52,6 +53,7 @@ Result<wire::ServeSummary> serve_until_stopped(const Options& options) {
                          live::embedded_assets(), std::move(*planned));
   const auto kept = KeptRun::start(options, served.description(), *scenario, served.step_budget());
   if (!kept) return fail(kept.error());
+  print_guard_notice(options, scenario->guard);
   Progress progress;
   auto summary = served.run(
       (*kept)->recorder(),

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "experiment.hpp"
 
-#include "chicane/protocol/library.hpp"
-
 namespace chicane::apps {
 
+protocol::Request request_of(const Options& options) {
+  return {options.scenario_file, options.settings, options.speed_mps, options.faults};
+}
+
 Result<scenario::Scenario> experiment(const Options& options) {
-  return protocol::compose({options.scenario_file, options.settings, options.speed_mps, options.faults});
+  return protocol::compose(request_of(options));
+}
+
+Result<std::unique_ptr<run::ClosedLoop>> prepared(const protocol::Request& request) {
+  const Result<scenario::Scenario> scenario = protocol::compose(request);
+  if (!scenario) return fail(scenario.error());
+  return run::ClosedLoop::create(*scenario);
 }
 
 }  // namespace chicane::apps

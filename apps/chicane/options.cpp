@@ -55,6 +55,20 @@ void add_world(CLI::App& command, Options& options) {
   add_setting(command, options, "--seed", "seed", "N", "Of everything random");
 }
 
+void add_latency(CLI::App& command, Options& options) {
+  add_setting(command, options, "--latency-ms", "latency_ms", "X",
+              "Actuation delay of the simulated car [ms], default 100");
+}
+
+void add_faults(CLI::App& command, Options& options) {
+  command
+      .add_option(
+          "--fault", options.faults,
+          "A fault at a second of the run, for so long, so strong (chicane list faults); may be repeated")
+      ->type_name("NAME@S+S*X")
+      ->take_all();
+}
+
 void add_port(CLI::App& command, Options& options) {
   command.add_option("--port", options.port, "Port of dashboard and simulator socket; 0 takes any free one")
       ->type_name("P")
@@ -101,8 +115,7 @@ void add_drive(CLI::App& command, Options& options) {
       ->type_name("SCENARIO");
   add_controller(command, options);
   add_world(command, options);
-  add_setting(command, options, "--latency-ms", "latency_ms", "X",
-              "Actuation delay of the simulated car [ms], default 100");
+  add_latency(command, options);
   CLI::Option* const fast =
       command.add_flag("--fast", options.is_fast, "As fast as possible, deterministic, without sockets");
   command.add_flag("--limit", options.wants_limit, "Find the limit first, for the gap of each lap to it")
@@ -124,12 +137,7 @@ void add_drive(CLI::App& command, Options& options) {
       .add_flag("--manual", options.is_manual,
                 "A person drives, by the dashboard's arrow keys or \"manual.…\"")
       ->excludes("--fast");
-  command
-      .add_option(
-          "--fault", options.faults,
-          "A fault at a second of the run, for so long, so strong (chicane list faults); may be repeated")
-      ->type_name("NAME@S+S*X")
-      ->take_all();
+  add_faults(command, options);
   add_record(command, options);
   command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
   add_set(command, options);
@@ -230,9 +238,13 @@ void add_check(CLI::App& command, Options& options) {
       .add_option("files", options.files,
                   fmt::format("Presets, scenarios, cars (.yaml) and tracks ({})",
                               joined(protocol::track_extensions())))
-      ->type_name("FILE")
-      ->required();
-  command.footer("Example: chicane check presets/weighted.yaml tracks/lakeside.csv");
+      ->type_name("FILE");
+  add_controller(command, options);
+  add_world(command, options);
+  add_latency(command, options);
+  add_faults(command, options);
+  add_set(command, options);
+  command.footer("Example: chicane check presets/weighted.yaml tracks/lakeside.csv --car road-car");
 }
 
 void add_list(CLI::App& command, Options& options) {

@@ -116,7 +116,7 @@ TEST(Cli, WrongUsageIsExplainedWithExitCodeTwo) {
       {"drive --fast --speed-mps 999", "speed_limit_mps: got 999"},
       {"drive --fast no/such.yaml", "expected a file that exists"},
       {"list flavours", "flavours"},
-      {"check", "files is required"},
+      {"check", "expected files or settings"},
       {"limit --track nowhere", "track: got \"nowhere\", expected a file or one of"},
       {"limit --car moped", "car: got \"moped\", expected a file or one of"},
       {"limit --spacing-m 50", "--spacing-m: Value 50 not in range"},

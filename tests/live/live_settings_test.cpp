@@ -16,82 +16,24 @@
 #include <vector>
 
 #include "chicane/protocol/library.hpp"
+#include "live/settings_of_a_run.hpp"
 
 namespace chicane::live {
 namespace {
 
 using protocol::foxglove::Parameter;
 using protocol::foxglove::ParameterValue;
+using test::another_value;
+using test::Live;
+using test::scenario_of;
 using testing::HasSubstr;
-
-/// What the command gate keeps to.
-constexpr std::array<std::string_view, 3> kGateLimits{
-    "vehicle.steer_limit_deg", "vehicle.steer_rate_limit_degps", "vehicle.brake_throttle_limit"};
-
-scenario::Scenario scenario_of(std::vector<std::pair<std::string, std::string>> settings) {
-  Result<scenario::Scenario> scenario =
-      protocol::compose({.scenario_file = {}, .settings = std::move(settings)});
-  EXPECT_TRUE(scenario) << (scenario ? "" : scenario.error().message);
-  return scenario.value_or(scenario::Scenario{});
-}
-
-/// Settings of a default run beside which another one is built whenever that is asked for.
-struct Live {
-  explicit Live(const scenario::Scenario& scenario = scenario_of({}))
-      : settings{{.scenario = scenario,
-                  .build = [this](const ChosenRun& next) { started.push_back(next); },
-                  .built = [this] { return std::exchange(outcome, std::nullopt); },
-                  .on_building = [this](const std::string& what) { building = what; },
-                  .say = [this](std::string_view line) { said += line; },
-                  .on_accepted = [this](const scenario::Scenario& now) { accepted = now; }},
-                 requests} {}
-
-  /// The build has ended, and the network thread looks.
-  std::vector<std::string> end_of_build(Result<void> with = {}) {
-    outcome = std::move(with);
-    settings.update();
-    return settings.complaints();
-  }
-
-  std::string refusal(const Parameter& parameter) {
-    const Result<void> done = settings.set(parameter);
-    EXPECT_FALSE(done) << parameter.name;
-    EXPECT_EQ(requests.front(), nullptr) << parameter.name;
-    return done ? "" : done.error().message;
-  }
-  telemetry::Change next() {
-    const run::Setting* front = requests.front();
-    if (front == nullptr) {
-      ADD_FAILURE() << "no change waits";
-      return {};
-    }
-    const telemetry::Change change = front->change;
-    requests.pop();
-    return change;
-  }
-  ParameterValue value(std::string_view name) {
-    const auto parameter = settings.get(name);
-    return parameter ? parameter->value : ParameterValue{};
-  }
-
-  run::SettingQueue requests;
-  std::vector<ChosenRun> started;
-  std::optional<Result<void>> outcome;
-  std::string building;
-  std::string said;  ///< to whoever started the program
-  scenario::Scenario accepted;
-  LiveSettings settings;
-};
 
 TEST(LiveSettings, OfferEveryTunableOfTheSchemaAndTheControlsOfTheRun) {
   Live live;
   const std::vector<Parameter> all = live.settings.list();
-  EXPECT_EQ(all.size(), protocol::list().size() - kGateLimits.size() + 4);
-  for (const protocol::Parameter& row : protocol::list()) {
-    const bool is_gate_limit =
-        std::find(kGateLimits.begin(), kGateLimits.end(), row.key) != kGateLimits.end();
-    EXPECT_NE(live.settings.get(row.key).has_value(), is_gate_limit) << row.key;
-  }
+  EXPECT_EQ(all.size(), protocol::list().size() + 4);
+  for (const protocol::Parameter& row : protocol::list())
+    EXPECT_TRUE(live.settings.get(row.key).has_value()) << row.key;
   EXPECT_EQ(live.value("tracking_mpc.horizon_steps"), ParameterValue(40.0));
   EXPECT_EQ(live.value("latency_ms"), ParameterValue(100.0));
   EXPECT_EQ(live.value("track"), ParameterValue(std::string("lakeside")));
@@ -108,7 +50,6 @@ TEST(LiveSettings, HandOverEachKindOfValueAsTheTextThatSetTakes) {
       {{"cubic_mpc.latency_handling", std::string("measured")}, "measured"},
       {{"latency_ms", 33.3}, "33.3"},
       {{"sensor.heading_noise_deg", 0.2}, "0.2"},
-      {{"vehicle.drive_power_per_mass_wpkg", 100.0}, "100"},
       {{"run.pace", 0.25}, "0.25"},
       {{"manual.is_on", true}, "true"},
       {{"manual.steer", -0.5}, "-0.5"}};
@@ -120,8 +61,6 @@ TEST(LiveSettings, HandOverEachKindOfValueAsTheTextThatSetTakes) {
     EXPECT_FALSE(change.starts_anew);
     EXPECT_EQ(live.value(parameter.name), parameter.value) << parameter.name;
   }
-  ASSERT_TRUE(live.settings.set({"vehicle.drive_power_per_mass_wpkg", std::string("inf")}));
-  EXPECT_EQ(live.next().value.view(), "inf");
 }
 
 TEST(LiveSettings, RefuseWhatSetWouldRefuseInOneSentence) {
@@ -322,14 +261,6 @@ TEST(LiveSettings, TellWhatAFileHoldsToWhoStartedTheProgramOnly) {
   EXPECT_THAT(other.said, HasSubstr("oval.csv:3: x_m: got the secret word"));
 }
 
-TEST(LiveSettings, KeepTheLimitsOfTheCommandGateOutOfReach) {
-  Live live;
-  for (const std::string_view key : kGateLimits) {
-    EXPECT_EQ(live.refusal({std::string(key), 0.8}),
-              std::string(key) + ": is fixed when a run is started: a limit that the command gate keeps");
-  }
-}
-
 TEST(LiveSettings, TakeTheLastOfQuickChoicesWithThoseBefore) {
   Live live;
   ASSERT_TRUE(live.settings.set({"track", std::string("oval")}));
@@ -388,13 +319,17 @@ TEST(LiveSettings, WaitWithARunThatIsReadyUntilTheQueueHasRoom) {
   EXPECT_EQ(live.settings.scenario().track, "oval");
 }
 
-TEST(LiveSettings, OfferControllerAndVehicleOnlyForAnExternalSimulator) {
+TEST(LiveSettings, OfferTheControllerOnlyForAnExternalSimulatorAndShowWhatIsFixed) {
   run::SettingQueue requests;
   LiveSettings settings({.scenario = scenario_of({{"preset", "weighted"}}), .has_world = false}, requests);
   for (const Parameter& parameter : settings.list()) {
-    EXPECT_TRUE(parameter.name.starts_with("cubic_mpc.") || parameter.name.starts_with("vehicle."))
-        << parameter.name;
+    const bool is_fixed = parameter.name.starts_with("vehicle.") || parameter.name.starts_with("guard.");
+    EXPECT_TRUE(is_fixed || parameter.name.starts_with("cubic_mpc.")) << parameter.name;
   }
+  const Result<void> guard = settings.set({"guard.mode", std::string("off")});
+  ASSERT_FALSE(guard);
+  EXPECT_EQ(guard.error().message,
+            "guard.mode is fixed when the run starts; set it on the command line: --set guard.mode=off");
   EXPECT_TRUE(settings.get("cubic_mpc.weight_lateral"));
   EXPECT_TRUE(settings.set({"cubic_mpc.weight_lateral", 10.0}));
   const Result<void> world = settings.set({"latency_ms", 10.0});
@@ -442,6 +377,9 @@ TEST(LiveSettings, DescribeThemselvesInJson) {
   EXPECT_EQ(horizon["default"], 7);  // the preset's, not what is set now
   EXPECT_EQ(horizon["start"], 9);    // the command line's
   EXPECT_EQ(horizon["is_live"], true);
+  EXPECT_EQ(horizon["is_fixed"], false);
+  EXPECT_EQ(entry("vehicle.friction")["is_fixed"], true);
+  EXPECT_EQ(entry("guard.mode")["is_fixed"], true);
   EXPECT_EQ(entry("latency_ms")["unit"], "ms");
   EXPECT_EQ(entry("latency_ms")["group"], "run");
   EXPECT_EQ(entry("track")["is_live"], false);
@@ -450,30 +388,6 @@ TEST(LiveSettings, DescribeThemselvesInJson) {
   EXPECT_EQ(entry("vehicle.drive_power_per_mass_wpkg")["default"], "inf");
   EXPECT_EQ(entry("manual.is_on")["kind"], "bool");
   EXPECT_EQ(entry("run.pace")["maximum"], 20);
-}
-
-/// Another value than the one that holds, which may stand beside the others.
-std::string another_value(const protocol::Parameter& row, const scenario::Scenario& scenario) {
-  if (row.key == "preset") return "sixty-mph";
-  if (row.key == "track") return "oval";
-  if (row.key == "car") return "road-car";
-  const protocol::Value now = protocol::get(scenario, row);
-  if (const auto* flag = std::get_if<bool>(&now)) return *flag ? "false" : "true";
-  if (row.option.kind == protocol::Kind::kText) return "something else";
-  if (row.option.kind == protocol::Kind::kChoice)
-    return std::string(row.option.choices[std::get<std::string>(now) == row.option.choices[1] ? 0 : 1]);
-  if (row.option.kind == protocol::Kind::kInteger)
-    return std::get<double>(now) == row.option.minimum + 1.0
-               ? std::to_string(static_cast<int>(row.option.minimum) + 2)
-               : std::to_string(static_cast<int>(row.option.minimum) + 1);
-  scenario::Scenario other = scenario;
-  double value = row.option.minimum + (row.option.maximum - row.option.minimum) / 7.0;
-  // A double track's parameters make the model's: a car that is about as it was has one within its ranges.
-  const double current = std::get<double>(now);
-  if (row.key.starts_with("plant_params.") && std::isfinite(current) && current != 0.0)
-    value = 0.97 * current;
-  EXPECT_TRUE(protocol::set(other, row, value)) << row.key;
-  return protocol::get_text(other, row);
 }
 
 TEST(LiveSettings, BecomeAPresetFileThatGivesThemBackForEveryRow) {

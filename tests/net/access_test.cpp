@@ -29,7 +29,8 @@ TEST(Access, BoundToEverythingNumericAddressesAreAllowedButNoNames) {
 
 TEST(Access, AnOriginMustBeTheHostItself) {
   EXPECT_TRUE(origin_is_allowed("http://localhost:4567", "localhost:4567", {}));
-  EXPECT_TRUE(origin_is_allowed("https://car.local", "car.local", {}));
+  EXPECT_FALSE(origin_is_allowed("https://localhost:4567", "localhost:4567", {})) << "a server with TLS";
+  EXPECT_TRUE(origin_is_allowed("https://car.local", "car.local", {"https://car.local"}));
   for (const char* origin :
        {"http://evil.example", "http://localhost:4567.evil.example", "http://localhost:8080", "null",
         "localhost:4567", "http://evil.example/localhost:4567"}) {

@@ -42,7 +42,7 @@ struct Origin {
 constexpr Origin kOrigins[] = {
     {"", From::kNone},
     {"http://*", From::kOwn},
-    {"https://*", From::kOwn},
+    {"https://*", From::kForeign},
     {"https://app.foxglove.dev", From::kListed},
     {"http://app.foxglove.dev", From::kForeign},
     {"https://app.foxglove.dev.evil.example", From::kForeign},

@@ -4,84 +4,22 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <condition_variable>
 #include <future>
-#include <mutex>
 
 #include "net/raw_socket.hpp"
+#include "net/recorder.hpp"
 
 namespace chicane::net {
 namespace {
 
 using test::RawSocket;
+using test::Recorder;
 using test::unity_handshake;
+using test::upgraded;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 using namespace std::chrono_literals;
-
-/// A server that remembers what happened, for a test thread that waits for it.
-class Recorder {
- public:
-  explicit Recorder(ServerOptions options = {}, std::vector<Asset> assets = {},
-                    std::function<std::optional<Content>(std::string_view)> on_get = {}) {
-    options.port = 0;
-    ServerHandlers handlers{
-        .on_start = {},
-        .on_upgrade =
-            [this](const UpgradeRequest& request) {
-              const std::lock_guard lock(mutex_);
-              upgrade_ = request;
-              return answer_;
-            },
-        .on_open = [this](ConnectionId id, int) { note([&] { opened_.push_back(id); }); },
-        .on_message = [this](ConnectionId, int, std::string_view bytes,
-                             bool) { note([&] { messages_.emplace_back(bytes); }); },
-        .on_close = [this](ConnectionId, int,
-                           std::string_view why) { note([&] { closed_.emplace_back(why); }); },
-        .on_get = std::move(on_get)};
-    auto created = Server::create(options, std::move(handlers), std::move(assets));
-    if (created) server_ = std::move(*created);
-  }
-  ~Recorder() { server_.reset(); }
-
-  [[nodiscard]] Server& server() { return *server_; }
-  [[nodiscard]] std::uint16_t port() const { return server_->port(); }
-  void answer(UpgradeAnswer answer) {
-    const std::lock_guard lock(mutex_);
-    answer_ = std::move(answer);
-  }
-  UpgradeRequest upgrade() {
-    const std::lock_guard lock(mutex_);
-    return upgrade_;
-  }
-  std::vector<ConnectionId> opened(std::size_t count) { return wait(opened_, count); }
-  std::vector<std::string> messages(std::size_t count) { return wait(messages_, count); }
-  std::vector<std::string> closed(std::size_t count) { return wait(closed_, count); }
-
- private:
-  template <class Change>
-  void note(Change change) {
-    const std::lock_guard lock(mutex_);
-    change();
-    changed_.notify_all();
-  }
-  template <class T>
-  std::vector<T> wait(const std::vector<T>& list, std::size_t count) {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, 10s, [&] { return list.size() >= count; });
-    return list;
-  }
-
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  UpgradeAnswer answer_{.accept = true};
-  UpgradeRequest upgrade_;
-  std::vector<ConnectionId> opened_;
-  std::vector<std::string> messages_;
-  std::vector<std::string> closed_;
-  std::unique_ptr<Server> server_;
-};
 
 std::string get(std::uint16_t port, const std::string& target, const std::string& extra = {},
                 const std::string& method = "GET") {
@@ -89,13 +27,6 @@ std::string get(std::uint16_t port, const std::string& target, const std::string
   socket.send(method + " " + target + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" + extra +
               "\r\n");
   return socket.rest();
-}
-
-RawSocket upgraded(std::uint16_t port, int receive_buffer = 0) {
-  RawSocket socket(port, receive_buffer);
-  socket.send(unity_handshake(port));
-  EXPECT_THAT(socket.until("\r\n\r\n"), StartsWith("HTTP/1.1 101"));
-  return socket;
 }
 
 TEST(Server, AnswersTheOriginalUpgradeRequestWithoutAnyExtra) {

@@ -76,6 +76,20 @@ TEST(JsonReport, HasEveryDocumentedKey) {
   EXPECT_TRUE(report["solver"].contains("not_usable"));
 }
 
+TEST(JsonReport, NamesTheGuardWithItsVersion) {
+  telemetry::RunSummary run = example();
+  EXPECT_EQ(Json::parse(to_json(run))["guard"], nullptr) << "another program drives";
+  run.guard = {.mode = safety::GuardMode::kObserve, .margin = 0.5, .blind_time = 2.0};
+  EXPECT_EQ(Json::parse(to_json(run))["guard"], (Json{{"version", safety::kGuardVersion},
+                                                      {"mode", "observe"},
+                                                      {"road", "track"},
+                                                      {"half_width_m", 3.5},
+                                                      {"receiver", "stop-plan"},
+                                                      {"margin_m", 0.5},
+                                                      {"blind_time_s", 2.0}}));
+  EXPECT_THAT(to_table(run), HasSubstr("guard observe"));
+}
+
 TEST(JsonReport, ConvertsUnits) {
   const Json report = Json::parse(to_json(example()));
   EXPECT_EQ(report["latency_ms"], 100.0);

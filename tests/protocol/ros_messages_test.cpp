@@ -59,6 +59,9 @@ TEST(RosMessages, RunSaysWhatTheBitsAndTermsOfAFrameMean) {
   EXPECT_EQ(reader.text(), "track = oval");
   EXPECT_EQ(reader.text(), "failed");
   EXPECT_EQ(reader.text(), "time limit reached");
+  EXPECT_EQ(reader.text(), "observe");
+  EXPECT_EQ(reader.text(), "waypoints");
+  EXPECT_EQ(reader.get<std::uint32_t>(), 7U);
   EXPECT_TRUE(reader.is_at_end());
 }
 

@@ -111,6 +111,7 @@ inline Run run() {
   run.building = "track = oval";
   run.end = "failed";
   run.end_reason = "time limit reached";
+  run.guard = {.mode = "observe", .road = "waypoints", .version = 7};
   lap_time::Limit limit;
   limit.times = {.lap = 25.0, .sectors = {8.0, 9.5, 7.5}};
   limit.line = {{.s = 258.0, .d = 0.5, .position = {1.0, 2.0}, .speed = 40.0, .lateral_acceleration = -3.0},

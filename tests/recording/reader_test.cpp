@@ -64,6 +64,9 @@ TEST(ReadRecording, VisitsTheScenarioAndThenEachStepInOrder) {
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(scenarios, 1U);
   EXPECT_EQ(read, steps);
+  EXPECT_EQ(head["guard_mode"], "on");
+  EXPECT_EQ(head["guard_road"], "track");
+  EXPECT_EQ(head["guard_version"], std::to_string(safety::kGuardVersion));
 }
 
 TEST(ReadRecording, KnowsWhatTheRunWasBeforeItsFirstEvent) {

@@ -74,6 +74,7 @@ TEST_F(Sweep, WritesALineForEachRunWithItsSettingsAndResults) {
   std::ifstream stream(path("a.jsonl"));
   std::string line;
   std::getline(stream, line);
+  EXPECT_EQ(nlohmann::json::parse(line)["guard"]["version"], safety::kGuardVersion);
   const auto header = parse_header(line, "a");
   ASSERT_TRUE(header);
   EXPECT_EQ(header->runs, 12U);
@@ -87,6 +88,14 @@ TEST_F(Sweep, WritesALineForEachRunWithItsSettingsAndResults) {
   EXPECT_EQ(first["end_reason"], "time limit reached");
   EXPECT_EQ(first["state_hash"].get<std::string>().size(), 16U);
   EXPECT_EQ(first.size(), 6U);
+}
+
+TEST(SweepColumns, NameTheGuard) {
+  telemetry::RunSummary run;
+  EXPECT_EQ(find_column("guard_mode")->text(run), "null");
+  run.guard = {.mode = safety::GuardMode::kOff, .road = safety::GuardRoad::kWaypoints};
+  EXPECT_EQ(find_column("guard_mode")->text(run), "\"off\"");
+  EXPECT_EQ(find_column("guard_road")->text(run), "\"waypoints\"");
 }
 
 TEST_F(Sweep, TheMergedBytesDependOnNothingButThePlan) {

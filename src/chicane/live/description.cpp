@@ -22,6 +22,7 @@ protocol::Run description(const run::ClosedLoop& loop) {
   run.control_period = scenario.control_period;
   run.vehicle = scenario.vehicle;
   run.mode = "drive";
+  run.guard = protocol::guard_facts(scenario.guard);
   describe(loop.track(), run);
   protocol::describe(loop.controller(), run);
   run.faults = protocol::fault_names();

@@ -26,14 +26,6 @@ using protocol::Value;
 constexpr std::array<std::string_view, 6> kOfTheWorld{"laps",         "seed",           "latency_ms",
                                                       "time_limit_s", "turn_around_ms", "waypoints_sent"};
 
-/// What the command gate keeps to: a run has those that it was started with.
-constexpr std::array<std::string_view, 3> kActuatorLimits{
-    "vehicle.steer_limit_deg", "vehicle.steer_rate_limit_degps", "vehicle.brake_throttle_limit"};
-
-bool is_actuator_limit(const protocol::Parameter& row) {
-  return std::find(kActuatorLimits.begin(), kActuatorLimits.end(), row.key) != kActuatorLimits.end();
-}
-
 /// Settings whose text may name a file.
 std::optional<protocol::Shelf> shelf_of(std::string_view key) {
   using enum protocol::Shelf;
@@ -46,6 +38,13 @@ std::optional<protocol::Shelf> shelf_of(std::string_view key) {
 bool is_of_the_world(const protocol::Parameter& row) {
   return row.group == "plant_options" || row.group == "sensor" ||
          std::find(kOfTheWorld.begin(), kOfTheWorld.end(), row.key) != kOfTheWorld.end();
+}
+
+/// The car of another scenario: the model of it, and what is simulated.
+void take_car(scenario::Scenario& scenario, const scenario::Scenario& from) {
+  scenario.vehicle = from.vehicle;
+  scenario.plant = from.plant;
+  scenario.plant_params = from.plant_params;
 }
 
 /// What a preset gives with a car, on the track that is driven.
@@ -125,8 +124,9 @@ LiveSettings::LiveSettings(LiveSettingsOptions options, run::SettingQueue& reque
 }
 
 bool LiveSettings::is_offered(const protocol::Parameter& row) const {
-  if (is_actuator_limit(row) || (!protocol::is_live(row) && !options_.build)) return false;
-  return options_.has_world || row.group == "vehicle" || row.controller == scenario_.controller;
+  if (protocol::is_fixed(row)) return true;
+  if (!protocol::is_live(row) && !options_.build) return false;
+  return options_.has_world || row.controller == scenario_.controller;
 }
 
 std::vector<foxglove::Parameter> LiveSettings::list() const {
@@ -156,11 +156,7 @@ Result<void> LiveSettings::set(const foxglove::Parameter& parameter) {
   if (row != nullptr && is_offered(*row)) return set_row(*row, parameter.value);
   const std::string shown = printable(parameter.name);
   if (row != nullptr) {
-    return fail(ErrorCode::kInvalidArgument,
-                fmt::format("{}: {}", shown,
-                            is_actuator_limit(*row)
-                                ? "is fixed when a run is started: a limit that the command gate keeps"
-                                : "cannot be set while this run goes on"));
+    return fail(ErrorCode::kInvalidArgument, fmt::format("{}: cannot be set while this run goes on", shown));
   }
   std::vector<std::string_view> names;
   for (const Control& each : controls_) names.push_back(each.key);
@@ -204,6 +200,11 @@ Result<void> LiveSettings::set_row(const protocol::Parameter& row, const foxglov
   if (Result<void> done = protocol::set(changed, row, *wanted); !done) return done;
   const std::string text = protocol::get_text(changed, row);
   if (text == protocol::get_text(shown_scenario(), row)) return {};
+  if (protocol::is_fixed(row)) {
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("{0} is fixed when the run starts; set it on the command line: --set {0}={1}",
+                            row.key, text));
+  }
   if (!protocol::is_live(row)) return start_anew(row.key, text, std::move(changed));
   // The value is that of the text, to the last bit: recordings keep the text.
   const Result<run::Setting> setting = run::read_setting({.name = row.key, .value = text});
@@ -247,15 +248,15 @@ Result<void> LiveSettings::start_anew(std::string_view key, const std::string& v
   if (key == "preset") {
     scenario::Scenario fresh = *base;
     fresh.faults = changed.faults;
+    fresh.guard = changed.guard;
+    take_car(fresh, changed);
     for (const protocol::Parameter& row : protocol::list()) {
       if (!is_of_the_world(row)) continue;
       if (Result<void> kept = protocol::set(fresh, row, protocol::get(changed, row)); !kept) return kept;
     }
     changed = std::move(fresh);
   } else if (key == "car") {
-    changed.vehicle = base->vehicle;
-    changed.plant = base->plant;
-    changed.plant_params = base->plant_params;
+    take_car(changed, value == options_.scenario.car ? options_.scenario : *base);
     // Delay and sampling are the car's where its file, or that of the car before, states them.
     scenario::Scenario before = changed;
     before.car = shown_scenario().car;

@@ -23,7 +23,7 @@ namespace chicane::live {
 struct LiveSettingsOptions {
   scenario::Scenario scenario;  ///< what runs
   /// Whether we simulate: offers what concerns the world, its pace and manual driving, too. Otherwise only
-  /// controller and vehicle.
+  /// the controller.
   bool has_world = true;
   /// Faults to switch, beside the rest: "fault.…".
   std::vector<protocol::Control> faults{};
@@ -52,8 +52,10 @@ struct LiveSettingsOptions {
 /// All member functions but tell() are the network thread's.
 ///
 /// Viewers are strangers. They choose presets, cars and tracks of the library by name, and no file but those
-/// the run was started with; no sentence for them quotes a file. The limits of actuators, which the command
-/// gate keeps, are not offered: a run has those that it was started with (docs/security.md).
+/// the run was started with; no sentence for them quotes a file. The guard and the model of the car, from
+/// which the limits of commands follow, are shown and refused (protocol::is_fixed): every run that viewers
+/// choose has the guard that the program was started with, and its model belongs to the car
+/// (docs/security.md).
 class LiveSettings final : public protocol::foxglove::ParameterStore {
  public:
   /// `requests` is drained by the control thread and outlives this.

@@ -26,6 +26,7 @@ protocol::Run describe_served(const scenario::Scenario& scenario, const controll
   run.mode = "serve";
   protocol::describe(controller, run);
   run.preset = scenario.preset;
+  run.guard = protocol::guard_facts(scenario.guard);
   run.latency = scenario.latency;
   run.control_period = scenario.control_period;
   run.vehicle = scenario.vehicle;

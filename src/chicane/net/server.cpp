@@ -30,6 +30,7 @@
 #include "chicane/net/detail/port_holder.hpp"
 #include "chicane/net/detail/send_queue.hpp"
 #include "chicane/net/detail/site.hpp"
+#include "chicane/net/detail/watched_stream.hpp"
 #include "chicane/net/http_response.hpp"
 
 namespace chicane::net {
@@ -43,12 +44,19 @@ using Tcp = asio::ip::tcp;
 using ErrorCodeBoost = boost::system::error_code;
 
 constexpr int kSendBuffer = 32 * 1024;  // a reader that stalls holds this much kernel memory, not megabytes
-constexpr std::chrono::seconds kAnswerTimeout{30};  // for one piece of an answer on a slow line
-constexpr std::chrono::seconds kLingerTimeout{1};   // so that a refusal is read before the socket goes
-constexpr std::size_t kKeptBuffer = 4096;           // between two messages [byte]
-constexpr std::size_t kMostReserved = 8;            // connections that viewers leave to others
+constexpr std::chrono::seconds kAnswerTimeout{30};      // for one piece of an answer on a slow line
+constexpr std::chrono::seconds kLingerTimeout{1};       // so that a refusal is read before the socket goes
+constexpr std::chrono::milliseconds kAcceptPause{100};  // when descriptors are used up, for example
+constexpr std::size_t kKeptBuffer = 4096;               // between two messages [byte]
+constexpr std::size_t kMostReserved = 8;                // connections that viewers leave to others
 std::string_view view(boost::string_view text) { return {text.data(), text.size()}; }
 boost::string_view view(std::string_view text) { return {text.data(), text.size()}; }
+struct Parts {
+  static void each(const auto& buffers, const auto& take) {
+    for (const auto part : beast::buffers_range_ref(buffers))
+      take(std::string_view(static_cast<const char*>(part.data()), part.size()));
+  }
+};
 class WebSocket;
 class HttpConnection;
 
@@ -99,6 +107,12 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
     stream_.control_callback([this](websocket::frame_type kind, boost::string_view) {
       has_peer_closed_ |= kind == websocket::frame_type::close;
     });
+    stream_.next_layer().on_wrong_close = [this](std::uint16_t code) {  // Beast answers nothing any more then
+      if (is_closing_) return;
+      queue_.drop_waiting(is_writing_);
+      close(code, "the close frame breaks RFC 6455");
+      finish_closing();
+    };
     stream_.async_accept(request, [self = shared_from_this()](ErrorCodeBoost ec) {
       if (!ec) self->open();
     });
@@ -119,8 +133,7 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
   void close(std::uint16_t code, std::string_view reason) {
     if (is_closing_) return;
     is_closing_ = true;
-    close_reason_ =
-        websocket::close_reason(static_cast<websocket::close_code>(code), view(reason.substr(0, 120)));
+    close_reason_ = {static_cast<websocket::close_code>(code), view(reason.substr(0, 120))};
     if (why_.empty()) why_ = reason;
     if (!is_writing_) finish_closing();
   }
@@ -162,6 +175,7 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
   }
 
   void finish_closing() {
+    if (std::exchange(is_close_sent_, true)) return;
     stream_.async_close(close_reason_, [self = shared_from_this()](ErrorCodeBoost) {});
   }
 
@@ -177,11 +191,8 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
     is_closing_ = true;
     if (why_.empty()) why_ = words(ec);
     core_.connections.erase(id_);
-    if (!core_.is_stopping) {
-      core_.handlers.on_close(id_, endpoint_, why_);
-    } else if (core_.connections.empty()) {
-      core_.io.stop();
-    }
+    if (!core_.is_stopping) return core_.handlers.on_close(id_, endpoint_, why_);
+    if (core_.connections.empty()) core_.io.stop();
   }
 
   [[nodiscard]] std::string words(ErrorCodeBoost ec) const {
@@ -197,13 +208,14 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
 
   Core& core_;
   std::shared_ptr<int> ticket_;
-  websocket::stream<beast::tcp_stream, false> stream_;
+  websocket::stream<WatchedStream<beast::tcp_stream, Parts>, false> stream_;
   beast::flat_buffer buffer_;
   int endpoint_;
   ConnectionId id_;
   SendQueue queue_{core_.waiting};
   bool is_writing_ = false;
   bool is_closing_ = false;
+  bool is_close_sent_ = false;
   bool has_peer_closed_ = false;
   websocket::close_reason close_reason_;
   std::string why_;
@@ -251,9 +263,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
                             "the request's header is too large");
       }
       if (ec == http::error::end_of_stream || ec == http::error::partial_message) return;
-      if (ec.category() == make_error_code(http::error::bad_method).category()) {
+      if (ec.category() == make_error_code(http::error::bad_method).category())
         self->refuse(http::status::bad_request, "not an HTTP request: " + ec.message());
-      }
     });
   }
 
@@ -289,9 +300,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
                          .may_watch = admission.may_watch,
                          .may_control = admission.may_control,
                          .is_crowded = core_.is_crowded()};
-    for (const auto offered : http::token_list(request[http::field::sec_websocket_protocol])) {
+    for (const auto offered : http::token_list(request[http::field::sec_websocket_protocol]))
       asked.subprotocols.emplace_back(view(offered));
-    }
     const UpgradeAnswer answer = core_.handlers.on_upgrade(asked);
     if (!answer.accept)
       return refuse(http::int_to_status(static_cast<unsigned>(answer.status)), answer.reason);
@@ -331,8 +341,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
                       [self = shared_from_this(), keep_alive](ErrorCodeBoost ec, std::size_t) {
                         if (ec) return;
                         if (self->body_.next(self->piece_)) return self->write(keep_alive);
-                        if (self->body_.is_short())
-                          return;  // less than the announced length: end the connection
+                        if (self->body_.is_short()) return;  // of less than the announced length
                         if (keep_alive) return self->read();
                         self->linger();
                       });
@@ -393,9 +402,8 @@ class BeastServer final : public Server {
     const Tcp::endpoint endpoint{address, core_.options.port};
     acceptor_.open(endpoint.protocol(), ec);
     if (!ec) acceptor_.set_option(asio::socket_base::reuse_address(true), ec);
-    if (!ec && address == asio::ip::address{asio::ip::address_v6::any()}) {
+    if (!ec && address == asio::ip::address{asio::ip::address_v6::any()})
       acceptor_.set_option(asio::ip::v6_only(false), ec);
-    }
     if (!ec) acceptor_.bind(endpoint, ec);
     if (!ec) acceptor_.listen(asio::socket_base::max_listen_connections, ec);
     if (ec == asio::error::address_in_use) {
@@ -454,9 +462,7 @@ class BeastServer final : public Server {
   void accept() {
     acceptor_.async_accept([this](ErrorCodeBoost ec, Tcp::socket socket) {
       if (core_.is_stopping) return;
-      if (ec)
-        return run_after(std::chrono::milliseconds{100},
-                         [this] { accept(); });  // out of descriptors, for example
+      if (ec) return run_after(kAcceptPause, [this] { accept(); });
       ErrorCodeBoost ignored;
       socket.set_option(Tcp::no_delay(true), ignored);
       socket.set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
+#include "chicane/protocol/guard_facts.hpp"
 #include "chicane/protocol/json.hpp"
 
 namespace chicane::protocol {
@@ -70,6 +72,15 @@ std::string times(const TimeSummary& time) {
                      1e6 * time.max);
 }
 
+/// Version and options of the guard, as files name them; null where another program drives.
+Json to_object(const std::optional<safety::GuardOptions>& guard) {
+  if (!guard) return nullptr;
+  Json json{{"version", safety::kGuardVersion}};
+  for (const Option& option : safety::guard_options())
+    std::visit([&](const auto& value) { json[option_key("", option)] = value; }, get(option, &*guard));
+  return json;
+}
+
 /// Steps by what the guard found; what it never found is left out.
 Json guard_reasons(const telemetry::RunSummary& run) {
   Json reasons = Json::object();
@@ -90,6 +101,7 @@ std::string to_json(const RunSummary& run) {
       {"car", run.car},
       {"controller", run.controller},
       {"preset", run.preset},
+      {"guard", to_object(run.guard)},
       {"seed", run.seed},
       {"latency_ms", number(1e3 * run.latency)},
       {"completed", run.completed},
@@ -117,9 +129,10 @@ std::string to_json(const RunSummary& run) {
 }
 
 std::string to_table(const RunSummary& run) {
-  std::string text = fmt::format("{} on {}, {} ({}), {:g} ms latency, seed {}\n", run.car,
+  const std::string guard = run.guard ? fmt::format(", guard {}", guard_facts(*run.guard).mode) : "";
+  std::string text = fmt::format("{} on {}, {} ({}){}, {:g} ms latency, seed {}\n", run.car,
                                  run.track.empty() ? "an unknown road" : run.track, run.preset,
-                                 run.controller, 1e3 * run.latency, run.seed);
+                                 run.controller, guard, 1e3 * run.latency, run.seed);
   text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>20}\n", "lap", "time", "mean",
                       "top", "error rms", "error max", "to edge", "lateral", "sectors");
   text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>20}\n", "", "s", "mph", "mph", "m",

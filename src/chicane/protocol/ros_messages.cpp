@@ -87,6 +87,9 @@ std::string encode_run(const Frame&, const Run& run) {
       .text(run.building)
       .text(run.end)
       .text(run.end_reason)
+      .text(run.guard.mode)
+      .text(run.guard.road)
+      .put(static_cast<std::uint32_t>(run.guard.version))
       .bytes();
 }
 

@@ -12,6 +12,7 @@
 #include "chicane/lap_time/limit_answer.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/path/track.hpp"
+#include "chicane/protocol/guard_facts.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/lap_ledger.hpp"
 
@@ -50,6 +51,7 @@ struct Run {
   std::string building{};    ///< another run that is being built, in words: "track = oval"; empty: none
   std::string end{};         ///< "finished", "stopped" or "failed"; empty: it goes on
   std::string end_reason{};  ///< why it is over, in one sentence; empty when it finished
+  GuardFacts guard{};        ///< what watches over the controller
 };
 
 /// What a controller says about itself, copied into a run.

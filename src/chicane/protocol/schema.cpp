@@ -56,6 +56,10 @@ bool is_live(const Parameter& parameter) {
          std::find(kWhatRuns.begin(), kWhatRuns.end(), parameter.key) == kWhatRuns.end();
 }
 
+bool is_fixed(const Parameter& parameter) {
+  return parameter.group == "guard" || parameter.group == "vehicle";
+}
+
 const Parameter* find(std::string_view key) {
   const auto row =
       std::find_if(list().begin(), list().end(), [&](const Parameter& p) { return p.key == key; });

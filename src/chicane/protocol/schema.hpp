@@ -31,6 +31,9 @@ struct Parameter {
 [[nodiscard]] std::span<const Parameter> list();
 /// Whether a run that goes on can take the change up at its next control step; otherwise it must start anew.
 [[nodiscard]] bool is_live(const Parameter& parameter);
+/// Whether only whoever starts a run may set it: the guard, and the model of the car that the guard and the
+/// limits of its commands follow from. Viewers are shown the value; futures that only predict may vary it.
+[[nodiscard]] bool is_fixed(const Parameter& parameter);
 /// The row of `key`; nullptr when there is none.
 [[nodiscard]] const Parameter* find(std::string_view key);
 /// The row of a controller's option: find_option("pure-pursuit", "lookahead_time").

@@ -107,6 +107,7 @@ std::string schema_json(const scenario::Scenario& defaults, const scenario::Scen
     json["start"] = to_json(get(start, row));
     json["meaning"] = option.meaning;
     json["is_live"] = is_live(row);
+    json["is_fixed"] = is_fixed(row);
     list.push_back(std::move(json));
   }
   for (const Control& control : controls) {

@@ -27,10 +27,10 @@ struct Control {
 
 /// What a page needs to draw sliders, as JSON: an array of {"key", "group", "kind": "number" | "integer" |
 /// "bool" | "choice" | "text", "unit", "minimum", "maximum", "may_be_infinite", "choices", "default",
-/// "start", "meaning", "is_live"}, for faults "fault": {"group", "duration_s", "strength", "weakest",
-/// "strongest", "strength_meaning"}, the schema's rows that `is_offered` lets in, then the controls.
-/// `defaults` says what "default" is, `start` with what the run started; controls have no "start". A number
-/// that is infinite is the text "inf". Preset, car and track offer what ships. Reads folders.
+/// "start", "meaning", "is_live", "is_fixed"}, for faults "fault": {"group", "duration_s", "strength",
+/// "weakest", "strongest", "strength_meaning"}, the schema's rows that `is_offered` lets in, then the
+/// controls. `defaults` says what "default" is, `start` with what the run started; controls have no "start".
+/// A number that is infinite is the text "inf". Preset, car and track offer what ships. Reads folders.
 [[nodiscard]] std::string schema_json(const scenario::Scenario& defaults, const scenario::Scenario& start,
                                       const std::function<bool(const Parameter&)>& is_offered,
                                       std::span<const Control> controls);

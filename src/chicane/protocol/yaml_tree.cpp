@@ -11,30 +11,14 @@
 #include <map>
 #include <sstream>
 
+#include "chicane/base/utf8.hpp"
+
 namespace chicane::protocol {
 namespace {
 
 using Kind = YamlNode::Kind;
 
 constexpr std::size_t kMostBytes = 256U << 10U;
-
-/// Length of the UTF-8 sequence at the beginning of `text`; 0 when it is none (RFC 3629: no overlong forms,
-/// no surrogates).
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) -> std::uint32_t {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
-  };
-  const auto continues = [&](std::size_t i) { return (byte(i) & 0xc0U) == 0x80U; };
-  if (byte(0) < 0x80U) return 1;
-  if (byte(0) >= 0xc2U && byte(0) < 0xe0U) return continues(1) ? 2 : 0;
-  const std::uint32_t first_two = byte(0) << 8U | byte(1);
-  if ((byte(0) & 0xf0U) == 0xe0U) {
-    const bool is_allowed = first_two >= 0xe0a0U && (first_two < 0xeda0U || first_two > 0xedbfU);
-    return is_allowed && continues(1) && continues(2) ? 3 : 0;
-  }
-  const bool is_allowed = first_two >= 0xf090U && first_two <= 0xf48fU;
-  return is_allowed && continues(1) && continues(2) && continues(3) ? 4 : 0;
-}
 
 /// What must hold for the bytes before a YAML parser sees them.
 Result<void> check_bytes(std::string_view text, const std::string& file) {

@@ -161,6 +161,7 @@ void Recorder::begin() {
 Result<void> Recorder::describe() {
   const scenario::Scenario& scenario = options_.scenario;
   const InstructionSet set = chosen_instruction_set();
+  const protocol::GuardFacts guard = protocol::guard_facts(scenario.guard);
   Result<void> done =
       writer_->add_metadata(kRecordedRun, {{"program", kProgram},
                                            {"compiler", kCompiler},
@@ -170,6 +171,9 @@ Result<void> Recorder::describe() {
                                            {"track", options_.run.track},
                                            {"controller", scenario.controller},
                                            {"preset", scenario.preset},
+                                           {"guard_mode", guard.mode},
+                                           {"guard_road", guard.road},
+                                           {"guard_version", fmt::format("{}", guard.version)},
                                            {"seed", fmt::format("{}", scenario.seed)},
                                            {"step_budget_s", fmt::format("{}", options_.step_budget)}});
   if (!done) return done;

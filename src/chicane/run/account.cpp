@@ -32,6 +32,7 @@ AccountTerms terms_of(const scenario::Scenario& scenario, const std::string& tra
           .preset = scenario.preset,
           .seed = scenario.seed,
           .scale = scenario.vehicle.scale,
+          .guard = scenario.guard,
           .latency = scenario.latency,
           .laps = scenario.laps,
           .time_limit = scenario.time_limit,
@@ -134,6 +135,7 @@ telemetry::RunSummary Account::summary(std::optional<double> duration) const {
   run.car = terms_.car;
   run.controller = terms_.controller;
   run.preset = terms_.preset;
+  run.guard = terms_.guard;
   run.seed = terms_.seed;
   run.latency = terms_.latency;
   run.laps_wanted = terms_.laps;

@@ -16,11 +16,12 @@ namespace chicane::run {
 struct AccountTerms {
   std::string track{}, car{}, controller{}, preset{};  ///< names in the report
   std::uint64_t seed = 0;
-  double scale = 1.0;          ///< of the car: what is far is so many times as far
-  double latency = 0.0;        ///< [s]
-  int laps = 0;                ///< wanted; 0: until stopped, whatever happens to the car
-  double time_limit = 0.0;     ///< [s]; 0: 10 min per lap, none without a number of laps
-  double step_deadline = 0.0;  ///< control steps that take longer are counted as misses [s]
+  double scale = 1.0;                           ///< of the car: what is far is so many times as far
+  std::optional<safety::GuardOptions> guard{};  ///< none where another program drives
+  double latency = 0.0;                         ///< [s]
+  int laps = 0;                                 ///< wanted; 0: until stopped, whatever happens to the car
+  double time_limit = 0.0;                      ///< [s]; 0: 10 min per lap, none without a number of laps
+  double step_deadline = 0.0;                   ///< control steps that take longer are counted as misses [s]
 };
 /// Those of a run in which `scenario.controller` drives on the named track.
 [[nodiscard]] AccountTerms terms_of(const scenario::Scenario& scenario, const std::string& track);

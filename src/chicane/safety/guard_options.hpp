@@ -8,6 +8,10 @@
 
 namespace chicane::safety {
 
+/// Version of the guard, in results and recordings: raised when the guard may decide differently on the same
+/// input. Runs that name none are of version 1.
+inline constexpr int kGuardVersion = 2;
+
 /// What a guard does with what it finds.
 enum class GuardMode : std::uint8_t {
   kOn = 0,       ///< the car is stopped on the road

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/guard_facts.hpp"
 #include "chicane/protocol/json.hpp"
 
 namespace chicane::sweep {
@@ -40,6 +41,17 @@ constexpr Column laps(std::string_view name, std::string_view meaning) {
             for (const LapSummary& lap : run.laps)
               text += (text.size() > 1 ? "," : "") + json_number(lap.*Member);
             return text + "]";
+          },
+          [](const RunSummary&) { return std::optional<double>(); }};
+}
+
+/// A text of what guards the run.
+template <auto Member>
+constexpr Column guard_column(std::string_view name, std::string_view meaning) {
+  return {name, meaning,
+          [](const RunSummary& run) -> std::string {
+            if (!run.guard) return "null";
+            return protocol::json_text(protocol::Json(protocol::guard_facts(*run.guard).*Member));
           },
           [](const RunSummary&) { return std::optional<double>(); }};
 }
@@ -90,6 +102,8 @@ constexpr std::array kColumns{
     laps<&LapSummary::rms_lateral_error>("lap_rms_lateral_errors_m", "Of each lap."),
     laps<&LapSummary::min_edge_distance>("lap_min_edge_distances_m", "Of each lap."),
     laps<&LapSummary::steering_rate_rms>("lap_steering_rates_radps", "Of each lap."),
+    guard_column<&protocol::GuardFacts::mode>("guard_mode", "What the guard does: on, observe or off."),
+    guard_column<&protocol::GuardFacts::road>("guard_road", "Where the guard knows the road from."),
     Column{"state_hash", "Of every state and command: equal hashes mean equal runs.",
            [](const RunSummary& run) { return fmt::format("\"{:016x}\"", run.state_hash); },
            [](const RunSummary&) { return std::optional<double>(); }},

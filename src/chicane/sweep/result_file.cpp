@@ -77,6 +77,7 @@ std::string header_of(const Plan& plan) {
               {"axes", plan.keys()},
               {"columns", kept},
               {"program", program_name()},
+              {"guard", {{"version", safety::kGuardVersion}}},
               {"arithmetic", arithmetic(chosen_instruction_set())},
               {"files", detail::digest_of_files(plan)}};
   if (plan.search) header["search"] = plan.search->key;

@@ -12,6 +12,7 @@
 #include "chicane/base/fnv.hpp"
 #include "chicane/lap_time/lap_times.hpp"
 #include "chicane/model/state.hpp"
+#include "chicane/safety/guard_options.hpp"
 #include "chicane/telemetry/frame.hpp"
 
 namespace chicane::telemetry {
@@ -56,6 +57,7 @@ struct TimeSummary {
 /// Metrics the rest.
 struct RunSummary {
   std::string track, car, controller, preset;
+  std::optional<safety::GuardOptions> guard;  ///< none where another program drives
   std::uint64_t seed = 0;
   double latency = 0.0;    ///< actuation delay of the plant [s]
   int laps_wanted = 0;     ///< 0 = until stopped

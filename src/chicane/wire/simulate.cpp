@@ -53,6 +53,7 @@ std::string with_stop_plan(const std::string& url) {
 run::AccountTerms terms(const scenario::Scenario& scenario, const path::Track& track) {
   run::AccountTerms terms = run::terms_of(scenario, track.name());
   terms.controller = terms.preset = "external";
+  terms.guard.reset();
   terms.latency = 0.0;
   terms.step_deadline = std::numeric_limits<double>::infinity();  // there is none
   return terms;

@@ -115,6 +115,9 @@ describe('messages of the C++ side', () => {
       fault_names: ['link_lost', 'half_grip'],
       kerb_width_m: 0.75,
       building: 'track = oval',
+      guard_mode: 'observe',
+      guard_road: 'waypoints',
+      guard_version: 7,
     });
   });
 

@@ -527,6 +527,12 @@ export interface Run {
   end: string;
   /** why, in one sentence; empty when it finished */
   end_reason: string;
+  /** "on", "observe", "off"; empty: not known */
+  guard_mode: string;
+  /** where the guard knows the road from: "track", "waypoints" */
+  guard_road: string;
+  /** 0: not known */
+  guard_version: number;
 }
 
 /** What a Run says when nothing is known. */
@@ -555,6 +561,9 @@ export const UNKNOWN_RUN: Run = {
   building: '',
   end: '',
   end_reason: '',
+  guard_mode: '',
+  guard_road: '',
+  guard_version: 0,
 };
 
 /** chicane_msgs/msg/Lap. One completed lap, sent when it is. */

@@ -17,6 +17,8 @@ export interface SchemaEntry {
   readonly fault?: FaultEntry;
   /** Whether a change applies at the next control step; otherwise it restarts the run. */
   readonly is_live: boolean;
+  /** Whether only whoever starts the run sets it; futures that only predict may vary it. */
+  readonly is_fixed: boolean;
 }
 
 /** What a fault does unless it is told otherwise, and the range of its strength; no meaning: it has no strength. */
@@ -70,6 +72,7 @@ export function readSchema(json: unknown): SchemaEntry[] {
         start: settingOr(each.start),
         meaning: typeof each.meaning === 'string' ? each.meaning : '',
         is_live: each.is_live !== false,
+        is_fixed: each.is_fixed === true,
         ...(fault ? { fault } : {}),
       },
     ];

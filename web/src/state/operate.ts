@@ -41,7 +41,8 @@ export const askRival = (question: string): Promise<AskAnswer> =>
   source?.ask?.('/rival', question) ?? Promise.resolve({ isTaken: false, message: 'nobody is there to ask' });
 
 /** Whether a setting can be changed now. */
-export const canSet = (key: string): boolean => link.value === 'live' && settings.value.has(key);
+export const canSet = (key: string): boolean =>
+  link.value === 'live' && settings.value.has(key) && entryOf(key)?.is_fixed !== true;
 
 /** Changes a setting. The first change that would restart the run has to be confirmed. */
 export function set(key: string, value: Setting): void {

@@ -4,10 +4,11 @@ import { programPage } from '../protocol/program_page';
 import type { GhostPose, GhostSource } from '../scene3d/ghost';
 import { session } from '../scene3d/session';
 import { restartListeners } from './demultiplexer';
-import { link } from './link';
+import { link, notice } from './link';
 import { live } from './live';
 import { askRival, can, canSet, requests } from './operate';
 import { type Poses, type Race, readRace } from './rival_answer';
+import { entryOf } from './settings';
 import type { Wish } from './what_if';
 
 // A race of two settings on one stage: the program drives a second car beside the run's own, the page draws it as the
@@ -107,6 +108,8 @@ export async function endRace(): Promise<void> {
 export async function keepWinner(winner: 'A' | 'B'): Promise<void> {
   if (winner === 'B') {
     for (const { key, value } of raced.value) if (canSet(key)) await requests.set(key, value);
+    const fixed = raced.value.map(({ key }) => key).filter((key) => entryOf(key)?.is_fixed === true);
+    if (fixed.length > 0) notice.value = `Fixed when a run starts, and not kept: ${fixed.join(', ')}`;
   }
   await endRace();
 }

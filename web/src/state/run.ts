@@ -6,6 +6,10 @@ export const run = signal<Run | null>(null);
 
 export const isPaused = computed(() => run.value?.is_paused ?? false);
 
+/** What watches over the controller: "guard on (road from track, version 2)"; empty for older recordings. */
+export const guardInWords = ({ guard_mode, guard_road, guard_version }: Run): string =>
+  guard_mode === '' ? '' : `guard ${guard_mode} (road from ${guard_road}, version ${guard_version})`;
+
 export function receiveRun(message: Run): void {
   run.value = message;
 }

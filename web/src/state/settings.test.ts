@@ -108,6 +108,7 @@ describe('the schema', () => {
       start: 0.25,
       meaning: 'x',
       is_live: true,
+      is_fixed: true,
     };
     expect(readSchema([good, null, 7, { key: 'x' }, { ...good, kind: 'matrix' }])).toEqual([good]);
     expect(readSchema([{ key: 'a.b', kind: 'bool' }])).toEqual([
@@ -124,6 +125,7 @@ describe('the schema', () => {
         start: null,
         meaning: '',
         is_live: true,
+        is_fixed: false,
       },
     ]);
     expect(readSchema({})).toEqual([]);

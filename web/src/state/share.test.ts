@@ -4,12 +4,23 @@ import type { SetAnswer, Setting, Source } from '../protocol/source';
 import { link, services } from './link';
 import { attach, requests } from './operate';
 import { refusals, schema, settings } from './settings';
-import { commandOf, driveShared, filesChosen, linkTo, sharedNow, textsIn, wanted, wantedTexts } from './share';
+import {
+  commandOf,
+  driveShared,
+  filesChosen,
+  fixedChanges,
+  linkTo,
+  sharedNow,
+  textsIn,
+  wanted,
+  wantedTexts,
+} from './share';
 
 const CHOSEN = { track: 'oval', car: 'udacity', preset: 'default', controller: 'tracking-mpc', seed: 1 };
 const OTHERS = { latency_ms: 100, control_period_ms: 40, 'tracking_mpc.racing_line': false, 'run.pace': 1, laps: 5 };
-const GIVEN: Record<string, Setting> = { ...CHOSEN, ...OTHERS };
+const GIVEN: Record<string, Setting> = { ...CHOSEN, ...OTHERS, 'guard.mode': 'on', 'vehicle.friction': 1 };
 const NAMES = { track: ['oval', 'lakeside'], car: ['udacity'], preset: ['default'] } as Record<string, string[]>;
+const FIXED = { 'guard.mode': 'on', 'vehicle.friction': 1 };
 const NOT_LIVE = [...Object.keys(CHOSEN), 'control_period_ms'];
 
 const kindOf = (key: string, value: Setting): string =>
@@ -25,6 +36,7 @@ function describeRun(start: Record<string, Setting>): void {
       default: key === 'laps' ? 3 : GIVEN[key],
       start: value,
       is_live: !NOT_LIVE.includes(key),
+      is_fixed: key in FIXED,
     })),
   );
 }
@@ -96,6 +108,18 @@ describe('a link to a run', () => {
     await requests.set('latency_ms', 60);
     wantedTexts.value = textsIn('#run?track=oval');
     expect(wanted.value?.differences).toEqual([{ key: 'latency_ms', from: 60, to: 100 }]);
+  });
+
+  it('neither holds nor sets what is fixed when a run starts; the command holds it', async () => {
+    describeRun({ ...CHOSEN, ...OTHERS, ...FIXED });
+    settings.value = new Map(Object.entries({ ...CHOSEN, ...OTHERS, ...FIXED, 'guard.mode': 'off' }));
+    expect(linkTo(sharedNow.value, '/')).not.toContain('guard');
+    expect(fixedChanges.value).toEqual(['guard.mode']);
+    expect(commandOf(sharedNow.value)).toContain('--set guard.mode=off');
+    wantedTexts.value = textsIn('#run?track=oval&guard.mode=observe&vehicle.friction=2.5');
+    expect(wanted.value?.unknown).toEqual(['guard.mode', 'vehicle.friction']);
+    expect(await driveShared(wanted.value?.run ?? { choices: new Map(), changes: new Map() })).toEqual([]);
+    expect(asked).toEqual(['/reset']);
   });
 
   it('is nothing else that an address can end with', () => {

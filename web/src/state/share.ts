@@ -3,7 +3,7 @@ import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
 import { link } from './link';
 import { call, refresh, requests } from './operate';
-import { isControl, refusals, schema, settings, startSettings } from './settings';
+import { entryOf, isControl, refusals, schema, settings, startSettings } from './settings';
 
 // A link that holds a run: track, car, preset, controller, seed, and what differs from what these give. It lies in the
 // fragment of the address, which browsers send to no server, and it is followed by the settings' own requests, so that
@@ -21,7 +21,8 @@ export interface SharedRun {
   readonly changes: ReadonlyMap<string, Setting>;
 }
 
-const isShared = ({ key, kind }: SchemaEntry): boolean => !isControl(key) && !NOT_SHARED.has(key) && kind !== 'text';
+const isOfRun = ({ key, kind }: SchemaEntry): boolean => !isControl(key) && !NOT_SHARED.has(key) && kind !== 'text';
+const isShared = (entry: SchemaEntry): boolean => isOfRun(entry) && !entry.is_fixed;
 
 /** What the chosen preset gives with the chosen car. */
 const givenBy = (entry: SchemaEntry): Setting => entry.default ?? 'inf';
@@ -35,12 +36,17 @@ export const sharedNow = computed<SharedRun>(() => ({
     }),
   ),
   changes: new Map(
-    schema.value.filter(isShared).flatMap((entry) => {
+    schema.value.filter(isOfRun).flatMap((entry) => {
       const value = settings.value.get(entry.key);
       return value === undefined || Object.is(value, givenBy(entry)) ? [] : [[entry.key, value]];
     }),
   ),
 }));
+
+/** The changes that a link cannot set, because they are fixed when a run starts. */
+export const fixedChanges = computed<readonly string[]>(() =>
+  [...sharedNow.value.changes.keys()].filter((key) => entryOf(key)?.is_fixed === true),
+);
 
 /** The choices that are files, which a link cannot name. */
 export const filesChosen = computed<readonly string[]>(() =>
@@ -53,7 +59,8 @@ export const filesChosen = computed<readonly string[]>(() =>
 
 /** The address of a run, to be opened on any running `chicane drive`. `page`: where the page is, without fragment. */
 export function linkTo({ choices, changes }: SharedRun, page: string): string {
-  const query = new URLSearchParams([...choices, ...changes].map(([key, value]) => [key, String(value)]));
+  const settable = [...changes].filter(([key]) => entryOf(key)?.is_fixed !== true);
+  const query = new URLSearchParams([...choices, ...settable].map(([key, value]) => [key, String(value)]));
   return `${page}${PREFIX}${query}`;
 }
 

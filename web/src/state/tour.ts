@@ -136,7 +136,8 @@ export const STEPS: readonly Step[] = [
     tab: 'tune',
     where: '#tune-search',
     tasks: ['Change a setting', `Watch it for ${TUNED_S} s`],
-    isPossible: () => schema.value.some(({ key, is_live }) => is_live && settings.value.has(key)),
+    isPossible: () =>
+      schema.value.some(({ key, is_live, is_fixed }) => is_live && !is_fixed && settings.value.has(key)),
     watch() {
       const before = changesNow();
       let tuned = 0;

@@ -23,6 +23,7 @@ const PACE: SchemaEntry = {
   start: null,
   meaning: 'Simulated seconds per second of real time, as far as the machine keeps up.',
   is_live: true,
+  is_fixed: false,
 };
 
 export function changePace(factor: number): void {

@@ -6,7 +6,7 @@ import { call, can, canSet, retry } from '../state/operate';
 import { chooseBefore, forgetOtherRun, inWords, otherRun } from '../state/other_run';
 import { isStageAlone } from '../state/presentation';
 import { replayLeft } from '../state/replay';
-import { isPaused, run } from '../state/run';
+import { guardInWords, isPaused, run } from '../state/run';
 import { settings } from '../state/settings';
 import { shown, silence } from '../state/shown';
 import { isHelpOpen } from './help_view';
@@ -21,6 +21,7 @@ function RunSummary() {
     now.car,
     now.track,
     `${fixed(now.latency_s * 1000, 0)} ms latency`,
+    guardInWords(now),
   ];
   return <p class="summary">{parts.filter((part) => part !== '').join(' · ')}</p>;
 }

@@ -15,6 +15,7 @@ const entry = (change: Partial<SchemaEntry>): SchemaEntry => ({
   start: null,
   meaning: '',
   is_live: true,
+  is_fixed: false,
   ...change,
 });
 

@@ -131,15 +131,35 @@ function TextBox({ entry, label }: { entry: SchemaEntry; label: string }) {
   );
 }
 
+/** Why a viewer cannot change a setting. */
+export const whyFixed = (key: string): string => `Fixed when the run starts. On the command line: --set ${key}=VALUE`;
+
+/** The sign beside a setting that a viewer cannot change, or that restarts the run. */
+function Mark({ entry }: { entry: SchemaEntry }) {
+  if (entry.is_fixed) {
+    return (
+      <span class="restarts" role="img" title={whyFixed(entry.key)} aria-label="fixed when the run starts">
+        fixed
+      </span>
+    );
+  }
+  if (entry.is_live) return null;
+  return (
+    <span class="restarts" role="img" title="A change restarts the run" aria-label="restarts the run">
+      ↻
+    </span>
+  );
+}
+
 /** The name of a setting; pressed, it says what the setting means. */
 export function SettingMeaning({ entry, label }: { entry: SchemaEntry; label: string }) {
-  const { minimum, maximum, unit, meaning, is_live, key } = entry;
+  const { minimum, maximum, unit, meaning, is_live, is_fixed, key } = entry;
   const hasRange = minimum !== null && maximum !== null && maximum > minimum;
   return (
     <Meaning of={label}>
       {meaning}
       {hasRange && <span>{`${tidy(minimum)} to ${tidy(maximum)} ${unit}`}</span>}
-      {!is_live && <span>A change restarts the run.</span>}
+      {is_fixed ? <span>{whyFixed(key)}</span> : !is_live && <span>A change restarts the run.</span>}
       <code>{key}</code>
     </Meaning>
   );
@@ -154,14 +174,14 @@ export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string 
   const isChanged = start !== undefined && !Object.is(value, start);
   const refusal = refusals.value.get(entry.key);
   return (
-    <div class={`setting kind-${entry.kind}${isChanged ? ' changed' : ''}`} data-key={entry.key}>
+    <div
+      class={`setting kind-${entry.kind}${isChanged ? ' changed' : ''}`}
+      data-key={entry.key}
+      title={entry.is_fixed ? whyFixed(entry.key) : undefined}
+    >
       <span class="setting-name">
         <SettingMeaning entry={entry} label={label} />
-        {!entry.is_live && (
-          <span class="restarts" role="img" title="A change restarts the run" aria-label="restarts the run">
-            ↻
-          </span>
-        )}
+        <Mark entry={entry} />
       </span>
       <Control entry={entry} label={label} />
       <button

@@ -4,7 +4,17 @@ import { tidy } from '../lib/scale';
 import type { Setting } from '../protocol/source';
 import { notice } from '../state/link';
 import { canSet } from '../state/operate';
-import { commandOf, driveShared, filesChosen, linkTo, sharedNow, textsIn, wanted, wantedTexts } from '../state/share';
+import {
+  commandOf,
+  driveShared,
+  filesChosen,
+  fixedChanges,
+  linkTo,
+  sharedNow,
+  textsIn,
+  wanted,
+  wantedTexts,
+} from '../state/share';
 import { tab } from '../state/tab';
 import { Dialog } from './help_view';
 
@@ -86,6 +96,11 @@ function Offer() {
             {[...shared.choices].map(([key, value]) => `${key} ${asText(value)}`).join(', ')}, {changes}. Whoever opens
             it with <code>chicane drive</code> running is asked once, and drives the same.
           </p>
+          {fixedChanges.value.length > 0 && (
+            <p class="soft" data-testid="share-fixed">
+              Fixed when a run starts, and in the command only: {fixedChanges.value.join(', ')}.
+            </p>
+          )}
           <Copied id="share-link" label="Link" text={linkTo(shared, location.href.replace(/[?#].*/, ''))} />
           <Copied id="share-command" label="Command" text={commandOf(shared)} />
         </>

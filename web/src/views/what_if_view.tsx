@@ -8,7 +8,7 @@ import { cursorTime } from '../state/plot_view';
 import { endReplay, replayLeft } from '../state/replay';
 import { run } from '../state/run';
 import { labelOf } from '../state/setting_search';
-import { settingChanges } from '../state/settings';
+import { entryOf, settingChanges } from '../state/settings';
 import {
   answer,
   ask,
@@ -239,6 +239,9 @@ function Ask() {
   );
 }
 
+const fixedWishes = (): readonly string[] =>
+  asked.value.map(({ key }) => key).filter((key) => entryOf(key)?.is_fixed === true);
+
 function keep(): void {
   for (const { key, value } of asked.value) if (canSet(key)) set(key, value);
   kept.value = asked.value;
@@ -248,6 +251,7 @@ function Actions() {
   const found = answer.value;
   if (!found) return null;
   const isKept = kept.value === asked.value;
+  const fixed = fixedWishes();
   return (
     <div class="toolbar">
       {replayLeft.value === null ? (
@@ -264,9 +268,17 @@ function Actions() {
         </button>
       )}
       {!askedLog.value && (
-        <button type="button" disabled={isKept} onClick={keep} title="The run goes on with these settings">
+        <button
+          type="button"
+          disabled={isKept || fixed.length === asked.value.length}
+          onClick={keep}
+          title="The run goes on with these settings"
+        >
           {isKept ? 'Kept' : 'Keep the change'}
         </button>
+      )}
+      {!askedLog.value && fixed.length > 0 && (
+        <span class="soft">Fixed when a run starts, and not kept: {fixed.join(', ')}.</span>
       )}
       <button type="button" onClick={forgetAnswer}>
         Forget it

@@ -13,7 +13,8 @@ namespace chicane::net {
 [[nodiscard]] bool host_is_allowed(std::string_view host, std::string_view address,
                                    const std::vector<std::string>& allowed);
 
-/// Does an Origin header name the same host and port as the Host header, or stand in `allowed` word for word?
+/// Does an Origin header name the same host and port as the Host header, by HTTP without TLS as this server
+/// speaks it, or stand in `allowed` word for word?
 [[nodiscard]] bool origin_is_allowed(std::string_view origin, std::string_view host,
                                      const std::vector<std::string>& allowed);
 

@@ -131,6 +131,9 @@ float64 kerb_width_m                    # drivable, outside each edge
 string building                         # another run that is being built: "track = oval"; empty: none
 string end                              # "finished", "stopped", "failed": the run is over; empty: it goes on
 string end_reason                       # why, in one sentence; empty when it finished
+string guard_mode                       # "on", "observe", "off"; empty: not known
+string guard_road                       # where the guard knows the road from: "track", "waypoints"
+uint32 guard_version                    # 0: not known
 )"},
     RosDefinition{"chicane_msgs/Lap", R"(# One completed lap, sent when it is.
 uint32 lap                              # its number, from 1

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "chicane/safety/guard_options.hpp"
+#include "options.hpp"
+
+namespace chicane::apps {
+
+/// One sentence on what these options of the guard leave open; empty where it guards with its defaults' aims.
+[[nodiscard]] std::string guard_notice(const safety::GuardOptions& guard);
+
+/// Prints guard_notice() to stderr, once, at the start of a run; nothing with --json.
+void print_guard_notice(const Options& options, const safety::GuardOptions& guard);
+
+}  // namespace chicane::apps

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// `chicane check` from outside: it judges what `chicane drive` judges.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace chicane {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+
+struct Answer {
+  int exit_code = 0;
+  std::string text;  ///< of both outputs
+};
+
+Answer chicane(const std::string& arguments) {
+  Answer answer;
+  FILE* pipe =
+      ::popen(("cd '" CHICANE_SOURCE_DIR "' && '" CHICANE_PROGRAM "' " + arguments + " 2>&1").c_str(), "r");
+  std::array<char, 4096> piece{};
+  while (std::size_t count = std::fread(piece.data(), 1, piece.size(), pipe))
+    answer.text.append(piece.data(), count);
+  const int status = ::pclose(pipe);
+  answer.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+  return answer;
+}
+
+class CheckCommand : public ::testing::Test {
+ protected:
+  CheckCommand() { fs::create_directories(folder_); }
+  ~CheckCommand() override { fs::remove_all(folder_); }
+  CheckCommand(const CheckCommand&) = delete;
+  CheckCommand& operator=(const CheckCommand&) = delete;
+
+  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+
+  fs::path folder_ = fs::path(::testing::TempDir()) / ("chicane_check_command_" + std::to_string(::getpid()));
+};
+
+/// A closed circle of this radius and half width [m].
+std::string circle(double radius, double half_width) {
+  std::string text = "x_m,y_m,w_tr_right_m,w_tr_left_m\n";
+  for (int i = 0; i < 60; ++i) {
+    const double angle = 2.0 * 3.14159265358979 * i / 60.0;
+    text += std::to_string(radius * std::cos(angle)) + "," + std::to_string(radius * std::sin(angle)) + "," +
+            std::to_string(half_width) + "," + std::to_string(half_width) + "\n";
+  }
+  return text;
+}
+
+TEST_F(CheckCommand, RefusesTheSettingsThatDriveRefusesInTheSameWords) {
+  const std::vector<std::string> refused{
+      "--track hairpins --set vehicle.track_width_m=10 --set vehicle.tire_width_m=1",  // a wide car
+      "--set track_scale=0.1",
+      "--car f1tenth --set track_scale=0.001",
+      "--car indy --set plant_params.track_width_m=10",
+      "--car bmw-320i --set plant_params.drive_force_n=1000000",  // its model has no such acceleration
+      "--car bmw-320i --set plant_params.wheel_radius_m=0.001",
+      "--car vw-vanagon --set plant_params.brake_force_n=0.001",
+      "--car udacity --set plant_params.mass_kg=900",
+      "--preset race --set tracking_mpc.edge_margin_m=3.9 --track hairpins",
+      "--preset delay-in-model --set cubic_mpc.latency_ms=50",
+      "--track " + write("tight.csv", circle(2.5, 1.5)),
+      "--track " + write("narrow.csv", circle(60.0, 0.5)),
+      "--fault half_grip@x"};
+  for (const std::string& settings : refused) {
+    SCOPED_TRACE(settings);
+    const Answer driven = chicane("drive --fast --laps 1 --set time_limit_s=0.2 " + settings);
+    ASSERT_EQ(driven.exit_code, 2) << driven.text;
+    const Answer checked = chicane("check " + settings);
+    EXPECT_EQ(checked.exit_code, 2);
+    EXPECT_EQ(checked.text, driven.text);
+  }
+}
+
+TEST_F(CheckCommand, JudgesFilesAsDriveWouldTakeThem) {
+  const std::string wide = write("wide.yaml", "plant: road-car\nvehicle:\n  track_width_m: 10\n");
+  const std::string tight = write("tight.csv", circle(2.5, 1.5));
+  const std::string scenario = write("wide_run.yaml", "track: hairpins\nvehicle:\n  track_width_m: 10\n");
+  for (const std::string& file : {wide, tight, scenario}) {
+    const Answer checked = chicane("check " + file);
+    EXPECT_EQ(checked.exit_code, 2) << file;
+    EXPECT_THAT(checked.text, HasSubstr(file + ": track: ")) << file;
+    EXPECT_THAT(checked.text, HasSubstr("is not for the car")) << file;
+  }
+  EXPECT_EQ(chicane("check " + tight + " --car orca-1-43").exit_code, 0);
+}
+
+TEST_F(CheckCommand, PassesWhatShips) {
+  const Answer checked = chicane("check presets/*.yaml scenarios/*.yaml cars/*.yaml tracks/*.csv");
+  EXPECT_EQ(checked.exit_code, 0) << checked.text;
+  EXPECT_THAT(chicane("check --preset race --car road-car --track oval").text,
+              EndsWith("ok, race (tracking-mpc) drives road-car on oval\n"));
+}
+
+}  // namespace
+}  // namespace chicane

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "guard_notice.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+namespace chicane::apps {
+namespace {
+
+using safety::GuardMode;
+using ::testing::Eq;
+using ::testing::StartsWith;
+
+/// What a short run says on stderr.
+std::string said_by_drive(const std::string& options) {
+  const std::string command = "cd '" CHICANE_SOURCE_DIR "' && '" CHICANE_PROGRAM
+                              "' drive --fast --laps 1 --set time_limit_s=0.2 " +
+                              options + " 2>&1 >/dev/null";
+  FILE* const pipe = ::popen(command.c_str(), "r");
+  std::string text;
+  std::array<char, 4096> piece{};
+  while (const std::size_t count = std::fread(piece.data(), 1, piece.size(), pipe))
+    text.append(piece.data(), count);
+  ::pclose(pipe);
+  return text;
+}
+
+TEST(GuardNotice, SaysWhatTheOptionsLeaveOpen) {
+  EXPECT_EQ(guard_notice({}), "");
+  EXPECT_THAT(guard_notice({.mode = GuardMode::kOff}), StartsWith("guard.mode=off: "));
+  EXPECT_THAT(guard_notice({.mode = GuardMode::kObserve, .blind_time = 0.0}),
+              StartsWith("guard.mode=observe: "));
+  EXPECT_THAT(guard_notice({.blind_time = 0.0}), StartsWith("guard.blind_time_s=0: "));
+}
+
+TEST(GuardNotice, IsOneLineAtTheStartOfARunButNotBesideJson) {
+  EXPECT_THAT(said_by_drive("--set guard.mode=off"), Eq(guard_notice({.mode = GuardMode::kOff}) + "\n"));
+  EXPECT_THAT(said_by_drive("--set guard.blind_time_s=0"), Eq(guard_notice({.blind_time = 0.0}) + "\n"));
+  EXPECT_EQ(said_by_drive(""), "");
+  EXPECT_EQ(said_by_drive("--set guard.mode=off --json"), "");
+}
+
+}  // namespace
+}  // namespace chicane::apps
