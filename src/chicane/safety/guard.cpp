@@ -33,6 +33,10 @@ constexpr double kDrives = 0.1;           // pedal from which on a car should mo
 constexpr double kMostDoubt = 0.5;        // [s] by which a controller's own time may differ from the measured
 constexpr double kRollsBackAtMost = 3.0;  // [m/s] faster a car does not roll back: its heading is wrong
 constexpr double kMostAgainstRolling = 0.7;  // pedal against rolling back
+constexpr double kStillTime = 1.0;   // [s] a car stands before it is tried whether it was put elsewhere
+constexpr double kTrialWay = 0.5;    // of the car's length, driven for that
+constexpr double kTrialSpeed = 1.0;  // [m/s]
+constexpr double kTrialPedal = 0.3;
 // Braking of a car that is too fast for a silence: gentle, and stable without feedback.
 constexpr Braking kHeldBack{0.8, 1.6, 0.7};
 
@@ -86,6 +90,7 @@ Guard::~Guard() = default;
 void Guard::reset() noexcept {
   controller_->reset();
   monitor_.reset();
+  reset_watch_.reset();
   supervisor_.reset();
   fallback_.reset();
   gate_.reset();
@@ -96,7 +101,8 @@ void Guard::reset() noexcept {
   filter_.forget();
   has_place_ = is_astray_ = false;
   is_led_ = false;
-  refused_since_ = stuck_since_ = 0.0;
+  refused_since_ = stuck_since_ = still_since_ = 0.0;
+  tried_ = 0.0;
 }
 
 void Guard::forget_road() {
@@ -145,9 +151,14 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
 
 /// What of a measurement can be believed; estimate and road take it in.
 const model::Measurement& Guard::look(const model::Measurement& measured) noexcept {
+  watch_for_reset(measured);
   std::optional<model::State> expected;
   const bool rolled_back = direction_.rolls_back();
-  direction_.see(measured);
+  model::Measurement course = measured;
+  // By a heading that is in doubt nothing is known of the direction; no car rolls back that fast.
+  if (monitor_.findings().heading_jump || (!rolled_back && measured.speed > kRollsBackAtMost))
+    course.psi = std::numeric_limits<double>::quiet_NaN();
+  direction_.see(course);
   // Nothing is expected of a car that rolls back: the estimate goes the other way.
   if (direction_.rolls_back() != rolled_back) {
     estimator_.reset();
@@ -156,13 +167,38 @@ const model::Measurement& Guard::look(const model::Measurement& measured) noexce
   if (estimator_.is_started() && std::isfinite(measured.time) && !direction_.rolls_back())
     expected = estimator_.predict(measured.time, sent_).state;
   const model::Measurement& seen = monitor_.check(measured, expected ? &*expected : nullptr);
-  if (monitor_.findings().is_reset) {
-    estimator_.reset();
-    has_place_ = false;
-  }
   road_.add(seen);
   estimator_.correct(seen, sent_);
   return options_.mode == GuardMode::kOn ? seen : measured;
+}
+
+/// A car that was put elsewhere begins anew there; what was learned of a road may be another one's.
+void Guard::watch_for_reset(const model::Measurement& measured) noexcept {
+  reset_watch_.see(measured, sent_.at(measured.time).throttle);
+  if (!reset_watch_.is_waiting()) tried_ = 0.0;
+  if (!reset_watch_.has_answered()) return;
+  estimator_.reset();
+  monitor_.reset();
+  supervisor_.reset();
+  direction_.reset();
+  filter_.forget();
+  controller_->reset();
+  if (options_.road == GuardRoad::kWaypoints) road_.reset();
+  has_place_ = is_astray_ = is_led_ = false;
+}
+
+/// By the estimate the car stands, but it is measured elsewhere: at walking pace, within half a car's length,
+/// it shows whether it answers there.
+bool Guard::try_reset(double time, const Cycle& cycle, controller::StepResult& result) noexcept {
+  const double speed = std::fabs(estimator_.state().vx);
+  if (!reset_watch_.is_waiting() || (tried_ == 0.0 && speed > kStandingSpeed)) still_since_ = time;
+  if (time - still_since_ < kStillTime || tried_ > kTrialWay * model_.vehicle().length) return false;
+  tried_ += std::max(speed, kTrialSpeed) * std::max(cycle.interval, 0.0);
+  result.answer = Answer::kNone;
+  result.command = {0.0, speed < kTrialSpeed ? kTrialPedal : 0.0};
+  result.plan.size = result.plan.reference_size = 0;
+  result.report.rung = Rung::kReturnToRoad;
+  return true;
 }
 
 void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
@@ -199,6 +235,7 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
     refused_since_ = seen.time;
     return accept(seen, result);
   }
+  if (verdict.must_stop && try_reset(seen.time, cycle, result)) return;
   if (!verdict.must_stop && should_lead_back(seen.time, has_answer) && lead_back(act, cycle, result)) return;
   if (!start || !drive_backup(*start, result)) fall_back(seen, result);
   // What brakes a car that goes forward may be the reverse gear of one that rolls back.
@@ -344,7 +381,8 @@ void Guard::fall_back(const model::Measurement& seen, controller::StepResult& re
 
 /// The stored backup goes on; false where there is none.
 bool Guard::drive_backup(const StopStart& start, controller::StepResult& result) noexcept {
-  const bool is_open = monitor_.findings().unmeasured || monitor_.findings().frozen;
+  const Findings& found = monitor_.findings();
+  const bool is_open = found.unmeasured || found.frozen || found.heading_jump;
   if (!filter_.drive(road_, start, is_open, result.report)) return false;
   result.answer = Answer::kNone;
   result.command = filter_.stop().points[0].command;

@@ -18,9 +18,6 @@ constexpr double kMismatchShare = 0.3;  // and of the larger one
 constexpr double kBlindSpeedDrift =
     6.0;                             // [m/s²] that the expected speed may be wrong by, without measurements
 constexpr double kJumpBack = 1.0;    // [m] otherwise than the car moved, between two measurements
-constexpr double kResetSpeed = 1.0;  // [m/s] a car that was put elsewhere stands
-constexpr double kResetTime = 0.3;   // [s] for so long
-constexpr double kResetPlace = 0.5;  // [m] within this
 
 }  // namespace
 
@@ -42,20 +39,18 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
   const bool is_blind = !is_whole || findings_.frozen;
 
   if (expected != nullptr && is_whole && !findings_.frozen) {
-    const double speed = hypot(expected->vx, expected->vy);
-    const double step = std::clamp(elapsed, 0.0, kLongestGap);
-    findings_.speed_mismatch =
-        std::fabs(now.speed - speed) > kSpeedJump + kAcceleration * step + other_drift_ ||
-        contradicts_displacement(now, elapsed);
-    // A speed that was wrong is right again when it says so of a car that moves.
-    findings_.speed_mismatch |= before.speed_mismatch && now.speed < kMoving;
-    findings_.heading_jump = std::fabs(angle_difference(now.psi, expected->psi)) >
-                             kHeadingJump + kYawAcceleration * step * step + 0.1 * other_drift_;
-    findings_.position_jump =
-        hypot(now.x - expected->x, now.y - expected->y) > kJump + kAcceleration * step * step + place_drift_;
-    // A place that jumped is right again when it jumps back, not when what is expected has drifted up to it.
-    findings_.position_jump |= before.position_jump && !jumps(now, elapsed);
-    look_for_reset(now);
+    heading_sum_ = (heading_sum_ + angle_difference(now.psi, expected->psi)) * kMemory /
+                   (kMemory + std::clamp(elapsed, 0.0, kLongestGap));
+    const bool is_contradicted = contradicts_displacement(now, elapsed);
+    compare(now, *expected, elapsed, before, 1.0);
+    findings_.speed_mismatch |= is_contradicted;
+    if (findings_.speed_mismatch || findings_.heading_jump || findings_.position_jump)
+      compare(now, *expected, elapsed, before, kDoubtedShare);
+    // Of a sensor that is wrong in two ways, the third is not believed either.
+    const int wrong = findings_.speed_mismatch + findings_.heading_jump + findings_.position_jump;
+    findings_.speed_mismatch = findings_.speed_mismatch || wrong > 1;
+    findings_.heading_jump = findings_.heading_jump || wrong > 1;
+    findings_.position_jump = findings_.position_jump || wrong > 1;
   }
   // While something is missing, what is expected drifts away from the car.
   const double driven =
@@ -63,7 +58,9 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
   if (is_blind) {
     place_drift_ += kBlindDrift * driven;
     other_drift_ += kBlindSpeedDrift * std::clamp(elapsed, 0.0, kLongestGap);
+    heading_sum_ = 0.0;
   } else {
+    if (findings_.heading_jump) heading_sum_ = 0.0;
     place_drift_ = findings_.position_jump ? place_drift_ + kKnownDrift * driven : 0.0;
     other_drift_ = 0.0;
   }
@@ -74,17 +71,34 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
     last_.time = now.time;
     sample_count_ = 0;
   }
-  if (findings_.is_reset) {
-    findings_ = {.is_reset = true};
-    sample_count_ = 0;
-    may_be_reset_ = false;
-    return checked_;
-  }
   if (findings_.frozen) checked_.x = checked_.y = checked_.psi = checked_.speed = kNaN;
   if (findings_.position_jump) checked_.x = checked_.y = kNaN;
   if (findings_.heading_jump) checked_.psi = kNaN;
   if (findings_.speed_mismatch) checked_.speed = kNaN;
   return checked_;
+}
+
+/// Notes what is farther from `expected` than it may be, by `share` of the usual limits.
+void MeasurementMonitor::compare(const model::Measurement& now, const model::State& expected, double elapsed,
+                                 const Findings& before, double share) noexcept {
+  const double speed = hypot(expected.vx, expected.vy);
+  const double step = std::clamp(elapsed, 0.0, kLongestGap);
+  // A speed that was wrong is right again when it says so of a car that moves.
+  findings_.speed_mismatch |=
+      std::fabs(now.speed - speed) > share * kSpeedJump + kAcceleration * step + other_drift_ ||
+      (before.speed_mismatch && now.speed < kMoving);
+  findings_.heading_jump |= std::fabs(angle_difference(now.psi, expected.psi)) >
+                                share * kHeadingJump + kYawAcceleration * step * step + 0.1 * other_drift_ ||
+                            std::fabs(heading_sum_) > share * kHeadingDrift + 0.1 * other_drift_;
+  const double dx = now.x - expected.x;
+  const double dy = now.y - expected.y;
+  const double along = std::fabs(dx * cos(expected.psi) + dy * sin(expected.psi));
+  const double aside = std::fabs(dy * cos(expected.psi) - dx * sin(expected.psi));
+  const double may_drift = kAcceleration * step * step + place_drift_;
+  // A place that jumped is right again when it jumps back, not when what is expected has drifted up to it.
+  findings_.position_jump |= along > share * std::max(kJump, kTiming * speed) + may_drift ||
+                             aside > share * kJumpAside + may_drift ||
+                             (before.position_jump && !jumps(now, elapsed));
 }
 
 bool MeasurementMonitor::is_frozen(const model::Measurement& now, double elapsed) noexcept {
@@ -128,17 +142,6 @@ bool MeasurementMonitor::contradicts_displacement(const model::Measurement& now,
     samples_[static_cast<std::size_t>(sample_count_++)] = {now.time, now.x, now.y, driven_};
   }
   return is_wrong;
-}
-
-/// A car that jumps and stands from then on was put there.
-void MeasurementMonitor::look_for_reset(const model::Measurement& now) noexcept {
-  const bool has_moved =
-      !has_last_ || hypot(now.x - last_.x, now.y - last_.y) > kResetPlace || !(now.speed < kResetSpeed);
-  if (has_moved) {
-    may_be_reset_ = findings_.position_jump && now.speed < kResetSpeed;
-    standing_since_ = now.time;
-  }
-  findings_.is_reset = may_be_reset_ && findings_.position_jump && now.time - standing_since_ >= kResetTime;
 }
 
 }  // namespace chicane::safety

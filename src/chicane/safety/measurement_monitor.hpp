@@ -15,7 +15,6 @@ struct Findings {
   bool speed_mismatch = false;  ///< its speed contradicts its displacement, or what the car can do
   bool heading_jump = false;    ///< its yaw is not where the car can have turned to
   bool position_jump = false;   ///< its place is not where the car can have moved to
-  bool is_reset = false;        ///< the simulator has put the car elsewhere, standing: a new beginning
 };
 
 /// Checks whether measurements are plausible (docs/safety.md, eq. 7 and 8). What is not plausible is handed
@@ -24,12 +23,18 @@ struct Findings {
 /// it jumps back, too; it is never believed because it lasts. No allocation; one thread.
 class MeasurementMonitor {
  public:
-  static constexpr double kJump = 3.0;          ///< [m] from where the car is expected
+  static constexpr double kJump = 3.0;          ///< [m] along the heading, from where the car is expected
+  static constexpr double kJumpAside = 1.0;     ///< [m] across it
+  static constexpr double kTiming = 0.1;        ///< [s] by which telemetry may be older or newer than it says
   static constexpr double kKnownDrift = 0.012;  ///< of the distance driven since, with yaw and speed measured
   static constexpr double kBlindDrift = 0.15;   ///< and without
   static constexpr double kSpeedJump = 3.0;     ///< [m/s] from what is expected
   static constexpr double kAcceleration = 40.0;     ///< [m/s²] that no car here exceeds
   static constexpr double kHeadingJump = 0.35;      ///< [rad]
+  static constexpr double kHeadingDrift = 0.3;  ///< [rad] by which it may leave the model's within kMemory
+  static constexpr double kMemory = 1.0;        ///< [s]
+  /// The same of the other signals, while one is rejected: what is wrong with one may be wrong with them.
+  static constexpr double kDoubtedShare = 0.2;
   static constexpr double kYawAcceleration = 12.0;  ///< [rad/s²] that no car here exceeds
   static constexpr double kUnmoved = 0.3;           ///< [m] driven by its speed, and not by its place
   static constexpr double kMoving = 3.0;            ///< [m/s] a speed that shows that its sensor works
@@ -57,7 +62,8 @@ class MeasurementMonitor {
   [[nodiscard]] bool jumps(const model::Measurement& now, double elapsed) const noexcept;
   [[nodiscard]] bool is_frozen(const model::Measurement& now, double elapsed) noexcept;
   [[nodiscard]] bool contradicts_displacement(const model::Measurement& now, double elapsed) noexcept;
-  void look_for_reset(const model::Measurement& now) noexcept;
+  void compare(const model::Measurement& now, const model::State& expected, double elapsed,
+               const Findings& before, double share) noexcept;
 
   model::Measurement checked_;
   Findings findings_;
@@ -65,9 +71,8 @@ class MeasurementMonitor {
   bool has_last_ = false;
   double same_since_ = 0.0;   ///< [s]
   double place_drift_ = 0.0;  ///< what the expected place may be wrong by, beyond kJump [m]
+  double heading_sum_ = 0.0;  ///< of what the heading differed by, within kMemory [rad]
   double other_drift_ = 0.0;  ///< and the expected speed [m/s]
-  double standing_since_ = 0.0;
-  bool may_be_reset_ = false;
   std::array<Sample, kSamples> samples_{};
   int sample_count_ = 0;
   double driven_ = 0.0;

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "chicane/model/measurement.hpp"
+
+namespace chicane::safety {
+
+/// Whether a car that is measured elsewhere, standing, was really put there, as a simulator does it
+/// (docs/safety.md, "A reset"). It has to answer: move as its pedal asks, along its heading, as far as its
+/// speed says. A localiser that starts anew and reports a constant place does not answer, and is not
+/// believed. No allocation; one thread.
+class ResetWatch {
+ public:
+  static constexpr double kJump = 1.0;            ///< [m] between two measurements, beyond what was driven
+  static constexpr double kStandingSpeed = 1.0;   ///< [m/s] of a car that was put elsewhere
+  static constexpr double kWay = 0.5;             ///< [m] after which the answer counts
+  static constexpr double kDisagreement = 0.15;   ///< [m] between displacement and integrated speed
+  static constexpr double kDisagreementShare = 0.3;  ///< and of the way
+  static constexpr double kLongest = 60.0;        ///< [s] after which a jump is forgotten
+
+  void reset() noexcept { *this = {}; }
+  /// Takes in a measurement as it came. `pedal`: acts now, [-1, 1].
+  void see(const model::Measurement& now, double pedal) noexcept;
+
+  /// The car is measured elsewhere, standing, and has not answered yet.
+  [[nodiscard]] bool is_waiting() const noexcept { return is_waiting_; }
+  /// It has answered in the last call of see().
+  [[nodiscard]] bool has_answered() const noexcept { return has_answered_; }
+
+ private:
+  [[nodiscard]] bool jumps(const model::Measurement& now) const noexcept;
+
+  model::Measurement last_;
+  model::Measurement origin_;  ///< where the car seems to have been put
+  bool has_last_ = false;
+  bool is_waiting_ = false;
+  bool has_answered_ = false;
+  double driven_ = 0.0;  ///< since then, by the measured speed [m]
+  double asked_ = 0.0;   ///< integral of the pedal over the last half second [s]
+};
+
+}  // namespace chicane::safety

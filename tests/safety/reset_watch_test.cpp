@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/reset_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace chicane::safety {
+namespace {
+
+constexpr double kCycle = 0.04;  // [s]
+
+/// A car that drives at 20 m/s along x is then measured at 100 m aside, where `answer` moves it.
+template <class Answer>
+bool is_believed(double pedal, double seconds, const Answer& answer) {
+  ResetWatch watch;
+  model::Measurement now;
+  for (int i = 0; i < 20; ++i) {
+    now.time = kCycle * i;
+    now.x = 20.0 * now.time;
+    now.speed = 20.0;
+    watch.see(now, 0.0);
+  }
+  now.y = 100.0;
+  now.speed = 0.0;
+  for (double since = 0.0; since < seconds; since += kCycle) {
+    now.time += kCycle;
+    answer(now);
+    watch.see(now, pedal);
+    if (watch.has_answered()) return true;
+  }
+  return false;
+}
+
+/// What a car does from standstill at `acceleration` [m/s²].
+auto driven(double acceleration) {
+  return [acceleration, velocity = 0.0](model::Measurement& now) mutable {
+    now.x += velocity * kCycle;
+    velocity += acceleration * kCycle;
+    now.speed = std::fabs(velocity);
+  };
+}
+
+TEST(ResetWatch, BelievesACarThatAnswers) {
+  EXPECT_TRUE(is_believed(0.3, 3.0, driven(1.0)));
+  EXPECT_TRUE(is_believed(-1.0, 3.0, driven(-5.0))) << "the brake pedal may be the reverse gear";
+}
+
+TEST(ResetWatch, DoesNotBelieveAConstantPlace) {
+  EXPECT_FALSE(is_believed(0.3, 60.0, [](model::Measurement&) {}));
+}
+
+TEST(ResetWatch, DoesNotBelieveAPlaceThatMovesWithoutSpeed) {
+  EXPECT_FALSE(is_believed(0.3, 60.0, [](model::Measurement& now) { now.x += 0.3 * kCycle; }));
+}
+
+TEST(ResetWatch, DoesNotBelieveAMotionAgainstThePedal) {
+  EXPECT_FALSE(is_believed(0.3, 3.0, driven(-1.0)));
+  EXPECT_FALSE(is_believed(-1.0, 3.0, driven(5.0)));
+  EXPECT_FALSE(is_believed(0.0, 3.0, driven(1.0)));
+}
+
+TEST(ResetWatch, DoesNotBelieveAMotionAcrossTheHeading) {
+  EXPECT_FALSE(is_believed(0.3, 3.0, [velocity = 0.0](model::Measurement& now) mutable {
+    now.y += velocity * kCycle;
+    velocity += kCycle;
+    now.speed = velocity;
+  }));
+}
+
+TEST(ResetWatch, DoesNotWaitForACarThatStillMovesElsewhere) {
+  ResetWatch watch;
+  model::Measurement now;
+  now.speed = 20.0;
+  watch.see(now, 0.3);
+  now.time = kCycle;
+  now.y = 50.0;
+  watch.see(now, 0.3);
+  EXPECT_FALSE(watch.is_waiting());
+}
+
+}  // namespace
+}  // namespace chicane::safety
