@@ -43,6 +43,7 @@ struct Row {
   /// Off the road by the fault comes before off the road anyway.
   void add(const CampaignTrial& trial, const std::string& command) {
     ++trials;
+    duration = trial.duration;
     if (trial.least_edge < 0.0) ++(trial.is_off_anyway ? off_anyway : off);
     if (trial.duration >= run::kLasting) {
       ++lasting;
@@ -60,9 +61,9 @@ struct Row {
     return lasting == 0 ? std::string("–") : fmt::format("{} of {}", standing, lasting);
   }
   [[nodiscard]] std::string name() const { return fmt::format("{} {} {} {}", car, preset, fault, words()); }
+  [[nodiscard]] bool is_lasting() const { return duration >= run::kLasting; }
   [[nodiscard]] std::string words() const {
-    if (lasts == "inf") return "lasting";
-    return lasts == "own" ? lasts : lasts + " s";
+    return is_lasting() ? std::string("lasting") : number_text(duration) + " s";
   }
 };
 
@@ -106,10 +107,15 @@ std::vector<std::string> durations_of(const std::vector<Row>& rows) {
   return durations;
 }
 
+std::string column_words(const std::string& lasts) {
+  if (lasts == "inf") return "lasting";
+  return lasts == "own" ? "own duration" : lasts + " s";
+}
+
 void print_markdown_head(const std::vector<std::string>& durations) {
   fmt::print("| car | preset | fault |");
   for (const std::string& lasts : durations)
-    fmt::print(" {}: off the road | to the edge [m] |", Row{.lasts = lasts}.words());
+    fmt::print(" {}: off the road | to the edge [m] |", column_words(lasts));
   fmt::print(" standing at the end |\n|---|---|---|");
   for (std::size_t i = 0; i < durations.size(); ++i) fmt::print("--:|--:|");
   fmt::print("--:|\n");
@@ -148,7 +154,8 @@ void print_markdown(const std::vector<Row>& rows) {
 void print_json(const std::vector<Row>& rows) {
   protocol::Json all = protocol::Json::array();
   for (const Row& row : rows) {
-    protocol::Json json{{"car", row.car}, {"preset", row.preset}, {"fault", row.fault}, {"for_s", row.lasts}};
+    protocol::Json json{{"car", row.car}, {"preset", row.preset}, {"fault", row.fault}};
+    json["for_s"] = row.is_lasting() ? protocol::Json() : protocol::Json(row.duration);
     json["trials"] = row.trials;
     json["off_road"] = row.off;
     json["off_road_anyway"] = row.off_anyway;
@@ -161,10 +168,14 @@ void print_json(const std::vector<Row>& rows) {
              protocol::json_text(protocol::Json{{"rows", std::move(all)}}, protocol::JsonLayout::kIndented));
 }
 
-/// The names themselves, or all that ship for the one name "all".
-std::vector<std::string> names_on(protocol::Shelf shelf, const std::vector<std::string>& names) {
-  if (names != std::vector<std::string>{"all"}) return names;
+/// The names themselves, or all that ship for the one name "all". Fails as protocol::locate() does.
+Result<std::vector<std::string>> names_on(protocol::Shelf shelf, const std::vector<std::string>& names) {
   std::vector<std::string> all;
+  if (names != std::vector<std::string>{"all"}) {
+    for (const std::string& name : names)
+      if (const auto file = protocol::locate(shelf, name); !file) return fail(file.error());
+    return names;
+  }
   for (const protocol::Entry& entry : protocol::entries(shelf)) all.push_back(entry.name);
   return all;
 }
@@ -185,10 +196,14 @@ Result<std::vector<std::string>> chosen_faults(const Options::Campaign& campaign
 Result<sweep::Campaign> campaign_of(const Options& options) {
   const Options::Campaign& asked = options.campaign;
   Result<std::vector<std::string>> faults = chosen_faults(asked);
-  if (!faults) return fail(faults.error());
-  return sweep::Campaign{.tracks = names_on(protocol::Shelf::kTrack, asked.tracks),
-                         .cars = names_on(protocol::Shelf::kCar, asked.cars),
-                         .presets = names_on(protocol::Shelf::kPreset, asked.presets),
+  Result<std::vector<std::string>> tracks = names_on(protocol::Shelf::kTrack, asked.tracks);
+  Result<std::vector<std::string>> cars = names_on(protocol::Shelf::kCar, asked.cars);
+  Result<std::vector<std::string>> presets = names_on(protocol::Shelf::kPreset, asked.presets);
+  for (const auto* const names : {&faults, &tracks, &cars, &presets})
+    if (!*names) return fail(names->error());
+  return sweep::Campaign{.tracks = std::move(*tracks),
+                         .cars = std::move(*cars),
+                         .presets = std::move(*presets),
                          .faults = std::move(*faults),
                          .has_pairs = asked.has_pairs,
                          .durations = asked.durations,

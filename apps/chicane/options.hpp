@@ -58,6 +58,7 @@ struct Options {
   int branch_laps = 0;                 ///< replay: of the run; 0: no matter
   std::string output_file;             ///< replay: the branch's recording; report: the page
   std::string maps_page;               ///< report: Markdown, for the maps of a sweep; empty: none
+  std::string comparison{};            ///< report: KEY=VALUE of a sweep; empty: nothing is compared
   bool is_served = true;               ///< replay
   std::string shelf;                   ///< list; empty: an overview
   bool is_markdown = false;            ///< list parameters, list faults, campaign
