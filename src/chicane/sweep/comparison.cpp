@@ -42,9 +42,11 @@ ComparedRun compared_run(const Json& json) {
   ComparedRun run{.off = json.value("off_track_events", std::int64_t{0}),
                   .is_completed = json.value("completed", false),
                   .error = json.value("error", "")};
-  for (const Json& lap : json.value("lap_times_s", Json::array()))
+  const Json laps = json.value("lap_times_s", Json::array());
+  for (const Json& lap : laps)
     if (lap.is_number()) run.laps.push_back(lap.get<double>());
-  for (const auto& [reason, steps] : json.value("guard_reasons", Json::object()).items())
+  const Json reasons = json.value("guard_reasons", Json::object());
+  for (const auto& [reason, steps] : reasons.items())
     run.reasons +=
         fmt::format("{}`{}` {}", run.reasons.empty() ? "" : ", ", reason, steps.get<std::int64_t>());
   return run;
