@@ -3,12 +3,16 @@
 
 #include <fmt/format.h>
 #include <sys/mman.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <deque>
 #include <memory>
 #include <new>
@@ -104,6 +108,13 @@ class SharedOutcomes {
   std::size_t bytes_;
   void* memory_;
 };
+
+/// Ends this process with the one that forked it: its open files, and their locks, are let go.
+void end_with_parent() noexcept {
+#ifdef __linux__
+  static_cast<void>(prctl(PR_SET_PDEATHSIG, SIGKILL));
+#endif
+}
 
 /// Waits for the end of a process of ours.
 void wait_for(pid_t process) noexcept {
@@ -218,6 +229,7 @@ Result<std::vector<FaultOutcome>> drive_trials(const scenario::Scenario& scenari
       break;
     }
     if (process == 0) {
+      end_with_parent();
       found[i].outcome = drive_on(driven, trials[i], at);
       found[i].is_there = true;
       _exit(0);  // nothing of the parent's is flushed or torn down
