@@ -3,6 +3,7 @@
 """Breaks the guard on purpose, one operator, number or statement at a time, and asks whether its unit tests notice.
 
     tools/mutate.py --sample 100 --seed 1        # a hundred mutants chosen by chance; without --sample: all of them
+    tools/mutate.py --files command_gate.cpp measurement_monitor.cpp supervisor.hpp
 
 Each mutant is one file compiled anew and the test program `safety_test` linked and run with it; the sources stay as they
 are. A survivor is printed as a difference. One that cannot be noticed, because it behaves the same, is listed with its
@@ -18,11 +19,11 @@ import shlex
 import subprocess
 import sys
 import tempfile
+import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SOURCES = ["command_gate.cpp", "fallback.cpp", "guard.cpp", "measurement_monitor.cpp", "stop_planner.cpp", "stop_player.cpp", "stop_search.cpp",
-           "supervisor.hpp"]
 FOLDER = "src/chicane/safety"
+SOURCES = sorted(path.name for path in (ROOT / FOLDER).glob("*.cpp")) + ["supervisor.hpp"]
 TEST = "safety_test"
 EQUIVALENT = ROOT / "tools/equivalent_mutants.txt"
 # What each operator or word becomes. Operators count where clang-format puts spaces around them.
@@ -83,41 +84,62 @@ def mutants_of(name):
     return found
 
 
-class Bench:
-    """Compiles, links and runs a mutant beside the others, in a folder of its own."""
+def from_compiler(command):
+    """The words of a compiler's command without the programs before it: ccache, timing."""
+    first = next(i for i, word in enumerate(command) if re.fullmatch(r"(c\+\+|g\+\+|clang\+\+)(-\d+)?", pathlib.Path(word).name))
+    return command[first:]
 
-    def __init__(self, build, patience):
+
+class Bench:
+    """Compiles, links and runs a mutant beside the others, in a folder of its own. Sources that the build compiles as one
+    file (CHICANE_UNITY) are compiled as one file here, too."""
+
+    def __init__(self, build, tests):
         self.build = build
-        self.patience = patience
-        commands = json.loads((build / "compile_commands.json").read_text())
-        self.compile = {}
-        for entry in commands:
-            for source in re.findall(r"\S+\.cpp$|\S+\.cxx$", entry["file"]):
-                self.compile[source] = shlex.split(entry["command"])
+        self.test = ["--gtest_fail_fast", "--gtest_brief=1", f"--gtest_filter={tests}"]
+        started = time.monotonic()
+        if subprocess.run([str(build / "tests/safety" / TEST), *self.test], cwd=build, capture_output=True).returncode != 0:
+            sys.exit(f"{TEST} fails without any mutant")
+        self.patience = 10.0 + 5.0 * (time.monotonic() - started)  # [s] until a test that does not end counts as failed
+        self.units = {}  # command and object by what is compiled: a source or a group of them
+        for entry in json.loads((build / "compile_commands.json").read_text()):
+            command = from_compiler(shlex.split(entry["command"]))
+            target = command[command.index("-o") + 1]
+            if "/safety_test.dir/" in target or "/chicane_safety.dir/" in target:
+                self.units[entry["file"]] = command, target
         ninja = subprocess.run(["ninja", "-C", str(build), "-t", "commands", TEST], check=True, capture_output=True, text=True)
         last = [line for line in ninja.stdout.splitlines() if f"-o tests/safety/{TEST}" in line][-1]
-        self.link = shlex.split(last.split("&&")[1])
-        # A mutated header has to reach those that include it.
-        tests = [source for source in self.compile if "safety_test" in source and "safety_2" in source or
-                 source.endswith("tests/safety/supervisor_test.cpp")]
-        self.users = {"supervisor.hpp": [str(ROOT / FOLDER / "guard.cpp")] + tests[:1]}
+        self.link = from_compiler(shlex.split(last.split("&&")[1]))
 
-    def compiled(self, source, name, folder):
-        command = list(self.compile[str(ROOT / FOLDER / name) if name.endswith(".cpp") else source])
-        target = folder / (pathlib.Path(source).stem + ".o")
+    def units_with(self, name):
+        """What has to be compiled anew for a changed source, or, of a header, for all that include it."""
+        path = str(ROOT / FOLDER / name)
+        if name.endswith(".cpp"):
+            found = [unit for unit in self.units if unit == path or f'"{path}"' in pathlib.Path(unit).read_text()]
+        else:
+            deps = subprocess.run(["ninja", "-C", str(self.build), "-t", "deps", *(target for _, target in self.units.values())],
+                                  capture_output=True, text=True).stdout
+            users = {part.split(":")[0] for part in deps.split("\n\n") if re.search(rf"{re.escape(FOLDER)}/{re.escape(name)}$", part, re.M)}
+            found = [unit for unit, (_, target) in self.units.items() if target in users]
+        if not found:
+            sys.exit(f"{self.build}: {name} is not compiled there; build {TEST} first")
+        return found
+
+    def compiled(self, unit, mutant, folder):
+        """The object of a unit with the mutant in the place of its file; None where it does not compile."""
+        command, target = list(self.units[unit][0]), folder / (pathlib.Path(unit).stem + ".o")
+        path, copy = str(ROOT / FOLDER / mutant.file), str(folder / "chicane/safety" / mutant.file)
+        source = copy if unit == path else unit
+        if unit != path and mutant.file.endswith(".cpp"):
+            source = str(folder / pathlib.Path(unit).name)
+            pathlib.Path(source).write_text(pathlib.Path(unit).read_text().replace(f'"{path}"', f'"{copy}"'))
         command[command.index("-o") + 1] = str(target)
         command[command.index("-c") + 1] = source
-        overlay = ["-I", str(folder)]
-        for flag in ("-MD", ):
-            if flag in command:
-                command.remove(flag)
         for flag in ("-MT", "-MF"):
             if flag in command:
                 at = command.index(flag)
                 del command[at:at + 2]
-        command[1:1] = [*overlay, "-w"] if "ccache" not in command[0] else []
-        if "ccache" in command[0]:
-            command = [command[1], *overlay, "-w", *command[2:]]
+        command[1:1] = ["-I", str(folder), "-w"]
         run = subprocess.run(command, cwd=self.build, capture_output=True, text=True)
         return target if run.returncode == 0 else None
 
@@ -130,23 +152,24 @@ class Bench:
             lines = (ROOT / FOLDER / mutant.file).read_text().split("\n")
             lines[mutant.line] = mutant.after
             copy.write_text("\n".join(lines))
-            if mutant.file.endswith(".cpp"):
-                objects = [self.compiled(str(copy), mutant.file, folder)]
-            else:
-                objects = [self.compiled(source, mutant.file, folder) for source in self.users[mutant.file]]
-            if None in objects:
-                return "does not compile"
-            program = folder / TEST
             command = list(self.link)
+            program = folder / TEST
             command[command.index("-o") + 1] = str(program)
-            # In front of the library the mutant's symbols are the ones that count.
-            at = next(i for i, word in enumerate(command) if word.endswith((".o", ".a")))
-            command[at:at] = [str(each) for each in objects] + ["-Wl,--allow-multiple-definition"]
+            for unit in self.units_with(mutant.file):
+                compiled = self.compiled(unit, mutant, folder)
+                if compiled is None:
+                    return "does not compile"
+                target = self.units[unit][1]
+                if target in command:
+                    command[command.index(target)] = str(compiled)
+                else:  # in front of the library the mutant's symbols are the ones that count
+                    command.insert(next(i for i, word in enumerate(command) if word.endswith((".o", ".a"))), str(compiled))
+            command.insert(1, "-Wl,--allow-multiple-definition")
             linked = subprocess.run(command, cwd=self.build, capture_output=True, text=True)
             if linked.returncode != 0:
                 sys.exit(f"{' '.join(command)}\n{linked.stderr}")
             try:
-                tested = subprocess.run([str(program), "--gtest_fail_fast", "--gtest_brief=1"], cwd=self.build,
+                tested = subprocess.run([str(program), *self.test], cwd=self.build,
                                         capture_output=True, timeout=self.patience)
             except subprocess.TimeoutExpired:
                 return "killed"
@@ -173,7 +196,7 @@ def main():
     parser.add_argument("--sample", type=int, help="so many of the mutants, chosen by chance")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--patience", type=float, default=60.0, help="seconds until a test that does not end counts as failed")
+    parser.add_argument("--tests", default="*", help="which tests have to notice: a filter of GoogleTest")
     parser.add_argument("--list", action="store_true", help="print the mutants and do nothing")
     arguments = parser.parse_args()
     mutants = [mutant for name in arguments.files for mutant in mutants_of(name)]
@@ -188,7 +211,7 @@ def main():
     if arguments.list:
         print("\n".join(f"{mutant.file}:{mutant.line + 1}: {mutant.after.strip()}" for mutant in mutants))
         return
-    bench = Bench(arguments.build.resolve(), arguments.patience)
+    bench = Bench(arguments.build.resolve(), arguments.tests)
     counts = {"killed": 0, "survived": 0, "does not compile": 0}
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         for mutant, outcome in zip(mutants, pool.map(bench.outcome, mutants)):

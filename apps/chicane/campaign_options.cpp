@@ -36,8 +36,6 @@ template <class Runs>
 void add_where(CLI::App& command, Runs& runs, Options& options) {
   add_names(command, "--tracks", runs.tracks, "Names or files, with commas");
   add_names(command, "--cars", runs.cars, "Names or files, with commas");
-  add_setting(command, options, "--preset", "preset", "NAME",
-              "Controller and its settings (chicane list presets)");
   add_jobs(command, options.jobs);
   command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
   add_set(command, options);
@@ -50,6 +48,9 @@ void add_campaign(CLI::App& command, Options& options) {
   command.add_option("--faults", campaign.faults, "With commas (chicane list faults); all when left out")
       ->type_name("NAME,...")
       ->delimiter(',');
+  command.add_flag(
+      "--pairs", campaign.has_pairs,
+      "Also each two of them at once; without --faults: of those of measurement, link, computer");
   command
       .add_option_function<std::vector<std::string>>(
           "--for-s",
@@ -63,10 +64,24 @@ void add_campaign(CLI::App& command, Options& options) {
       ->type_name("S")
       ->check(CLI::Range(0.02, 1000.0))
       ->capture_default_str();
-  command.add_flag("--markdown", options.is_markdown, "The table of docs/faults.md on stdout");
+  command
+      .add_option("--onsets", campaign.onsets,
+                  "In the place of --every-s so many moments by chance, for each fault, duration, track, car "
+                  "and preset")
+      ->type_name("N")
+      ->check(CLI::Range(1, 10000));
+  command.add_option("--seed", campaign.seed, "Of these moments")->type_name("N")->capture_default_str();
+  command
+      .add_option("--results", campaign.results,
+                  "A line for each fault, duration, track, car and preset; a file that is there is completed")
+      ->type_name("FILE.jsonl");
+  command.add_flag("--markdown", options.is_markdown, "The table of docs/safety.md on stdout");
+  add_names(command, "--presets,--preset", campaign.presets,
+            "Controllers and their settings; as --tracks and --cars: all stands for those that ship");
   add_where(command, campaign, options);
   command.footer(
-      "Example: chicane campaign --faults link_lost,nan_measurement --for-s 1,2,inf --tracks oval");
+      "Example: chicane campaign --pairs --onsets 3 --for-s 1,2,inf --presets default,race --tracks all "
+      "--results campaign.jsonl");
 }
 
 void add_recover(CLI::App& command, Options& options) {
@@ -81,6 +96,8 @@ void add_recover(CLI::App& command, Options& options) {
   command.add_option("--only", recover.only, "This one of the starts alone")
       ->type_name("I")
       ->check(CLI::Range(1, 100000));
+  add_setting(command, options, "--preset", "preset", "NAME",
+              "Controller and its settings (chicane list presets)");
   add_where(command, recover, options);
   command.footer("Example: chicane recover --tracks lakeside,oval --starts 120");
 }

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -15,8 +14,11 @@
 #include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"
+#include "chicane/recording/temporary_file.hpp"
 #include "chicane/run/fault_campaign.hpp"
 #include "chicane/run/parallel.hpp"
+#include "chicane/sweep/campaign.hpp"
+#include "chicane/sweep/trial.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "interrupt.hpp"
@@ -25,195 +27,201 @@
 namespace chicane::apps {
 namespace {
 
-using run::FaultOutcome;
-using Settings = std::vector<std::pair<std::string, std::string>>;
+using sweep::CampaignGroup;
+using sweep::CampaignTrial;
 
-/// All trials of one fault and duration with one car on one track.
+/// All trials of one fault or pair and duration, with one car and preset, the tracks together.
 struct Row {
-  std::string track, car, fault;
-  double duration = 0.0;  ///< [s]
-  std::vector<FaultOutcome> outcomes{};
+  std::string car{}, preset{}, fault{}, lasts{};
+  std::int64_t trials = 0, off = 0, off_anyway = 0, lasting = 0, standing = 0;
+  double least_edge = std::numeric_limits<double>::infinity();  ///< [m]
+  double duration = 0.0;                                        ///< of the faults [s]
+  std::string worst{};                                          ///< the command that drives that trial
+  bool is_worst_anyway = false;                                 ///< it is off the road without the fault, too
 
+  [[nodiscard]] auto key() const { return std::tie(car, preset, fault, lasts); }
+
+  /// Off the road by the fault comes before off the road anyway.
+  void add(const CampaignTrial& trial, const std::string& command) {
+    ++trials;
+    duration = trial.duration;
+    if (trial.least_edge < 0.0) ++(trial.is_off_anyway ? off_anyway : off);
+    if (trial.duration >= run::kLasting) {
+      ++lasting;
+      if (trial.stands) ++standing;
+    }
+    const bool is_first_by_fault = is_worst_anyway && trial.least_edge < 0.0 && !trial.is_off_anyway;
+    const bool is_hidden = trial.is_off_anyway && off > 0;
+    if (!is_hidden && (is_first_by_fault || trial.least_edge < least_edge)) {
+      least_edge = trial.least_edge;
+      worst = command;
+      is_worst_anyway = trial.is_off_anyway;
+    }
+  }
+  [[nodiscard]] std::string standing_text() const {
+    return lasting == 0 ? std::string("–") : fmt::format("{} of {}", standing, lasting);
+  }
+  [[nodiscard]] std::string name() const { return fmt::format("{} {} {} {}", car, preset, fault, words()); }
   [[nodiscard]] bool is_lasting() const { return duration >= run::kLasting; }
-  [[nodiscard]] auto driven() const {
-    return std::count_if(outcomes.begin(), outcomes.end(),
-                         [](const FaultOutcome& each) { return std::isfinite(each.least_edge); });
-  }
-  [[nodiscard]] auto off() const {
-    return std::count_if(outcomes.begin(), outcomes.end(),
-                         [](const FaultOutcome& each) { return each.has_left_road(); });
-  }
-  [[nodiscard]] auto standing() const {
-    return std::count_if(outcomes.begin(), outcomes.end(),
-                         [](const FaultOutcome& each) { return each.stands(); });
-  }
-  [[nodiscard]] const FaultOutcome& worst() const {
-    return *std::min_element(outcomes.begin(), outcomes.end(),
-                             [](const auto& a, const auto& b) { return a.least_edge < b.least_edge; });
+  [[nodiscard]] std::string words() const {
+    return is_lasting() ? std::string("lasting") : number_text(duration) + " s";
   }
 };
 
-std::string words(double duration) {
-  return duration >= run::kLasting ? std::string("lasting") : fmt::format("{} s", duration);
+std::vector<Row> rows_of(const std::vector<CampaignGroup>& groups, const sweep::Settings& settings) {
+  std::vector<Row> rows;
+  for (const CampaignGroup& group : groups) {
+    if (group.trials.empty()) continue;
+    const Row key{group.car, group.preset, group.fault, group.lasts};
+    const auto found =
+        std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.key() == key.key(); });
+    const auto place = static_cast<std::size_t>(found - rows.begin());
+    if (found == rows.end()) rows.push_back(key);
+    for (const CampaignTrial& trial : group.trials)
+      rows[place].add(trial, sweep::command_of(sweep::settings_of(settings, group, trial)));
+  }
+  return rows;
 }
 
-/// The command that drives one trial again.
-std::string command_of(const Options& options, const Row& row, const FaultOutcome& outcome) {
-  std::string text = fmt::format("chicane drive --fast --laps 0 --track {} --car {}", row.track, row.car);
-  for (const auto& [key, value] : options.settings) text += fmt::format(" --set {}={}", key, value);
-  text += fmt::format(" --fault {}@{}+{}", row.fault, outcome.at, outcome.trial.duration);
-  if (outcome.trial.strength != sim::kind_of(outcome.trial.fault).strength)
-    text += fmt::format("*{}", outcome.trial.strength);
-  const double wait = row.is_lasting() ? run::kLongestWait : outcome.trial.duration + run::kSettling;
-  return text + fmt::format(" --set time_limit_s={:.0f}", std::ceil(outcome.at + wait));
-}
-
-void print_table(const Options& options, const std::vector<Row>& rows) {
-  fmt::print("{:<10} {:<10} {:<20} {:>8} {:>7} {:>5} {:>9} {:>11}\n", "track", "car", "fault", "for",
-             "trials", "off", "standing", "to edge [m]");
+void print_table(const std::vector<Row>& rows) {
+  fmt::print("{:<10} {:<10} {:<36} {:>8} {:>7} {:>5} {:>7} {:>11} {:>11}\n", "car", "preset", "fault", "for",
+             "trials", "off", "anyway", "standing", "to edge [m]");
   for (const Row& row : rows) {
-    fmt::print("{:<10} {:<10} {:<20} {:>8} {:>7} {:>5} {:>9} {:>11.2f}\n", row.track, row.car, row.fault,
-               words(row.duration), row.driven(), row.off(), row.standing(), row.worst().least_edge);
+    fmt::print("{:<10} {:<10} {:<36} {:>8} {:>7} {:>5} {:>7} {:>11} {:>11.2f}\n", row.car, row.preset,
+               row.fault, row.words(), row.trials, row.off, row.off_anyway, row.standing_text(),
+               row.least_edge);
   }
   for (const Row& row : rows) {
-    if (row.off() == 0) continue;
-    fmt::print("\n{} {} {} {}: off the road {} of {} times; the worst:\n  {}\n", row.track, row.car,
-               row.fault, words(row.duration), row.off(), row.driven(),
-               command_of(options, row, row.worst()));
+    if (row.off + row.off_anyway == 0) continue;
+    fmt::print("\n{}: off the road {} of {} times{}; the worst:\n  {}\n", row.name(), row.off, row.trials,
+               row.off_anyway > 0 ? fmt::format(", {} more also without the fault", row.off_anyway) : "",
+               row.worst);
   }
 }
 
-/// One line for each car and fault, the tracks together; then the rows in which the road was left.
-void print_markdown(const Options& options, const std::vector<Row>& rows) {
-  std::vector<double> durations;
-  std::vector<std::pair<std::string, std::string>> lines;  // car and fault
-  for (const Row& row : rows) {
-    if (std::find(durations.begin(), durations.end(), row.duration) == durations.end())
-      durations.push_back(row.duration);
-    const std::pair line{row.car, row.fault};
-    if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
-  }
-  fmt::print("| car | fault |");
-  for (const double duration : durations)
-    fmt::print(" {}: off the road | to the edge [m] |", words(duration));
-  fmt::print(" standing at the end |\n|---|---|");
+/// The durations of all rows, in their order.
+std::vector<std::string> durations_of(const std::vector<Row>& rows) {
+  std::vector<std::string> durations;
+  for (const Row& row : rows)
+    if (std::find(durations.begin(), durations.end(), row.lasts) == durations.end())
+      durations.push_back(row.lasts);
+  return durations;
+}
+
+std::string column_words(const std::string& lasts) {
+  if (lasts == "inf") return "lasting";
+  return lasts == "own" ? "own duration" : lasts + " s";
+}
+
+void print_markdown_head(const std::vector<std::string>& durations) {
+  fmt::print("| car | preset | fault |");
+  for (const std::string& lasts : durations)
+    fmt::print(" {}: off the road | to the edge [m] |", column_words(lasts));
+  fmt::print(" standing at the end |\n|---|---|---|");
   for (std::size_t i = 0; i < durations.size(); ++i) fmt::print("--:|--:|");
   fmt::print("--:|\n");
-  for (const auto& [car, fault] : lines) {
-    fmt::print("| `{}` | `{}` |", car, fault);
+}
+
+/// One line for each car, preset and fault; then the rows in which the road was left.
+void print_markdown(const std::vector<Row>& rows) {
+  const std::vector<std::string> durations = durations_of(rows);
+  print_markdown_head(durations);
+  for (std::size_t i = 0; i < rows.size();) {
+    const Row& first = rows[i];
+    const auto is_of_line = [&](const Row& row) {
+      return row.car == first.car && row.preset == first.preset && row.fault == first.fault;
+    };
+    fmt::print("| `{}` | `{}` | `{}` |", first.car, first.preset, first.fault);
     std::string standing;
-    for (const double duration : durations) {
-      std::int64_t off = 0, driven = 0, stood = 0;
-      double least = std::numeric_limits<double>::infinity();
-      for (const Row& row : rows) {
-        if (row.car != car || row.fault != fault || row.duration != duration || row.driven() == 0) continue;
-        off += row.off();
-        driven += row.driven();
-        stood += row.standing();
-        least = std::min(least, row.worst().least_edge);
+    for (const std::string& lasts : durations) {
+      if (i == rows.size() || !is_of_line(rows[i]) || rows[i].lasts != lasts) {
+        fmt::print(" – | – |");
+        continue;
       }
-      fmt::print(" {} of {} | {:.2f} |", off, driven, least);
-      if (duration >= run::kLasting) standing = fmt::format("{} of {}", stood, driven);
+      const Row& row = rows[i++];
+      fmt::print(" {} of {}{} | {:.2f} |", row.off, row.trials,
+                 row.off_anyway > 0 ? fmt::format(" (+{} anyway)", row.off_anyway) : "", row.least_edge);
+      if (row.lasting > 0) standing = row.standing_text();
     }
     fmt::print(" {} |\n", standing);
   }
   for (const Row& row : rows) {
-    if (row.off() > 0)
-      fmt::print("\n{} with `{}`, `{}` {}: {} of {}\n\n    {}\n", row.track, row.car, row.fault,
-                 words(row.duration), row.off(), row.driven(), command_of(options, row, row.worst()));
+    if (row.off + row.off_anyway > 0)
+      fmt::print("\n`{}` with `{}`, `{}` {}: {} of {}\n\n    {}\n", row.car, row.preset, row.fault,
+                 row.words(), row.off, row.trials, row.worst);
   }
 }
 
-void print_json(const Options& options, const std::vector<Row>& rows) {
+void print_json(const std::vector<Row>& rows) {
   protocol::Json all = protocol::Json::array();
   for (const Row& row : rows) {
-    protocol::Json json{{"track", row.track}, {"car", row.car}, {"fault", row.fault}};
+    protocol::Json json{{"car", row.car}, {"preset", row.preset}, {"fault", row.fault}};
     json["for_s"] = row.is_lasting() ? protocol::Json() : protocol::Json(row.duration);
-    json["trials"] = row.driven();
-    json["off_road"] = row.off();
-    json["standing"] = row.standing();
-    json["least_edge_m"] = row.worst().least_edge;
-    json["worst"] = command_of(options, row, row.worst());
-    protocol::Json each = protocol::Json::array();
-    for (const FaultOutcome& outcome : row.outcomes) {
-      if (!std::isfinite(outcome.least_edge)) continue;
-      each.push_back({{"at_s", outcome.at},
-                      {"least_edge_m", outcome.least_edge},
-                      {"end_speed_mps", outcome.end_speed},
-                      {"not_controller", outcome.not_controller}});
-    }
-    json["outcomes"] = std::move(each);
+    json["trials"] = row.trials;
+    json["off_road"] = row.off;
+    json["off_road_anyway"] = row.off_anyway;
+    json["standing"] = row.lasting == 0 ? protocol::Json() : protocol::Json(row.standing);
+    json["least_edge_m"] = row.least_edge;
+    json["worst"] = row.worst;
     all.push_back(std::move(json));
   }
   fmt::print("{}\n",
              protocol::json_text(protocol::Json{{"rows", std::move(all)}}, protocol::JsonLayout::kIndented));
 }
 
-Result<std::vector<sim::Fault>> chosen_faults(const std::vector<std::string>& names) {
-  std::vector<sim::Fault> faults;
-  if (names.empty()) {
-    for (std::size_t i = 0; i < sim::fault_kinds().size(); ++i) faults.push_back(static_cast<sim::Fault>(i));
+/// The names themselves, or all that ship for the one name "all". Fails as protocol::locate() does.
+Result<std::vector<std::string>> names_on(protocol::Shelf shelf, const std::vector<std::string>& names) {
+  std::vector<std::string> all;
+  if (names != std::vector<std::string>{"all"}) {
+    for (const std::string& name : names)
+      if (const auto file = protocol::locate(shelf, name); !file) return fail(file.error());
+    return names;
   }
+  for (const protocol::Entry& entry : protocol::entries(shelf)) all.push_back(entry.name);
+  return all;
+}
+
+Result<std::vector<std::string>> chosen_faults(const Options::Campaign& campaign) {
+  std::vector<std::string> names = campaign.faults;
+  if (names.empty() && campaign.has_pairs) return sweep::signal_faults();
+  if (names.empty())
+    for (const sim::FaultKind& kind : sim::fault_kinds()) names.emplace_back(kind.name);
   for (const std::string& name : names) {
-    const auto fault = sim::fault_named(name);
-    if (!fault) {
+    if (!sim::fault_named(name))
       return fail(ErrorCode::kInvalidArgument, fmt::format("--faults: got {}, expected {}", printable(name),
                                                            protocol::expected_fault(name)));
-    }
-    faults.push_back(*fault);
   }
-  return faults;
+  return names;
 }
 
-/// Where the trials of one car on one track are driven.
-struct Place {
-  scenario::Scenario scenario;
-  run::FlyingLap lap;
-};
-
-Result<Place> place_of(const Options& options, const std::string& track, const std::string& car) {
-  Settings settings = options.settings;
-  settings.emplace_back("track", track);
-  settings.emplace_back("car", car);
-  Result<scenario::Scenario> scenario = protocol::compose({"", settings});
-  if (!scenario) return fail(scenario.error());
-  const Result<run::FlyingLap> lap = run::find_flying_lap(*scenario);
-  if (!lap) return fail(lap.error());
-  return Place{std::move(*scenario), *lap};
+Result<sweep::Campaign> campaign_of(const Options& options) {
+  const Options::Campaign& asked = options.campaign;
+  Result<std::vector<std::string>> faults = chosen_faults(asked);
+  Result<std::vector<std::string>> tracks = names_on(protocol::Shelf::kTrack, asked.tracks);
+  Result<std::vector<std::string>> cars = names_on(protocol::Shelf::kCar, asked.cars);
+  Result<std::vector<std::string>> presets = names_on(protocol::Shelf::kPreset, asked.presets);
+  for (const auto* const names : {&faults, &tracks, &cars, &presets})
+    if (!*names) return fail(names->error());
+  return sweep::Campaign{.tracks = std::move(*tracks),
+                         .cars = std::move(*cars),
+                         .presets = std::move(*presets),
+                         .faults = std::move(*faults),
+                         .has_pairs = asked.has_pairs,
+                         .durations = asked.durations,
+                         .onsets = asked.onsets,
+                         .seed = asked.seed,
+                         .step = asked.step,
+                         .settings = options.settings};
 }
 
-/// Rows so far, also when it was interrupted.
-Result<std::vector<Row>> drive_all(const Options& options, const std::atomic<bool>& wants_stop) {
-  const Result<std::vector<sim::Fault>> faults = chosen_faults(options.campaign.faults);
-  if (!faults) return fail(faults.error());
-  const bool is_terminal = isatty(STDERR_FILENO) == 1;
-  const int jobs = run::threads_for(options.jobs);
-  std::vector<Row> rows;
-  for (const std::string& track : options.campaign.tracks) {
-    for (const std::string& car : options.campaign.cars) {
-      if (wants_stop) return rows;
-      const Result<Place> place = place_of(options, track, car);
-      if (!place) return fail(place.error());
-      for (const sim::Fault fault : *faults) {
-        std::vector<double> durations = options.campaign.durations;
-        if (durations.empty()) durations = {sim::kind_of(fault).duration};
-        for (const double duration : durations) {
-          if (wants_stop) return rows;
-          Row row{track, car, std::string(sim::kind_of(fault).name), duration, {}};
-          const auto trials = run::trials_over_lap(place->lap, fault, duration, options.campaign.step);
-          auto outcomes = run::drive_trials(place->scenario, place->lap, trials, jobs,
-                                            [&](std::size_t) { return !wants_stop; });
-          if (!outcomes) return fail(outcomes.error());
-          row.outcomes = std::move(*outcomes);
-          fmt::print(stderr, "{}{} {} {} {}: {} of {} off the road{}", is_terminal ? "\r" : "", track, car,
-                     row.fault, words(duration), row.off(), row.driven(), is_terminal ? "          " : "\n");
-          rows.push_back(std::move(row));
-        }
-      }
-    }
+/// Says on stderr which places could not be driven, each once.
+void tell_errors(const std::vector<CampaignGroup>& groups) {
+  std::vector<std::string> told;
+  for (const CampaignGroup& group : groups) {
+    if (group.error.empty() || std::find(told.begin(), told.end(), group.error) != told.end()) continue;
+    told.push_back(group.error);
+    fmt::print(stderr, "not tried: {}\n", group.error);
   }
-  if (is_terminal) fmt::print(stderr, "\r{:78}\r", "");
-  return rows;
 }
 
 }  // namespace
@@ -222,17 +230,39 @@ ExitCode campaign(const Options& options) {
   keep_memory();
   static std::atomic<bool> wants_stop{false};  // as long as signals may come
   catch_interrupts(wants_stop);
-  const Result<std::vector<Row>> rows = drive_all(options, wants_stop);
-  if (!rows) return report(rows.error());
+  const Result<sweep::Campaign> campaign = campaign_of(options);
+  if (!campaign) return report(campaign.error());
+  const recording::TemporaryFile unnamed(".jsonl");
+  const std::string& file = options.campaign.results.empty() ? unnamed.path() : options.campaign.results;
+  RunCounter counter("groups of trials");
+  const auto done = sweep::drive_campaign(*campaign,
+                                          {.jobs = run::threads_for(options.jobs),
+                                           .file = file,
+                                           .on_progress =
+                                               [&](const sweep::Progress& progress) {
+                                                 counter.show(progress.found + progress.driven, progress.runs,
+                                                              progress.driven);
+                                               }},
+                                          wants_stop);
+  counter.end();
+  if (!done) return report(done.error());
+  const auto groups = sweep::read_campaign(file);
+  if (!groups) return report(groups.error());
+  const std::vector<Row> rows = rows_of(*groups, campaign->settings);
   if (options.is_json) {
-    print_json(options, *rows);
+    print_json(rows);
   } else if (options.is_markdown) {
-    print_markdown(options, *rows);
+    print_markdown(rows);
   } else {
-    print_table(options, *rows);
+    print_table(rows);
   }
-  const bool is_kept = std::none_of(rows->begin(), rows->end(), [](const Row& row) { return row.off() > 0; });
-  return is_kept ? kSuccess : kRunFailed;
+  tell_errors(*groups);
+  if (!done->is_complete())
+    fmt::print(stderr, "stopped after {} of {} groups of trials{}\n", done->found + done->driven, done->runs,
+               options.campaign.results.empty() ? "" : ": the same command goes on with what is missing");
+  const bool is_kept =
+      std::none_of(rows.begin(), rows.end(), [](const Row& row) { return row.off + row.off_anyway > 0; });
+  return is_kept && done->is_complete() && done->failed == 0 ? kSuccess : kRunFailed;
 }
 
 }  // namespace chicane::apps

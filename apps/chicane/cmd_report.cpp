@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "chicane/base/text.hpp"
 #include "chicane/live/assets.hpp"
 #include "chicane/recording/html_report.hpp"
+#include "chicane/sweep/comparison.hpp"
 #include "chicane/sweep/summary_page.hpp"
 #include "commands.hpp"
 
@@ -18,6 +20,22 @@ bool are_results(const std::vector<std::string>& files) {
   return std::all_of(files.begin(), files.end(), [](const std::string& file) {
     return std::filesystem::path(file).extension() == ".jsonl";
   });
+}
+
+/// Prints runs that differ in one setting beside each other.
+ExitCode report_comparison(const Options& options) {
+  const std::size_t equals = options.comparison.find('=');
+  if (equals == std::string::npos || !are_results(options.log_files))
+    return report(Error{ErrorCode::kInvalidArgument,
+                        fmt::format("--compare: got {}, expected KEY=VALUE and results of a sweep",
+                                    printable(options.comparison))});
+  const auto compared = sweep::compare(options.log_files, options.comparison.substr(0, equals),
+                                       options.comparison.substr(equals + 1));
+  if (!compared) return report(compared.error());
+  fmt::print("{}", compared->table);
+  fmt::print(stderr, "{} of {} are worse than with {}; {} have no run to compare with\n", compared->worse,
+             compared->pairs, options.comparison, compared->missing);
+  return compared->worse == 0 ? kSuccess : kRunFailed;
 }
 
 ExitCode report_sweep(const Options& options) {
@@ -37,9 +55,10 @@ ExitCode report_sweep(const Options& options) {
 }  // namespace
 
 ExitCode report_logs(const Options& options) {
+  if (!options.comparison.empty()) return report_comparison(options);
   if (options.output_file.empty() && options.maps_page.empty())
-    return report(
-        Error{ErrorCode::kInvalidArgument, "report: got neither --output nor --page, expected one"});
+    return report(Error{ErrorCode::kInvalidArgument,
+                        "report: got none of --output, --page and --compare, expected one"});
   if (are_results(options.log_files)) return report_sweep(options);
   if (!options.maps_page.empty())
     return report(Error{ErrorCode::kInvalidArgument, "--page: got recordings, expected results of a sweep"});

@@ -230,6 +230,13 @@ void add_report(CLI::App& command, Options& options) {
       ->type_name("FILE.html");
   command.add_option("--page", options.maps_page, "Write the heat maps of a sweep in letters into this page")
       ->type_name("FILE.md");
+  command
+      .add_option("--compare", options.comparison,
+                  "Print a table: runs of a sweep beside those with this value of an axis; exit code 1 where "
+                  "one is worse")
+      ->type_name("KEY=VALUE")
+      ->excludes("--output")
+      ->excludes("--page");
   command.footer("Example: chicane report run.mcap -o run.html");
 }
 

@@ -58,6 +58,7 @@ struct Options {
   int branch_laps = 0;                 ///< replay: of the run; 0: no matter
   std::string output_file;             ///< replay: the branch's recording; report: the page
   std::string maps_page;               ///< report: Markdown, for the maps of a sweep; empty: none
+  std::string comparison{};            ///< report: KEY=VALUE of a sweep; empty: nothing is compared
   bool is_served = true;               ///< replay
   std::string shelf;                   ///< list; empty: an overview
   bool is_markdown = false;            ///< list parameters, list faults, campaign
@@ -113,11 +114,16 @@ struct Options {
   Video video{};
 
   struct Campaign {
-    std::vector<std::string> faults{};  ///< names; empty: all
+    std::vector<std::string> faults{};  ///< names; empty: all, with pairs those of signals and computer
+    bool has_pairs = false;             ///< also each two of them at once
     std::vector<double> durations{};    ///< [s]; empty: each fault's own
     std::vector<std::string> tracks{"lakeside", "oval", "hairpins", "speedway"};
     std::vector<std::string> cars{"udacity", "road-car"};
-    double step = 0.5;  ///< between onsets [s]
+    std::vector<std::string> presets{"default"};
+    double step = 0.5;       ///< between onsets [s]
+    int onsets = 0;          ///< by chance, for each group; 0: one each step
+    std::uint64_t seed = 1;  ///< of them
+    std::string results{};   ///< file; empty: none is kept
   };
   Campaign campaign{};
 

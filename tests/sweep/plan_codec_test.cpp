@@ -25,6 +25,17 @@ std::string fault_of(const std::string& text) {
   return plan ? "none" : plan.error().message;
 }
 
+TEST(Plan, TakesTheTracksOfAFolder) {
+  const std::string folder = CHICANE_SOURCE_DIR "/tracks";
+  const auto plan = parse_plan("axes: [{track: [oval, " + folder + "/*.csv]}]", "p");
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_GE(plan->size(), 7U);
+  EXPECT_EQ(plan->at(1)[0].second, folder + "/crossover.csv");
+  const auto none = parse_plan("axes: [{track: [nowhere/*.csv]}]", "p");
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error().message, testing::HasSubstr("nowhere/*.csv"));
+}
+
 TEST(PlanCodec, TheLastAxisTurnsFastest) {
   const Plan plan = plan_of(R"(
 name: two axes

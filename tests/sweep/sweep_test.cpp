@@ -66,6 +66,15 @@ class Sweep : public testing::Test {
   std::atomic<bool> stop_{false};
 };
 
+TEST(Column, CountsTheStepsOfEachReasonOfTheGuard) {
+  telemetry::RunSummary run;
+  run.guard_reasons[static_cast<std::size_t>(controller::GuardReason::kNone)] = 90;
+  EXPECT_EQ(find_column("guard_reasons")->text(run), "{}");
+  run.guard_reasons[static_cast<std::size_t>(controller::GuardReason::kNoAnswer)] = 2;
+  run.guard_reasons[static_cast<std::size_t>(controller::GuardReason::kNoWayToStop)] = 7;
+  EXPECT_EQ(find_column("guard_reasons")->text(run), R"({"no_answer":2,"no_way_to_stop":7})");
+}
+
 TEST_F(Sweep, WritesALineForEachRunWithItsSettingsAndResults) {
   const auto done = run("a.jsonl");
   ASSERT_TRUE(done) << done.error().message;

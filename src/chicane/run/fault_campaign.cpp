@@ -3,12 +3,16 @@
 
 #include <fmt/format.h>
 #include <sys/mman.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <deque>
 #include <memory>
 #include <new>
@@ -17,6 +21,7 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "chicane/run/lap_planner.hpp"
 
 namespace chicane::run {
 namespace {
@@ -24,6 +29,7 @@ namespace {
 constexpr double kStood = 1.0;         // [s] a car that stands so long has come to rest
 constexpr double kTimeToGetGoing = 5;  // [s] for a car that the fault has stopped
 constexpr double kRounding = 1e-9;     // [s] sums of step lengths round
+constexpr double kLongestLaps = 1800;  // [s] for the two laps without a fault; longer ones are not waited for
 
 scenario::Scenario endless(const scenario::Scenario& scenario) {
   scenario::Scenario other = scenario;
@@ -33,20 +39,40 @@ scenario::Scenario endless(const scenario::Scenario& scenario) {
   return other;
 }
 
-/// Drives `loop` until the next step is the first with `trial` in it.
-void drive_up_to(ClosedLoop& loop, double at) noexcept {
-  while (loop.time() < at - kRounding && !loop.is_over()) loop.advance();
+/// A run as `drive --fast` drives it: with the planned laps that its controller wants.
+struct Driven {
+  ClosedLoop& loop;
+  LapPlanner planner{LapPlanner::Clock::kVirtual};
+
+  /// One physics step; true when there was a control step.
+  bool advance() {
+    const bool is_new = loop.advance();
+    if (is_new) static_cast<void>(planner.advance(loop));
+    return is_new;
+  }
+};
+
+/// When a trial's faults begin, clock of the run, in whole milliseconds: short in `--fault NAME@at`.
+double onset_of(const FlyingLap& lap, const FaultTrial& trial) {
+  return std::round(1e3 * (lap.begins + trial.onset)) / 1e3;
+}
+
+/// Drives until the next step is the first with a fault in it.
+void drive_up_to(Driven& driven, double at) {
+  while (driven.loop.time() < at - kRounding && !driven.loop.is_over()) driven.advance();
 }
 
 /// From there to the trial's end.
-FaultOutcome drive_on(ClosedLoop& loop, const FaultTrial& trial, double at) noexcept {
+FaultOutcome drive_on(Driven& driven, const FaultTrial& trial, double at) {
+  ClosedLoop& loop = driven.loop;
   FaultOutcome outcome{.trial = trial, .at = at};
   loop.set_fault({trial.fault, at, trial.duration, trial.strength});
+  if (trial.second) loop.set_fault({*trial.second, at, trial.duration, sim::kind_of(*trial.second).strength});
   const bool is_lasting = trial.duration >= kLasting;
-  const double end = at + (is_lasting ? kLongestWait : trial.duration + kSettling);
+  const double end = at + longest_trial(trial.duration);
   double standing_since = loop.time();
   while (loop.time() < end && !loop.is_over()) {
-    const bool is_new = loop.advance();
+    const bool is_new = driven.advance();
     const double speed = loop.frame().has_truth ? hypot(loop.frame().truth.vx, loop.frame().truth.vy) : 0.0;
     if (speed > FaultOutcome::kStanding) standing_since = loop.time();
     if (loop.time() <= at) continue;
@@ -55,6 +81,7 @@ FaultOutcome drive_on(ClosedLoop& loop, const FaultTrial& trial, double at) noex
     if (is_new && loop.frame().result.report.rung != controller::Rung::kController) ++outcome.not_controller;
     if (is_lasting && loop.time() - standing_since > kStood && loop.time() > at + kTimeToGetGoing) break;
   }
+  outcome.until = loop.time();
   return outcome;
 }
 
@@ -82,6 +109,13 @@ class SharedOutcomes {
   void* memory_;
 };
 
+/// Ends this process with the one that forked it: its open files, and their locks, are let go.
+void end_with_parent() noexcept {
+#ifdef __linux__
+  static_cast<void>(prctl(PR_SET_PDEATHSIG, SIGKILL));
+#endif
+}
+
 /// Waits for the end of a process of ours.
 void wait_for(pid_t process) noexcept {
   int status = 0;
@@ -91,34 +125,59 @@ void wait_for(pid_t process) noexcept {
 
 }  // namespace
 
-Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario, const ControllerFactory& make) {
-  scenario::Scenario two = endless(scenario);
-  two.laps = 2;
-  auto loop = ClosedLoop::create(two, make);
+bool FlyingLap::is_off_within(double from, double to) const noexcept {
+  return std::any_of(off.begin(), off.end(),
+                     [&](const Excursion& each) { return each.from <= to && each.to >= from; });
+}
+
+Result<FlyingLap> drive_undisturbed(const scenario::Scenario& scenario, double wait,
+                                    const ControllerFactory& make) {
+  auto loop = ClosedLoop::create(endless(scenario), make);
   if (!loop) return fail(loop.error());
-  double begins = 0.0;
-  while (!(*loop)->is_over()) {
-    (*loop)->advance();
-    if ((*loop)->world().lap == 0) begins = (*loop)->time();
+  FlyingLap lap;
+  Driven driven{**loop};
+  const auto advance = [&] {
+    driven.advance();
+    if ((*loop)->world().edge_distance >= 0.0) return;
+    const double now = (*loop)->time();
+    const double before = now - 2.0 * (*loop)->scenario().control_period;
+    if (lap.off.empty() || lap.off.back().to < before) lap.off.push_back({now, now});
+    lap.off.back().to = now;
+  };
+  while ((*loop)->world().lap < 2 && (*loop)->time() < kLongestLaps && !(*loop)->is_over()) {
+    advance();
+    if ((*loop)->world().lap == 0) lap.begins = (*loop)->time();
   }
-  const sim::WorldState& world = (*loop)->world();
-  if (world.lap < 2 || world.off_track_events > 0) {
+  if ((*loop)->world().lap < 2) {
     return fail(
         ErrorCode::kInvalidArgument,
-        fmt::format("{} on {} with {}: two laps without leaving the road are not driven "
-                    "without any fault: {} laps, {} times off the road",
-                    scenario.car, scenario.track, scenario.preset, world.lap, world.off_track_events));
+        fmt::format("{} on {} with {}: two laps are not driven without any fault: {} in {:.0f} s",
+                    scenario.car, scenario.track, scenario.preset, (*loop)->world().lap, (*loop)->time()));
   }
-  return FlyingLap{.begins = begins, .time = world.last_lap_time};
+  lap.time = (*loop)->world().last_lap_time;
+  while ((*loop)->time() < lap.begins + lap.time + wait && !(*loop)->is_over()) advance();
+  return lap;
+}
+
+Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario, const ControllerFactory& make) {
+  Result<FlyingLap> lap = drive_undisturbed(scenario, 0.0, make);
+  if (lap && !lap->off.empty()) {
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("{} on {} with {}: two laps without leaving the road are not driven "
+                            "without any fault: {} times off the road",
+                            scenario.car, scenario.track, scenario.preset, lap->off.size()));
+  }
+  return lap;
 }
 
 Result<FaultOutcome> drive_trial(const scenario::Scenario& scenario, const FlyingLap& lap,
                                  const FaultTrial& trial, Roads& roads, const ControllerFactory& make) {
   auto loop = ClosedLoop::create(endless(scenario), roads, make);
   if (!loop) return fail(loop.error());
-  const double at = lap.begins + trial.onset;
-  drive_up_to(**loop, at);
-  return drive_on(**loop, trial, at);
+  const double at = onset_of(lap, trial);
+  Driven driven{**loop};
+  drive_up_to(driven, at);
+  return drive_on(driven, trial, at);
 }
 
 std::vector<FaultTrial> trials_over_lap(const FlyingLap& lap, sim::Fault fault, double duration,
@@ -135,6 +194,7 @@ Result<std::vector<FaultOutcome>> drive_trials(const scenario::Scenario& scenari
                                                const ControllerFactory& make) {
   const auto loop = ClosedLoop::create(endless(scenario), make);
   if (!loop) return fail(loop.error());
+  Driven driven{**loop};
   const SharedOutcomes found(trials.size());
   if (!found.is_there()) return fail(ErrorCode::kIo, "no memory for the outcomes of the trials");
   std::vector<std::size_t> order(trials.size());
@@ -161,15 +221,16 @@ Result<std::vector<FaultOutcome>> drive_trials(const scenario::Scenario& scenari
   for (const std::size_t i : order) {
     if (static_cast<int>(running.size()) >= std::max(jobs, 1)) finish_oldest();
     if (!goes_on || !trouble.empty()) break;
-    const double at = lap.begins + trials[i].onset;
-    drive_up_to(**loop, at);
+    const double at = onset_of(lap, trials[i]);
+    drive_up_to(driven, at);
     const pid_t process = fork();
     if (process < 0) {
       trouble = "no process for a trial";
       break;
     }
     if (process == 0) {
-      found[i].outcome = drive_on(**loop, trials[i], at);
+      end_with_parent();
+      found[i].outcome = drive_on(driven, trials[i], at);
       found[i].is_there = true;
       _exit(0);  // nothing of the parent's is flushed or torn down
     }

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "chicane/base/result.hpp"
@@ -16,18 +17,20 @@ namespace chicane::run {
 /// A fault that never ends: a duration beyond any run [s].
 inline constexpr double kLasting = 1e6;
 
-/// One fault at one moment of the flying lap.
+/// One fault, or two at once, at one moment of the flying lap.
 struct FaultTrial {
   sim::Fault fault{};
   double onset = 0.0;     ///< since the flying lap began [s]
   double duration = 1.0;  ///< [s]; kLasting: until the end of the run
   double strength = 1.0;
+  std::optional<sim::Fault> second{};  ///< for the same time, with its kind's strength
 };
 
 /// What became of the car.
 struct FaultOutcome {
   FaultTrial trial;
-  double at = 0.0;  ///< when the fault began, clock of the run [s]: `--fault NAME@at` repeats it
+  double at = 0.0;     ///< when the fault began, clock of the run [s]: `--fault NAME@at` repeats it
+  double until = 0.0;  ///< end of the trial [s]: `--set time_limit_s=` repeats it
   double least_edge = std::numeric_limits<double>::infinity();  ///< of a tyre from then on [m]; < 0: off road
   double end_speed = 0.0;                                       ///< [m/s]
   int not_controller = 0;  ///< control steps that were not the controller's own answer
@@ -36,19 +39,33 @@ struct FaultOutcome {
   static constexpr double kStanding = 0.1;  ///< [m/s]
 };
 
-/// When the flying lap of a scenario begins, and how long it takes, without a fault.
-struct FlyingLap {
-  double begins = 0.0;  ///< clock of the run [s]
-  double time = 0.0;    ///< [s]
-};
-/// The second lap. kInvalidArgument when two laps are not driven without leaving the road.
-[[nodiscard]] Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario,
-                                                const ControllerFactory& make = make_controller);
-
 /// How long a trial goes on: so long after a fault that ends, or until the car has stood for a second, at
 /// most kLongestWait.
 inline constexpr double kSettling = 10.0;     ///< [s]
 inline constexpr double kLongestWait = 30.0;  ///< [s]
+[[nodiscard]] constexpr double longest_trial(double duration) noexcept {
+  return duration >= kLasting ? kLongestWait : duration + kSettling;
+}
+
+/// A stretch of a run with a tyre off the road, clock of the run [s].
+struct Excursion {
+  double from = 0.0, to = 0.0;
+};
+/// When the flying lap of a scenario, the second one, begins, and how long it takes, without a fault.
+struct FlyingLap {
+  double begins = 0.0;           ///< clock of the run [s]
+  double time = 0.0;             ///< [s]
+  std::vector<Excursion> off{};  ///< where the car leaves the road without any fault
+  [[nodiscard]] bool is_off_within(double from, double to) const noexcept;
+};
+/// Drives the scenario without a fault, for `wait` [s] longer than the flying lap. kInvalidArgument when two
+/// laps are not driven in half an hour.
+[[nodiscard]] Result<FlyingLap> drive_undisturbed(const scenario::Scenario& scenario,
+                                                  double wait = kLongestWait,
+                                                  const ControllerFactory& make = make_controller);
+/// The same; kInvalidArgument also when two laps are not driven without leaving the road.
+[[nodiscard]] Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario,
+                                                const ControllerFactory& make = make_controller);
 
 /// Drives one trial from the start of the run: `scenario` without its own faults. Deterministic; independent
 /// of other trials.
@@ -69,5 +86,4 @@ inline constexpr double kLongestWait = 30.0;  ///< [s]
 [[nodiscard]] Result<std::vector<FaultOutcome>> drive_trials(
     const scenario::Scenario& scenario, const FlyingLap& lap, const std::vector<FaultTrial>& trials, int jobs,
     const std::function<bool(std::size_t)>& on_done = {}, const ControllerFactory& make = make_controller);
-
 }  // namespace chicane::run

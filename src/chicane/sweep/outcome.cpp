@@ -56,6 +56,16 @@ constexpr Column guard_column(std::string_view name, std::string_view meaning) {
           [](const RunSummary&) { return std::optional<double>(); }};
 }
 
+std::string guard_reasons(const RunSummary& run) {
+  std::string text = "{";
+  for (const auto& word : controller::kGuardReasonWords) {
+    const std::uint64_t steps = run.guard_reasons[static_cast<std::size_t>(word.value)];
+    if (word.value != controller::GuardReason::kNone && steps > 0)
+      text += fmt::format("{}\"{}\":{}", text.size() > 1 ? "," : "", word.name, steps);
+  }
+  return text + "}";
+}
+
 double flying_lap(const RunSummary& run) {
   return run.laps.empty() ? telemetry::kNotMeasured : run.laps.back().lap_time;
 }
@@ -96,6 +106,8 @@ constexpr std::array kColumns{
     number<&RunSummary::not_usable>("not_usable", "Solves whose answer must not be used."),
     number<&RunSummary::fallbacks>("fallbacks", "Control steps that were not the controller's own answer."),
     number<&RunSummary::gate_interventions>("gate_interventions", "Commands that the gate changed."),
+    Column{"guard_reasons", "Control steps in which the guard found something, by its reason.",
+           &guard_reasons, [](const RunSummary&) { return std::optional<double>(); }},
     laps<&LapSummary::lap_time>("lap_times_s", "Of each lap."),
     laps<&LapSummary::mean_speed>("lap_mean_speeds_mps", "Of each lap."),
     laps<&LapSummary::top_speed>("lap_top_speeds_mps", "Of each lap."),

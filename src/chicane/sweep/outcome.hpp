@@ -15,7 +15,8 @@ namespace chicane::sweep {
 struct Column {
   std::string_view name;     ///< with its unit: "rms_lateral_error_m"
   std::string_view meaning;  ///< one sentence
-  /// As JSON: a number, true, false, null where nothing was measured, a text or a list of numbers.
+  /// As JSON: a number, true, false, null where nothing was measured, a text, a list of numbers or an object
+  /// of counts.
   std::string (*text)(const telemetry::RunSummary&) = nullptr;
   /// Its number, where it has one; true is 1.
   std::optional<double> (*number)(const telemetry::RunSummary&) = nullptr;

@@ -28,6 +28,7 @@ using detail::number_in;
 using detail::shown;
 
 constexpr std::size_t kMostAxes = 20;
+constexpr std::string_view kFolder = "/*.csv";  ///< after a folder: all tracks in it
 constexpr double kMostSamples = 4294967295.0;
 
 class PlanReader : private detail::SettingsReader {
@@ -157,8 +158,14 @@ class PlanReader : private detail::SettingsReader {
       length = read_range(entry.value, axis, dimension);
     } else {
       if (entry.value.is_list()) {
-        for (const YamlNode* node : entry.value.children)
-          if (takes(dimension.key, *node)) dimension.list.push_back(node->text);
+        for (const YamlNode* node : entry.value.children) {
+          if (!takes(dimension.key, *node)) continue;
+          if (dimension.key == "track" && node->text.ends_with(kFolder)) {
+            add_folder(*node, dimension.list);
+          } else {
+            dimension.list.push_back(node->text);
+          }
+        }
       } else if (takes(dimension.key, entry.value)) {
         dimension.list.push_back(entry.value.text);
       }
@@ -168,6 +175,19 @@ class PlanReader : private detail::SettingsReader {
     }
     axis.dimensions.push_back(std::move(dimension));
     return length;
+  }
+
+  /// All tracks of `FOLDER/*.csv`, by name.
+  void add_folder(const YamlNode& node, std::vector<std::string>& list) {
+    const std::string folder = node.text.substr(0, node.text.size() - kFolder.size());
+    std::vector<std::string> files;
+    std::error_code error;
+    for (std::filesystem::directory_iterator each(folder, error), end; !error && each != end;
+         each.increment(error))
+      if (each->path().extension() == ".csv") files.push_back(each->path().string());
+    if (files.empty()) fault(node.line, "track", fmt::format("got {}, expected tracks there", shown(node)));
+    std::sort(files.begin(), files.end());
+    list.insert(list.end(), files.begin(), files.end());
   }
 
   /// `{cases: {name: {settings}, …}}`.

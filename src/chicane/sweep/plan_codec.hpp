@@ -15,6 +15,7 @@ namespace chicane::sweep {
 ///     settings: {preset: fast-short-step, laps: 3}    # of all runs, as in a preset
 ///     axes:                                           # each run has one value of each
 ///       - speed_mph: [30, 40, 50]                     # a list
+///       - track: [oval, ../tracks/*.csv]              # of tracks also a folder
 ///       - cubic_mpc.step_length_s: {from: 0.02, to: 0.2, count: 10, scale: log}
 ///       - cubic_mpc.horizon_steps: [125, 25]          # two keys of one axis change together
 ///         cubic_mpc.step_length_s: [0.005, 0.025]

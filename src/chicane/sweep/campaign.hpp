@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/sweep/plan.hpp"
+#include "chicane/sweep/sweep.hpp"
+
+/// Faults, alone and in pairs, at moments of a flying lap: a sweep, each run of which is one group of trials.
+namespace chicane::sweep {
+
+/// What is tried: all tracks × cars × presets × faults × durations.
+struct Campaign {
+  std::vector<std::string> tracks{}, cars{}, presets{};
+  std::vector<std::string> faults{};  ///< names
+  bool has_pairs = false;             ///< also each two of the faults at once
+  std::vector<double> durations{};    ///< [s], run::kLasting: to the end; empty: each fault's own
+  int onsets = 0;                     ///< moments by chance for each group; 0: one each `step`
+  std::uint64_t seed = 1;             ///< of the moments by chance
+  double step = 0.5;                  ///< between moments [s]
+  Settings settings{};                ///< of all runs
+};
+
+/// Names of the faults of measurement, link and computer: those that leave car and road as they are.
+[[nodiscard]] std::vector<std::string> signal_faults();
+
+/// As a plan: axes track, car, preset, fault ("link_lost+gps_noise") and for_s ("2", "inf", "own").
+[[nodiscard]] Plan plan_of(const Campaign& campaign);
+
+struct CampaignTrial {
+  double at = 0.0;             ///< when the faults began, clock of the run [s]
+  double until = 0.0;          ///< end of the trial [s]
+  double duration = 0.0;       ///< of the faults [s]; run::kLasting: to the end
+  double least_edge = 0.0;     ///< of a tyre from then on [m]; < 0: off the road
+  bool is_off_anyway = false;  ///< the run without faults is off the road in that time, too
+  bool stands = false;         ///< at the end
+  std::int64_t replaced = 0;   ///< control steps that were not the controller's own answer
+};
+
+/// One line of the results.
+struct CampaignGroup {
+  std::string track{}, car{}, preset{}, fault{};
+  std::string lasts{};  ///< as in the plan's axis for_s
+  std::vector<CampaignTrial> trials{};
+  std::string error{};  ///< why nothing could be tried; empty: something was
+};
+
+/// The run that drives a trial once more (trial.hpp).
+[[nodiscard]] Settings settings_of(const Settings& fixed, const CampaignGroup& group,
+                                   const CampaignTrial& trial);
+
+struct CampaignOptions {
+  int jobs = 1;        ///< processes
+  std::string file{};  ///< of the results; an older one is completed
+  std::function<void(const Progress&)> on_progress{};
+};
+
+/// Drives the groups that are not in the file yet, in the order of the plan, as run::drive_trials() does:
+/// what comes before the faults is driven once for many trials. Each line depends on the campaign and its
+/// number alone, so a file that was completed later has the same bytes. Ends early with what there is when
+/// `stop` is set; kIo when the file cannot be written. One thread of this process at most.
+[[nodiscard]] Result<Progress> drive_campaign(const Campaign& campaign, const CampaignOptions& options,
+                                              const std::atomic<bool>& stop);
+
+/// The groups of a file, in its order. Fails as read_lines() does.
+[[nodiscard]] Result<std::vector<CampaignGroup>> read_campaign(const std::string& file);
+
+}  // namespace chicane::sweep

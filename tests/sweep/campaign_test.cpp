@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sweep/campaign.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "chicane/run/fault_campaign.hpp"
+#include "chicane/sweep/trial.hpp"
+
+namespace chicane::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class CampaignTest : public testing::Test {
+ protected:
+  CampaignTest() { fs::create_directories(folder_); }
+  ~CampaignTest() override { fs::remove_all(folder_); }
+  CampaignTest(const CampaignTest&) = delete;
+  CampaignTest& operator=(const CampaignTest&) = delete;
+
+  [[nodiscard]] std::string path(const char* name) const { return (folder_ / name).string(); }
+  [[nodiscard]] std::string read(const char* name) const {
+    std::ifstream stream(path(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  Result<Progress> drive(const char* file, std::uint64_t stop_after = 1000, int jobs = 2) {
+    std::atomic<bool> stop{false};
+    return drive_campaign(campaign_,
+                          {.jobs = jobs,
+                           .file = path(file),
+                           .on_progress = [&](const Progress& now) { stop = now.driven >= stop_after; }},
+                          stop);
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("chicane_campaign_test." + std::to_string(getpid()));
+  Campaign campaign_{.tracks = {"oval"},
+                     .cars = {"udacity"},
+                     .presets = {"default", "pid"},
+                     .faults = {"frozen_sensor", "gps_noise"},
+                     .has_pairs = true,
+                     .durations = {1.0, run::kLasting},
+                     .onsets = 2,
+                     .settings = {{"guard.mode", "off"}}};
+};
+
+TEST(SignalFaults, AreThoseThatLeaveCarAndRoadAsTheyAre) {
+  EXPECT_THAT(signal_faults(),
+              ElementsAre("link_lost", "frozen_sensor", "nan_measurement", "position_jump", "gps_noise",
+                          "speed_sensor_zero", "waypoints_missing", "slow_solver", "dead_controller",
+                          "delay_doubled", "command_dropped"));
+}
+
+TEST_F(CampaignTest, TriesFaultsAndPairsForEachDuration) {
+  const Plan plan = plan_of(campaign_);
+  EXPECT_EQ(plan.size(), 2U * 3U * 2U);
+  EXPECT_EQ(plan.at(4)[3].second, "frozen_sensor+gps_noise");
+  EXPECT_EQ(plan.at(5)[4].second, "inf");
+  Campaign other = campaign_;
+  other.seed = 2;
+  EXPECT_NE(plan.hash(), plan_of(other).hash()) << "other moments";
+  const auto done = drive("a.jsonl");
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_TRUE(done->is_complete());
+  const auto groups = read_campaign(path("a.jsonl"));
+  ASSERT_TRUE(groups) << groups.error().message;
+  ASSERT_EQ(groups->size(), 12U);
+  for (const CampaignGroup& group : *groups) {
+    ASSERT_EQ(group.trials.size(), 2U);
+    EXPECT_NE(group.trials[0].at, group.trials[1].at);
+    EXPECT_GT(group.trials[0].until, group.trials[0].at + 5.0);
+  }
+  EXPECT_EQ((*groups)[1].lasts, "inf");
+  EXPECT_EQ((*groups)[1].trials[0].duration, run::kLasting);
+}
+
+TEST_F(CampaignTest, WritesTheSameFileWhenItIsStoppedAndGoesOn) {
+  ASSERT_TRUE(drive("whole.jsonl"));
+  const auto part = drive("parts.jsonl", 3, 1);
+  ASSERT_TRUE(part);
+  EXPECT_FALSE(part->is_complete());
+  std::ofstream(path("parts.jsonl"), std::ios::app) << "{\"run\":4,\"sett";  // a process that was killed
+  const auto rest = drive("parts.jsonl", 1000, 1);
+  ASSERT_TRUE(rest) << rest.error().message;
+  EXPECT_TRUE(rest->is_complete());
+  EXPECT_EQ(rest->found, part->driven);
+  EXPECT_EQ(read("whole.jsonl"), read("parts.jsonl"));
+  campaign_.seed = 7;
+  const auto other = drive("parts.jsonl");
+  ASSERT_FALSE(other) << "results of another campaign are completed";
+  EXPECT_THAT(other.error().message, HasSubstr("the plan"));
+}
+
+TEST_F(CampaignTest, TellsTheRunThatRepeatsATrial) {
+  ASSERT_TRUE(drive("a.jsonl"));
+  const auto groups = read_campaign(path("a.jsonl"));
+  ASSERT_TRUE(groups);
+  int repeated = 0;
+  run::Roads roads;
+  const std::atomic<bool> stop{false};
+  for (const CampaignGroup& group : *groups) {
+    const CampaignTrial& trial = *std::min_element(
+        group.trials.begin(), group.trials.end(),
+        [](const CampaignTrial& a, const CampaignTrial& b) { return a.least_edge < b.least_edge; });
+    if (trial.least_edge >= 0.0) continue;
+    const Settings settings = settings_of(campaign_.settings, group, trial);
+    const auto alone = sweep::drive(settings, roads, stop);
+    ASSERT_TRUE(alone && *alone) << command_of(settings);
+    EXPECT_EQ((*alone)->total.min_edge_distance, trial.least_edge) << command_of(settings);
+    EXPECT_EQ((*alone)->duration, trial.until);
+    ++repeated;
+  }
+  EXPECT_GE(repeated, 2) << "a frozen sensor leads off the road where nobody watches it";
+}
+
+TEST_F(CampaignTest, TellsWhereTheCarLeavesTheRoadWithoutAnyFault) {
+  campaign_.presets = {"pid"};
+  campaign_.tracks = {"hairpins"};
+  campaign_.faults = {"slow_solver"};  // which this controller does not have
+  campaign_.has_pairs = false;
+  campaign_.durations = {1.0};
+  campaign_.onsets = 6;
+  campaign_.settings.emplace_back("pid.lateral_acceleration_limit_mps2", "11");
+  campaign_.settings.emplace_back("pid.proportional_gain", "0.03");
+  ASSERT_TRUE(drive("a.jsonl"));
+  const auto groups = read_campaign(path("a.jsonl"));
+  ASSERT_TRUE(groups);
+  ASSERT_EQ(groups->size(), 1U);
+  int anyway = 0;
+  for (const CampaignTrial& trial : (*groups)[0].trials) anyway += trial.is_off_anyway ? 1 : 0;
+  EXPECT_GT(anyway, 0);
+  for (const CampaignTrial& trial : (*groups)[0].trials) {
+    EXPECT_EQ(trial.is_off_anyway, trial.least_edge < 0.0) << trial.at;
+  }
+}
+
+TEST_F(CampaignTest, GoesOnPastAPlaceThatCannotBeDriven) {
+  campaign_.tracks = {"nowhere", "oval"};
+  campaign_.presets = {"default"};
+  campaign_.has_pairs = false;
+  campaign_.durations = {1.0};
+  const auto done = drive("a.jsonl");
+  ASSERT_TRUE(done);
+  EXPECT_TRUE(done->is_complete());
+  EXPECT_EQ(done->failed, 2U);
+  const auto groups = read_campaign(path("a.jsonl"));
+  ASSERT_TRUE(groups);
+  EXPECT_THAT((*groups)[0].error, HasSubstr("nowhere"));
+  EXPECT_EQ((*groups)[2].trials.size(), 2U);
+}
+
+}  // namespace
+}  // namespace chicane::sweep

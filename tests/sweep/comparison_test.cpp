@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/sweep/comparison.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "chicane/sweep/plan_codec.hpp"
+#include "chicane/sweep/result_file.hpp"
+
+namespace chicane::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+class ComparisonTest : public testing::Test {
+ protected:
+  ~ComparisonTest() override { fs::remove(file_); }
+  /// A line about a run on a track.
+  void add(int run, const char* track, const char* mode, const char* rest) {
+    lines_ += "{\"run\":" + std::to_string(run) + ",\"settings\":{\"track\":\"" + track +
+              "\",\"guard.mode\":\"" + mode + "\"}," + rest + "}\n";
+  }
+  Result<Comparison> compared(const char* key = "guard.mode") {
+    const Plan plan = parse_plan("axes: [{track: [a, b, c, d]}, {guard.mode: ['on', 'off']}]", "p").value();
+    std::ofstream(file_) << header_of(plan) << '\n' << lines_;
+    return compare({file_}, key, "off");
+  }
+
+  std::string file_ = fs::temp_directory_path() / ("chicane_comparison_test." + std::to_string(getpid()));
+  std::string lines_;
+};
+
+constexpr const char* kClean = R"("completed":true,"off_track_events":0,"lap_times_s":[12,10,11])";
+
+TEST_F(ComparisonTest, FlagsWhatIsWorse) {
+  add(0, "a", "on", R"("completed":true,"off_track_events":2,"lap_times_s":[12,10,11])");
+  add(1, "a", "off", kClean);
+  add(2, "b", "on",
+      R"("completed":true,"off_track_events":0,"lap_times_s":[12,10,11.5],"guard_reasons":{"frozen":3})");
+  add(3, "b", "off", kClean);
+  add(4, "c", "on", R"("completed":false,"off_track_events":0,"lap_times_s":[12])");
+  add(5, "c", "off", kClean);
+  const auto comparison = compared();
+  ASSERT_TRUE(comparison) << comparison.error().message;
+  EXPECT_EQ(comparison->pairs, 3U);
+  EXPECT_EQ(comparison->worse, 3U);
+  EXPECT_THAT(
+      comparison->table,
+      HasSubstr(
+          "| `a` | on | 12.00 · 10.00 · 11.00 | 12.00 · 10.00 · 11.00 | 2 | 0 |  | **off the road** |"));
+  EXPECT_THAT(comparison->table, HasSubstr("`frozen` 3 | **1.5 % slower** |"));
+  EXPECT_THAT(comparison->table, HasSubstr("**not completed** |"));
+}
+
+TEST_F(ComparisonTest, FlagsNothingWhereTheOtherOneIsNotCleanEither) {
+  add(0, "a", "on", R"("completed":true,"off_track_events":1,"lap_times_s":[22,20,21])");
+  add(1, "a", "off", R"("completed":true,"off_track_events":3,"lap_times_s":[12,10,11])");
+  add(3, "b", "off", kClean);
+  add(4, "c", "on", R"("completed":true,"off_track_events":0,"lap_times_s":[12,10,11.2])");
+  add(5, "c", "off", kClean);
+  const auto comparison = compared();
+  ASSERT_TRUE(comparison);
+  EXPECT_EQ(comparison->pairs, 2U);
+  EXPECT_EQ(comparison->worse, 0U);
+  EXPECT_EQ(comparison->missing, 1U);
+  EXPECT_THAT(comparison->table, Not(HasSubstr("**")));
+}
+
+TEST_F(ComparisonTest, NamesTheAxesWhereTheKeyIsNone) {
+  add(1, "a", "off", kClean);
+  const auto comparison = compared("guard.mod");
+  ASSERT_FALSE(comparison);
+  EXPECT_THAT(comparison.error().message, HasSubstr("track, guard.mode"));
+}
+
+}  // namespace
+}  // namespace chicane::sweep
