@@ -1,9 +1,12 @@
-import { expect, it } from 'vitest';
+import { expect, it, vi } from 'vitest';
 import type { Frame, Plan, Run } from '../protocol/topics';
-import { forget, receive } from './demultiplexer';
-import { events } from './event_log';
-import { lapSamples } from './laps';
-import { live } from './live';
+
+// A page of its own, whatever other tests have loaded.
+vi.resetModules();
+const { forget, receive } = await import('./demultiplexer');
+const { events } = await import('./event_log');
+const { lapSamples } = await import('./laps');
+const { live } = await import('./live');
 
 const FRAMES = 30_000; // eight minutes at sixty a second: longer than anything the page keeps
 const SPEED = 45; // [m/s]
