@@ -211,7 +211,8 @@ TEST(MeasurementMonitor, NoticesAMirroredHeadingInABend) {
   for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
   double detected = 0.0;
   for (int i = 10; i < 60 && detected == 0.0; ++i) {
-    // The estimate has followed the measurement before; the model turns to the left, the measurement to the right.
+    // The estimate has followed the measurement before; the model turns to the left, the measurement to the
+    // right.
     const double turn = 0.3 * kCycle;
     model::Measurement now = at(i);
     model::State state = expected(i);

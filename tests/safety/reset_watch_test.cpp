@@ -12,7 +12,7 @@ constexpr double kCycle = 0.04;  // [s]
 
 /// A car that drives at 20 m/s along x is then measured at 100 m aside, where `answer` moves it.
 template <class Answer>
-bool is_believed(double pedal, double seconds, const Answer& answer) {
+bool is_believed(double pedal, double seconds, Answer answer) {
   ResetWatch watch;
   model::Measurement now;
   for (int i = 0; i < 20; ++i) {

@@ -16,8 +16,9 @@ constexpr double kLongestGap = 0.5;     // [s] between measurements that say any
 constexpr double kMismatch = 2.0;       // [m] between displacement and integrated speed
 constexpr double kMismatchShare = 0.3;  // and of the larger one
 constexpr double kBlindSpeedDrift =
-    6.0;                             // [m/s²] that the expected speed may be wrong by, without measurements
-constexpr double kJumpBack = 1.0;    // [m] otherwise than the car moved, between two measurements
+    6.0;                              // [m/s²] that the expected speed may be wrong by, without measurements
+constexpr double kForgetting = 0.02;  // of the noise, in each measurement
+constexpr double kJumpBack = 1.0;     // [m] otherwise than the car moved, between two measurements
 
 }  // namespace
 
@@ -96,8 +97,11 @@ void MeasurementMonitor::compare(const model::Measurement& now, const model::Sta
   const double aside = std::fabs(dy * cos(expected.psi) - dx * sin(expected.psi));
   const double may_drift = kAcceleration * step * step + place_drift_;
   // A place that jumped is right again when it jumps back, not when what is expected has drifted up to it.
+  if (share == 1.0 && !before.position_jump && !before.speed_mismatch && !before.heading_jump)
+    noise_ =
+        std::sqrt(noise_ * noise_ + kForgetting * (std::min(aside * aside, kJump * kJump) - noise_ * noise_));
   findings_.position_jump |= along > share * std::max(kJump, kTiming * speed) + may_drift ||
-                             aside > share * kJumpAside + may_drift ||
+                             aside > std::clamp(kNoises * noise_, share * kJumpAside, kJump) + may_drift ||
                              (before.position_jump && !jumps(now, elapsed));
 }
 

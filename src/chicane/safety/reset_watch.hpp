@@ -11,12 +11,12 @@ namespace chicane::safety {
 /// believed. No allocation; one thread.
 class ResetWatch {
  public:
-  static constexpr double kJump = 1.0;            ///< [m] between two measurements, beyond what was driven
-  static constexpr double kStandingSpeed = 1.0;   ///< [m/s] of a car that was put elsewhere
-  static constexpr double kWay = 0.5;             ///< [m] after which the answer counts
-  static constexpr double kDisagreement = 0.15;   ///< [m] between displacement and integrated speed
+  static constexpr double kJump = 1.0;               ///< [m] between two measurements, beyond what was driven
+  static constexpr double kStandingSpeed = 1.0;      ///< [m/s] of a car that was put elsewhere
+  static constexpr double kWay = 0.5;                ///< [m] after which the answer counts
+  static constexpr double kDisagreement = 0.15;      ///< [m] between displacement and integrated speed
   static constexpr double kDisagreementShare = 0.3;  ///< and of the way
-  static constexpr double kLongest = 60.0;        ///< [s] after which a jump is forgotten
+  static constexpr double kLongest = 60.0;           ///< [s] after which a jump is forgotten
 
   void reset() noexcept { *this = {}; }
   /// Takes in a measurement as it came. `pedal`: acts now, [-1, 1].
