@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace chicane::attack {
@@ -73,6 +75,55 @@ TEST(FalseSignals, EndWhenTheirTimeIsOver) {
   EXPECT_NEAR(place_error(loop->frame()), 1.0, 1e-9);
   while (loop->time() < 6.5) loop->advance();
   EXPECT_NEAR(place_error(loop->frame()), 0.0, 1e-9);
+}
+
+/// Outcomes of signals that begin at full speed and last, each in a process of its own.
+std::vector<Outcome> under_each(const std::string& car, const std::vector<std::string>& names) {
+  const auto loop = std::move(*run::ClosedLoop::create(*scenario_of({.car = car})));
+  const auto memory = remember(*loop, 1);
+  while (loop->time() < 50.0) loop->advance();
+  const std::vector<FalseSignal> all = false_signals();
+  std::vector<Outcome> outcomes;
+  drive_in_processes(
+      names.size(), 2, {},
+      [&](std::size_t i) {
+        const auto found =
+            std::find_if(all.begin(), all.end(), [&](const FalseSignal& s) { return s.name == names[i]; });
+        return found == all.end() ? Outcome{} : drive_signal(*loop, {*found, 50.0, kLasting, 1}, memory);
+      },
+      [&](std::size_t, const Outcome& outcome) { outcomes.push_back(outcome); });
+  return outcomes;
+}
+
+TEST(Guard, StopsOnItsRoadWhateverIsSaidOfAReset) {
+  const std::vector<std::string> names{"faked_reset_to_start", "faked_reset_aside", "faked_reset_back",
+                                       "zeros", "pose_of_zeros"};
+  for (const char* car : {"udacity", "road-car"}) {
+    const std::vector<Outcome> outcomes = under_each(car, names);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      EXPECT_GE(outcomes[i].least_edge, 0.0) << car << ' ' << names[i];
+      EXPECT_LT(outcomes[i].end_speed, Outcome::kStanding) << car << ' ' << names[i];
+    }
+  }
+}
+
+TEST(Guard, StopsOnItsRoadWithAHeadingThatJumps) {
+  const std::vector<std::string> names{"heading+180", "heading+90", "heading-90", "x_and_y_swapped"};
+  for (const char* car : {"udacity", "road-car"}) {
+    const std::vector<Outcome> outcomes = under_each(car, names);
+    for (std::size_t i = 0; i < names.size(); ++i)
+      EXPECT_GE(outcomes[i].least_edge, 0.0) << car << ' ' << names[i];
+  }
+}
+
+TEST(Guard, DrivesOnAfterAReset) {
+  for (const char* car : {"udacity", "road-car"}) {
+    for (const Outcome& outcome :
+         under_each(car, {"reset_to_start", "reset_to_third", "reset_to_two_thirds"})) {
+      EXPECT_GE(outcome.least_edge, 0.0) << car;
+      EXPECT_LT(outcome.driving_after, 12.0) << car << ": stopped, tried, driving [s]";
+    }
+  }
 }
 
 TEST(Processes, TellOutcomesInOrderAndNameACrash) {
