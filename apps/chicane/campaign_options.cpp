@@ -76,11 +76,11 @@ void add_campaign(CLI::App& command, Options& options) {
                   "A line for each fault, duration, track, car and preset; a file that is there is completed")
       ->type_name("FILE.jsonl");
   command.add_flag("--markdown", options.is_markdown, "The table of docs/safety.md on stdout");
-  add_names(command, "--presets,--preset", campaign.presets,
+  add_names(command, "--preset", campaign.presets,
             "Controllers and their settings; as --tracks and --cars: all stands for those that ship");
   add_where(command, campaign, options);
   command.footer(
-      "Example: chicane campaign --pairs --onsets 3 --for-s 1,2,inf --presets default,race --tracks all "
+      "Example: chicane campaign --pairs --onsets 3 --for-s 1,2,inf --preset default,race --tracks all "
       "--results campaign.jsonl");
 }
 

@@ -86,7 +86,7 @@ TEST(CommandText, EveryCommandHasAnExampleOfItsOwnAndARowInTheDocs) {
 TEST(CommandText, TheHelpIsRead) {
   EXPECT_THAT(commands(), IsSupersetOf({"drive", "serve", "replay", "list", "completion", "manual"}));
   EXPECT_THAT(options_of("drive"), IsSupersetOf({"--preset", "--laps", "--fast", "--set"}));
-  EXPECT_THAT(options_of("report"), ElementsAre("--output", "--page"));
+  EXPECT_THAT(options_of("report"), ElementsAre("--compare", "--output", "--page"));
 }
 
 TEST(CommandText, TheManualNamesEveryCommandAndOption) {

@@ -194,35 +194,5 @@ TEST(MeasurementMonitor, NeverBelievesAPlaceBecauseItLasts) {
   }
 }
 
-TEST(MeasurementMonitor, BelievesNothingOfASensorThatIsWrongTwice) {
-  MeasurementMonitor monitor;
-  for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
-  model::Measurement now = at(10);
-  now.y += 6.0;
-  EXPECT_FALSE(look(monitor, now, expected(10)).heading_jump) << "the place alone";
-  now = at(11);
-  now.y += 6.0;
-  now.speed = 0.0;
-  EXPECT_TRUE(look(monitor, now, expected(11)).heading_jump) << "place and speed";
-}
-
-TEST(MeasurementMonitor, NoticesAMirroredHeadingInABend) {
-  MeasurementMonitor monitor;
-  for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
-  double detected = 0.0;
-  for (int i = 10; i < 60 && detected == 0.0; ++i) {
-    // The estimate has followed the measurement before; the model turns to the left, the measurement to the
-    // right.
-    const double turn = 0.3 * kCycle;
-    model::Measurement now = at(i);
-    model::State state = expected(i);
-    state.psi = turn;
-    now.psi = -turn;
-    if (look(monitor, now, state).heading_jump) detected = kCycle * (i - 9);
-  }
-  EXPECT_GT(detected, 0.1) << "no jump";
-  EXPECT_LT(detected, 1.0) << "but soon [s]";
-}
-
 }  // namespace
 }  // namespace chicane::safety

@@ -154,18 +154,19 @@ const model::Measurement& Guard::look(const model::Measurement& measured) noexce
   watch_for_reset(measured);
   std::optional<model::State> expected;
   const bool rolled_back = direction_.rolls_back();
+  if (estimator_.is_started() && std::isfinite(measured.time) && !rolled_back)
+    expected = estimator_.predict(measured.time, sent_).state;
+  // A heading that no car turns to says nothing of the direction.
   model::Measurement course = measured;
-  // By a heading that is in doubt nothing is known of the direction; no car rolls back that fast.
-  if (monitor_.findings().heading_jump || (!rolled_back && measured.speed > kRollsBackAtMost))
+  if (expected && std::fabs(angle_difference(measured.psi, expected->psi)) > MeasurementMonitor::kHeadingJump)
     course.psi = std::numeric_limits<double>::quiet_NaN();
   direction_.see(course);
   // Nothing is expected of a car that rolls back: the estimate goes the other way.
   if (direction_.rolls_back() != rolled_back) {
     estimator_.reset();
     monitor_.reset();
+    expected.reset();
   }
-  if (estimator_.is_started() && std::isfinite(measured.time) && !direction_.rolls_back())
-    expected = estimator_.predict(measured.time, sent_).state;
   const model::Measurement& seen = monitor_.check(measured, expected ? &*expected : nullptr);
   road_.add(seen);
   estimator_.correct(seen, sent_);
@@ -382,7 +383,7 @@ void Guard::fall_back(const model::Measurement& seen, controller::StepResult& re
 /// The stored backup goes on; false where there is none.
 bool Guard::drive_backup(const StopStart& start, controller::StepResult& result) noexcept {
   const Findings& found = monitor_.findings();
-  const bool is_open = found.unmeasured || found.frozen || found.heading_jump;
+  const bool is_open = found.unmeasured || found.frozen;
   if (!filter_.drive(road_, start, is_open, result.report)) return false;
   result.answer = Answer::kNone;
   result.command = filter_.stop().points[0].command;

@@ -16,9 +16,8 @@ constexpr double kLongestGap = 0.5;     // [s] between measurements that say any
 constexpr double kMismatch = 2.0;       // [m] between displacement and integrated speed
 constexpr double kMismatchShare = 0.3;  // and of the larger one
 constexpr double kBlindSpeedDrift =
-    6.0;                              // [m/s²] that the expected speed may be wrong by, without measurements
-constexpr double kForgetting = 0.02;  // of the noise, in each measurement
-constexpr double kJumpBack = 1.0;     // [m] otherwise than the car moved, between two measurements
+    6.0;                           // [m/s²] that the expected speed may be wrong by, without measurements
+constexpr double kJumpBack = 1.0;  // [m] otherwise than the car moved, between two measurements
 
 }  // namespace
 
@@ -40,18 +39,19 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
   const bool is_blind = !is_whole || findings_.frozen;
 
   if (expected != nullptr && is_whole && !findings_.frozen) {
-    heading_sum_ = (heading_sum_ + angle_difference(now.psi, expected->psi)) * kMemory /
-                   (kMemory + std::clamp(elapsed, 0.0, kLongestGap));
-    const bool is_contradicted = contradicts_displacement(now, elapsed);
-    compare(now, *expected, elapsed, before, 1.0);
-    findings_.speed_mismatch |= is_contradicted;
-    if (findings_.speed_mismatch || findings_.heading_jump || findings_.position_jump)
-      compare(now, *expected, elapsed, before, kDoubtedShare);
-    // Of a sensor that is wrong in two ways, the third is not believed either.
-    const int wrong = findings_.speed_mismatch + findings_.heading_jump + findings_.position_jump;
-    findings_.speed_mismatch = findings_.speed_mismatch || wrong > 1;
-    findings_.heading_jump = findings_.heading_jump || wrong > 1;
-    findings_.position_jump = findings_.position_jump || wrong > 1;
+    const double speed = hypot(expected->vx, expected->vy);
+    const double step = std::clamp(elapsed, 0.0, kLongestGap);
+    findings_.speed_mismatch =
+        std::fabs(now.speed - speed) > kSpeedJump + kAcceleration * step + other_drift_ ||
+        contradicts_displacement(now, elapsed);
+    // A speed that was wrong is right again when it says so of a car that moves.
+    findings_.speed_mismatch |= before.speed_mismatch && now.speed < kMoving;
+    findings_.heading_jump = std::fabs(angle_difference(now.psi, expected->psi)) >
+                             kHeadingJump + kYawAcceleration * step * step + 0.1 * other_drift_;
+    findings_.position_jump =
+        hypot(now.x - expected->x, now.y - expected->y) > kJump + kAcceleration * step * step + place_drift_;
+    // A place that jumped is right again when it jumps back, not when what is expected has drifted up to it.
+    findings_.position_jump |= before.position_jump && !jumps(now, elapsed);
   }
   // While something is missing, what is expected drifts away from the car.
   const double driven =
@@ -59,9 +59,7 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
   if (is_blind) {
     place_drift_ += kBlindDrift * driven;
     other_drift_ += kBlindSpeedDrift * std::clamp(elapsed, 0.0, kLongestGap);
-    heading_sum_ = 0.0;
   } else {
-    if (findings_.heading_jump) heading_sum_ = 0.0;
     place_drift_ = findings_.position_jump ? place_drift_ + kKnownDrift * driven : 0.0;
     other_drift_ = 0.0;
   }
@@ -77,32 +75,6 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
   if (findings_.heading_jump) checked_.psi = kNaN;
   if (findings_.speed_mismatch) checked_.speed = kNaN;
   return checked_;
-}
-
-/// Notes what is farther from `expected` than it may be, by `share` of the usual limits.
-void MeasurementMonitor::compare(const model::Measurement& now, const model::State& expected, double elapsed,
-                                 const Findings& before, double share) noexcept {
-  const double speed = hypot(expected.vx, expected.vy);
-  const double step = std::clamp(elapsed, 0.0, kLongestGap);
-  // A speed that was wrong is right again when it says so of a car that moves.
-  findings_.speed_mismatch |=
-      std::fabs(now.speed - speed) > share * kSpeedJump + kAcceleration * step + other_drift_ ||
-      (before.speed_mismatch && now.speed < kMoving);
-  findings_.heading_jump |= std::fabs(angle_difference(now.psi, expected.psi)) >
-                                share * kHeadingJump + kYawAcceleration * step * step + 0.1 * other_drift_ ||
-                            std::fabs(heading_sum_) > share * kHeadingDrift + 0.1 * other_drift_;
-  const double dx = now.x - expected.x;
-  const double dy = now.y - expected.y;
-  const double along = std::fabs(dx * cos(expected.psi) + dy * sin(expected.psi));
-  const double aside = std::fabs(dy * cos(expected.psi) - dx * sin(expected.psi));
-  const double may_drift = kAcceleration * step * step + place_drift_;
-  // A place that jumped is right again when it jumps back, not when what is expected has drifted up to it.
-  if (share == 1.0 && !before.position_jump && !before.speed_mismatch && !before.heading_jump)
-    noise_ =
-        std::sqrt(noise_ * noise_ + kForgetting * (std::min(aside * aside, kJump * kJump) - noise_ * noise_));
-  findings_.position_jump |= along > share * std::max(kJump, kTiming * speed) + may_drift ||
-                             aside > std::clamp(kNoises * noise_, share * kJumpAside, kJump) + may_drift ||
-                             (before.position_jump && !jumps(now, elapsed));
 }
 
 bool MeasurementMonitor::is_frozen(const model::Measurement& now, double elapsed) noexcept {
