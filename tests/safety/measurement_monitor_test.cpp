@@ -194,5 +194,17 @@ TEST(MeasurementMonitor, NeverBelievesAPlaceBecauseItLasts) {
   }
 }
 
+TEST(MeasurementMonitor, DoesNotBelieveTheHeadingWherePlaceAndSpeedAreWrong) {
+  MeasurementMonitor monitor;
+  for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
+  model::Measurement now = at(10);
+  now.y += 6.0;
+  EXPECT_FALSE(look(monitor, now, expected(10)).heading_jump) << "the place alone";
+  now = at(11);
+  now.y += 6.0;
+  now.speed = 0.0;
+  EXPECT_TRUE(look(monitor, now, expected(11)).heading_jump) << "place and speed";
+}
+
 }  // namespace
 }  // namespace chicane::safety

@@ -177,26 +177,30 @@ const model::Measurement& Guard::look(const model::Measurement& measured) noexce
 void Guard::watch_for_reset(const model::Measurement& measured) noexcept {
   reset_watch_.see(measured, sent_.at(measured.time).throttle);
   if (!reset_watch_.is_waiting()) tried_ = 0.0;
+  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed || tried_ > 0.0;
+  if (!reset_watch_.is_waiting() || !stands) still_since_ = measured.time;
   if (!reset_watch_.has_answered()) return;
   estimator_.reset();
   monitor_.reset();
   supervisor_.reset();
   direction_.reset();
   filter_.forget();
-  controller_->reset();
+  if (options_.mode == GuardMode::kOn) controller_->reset();
   if (options_.road == GuardRoad::kWaypoints) road_.reset();
   has_place_ = is_astray_ = is_led_ = false;
 }
 
 /// By the estimate the car stands, but it is measured elsewhere: at walking pace, within half a car's length,
-/// it shows whether it answers there.
-bool Guard::try_reset(double time, const Cycle& cycle, controller::StepResult& result) noexcept {
+/// it shows whether it answers there. False where it is not tried.
+bool Guard::try_reset(const StopStart& start, const Cycle& cycle, double time,
+                      controller::StepResult& result) noexcept {
+  if (!(time - still_since_ > kStillTime) || tried_ > kTrialWay * model_.vehicle().length) return false;
   const double speed = std::fabs(estimator_.state().vx);
-  if (!reset_watch_.is_waiting() || (tried_ == 0.0 && speed > kStandingSpeed)) still_since_ = time;
-  if (time - still_since_ < kStillTime || tried_ > kTrialWay * model_.vehicle().length) return false;
+  const model::Command command{0.0, speed < kTrialSpeed ? kTrialPedal : 0.0};
+  if (verify(start, cycle, command, result, true) == Fit::kNone) return false;
   tried_ += std::max(speed, kTrialSpeed) * std::max(cycle.interval, 0.0);
   result.answer = Answer::kNone;
-  result.command = {0.0, speed < kTrialSpeed ? kTrialPedal : 0.0};
+  result.command = command;
   result.plan.size = result.plan.reference_size = 0;
   result.report.rung = Rung::kReturnToRoad;
   return true;
@@ -236,7 +240,7 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
     refused_since_ = seen.time;
     return accept(seen, result);
   }
-  if (verdict.must_stop && try_reset(seen.time, cycle, result)) return;
+  if (verdict.must_stop && start && try_reset(*start, cycle, seen.time, result)) return;
   if (!verdict.must_stop && should_lead_back(seen.time, has_answer) && lead_back(act, cycle, result)) return;
   if (!start || !drive_backup(*start, result)) fall_back(seen, result);
   // What brakes a car that goes forward may be the reverse gear of one that rolls back.
@@ -382,8 +386,7 @@ void Guard::fall_back(const model::Measurement& seen, controller::StepResult& re
 
 /// The stored backup goes on; false where there is none.
 bool Guard::drive_backup(const StopStart& start, controller::StepResult& result) noexcept {
-  const Findings& found = monitor_.findings();
-  const bool is_open = found.unmeasured || found.frozen;
+  const bool is_open = monitor_.findings().unmeasured || monitor_.findings().frozen;
   if (!filter_.drive(road_, start, is_open, result.report)) return false;
   result.answer = Answer::kNone;
   result.command = filter_.stop().points[0].command;

@@ -101,7 +101,8 @@ class Guard {
   [[nodiscard]] bool lead_back(double act, const Cycle& cycle, controller::StepResult& result) noexcept;
   [[nodiscard]] double against_rolling_back() const noexcept;
   void watch_for_reset(const model::Measurement& measured) noexcept;
-  [[nodiscard]] bool try_reset(double time, const Cycle& cycle, controller::StepResult& result) noexcept;
+  [[nodiscard]] bool try_reset(const StopStart& start, const Cycle& cycle, double time,
+                               controller::StepResult& result) noexcept;
   void release_brake(double time, model::Command& command) noexcept;
   [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
   [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
@@ -125,8 +126,8 @@ class Guard {
   bool is_far_ = false;         ///< the car is far from the known road
   bool is_astray_ = false;      ///< it is off the road or across it
   bool is_led_ = false;         ///< it stood while commands were refused, and is led back to the line
-  double tried_ = 0.0;          ///< of a reset, by the model [m]
-  double still_since_ = 0.0;    ///< by the estimate the car stands [s]
+  double tried_ = 0.0;          ///< way driven to see whether the car was put elsewhere, by the model [m]
+  double still_since_ = 0.0;    ///< a car that is measured elsewhere stands by the estimate [s]
   double refused_since_ = 0.0;  ///< commands of a standing car [s]
   double stuck_since_ = 0.0;    ///< a car that should move stands [s]
   double act_speed_ = 0.0;      ///< estimated where the command acts [m/s]

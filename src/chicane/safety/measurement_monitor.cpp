@@ -52,6 +52,8 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
         hypot(now.x - expected->x, now.y - expected->y) > kJump + kAcceleration * step * step + place_drift_;
     // A place that jumped is right again when it jumps back, not when what is expected has drifted up to it.
     findings_.position_jump |= before.position_jump && !jumps(now, elapsed);
+    // Where place and speed are both wrong, the heading comes from the same wrong sensor.
+    findings_.heading_jump |= findings_.position_jump && findings_.speed_mismatch;
   }
   // While something is missing, what is expected drifts away from the car.
   const double driven =

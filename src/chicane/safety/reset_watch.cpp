@@ -9,14 +9,15 @@
 namespace chicane::safety {
 namespace {
 
-constexpr double kMemory = 0.5;  // [s] for which the car answers to a pedal
+constexpr double kSpeedError = 1.5;  // times the measured speed that a car may move between two measurements
+constexpr double kMemory = 0.5;      // [s] for which the car answers to a pedal
 
 }  // namespace
 
 bool ResetWatch::jumps(const model::Measurement& now) const noexcept {
   const double elapsed = std::max(now.time - last_.time, 0.0);
   const double driven = elapsed * std::max(now.speed, std::min(last_.speed, kStandingSpeed));
-  return hypot(now.x - last_.x, now.y - last_.y) > kJump + 1.5 * driven;
+  return hypot(now.x - last_.x, now.y - last_.y) > kJump + kSpeedError * driven;
 }
 
 void ResetWatch::see(const model::Measurement& now, double pedal) noexcept {
