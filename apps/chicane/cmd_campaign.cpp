@@ -35,7 +35,7 @@ struct Row {
   std::string car{}, preset{}, fault{}, lasts{};
   std::int64_t trials = 0, off = 0, off_anyway = 0, lasting = 0, standing = 0;
   double least_edge = std::numeric_limits<double>::infinity();  ///< [m]
-  double duration = 0.0;                                        ///< of the faults [s]
+  double duration = 0.0;                                        ///< duration of the faults [s]
   std::string worst{};                                          ///< the command that drives that trial
   bool is_worst_anyway = false;                                 ///< it is off the road without the fault, too
 

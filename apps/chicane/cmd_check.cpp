@@ -45,7 +45,7 @@ bool is_car(const protocol::Document& document, const std::string& file) {
   return has_plant && !document.preset && protocol::compose({"", {{"car", file}}}).has_value();
 }
 
-/// What the file is, in words; makes it a part of the request.
+/// Kind of the file in words; adds it to the request.
 Result<std::string> add_file(const std::string& file, protocol::Request& request) {
   if (protocol::track_format_of(file) != nullptr) {
     request.settings.emplace_back("track", file);
@@ -64,7 +64,7 @@ Result<std::string> add_file(const std::string& file, protocol::Request& request
   return fmt::format("{}, {} settings", car ? "car" : "preset or scenario", document->assignments.size());
 }
 
-/// With the other files and settings of the command line as `drive` would take them.
+/// Judges one file together with the settings of the command line, as `drive` does.
 Result<std::string> check_file(const std::string& file, protocol::Request request) {
   Result<std::string> found = add_file(file, request);
   if (!found) return found;

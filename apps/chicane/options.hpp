@@ -121,8 +121,8 @@ struct Options {
     std::vector<std::string> cars{"udacity", "road-car"};
     std::vector<std::string> presets{"default"};
     double step = 0.5;       ///< between onsets [s]
-    int onsets = 0;          ///< by chance, for each group; 0: one each step
-    std::uint64_t seed = 1;  ///< of them
+    int onsets = 0;          ///< random moments of each group; 0: one each step
+    std::uint64_t seed = 1;  ///< seed of the random moments
     std::string results{};   ///< file; empty: none is kept
   };
   Campaign campaign{};

@@ -15,7 +15,7 @@ using safety::GuardMode;
 using ::testing::Eq;
 using ::testing::StartsWith;
 
-/// What a short run says on stderr.
+/// Text of a short run on stderr.
 std::string said_by_drive(const std::string& options) {
   const std::string command = "cd '" CHICANE_SOURCE_DIR "' && '" CHICANE_PROGRAM
                               "' drive --fast --laps 1 --set time_limit_s=0.2 " +

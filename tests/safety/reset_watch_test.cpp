@@ -32,7 +32,7 @@ bool is_believed(double pedal, double seconds, Answer answer) {
   return false;
 }
 
-/// What a car does from standstill at `acceleration` [m/s²].
+/// Motion of a car from standstill at `acceleration` [m/s²].
 auto driven(double acceleration) {
   return [acceleration, velocity = 0.0](model::Measurement& now) mutable {
     now.x += velocity * kCycle;

@@ -52,9 +52,9 @@ struct LiveSettingsOptions {
 /// All member functions but tell() are the network thread's.
 ///
 /// Viewers are strangers. They choose presets, cars and tracks of the library by name, and no file but those
-/// the run was started with; no sentence for them quotes a file. The guard and the model of the car, from
-/// which the limits of commands follow, are shown and refused (protocol::is_fixed): every run that viewers
-/// choose has the guard that the program was started with, and its model belongs to the car
+/// the run was started with; no sentence for them quotes a file. Settings of the guard and of the
+/// car's model, and so the limits of commands, are shown and refused (protocol::is_fixed): every run that
+/// viewers choose has the guard that the program was started with, and its model belongs to the car
 /// (docs/security.md).
 class LiveSettings final : public protocol::foxglove::ParameterStore {
  public:

@@ -7,7 +7,7 @@
 
 namespace chicane::protocol {
 
-/// What guards a run, as results, recordings and viewers name it.
+/// Names of a run's guard for results, recordings and viewers.
 struct GuardFacts {
   std::string mode;  ///< "on", "observe", "off"; empty: not known
   std::string road;  ///< "track", "waypoints"

@@ -34,7 +34,7 @@ constexpr double kMostDoubt = 0.5;        // [s] by which a controller's own tim
 constexpr double kRollsBackAtMost = 3.0;  // [m/s] faster a car does not roll back: its heading is wrong
 constexpr double kMostAgainstRolling = 0.7;  // pedal against rolling back
 constexpr double kStillTime = 1.0;   // [s] a car stands before it is tried whether it was put elsewhere
-constexpr double kTrialWay = 0.5;    // of the car's length, driven for that
+constexpr double kTrialWay = 0.5;    // share of the car's length that is driven for that
 constexpr double kTrialSpeed = 1.0;  // [m/s]
 constexpr double kTrialPedal = 0.3;
 // Braking of a car that is too fast for a silence: gentle, and stable without feedback.

@@ -35,7 +35,7 @@ class ResetWatch {
   bool has_last_ = false;
   bool is_waiting_ = false;
   bool has_answered_ = false;
-  double driven_ = 0.0;  ///< since then, by the measured speed [m]
+  double driven_ = 0.0;  ///< way from there by the measured speed [m]
   double asked_ = 0.0;   ///< integral of the pedal over the last half second [s]
 };
 

@@ -58,7 +58,7 @@ Result<std::vector<sim::Fault>> parts_of(const std::string& names) {
   return parts;
 }
 
-/// Of the axis for_s; "own": the longest that one of the faults has.
+/// Duration of the axis for_s [s]; "own": the longest that one of the faults has.
 double duration_of(const CampaignGroup& group, const std::vector<sim::Fault>& parts) {
   if (group.lasts == kLasts) return run::kLasting;
   if (group.lasts != kOwn) return detail::number_in(group.lasts).value_or(0.0);

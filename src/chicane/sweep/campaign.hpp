@@ -14,14 +14,14 @@
 /// Faults, alone and in pairs, at moments of a flying lap: a sweep, each run of which is one group of trials.
 namespace chicane::sweep {
 
-/// What is tried: all tracks × cars × presets × faults × durations.
+/// Choice of trials: all tracks × cars × presets × faults × durations.
 struct Campaign {
   std::vector<std::string> tracks{}, cars{}, presets{};
   std::vector<std::string> faults{};  ///< names
   bool has_pairs = false;             ///< also each two of the faults at once
   std::vector<double> durations{};    ///< [s], run::kLasting: to the end; empty: each fault's own
   int onsets = 0;                     ///< moments by chance for each group; 0: one each `step`
-  std::uint64_t seed = 1;             ///< of the moments by chance
+  std::uint64_t seed = 1;             ///< seed of the random moments
   double step = 0.5;                  ///< between moments [s]
   Settings settings{};                ///< of all runs
 };
@@ -35,7 +35,7 @@ struct Campaign {
 struct CampaignTrial {
   double at = 0.0;             ///< when the faults began, clock of the run [s]
   double until = 0.0;          ///< end of the trial [s]
-  double duration = 0.0;       ///< of the faults [s]; run::kLasting: to the end
+  double duration = 0.0;       ///< duration of the faults [s]; run::kLasting: to the end
   double least_edge = 0.0;     ///< of a tyre from then on [m]; < 0: off the road
   bool is_off_anyway = false;  ///< the run without faults is off the road in that time, too
   bool stands = false;         ///< at the end
@@ -56,7 +56,7 @@ struct CampaignGroup {
 
 struct CampaignOptions {
   int jobs = 1;        ///< processes
-  std::string file{};  ///< of the results; an older one is completed
+  std::string file{};  ///< results; an older file is completed
   std::function<void(const Progress&)> on_progress{};
 };
 

@@ -16,12 +16,12 @@ namespace {
 
 using protocol::Json;
 
-/// What is compared of one run.
+/// Figures of one run that are compared.
 struct ComparedRun {
   std::vector<double> laps{};  ///< times [s]
   std::int64_t off = 0;        ///< times off the road
   bool is_completed = false;
-  std::string reasons{};  ///< of the guard, with their steps
+  std::string reasons{};  ///< reasons of the guard with their steps
   std::string error{};    ///< it could not be driven
 
   [[nodiscard]] bool is_clean() const { return error.empty() && is_completed && off == 0; }

@@ -26,11 +26,11 @@ class CloseWatch {
   void take_header(char byte);
   [[nodiscard]] bool has_header() const;
 
-  std::string header_;           ///< of the frame that begins, at most 14 bytes
-  std::string mask_;             ///< of the frame
-  std::uint64_t remaining_ = 0;  ///< of the frame's payload [byte]
+  std::string header_;           ///< header so far of the frame that begins, at most 14 bytes
+  std::string mask_;             ///< mask of the frame's payload; empty: none
+  std::uint64_t remaining_ = 0;  ///< rest of the frame's payload [byte]
   bool is_close_ = false;        ///< the frame is a close frame
-  std::string payload_;          ///< of the close frame, without its mask
+  std::string payload_;          ///< payload of the close frame so far, unmasked
 };
 
 }  // namespace chicane::net
