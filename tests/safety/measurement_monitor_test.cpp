@@ -40,7 +40,7 @@ bool is_plausible(const Findings& f) {
 }
 
 TEST(MeasurementMonitor, AcceptsACarThatDrivesBrakesAndTurns) {
-  MeasurementMonitor monitor;
+  MeasurementMonitor monitor{4.5, 2.7};
   double x = 0.0;
   double y = 0.0;
   for (int i = 0; i < 50; ++i) {
@@ -57,7 +57,7 @@ TEST(MeasurementMonitor, AcceptsACarThatDrivesBrakesAndTurns) {
 }
 
 TEST(MeasurementMonitor, AcceptsACarThatStands) {
-  MeasurementMonitor monitor;
+  MeasurementMonitor monitor{4.5, 2.7};
   for (int i = 0; i < 100; ++i) {
     model::Measurement standing;
     standing.time = kCycle * i;
@@ -66,7 +66,7 @@ TEST(MeasurementMonitor, AcceptsACarThatStands) {
 }
 
 TEST(MeasurementMonitor, AcceptsTheNoiseOfAGoodReceiver) {
-  MeasurementMonitor monitor;
+  MeasurementMonitor monitor{4.5, 2.7};
   Random random(3);
   for (int i = 0; i < 20000; ++i) {
     model::Measurement now = at(i);
@@ -79,7 +79,7 @@ TEST(MeasurementMonitor, AcceptsTheNoiseOfAGoodReceiver) {
 }
 
 TEST(MeasurementMonitor, SaysWhatIsNotMeasured) {
-  MeasurementMonitor monitor;
+  MeasurementMonitor monitor{4.5, 2.7};
   EXPECT_TRUE(is_plausible(look(monitor, at(0), expected(0))));
   for (double model::Measurement::*field : {&model::Measurement::x, &model::Measurement::y,
                                             &model::Measurement::psi, &model::Measurement::speed}) {
@@ -91,7 +91,7 @@ TEST(MeasurementMonitor, SaysWhatIsNotMeasured) {
 }
 
 TEST(MeasurementMonitor, FindsAFrozenSensorInACarThatMoves) {
-  MeasurementMonitor monitor;
+  MeasurementMonitor monitor{4.5, 2.7};
   for (int i = 0; i < 10; ++i) EXPECT_TRUE(is_plausible(look(monitor, at(i), expected(i))));
   for (int i = 10; i < 200; ++i) {
     model::Measurement frozen = at(9);
@@ -104,7 +104,7 @@ TEST(MeasurementMonitor, FindsAFrozenSensorInACarThatMoves) {
 
 TEST(MeasurementMonitor, DisbelievesAJumpHoweverLongItLasts) {
   for (const double side : {5.0, -5.0}) {
-    MeasurementMonitor monitor;
+    MeasurementMonitor monitor{4.5, 2.7};
     for (int i = 0; i < 10; ++i) EXPECT_TRUE(is_plausible(look(monitor, at(i), expected(i))));
     for (int i = 10; i < 150; ++i) {  // 112 m: a stop from any speed here
       model::Measurement jumped = at(i);
@@ -121,7 +121,7 @@ TEST(MeasurementMonitor, DisbelievesAJumpHoweverLongItLasts) {
 /// What is expected drifts while the place is not believed, and may come upon a place that is still wrong.
 TEST(MeasurementMonitor, BelievesAPlaceAgainOnlyWhenItJumpsBack) {
   for (const double side : {5.0, -5.0}) {
-    MeasurementMonitor monitor;
+    MeasurementMonitor monitor{4.5, 2.7};
     for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
     for (int i = 10; i < 150; ++i) {
       model::Measurement jumped = at(i);
@@ -137,7 +137,7 @@ TEST(MeasurementMonitor, BelievesAPlaceAgainOnlyWhenItJumpsBack) {
 }
 
 TEST(MeasurementMonitor, KeepsWhatIsPlausibleBesideAJump) {
-  MeasurementMonitor monitor;
+  MeasurementMonitor monitor{4.5, 2.7};
   for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
   model::Measurement jumped = at(10);
   jumped.y += 5.0;
@@ -148,7 +148,7 @@ TEST(MeasurementMonitor, KeepsWhatIsPlausibleBesideAJump) {
 }
 
 TEST(MeasurementMonitor, DisbelievesASpeedThatNoBrakingExplains) {
-  MeasurementMonitor monitor;
+  MeasurementMonitor monitor{4.5, 2.7};
   for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
   model::Measurement zero = at(10);
   zero.speed = 0.0;
@@ -160,7 +160,7 @@ TEST(MeasurementMonitor, DisbelievesASpeedThatNoBrakingExplains) {
 }
 
 TEST(MeasurementMonitor, FindsASpeedInAnotherUnitByTheDisplacement) {
-  MeasurementMonitor monitor;
+  MeasurementMonitor monitor{4.5, 2.7};
   int found_at = 0;
   for (int i = 0; i < 100 && found_at == 0; ++i) {
     model::Measurement now = at(i);
@@ -174,7 +174,7 @@ TEST(MeasurementMonitor, FindsASpeedInAnotherUnitByTheDisplacement) {
 }
 
 TEST(MeasurementMonitor, DisbelievesAYawThatNoCarTurnsTo) {
-  MeasurementMonitor monitor;
+  MeasurementMonitor monitor{4.5, 2.7};
   for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
   model::Measurement turned = at(10);
   turned.psi = -0.6;
@@ -184,7 +184,7 @@ TEST(MeasurementMonitor, DisbelievesAYawThatNoCarTurnsTo) {
 }
 
 TEST(MeasurementMonitor, NeverBelievesAPlaceBecauseItLasts) {
-  MeasurementMonitor monitor;
+  MeasurementMonitor monitor{4.5, 2.7};
   for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
   for (int i = 10; i < 100; ++i) {
     model::Measurement start;
@@ -195,7 +195,7 @@ TEST(MeasurementMonitor, NeverBelievesAPlaceBecauseItLasts) {
 }
 
 TEST(MeasurementMonitor, DoesNotBelieveTheHeadingWherePlaceAndSpeedAreWrong) {
-  MeasurementMonitor monitor;
+  MeasurementMonitor monitor{4.5, 2.7};
   for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
   model::Measurement now = at(10);
   now.y += 6.0;

@@ -35,7 +35,8 @@
   ROW(kNoWayToStop, "no_way_to_stop", kError, "the controller's command would leave no way to stop on the road")  \
   ROW(kFarFromRoad, "far_from_road", kError, "the controller has no answer and the known road is far away")      \
   ROW(kTooFastForSilence, "too_fast_for_silence", kWarning,                                                      \
-      "a receiver left alone could not stop the car on the road")
+      "a receiver left alone could not stop the car on the road")                                                \
+  ROW(kLate, "late", kError, "the measurements are of an earlier moment")
 // clang-format on
 
 namespace chicane::controller {

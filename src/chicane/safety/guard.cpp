@@ -19,6 +19,7 @@ using controller::GuardReason;
 using controller::Rung;
 
 constexpr double kStandingSpeed = 0.5;    // [m/s]
+constexpr double kAtRest = 0.05;          // [m/s]
 constexpr int kShown = 64;                // points of a backup that is drawn
 constexpr double kShownStep = 0.1;        // [s]
 constexpr double kLedBackSpeed = 6.0;     // [m/s] below which a car that is off the road is led back
@@ -71,6 +72,7 @@ Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::Ve
              const GuardOptions& options, road::KnownRoad road)
     : controller_{std::move(controller)},
       options_{options},
+      monitor_{vehicle.length, vehicle.wheelbase()},
       fallback_{vehicle},
       gate_{vehicle},
       road_{std::move(road)},
@@ -100,7 +102,7 @@ void Guard::reset() noexcept {
   sent_.clear();
   filter_.forget();
   has_place_ = is_astray_ = false;
-  is_led_ = false;
+  is_led_ = rests_ = false;
   refused_since_ = stuck_since_ = still_since_ = 0.0;
   tried_ = 0.0;
 }
@@ -138,6 +140,7 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   const model::Command asked = result.command;
   if (options_.mode == GuardMode::kOn && !cycle.manual) {
     release_brake(seen.time, result.command);
+    watch_rest(result.command.throttle);
     result.command = limited(result.command, cycle.interval);
   }
   const GateResult gated = gate_.pass(cycle.manual.value_or(result.command), cycle.interval);
@@ -160,7 +163,8 @@ const model::Measurement& Guard::look(const model::Measurement& measured) noexce
   model::Measurement course = measured;
   if (expected && std::fabs(angle_difference(measured.psi, expected->psi)) > MeasurementMonitor::kHeadingJump)
     course.psi = std::numeric_limits<double>::quiet_NaN();
-  direction_.see(course);
+  // A car that drives forward, calmly, does not roll back in the next moment.
+  if (!(expected && monitor_.is_sure() && expected->vx > kRollsBackAtMost)) direction_.see(course);
   // Nothing is expected of a car that rolls back: the estimate goes the other way.
   if (direction_.rolls_back() != rolled_back) {
     estimator_.reset();
@@ -287,6 +291,8 @@ model::Command Guard::limited(const model::Command& command, double interval) co
   model::Command inside = gate_.limited(command, interval).command;
   const model::VehicleParams& car = model_.vehicle();
   const double v = act_speed_;
+  if (rests_ && car.reverse_speed > 0.0)
+    inside.throttle = std::max(inside.throttle, car.latches_brakes() ? car.brake_release_throttle : 0.0);
   if (v < car.reverse_speed && inside.throttle < 0.0)
     inside.throttle = std::max(inside.throttle, throttle_to_rest(car, -car.reverse_acceleration, v));
   return inside;
@@ -345,6 +351,14 @@ double Guard::against_rolling_back() const noexcept {
   return pedal > 0.0 && speed > kRollsBackAtMost ? 0.0 : std::min(pedal, kMostAgainstRolling);
 }
 
+/// The pedal that brought a car to rest is its reverse gear from then on: the speed is measured without a
+/// sign, and a car that begins to roll back would be braked into going faster.
+void Guard::watch_rest(double throttle) noexcept {
+  const double speed = std::fabs(estimator_.state().vx);
+  if (speed < kAtRest) rests_ = true;
+  if (speed > kStandingSpeed || throttle > kDrives) rests_ = false;
+}
+
 /// A car whose brake stays on at rest until the pedal has been released moves again after a short release.
 void Guard::release_brake(double time, model::Command& command) noexcept {
   const bool should_move = command.throttle > kDrives && std::fabs(estimator_.state().vx) < kStandingSpeed;
@@ -386,7 +400,8 @@ void Guard::fall_back(const model::Measurement& seen, controller::StepResult& re
 
 /// The stored backup goes on; false where there is none.
 bool Guard::drive_backup(const StopStart& start, controller::StepResult& result) noexcept {
-  const bool is_open = monitor_.findings().unmeasured || monitor_.findings().frozen;
+  const Findings& findings = monitor_.findings();
+  const bool is_open = findings.unmeasured || findings.frozen || findings.late;
   if (!filter_.drive(road_, start, is_open, result.report)) return false;
   result.answer = Answer::kNone;
   result.command = filter_.stop().points[0].command;

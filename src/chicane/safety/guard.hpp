@@ -103,6 +103,7 @@ class Guard {
   void watch_for_reset(const model::Measurement& measured) noexcept;
   [[nodiscard]] bool try_reset(const StopStart& start, const Cycle& cycle, double time,
                                controller::StepResult& result) noexcept;
+  void watch_rest(double throttle) noexcept;
   void release_brake(double time, model::Command& command) noexcept;
   [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
   [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
@@ -126,6 +127,7 @@ class Guard {
   bool is_far_ = false;         ///< the car is far from the known road
   bool is_astray_ = false;      ///< it is off the road or across it
   bool is_led_ = false;         ///< it stood while commands were refused, and is led back to the line
+  bool rests_ = false;          ///< it came to rest, and has not been asked to drive since
   double tried_ = 0.0;          ///< way driven to see whether the car was put elsewhere, by the model [m]
   double still_since_ = 0.0;    ///< a car that is measured elsewhere stands by the estimate [s]
   double refused_since_ = 0.0;  ///< commands of a standing car [s]

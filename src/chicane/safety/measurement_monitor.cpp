@@ -21,6 +21,13 @@ constexpr double kJumpBack = 1.0;  // [m] otherwise than the car moved, between 
 
 }  // namespace
 
+void MeasurementMonitor::reset() noexcept {
+  SensorWatch watch = watch_;
+  watch.reset();
+  *this = MeasurementMonitor{1.0, 1.0};
+  watch_ = watch;
+}
+
 const model::Measurement& MeasurementMonitor::check(const model::Measurement& now,
                                                     const model::State* expected) noexcept {
   checked_ = now;
@@ -36,7 +43,7 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
     return checked_;
   }
   if (is_whole) findings_.frozen = is_frozen(now, elapsed);
-  const bool is_blind = !is_whole || findings_.frozen;
+  bool is_blind = !is_whole || findings_.frozen;
 
   if (expected != nullptr && is_whole && !findings_.frozen) {
     const double speed = hypot(expected->vx, expected->vy);
@@ -55,6 +62,15 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
     // Where place and speed are both wrong, the heading comes from the same wrong sensor.
     findings_.heading_jump |= findings_.position_jump && findings_.speed_mismatch;
   }
+  if (expected != nullptr && is_whole && !findings_.frozen) {
+    const SensorDoubts& doubts = watch_.see(now, *expected);
+    if (doubts.is_old) findings_ = {};
+    findings_.late = doubts.late;
+    is_blind |= doubts.is_old;
+    findings_.position_jump |= doubts.place;
+    findings_.heading_jump |= doubts.heading;
+    findings_.speed_mismatch |= doubts.speed;
+  }
   // While something is missing, what is expected drifts away from the car.
   const double driven =
       expected != nullptr ? std::max(elapsed, 0.0) * hypot(expected->vx, expected->vy) : 0.0;
@@ -72,8 +88,14 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
     last_.time = now.time;
     sample_count_ = 0;
   }
-  if (findings_.frozen) checked_.x = checked_.y = checked_.psi = checked_.speed = kNaN;
+  if (findings_.frozen || (findings_.late && watch_.doubts().is_old))
+    checked_.x = checked_.y = checked_.psi = checked_.speed = kNaN;
   if (findings_.position_jump) checked_.x = checked_.y = kNaN;
+  if (watch_.doubts().place && !findings_.frozen && !watch_.doubts().is_old && !findings_.heading_jump &&
+      !findings_.speed_mismatch && !findings_.unmeasured) {
+    checked_.x = watch_.x();
+    checked_.y = watch_.y();
+  }
   if (findings_.heading_jump) checked_.psi = kNaN;
   if (findings_.speed_mismatch) checked_.speed = kNaN;
   return checked_;

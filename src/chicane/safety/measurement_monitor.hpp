@@ -5,11 +5,13 @@
 
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
+#include "chicane/safety/sensor_watch.hpp"
 
 namespace chicane::safety {
 
 /// What is wrong with a measurement.
 struct Findings {
+  bool late = false;            ///< it is of an earlier moment
   bool unmeasured = false;      ///< position, yaw, speed or time is not a number, or time ran backwards
   bool frozen = false;          ///< it repeats although the car moves
   bool speed_mismatch = false;  ///< its speed contradicts its displacement, or what the car can do
@@ -33,12 +35,16 @@ class MeasurementMonitor {
   static constexpr double kUnmoved = 0.3;           ///< [m] driven by its speed, and not by its place
   static constexpr double kMoving = 3.0;            ///< [m/s] a speed that shows that its sensor works
 
-  void reset() noexcept { *this = {}; }
+  /// `length`: of the car [m]; `wheelbase` [m].
+  MeasurementMonitor(double length, double wheelbase) noexcept : watch_{length, wheelbase} {}
+  void reset() noexcept;
 
   /// `now`, with NaN where it is not plausible; `expected` at now.time, null when nothing is known yet. Valid
   /// until the next call.
   [[nodiscard]] const model::Measurement& check(const model::Measurement& now,
                                                 const model::State* expected) noexcept;
+  /// A car that was measured calmly drives on as it did: SensorWatch::is_sure().
+  [[nodiscard]] bool is_sure() const noexcept { return watch_.is_sure(); }
   /// Of the last check().
   [[nodiscard]] const Findings& findings() const noexcept { return findings_; }
 
@@ -57,6 +63,7 @@ class MeasurementMonitor {
   [[nodiscard]] bool is_frozen(const model::Measurement& now, double elapsed) noexcept;
   [[nodiscard]] bool contradicts_displacement(const model::Measurement& now, double elapsed) noexcept;
 
+  SensorWatch watch_;
   model::Measurement checked_;
   Findings findings_;
   model::Measurement last_;  ///< as it came

@@ -9,6 +9,7 @@ namespace chicane::safety {
 /// Decides from what the monitor finds whether the car has to be stopped, and when it may drive on:
 ///
 ///     condition        tolerated [s]   ends
+///     late             0.12            by itself
 ///     not measured     0.12            by itself
 ///     frozen           0               by itself
 ///     speed mismatch   0.1             by itself when the sensor agrees again; else as below
@@ -49,6 +50,7 @@ class Supervisor {
       verdict.reason = reason;
       verdict.must_stop = true;
     };
+    note(late_, findings.late, kUnmeasured, kLate);
     note(unmeasured_, findings.unmeasured, kUnmeasured, kNotMeasured);
     note(frozen_, findings.frozen, 0.0, kFrozen);
     note(speed_, findings.speed_mismatch, kTolerated, kSpeedMismatch);
@@ -68,7 +70,8 @@ class Supervisor {
 
  private:
   static constexpr double kNever = -1e9;
-  double unmeasured_ = 0.0, frozen_ = 0.0, speed_ = 0.0, heading_ = 0.0, position_ = 0.0;  ///< since [s]
+  double late_ = 0.0, unmeasured_ = 0.0, frozen_ = 0.0, speed_ = 0.0, heading_ = 0.0,
+         position_ = 0.0;  ///< since [s]
   double stood_ = 0.0;
   double rearmed_ = kNever;
   bool has_person_ = false;  ///< has taken over since

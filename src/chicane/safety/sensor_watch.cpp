@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/sensor_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
+
+namespace chicane::safety {
+namespace {
+
+constexpr double kFullSize = 4.5;      // [m] length of a car
+constexpr double kPlaceStep = 0.25;    // [m] a calm car in full size is not farther from where it is expected
+constexpr double kHeadingStep = 0.06;  // [rad] the same of its heading
+constexpr double kSpeedStep = 1.0;     // [m/s] and of its speed
+constexpr double kDeviations = 5.0;    // of noise that are added to each
+constexpr std::array<double, 3> kWindows{1.0, 3.0, 10.0};  // [s] over which motions are compared
+constexpr double kSum = 0.1;               // [m] by which they may differ, for a car in full size
+constexpr double kSumShare = 0.005;        // and of the way driven in a second, times the root of the time
+constexpr double kSumDeviations = 2.0;     // and of what they have differed by before
+constexpr double kTurned = 0.1;            // [rad] by which a heading turns otherwise than the wheels ask for
+constexpr double kTurnedShare = 0.4;       // and of that turning
+constexpr double kDrift = 0.012;           // of the way, by speed and heading
+constexpr double kBlindDrift = 0.1;        // of the way, by the model alone
+constexpr double kMostDrift = 3.0;         // [m] by which a place may differ that is believed again
+constexpr double kSpeedDrift = 2.0;        // [m/s²] of the expected speed while it is not measured
+constexpr double kHeadingDrift = 0.03;     // [rad/s] of the expected heading
+constexpr double kMostHeadingDrift = 0.1;  // [rad]
+constexpr double kLatest = 1.6;            // [s] age of a measurement that is told from another place
+constexpr double kMostCalm = 4.0;          // [s] of calm that are remembered
+constexpr double kUnrest = 0.5;            // [s] of them that one restless measurement costs
+constexpr double kTried = 1.0;             // [m/s] at which a car answers to its pedal late or in time
+constexpr double kMostLag = 0.2;           // [s] by which it may
+constexpr double kRetry = 10.0;            // [s] after which it is tried again
+constexpr double kStill = 0.3;             // [m/s]
+constexpr double kMoving = 2.0;       // [m/s] a slower car, in full size, is not told from an earlier one
+constexpr double kLongestStep = 0.5;  // [s]
+constexpr int kLearned = 200;         // innovations of which the noise is the mean
+
+}  // namespace
+
+void SensorWatch::Noise::learn(double innovation) noexcept {
+  count = std::min(count + 1, kLearned);
+  square += (innovation * innovation - square) / count;
+}
+
+double SensorWatch::Noise::deviation() const noexcept { return std::sqrt(square); }
+
+SensorWatch::SensorWatch(double length, double wheelbase) noexcept
+    : size_{std::min(length / kFullSize, 1.0)}, wheelbase_{wheelbase} {}
+
+void SensorWatch::reset() noexcept { *this = SensorWatch{size_ * kFullSize, wheelbase_}; }
+
+const SensorWatch::Sample& SensorWatch::back(std::size_t count) const noexcept {
+  return samples_[(count_ - 1 - count) % kSamples];
+}
+
+/// What an innovation is below, of a car that is measured calmly.
+SensorWatch::Innovation SensorWatch::limits() const noexcept {
+  return {
+      .place = kPlaceStep * size_ + kDeviations * place_.deviation() + std::min(drift_, kMostDrift * size_),
+      .heading = kHeadingStep + kDeviations * heading_.deviation() +
+                 std::min(kHeadingDrift * unseen_, kMostHeadingDrift),
+      .speed = kSpeedStep * std::sqrt(size_) + kDeviations * speed_.deviation() + kSpeedDrift * unseen_};
+}
+
+const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model::State& expected) noexcept {
+  const double elapsed = now.time - time_;
+  if (!has_last_ || !(elapsed > 0.0)) {
+    if (!has_last_) add_sample(now, expected);
+    last_ = now;
+    time_ = now.time;
+    has_last_ = true;
+    return doubts_;
+  }
+  count_on(elapsed, now, expected);
+  const double x = doubts_.place ? x_ : expected.x;
+  const double y = doubts_.place ? y_ : expected.y;
+  const Innovation seen{.place = hypot(now.x - x, now.y - y),
+                        .heading = std::fabs(angle_difference(now.psi, expected.psi)),
+                        .speed = std::fabs(std::fabs(now.speed) - hypot(expected.vx, expected.vy))};
+  const Innovation most = limits();
+  if (is_sure()) {
+    end_doubts(seen, most, elapsed, angle_difference(now.psi, expected.psi));
+    judge_age(now, expected, seen, most, elapsed);
+    if (!doubts_.is_old) begin_doubts(seen, most);
+  }
+  if (!has_doubts()) {
+    learn(seen, most, elapsed);
+    if (calm_ > kCalmTime) judge_sums(now);
+  }
+  if (!doubts_.place) {
+    x_ = now.x;
+    y_ = now.y;
+  }
+  unseen_ = has_doubts() ? unseen_ + elapsed : 0.0;
+  if (has_doubts()) {
+    clean_from_ = now.time;
+  } else {
+    drift_ = 0.0;
+  }
+  add_sample(now, expected);
+  last_ = now;
+  time_ = now.time;
+  return doubts_;
+}
+
+/// The way that speed and heading describe, and where the car is by it.
+void SensorWatch::count_on(double elapsed, const model::Measurement& now,
+                           const model::State& expected) noexcept {
+  const double slip = atan2(expected.vy, std::max(expected.vx, kMoving * size_));
+  const double turn = angle_difference(now.psi, last_.psi);
+  const double course = last_.psi + 0.5 * turn + slip;
+  const double way = 0.5 * elapsed * (std::fabs(now.speed) + std::fabs(last_.speed));
+  const double dx = way * cos(course);
+  const double dy = way * sin(course);
+  moved_ = hypot(now.x - last_.x - dx, now.y - last_.y - dy);
+  way_x_ += dx;
+  way_y_ += dy;
+  turned_ += turn;
+  asked_ += elapsed * expected.vx * tan(expected.steer) / wheelbase_;
+  const bool is_blind = doubts_.is_old || doubts_.heading || doubts_.speed;
+  drift_ += (is_blind ? kBlindDrift : kDrift) * elapsed * expected.vx;
+  if (!doubts_.place) return;
+  x_ = is_blind ? expected.x : x_ + dx;
+  y_ = is_blind ? expected.y : y_ + dy;
+}
+
+void SensorWatch::add_sample(const model::Measurement& now, const model::State& expected) noexcept {
+  if (count_ > 0 && now.time - back(0).time < kSpacing) return;
+  samples_[count_ % kSamples] = {now.time, now.x, now.y, way_x_, way_y_, turned_, asked_, expected};
+  ++count_;
+}
+
+void SensorWatch::learn(const Innovation& seen, const Innovation& most, double elapsed) noexcept {
+  const bool is_calm = seen.place < 0.5 * most.place && seen.heading < 0.5 * most.heading &&
+                       seen.speed < 0.5 * most.speed && elapsed < kLongestStep;
+  calm_ = is_calm ? std::min(calm_ + elapsed, kMostCalm) : std::max(calm_ - kUnrest, 0.0);
+  if (!(elapsed < kLongestStep)) {
+    calm_ = 0.0;
+    return;
+  }
+  place_.learn(std::min(seen.place, kPlaceStep * size_));
+  heading_.learn(std::min(seen.heading, kHeadingStep));
+  speed_.learn(std::min(seen.speed, kSpeedStep * std::sqrt(size_)));
+}
+
+/// A measurement of an earlier moment, and those that go on from it, say nothing of now. Their doubt ends
+/// when measurements of now have come for kAgreeing, or the car stands.
+void SensorWatch::judge_age(const model::Measurement& now, const model::State& expected,
+                            const Innovation& seen, const Innovation& most, double elapsed) noexcept {
+  const bool stands = std::fabs(now.speed) < kStill && expected.vx < kStill;
+  const bool goes_on =
+      doubts_.is_old && !stands && moved_ < kPlaceStep * size_ + kDeviations * place_.deviation();
+  const bool is_far = seen.place > most.place;
+  doubts_.is_old = goes_on || (is_far && !doubts_.place && is_earlier(now, most));
+  doubts_.late |= doubts_.is_old;
+  late_agrees_ = doubts_.is_old || is_far ? 0.0 : late_agrees_ + elapsed;
+  if (!doubts_.late) return try_start(now, expected, elapsed);
+  if (late_agrees_ < kAgreeing || (stands && now.time < retry_)) return;
+  doubts_.late = false;
+  is_tried_ = stands;
+  asked_speed_ = lag_ = 0.0;
+}
+
+/// A car that stood while measurements were late is watched as it starts: whether they are shows there.
+void SensorWatch::try_start(const model::Measurement& now, const model::State& expected,
+                            double elapsed) noexcept {
+  if (!is_tried_) return;
+  asked_speed_ = std::max(0.0, asked_speed_ + expected.vx - std::fabs(last_.speed));
+  const double tried = kTried * std::sqrt(size_);
+  if (asked_speed_ > tried) lag_ += elapsed;
+  if (lag_ > kMostLag) {
+    doubts_.late = doubts_.is_old = true;
+    retry_ = now.time + kRetry;
+  }
+  if (doubts_.late || std::fabs(now.speed) > tried) is_tried_ = false;
+}
+
+void SensorWatch::begin_doubts(const Innovation& seen, const Innovation& most) noexcept {
+  doubts_.speed |= seen.speed > most.speed;
+  doubts_.heading |= seen.heading > most.heading;
+  doubts_.place |= seen.place > most.place;
+}
+
+/// Whether it was measured where the car was in the last kLatest, as it was then.
+bool SensorWatch::is_earlier(const model::Measurement& now, const Innovation& most) const noexcept {
+  const double near = kPlaceStep * size_ + kDeviations * place_.deviation() + 0.3 * drift_;
+  const std::size_t have = std::min(count_, kSamples);
+  for (std::size_t i = 0; i + 1 < have && now.time - back(i).time < kLatest; ++i) {
+    const model::State& later = back(i).believed;
+    const model::State& earlier = back(i + 1).believed;
+    const double dx = later.x - earlier.x;
+    const double dy = later.y - earlier.y;
+    const double square = dx * dx + dy * dy;
+    const double along = (now.x - earlier.x) * dx + (now.y - earlier.y) * dy;
+    const double share = square > 0.0 ? std::clamp(along / square, 0.0, 1.0) : 0.0;
+    const double away = hypot(now.x - earlier.x - share * dx, now.y - earlier.y - share * dy);
+    const double psi = earlier.psi + share * angle_difference(later.psi, earlier.psi);
+    const double speed =
+        hypot(earlier.vx, earlier.vy) + share * (hypot(later.vx, later.vy) - hypot(earlier.vx, earlier.vy));
+    if (away < near && std::fabs(angle_difference(now.psi, psi)) < most.heading &&
+        std::fabs(std::fabs(now.speed) - speed) < most.speed)
+      return true;
+  }
+  return false;
+}
+
+/// Equation 10: the motion over up to 10 s by the place against that by speed and heading.
+void SensorWatch::judge_sums(const model::Measurement& now) noexcept {
+  const std::size_t have = std::min(count_, kSamples);
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < kWindows.size(); ++k) {
+    while (i + 1 < have && back(i + 1).time > clean_from_ && now.time - back(i).time < kWindows[k]) ++i;
+    const Sample& from = back(i);
+    const double elapsed = now.time - from.time;
+    if (elapsed < 0.9 * kWindows[k]) return;
+    const double dx = now.x - from.x - (way_x_ - from.way_x);
+    const double dy = now.y - from.y - (way_y_ - from.way_y);
+    const double sum = hypot(dx, dy);
+    const double speed = hypot(way_x_ - from.way_x, way_y_ - from.way_y) / elapsed;
+    const double most = kSum * size_ + kSumShare * speed * std::sqrt(elapsed) +
+                        kSumDeviations * sums_[k].deviation() + kDeviations * place_.deviation();
+    if (sum < 0.5 * most) sums_[k].learn(sum);
+    if (!(sum > most)) continue;
+    const double asked = asked_ - from.asked;
+    if (std::fabs(turned_ - from.turned - asked) > kTurned + kTurnedShare * std::fabs(asked)) {
+      doubts_.heading = true;
+    } else {
+      doubts_.place = true;
+      x_ = now.x - dx;
+      y_ = now.y - dy;
+    }
+    return;
+  }
+}
+
+void SensorWatch::end_doubts(const Innovation& seen, const Innovation& most, double elapsed,
+                             double turned) noexcept {
+  const auto ends = [&](bool& doubt, double& agrees, bool is_there) {
+    agrees = is_there ? agrees + elapsed : 0.0;
+    if (agrees > kAgreeing) doubt = false;
+  };
+  if (heading_agrees_ == 0.0) agreed_heading_ = turned;
+  const bool turns_alike =
+      std::fabs(turned - agreed_heading_) < 0.5 * kHeadingStep + kDeviations * heading_.deviation();
+  ends(doubts_.place, place_agrees_, seen.place < most.place);
+  ends(doubts_.heading, heading_agrees_, seen.heading < most.heading && turns_alike);
+  ends(doubts_.speed, speed_agrees_, seen.speed < most.speed);
+}
+
+}  // namespace chicane::safety

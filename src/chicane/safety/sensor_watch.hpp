@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
+
+namespace chicane::safety {
+
+/// Which signals cannot be true.
+struct SensorDoubts {
+  bool late = false;     ///< whole measurements are of earlier moments
+  bool is_old = false;   ///< this one is
+  bool place = false;    ///< it is not where speed and heading have led
+  bool heading = false;  ///< it has turned otherwise than the wheels were turned
+  bool speed = false;    ///< it has changed by more than the pedal does
+};
+
+/// Tells wrong signals from noise: place, heading and speed describe the same motion, each innovation and
+/// their sum over up to 10 s (docs/safety.md, eq. 9 to 11). The limits follow the noise that was seen before.
+/// They hold for a car that was measured calmly for kCalmTime; a car that slides or spins is not, and nothing
+/// is doubted by them there. A doubt ends when the signal has agreed for kAgreeing with where the car must
+/// be; never because it lasts. No allocation; one thread.
+class SensorWatch {
+ public:
+  static constexpr double kCalmTime = 2.0;  ///< [s]
+  static constexpr double kAgreeing = 1.0;  ///< [s]
+
+  /// `length`: of the car [m]; `wheelbase` [m].
+  SensorWatch(double length, double wheelbase) noexcept;
+  void reset() noexcept;
+
+  /// The doubts in a finite measurement; `expected`: the car by the estimate at now.time.
+  const SensorDoubts& see(const model::Measurement& now, const model::State& expected) noexcept;
+  /// The last measurements agreed with each other, or one of them is in doubt: limits hold.
+  [[nodiscard]] bool is_sure() const noexcept { return calm_ > kCalmTime; }
+  /// Of the last see().
+  [[nodiscard]] const SensorDoubts& doubts() const noexcept { return doubts_; }
+  /// Where the car is by what is not in doubt, while its place is [m].
+  [[nodiscard]] double x() const noexcept { return x_; }
+  [[nodiscard]] double y() const noexcept { return y_; }
+
+ private:
+  /// One moment of the last seconds.
+  struct Sample {
+    double time = 0.0;
+    double x = 0.0, y = 0.0;           ///< measured [m]
+    double way_x = 0.0, way_y = 0.0;   ///< the way that speed and heading describe [m]
+    double turned = 0.0, asked = 0.0;  ///< the heading, unwrapped, and what the wheels asked for [rad]
+    model::State believed;             ///< by the estimate
+  };
+  static constexpr std::size_t kSamples = 256;
+  static constexpr double kSpacing = 0.0395;  ///< [s] at least: the samples reach 10 s back
+  /// Noise of a signal: the mean square of its innovations.
+  struct Noise {
+    double square = 0.0;
+    int count = 0;
+    void learn(double innovation) noexcept;
+    [[nodiscard]] double deviation() const noexcept;
+  };
+  /// Of one measurement against what is expected.
+  struct Innovation {
+    double place = 0.0, heading = 0.0, speed = 0.0;
+  };
+
+  [[nodiscard]] bool has_doubts() const noexcept {
+    return doubts_.late || doubts_.place || doubts_.heading || doubts_.speed;
+  }
+  [[nodiscard]] Innovation limits() const noexcept;
+  [[nodiscard]] const Sample& back(std::size_t count) const noexcept;
+  void count_on(double elapsed, const model::Measurement& now, const model::State& expected) noexcept;
+  void add_sample(const model::Measurement& now, const model::State& expected) noexcept;
+  void learn(const Innovation& seen, const Innovation& most, double elapsed) noexcept;
+  void judge_age(const model::Measurement& now, const model::State& expected, const Innovation& seen,
+                 const Innovation& most, double elapsed) noexcept;
+  void try_start(const model::Measurement& now, const model::State& expected, double elapsed) noexcept;
+  void begin_doubts(const Innovation& seen, const Innovation& most) noexcept;
+  void judge_sums(const model::Measurement& now) noexcept;
+  [[nodiscard]] bool is_earlier(const model::Measurement& now, const Innovation& most) const noexcept;
+  void end_doubts(const Innovation& seen, const Innovation& most, double elapsed, double turned) noexcept;
+
+  double size_;       ///< of the car over one in full size
+  double wheelbase_;  ///< [m]
+  SensorDoubts doubts_;
+  std::array<Sample, kSamples> samples_{};
+  std::size_t count_ = 0;
+  bool has_last_ = false;
+  model::Measurement last_;
+  double time_ = 0.0;                                                      ///< of the last call [s]
+  double way_x_ = 0.0, way_y_ = 0.0;                                       ///< [m]
+  double turned_ = 0.0, asked_ = 0.0;                                      ///< [rad]
+  double calm_ = 0.0;                                                      ///< [s]
+  double clean_from_ = -1e9;                                               ///< the last doubt [s]
+  double place_agrees_ = 0.0, heading_agrees_ = 0.0, speed_agrees_ = 0.0;  ///< for how long [s]
+  double late_agrees_ = 0.0;                                               ///< [s]
+  bool is_tried_ = false;        ///< whether the car answers late shows as it starts
+  double asked_speed_ = 0.0;     ///< by the pedal since then [m/s]
+  double lag_ = 0.0;             ///< [s]
+  double retry_ = 0.0;           ///< from when on the car may start again [s]
+  double agreed_heading_ = 0.0;  ///< what the heading differs by since it agrees [rad]
+  double moved_ = 0.0;           ///< of the last step: place against speed and heading [m]
+  double x_ = 0.0, y_ = 0.0;
+  double drift_ = 0.0;   ///< of the expected place, while it is not measured [m]
+  double unseen_ = 0.0;  ///< for how long something has not been measured [s]
+  Noise place_, heading_, speed_;
+  std::array<Noise, 3> sums_;
+};
+
+}  // namespace chicane::safety

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/sensor_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "chicane/base/random.hpp"
+
+namespace chicane::safety {
+namespace {
+
+constexpr double kCycle = 0.04;  // [s]
+constexpr double kLength = 4.5, kWheelbase = 2.7;
+constexpr double kSpeed = 20.0, kYawRate = 0.3;  // [m/s], [rad/s]
+
+/// A car on a circle, or straight on.
+model::State car_at(double time, double yaw_rate) {
+  model::State state{.vx = kSpeed, .r = yaw_rate};
+  state.psi = yaw_rate * time;
+  const double radius = yaw_rate != 0.0 ? kSpeed / yaw_rate : 0.0;
+  state.x = yaw_rate != 0.0 ? radius * std::sin(state.psi) : kSpeed * time;
+  state.y = yaw_rate != 0.0 ? radius * (1.0 - std::cos(state.psi)) : 0.0;
+  state.steer = std::atan(yaw_rate * kWheelbase / kSpeed);
+  return state;
+}
+
+model::Measurement measured(double time, const model::State& car) {
+  model::Measurement now;
+  now.time = time;
+  now.x = car.x;
+  now.y = car.y;
+  now.psi = car.psi;
+  now.speed = car.vx;
+  return now;
+}
+
+using Change = std::function<void(model::Measurement&)>;
+
+/// What is doubted first within `seconds` of a signal that is wrong from the fifth second on. The estimate
+/// follows what is not doubted, as the guard's does.
+SensorDoubts doubts_of(const Change& change, double seconds, double yaw_rate = kYawRate) {
+  SensorWatch watch{kLength, kWheelbase};
+  double off_x = 0.0, off_y = 0.0;  // of the estimate
+  for (double time = 0.0; time < 5.0 + seconds; time += kCycle) {
+    model::State expected = car_at(time, yaw_rate);
+    model::Measurement now = measured(time, expected);
+    if (time >= 5.0) change(now);
+    expected.x += off_x;
+    expected.y += off_y;
+    const SensorDoubts doubts = watch.see(now, expected);
+    if (doubts.late || doubts.place || doubts.heading || doubts.speed) return doubts;
+    off_x += now.x - expected.x;
+    off_y += now.y - expected.y;
+  }
+  return {};
+}
+
+TEST(SensorWatch, DoubtsNothingOfACarThatIsMeasuredWell) {
+  for (const double yaw_rate : {0.0, kYawRate, -kYawRate}) {
+    const SensorDoubts doubts = doubts_of([](model::Measurement&) {}, 60.0, yaw_rate);
+    EXPECT_FALSE(doubts.late || doubts.place || doubts.heading || doubts.speed) << yaw_rate;
+  }
+}
+
+TEST(SensorWatch, KnowsTheNoiseOfASensorThatWasAlwaysNoisy) {
+  SensorWatch watch{kLength, kWheelbase};
+  Random random(5);
+  for (double time = 0.0; time < 300.0; time += kCycle) {
+    const model::State car = car_at(time, kYawRate);
+    model::Measurement now = measured(time, car);
+    now.x += 0.05 * random.normal();
+    now.y += 0.05 * random.normal();
+    now.psi += 0.005 * random.normal();
+    now.speed += 0.1 * random.normal();
+    const SensorDoubts doubts = watch.see(now, car);
+    ASSERT_FALSE(doubts.late || doubts.place || doubts.heading || doubts.speed) << time;
+  }
+}
+
+TEST(SensorWatch, DoubtsAPlaceThatDrifts) {
+  for (const double angle : {0.0, 1.5, 3.0, 4.5}) {
+    for (const double speed : {0.3, 1.0}) {
+      const auto drift = [&](model::Measurement& now) {
+        now.x += speed * (now.time - 5.0) * std::cos(angle);
+        now.y += speed * (now.time - 5.0) * std::sin(angle);
+      };
+      const SensorDoubts doubts = doubts_of(drift, 1.5 / speed);
+      EXPECT_TRUE(doubts.place) << angle << ' ' << speed;
+      EXPECT_FALSE(doubts.heading || doubts.speed || doubts.late);
+    }
+  }
+}
+
+TEST(SensorWatch, CountsOnFromWhereTheDriftBegan) {
+  SensorWatch watch{kLength, kWheelbase};
+  double off = 0.0;
+  for (double time = 0.0; time < 12.0; time += kCycle) {
+    model::State expected = car_at(time, 0.0);
+    model::Measurement now = measured(time, expected);
+    if (time >= 5.0) now.y += 0.5 * (time - 5.0);
+    expected.y += off;
+    const bool is_doubted = watch.see(now, expected).place;
+    off = (is_doubted ? watch.y() : now.y) - car_at(time, 0.0).y;
+  }
+  EXPECT_TRUE(watch.doubts().place);
+  EXPECT_LT(std::fabs(off), 0.8);  // 3.5 m by the sensor
+}
+
+TEST(SensorWatch, TellsAMirroredHeadingFromAWrongPlace) {
+  const SensorDoubts doubts =
+      doubts_of([](model::Measurement& now) { now.psi = 2.0 * kYawRate * 5.0 - now.psi; }, 2.0);
+  EXPECT_TRUE(doubts.heading);
+  EXPECT_FALSE(doubts.place || doubts.speed || doubts.late);
+}
+
+TEST(SensorWatch, DoubtsASpeedThatChangesAtOnce) {
+  for (const double factor : {0.5, 2.0, 3.6}) {
+    const SensorDoubts doubts = doubts_of([=](model::Measurement& now) { now.speed *= factor; }, kCycle);
+    EXPECT_TRUE(doubts.speed) << factor;
+    EXPECT_FALSE(doubts.place || doubts.heading || doubts.late) << factor;
+  }
+}
+
+TEST(SensorWatch, TellsLateMeasurementsFromOtherPlaces) {
+  for (const double age : {0.1, 0.3, 0.8, 1.5}) {
+    const auto late = [=](model::Measurement& now) {
+      const double time = now.time;
+      now = measured(time - age, car_at(time - age, kYawRate));
+      now.time = time;
+    };
+    const SensorDoubts doubts = doubts_of(late, kCycle);
+    EXPECT_TRUE(doubts.late && doubts.is_old) << age;
+    EXPECT_FALSE(doubts.place || doubts.heading || doubts.speed) << age;
+  }
+}
+
+TEST(SensorWatch, BelievesMeasurementsOfNowAgain) {
+  SensorWatch watch{kLength, kWheelbase};
+  double ended = 0.0;
+  for (double time = 0.0; time < 12.0; time += kCycle) {
+    const model::State expected = car_at(time, kYawRate);
+    const bool is_late = time >= 5.0 && time < 7.0;
+    model::Measurement now =
+        measured(time - (is_late ? 0.5 : 0.0), car_at(time - (is_late ? 0.5 : 0.0), kYawRate));
+    now.time = time;
+    const SensorDoubts& doubts = watch.see(now, expected);
+    EXPECT_EQ(doubts.is_old, is_late) << time;
+    if (!doubts.late && ended == 0.0 && time > 5.1) ended = time;
+  }
+  EXPECT_NEAR(ended, 7.0 + SensorWatch::kAgreeing, 0.1);
+}
+
+TEST(SensorWatch, NeverBelievesAPlaceBecauseItLasts) {
+  SensorWatch watch{kLength, kWheelbase};
+  for (double time = 0.0; time < 300.0; time += kCycle) {
+    const model::State expected = car_at(time, kYawRate);
+    model::Measurement now = measured(time, expected);
+    if (time >= 5.0) now.y += 6.0;
+    EXPECT_EQ(watch.see(now, expected).place, time >= 5.0);
+  }
+}
+
+TEST(SensorWatch, LeavesACarThatSlidesAlone) {
+  SensorWatch watch{kLength, kWheelbase};
+  for (double time = 0.0; time < 20.0; time += kCycle) {
+    const model::State expected = car_at(time, 0.0);
+    model::Measurement now = measured(time, expected);
+    // The slide begins little by little: the model is wrong by more in each step.
+    const double slide = std::clamp(0.5 * (time - 10.0), 0.0, 1.0);
+    now.psi += 0.15 * slide;
+    now.y += 0.5 * slide;
+    const SensorDoubts& doubts = watch.see(now, expected);
+    EXPECT_FALSE(doubts.late || doubts.heading || doubts.speed || doubts.place) << time;
+  }
+}
+
+}  // namespace
+}  // namespace chicane::safety
