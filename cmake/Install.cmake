@@ -70,6 +70,10 @@ function(write_pc target pc_name)
   set(archives "")
   set(requires "")
   set(libs "")
+  set(pc_definitions "")
+  if(target STREQUAL "chicane_protocol" OR "chicane_protocol" IN_LIST uses_of_${target})
+    set(pc_definitions " -DCHICANE_USES_INSTALLATION")  # protocol/data_folders.hpp
+  endif()
   foreach(module IN LISTS modules)  # in the order of the layers
     if(module STREQUAL target OR module IN_LIST uses_of_${target})
       get_target_property(type ${module} TYPE)
@@ -125,7 +129,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/chicaneConfig.cmake ${CMAKE_CURRENT_BI
         cmake/InstructionSets.cmake tools/check_symbols.py DESTINATION ${config_dir})
 
 # What the program can be told by name, and views for others' viewers. Programs in the build tree find the files by links that lie where
-# an installed program looks or one folder further up (protocol/library.hpp): no binary knows the source tree.
+# an installed program looks or one folder further up (protocol/data_folders.hpp): no binary knows the source tree.
 if(TARGET chicane_protocol)
   install(DIRECTORY presets cars tracks scenarios plans leagues jobs claims layouts DESTINATION ${data_dir})
   file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/share/chicane)

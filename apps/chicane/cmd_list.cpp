@@ -141,12 +141,19 @@ struct List {
   std::string_view name;
   void (*print)(bool is_markdown);
   bool is_in_overview = true;
+  Result<void> (*check)() = [] { return Result<void>(); };
 };
+
+template <Shelf shelf>
+constexpr List list_of(std::string_view name, void (*print)(bool)) {
+  return {name, print, true, [] { return protocol::check_shelf(shelf); }};
+}
+
 constexpr std::array kLists{
-    List{"presets", print_shelf<Shelf::kPreset>},
-    List{"tracks", print_shelf<Shelf::kTrack>},
-    List{"cars", print_cars},
-    List{"scenarios", print_shelf<Shelf::kScenario>},
+    list_of<Shelf::kPreset>("presets", print_shelf<Shelf::kPreset>),
+    list_of<Shelf::kTrack>("tracks", print_shelf<Shelf::kTrack>),
+    list_of<Shelf::kCar>("cars", print_cars),
+    list_of<Shelf::kScenario>("scenarios", print_shelf<Shelf::kScenario>),
     List{"controllers", print_controllers},
     List{"plants", print_plants},
     List{"faults", print_faults, false},
@@ -164,6 +171,8 @@ std::vector<std::string> list_names() {
 ExitCode list(const Options& options) {
   bool is_first = true;
   for (const List& list : kLists) {
+    if (const auto there = list.check(); !there && (options.shelf.empty() || list.name == options.shelf))
+      return report(there.error());
     if (!options.shelf.empty() && list.name == options.shelf) list.print(options.is_markdown);
     if (!options.shelf.empty() || !list.is_in_overview) continue;
     fmt::print("{}{}\n", std::exchange(is_first, false) ? "" : "\n", list.name);

@@ -7,8 +7,9 @@ rm -rf "$work/consumer" "$work/own_controller.mcap"
 cmake -G Ninja -S "$source" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
 cmake --build "$work/consumer" >/dev/null
 "$work/consumer/consumer"
-data=$(dirname "$(dirname "$(find "$prefix" -path '*presets/default.yaml')")")
-CHICANE_DATA_DIR=$data "$work/consumer/own_controller" "$work/own_controller.mcap"
+# Programs outside the installation find its data, by what CMake and pkg-config told their compiler.
+unset CHICANE_DATA_DIR
+(cd / && "$work/consumer/own_controller" "$work/own_controller.mcap")
 
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name chicane.pc)")
 export PKG_CONFIG_PATH
@@ -20,7 +21,10 @@ if grep -qF "$build/" <<<"$flags"; then [[ $prefix == "$build"/* ]] || { echo "c
 [ -f "$(pkg-config --variable=datadir chicane)/presets/default.yaml" ] || { echo "chicane.pc: no presets/default.yaml in datadir"; exit 1; }
 
 examples=$(dirname "$(find "$prefix" -name 01_drive_a_lap.cpp)")
+# shellcheck disable=SC2086
+"$compiler" "$examples/01_drive_a_lap.cpp" -o "$work/pkg_config_lap" $flags
+(cd / && "$work/pkg_config_lap")
 rm -rf "$work/examples"
 cmake -G Ninja -S "$examples" -B "$work/examples" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
 cmake --build "$work/examples" --target 01_drive_a_lap >/dev/null
-(cd / && CHICANE_DATA_DIR=$(pkg-config --variable=datadir chicane) "$work/examples/01_drive_a_lap")
+(cd / && "$work/examples/01_drive_a_lap")

@@ -29,3 +29,23 @@ cmp "$man" <("$program" manual) || fail "the installed manual page is not the pr
 cmp "$prefix/share/bash-completion/completions/chicane.bash" <("$program" completion bash)
 cmp "$prefix/share/zsh/site-functions/_chicane" <("$program" completion zsh)
 cmp "$prefix/share/fish/vendor_completions.d/chicane.fish" <("$program" completion fish)
+
+# Alone, without its data: it names each folder that it has searched.
+alone=$(mktemp -d)
+trap 'rm -rf "$alone"' EXIT
+mkdir "$alone/bin"
+cp "$program" "$alone/bin"
+if [ ! -e /usr/share/chicane ] && [ ! -e /usr/local/share/chicane ]; then
+  for command in 'drive --fast --laps 1' 'list tracks'; do
+    code=0
+    # shellcheck disable=SC2086
+    said=$(CHICANE_DATA_DIR=/none "$alone/bin/chicane" $command 2>&1) || code=$?
+    [ "$code" -eq 2 ] || fail "$command without data ended with $code: $said"
+    for place in ./tracks /none/tracks {"$alone/bin","$alone",/usr}/share/chicane/tracks; do
+      [[ $said == *"$place"* ]] || fail "$command without data does not name $place: $said"
+    done
+  done
+fi
+# Beside the program is a place, too.
+cp -r "$prefix/share" "$alone/bin"
+[[ $("$alone/bin/chicane" list tracks) == *lakeside* ]] || fail "share/chicane beside the program was not found"

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -48,27 +47,7 @@ ShelfNames names(Shelf shelf) {
   return {"scenario", "scenarios", kSettings};
 }
 
-/// The folder of the running program; empty where the system does not tell.
-fs::path program_folder() {
-  std::error_code ignored;
-  return fs::read_symlink("/proc/self/exe", ignored).parent_path();
-}
-
-std::vector<fs::path> folders(Shelf shelf) {
-  const std::string_view folder = names(shelf).folder;
-  std::vector<fs::path> found{fs::path(".") / folder};
-  if (const char* data = std::getenv("CHICANE_DATA_DIR"); data != nullptr && *data != '\0')
-    found.push_back(fs::path(data) / folder);
-  if (const fs::path program = program_folder(); !program.empty()) {
-    for (const fs::path& from : {program, program / ".."}) {
-      std::error_code missing;
-      const fs::path place = fs::canonical(from / CHICANE_DATA_FROM_PROGRAM / folder, missing);
-      if (!missing) found.push_back(place);
-    }
-  }
-  found.push_back(fs::path(CHICANE_INSTALL_DATA_DIR) / folder);
-  return found;
-}
+std::vector<std::string> folders(Shelf shelf) { return data_folders(data_origins(), names(shelf).folder); }
 
 /// The first comment line that describes the file: neither licence nor CSV header.
 std::string first_comment(const fs::path& file) {
@@ -89,15 +68,23 @@ bool is_path(std::string_view name) {
   return name.find('/') != std::string_view::npos || !fs::path(name).extension().empty();
 }
 
+/// Where a shelf was looked for, and what helps.
+std::string nothing_found(Shelf shelf) {
+  const std::string_view folder = names(shelf).folder;
+  return fmt::format("found no {} in {}; set CHICANE_DATA_DIR to the folder that holds the folder {}", folder,
+                     fmt::join(folders(shelf), ", "), folder);
+}
+
 /// `preset: got "dfault", expected a file or one of default, ... (did you mean default?)`.
 Error unknown_name(Shelf shelf, std::string_view name, const std::vector<Entry>& known,
                    std::string_view or_what) {
+  const std::string got = fmt::format("{}: got \"{}\", expected ", names(shelf).singular, printable(name));
+  if (known.empty()) return {ErrorCode::kNotFound, got + "a file that exists; " + nothing_found(shelf)};
   std::vector<std::string_view> known_names;
   known_names.reserve(known.size());
   for (const Entry& entry : known) known_names.push_back(entry.name);
   const std::string_view best = nearest(name, known_names);
-  return {ErrorCode::kNotFound, fmt::format("{}: got \"{}\", expected {}one of {}{}", names(shelf).singular,
-                                            printable(name), or_what, fmt::join(known_names, ", "),
+  return {ErrorCode::kNotFound, fmt::format("{}{}one of {}{}", got, or_what, fmt::join(known_names, ", "),
                                             best.empty() ? "" : fmt::format(" (did you mean {}?)", best))};
 }
 
@@ -240,7 +227,7 @@ std::optional<Document> read_car(const Wish& wish, RememberedFiles& files, Fault
 
 std::vector<Entry> entries(Shelf shelf) {
   std::map<std::string, Entry> found;
-  for (const fs::path& folder : folders(shelf)) {
+  for (const std::string& folder : folders(shelf)) {
     for (const std::string_view extension : names(shelf).extensions) {
       std::error_code error;
       for (fs::directory_iterator item(folder, error), end; !error && item != end; item.increment(error)) {
@@ -254,6 +241,11 @@ std::vector<Entry> entries(Shelf shelf) {
   result.reserve(found.size());
   for (auto& [name, entry] : found) result.push_back(std::move(entry));
   return result;
+}
+
+Result<void> check_shelf(Shelf shelf) {
+  if (!entries(shelf).empty()) return {};
+  return fail(ErrorCode::kNotFound, fmt::format("{}: {}", names(shelf).singular, nothing_found(shelf)));
 }
 
 Result<void> check_name(Shelf shelf, std::string_view name) {
@@ -271,9 +263,9 @@ Result<std::string> locate(Shelf shelf, std::string_view name_or_file) {
     return fail(ErrorCode::kNotFound,
                 fmt::format("{}: got {}, expected a file that exists", singular, printable(name_or_file)));
   }
-  for (const fs::path& place : folders(shelf)) {
+  for (const std::string& place : folders(shelf)) {
     for (const std::string_view extension : extensions) {
-      const fs::path file = place / fmt::format("{}{}", name_or_file, extension);
+      const fs::path file = fs::path(place) / fmt::format("{}{}", name_or_file, extension);
       if (fs::is_regular_file(file, ignored)) return file.lexically_normal().string();
     }
   }

@@ -7,18 +7,11 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/protocol/data_folders.hpp"
 #include "chicane/scenario/scenario.hpp"
 
-/// The files that ship: presets, cars, tracks and scenarios, found by name. Looked for, the first hit wins:
-///
-///   1. in ./presets (cars, tracks, scenarios);
-///   2. in $CHICANE_DATA_DIR/presets;
-///   3. in ../share/chicane/presets seen from the folder of the running program, where `cmake --install` puts
-///      them, wherever the installation was moved to; or one folder further up, as in a build tree;
-///   4. in share/chicane/presets of the prefix that the library was configured for.
-///
-/// A program of your own that uses a moved installation sets CHICANE_DATA_DIR (CMake: chicane_DATA_DIR;
-/// pkg-config: the variable datadir). The functions keep nothing between calls: any thread may call them.
+/// The files that ship: presets, cars, tracks and scenarios, found by name in the folders of
+/// data_folders.hpp, the first hit wins. The functions keep nothing between calls: any thread may call them.
 namespace chicane::protocol {
 
 enum class Shelf { kPreset, kCar, kTrack, kScenario };
@@ -32,13 +25,18 @@ struct Entry {
 /// All entries of a shelf by name, each name once.
 [[nodiscard]] std::vector<Entry> entries(Shelf shelf);
 
+/// That a shelf has an entry. kNotFound names each folder that was searched: "preset: found no presets in
+/// ./presets, /usr/share/chicane/presets; set CHICANE_DATA_DIR to the folder that holds the folder presets".
+[[nodiscard]] Result<void> check_shelf(Shelf shelf);
+
 /// For names that come over the network: nothing when `name` is one of the shelf's entries, letter for
 /// letter; kNotFound, "track: got ../x.csv, expected one of lakeside, ...", for everything else, paths
 /// included. Opens no file that it names.
 [[nodiscard]] Result<void> check_name(Shelf shelf, std::string_view name);
 
 /// The file behind a name, or behind a path when `name_or_file` has a slash or an extension.
-/// kNotFound: `preset: got "dfault", expected one of default, ... (did you mean default?)`.
+/// kNotFound: `preset: got "dfault", expected one of default, ... (did you mean default?)`, or the message of
+/// check_shelf() where there is nothing to choose from.
 [[nodiscard]] Result<std::string> locate(Shelf shelf, std::string_view name_or_file);
 
 /// The bytes of a file of at most 64 MiB. kNotFound when there is none, kIo with the system's reason when it

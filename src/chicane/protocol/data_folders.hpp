@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// The folders that hold the shipped files: presets, cars, tracks, scenarios.
+namespace chicane::protocol {
+
+/// What the search for folders starts from. Empty where it is unknown.
+struct DataOrigins {
+  std::string environment{};  ///< value of the variable CHICANE_DATA_DIR: a folder with the folder `presets`
+  std::string program{};      ///< file of the running program, absolute
+  std::string library{};      ///< file of the shared object that contains this library, absolute
+  std::string header{};  ///< this header in the installation that the program was compiled with, absolute
+};
+
+/// The origins of this process. Reads the environment and, where the system has it, /proc. Without /proc the
+/// program is the path that it was started with.
+[[nodiscard]] DataOrigins data_origins();
+
+/// Every folder in which a file of `kind` ("presets") is looked for, the first one first, whether it exists
+/// or not, each once:
+///
+///   1. ./presets;
+///   2. presets in the folder that CHICANE_DATA_DIR names;
+///   3. share/chicane/presets in the program's folder, in the one above, and in the one above that: a folder
+///      that was unpacked, an installation wherever it was moved to, a build tree;
+///   4. the same for the shared object that contains the library, such as a Python module;
+///   5. share/chicane/presets of the installation whose headers the program was compiled with;
+///   6. share/chicane/presets of the prefix that the library was configured for, and of /usr.
+[[nodiscard]] std::vector<std::string> data_folders(const DataOrigins& origins, std::string_view kind);
+
+}  // namespace chicane::protocol
+
+#ifdef CHICANE_USES_INSTALLATION
+// Defined by the CMake targets and the .pc files of an installation. A program that includes this header then
+// knows where the installation lies, wherever it was moved to before.
+extern "C" {
+[[gnu::used]] inline constexpr char chicane_installed_header[] = __FILE__;
+}
+#endif
