@@ -1,6 +1,8 @@
 # find_package(chicane COMPONENTS ...) and pkg-config for users of the library: each module is a component with its own exported targets
 # and its own chicane-MODULE.pc, both made from what its target links. tests/install builds consumers of each kind.
+# Components: program, dev, doc, and plain, what a package has in another form (Package.cmake).
 include(CMakePackageConfigHelpers)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
 get_property(modules GLOBAL PROPERTY CHICANE_MODULES)
 
 # chicane::lib is all of it.
@@ -131,11 +133,12 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/chicaneConfig.cmake ${CMAKE_CURRENT_BI
 # What the program can be told by name, and views for others' viewers. Programs in the build tree find the files by links that lie where
 # an installed program looks or one folder further up (protocol/data_folders.hpp): no binary knows the source tree.
 if(TARGET chicane_protocol)
-  install(DIRECTORY presets cars tracks scenarios plans leagues jobs claims layouts DESTINATION ${data_dir})
+  install(DIRECTORY presets cars tracks scenarios plans leagues jobs claims layouts DESTINATION ${data_dir} COMPONENT program)
   file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/share/chicane)
   foreach(folder presets cars tracks scenarios)
     file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${CMAKE_BINARY_DIR}/share/chicane/${folder} SYMBOLIC)
   endforeach()
 endif()
-install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT plain)
+install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)
