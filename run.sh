@@ -5,6 +5,7 @@
 #   ./run.sh --laps 1                             options alone mean `drive`
 #   ./run.sh drive --fast --laps 2 --json         any command of `chicane`; stdout carries its results only
 #   ./run.sh bench                                builds the benchmark, too, with Ipopt to compare with
+#   ./run.sh package                              makes Debian packages and a tarball in build/release/packages (docs/packages.md)
 #   ./run.sh page --out DIR                       writes a page that drives without a program, in the browser alone (WebAssembly)
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
@@ -16,6 +17,17 @@ if [ "${1:-}" = page ] && [[ " $* " != *' -h '* && " $* " != *' --help '* ]]; th
   mapfile -t node < <(node_packages)
   install_packages "${run_packages[@]}" "${page_packages[@]}" "${node[@]}"
   exec "$root/tools/build_page.sh" "$3"
+fi
+
+if [ "${1:-}" = package ] && [ $# -eq 1 ]; then
+  mapfile -t node < <(node_packages)
+  install_packages "${run_packages[@]}" "${package_packages[@]}" "${node[@]}"
+  options=(CHICANE_SIMD=all)
+  is_configured "$root" || options+=(CHICANE_BUILD_TESTS=OFF CHICANE_BUILD_EXAMPLES=OFF)
+  build_release "$root" chicane_installed "${options[@]}"
+  (cd "$root/build/release" && rm -rf packages && cpack >cpack.log 2>&1) || { cat "$root/build/release/cpack.log" >&2; exit 3; }
+  printf '%s\n' "$root"/build/release/packages/*
+  exit 0
 fi
 
 target=chicane_app

@@ -60,11 +60,11 @@ function(package_file name file folder)
   install(FILES ${package_dir}/${name}/${file} DESTINATION ${folder} COMPONENT deb_${name} EXCLUDE_FROM_ALL)
 endfunction()
 
-# chicane_package(NAME COMPONENTS one two SECTION science SUMMARY "..." TEXT "..." [ARCH all] [SHLIBDEPS] [MULTIARCH same]
+# chicane_package(NAME COMPONENTS one two SECTION science SUMMARY "..." TEXT "..." [ARCH all] [SHLIBDEPS]
 #                 [DEPENDS "a, b"] [RECOMMENDS ...] [SUGGESTS ...])
-# In TEXT a line break begins a new paragraph.
+# TEXT has lines of at most 79 characters; a line with nothing but a dot begins a paragraph.
 function(chicane_package name)
-  cmake_parse_arguments(P "SHLIBDEPS" "SECTION;SUMMARY;TEXT;ARCH;MULTIARCH;DEPENDS;RECOMMENDS;SUGGESTS" "COMPONENTS" ${ARGN})
+  cmake_parse_arguments(P "SHLIBDEPS" "SECTION;SUMMARY;TEXT;ARCH;DEPENDS;RECOMMENDS;SUGGESTS" "COMPONENTS" ${ARGN})
   if(NOT name IN_LIST CHICANE_PACKAGES)
     return()
   endif()
@@ -75,11 +75,9 @@ function(chicane_package name)
   endforeach()
   set(CPACK_CHICANE_DEB_COMPONENTS ${CPACK_CHICANE_DEB_COMPONENTS} PARENT_SCOPE)
   string(TOUPPER ${name} upper)
-  string(REPLACE "\n" "\n.\n" text "${P_TEXT}")
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name} PARENT_SCOPE)
   set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${P_SECTION} PARENT_SCOPE)
-  set(CPACK_COMPONENT_${upper}_DESCRIPTION "${P_SUMMARY}\n${text}" PARENT_SCOPE)
-  set(CPACK_DEBIAN_${upper}_DESCRIPTION "${P_SUMMARY}\n${text}" PARENT_SCOPE)
+  set(CPACK_DEBIAN_${upper}_DESCRIPTION "${P_SUMMARY}\n${P_TEXT}" PARENT_SCOPE)
   foreach(field DEPENDS RECOMMENDS SUGGESTS)
     set(CPACK_DEBIAN_${upper}_PACKAGE_${field} "${P_${field}}" PARENT_SCOPE)
   endforeach()
@@ -89,19 +87,16 @@ function(chicane_package name)
   if(P_ARCH)
     set(CPACK_DEBIAN_${upper}_PACKAGE_ARCHITECTURE ${P_ARCH} PARENT_SCOPE)
   endif()
-  if(P_MULTIARCH)
-    set(CPACK_DEBIAN_${upper}_PACKAGE_MULTIARCH ${P_MULTIARCH} PARENT_SCOPE)
-  endif()
 
   set(doc share/doc/${name})
   install(FILES ${debian_dir}/copyright DESTINATION ${doc} COMPONENT deb_${name} EXCLUDE_FROM_ALL)
   package_file(${name} changelog.gz ${doc} "gzip -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md")
   package_file(${name} changelog.Debian.gz ${doc}
                "${debian_dir}/changelog.sh ${deb_version} '${CHICANE_PACKAGE_MAINTAINER}' | gzip -9nc")
-  if(EXISTS ${debian_dir}/${name}.lintian-overrides)
-    install(FILES ${debian_dir}/${name}.lintian-overrides DESTINATION share/lintian/overrides RENAME ${name}
-            COMPONENT deb_${name} EXCLUDE_FROM_ALL)
-  endif()
+  file(CONFIGURE OUTPUT ${package_dir}/${name}/lintian-overrides CONTENT
+    "# These packages are not uploaded to Debian, and close no bug of it.\n${name}: initial-upload-closes-no-bugs *\n")
+  install(FILES ${package_dir}/${name}/lintian-overrides DESTINATION share/lintian/overrides RENAME ${name}
+          COMPONENT deb_${name} EXCLUDE_FROM_ALL)
 endfunction()
 
 # The Debian packages that programs need which link the archives.
@@ -124,26 +119,32 @@ list(JOIN dev_depends ", " dev_depends)
 
 chicane_package(chicane COMPONENTS program SECTION science SHLIBDEPS SUGGESTS "chicane-doc, libchicane-dev"
   SUMMARY "drives a car round a track by model predictive control"
-  TEXT "Controller, simulator, recorder and dashboard in one program, with cars, tracks and presets. A guard keeps a verified stop at hand.
-The program serves its dashboard to a browser, drives external simulators by WebSocket, compares controllers, and finds the limit of a car.")
-chicane_package(libchicane-dev COMPONENTS dev SECTION libdevel MULTIARCH same DEPENDS "${dev_depends}" SUGGESTS "chicane-doc"
+  TEXT "Controller, simulator, recorder and dashboard in one program, with cars, tracks
+and presets. A guard keeps a verified stop at hand.
+.
+The program serves its dashboard to a browser, drives external simulators by
+WebSocket, compares controllers, and finds the limit of a car.")
+chicane_package(libchicane-dev COMPONENTS dev SECTION libdevel DEPENDS "${dev_depends}" SUGGESTS "chicane-doc"
   SUMMARY "model predictive control of cars - C++ library"
-  TEXT "Headers, archives, CMake package and pkg-config files of the modules that the program chicane consists of: solver for optimal control \
-problems, models and plants of cars, controllers, guard, recording.")
-chicane_package(libchicane-solver-dev COMPONENTS dev SECTION libdevel MULTIARCH same DEPENDS "${dev_depends}"
+  TEXT "Headers, archives, CMake package and pkg-config files of the modules that the
+program chicane consists of: solver for optimal control problems, models and
+plants of cars, controllers, guard, recording.")
+chicane_package(libchicane-solver-dev COMPONENTS dev SECTION libdevel DEPENDS "${dev_depends}"
   SUMMARY "solver for optimal control problems - C++ library"
-  TEXT "Headers, archives, CMake package and pkg-config files of the solver of chicane and what it stands on. It allocates no memory \
-while it solves, and keeps deadlines.")
-chicane_package(chicane-doc COMPONENTS doc SECTION doc ARCH all MULTIARCH foreign
+  TEXT "Headers, archives, CMake package and pkg-config files of the solver of chicane
+and what it stands on. It allocates no memory while it solves, and keeps
+deadlines.")
+chicane_package(chicane-doc COMPONENTS doc SECTION doc ARCH all
   SUMMARY "model predictive control of cars - documentation and examples"
-  TEXT "Tutorials, reference and explanations of the program chicane and its library as Markdown pages, and example programs in C++ and Python.")
+  TEXT "Tutorials, reference and explanations of the program chicane and its library as
+Markdown pages, and example programs in C++ and Python.")
 
 # The docs are part of no installation but the package's.
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT deb_chicane-doc EXCLUDE_FROM_ALL)
 if(TARGET chicane_app)
-  set(program $<TARGET_FILE:chicane_app>)
-  package_file(chicane chicane.1.gz ${CMAKE_INSTALL_MANDIR}/man1 "${program} manual | gzip -9nc")
-  package_file(chicane _chicane share/zsh/vendor-completions "${program} completion zsh")
+  set(program_file $<TARGET_FILE:chicane_app>)
+  package_file(chicane chicane.1.gz ${CMAKE_INSTALL_MANDIR}/man1 "${program_file} manual | gzip -9nc")
+  package_file(chicane _chicane share/zsh/vendor-completions "${program_file} completion zsh")
   install(FILES ${debian_dir}/chicane.desktop DESTINATION share/applications COMPONENT deb_chicane EXCLUDE_FROM_ALL)
   install(FILES web/public/favicon.svg DESTINATION share/icons/hicolor/scalable/apps RENAME chicane.svg COMPONENT deb_chicane
           EXCLUDE_FROM_ALL)
@@ -152,7 +153,7 @@ if(TARGET chicane_app)
   # The tarball brings along the libraries that not every system has; the C library is the system's.
   set(private_libraries lib/chicane)
   set_target_properties(chicane_app PROPERTIES INSTALL_RPATH "$ORIGIN/../${private_libraries}")
-  install(CODE "file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${program} RESOLVED_DEPENDENCIES_VAR libraries
+  install(CODE "file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${program_file} RESOLVED_DEPENDENCIES_VAR libraries
                      POST_EXCLUDE_REGEXES [[/(ld-linux.*|lib(c|m))[.]so]])
                 file(INSTALL \${libraries} DESTINATION \${CMAKE_INSTALL_PREFIX}/${private_libraries} FOLLOW_SYMLINK_CHAIN)"
           COMPONENT libraries EXCLUDE_FROM_ALL)

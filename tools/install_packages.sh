@@ -8,12 +8,14 @@ run_packages=(
 )
 # To compare with Ipopt in `chicane bench`, on top of those.
 bench_packages=(libeigen3-dev coinor-libipopt-dev liblapack-dev libblas-dev)
+# To make packages of all that the program can do, on top of the first.
+package_packages=(dpkg-dev libnlopt-dev)
 # To build and run the tests, on top of the first.
-test_packages=("${bench_packages[@]}" libgtest-dev libgmock-dev locales python3 groff fish parallel libnlopt-dev)
+test_packages=("${bench_packages[@]}" "${package_packages[@]}" libgtest-dev libgmock-dev locales python3 groff fish parallel)
 # For a page that drives without a program, on top of the first: 1 GB.
 page_packages=(emscripten)
 # For the slow tests, on top of all of those.
-slow_test_packages=(openmpi-bin slurm-wlm munge "${page_packages[@]}")
+slow_test_packages=(openmpi-bin slurm-wlm munge mmdebstrap lintian "${page_packages[@]}")
 # To run tools/check.sh, on top of those.
 check_packages=(clang-format clang-tidy)
 
