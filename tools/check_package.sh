@@ -1,0 +1,106 @@
+#!/usr/bin/env bash
+# Installs the packages in a bare Debian (mmdebstrap's minbase), drives with them with and without /proc, builds programs with the library,
+# upgrades from an older version, and purges them. Prints times and bytes. Needs mmdebstrap and the network; about four minutes.
+#   tools/check_package.sh [FOLDER]     FOLDER has the packages: build/release/packages, made by ./run.sh package
+# Exit code 77 where mmdebstrap is not installed. Root is not needed where user namespaces are allowed.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
+fail() { printf 'check_package: %s\n' "$*" >&2; exit 1; }
+say() { printf '%-58s %s\n' "$1" "$2"; }
+
+# timed WORDS COMMAND...: runs it; prints its output where it fails, else the seconds that it took.
+timed() {
+  local words=$1 from=$EPOCHREALTIME
+  "${@:2}" >"$log" 2>&1 || { cat "$log"; fail "$words: failed"; }
+  say "$words" "$(awk "BEGIN { printf \"%.1f s\", $EPOCHREALTIME - $from }")"
+}
+
+# What follows runs in mmdebstrap's namespace, with the bare system in $bare.
+in_bare() { env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive chroot "$bare" "$@"; }
+apt() { in_bare apt-get -q -y --no-install-recommends "$@"; }
+traces() { (cd "$bare" && find . -xdev \( -path ./proc -o -path ./sys -o -path ./check -o -path ./var/log \) -prune -o -iname '*chicane*' -print); }
+
+# older_package: the same package as if it were of version 0.1, with a track that the present one does not have.
+older_package() {
+  dpkg-deb -R "$bare"/check/chicane_*.deb "$bare/check/older"
+  sed -i 's/^Version: .*/Version: 0.1.0-1/' "$bare/check/older/DEBIAN/control"
+  echo '# gone' >"$bare/check/older/usr/share/chicane/tracks/gone.csv"
+  rm "$bare/check/older/DEBIAN/md5sums"
+  dpkg-deb --root-owner-group -b "$bare/check/older" "$bare/check/older.deb" >/dev/null
+}
+
+check_tarball() {
+  tar -C "$bare/check" -xf "$bare"/check/chicane-*-linux-*.tar.zst
+  timed "tarball: unpacked, nothing installed, one lap" in_bare sh -c '/check/chicane-*-linux-*/bin/chicane drive --fast --laps 1'
+}
+
+check_program() {
+  older_package
+  timed "apt install of an older version" apt install /check/older.deb
+  in_bare chicane list tracks | grep -q '^gone' || fail "the older version is not there"
+  timed "upgrade" apt install "${deb[chicane]}"
+  ! in_bare chicane list tracks | grep -q '^gone' || fail "the upgrade has left a file of the older version"
+  timed "purge" apt purge chicane
+  timed "apt install ./chicane_*.deb, dependencies are there" apt install "${deb[chicane]}"
+  timed "purge with dependencies" apt purge --auto-remove chicane
+  in_bare apt-get clean
+  timed "apt install ./chicane_*.deb in a bare system" apt install "${deb[chicane]}"
+  say "  downloaded" "$(sed -n 's/^Need to get \(.*\) of archives.*/\1/p' "$log")"
+  say "  packages" "$(sed -n 's/^\([0-9]*\) upgraded, \([0-9]*\) newly installed.*/\2/p' "$log")"
+  say "  bytes of the package" "$(stat -c %s "$bare${deb[chicane]}")"
+  timed "chicane drive --fast --laps 1" in_bare chicane drive --fast --laps 1
+  in_bare chicane manual | cmp - <(gzip -dc "$bare/usr/share/man/man1/chicane.1.gz") || fail "the manual page is not the program's"
+}
+
+check_library() {
+  timed "apt install ./libchicane-dev_*.deb with a compiler" apt install "${deb[libchicane-dev]}" "${deb[chicane-doc]}" g++ pkg-config cmake make
+  cp -r "$root/tests/install/consumer" "$bare/check/consumer"
+  timed "README's program by pkg-config" in_bare sh -c \
+    'cd /check && g++ /usr/share/doc/chicane/examples/01_drive_a_lap.cpp -o lap $(pkg-config --cflags --libs chicane)'
+  timed "  drives a lap" in_bare sh -c 'cd / && /check/lap'
+  timed "a controller of one's own by CMake" in_bare sh -c 'cmake -S /check/consumer -B /check/built && cmake --build /check/built'
+  timed "  drives a lap" in_bare sh -c 'cd / && /check/built/own_controller /check/own.mcap'
+}
+
+check_without_proc() {
+  umount -l "$bare/proc" 2>/dev/null || true
+  [ ! -e "$bare/proc/self" ] || fail "the bare system still has /proc"
+  timed "without /proc: chicane drive --fast --laps 1" in_bare chicane drive --fast --laps 1
+  timed "without /proc: README's program" in_bare sh -c 'cd / && /check/lap'
+}
+
+check_purge() {
+  timed "purge of all packages" apt purge chicane libchicane-dev chicane-doc
+  local left
+  left=$(traces)
+  [ -z "$left" ] || fail "purge has left $left"
+  ! in_bare dpkg -l 'chicane*' 'libchicane*' 2>/dev/null | grep -E '^[a-z]c' || fail "purge has left settings"
+}
+
+if [ "${1:-}" = --in ]; then
+  bare=$2 log=$2/check.log
+  declare -A deb
+  mkdir "$bare/check"
+  cp "$3"/chicane*.deb "$3"/libchicane*.deb "$3"/chicane-*.tar.zst "$bare/check"
+  for package in chicane libchicane-dev chicane-doc; do deb[$package]=/check/$(cd "$3" && echo "${package}"_*.deb); done
+  [ -e "$bare/proc/self/exe" ] || fail "the bare system has no /proc to begin with"
+  check_tarball
+  check_program
+  check_library
+  check_without_proc
+  check_purge
+  mount -t proc proc "$bare/proc" 2>/dev/null || true  # as mmdebstrap left it
+  exit 0
+fi
+
+packages=$(cd "${1:-$root/build/release/packages}" && pwd -P) || fail "no packages there: ./run.sh package makes them"
+if command -v lintian >/dev/null; then
+  said=$(lintian --fail-on error,warning "$packages"/*.deb 2>&1) || fail "lintian: $said"
+  say "lintian" "no errors, no warnings"
+fi
+command -v mmdebstrap >/dev/null || { echo "check_package: mmdebstrap is not installed"; exit 77; }
+suite=$(. /etc/os-release && echo "${VERSION_CODENAME:-bookworm}")
+printf -v hook '%q --in "$1" %q' "$root/tools/check_package.sh" "$packages"
+result=0
+mmdebstrap --quiet --variant=minbase --customize-hook="$hook" "$suite" /dev/null "${CHICANE_DEBIAN_MIRROR:-http://deb.debian.org/debian}" || result=$?
+[ "$result" -eq 0 ] || fail "mmdebstrap ended with $result"
