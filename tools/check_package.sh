@@ -58,8 +58,9 @@ check_library() {
   timed "README's program by pkg-config" in_bare sh -c \
     'cd /check && g++ /usr/share/doc/chicane/examples/01_drive_a_lap.cpp -o lap $(pkg-config --cflags --libs chicane)'
   timed "  drives a lap" in_bare sh -c 'cd / && /check/lap'
-  timed "a controller of one's own by CMake" in_bare sh -c 'cmake -S /check/consumer -B /check/built && cmake --build /check/built'
-  timed "  drives a lap" in_bare sh -c 'cd / && /check/built/own_controller /check/own.mcap'
+  timed "a controller and a plant of one's own by CMake" in_bare sh -c 'cmake -S /check/consumer -B /check/built && cmake --build /check/built'
+  timed "  the controller drives a lap" in_bare sh -c 'cd / && /check/built/own_controller /check/own.mcap'
+  timed "  the plant is driven a lap" in_bare sh -c 'cd / && /check/built/own_plant /check/plant.mcap'
 }
 
 check_without_proc() {

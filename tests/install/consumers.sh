@@ -3,13 +3,14 @@
 #   consumers.sh SOURCE_FOLDER PREFIX WORK_FOLDER COMPILER BUILD_FOLDER
 set -euo pipefail
 source=$1 prefix=$2 work=$3 compiler=$4 build=$5
-rm -rf "$work/consumer" "$work/own_controller.mcap"
+rm -rf "$work/consumer" "$work/own_controller.mcap" "$work/own_plant.mcap"
 cmake -G Ninja -S "$source" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
 cmake --build "$work/consumer" >/dev/null
 "$work/consumer/consumer"
 # Programs outside the installation find its data, by what CMake and pkg-config told their compiler.
 unset CHICANE_DATA_DIR
 (cd / && "$work/consumer/own_controller" "$work/own_controller.mcap")
+(cd / && "$work/consumer/own_plant" "$work/own_plant.mcap")
 
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name chicane.pc)")
 export PKG_CONFIG_PATH

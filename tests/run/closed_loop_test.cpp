@@ -10,6 +10,7 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/realtime_loop.hpp"
+#include "chicane/sim/plant_registry.hpp"
 
 namespace chicane::run {
 namespace {
@@ -51,6 +52,37 @@ TEST(DefaultPreset, LapsTheOriginalWaypointsFastAndClean) {
   ASSERT_EQ(summary.laps.size(), 3U);
   EXPECT_LE(summary.laps.back().lap_time, 29.0);
   EXPECT_GE(summary.laps.back().top_speed, 100.0 * 0.44704);
+}
+
+TEST(Factories, OfAPlantAndATrackTakeThePlaceOfTheNamedOnes) {
+  scenario::Scenario scenario = scenario_of("udacity", "lakeside", 1);
+  Factories parts;
+  int plants = 0;
+  parts.plant = [&](const scenario::Scenario& each) {
+    ++plants;
+    return sim::make_plant("road-car", each.plant_options);
+  };
+  parts.track = [](const scenario::Scenario& each) {
+    scenario::Scenario other = each;
+    other.track = "oval";
+    return make_track(other);
+  };
+  const auto own = ClosedLoop::create(scenario, parts);
+  ASSERT_TRUE(own) << own.error().message;
+  EXPECT_EQ(plants, 1);
+  EXPECT_EQ((*own)->track().name(), "oval");
+  const auto named = ClosedLoop::create(scenario);
+  EXPECT_EQ((*named)->track().name(), "lakeside");
+
+  scenario.track = "no such track, and nobody looks for it";
+  EXPECT_TRUE(ClosedLoop::create(scenario, parts));
+  EXPECT_FALSE(ClosedLoop::create(scenario));
+  parts.plant = [](const scenario::Scenario&) -> Result<std::unique_ptr<sim::Plant>> {
+    return fail(ErrorCode::kInvalidArgument, "no plant today");
+  };
+  const auto none = ClosedLoop::create(scenario, parts);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().message, "no plant today");
 }
 
 class ShippedTrack : public ::testing::TestWithParam<const char*> {};

@@ -122,7 +122,7 @@ class FutureMeter {
 
 class Branching {
  public:
-  Branching(const BranchOptions& options, const BranchHooks& hooks, const run::ControllerFactory& make)
+  Branching(const BranchOptions& options, const BranchHooks& hooks, const run::Factories& make)
       : options_{options}, hooks_{hooks}, make_{make} {}
 
   Result<BranchReport> run(const RunEvents& events) {
@@ -313,7 +313,7 @@ class Branching {
 
   const BranchOptions& options_;
   const BranchHooks& hooks_;
-  const run::ControllerFactory& make_;
+  const run::Factories& make_;
   RebuiltRun first_{[this](const telemetry::CompletedLap& lap) {
     if (has_branched_ && is_within(last_log_time_)) recorded_.add(lap);
   }};
@@ -333,12 +333,12 @@ class Branching {
 }  // namespace
 
 Result<BranchReport> branch_run(const RunEvents& events, const BranchOptions& options,
-                                const BranchHooks& hooks, const run::ControllerFactory& make) {
+                                const BranchHooks& hooks, const run::Factories& make) {
   return Branching(options, hooks, make).run(events);
 }
 
 Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks,
-                                      const run::ControllerFactory& make) {
+                                      const run::Factories& make) {
   RecordingHead head;
   const RunEvents events = [&](const auto& visit) -> Result<void> {
     const auto read = read_recording(options.log, head, [&](const RecordedEvent& event) -> Result<void> {

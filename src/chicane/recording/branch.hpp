@@ -89,13 +89,11 @@ using RunEvents = std::function<Result<void>(const std::function<Result<void>(co
 /// `options.at` with other settings, in virtual time. Fails with kInvalidArgument when the moment is not in
 /// the recording, a setting is unknown, out of range or cannot change in a run that goes on, when
 /// BranchHooks::go_on gives up, or when the recording is not of our simulator.
-[[nodiscard]] Result<BranchReport> branch_recording(
-    const BranchOptions& options, const BranchHooks& hooks,
-    const run::ControllerFactory& make = run::make_controller);
+[[nodiscard]] Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks,
+                                                    const run::Factories& make = {});
 /// The same of a run that is not a file; `options.log` is not used. Without a checkpoint to begin with the
 /// events are those of the whole run.
 [[nodiscard]] Result<BranchReport> branch_run(const RunEvents& events, const BranchOptions& options,
-                                              const BranchHooks& hooks,
-                                              const run::ControllerFactory& make = run::make_controller);
+                                              const BranchHooks& hooks, const run::Factories& make = {});
 
 }  // namespace chicane::recording

@@ -50,7 +50,7 @@ class Checkpoints {
   Result<void> take(const RecordedStep& recorded);
   void thin(double now);
 
-  run::ControllerFactory make_ = run::make_controller;
+  run::Factories make_;
   RebuiltRun run_;
   std::uint64_t event_count_ = 0;
   std::optional<std::uint64_t> first_difference_;

@@ -23,7 +23,7 @@ bool is_same(const telemetry::Frame& frame, const protocol::Step& step) noexcept
          is_same(sent.throttle, sent_then.throttle);
 }
 
-Result<void> RebuiltRun::begin(const scenario::Scenario& scenario, const run::ControllerFactory& make) {
+Result<void> RebuiltRun::begin(const scenario::Scenario& scenario, const run::Factories& make) {
   auto loop = run::ClosedLoop::create(scenario, make);
   if (!loop) return fail(loop.error());
   loop_ = std::move(*loop);

@@ -29,7 +29,7 @@ class RebuiltRun {
   explicit RebuiltRun(OnLap on_lap = {}) : on_lap_{std::move(on_lap)} {}
 
   /// From its start. Fails as ClosedLoop::create() does.
-  [[nodiscard]] Result<void> begin(const scenario::Scenario& scenario, const run::ControllerFactory& make);
+  [[nodiscard]] Result<void> begin(const scenario::Scenario& scenario, const run::Factories& make);
   /// From where a copy of it has come to. Pre: not null.
   void begin(std::unique_ptr<run::ClosedLoop> loop) { loop_ = std::move(loop); }
   void forget() noexcept { loop_.reset(); }

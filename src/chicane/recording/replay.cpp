@@ -83,17 +83,17 @@ class Recomputation {
 
 }  // namespace
 
-Result<ReplayReport> verify_recording(const std::string& path, const run::ControllerFactory& make) {
+Result<ReplayReport> verify_recording(const std::string& path, const run::Factories& make) {
   ReplayReport report;
   RecordingHead head;
   std::unique_ptr<Recomputation> again;
   const auto visit = [&](const RecordedEvent& event) -> Result<void> {
     if (const auto* scenario = std::get_if<scenario::Scenario>(&event)) {
-      auto controller = make(*scenario);
+      auto controller = make.controller(*scenario);
       if (!controller) return fail(controller.error());
       std::optional<path::Track> track;
       if (scenario->guard.road == safety::GuardRoad::kTrack) {
-        auto found = run::make_track(*scenario);  // guard and racing controller knew it
+        auto found = make.track(*scenario);  // guard and racing controller knew it
         if (!found) return fail(found.error());
         track = std::move(*found);
       }

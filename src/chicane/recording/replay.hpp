@@ -33,7 +33,6 @@ struct ReplayReport {
 /// All come out the same, those in real time too: a step whose deadline was spent has recorded which question
 /// to the clock said so (base/deadline.hpp), and gets the same answer again. Fails when the file cannot be
 /// read, is no recording of ours, or has no step.
-[[nodiscard]] Result<ReplayReport> verify_recording(
-    const std::string& path, const run::ControllerFactory& make = run::make_controller);
+[[nodiscard]] Result<ReplayReport> verify_recording(const std::string& path, const run::Factories& make = {});
 
 }  // namespace chicane::recording

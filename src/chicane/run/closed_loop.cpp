@@ -38,25 +38,24 @@ ClosedLoop::ClosedLoop(const scenario::Scenario& scenario, const Roads::Prepared
 }
 
 Result<std::unique_ptr<ClosedLoop>> ClosedLoop::create(const scenario::Scenario& scenario,
-                                                       const ControllerFactory& make) {
+                                                       const Factories& make) {
   Roads roads;
   return create(scenario, roads, make);
 }
 
 Result<std::unique_ptr<ClosedLoop>> ClosedLoop::create(const scenario::Scenario& scenario, Roads& roads,
-                                                       const ControllerFactory& make) {
-  const auto road = roads.of(scenario);
+                                                       const Factories& make) {
+  const auto road = roads.of(scenario, make.track);
   if (!road) return fail(road.error());
   return create(scenario, **road, make);
 }
 
 Result<std::unique_ptr<ClosedLoop>> ClosedLoop::create(const scenario::Scenario& scenario,
-                                                       const Roads::Prepared& road,
-                                                       const ControllerFactory& make) {
+                                                       const Roads::Prepared& road, const Factories& make) {
   if (const Result<void> fits = check_room(scenario, road.track); !fits) return fail(fits.error());
-  Result<std::unique_ptr<sim::Plant>> plant = make_plant(scenario);
+  Result<std::unique_ptr<sim::Plant>> plant = make.plant(scenario);
   if (!plant) return fail(plant.error());
-  Result<std::unique_ptr<controller::Controller>> controller = make(scenario);
+  Result<std::unique_ptr<controller::Controller>> controller = make.controller(scenario);
   if (!controller) return fail(controller.error());
   return std::unique_ptr<ClosedLoop>(
       new ClosedLoop(scenario, road, std::move(*plant), std::move(*controller)));

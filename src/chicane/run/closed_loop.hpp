@@ -53,17 +53,18 @@ struct Interceptor {
 /// command gated and sent to act `latency` later. advance() allocates nothing. One thread.
 class ClosedLoop {
  public:
-  /// Builds track, plant and controller. Fails as make.hpp does, and as `make` does: any factory of a
-  /// controller may take the place of the one that knows ours (examples/03_your_own_controller.cpp).
-  [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(
-      const scenario::Scenario& scenario, const ControllerFactory& make = make_controller);
+  /// Builds track, plant and controller. Fails as make.hpp does, and as `make` does. `make` is a factory of
+  /// a controller of the program's own (examples/03_your_own_controller.cpp), or Factories with a plant or a
+  /// track, too.
+  [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(const scenario::Scenario& scenario,
+                                                                  const Factories& make = {});
   /// The same for one of many runs: what is the same for all on a road is taken from `roads`.
-  [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(
-      const scenario::Scenario& scenario, Roads& roads, const ControllerFactory& make = make_controller);
+  [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(const scenario::Scenario& scenario,
+                                                                  Roads& roads, const Factories& make = {});
   /// The same on a road that was prepared (Roads::prepare), whatever scenario.track says.
-  [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(
-      const scenario::Scenario& scenario, const Roads::Prepared& road,
-      const ControllerFactory& make = make_controller);
+  [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(const scenario::Scenario& scenario,
+                                                                  const Roads::Prepared& road,
+                                                                  const Factories& make = {});
 
   /// One physics step, preceded by a control step when one is due. True when there was a control step:
   /// frame() is new. `budget` [s] bounds the control step; 0 = no bound.

@@ -130,8 +130,7 @@ bool FlyingLap::is_off_within(double from, double to) const noexcept {
                      [&](const Excursion& each) { return each.from <= to && each.to >= from; });
 }
 
-Result<FlyingLap> drive_undisturbed(const scenario::Scenario& scenario, double wait,
-                                    const ControllerFactory& make) {
+Result<FlyingLap> drive_undisturbed(const scenario::Scenario& scenario, double wait, const Factories& make) {
   auto loop = ClosedLoop::create(endless(scenario), make);
   if (!loop) return fail(loop.error());
   FlyingLap lap;
@@ -159,7 +158,7 @@ Result<FlyingLap> drive_undisturbed(const scenario::Scenario& scenario, double w
   return lap;
 }
 
-Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario, const ControllerFactory& make) {
+Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario, const Factories& make) {
   Result<FlyingLap> lap = drive_undisturbed(scenario, 0.0, make);
   if (lap && !lap->off.empty()) {
     return fail(ErrorCode::kInvalidArgument,
@@ -171,7 +170,7 @@ Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario, const Cont
 }
 
 Result<FaultOutcome> drive_trial(const scenario::Scenario& scenario, const FlyingLap& lap,
-                                 const FaultTrial& trial, Roads& roads, const ControllerFactory& make) {
+                                 const FaultTrial& trial, Roads& roads, const Factories& make) {
   auto loop = ClosedLoop::create(endless(scenario), roads, make);
   if (!loop) return fail(loop.error());
   const double at = onset_of(lap, trial);
@@ -191,7 +190,7 @@ std::vector<FaultTrial> trials_over_lap(const FlyingLap& lap, sim::Fault fault, 
 Result<std::vector<FaultOutcome>> drive_trials(const scenario::Scenario& scenario, const FlyingLap& lap,
                                                const std::vector<FaultTrial>& trials, int jobs,
                                                const std::function<bool(std::size_t)>& on_done,
-                                               const ControllerFactory& make) {
+                                               const Factories& make) {
   const auto loop = ClosedLoop::create(endless(scenario), make);
   if (!loop) return fail(loop.error());
   Driven driven{**loop};

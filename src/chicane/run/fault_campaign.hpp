@@ -61,17 +61,16 @@ struct FlyingLap {
 /// Drives the scenario without a fault, for `wait` [s] longer than the flying lap. kInvalidArgument when two
 /// laps are not driven in half an hour.
 [[nodiscard]] Result<FlyingLap> drive_undisturbed(const scenario::Scenario& scenario,
-                                                  double wait = kLongestWait,
-                                                  const ControllerFactory& make = make_controller);
+                                                  double wait = kLongestWait, const Factories& make = {});
 /// The same; kInvalidArgument also when two laps are not driven without leaving the road.
 [[nodiscard]] Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario,
-                                                const ControllerFactory& make = make_controller);
+                                                const Factories& make = {});
 
 /// Drives one trial from the start of the run: `scenario` without its own faults. Deterministic; independent
 /// of other trials.
 [[nodiscard]] Result<FaultOutcome> drive_trial(const scenario::Scenario& scenario, const FlyingLap& lap,
                                                const FaultTrial& trial, Roads& roads,
-                                               const ControllerFactory& make = make_controller);
+                                               const Factories& make = {});
 
 /// Trials of one fault at each `step` [s] of the flying lap.
 [[nodiscard]] std::vector<FaultTrial> trials_over_lap(const FlyingLap& lap, sim::Fault fault, double duration,
@@ -85,5 +84,5 @@ struct FlyingLap {
 /// process holds a lock.
 [[nodiscard]] Result<std::vector<FaultOutcome>> drive_trials(
     const scenario::Scenario& scenario, const FlyingLap& lap, const std::vector<FaultTrial>& trials, int jobs,
-    const std::function<bool(std::size_t)>& on_done = {}, const ControllerFactory& make = make_controller);
+    const std::function<bool(std::size_t)>& on_done = {}, const Factories& make = {});
 }  // namespace chicane::run

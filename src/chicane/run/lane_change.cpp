@@ -129,7 +129,7 @@ Result<LaneChange::Way> LaneChange::way_at(double speed) {
 }
 
 Result<LaneChangeOutcome> LaneChange::drive(const scenario::Scenario& scenario, double speed,
-                                            const ControllerFactory& make) {
+                                            const Factories& make) {
   const scenario::Scenario one = on_course(scenario);
   const Result<Way> way = way_at(speed);
   if (!way) return fail(way.error());
@@ -137,15 +137,15 @@ Result<LaneChangeOutcome> LaneChange::drive(const scenario::Scenario& scenario, 
   if (!waypoints) return fail(waypoints.error());
   const Roads::Prepared road{road_, std::move(*waypoints), known_road(one, &road_),
                              races(one) ? *way : nullptr};
-  const auto releasing =
-      [&](const scenario::Scenario& each) -> Result<std::unique_ptr<controller::Controller>> {
+  Factories parts = make;
+  parts.controller = [&](const scenario::Scenario& each) -> Result<std::unique_ptr<controller::Controller>> {
     scenario::Scenario steering = each;
     steering.vehicle.drive_acceleration = steering.vehicle.brake_acceleration = kNoPedal;
-    auto driver = make(steering);
+    auto driver = make.controller(steering);
     if (!driver) return fail(driver.error());
     return std::make_unique<ReleasesThrottle>(std::move(*driver), each.vehicle, speed);
   };
-  auto created = ClosedLoop::create(one, road, releasing);
+  auto created = ClosedLoop::create(one, road, parts);
   if (!created) return fail(created.error());
   ClosedLoop& loop = **created;
   loop.restart_at({.x = -LaneChangeCourse::kStart, .vx = speed});
@@ -167,8 +167,7 @@ Result<LaneChangeOutcome> LaneChange::drive(const scenario::Scenario& scenario, 
   return outcome;
 }
 
-Result<LaneChangeLimit> LaneChange::find_limit(const scenario::Scenario& scenario,
-                                               const ControllerFactory& make) {
+Result<LaneChangeLimit> LaneChange::find_limit(const scenario::Scenario& scenario, const Factories& make) {
   LaneChangeLimit limit;
   for (int speed = kSlowest; speed <= kFastest; ++speed) {
     const Result<LaneChangeOutcome> outcome = drive(scenario, kmph(speed), make);

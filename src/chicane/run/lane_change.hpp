@@ -42,10 +42,10 @@ class LaneChange {
   /// good; the scenario's controller steers, with its latency, sampling and noise, and knows that it has no
   /// pedals. The guard is off: it would brake. Fails as ClosedLoop::create(). Pre: it is of this vehicle.
   [[nodiscard]] Result<LaneChangeOutcome> drive(const scenario::Scenario& scenario, double speed,
-                                                const ControllerFactory& make = make_controller);
+                                                const Factories& make = {});
   /// In steps of 1 km/h from kSlowest on, up to the first at which a cone is hit.
   [[nodiscard]] Result<LaneChangeLimit> find_limit(const scenario::Scenario& scenario,
-                                                   const ControllerFactory& make = make_controller);
+                                                   const Factories& make = {});
 
  private:
   using Way = std::shared_ptr<const road::RacingRoad>;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <concepts>
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
@@ -17,13 +19,34 @@ namespace chicane::run {
     const scenario::Scenario& scenario);
 /// The car that its controller believes in: a model car in full size (model/similarity.hpp).
 [[nodiscard]] model::VehicleParams full_size(const scenario::Scenario& scenario);
-/// Makes the controller of a run, for the car in full_size(): make_controller, or a program's own.
-using ControllerFactory =
-    std::function<Result<std::unique_ptr<controller::Controller>>(const scenario::Scenario&)>;
 /// Gives a controller of make_controller() the scenario's settings while it drives (controller/tunable.hpp).
 void configure(controller::Controller& controller, const scenario::Scenario& scenario) noexcept;
 [[nodiscard]] Result<std::unique_ptr<sim::Plant>> make_plant(const scenario::Scenario& scenario);
 [[nodiscard]] Result<path::Track> make_track(const scenario::Scenario& scenario);
+
+/// Makes the controller of a run, for the car in full_size().
+using ControllerFactory =
+    std::function<Result<std::unique_ptr<controller::Controller>>(const scenario::Scenario&)>;
+/// Makes the simulated car of a run.
+using PlantFactory = std::function<Result<std::unique_ptr<sim::Plant>>(const scenario::Scenario&)>;
+/// Makes the road of a run, for a car of the size that scenario.size_of_track() says.
+using TrackFactory = std::function<Result<path::Track>(const scenario::Scenario&)>;
+
+/// Makes the parts of a run: as the scenario names them, or a program's own. A factory of the program's own
+/// is called instead of the named part and must do the same in every call with the same scenario. Functions
+/// must not be empty. The scenario keeps its names: what it says of `plant` or `track` stands in recordings,
+/// too.
+struct Factories {
+  Factories() = default;
+  /// A controller of the program's own, in the scenario's car, on its road.
+  template <class Factory>
+  requires std::convertible_to<Factory, ControllerFactory> Factories(Factory own)
+      : controller{std::move(own)} {}  // NOLINT(google-explicit-constructor): one part is enough
+
+  ControllerFactory controller = make_controller;
+  PlantFactory plant = make_plant;
+  TrackFactory track = make_track;
+};
 
 /// The road as telemetry shows it: the track's own points where they are spaced like waypoints, every
 /// so-many-th of them where they are denser (surveyed tracks have one each 5 m or less, and six of those show

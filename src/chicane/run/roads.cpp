@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "chicane/run/control_cycle.hpp"
-#include "chicane/run/make.hpp"
 #include "chicane/run/racing.hpp"
 
 namespace chicane::run {
@@ -34,11 +33,11 @@ bool is_same_road(const scenario::Scenario& a, const scenario::Scenario& b) {
 
 }  // namespace
 
-Result<const Roads::Prepared*> Roads::of(const scenario::Scenario& scenario) {
+Result<const Roads::Prepared*> Roads::of(const scenario::Scenario& scenario, const TrackFactory& make) {
   const auto known = std::find_if(entries_.begin(), entries_.end(),
                                   [&](const Entry& each) { return is_same_road(each.scenario, scenario); });
   if (known != entries_.end()) return &known->prepared;
-  Result<path::Track> track = make_track(scenario);
+  Result<path::Track> track = make(scenario);
   if (!track) return fail(track.error());
   Result<path::Track> waypoints = make_waypoints(*track, scenario.vehicle.scale);
   if (!waypoints) return fail(waypoints.error());

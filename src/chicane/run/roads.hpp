@@ -9,6 +9,7 @@
 #include "chicane/protocol/remembered_files.hpp"
 #include "chicane/road/known_road.hpp"
 #include "chicane/road/racing_road.hpp"
+#include "chicane/run/make.hpp"
 #include "chicane/scenario/scenario.hpp"
 
 namespace chicane::run {
@@ -27,8 +28,10 @@ class Roads {
     road::KnownRoad known;                        ///< to the guard, at the beginning
     std::shared_ptr<const road::RacingRoad> lap;  ///< planned, of a controller that races; null of any other
   };
-  /// Of scenario.track, for its guard and vehicle. Fails as make.hpp does. Valid until the next call.
-  [[nodiscard]] Result<const Prepared*> of(const scenario::Scenario& scenario);
+  /// Of scenario.track, for its guard and vehicle. Fails as `make` does. Valid until the next call. `make`
+  /// must be the same in all calls: a road is remembered by its scenario.
+  [[nodiscard]] Result<const Prepared*> of(const scenario::Scenario& scenario,
+                                           const TrackFactory& make = make_track);
   /// For protocol::compose() of those runs.
   [[nodiscard]] protocol::RememberedFiles& files() noexcept { return files_; }
 

@@ -68,7 +68,7 @@ std::vector<StartPose> start_poses(const path::Track& track, int count, std::uin
 }
 
 Result<WayBackOutcome> drive_back(const scenario::Scenario& scenario, const StartPose& start, Roads& roads,
-                                  const ControllerFactory& make) {
+                                  const Factories& make) {
   scenario::Scenario one = scenario;
   one.laps = 0;
   one.time_limit = 0.0;
@@ -110,7 +110,7 @@ Result<WayBackOutcome> drive_back(const scenario::Scenario& scenario, const Star
 Result<std::vector<WayBackOutcome>> drive_all_back(const scenario::Scenario& scenario,
                                                    const std::vector<StartPose>& starts, int jobs,
                                                    const std::function<bool(std::size_t)>& on_done,
-                                                   const ControllerFactory& make) {
+                                                   const Factories& make) {
   std::vector<Result<WayBackOutcome>> outcomes(starts.size());
   std::atomic<std::size_t> done{0};
   for_each_run(starts.size(), jobs, [&](std::uint64_t i, Roads& roads) {
