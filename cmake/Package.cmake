@@ -61,10 +61,10 @@ function(package_file name file folder)
 endfunction()
 
 # chicane_package(NAME COMPONENTS one two SECTION science SUMMARY "..." TEXT "..." [ARCH all] [SHLIBDEPS]
-#                 [DEPENDS "a, b"] [RECOMMENDS ...] [SUGGESTS ...])
+#                 [DEPENDS "a, b"] [CONFLICTS ...] [SUGGESTS ...])
 # TEXT has lines of at most 79 characters; a line with nothing but a dot begins a paragraph.
 function(chicane_package name)
-  cmake_parse_arguments(P "SHLIBDEPS" "SECTION;SUMMARY;TEXT;ARCH;DEPENDS;RECOMMENDS;SUGGESTS" "COMPONENTS" ${ARGN})
+  cmake_parse_arguments(P "SHLIBDEPS" "SECTION;SUMMARY;TEXT;ARCH;DEPENDS;CONFLICTS;SUGGESTS" "COMPONENTS" ${ARGN})
   if(NOT name IN_LIST CHICANE_PACKAGES)
     return()
   endif()
@@ -78,7 +78,7 @@ function(chicane_package name)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name} PARENT_SCOPE)
   set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${P_SECTION} PARENT_SCOPE)
   set(CPACK_DEBIAN_${upper}_DESCRIPTION "${P_SUMMARY}\n${P_TEXT}" PARENT_SCOPE)
-  foreach(field DEPENDS RECOMMENDS SUGGESTS)
+  foreach(field DEPENDS CONFLICTS SUGGESTS)
     set(CPACK_DEBIAN_${upper}_PACKAGE_${field} "${P_${field}}" PARENT_SCOPE)
   endforeach()
   if(P_SHLIBDEPS)
@@ -124,12 +124,13 @@ and presets. A guard keeps a verified stop at hand.
 .
 The program serves its dashboard to a browser, drives external simulators by
 WebSocket, compares controllers, and finds the limit of a car.")
-chicane_package(libchicane-dev COMPONENTS dev SECTION libdevel DEPENDS "${dev_depends}" SUGGESTS "chicane-doc"
+chicane_package(libchicane-dev COMPONENTS dev SECTION libdevel DEPENDS "${dev_depends}" CONFLICTS libchicane-solver-dev
+  SUGGESTS chicane-doc
   SUMMARY "model predictive control of cars - C++ library"
   TEXT "Headers, archives, CMake package and pkg-config files of the modules that the
 program chicane consists of: solver for optimal control problems, models and
 plants of cars, controllers, guard, recording.")
-chicane_package(libchicane-solver-dev COMPONENTS dev SECTION libdevel DEPENDS "${dev_depends}"
+chicane_package(libchicane-solver-dev COMPONENTS dev SECTION libdevel DEPENDS "${dev_depends}" CONFLICTS libchicane-dev
   SUMMARY "solver for optimal control problems - C++ library"
   TEXT "Headers, archives, CMake package and pkg-config files of the solver of chicane
 and what it stands on. It allocates no memory while it solves, and keeps
