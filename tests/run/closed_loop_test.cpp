@@ -85,6 +85,23 @@ TEST(Factories, OfAPlantAndATrackTakeThePlaceOfTheNamedOnes) {
   EXPECT_EQ(none.error().message, "no plant today");
 }
 
+TEST(ClosedLoop, LookedAtBeforeEachStepDrivesTheSame) {
+  scenario::Scenario scenario = scenario_of("udacity", "oval", 1);
+  scenario.sensor = {.position_noise = 0.1, .heading_noise = 0.01, .speed_noise = 0.2, .latency = 0.03};
+  scenario.faults = {sim::default_event(*sim::fault_named("gps_noise"), 3.0)};
+  const auto loop = std::move(*ClosedLoop::create(scenario));
+  while (!loop->is_over()) {
+    const bool is_due = loop->is_control_due();
+    const model::Measurement first = loop->look();
+    const model::Measurement again = loop->look();
+    EXPECT_EQ(first.x, again.x);
+    EXPECT_EQ(loop->advance(), is_due);
+    EXPECT_EQ(loop->frame().measurement.time, first.time);
+    EXPECT_EQ(loop->frame().measurement.x, first.x);
+  }
+  EXPECT_EQ(loop->summary().state_hash, run(scenario).state_hash);
+}
+
 class ShippedTrack : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ShippedTrack, IsDrivenCleanlyByBothCarsWithTheSameTuning) {

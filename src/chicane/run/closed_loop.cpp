@@ -80,6 +80,7 @@ void ClosedLoop::restart() {
   sensor_ = sim::Sensor(scenario_.sensor, scenario_.seed);
   account_.restart();
   frame_ = {};
+  seen_.reset();
   next_control_ = 0.0;
   step_time_ = 0.0;
 }
@@ -112,6 +113,7 @@ bool ClosedLoop::advance(const GivenStep& given) noexcept {
 void ClosedLoop::follow(double time, const model::State& car, double delay,
                         const model::Command& sent) noexcept {
   world_.see(time, car);
+  seen_.reset();
   next_control_ = time;
   const GivenStep given{.delay = delay};
   control(0.0, &given, &sent);
@@ -191,9 +193,21 @@ model::Measurement ClosedLoop::measure() noexcept {
   return now;
 }
 
-void ClosedLoop::control(double budget, const GivenStep* given, const model::Command* sent) noexcept {
+const model::Measurement& ClosedLoop::look() noexcept {
+  if (!is_control_due()) return frame_.measurement;
+  if (!seen_) seen_ = take_measurement();
+  return *seen_;
+}
+
+/// Of the control step that is due: by look(), or taken now.
+model::Measurement ClosedLoop::take_measurement() noexcept {
+  if (seen_) return *std::exchange(seen_, std::nullopt);
   faults_.update(time());
-  frame_.measurement = measure();
+  return measure();
+}
+
+void ClosedLoop::control(double budget, const GivenStep* given, const model::Command* sent) noexcept {
+  frame_.measurement = take_measurement();
   CycleInput input{.deadline_spent_at = faults_.deadline_questions(), .interval = scenario_.control_period};
   if (given != nullptr) {
     frame_.measurement.delay = given->delay;

@@ -71,6 +71,10 @@ class ClosedLoop {
   bool advance(double budget = 0.0) noexcept;
   /// The same, with the clock of a recording: `given` is what holds in the control step when one is due.
   bool advance(const GivenStep& given) noexcept;
+  /// Takes the measurement of the control step that is due, which the next advance() then uses: what an agent
+  /// sees before it says what that step's command is. Changes nothing that is computed later. Without a step
+  /// that is due: the measurement of the last one.
+  const model::Measurement& look() noexcept;
   /// The next advance() begins with the control step number cycle().
   [[nodiscard]] bool is_control_due() const noexcept { return time() >= next_control_ - 1e-9; }
   [[nodiscard]] std::uint64_t cycle() const noexcept { return cycle_.next(); }
@@ -141,6 +145,7 @@ class ClosedLoop {
   void watch_faults() noexcept;
   [[nodiscard]] model::Command acting() noexcept;
   [[nodiscard]] model::Measurement measure() noexcept;
+  [[nodiscard]] model::Measurement take_measurement() noexcept;
   void move() noexcept;
 
   scenario::Scenario scenario_;
@@ -158,6 +163,7 @@ class ClosedLoop {
   safety::StopPlayer receiver_;
   Account account_;
   telemetry::Frame frame_;
+  std::optional<model::Measurement> seen_;  ///< by look(), of the step that is due
   double next_control_ = 0.0;
   double step_time_ = 0.0;  ///< of the control step, smoothed; 0 in virtual time [s]
 };
