@@ -50,6 +50,14 @@ TEST(Roads, ChangeNothingInARun) {
   }
 }
 
+TEST(Roads, RememberOnlyForWhichCarThereIsRoom) {
+  Roads roads;
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_TRUE(ClosedLoop::create(scenario_of("hairpins", "off", "udacity"), roads));
+    EXPECT_FALSE(ClosedLoop::create(scenario_of("hairpins", "off", "indy"), roads));
+  }
+}
+
 // The way along noisy points is longer than the road.
 TEST(MakeWaypoints, ThinsDenseNoisyPointsEvenlyAllRound) {
   std::mt19937 random{1};

@@ -47,12 +47,19 @@ Result<std::unique_ptr<ClosedLoop>> ClosedLoop::create(const scenario::Scenario&
                                                        const Factories& make) {
   const auto road = roads.of(scenario, make.track);
   if (!road) return fail(road.error());
-  return create(scenario, **road, make);
+  if (const Result<void> fits = roads.check_room(scenario, **road); !fits) return fail(fits.error());
+  return build(scenario, **road, make);
 }
 
 Result<std::unique_ptr<ClosedLoop>> ClosedLoop::create(const scenario::Scenario& scenario,
                                                        const Roads::Prepared& road, const Factories& make) {
   if (const Result<void> fits = check_room(scenario, road.track); !fits) return fail(fits.error());
+  return build(scenario, road, make);
+}
+
+Result<std::unique_ptr<ClosedLoop>> ClosedLoop::build(const scenario::Scenario& scenario,
+                                                      const Roads::Prepared& road,
+                                                      const Factories& make) {
   Result<std::unique_ptr<sim::Plant>> plant = make.plant(scenario);
   if (!plant) return fail(plant.error());
   Result<std::unique_ptr<controller::Controller>> controller = make.controller(scenario);

@@ -132,6 +132,10 @@ class ClosedLoop {
   [[nodiscard]] telemetry::RunSummary summary() const;
 
  private:
+  /// Without a look at whether the car gets round the road.
+  [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> build(const scenario::Scenario& scenario,
+                                                                 const Roads::Prepared& road,
+                                                                 const Factories& make);
   ClosedLoop(const ClosedLoop& other) = default;  ///< whose world stands on `other`: copy()
   ClosedLoop(const scenario::Scenario& scenario, const Roads::Prepared& road,
              std::unique_ptr<sim::Plant> plant, std::unique_ptr<controller::Controller> controller);

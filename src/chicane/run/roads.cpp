@@ -31,6 +31,14 @@ bool is_same_road(const scenario::Scenario& a, const scenario::Scenario& b) {
           are_same(model::vehicle_options(), &a.vehicle, &b.vehicle));
 }
 
+/// Whether the same car with the same controller is to get round.
+bool needs_same_room(const scenario::Scenario& a, const scenario::Scenario& b) {
+  using Entry = controller::TrackingMpcEntry;
+  return a.controller == b.controller && are_same(model::vehicle_options(), &a.vehicle, &b.vehicle) &&
+         are_same(Entry::options(), &std::get<Entry::Options>(a.controllers),
+                  &std::get<Entry::Options>(b.controllers));
+}
+
 }  // namespace
 
 Result<const Roads::Prepared*> Roads::of(const scenario::Scenario& scenario, const TrackFactory& make) {
@@ -48,6 +56,16 @@ Result<const Roads::Prepared*> Roads::of(const scenario::Scenario& scenario, con
   entries_.push_front(
       {scenario, {std::move(*track), std::move(*waypoints), std::move(road), std::move(*lap)}});
   return &entries_.front().prepared;
+}
+
+Result<void> Roads::check_room(const scenario::Scenario& scenario, const Prepared& road) {
+  const auto entry = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const Entry& each) { return &each.prepared == &road; });
+  const bool is_ours = entry != entries_.end();
+  if (is_ours && entry->has_room && needs_same_room(*entry->has_room, scenario)) return {};
+  Result<void> fits = run::check_room(scenario, road.track);
+  if (fits && is_ours) entry->has_room = scenario;
+  return fits;
 }
 
 }  // namespace chicane::run

@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 
 #include "chicane/base/result.hpp"
 #include "chicane/path/track.hpp"
@@ -32,6 +33,9 @@ class Roads {
   /// must be the same in all calls: a road is remembered by its scenario.
   [[nodiscard]] Result<const Prepared*> of(const scenario::Scenario& scenario,
                                            const TrackFactory& make = make_track);
+  /// run::check_room() on `road`, which is of(scenario): remembered where it is the car of the call before,
+  /// as it takes up to 0.1 s.
+  [[nodiscard]] Result<void> check_room(const scenario::Scenario& scenario, const Prepared& road);
   /// For protocol::compose() of those runs.
   [[nodiscard]] protocol::RememberedFiles& files() noexcept { return files_; }
 
@@ -39,6 +43,7 @@ class Roads {
   struct Entry {
     scenario::Scenario scenario;
     Prepared prepared;
+    std::optional<scenario::Scenario> has_room{};  ///< for this car
   };
   protocol::RememberedFiles files_;
   std::deque<Entry> entries_;  ///< the newest first
