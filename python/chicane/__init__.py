@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: MIT
+"""Model predictive control of cars, their simulator and their recordings (docs/python.md).
+
+    import chicane as ch
+    run = ch.drive("lakeside", car="road-car", laps=2)
+    run.laps, run.frames["speed_mps"], run.frames.to_pandas()
+
+All numbers are SI with angles in radians, in the axes of ISO 8855: x ahead, y to the left, yaw and steering positive to
+the left. Where a name ends with a unit (`latency_ms`), that unit counts. What cannot be done is refused with a
+ValueError that says what was got and what was expected.
+
+Functions release the interpreter's lock while C++ works, and end with KeyboardInterrupt at Ctrl-C. They share nothing:
+any thread may call them. An Env, VecEnv or Controller belongs to one thread at a time.
+"""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from . import _interpreter
+
+_interpreter.prepare()
+
+from ._chicane import NO_ANSWER, Command, Seen, __version__  # noqa: E402
+from ._controller import Controller  # noqa: E402
+from ._drive import drive, read, verify  # noqa: E402
+from ._known import cars, faults, frame_fields, parameters, presets, scenarios, tracks  # noqa: E402
+from ._limit import Limit, limit  # noqa: E402
+from ._run import Frames, Recording, Run  # noqa: E402
+from ._sweep import sweep  # noqa: E402
+from ._view import view  # noqa: E402
+
+if TYPE_CHECKING:
+    from ._env import Env, VecEnv
+
+__all__ = [
+    "Command", "Controller", "Env", "Frames", "Limit", "NO_ANSWER", "Recording", "Run", "Seen", "VecEnv", "__version__", "cars", "drive",
+    "faults", "frame_fields", "limit", "parameters", "presets", "read", "scenarios", "sweep", "tracks", "verify", "view",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Env and VecEnv when they are first used: gymnasium, which they build on where it is there, takes long to import."""
+    if name in ("Env", "VecEnv"):
+        from . import _env
+        return getattr(_env, name)
+    raise AttributeError(f"module 'chicane' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: MIT
+"""Runs: driven, read from recordings, computed again."""
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Iterable
+from typing import Any
+
+from . import _chicane
+from ._controller import Controller
+from ._request import Settings, make_request
+from ._run import Frames, Recording, Run
+
+
+def drive(track: str | None = None, *, car: str | None = None, preset: str | None = None, scenario: str = "",
+          controller: str | Controller | None = None, laps: int | None = None, latency_ms: float | None = None,
+          seed: int | None = None, speed_mps: float | None = None, settings: Settings = {}, faults: Iterable[str] = (),
+          record: str | os.PathLike[str] = "", frames: bool = True, step_limit_s: float = 10.0) -> Run:
+    """Drives a car round a track, in virtual time, and returns what came of it: the run of `chicane drive --fast`.
+
+    track, car, preset, scenario: names of what ships (tracks(), cars(), ...) or files.
+    controller: the name of one of the library's, or an instance of a Controller of your own.
+    laps: the first is from standstill; 0: until the car is lost or `settings["time_limit_s"]` is over.
+    latency_ms: from measurement to the command's effect [ms].
+    speed_mps: the reference of whichever controller drives [m/s].
+    settings: any setting by its key, such as {"plant_options.friction_scale": 0.7}: parameters() lists them.
+    faults: "half_grip@12+5*0.5" is half_grip at 12 s for 5 s of strength 0.5; faults() lists them.
+    record: a file for `read`, `verify`, `chicane replay` and the dashboard (.mcap); an older recording is replaced.
+    frames: False leaves Run.frames empty, which saves memory: about 500 bytes for each control cycle.
+    step_limit_s: longest time of one step of a Controller of your own by the wall clock [s]; 0: none.
+
+    The same arguments give the same run, bit for bit: run["state_hash"] tells. ValueError for what cannot be driven."""
+    own = controller if isinstance(controller, Controller) or hasattr(controller, "step") else None
+    named: dict[str, Any] = {"track": track, "car": car, "preset": preset, "laps": laps, "latency_ms": latency_ms, "seed": seed,
+                             "controller": None if own is not None else controller}
+    request = make_request(named, settings, faults, scenario, speed_mps)
+    _make_room(record)
+    told = _chicane.drive(request, own, os.fspath(record), frames, step_limit_s)
+    error = told["error"]
+    if error is not None:
+        print(f"chicane: {type(own).__name__} failed at {told['error_time']:.2f} s; the guard stops the car:\n{error}",
+              end="", file=sys.stderr)
+    again = None if own is not None else dict(named=named, settings=dict(settings), faults=_listed(faults), scenario=scenario,
+                                              speed_mps=speed_mps)
+    return Run(json.loads(told["report"]), told["table"], Frames(told["frames"]), told["road"], error, os.fspath(record), again)
+
+
+def _make_room(record: str | os.PathLike[str]) -> None:
+    """Removes an older recording; any other file stays, and is refused."""
+    if record and os.path.isfile(record):
+        with open(record, "rb") as file:
+            is_recording = file.read(6) == b"\x89MCAP0"
+        if is_recording:
+            os.unlink(record)
+
+
+def _listed(faults: Iterable[str]) -> list[str]:
+    return [faults] if isinstance(faults, str) else list(faults)
+
+
+def read(path: str | os.PathLike[str]) -> Recording:
+    """Reads a recording of `drive(record=...)`, `chicane drive --record`, `serve` or `simulate` (.mcap); of several runs
+    in one file the last. ValueError for what is no recording of chicane."""
+    told = _chicane.read(os.fspath(path))
+    return Recording(os.fspath(path), told["head"], Frames(told["frames"]), told["laps"], told["road"])
+
+
+def verify(path: str | os.PathLike[str], controller: Controller | None = None, step_limit_s: float = 10.0) -> dict[str, Any]:
+    """Computes every command of a recording again, as `chicane replay --verify` does.
+
+    controller: a new instance of the Controller that drove; None: the library's controller that did.
+    Returns "steps", "identical", "different", "first_difference" (a cycle, or None), "is_verified" and "error"."""
+    return _chicane.verify(os.fspath(path), controller, step_limit_s)

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: MIT
+"""The closed loop as an environment for reinforcement learning, with the interface of gymnasium."""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _chicane
+from ._request import Settings, make_request
+from ._spaces import BaseEnv, BaseVecEnv, Box, batch_space, box
+
+Array = npt.NDArray[np.float64]
+Info = dict[str, Any]
+Reward = Callable[[Array, Info], float]
+
+NOISE = {"sensor.position_noise_m": 0.05, "sensor.heading_noise_deg": 0.3, "sensor.speed_noise_mps": 0.1}
+"""What `noise=True` sets: standard deviations of a good localisation in full size."""
+
+
+def _request(track: str | None, car: str | None, rate_hz: float, noise: bool | Settings, seed: int, faults: Iterable[str],
+             settings: Settings) -> _chicane.Request:
+    if not 1.0 <= rate_hz <= 200.0:
+        raise ValueError(f"rate_hz: got {rate_hz}, expected a number in [1, 200]")
+    sensors = {key: value for key, value in (NOISE.items() if noise is True else noise.items() if noise else ())}
+    named = {"laps": 0, "guard.mode": "off", "track": track, "car": car, "control_period_ms": 1000.0 / rate_hz, "seed": seed,
+             **sensors}
+    return make_request(named, settings, faults)
+
+
+def _options(observation: str, randomise: Mapping[str, tuple[float, float]], random_faults: Iterable[str], starts_anywhere: bool,
+             ends_off_road: bool, off_road_cost: float, episode_s: float) -> dict[str, Any]:
+    for key, (low, high) in randomise.items():
+        if not low <= high:
+            raise ValueError(f"randomise: {key}: got ({low}, {high}), expected (low, high)")
+    return {"observation": observation, "randomise": dict(randomise), "random_faults": list(random_faults),
+            "starts_anywhere": starts_anywhere, "ends_off_road": ends_off_road, "off_road_cost": float(off_road_cost),
+            "episode_s": float(episode_s)}
+
+
+class Env(BaseEnv):
+    """A car on a track for an agent, on the loop of drive(): the same commands give the same run, bit for bit.
+
+        env = ch.Env("hairpins", car="f1tenth", rate_hz=20, noise=True, seed=1)
+        observation, info = env.reset()
+        observation, reward, terminated, truncated, info = env.step([steer, throttle])
+
+    It is a gymnasium.Env where gymnasium can be imported, and has the same methods where not.
+
+    action: array of shape (2,): steer [rad], left positive, and throttle in [-1, 1], negative brakes. It answers the
+        observation before it, acts `latency_ms` later, and is limited to what the car can do.
+    observation: float64, of what the sensors say, with their noise, age and faults; not-a-number where they say nothing.
+        "track", shape (15,): speed [m/s], distance from the centre line [m], heading against it [rad], steer [rad],
+            throttle, and the curvature of the centre line 5, 10, ... 50 m ahead [1/m] (times the scale of a model car).
+        "waypoints", shape (3 + 2 n,): speed [m/s], steer [rad], throttle, and n waypoints seen from the car, x ahead and
+            y to the left [m]; n is settings["waypoints_sent"], 6 unless said otherwise.
+        "pose", shape (7,): time [s], x, y [m], yaw [rad], speed [m/s], steer [rad], throttle.
+    reward: metres gained along the centre line; less `off_road_cost` when a tyre leaves the road. A function of
+        observation and info takes its place: reward=lambda observation, info: info["speed_mps"].
+    terminated: a tyre has left the road (unless ends_off_road=False), or settings["laps"] laps are driven.
+    truncated: `episode_s` seconds are over (0: no limit), or the car is lost.
+    info: the truth: time_s, s_m, lateral_error_m, edge_distance_m, speed_mps, lap, is_off_track.
+
+    track, car: names or files. rate_hz: of observations, 1 to 200.
+    noise: True: NOISE; or settings of the sensor by key ("sensor.position_noise_m").
+    seed: of the first episode; each reset() without a seed adds one. Everything random follows from it.
+    faults: in every episode, as in drive(). random_faults: one of these in each episode.
+    randomise: settings that are drawn evenly for each episode: {"plant_options.friction_scale": (0.7, 1.0)}.
+    starts_anywhere: on the centre line, standing; else at the track's start.
+    settings: any others; the guard is off unless settings["guard.mode"] says otherwise."""
+
+    metadata: dict[str, Any] = {"render_modes": []}
+
+    def __init__(self, track: str | None = None, car: str | None = None, rate_hz: float = 20.0, noise: bool | Settings = False,
+                 seed: int = 1, *, observation: str = "track", reward: Reward | None = None, faults: Iterable[str] = (),
+                 random_faults: Iterable[str] = (), randomise: Mapping[str, tuple[float, float]] = {},
+                 starts_anywhere: bool = False, ends_off_road: bool = True, off_road_cost: float = 10.0, episode_s: float = 0.0,
+                 settings: Settings = {}) -> None:
+        options = _options(observation, randomise, random_faults, starts_anywhere, ends_off_road, off_road_cost, episode_s)
+        self._core = _chicane.Environment(_request(track, car, rate_hz, noise, seed, faults, settings), options)
+        self._reward = reward
+        self._next_seed = seed
+        self.render_mode = None
+        self.action_space: Box = _action_space(self._core)
+        self.observation_space: Box = _observation_space(self._core)
+
+    def reset(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None) -> tuple[Array, Info]:
+        """Begins an episode. `seed`: of everything random in it; None: the one after the last. `options` are not used."""
+        if seed is not None:
+            self._next_seed = seed
+        self._core.reset(self._next_seed)
+        self._next_seed += 1
+        return self._core.observe(), self._core.info()
+
+    def step(self, action: npt.ArrayLike) -> tuple[Array, float, bool, bool, Info]:
+        """One control period with this command. Beyond the end of an episode nothing moves: truncated."""
+        observation, reward, terminated, truncated, info = self._core.step(action)
+        if self._reward is not None:
+            reward = self._reward(observation, info)
+        return observation, reward, terminated, truncated, info
+
+    def set(self, key: str, value: Any) -> None:
+        """Changes a setting of the episode that goes on, or switches a fault: set("fault.half_grip", True)."""
+        from ._request import text_of
+        self._core.set(key, text_of(value))
+
+    @property
+    def drawn(self) -> list[float]:
+        """The values drawn for this episode, in the order of `randomise`."""
+        return self._core.drawn
+
+    @property
+    def state_hash(self) -> str:
+        """Of every state and command of the episode: that of a run (run["state_hash"]) with the same commands."""
+        return f"{self._core.state_hash:016x}"
+
+    def render(self) -> None:
+        """Draws nothing: a recording of the trained controller (drive(record=...), view()) shows more."""
+
+    def close(self) -> None:
+        """Nothing to give back."""
+
+    def __repr__(self) -> str:
+        return f"<Env: observation {self.observation_space.shape}, episode step {self._core.steps}>"
+
+
+class VecEnv(BaseVecEnv):
+    """Many environments that are stepped together on threads, without the interpreter's lock.
+
+        envs = ch.VecEnv(64, "hairpins", car="f1tenth", threads=2, noise=True, seed=1)
+        observations, infos = envs.reset()
+        observations, rewards, terminated, truncated, infos = envs.step(actions)      # (64, 2)
+
+    Arguments are those of Env, and `count`, `threads` (0: as many as processors). Shapes have `count` in front. The bits
+    do not depend on `threads`: environment i begins with seed + i, and each episode that ends is followed at once by one
+    with the next seed. Then infos["final_observation"] has the last observations of all environments, and
+    infos["_final_observation"] says of which the episode has ended (gymnasium's autoreset in the same step)."""
+
+    metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": "SameStep"}
+
+    def __init__(self, count: int, track: str | None = None, car: str | None = None, rate_hz: float = 20.0,
+                 noise: bool | Settings = False, seed: int = 1, *, threads: int = 0, observation: str = "track",
+                 faults: Iterable[str] = (), random_faults: Iterable[str] = (),
+                 randomise: Mapping[str, tuple[float, float]] = {}, starts_anywhere: bool = False, ends_off_road: bool = True,
+                 off_road_cost: float = 10.0, episode_s: float = 0.0, settings: Settings = {}) -> None:
+        if count < 1:
+            raise ValueError(f"count: got {count}, expected at least 1")
+        options = _options(observation, randomise, random_faults, starts_anywhere, ends_off_road, off_road_cost, episode_s)
+        self._core = _chicane.Batch(_request(track, car, rate_hz, noise, seed, faults, settings), options, count, threads)
+        self._seed = seed
+        self.num_envs = count
+        self.single_action_space: Box = _action_space(self._core.at(0))
+        self.single_observation_space: Box = _observation_space(self._core.at(0))
+        self.action_space: Box = batch_space(self.single_action_space, count)
+        self.observation_space: Box = batch_space(self.single_observation_space, count)
+
+    def reset(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None) -> tuple[Array, Info]:
+        """Begins an episode in each. `seed`: of the first; None: the one of the constructor. `options` are not used."""
+        if seed is not None:
+            self._seed = seed
+        return self._core.reset(self._seed), {}
+
+    def step(self, actions: npt.ArrayLike) -> tuple[Array, Array, npt.NDArray[np.bool_], npt.NDArray[np.bool_], Info]:
+        """One control period in each; `actions` of shape (count, 2)."""
+        observations, rewards, terminated, truncated, last = self._core.step(actions)
+        ended = terminated | truncated
+        infos: Info = {"final_observation": last, "_final_observation": ended} if ended.any() else {}
+        return observations, rewards, terminated, truncated, infos
+
+    def info(self, index: int) -> Info:
+        """The truth of one environment, as Env.step() tells it."""
+        return self._core.at(index).info()
+
+    def close(self, **kwargs: Any) -> None:
+        """Nothing to give back."""
+
+    def __len__(self) -> int:
+        return self.num_envs
+
+    def __repr__(self) -> str:
+        return f"<VecEnv: {self.num_envs} environments, observation {self.single_observation_space.shape}>"
+
+
+def _action_space(core: _chicane.Environment) -> Box:
+    high = np.array([core.steer_limit, 1.0])
+    return box(-high, high)
+
+
+def _observation_space(core: _chicane.Environment) -> Box:
+    high = np.full(core.size, np.inf)
+    return box(-high, high)

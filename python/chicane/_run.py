@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: MIT
+"""What came of a run: its report, laps and frames."""
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _chicane
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = npt.NDArray[Any]
+
+
+class Frames(Mapping[str, Array]):
+    """The control cycles of a run as columns: frames["speed_mps"] is an array of shape (cycles,).
+
+    frame_fields() says what each column means; its unit is the end of its name. Of a run that was driven, columns have
+    the type of the message (float64, bool, uint8, ...) and own their memory; those of a recording are float64."""
+
+    def __init__(self, columns: Mapping[str, Array]) -> None:
+        self._columns = dict(columns)
+
+    def __getitem__(self, name: str) -> Array:
+        try:
+            return self._columns[name]
+        except KeyError:
+            raise KeyError(f"got {name!r}, expected one of {', '.join(self._columns) or 'no columns (frames=False)'}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    @property
+    def cycles(self) -> int:
+        """Number of control cycles."""
+        return len(next(iter(self._columns.values()), ()))
+
+    def to_pandas(self) -> pd.DataFrame:
+        """A DataFrame with a row for each control cycle, indexed by time_s (needs python3-pandas)."""
+        import pandas as pd
+        return pd.DataFrame(self._columns).set_index("time_s")
+
+    def meaning(self, name: str) -> str:
+        """One sentence about a column."""
+        return _chicane.frame_fields()[name]
+
+    def __repr__(self) -> str:
+        return f"<Frames: {self.cycles} cycles, {len(self)} columns: {', '.join(list(self)[:6])}, ...>"
+
+
+class Run(Mapping[str, Any]):
+    """A run that was driven. As a mapping it holds the report of `chicane drive --json`, with the keys of docs/cli.md:
+    run["off_track_events"], run["state_hash"].
+
+    laps: one dict for each completed lap, with lap_time_s, mean_speed_mps, min_edge_distance_m and more.
+    frames: what happened in each control cycle (Frames).
+    road: "centre", "left" and "right" as arrays of shape (n, 2) [m].
+    error: the traceback of a Controller of your own that failed, or None.
+
+    It can be pickled."""
+
+    def __init__(self, report: dict[str, Any], table: str, frames: Frames, road: dict[str, Array], error: str | None, file: str,
+                 request: dict[str, Any] | None) -> None:
+        self._report = report
+        self._table = table
+        self._request = request
+        self.frames = frames
+        self.road = road
+        self.error = error
+        self.file = file
+
+    def __getitem__(self, key: str) -> Any:
+        return self._report[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._report)
+
+    def __len__(self) -> int:
+        return len(self._report)
+
+    @property
+    def laps(self) -> list[dict[str, Any]]:
+        """The completed laps, the first from standstill."""
+        laps: list[dict[str, Any]] = self._report["laps"]
+        return laps
+
+    @property
+    def best_lap_s(self) -> float:
+        """The shortest lap time [s]; not-a-number without a completed lap."""
+        return min((float(lap["lap_time_s"]) for lap in self.laps), default=float("nan"))
+
+    def table(self) -> str:
+        """The laps and what the run was like, as the program prints them."""
+        return self._table
+
+    def summary(self) -> str:
+        """The run in one line."""
+        laps = f"{self['laps_completed']} laps, the best {self.best_lap_s:.3f} s" if self.laps else "no lap completed"
+        off = self["off_track_events"]
+        end = self["end_reason"]
+        return (f"{self['car']} on {self['track']}, {self['preset']}: {laps}, off the road {off} times"
+                + (f"; {end}" if end else "") + ("; its controller failed" if self.error else ""))
+
+    def __repr__(self) -> str:
+        return f"<Run: {self.summary()}>"
+
+    def _repr_html_(self) -> str:
+        rows = [f"<tr><td>{number}</td><td>{lap['lap_time_s']:.3f}</td><td>{lap['mean_speed_mps']:.2f}</td>"
+                f"<td>{lap['top_speed_mps']:.2f}</td><td>{_number(lap['min_edge_distance_m'])}</td></tr>"
+                for number, lap in enumerate(self.laps, 1)]
+        head = "".join(f"<th>{name}</th>" for name in ("lap", "time [s]", "mean [m/s]", "top [m/s]", "to edge, least [m]"))
+        error = f"<pre>{escape(self.error)}</pre>" if self.error else ""
+        return (f"<p>{escape(self.summary())}</p>{_picture(self.road, self.frames)}<table><tr>{head}</tr>{''.join(rows)}</table>"
+                f"{error}")
+
+
+class Recording:
+    """A recording that was read.
+
+    head: who recorded what, as text by key (docs/recording.md).
+    frames: what happened in each control cycle (Frames, all columns float64).
+    laps: one dict for each completed lap.
+    road: "centre", "left" and "right" as arrays of shape (n, 2) [m]; empty where no track was known."""
+
+    def __init__(self, file: str, head: dict[str, str], frames: Frames, laps: list[dict[str, float]],
+                 road: dict[str, Array]) -> None:
+        self.file = file
+        self.head = head
+        self.frames = frames
+        self.laps = laps
+        self.road = road
+
+    def __repr__(self) -> str:
+        what = ", ".join(self.head[key] for key in ("car", "track", "preset") if self.head.get(key))
+        return f"<Recording {self.file}: {what}; {self.frames.cycles} cycles, {len(self.laps)} laps>"
+
+    def _repr_html_(self) -> str:
+        return f"<p>{escape(repr(self))}</p>{_picture(self.road, self.frames)}"
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.2f}"
+
+
+def _picture(road: Mapping[str, Array], frames: Frames) -> str:
+    """Road and driven line from above, as SVG."""
+    edges = [road[name] for name in ("left", "right") if name in road and len(road[name])]
+    if not edges:
+        return ""
+    points = np.concatenate(edges)
+    low, high = points.min(axis=0), points.max(axis=0)
+    width, height = np.maximum(high - low, 1.0)
+    lines = [(edge, "#888") for edge in edges]
+    if "x_m" in frames:
+        step = max(1, frames.cycles // 1000)
+        lines.append((np.stack([frames["x_m"], frames["y_m"]], axis=1)[::step], "#c33"))
+    drawn = "".join(f'<polyline fill="none" stroke="{colour}" vector-effect="non-scaling-stroke" points="{_points(line, low, high)}"/>'
+                    for line, colour in lines)
+    return f'<svg width="360" viewBox="0 0 {width:.1f} {height:.1f}" xmlns="http://www.w3.org/2000/svg">{drawn}</svg>'
+
+
+def _points(line: Array, low: Array, high: Array) -> str:
+    """Points in the picture, whose y points down."""
+    inside = line[np.isfinite(line).all(axis=1)]
+    return " ".join(f"{x - low[0]:.1f},{high[1] - y:.1f}" for x, y in inside)

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: MIT
+"""Many runs."""
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import _chicane
+from ._request import Settings
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def plan_of(axes: Mapping[str, Any], settings: Settings = {}, keep: Iterable[str] = (), name: str = "sweep") -> str:
+    """The plan of a sweep as YAML, a line for each part (docs/sweep.md): what `chicane sweep` reads from a file."""
+    lines = [f"name: {_json(name)}"]
+    if settings:
+        lines.append("settings: {" + ", ".join(f"{_json(key)}: {_json(value)}" for key, value in settings.items()) + "}")
+    if axes:
+        lines += ["axes:"] + [f"  - {{{_json(key)}: {_json(values)}}}" for key, values in axes.items()]
+    if kept := list(keep):
+        lines.append(f"keep: {_json(kept)}")
+    return "\n".join(lines) + "\n"
+
+
+def sweep(axes: Mapping[str, Any], *, settings: Settings = {}, keep: Iterable[str] = (), jobs: int = 0, name: str = "sweep",
+          output: str | os.PathLike[str] = "") -> pd.DataFrame:
+    """Drives one run for each combination of the axes' values, on threads, and returns a table (needs python3-pandas).
+
+        ch.sweep({"preset": ["default", "race"], "latency_ms": range(0, 300, 50)}, settings={"laps": 2}, jobs=2)
+
+    axes: values by key: a list, range or array, or a range of the plan's grammar ({"from": 20, "to": 80, "step": 10}). The
+        last axis turns fastest. Keys are those of docs/sweep.md.
+    settings: what all runs share.
+    keep: columns of the results; all when left out.
+    jobs: threads; 0: as many as processors.
+    output: a file for the results (.jsonl), with the same lines as `chicane sweep` writes. What it holds already is not
+        driven again.
+
+    The table has a row for each run, in the order of the plan: `run`, the keys of the axes, then the results; None and
+    not-a-number where nothing was measured, `error` where a run could not be driven. A run depends on the plan and its
+    number alone, not on `jobs`. ValueError for a plan that is wrong, with the line of plan_of()."""
+    import pandas as pd
+    plan = plan_of(axes, settings, keep, name)
+    with tempfile.TemporaryDirectory(prefix="chicane-") as folder:
+        file = Path(os.fspath(output) or Path(folder) / "sweep.jsonl")
+        _chicane.sweep(plan, f"sweep {name}", str(file), jobs)
+        lines = file.read_text(encoding="utf-8").splitlines()
+    rows = sorted((_row(json.loads(line)) for line in lines[1:]), key=lambda row: int(row["run"]))
+    return pd.DataFrame(rows)
+
+
+def _row(told: dict[str, Any]) -> dict[str, Any]:
+    """A line of the results with its settings as columns; results of the same name win."""
+    settings = told.pop("settings")
+    return {"run": told.pop("run"), **settings, **told}
+
+
+def _json(value: Any) -> str:
+    """JSON, which is YAML; ranges and arrays are lists."""
+    return json.dumps(value, default=_plain, ensure_ascii=False)
+
+
+def _plain(value: Any) -> Any:
+    if hasattr(value, "tolist"):  # of numpy
+        return value.tolist()
+    if isinstance(value, Iterable):
+        return list(value)
+    raise TypeError(f"axes: got {value!r}, expected numbers, texts and lists of them")

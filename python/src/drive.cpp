@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "chicane/live/description.hpp"
+#include "chicane/protocol/json_report.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/protocol/ros_messages.hpp"
+#include "chicane/recording/recorder.hpp"
+#include "chicane/recording/replay.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "conversion.hpp"
+#include "faces.hpp"
+#include "frame_columns.hpp"
+#include "python_controller.hpp"
+#include "signals.hpp"
+
+namespace chicane::python {
+namespace {
+
+constexpr double kStandingSpeed = 0.1;  // [m/s] at which a run ends whose controller has failed
+constexpr double kTimeToStop = 30.0;    // [s] after which it ends anyway
+constexpr double kRoadSpacing = 2.0;    // [m] between the points of the road that is told
+
+struct DriveOptions {
+  std::string record;  ///< file; empty: nothing is recorded
+  bool wants_frames = true;
+};
+
+/// What came of a run.
+struct Driven {
+  telemetry::RunSummary summary;
+  protocol::RoadLines road;
+  FrameColumns frames;
+};
+
+/// Makes an instance that calls the Python object, or the scenario's own controller for None. Called without
+/// the interpreter's lock, copied and destroyed with it.
+run::ControllerFactory factory_of(const py::object& controller, double step_limit,
+                                  const std::shared_ptr<ControllerFailure>& failure) {
+  if (controller.is_none()) return run::make_controller;
+  return [=](const scenario::Scenario& scenario) -> Result<std::unique_ptr<controller::Controller>> {
+    const py::gil_scoped_acquire lock;
+    return std::make_unique<PythonController>(controller, scenario.vehicle, step_limit, failure);
+  };
+}
+
+/// The recording's scenario names a controller of the library in any case: readers refuse another one. Who
+/// drove is in its description.
+Result<std::unique_ptr<recording::Recorder>> recorder_of(const run::ClosedLoop& loop,
+                                                         const std::string& file) {
+  if (file.empty()) return std::unique_ptr<recording::Recorder>();
+  scenario::Scenario scenario = loop.scenario();
+  if (controller::Registry::find(scenario.controller) == nullptr) {
+    scenario.controller = scenario::Scenario{}.controller;
+    scenario.preset = scenario::Scenario{}.preset;
+  }
+  return recording::Recorder::create(
+      {.path = file, .run = live::description(loop), .scenario = std::move(scenario), .may_wait = true});
+}
+
+/// The hooks that keep what a run tells.
+run::RunHooks hooks_of(Driven& driven, recording::Recorder* recorder, bool wants_frames) {
+  run::RunHooks hooks;
+  hooks.on_frame = [=, &driven](const telemetry::Frame& frame) {
+    if (recorder != nullptr) recorder->record(frame);
+    if (wants_frames) driven.frames.add(frame);
+  };
+  if (recorder == nullptr) return hooks;
+  hooks.on_lap = [=](const telemetry::CompletedLap& lap) { recorder->record(lap); };
+  hooks.on_change = [=](const telemetry::Change& change) { recorder->record(change); };
+  return hooks;
+}
+
+/// Without the interpreter's lock.
+Result<Driven> run_to_end(const scenario::Scenario& scenario, const run::ControllerFactory& make,
+                          const DriveOptions& options, const ControllerFailure& failure,
+                          SignalWatch& signals) {
+  const auto loop = run::ClosedLoop::create(scenario, make);
+  if (!loop) return fail(loop.error());
+  auto recorder = recorder_of(**loop, options.record);
+  if (!recorder) return fail(recorder.error());
+  Driven driven;
+  const auto has_stopped = [&] {
+    if (failure.interrupt) return true;
+    const bool is_standing = (*loop)->frame().truth.vx < kStandingSpeed;
+    return failure.has_failed() && (is_standing || (*loop)->time() > failure.time + kTimeToStop);
+  };
+  driven.summary = run::run_closed_loop(**loop, hooks_of(driven, recorder->get(), options.wants_frames),
+                                        [&] { return signals() || has_stopped(); });
+  driven.road = protocol::road_lines((*loop)->track(), kRoadSpacing * scenario.vehicle.scale);
+  if (!*recorder) return driven;
+  if (const auto report = (*recorder)->finish(); !report) return fail(report.error());
+  return driven;
+}
+
+py::dict to_dict(const protocol::RoadLines& lines) {
+  py::dict road;
+  road["centre"] = to_array(lines.centre);
+  road["left"] = to_array(lines.left);
+  road["right"] = to_array(lines.right);
+  return road;
+}
+
+/// The scenario; a controller written in Python has its class's name.
+scenario::Scenario scenario_of(const protocol::Request& request, const py::object& controller) {
+  scenario::Scenario scenario = value_of(unlocked([&] { return protocol::compose(request); }));
+  if (!controller.is_none())
+    scenario.controller = scenario.preset = py::str(py::type::of(controller).attr("__name__"));
+  return scenario;
+}
+
+py::dict drive(const protocol::Request& request, const py::object& controller, const std::string& record,
+               bool wants_frames, double step_limit) {
+  const auto failure = std::make_shared<ControllerFailure>();
+  const scenario::Scenario scenario = scenario_of(request, controller);
+  const run::ControllerFactory make = factory_of(controller, step_limit, failure);
+  SignalWatch signals;
+  Driven driven = value_of(unlocked([&] {
+    return run_to_end(scenario, make, {.record = record, .wants_frames = wants_frames}, *failure, signals);
+  }));
+  signals.raise();
+  if (failure->interrupt) throw py::error_already_set(*failure->interrupt);
+  py::dict told;
+  told["report"] = protocol::to_json(driven.summary);
+  told["table"] = protocol::to_table(driven.summary);
+  told["road"] = to_dict(driven.road);
+  told["frames"] = wants_frames ? driven.frames.take() : py::dict();
+  told["error"] = failure->text.empty() ? py::object(py::none()) : py::str(failure->text);
+  told["error_time"] = failure->time;
+  return told;
+}
+
+/// Computes every command of a recording again.
+py::dict verify(const std::string& file, const py::object& controller, double step_limit) {
+  const auto failure = std::make_shared<ControllerFailure>();
+  const run::ControllerFactory make = factory_of(controller, step_limit, failure);
+  const recording::ReplayReport report =
+      value_of(unlocked([&] { return recording::verify_recording(file, make); }));
+  if (failure->interrupt) throw py::error_already_set(*failure->interrupt);
+  py::dict told;
+  told["steps"] = report.steps;
+  told["identical"] = report.identical;
+  told["different"] = report.different;
+  told["first_difference"] = report.first_difference;
+  told["is_verified"] = report.is_verified();
+  told["error"] = failure->text.empty() ? py::object(py::none()) : py::str(failure->text);
+  return told;
+}
+
+}  // namespace
+
+void add_drive(py::module_& module) {
+  module.def("drive", drive, py::arg("request"), py::arg("controller"), py::arg("record"),
+             py::arg("wants_frames"), py::arg("step_limit_s"));
+  module.def("verify", verify, py::arg("file"), py::arg("controller"), py::arg("step_limit_s"));
+}
+
+}  // namespace chicane::python

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "chicane/protocol/library.hpp"
+#include "conversion.hpp"
+#include "environment.hpp"
+#include "faces.hpp"
+
+namespace chicane::python {
+namespace {
+
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+Observation observation_named(const std::string& name) {
+  if (name == "track") return Observation::kTrack;
+  if (name == "waypoints") return Observation::kWaypoints;
+  if (name == "pose") return Observation::kPose;
+  throw py::value_error("observation: got \"" + name + "\", expected one of track, waypoints, pose");
+}
+
+EnvironmentOptions options_of(const py::dict& given) {
+  EnvironmentOptions options;
+  options.observation = observation_named(given["observation"].cast<std::string>());
+  options.off_road_cost = given["off_road_cost"].cast<double>();
+  options.ends_off_road = given["ends_off_road"].cast<bool>();
+  options.episode_limit = given["episode_s"].cast<double>();
+  options.starts_anywhere = given["starts_anywhere"].cast<bool>();
+  for (const auto& [key, range] : given["randomise"].cast<py::dict>()) {
+    const auto [low, high] = range.cast<std::pair<double, double>>();
+    options.draws.push_back({key.cast<std::string>(), low, high});
+  }
+  options.faults = given["random_faults"].cast<std::vector<std::string>>();
+  return options;
+}
+
+std::unique_ptr<Environment> make_environment(const protocol::Request& request, const py::dict& given) {
+  const EnvironmentOptions options = options_of(given);
+  return value_of(unlocked([&]() -> Result<std::unique_ptr<Environment>> {
+    const Result<scenario::Scenario> scenario = protocol::compose(request);
+    if (!scenario) return fail(scenario.error());
+    return Environment::create(*scenario, options);
+  }));
+}
+
+void check_action(double steer, double throttle) {
+  if (!std::isfinite(steer) || !std::isfinite(throttle))
+    throw py::value_error("action: got " + std::to_string(steer) + ", " + std::to_string(throttle) +
+                          ", expected two finite numbers: steer [rad], throttle [-1, 1]");
+}
+
+Numbers observation_of(const Environment& environment) {
+  Numbers observation(static_cast<py::ssize_t>(environment.size()));
+  environment.observe({observation.mutable_data(), environment.size()});
+  return observation;
+}
+
+/// The truth, which an agent is not told.
+py::dict info_of(const Environment& environment) {
+  const run::ClosedLoop& loop = environment.loop();
+  const sim::WorldState& world = loop.world();
+  py::dict info;
+  info["time_s"] = loop.time();
+  info["s_m"] = world.s;
+  info["lateral_error_m"] = world.lateral_error;
+  info["edge_distance_m"] = world.edge_distance;
+  info["speed_mps"] = loop.car().vx;
+  info["lap"] = world.lap;
+  info["is_off_track"] = world.is_off_track;
+  return info;
+}
+
+py::tuple step(Environment& environment, const Numbers& action) {
+  if (action.ndim() != 1 || action.shape(0) != 2)
+    throw py::value_error(
+        "action: got an array of another shape, expected (2,): steer [rad], throttle [-1, 1]");
+  const model::Command command{action.at(0), action.at(1)};
+  check_action(command.steer, command.throttle);
+  const StepOutcome outcome = unlocked([&] { return environment.step(command); });
+  return py::make_tuple(observation_of(environment), outcome.reward, outcome.terminated, outcome.truncated,
+                        info_of(environment));
+}
+
+/// Many environments that are stepped together on threads; the bits do not depend on how many.
+class Batch {
+ public:
+  Batch(const protocol::Request& request, const py::dict& given, int count, int threads)
+      : threads_{std::max(1, threads)} {
+    for (int i = 0; i < count; ++i) environments_.push_back(make_environment(request, given));
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return environments_.size(); }
+  [[nodiscard]] Environment& at(std::size_t i) const { return *environments_.at(i); }
+
+  Numbers reset(std::uint64_t seed) {
+    next_seed_ = seed;
+    for (const auto& environment : environments_) check(environment->reset(next_seed_++));
+    Numbers observations = make_observations();
+    write(observations);
+    return observations;
+  }
+
+  /// Observation, reward, terminated, truncated and the last observation of episodes that ended: those begin
+  /// anew at once.
+  py::tuple step(const Numbers& actions) {
+    if (actions.ndim() != 2 || static_cast<std::size_t>(actions.shape(0)) != size() || actions.shape(1) != 2)
+      throw py::value_error("actions: got an array of another shape, expected (" + std::to_string(size()) +
+                            ", 2)");
+    for (py::ssize_t i = 0; i < actions.shape(0); ++i) check_action(actions.at(i, 0), actions.at(i, 1));
+    std::vector<StepOutcome> outcomes(size());
+    unlocked([&] { step_all(actions.data(), outcomes.data()); });
+    Numbers last = make_observations();
+    write(last);
+    const bool has_ended = std::any_of(outcomes.begin(), outcomes.end(), [](const StepOutcome& outcome) {
+      return outcome.terminated || outcome.truncated;
+    });
+    if (!has_ended) return told(last, outcomes, last);
+    begin_anew(outcomes);
+    Numbers observations = make_observations();
+    write(observations);
+    return told(observations, outcomes, last);
+  }
+
+ private:
+  void step_all(const double* actions, StepOutcome* outcomes) {
+    const std::size_t threads = std::min(static_cast<std::size_t>(threads_), size());
+    const auto step_part = [&](std::size_t part) {
+      for (std::size_t i = size() * part / threads; i < size() * (part + 1) / threads; ++i)
+        outcomes[i] = environments_[i]->step({actions[2 * i], actions[2 * i + 1]});
+    };
+    std::vector<std::jthread> others;
+    for (std::size_t part = 1; part < threads; ++part) others.emplace_back(step_part, part);
+    step_part(0);
+  }
+  void begin_anew(const std::vector<StepOutcome>& outcomes) {
+    for (std::size_t i = 0; i < size(); ++i) {
+      if (outcomes[i].terminated || outcomes[i].truncated) check(environments_[i]->reset(next_seed_++));
+    }
+  }
+  [[nodiscard]] Numbers make_observations() const {
+    return Numbers({static_cast<py::ssize_t>(size()), static_cast<py::ssize_t>(environments_[0]->size())});
+  }
+  void write(Numbers& to) const {
+    const std::size_t width = environments_[0]->size();
+    for (std::size_t i = 0; i < size(); ++i)
+      environments_[i]->observe({to.mutable_data() + i * width, width});
+  }
+  static py::tuple told(const Numbers& observations, const std::vector<StepOutcome>& outcomes,
+                        const Numbers& last) {
+    const auto count = static_cast<py::ssize_t>(outcomes.size());
+    py::array_t<double> rewards(count);
+    py::array_t<bool> terminated(count), truncated(count);
+    for (py::ssize_t i = 0; i < count; ++i) {
+      const StepOutcome& outcome = outcomes[static_cast<std::size_t>(i)];
+      rewards.mutable_at(i) = outcome.reward;
+      terminated.mutable_at(i) = outcome.terminated;
+      truncated.mutable_at(i) = outcome.truncated;
+    }
+    return py::make_tuple(observations, rewards, terminated, truncated, last);
+  }
+
+  int threads_;
+  std::uint64_t next_seed_ = 0;
+  std::vector<std::unique_ptr<Environment>> environments_;
+};
+
+}  // namespace
+
+void add_environment(py::module_& module) {
+  py::class_<Environment>(module, "Environment")
+      .def(py::init(&make_environment), py::arg("request"), py::arg("options"))
+      .def("reset",
+           [](Environment& self, std::uint64_t seed) { check(unlocked([&] { return self.reset(seed); })); })
+      .def("step", step, py::arg("action"))
+      .def("observe", observation_of)
+      .def("info", info_of)
+      .def("set", [](Environment& self, const std::string& key,
+                     const std::string& text) { check(self.set(key, text)); })
+      .def_property_readonly("size", &Environment::size)
+      .def_property_readonly("drawn", &Environment::drawn)
+      .def_property_readonly("steps", &Environment::steps)
+      .def_property_readonly(
+          "steer_limit", [](const Environment& self) { return self.loop().scenario().vehicle.steer_limit; })
+      .def_property_readonly("state_hash",
+                             [](const Environment& self) { return self.loop().summary().state_hash; });
+  py::class_<Batch>(module, "Batch")
+      .def(py::init<const protocol::Request&, const py::dict&, int, int>(), py::arg("request"),
+           py::arg("options"), py::arg("count"), py::arg("threads"))
+      .def("reset", &Batch::reset, py::arg("seed"))
+      .def("step", &Batch::step, py::arg("actions"))
+      .def("at", &Batch::at, py::return_value_policy::reference_internal)
+      .def("__len__", &Batch::size);
+}
+
+}  // namespace chicane::python
