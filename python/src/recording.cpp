@@ -26,12 +26,14 @@ class RecordingReader {
  public:
   Result<void> add(const telemetry::McapMessage& message) {
     const std::string& topic = message.channel.topic;
-    const bool is_frame = topic == "/chicane/frame", is_lap = topic == "/chicane/lap";
+    const bool is_frame = topic == "/chicane/frame", is_lap = topic == "/chicane/lap",
+               is_run = topic == "/chicane/run";
     const bool is_line = topic.starts_with("/track/");
-    if (!is_frame && !is_lap && !is_line) return {};
+    if (!is_frame && !is_lap && !is_run && !is_line) return {};
     const Result<RosContent> content = read(message);
     if (!content) return fail(content.error().code, topic + ": " + content.error().message);
     if (is_frame) add_frame(*content);
+    if (is_run) controller_ = content->text("controller");
     if (is_lap) laps_.push_back(first_of_each(*content));
     if (is_line) add_line(topic.substr(std::string("/track/").size()), *content);
     return {};
@@ -44,6 +46,7 @@ class RecordingReader {
     py::dict frames, road, told;
     for (auto& [name, values] : columns_) frames[py::str(name)] = to_array(std::move(values));
     for (auto& [name, points] : road_) road[py::str(name)] = to_array(points);
+    if (!controller_.empty()) head_["controller"] = controller_;  // also one that is none of the library's
     told["head"] = head_;
     told["frames"] = frames;
     told["laps"] = laps_;
@@ -90,6 +93,7 @@ class RecordingReader {
 
   std::map<std::uint16_t, RosReader> readers_;
   std::map<std::string, std::string> head_;
+  std::string controller_;
   Columns columns_;
   std::map<std::string, std::vector<Vec2>> road_;
   std::vector<Row> laps_;
