@@ -5,7 +5,7 @@ and nothing but Python.
 CMake builds in build/python, so that a second build takes seconds, for the interpreter that runs this. The environment may say:
 
     CHICANE_SIMD              instruction sets (README): native unless said otherwise; all for a wheel that is carried elsewhere
-    CHICANE_PYTHON_BUILD_DIR  a build folder that is configured with CHICANE_PYTHON=ON already
+    CHICANE_PYTHON_BUILD_DIR  a build folder in which the target chicane_python is built already
 """
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import base64
 import hashlib
 import os
 import re
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -32,13 +33,18 @@ def version() -> str:
 
 
 def check_interpreter() -> None:
-    """One that does not see Debian's numpy builds a module that cannot be imported."""
-    try:
-        import numpy  # noqa: F401
-    except ImportError:
-        if ".pyenv" in Path(sys.base_prefix).parts or os.environ.get("PYENV_ROOT", "\0") in sys.base_prefix:
-            sys.exit(f"chicane: {sys.executable} is an interpreter of pyenv ({sys.base_prefix}), which does not see Debian's numpy: "
-                     "expected one of /usr/bin/python3 -m venv --system-site-packages FOLDER (docs/python.md)")
+    """Refuses an interpreter of pyenv that has no numpy: the module that it builds could not be imported."""
+    plain = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}  # pip's own, which hides numpy
+    has_numpy = subprocess.run([sys.executable, "-c", "import numpy"], env=plain, capture_output=True).returncode == 0
+    if not has_numpy and is_pyenv(sys.base_prefix):
+        sys.exit(f"chicane: {sys.executable} is an interpreter of pyenv ({sys.base_prefix}), which does not see Debian's numpy: expected "
+                 "one of a virtual environment made by /usr/bin/python3 -m venv --system-site-packages (docs/python.md)")
+
+
+def is_pyenv(prefix: str) -> bool:
+    """Whether an interpreter lies in pyenv's folder."""
+    root = os.environ.get("PYENV_ROOT", "")
+    return ".pyenv" in Path(prefix).parts or (bool(root) and Path(root) in Path(prefix).parents)
 
 
 def run(*command: str) -> None:
@@ -48,16 +54,26 @@ def run(*command: str) -> None:
         sys.exit(f"chicane: this has failed: {' '.join(command)}")
 
 
+def check_tools() -> None:
+    """Names what is missing in one sentence, not in CMake's."""
+    missing = [package for program, package in (("cmake", "cmake"), ("ninja", "ninja-build"), ("c++", "g++")) if not shutil.which(program)]
+    if not list(Path("/usr").glob("include/pybind11/pybind11.h")):
+        missing.append("pybind11-dev")
+    if missing:
+        print(f"chicane: probably missing: apt-get install {' '.join(missing)} (docs/python.md has all)", file=sys.stderr)
+
+
 def compiled_package() -> Path:
     """Builds the module, and returns the folder of the package."""
     given = os.environ.get("CHICANE_PYTHON_BUILD_DIR")
     build = Path(given) if given else ROOT / "build" / "python"
     if not given:
         check_interpreter()
+        check_tools()
         run("cmake", "-S", str(ROOT), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCHICANE_PYTHON=ON",
             f"-DCHICANE_PYTHON_EXECUTABLE={sys.executable}", f"-DCHICANE_SIMD={os.environ.get('CHICANE_SIMD', 'native')}",
             "-DCHICANE_BUILD_TESTS=OFF", "-DCHICANE_BUILD_EXAMPLES=OFF", "-DCHICANE_BUILD_APPS=OFF")
-    run("cmake", "--build", str(build), "--target", "chicane_python")
+        run("cmake", "--build", str(build), "--target", "chicane_python")
     return build / "python" / "chicane"
 
 

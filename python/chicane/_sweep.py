@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -45,6 +44,8 @@ def sweep(axes: Mapping[str, Any], *, settings: Settings = {}, keep: Iterable[st
     The table has a row for each run, in the order of the plan: `run`, the keys of the axes, then the results; None and
     not-a-number where nothing was measured, `error` where a run could not be driven. A run depends on the plan and its
     number alone, not on `jobs`. ValueError for a plan that is wrong, with the line of plan_of()."""
+    import tempfile  # here, because importing chicane shall be quick
+
     import pandas as pd
     plan = plan_of(axes, settings, keep, name)
     with tempfile.TemporaryDirectory(prefix="chicane-") as folder:

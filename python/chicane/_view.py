@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-import tempfile
-import webbrowser
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -40,6 +38,8 @@ def view(run: Run | Recording | str | os.PathLike[str], *, page: str | os.PathLi
     open_browser: None: unless in a notebook.
     ValueError for a run with a Controller of your own that was not recorded (drive(..., record=...)), and where the
     module was built without Node.js, which the dashboard needs."""
+    import tempfile  # here, because importing chicane shall be quick
+    import webbrowser
     file = os.fspath(page) or tempfile.mkstemp(prefix="chicane-", suffix=".html")[1]
     with tempfile.TemporaryDirectory(prefix="chicane-") as folder:
         recording = _recording_of(run, folder)
