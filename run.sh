@@ -6,6 +6,7 @@
 #   ./run.sh drive --fast --laps 2 --json         any command of `chicane`; stdout carries its results only
 #   ./run.sh bench                                builds the benchmark, too, with Ipopt to compare with
 #   ./run.sh package                              makes Debian packages and a tarball in build/release/packages (docs/packages.md)
+#   ./run.sh python [ARGUMENT...]                 Python with `import chicane` (docs/python.md): a prompt, or a script and its arguments
 #   ./run.sh page --out DIR                       writes a page that drives without a program, in the browser alone (WebAssembly)
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
@@ -28,6 +29,12 @@ if [ "${1:-}" = package ] && [ $# -eq 1 ]; then
   (cd "$root/build/release" && rm -rf packages && cpack >cpack.log 2>&1) || { cat "$root/build/release/cpack.log" >&2; exit 3; }
   printf '%s\n' "$root"/build/release/packages/*
   exit 0
+fi
+
+if [ "${1:-}" = python ]; then
+  mapfile -t node < <(node_packages)
+  install_packages "${run_packages[@]}" "${python_packages[@]}" python3-pandas "${node[@]}"
+  exec "$root/tools/run_python.sh" "${@:2}"
 fi
 
 target=chicane_app

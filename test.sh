@@ -17,7 +17,7 @@ fi
 
 mapfile -t others < <(node_packages; browser_packages)
 install_packages "${run_packages[@]}" "${test_packages[@]}" "${slow_packages[@]}" "${others[@]}"
-build_release "$root" all CHICANE_SIMD=all CHICANE_BUILD_TESTS=ON CHICANE_BUILD_EXAMPLES=ON "CHICANE_SLOW_TESTS=$slow"
+build_release "$root" all CHICANE_SIMD=all CHICANE_BUILD_TESTS=ON CHICANE_BUILD_EXAMPLES=ON CHICANE_PYTHON=ON "CHICANE_SLOW_TESTS=$slow"
 processor_seconds built
 say "chicane: ctest ${selection[*]} $*"
 log=$root/build/release/test.log

@@ -89,7 +89,7 @@ def check_library_file(root, source):
 
 
 def sources(root):
-    for folder in ("src", "apps", "tests", "examples", "bench"):
+    for folder in ("src", "apps", "python", "tests", "examples", "bench"):
         yield from sorted(p for p in (root / folder).rglob("*") if p.suffix in (".hpp", ".cpp"))
 
 
