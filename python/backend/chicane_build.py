@@ -100,14 +100,27 @@ def tag() -> str:
     return f"{python}-{python}-{re.sub(r'[-.]', '_', sysconfig.get_platform())}"
 
 
+def descriptions() -> dict[str, bytes]:
+    """The files that say what a wheel is, but for its record."""
+    return {"METADATA": metadata().encode(),
+            "WHEEL": f"Wheel-Version: 1.0\nGenerator: chicane\nRoot-Is-Purelib: false\nTag: {tag()}\n".encode(),
+            "LICENSE": (ROOT / "LICENSE").read_bytes()}
+
+
+def prepare_metadata_for_build_wheel(metadata_directory: str, config_settings: dict[str, Any] | None = None) -> str:
+    """PEP 517: the name of the folder with the metadata, without a build."""
+    info = f"chicane-{version()}.dist-info"
+    folder = Path(metadata_directory) / info
+    folder.mkdir(parents=True)
+    for name, content in descriptions().items():
+        (folder / name).write_bytes(content)
+    return info
+
+
 def write_wheel(file: Path, files: dict[str, bytes]) -> None:
     """Packs the files with their record, the same bytes for the same content."""
     info = f"chicane-{version()}.dist-info"
-    files = files | {
-        f"{info}/METADATA": metadata().encode(),
-        f"{info}/WHEEL": f"Wheel-Version: 1.0\nGenerator: chicane\nRoot-Is-Purelib: false\nTag: {tag()}\n".encode(),
-        f"{info}/LICENSE": (ROOT / "LICENSE").read_bytes(),
-    }
+    files = files | {f"{info}/{name}": content for name, content in descriptions().items()}
     record = f"{info}/RECORD"
     lines = [f"{name},sha256={base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b'=').decode()},{len(content)}"
              for name, content in files.items()]

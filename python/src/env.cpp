@@ -40,12 +40,13 @@ EnvironmentOptions options_of(const py::dict& given) {
   return options;
 }
 
-std::unique_ptr<Environment> make_environment(const protocol::Request& request, const py::dict& given) {
+std::unique_ptr<Environment> make_environment(const protocol::Request& request, const py::dict& given,
+                                              const std::shared_ptr<run::Roads>& roads) {
   const EnvironmentOptions options = options_of(given);
   return value_of(unlocked([&]() -> Result<std::unique_ptr<Environment>> {
     const Result<scenario::Scenario> scenario = protocol::compose(request);
     if (!scenario) return fail(scenario.error());
-    return Environment::create(*scenario, options);
+    return Environment::create(*scenario, options, roads);
   }));
 }
 
@@ -92,7 +93,8 @@ class Batch {
  public:
   Batch(const protocol::Request& request, const py::dict& given, int count, int threads)
       : threads_{std::max(1, threads)} {
-    for (int i = 0; i < count; ++i) environments_.push_back(make_environment(request, given));
+    const auto roads = std::make_shared<run::Roads>();
+    for (int i = 0; i < count; ++i) environments_.push_back(make_environment(request, given, roads));
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return environments_.size(); }
@@ -174,7 +176,10 @@ class Batch {
 
 void add_environment(py::module_& module) {
   py::class_<Environment>(module, "Environment")
-      .def(py::init(&make_environment), py::arg("request"), py::arg("options"))
+      .def(py::init([](const protocol::Request& request, const py::dict& options) {
+             return make_environment(request, options, std::make_shared<run::Roads>());
+           }),
+           py::arg("request"), py::arg("options"))
       .def("reset",
            [](Environment& self, std::uint64_t seed) { check(unlocked([&] { return self.reset(seed); })); })
       .def("step", step, py::arg("action"))

@@ -52,15 +52,18 @@ class Environment::Agent final : public controller::Controller {
   controller::StepResult result_;
 };
 
-Environment::Environment(const scenario::Scenario& scenario, EnvironmentOptions options)
+Environment::Environment(const scenario::Scenario& scenario, EnvironmentOptions options,
+                         std::shared_ptr<run::Roads> roads)
     : scenario_{scenario},
       options_{std::move(options)},
       size_{size_of(options_.observation, scenario)},
+      roads_{std::move(roads)},
       drawn_(options_.draws.size(), kUnknown) {}
 
 Result<std::unique_ptr<Environment>> Environment::create(const scenario::Scenario& scenario,
-                                                         EnvironmentOptions options) {
-  std::unique_ptr<Environment> made(new Environment(scenario, std::move(options)));
+                                                         EnvironmentOptions options,
+                                                         std::shared_ptr<run::Roads> roads) {
+  std::unique_ptr<Environment> made(new Environment(scenario, std::move(options), std::move(roads)));
   made->scenario_.controller = made->scenario_.preset = "agent";
   if (const Result<void> begun = made->reset(scenario.seed); !begun) return fail(begun.error());
   return made;
@@ -97,7 +100,7 @@ Result<void> Environment::reset(std::uint64_t seed) {
     agent = made.get();
     return made;
   };
-  Result<std::unique_ptr<run::ClosedLoop>> loop = run::ClosedLoop::create(*scenario, roads_, make);
+  Result<std::unique_ptr<run::ClosedLoop>> loop = run::ClosedLoop::create(*scenario, *roads_, make);
   if (!loop) return fail(loop.error());
   loop_ = std::move(*loop);
   agent_ = agent;

@@ -57,8 +57,10 @@ class Environment {
   static constexpr std::size_t kMostSize = 3 + 2 * model::Measurement::kMaxWaypoints;
 
   /// Fails as run::ClosedLoop::create() does, and for a draw whose key or range is none of the schema.
+  /// `roads` may be shared by environments that are made and reset on one thread.
   [[nodiscard]] static Result<std::unique_ptr<Environment>> create(const scenario::Scenario& scenario,
-                                                                   EnvironmentOptions options);
+                                                                   EnvironmentOptions options,
+                                                                   std::shared_ptr<run::Roads> roads);
 
   /// Numbers in an observation.
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
@@ -82,7 +84,8 @@ class Environment {
 
  private:
   class Agent;
-  Environment(const scenario::Scenario& scenario, EnvironmentOptions options);
+  Environment(const scenario::Scenario& scenario, EnvironmentOptions options,
+              std::shared_ptr<run::Roads> roads);
   [[nodiscard]] Result<scenario::Scenario> draw(Random& random);
   void place(Random& random);
   void observe_track(std::span<double> to) const noexcept;
@@ -92,7 +95,7 @@ class Environment {
   scenario::Scenario scenario_;
   EnvironmentOptions options_;
   std::size_t size_;
-  run::Roads roads_;
+  std::shared_ptr<run::Roads> roads_;
   std::unique_ptr<run::ClosedLoop> loop_;
   Agent* agent_ = nullptr;  ///< the controller of loop_
   model::Measurement seen_;
