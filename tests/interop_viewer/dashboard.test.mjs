@@ -21,7 +21,7 @@ after(async () => {
 });
 
 async function open(options) {
-  dashboard = await DashboardPage.open(browser, demo.url, options);
+  dashboard = await DashboardPage.open(browser, demo.url, { fluent: true, ...options });
   page = dashboard.page;
 }
 

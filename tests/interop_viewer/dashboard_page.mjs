@@ -20,17 +20,24 @@ const workbench = readFileSync(new URL('../../web/src/views/workbench_view.tsx',
 export const TABS = [...workbench.matchAll(/^ {2}\{ name: '(\w+)', title: /gm)].map((row) => row[1]);
 assert.ok(TABS.length >= 6, 'workbench_view.tsx lists its panels otherwise than these tests read them');
 
+/** An init script: the page draws ten times a second. Drawing costs much without a graphics card. */
+function repaintSeldom() {
+  globalThis.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 100);
+  globalThis.cancelAnimationFrame = clearTimeout;
+}
+
 export const differentFrom = (before) => (now) => now !== before;
 
 export class DashboardPage {
   /**
    * Opens the page at a tab and waits until it says that it is live, or in another `state`. What the browser complains
-   * of is kept in `complaints`.
+   * of is kept in `complaints`. The page draws ten times a second, or with `fluent` as often as the browser repaints.
    */
-  static async open(browser, url, { tab = 'drive', state = 'Live', ...options } = {}) {
+  static async open(browser, url, { tab = 'drive', state = 'Live', fluent = false, ...options } = {}) {
     const context = await browser.newContext({ ...LAPTOP, ...options });
     context.setDefaultTimeout(PATIENCE);
     const page = await context.newPage();
+    if (!fluent) await page.addInitScript(repaintSeldom);
     const complaints = [];
     page.on('console', (message) => {
       if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
@@ -137,7 +144,8 @@ export class DashboardPage {
   /** What axe objects to; `rules`: only these. */
   async accessibilityFindings(rules) {
     if (!(await this.page.evaluate(() => 'axe' in globalThis))) await this.page.evaluate(axe);
-    const options = rules ? { runOnly: rules } : {};
+    // Limits what axe describes of elements without findings; the findings are the same.
+    const options = { resultTypes: ['violations'], ...(rules && { runOnly: rules }) };
     const { violations } = await this.page.evaluate((given) => globalThis.axe.run(given), options);
     return violations.map(
       ({ id, nodes }) =>

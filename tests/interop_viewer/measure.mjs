@@ -76,7 +76,7 @@ async function several(times, measure) {
 
 /** From the click on "Drive both" to the verdict, of ten seconds from now on [ms]. */
 async function timeToAnswer(browser, url) {
-  const dashboard = await DashboardPage.open(browser, url, { tab: 'whatif' });
+  const dashboard = await DashboardPage.open(browser, url, { tab: 'whatif', fluent: true });
   const { page } = dashboard;
   await page.getByLabel('Setting to change').fill('latency_ms');
   await page.getByLabel('What if: latency').fill('60');
@@ -96,7 +96,7 @@ async function timeToAnswer(browser, url) {
 /** The control step of a run in real time [µs], with a second car or without; a page begins it and goes. */
 async function stepTimes(browser, withRival, seconds) {
   const drive = await startDrive(['--track', 'oval', '--pace', '4', '--json']);
-  const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'whatif' });
+  const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'whatif', fluent: true });
   const { page } = dashboard;
   if (withRival) {
     await page.getByLabel('Setting to change').fill('tracking_mpc.weight_lateral');
@@ -145,7 +145,7 @@ if (isWanted('program')) {
 if (isWanted('late')) {
   const drive = await startDrive(['--track', 'oval', '--pace', '20']);
   for (const lap of [1, 50, LAPS]) {
-    const watching = await DashboardPage.open(browser, drive.url, { tab: 'laps' });
+    const watching = await DashboardPage.open(browser, drive.url, { tab: 'laps', fluent: true });
     while (!(await watching.page.evaluate(hasLap, lap))) await sleep(500);
     await watching.page.context().close();
     const table = await several(5, () => timeUntil(browser, `${drive.url}#laps`, hasLap, lap));

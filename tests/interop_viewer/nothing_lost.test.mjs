@@ -10,7 +10,7 @@ import { browserAlone } from './here.mjs';
 const here = browserAlone();
 
 const isAboutSocket = (text) => text.startsWith('WebSocket connection to') || /ERR_CONNECTION_REFUSED/.test(text);
-const open = (drive, tab, state = 'Live') => DashboardPage.open(here.browser, drive.url, { tab, state });
+const open = (drive, tab, state = 'Live') => DashboardPage.open(here.browser, drive.url, { tab, state, fluent: true });
 const lapRows = (dashboard) => dashboard.page.locator('.lap-table tbody tr:not(.limit)').count();
 const box = (dashboard, key) => dashboard.page.locator(`.panel-body [data-key="${key}"] .number-box`);
 async function type(dashboard, key, value) {

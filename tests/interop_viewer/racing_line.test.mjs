@@ -18,7 +18,7 @@ const isOn = (page) => line(page).getAttribute('aria-pressed');
 
 /** The page with a run that stands still, once the program has found the line. */
 async function open(options) {
-  const dashboard = await DashboardPage.open(here.browser, drive.url, options);
+  const dashboard = await DashboardPage.open(here.browser, drive.url, { fluent: true, ...options });
   const { page } = dashboard;
   await line(page).waitFor();
   await dashboard.until(
