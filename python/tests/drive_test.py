@@ -12,6 +12,7 @@ import unittest
 from pathlib import Path
 
 import numpy as np
+import pandas  # noqa: F401  before an interrupt comes while it is being imported
 
 import chicane as ch
 
