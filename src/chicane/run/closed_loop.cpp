@@ -58,8 +58,7 @@ Result<std::unique_ptr<ClosedLoop>> ClosedLoop::create(const scenario::Scenario&
 }
 
 Result<std::unique_ptr<ClosedLoop>> ClosedLoop::build(const scenario::Scenario& scenario,
-                                                      const Roads::Prepared& road,
-                                                      const Factories& make) {
+                                                      const Roads::Prepared& road, const Factories& make) {
   Result<std::unique_ptr<sim::Plant>> plant = make.plant(scenario);
   if (!plant) return fail(plant.error());
   Result<std::unique_ptr<controller::Controller>> controller = make.controller(scenario);
