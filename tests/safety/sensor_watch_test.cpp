@@ -152,6 +152,17 @@ TEST(SensorWatch, BelievesMeasurementsOfNowAgain) {
   EXPECT_NEAR(ended, 7.0 + SensorWatch::kAgreeing, 0.1);
 }
 
+/// The way driven in a silence is not known.
+TEST(SensorWatch, DoubtsNothingAfterASilence) {
+  SensorWatch watch{kLength, kWheelbase};
+  for (double time = 0.0; time < 30.0; time += kCycle) {
+    if (time > 5.0 && time < 7.0) continue;
+    const model::State expected = car_at(time, kYawRate);
+    const SensorDoubts& doubts = watch.see(measured(time, expected), expected);
+    EXPECT_FALSE(doubts.late || doubts.place || doubts.heading || doubts.speed) << time;
+  }
+}
+
 TEST(SensorWatch, NeverBelievesAPlaceBecauseItLasts) {
   SensorWatch watch{kLength, kWheelbase};
   for (double time = 0.0; time < 300.0; time += kCycle) {

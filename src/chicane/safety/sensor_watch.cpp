@@ -33,7 +33,8 @@ constexpr double kUnrest = 0.5;            // [s] of them that one restless meas
 constexpr double kTried = 1.0;             // [m/s] at which a car answers to its pedal late or in time
 constexpr double kMostLag = 0.2;           // [s] by which it may
 constexpr double kRetry = 10.0;            // [s] after which it is tried again
-constexpr double kStill = 0.3;             // [m/s]
+constexpr double kSilence = 0.2;      // [s] without a measurement, after which a car is not sure of its place
+constexpr double kStill = 0.3;        // [m/s]
 constexpr double kMoving = 2.0;       // [m/s] a slower car, in full size, is not told from an earlier one
 constexpr double kLongestStep = 0.5;  // [s]
 constexpr int kLearned = 200;         // innovations of which the noise is the mean
@@ -75,13 +76,17 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
     return doubts_;
   }
   count_on(elapsed, now, expected);
+  if (elapsed > kSilence) {
+    calm_ = 0.0;
+    clean_from_ = now.time;
+  }
   const double x = doubts_.place ? x_ : expected.x;
   const double y = doubts_.place ? y_ : expected.y;
   const Innovation seen{.place = hypot(now.x - x, now.y - y),
                         .heading = std::fabs(angle_difference(now.psi, expected.psi)),
                         .speed = std::fabs(std::fabs(now.speed) - hypot(expected.vx, expected.vy))};
   const Innovation most = limits();
-  if (is_sure()) {
+  if (is_sure() || has_doubts()) {
     end_doubts(seen, most, elapsed, angle_difference(now.psi, expected.psi));
     judge_age(now, expected, seen, most, elapsed);
     if (!doubts_.is_old) begin_doubts(seen, most);
@@ -212,7 +217,7 @@ void SensorWatch::judge_sums(const model::Measurement& now) noexcept {
   const std::size_t have = std::min(count_, kSamples);
   std::size_t i = 0;
   for (std::size_t k = 0; k < kWindows.size(); ++k) {
-    while (i + 1 < have && back(i + 1).time > clean_from_ && now.time - back(i).time < kWindows[k]) ++i;
+    while (i + 1 < have && back(i + 1).time >= clean_from_ && now.time - back(i).time < kWindows[k]) ++i;
     const Sample& from = back(i);
     const double elapsed = now.time - from.time;
     if (elapsed < 0.9 * kWindows[k]) return;
