@@ -19,7 +19,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 
-const std::string kProgram = std::string("'") + CHICANE_PROGRAM + "'";
+const std::string kQuotedProgram = std::string("'") + CHICANE_PROGRAM + "'";
 
 /// What bash says in the root of the source tree.
 std::string bash(const std::string& words) {
@@ -43,7 +43,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 std::vector<std::string> commands() {
   std::vector<std::string> names;
   bool is_list = false;
-  for (const std::string& line : lines_of(bash(kProgram + " --help"))) {
+  for (const std::string& line : lines_of(bash(kQuotedProgram + " --help"))) {
     if (is_list && line.starts_with("  ")) names.push_back(line.substr(2, line.find(' ', 2) - 2));
     is_list = is_list || line == "Subcommands:";
   }
@@ -54,7 +54,7 @@ std::vector<std::string> commands() {
 std::set<std::string> options_of(const std::string& command) {
   std::set<std::string> options;
   const std::regex entry("^  (?:-\\w,)?(--[a-z-]+)");
-  for (const std::string& line : lines_of(bash(kProgram + " " + command + " --help"))) {
+  for (const std::string& line : lines_of(bash(kQuotedProgram + " " + command + " --help"))) {
     if (std::smatch match; std::regex_search(line, match, entry)) options.insert(match[1]);
   }
   options.erase("--help");
@@ -63,7 +63,7 @@ std::set<std::string> options_of(const std::string& command) {
 
 /// What bash completes the last word to.
 std::vector<std::string> completed(const std::vector<std::string>& words) {
-  std::string line = "eval \"$(" + kProgram + " completion bash)\"; COMP_WORDS=(" + kProgram;
+  std::string line = "eval \"$(" + kQuotedProgram + " completion bash)\"; COMP_WORDS=(" + kQuotedProgram;
   for (const std::string& word : words) line += " '" + word + "'";
   line += "); COMP_CWORD=" + std::to_string(words.size()) + "; _chicane; printf '%s\\n' \"${COMPREPLY[@]}\"";
   return lines_of(bash(line));
@@ -77,7 +77,7 @@ std::string without_dashes_of_roff(std::string page) {
 TEST(CommandText, EveryCommandHasAnExampleOfItsOwnAndARowInTheDocs) {
   const std::string page = bash("cat docs/cli.md");
   for (const std::string& command : commands()) {
-    const std::string help = bash(kProgram + " " + command + " --help");
+    const std::string help = bash(kQuotedProgram + " " + command + " --help");
     EXPECT_TRUE(std::regex_search(help, std::regex("Example: .*chicane " + command + "\\b"))) << command;
     EXPECT_TRUE(std::regex_search(page, std::regex("\\| `chicane " + command + "[ `]"))) << command;
   }
@@ -90,7 +90,7 @@ TEST(CommandText, TheHelpIsRead) {
 }
 
 TEST(CommandText, TheManualNamesEveryCommandAndOption) {
-  const std::string page = without_dashes_of_roff(bash(kProgram + " manual"));
+  const std::string page = without_dashes_of_roff(bash(kQuotedProgram + " manual"));
   for (const std::string& command : commands()) {
     const std::size_t begin = page.find(".SS chicane " + command + "\n");
     ASSERT_NE(begin, std::string::npos) << command;
@@ -102,7 +102,7 @@ TEST(CommandText, TheManualNamesEveryCommandAndOption) {
 
 TEST(CommandText, TheManualIsCorrectRoff) {
   if (!bash("command -v groff").starts_with("/")) GTEST_SKIP() << "groff is not installed";
-  EXPECT_EQ(bash(kProgram + " manual | groff -man -Kutf8 -Tutf8 -ww -z"), "");
+  EXPECT_EQ(bash(kQuotedProgram + " manual | groff -man -Kutf8 -Tutf8 -ww -z"), "");
 }
 
 TEST(CommandText, BashCompletesEveryOption) {
@@ -130,7 +130,7 @@ TEST(CommandText, BashCompletesValues) {
 TEST(CommandText, FishCompletesValues) {
   if (!bash("command -v fish").starts_with("/")) GTEST_SKIP() << "fish is not installed";
   const auto complete = [](const std::string& line) {
-    return bash("PATH=$(dirname " + kProgram + "):$PATH fish -c \"source (" + kProgram +
+    return bash("PATH=$(dirname " + kQuotedProgram + "):$PATH fish -c \"source (" + kQuotedProgram +
                 " completion fish | psub); complete -C 'chicane " + line + "' | string split -f1 \\t\"");
   };
   EXPECT_EQ(complete("drive --pres"), "--preset\n");
@@ -141,9 +141,10 @@ TEST(CommandText, FishCompletesValues) {
 TEST(CommandText, OtherShellsAcceptTheirScripts) {
   for (const std::string shell : {"bash", "zsh", "fish"}) {
     if (!bash("command -v " + shell).starts_with("/")) continue;
-    EXPECT_EQ(bash(shell + " -n <(" + kProgram + " completion " + shell + ")"), "") << shell;
+    EXPECT_EQ(bash(shell + " -n <(" + kQuotedProgram + " completion " + shell + ")"), "") << shell;
   }
-  const std::string script = bash(kProgram + " completion zsh") + bash(kProgram + " completion fish");
+  const std::string script =
+      bash(kQuotedProgram + " completion zsh") + bash(kQuotedProgram + " completion fish");
   for (const std::string& option : options_of("drive")) {
     EXPECT_THAT(script, HasSubstr("'*" + option + "[")) << "zsh";
     EXPECT_THAT(script, HasSubstr(" -l " + option.substr(2) + " ")) << "fish";

@@ -25,13 +25,20 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using Solver = solver::OcpSolver<DescribedProblem, kCapacity>;
 
-/// The described problem from its second stage on.
-struct Rest : DescribedProblem {
+/// The described problem with other bounds of the acceleration, or from its second stage on.
+struct ChangedProblem : DescribedProblem {
+  bool is_rest = false;  ///< from the second stage on: changes of inputs cost at the first stage, too
+  double lowest = -1.0;  ///< acceleration
+  double highest = 1.0;  ///< acceleration
+
   template <class K, class T>
-  std::array<T, kNr> residual(K, const std::array<T, kNx>& s, const std::array<T, kNu>& u) const {
-    return DescribedProblem::residual(1, s, u);  // in which changes cost, as in all but the first
+  std::array<T, kNr> residual(K k, const std::array<T, kNx>& s, const std::array<T, kNu>& u) const {
+    return is_rest ? DescribedProblem::residual(1, s, u) : DescribedProblem::residual(k, s, u);
   }
+  [[nodiscard]] std::array<double, 2> input_lower(int) const { return {-steer_limit, lowest}; }
+  [[nodiscard]] std::array<double, 2> input_upper(int) const { return {steer_limit, highest}; }
 };
+using ChangedSolver = solver::OcpSolver<ChangedProblem, kCapacity>;
 
 struct OcpSolverTest : testing::Test {
   std::unique_ptr<Solver> ocp = std::make_unique<Solver>();
@@ -240,23 +247,15 @@ TEST_F(OcpSolverTest, RefusesBoundsThatCrossOrAreNotNumbers) {
   }
 }
 
-/// The described problem with an acceleration that no number is.
-struct BeyondAllNumbers : DescribedProblem {
-  double bound = kInfinity;
-  [[nodiscard]] std::array<double, 2> input_lower(int) const { return {-steer_limit, bound}; }
-  [[nodiscard]] std::array<double, 2> input_upper(int) const { return {steer_limit, bound}; }
-};
-
 TEST_F(OcpSolverTest, RefusesBoundsThatNoNumberKeepsAndLeavesFiniteInputs) {
-  const auto solver = std::make_unique<solver::OcpSolver<BeyondAllNumbers, kCapacity>>();
-  BeyondAllNumbers problem;
-  static_cast<DescribedProblem&>(problem) = instance.problem;
+  const auto solver = std::make_unique<ChangedSolver>();
+  ChangedProblem problem{instance.problem};
   for (const double bound : {kInfinity, -kInfinity}) {
-    problem.bound = bound;
+    problem.lowest = problem.highest = bound;
     EXPECT_EQ(solver->solve(problem, instance.start, trajectory).status, SolveStatus::kNotFinite);
     for (int k = 0; k < trajectory.horizon; ++k) EXPECT_TRUE(std::isfinite(trajectory.u[k][1]));
   }
-  problem.bound = 0.5;
+  problem.lowest = problem.highest = 0.5;
   EXPECT_EQ(solver->solve(problem, instance.start, trajectory).status, SolveStatus::kOptimal);
 }
 
@@ -265,7 +264,9 @@ TEST_F(OcpSolverTest, KnowsThePriceOfAState) {
   const SolverOptions exact{.tolerance = 1e-9};
   ASSERT_EQ(solve(exact).status, SolveStatus::kOptimal);
   const auto x = trajectory.x[1];
-  const auto rest = std::make_unique<solver::OcpSolver<Rest, kCapacity>>(exact);
+  const auto rest = std::make_unique<ChangedSolver>(exact);
+  ChangedProblem from_second{instance.problem};
+  from_second.is_rest = true;
   for (int i = 0; i < DescribedProblem::kNx; ++i) {
     const auto cost = [&](double change) {
       auto start = x;
@@ -273,7 +274,7 @@ TEST_F(OcpSolverTest, KnowsThePriceOfAState) {
       auto tail = trajectory;
       solver::shift(tail, 1.0);
       tail.horizon = trajectory.horizon - 1;
-      const SolveReport report = rest->solve(Rest{instance.problem}, start, tail);
+      const SolveReport report = rest->solve(from_second, start, tail);
       EXPECT_EQ(report.status, SolveStatus::kOptimal);
       return report.cost;
     };
@@ -304,16 +305,17 @@ TEST_F(OcpSolverTest, RemembersNothingFromSolveToSolve) {
 TEST(OcpSolver, SecondOrderSavesTurnsWhereResidualsAreLarge) {
   int turns[2] = {0, 0};
   for (const bool second_order : {false, true}) {
-    solver::OcpSolver<DescribedProblem, 2> ocp{{.max_iterations = 100, .second_order = second_order}};
+    const auto ocp =
+        std::make_unique<Solver>(SolverOptions{.max_iterations = 100, .second_order = second_order});
     Random random{7};
     for (int i = 0; i < 100; ++i) {
       DescribedInstance instance;  // metres off the path at an angle: Gauss–Newton alone crawls
       instance.problem.path = {random.uniform(-5.0, 5.0), random.uniform(-1.5, 1.5), 0.0, 0.0};
       instance.problem.speed_reference = 20.0;
       instance.place(random.uniform(15.0, 35.0));
-      DescribedTrajectory<2> trajectory;
+      DescribedTrajectory<kCapacity> trajectory;
       trajectory.horizon = 2;
-      const SolveReport report = ocp.solve(instance.problem, instance.start, trajectory);
+      const SolveReport report = ocp->solve(instance.problem, instance.start, trajectory);
       turns[second_order ? 1 : 0] += report.iterations;
       EXPECT_TRUE(!second_order || report.status == SolveStatus::kOptimal) << i;
     }

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Optima with soft corridors, with bounds on changes and with hard constraints, beside Ipopt's.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "chicane/solver/ocp_solver.hpp"
+#include "families/hard.hpp"
+#include "families/measure_family.hpp"
+#include "problems/corridor_problem.hpp"
+#include "problems/described_problem.hpp"
+#include "problems/ipopt_problem.hpp"
+#include "problems/optimality.hpp"
+#include "problems/rate_problem.hpp"
+#include "solver/ipopt_families.hpp"
+
+namespace chicane {
+namespace {
+
+using bench::DescribedProblem;
+using solver::SolveStatus;
+using namespace test;
+
+constexpr int kCapacity = kIpoptCapacity;
+
+struct ConstraintsAgainstIpopt : testing::TestWithParam<Family> {};
+
+TEST_P(ConstraintsAgainstIpopt, AgreesOnTheOptimumWithASoftCorridor) {
+  using bench::CorridorProblem;
+  if (GetParam().horizon < 2) GTEST_SKIP() << "one stage: the corridor is on the given state only";
+  const auto ocp = std::make_unique<solver::OcpSolver<CorridorProblem, kCapacity>>();
+  Random random{2000 + static_cast<std::uint64_t>(GetParam().horizon)};
+  for (int i = 0; i < GetParam().count; ++i) {
+    const auto instance = bench::random_corridor(random, GetParam().horizon);
+    const bench::DescribedInstance plain{.problem = static_cast<const DescribedProblem&>(instance.problem),
+                                         .start = instance.start};
+    bench::DescribedTrajectory<kCapacity> own;
+    own.horizon = GetParam().horizon;
+    choose_start(GetParam().start, plain, instance.problem, *ocp, own);
+    auto reference = own;
+    const auto report = ocp->solve(instance.problem, instance.start, own);
+    ASSERT_EQ(report.status, SolveStatus::kOptimal) << i;
+    const double cost = bench::solve_with_ipopt(instance.problem, instance.start, reference);
+    ASSERT_NEAR(report.cost, cost, 1e-6 * cost) << i;
+    ASSERT_LE(report.complementarity, 1e-6) << i;
+    ASSERT_TRUE(bench::inputs_are_inside(instance.problem, own)) << i;
+  }
+}
+
+/// Slope of the simulated cost at the inputs `from` on the straight line to `to`.
+double slope_towards(const bench::RateInstance& instance, const bench::DescribedTrajectory<kCapacity>& from,
+                     const bench::DescribedTrajectory<kCapacity>& to) {
+  const auto gradient = bench::simulated_gradient(instance.problem, instance.start, from);
+  double slope = 0.0;
+  for (std::size_t k = 0; k < gradient.size(); ++k) {
+    for (std::size_t m = 0; m < gradient[k].size(); ++m)
+      slope += gradient[k][m] * (to.u[k][m] - from.u[k][m]);
+  }
+  return slope;
+}
+
+TEST_P(ConstraintsAgainstIpopt, AgreesOnTheOptimumWithBoundsOnChanges) {
+  using bench::RateProblem;
+  const auto ocp = std::make_unique<solver::OcpSolver<RateProblem, kCapacity>>(
+      solver::SolverOptions{.max_iterations = 100});
+  Random random{3000 + static_cast<std::uint64_t>(GetParam().horizon)};
+  int others = 0;
+  for (int i = 0; i < GetParam().count; ++i) {
+    const auto instance = bench::random_rates(random, GetParam().horizon);
+    const bench::DescribedInstance plain{.problem = static_cast<const DescribedProblem&>(instance.problem),
+                                         .start = instance.start};
+    bench::DescribedTrajectory<kCapacity> own;
+    own.horizon = GetParam().horizon;
+    choose_start(GetParam().start, plain, instance.problem, *ocp, own);
+    auto reference = own;
+    const auto report = ocp->solve(instance.problem, instance.start, own);
+    ASSERT_EQ(report.status, SolveStatus::kOptimal) << i;
+    const double cost = bench::solve_with_ipopt(instance.problem, instance.start, reference);
+    ASSERT_TRUE(bench::inputs_are_inside(instance.problem, own)) << i;
+    if (std::fabs(report.cost - cost) <= 1e-6 * cost) continue;
+    ++others;  // two local optima: between them lie admissible inputs only, and the cost rises from both ends
+    ASSERT_GE(slope_towards(instance, own, reference), 0.0) << i << ": " << report.cost << " and " << cost;
+    ASSERT_GE(slope_towards(instance, reference, own), 0.0) << i << ": " << report.cost << " and " << cost;
+  }
+  EXPECT_LE(others, 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(OcpSolver, ConstraintsAgainstIpopt, testing::ValuesIn(kFamilies), name_of);
+
+/// Ipopt from the answer: its optimum there has the same cost.
+template <class P>
+void expect_hard_optima(bench::NaiveStart start, int count) {
+  using Measurement = bench::FamilyMeasurement<P>;
+  const auto ocp = std::make_unique<solver::OcpSolver<P, P::kHorizon>>(
+      solver::SolverOptions{.tolerance = 1e-8, .start_from_states = start == bench::NaiveStart::kLine});
+  for (int seed = 0; seed < count; ++seed) {
+    const auto instance = Measurement::instance(seed);
+    const auto own = std::make_unique<typename Measurement::Trajectory>(Measurement::guess(instance, start));
+    const auto report = ocp->solve(instance.problem, instance.start, *own);
+    ASSERT_EQ(report.status, SolveStatus::kOptimal) << seed;
+    const bench::OverArrays<P> arrays{instance.problem};
+    const double cost = bench::solve_with_ipopt(arrays, instance.start, *own);
+    ASSERT_NEAR(report.cost, cost, 1e-6 * std::fabs(cost)) << seed;
+  }
+}
+TEST(HardAgainstIpopt, AgreesWhereAPoleMustStand) {
+  expect_hard_optima<bench::HardCartPole>(bench::NaiveStart::kIdle, 6);
+}
+TEST(HardAgainstIpopt, AgreesWhereARocketMustStandOnItsPad) {
+  expect_hard_optima<bench::HardRocketLanding>(bench::NaiveStart::kLine, 6);
+}
+
+}  // namespace
+}  // namespace chicane
