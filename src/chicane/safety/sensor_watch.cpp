@@ -123,6 +123,8 @@ void SensorWatch::count_on(double elapsed, const model::Measurement& now,
   moved_ = hypot(now.x - last_.x - dx, now.y - last_.y - dy);
   way_x_ += dx;
   way_y_ += dy;
+  slip_x_ += dx - way * cos(course - slip);
+  slip_y_ += dy - way * sin(course - slip);
   turned_ += turn;
   asked_ += elapsed * expected.vx * tan(expected.steer) / wheelbase_;
   const bool is_blind = doubts_.is_old || doubts_.heading || doubts_.speed;
@@ -134,7 +136,8 @@ void SensorWatch::count_on(double elapsed, const model::Measurement& now,
 
 void SensorWatch::add_sample(const model::Measurement& now, const model::State& expected) noexcept {
   if (count_ > 0 && now.time - back(0).time < kSpacing) return;
-  samples_[count_ % kSamples] = {now.time, now.x, now.y, way_x_, way_y_, turned_, asked_, expected};
+  samples_[count_ % kSamples] = {now.time, now.x,   now.y,   way_x_, way_y_,
+                                 slip_x_,  slip_y_, turned_, asked_, expected};
   ++count_;
 }
 
@@ -225,7 +228,9 @@ void SensorWatch::judge_sums(const model::Measurement& now) noexcept {
     const double dy = now.y - from.y - (way_y_ - from.way_y);
     const double sum = hypot(dx, dy);
     const double speed = hypot(way_x_ - from.way_x, way_y_ - from.way_y) / elapsed;
-    const double most = kSum * size_ + kSumShare * speed * std::sqrt(elapsed) +
+    // A car that is measured at another place of it slips otherwise there.
+    const double slip = hypot(slip_x_ - from.slip_x, slip_y_ - from.slip_y);
+    const double most = slip + kSum * size_ + kSumShare * speed * std::sqrt(elapsed) +
                         kSumDeviations * sums_[k].deviation() + kDeviations * place_.deviation();
     if (sum < 0.5 * most) sums_[k].learn(sum);
     if (!(sum > most)) continue;

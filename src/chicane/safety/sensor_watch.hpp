@@ -46,10 +46,11 @@ class SensorWatch {
   /// One moment of the last seconds.
   struct Sample {
     double time = 0.0;
-    double x = 0.0, y = 0.0;           ///< measured [m]
-    double way_x = 0.0, way_y = 0.0;   ///< the way that speed and heading describe [m]
-    double turned = 0.0, asked = 0.0;  ///< the heading, unwrapped, and what the wheels asked for [rad]
-    model::State believed;             ///< by the estimate
+    double x = 0.0, y = 0.0;            ///< measured [m]
+    double way_x = 0.0, way_y = 0.0;    ///< the way that speed and heading describe [m]
+    double slip_x = 0.0, slip_y = 0.0;  ///< what of it comes from the slip of the estimate [m]
+    double turned = 0.0, asked = 0.0;   ///< the heading, unwrapped, and what the wheels asked for [rad]
+    model::State believed;              ///< by the estimate
   };
   static constexpr std::size_t kSamples = 256;
   static constexpr double kSpacing = 0.0395;  ///< [s] at least: the samples reach 10 s back
@@ -90,6 +91,7 @@ class SensorWatch {
   model::Measurement last_;
   double time_ = 0.0;                                                      ///< of the last call [s]
   double way_x_ = 0.0, way_y_ = 0.0;                                       ///< [m]
+  double slip_x_ = 0.0, slip_y_ = 0.0;                                     ///< [m]
   double turned_ = 0.0, asked_ = 0.0;                                      ///< [rad]
   double calm_ = 0.0;                                                      ///< [s]
   double clean_from_ = -1e9;                                               ///< the last doubt [s]
