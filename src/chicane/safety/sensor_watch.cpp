@@ -34,6 +34,7 @@ constexpr double kTried = 1.0;             // [m/s] at which a car answers to it
 constexpr double kMostLag = 0.2;           // [s] by which it may
 constexpr double kRetry = 10.0;            // [s] after which it is tried again
 constexpr double kSilence = 0.2;      // [s] without a measurement, after which a car is not sure of its place
+constexpr double kMostSlip = 1.2;     // share of the estimated slip that a car may lack
 constexpr double kStill = 0.3;        // [m/s]
 constexpr double kMoving = 2.0;       // [m/s] a slower car, in full size, is not told from an earlier one
 constexpr double kLongestStep = 0.5;  // [s]
@@ -77,7 +78,7 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
   }
   count_on(elapsed, now, expected);
   if (elapsed > kSilence) {
-    calm_ = 0.0;
+    if (!has_doubts()) calm_ = 0.0;
     clean_from_ = now.time;
   }
   const double x = doubts_.place ? x_ : expected.x;
@@ -226,11 +227,14 @@ void SensorWatch::judge_sums(const model::Measurement& now) noexcept {
     if (elapsed < 0.9 * kWindows[k]) return;
     const double dx = now.x - from.x - (way_x_ - from.way_x);
     const double dy = now.y - from.y - (way_y_ - from.way_y);
-    const double sum = hypot(dx, dy);
+    // A car that is measured elsewhere than at its centre of mass slips otherwise there.
+    const double slip_x = slip_x_ - from.slip_x;
+    const double slip_y = slip_y_ - from.slip_y;
+    const double slip = slip_x * slip_x + slip_y * slip_y;
+    const double share = slip > 0.0 ? std::clamp(-(dx * slip_x + dy * slip_y) / slip, 0.0, kMostSlip) : 0.0;
+    const double sum = hypot(dx + share * slip_x, dy + share * slip_y);
     const double speed = hypot(way_x_ - from.way_x, way_y_ - from.way_y) / elapsed;
-    // A car that is measured at another place of it slips otherwise there.
-    const double slip = hypot(slip_x_ - from.slip_x, slip_y_ - from.slip_y);
-    const double most = slip + kSum * size_ + kSumShare * speed * std::sqrt(elapsed) +
+    const double most = kSum * size_ + kSumShare * speed * std::sqrt(elapsed) +
                         kSumDeviations * sums_[k].deviation() + kDeviations * place_.deviation();
     if (sum < 0.5 * most) sums_[k].learn(sum);
     if (!(sum > most)) continue;
