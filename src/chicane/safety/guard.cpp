@@ -291,8 +291,8 @@ model::Command Guard::limited(const model::Command& command, double interval) co
   model::Command inside = gate_.limited(command, interval).command;
   const model::VehicleParams& car = model_.vehicle();
   const double v = act_speed_;
-  if (rests_ && car.reverse_speed > 0.0)
-    inside.throttle = std::max(inside.throttle, car.latches_brakes() ? car.brake_release_throttle : 0.0);
+  const bool releases = car.latches_brakes() && inside.throttle == car.brake_release_throttle;
+  if (rests_ && car.reverse_speed > 0.0 && !releases) inside.throttle = std::max(inside.throttle, 0.0);
   if (v < car.reverse_speed && inside.throttle < 0.0)
     inside.throttle = std::max(inside.throttle, throttle_to_rest(car, -car.reverse_acceleration, v));
   return inside;
