@@ -35,6 +35,7 @@ constexpr double kMostLag = 0.2;           // [s] by which it may
 constexpr double kRetry = 10.0;            // [s] after which it is tried again
 constexpr double kSilence = 0.2;      // [s] without a measurement, after which a car is not sure of its place
 constexpr double kMostSlip = 1.2;     // share of the estimated slip that a car may lack
+constexpr double kWalking = 6.0;      // [m/s] a slower car, in full size, may be on its way back to the road
 constexpr double kStill = 0.3;        // [m/s]
 constexpr double kMoving = 2.0;       // [m/s] a slower car, in full size, is not told from an earlier one
 constexpr double kLongestStep = 0.5;  // [s]
@@ -145,6 +146,10 @@ void SensorWatch::add_sample(const model::Measurement& now, const model::State& 
 void SensorWatch::learn(const Innovation& seen, const Innovation& most, double elapsed) noexcept {
   const bool is_calm = seen.place < 0.5 * most.place && seen.heading < 0.5 * most.heading &&
                        seen.speed < 0.5 * most.speed && elapsed < kLongestStep;
+  if (std::fabs(last_.speed) < kWalking * std::sqrt(size_)) {
+    calm_ = std::max(calm_ - elapsed, 0.0);
+    return;
+  }
   calm_ = is_calm ? std::min(calm_ + elapsed, kMostCalm) : std::max(calm_ - kUnrest, 0.0);
   if (!(elapsed < kLongestStep)) {
     calm_ = 0.0;
