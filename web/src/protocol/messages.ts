@@ -201,6 +201,8 @@ export const REASON = {
   FAR_FROM_ROAD: 8,
   /** a receiver left alone could not stop the car on the road */
   TOO_FAST_FOR_SILENCE: 9,
+  /** the measurements are of an earlier moment */
+  LATE: 10,
 } as const;
 
 /** Frame.speed_limiter */
@@ -456,6 +458,10 @@ export const REASON_WORDS: Words = {
   [REASON.TOO_FAST_FOR_SILENCE]: {
     severity: 'warning',
     text: 'a receiver left alone could not stop the car on the road',
+  },
+  [REASON.LATE]: {
+    severity: 'bad',
+    text: 'the measurements are of an earlier moment',
   },
 };
 
