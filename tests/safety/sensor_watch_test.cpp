@@ -86,7 +86,7 @@ TEST(SensorWatch, DoubtsAPlaceThatDrifts) {
         now.x += speed * (now.time - 5.0) * std::cos(angle);
         now.y += speed * (now.time - 5.0) * std::sin(angle);
       };
-      const SensorDoubts doubts = doubts_of(drift, 1.5 / speed);
+      const SensorDoubts doubts = doubts_of(drift, 6.0 / speed);
       EXPECT_TRUE(doubts.place) << angle << ' ' << speed;
       EXPECT_FALSE(doubts.heading || doubts.speed || doubts.late);
     }
@@ -99,13 +99,23 @@ TEST(SensorWatch, CountsOnFromWhereTheDriftBegan) {
   for (double time = 0.0; time < 12.0; time += kCycle) {
     model::State expected = car_at(time, 0.0);
     model::Measurement now = measured(time, expected);
-    if (time >= 5.0) now.y += 0.5 * (time - 5.0);
-    expected.y += off;
+    if (time >= 5.0) now.x -= 0.5 * (time - 5.0);
+    expected.x += off;
     const bool is_doubted = watch.see(now, expected).place;
-    off = (is_doubted ? watch.y() : now.y) - car_at(time, 0.0).y;
+    off = (is_doubted ? watch.x() : now.x) - car_at(time, 0.0).x;
   }
   EXPECT_TRUE(watch.doubts().place);
   EXPECT_LT(std::fabs(off), 0.8);  // 3.5 m by the sensor
+}
+
+/// Its course turns off its heading by as much as wind pushes it.
+TEST(SensorWatch, DoubtsNothingOfACarThatWindPushesAside) {
+  const auto pushed = [](model::Measurement& now) {
+    const double since = now.time - 5.0;
+    now.y += std::min(0.5 * since * since, since);  // up to 1 m/s
+  };
+  const SensorDoubts doubts = doubts_of(pushed, 60.0, 0.0);
+  EXPECT_FALSE(doubts.late || doubts.place || doubts.heading || doubts.speed);
 }
 
 TEST(SensorWatch, TellsAMirroredHeadingFromAWrongPlace) {

@@ -36,6 +36,8 @@ constexpr double kRetry = 10.0;            // [s] after which it is tried again
 constexpr double kSilence = 0.2;      // [s] without a measurement, after which a car is not sure of its place
 constexpr double kMostSlip = 1.2;     // share of the estimated slip that a car may lack
 constexpr double kWalking = 6.0;      // [m/s] a slower car, in full size, may be on its way back to the road
+constexpr double kCrab = 0.12;        // [rad] by which wind may push a car off its heading
+constexpr double kSumWay = 0.003;     // of the way, by which its length may differ
 constexpr double kStill = 0.3;        // [m/s]
 constexpr double kMoving = 2.0;       // [m/s] a slower car, in full size, is not told from an earlier one
 constexpr double kLongestStep = 0.5;  // [s]
@@ -237,9 +239,17 @@ void SensorWatch::judge_sums(const model::Measurement& now) noexcept {
     const double slip_y = slip_y_ - from.slip_y;
     const double slip = slip_x * slip_x + slip_y * slip_y;
     const double share = slip > 0.0 ? std::clamp(-(dx * slip_x + dy * slip_y) / slip, 0.0, kMostSlip) : 0.0;
-    const double sum = hypot(dx + share * slip_x, dy + share * slip_y);
-    const double speed = hypot(way_x_ - from.way_x, way_y_ - from.way_y) / elapsed;
-    const double most = kSum * size_ + kSumShare * speed * std::sqrt(elapsed) +
+    // Wind turns the course off the heading: that leaves the length of the way.
+    const double way_x = way_x_ - from.way_x;
+    const double way_y = way_y_ - from.way_y;
+    const double way = hypot(way_x, way_y);
+    const double left_x = dx + share * slip_x;
+    const double left_y = dy + share * slip_y;
+    const double length = hypot(way_x + left_x, way_y + left_y) - way;
+    const double aside = way > 0.0 ? std::fabs(left_y * way_x - left_x * way_y) / way : 0.0;
+    const double sum = hypot(length, std::max(aside - kCrab * way, 0.0));
+    const double speed = way / elapsed;
+    const double most = kSum * size_ + kSumShare * speed * std::sqrt(elapsed) + kSumWay * way +
                         kSumDeviations * sums_[k].deviation() + kDeviations * place_.deviation();
     if (sum < 0.5 * most) sums_[k].learn(sum);
     if (!(sum > most)) continue;
