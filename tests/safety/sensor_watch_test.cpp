@@ -118,6 +118,20 @@ TEST(SensorWatch, DoubtsNothingOfACarThatWindPushesAside) {
   EXPECT_FALSE(doubts.late || doubts.place || doubts.heading || doubts.speed);
 }
 
+TEST(SensorWatch, CountsOnFromWhereThePlaceJumped) {
+  SensorWatch watch{kLength, kWheelbase};
+  for (double time = 0.0; time < 12.0; time += kCycle) {
+    const model::State expected = car_at(time, 0.0);
+    model::Measurement now = measured(time, expected);
+    const bool is_wrong = time >= 5.0 && time < 8.0;
+    if (is_wrong) now.y += 4.0;
+    watch.see(now, expected);
+    EXPECT_NEAR(watch.x(), expected.x, 0.01) << time;
+    if (time < 7.9 + SensorWatch::kAgreeing || time > 8.1 + SensorWatch::kAgreeing)
+      EXPECT_EQ(watch.doubts().place, time >= 5.0 && time < 8.0 + SensorWatch::kAgreeing) << time;
+  }
+}
+
 TEST(SensorWatch, TellsAMirroredHeadingFromAWrongPlace) {
   const SensorDoubts doubts =
       doubts_of([](model::Measurement& now) { now.psi = 2.0 * kYawRate * 5.0 - now.psi; }, 2.0);

@@ -20,6 +20,7 @@ using controller::Rung;
 
 constexpr double kStandingSpeed = 0.5;    // [m/s]
 constexpr double kAtRest = 0.05;          // [m/s]
+constexpr double kRestTime = 0.3;         // [s] below it after which a car is at rest
 constexpr int kShown = 64;                // points of a backup that is drawn
 constexpr double kShownStep = 0.1;        // [s]
 constexpr double kLedBackSpeed = 6.0;     // [m/s] below which a car that is off the road is led back
@@ -103,7 +104,7 @@ void Guard::reset() noexcept {
   filter_.forget();
   has_place_ = is_astray_ = false;
   is_led_ = rests_ = false;
-  refused_since_ = stuck_since_ = still_since_ = 0.0;
+  refused_since_ = stuck_since_ = still_since_ = moved_at_ = 0.0;
   tried_ = 0.0;
 }
 
@@ -140,7 +141,7 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   const model::Command asked = result.command;
   if (options_.mode == GuardMode::kOn && !cycle.manual) {
     release_brake(seen.time, result.command);
-    watch_rest(result.command.throttle);
+    watch_rest(seen.time, result.command.throttle);
     result.command = limited(result.command, cycle.interval);
   }
   const GateResult gated = gate_.pass(cycle.manual.value_or(result.command), cycle.interval);
@@ -353,9 +354,10 @@ double Guard::against_rolling_back() const noexcept {
 
 /// The pedal that brought a car to rest is its reverse gear from then on: the speed is measured without a
 /// sign, and a car that begins to roll back would be braked into going faster.
-void Guard::watch_rest(double throttle) noexcept {
+void Guard::watch_rest(double time, double throttle) noexcept {
   const double speed = std::fabs(estimator_.state().vx);
-  if (speed < kAtRest) rests_ = true;
+  if (!estimator_.is_started() || !(speed < kAtRest)) moved_at_ = time;
+  if (time - moved_at_ > kRestTime) rests_ = true;
   if (speed > kStandingSpeed || throttle > kDrives) rests_ = false;
 }
 

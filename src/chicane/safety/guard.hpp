@@ -103,7 +103,7 @@ class Guard {
   void watch_for_reset(const model::Measurement& measured) noexcept;
   [[nodiscard]] bool try_reset(const StopStart& start, const Cycle& cycle, double time,
                                controller::StepResult& result) noexcept;
-  void watch_rest(double throttle) noexcept;
+  void watch_rest(double time, double throttle) noexcept;
   void release_brake(double time, model::Command& command) noexcept;
   [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
   [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
@@ -131,6 +131,7 @@ class Guard {
   double tried_ = 0.0;          ///< way driven to see whether the car was put elsewhere, by the model [m]
   double still_since_ = 0.0;    ///< a car that is measured elsewhere stands by the estimate [s]
   double refused_since_ = 0.0;  ///< commands of a standing car [s]
+  double moved_at_ = 0.0;       ///< last faster than at rest [s]
   double stuck_since_ = 0.0;    ///< a car that should move stands [s]
   double act_speed_ = 0.0;      ///< estimated where the command acts [m/s]
   double sent_from_ = 0.0;      ///< from which the command of this cycle acts [s]

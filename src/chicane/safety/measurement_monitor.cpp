@@ -31,7 +31,7 @@ void MeasurementMonitor::reset() noexcept {
 const model::Measurement& MeasurementMonitor::check(const model::Measurement& now,
                                                     const model::State* expected) noexcept {
   checked_ = now;
-  const Findings before = findings_;
+  const Findings before = own_;
   findings_ = {};
   const double elapsed = has_last_ ? now.time - last_.time : 0.0;
   const bool is_later = std::isfinite(now.time) && (!has_last_ || elapsed > 0.0);
@@ -62,9 +62,10 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
     // Where place and speed are both wrong, the heading comes from the same wrong sensor.
     findings_.heading_jump |= findings_.position_jump && findings_.speed_mismatch;
   }
+  own_ = findings_;
   if (expected != nullptr && is_whole && !findings_.frozen) {
     const SensorDoubts& doubts = watch_.see(now, *expected);
-    if (doubts.is_old) findings_ = {};
+    if (doubts.is_old) findings_ = own_ = {};
     findings_.late = doubts.late;
     is_blind |= doubts.is_old;
     findings_.position_jump |= doubts.place;

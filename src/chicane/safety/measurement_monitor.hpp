@@ -66,6 +66,7 @@ class MeasurementMonitor {
   SensorWatch watch_;
   model::Measurement checked_;
   Findings findings_;
+  Findings own_;             ///< of them those of eq. 7 and 8
   model::Measurement last_;  ///< as it came
   bool has_last_ = false;
   double same_since_ = 0.0;   ///< [s]

@@ -93,7 +93,12 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
   if (is_sure() || has_doubts()) {
     end_doubts(seen, most, elapsed, angle_difference(now.psi, expected.psi));
     judge_age(now, expected, seen, most, elapsed);
+    const bool was_doubted = doubts_.place;
     if (!doubts_.is_old) begin_doubts(seen, most);
+    if (doubts_.place && !was_doubted) {
+      x_ = expected.x;
+      y_ = expected.y;
+    }
   }
   if (!has_doubts()) {
     learn(seen, most, elapsed);
