@@ -279,7 +279,8 @@ void SensorWatch::end_doubts(const Innovation& seen, const Innovation& most, dou
   if (heading_agrees_ == 0.0) agreed_heading_ = turned;
   const bool turns_alike =
       std::fabs(turned - agreed_heading_) < 0.5 * kHeadingStep + kDeviations * heading_.deviation();
-  ends(doubts_.place, place_agrees_, seen.place < most.place);
+  const bool moves_alike = moved_ < kPlaceStep * size_ + kDeviations * place_.deviation();
+  ends(doubts_.place, place_agrees_, seen.place < most.place && moves_alike);
   ends(doubts_.heading, heading_agrees_, seen.heading < most.heading && turns_alike);
   ends(doubts_.speed, speed_agrees_, seen.speed < most.speed);
 }
