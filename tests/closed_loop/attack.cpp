@@ -20,14 +20,17 @@ namespace {
 
 using controller::GuardReason;
 
-/// Reasons that name a sensor, not an answer of the controller.
-bool doubts_a_sensor(GuardReason reason) {
+/// Reasons that name a sensor or an actuator, not an answer of the controller.
+bool names_a_part(GuardReason reason) {
   switch (reason) {
     case GuardReason::kNotMeasured:
     case GuardReason::kFrozen:
     case GuardReason::kSpeedMismatch:
     case GuardReason::kHeadingJump:
     case GuardReason::kPositionJump:
+    case GuardReason::kLate:
+    case GuardReason::kOtherSteering:
+    case GuardReason::kWeakBrakes:
       return true;
     default:
       return false;
@@ -38,7 +41,7 @@ void note_guard(const telemetry::Frame& frame, double since, Outcome& outcome) {
   const controller::StepReport& report = frame.result.report;
   if (report.rung != controller::Rung::kController && std::isnan(outcome.acted_after))
     outcome.acted_after = since;
-  if (doubts_a_sensor(report.reason) && std::isnan(outcome.doubted_after)) {
+  if (names_a_part(report.reason) && std::isnan(outcome.doubted_after)) {
     outcome.doubted_after = since;
     outcome.doubt = report.reason;
   }

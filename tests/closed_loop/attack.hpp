@@ -24,7 +24,7 @@ struct Outcome {
   double fastest = 0.0;                                         ///< [m/s]
   double end_speed = 0.0;                                       ///< [m/s]
   double doubted_after =
-      std::numeric_limits<double>::quiet_NaN();                   ///< first doubt of a sensor [s]; NaN: none
+      std::numeric_limits<double>::quiet_NaN();  ///< first doubt of a sensor or an actuator [s]; NaN: none
   double acted_after = std::numeric_limits<double>::quiet_NaN();  ///< the guard's first own command [s]
   double driving_after =
       std::numeric_limits<double>::quiet_NaN();  ///< faster than kDriving for the first time [s]

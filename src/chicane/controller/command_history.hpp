@@ -17,6 +17,13 @@ class CommandHistory {
   void clear() noexcept { count_ = 0; }
   /// `command` acts from `time` [s] on; later commands replace earlier ones that would act later.
   void add(double time, const model::Command& command) noexcept;
+  /// The same times with other commands: what `change` makes of each.
+  template <class Change>
+  [[nodiscard]] CommandHistory changed(const Change& change) const noexcept {
+    CommandHistory other = *this;
+    for (Entry& entry : other.entries_) entry.command = change(entry.command);
+    return other;
+  }
   /// The command acting at `time`; zero before the first.
   [[nodiscard]] model::Command at(double time) const noexcept;
   /// First change of command after `time`, or `limit` when there is none before it.

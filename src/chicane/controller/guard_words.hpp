@@ -36,7 +36,9 @@
   ROW(kFarFromRoad, "far_from_road", kError, "the controller has no answer and the known road is far away")      \
   ROW(kTooFastForSilence, "too_fast_for_silence", kWarning,                                                      \
       "a receiver left alone could not stop the car on the road")                                                \
-  ROW(kLate, "late", kError, "the measurements are of an earlier moment")
+  ROW(kLate, "late", kError, "the measurements are of an earlier moment")                                        \
+  ROW(kOtherSteering, "other_steering", kWarning, "the wheels turn otherwise than they are asked to")            \
+  ROW(kWeakBrakes, "weak_brakes", kWarning, "the brakes give less than they are asked for")
 // clang-format on
 
 namespace chicane::controller {

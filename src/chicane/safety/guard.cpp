@@ -8,7 +8,6 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/controller/way_back.hpp"
 #include "chicane/safety/stop_player.hpp"
 
 namespace chicane::safety {
@@ -18,27 +17,10 @@ using controller::Answer;
 using controller::GuardReason;
 using controller::Rung;
 
-constexpr double kStandingSpeed = 0.5;    // [m/s]
-constexpr double kAtRest = 0.05;          // [m/s]
-constexpr double kRestTime = 0.3;         // [s] below it after which a car is at rest
-constexpr int kShown = 64;                // points of a backup that is drawn
-constexpr double kShownStep = 0.1;        // [s]
-constexpr double kLedBackSpeed = 6.0;     // [m/s] below which a car that is off the road is led back
-constexpr double kFarFromRoad = 20.0;     // [m] beside its line there is no stop along the road
-constexpr double kLost = 100.0;           // [m] farther away the car is not led back
-constexpr double kAcross = 0.8;           // [rad] off the road's direction the car is across it
-constexpr double kAlong = 0.2;            // [rad] within which it is along it again
-constexpr double kRefusedTime = 1.0;      // [s] of refused commands after which a standing car is led back
-constexpr double kGuessedWidth = 1.0;     // [m] by which an assumed width may be too small
-constexpr double kReleaseTime = 0.5;      // [s] a car that should move may stand before its brake is released
-constexpr double kDrives = 0.1;           // pedal from which on a car should move
-constexpr double kMostDoubt = 0.5;        // [s] by which a controller's own time may differ from the measured
-constexpr double kRollsBackAtMost = 3.0;  // [m/s] faster a car does not roll back: its heading is wrong
-constexpr double kMostAgainstRolling = 0.7;  // pedal against rolling back
-constexpr double kStillTime = 1.0;   // [s] a car stands before it is tried whether it was put elsewhere
-constexpr double kTrialWay = 0.5;    // share of the car's length that is driven for that
-constexpr double kTrialSpeed = 1.0;  // [m/s]
-constexpr double kTrialPedal = 0.3;
+constexpr int kShown = 64;             // points of a backup that is drawn
+constexpr double kShownStep = 0.1;     // [s]
+constexpr double kFarFromRoad = 20.0;  // [m] beside its line there is no stop along the road
+constexpr double kMostDoubt = 0.5;     // [s] by which a controller's own time may differ from the measured
 // Braking of a car that is too fast for a silence: gentle, and stable without feedback.
 constexpr Braking kHeldBack{0.8, 1.6, 0.7};
 
@@ -74,6 +56,7 @@ Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::Ve
     : controller_{std::move(controller)},
       options_{options},
       monitor_{vehicle.length, vehicle.wheelbase()},
+      actuators_{vehicle},
       fallback_{vehicle},
       gate_{vehicle},
       road_{std::move(road)},
@@ -94,6 +77,7 @@ void Guard::reset() noexcept {
   controller_->reset();
   monitor_.reset();
   reset_watch_.reset();
+  actuators_.reset();
   supervisor_.reset();
   fallback_.reset();
   gate_.reset();
@@ -101,6 +85,7 @@ void Guard::reset() noexcept {
   estimator_.reset();
   direction_.reset();
   sent_.clear();
+  told_.clear();
   filter_.forget();
   has_place_ = is_astray_ = false;
   is_led_ = rests_ = false;
@@ -125,6 +110,12 @@ void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
 }
 
 void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {
+  actuators_.set_vehicle(vehicle);
+  believe(vehicle);
+}
+
+/// The car that estimate, stops and fallback count with.
+void Guard::believe(const model::VehicleParams& vehicle) noexcept {
   fallback_.set_vehicle(vehicle);
   model_.set_vehicle(vehicle);
   filter_.set_vehicle(vehicle);
@@ -144,13 +135,49 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
     watch_rest(seen.time, result.command.throttle);
     result.command = limited(result.command, cycle.interval);
   }
-  const GateResult gated = gate_.pass(cycle.manual.value_or(result.command), cycle.interval);
-  result.command = gated.command;
-  result.report.gated =
-      gated.reason != GateReason::kNone || !is_same(gated.command, cycle.manual.value_or(asked));
-  controller_->note_sent(result.command);
-  if (!is_off && std::isfinite(sent_from_)) sent_.add(sent_from_, result.command);
+  send(cycle, asked, result);
   return asked;
+}
+
+/// The last word: the command for the actuators, in range and rate.
+void Guard::send(const Cycle& cycle, const model::Command& asked, controller::StepResult& result) noexcept {
+  const model::Command told = answer().command_for(result.command);
+  const GateResult gated = gate_.pass(cycle.manual.value_or(told), cycle.interval);
+  result.command = gated.command;
+  result.report.gated = gated.reason != GateReason::kNone ||
+                        !is_same(gated.command, cycle.manual.value_or(answer().command_for(asked)));
+  const model::Command effect = answer().effect_of(gated.command);
+  controller_->note_sent(effect);
+  if (options_.mode == GuardMode::kOff || !std::isfinite(sent_from_)) return;
+  told_.add(sent_from_, gated.command);
+  sent_.add(sent_from_, effect);
+  if (answer().is_usual()) return;
+  stop_ = filter_.stop();
+  for (int i = 0; i < stop_.size; ++i) {
+    model::Command& command = stop_.points[static_cast<std::size_t>(i)].command;
+    command = answer().command_for(command);
+  }
+}
+
+const ActuatorAnswer& Guard::answer() const noexcept {
+  static constexpr ActuatorAnswer kUsual;
+  return options_.mode == GuardMode::kOn ? actuators_.answer() : kUsual;
+}
+
+/// How the actuators answer, by a measurement that nothing is wrong with; the guard drives with that.
+void Guard::watch_actuators(const model::Measurement& seen) noexcept {
+  const Findings& found = monitor_.findings();
+  const bool is_doubted = found.late || found.unmeasured || found.frozen || found.speed_mismatch ||
+                          found.heading_jump || found.position_jump || direction_.rolls_back();
+  if (is_doubted) return actuators_.skip();
+  const ActuatorAnswer before = answer();
+  actuators_.see(seen, told_);
+  if (answer().gain != before.gain || answer().offset != before.offset)
+    sent_ = told_.changed([this](const model::Command& command) { return answer().effect_of(command); });
+  if (answer().braking == before.braking) return;
+  model::VehicleParams car = model_.vehicle();
+  car.brake_acceleration *= answer().braking / before.braking;
+  believe(car);
 }
 
 /// What of a measurement can be believed; estimate and road take it in.
@@ -174,41 +201,9 @@ const model::Measurement& Guard::look(const model::Measurement& measured) noexce
   }
   const model::Measurement& seen = monitor_.check(measured, expected ? &*expected : nullptr);
   road_.add(seen);
+  watch_actuators(seen);
   estimator_.correct(seen, sent_);
   return options_.mode == GuardMode::kOn ? seen : measured;
-}
-
-/// A car that was put elsewhere begins anew there; what was learned of a road may be another one's.
-void Guard::watch_for_reset(const model::Measurement& measured) noexcept {
-  reset_watch_.see(measured, sent_.at(measured.time).throttle);
-  if (!reset_watch_.is_waiting()) tried_ = 0.0;
-  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed || tried_ > 0.0;
-  if (!reset_watch_.is_waiting() || !stands) still_since_ = measured.time;
-  if (!reset_watch_.has_answered()) return;
-  estimator_.reset();
-  monitor_.reset();
-  supervisor_.reset();
-  direction_.reset();
-  filter_.forget();
-  if (options_.mode == GuardMode::kOn) controller_->reset();
-  if (options_.road == GuardRoad::kWaypoints) road_.reset();
-  has_place_ = is_astray_ = is_led_ = false;
-}
-
-/// By the estimate the car stands, but it is measured elsewhere: at walking pace, within half a car's length,
-/// it shows whether it answers there. False where it is not tried.
-bool Guard::try_reset(const StopStart& start, const Cycle& cycle, double time,
-                      controller::StepResult& result) noexcept {
-  if (!(time - still_since_ > kStillTime) || tried_ > kTrialWay * model_.vehicle().length) return false;
-  const double speed = std::fabs(estimator_.state().vx);
-  const model::Command command{0.0, speed < kTrialSpeed ? kTrialPedal : 0.0};
-  if (verify(start, cycle, command, result, true) == Fit::kNone) return false;
-  tried_ += std::max(speed, kTrialSpeed) * std::max(cycle.interval, 0.0);
-  result.answer = Answer::kNone;
-  result.command = command;
-  result.plan.size = result.plan.reference_size = 0;
-  result.report.rung = Rung::kReturnToRoad;
-  return true;
 }
 
 void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
@@ -233,7 +228,9 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   watch_course(start);
   controller::StepReport& report = result.report;
   report.reason = verdict.reason;
-  if (!has_answer && report.reason == GuardReason::kNone)
+  if (!verdict.must_stop && actuators_.has_other_steering()) report.reason = GuardReason::kOtherSteering;
+  if (!verdict.must_stop && actuators_.has_weak_brakes()) report.reason = GuardReason::kWeakBrakes;
+  if (!has_answer && !verdict.must_stop)
     report.reason = is_far_ ? GuardReason::kFarFromRoad : GuardReason::kNoAnswer;
 
   bool may_send = has_answer && !verdict.must_stop;
@@ -289,7 +286,7 @@ bool Guard::slow_down(const StopStart& start, const Cycle& cycle, controller::St
 
 /// The command inside range and rate, without the reverse gear: a stop ends in standstill.
 model::Command Guard::limited(const model::Command& command, double interval) const noexcept {
-  model::Command inside = gate_.limited(command, interval).command;
+  model::Command inside = answer().effect_of(gate_.limited(answer().command_for(command), interval).command);
   const model::VehicleParams& car = model_.vehicle();
   const double v = act_speed_;
   const bool releases = car.latches_brakes() && inside.throttle == car.brake_release_throttle;
@@ -297,77 +294,6 @@ model::Command Guard::limited(const model::Command& command, double interval) co
   if (v < car.reverse_speed && inside.throttle < 0.0)
     inside.throttle = std::max(inside.throttle, throttle_to_rest(car, -car.reverse_acceleration, v));
   return inside;
-}
-
-/// A car off the road or across it is astray until it is along the road again.
-void Guard::watch_course(const std::optional<StopStart>& start) noexcept {
-  const double least = options_.road == GuardRoad::kWaypoints ? -kGuessedWidth : 0.0;
-  if (!start) {
-    is_astray_ = is_far_;
-    return;
-  }
-  const bool is_on_road = filter_.planner().edge(road_, *start) >= least;
-  const double off = std::fabs(start->e);
-  if (!is_on_road || off > kAcross) is_astray_ = true;
-  if (is_on_road && off < kAlong) is_astray_ = false;
-}
-
-/// A car that is astray, or that stands while its controller's commands are refused.
-bool Guard::should_lead_back(double time, bool has_answer) noexcept {
-  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed;
-  if (!has_answer || !(stands || is_led_)) refused_since_ = time;
-  if (time - refused_since_ > kRefusedTime) is_led_ = true;
-  return is_astray_ || (is_led_ && has_answer);
-}
-
-/// Walking pace on a course that meets the road; false where the car is too fast or lost.
-bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& result) noexcept {
-  const road::ReferenceLine& line = road_.line();
-  if (line.is_empty() || !estimator_.is_started() || !std::isfinite(act)) return false;
-  const model::State car = estimator_.predict(act, sent_).state;
-  if (!std::isfinite(car.x + car.y + car.psi + car.vx)) return false;
-  const bool rolls_back = direction_.rolls_back();
-  if (!rolls_back && !(std::fabs(car.vx) < kLedBackSpeed)) return false;
-  const road::ReferenceLine::Projection place =
-      line.project_along({car.x, car.y}, car.psi, 2.0 * model_.vehicle().width);
-  if (!(place.distance < kLost)) return false;
-  result.command = rolls_back ? model::Command{0.0, against_rolling_back()}
-                              : controller::way_back(line, place, car, model_.vehicle());
-  const std::optional<StopStart> start = place_on_road(act);
-  if (is_astray_) filter_.forget();
-  const Fit fit = start ? verify(*start, cycle, result.command, result, true) : Fit::kNone;
-  // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there.
-  const bool is_off = start && filter_.planner().edge(road_, *start) < 0.0;
-  if (start && !is_off && fit == Fit::kNone && (!is_astray_ || result.answer == Answer::kDrive)) return false;
-  if (fit == Fit::kNone) filter_.forget();
-  result.answer = Answer::kNone;
-  result.plan.size = result.plan.reference_size = 0;
-  result.report.rung = Rung::kReturnToRoad;
-  return true;
-}
-
-double Guard::against_rolling_back() const noexcept {
-  const double speed = std::fabs(estimator_.state().vx);
-  const double pedal = controller::throttle_against_rolling_back(model_.vehicle(), speed);
-  return pedal > 0.0 && speed > kRollsBackAtMost ? 0.0 : std::min(pedal, kMostAgainstRolling);
-}
-
-/// The pedal that brought a car to rest is its reverse gear from then on: the speed is measured without a
-/// sign, and a car that begins to roll back would be braked into going faster.
-void Guard::watch_rest(double time, double throttle) noexcept {
-  const double speed = std::fabs(estimator_.state().vx);
-  if (!estimator_.is_started() || !(speed < kAtRest)) moved_at_ = time;
-  if (time - moved_at_ > kRestTime) rests_ = true;
-  if (speed > kStandingSpeed || throttle > kDrives) rests_ = false;
-}
-
-/// A car whose brake stays on at rest until the pedal has been released moves again after a short release.
-void Guard::release_brake(double time, model::Command& command) noexcept {
-  const bool should_move = command.throttle > kDrives && std::fabs(estimator_.state().vx) < kStandingSpeed;
-  if (!should_move) stuck_since_ = time;
-  if (!(time - stuck_since_ > kReleaseTime) || !model_.vehicle().latches_brakes()) return;
-  command.throttle = model_.vehicle().brake_release_throttle;
-  stuck_since_ = time;
 }
 
 /// The controller's answer is sent.

@@ -15,6 +15,7 @@
 #include "chicane/model/vehicle.hpp"
 #include "chicane/path/road_data.hpp"
 #include "chicane/road/known_road.hpp"
+#include "chicane/safety/actuator_watch.hpp"
 #include "chicane/safety/command_gate.hpp"
 #include "chicane/safety/fallback.hpp"
 #include "chicane/safety/guard_options.hpp"
@@ -79,11 +80,17 @@ class Guard {
   void set_vehicle(const model::VehicleParams& vehicle) noexcept;
 
   /// The stop at hand after step(): from the moment at which the next command would act. Size 0: none.
-  [[nodiscard]] const StopPlan& stop() const noexcept { return filter_.stop(); }
+  /// As commands for the actuators, like the command that is sent.
+  [[nodiscard]] const StopPlan& stop() const noexcept { return answer().is_usual() ? filter_.stop() : stop_; }
   [[nodiscard]] controller::Controller& controller() noexcept { return *controller_; }
   [[nodiscard]] const controller::Controller& controller() const noexcept { return *controller_; }
 
  private:
+  static constexpr double kStandingSpeed = 0.5;  ///< [m/s]
+  static constexpr double kGuessedWidth = 1.0;   ///< [m] by which an assumed width may be too small
+  static constexpr double kRollsBackAtMost =
+      3.0;  ///< [m/s] faster a car does not roll back: its heading is wrong
+
   void choose(const model::Measurement& seen, const Cycle& cycle, controller::StepResult& result) noexcept;
   [[nodiscard]] bool filter(const StopStart& start, const Cycle& cycle,
                             controller::StepResult& result) noexcept;
@@ -106,19 +113,26 @@ class Guard {
   void watch_rest(double time, double throttle) noexcept;
   void release_brake(double time, model::Command& command) noexcept;
   [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
+  void believe(const model::VehicleParams& vehicle) noexcept;
+  void watch_actuators(const model::Measurement& seen) noexcept;
+  [[nodiscard]] const ActuatorAnswer& answer() const noexcept;
+  void send(const Cycle& cycle, const model::Command& asked, controller::StepResult& result) noexcept;
   [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
 
   Owned<controller::Controller> controller_;
   GuardOptions options_;
   MeasurementMonitor monitor_;
   ResetWatch reset_watch_;
+  ActuatorWatch actuators_;
   Supervisor supervisor_;
   Fallback fallback_;
   CommandGate gate_;
   road::KnownRoad road_;
   controller::StateEstimator estimator_;
   controller::DirectionWatch direction_;  ///< by what is measured, plausible or not
-  controller::CommandHistory sent_;
+  controller::CommandHistory told_;       ///< what the actuators were told
+  controller::CommandHistory sent_;       ///< and what it makes of wheels and pedals
+  StopPlan stop_;                         ///< the stop at hand, for actuators that answer otherwise
   PredictiveFilter filter_;
   model::PredictionModel model_;
   double s_ = 0.0;  ///< on the known road where the command acts [m]

@@ -203,6 +203,10 @@ export const REASON = {
   TOO_FAST_FOR_SILENCE: 9,
   /** the measurements are of an earlier moment */
   LATE: 10,
+  /** the wheels turn otherwise than they are asked to */
+  OTHER_STEERING: 11,
+  /** the brakes give less than they are asked for */
+  WEAK_BRAKES: 12,
 } as const;
 
 /** Frame.speed_limiter */
@@ -462,6 +466,14 @@ export const REASON_WORDS: Words = {
   [REASON.LATE]: {
     severity: 'bad',
     text: 'the measurements are of an earlier moment',
+  },
+  [REASON.OTHER_STEERING]: {
+    severity: 'warning',
+    text: 'the wheels turn otherwise than they are asked to',
+  },
+  [REASON.WEAK_BRAKES]: {
+    severity: 'warning',
+    text: 'the brakes give less than they are asked for',
   },
 };
 

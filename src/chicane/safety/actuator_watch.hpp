@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "chicane/controller/command_history.hpp"
+#include "chicane/model/measurement.hpp"
+#include "chicane/model/prediction.hpp"
+#include "chicane/model/state.hpp"
+
+namespace chicane::safety {
+
+/// How the actuators answer: the wheels turn to gain · command + offset, and the brakes give a share of what
+/// is asked for.
+struct ActuatorAnswer {
+  double gain = 1.0;
+  double offset = 0.0;   ///< [rad]
+  double braking = 1.0;  ///< (0, 1]
+
+  [[nodiscard]] bool is_usual() const noexcept { return gain == 1.0 && offset == 0.0 && braking == 1.0; }
+  /// The command that turns the wheels as `wanted` says.
+  [[nodiscard]] model::Command command_for(const model::Command& wanted) const noexcept {
+    return {(wanted.steer - offset) / gain, wanted.throttle};
+  }
+  /// How the wheels turn by `command`.
+  [[nodiscard]] model::Command effect_of(const model::Command& command) const noexcept {
+    return {gain * command.steer + offset, command.throttle};
+  }
+};
+
+/// Compares how the car turns and brakes with what was sent to it, by its model (docs/safety.md, eq. 12 and
+/// 13). The answer is the usual one until the difference exceeds its band; then it is estimated, until it has
+/// been the usual one for kUsualFor. It judges a car that moves forward, faster than kSlowest, with grip to
+/// spare. No allocation; one thread.
+class ActuatorWatch {
+ public:
+  static constexpr double kBand = 0.01;        ///< [rad] by which an angle may differ
+  static constexpr double kBandShare = 0.1;    ///< and of the angle
+  static constexpr double kChangeShare = 1.0;  ///< and of what it changes within a window
+  static constexpr double kSlipShare = 0.2;    ///< and of the front tyres' slip
+  static constexpr double kWeak = 0.75;        ///< share of the braking, below which brakes are weak
+  static constexpr double kUsualFor = 1.0;     ///< [s]
+  static constexpr double kSlowest = 6.0;      ///< [m/s] of a car in full size
+
+  explicit ActuatorWatch(const model::VehicleParams& vehicle) noexcept;
+  void reset() noexcept;
+  /// Another car from now on, as it is with usual actuators.
+  void set_vehicle(const model::VehicleParams& vehicle) noexcept;
+
+  /// A measurement that is not in doubt; `sent`: what the actuators were told.
+  void see(const model::Measurement& now, const controller::CommandHistory& sent) noexcept;
+  /// Nothing is measured that can be believed.
+  void skip() noexcept { count_ = 0; }
+
+  [[nodiscard]] const ActuatorAnswer& answer() const noexcept { return answer_; }
+  [[nodiscard]] bool has_other_steering() const noexcept { return is_steered_; }
+  [[nodiscard]] bool has_weak_brakes() const noexcept { return answer_.braking < 1.0; }
+
+ private:
+  /// Sums up to a measurement.
+  struct Sample {
+    double time = 0.0;
+    double turned = 0.0;   ///< heading, unwrapped [rad]
+    double angle = 0.0;    ///< integral of the angle asked for, behind the lag [rad s]
+    double braking = 0.0;  ///< integral of the pedal's deceleration by the model [m/s]
+    double speed = 0.0;    ///< [m/s]
+    double pedal = 0.0;    ///< mean since the one before
+  };
+  static constexpr std::size_t kSamples = 64;
+
+  [[nodiscard]] const Sample& back(std::size_t count) const noexcept {
+    return samples_[(count_ - 1 - count) % kSamples];
+  }
+  [[nodiscard]] std::size_t samples_back_to(double time) const noexcept;
+  void add_sample(const model::Measurement& now, const controller::CommandHistory& sent) noexcept;
+  /// The angles of one window: what was asked for, and what turns the car as it turned.
+  struct Window {
+    double asked = 0.0, angle = 0.0;  ///< [rad]
+    double slip = 0.0;                ///< what of the angle is the front tyres' slip [rad]
+    double use = 0.0;                 ///< of the tyres' peak slip
+    double slide = 0.0;               ///< lateral velocity of the car that turns as measured [m/s]
+    double changed = 0.0;             ///< what the angle asked for has changed [rad]
+    double difference = 0.0;          ///< of the angles from the expected answer [rad]
+    double noise = 0.0;               ///< mean square of what of it is not there the next time [rad²]
+    double learned = 0.0;             ///< time of which the noise is the mean [s]
+    double differs_for = 0.0;         ///< [s]
+  };
+  [[nodiscard]] bool measure(Window& window, double length, double elapsed) const noexcept;
+  void judge_steering(Window& window, double length, double elapsed) noexcept;
+  void fit_steering(const Window& window, double length, double elapsed) noexcept;
+  void judge_braking(double elapsed) noexcept;
+
+  model::PredictionModel model_;
+  double pace_;  ///< of time, over that of a car in full size
+  ActuatorAnswer answer_;
+  std::array<Sample, kSamples> samples_{};
+  std::size_t count_ = 0;
+  double angle_ = 0.0;               ///< of the wheels if they answered as usual [rad]
+  double last_psi_ = 0.0;            ///< [rad]
+  std::array<Window, 2> windows_{};  ///< a short one, and a long one for noisy sensors
+  double usual_for_ = 0.0;           ///< [s]
+  bool is_steered_ = false;          ///< gain and offset are estimated
+  // Normal equations of (gain - 1, offset), and the time that they remember [s].
+  double gg_ = 0.0, go_ = 0.0, oo_ = 0.0, g_ = 0.0, o_ = 0.0, memory_ = 0.0;
+  double weak_for_ = 0.0;  ///< [s]
+  double share_ = 1.0;     ///< of the braking, lately
+};
+
+}  // namespace chicane::safety

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// The guard with a car that stands, rolls back, is off its road or was put elsewhere (docs/safety.md, "The
+// way back").
+#include <algorithm>
+#include <cmath>
+
+#include "chicane/base/math.hpp"
+#include "chicane/controller/way_back.hpp"
+#include "chicane/safety/guard.hpp"
+
+namespace chicane::safety {
+namespace {
+
+using controller::Answer;
+using controller::Rung;
+
+constexpr double kAtRest = 0.05;       // [m/s]
+constexpr double kRestTime = 0.3;      // [s] below it after which a car is at rest
+constexpr double kLedBackSpeed = 6.0;  // [m/s] below which a car that is off the road is led back
+constexpr double kLost = 100.0;        // [m] farther away the car is not led back
+constexpr double kAcross = 0.8;        // [rad] off the road's direction the car is across it
+constexpr double kAlong = 0.2;         // [rad] within which it is along it again
+constexpr double kRefusedTime = 1.0;   // [s] of refused commands after which a standing car is led back
+constexpr double kReleaseTime = 0.5;   // [s] a car that should move may stand before its brake is released
+constexpr double kDrives = 0.1;        // pedal from which on a car should move
+constexpr double kMostAgainstRolling = 0.7;  // pedal against rolling back
+constexpr double kStillTime = 1.0;   // [s] a car stands before it is tried whether it was put elsewhere
+constexpr double kTrialWay = 0.5;    // share of the car's length that is driven for that
+constexpr double kTrialSpeed = 1.0;  // [m/s]
+constexpr double kTrialPedal = 0.3;
+
+}  // namespace
+
+/// A car that was put elsewhere begins anew there; what was learned of a road may be another one's.
+void Guard::watch_for_reset(const model::Measurement& measured) noexcept {
+  reset_watch_.see(measured, sent_.at(measured.time).throttle);
+  if (!reset_watch_.is_waiting()) tried_ = 0.0;
+  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed || tried_ > 0.0;
+  if (!reset_watch_.is_waiting() || !stands) still_since_ = measured.time;
+  if (!reset_watch_.has_answered()) return;
+  estimator_.reset();
+  monitor_.reset();
+  supervisor_.reset();
+  direction_.reset();
+  filter_.forget();
+  if (options_.mode == GuardMode::kOn) controller_->reset();
+  if (options_.road == GuardRoad::kWaypoints) road_.reset();
+  has_place_ = is_astray_ = is_led_ = false;
+}
+
+/// By the estimate the car stands, but it is measured elsewhere: at walking pace, within half a car's length,
+/// it shows whether it answers there. False where it is not tried.
+bool Guard::try_reset(const StopStart& start, const Cycle& cycle, double time,
+                      controller::StepResult& result) noexcept {
+  if (!(time - still_since_ > kStillTime) || tried_ > kTrialWay * model_.vehicle().length) return false;
+  const double speed = std::fabs(estimator_.state().vx);
+  const model::Command command{0.0, speed < kTrialSpeed ? kTrialPedal : 0.0};
+  if (verify(start, cycle, command, result, true) == Fit::kNone) return false;
+  tried_ += std::max(speed, kTrialSpeed) * std::max(cycle.interval, 0.0);
+  result.answer = Answer::kNone;
+  result.command = command;
+  result.plan.size = result.plan.reference_size = 0;
+  result.report.rung = Rung::kReturnToRoad;
+  return true;
+}
+
+/// A car off the road or across it is astray until it is along the road again.
+void Guard::watch_course(const std::optional<StopStart>& start) noexcept {
+  const double least = options_.road == GuardRoad::kWaypoints ? -kGuessedWidth : 0.0;
+  if (!start) {
+    is_astray_ = is_far_;
+    return;
+  }
+  const bool is_on_road = filter_.planner().edge(road_, *start) >= least;
+  const double off = std::fabs(start->e);
+  if (!is_on_road || off > kAcross) is_astray_ = true;
+  if (is_on_road && off < kAlong) is_astray_ = false;
+}
+
+/// A car that is astray, or that stands while its controller's commands are refused.
+bool Guard::should_lead_back(double time, bool has_answer) noexcept {
+  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed;
+  if (!has_answer || !(stands || is_led_)) refused_since_ = time;
+  if (time - refused_since_ > kRefusedTime) is_led_ = true;
+  return is_astray_ || (is_led_ && has_answer);
+}
+
+/// Walking pace on a course that meets the road; false where the car is too fast or lost.
+bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& result) noexcept {
+  const road::ReferenceLine& line = road_.line();
+  if (line.is_empty() || !estimator_.is_started() || !std::isfinite(act)) return false;
+  const model::State car = estimator_.predict(act, sent_).state;
+  if (!std::isfinite(car.x + car.y + car.psi + car.vx)) return false;
+  const bool rolls_back = direction_.rolls_back();
+  if (!rolls_back && !(std::fabs(car.vx) < kLedBackSpeed)) return false;
+  const road::ReferenceLine::Projection place =
+      line.project_along({car.x, car.y}, car.psi, 2.0 * model_.vehicle().width);
+  if (!(place.distance < kLost)) return false;
+  result.command = rolls_back ? model::Command{0.0, against_rolling_back()}
+                              : controller::way_back(line, place, car, model_.vehicle());
+  const std::optional<StopStart> start = place_on_road(act);
+  if (is_astray_) filter_.forget();
+  const Fit fit = start ? verify(*start, cycle, result.command, result, true) : Fit::kNone;
+  // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there.
+  const bool is_off = start && filter_.planner().edge(road_, *start) < 0.0;
+  if (start && !is_off && fit == Fit::kNone && (!is_astray_ || result.answer == Answer::kDrive)) return false;
+  if (fit == Fit::kNone) filter_.forget();
+  result.answer = Answer::kNone;
+  result.plan.size = result.plan.reference_size = 0;
+  result.report.rung = Rung::kReturnToRoad;
+  return true;
+}
+
+double Guard::against_rolling_back() const noexcept {
+  const double speed = std::fabs(estimator_.state().vx);
+  const double pedal = controller::throttle_against_rolling_back(model_.vehicle(), speed);
+  return pedal > 0.0 && speed > kRollsBackAtMost ? 0.0 : std::min(pedal, kMostAgainstRolling);
+}
+
+/// The pedal that brought a car to rest is its reverse gear from then on: the speed is measured without a
+/// sign, and a car that begins to roll back would be braked into going faster.
+void Guard::watch_rest(double time, double throttle) noexcept {
+  const double speed = std::fabs(estimator_.state().vx);
+  if (!estimator_.is_started() || !(speed < kAtRest)) moved_at_ = time;
+  if (time - moved_at_ > kRestTime) rests_ = true;
+  if (speed > kStandingSpeed || throttle > kDrives) rests_ = false;
+}
+
+/// A car whose brake stays on at rest until the pedal has been released moves again after a short release.
+void Guard::release_brake(double time, model::Command& command) noexcept {
+  const bool should_move = command.throttle > kDrives && std::fabs(estimator_.state().vx) < kStandingSpeed;
+  if (!should_move) stuck_since_ = time;
+  if (!(time - stuck_since_ > kReleaseTime) || !model_.vehicle().latches_brakes()) return;
+  command.throttle = model_.vehicle().brake_release_throttle;
+  stuck_since_ = time;
+}
+
+}  // namespace chicane::safety

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/actuator_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "chicane/base/random.hpp"
+#include "chicane/model/prediction.hpp"
+
+namespace chicane::safety {
+namespace {
+
+constexpr double kCycle = 0.04;  // [s]
+constexpr double kOnset = 5.0;   // [s] from which actuators answer otherwise
+
+/// A car that is steered to and fro by its model, with actuators that answer as `effect` says from kOnset on.
+struct Drive {
+  model::VehicleParams car = model::road_car_params();
+  std::function<model::Command(const model::Command&)> effect = [](const model::Command& c) { return c; };
+  double ends = 1e9;             ///< the actuators are usual again [s]
+  double heading_noise = 0.0;    ///< [rad]
+  double throttle_after = 0.05;  ///< from kOnset on
+  double steer = 0.05;           ///< amplitude [rad]
+  double sign = 1.0;             ///< -1: mirrored
+  double speed = 12.0;           ///< [m/s]
+
+  /// What the watch holds after `seconds`; `first`: when it differed first [s].
+  ActuatorWatch after(double seconds, double* first = nullptr) const {
+    ActuatorWatch watch{car};
+    const model::PredictionModel model{car};
+    controller::CommandHistory sent;
+    Random random(3);
+    model::BodyMotion<double> body{.vx = speed};
+    double psi = 0.0;
+    for (int i = 0; i * kCycle < seconds; ++i) {
+      const double time = i * kCycle;
+      model::Measurement now;
+      now.time = time;
+      now.psi = psi + heading_noise * random.normal();
+      now.speed = std::hypot(body.vx, body.vy);
+      watch.see(now, sent);
+      if (first != nullptr && !(*first > 0.0) && !watch.answer().is_usual()) *first = time;
+      const bool is_late = time >= kOnset && time < ends;
+      const model::Command command{sign * steer * (0.6 + std::sin(1.3 * time)),
+                                   time >= kOnset ? throttle_after : 0.05};
+      sent.add(time, command);
+      const model::Command acting = is_late ? effect(command) : command;
+      constexpr int kParts = 10;
+      for (int k = 0; k < kParts; ++k) {
+        const double dt = kCycle / kParts;
+        const double psi_before = body.r;
+        body = model.advance(body, acting.steer, longitudinal_acceleration(car, acting.throttle, body.vx), dt,
+                             model.lags(dt));
+        psi += 0.5 * dt * (psi_before + body.r);
+      }
+    }
+    return watch;
+  }
+};
+
+TEST(ActuatorWatch, FindsNothingWhereTheCarAnswersAsItsModel) {
+  for (const model::VehicleParams& car : {model::road_car_params(), model::udacity_params()})
+    for (const double noise : {0.0, 0.002, 0.005, 0.01}) {
+      Drive drive{.car = car};
+      drive.heading_noise = noise;
+      EXPECT_TRUE(drive.after(60.0).answer().is_usual()) << car.name << ' ' << noise;
+    }
+}
+
+TEST(ActuatorWatch, FindsGainAndOffsetOnBothSides) {
+  const ActuatorAnswer answers[] = {
+      {.gain = 0.5}, {.gain = 1.5}, {.offset = 0.06}, {.offset = -0.06}, {.gain = 0.7, .offset = 0.04}};
+  for (const double sign : {1.0, -1.0})
+    for (const ActuatorAnswer& answer : answers) {
+      Drive drive;
+      drive.sign = sign;
+      drive.effect = [&](const model::Command& c) { return answer.effect_of(c); };
+      const ActuatorWatch watch = drive.after(kOnset + 10.0);
+      EXPECT_TRUE(watch.has_other_steering()) << answer.gain << ' ' << answer.offset;
+      // Where the wheels were turned: 5 % of the angle, and what the model's windows leave.
+      for (const double steer : {-0.4 * sign * drive.steer, 0.0, 1.6 * sign * drive.steer})
+        EXPECT_NEAR(watch.answer().effect_of({steer, 0.0}).steer, answer.effect_of({steer, 0.0}).steer, 0.006)
+            << answer.gain << ' ' << answer.offset << ' ' << steer;
+    }
+}
+
+TEST(ActuatorWatch, FindsAnOffsetWithinAThirdOfASecond) {
+  for (const double offset : {0.06, -0.06}) {
+    Drive drive;
+    drive.effect = [=](const model::Command& c) { return model::Command{c.steer + offset, c.throttle}; };
+    double first = 0.0;
+    (void)drive.after(kOnset + 1.0, &first);
+    EXPECT_GT(first, kOnset) << offset;
+    EXPECT_LT(first, kOnset + 0.33) << offset;
+  }
+}
+
+TEST(ActuatorWatch, ForgetsAnAnswerThatHasEnded) {
+  Drive drive;
+  drive.effect = [](const model::Command& c) { return model::Command{0.5 * c.steer, c.throttle}; };
+  drive.ends = kOnset + 5.0;
+  EXPECT_TRUE(drive.after(drive.ends + 12.0).answer().is_usual());
+}
+
+TEST(ActuatorWatch, FindsWeakBrakes) {
+  Drive drive;
+  drive.speed = 40.0;
+  drive.throttle_after = -0.5;
+  drive.steer = 0.0;
+  drive.effect = [](const model::Command& c) { return model::Command{c.steer, 0.5 * c.throttle}; };
+  const ActuatorWatch watch = drive.after(kOnset + 1.5);
+  EXPECT_TRUE(watch.has_weak_brakes());
+  EXPECT_NEAR(watch.answer().braking, 0.5, 0.05);
+  drive.effect = [](const model::Command& c) { return c; };
+  EXPECT_FALSE(drive.after(kOnset + 1.5).has_weak_brakes());
+}
+
+TEST(ActuatorWatch, JudgesNothingWhileNothingIsMeasured) {
+  ActuatorWatch watch{model::road_car_params()};
+  controller::CommandHistory sent;
+  sent.add(0.0, {0.2, 0.0});
+  for (int i = 0; i < 200; ++i) {  // straight on although the wheels are turned
+    model::Measurement now;
+    now.time = i * kCycle;
+    now.speed = 20.0;
+    watch.see(now, sent);
+    if (i % 3 == 0) watch.skip();
+  }
+  EXPECT_TRUE(watch.answer().is_usual());
+}
+
+TEST(ActuatorAnswer, CommandsWhatHasTheWantedEffect) {
+  const ActuatorAnswer answer{.gain = 0.5, .offset = 0.1};
+  const model::Command told = answer.command_for({0.2, -0.3});
+  EXPECT_DOUBLE_EQ(told.steer, 0.2);
+  EXPECT_DOUBLE_EQ(answer.effect_of(told).steer, 0.2);
+  EXPECT_EQ(told.throttle, -0.3);
+}
+
+}  // namespace
+}  // namespace chicane::safety
