@@ -5,6 +5,7 @@
 #   ./run.sh --laps 1                             options alone mean `drive`
 #   ./run.sh drive --fast --laps 2 --json         any command of `chicane`; stdout carries its results only
 #   ./run.sh bench                                builds the benchmark, too, with Ipopt to compare with
+#   ./run.sh ros --car f1tenth                    a ROS 2 node; installs Cyclone DDS, too (docs/ros.md)
 #   ./run.sh package                              makes Debian packages and a tarball in build/release/packages (docs/packages.md)
 #   ./run.sh python [ARGUMENT...]                 Python with `import chicane` (docs/python.md): a prompt, or a script and its arguments
 #   ./run.sh page --out DIR                       writes a page that drives without a program, in the browser alone (WebAssembly)
@@ -42,6 +43,7 @@ extra=()
 case " $* " in
   *' -h '* | *' --help '*) ;;
   ' bench '*) target=chicane_bench extra=("${bench_packages[@]}") ;;
+  ' ros '*) extra=("${ros_packages[@]}") ;;
 esac
 mapfile -t node < <(node_packages)
 install_packages "${run_packages[@]}" "${extra[@]}" "${node[@]}"

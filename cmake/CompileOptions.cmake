@@ -24,7 +24,7 @@ endif()
 
 # For what reads a stranger's bytes (docs/security.md): the modules below and the program. The numerical modules stay as they are, because
 # they see checked values only. Debug and sanitizer builds have better checks of their own.
-set(CHICANE_HARDENED_MODULES net protocol telemetry sweep recording wire live)
+set(CHICANE_HARDENED_MODULES net protocol telemetry sweep recording wire live ros)
 set(CHICANE_IS_HARDENED OFF)
 if(NOT CHICANE_SANITIZE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug" AND NOT CMAKE_CROSSCOMPILING)
   set(CHICANE_IS_HARDENED ON)

@@ -8,8 +8,10 @@ run_packages=(
 )
 # To compare with Ipopt in `chicane bench`, on top of those.
 bench_packages=(libeigen3-dev coinor-libipopt-dev liblapack-dev libblas-dev)
+# For `chicane ros`, on top of the first.
+ros_packages=(cyclonedds-dev libssl-dev)
 # To make packages of all that the program can do, on top of the first.
-package_packages=(dpkg-dev libnlopt-dev)
+package_packages=(dpkg-dev libnlopt-dev "${ros_packages[@]}")
 # For the Python module, on top of the first.
 python_packages=(python3 python3-dev python3-venv python3-pip python3-numpy pybind11-dev)
 # To build and run the tests, on top of the first.

@@ -15,10 +15,7 @@
 
 #include "chicane/protocol/schema.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
-#include "chicane/run/control_cycle.hpp"
-#include "chicane/run/lap_planner.hpp"
-#include "chicane/run/roadside.hpp"
-#include "chicane/run/track_fit.hpp"
+#include "chicane/run/external_drive.hpp"
 
 namespace chicane::wire {
 namespace {
@@ -29,7 +26,6 @@ using std::chrono::milliseconds;
 constexpr int kMaxUnanswered = 16;           // a client in lock-step has one
 constexpr std::size_t kMaxAccepted = 16;     // upgrades that have not completed
 constexpr double kTypicalTurnAround = 0.02;  // of the original simulator [s]
-constexpr double kGapInDelays = 2.0;         // beside ServeOptions::forget_after
 constexpr milliseconds kWatchPeriod{250};
 constexpr std::chrono::seconds kPingInterval{25};  // Engine.IO's default
 constexpr const char* kOpenPacket =
@@ -93,12 +89,20 @@ class UdacityEndpoint::Control {
   Control(const ServeOptions& options, std::unique_ptr<controller::Controller> controller,
           const ServeHooks& hooks, Answer answer)
       : options_{options},
-        hooks_{hooks},
         answer_{std::move(answer)},
-        scenario_{options.scenario},
-        cycle_{std::move(controller), options.scenario, options.track},
+        drive_hooks_{.settings = hooks.settings,
+                     .on_change = hooks.on_change,
+                     .on_frame = hooks.on_frame,
+                     .on_lap = hooks.on_lap,
+                     .on_other_road = hooks.on_other_road},
+        drive_{{.scenario = options.scenario,
+                .track = options.track,
+                .lap = options.lap,
+                .step_budget = options.step_budget,
+                .forget_after = options.forget_after},
+               std::move(controller),
+               drive_hooks_},
         delay_{seconds(options.latency) + kTypicalTurnAround},
-        roadside_{options.track, options.scenario},
         thread_{[this] { work(); }} {}
   ~Control() { stop(); }
   Control(const Control&) = delete;
@@ -112,7 +116,7 @@ class UdacityEndpoint::Control {
     changed_.notify_one();
     if (!thread_.joinable()) return;
     thread_.join();
-    run_ = roadside_.summary();
+    run_ = drive_.summary();
   }
   /// Empty before stop().
   [[nodiscard]] const telemetry::RunSummary& run() const { return run_; }
@@ -132,7 +136,6 @@ class UdacityEndpoint::Control {
 
  private:
   void work() {
-    cycle_.use_line(options_.lap);
     for (;;) {
       Request request;
       {
@@ -145,7 +148,7 @@ class UdacityEndpoint::Control {
       if (request.from != driven_) begin(request.from);
       if (request.kind == Request::Kind::kManual) {
         ++manual_;
-        last_received_.reset();
+        drive_.forget_time();
         answer_(request, protocol::encode_manual(), std::chrono::nanoseconds{0});
       } else {
         drive(request);
@@ -156,133 +159,43 @@ class UdacityEndpoint::Control {
   /// Another simulator, or the same one again: nothing learned is trusted.
   void begin(net::ConnectionId from) {
     driven_ = from;
-    cycle_.begin(cycle_.next());
+    drive_.begin();
     delay_.reset();
-    last_received_.reset();
-    last_begun_.reset();
-    begins_again_ = false;
-    roadside_.resume();
   }
 
   void drive(const Request& request) {
-    if (last_received_) {
-      watch_gap(seconds(request.received - *last_received_));
-      delay_.add(seconds(request.received - *last_received_));
+    run::ExternalDrive::Sighting sighting{.received = request.received, .usual_delay = delay_.value()};
+    if (const auto gap = drive_.gap(request.received)) {
+      delay_.add(*gap);
       measured_delay_ = delay_.value();
     }
-    last_received_ = request.received;
-    take_up_changes(seconds(request.received - started_));
-    check_road(request);
-    frame_.has_measurement = request.kind == Request::Kind::kTelemetry;
-    frame_.measurement = frame_.has_measurement ? request.measurement : nothing_measured();
-    frame_.measurement.time = seconds(request.received - started_);
-    frame_.measurement.delay = delay_.value();
-    frame_.applied = last_sent_;
-    const Clock::time_point now = Clock::now();
-    cycle_.step({.deadline = deadline(), .interval = last_begun_ ? seconds(now - *last_begun_) : 0.0},
-                frame_);
-    last_begun_ = now;
-    last_sent_ = frame_.result.command;
-    if (frame_.result.report.gated) ++interventions_;
+    sighting.delay = delay_.value();
+    if (request.kind == Request::Kind::kTelemetry) sighting.measured = request.measurement;
+    const telemetry::Frame& frame = drive_.step(sighting);
+    if (frame.result.report.gated) ++interventions_;
     static const safety::StopPlan kNone;
     answer_(request,
-            protocol::encode_steer(frame_.result.command, frame_.result.plan, pose_at_receipt(),
-                                   request.wants_stop_plan ? cycle_.stop() : kNone, frame_.time),
+            protocol::encode_steer(frame.result.command, frame.result.plan, pose_at_receipt(frame),
+                                   request.wants_stop_plan ? drive_.stop() : kNone, frame.time),
             options_.latency);
     ++answers_;
-    frame_.lateral_error = frame_.result.report.lateral_error;
-    frame_.heading_error = frame_.result.report.heading_error;
-    roadside_.judge(frame_);
-    if (const auto lap = roadside_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
-    if (hooks_.on_frame) hooks_.on_frame(frame_);
-    const path::Track* track = is_other_road_ ? nullptr : options_.track;
-    const auto planned = planner_.advance(cycle_, scenario_, track, frame_.time);
-    if (planned && hooks_.on_change) hooks_.on_change(*planned);
-  }
-
-  /// After a silence, ours too, the car has been stopped meanwhile, or has gone on with the last command:
-  /// it is not known which. The first telemetry may have waited as long, so that the second one begins anew,
-  /// too.
-  void watch_gap(double gap) {
-    const bool is_long = gap > seconds(options_.forget_after) + kGapInDelays * delay_.value();
-    if (is_long || begins_again_) {
-      cycle_.begin(cycle_.next());
-      last_begun_.reset();
-      roadside_.resume();
-    }
-    begins_again_ = is_long;
-  }
-
-  /// A track that was told, and is not the one whose waypoints are shown, is not used any more.
-  void check_road(const Request& request) {
-    if (options_.track == nullptr || is_other_road_ || request.kind != Request::Kind::kTelemetry) return;
-    const auto distance = run::distance_to_other_road(*options_.track, request.measurement);
-    if (!distance) return;
-    is_other_road_ = true;
-    const telemetry::Change change{.cycle = cycle_.next(),
-                                   .time = seconds(request.received - started_),
-                                   .name = "guard.road",
-                                   .value = "waypoints"};
-    scenario_.guard.road = safety::GuardRoad::kWaypoints;
-    cycle_.configure(scenario_);
-    roadside_.forget_track();
-    if (hooks_.on_change) hooks_.on_change(change);
-    if (hooks_.on_other_road) hooks_.on_other_road(*distance);
-  }
-
-  /// Telemetry that cannot be used says only that time has passed.
-  static model::Measurement nothing_measured() {
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    return {.x = kUnknown,
-            .y = kUnknown,
-            .psi = kUnknown,
-            .speed = kUnknown,
-            .steer = kUnknown,
-            .throttle = kUnknown};
-  }
-
-  void take_up_changes(double time) {
-    while (const run::Setting* next = hooks_.settings == nullptr ? nullptr : hooks_.settings->front()) {
-      telemetry::Change change = next->change;
-      change.cycle = cycle_.next();
-      change.time = time;
-      if (const auto* field = std::get_if<run::FieldValue>(&next->action)) {
-        run::write(scenario_, *field);
-        cycle_.configure(scenario_);
-      }
-      hooks_.settings->pop();
-      if (hooks_.on_change) hooks_.on_change(change);
-    }
+    drive_.finish();
   }
 
   /// Where the car will be when the answer arrives: where the plan begins.
-  [[nodiscard]] model::Pose pose_at_receipt() const {
-    const controller::Plan& plan = frame_.result.plan;
+  [[nodiscard]] static model::Pose pose_at_receipt(const telemetry::Frame& frame) {
+    const controller::Plan& plan = frame.result.plan;
     if (plan.size > 0) return {.x = plan.points[0].x, .y = plan.points[0].y, .psi = plan.points[0].psi};
-    return {.x = frame_.measurement.x, .y = frame_.measurement.y, .psi = frame_.measurement.psi};
-  }
-
-  [[nodiscard]] Deadline deadline() const {
-    return options_.step_budget.count() > 0 ? Deadline::after(options_.step_budget) : Deadline::stopwatch();
+    return {.x = frame.measurement.x, .y = frame.measurement.y, .psi = frame.measurement.psi};
   }
 
   const ServeOptions& options_;
-  const ServeHooks& hooks_;
   Answer answer_;
-  scenario::Scenario scenario_;
-  run::ControlCycle cycle_;
-  run::LapPlanner planner_{run::LapPlanner::Clock::kReal};
+  const run::ExternalDriveHooks drive_hooks_;
+  run::ExternalDrive drive_;
   DelayMeter delay_;
-  run::Roadside roadside_;
   telemetry::RunSummary run_;
-  const Clock::time_point started_ = Clock::now();
   net::ConnectionId driven_ = 0;
-  std::optional<Clock::time_point> last_received_;
-  std::optional<Clock::time_point> last_begun_;
-  bool begins_again_ = false;
-  bool is_other_road_ = false;  ///< than the one that was told
-  model::Command last_sent_;
-  telemetry::Frame frame_;
   std::atomic<std::uint64_t> answers_{0};
   std::atomic<std::uint64_t> manual_{0};
   std::atomic<std::uint64_t> interventions_{0};

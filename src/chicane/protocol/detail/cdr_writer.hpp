@@ -43,6 +43,10 @@ class CdrWriter {
     return *this;
   }
   CdrWriter& stamp(double seconds) { return put(Stamp{seconds}); }
+  CdrWriter& stamp_ns(std::int64_t nanoseconds) {
+    const std::int64_t ns = nanoseconds < 0 ? 0 : nanoseconds;
+    return put(static_cast<std::int32_t>(ns / 1'000'000'000), static_cast<std::uint32_t>(ns % 1'000'000'000));
+  }
   CdrWriter& header(double seconds, std::string_view frame_id) { return stamp(seconds).text(frame_id); }
   CdrWriter& orientation(double yaw) {
     return put(0.0, 0.0, chicane::sin(0.5 * yaw), chicane::cos(0.5 * yaw));

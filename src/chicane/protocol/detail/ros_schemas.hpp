@@ -13,7 +13,8 @@ struct RosDefinition {
 };
 
 /// Fields of the standard types as in ROS 2 Jazzy (common_interfaces 5.3, rcl_interfaces 2.0, geometry2 0.36,
-/// ackermann_msgs 2.0), comments shortened; web/src/protocol/schemas.test.ts compares them with
+/// ackermann_msgs 2.0, autoware_msgs 1.2), comments shortened; web/src/protocol/schemas.test.ts compares them
+/// with
 /// @foxglove/rosmsg-msgs-common. Those of chicane_msgs are ours; chicane_msgs/Frame is not among them,
 /// because it follows from its table (frame_fields.hpp).
 inline constexpr std::array kRosDefinitions{
@@ -51,6 +52,30 @@ inline constexpr std::array kRosDefinitions{
                   "float32 acceleration\nfloat32 jerk\n"},
     RosDefinition{"ackermann_msgs/AckermannDriveStamped",
                   "std_msgs/Header header\nackermann_msgs/AckermannDrive drive\n"},
+    RosDefinition{"geometry_msgs/PoseWithCovarianceStamped",
+                  "std_msgs/Header header\ngeometry_msgs/PoseWithCovariance pose\n"},
+    RosDefinition{"sensor_msgs/Imu",
+                  "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\n"
+                  "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"
+                  "float64[9] angular_velocity_covariance\ngeometry_msgs/Vector3 linear_acceleration\n"
+                  "float64[9] linear_acceleration_covariance\n"},
+    RosDefinition{"sensor_msgs/LaserScan",
+                  "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\n"
+                  "float32 angle_increment\nfloat32 time_increment\nfloat32 scan_time\n"
+                  "float32 range_min\nfloat32 range_max\nfloat32[] ranges\nfloat32[] intensities\n"},
+    RosDefinition{"std_msgs/Bool", "bool data\n"},
+    RosDefinition{"autoware_control_msgs/Lateral",
+                  "builtin_interfaces/Time stamp\nbuiltin_interfaces/Time control_time\n"
+                  "float32 steering_tire_angle\nfloat32 steering_tire_rotation_rate\n"
+                  "bool is_defined_steering_tire_rotation_rate\n"},
+    RosDefinition{"autoware_control_msgs/Longitudinal",
+                  "builtin_interfaces/Time stamp\nbuiltin_interfaces/Time control_time\n"
+                  "float32 velocity\nfloat32 acceleration\nfloat32 jerk\n"
+                  "bool is_defined_acceleration\nbool is_defined_jerk\n"},
+    RosDefinition{"autoware_control_msgs/Control",
+                  "builtin_interfaces/Time stamp\nbuiltin_interfaces/Time control_time\n"
+                  "autoware_control_msgs/Lateral lateral\n"
+                  "autoware_control_msgs/Longitudinal longitudinal\n"},
     RosDefinition{"builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"},
     RosDefinition{"foxglove_msgs/Color", "float64 r\nfloat64 g\nfloat64 b\nfloat64 a\n"},
     RosDefinition{"foxglove_msgs/KeyValuePair", "string key\nstring value\n"},
@@ -176,6 +201,16 @@ builtin_interfaces/Time stamp
 uint64 cycle
 string name                             # key as in YAML and --set: "latency_ms"
 string value                            # as --set takes it
+)"},
+    RosDefinition{"chicane_msgs/StopPlan",
+                  R"(# How the car comes to rest when no further command arrives. Sent before the
+# command that it belongs to; columns have the same length.
+builtin_interfaces/Time stamp           # of the odometry that the command answers
+float64[] time_s                        # after the stamp, from which the command acts
+float64[] distance_m                    # driven since the stop began
+float64[] speed_mps                     # planned then
+float64[] steer_rad                     # left positive
+float64[] throttle                      # [-1, 1], negative brakes
 )"},
 };
 

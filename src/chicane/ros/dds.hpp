@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+
+namespace chicane::ros {
+
+/// Where partners are looked for.
+struct NetworkOptions {
+  int domain = 0;                       ///< ROS_DOMAIN_ID, [0, 232]
+  std::string interface = "lo";         ///< network interface by name; "auto": the one that DDS prefers
+  std::vector<std::string> peers = {};  ///< addresses that are asked one by one, where there is no multicast
+};
+
+/// Quality of service of one topic, the part that ROS 2 programs choose.
+struct Qos {
+  bool is_reliable = true;          ///< lost messages are sent again; false: best effort
+  bool is_transient_local = false;  ///< late readers get the last messages; false: volatile
+  int depth = 10;                   ///< messages kept, [1, 1000]
+};
+
+/// One message that arrived, its bytes as in RosTopic: CDR with its four-byte header.
+struct Sample {
+  std::string bytes{};
+  std::int64_t sent = 0;     ///< by the writer's system clock [ns since 1970]
+  std::uint64_t writer = 0;  ///< handle of the one that sent it: another number is another writer
+};
+
+/// A reader or writer that another program has.
+struct Endpoint {
+  bool is_writer = false;
+  std::string topic{};  ///< as in ROS 2: "/odom"
+  std::string type{};   ///< as in ROS 2: "nav_msgs/msg/Odometry"
+  Qos qos{};
+};
+
+/// Sends messages of one topic. Any thread.
+class Writer {
+ public:
+  virtual ~Writer() = default;
+  /// Sends `bytes` (CDR with header). False when DDS refuses, as when a reliable reader does not keep up.
+  virtual bool write(std::string_view bytes) = 0;
+  /// Readers that get the messages now.
+  [[nodiscard]] virtual int matched() const = 0;
+};
+
+/// Receives messages of one topic. One thread.
+class Reader {
+ public:
+  virtual ~Reader() = default;
+  /// The messages that arrived since the last call, oldest first.
+  [[nodiscard]] virtual std::vector<Sample> take() = 0;
+  /// Writers whose messages arrive now.
+  [[nodiscard]] virtual int matched() const = 0;
+};
+
+/// One program in a DDS domain, by Cyclone DDS. Messages are of ROS 2 types and go as they are encoded. One
+/// thread, but for Writer. One object for a domain and process at a time.
+class Participant {
+ public:
+  /// kIo with the sentence that helps: no such interface, or a build without Cyclone DDS.
+  [[nodiscard]] static Result<std::unique_ptr<Participant>> create(const NetworkOptions& options);
+  /// This build can talk DDS.
+  [[nodiscard]] static bool is_available() noexcept;
+
+  virtual ~Participant() = default;
+  /// `topic` and `type` as in ROS 2: "/odom", "nav_msgs/msg/Odometry". Gone before the participant.
+  [[nodiscard]] virtual Result<std::unique_ptr<Writer>> writer(const std::string& topic,
+                                                               const std::string& type, const Qos& qos) = 0;
+  [[nodiscard]] virtual Result<std::unique_ptr<Reader>> reader(const std::string& topic,
+                                                               const std::string& type, const Qos& qos) = 0;
+  /// Comes back when a reader has messages, or after `patience`.
+  virtual void wait(std::chrono::nanoseconds patience) = 0;
+  /// What other programs read and write in this domain. Allocates.
+  [[nodiscard]] virtual std::vector<Endpoint> others() = 0;
+};
+
+}  // namespace chicane::ros

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace chicane::ros {
+
+/// The name of a ROS 2 topic in DDS: "/drive" is "rt/drive".
+[[nodiscard]] std::string dds_topic(std::string_view topic);
+/// The name of a ROS 2 message type in DDS: "nav_msgs/msg/Odometry" is "nav_msgs::msg::dds_::Odometry_".
+[[nodiscard]] std::string dds_type(std::string_view type);
+/// The reverse of dds_topic(): "rt/drive" is "/drive". Names of other kinds stay as they are.
+[[nodiscard]] std::string ros_topic(std::string_view topic);
+/// The reverse of dds_type(). Names of other kinds stay as they are.
+[[nodiscard]] std::string ros_type(std::string_view type);
+
+/// The description of a type as it is hashed: JSON of type_description_interfaces/msg/TypeDescription without
+/// default values, as in REP 2011. `schema`: protocol::ros_schema(type).
+[[nodiscard]] std::string type_description(std::string_view type, std::string_view schema);
+/// The hash that ROS 2 announces for a type from Iron on, "RIHS01_" and 64 hexadecimal digits: SHA-256 of
+/// type_description(). Empty for a type whose definition is not known.
+[[nodiscard]] std::string type_hash(std::string_view type);
+
+}  // namespace chicane::ros

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/run/external_drive.hpp"
+
+#include <limits>
+#include <utility>
+#include <variant>
+
+#include "chicane/run/track_fit.hpp"
+
+namespace chicane::run {
+namespace {
+
+constexpr double kGapInDelays = 2.0;  // beside ExternalDriveOptions::forget_after
+
+double seconds(ExternalDrive::Clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+/// A cycle without a measurement says only that time has passed.
+model::Measurement nothing_measured() {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  return {.x = kUnknown,
+          .y = kUnknown,
+          .psi = kUnknown,
+          .speed = kUnknown,
+          .steer = kUnknown,
+          .throttle = kUnknown};
+}
+
+}  // namespace
+
+ExternalDrive::ExternalDrive(ExternalDriveOptions options, std::unique_ptr<controller::Controller> controller,
+                             const ExternalDriveHooks& hooks)
+    : options_{std::move(options)},
+      hooks_{hooks},
+      scenario_{options_.scenario},
+      cycle_{std::move(controller), options_.scenario, options_.track},
+      roadside_{options_.track, options_.scenario} {
+  cycle_.use_line(options_.lap);
+}
+
+void ExternalDrive::begin() {
+  cycle_.begin(cycle_.next());
+  last_received_.reset();
+  last_begun_.reset();
+  begins_again_ = false;
+  roadside_.resume();
+}
+
+std::optional<double> ExternalDrive::gap(Clock::time_point received) const {
+  if (!last_received_) return std::nullopt;
+  return seconds(received - *last_received_);
+}
+
+double ExternalDrive::time(Clock::time_point at) const { return seconds(at - started_); }
+
+const telemetry::Frame& ExternalDrive::step(const Sighting& sighting) {
+  if (const auto since = gap(sighting.received)) watch_gap(*since, sighting.usual_delay);
+  last_received_ = sighting.received;
+  take_up_changes(time(sighting.received));
+  check_road(sighting);
+  frame_.has_measurement = sighting.measured.has_value();
+  frame_.measurement = frame_.has_measurement ? *sighting.measured : nothing_measured();
+  frame_.measurement.time = time(sighting.received);
+  frame_.measurement.delay = sighting.delay;
+  frame_.applied = last_sent_;
+  const Clock::time_point now = Clock::now();
+  const Deadline deadline =
+      options_.step_budget.count() > 0 ? Deadline::after(options_.step_budget) : Deadline::stopwatch();
+  cycle_.step({.deadline = deadline, .interval = last_begun_ ? seconds(now - *last_begun_) : 0.0}, frame_);
+  last_begun_ = now;
+  last_sent_ = frame_.result.command;
+  return frame_;
+}
+
+void ExternalDrive::finish() {
+  frame_.lateral_error = frame_.result.report.lateral_error;
+  frame_.heading_error = frame_.result.report.heading_error;
+  roadside_.judge(frame_);
+  if (const auto lap = roadside_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
+  if (hooks_.on_frame) hooks_.on_frame(frame_);
+  const path::Track* track = is_other_road_ ? nullptr : options_.track;
+  const auto planned = planner_.advance(cycle_, scenario_, track, frame_.time);
+  if (planned && hooks_.on_change) hooks_.on_change(*planned);
+}
+
+/// After a silence, ours too, the car has been stopped meanwhile, or has gone on with the last command: it is
+/// not known which. The first telemetry may have waited as long, so that the second one begins anew, too.
+void ExternalDrive::watch_gap(double gap, double delay) {
+  const bool is_long = gap > seconds(options_.forget_after) + kGapInDelays * delay;
+  if (is_long || begins_again_) {
+    cycle_.begin(cycle_.next());
+    last_begun_.reset();
+    roadside_.resume();
+  }
+  begins_again_ = is_long;
+}
+
+/// A track that was told, and is not the one whose waypoints are shown, is not used any more.
+void ExternalDrive::check_road(const Sighting& sighting) {
+  if (options_.track == nullptr || is_other_road_ || !sighting.measured) return;
+  const auto distance = distance_to_other_road(*options_.track, *sighting.measured);
+  if (!distance) return;
+  is_other_road_ = true;
+  const telemetry::Change change{
+      .cycle = cycle_.next(), .time = time(sighting.received), .name = "guard.road", .value = "waypoints"};
+  scenario_.guard.road = safety::GuardRoad::kWaypoints;
+  cycle_.configure(scenario_);
+  roadside_.forget_track();
+  if (hooks_.on_change) hooks_.on_change(change);
+  if (hooks_.on_other_road) hooks_.on_other_road(*distance);
+}
+
+void ExternalDrive::take_up_changes(double time) {
+  while (const Setting* next = hooks_.settings == nullptr ? nullptr : hooks_.settings->front()) {
+    telemetry::Change change = next->change;
+    change.cycle = cycle_.next();
+    change.time = time;
+    if (const auto* field = std::get_if<FieldValue>(&next->action)) {
+      write(scenario_, *field);
+      cycle_.configure(scenario_);
+    }
+    hooks_.settings->pop();
+    if (hooks_.on_change) hooks_.on_change(change);
+  }
+}
+
+}  // namespace chicane::run

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "chicane/controller/controller.hpp"
+#include "chicane/model/measurement.hpp"
+#include "chicane/path/track.hpp"
+#include "chicane/road/racing_road.hpp"
+#include "chicane/run/control_cycle.hpp"
+#include "chicane/run/lap_planner.hpp"
+#include "chicane/run/roadside.hpp"
+#include "chicane/run/setting.hpp"
+#include "chicane/safety/stop_plan.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/telemetry/change.hpp"
+#include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/metrics.hpp"
+
+namespace chicane::run {
+
+/// What an ExternalDrive is made of.
+struct ExternalDriveOptions {
+  scenario::Scenario scenario;
+  /// The road, where it is known: the car is judged by the positions that are measured. Outlives the drive;
+  /// null: laps are timed all the same.
+  const path::Track* track = nullptr;
+  std::shared_ptr<const road::RacingRoad> lap{};  ///< planned, of a controller that races (run/racing.hpp)
+  std::chrono::nanoseconds step_budget{0};        ///< deadline of a control step; 0 = none
+  /// From cycle to cycle, beside twice the delay: after so long nothing learned is trusted.
+  std::chrono::nanoseconds forget_after = std::chrono::milliseconds{500};
+};
+
+/// Empty functions are not called.
+struct ExternalDriveHooks {
+  SettingQueue* settings = nullptr;  ///< that change before the next cycle; outlives the drive
+  std::function<void(const telemetry::Change&)> on_change{};     ///< one was taken up
+  std::function<void(const telemetry::Frame&)> on_frame{};       ///< after each cycle
+  std::function<void(const telemetry::CompletedLap&)> on_lap{};  ///< a lap was completed
+  /// The car drives on another road than ExternalDriveOptions::track, so far from it at most [m]. Once.
+  std::function<void(double)> on_other_road{};
+};
+
+/// The control cycles of a car that is not simulated here, whatever dialect it speaks: the cycle, the account
+/// of the run, settings and planned laps. For each measurement: step(), send the command, finish(). One
+/// thread.
+class ExternalDrive {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// Measured now, or nothing could be.
+  struct Sighting {
+    Clock::time_point received{};                  ///< when the measurement came
+    std::optional<model::Measurement> measured{};  ///< none: unusable, or it did not come
+    double delay = 0.0;                            ///< expected until the command acts [s]
+    double usual_delay = 0.0;                      ///< the same as it was expected at the cycle before [s]
+  };
+
+  /// Pre: `controller` is not null. `hooks` outlive this.
+  ExternalDrive(ExternalDriveOptions options, std::unique_ptr<controller::Controller> controller,
+                const ExternalDriveHooks& hooks);
+
+  /// Another car, or the same one after it was away: nothing learned is trusted.
+  void begin();
+  /// Time between the last two cycles, if the one that comes now is `received`; none at the beginning [s].
+  [[nodiscard]] std::optional<double> gap(Clock::time_point received) const;
+  /// A person has driven meanwhile: the gap to the next measurement means nothing.
+  void forget_time() { last_received_.reset(); }
+
+  /// One cycle: the command is the frame's.
+  const telemetry::Frame& step(const Sighting& sighting);
+  /// After the command was sent: counts the cycle and hands it on.
+  void finish();
+
+  [[nodiscard]] const telemetry::Frame& frame() const { return frame_; }
+  /// The stop at hand with the last command.
+  [[nodiscard]] const safety::StopPlan& stop() const { return cycle_.stop(); }
+  /// Time of the run [s]: since this was made.
+  [[nodiscard]] double time(Clock::time_point at) const;
+  [[nodiscard]] telemetry::RunSummary summary() const { return roadside_.summary(); }
+
+ private:
+  void watch_gap(double gap, double delay);
+  void check_road(const Sighting& sighting);
+  void take_up_changes(double time);
+
+  ExternalDriveOptions options_;
+  const ExternalDriveHooks& hooks_;
+  scenario::Scenario scenario_;
+  ControlCycle cycle_;
+  LapPlanner planner_{LapPlanner::Clock::kReal};
+  Roadside roadside_;
+  const Clock::time_point started_ = Clock::now();
+  std::optional<Clock::time_point> last_received_;
+  std::optional<Clock::time_point> last_begun_;
+  bool begins_again_ = false;
+  bool is_other_road_ = false;  ///< than the one that was told
+  model::Command last_sent_;
+  telemetry::Frame frame_;
+};
+
+}  // namespace chicane::run

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/car_messages.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "chicane/protocol/ros_messages.hpp"
+#include "protocol/cdr_reader.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+constexpr std::int64_t kStamp = 1'700'000'001'250'000'007;
+
+OdometryMessage odometry() {
+  return {.stamp = kStamp,
+          .frame = "map",
+          .child_frame = "ego_racecar/base_link",
+          .pose = {.x = 1.5, .y = -2.5, .psi = 0.75},
+          .vx = 3.0,
+          .vy = -0.25,
+          .yaw_rate = 0.5};
+}
+
+/// The same message in the other byte order: strings and numbers, laid out by hand.
+std::string big_endian_bool_and_header() { return std::string("\0\0\0\0\1", 5); }
+
+TEST(CarMessages, OdometryHasTheLayoutOfItsDefinition) {
+  const std::string bytes = encode(odometry());
+  test::CdrReader reader(bytes);
+  EXPECT_EQ(reader.get<std::int32_t>(), 1'700'000'001);
+  EXPECT_EQ(reader.get<std::uint32_t>(), 250'000'007U);
+  EXPECT_EQ(reader.text(), "map");
+  EXPECT_EQ(reader.text(), "ego_racecar/base_link");
+  EXPECT_EQ(reader.number(), 1.5);
+  EXPECT_EQ(reader.number(), -2.5);
+  EXPECT_EQ(reader.number(), 0.0);
+  EXPECT_EQ(reader.number(), 0.0);
+  EXPECT_EQ(reader.number(), 0.0);
+  EXPECT_NEAR(reader.number(), std::sin(0.375), 1e-15);
+  EXPECT_NEAR(reader.number(), std::cos(0.375), 1e-15);
+  for (int i = 0; i < 36; ++i) EXPECT_EQ(reader.number(), 0.0);
+  EXPECT_EQ(reader.number(), 3.0);
+  EXPECT_EQ(reader.number(), -0.25);
+}
+
+TEST(CarMessages, AreReadAsTheyWereWritten) {
+  const auto seen = decode_odometry(encode(odometry()));
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->stamp, kStamp);
+  EXPECT_EQ(seen->child_frame, "ego_racecar/base_link");
+  EXPECT_NEAR(seen->pose.psi, 0.75, 1e-15);
+  EXPECT_EQ(seen->vy, -0.25);
+  EXPECT_EQ(seen->yaw_rate, 0.5);
+
+  const DriveMessage drive{
+      .stamp = kStamp, .frame = "car", .steer = 0.25, .speed = 4.5, .acceleration = -1.5};
+  for (const auto& read : {decode_drive(encode(drive)), decode_autoware(encode_autoware(drive))}) {
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->stamp, kStamp);
+    EXPECT_EQ(read->steer, 0.25);
+    EXPECT_EQ(read->speed, 4.5);
+    EXPECT_EQ(read->acceleration, -1.5);
+  }
+
+  const auto imu = decode_imu(encode(ImuMessage{.stamp = kStamp, .yaw_rate = 0.5, .ax = 1.0, .ay = 2.0}));
+  ASSERT_TRUE(imu);
+  EXPECT_EQ(imu->yaw_rate, 0.5);
+  EXPECT_EQ(imu->ay, 2.0);
+
+  const auto path = decode_path(encode(PathMessage{.frame = "map", .points = {{1.0, 2.0}, {3.0, 4.0}}}));
+  ASSERT_TRUE(path);
+  ASSERT_EQ(path->points.size(), 2U);
+  EXPECT_EQ(path->points[1].y(), 4.0);
+
+  const auto pose = decode_pose(encode(PoseMessage{.frame = "map", .pose = {.x = 1, .y = 2, .psi = -3}}));
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR(pose->pose.psi, -3.0, 1e-15);
+
+  const auto scan =
+      decode_scan(encode(ScanMessage{.angle_min = -2, .angle_increment = 0.5, .ranges = {1, 2}}));
+  ASSERT_TRUE(scan);
+  EXPECT_EQ(scan->ranges, (std::vector<float>{1, 2}));
+  EXPECT_EQ(decode_bool(encode_bool(true)), true);
+  EXPECT_EQ(decode_bool(encode_bool(false)), false);
+}
+
+TEST(CarMessages, AStopIsReadAsItWasWrittenAndRefusedWhenItIsUnsound) {
+  StopMessage message{.stamp = kStamp};
+  message.stop.size = 3;
+  for (int i = 0; i < 3; ++i) {
+    message.stop.points[static_cast<std::size_t>(i)] = {
+        .time = 0.1 * i, .distance = 1.0 * i, .speed = 2.0 - i, .command = {.steer = 0.1, .throttle = -0.5}};
+  }
+  const auto read = decode_stop(encode(message));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->stop.size, 3);
+  EXPECT_EQ(read->stop.points[2].distance, 2.0);
+  EXPECT_EQ(read->stop.points[2].command.throttle, -0.5);
+
+  StopMessage backwards = message;
+  backwards.stop.points[2].time = -1.0;
+  EXPECT_FALSE(decode_stop(encode(backwards)));
+  StopMessage unknown = message;
+  unknown.stop.points[1].speed = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(decode_stop(encode(unknown)));
+}
+
+TEST(CarMessages, OfTheOtherByteOrderAreRead) { EXPECT_EQ(decode_bool(big_endian_bool_and_header()), true); }
+
+TEST(CarMessages, CutAnywhereAreRefused) {
+  const std::string bytes = encode(odometry());
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_FALSE(decode_odometry(std::string_view(bytes).substr(0, size))) << size;
+  const std::string path = encode(PathMessage{.points = {{1.0, 2.0}, {3.0, 4.0}}});
+  for (std::size_t size = 0; size < path.size(); ++size)
+    EXPECT_FALSE(decode_path(std::string_view(path).substr(0, size))) << size;
+}
+
+TEST(CarMessages, APathOfMorePointsThanItHasBytesIsRefused) {
+  std::string bytes = encode(PathMessage{.frame = "m"});
+  std::fill(bytes.end() - 4, bytes.end(), '\x7f');
+  EXPECT_FALSE(decode_path(bytes));
+}
+
+TEST(CarMessages, HaveDefinitions) {
+  for (const std::string_view type :
+       {OdometryMessage::kType, DriveMessage::kType, DriveMessage::kAutowareType, ImuMessage::kType,
+        PathMessage::kType, PoseMessage::kType, ScanMessage::kType, TransformMessage::kType,
+        StopMessage::kType, kBoolType})
+    EXPECT_NE(ros_schema(type), "") << type;
+}
+
+}  // namespace
+}  // namespace chicane::protocol

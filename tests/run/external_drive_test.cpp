@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/run/external_drive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "chicane/run/make.hpp"
+
+namespace chicane::run {
+namespace {
+
+using std::chrono::milliseconds;
+
+class ExternalDriveTest : public testing::Test {
+ protected:
+  ExternalDriveTest() {
+    scenario_.track = "oval";
+    hooks_.on_frame = [this](const telemetry::Frame& frame) { frames_.push_back(frame); };
+  }
+  ExternalDrive make() {
+    auto controller = make_controller(scenario_);
+    EXPECT_TRUE(controller);
+    return ExternalDrive({.scenario = scenario_}, std::move(*controller), hooks_);
+  }
+  static ExternalDrive::Sighting seen(ExternalDrive::Clock::time_point at, double x) {
+    model::Measurement measured{.x = x, .speed = 5.0, .waypoint_count = 6};
+    for (int i = 0; i < 6; ++i) measured.waypoints[static_cast<std::size_t>(i)] = {15.0 * (i - 1), 0.0};
+    return {.received = at, .measured = measured, .delay = 0.1, .usual_delay = 0.1};
+  }
+
+  scenario::Scenario scenario_;
+  ExternalDriveHooks hooks_;
+  std::vector<telemetry::Frame> frames_;
+};
+
+TEST_F(ExternalDriveTest, AnswersWithAFiniteCommandAndHandsOnTheFrame) {
+  ExternalDrive drive = make();
+  const auto now = ExternalDrive::Clock::now();
+  for (int i = 0; i < 5; ++i) {
+    drive.step(seen(now + i * milliseconds{40}, 0.2 * i));
+    EXPECT_TRUE(std::isfinite(drive.frame().result.command.steer));
+    drive.finish();
+  }
+  ASSERT_EQ(frames_.size(), 5U);
+  EXPECT_TRUE(frames_[0].begins);
+  EXPECT_FALSE(frames_[1].begins);
+  EXPECT_NEAR(*drive.gap(now + milliseconds{200}), 0.04, 1e-9);
+}
+
+TEST_F(ExternalDriveTest, ACycleWithoutAMeasurementIsOneInWhichNothingIsMeasured) {
+  ExternalDrive drive = make();
+  const auto now = ExternalDrive::Clock::now();
+  drive.step(seen(now, 0.0));
+  drive.finish();
+  drive.step({.received = now + milliseconds{40}, .delay = 0.1, .usual_delay = 0.1});
+  drive.finish();
+  EXPECT_FALSE(frames_[1].has_measurement);
+  EXPECT_TRUE(std::isnan(frames_[1].measurement.x));
+  EXPECT_TRUE(std::isfinite(frames_[1].result.command.throttle));
+}
+
+TEST_F(ExternalDriveTest, TrustsNothingLearnedAfterALongGap) {
+  ExternalDrive drive = make();
+  const auto now = ExternalDrive::Clock::now();
+  for (const int ms : {0, 40, 1240, 1280, 1320}) {
+    drive.step(seen(now + milliseconds{ms}, 0.005 * ms));
+    drive.finish();
+  }
+  EXPECT_FALSE(frames_[1].begins);
+  EXPECT_TRUE(frames_[2].begins);
+  EXPECT_TRUE(frames_[3].begins);  // the first may have waited as long
+  EXPECT_FALSE(frames_[4].begins);
+}
+
+}  // namespace
+}  // namespace chicane::run
