@@ -58,7 +58,7 @@ double ServedRun::step_budget() const { return std::chrono::duration<double>(opt
 
 Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const LiveHooks& hooks,
                                           const std::function<void(std::uint16_t)>& on_listening,
-                                          const std::atomic<bool>& stop) {
+                                          const std::atomic<bool>& stop, const ServeFunction& serve) {
   run::SettingQueue requests;
   LiveSettings settings({.scenario = scenario_, .has_world = false}, requests);
   Journal journal;
@@ -82,6 +82,8 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
   if (track_) journal.begin(scenario_);
   wire::ServeHooks serving;
   serving.settings = &requests;
+  serving.parameters = &settings;
+  serving.description = &description_;
   serving.on_change = [&](const telemetry::Change& change) { outputs.change(change); };
   serving.on_frame = [&](const telemetry::Frame& frame) { outputs.frame(frame); };
   serving.on_lap = [&](const telemetry::CompletedLap& lap) { outputs.lap(lap); };
@@ -105,7 +107,7 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
   add_what_if(serving.pages, what_if);
   if (track_) limit.search(*track_, scenario_);  // before there is a control thread, to which it belongs then
   auto summary =
-      wire::serve(options_, std::move(controller_), std::move(serving), &viewer, std::move(assets_), stop);
+      serve(options_, std::move(controller_), std::move(serving), &viewer, std::move(assets_), stop);
   if (!summary) return summary;
   if (limit.is_awaited(summary->run) && !stop)
     outputs.say("the limit is still being computed; Ctrl-C does without");

@@ -20,6 +20,12 @@
 
 namespace chicane::live {
 
+/// Serves a car that is not ours until it is told to stop: wire::serve, or the same in another dialect
+/// (ros/drive_node.hpp). The hooks are called on one thread, but for `log`.
+using ServeFunction = std::function<Result<wire::ServeSummary>(
+    const wire::ServeOptions&, std::unique_ptr<controller::Controller>, wire::ServeHooks, wire::Endpoint*,
+    std::vector<net::Asset>, const std::atomic<bool>&)>;
+
 /// A run in which the car is simulated by another program and the controller is ours: the endpoint for the
 /// simulator, viewers, recording, limit and settings, and what each thread hands to which, as LiveRun does
 /// for a run with our simulator.
@@ -42,7 +48,8 @@ class ServedRun {
   /// thread. Once per object. kIo with the sentence that helps when the port is taken.
   [[nodiscard]] Result<wire::ServeSummary> run(recording::Recorder* recorder, const LiveHooks& hooks,
                                                const std::function<void(std::uint16_t)>& on_listening,
-                                               const std::atomic<bool>& stop);
+                                               const std::atomic<bool>& stop,
+                                               const ServeFunction& serve = wire::serve);
 
  private:
   scenario::Scenario scenario_;

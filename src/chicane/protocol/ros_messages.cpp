@@ -150,8 +150,8 @@ std::string encode_odometry(const Frame& frame, const Run& run) {
   const model::Pose pose = base_link(now, run);
   const double r = or_zero(now.r);
   return CdrWriter{}
-      .header(frame.time, "odom")
-      .text("base_link")
+      .header(frame.time, run.frames.odom)
+      .text(run.frames.base)
       .put(pose.x, pose.y, 0.0)
       .orientation(pose.psi)
       .zeros(36)
@@ -160,53 +160,53 @@ std::string encode_odometry(const Frame& frame, const Run& run) {
       .bytes();
 }
 
-void put_pose_stamped(CdrWriter& writer, double time, const model::Pose& pose) {
-  writer.header(time, "map").put(pose.x, pose.y, 0.0).orientation(pose.psi);
+void put_pose_stamped(CdrWriter& writer, double time, const std::string& frame, const model::Pose& pose) {
+  writer.header(time, frame).put(pose.x, pose.y, 0.0).orientation(pose.psi);
 }
 
 constexpr std::size_t kPoseSize = 88;  // upper bound of one PoseStamped in frame "map" [byte]
 
-std::string encode_predicted_path(const Frame& frame, const Run&) {
+std::string encode_predicted_path(const Frame& frame, const Run& run) {
   const auto points = points_of(frame.result.plan);
   CdrWriter writer{64 + kPoseSize * points.size()};
-  writer.header(frame.time, "map").count(points.size());
+  writer.header(frame.time, run.frames.map).count(points.size());
   for (const controller::PlanPoint& point : points) {
-    put_pose_stamped(writer, point.time, {point.x, point.y, point.psi});
+    put_pose_stamped(writer, point.time, run.frames.map, {point.x, point.y, point.psi});
   }
   return writer.bytes();
 }
 
 /// A polyline as nav_msgs/Path, each pose looking at the next point.
-std::string encode_line(double time, std::span<const Vec2> line) {
+std::string encode_line(double time, const Run& run, std::span<const Vec2> line) {
   CdrWriter writer{64 + kPoseSize * line.size()};
-  writer.header(time, "map").count(line.size());
+  writer.header(time, run.frames.map).count(line.size());
   double heading = 0.0;
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (i + 1 < line.size()) {
       const Vec2 ahead = line[i + 1] - line[i];
       heading = chicane::atan2(ahead.y(), ahead.x());
     }
-    put_pose_stamped(writer, time, {line[i].x(), line[i].y(), heading});
+    put_pose_stamped(writer, time, run.frames.map, {line[i].x(), line[i].y(), heading});
   }
   return writer.bytes();
 }
 
-std::string encode_reference(const Frame& frame, const Run&) {
+std::string encode_reference(const Frame& frame, const Run& run) {
   const controller::Plan& plan = frame.result.plan;
   const int size = std::clamp(plan.reference_size, 0, controller::Plan::kCapacity);
-  return encode_line(frame.time, std::span{plan.reference}.first(static_cast<std::size_t>(size)));
+  return encode_line(frame.time, run, std::span{plan.reference}.first(static_cast<std::size_t>(size)));
 }
 
 std::string encode_transforms(const Frame& frame, const Run& run) {
   const model::Pose pose = base_link(known_motion(frame), run);
   return CdrWriter{}
       .count(2)
-      .header(frame.time, "map")
-      .text("odom")
+      .header(frame.time, run.frames.map)
+      .text(run.frames.odom)
       .zeros(3)
       .orientation(0.0)
-      .header(frame.time, "odom")
-      .text("base_link")
+      .header(frame.time, run.frames.odom)
+      .text(run.frames.base)
       .put(pose.x, pose.y, 0.0)
       .orientation(pose.psi)
       .bytes();
@@ -217,7 +217,7 @@ std::string encode_drive(const Frame& frame, const Run& run) {
   const double acceleration =
       model::longitudinal_acceleration(run.vehicle, sent.throttle, frame.measurement.speed);
   return CdrWriter{}
-      .header(frame.time, "base_link")
+      .header(frame.time, run.frames.base)
       .put(static_cast<float>(sent.steer), 0.0F, static_cast<float>(frame.result.report.speed_reference),
            static_cast<float>(acceleration), 0.0F)
       .bytes();
@@ -265,15 +265,15 @@ std::string encode_diagnostics(const Frame& frame, const Run& run) {
   return writer.bytes();
 }
 
-std::string encode_left(const Frame&, const Run& run) { return encode_line(0.0, run.road.left); }
-std::string encode_right(const Frame&, const Run& run) { return encode_line(0.0, run.road.right); }
-std::string encode_centre(const Frame&, const Run& run) { return encode_line(0.0, run.road.centre); }
+std::string encode_left(const Frame&, const Run& run) { return encode_line(0.0, run, run.road.left); }
+std::string encode_right(const Frame&, const Run& run) { return encode_line(0.0, run, run.road.right); }
+std::string encode_centre(const Frame&, const Run& run) { return encode_line(0.0, run, run.road.centre); }
 std::string encode_racing_line(const Frame&, const Run& run) {
   std::vector<Vec2> line;
   if (run.limit.found) {
     for (const path::LinePoint& point : run.limit.found->line) line.push_back(point.position);
   }
-  return encode_line(0.0, line);
+  return encode_line(0.0, run, line);
 }
 
 /// "nav_msgs/msg/Odometry" → "nav_msgs/Odometry"

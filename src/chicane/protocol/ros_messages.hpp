@@ -29,6 +29,13 @@ struct RoadLines {
 /// Samples a track every `spacing` [m]; spacing > 0, raised where a line would get more than 20,000 points.
 [[nodiscard]] RoadLines road_lines(const path::Track& track, double spacing);
 
+/// Names of the frames in messages (docs/viewer.md).
+struct FrameNames {
+  std::string map = "map";         ///< W
+  std::string odom = "odom";       ///< equals it
+  std::string base = "base_link";  ///< middle of the rear axle
+};
+
 /// What is running: everything viewers and logs need that stays the same from frame to frame.
 struct Run {
   std::string track;
@@ -52,6 +59,7 @@ struct Run {
   std::string end{};         ///< "finished", "stopped" or "failed"; empty: it goes on
   std::string end_reason{};  ///< why it is over, in one sentence; empty when it finished
   GuardFacts guard{};        ///< what watches over the controller
+  FrameNames frames{};
 };
 
 /// What a controller says about itself, copied into a run.

@@ -17,6 +17,8 @@
 #include "chicane/model/vehicle.hpp"
 #include "chicane/net/server.hpp"
 #include "chicane/path/track.hpp"
+#include "chicane/protocol/foxglove_codec.hpp"
+#include "chicane/protocol/ros_messages.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "chicane/run/setting.hpp"
@@ -65,6 +67,9 @@ struct ServeHooks {
   std::function<void(std::uint16_t port)> on_listening{};  ///< once, when the port is ours
   std::function<void()> on_end{};  ///< once: control has ended, the server still stands
   Pages pages{};                   ///< answered to GET, beside the assets
+  /// Settings by name, as viewers see them: for the network thread. Outlives the endpoint; null: none.
+  protocol::foxglove::ParameterStore* parameters = nullptr;
+  const protocol::Run* description = nullptr;  ///< of the run; outlives the endpoint; null: not known
 };
 
 /// What has been served so far.

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/ros/clock_watch.hpp"
+
+#include <gtest/gtest.h>
+
+namespace chicane::ros {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kNow = 1'700'000'000'000 * kMs;
+
+TEST(ClockWatch, AcceptsStampsThatRiseAsTimeDoes) {
+  ClockWatch watch("/odom");
+  for (int i = 0; i < 10; ++i)
+    EXPECT_TRUE(watch.accept(kNow + i * 20 * kMs, i * 20 * kMs, kNow + i * 20 * kMs));
+  EXPECT_EQ(watch.news(), "");
+  EXPECT_FALSE(watch.is_simulated());
+}
+
+TEST(ClockWatch, LeavesOutWhatComesTwiceOrTooLate) {
+  ClockWatch watch("/odom");
+  EXPECT_TRUE(watch.accept(kNow, 0, kNow));
+  EXPECT_TRUE(watch.accept(kNow + 40 * kMs, 40 * kMs, kNow));
+  EXPECT_FALSE(watch.accept(kNow + 40 * kMs, 41 * kMs, kNow));
+  EXPECT_EQ(watch.news(), "a message of /odom came twice: such messages are left out");
+  EXPECT_FALSE(watch.accept(kNow + 20 * kMs, 42 * kMs, kNow));
+  EXPECT_EQ(watch.news(), "");  // once is enough
+  EXPECT_EQ(watch.dropped(), 2U);
+}
+
+TEST(ClockWatch, SaysThatTheClockJumpedAndGoesOn) {
+  ClockWatch watch("/odom");
+  EXPECT_TRUE(watch.accept(kNow, 0, kNow));
+  EXPECT_TRUE(watch.accept(kNow + 20 * kMs + 5000 * kMs, 20 * kMs, kNow));
+  EXPECT_EQ(watch.news(), "the clock of /odom jumped by +5.0 s");
+  EXPECT_TRUE(watch.accept(kNow + 40 * kMs, 40 * kMs, kNow));
+  EXPECT_EQ(watch.news(), "the clock of /odom jumped by -5.0 s");
+  EXPECT_TRUE(watch.accept(kNow + 60 * kMs, 60 * kMs, kNow));
+  EXPECT_EQ(watch.news(), "");
+}
+
+TEST(ClockWatch, KnowsSimulatedTime) {
+  ClockWatch watch("/odom");
+  EXPECT_TRUE(watch.accept(12 * kMs, 0, kNow));
+  EXPECT_TRUE(watch.is_simulated());
+  EXPECT_NE(watch.news().find("simulated time"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace chicane::ros
