@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/ros/car_sight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "chicane/base/math.hpp"
+#include "chicane/run/make.hpp"
+#include "chicane/sim/world.hpp"
+
+namespace chicane::ros {
+namespace {
+
+constexpr double kHalfWidth = 4.0;      // of a road that comes as a path, of a car in full size [m]
+constexpr double kClosedInSteps = 3.0;  // a lap's last point is so near to its first, in mean steps
+constexpr std::size_t kSmallestLap = 8;
+
+bool is_lap(const std::vector<Vec2>& points) {
+  if (points.size() < kSmallestLap) return false;
+  double length = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
+  const double step = length / static_cast<double>(points.size() - 1);
+  return (points.back() - points.front()).norm() <= kClosedInSteps * step;
+}
+
+}  // namespace
+
+CarSight::CarSight(const scenario::Scenario& scenario, const path::Track* track, bool is_base_at_rear_axle)
+    : scenario_{scenario}, base_ahead_{is_base_at_rear_axle ? scenario.vehicle.rear_axle : 0.0} {
+  if (track == nullptr) return;
+  if (auto waypoints = run::make_waypoints(*track, scenario.vehicle.scale))
+    waypoints_ = std::move(*waypoints);
+}
+
+Result<void> CarSight::use_path(const std::vector<Vec2>& points) {
+  if (points == path_) return {};
+  const double width = kHalfWidth * scenario_.vehicle.scale;
+  std::vector<path::TrackPoint> road;
+  for (const Vec2& point : points) {
+    if (road.empty() || (point - road.back().position).norm() > 1e-3)
+      road.push_back({.position = point, .left = width, .right = width});
+  }
+  const bool closed = is_lap(points);
+  if (closed && road.size() > 1 && (road.back().position - road.front().position).norm() <= 1e-3)
+    road.pop_back();
+  auto track =
+      path::Track::create("path", road, closed, {.spacing = std::max(0.05, 2.0 * scenario_.vehicle.scale)});
+  if (!track) return fail(track.error());
+  auto waypoints = run::make_waypoints(*track, scenario_.vehicle.scale);
+  if (!waypoints) return fail(waypoints.error());
+  waypoints_ = std::move(*waypoints);
+  path_ = points;
+  return {};
+}
+
+model::Pose CarSight::centre_of_mass(const model::Pose& base) const noexcept {
+  return {.x = base.x + base_ahead_ * chicane::cos(base.psi),
+          .y = base.y + base_ahead_ * chicane::sin(base.psi),
+          .psi = base.psi};
+}
+
+std::optional<model::Measurement> CarSight::measure(const protocol::OdometryMessage& odometry,
+                                                    double time) noexcept {
+  const double vy = odometry.vy + base_ahead_ * odometry.yaw_rate;
+  const double speed = std::sqrt(odometry.vx * odometry.vx + vy * vy);
+  const model::Pose pose = centre_of_mass(odometry.pose);
+  const bool is_finite =
+      std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.psi) && std::isfinite(speed);
+  if (!is_finite) return std::nullopt;
+  const model::Command now = acting(time);
+  model::Measurement measured{.time = time,
+                              .x = pose.x,
+                              .y = pose.y,
+                              .psi = pose.psi,
+                              .speed = speed,
+                              .steer = now.steer,
+                              .throttle = std::max(0.0, now.throttle)};
+  if (waypoints_) sim::select_waypoints(*waypoints_, pose, scenario_.waypoints_sent, measured);
+  return measured;
+}
+
+void CarSight::sent(double time, const model::Command& command) noexcept {
+  sent_[count_++ % sent_.size()] = {time, command};
+}
+
+/// The newest command that was sent a latency ago, or the oldest that is remembered.
+model::Command CarSight::acting(double time) const noexcept {
+  const std::size_t known = std::min(count_, sent_.size());
+  for (std::size_t back = 1; back <= known; ++back) {
+    const Sent& each = sent_[(count_ - back) % sent_.size()];
+    if (each.time + scenario_.latency <= time || back == known) return each.command;
+  }
+  return {};
+}
+
+}  // namespace chicane::ros

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/model/measurement.hpp"
+#include "chicane/path/track.hpp"
+#include "chicane/protocol/car_messages.hpp"
+#include "chicane/scenario/scenario.hpp"
+
+namespace chicane::ros {
+
+/// Makes of odometry what a controller measures: the centre of mass in W, the road ahead as waypoints, and
+/// the command that acts now, which odometry does not tell. One thread.
+class CarSight {
+ public:
+  /// `track`: the road, or null where it comes as a path. `is_base_at_rear_axle`: NodeOptions'.
+  CarSight(const scenario::Scenario& scenario, const path::Track* track, bool is_base_at_rear_axle);
+
+  /// Another road: the points of a nav_msgs/Path in driving order, a lap when the last lies near the first.
+  /// No change for one that is no road. Allocates.
+  [[nodiscard]] Result<void> use_path(const std::vector<Vec2>& points);
+  [[nodiscard]] bool has_road() const { return waypoints_.has_value(); }
+
+  /// Odometry at `time` [s] as a measurement; none where it has numbers that are not finite.
+  [[nodiscard]] std::optional<model::Measurement> measure(const protocol::OdometryMessage& odometry,
+                                                          double time) noexcept;
+  /// A command was sent at `time` [s].
+  void sent(double time, const model::Command& command) noexcept;
+  /// The centre of mass for the pose of the odometry's child frame.
+  [[nodiscard]] model::Pose centre_of_mass(const model::Pose& base) const noexcept;
+
+ private:
+  struct Sent {
+    double time = 0.0;
+    model::Command command{};
+  };
+  [[nodiscard]] model::Command acting(double time) const noexcept;
+
+  scenario::Scenario scenario_;
+  double base_ahead_;  ///< of the centre of mass before the base [m]
+  std::optional<path::Track> waypoints_;
+  std::vector<Vec2> path_;
+  std::array<Sent, 64> sent_{};
+  std::size_t count_ = 0;
+};
+
+}  // namespace chicane::ros

@@ -1,0 +1,442 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/ros/drive_node.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "chicane/protocol/car_messages.hpp"
+#include "chicane/ros/car_sight.hpp"
+#include "chicane/ros/clock_watch.hpp"
+#include "chicane/ros/drive_command.hpp"
+#include "chicane/ros/partner_watch.hpp"
+#include "chicane/ros/run_publisher.hpp"
+#include "chicane/run/external_drive.hpp"
+#include "chicane/safety/stop_player.hpp"
+#include "chicane/wire/sparse_log.hpp"
+
+namespace chicane::ros {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr double kSoonest = 0.75;    // of a control period, from cycle to cycle
+constexpr double kLatest = 1.6;      // of the usual time from cycle to cycle: then nothing was measured
+constexpr double kAbsence = 10.0;    // without odometry: cycles end [s]
+constexpr double kHabit = 0.1;       // weight of the newest in means
+constexpr double kLookPeriod = 0.5;  // between looks at partners [s]
+constexpr double kStanding = 0.1;    // of a car in full size [m/s]
+constexpr milliseconds kLongestWait{50};
+
+double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+std::int64_t system_now() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::vector<WantedPartner> wanted_partners(const NodeOptions& node) {
+  std::vector<WantedPartner> wanted{{.topic = node.topics.odom,
+                                     .type = std::string(protocol::OdometryMessage::kType),
+                                     .qos = node.odom_qos,
+                                     .qos_option = "--odom-qos",
+                                     .topic_option = "--odom-topic"},
+                                    {.is_reader = false,
+                                     .topic = node.topics.drive,
+                                     .type = std::string(protocol::DriveMessage::kType),
+                                     .qos = node.drive_qos,
+                                     .qos_option = "--drive-qos",
+                                     .topic_option = "--drive-topic"}};
+  if (!node.topics.path.empty()) {
+    wanted.push_back({.topic = node.topics.path,
+                      .type = std::string(protocol::PathMessage::kType),
+                      .qos = {.is_reliable = false},
+                      .qos_option = "",
+                      .topic_option = "--path-topic"});
+  }
+  return wanted;
+}
+
+/// The topics of the car; null where their names are empty.
+struct CarTopics {
+  std::unique_ptr<Reader> odom{}, imu{}, path{}, initial_pose{}, stop{};
+  std::unique_ptr<Writer> drive{}, autoware{}, stop_plan{};
+
+  static Result<CarTopics> create(Participant& at, const NodeOptions& node) {
+    CarTopics topics;
+    Result<void> made;
+    const auto read = [&](std::unique_ptr<Reader>& to, const std::string& name, std::string_view type,
+                          Qos qos) {
+      if (name.empty() || !made) return;
+      if (auto reader = at.reader(name, std::string(type), qos))
+        to = std::move(*reader);
+      else
+        made = fail(reader.error());
+    };
+    const auto send = [&](std::unique_ptr<Writer>& to, const std::string& name, std::string_view type,
+                          Qos qos) {
+      if (name.empty() || !made) return;
+      if (auto writer = at.writer(name, std::string(type), qos))
+        to = std::move(*writer);
+      else
+        made = fail(writer.error());
+    };
+    const Qos any{.is_reliable = false};
+    read(topics.odom, node.topics.odom, protocol::OdometryMessage::kType, node.odom_qos);
+    read(topics.imu, node.topics.imu, protocol::ImuMessage::kType, any);
+    read(topics.path, node.topics.path, protocol::PathMessage::kType, any);
+    read(topics.initial_pose, node.topics.initial_pose, protocol::PoseMessage::kType, {});
+    read(topics.stop, node.topics.stop, protocol::kBoolType, {});
+    send(topics.drive, node.topics.drive, protocol::DriveMessage::kType, node.drive_qos);
+    send(topics.autoware, node.topics.autoware, protocol::DriveMessage::kAutowareType, node.drive_qos);
+    send(topics.stop_plan, node.topics.stop_plan, protocol::StopMessage::kType, node.drive_qos);
+    if (!made) return fail(made.error());
+    return topics;
+  }
+};
+
+/// The controller's side of the topics, on the thread that calls run().
+class DriveNode {
+ public:
+  DriveNode(const NodeOptions& node, const wire::ServeOptions& options,
+            std::unique_ptr<Participant> participant, CarTopics topics,
+            std::unique_ptr<RunPublisher> publisher, std::unique_ptr<controller::Controller> controller,
+            const wire::ServeHooks& hooks)
+      : node_{node},
+        options_{options},
+        participant_{std::move(participant)},
+        topics_{std::move(topics)},
+        publisher_{std::move(publisher)},
+        log_{hooks.log},
+        hooks_{.settings = hooks.settings,
+               .on_change = hooks.on_change,
+               .on_frame = hooks.on_frame,
+               .on_lap =
+                   [this, &hooks](const telemetry::CompletedLap& lap) {
+                     publisher_->publish(lap);
+                     if (hooks.on_lap) hooks.on_lap(lap);
+                   },
+               .on_other_road = hooks.on_other_road},
+        drive_{{.scenario = options.scenario,
+                .track = options.track,
+                .lap = options.lap,
+                .step_budget = options.step_budget,
+                .forget_after = options.forget_after},
+               std::move(controller),
+               hooks_},
+        sight_{options.scenario, node.topics.path.empty() ? options.track : nullptr,
+               node.is_base_at_rear_axle},
+        clock_{node.topics.odom},
+        partners_{wanted_partners(node), node.network, seconds(options.silent_after)},
+        period_{options.scenario.control_period},
+        habit_{period_} {}
+
+  wire::ServeSummary run(const std::atomic<bool>& stop) {
+    while (!stop) {
+      participant_->wait(patience(Clock::now()));
+      read_requests();
+      read_path();
+      read_odometry();
+      read_imu();
+      const Clock::time_point now = Clock::now();
+      if (is_stopped_) {
+        play_stop(now);
+      } else {
+        cycle(now);
+      }
+      look_at_partners(now);
+    }
+    summary_.delay = delay();
+    summary_.run = drive_.summary();
+    return summary_;
+  }
+
+ private:
+  /// Until the next cycle without odometry is due.
+  [[nodiscard]] std::chrono::nanoseconds patience(Clock::time_point now) const {
+    if (!is_driving_) return kLongestWait;
+    const double left = kLatest * habit_ - seconds(now - last_cycle_);
+    return std::clamp<std::chrono::nanoseconds>(
+        std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * left)), std::chrono::nanoseconds{100'000},
+        kLongestWait);
+  }
+
+  [[nodiscard]] double delay() const { return options_.scenario.latency + turn_around_; }
+
+  void read_odometry() {
+    for (const Sample& sample : topics_.odom->take()) {
+      const Clock::time_point now = Clock::now();
+      const auto message = protocol::decode_odometry(sample.bytes);
+      if (!message) {
+        ++summary_.unusable;
+        log_.complain(
+            fmt::format("{}: got bytes that are no {}", node_.topics.odom, protocol::OdometryMessage::kType));
+        continue;
+      }
+      if (sample.writer != writer_) begin(sample.writer, *message);
+      const bool is_new = clock_.accept(
+          message->stamp, std::chrono::nanoseconds(now.time_since_epoch()).count(), system_now());
+      if (const std::string news = clock_.news(); !news.empty()) log_.say(news);
+      if (!is_new) continue;
+      if (is_silent_) log_.say(fmt::format("{} again", node_.topics.odom));
+      is_silent_ = false;
+      odometry_ = *message;
+      arrived_ = now;
+      is_fresh_ = true;
+    }
+  }
+
+  /// Another sender: another car, or the same after a restart.
+  void begin(std::uint64_t writer, const protocol::OdometryMessage& first) {
+    writer_ = writer;
+    ++summary_.connections;
+    clock_.forget();
+    drive_.begin();
+    is_driving_ = false;
+    habit_ = period_;
+    log_.say(fmt::format("odometry of {} in {} by {}", first.child_frame, first.frame, node_.topics.odom));
+    if (first.frame != node_.frames.map) {
+      log_.say(fmt::format("{}: got the frame \"{}\", expected \"{}\": used as it is (--map-frame)",
+                           node_.topics.odom, first.frame, node_.frames.map));
+    }
+  }
+
+  /// A cycle, if one is due.
+  void cycle(Clock::time_point now) {
+    const double since = seconds(now - last_cycle_);
+    if (is_fresh_ && (!is_driving_ || since >= kSoonest * period_)) {
+      is_fresh_ = false;
+      if (is_driving_ && !was_blind_)
+        habit_ = std::max(period_, habit_ + kHabit * (std::min(since, 1.0) - habit_));
+      was_blind_ = false;
+      const double time = drive_.time(arrived_);
+      auto measured = sight_.measure(odometry_, time);
+      if (!measured) {
+        ++summary_.unusable;
+        log_.complain(fmt::format("{}: got numbers that are not finite", node_.topics.odom));
+      }
+      const bool has_road = sight_.has_road();
+      if (!has_road)
+        return log_.complain(fmt::format("no path on {} yet: the car stands", node_.topics.path));
+      answer(measured, arrived_, odometry_.stamp);
+      return;
+    }
+    if (!is_driving_ || since < kLatest * habit_) return;
+    const double silence = seconds(now - arrived_);
+    if (silence > kAbsence) {
+      is_driving_ = false;
+      return;
+    }
+    was_blind_ = true;
+    complain_about_silence(silence);
+    answer(std::nullopt, now, odometry_.stamp + std::chrono::nanoseconds(now - arrived_).count());
+  }
+
+  void complain_about_silence(double silence) {
+    if (is_silent_ || silence < std::min(1.0, seconds(options_.silent_after))) return;
+    is_silent_ = true;
+    log_.say(
+        fmt::format("no odometry on {} for {:.1f} s: the guard stops the car", node_.topics.odom, silence));
+  }
+
+  void answer(const std::optional<model::Measurement>& measured, Clock::time_point received,
+              std::int64_t stamp) {
+    const double usual = delay();
+    const telemetry::Frame& frame =
+        drive_.step({.received = received, .measured = measured, .delay = usual, .usual_delay = usual});
+    is_driving_ = true;
+    last_cycle_ = received;
+    const controller::Plan& plan = frame.result.plan;
+    const double act_speed = plan.size > 0 ? plan.points[0].speed
+                             : measured    ? measured->speed
+                                           : std::max(0.0, last_speed_);
+    last_speed_ = act_speed;
+    send(frame.result.command, act_speed, stamp, &drive_.stop(), frame.time);
+    const Clock::time_point sent = Clock::now();
+    turn_around_ += kHabit * (std::min(seconds(sent - received), period_) - turn_around_);
+    sight_.sent(drive_.time(sent), frame.result.command);
+    ++summary_.answers;
+    if (frame.result.report.gated) ++summary_.interventions;
+    drive_.finish();
+    publisher_->publish(drive_.frame(), 1e-9 * static_cast<double>(system_now()) - drive_.time(Clock::now()));
+  }
+
+  /// The stop goes before the command that it belongs to.
+  void send(const model::Command& command, double speed, std::int64_t stamp, const safety::StopPlan* stop,
+            double time) {
+    if (topics_.stop_plan && stop != nullptr && stop->size > 0) {
+      stop_message_.stamp = stamp;
+      stop_message_.stop = *stop;
+      for (int i = 0; i < stop->size; ++i)
+        stop_message_.stop.points[static_cast<std::size_t>(i)].time -= time;
+      static_cast<void>(topics_.stop_plan->write(protocol::encode(stop_message_)));
+    }
+    protocol::DriveMessage message = to_message(options_.scenario.vehicle, command, speed, node_.drive);
+    message.stamp = stamp;
+    message.frame = node_.frames.base;
+    const bool is_sent = !topics_.drive || topics_.drive->write(protocol::encode(message));
+    if (!is_sent) log_.complain(fmt::format("{}: DDS did not take a command in time", node_.topics.drive));
+    if (topics_.autoware) static_cast<void>(topics_.autoware->write(protocol::encode_autoware(message)));
+  }
+
+  // ---- Requests ----
+
+  void read_requests() {
+    if (topics_.stop) {
+      for (const Sample& sample : topics_.stop->take())
+        if (const auto wanted = protocol::decode_bool(sample.bytes)) request_stop(*wanted);
+    }
+    if (topics_.initial_pose) {
+      for (const Sample& sample : topics_.initial_pose->take()) {
+        if (!protocol::decode_pose(sample.bytes)) continue;
+        log_.say(
+            fmt::format("{}: the car was put elsewhere, nothing learned is kept", node_.topics.initial_pose));
+        drive_.begin();
+      }
+    }
+  }
+
+  void request_stop(bool wanted) {
+    if (wanted && !is_stopped_) {
+      is_stopped_ = true;
+      player_.emplace(options_.scenario.vehicle, period_, options_.scenario.guard.receiver);
+      player_->arrived(drive_.time(Clock::now()), drive_.stop());
+      stopping_ = drive_.frame().result.command;
+      log_.say("stopped by request");
+      return;
+    }
+    if (wanted || !is_stopped_) return;
+    if (speed_now() > kStanding * std::sqrt(options_.scenario.vehicle.scale))
+      return log_.say(
+          fmt::format("got a request to drive on at {:.1f} m/s, expected a car that stands", speed_now()));
+    is_stopped_ = false;
+    is_driving_ = false;
+    drive_.begin();
+    log_.say("drives on by request");
+  }
+
+  [[nodiscard]] double speed_now() const { return std::fabs(odometry_.vx); }
+
+  /// The stop at hand, as the car's receiver would drive it when commands cease.
+  void play_stop(Clock::time_point now) {
+    is_fresh_ = false;
+    if (seconds(now - last_cycle_) < period_) return;
+    last_cycle_ = now;
+    const double time = drive_.time(now);
+    const double speed = speed_now();
+    const model::Command command = player_->guard(stopping_, time + safety::StopPlayer::kPatience, speed);
+    send(command, speed, odometry_.stamp + std::chrono::nanoseconds(now - arrived_).count(), nullptr, time);
+    sight_.sent(time, command);
+  }
+
+  void read_path() {
+    if (!topics_.path) return;
+    for (const Sample& sample : topics_.path->take()) {
+      const auto path = protocol::decode_path(sample.bytes);
+      if (!path) {
+        log_.complain(
+            fmt::format("{}: got bytes that are no {}", node_.topics.path, protocol::PathMessage::kType));
+        continue;
+      }
+      if (const Result<void> used = sight_.use_path(path->points); !used)
+        log_.complain(fmt::format("{}: {}", node_.topics.path, used.error().message));
+    }
+  }
+
+  /// Compares yaw rates: a gyro that turns the other way has its axes or its unit wrong.
+  void read_imu() {
+    if (!topics_.imu) return;
+    constexpr double kDifference = 0.3, kShare = 0.3;  // [rad/s], and of the yaw rate
+    constexpr int kOften = 25;
+    for (const Sample& sample : topics_.imu->take()) {
+      const auto imu = protocol::decode_imu(sample.bytes);
+      if (!imu || !is_driving_) continue;
+      const double difference = std::fabs(imu->yaw_rate - odometry_.yaw_rate);
+      const bool is_odd = difference > kDifference + kShare * std::fabs(odometry_.yaw_rate);
+      odd_imu_ = is_odd ? odd_imu_ + 1 : 0;
+      if (odd_imu_ != kOften || std::exchange(has_said_imu_, true)) continue;
+      log_.say(fmt::format(
+          "{}: got a yaw rate of {:.2f} rad/s, expected the {:.2f} rad/s of {}: are its axes those "
+          "of the car, in rad/s?",
+          node_.topics.imu, imu->yaw_rate, odometry_.yaw_rate, node_.topics.odom));
+    }
+  }
+
+  void look_at_partners(Clock::time_point now) {
+    if (seconds(now - looked_) < kLookPeriod) return;
+    looked_ = now;
+    std::vector<int> matched{topics_.odom->matched(), topics_.drive ? topics_.drive->matched() : 0};
+    if (topics_.path) matched.push_back(topics_.path->matched());
+    for (const std::string& line : partners_.look(drive_.time(now), participant_->others(), matched))
+      log_.say(line);
+  }
+
+  const NodeOptions& node_;
+  const wire::ServeOptions& options_;
+  std::unique_ptr<Participant> participant_;
+  CarTopics topics_;
+  std::unique_ptr<RunPublisher> publisher_;
+  wire::SparseLog log_;
+  run::ExternalDriveHooks hooks_;
+  run::ExternalDrive drive_;
+  CarSight sight_;
+  ClockWatch clock_;
+  PartnerWatch partners_;
+  wire::ServeSummary summary_;
+  protocol::StopMessage stop_message_;
+
+  const double period_;       ///< of control [s]
+  double habit_;              ///< usual time from cycle to cycle [s]
+  double turn_around_ = 0.0;  ///< from odometry to command [s]
+  double last_speed_ = 0.0;   ///< where the last command acts [m/s]
+  std::uint64_t writer_ = 0;  ///< of the odometry
+  protocol::OdometryMessage odometry_;
+  Clock::time_point arrived_{}, last_cycle_{}, looked_{};
+  bool is_fresh_ = false;    ///< odometry waits for a cycle
+  bool is_driving_ = false;  ///< cycles go on, with odometry or without
+  bool was_blind_ = false;   ///< the last cycle had no odometry
+  bool is_silent_ = false;   ///< it was said that odometry is missing
+  bool is_stopped_ = false;  ///< by request
+  std::optional<safety::StopPlayer> player_;
+  model::Command stopping_;  ///< the last command before the stop
+  int odd_imu_ = 0;
+  bool has_said_imu_ = false;
+};
+
+}  // namespace
+
+Result<wire::ServeSummary> drive(const NodeOptions& node, const wire::ServeOptions& options,
+                                 std::unique_ptr<controller::Controller> controller, wire::ServeHooks hooks,
+                                 wire::Endpoint* viewer, std::vector<net::Asset> assets,
+                                 const std::atomic<bool>& stop) {
+  auto participant = Participant::create(node.network);
+  if (!participant) return fail(participant.error());
+  auto topics = CarTopics::create(**participant, node);
+  if (!topics) return fail(topics.error());
+  protocol::Run run = hooks.description != nullptr ? *hooks.description : protocol::Run{};
+  run.frames = node.frames;
+  auto publisher = RunPublisher::create(**participant, run);
+  if (!publisher) return fail(publisher.error());
+  wire::Router router(nullptr, viewer);
+  auto server =
+      net::Server::create(options.server, router.handlers(std::move(hooks.pages)), std::move(assets));
+  if (!server) return fail(server.error());
+  if (hooks.on_listening) hooks.on_listening((*server)->port());
+  wire::ServeSummary summary;
+  {
+    DriveNode driving(node, options, std::move(*participant), std::move(*topics), std::move(*publisher),
+                      std::move(controller), hooks);
+    summary = driving.run(stop);
+  }
+  if (hooks.on_end) hooks.on_end();
+  server->reset();
+  return summary;
+}
+
+}  // namespace chicane::ros
