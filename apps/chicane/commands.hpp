@@ -23,6 +23,7 @@ struct Command {
 [[nodiscard]] ExitCode drive(const Options& options);
 [[nodiscard]] ExitCode serve(const Options& options);
 [[nodiscard]] ExitCode simulate(const Options& options);
+[[nodiscard]] ExitCode ros_node(const Options& options);
 [[nodiscard]] ExitCode limit(const Options& options);
 [[nodiscard]] ExitCode replay(const Options& options);
 [[nodiscard]] ExitCode report_logs(const Options& options);

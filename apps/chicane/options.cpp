@@ -18,6 +18,7 @@
 #include "chicane/version.hpp"
 #include "command_text.hpp"
 #include "commands.hpp"
+#include "ros_options.hpp"
 #include "setting_options.hpp"
 #include "sweep_options.hpp"
 #include "video_options.hpp"
@@ -175,6 +176,19 @@ void add_simulate(CLI::App& command, Options& options) {
   command.footer("Example: chicane simulate --connect ws://127.0.0.1:4567 --track lakeside --laps 2");
 }
 
+void add_ros(CLI::App& command, Options& options) {
+  add_controller(command, options);
+  add_world(command, options);
+  add_setting(command, options, "--latency-ms", "latency_ms", "X",
+              "Time from a command's arrival to its effect at the car [ms], default the car's");
+  add_ros_network(command, options);
+  add_port(command, options);
+  add_record(command, options);
+  command.add_flag("--json", options.is_json, "One JSON object on stdout at the end, all else on stderr");
+  add_set(command, options);
+  command.footer("Example: chicane ros --car f1tenth --track oval --domain 7");
+}
+
 void add_logs(CLI::App& command, Options& options, const std::string& help) {
   command.add_option("logs", options.log_files, help)->type_name("LOG")->required();
 }
@@ -297,13 +311,17 @@ void add_manual(CLI::App& command, Options&) { command.footer("Example: chicane 
 
 /// The options of each command.
 constexpr std::pair<std::string_view, void (*)(CLI::App&, Options&)> kOptionsOf[] = {
-    {"drive", add_drive},           {"serve", add_serve},     {"simulate", add_simulate},
-    {"limit", add_limit},           {"replay", add_replay},   {"report", add_report},
-    {"video", add_video},           {"sweep", add_sweep},     {"league", add_league},
-    {"claims", add_claims},         {"tune", add_tune},       {"merge", add_merge},
-    {"campaign", add_campaign},     {"recover", add_recover}, {"lane-change", add_lane_change},
-    {"check", add_check},           {"list", add_list},       {"bench", add_bench},
-    {"completion", add_completion}, {"manual", add_manual},
+    {"drive", add_drive},       {"serve", add_serve},
+    {"simulate", add_simulate}, {"ros", add_ros},
+    {"limit", add_limit},       {"replay", add_replay},
+    {"report", add_report},     {"video", add_video},
+    {"sweep", add_sweep},       {"league", add_league},
+    {"claims", add_claims},     {"tune", add_tune},
+    {"merge", add_merge},       {"campaign", add_campaign},
+    {"recover", add_recover},   {"lane-change", add_lane_change},
+    {"check", add_check},       {"list", add_list},
+    {"bench", add_bench},       {"completion", add_completion},
+    {"manual", add_manual},
 };
 
 void add_commands(CLI::App& app, Options& options) {

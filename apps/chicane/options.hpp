@@ -66,6 +66,21 @@ struct Options {
 
   int jobs = 0;  ///< sweep, tune, claims, campaign: threads; 0: as many as cores
 
+  /// A ROS 2 node: the controller, or the simulator.
+  struct Ros {
+    bool is_simulator = false;
+    int domain = 0;
+    std::string interface = "lo";
+    std::vector<std::string> peers{};
+    std::string odom_topic = "/ego_racecar/odom", drive_topic = "/drive", imu_topic = "/imu";
+    std::string autoware_topic{}, path_topic{};  ///< empty: none
+    std::string map_frame = "map", base_frame = "ego_racecar/base_link", base_at = "rear-axle";
+    std::string drive_by = "speed";
+    double speed_lead = 0.25;  ///< [s]
+    std::string odom_qos = "best-effort", drive_qos = "reliable";
+  };
+  Ros ros{};
+
   struct Sweep {
     std::string plan_file{};
     std::string shard{};            ///< I/N; empty: as the environment says

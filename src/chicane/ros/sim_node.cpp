@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/ros/sim_node.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chicane/base/math.hpp"
+#include "chicane/protocol/car_messages.hpp"
+#include "chicane/ros/drive_command.hpp"
+#include "chicane/ros/partner_watch.hpp"
+#include "chicane/run/account.hpp"
+#include "chicane/run/make.hpp"
+#include "chicane/run/observe.hpp"
+#include "chicane/safety/stop_player.hpp"
+#include "chicane/sim/actuation_delay.hpp"
+#include "chicane/sim/range_scanner.hpp"
+#include "chicane/sim/sensor.hpp"
+#include "chicane/sim/world.hpp"
+#include "chicane/wire/sparse_log.hpp"
+
+namespace chicane::ros {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kCatchUp = 1.0 / 3.0;           // physics skips time it cannot catch up [s]
+constexpr double kStanding = 0.1;                // of a car in full size [m/s]
+constexpr double kScanPeriod = 0.025;            // of the Hokuyo UST-10LX [s]
+constexpr double kScannerAhead = 0.275 / 0.307;  // of the rear axle, in wheelbases: as f1tenth_gym_ros has it
+constexpr double kLookPeriod = 0.5;              // between looks at partners [s]
+constexpr double kRangeMin = 0.02;               // [m]
+
+double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+Clock::duration duration(double seconds) {
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+run::AccountTerms terms(const scenario::Scenario& scenario, const path::Track& track) {
+  run::AccountTerms terms = run::terms_of(scenario, track.name());
+  terms.controller = terms.preset = "external";
+  terms.guard.reset();
+  terms.step_deadline = std::numeric_limits<double>::infinity();  // there is none
+  return terms;
+}
+
+std::vector<WantedPartner> wanted_partners(const NodeOptions& node) {
+  return {{.topic = node.topics.drive,
+           .type = std::string(protocol::DriveMessage::kType),
+           .qos = {.is_reliable = false},
+           .qos_option = "--drive-qos",
+           .topic_option = "--drive-topic"},
+          {.is_reader = false,
+           .topic = node.topics.odom,
+           .type = std::string(protocol::OdometryMessage::kType),
+           .qos_option = "--odom-qos",
+           .topic_option = "--odom-topic",
+           .is_awaited = false}};
+}
+
+/// Topics of the simulator.
+struct SimTopics {
+  std::unique_ptr<Reader> drive{}, stop_plan{}, initial_pose{};
+  std::unique_ptr<Writer> odom{}, transform{}, fixed_transform{}, imu{}, scan{};
+
+  static Result<SimTopics> create(Participant& at, const NodeOptions& node) {
+    SimTopics topics;
+    Result<void> made;
+    const auto read = [&](std::unique_ptr<Reader>& to, const std::string& name, std::string_view type) {
+      if (name.empty() || !made) return;
+      auto reader = at.reader(name, std::string(type), {.is_reliable = false});
+      if (reader)
+        to = std::move(*reader);
+      else
+        made = fail(reader.error());
+    };
+    const auto send = [&](std::unique_ptr<Writer>& to, const std::string& name, std::string_view type,
+                          Qos qos) {
+      if (name.empty() || !made) return;
+      auto writer = at.writer(name, std::string(type), qos);
+      if (writer)
+        to = std::move(*writer);
+      else
+        made = fail(writer.error());
+    };
+    read(topics.drive, node.topics.drive, protocol::DriveMessage::kType);
+    read(topics.stop_plan, node.topics.stop_plan, protocol::StopMessage::kType);
+    read(topics.initial_pose, node.topics.initial_pose, protocol::PoseMessage::kType);
+    send(topics.odom, node.topics.odom, protocol::OdometryMessage::kType, {});
+    send(topics.transform, "/tf", protocol::TransformMessage::kType, {.depth = 100});
+    send(topics.fixed_transform, "/tf_static", protocol::TransformMessage::kType,
+         {.is_transient_local = true, .depth = 1});
+    send(topics.imu, node.topics.imu, protocol::ImuMessage::kType, {});
+    send(topics.scan, node.topics.scan, protocol::ScanMessage::kType, {});
+    if (!made) return fail(made.error());
+    return topics;
+  }
+};
+
+/// The parts of the simulated world that are made once.
+struct Parts {
+  path::Track track;
+  std::unique_ptr<sim::Plant> plant;
+  sim::RangeScanner scanner;
+
+  static Result<Parts> create(const scenario::Scenario& scenario) {
+    auto track = run::make_track(scenario);
+    if (!track) return fail(track.error());
+    auto plant = run::make_plant(scenario);
+    if (!plant) return fail(plant.error());
+    const double size = scenario.vehicle.scale;
+    auto scanner = sim::RangeScanner::create(*track, {.spacing = std::max(0.05, 0.5 * size)});
+    if (!scanner) return fail(scanner.error());
+    return Parts{std::move(*track), std::move(*plant), std::move(*scanner)};
+  }
+};
+
+class SimNode {
+ public:
+  SimNode(const NodeOptions& node, const scenario::Scenario& scenario, const wire::SimulateHooks& hooks,
+          std::unique_ptr<Participant> participant, SimTopics topics, Parts& parts)
+      : node_{node},
+        scenario_{scenario},
+        hooks_{hooks},
+        participant_{std::move(participant)},
+        topics_{std::move(topics)},
+        log_{hooks.log},
+        scanner_{parts.scanner},
+        plant_{*parts.plant},
+        world_{plant_, parts.track},
+        sensor_{scenario.sensor, scenario.seed},
+        receiver_{scenario.vehicle, scenario.control_period, scenario.guard.receiver},
+        account_{terms(scenario, parts.track)},
+        partners_{wanted_partners(node), node.network},
+        scanner_ahead_{kScannerAhead * scenario.vehicle.wheelbase()},
+        standing_{kStanding * std::sqrt(scenario.vehicle.scale)} {
+    world_.place(parts.track.start_s(), parts.track.start_d());
+    in_flight_.reset({});
+    ranges_.resize(static_cast<std::size_t>(scanner_.options().beams));
+  }
+
+  wire::SimulateReport run(const std::atomic<bool>& stop) {
+    started_ = began_ = Clock::now();
+    send_scanner_place();
+    while (!stop && !account_.is_over()) {
+      participant_->wait(std::chrono::nanoseconds(std::max<Clock::duration>(
+          std::chrono::microseconds{50}, began_ + duration(next_moment()) - Clock::now())));
+      const Clock::time_point now = Clock::now();
+      read_commands();
+      read_initial_pose();
+      if (report_.connections > 0) move(now);
+      sense(now);
+      look_at_partners(now);
+    }
+    report_.run = account_.summary(world_.time());
+    report_.run.wall_time = seconds(Clock::now() - started_);
+    return report_;
+  }
+
+ private:
+  /// Time of the simulated clock [s]: that of the world once it moves.
+  [[nodiscard]] double elapsed(Clock::time_point now) const { return seconds(now - began_); }
+  [[nodiscard]] std::int64_t stamp(double time) const {
+    return epoch_ + static_cast<std::int64_t>(std::llround(1e9 * time));
+  }
+  [[nodiscard]] double next_moment() const { return std::min(next_odometry_, next_scan_); }
+
+  // ---- In ----
+
+  void read_commands() {
+    std::vector<Sample> drives = topics_.drive ? topics_.drive->take() : std::vector<Sample>{};
+    if (topics_.stop_plan) {  // after the commands: each was sent behind its stop
+      for (const Sample& sample : topics_.stop_plan->take()) {
+        if (auto stop = protocol::decode_stop(sample.bytes)) stops_[stop_count_++ % stops_.size()] = *stop;
+      }
+    }
+    for (const Sample& sample : drives) {
+      const auto message = protocol::decode_drive(sample.bytes);
+      const bool is_finite = message && std::isfinite(message->steer) && std::isfinite(message->speed) &&
+                             std::isfinite(message->acceleration);
+      if (!is_finite) {
+        ++report_.broken_answers;
+        log_.complain(fmt::format("{}: got {}, expected finite numbers in a {}", node_.topics.drive,
+                                  message ? "numbers that are not finite" : "other bytes",
+                                  protocol::DriveMessage::kType));
+        continue;
+      }
+      if (sample.writer != writer_) begin(sample.writer);
+      accept(*message);
+    }
+  }
+
+  void begin(std::uint64_t writer) {
+    writer_ = writer;
+    if (report_.connections++ > 0) return log_.say(fmt::format("another sender on {}", node_.topics.drive));
+    const double ahead = elapsed(Clock::now());
+    began_ += duration(ahead);  // the world begins with the first command, and the stamps go on
+    epoch_ += static_cast<std::int64_t>(std::llround(1e9 * ahead));
+    next_odometry_ = next_scan_ = 0.0;
+    log_.say(fmt::format("first command on {}", node_.topics.drive));
+  }
+
+  /// A command waits for its moment as what was wanted: the pedal follows from the speed then.
+  void accept(const protocol::DriveMessage& message) {
+    ++report_.answers;
+    const double time = std::max(world_.time(), 0.0);
+    const double act = std::max(time + scenario_.latency, in_flight_.last_time());
+    in_flight_.push(act, {.steer = message.steer,
+                          .throttle = node_.drive.is_by_speed ? message.speed : message.acceleration});
+    safety::StopPlan stop;
+    for (const protocol::StopMessage& each : stops_) {
+      if (each.stop.size == 0 || each.stamp != message.stamp) continue;
+      stop = each.stop;
+      const double asked = 1e-9 * static_cast<double>(each.stamp - epoch_);
+      for (int i = 0; i < stop.size; ++i) stop.points[static_cast<std::size_t>(i)].time += asked;
+    }
+    receiver_.arrived(act, stop);
+    arrived_ = time;
+    frame_.result.command.steer = message.steer;
+    frame_.step_time = time - 1e-9 * static_cast<double>(message.stamp - epoch_);
+  }
+
+  void read_initial_pose() {
+    if (!topics_.initial_pose) return;
+    for (const Sample& sample : topics_.initial_pose->take()) {
+      const auto message = protocol::decode_pose(sample.bytes);
+      if (!message) continue;
+      const double b = node_.is_base_at_rear_axle ? scenario_.vehicle.rear_axle : 0.0;
+      const model::Pose& base = message->pose;
+      const model::Pose centre{base.x + b * chicane::cos(base.psi), base.y + b * chicane::sin(base.psi),
+                               base.psi};
+      world_.put(centre);
+      plant_.reset(centre, 0.0);
+      account_.resume();
+      log_.say(fmt::format("{}: the car is at ({:.2f}, {:.2f})", node_.topics.initial_pose, base.x, base.y));
+    }
+  }
+
+  // ---- Physics ----
+
+  void move(Clock::time_point now) {
+    const double step = plant_.step_length();
+    const double until = elapsed(now);
+    const double forgotten = std::max(0.0, until - world_.time() - kCatchUp);
+    began_ += duration(forgotten);
+    epoch_ += static_cast<std::int64_t>(std::llround(1e9 * forgotten));
+    const double speed = plant_.output().speed;
+    while (world_.time() + step <= until - forgotten && !account_.is_over()) {
+      world_.advance(act());
+      account_.add_physics(world_, false);
+    }
+    tell_stops(speed);
+    if (const auto lap = account_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
+  }
+
+  model::Command act() {
+    const double time = world_.time() + 1e-9;
+    const double speed = plant_.output().speed;
+    model::Command command = in_flight_.at(time);
+    command.throttle = throttle_of(scenario_.vehicle, command.throttle, speed, node_.drive);
+    applied_ = receiver_.guard(command, world_.time(), speed);
+    return applied_;
+  }
+
+  void tell_stops(double speed) {
+    const bool is_forsaken = receiver_.is_stopping() &&
+                             world_.time() - arrived_ > safety::StopPlayer::kPatience + scenario_.latency;
+    if (is_forsaken && !is_forsaken_ && speed > standing_) {
+      ++report_.stops;
+      log_.say(fmt::format("no command in time: the car is stopped from {:.1f} m/s", speed));
+      is_told_standing_ = false;
+    }
+    if (!is_forsaken && is_forsaken_)
+      log_.say(fmt::format("commands again at {:.1f} m/s", plant_.output().speed));
+    is_forsaken_ = is_forsaken;
+    if (!is_forsaken || is_told_standing_ || plant_.output().speed >= standing_) return;
+    is_told_standing_ = true;
+    const double edge = world_.state().edge_distance;
+    log_.say(fmt::format("the car stands, its outermost wheel {:.2f} m {} the road's edge", std::fabs(edge),
+                         edge < 0.0 ? "beyond" : "inside"));
+  }
+
+  // ---- Out ----
+
+  void sense(Clock::time_point now) {
+    const double time = report_.connections > 0 ? world_.time() : elapsed(now);
+    if (time + 1e-9 >= next_odometry_) {
+      next_odometry_ = std::max(next_odometry_ + scenario_.control_period, time);
+      send_odometry(time);
+    }
+    if (time + 1e-9 < next_scan_) return;
+    next_scan_ = std::max(next_scan_ + kScanPeriod, time);
+    if (topics_.scan && topics_.scan->matched() > 0) send_scan(time);
+  }
+
+  void send_odometry(double time) {
+    const model::Measurement seen = sensor_.sample(time, plant_);
+    const model::State& state = plant_.state();
+    const double b = node_.is_base_at_rear_axle ? scenario_.vehicle.rear_axle : 0.0;
+    const model::Pose base{seen.x - b * chicane::cos(seen.psi), seen.y - b * chicane::sin(seen.psi),
+                           seen.psi};
+    if (topics_.odom) {
+      static_cast<void>(topics_.odom->write(
+          protocol::encode(protocol::OdometryMessage{.stamp = stamp(time),
+                                                     .frame = node_.frames.map,
+                                                     .child_frame = node_.frames.base,
+                                                     .pose = base,
+                                                     .vx = state.vx + seen.speed - plant_.output().speed,
+                                                     .vy = state.vy - b * state.r,
+                                                     .yaw_rate = state.r})));
+    }
+    static_cast<void>(topics_.transform->write(protocol::encode(protocol::TransformMessage{
+        .stamp = stamp(time), .frame = node_.frames.map, .child_frame = node_.frames.base, .pose = base})));
+    if (topics_.imu && topics_.imu->matched() > 0) {
+      static_cast<void>(topics_.imu->write(protocol::encode(protocol::ImuMessage{.stamp = stamp(time),
+                                                                                 .frame = node_.frames.base,
+                                                                                 .yaw_rate = state.r,
+                                                                                 .ax = plant_.output().ax,
+                                                                                 .ay = plant_.output().ay})));
+    }
+    if (report_.connections > 0) record(seen);
+  }
+
+  /// What the world knows, with the last command as the answer.
+  void record(const model::Measurement& seen) {
+    run::observe(world_, frame_);
+    frame_.completed_lap = account_.completed_lap();
+    frame_.time = seen.time;
+    frame_.measurement = seen;
+    frame_.applied = applied_;
+    ++frame_.cycle;
+    frame_.result.command.throttle = applied_.throttle;
+    frame_.asked = frame_.result.command;
+    frame_.result.report.solve.status =
+        solver::SolveStatus::kOptimal;  // of an external solver nothing is known
+    account_.add(frame_);
+    if (hooks_.on_frame) hooks_.on_frame(frame_);
+  }
+
+  void send_scanner_place() {
+    static_cast<void>(topics_.fixed_transform->write(
+        protocol::encode(protocol::TransformMessage{.stamp = stamp(0.0),
+                                                    .frame = node_.frames.base,
+                                                    .child_frame = scanner_frame(),
+                                                    .pose = {.x = scanner_ahead_}})));
+  }
+
+  /// "ego_racecar/base_link" → "ego_racecar/laser"
+  [[nodiscard]] std::string scanner_frame() const {
+    const std::size_t slash = node_.frames.base.rfind('/');
+    return (slash == std::string::npos ? "" : node_.frames.base.substr(0, slash + 1)) + "laser";
+  }
+
+  void send_scan(double time) {
+    const model::State& car = plant_.state();
+    const double ahead = scanner_ahead_ - scenario_.vehicle.rear_axle;
+    scanner_.scan({car.x + ahead * chicane::cos(car.psi), car.y + ahead * chicane::sin(car.psi), car.psi},
+                  ranges_);
+    protocol::ScanMessage message{.stamp = stamp(time),
+                                  .frame = scanner_frame(),
+                                  .angle_min = scanner_.first_angle(),
+                                  .angle_increment = scanner_.increment(),
+                                  .scan_time = kScanPeriod,
+                                  .range_min = kRangeMin,
+                                  .range_max = scanner_.options().range_max,
+                                  .ranges = ranges_};
+    static_cast<void>(topics_.scan->write(protocol::encode(message)));
+  }
+
+  void look_at_partners(Clock::time_point now) {
+    if (seconds(now - looked_) < kLookPeriod) return;
+    looked_ = now;
+    const std::vector<int> matched{topics_.drive ? topics_.drive->matched() : 0,
+                                   topics_.odom ? topics_.odom->matched() : 0};
+    for (const std::string& line : partners_.look(seconds(now - started_), participant_->others(), matched))
+      log_.say(line);
+  }
+
+  const NodeOptions& node_;
+  const scenario::Scenario& scenario_;
+  const wire::SimulateHooks& hooks_;
+  std::unique_ptr<Participant> participant_;
+  SimTopics topics_;
+  wire::SparseLog log_;
+  const sim::RangeScanner& scanner_;
+  sim::Plant& plant_;
+  sim::World world_;
+  sim::Sensor sensor_;
+  sim::ActuationDelay in_flight_;  ///< steering, and in the pedal's place what was wanted
+  safety::StopPlayer receiver_;
+  run::Account account_;
+  PartnerWatch partners_;
+  wire::SimulateReport report_;
+  telemetry::Frame frame_;
+
+  const double scanner_ahead_;  ///< of the rear axle [m]
+  const double standing_;       ///< [m/s]
+  std::vector<float> ranges_;
+  std::array<protocol::StopMessage, 8> stops_{};  ///< the last ones, a ring
+  std::size_t stop_count_ = 0;
+  std::uint64_t writer_ = 0;  ///< of the commands
+  Clock::time_point started_{}, began_{}, looked_{};
+  std::int64_t epoch_ = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                            std::chrono::system_clock::now().time_since_epoch())
+                            .count();             ///< of the simulated time 0 [ns since 1970]
+  double next_odometry_ = 0.0, next_scan_ = 0.0;  ///< [s]
+  double arrived_ = 0.0;                          ///< the last command [s]
+  model::Command applied_;
+  bool is_forsaken_ = false;
+  bool is_told_standing_ = true;  ///< nothing more to say about the stop
+};
+
+}  // namespace
+
+Result<wire::SimulateReport> simulate(const NodeOptions& node, const scenario::Scenario& scenario,
+                                      const wire::SimulateHooks& hooks, const std::atomic<bool>& stop) {
+  auto parts = Parts::create(scenario);
+  if (!parts) return fail(parts.error());
+  auto participant = Participant::create(node.network);
+  if (!participant) return fail(participant.error());
+  auto topics = SimTopics::create(**participant, node);
+  if (!topics) return fail(topics.error());
+  return SimNode(node, scenario, hooks, std::move(*participant), std::move(*topics), *parts).run(stop);
+}
+
+}  // namespace chicane::ros
