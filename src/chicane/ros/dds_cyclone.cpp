@@ -2,6 +2,7 @@
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>
+#include <dds/ddsrt/log.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,6 +18,7 @@
 namespace chicane::ros {
 namespace {
 
+constexpr std::size_t kCdrHeader = 4;
 constexpr uint32_t kTakenAtOnce = 64;
 constexpr dds_duration_t kWriteTimeout = DDS_MSECS(2);  // a control step cannot wait longer
 
@@ -93,7 +95,7 @@ std::string configuration(const NetworkOptions& options) {
   return fmt::format(
       "<CycloneDDS><Domain id=\"any\"><General><Interfaces>{}</Interfaces><AllowMulticast>{}</AllowMulticast>"
       "</General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
-      "<MaxAutoParticipantIndex>60</MaxAutoParticipantIndex>{}</Discovery>"
+      "<MaxAutoParticipantIndex>60</MaxAutoParticipantIndex><LeaseDuration>4s</LeaseDuration>{}</Discovery>"
       "<Tracing><Verbosity>none</Verbosity></Tracing></Domain></CycloneDDS>",
       interface, has_multicast ? "default" : "false",
       peers.empty() ? "" : fmt::format("<Peers>{}</Peers>", peers));
@@ -102,7 +104,9 @@ std::string configuration(const NetworkOptions& options) {
 class CycloneWriter final : public Writer {
  public:
   explicit CycloneWriter(Entity writer) : writer_{std::move(writer)} {}
-  bool write(std::string_view bytes) override { return dds_write(writer_.get(), &bytes) == DDS_RETCODE_OK; }
+  bool write(std::string_view bytes) override {
+    return bytes.size() >= kCdrHeader && dds_write(writer_.get(), &bytes) == DDS_RETCODE_OK;
+  }
   [[nodiscard]] int matched() const override {
     return std::max(0, static_cast<int>(dds_get_matched_subscriptions(writer_.get(), nullptr, 0)));
   }
@@ -237,6 +241,9 @@ class CycloneParticipant final : public Participant {
 bool Participant::is_available() noexcept { return true; }
 
 Result<std::unique_ptr<Participant>> Participant::create(const NetworkOptions& options) {
+  // What Cyclone would print: of a refused interface the error says as much, and of a stranger's packets
+  // there may be any number.
+  dds_set_log_sink([](void*, const dds_log_data_t*) {}, nullptr);
   const auto domain_id = static_cast<dds_domainid_t>(options.domain);
   Entity domain(dds_create_domain(domain_id, configuration(options).c_str()));
   const auto refused = [&](dds_entity_t code) {

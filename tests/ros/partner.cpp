@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// A partner that does it wrong, for two_processes.py:
+//
+//   ros_partner DOMAIN SECONDS best-effort     odometry with a quality of service that a reliable reader
+//   cannot use ros_partner DOMAIN SECONDS wrong-type      another type on the topic of the odometry
+//   ros_partner DOMAIN SECONDS reliable-reader a reader of /drive that wants reliable messages
+//   ros_partner DOMAIN SECONDS clock           odometry of a car that stands; its clock jumps by 5 s
+//   ros_partner DOMAIN SECONDS twice           each message twice, each tenth late
+//   ros_partner DOMAIN SECONDS garbage         bytes that are no message, and numbers that are not finite
+#include <chrono>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <thread>
+
+#include "chicane/protocol/car_messages.hpp"
+#include "chicane/ros/dds.hpp"
+
+namespace {
+
+using chicane::protocol::OdometryMessage;
+using chicane::ros::Participant;
+using chicane::ros::Writer;
+using std::chrono::milliseconds;
+
+constexpr const char* kOdometry = "/ego_racecar/odom";
+constexpr std::int64_t kJump = 5'000'000'000;
+
+OdometryMessage standing() {
+  return {.stamp = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                       std::chrono::system_clock::now().time_since_epoch())
+                       .count(),
+          .frame = "map",
+          .child_frame = "ego_racecar/base_link"};
+}
+
+void send(Writer& writer, const std::string& fault, int count) {
+  OdometryMessage message = standing();
+  if (fault == "clock" && count > 100) message.stamp += kJump;
+  if (fault == "garbage" && count % 10 == 5) return void(writer.write(std::string("\0\1\0\0what", 8)));
+  if (fault == "no-numbers" && count % 10 == 0) message.pose.x = std::numeric_limits<double>::quiet_NaN();
+  if (fault == "twice" && count % 10 == 0) message.stamp -= 30'000'000;
+  writer.write(encode(message));
+  if (fault == "twice") writer.write(encode(message));
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  if (count != 4) return 2;
+  const std::string fault = words[3];
+  auto node = Participant::create({.domain = std::atoi(words[1])});
+  if (!node) return 3;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{std::atoi(words[2])};
+  if (fault == "reliable-reader") {
+    auto reader = (*node)->reader("/drive", std::string(chicane::protocol::DriveMessage::kType), {});
+    std::this_thread::sleep_until(end);
+    return reader ? 0 : 3;
+  }
+  const std::string type = fault == "wrong-type" ? "geometry_msgs/msg/PoseWithCovarianceStamped"
+                                                 : std::string(OdometryMessage::kType);
+  auto writer = (*node)->writer(kOdometry, type, {.is_reliable = fault != "best-effort"});
+  if (!writer) return 3;
+  for (int i = 1; std::chrono::steady_clock::now() < end; ++i) {
+    send(**writer, fault, i);
+    std::this_thread::sleep_for(milliseconds{20});
+  }
+  return 0;
+}

@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+"""`chicane ros` and `chicane ros --simulate` as two processes on loopback, in a DDS domain of their own.
+
+    two_processes.py CHICANE                     a lap like that of `drive`; kill -9 of the controller, then of the simulator
+    two_processes.py CHICANE --laps              three laps on two tracks, with both meanings of a drive message
+    two_processes.py CHICANE --misfit PARTNER    partners that do it wrong (partner.cpp): each is said in words
+"""
+import atexit
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+DOMAIN = 101 + os.getpid() % 100
+CLOSE_S = 0.1  # lap times of two processes and of one differ by less
+
+
+class Program:
+    """A running `chicane ros`, and what it says."""
+
+    def __init__(self, chicane, folder, name, *words, domain=DOMAIN):
+        self.name = name
+        self.out = Path(folder, name + ".out")
+        self.err = Path(folder, name + ".err")
+        with self.out.open("wb") as out, self.err.open("wb") as err:
+            self.process = subprocess.Popen([chicane, "ros", "--domain", str(domain), "--json", *words], stdout=out, stderr=err)
+        atexit.register(self.process.kill)
+
+    def said(self):
+        return self.err.read_text(errors="replace").replace("\r", "\n")
+
+    def wait_for(self, pattern, seconds):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            found = re.search(pattern, self.said())
+            if found:
+                return found
+            if self.process.poll() is not None and not re.search(pattern, self.said()):
+                break
+            time.sleep(0.05)
+        sys.exit(f"{self.name} did not say /{pattern}/ within {seconds} s:\n{self.said()}")
+
+    def kill(self):
+        self.process.send_signal(signal.SIGKILL)
+        self.process.wait()
+
+    def finish(self, seconds):
+        code = self.process.wait(timeout=seconds)
+        return code, json.loads(self.out.read_text())
+
+    def interrupt(self):
+        self.process.send_signal(signal.SIGINT)
+        return self.finish(10)
+
+
+def check(condition, sentence):
+    if not condition:
+        sys.exit(f"not so: {sentence}")
+    print(f"ok: {sentence}", flush=True)
+
+
+def laps_alone(chicane, *words):
+    done = subprocess.run([chicane, "drive", "--fast", "--json", "--car", "f1tenth", *words], capture_output=True, check=True)
+    return [lap["lap_time_s"] for lap in json.loads(done.stdout)["laps"]]
+
+
+def a_lap_and_two_kills(chicane, folder):
+    alone = laps_alone(chicane, "--track", "oval", "--laps", "1")
+    simulator = Program(chicane, folder, "simulator", "--simulate", "--track", "oval", "--laps", "0")
+    controller = Program(chicane, folder, "controller", "--track", "oval", "--port", "0")
+    lap = float(simulator.wait_for(r"lap 1: ([\d.]+) s, .*clean", 30)[1])
+    check(abs(lap - alone[0]) <= CLOSE_S, f"the lap took {lap} s, and {alone[0]:.2f} s in one process")
+    controller.wait_for(r"lap 1: ", 2)
+
+    controller.kill()
+    simulator.wait_for(r"no command in time: the car is stopped from", 3)
+    stands = simulator.wait_for(r"the car stands, its outermost wheel ([\d.]+) m (\w+) the road's edge", 8)
+    check(stands[2] == "inside", f"kill -9 of the controller: the car stands {stands[1]} m inside the edge")
+
+    other = Program(chicane, folder, "other_controller", "--track", "oval", "--port", "0")
+    simulator.wait_for(r"another sender on /drive", 10)
+    simulator.wait_for(r"commands again", 5)
+    check(True, "another controller takes over")
+    time.sleep(1.0)
+    simulator.kill()
+    other.wait_for(r"no odometry on /ego_racecar/odom for", 5)
+    code, run = other.interrupt()
+    check(code == 0 and run["off_track_events"] == 0, "kill -9 of the simulator: the controller says so, and ends as it should")
+
+
+def laps(chicane, folder):
+    for track in ("oval", "lakeside"):
+        for drive_by in ("speed", "acceleration"):
+            words = ["--track", track, "--laps", "3"]
+            alone = laps_alone(chicane, *words)
+            name = f"{track}_{drive_by}"
+            simulator = Program(chicane, folder, f"simulator_{name}", "--simulate", "--drive-by", drive_by, *words)
+            controller = Program(chicane, folder, f"controller_{name}", "--track", track, "--drive-by", drive_by, "--port", "0")
+            code, run = simulator.finish(400)
+            controller.interrupt()
+            both = [lap["lap_time_s"] for lap in run["laps"]]
+            worst = max(abs(a - b) for a, b in zip(alone, both, strict=True))
+            check(code == 0 and worst <= CLOSE_S,
+                  f"{track} by {drive_by}: {', '.join(f'{t:.2f}' for t in both)} s, at most {worst:.3f} s from one process")
+
+
+def misfits(chicane, folder):
+    partner = sys.argv[3]
+    cases = [  # a fault of the partner, options of the controller, what is said
+        ("best-effort", ["--odom-qos", "reliable"], r"is sent best effort by a partner, .*use --odom-qos best-effort"),
+        ("reliable-reader", ["--drive-qos", "best-effort"], r"/drive is read reliably by a partner, .*use --drive-qos reliable"),
+        ("wrong-type", [], r"got a partner with type geometry_msgs/msg/PoseWithCovarianceStamped, expected nav_msgs/msg/Odometry"),
+        ("best-effort", ["--odom-topic", "/odom"],
+         r"nobody sends /odom; nav_msgs/msg/Odometry is on /ego_racecar/odom: --odom-topic names another topic"),
+        ("clock", [], r"the clock of /ego_racecar/odom jumped by \+5.0 s"),
+        ("twice", [], r"a message of /ego_racecar/odom came (twice|after a newer one): such messages are left out"),
+        ("garbage", [], r"got bytes that are no nav_msgs/msg/Odometry"),
+        ("no-numbers", [], r"got numbers that are not finite"),
+        ("", [], r"no other program in domain \d+"),
+    ]
+    running = []
+    for i, (fault, words, _) in enumerate(cases):
+        domain = 200 + (DOMAIN + i) % 30
+        other = subprocess.Popen([partner, str(domain), "12", fault]) if fault else None
+        if other:
+            atexit.register(other.kill)
+        running.append((Program(chicane, folder, f"controller_{i}", "--track", "oval", "--port", "0", *words, domain=domain), other))
+    for (program, other), (fault, _, pattern) in zip(running, cases, strict=True):
+        said = program.wait_for(pattern, 15)[0]
+        program.interrupt()
+        check(True, f"{fault or 'nobody'}: {said.splitlines()[-1]}")
+        if other:
+            other.kill()
+            other.wait()
+
+
+def main():
+    chicane, mode = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else ""
+    with tempfile.TemporaryDirectory() as folder:
+        {"": a_lap_and_two_kills, "--laps": laps, "--misfit": misfits}[mode](chicane, folder)
+
+
+main()
