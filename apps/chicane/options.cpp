@@ -94,6 +94,10 @@ void add_record(CLI::App& command, Options& options) {
   command.add_flag("--compress", options.is_compressed, "The recording by Zstandard: about half the size")
       ->needs("--record");
   command
+      .add_flag("--bag", options.is_bag,
+                "Write metadata.yaml beside the recording, which makes its folder a bag for ros2 bag")
+      ->needs("--record");
+  command
       .add_option("--report", options.report_file,
                   "Write the run as one HTML page at its end; replaces an older one")
       ->type_name("FILE.html");

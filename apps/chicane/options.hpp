@@ -34,6 +34,7 @@ struct Options {
   bool is_manual = false;                ///< drive: a person has the wheel
   std::string record_file;               ///< empty: nothing is recorded
   bool is_compressed = false;            ///< the recording
+  bool is_bag = false;                   ///< metadata.yaml beside the recording
   std::string report_file;               ///< empty: no report is written at the end
   std::vector<std::string> faults{};     ///< drive: NAME@SECOND+SECONDS*STRENGTH
   std::string address = "127.0.0.1";

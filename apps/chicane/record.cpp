@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "chicane/live/assets.hpp"
+#include "chicane/recording/bag_metadata.hpp"
 #include "chicane/recording/html_report.hpp"
 
 namespace chicane::apps {
@@ -39,6 +40,10 @@ Result<std::unique_ptr<KeptRun>> KeptRun::start(const Options& options, protocol
       std::filesystem::weakly_canonical(options.report_file)) {
     return fail(ErrorCode::kInvalidArgument,
                 fmt::format("--report: got {}, expected another file than --record", options.report_file));
+  }
+  if (options.is_bag) {
+    if (const Result<void> possible = recording::can_be_bag(options.record_file); !possible)
+      return fail(possible.error());
   }
   if (!options.report_file.empty()) {
     if (const Result<void> possible = can_be_reported(options.report_file); !possible)
@@ -70,6 +75,10 @@ Result<void> KeptRun::finish() {
     fmt::print(stderr, "{}: the disk was too slow for {} steps\n", told, report->left_out);
   if (report->missing > 0)
     fmt::print(stderr, "{}: {} steps are missing: the disk did not take them\n", told, report->missing);
+  if (is_bag_) {
+    if (const Result<void> written = recording::write_bag_metadata(record_file_); !written)
+      return fail(written.error());
+  }
   return report_file_.empty() ? Result<void>{} : write_report();
 }
 

@@ -35,11 +35,12 @@ class KeptRun {
 
  private:
   explicit KeptRun(const Options& options)
-      : record_file_{options.record_file}, report_file_{options.report_file} {}
+      : record_file_{options.record_file}, report_file_{options.report_file}, is_bag_{options.is_bag} {}
   [[nodiscard]] Result<void> write_report() const;
 
   std::string record_file_;
   std::string report_file_;
+  bool is_bag_;  ///< metadata.yaml is written beside the recording
   std::optional<recording::TemporaryFile>
       temporary_;  ///< what a report is made of, where nothing is recorded
   std::unique_ptr<recording::Recorder> recorder_;

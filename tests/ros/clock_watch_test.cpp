@@ -39,6 +39,18 @@ TEST(ClockWatch, SaysThatTheClockJumpedAndGoesOn) {
   EXPECT_EQ(watch.news(), "");
 }
 
+TEST(ClockWatch, KnowsWhenALateMessageWasStamped) {
+  ClockWatch watch("/odom");
+  ASSERT_TRUE(watch.accept(kNow, 5 * kMs, kNow));
+  EXPECT_EQ(watch.moment(), 5 * kMs);
+  ASSERT_TRUE(watch.accept(kNow + 20 * kMs, 22 * kMs, kNow));  // quicker than the first
+  EXPECT_EQ(watch.moment(), 22 * kMs);
+  ASSERT_TRUE(watch.accept(kNow + 40 * kMs, 72 * kMs, kNow));  // it waited for 30 ms
+  EXPECT_NEAR(static_cast<double>(watch.moment()), 42.0 * kMs, 0.1 * kMs);
+  ASSERT_TRUE(watch.accept(kNow + 60 * kMs, 260 * kMs, kNow));  // so late is another clock
+  EXPECT_EQ(watch.moment(), 260 * kMs);
+}
+
 TEST(ClockWatch, KnowsSimulatedTime) {
   ClockWatch watch("/odom");
   EXPECT_TRUE(watch.accept(12 * kMs, 0, kNow));

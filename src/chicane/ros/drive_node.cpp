@@ -188,6 +188,7 @@ class DriveNode {
       is_silent_ = false;
       odometry_ = *message;
       arrived_ = now;
+      moment_ = Clock::time_point(std::chrono::nanoseconds(clock_.moment()));
       is_fresh_ = true;
     }
   }
@@ -215,7 +216,10 @@ class DriveNode {
       if (is_driving_ && !was_blind_)
         habit_ = std::max(period_, habit_ + kHabit * (std::min(since, 1.0) - habit_));
       was_blind_ = false;
-      const double time = drive_.time(arrived_);
+      // Its stamp tells when it was measured; time does not go back after a cycle without odometry.
+      const Clock::time_point moment =
+          is_driving_ ? std::max(moment_, last_cycle_ + milliseconds{1}) : moment_;
+      const double time = drive_.time(moment);
       auto measured = sight_.measure(odometry_, time);
       if (!measured) {
         ++summary_.unusable;
@@ -224,7 +228,7 @@ class DriveNode {
       const bool has_road = sight_.has_road();
       if (!has_road)
         return log_.complain(fmt::format("no path on {} yet: the car stands", node_.topics.path));
-      answer(measured, arrived_, odometry_.stamp);
+      answer(measured, moment, odometry_.stamp);
       return;
     }
     if (!is_driving_ || since < kLatest * habit_) return;
@@ -397,7 +401,7 @@ class DriveNode {
   double last_speed_ = 0.0;   ///< where the last command acts [m/s]
   std::uint64_t writer_ = 0;  ///< of the odometry
   protocol::OdometryMessage odometry_;
-  Clock::time_point arrived_{}, last_cycle_{}, looked_{};
+  Clock::time_point arrived_{}, moment_{}, last_cycle_{}, looked_{};
   bool is_fresh_ = false;    ///< odometry waits for a cycle
   bool is_driving_ = false;  ///< cycles go on, with odometry or without
   bool was_blind_ = false;   ///< the last cycle had no odometry
