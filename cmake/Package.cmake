@@ -149,7 +149,7 @@ if(TARGET chicane_app)
   install(FILES ${debian_dir}/chicane.desktop DESTINATION share/applications COMPONENT deb_chicane EXCLUDE_FROM_ALL)
   install(FILES web/public/favicon.svg DESTINATION share/icons/hicolor/scalable/apps RENAME chicane.svg COMPONENT deb_chicane
           EXCLUDE_FROM_ALL)
-  install(FILES ${debian_dir}/chicane-serve@.service DESTINATION lib/systemd/system COMPONENT deb_chicane EXCLUDE_FROM_ALL)
+  install(FILES ${debian_dir}/chicane-serve@.service ${debian_dir}/chicane-ros@.service DESTINATION lib/systemd/system COMPONENT deb_chicane EXCLUDE_FROM_ALL)
 
   # The tarball brings along the libraries that not every system has; the C library is the system's.
   set(private_libraries lib/chicane)

@@ -29,14 +29,14 @@ library='usr/lib/[a-z0-9_]+-linux-gnu'
 expect chicane usr/bin/chicane usr/share/chicane/{tracks/lakeside.csv,cars/udacity.yaml,presets/default.yaml,scenarios/first-lap.yaml} \
   usr/share/man/man1/chicane.1.gz usr/share/bash-completion/completions/chicane.bash usr/share/zsh/vendor-completions/_chicane \
   usr/share/fish/vendor_completions.d/chicane.fish usr/share/applications/chicane.desktop usr/share/icons/hicolor/scalable/apps/chicane.svg \
-  usr/lib/systemd/system/chicane-serve@.service
+  usr/lib/systemd/system/chicane-serve@.service usr/lib/systemd/system/chicane-ros@.service
 expect libchicane-dev usr/include/chicane/protocol/library.hpp "$library"/{libchicane_controller.a,cmake/chicane/chicaneConfig.cmake} \
   "$library"/pkgconfig/{chicane,chicane-solver}.pc
 expect chicane-doc usr/share/doc/chicane/{README.md,docs/tutorial.md,examples/01_drive_a_lap.cpp}
 both=$(sort "$work"/{chicane,libchicane-dev,chicane-doc} | uniq -d | grep -v '/$') && fail "in two packages: $both"
 
 depends() { dpkg-deb -f "$packages/$1"_*.deb Depends; }
-for library in libc6 libfmt9 libyaml-cpp; do [[ $(depends chicane) == *"$library"* ]] || fail "chicane does not depend on $library: $(depends chicane)"; done
+for library in libc6 libfmt9 libyaml-cpp libddsc0debian; do [[ $(depends chicane) == *"$library"* ]] || fail "chicane does not depend on $library: $(depends chicane)"; done
 version=$(dpkg-deb -f "$packages"/chicane_*.deb Version)
 for package in "chicane (= $version)" libexpected-dev libyaml-cpp-dev; do
   [[ $(depends libchicane-dev) == *"$package"* ]] || fail "libchicane-dev does not depend on $package: $(depends libchicane-dev)"

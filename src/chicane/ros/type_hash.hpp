@@ -16,7 +16,7 @@ namespace chicane::ros {
 [[nodiscard]] std::string ros_type(std::string_view type);
 
 /// The description of a type as it is hashed: JSON of type_description_interfaces/msg/TypeDescription without
-/// default values, as in REP 2011. `schema`: protocol::ros_schema(type).
+/// default values, as in REP 2016. `schema`: protocol::ros_schema(type).
 [[nodiscard]] std::string type_description(std::string_view type, std::string_view schema);
 /// The hash that ROS 2 announces for a type from Iron on, "RIHS01_" and 64 hexadecimal digits: SHA-256 of
 /// type_description(). Empty for a type whose definition is not known.
