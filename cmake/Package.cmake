@@ -154,6 +154,17 @@ if(TARGET chicane_app)
   # The tarball brings along the libraries that not every system has; the C library is the system's.
   set(private_libraries lib/chicane)
   set_target_properties(chicane_app PROPERTIES INSTALL_RPATH "$ORIGIN/../${private_libraries}")
+  target_link_options(chicane_app PRIVATE -Wl,--disable-new-dtags)  # an RPATH, which holds for the libraries of libraries, too
+  # Debian's libddsc has a path of its own, which keeps the loader from ours for what it needs: the program names it, too.
+  if(CHICANE_HAVE_ROS)
+    foreach(library IN ITEMS ssl iceoryx_binding_c)
+      find_library(CHICANE_${library}_OF_DDSC ${library})
+      mark_as_advanced(CHICANE_${library}_OF_DDSC)
+      if(CHICANE_${library}_OF_DDSC)
+        target_link_options(chicane_app PRIVATE "LINKER:--push-state,--no-as-needed,-l${library},--pop-state")
+      endif()
+    endforeach()
+  endif()
   install(CODE "file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${program_file} RESOLVED_DEPENDENCIES_VAR libraries
                      POST_EXCLUDE_REGEXES [[/(ld-linux.*|lib(c|m))[.]so]])
                 file(INSTALL \${libraries} DESTINATION \${CMAKE_INSTALL_PREFIX}/${private_libraries} FOLLOW_SYMLINK_CHAIN)"
