@@ -4,7 +4,8 @@
 //   ros_partner DOMAIN SECONDS best-effort     odometry with a quality of service that a reliable reader
 //   cannot use ros_partner DOMAIN SECONDS wrong-type      another type on the topic of the odometry
 //   ros_partner DOMAIN SECONDS reliable-reader a reader of /drive that wants reliable messages
-//   ros_partner DOMAIN SECONDS clock           odometry of a car that stands; its clock jumps by 5 s
+//   ros_partner DOMAIN SECONDS set            asks the controller's parameter service to set its latency to
+//   35 ms ros_partner DOMAIN SECONDS clock           odometry of a car that stands; its clock jumps by 5 s
 //   ros_partner DOMAIN SECONDS twice           each message twice, each tenth late
 //   ros_partner DOMAIN SECONDS garbage         bytes that are no message, and numbers that are not finite
 #include <chrono>
@@ -14,6 +15,7 @@
 #include <thread>
 
 #include "chicane/protocol/car_messages.hpp"
+#include "chicane/protocol/parameter_messages.hpp"
 #include "chicane/ros/dds.hpp"
 
 namespace {
@@ -44,6 +46,27 @@ void send(Writer& writer, const std::string& fault, int count) {
   if (fault == "twice") writer.write(encode(message));
 }
 
+/// 0 when the service said that it did.
+int set_weight(Participant& node, std::chrono::steady_clock::time_point end) {
+  auto writer =
+      node.writer("rq/chicane/set_parametersRequest", "rcl_interfaces/srv/SetParameters_Request", {});
+  auto reader =
+      node.reader("rr/chicane/set_parametersReply", "rcl_interfaces/srv/SetParameters_Response", {});
+  if (!writer || !reader) return 3;
+  while (std::chrono::steady_clock::now() < end && ((*writer)->matched() == 0 || (*reader)->matched() == 0))
+    std::this_thread::sleep_for(milliseconds{20});
+  (*writer)->write(
+      chicane::protocol::encode_set_request({.parameters = {{"tracking_mpc.weight_lateral", 2.0}}}));
+  while (std::chrono::steady_clock::now() < end) {
+    node.wait(milliseconds{50});
+    for (const auto& sample : (*reader)->take()) {
+      const auto outcomes = chicane::protocol::decode_set_reply(sample.bytes);
+      return outcomes && outcomes->size() == 1 && (*outcomes)[0].is_successful ? 0 : 1;
+    }
+  }
+  return 1;
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -52,6 +75,7 @@ int main(int count, char** words) {
   auto node = Participant::create({.domain = std::atoi(words[1])});
   if (!node) return 3;
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{std::atoi(words[2])};
+  if (fault == "set") return set_weight(**node, end);
   if (fault == "reliable-reader") {
     auto reader = (*node)->reader("/drive", std::string(chicane::protocol::DriveMessage::kType), {});
     std::this_thread::sleep_until(end);

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """`chicane ros` and `chicane ros --simulate` as two processes on loopback, in a DDS domain of their own.
 
-    two_processes.py CHICANE                     a lap like that of `drive`; kill -9 of the controller, then of the simulator
+    two_processes.py CHICANE "" PARTNER          a lap like that of `drive`, a parameter set by its service; kill -9 of
+                                                 the controller, then of the simulator
     two_processes.py CHICANE --laps              three laps on two tracks, with both meanings of a drive message
     two_processes.py CHICANE --misfit PARTNER    partners that do it wrong (partner.cpp): each is said in words
 """
@@ -73,6 +74,9 @@ def a_lap_and_two_kills(chicane, folder):
     alone = laps_alone(chicane, "--track", "oval", "--laps", "1")
     simulator = Program(chicane, folder, "simulator", "--simulate", "--track", "oval", "--laps", "0")
     controller = Program(chicane, folder, "controller", "--track", "oval", "--port", "0")
+    simulator.wait_for(r"first command", 10)
+    asked = subprocess.run([sys.argv[3], str(DOMAIN), "5", "set"], check=False)
+    check(asked.returncode == 0, "a parameter is set by the service of its node")
     lap = float(simulator.wait_for(r"lap 1: ([\d.]+) s, .*clean", 30)[1])
     check(abs(lap - alone[0]) <= CLOSE_S, f"the lap took {lap} s, and {alone[0]:.2f} s in one process")
     controller.wait_for(r"lap 1: ", 2)

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
+#include <future>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +16,7 @@
 #include "chicane/ros/car_sight.hpp"
 #include "chicane/ros/clock_watch.hpp"
 #include "chicane/ros/drive_command.hpp"
+#include "chicane/ros/parameter_services.hpp"
 #include "chicane/ros/partner_watch.hpp"
 #include "chicane/ros/run_publisher.hpp"
 #include "chicane/run/external_drive.hpp"
@@ -26,8 +29,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr double kSoonest = 0.75;    // of a control period, from cycle to cycle
-constexpr double kLatest = 1.6;      // of the usual time from cycle to cycle: then nothing was measured
+constexpr double kSoonest = 0.75;  // of a control period, from cycle to cycle
+constexpr double kLatest =
+    2.2;  // of the usual time from cycle to cycle: two did not come, nothing was measured
 constexpr double kAbsence = 10.0;    // without odometry: cycles end [s]
 constexpr double kHabit = 0.1;       // weight of the newest in means
 constexpr double kLookPeriod = 0.5;  // between looks at partners [s]
@@ -106,13 +110,14 @@ class DriveNode {
  public:
   DriveNode(const NodeOptions& node, const wire::ServeOptions& options,
             std::unique_ptr<Participant> participant, CarTopics topics,
-            std::unique_ptr<RunPublisher> publisher, std::unique_ptr<controller::Controller> controller,
-            const wire::ServeHooks& hooks)
+            std::unique_ptr<RunPublisher> publisher, std::unique_ptr<ParameterServices> parameters,
+            std::unique_ptr<controller::Controller> controller, const wire::ServeHooks& hooks)
       : node_{node},
         options_{options},
         participant_{std::move(participant)},
         topics_{std::move(topics)},
         publisher_{std::move(publisher)},
+        parameters_{std::move(parameters)},
         log_{hooks.log},
         hooks_{.settings = hooks.settings,
                .on_change = hooks.on_change,
@@ -141,6 +146,7 @@ class DriveNode {
     while (!stop) {
       participant_->wait(patience(Clock::now()));
       read_requests();
+      if (parameters_) parameters_->serve();
       read_path();
       read_odometry();
       read_imu();
@@ -386,6 +392,7 @@ class DriveNode {
   std::unique_ptr<Participant> participant_;
   CarTopics topics_;
   std::unique_ptr<RunPublisher> publisher_;
+  std::unique_ptr<ParameterServices> parameters_;  ///< null: none
   wire::SparseLog log_;
   run::ExternalDriveHooks hooks_;
   run::ExternalDrive drive_;
@@ -431,12 +438,25 @@ Result<wire::ServeSummary> drive(const NodeOptions& node, const wire::ServeOptio
   auto server =
       net::Server::create(options.server, router.handlers(std::move(hooks.pages)), std::move(assets));
   if (!server) return fail(server.error());
+  std::unique_ptr<ParameterServices> parameters;
+  if (hooks.parameters != nullptr) {
+    auto services =
+        ParameterServices::create(**participant, *hooks.parameters, [&server](std::function<void()> task) {
+          (*server)->run_after(std::chrono::nanoseconds{0}, std::move(task));
+        });
+    if (!services) return fail(services.error());
+    parameters = std::move(*services);
+  }
   if (hooks.on_listening) hooks.on_listening((*server)->port());
   wire::ServeSummary summary;
   {
     DriveNode driving(node, options, std::move(*participant), std::move(*topics), std::move(*publisher),
-                      std::move(controller), hooks);
+                      std::move(parameters), std::move(controller), hooks);
     summary = driving.run(stop);
+    // No task of the services is left on the network thread when they end.
+    std::promise<void> is_idle;
+    (*server)->run_after(std::chrono::nanoseconds{0}, [&is_idle] { is_idle.set_value(); });
+    is_idle.get_future().wait();
   }
   if (hooks.on_end) hooks.on_end();
   server->reset();

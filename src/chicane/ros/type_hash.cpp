@@ -105,7 +105,9 @@ std::string described(std::string_view name, const Definition& definition) {
 
 }  // namespace
 
-std::string dds_topic(std::string_view topic) { return "rt" + std::string(topic); }
+std::string dds_topic(std::string_view topic) {
+  return (topic.starts_with('/') ? "rt" : "") + std::string(topic);
+}
 
 std::string dds_type(std::string_view type) {
   std::string name;

@@ -6,7 +6,8 @@
 
 namespace chicane::ros {
 
-/// The name of a ROS 2 topic in DDS: "/drive" is "rt/drive".
+/// The name of a ROS 2 topic in DDS: "/drive" is "rt/drive". Names without a slash in front, such as those of
+/// services, stay as they are.
 [[nodiscard]] std::string dds_topic(std::string_view topic);
 /// The name of a ROS 2 message type in DDS: "nav_msgs/msg/Odometry" is "nav_msgs::msg::dds_::Odometry_".
 [[nodiscard]] std::string dds_type(std::string_view type);

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/parameter_messages.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "protocol/cdr_reader.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+constexpr ServiceCall kCall{.client = 0x1122334455667788, .sequence = 7};
+
+TEST(ParameterMessages, RequestsAreReadAsTheyWereWritten) {
+  const auto names =
+      decode_names_request(encode_names_request({.call = kCall, .names = {"latency_ms", "laps"}}));
+  ASSERT_TRUE(names);
+  EXPECT_EQ(names->call.client, kCall.client);
+  EXPECT_EQ(names->call.sequence, 7);
+  EXPECT_THAT(names->names, testing::ElementsAre("latency_ms", "laps"));
+
+  const auto set = decode_set_request(encode_set_request(
+      {.call = kCall,
+       .parameters = {
+           {"latency_ms", 50.0}, {"laps", 3.0}, {"controller", std::string("pid")}, {"x", true}}}));
+  ASSERT_TRUE(set);
+  ASSERT_EQ(set->parameters.size(), 4U);
+  EXPECT_EQ(std::get<double>(set->parameters[0].value), 50.0);
+  EXPECT_EQ(std::get<double>(set->parameters[1].value), 3.0);  // an integer on the wire
+  EXPECT_EQ(std::get<std::string>(set->parameters[2].value), "pid");
+  EXPECT_EQ(std::get<bool>(set->parameters[3].value), true);
+}
+
+TEST(ParameterMessages, RepliesAreReadAsTheyWereWritten) {
+  EXPECT_THAT(decode_list_reply(encode_list_reply(kCall, {"a", "b"})),
+              testing::Optional(testing::ElementsAre("a", "b")));
+  const auto outcomes = decode_set_reply(encode_set_reply(kCall, {{true, ""}, {false, "out of range"}}));
+  ASSERT_TRUE(outcomes);
+  EXPECT_TRUE((*outcomes)[0].is_successful);
+  EXPECT_EQ((*outcomes)[1].reason, "out of range");
+  const auto values = decode_get_reply(encode_get_reply(kCall, {{"latency_ms", 20.0}, {"unknown", {}}}));
+  ASSERT_TRUE(values);
+  EXPECT_EQ(std::get<double>((*values)[0]), 20.0);
+  EXPECT_TRUE(std::holds_alternative<std::monostate>((*values)[1]));
+}
+
+TEST(ParameterMessages, DescribeWithMeaningAndRange) {
+  const std::string bytes = encode_describe_reply(kCall, {{"latency_ms", 20.0}});
+  test::CdrReader reader(bytes);
+  EXPECT_EQ(reader.get<std::uint64_t>(), kCall.client);
+  EXPECT_EQ(reader.get<std::int64_t>(), 7);
+  EXPECT_EQ(reader.get<std::uint32_t>(), 1U);
+  EXPECT_EQ(reader.text(), "latency_ms");
+  EXPECT_EQ(reader.get<std::uint8_t>(), 3);  // PARAMETER_DOUBLE
+  EXPECT_THAT(reader.text(), testing::EndsWith("[ms]"));
+  EXPECT_EQ(reader.text(), "");
+  EXPECT_EQ(reader.get<std::uint8_t>(), 0);
+  EXPECT_EQ(reader.get<std::uint8_t>(), 0);
+  EXPECT_EQ(reader.get<std::uint32_t>(), 1U);
+  EXPECT_EQ(reader.number(), 0.0);
+  EXPECT_EQ(reader.number(), 500.0);
+}
+
+TEST(ParameterMessages, CutAnywhereAreRefused) {
+  const std::string bytes = encode_set_request({.call = kCall, .parameters = {{"latency_ms", 50.0}}});
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_FALSE(decode_set_request(std::string_view(bytes).substr(0, size))) << size;
+}
+
+}  // namespace
+}  // namespace chicane::protocol

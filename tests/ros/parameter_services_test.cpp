@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/ros/parameter_services.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <map>
+
+#include "chicane/protocol/parameter_messages.hpp"
+
+namespace chicane::ros {
+namespace {
+
+using protocol::foxglove::Parameter;
+
+class Store : public protocol::foxglove::ParameterStore {
+ public:
+  [[nodiscard]] std::vector<Parameter> list() const override {
+    return {{"latency_ms", latency_}, {"pid.gain", 1.0}};
+  }
+  [[nodiscard]] std::optional<Parameter> get(std::string_view name) const override {
+    if (name != "latency_ms") return std::nullopt;
+    return Parameter{"latency_ms", latency_};
+  }
+  Result<void> set(const Parameter& parameter) override {
+    if (parameter.name != "latency_ms") return fail(ErrorCode::kInvalidArgument, "unknown key");
+    latency_ = std::get<double>(parameter.value);
+    return {};
+  }
+
+ private:
+  double latency_ = 100.0;
+};
+
+/// A client of the services, in the same domain and process.
+class ParameterServicesTest : public testing::Test {
+ protected:
+  static constexpr int kDomain = 73;
+  void SetUp() override {
+    auto node = Participant::create({.domain = kDomain});
+    ASSERT_TRUE(node) << node.error().message;
+    node_ = std::move(*node);
+    auto services =
+        ParameterServices::create(*node_, store_, [](const std::function<void()>& task) { task(); });
+    ASSERT_TRUE(services);
+    services_ = std::move(*services);
+  }
+  std::string ask(const std::string& service, const std::string& type, const std::string& request) {
+    auto writer =
+        node_->writer("rq/chicane/" + service + "Request", "rcl_interfaces/srv/" + type + "_Request", {});
+    auto reader =
+        node_->reader("rr/chicane/" + service + "Reply", "rcl_interfaces/srv/" + type + "_Response", {});
+    EXPECT_TRUE(writer && reader);
+    (*writer)->write(request);
+    for (int i = 0; i < 100; ++i) {
+      node_->wait(std::chrono::milliseconds{20});
+      services_->serve();
+      const auto replies = (*reader)->take();
+      if (!replies.empty()) return replies[0].bytes;
+    }
+    return {};
+  }
+
+  Store store_;
+  std::unique_ptr<Participant> node_;
+  std::unique_ptr<ParameterServices> services_;
+};
+
+TEST_F(ParameterServicesTest, ListsByPrefix) {
+  EXPECT_THAT(protocol::decode_list_reply(ask("list_parameters", "ListParameters",
+                                              protocol::encode_names_request({.names = {"pid"}}))),
+              testing::Optional(testing::ElementsAre("pid.gain")));
+}
+
+TEST_F(ParameterServicesTest, SetsAndGets) {
+  const auto outcomes = protocol::decode_set_reply(
+      ask("set_parameters", "SetParameters",
+          protocol::encode_set_request({.parameters = {{"latency_ms", 30.0}, {"latency", 30.0}}})));
+  ASSERT_TRUE(outcomes);
+  ASSERT_EQ(outcomes->size(), 2U);
+  EXPECT_TRUE((*outcomes)[0].is_successful);
+  EXPECT_EQ((*outcomes)[1].reason, "unknown key");
+  const auto values = protocol::decode_get_reply(ask(
+      "get_parameters", "GetParameters", protocol::encode_names_request({.names = {"latency_ms", "none"}})));
+  ASSERT_TRUE(values);
+  EXPECT_EQ(std::get<double>((*values)[0]), 30.0);
+  EXPECT_TRUE(std::holds_alternative<std::monostate>((*values)[1]));
+}
+
+}  // namespace
+}  // namespace chicane::ros
