@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A partner that does it wrong, for two_processes.py:
+// A partner for two_processes.py, which asks for something or does it wrong: ros_partner DOMAIN SECONDS WHAT
 //
-//   ros_partner DOMAIN SECONDS best-effort     odometry with a quality of service that a reliable reader
-//   cannot use ros_partner DOMAIN SECONDS wrong-type      another type on the topic of the odometry
-//   ros_partner DOMAIN SECONDS reliable-reader a reader of /drive that wants reliable messages
-//   ros_partner DOMAIN SECONDS set            asks the controller's parameter service to set its latency to
-//   35 ms ros_partner DOMAIN SECONDS clock           odometry of a car that stands; its clock jumps by 5 s
-//   ros_partner DOMAIN SECONDS twice           each message twice, each tenth late
-//   ros_partner DOMAIN SECONDS garbage         bytes that are no message, and numbers that are not finite
+// set              asks the controller's parameter service to set a weight
+// stop, go         tells the controller to stop the car, to drive on
+// best-effort      odometry with a quality of service that a reliable reader cannot use
+// wrong-type       another type on the topic of the odometry
+// reliable-reader  a reader of /drive that wants reliable messages
+// clock            odometry of a car that stands; its clock jumps by 5 s
+// twice            each message twice, each tenth late
+// garbage          now and then bytes that are no message
+// no-numbers       now and then numbers that are not finite
 #include <chrono>
 #include <cstdlib>
 #include <limits>
@@ -46,6 +48,16 @@ void send(Writer& writer, const std::string& fault, int count) {
   if (fault == "twice") writer.write(encode(message));
 }
 
+int tell_stop(Participant& node, bool wanted) {
+  auto writer = node.writer("/chicane/stop", std::string(chicane::protocol::kBoolType), {});
+  if (!writer) return 3;
+  for (int i = 0; i < 100 && (*writer)->matched() == 0; ++i) std::this_thread::sleep_for(milliseconds{20});
+  std::this_thread::sleep_for(milliseconds{100});
+  (*writer)->write(chicane::protocol::encode_bool(wanted));
+  std::this_thread::sleep_for(milliseconds{100});
+  return 0;
+}
+
 /// 0 when the service said that it did.
 int set_weight(Participant& node, std::chrono::steady_clock::time_point end) {
   auto writer =
@@ -75,6 +87,7 @@ int main(int count, char** words) {
   auto node = Participant::create({.domain = std::atoi(words[1])});
   if (!node) return 3;
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{std::atoi(words[2])};
+  if (fault == "stop" || fault == "go") return tell_stop(**node, fault == "stop");
   if (fault == "set") return set_weight(**node, end);
   if (fault == "reliable-reader") {
     auto reader = (*node)->reader("/drive", std::string(chicane::protocol::DriveMessage::kType), {});

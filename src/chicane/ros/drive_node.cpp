@@ -69,7 +69,7 @@ std::vector<WantedPartner> wanted_partners(const NodeOptions& node) {
 
 /// The topics of the car; null where their names are empty.
 struct CarTopics {
-  std::unique_ptr<Reader> odom{}, imu{}, path{}, initial_pose{}, stop{};
+  std::unique_ptr<Reader> odom{}, imu{}, path{}, kept_path{}, initial_pose{}, stop{};
   std::unique_ptr<Writer> drive{}, autoware{}, stop_plan{};
 
   static Result<CarTopics> create(Participant& at, const NodeOptions& node) {
@@ -95,6 +95,10 @@ struct CarTopics {
     read(topics.odom, node.topics.odom, protocol::OdometryMessage::kType, node.odom_qos);
     read(topics.imu, node.topics.imu, protocol::ImuMessage::kType, any);
     read(topics.path, node.topics.path, protocol::PathMessage::kType, any);
+    // One that was sent before, too: a volatile reader gets none of those, and a transient local one no
+    // others.
+    read(topics.kept_path, node.topics.path, protocol::PathMessage::kType,
+         {.is_transient_local = true, .depth = 1});
     read(topics.initial_pose, node.topics.initial_pose, protocol::PoseMessage::kType, {});
     read(topics.stop, node.topics.stop, protocol::kBoolType, {});
     send(topics.drive, node.topics.drive, protocol::DriveMessage::kType, node.drive_qos);
@@ -347,7 +351,12 @@ class DriveNode {
 
   void read_path() {
     if (!topics_.path) return;
-    for (const Sample& sample : topics_.path->take()) {
+    read_paths(*topics_.kept_path);
+    read_paths(*topics_.path);
+  }
+
+  void read_paths(Reader& reader) {
+    for (const Sample& sample : reader.take()) {
       const auto path = protocol::decode_path(sample.bytes);
       if (!path) {
         log_.complain(
