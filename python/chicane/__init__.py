@@ -25,16 +25,23 @@ from ._controller import Controller  # noqa: E402
 from ._drive import drive, read, verify  # noqa: E402
 from ._known import cars, faults, frame_fields, parameters, presets, scenarios, tracks  # noqa: E402
 from ._limit import Limit, limit  # noqa: E402
+from ._problem import Problem  # noqa: E402
 from ._run import Frames, Recording, Run  # noqa: E402
+from ._solution import Solution, Solutions  # noqa: E402
 from ._sweep import sweep  # noqa: E402
+from ._symbols import (  # noqa: E402
+    Symbol, TraceError, acos, asin, atan, atan2, clip, cos, exp, hypot, log, maximum, minimum, norm2, rk4, sin, sqrt, table, tan, tanh, where,
+)
 from ._view import view  # noqa: E402
 
 if TYPE_CHECKING:
     from ._env import Env, VecEnv
 
 __all__ = [
-    "Command", "Controller", "Env", "Frames", "Limit", "NO_ANSWER", "Recording", "Run", "Seen", "VecEnv", "__version__", "cars", "drive",
-    "faults", "frame_fields", "limit", "parameters", "presets", "read", "scenarios", "sweep", "tracks", "verify", "view",
+    "Command", "Controller", "Env", "Frames", "Limit", "NO_ANSWER", "Problem", "Recording", "Run", "Seen", "Solution", "Solutions", "Symbol",
+    "TraceError", "VecEnv", "__version__", "acos", "asin", "atan", "atan2", "cars", "clip", "cos", "drive", "exp", "faults", "frame_fields",
+    "hypot", "limit", "log", "maximum", "minimum", "norm2", "parameters", "presets", "read", "rk4", "scenarios", "sin", "sqrt", "sweep",
+    "table", "tan", "tanh", "tracks", "verify", "view", "where",
 ]
 
 

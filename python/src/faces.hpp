@@ -15,5 +15,6 @@ void add_limit(pybind11::module_& module);
 void add_sweep(pybind11::module_& module);
 void add_view(pybind11::module_& module);
 void add_environment(pybind11::module_& module);
+void add_problem(pybind11::module_& module);
 
 }  // namespace chicane::python

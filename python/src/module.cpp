@@ -11,4 +11,5 @@ PYBIND11_MODULE(_chicane, module) {
   add_sweep(module);
   add_view(module);
   add_environment(module);
+  add_problem(module);
 }

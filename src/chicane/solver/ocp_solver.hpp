@@ -51,11 +51,11 @@ class OcpSolver {
 
   explicit OcpSolver(const SolverOptions& options = {}) noexcept : options_{options} {}
 
-  /// From the next solve on: SolverOptions::max_iterations.
+  // From the next solve on: all options, or SolverOptions::max_iterations, tolerance, start_from_states
+  // alone.
+  void set_options(const SolverOptions& options) noexcept { options_ = options; }
   void allow_iterations(int most) noexcept { options_.max_iterations = most; }
-  /// From the next solve on: SolverOptions::tolerance.
   void ask_for(double tolerance) noexcept { options_.tolerance = tolerance; }
-  /// From the next solve on: SolverOptions::start_from_states.
   void start_from_states(bool do_so) noexcept { options_.start_from_states = do_so; }
 
   /// Solves from x0. In: trajectory.horizon in [1, Capacity] and the inputs of the warm start (any values;
@@ -446,7 +446,7 @@ class OcpSolver {
 
   /// Within the loose tolerance; the barrier, too, which is what complementarity lacks to zero.
   [[nodiscard]] bool is_close(const SolveReport& report) const noexcept {
-    const double gap = kCanFilter && P::kNc > 0 ? barrier_.mu() : 0.0;
+    const double gap = kCanFilter && barrier_.count() > 0 ? barrier_.mu() : 0.0;
     const double digits = kCanFilter ? kRounding * std::fabs(report.cost) : 0.0;  // that a cost has
     return std::max({residual(report), gap, digits}) <= options_.loose_tolerance;
   }

@@ -215,6 +215,13 @@ concept ConsistentRates = (!kHasRateBounds<P> && !detail::NamesRates<P>) || requ
   requires detail::names_states<P>(P::kPreviousInput);
 };
 
+/// How many of its kNc soft constraints a problem has: all, unless it says so when the program runs.
+template <class P>
+[[nodiscard]] constexpr std::size_t constraint_count(const P& problem) noexcept {
+  if constexpr (requires { problem.constraint_count(); }) return problem.constraint_count();
+  return static_cast<std::size_t>(P::kNc);
+}
+
 /// x_{k+1} of plain numbers (or any one scalar type), whatever the level.
 template <class T, OcpProblem P>
 [[nodiscard]] std::array<T, P::kNx> next_state(const P& problem, int k, const std::array<T, P::kNx>& x,

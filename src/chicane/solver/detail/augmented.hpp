@@ -14,6 +14,7 @@
 #include "chicane/solver/detail/problem_pattern.hpp"
 #include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/problem.hpp"
+#include "chicane/solver/sparse_row.hpp"
 
 namespace chicane::solver {
 
@@ -71,6 +72,7 @@ class Augmented : public detail::PreviousInputs<P> {
   static constexpr int kNe = P::kNe + kEndEqualities + kEndConstraints;
   static constexpr bool kGaussNewton = !has_hessians<P>();
   static constexpr bool kRealTime = !has_filter_method<P>();
+  static constexpr bool kHasSparseRows = solver::kHasSparseRows<P>;
 
   static constexpr double kNearlyNone = 1e-6;
   /// One row that must hold: √ρ, ρ and y/ρ.
@@ -123,6 +125,7 @@ class Augmented : public detail::PreviousInputs<P> {
     return problem->constraint(k, x, u);
   }
 
+  [[nodiscard]] std::size_t constraint_count() const noexcept { return solver::constraint_count(*problem); }
   [[nodiscard]] SoftPenalty soft_penalty(int c) const requires(kNc > 0) {
     SoftPenalty price = problem->soft_penalty(c);
     price.linear *= price_factor[static_cast<std::size_t>(c)];

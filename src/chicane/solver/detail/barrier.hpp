@@ -10,6 +10,7 @@
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/problem_pattern.hpp"
 #include "chicane/solver/detail/soft_constraint.hpp"
+#include "chicane/solver/sparse_row.hpp"
 
 namespace chicane::solver {
 
@@ -37,6 +38,7 @@ class Barrier {
     constexpr double kLeast = 0.002;  // a start that keeps all constraints is likely to be a good one
     constexpr double kMost = 2.0;
     final_ = final_mu;
+    count_ = constraint_count(problem);
     mu_ = std::max(final_, highest_price(problem) * std::min(std::max(0.5 * violation, kLeast), kMost));
   }
   /// Raises the barrier again: small slacks would leave a new start no room.
@@ -44,7 +46,12 @@ class Barrier {
 
   [[nodiscard]] double mu() const noexcept { return mu_; }
   void set_mu(double mu) noexcept { mu_ = mu; }
-  [[nodiscard]] bool is_final() const noexcept { return kNc == 0 || mu_ <= final_; }
+  [[nodiscard]] bool is_final() const noexcept { return count() == 0 || mu_ <= final_; }
+  /// Of constraints; the first ones of kNc.
+  [[nodiscard]] std::size_t count() const noexcept {
+    if constexpr (kHasSparseRows<P>) return count_;
+    return kNc;
+  }
 
   /// Slacks, multipliers and barrier of one iterate, to come back to.
   struct Memory {
@@ -55,7 +62,7 @@ class Barrier {
     memory.mu = mu_;
     const double(*const from[4])[kStride] = {s_, t_, n_, z_};
     for (std::size_t i = 0; i < 4; ++i) {
-      for (std::size_t c = 0; c < kNc; ++c)
+      for (std::size_t c = 0; c < count(); ++c)
         std::copy(from[i][c], from[i][c] + padded_stages(horizon), memory.numbers[i][c]);
     }
   }
@@ -63,7 +70,7 @@ class Barrier {
     mu_ = memory.mu;
     double(*const to[4])[kStride] = {s_, t_, n_, z_};
     for (std::size_t i = 0; i < 4; ++i) {
-      for (std::size_t c = 0; c < kNc; ++c)
+      for (std::size_t c = 0; c < count(); ++c)
         std::copy(memory.numbers[i][c], memory.numbers[i][c] + padded_stages(horizon), to[i][c]);
     }
   }
@@ -83,7 +90,9 @@ class Barrier {
   /// Keeps its derivatives, for soft_change().
   template <class J>
   CHICANE_INLINE void store_row(std::size_t c, std::size_t k, const J& constraint) noexcept {
-    if constexpr (AnyJet<J>) {
+    if constexpr (AnySparseRow<J>) {
+      constraint.each_slope([&](std::size_t j, const V& slope) { slope.store(row_[c][j] + k); });
+    } else if constexpr (AnyJet<J>) {
       jet::repeat<size_of(J::kFirst)>([&](auto n) CHICANE_INLINE {
         constexpr int j = member_of(J::kFirst, n);
         jet::number<V>(jet::slope<j>(constraint)).store(row_[c][j] + k);
@@ -111,7 +120,7 @@ class Barrier {
   /// Smoothed penalty of the constraint values of one stage.
   double merit(const P& problem, const std::array<double, kNc>& values) const noexcept {
     double sum = 0.0;
-    for (std::size_t c = 0; c < kNc; ++c) {
+    for (std::size_t c = 0; c < count(); ++c) {
       SoftConstraint<> soft;
       soft.value = values[c];
       soft.centre(price_of(problem, c), mu_);
@@ -155,11 +164,11 @@ class Barrier {
   }
   /// Lowers it after a descent step once the predicted gain is within the barrier's own gap.
   void lower_for_gain(double gain, std::size_t horizon) noexcept {
-    if (gain < mu_ * static_cast<double>(horizon * kNc)) mu_ = std::max(final_, 0.2 * mu_);
+    if (gain < mu_ * static_cast<double>(horizon * count())) mu_ = std::max(final_, 0.2 * mu_);
   }
 
   bool exceeds_a_cap(const P& problem, std::size_t horizon) const noexcept {
-    for (std::size_t c = 0; c < kNc; ++c) {
+    for (std::size_t c = 0; c < count(); ++c) {
       const double cap = price_of(problem, c).cap;
       for (std::size_t k = 0; k < horizon; ++k) {
         if (value_[c][k] > cap) return true;
@@ -173,7 +182,7 @@ class Barrier {
 
   static double highest_price(const P& problem) noexcept {
     double price = 0.0;
-    for (std::size_t c = 0; c < kNc; ++c) {
+    for (std::size_t c = 0; c < constraint_count(problem); ++c) {
       price = std::max({price, price_of(problem, c).linear, 0.1 * price_of(problem, c).quadratic});
     }
     return price;
@@ -184,7 +193,7 @@ class Barrier {
     for (std::size_t k = 0; k < step.horizon; k += 8) {
       const auto live =
           stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(step.horizon));
-      for (std::size_t c = 0; c < kNc; ++c) {
+      for (std::size_t c = 0; c < count(); ++c) {
         const SoftConstraint<V> soft = load(c, k);
         visit(soft, soft.step(price_of(problem, c), mu_, change(step, c, k)), live, c, k);
       }
@@ -192,6 +201,7 @@ class Barrier {
   }
   double mu_ = 0.0;
   double final_ = 0.0;
+  std::size_t count_ = kNc;
   alignas(64) double value_[kNc > 0 ? kNc : 1][kStride]{};
   alignas(64) double s_[kNc > 0 ? kNc : 1][kStride]{};
   alignas(64) double t_[kNc > 0 ? kNc : 1][kStride]{};

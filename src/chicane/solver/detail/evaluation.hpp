@@ -11,6 +11,7 @@
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/problem_pattern.hpp"
 #include "chicane/solver/problem.hpp"
+#include "chicane/solver/sparse_row.hpp"
 
 namespace chicane::solver {
 
@@ -53,7 +54,10 @@ class Evaluation {
   /// Functions of the stages k0 … k0 + 7 with derivatives up to Order.
   template <int Order, class Point>
   CHICANE_INLINE static auto stages(const P& problem, const Point& t, std::size_t k0) noexcept {
-    if constexpr (kIsLarge) {
+    if constexpr (kIsSparse) {
+      return evaluate<Order>(problem, StageLanes<V>{static_cast<int>(k0)}, sparse<V, Order, kNx>(t.x, k0),
+                             sparse<V, Order, kNu>(t.u, k0));
+    } else if constexpr (kIsLarge) {
       return in_blocks(problem, t, k0);
     } else if constexpr (kIsStructured) {
       return evaluate<Order>(problem, StageLanes<V>{static_cast<int>(k0)}, seeds<Order, 0, kNx>(t.x, k0),
@@ -132,7 +136,9 @@ class Evaluation {
   /// Terminal residuals; their values through number() and slope_number().
   template <int Order, class Point>
   static auto end(const P& problem, const Point& t) noexcept {
-    if constexpr (kIsLarge) {
+    if constexpr (kIsSparse) {
+      return problem.terminal_residual(sparse<double, Order, kNx>(t.x, t.horizon));
+    } else if constexpr (kIsLarge) {
       Rows<double, P::kNe> rows;
       blocks<double>([&](int begin, auto seed) {
         put(problem.terminal_residual(seed.template operator()<0, kNx>(t.x, t.horizon)), begin, rows);
@@ -158,6 +164,7 @@ class Evaluation {
   }
 
  private:
+  static constexpr bool kIsSparse = kHasSparseRows<P>;
   /// Problems of many variables: derivatives by one block of them after the other.
   static constexpr bool kIsLarge = kVariables > static_cast<int>(kMostUnrolled);
   static constexpr int kBlocks = kIsLarge ? (kVariables + 15) / 16 : 1;
@@ -175,15 +182,21 @@ class Evaluation {
   };
   template <class T, int Order>
   using Dense = typename DenseOf<T, Order>::Type;
-  static constexpr bool kTakesLanes =
-      !kIsStructured && requires(const P& p, StageLanes<V> k, const std::array<Dense<V, 1>, kNx>& x,
-                                 const std::array<Dense<V, 1>, kNu>& u) {
-    p.dynamics(k, x, u);
-    p.residual(k, x, u);
-    requires kNc == 0 || requires { p.constraint(k, x, u); };
-  };
+  static constexpr bool takes_lanes() noexcept {
+    if constexpr (kIsSparse) {
+      return true;
+    } else {
+      return !kIsStructured && requires(const P& p, StageLanes<V> k, const std::array<Dense<V, 1>, kNx>& x,
+                                        const std::array<Dense<V, 1>, kNu>& u) {
+        p.dynamics(k, x, u);
+        p.residual(k, x, u);
+        requires kNc == 0 || requires { p.constraint(k, x, u); };
+      };
+    }
+  }
+  static constexpr bool kTakesLanes = takes_lanes();
   static_assert(
-      !kIsLarge || (kTakesLanes && !has_hessians<P>()),
+      kIsSparse || !kIsLarge || (kTakesLanes && !has_hessians<P>()),
       "more than 24 variables in a stage: functions over arrays of one scalar type, with `class K` for "
       "the stage, and kGaussNewton = true");
 
@@ -257,6 +270,16 @@ class Evaluation {
   CHICANE_INLINE static auto seeds(const Values& values, std::size_t k0) noexcept {
     detail::Seeds<V, Order, Begin, Count> result;
     jet::repeat<Count>([&](auto n) CHICANE_INLINE { std::get<n>(result).v = V::load(values[n] + k0); });
+    return result;
+  }
+  /// Variables of a problem whose rows say themselves what they depend on.
+  template <class T, int Order, int Count, class Values>
+  CHICANE_INLINE static auto sparse(const Values& values, std::size_t k0) noexcept {
+    std::array<SparseSeed<T, Order>, static_cast<std::size_t>(Count)> result;
+    for (std::size_t n = 0; n < static_cast<std::size_t>(Count); ++n) {
+      if constexpr (std::is_same_v<T, double>) result[n].v = values[n][k0];
+      if constexpr (!std::is_same_v<T, double>) result[n].v = T::load(values[n] + k0);
+    }
     return result;
   }
   /// Variables of one type that stores all derivatives.

@@ -325,7 +325,7 @@ class FilterMethod {
           stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(point.horizon));
       const auto values = Evaluate::values(problem, point, k);
       cost += select(live, values.cost, V(0.0));
-      for (std::size_t c = 0; c < kNc; ++c)
+      for (std::size_t c = 0; c < slacks.count(); ++c)
         soft_.measure(price_of(problem, c), slacks, c, k, values.constraint[c], length, live, miss, cost);
       for (std::size_t i = 0; i < kNx; ++i)
         miss += select(live, abs(values.next[i] - V::load_unaligned(point.x[i] + k + 1)), V(0.0));

@@ -30,6 +30,11 @@ class HardSolver {
 
   explicit HardSolver(const SolverOptions& options = {}) noexcept : options_{options}, inner_{options} {}
 
+  /// From the next solve on.
+  void set_options(const SolverOptions& options) noexcept {
+    options_ = options;
+    inner_.set_options(options);
+  }
   /// From the next solve on: SolverOptions::max_iterations, of all rounds together.
   void allow_iterations(int most) noexcept { options_.max_iterations = most; }
 

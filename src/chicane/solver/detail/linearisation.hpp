@@ -126,7 +126,9 @@ class Linearisation {
     each_row<typename Evaluate::EndValue, Order>(rows, [&](auto, const auto& r) CHICANE_INLINE {
       const double value = Evaluate::number(r.v);
       cost += 0.5 * value * value;
-      if constexpr (Layout::is_large()) {
+      if constexpr (AnySparseRow<std::remove_cvref_t<decltype(r)>>) {
+        add_sparse_end_row<Order>(r, value, lq);
+      } else if constexpr (Layout::is_large()) {
         add_large_end_row(r, value, lq);
       } else {
         add_end_row(r, value, lq);
@@ -154,6 +156,19 @@ class Linearisation {
         if constexpr (p.i != p.j) lq.terminal[p.j][p.i] += share;
       }
     });
+  }
+  template <int Order, class R>
+  static void add_sparse_end_row(const R& r, double value, Lq& lq) noexcept {
+    r.each_slope([&](std::size_t i, double slope) {
+      lq.terminal[kNx][i] += value * slope;
+      r.each_slope([&](std::size_t j, double other) { lq.terminal[i][j] += slope * other; });
+    });
+    if constexpr (Order == 2) {
+      r.each_curvature([&](std::size_t i, std::size_t j, double curvature) {
+        lq.terminal[i][j] += value * curvature;
+        if (i != j) lq.terminal[j][i] += value * curvature;
+      });
+    }
   }
   template <class R>
   static void add_large_end_row(const R& r, double value, Lq& lq) noexcept {

@@ -33,7 +33,7 @@ class SoftSteps {
     for (std::size_t k = 0; k < step.horizon; k += 8) {
       const auto live =
           stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(step.horizon));
-      for (std::size_t c = 0; c < kNc; ++c) {
+      for (std::size_t c = 0; c < slacks.count(); ++c) {
         const SoftPenalty price = price_of(problem, c);
         const SoftConstraint<V> soft = slacks.load(c, k);
         const V change = slacks.change(step, c, k);
@@ -80,7 +80,7 @@ class SoftSteps {
     constexpr double kFar = 1e10;
     const double mu = slacks.mu();
     for (std::size_t k = 0; k < horizon; k += 8) {
-      for (std::size_t c = 0; c < kNc; ++c) {
+      for (std::size_t c = 0; c < slacks.count(); ++c) {
         SoftConstraint<V> soft = slacks.load(c, k);
         soft.s = V::load(s_at_[c] + k);
         soft.t = V::load(t_at_[c] + k);

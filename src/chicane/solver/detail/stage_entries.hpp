@@ -11,6 +11,7 @@
 #include "chicane/base/jet.hpp"
 #include "chicane/solver/detail/pattern.hpp"
 #include "chicane/solver/detail/problem_pattern.hpp"
+#include "chicane/solver/sparse_row.hpp"
 
 namespace chicane::solver {
 
@@ -28,7 +29,12 @@ CHICANE_INLINE inline void each_row(const Row& row, const Visit& visit) noexcept
   if constexpr (count == 0) {
     return;
   } else if constexpr (kIsDenseRow<Row>) {
-    for (std::size_t n = 0; n < count; ++n) visit(n, row[n]);
+    for (std::size_t n = 0; n < count; ++n) {
+      if constexpr (AnySparseRow<typename Row::value_type>) {
+        if (row[n].is_absent()) continue;
+      }
+      visit(n, row[n]);
+    }
   } else {
     unroll<count>([&](auto n) CHICANE_INLINE { visit(n, as_jet<V, Order>(std::get<n>(row))); });
   }
@@ -50,7 +56,10 @@ struct StageEntries {
   template <class J>
   static void set_jacobian(std::size_t i, const J& row, const V& defect, Jacobians& f) noexcept {
     V* const to = f.data() + i * Layout::kNz;
-    if constexpr (Layout::is_large()) {
+    if constexpr (AnySparseRow<J>) {
+      for (std::size_t j = 0; j < Layout::kNz; ++j) to[j] = V(0.0);
+      row.each_slope([&](std::size_t j, const V& slope) CHICANE_INLINE { to[z(j)] = slope; });
+    } else if constexpr (Layout::is_large()) {
       for (std::size_t j = 0; j < kVariables; ++j) to[z(j)] = row.slopes[j];
     } else {
       unroll<kVariables>([&](auto j) CHICANE_INLINE { to[z(j)] = row.slopes[j]; });
@@ -65,7 +74,9 @@ struct StageEntries {
   /// gradient += weight · dr
   template <class Rows, class J>
   static void add_gradient(std::size_t, const J& r, const V& weight, Gradient& gradient) noexcept {
-    if constexpr (Layout::is_large()) {
+    if constexpr (AnySparseRow<J>) {
+      r.each_slope([&](std::size_t i, const V& slope) CHICANE_INLINE { gradient[i] += weight * slope; });
+    } else if constexpr (Layout::is_large()) {
       for (std::size_t i = 0; i < kVariables; ++i) gradient[i] += weight * r.slopes[i];
     } else {
       unroll<kVariables>([&](auto i) CHICANE_INLINE { gradient[i] += weight * r.slopes[i]; });
@@ -74,6 +85,19 @@ struct StageEntries {
   /// l += weight · drᵀ dr, over the variables that the row depends on in any of the eight stages.
   template <class Rows, class J>
   static void add_square(std::size_t, const J& r, const V& weight, Costs& l) noexcept {
+    if constexpr (AnySparseRow<J>) {
+      r.each_slope([&](std::size_t j, const V& slope) CHICANE_INLINE {
+        const V scaled = weight * slope;
+        r.each_slope([&](std::size_t i, const V& other) CHICANE_INLINE {
+          if (i <= j) l[Layout::kL[z(i)][z(j)]] += scaled * other;
+        });
+      });
+    } else {
+      add_full_square(r, weight, l);
+    }
+  }
+  template <class J>
+  static void add_full_square(const J& r, const V& weight, Costs& l) noexcept {
     std::size_t present[kVariables];
     std::size_t count = 0;
     for (std::size_t j = 0; j < kVariables; ++j) {
@@ -93,14 +117,24 @@ struct StageEntries {
   }
   template <class J>
   static void add_to_gradient(const J& r, const V& weight, Costs& l) noexcept {
-    for (std::size_t i = 0; i < kVariables; ++i) l[Layout::kL[z(i)][Layout::kOne]] += weight * r.slopes[i];
+    if constexpr (AnySparseRow<J>) {
+      r.each_slope([&](std::size_t i, const V& slope)
+                       CHICANE_INLINE { l[Layout::kL[z(i)][Layout::kOne]] += weight * slope; });
+    } else {
+      for (std::size_t i = 0; i < kVariables; ++i) l[Layout::kL[z(i)][Layout::kOne]] += weight * r.slopes[i];
+    }
   }
   /// l += weight · ddr
   template <class J>
   static void add_curvature(const J& r, const V& weight, Costs& l) noexcept {
-    std::size_t at = 0;
-    for (std::size_t j = 0; j < kVariables; ++j) {
-      for (std::size_t i = 0; i <= j; ++i, ++at) l[Layout::kL[z(i)][z(j)]] += weight * r.curvatures[at];
+    if constexpr (AnySparseRow<J>) {
+      r.each_curvature([&](std::size_t i, std::size_t j, const V& curvature)
+                           CHICANE_INLINE { l[Layout::kL[z(i)][z(j)]] += weight * curvature; });
+    } else {
+      std::size_t at = 0;
+      for (std::size_t j = 0; j < kVariables; ++j) {
+        for (std::size_t i = 0; i <= j; ++i, ++at) l[Layout::kL[z(i)][z(j)]] += weight * r.curvatures[at];
+      }
     }
   }
 };

@@ -1,0 +1,398 @@
+# SPDX-License-Identifier: MIT
+"""Optimal control problems in plain Python, solved at once (docs/python_problems.md)."""
+from __future__ import annotations
+
+import inspect
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _chicane, _cost
+from ._solution import Solution, Solutions
+from ._symbols import Graph, Objects, Symbol, TraceError, refuse, where
+
+Array = npt.NDArray[np.float64]
+Function = Callable[..., Any]
+FUNCTIONS = ("dynamics", "residual", "constraint", "equality", "terminal_residual", "terminal_equality", "terminal_constraint")
+
+
+class Problem:
+    """min Σ_k cost(x_k, u_k) + terminal(x_N)  s.t.  x_0 given, x_{k+1} = dynamics(x_k, u_k), and what else it is told.
+
+        ocp = ch.Problem(nx=2, nu=1, horizon=20)
+
+        @ocp.dynamics
+        def _(x, u):
+            return [x[0] + 0.1 * x[1], x[1] + 0.1 * u[0]]
+        ocp.cost(lambda x, u: x @ x + 0.1 * u @ u)
+        ocp.bounds(u=(-1, 1))
+        solution = ocp.solve([1.0, 0.0])
+
+    Functions are called once, with symbols: x of shape (nx,), u of shape (nu,), then, where they take them, p of shape
+    (parameters,) and k, the number of the stage. Functions at the end are called with x, and p and k where they take them.
+    What they do with them is recorded and differentiated; what cannot be recorded is refused with its line.
+
+    nx, nu: at most 24 and 8. horizon: intervals N, at most 200. parameters: how many numbers solve() gets as p.
+    One thread at a time; the interpreter's lock is released while C++ works."""
+
+    def __init__(self, nx: int, nu: int, horizon: int, parameters: int = 0) -> None:
+        for name, value, least, most in (("nx", nx, 1, 24), ("nu", nu, 1, 8), ("horizon", horizon, 1, 200), ("parameters", parameters, 0, 1000)):
+            if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
+                raise ValueError(f"Problem: {name}: got {value!r}, expected a whole number from {least} to {most}")
+        self.nx, self.nu, self.horizon, self.parameters = int(nx), int(nu), int(horizon), int(parameters)
+        self.graph = Graph()
+        self._x = self._symbols("variable", range(self.nx))
+        self._u = self._symbols("variable", range(self.nx, self.nx + self.nu))
+        self._p = self._symbols("parameter", range(self.parameters))
+        self._k = Symbol(self.graph, self.graph.add("stage"))
+        self.rows: dict[str, list[Symbol]] = {name: [] for name in FUNCTIONS}
+        self.names: dict[str, list[str]] = {name: [] for name in FUNCTIONS}
+        self.prices: list[tuple[float, float, float]] = []
+        self.is_hard: list[bool] = []
+        self._lower = np.full((self.horizon, self.nu), -np.inf)
+        self._upper = np.full((self.horizon, self.nu), np.inf)
+        self._rest: dict[str, Symbol | None] = {"residual": None, "terminal_residual": None}
+        self._numbers = {"residual": 0.0, "terminal_residual": 0.0}
+        self._at_least = {"residual": 0.0, "terminal_residual": 0.0}
+        self._interpreter: _chicane.Interpreter | None = None
+        self._compiled: Any = None
+        self._last: Solution | None = None
+
+    # ---- what the problem is
+
+    def dynamics(self, function: Function) -> Function:
+        """The next state, nx values. Also as a decorator."""
+        rows = self._trace(function, "dynamics")
+        if len(rows) != self.nx:
+            raise ValueError(f"dynamics: got {len(rows)} values, expected {self.nx}, one for each state")
+        self.rows["dynamics"] = rows
+        self._change()
+        return function
+
+    def cost(self, function: Function, at_least: float = 0.0) -> Function:
+        """What a stage costs, added to what it costs already: one twice differentiable expression, or a list of residuals r,
+        which costs ½ Σ r². An expression that is not a sum of squares must stay above `at_least`."""
+        return self._add_cost(function, "residual", at_least)
+
+    def terminal(self, function: Function, at_least: float = 0.0) -> Function:
+        """The same of the state at the end."""
+        return self._add_cost(function, "terminal_residual", at_least)
+
+    def bounds(self, u: Any = None, x: Any = None) -> None:
+        """Bounds (low, high) on inputs and states: numbers, or arrays of shape (nu,) or (horizon, nu), (nx,) for states. Inputs never
+        leave theirs; states are hard constraints from x_1 on. Infinite: none."""
+        if u is not None:
+            self._lower, self._upper = self._pair("u", u, (self.horizon, self.nu))
+        if x is not None:
+            low, high = self._pair("x", x, (self.nx,))
+            for i in range(self.nx):
+                for bound, sign, word in ((low[i], -1.0, "below its bound"), (high[i], 1.0, "above its bound")):
+                    if np.isfinite(bound):
+                        beyond = sign * (self._x[i] - float(bound))
+                        self._add_constraint([where(self._k < 0.5, -1.0, beyond)], f"x[{i}] {word}", True, (500.0, 200.0), np.inf)
+                        self.rows["terminal_constraint"].append(beyond)
+                        self.names["terminal_constraint"].append(f"x[{i}] {word}")
+        self._change()
+
+    def subject_to(self, function: Function, *, hard: bool = False, price: tuple[float, float] = (500.0, 200.0), cap: float = np.inf,
+                   name: str = "", at_end: bool = False) -> Function:
+        """function(x, u) <= 0 in each stage, one value or several; with `at_end` function(x) <= 0 of the last state, which is hard.
+
+        Soft: violating it by s > 0 costs price[0] s + ½ price[1] s²; a violation above `cap` at the end makes the problem
+        infeasible. Hard: holds, or the problem is infeasible. name: for messages."""
+        if at_end:
+            self._add_hard(function, "terminal_constraint", name)
+        else:
+            if not (price[0] > 0 and price[1] >= 0):
+                raise ValueError(f"subject_to: price: got {price}, expected a linear price above 0 and a quadratic one that is not below")
+            rows = self._trace(function, "constraint")
+            self._add_constraint(rows, name or f"constraint {len(self.rows['constraint'])}", hard, price, cap)
+        self._change()
+        return function
+
+    def equality(self, function: Function, name: str = "") -> Function:
+        """function(x, u) = 0 in each stage."""
+        return self._add_hard(function, "equality", name)
+
+    def terminal_equality(self, function: Function, name: str = "") -> Function:
+        """function(x) = 0 of the last state."""
+        return self._add_hard(function, "terminal_equality", name)
+
+    # ---- solving it
+
+    def solve(self, x0: npt.ArrayLike, p: npt.ArrayLike | None = None, *, u: npt.ArrayLike | None = None, x: npt.ArrayLike | None = None,
+              start: Solution | None = None, tolerance: float = 1e-6, max_iterations: int = 1000, budget_s: float = 0.0,
+              second_order: bool = True) -> Solution:
+        """The best inputs from x0.
+
+        x0: (nx,). p: (parameters,), or (horizon + 1, parameters) with a row for each stage and the end.
+        u: inputs to start from, (horizon, nu); x: states to start from, (horizon + 1, nx); else inputs of 0, simulated.
+        start: an earlier solution, in the place of both, with its multipliers.
+        tolerance: of the conditions of optimality, (0, 1e-2]. budget_s: when to stop, best answer so far [s]; 0: never."""
+        state = self._array("x0", x0, (self.nx,))
+        if not np.all(np.isfinite(state)):
+            raise ValueError(f"x0: got {state}, expected finite numbers")
+        inputs = self._array("u", 0.0 if start is None and u is None else start.u if start is not None else u, (self.horizon, self.nu))
+        has_states = start is not None or x is not None
+        states = self._array("x", (start.x if start is not None else x) if has_states else 0.0, (self.horizon + 1, self.nx))
+        options = {"tolerance": self._number("tolerance", tolerance, 1e-14, 1e-2), "budget_s": self._number("budget_s", budget_s, 0.0, 1e6),
+                   "max_iterations": int(self._number("max_iterations", max_iterations, 1, 10000)), "second_order": bool(second_order),
+                   "start_from_states": has_states}
+        values = self.stage_parameters(p)
+        told = {}
+        for shift in self._shifts():
+            full = self._with_shifts(values, shift)
+            told = self._solver(options).solve(state, full, states, inputs, start is not None and start is self._last)
+            if told["status"] >= 0 or not self._has_rest():
+                break
+        told["cost"] += self._offset(full)
+        self._last = Solution(self, told, state, values, full)
+        return self._last
+
+    def solve_many(self, x0: npt.ArrayLike, p: npt.ArrayLike | None = None, *, u: npt.ArrayLike | None = None, threads: int = 0,
+                   tolerance: float = 1e-6, max_iterations: int = 1000) -> Solutions:
+        """One solve from each row of x0, each on its own, on `threads` (0: as many as there are processors): the same bits
+        for any number of them.
+
+        x0: (n, nx). p: as solve(), or (n, parameters) or (n, horizon + 1, parameters). u: (horizon, nu), where all start."""
+        states = np.ascontiguousarray(x0, float)
+        if states.ndim != 2 or states.shape[1] != self.nx:
+            raise ValueError(f"x0: got shape {states.shape}, expected (n, {self.nx})")
+        threads = int(self._number("threads", threads, 0, 1000)) or os.cpu_count() or 1
+        options = {"tolerance": self._number("tolerance", tolerance, 1e-14, 1e-2), "budget_s": 0.0, "second_order": True,
+                   "max_iterations": int(self._number("max_iterations", max_iterations, 1, 10000)), "start_from_states": False}
+        given = np.asarray(0.0 if p is None else p, float)
+        has_own = self.parameters > 0 and given.ndim > 1 and given.shape[0] == len(states) and given.shape != (self.horizon + 1, self.parameters)
+        own = np.stack([self.stage_parameters(each) for each in given]) if has_own else self.stage_parameters(p)[None]
+        full = np.stack([self._with_shifts(each, next(iter(self._shifts()))) for each in own])
+        inputs = self._array("u", 0.0 if u is None else u, (self.horizon, self.nu))
+        told = self._solver(options).solve_many(states, full, inputs, threads)
+        told["cost"] += self._offset(full[0])
+        return Solutions(told)
+
+    def export(self, file: str | Path, name: str = "Problem") -> None:
+        """Writes the problem as a C++ header for the library: a struct `name` that chicane::solver::OcpSolver takes, with the
+        same optimum (docs/python_problems.md)."""
+        from . import _export
+        Path(file).write_text(_export.header(self, name), encoding="utf-8")
+
+    def compile(self, wait: bool = False) -> bool:
+        """Compiles the problem by g++ in the background, to solve it faster from the next solve after that on: seconds the
+        first time, then found in $XDG_CACHE_HOME/chicane by its content. Says whether it is compiled; `wait` waits for it.
+        RuntimeError where g++ or the library's headers are missing."""
+        from . import _compiled
+        if self._compiled is None:
+            self._compiled = _compiled.Compilation(self)
+        return bool(self._compiled.is_done(wait))
+
+    # ---- inside
+
+    def _symbols(self, op: str, numbers: range) -> Objects:
+        symbols = np.empty(len(numbers), dtype=object)
+        for n, number in enumerate(numbers):
+            symbols[n] = Symbol(self.graph, self.graph.add(op, number))
+        return symbols
+
+    def _change(self) -> None:
+        self._interpreter = self._compiled = self._last = None
+
+    def _call(self, function: Function, kind: str) -> Any:
+        """What a function returns when it is called with symbols."""
+        if not callable(function):
+            raise ValueError(f"{kind}: got {type(function).__name__}, expected a function")
+        is_end = kind.startswith("terminal")
+        given = [self._x, self._p, self._k] if is_end else [self._x, self._u, self._p, self._k]
+        wanted = [word for word in inspect.signature(inspect.unwrap(function)).parameters.values() if word.default is word.empty]
+        if not 1 <= len(wanted) <= len(given):
+            raise ValueError(f"{kind}: got a function of {len(wanted)} arguments, expected the first of "
+                             f"({'x, p, k' if is_end else 'x, u, p, k'})")
+        try:
+            result = function(*(part.copy() if isinstance(part, np.ndarray) else part for part in given[:len(wanted)]))
+        except IndexError as error:
+            raise ValueError(f"{kind}: {error}: expected x of {self.nx} entries, u of {self.nu}, p of {self.parameters}") from error
+        if result is None:
+            raise ValueError(f"{kind}: got a function that returns nothing, expected one that returns values")
+        return result
+
+    def _trace(self, function: Function, kind: str) -> list[Symbol]:
+        """What a function returns, as symbols."""
+        return self._listed(self._call(function, kind), kind)
+
+    def _listed(self, result: Any, kind: str) -> list[Symbol]:
+        return [self._symbol(value, kind) for value in np.ravel(np.array(result, dtype=object))]
+
+    def _symbol(self, value: Any, kind: str) -> Symbol:
+        if isinstance(value, Symbol):
+            if value.graph is not self.graph:
+                raise refuse("a symbol of another problem", "symbols that the function was called with")
+            return value
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            raise ValueError(f"{kind}: got {value!r} in the result, expected numbers and symbols") from None
+        if not np.isfinite(number):
+            raise TraceError(f"{kind}: got {number} in the result, expected finite numbers")
+        return Symbol(self.graph, self.graph.constant(number))
+
+    def _add_cost(self, function: Function, kind: str, at_least: float) -> Function:
+        result = self._call(function, kind)
+        rows = self._listed(result, kind)
+        if isinstance(result, (list, tuple)) or (isinstance(result, np.ndarray) and result.ndim > 0):
+            self.rows[kind] += rows
+            self._change()
+            return function
+        residuals, rest, number = _cost.split(rows[0])
+        self.rows[kind] += residuals
+        self._numbers[kind] += number
+        if rest is not None:
+            own = self._rest[kind]
+            self._rest[kind] = rest if own is None else own + rest
+            self._at_least[kind] += float(at_least) - number
+        self._change()
+        return function
+
+    def _add_hard(self, function: Function, kind: str, name: str) -> Function:
+        rows = self._trace(function, kind)
+        first = len(self.rows[kind])
+        self.rows[kind] += rows
+        self.names[kind] += [name or f"{kind.replace('_', ' ')} {first + n}" for n in range(len(rows))]
+        self._change()
+        return function
+
+    def _add_constraint(self, rows: list[Symbol], name: str, hard: bool, price: tuple[float, float], cap: float) -> None:
+        self.rows["constraint"] += rows
+        self.names["constraint"] += [name] * len(rows)
+        self.prices += [(float(price[0]), float(price[1]), float(min(cap, 1e30)))] * len(rows)
+        self.is_hard += [bool(hard)] * len(rows)
+
+    def _pair(self, name: str, given: Any, shape: tuple[int, ...]) -> tuple[Array, Array]:
+        if not isinstance(given, (tuple, list)) or len(given) != 2:
+            raise ValueError(f"bounds: {name}: got {given!r}, expected (low, high)")
+        low, high = (self._array(f"bounds: {name}", part, shape) for part in given)
+        if not np.all(low <= high):
+            raise ValueError(f"bounds: {name}: got a lower bound above the upper one, expected low <= high")
+        return low, high
+
+    @staticmethod
+    def _array(name: str, given: Any, shape: tuple[int, ...]) -> Array:
+        try:
+            return np.ascontiguousarray(np.broadcast_to(np.asarray(given, float), shape))
+        except (ValueError, TypeError):
+            got = f"shape {np.shape(given)}" if isinstance(given, (np.ndarray, list, tuple, float, int)) else repr(given)
+            raise ValueError(f"{name}: got {got}, expected numbers of shape {shape}") from None
+
+    @staticmethod
+    def _number(name: str, value: float, least: float, most: float) -> float:
+        if not least <= value <= most:
+            raise ValueError(f"{name}: got {value}, expected a number from {least:g} to {most:g}")
+        return value
+
+    def stage_parameters(self, p: npt.ArrayLike | None) -> Array:
+        """p by stage: (horizon + 1, parameters)."""
+        if p is None and self.parameters > 0:
+            raise ValueError(f"p: got none, expected {self.parameters} numbers")
+        values = np.asarray([] if p is None else p, float)
+        if self.parameters == 0 and values.size > 0:
+            raise ValueError("p: got numbers, expected none: Problem(…, parameters=n) has some")
+        if values.ndim == 2 and values.shape == (self.horizon, self.parameters):
+            values = np.vstack([values, values[-1:]])
+        if not np.all(np.isfinite(values)):
+            raise ValueError("p: got a number that is not finite")
+        return self._array("p", values, (self.horizon + 1, self.parameters))
+
+    def _has_rest(self) -> bool:
+        return any(rest is not None for rest in self._rest.values())
+
+    def _shifts(self) -> tuple[float, ...]:
+        """What is added to a cost that is no sum of squares, beyond its least value, until it works."""
+        return (1.0, 100.0, 1e4) if self._has_rest() else (0.0,)
+
+    def _with_shifts(self, values: Array, shift: float) -> Array:
+        if not self._has_rest():
+            return values
+        own = [shift - self._at_least["residual"], shift - self._at_least["terminal_residual"]]
+        return np.ascontiguousarray(np.hstack([values, np.broadcast_to(own, (len(values), 2))]))
+
+    def _offset(self, full: Array) -> float:
+        """What the residuals do not have of the cost."""
+        total = self.horizon * self._numbers["residual"] + self._numbers["terminal_residual"]
+        if self._rest["residual"] is not None:
+            total -= self.horizon * float(full[0, -2])
+        if self._rest["terminal_residual"] is not None:
+            total -= float(full[0, -1])
+        return total
+
+    def all_rows(self) -> dict[str, list[Symbol]]:
+        """Of each function, with the roots of costs that are no sums of squares."""
+        if not self.rows["dynamics"]:
+            raise ValueError("Problem: got no dynamics, expected @ocp.dynamics with a function of x and u")
+        rows = {name: list(own) for name, own in self.rows.items()}
+        for n, (kind, rest) in enumerate(self._rest.items()):
+            if rest is not None:
+                shift = Symbol(self.graph, self.graph.add("parameter", self.parameters + n))
+                rows[kind].append((2.0 * (rest + shift)).sqrt())
+        if not rows["residual"] and not rows["terminal_residual"]:
+            raise ValueError("Problem: got no cost, expected ocp.cost(...) or ocp.terminal(...)")
+        return rows
+
+    def make_interpreter(self, with_parameters: bool = False) -> _chicane.Interpreter:
+        """The recorded problem in C++. with_parameters: derivatives in p as well, as inputs behind the others."""
+        rows = self.all_rows()
+        operations = {name: n for n, name in enumerate(_chicane.TAPE_OPERATIONS)}
+        nodes = list(self.graph.nodes)
+        count = self.full_count
+        if with_parameters:
+            nodes = [("variable", self.nx + self.nu + node[1], -1, -1, 0.0) if node[0] == "parameter" else node for node in nodes]
+        ops = np.array([operations[node[0]] for node in nodes], np.int32)
+        operands = np.array([node[1:4] for node in nodes], np.int32)
+        numbers = np.array([node[4] for node in nodes], float)
+        outputs = [[symbol.node for symbol in rows[name]] for name in FUNCTIONS]
+        return _chicane.Interpreter(self.nx, self.nu + (count if with_parameters else 0), 0 if with_parameters else count, self.horizon, ops,
+                                    operands, numbers, outputs, not with_parameters)
+
+    def _solver(self, options: dict[str, Any]) -> Any:
+        if self._interpreter is None:
+            self._interpreter = self.make_interpreter()
+        solver: Any = self._interpreter
+        if self._compiled is not None and self._compiled.is_done(False):
+            solver = self._compiled.solver
+        solver.set(self._lower, self._upper, np.array(self.prices, float).reshape(-1, 3), self.is_hard, options)
+        return solver
+
+    @property
+    def full_count(self) -> int:
+        """Parameters with those that the problem has of its own."""
+        return self.parameters + (2 if self._has_rest() else 0)
+
+    def hidden_parameters(self) -> list[float]:
+        """Of its own, as a solve begins with them."""
+        return [float(value) for value in self._with_shifts(np.zeros((1, 0)), self._shifts()[0])[0]]
+
+    def cost_offset(self) -> float:
+        """What the residuals' cost lacks of the problem's, with these."""
+        return self._offset(self._with_shifts(np.zeros((1, self.parameters)), self._shifts()[0]))
+
+    @property
+    def input_bounds(self) -> tuple[Array, Array]:
+        """Lower and upper bounds of the inputs, (horizon, nu) each."""
+        return self._lower, self._upper
+
+    @property
+    def speed(self) -> str:
+        """How it is solved: "interpreted" or "compiled"."""
+        return "compiled" if self._compiled is not None and self._compiled.is_done(False) else "interpreted"
+
+    def __repr__(self) -> str:
+        parts = [f"nx {self.nx}, nu {self.nu}, horizon {self.horizon}"]
+        for name, word in (("constraint", "constraints"), ("equality", "equalities"), ("terminal_equality", "equalities at the end"),
+                           ("terminal_constraint", "constraints at the end")):
+            if self.rows[name]:
+                parts.append(f"{len(self.rows[name])} {word}")
+        return f"<Problem: {', '.join(parts)}, {self.speed}>"
+
+    def _repr_html_(self) -> str:
+        return f"<code>{repr(self)[1:-1]}</code>"

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: MIT
+"""Derivatives of a solution by the conditions of optimality, the active set fixed (docs/python_problems.md, eq. 5 to 8)."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from ._problem import Problem
+    from ._solution import Solution
+
+Array = npt.NDArray[np.float64]
+_CLEAR = 5e-3
+"""Constraint and multiplier both below this: which of them is zero cannot be told."""
+
+
+class Sensitivity:
+    """How a solution changes: u of shape (horizon, nu, n) and x of shape (horizon + 1, nx, n) are derivatives by the n numbers of x0
+    or p. is_one_sided: a constraint is about to become active or inactive, so that the derivative on one side is another one."""
+
+    def __init__(self, u: Array, x: Array, is_one_sided: bool) -> None:
+        self.u, self.x, self.is_one_sided = u, x, is_one_sided
+
+    def __repr__(self) -> str:
+        return f"<Sensitivity: u {self.u.shape}, x {self.x.shape}{', one-sided' if self.is_one_sided else ''}>"
+
+
+class _Conditions:
+    """The conditions of optimality of a solution, linearised: unknowns are u_k and x_{k+1}, stage by stage, then multipliers."""
+
+    def __init__(self, problem: Problem, solution: Solution) -> None:
+        self.problem, self.solution = problem, solution
+        self.nx, self.nu, self.horizon = problem.nx, problem.nu, problem.horizon
+        self.interpreter = problem.make_interpreter(with_parameters=True)
+        self.block = self.nx + self.nu
+        self.size = self.horizon * self.block
+        self.full = solution.full_parameters
+        self.np = self.full.shape[1]
+        count = self.nx + self.np
+        self.hessian = np.zeros((self.size, self.size))
+        self.mixed = np.zeros((self.size, count))                      # by x0 and by p of every stage alike
+        self.gradient = np.zeros(self.size)
+        self.rows: list[Array] = []
+        self.row_changes: list[Array] = []
+        self.curved: list[tuple[int, int, int]] = []                   # function, stage and row that a multiplier belongs to
+        self.is_one_sided = False
+
+    def place(self, stage: int) -> npt.NDArray[np.int_]:
+        """Where the variables (x_k, u_k, p) of a stage are; x_0 and p behind the unknowns."""
+        first = self.size if stage == 0 else stage * self.block - self.nx
+        states = np.arange(first, first + self.nx)
+        inputs = stage * self.block + np.arange(self.nu)
+        return np.concatenate([states, inputs, self.size + self.nx + np.arange(self.np)])
+
+    def points(self, stages: range) -> Array:
+        s = self.solution
+        u = np.vstack([s.u, np.zeros((1, self.nu))])
+        return np.ascontiguousarray(np.hstack([s.x[stages], u[stages], self.full[stages]]))
+
+    def evaluate(self, function: int, stages: range, weights: Array) -> tuple[Array, Array, Array]:
+        return self.interpreter.evaluate(function, self.points(stages), np.zeros((len(stages), 0)), np.ascontiguousarray(weights), stages[0])
+
+    def add_curvature(self, stage: int, matrix: Array) -> None:
+        at = self.place(stage)
+        inside = at < self.size
+        rows = at[inside]
+        self.hessian[np.ix_(rows, rows)] += matrix[np.ix_(inside, inside)]
+        self.mixed[np.ix_(rows, at[~inside] - self.size)] += matrix[np.ix_(inside, ~inside)]
+
+    def add_gradient(self, stage: int, slope: Array) -> None:
+        at = self.place(stage)
+        np.add.at(self.gradient, at[at < self.size], slope[at < self.size])
+
+    def add_row(self, stage: int, slope: Array, curved: tuple[int, int, int]) -> None:
+        row, change = np.zeros(self.size), np.zeros(self.nx + self.np)
+        at = self.place(stage)
+        row[at[at < self.size]] = slope[at < self.size]
+        change[at[at >= self.size] - self.size] = slope[at >= self.size]
+        self.rows.append(row)
+        self.row_changes.append(change)
+        self.curved.append(curved)
+
+    def add_costs(self) -> None:
+        for function, stages in ((1, range(self.horizon)), (4, range(self.horizon, self.horizon + 1))):
+            count = len(self.problem.all_rows()[("", "residual", "", "", "terminal_residual")[function]])
+            if count == 0:
+                continue
+            values, slopes, _ = self.evaluate(function, stages, np.zeros((len(stages), count)))
+            _, _, curvatures = self.evaluate(function, stages, values)
+            for n, k in enumerate(stages):
+                self.add_curvature(k, slopes[n].T @ slopes[n] + curvatures[n])
+                self.add_gradient(k, slopes[n].T @ values[n])
+
+    def add_dynamics(self) -> None:
+        _, slopes, _ = self.evaluate(0, range(self.horizon), np.zeros((self.horizon, self.nx)))
+        for k in range(self.horizon):
+            for i in range(self.nx):
+                self.add_row(k, slopes[k, i], (0, k, i))
+                self.rows[-1][k * self.block + self.nu + i] -= 1.0
+
+    def add_constraints(self) -> None:
+        """Soft ones: nothing where they hold with room, a price where they are violated, an equality at the edge."""
+        count = len(self.problem.rows["constraint"])
+        if count == 0:
+            return
+        price = self.solution.multipliers["constraints"]
+        values, slopes, _ = self.evaluate(2, range(self.horizon), np.zeros((self.horizon, count)))
+        weights = np.zeros((self.horizon, count))
+        for k in range(self.horizon):
+            for c in range(count):
+                value, z = values[k, c], price[k, c]
+                linear, quadratic, _ = self.problem.prices[c]
+                left = linear + quadratic * max(value, 0.0) - z
+                is_violated = not self.problem.is_hard[c] and value > 0.0 and value > left
+                if is_violated:
+                    weights[k, c] = linear + quadratic * value
+                    self.add_curvature(k, quadratic * np.outer(slopes[k, c], slopes[k, c]))
+                    self.add_gradient(k, weights[k, c] * slopes[k, c])
+                elif z > -value:
+                    self.add_row(k, slopes[k, c], (2, k, c))
+                beyond = max(value, left) if value > 0.0 and not self.problem.is_hard[c] else max(z, -value)
+                self.is_one_sided = self.is_one_sided or beyond < _CLEAR
+        _, _, curvatures = self.evaluate(2, range(self.horizon), weights)
+        for k in range(self.horizon):
+            self.add_curvature(k, curvatures[k])
+
+    def add_equalities(self) -> None:
+        s, end = self.solution, range(self.horizon, self.horizon + 1)
+        for function, stages, name in ((3, range(self.horizon), "equality"), (5, end, "terminal_equality"), (6, end, "terminal_constraint")):
+            count = len(self.problem.rows[name])
+            if count == 0:
+                continue
+            values, slopes, _ = self.evaluate(function, stages, np.zeros((len(stages), count)))
+            for n, k in enumerate(stages):
+                for row in range(count):
+                    if name == "terminal_constraint":
+                        y = s.multipliers[name][row]
+                        self.is_one_sided = self.is_one_sided or max(y, -values[n, row]) < _CLEAR
+                        if y <= -values[n, row]:
+                            continue
+                    self.add_row(k, slopes[n, row], (function, k, row))
+
+    def add_bounds(self) -> None:
+        lower, upper = self.problem.input_bounds
+        for k in range(self.horizon):
+            for m in range(self.nu):
+                room = min(self.solution.u[k, m] - lower[k, m], upper[k, m] - self.solution.u[k, m])
+                price = abs(self.solution.multipliers["bounds"][k, m])
+                if room <= 1e-9 * (1.0 + abs(self.solution.u[k, m])):
+                    row = np.zeros(self.size)
+                    row[k * self.block + m] = 1.0
+                    self.rows.append(row)
+                    self.row_changes.append(np.zeros(self.nx + self.np))
+                    self.curved.append((-1, k, m))
+                self.is_one_sided = self.is_one_sided or (room < 1e-6 and price < 1e-4 and lower[k, m] < upper[k, m])
+
+    def add_curvature_of_rows(self, jacobian: Array) -> None:
+        """Second derivatives of what is an equality, by the multipliers that make the gradient vanish."""
+        multipliers = np.linalg.lstsq(jacobian.T, -self.gradient, rcond=None)[0]
+        weights: dict[tuple[int, int], dict[int, float]] = {}
+        for (function, stage, row), value in zip(self.curved, multipliers):
+            if function >= 0:
+                weights.setdefault((function, stage), {})[row] = value
+        counts = {0: self.nx, 2: len(self.problem.rows["constraint"]), 3: len(self.problem.rows["equality"]),
+                  5: len(self.problem.rows["terminal_equality"]), 6: len(self.problem.rows["terminal_constraint"])}
+        for (function, stage), of_rows in weights.items():
+            own = np.zeros((1, counts[function]))
+            for row, value in of_rows.items():
+                own[0, row] = value
+            self.add_curvature(stage, self.evaluate(function, range(stage, stage + 1), own)[2][0])
+
+    def solve(self) -> Array:
+        """Derivatives of the unknowns by x_0 and by p, (size, nx + np)."""
+        self.add_costs()
+        self.add_dynamics()
+        self.add_constraints()
+        self.add_equalities()
+        self.add_bounds()
+        jacobian = np.array(self.rows)
+        self.add_curvature_of_rows(jacobian)
+        zero = np.zeros((len(jacobian), len(jacobian)))
+        matrix = np.block([[self.hessian, jacobian.T], [jacobian, zero]])
+        right = -np.vstack([self.mixed, np.array(self.row_changes)])
+        try:
+            return np.asarray(np.linalg.solve(matrix, right)[:self.size])
+        except np.linalg.LinAlgError:
+            raise ValueError("sensitivity: got a solution whose active constraints depend on each other or whose optimum is not unique, "
+                             "expected one with a regular system of conditions") from None
+
+
+def find(problem: Problem, solution: Solution, of: str) -> Sensitivity:
+    if of not in ("x0", "p"):
+        raise ValueError(f'sensitivity: got {of!r}, expected "x0" or "p"')
+    if of == "p" and problem.parameters == 0:
+        raise ValueError('sensitivity: got "p", expected a problem with parameters')
+    if not solution.is_usable:
+        raise ValueError(f"sensitivity: got a solution that is {solution.status}, expected a usable one")
+    conditions = _Conditions(problem, solution)
+    change: Any = conditions.solve()
+    nx, nu, horizon = problem.nx, problem.nu, problem.horizon
+    columns = slice(0, nx) if of == "x0" else slice(nx, nx + problem.parameters)
+    steps = change[:, columns].reshape(horizon, nu + nx, -1)
+    first = np.eye(nx)[None] if of == "x0" else np.zeros((1, nx, problem.parameters))
+    return Sensitivity(np.ascontiguousarray(steps[:, :nu]), np.vstack([first, steps[:, nu:]]), conditions.is_one_sided)

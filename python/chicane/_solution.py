@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""What solving an optimal control problem gives."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _chicane
+
+if TYPE_CHECKING:
+    from ._problem import Problem
+    from ._sensitivity import Sensitivity
+
+Array = npt.NDArray[np.float64]
+
+
+class Solution:
+    """The answer to an optimal control problem.
+
+    u: inputs, (horizon, nu). x: states, (horizon + 1, nx).
+    status: "optimal"; "at_floor" and "budget_spent", which are usable; "stalled", "infeasible" and "not_finite", which are
+    not. is_usable: which of these. cost: the objective, prices of violated soft constraints included.
+    violation: the largest amount by which something that should hold does not, in its own unit, and `violated`, what and where.
+    multipliers: "dynamics" (horizon, nx), the price of each next state; "bounds" (horizon, nu); "constraints" and "equalities",
+    (horizon, rows); "terminal_equality", "terminal_constraint", (rows,).
+    iterations: turns of the solver. residual: how far from optimal. time: how long C++ worked [s]."""
+
+    def __init__(self, problem: Problem, told: dict[str, Any], x0: Array, parameters: Array, full: Array) -> None:
+        self._problem = problem
+        self._parameters, self._full = parameters, full
+        self.x0 = x0
+        self.u: Array = told["u"]
+        self.x: Array = told["x"]
+        self.status: str
+        self.status, self._sentence = _chicane.SOLVE_STATUSES[told["status"]]
+        self.is_usable: bool = told["status"] >= 0
+        self.cost: float = told["cost"]
+        self.iterations: int = told["iterations"]
+        self.residual: float = max(told["stationarity"], told["defect"], told["complementarity"])
+        self.time: float = told["time"]
+        self.multipliers: dict[str, Array] = {name: told[name] for name in ("dynamics", "bounds", "constraints", "equalities",
+                                                                            "terminal_equality", "terminal_constraint")}
+        self.violation, self.violated = self._find_violation(told)
+
+    def _find_violation(self, told: dict[str, Any]) -> tuple[float, str]:
+        """The worst one, and its name and stage."""
+        tolerance = 1e-5
+        names = self._problem.names
+        found = (0.0, "")
+        if told["worst_constraint"] >= 0 and told["violation"] > tolerance:
+            found = told["violation"], f"{names['constraint'][told['worst_constraint']]} at stage {told['worst_stage']}"
+        if told["miss_row"] >= 0 and told["miss"] > max(tolerance, found[0]):
+            kind = ("", "equality", "terminal_equality", "terminal_constraint", "constraint")[told["miss_kind"]]
+            found = told["miss"], f"{names[kind][told['miss_row']]} at stage {told['miss_stage']}"
+        return found
+
+    def sensitivity(self, of: str = "x0") -> Sensitivity:
+        """How the solution changes with "x0" or with "p": derivatives of u and x, the set of active constraints fixed."""
+        from . import _sensitivity
+        return _sensitivity.find(self._problem, self, of)
+
+    @property
+    def full_parameters(self) -> Array:
+        """p by stage, with what the problem has of its own behind it."""
+        return self._full
+
+    def __bool__(self) -> bool:
+        return self.is_usable
+
+    def __repr__(self) -> str:
+        text = f"{self.status} after {self.iterations} turns, cost {self.cost:.6g}, {1e3 * self.time:.3g} ms"
+        if not self.is_usable:
+            text += f": not usable, {self._sentence}"
+        if self.violated:
+            text += f"; violates {self.violated} by {self.violation:.3g}"
+        return f"<Solution: {text}>"
+
+    def _repr_html_(self) -> str:
+        rows = [("status", self.status if self.is_usable else f"{self.status} (not usable: {self._sentence})"), ("cost", f"{self.cost:.6g}"),
+                ("violation", f"{self.violation:.3g}: {self.violated}" if self.violated else "none"), ("turns", str(self.iterations)),
+                ("residual", f"{self.residual:.1e}"), ("time", f"{1e3 * self.time:.3g} ms")]
+        return "<table>" + "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in rows) + "</table>"
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but the problem, whose functions cannot be pickled: a copy has no sensitivities."""
+        return {name: value for name, value in self.__dict__.items() if name != "_problem"}
+
+
+class Solutions:
+    """The answers to many problems, row by row: u (n, horizon, nu), x (n, horizon + 1, nx), cost, violation, iterations, time [s],
+    status (n words) and is_usable, each of shape (n,)."""
+
+    def __init__(self, told: dict[str, Any]) -> None:
+        self.u: Array = told["u"]
+        self.x: Array = told["x"]
+        self.cost: Array = told["cost"]
+        self.violation: Array = told["violation"]
+        self.iterations: npt.NDArray[np.int32] = told["iterations"]
+        self.time: Array = told["time"]
+        self.status = np.array([_chicane.SOLVE_STATUSES[int(number)][0] for number in told["status"]])
+        self.is_usable: npt.NDArray[np.bool_] = told["status"] >= 0
+
+    def __len__(self) -> int:
+        return len(self.cost)
+
+    def __repr__(self) -> str:
+        return f"<Solutions: {np.count_nonzero(self.is_usable)} of {len(self)} usable, {np.count_nonzero(self.status == 'optimal')} optimal>"

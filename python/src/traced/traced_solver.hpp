@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "chicane/base/deadline.hpp"
+#include "chicane/solver/hard_constraints.hpp"
+#include "chicane/solver/problem.hpp"
+#include "traced/program.hpp"
+
+namespace chicane::python {
+
+/// Longest horizon of a traced problem.
+inline constexpr int kMostStages = 200;
+
+/// What a traced problem is solved with. Arrays belong to the caller; rows are contiguous, in the order of
+/// the shapes given.
+struct TracedCall {
+  int horizon = 0;
+  const double* x0 = nullptr;
+  const double* data = nullptr;  ///< parameters by stage: (np, data_stride), 64-byte aligned rows
+  std::size_t data_stride = 0;
+  const double* lower = nullptr;  ///< (horizon, nu)
+  const double* upper = nullptr;
+  const solver::SoftPenalty* prices = nullptr;  ///< of each constraint
+  const bool* is_hard = nullptr;
+  solver::SolverOptions options;
+  bool goes_on = false;  ///< from the multipliers of the solve before
+  Deadline deadline = Deadline::never();
+};
+
+/// States and inputs (in: the guess), multipliers and the report. Vectors have the sizes of the problem.
+struct TracedAnswer {
+  std::vector<double> x;           ///< (horizon + 1, nx)
+  std::vector<double> u;           ///< (horizon, nu)
+  std::vector<double> adjoint;     ///< (horizon, nx): of x_{k+1}
+  std::vector<double> bound;       ///< (horizon, nu)
+  std::vector<double> constraint;  ///< (horizon, constraints)
+  std::vector<double> equality;    ///< (horizon, equalities)
+  std::vector<double> terminal_equality;
+  std::vector<double> terminal_constraint;
+  solver::HardReport report;
+};
+
+/// Memory of one program: slots as packs of eight stages, and as packs of two for one. Constants are in
+/// place.
+struct Slots {
+  double* wide = nullptr;
+  double* narrow = nullptr;
+};
+/// Memory of a solver for all programs, made outside of code that is compiled for one instruction set.
+class Workspace {
+ public:
+  explicit Workspace(const TracedProblem& problem);
+  [[nodiscard]] Slots slots(Function function, int order) const {
+    return slots_[static_cast<std::size_t>(function)][static_cast<std::size_t>(order)];
+  }
+
+ private:
+  std::array<std::array<Slots, 3>, kFunctions> slots_{};
+  std::vector<double> memory_;
+};
+
+/// Solves one traced problem, again and again. One thread at a time.
+class TracedSolver {
+ public:
+  virtual ~TracedSolver() = default;
+  virtual void solve(const TracedCall& call, TracedAnswer& answer) noexcept = 0;
+};
+
+/// Sizes for which code exists; a problem takes the first that it fits in.
+struct SizeClass {
+  int nx, nu, nr, ne, nc, nh, neh, nec;
+};
+inline constexpr SizeClass kSmall{4, 2, 16, 12, 8, 2, 4, 4};
+inline constexpr SizeClass kMedium{8, 4, 24, 16, 12, 4, 8, 8};
+inline constexpr SizeClass kLarge{24, 8, 48, 48, 48, 8, 24, 48};
+
+/// For the instruction set `Arch`. `problem` and `workspace` must outlive it.
+template <class Arch>
+std::unique_ptr<TracedSolver> make_small_solver(const TracedProblem& problem, const Workspace& workspace);
+template <class Arch>
+std::unique_ptr<TracedSolver> make_medium_solver(const TracedProblem& problem, const Workspace& workspace);
+template <class Arch>
+std::unique_ptr<TracedSolver> make_large_solver(const TracedProblem& problem, const Workspace& workspace);
+
+}  // namespace chicane::python

@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: MIT
+"""Optimal control problems written in Python: traced, solved, exported, differentiated."""
+import math
+import os
+import pickle
+import tempfile
+import unittest
+from unittest import mock
+
+import numpy as np
+
+import chicane as ch
+import families
+
+
+def double_integrator(parameters=0):
+    ocp = ch.Problem(nx=2, nu=1, horizon=20, parameters=parameters)
+    ocp.dynamics(lambda x, u: [x[0] + 0.1 * x[1], x[1] + 0.1 * u[0]])
+    ocp.cost(lambda x, u: x @ x + 0.1 * u @ u)
+    ocp.bounds(u=(-1, 1))
+    return ocp
+
+
+def simulated_cost(ocp, function, x0, u):
+    """By numbers alone: nothing of the recorded graph."""
+    x, total = np.asarray(x0, float), 0.0
+    for k in range(ocp.horizon):
+        total += float(x @ x + 0.1 * u[k] @ u[k])
+        x = np.asarray(function(x, u[k]), float)
+    return total
+
+
+class Solving(unittest.TestCase):
+    def test_its_cost_is_that_of_a_simulation_and_no_other_inputs_are_cheaper(self):
+        ocp = double_integrator()
+        solution = ocp.solve([1.0, 0.3])
+        self.assertEqual(solution.status, "optimal")
+        step = lambda x, u: [x[0] + 0.1 * x[1], x[1] + 0.1 * u[0]]  # noqa: E731
+        cost = simulated_cost(ocp, step, [1.0, 0.3], solution.u)
+        self.assertAlmostEqual(solution.cost, cost, delta=1e-9 * cost)
+        random = np.random.default_rng(1)
+        for _ in range(200):
+            other = np.clip(solution.u + 0.05 * random.standard_normal(solution.u.shape), -1, 1)
+            self.assertGreater(simulated_cost(ocp, step, [1.0, 0.3], other), cost)
+
+    def test_the_cart_pole_of_the_bench_has_its_optimum(self):
+        ocp, x0, _ = families.cart_pole()
+        solution = ocp.solve(x0)
+        self.assertAlmostEqual(solution.cost, 89.58327, delta=1e-4)   # bench/families/cart_pole.hpp by Ipopt from the same start
+        again = ocp.solve(x0, start=solution)
+        self.assertLess(again.iterations, solution.iterations)
+        self.assertAlmostEqual(again.cost, solution.cost, delta=1e-9 * solution.cost)
+
+    def test_every_family_is_solved_and_answers_with_what_it_violates(self):
+        for name, make in families.FAMILIES.items():
+            with self.subTest(name):
+                ocp, x0, p = make()
+                solution = ocp.solve(x0, p)
+                self.assertEqual(solution.status, "optimal")
+                self.assertLess(solution.residual, 1e-6)
+                if name == "race car":
+                    self.assertRegex(repr(solution), "violates edge at stage [0-9]+ by 0.8")
+                    self.assertIn("edge at stage", solution._repr_html_())
+
+    def test_an_expression_costs_what_it_says(self):
+        ocp = ch.Problem(1, 1, 1)
+        ocp.dynamics(lambda x, u: [x[0] + u[0]])
+        ocp.cost(lambda x, u: ch.exp(u[0]) - 2 * u[0], at_least=0.0)
+        ocp.terminal(lambda x: 0.0 * x[0])
+        solution = ocp.solve([0.0], tolerance=1e-9)
+        self.assertAlmostEqual(solution.u[0, 0], math.log(2.0), places=6)
+        self.assertAlmostEqual(solution.cost, 2.0 - 2.0 * math.log(2.0), places=9)
+
+    def test_a_quadratic_form_becomes_squares(self):
+        weight = np.array([[2.0, 0.5, 0.0], [0.5, 1.0, 0.2], [0.0, 0.2, 3.0]])
+        ocp = ch.Problem(3, 1, 5)
+        ocp.dynamics(lambda x, u: [x[0] + u[0], x[1], x[2]])
+        ocp.cost(lambda x, u: (x - 1.0) @ weight @ (x - 1.0) + 0.5 * u[0] ** 2 + 3.0)
+        self.assertEqual(len(ocp.rows["residual"]), 4)
+        x0 = np.array([0.2, -0.4, 1.5])
+        ocp.bounds(u=(0, 0))
+        self.assertAlmostEqual(ocp.solve(x0).cost, 5 * ((x0 - 1) @ weight @ (x0 - 1) + 3.0), places=9)
+
+    def test_what_must_hold_holds(self):
+        ocp = double_integrator()
+        ocp.bounds(u=(-3, 3), x=([-np.inf, -0.6], [np.inf, 0.6]))
+        ocp.terminal_equality(lambda x: x[0] - 0.2)
+        solution = ocp.solve([1.0, 0.0])
+        self.assertTrue(solution)
+        self.assertAlmostEqual(solution.x[-1, 0], 0.2, places=5)
+        self.assertGreaterEqual(solution.x[:, 1].min(), -0.6 - 1e-5)
+        impossible = ocp.solve([3.0, 0.0])
+        self.assertFalse(impossible.is_usable)
+        self.assertRegex(repr(impossible), "infeasible|stalled")
+        self.assertGreater(impossible.violation, 0.1)
+
+    def test_stages_have_numbers_and_parameters_of_their_own(self):
+        ocp = ch.Problem(1, 1, 8, parameters=1)
+        ocp.dynamics(lambda x, u: [x[0] + u[0]])
+        ocp.cost(lambda x, u, p, k: [x[0] - p[0], 0.01 * u[0], ch.where(k > 5.5, 10.0 * u[0], 0.0)])
+        ocp.terminal(lambda x, p: [x[0] - p[0]])
+        wanted = np.array([0, 1, 2, 3, 2, 1, 0, 5, 5.0])[:, None]
+        solution = ocp.solve([0.0], wanted)
+        self.assertLess(np.abs(solution.x[:6] - wanted[:6]).max(), 0.02)
+        self.assertLess(np.abs(solution.u[6:]).max(), 0.1)
+
+    def test_solutions_can_be_pickled(self):
+        solution = double_integrator().solve([1.0, 0.0])
+        self.assertEqual(pickle.loads(pickle.dumps(solution)).cost, solution.cost)
+
+    def test_many_have_the_same_bits_for_any_number_of_threads(self):
+        ocp, _, _ = families.cart_pole()
+        x0 = np.random.default_rng(2).normal(0, 0.3, (24, 4))
+        one, three = ocp.solve_many(x0, threads=1), ocp.solve_many(x0, threads=3)
+        np.testing.assert_array_equal(one.u, three.u)
+        alone = ocp.solve(x0[7])
+        np.testing.assert_array_equal(one.u[7], alone.u)
+        self.assertEqual(one.cost[7], alone.cost)
+
+
+class Derivatives(unittest.TestCase):
+    def test_agree_with_differences(self):
+        random = np.random.default_rng(3)
+        step = 1e-6
+        for name, make in families.FAMILIES.items():
+            ocp, x0, p = make()
+            interpreter = ocp.make_interpreter(with_parameters=True)
+            count = ocp.nx + ocp.nu + ocp.full_count
+            point = np.concatenate([x0, np.zeros(ocp.nu), np.zeros(ocp.full_count) if p is None else p[0]]) + 0.3 + 0.05 * random.standard_normal(count)
+            for function, rows in enumerate(ocp.all_rows().values()):
+                if not rows:
+                    continue
+                with self.subTest(f"{name}, function {function}"):
+                    weights = random.standard_normal((1, len(rows)))
+                    def evaluate(at):
+                        return interpreter.evaluate(function, at[None], np.zeros((1, 0)), weights, 3)
+                    _, slopes, curvatures = evaluate(point)
+                    for j in range(count):
+                        change = np.zeros(count)
+                        change[j] = step
+                        (high, high_slopes, _), (low, low_slopes, _) = evaluate(point + change), evaluate(point - change)
+                        scale = 1.0 + np.abs(slopes[0]).max()
+                        np.testing.assert_allclose(slopes[0, :, j], (high - low)[0] / (2 * step), atol=2e-7 * scale)
+                        numeric = weights[0] @ (high_slopes - low_slopes)[0] / (2 * step)
+                        np.testing.assert_allclose(curvatures[0, j], numeric, atol=2e-6 * (1.0 + np.abs(curvatures).max()))
+
+    def test_a_table_goes_through_its_points_and_goes_on_straight(self):
+        table = ch.table([0.0, 1.0, 3.0, 4.0], [1.0, 0.0, 2.0, 1.5])
+        for at, value in ((0.0, 1.0), (1.0, 0.0), (3.0, 2.0), (4.0, 1.5)):
+            self.assertAlmostEqual(table(at), value, places=12)
+        self.assertAlmostEqual(table(6.0) - table(5.0), table(5.0) - table(4.0), places=10)
+
+    def test_sensitivities_agree_with_differences(self):
+        ocp = ch.Problem(2, 1, 15, parameters=2)
+        ocp.dynamics(lambda x, u, p: [x[0] + 0.1 * x[1], x[1] + 0.1 * (u[0] - p[0] * ch.sin(x[0]))])
+        ocp.cost(lambda x, u, p: (x[0] - p[1]) ** 2 + 0.1 * u @ u)
+        ocp.subject_to(lambda x, u: -u[0] - 0.6, price=(0.05, 1.0))
+        ocp.subject_to(lambda x, u: x[1] + 0.2 * x[0] ** 2 - 0.5, hard=True)
+        ocp.terminal_equality(lambda x, p: x[1] - 0.1 * p[0])
+        ocp.bounds(u=(-1, 1.5))
+        random = np.random.default_rng(4)
+        count = compared = 0
+        for _ in range(30):
+            x0, p = np.array([-0.5, 0.0]) + 0.3 * random.standard_normal(2), np.array([1.0, 0.2]) + 0.2 * random.standard_normal(2)
+            count += 1
+            solution = ocp.solve(x0, p, tolerance=1e-11)
+            if not solution or solution.sensitivity("x0").is_one_sided:
+                continue
+            compared += 1
+            for of, given in (("x0", x0), ("p", p)):
+                derivative = solution.sensitivity(of)
+                for n in range(2):
+                    change = np.zeros(2)
+                    change[n] = 5e-5
+                    ends = [ocp.solve(x0 + sign * change, p, start=solution, tolerance=1e-11) if of == "x0" else
+                            ocp.solve(x0, p + sign * change, start=solution, tolerance=1e-11) for sign in (1, -1)]
+                    numeric = (ends[0].u - ends[1].u) / 1e-4
+                    error = np.abs(numeric - derivative.u[:, :, n]).max() / (1e-3 + np.abs(numeric).max())
+                    self.assertLess(error, 1e-5, f"{of} {n} of {given}")
+        self.assertGreater(compared, count // 3)
+
+    def test_at_the_edge_they_say_that_they_are_one_sided(self):
+        ocp = ch.Problem(1, 1, 1)
+        ocp.dynamics(lambda x, u: [x[0] + u[0]])
+        ocp.cost(lambda x, u: [u[0] - x[0]])
+        ocp.bounds(u=(-1, 1))
+        self.assertTrue(ocp.solve([1.0]).sensitivity().is_one_sided)
+        self.assertFalse(ocp.solve([0.5]).sensitivity().is_one_sided)
+
+
+class Compiled(unittest.TestCase):
+    def test_the_exported_header_has_the_same_optimum_and_is_kept(self):
+        with tempfile.TemporaryDirectory() as folder, mock.patch.dict(os.environ, {"XDG_CACHE_HOME": folder}):
+            ocp = double_integrator(parameters=1)
+            ocp.subject_to(lambda x, u, p, k: [p[0] - ch.where(x[1] < 0, x[1], 2.0 * x[1]), ch.where(k < 3.5, -1.0, -0.9 - x[1])], name="slow")
+            interpreted = ocp.solve([1.0, 0.0], [-0.4])
+            self.assertTrue(ocp.compile(wait=True))
+            compiled = ocp.solve([1.0, 0.0], [-0.4])
+            self.assertEqual((ocp.speed, compiled.status), ("compiled", "optimal"))
+            self.assertAlmostEqual(compiled.cost, interpreted.cost, delta=1e-9 * interpreted.cost)
+            np.testing.assert_allclose(compiled.u, interpreted.u, atol=1e-6)
+            many = ocp.solve_many([[1.0, 0.0], [0.5, 0.1]], [-0.4], threads=2)
+            self.assertEqual(many.cost[0], compiled.cost)
+            made = os.listdir(f"{folder}/chicane")
+            self.assertEqual(len(made), 1)
+            again = double_integrator(parameters=1)
+            self.assertNotEqual(again.solve([1.0, 0.0], [0.0]).cost, compiled.cost)
+            ocp.export(f"{folder}/slow.hpp", "Slow")
+            with open(f"{folder}/slow.hpp", encoding="utf-8") as file:
+                self.assertIn("struct Slow {", file.read())
+
+
+class Misuses(unittest.TestCase):
+    def refuse(self, pattern, call, kind=ValueError):
+        with self.assertRaisesRegex(kind, pattern):
+            call()
+
+    def test_what_cannot_be_recorded_is_refused_with_line_and_remedy(self):
+        ocp = ch.Problem(2, 1, 10)
+        here = r"problem_test\.py:\d+: "
+        self.refuse(here + r".*got a branch on a symbol, expected ch\.where",
+                    lambda: ocp.dynamics(lambda x, u: [x[0] if x[1] > 1 else x[1], 0]))
+        self.refuse(here + r".*got a symbol where a number is needed, expected ch\.sin", lambda: ocp.cost(lambda x, u: math.sin(x[0])))
+        self.refuse(here + r".*got a symbol where a number is needed", lambda: ocp.cost(lambda x, u: float(x[0])))
+        self.refuse(here + r".*got == of a symbol", lambda: ocp.cost(lambda x, u: x[0] == 1))
+        self.refuse(here + r".*got a branch on a symbol", lambda: ocp.cost(lambda x, u: max(x[0], 0.0)))
+        self.refuse(here + r".*got str beside a symbol", lambda: ocp.cost(lambda x, u: x[0] + "1"), TypeError)
+        other = ch.Problem(1, 1, 5)
+        taken = []
+        other.cost(lambda x, u: taken.append(x[0]) or x[0])
+        self.refuse("symbol of another problem", lambda: ocp.cost(lambda x, u: taken[0]))
+
+    def test_what_makes_no_problem_is_refused(self):
+        ocp = ch.Problem(2, 1, 10)
+        self.refuse("dynamics: got 1 values, expected 2", lambda: ocp.dynamics(lambda x, u: [x[0]]))
+        self.refuse(r"got no dynamics, expected @ocp\.dynamics", lambda: ocp.solve([0, 0]))
+        self.refuse("dynamics: got a function that returns nothing", lambda: ocp.dynamics(lambda x, u: None))
+        self.refuse("cost: .*expected x of 2 entries|residual: .*expected x of 2 entries", lambda: ocp.cost(lambda x, u: x[2]))
+        ocp.dynamics(lambda x, u: x)
+        self.refuse("got no cost", lambda: ocp.solve([0, 0]))
+        ocp.cost(lambda x, u: x @ x)
+        self.refuse(r"x0: got shape \(3,\), expected numbers of shape \(2,\)", lambda: ocp.solve([0, 0, 0]))
+        self.refuse("x0: got .*expected finite numbers", lambda: ocp.solve([0, np.nan]))
+        self.refuse("p: got numbers, expected none", lambda: ocp.solve([0, 0], [1.0]))
+        self.refuse("got a lower bound above the upper one", lambda: ocp.bounds(u=(1, -1)))
+        self.refuse("horizon: got 500, expected a whole number from 1 to 200", lambda: ch.Problem(2, 1, 500))
+        self.refuse("nx: got 2.5", lambda: ch.Problem(2.5, 1, 5))
+        self.refuse("tolerance: got 1", lambda: ocp.solve([0, 0], tolerance=1.0))
+        self.refuse('sensitivity: got "p", expected a problem with parameters', lambda: ocp.solve([0, 0]).sensitivity("p"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "chicane/base/inlining.hpp"
+#include "chicane/base/pack.hpp"
+
+namespace chicane::solver {
+
+/// Rows of a problem whose pattern is known when the program runs, not when it is compiled: for problems that
+/// come as data, such as those written in Python. Such a problem says `static constexpr bool kHasSparseRows =
+/// true`, and its functions are called with arrays of SparseSeed where derivatives are wanted, and return
+/// arrays of SparseRow then. They are level 1 in all else.
+
+/// A variable of a stage (or of eight, where V is a pack) of whose functions derivatives up to Order are
+/// wanted.
+template <class V, int Order>
+struct SparseSeed {
+  V v;
+};
+
+/// Where a derivative is kept: of variable i, or of the pair i <= j, in (x, u).
+struct SparseEntry {
+  std::uint16_t i = 0;
+  std::uint16_t j = 0;
+  std::uint32_t slot = 0;  ///< index into SparseRow::slots
+};
+
+/// Value and derivatives of one row. What it points to belongs to the problem, and is valid until the same
+/// function is called again.
+template <class V>
+struct SparseRow {
+  static constexpr bool kIsDense = true;  // rows are looped over
+  static constexpr bool kIsSparse = true;
+
+  V v{0.0};
+  V scale{1.0};              ///< of all derivatives
+  const V* slots = nullptr;  ///< null: the row is not there, and counts for nothing
+  const SparseEntry* slopes = nullptr;
+  const SparseEntry* curvatures = nullptr;
+  std::uint32_t slope_count = 0;
+  std::uint32_t curvature_count = 0;
+  std::uint32_t stride = 1;  ///< from slot to slot
+
+  [[nodiscard]] CHICANE_INLINE bool is_absent() const noexcept { return slots == nullptr; }
+  /// Calls visit(i, first derivative).
+  template <class Visit>
+  CHICANE_INLINE void each_slope(const Visit& visit) const noexcept {
+    for (std::uint32_t n = 0; n < slope_count; ++n)
+      visit(slopes[n].i, scale * slots[slopes[n].slot * stride]);
+  }
+  /// Calls visit(i, j, second derivative) with i <= j.
+  template <class Visit>
+  CHICANE_INLINE void each_curvature(const Visit& visit) const noexcept {
+    for (std::uint32_t n = 0; n < curvature_count; ++n)
+      visit(curvatures[n].i, curvatures[n].j, scale * slots[curvatures[n].slot * stride]);
+  }
+  CHICANE_INLINE friend SparseRow operator*(double factor, SparseRow row) noexcept {
+    row.v = factor * row.v;
+    row.scale = factor * row.scale;
+    return row;
+  }
+  template <class S>
+  CHICANE_INLINE friend SparseRow operator+(SparseRow row, const S& shift) noexcept {
+    row.v = row.v + shift;
+    return row;
+  }
+  CHICANE_INLINE friend SparseRow positive_part(SparseRow row) noexcept requires std::is_same_v<V, double> {
+    if (!(row.v <= 0.0)) return row;
+    row.v = row.scale = 0.0;
+    return row;
+  }
+};
+
+template <class Row>
+concept AnySparseRow = requires {
+  requires Row::kIsSparse;
+};
+
+/// Whether a problem's rows are such.
+template <class P>
+inline constexpr bool kHasSparseRows = requires {
+  requires P::kHasSparseRows;
+};
+
+}  // namespace chicane::solver
