@@ -51,6 +51,7 @@ void store_hard(const Solver& solver, const Report& r, double* equalities, doubl
   }
 }
 }  // namespace
+#pragma GCC visibility push(default)
 extern "C" {
 void* chicane_new() { return new Solver; }
 void chicane_delete(void* self) { delete static_cast<Solver*>(self); }
@@ -130,7 +131,8 @@ class Compilation:
         name, flags = instruction_set()
         include = headers()
         source = _export.header(problem, "Problem") + _GLUE.replace("PARAMETERS", str(problem.full_count))
-        command = [compiler, "-std=c++20", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-fno-math-errno", "-w", f"-DCHICANE_ARCH={name}", *flags]
+        # What several such libraries in one process have in common must not be taken for the same.
+        command = [compiler, "-std=c++20", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-fno-gnu-unique", "-ffp-contract=off", "-fno-math-errno", "-w", f"-DCHICANE_ARCH={name}", *flags]
         version = (include / "chicane/version.hpp").read_bytes() if (include / "chicane/version.hpp").is_file() else b""
         library = b"".join(file.read_bytes() for file in sorted((include / "chicane/solver").rglob("*.hpp")))
         key = hashlib.sha256(source.encode() + repr(command[1:]).encode() + version + library).hexdigest()[:24]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The code of docs/python.md does what the page says."""
+"""The code of docs/python.md and docs/python_problems.md does what the pages say."""
 import contextlib
 import io
 import os
@@ -8,12 +8,14 @@ import tempfile
 import unittest
 from pathlib import Path
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "python.md"
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
-class Page(unittest.TestCase):
-    def test_runs_from_top_to_bottom(self):
-        blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+class Pages(unittest.TestCase):
+    def run_page(self, name):
+        """Its blocks from top to bottom in one folder; what they print."""
+        page = DOCS / name
+        blocks = re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
         self.assertGreater(len(blocks), 6)
         names = {}
         before = os.getcwd()
@@ -21,10 +23,16 @@ class Page(unittest.TestCase):
             os.chdir(folder)
             try:
                 for block in blocks:
-                    exec(compile(block, str(PAGE), "exec"), names)
+                    exec(compile(block, str(page), "exec"), names)
             finally:
                 os.chdir(before)
-        self.assertIn("(did you mean oval?)", printed.getvalue())
+        return printed.getvalue()
+
+    def test_python(self):
+        self.assertIn("(did you mean oval?)", self.run_page("python.md"))
+
+    def test_problems(self):
+        self.assertRegex(self.run_page("python_problems.md"), r"optimal after 65 turns, cost 89\.58(.|\n)*got a branch on a symbol, expected ch\.where")
 
 
 if __name__ == "__main__":

@@ -135,7 +135,7 @@ class OcpSolver {
   static constexpr double kRounding = 2.2e-16;
   static constexpr bool kCanFilter = has_filter_method<P>();
   /// Steps this short: exact curvature from here on. Dense problems pay for it.
-  static constexpr double kNear = StructuredProblem<P> ? 1e-1 : 1e-2;
+  static constexpr double kNear = has_cheap_curvature<P>() ? 1e-1 : 1e-2;
 
   using Evaluate = Evaluation<P, Arch>;
   using Lq = LqSolver<Arch, ProblemPattern<P>, kSize>;
@@ -334,7 +334,7 @@ class OcpSolver {
   /// only where Gauss–Newton needs more than that.
   [[nodiscard]] bool curvature_pays() const noexcept {
     constexpr double kTurns = 6.0;
-    return StructuredProblem<P> || progress_.is_slow(0.1 * options_.tolerance, kTurns);
+    return has_cheap_curvature<P>() || progress_.is_slow(0.1 * options_.tolerance, kTurns);
   }
   /// Gauss–Newton would need tens of turns, or the filter method has brought a point near the solution:
   /// whatever the units of the inputs.

@@ -11,6 +11,7 @@
 #include "chicane/base/pack.hpp"
 #include "chicane/solver/detail/pattern.hpp"
 #include "chicane/solver/problem.hpp"
+#include "chicane/solver/sparse_row.hpp"
 
 namespace chicane::solver {
 
@@ -78,6 +79,12 @@ template <class P>
 [[nodiscard]] constexpr bool has_hessians() noexcept {
   if constexpr (requires { P::kGaussNewton; }) return !P::kGaussNewton;
   return true;
+}
+
+/// Whether second derivatives cost little beside the first: those of structured problems and of sparse rows.
+template <class P>
+[[nodiscard]] constexpr bool has_cheap_curvature() noexcept {
+  return StructuredProblem<P> || kHasSparseRows<P>;
 }
 
 /// Whether the solver has the filter method for this problem: unless it says `kRealTime = true`, for budgets
