@@ -12,6 +12,8 @@ if TYPE_CHECKING:
 
 _CALLS = {"sin": "sin", "cos": "cos", "tan": "tan", "atan": "atan", "asin": "asin", "acos": "acos", "exp": "exp", "log": "log", "tanh": "tanh",
           "sqrt": "sqrt"}
+_MOST_INLINED = 150
+"""Operations of a function up to which the compiler is told to inline it: beyond, it would take minutes and gigabytes."""
 _SIGNS = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/"}
 _USING = "    using chicane::sin, chicane::cos, chicane::tan, chicane::atan, chicane::asin, chicane::acos, chicane::exp, chicane::log;\n" \
          "    using chicane::tanh, chicane::sqrt, chicane::pow, chicane::atan2, chicane::select;\n"
@@ -94,7 +96,8 @@ def _function(problem: Problem, name: str, rows: list[Symbol]) -> str:
     body = _Writer(problem, is_end).write(rows)
     head = "template <class X>" if is_end else "template <class K, class X, class U>"
     given = "[[maybe_unused]] const X& x" if is_end else "[[maybe_unused]] K k, [[maybe_unused]] const X& x, [[maybe_unused]] const U& u"
-    return f"  {head}\n  CHICANE_INLINE auto {name}({given}) const {{\n{body}  }}\n"
+    inline = "CHICANE_INLINE " if body.count("\n") <= _MOST_INLINED else ""
+    return f"  {head}\n  {inline}auto {name}({given}) const {{\n{body}  }}\n"
 
 
 def _prices(problem: Problem) -> str:

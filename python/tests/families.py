@@ -147,7 +147,7 @@ def race_car() -> Family:
     ocp.subject_to(lambda x, u: [x[1] - 0.8, -0.8 - x[1]], name="edge")
     ocp.subject_to(lambda x, u: [x[3] ** 2 * ch.tan(x[4]) / length - 7, -7 - x[3] ** 2 * ch.tan(x[4]) / length], price=(20, 20), name="grip")
     ocp.bounds(u=([-1.5, -8], [1.5, 5]))
-    curvature = 0.6 * np.sin(0.15 * np.arange(41))
+    curvature = 0.3 * np.sin(0.15 * np.arange(41))
     return ocp, np.array([0.0, 0.1, 0.0, 3.0, 0.0, 0.0]), np.column_stack([curvature, np.full(41, 4.0)])
 
 
@@ -167,14 +167,16 @@ def satellite() -> Family:
     inertia = np.array([1.0, 1.5, 2.0])
     ocp = ch.Problem(6, 3, 40)
 
-    def motion(x, u):
+    h = 0.2
+
+    @ocp.dynamics
+    def _(x, u):
         s, w = x[:3], x[3:]
+        w = [w[0] + h * (u[0] - (inertia[2] - inertia[1]) * w[1] * w[2]) / inertia[0], w[1] + h * (u[1] - (inertia[0] - inertia[2]) * w[2] * w[0])
+             / inertia[1], w[2] + h * (u[2] - (inertia[1] - inertia[0]) * w[0] * w[1]) / inertia[2]]
         cross = [s[1] * w[2] - s[2] * w[1], s[2] * w[0] - s[0] * w[2], s[0] * w[1] - s[1] * w[0]]
-        turn = [0.25 * ((1 - s @ s) * w[i] + 2 * cross[i] + 2 * (s @ w) * s[i]) for i in range(3)]
-        spin = [(u[0] - (inertia[2] - inertia[1]) * w[1] * w[2]) / inertia[0], (u[1] - (inertia[0] - inertia[2]) * w[2] * w[0]) / inertia[1],
-                (u[2] - (inertia[1] - inertia[0]) * w[0] * w[1]) / inertia[2]]
-        return [*turn, *spin]
-    ocp.dynamics(ch.rk4(motion, 0.2))
+        along = s[0] * w[0] + s[1] * w[1] + s[2] * w[2]
+        return [*(s[i] + 0.25 * h * ((1 - s @ s) * w[i] + 2 * cross[i] + 2 * along * s[i]) for i in range(3)), *w]
     ocp.cost(lambda x, u: 5 * x[:3] @ x[:3] + 0.5 * x[3:] @ x[3:] + 0.5 * u @ u)
     ocp.bounds(u=(-0.3, 0.3))
     return ocp, np.array([0.4, -0.3, 0.5, 0.1, 0.0, -0.1]), None
