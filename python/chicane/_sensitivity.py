@@ -16,6 +16,11 @@ _CLEAR = 5e-3
 """Constraint and multiplier both below this: which of them is zero cannot be told."""
 
 
+def is_unclear(room: float, multiplier: float) -> bool:
+    """Whether a constraint may as well become active as inactive. The solver ends with room · multiplier at its last barrier."""
+    return max(room, multiplier) < max(_CLEAR, 10.0 * float(np.sqrt(max(0.0, room * multiplier))))
+
+
 class Sensitivity:
     """How a solution changes: u of shape (horizon, nu, n) and x of shape (horizon + 1, nx, n) are derivatives by the n numbers of x0
     or p. is_one_sided: a constraint is about to become active or inactive, so that the derivative on one side is another one."""
@@ -120,8 +125,8 @@ class _Conditions:
                     self.add_gradient(k, weights[k, c] * slopes[k, c])
                 elif z > -value:
                     self.add_row(k, slopes[k, c], (2, k, c))
-                beyond = max(value, left) if value > 0.0 and not self.problem.is_hard[c] else max(z, -value)
-                self.is_one_sided = self.is_one_sided or beyond < _CLEAR
+                is_beyond = value > 0.0 and not self.problem.is_hard[c]
+                self.is_one_sided = self.is_one_sided or (is_unclear(value, left) if is_beyond else is_unclear(-value, z))
         _, _, curvatures = self.evaluate(2, range(self.horizon), weights)
         for k in range(self.horizon):
             self.add_curvature(k, curvatures[k])
@@ -137,7 +142,7 @@ class _Conditions:
                 for row in range(count):
                     if name == "terminal_constraint":
                         y = s.multipliers[name][row]
-                        self.is_one_sided = self.is_one_sided or max(y, -values[n, row]) < _CLEAR
+                        self.is_one_sided = self.is_one_sided or is_unclear(-values[n, row], y)
                         if y <= -values[n, row]:
                             continue
                     self.add_row(k, slopes[n, row], (function, k, row))
@@ -154,7 +159,7 @@ class _Conditions:
                     self.rows.append(row)
                     self.row_changes.append(np.zeros(self.nx + self.np))
                     self.curved.append((-1, k, m))
-                self.is_one_sided = self.is_one_sided or (room < 1e-6 and price < 1e-4 and lower[k, m] < upper[k, m])
+                self.is_one_sided = self.is_one_sided or (room < 1e-4 and price < 1e-4 and lower[k, m] < upper[k, m])
 
     def add_curvature_of_rows(self, jacobian: Array) -> None:
         """Second derivatives of what is an equality, by the multipliers that make the gradient vanish."""

@@ -69,27 +69,32 @@ def many(count):
 
 
 def changes(count):
-    worst, one_sided, compared = 0.0, 0, 0
+    worst, one_sided, compared, missed = 0.0, 0, 0, 0
     random = np.random.default_rng(5)
-    makers = [families.cart_pole, families.planar_quadrotor, families.crane, families.parking, families.race_car]
+    makers = [families.cart_pole, families.rocket, families.crane, families.parking, families.race_car]
     while compared < count:
         ocp, x0, p = makers[compared % len(makers)]()
         x0 = x0 + 0.1 * random.standard_normal(len(x0))
         solution = ocp.solve(x0, p, tolerance=1e-10)
-        if not solution:
+        if solution.status != "optimal":                     # to that tolerance
+            missed += 1
             continue
         compared += 1
         change = solution.sensitivity("x0")
         if change.is_one_sided:
             one_sided += 1
             continue
-        n = int(random.integers(len(x0)))
+        n = int(random.integers(1, len(x0)))                # of a race car, the first one matters to nothing
         step = np.zeros(len(x0))
         step[n] = 1e-5
         ends = [ocp.solve(x0 + sign * step, p, start=solution, tolerance=1e-10) for sign in (1, -1)]
+        bend = abs(ends[0].cost + ends[1].cost - 2 * solution.cost)
+        if not all(end.status == "optimal" for end in ends) or bend > 1e-5 * solution.cost:       # at another optimum
+            missed += 1
+            continue
         numeric = (ends[0].u - ends[1].u) / 2e-5
         worst = max(worst, float(np.abs(numeric - change.u[:, :, n]).max() / np.abs(numeric).max()))
-    print(f"{compared} instances, {one_sided} said to be one-sided; of the others the largest relative error {worst:.1e}")
+    print(f"{compared} instances, {one_sided} said to be one-sided, {missed} not solved to 1e-10 or with a neighbour at another optimum; of the others the largest relative error {worst:.1e}")
     return worst <= 1e-5
 
 
