@@ -358,7 +358,7 @@ class Problem:
         if self._interpreter is None:
             self._interpreter = self.make_interpreter()
         solver: Any = self._interpreter
-        if self._compiled is not None and self._compiled.is_done(False):
+        if self.speed == "compiled":
             solver = self._compiled.solver
         solver.set(self._lower, self._upper, np.array(self.prices, float).reshape(-1, 3), self.is_hard, options)
         return solver
@@ -384,7 +384,7 @@ class Problem:
     @property
     def speed(self) -> str:
         """How it is solved: "interpreted" or "compiled"."""
-        return "compiled" if self._compiled is not None and self._compiled.is_done(False) else "interpreted"
+        return "compiled" if self._compiled is not None and self._compiled.solver is not None else "interpreted"
 
     def __repr__(self) -> str:
         parts = [f"nx {self.nx}, nu {self.nu}, horizon {self.horizon}"]

@@ -58,6 +58,8 @@ class Solution:
 
     def sensitivity(self, of: str = "x0") -> Sensitivity:
         """How the solution changes with "x0" or with "p": derivatives of u and x, the set of active constraints fixed."""
+        if not hasattr(self, "_problem"):
+            raise ValueError("sensitivity: got a solution from a pickle, expected one that solve() has returned")
         from . import _sensitivity
         return _sensitivity.find(self._problem, self, of)
 

@@ -108,7 +108,10 @@ class Solving(unittest.TestCase):
 
     def test_solutions_can_be_pickled(self):
         solution = double_integrator().solve([1.0, 0.0])
-        self.assertEqual(pickle.loads(pickle.dumps(solution)).cost, solution.cost)
+        copy = pickle.loads(pickle.dumps(solution))
+        self.assertEqual(copy.cost, solution.cost)
+        with self.assertRaisesRegex(ValueError, "got a solution from a pickle"):
+            copy.sensitivity()
 
     def test_many_have_the_same_bits_for_any_number_of_threads(self):
         ocp, _, _ = families.cart_pole()
