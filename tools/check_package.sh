@@ -103,5 +103,6 @@ command -v mmdebstrap >/dev/null || { echo "check_package: mmdebstrap is not ins
 suite=$(. /etc/os-release && echo "${VERSION_CODENAME:-bookworm}")
 printf -v hook '%q --in "$1" %q' "$root/tools/check_package.sh" "$packages"
 result=0
-mmdebstrap --quiet --variant=minbase --customize-hook="$hook" "$suite" /dev/null "${CHICANE_DEBIAN_MIRROR:-http://deb.debian.org/debian}" || result=$?
+mirror=(${CHICANE_DEBIAN_MIRROR:+"$CHICANE_DEBIAN_MIRROR"})  # none: Debian's own
+mmdebstrap --quiet --variant=minbase --customize-hook="$hook" "$suite" /dev/null "${mirror[@]}" || result=$?
 [ "$result" -eq 0 ] || fail "mmdebstrap ended with $result"

@@ -28,7 +28,7 @@
 namespace chicane::apps {
 namespace {
 
-std::atomic<bool> ros_stop{false};  // as long as signals may come
+std::atomic<bool> ros_stop{false};  // set by signals, whose handler outlives each run
 
 ros::NodeOptions node_of(const Options& options) {
   const Options::Ros& told = options.ros;

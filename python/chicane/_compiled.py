@@ -35,7 +35,7 @@ struct Solver {
   OcpSolver<Problem, Problem::kHorizon> solver;
   Trajectory<Problem::kNx, Problem::kNu, Problem::kHorizon> trajectory;
 };
-// Of problems with something that must hold.
+// Multipliers and misses of what must hold, where the problem has such rows.
 template <class Solver, class Report>
 void store_hard(const Solver& solver, const Report& r, double* equalities, double* end, double* report) {
   if constexpr (HardProblem<Problem>) {

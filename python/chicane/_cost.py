@@ -40,14 +40,7 @@ def _atoms(graph: Graph, node: int, factor: float, whole: set[int]) -> list[tupl
     op, a, b, _, _ = graph.nodes[node]
     if op in ("add", "subtract") and node not in whole:
         return _atoms(graph, a, factor, whole) + _atoms(graph, b, factor if op == "add" else -factor, whole)
-    if op == "multiply":
-        for number, other in ((a, b), (b, a)):
-            known = graph.value_of(number)
-            if known is not None:
-                return [(factor * known, other)]
-    if op == "negate":
-        return [(-factor, a)]
-    return [(factor, node)]
+    return _scaled(graph, node, factor)
 
 
 def _product(graph: Graph, a: int, b: int, factor: float, whole: set[int]) -> list[Term]:

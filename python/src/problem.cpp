@@ -64,7 +64,7 @@ std::unique_ptr<TracedSolver> make_solver(int kind, const TracedProblem& problem
   if (kind == 1) return make_medium_solver<Arch>(problem, workspace);
   return make_large_solver<Arch>(problem, workspace);
 }
-/// For the chosen instruction set, or the best one below it that the interpreter was compiled for.
+/// Solver for the chosen instruction set, or the best one below it that the interpreter was compiled for.
 std::unique_ptr<TracedSolver> make_solver(int kind, const TracedProblem& problem,
                                           const Workspace& workspace) {
   [[maybe_unused]] const InstructionSet set = chosen_instruction_set();
@@ -112,7 +112,7 @@ struct StageParameters {
     const auto address = reinterpret_cast<std::uintptr_t>(memory.data());
     data = memory.data() + (64 - address % 64) % 64 / sizeof(double);
   }
-  /// From an array of shape (stages, np).
+  /// Takes over an array of shape (stages, np).
   void fill(const double* from, int np, int stages) {
     for (int k = 0; k < stages; ++k) {
       for (int n = 0; n < np; ++n)
@@ -281,7 +281,7 @@ class Interpreter {
   }
 
  private:
-  /// What one thread solves with.
+  /// Solver, memory and answer of one thread.
   struct Worker {
     explicit Worker(const Interpreter& of)
         : workspace{of.problem_},

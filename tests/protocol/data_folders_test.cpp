@@ -35,7 +35,7 @@ TEST(DataFolders, OfTheEnvironmentComeBeforeTheProgramsAndTheLibrarysAfter) {
   std::vector<std::string> folders =
       folders_of({.environment = "/mine",
                   .program = "/none/bin/python3",
-                  .library = "/none/lib/module/chicane.so",
+                  .shared_object = "/none/lib/module/chicane.so",
                   .header = "/none/prefix/include/chicane/protocol/data_folders.hpp"});
   const auto place = [&](std::string_view folder) {
     return std::find(folders.begin(), folders.end(), folder) - folders.begin();
@@ -47,7 +47,7 @@ TEST(DataFolders, OfTheEnvironmentComeBeforeTheProgramsAndTheLibrarysAfter) {
 }
 
 TEST(DataFolders, AreNamedOnce) {
-  const DataOrigins origins{.program = "/none/bin/program", .library = "/none/bin/program"};
+  const DataOrigins origins{.program = "/none/bin/program", .shared_object = "/none/bin/program"};
   EXPECT_EQ(folders_of(origins).size(), count_of_fixed_places() + 3);
 }
 

@@ -13,7 +13,7 @@
 namespace chicane::safety {
 namespace {
 
-constexpr double kCycle = 0.04;  // [s]
+constexpr double kCycle = 0.04;  // [s] between measurements, unless another time is told
 constexpr double kOnset = 5.0;   // [s] from which actuators answer otherwise
 
 /// A car that is steered to and fro by its model, with actuators that answer as `effect` says from kOnset on.
@@ -24,6 +24,7 @@ struct Drive {
   double heading_noise = 0.0;    ///< [rad]
   double throttle_after = 0.05;  ///< from kOnset on
   double steer = 0.05;           ///< amplitude [rad]
+  double cycle = kCycle;         ///< [s]
   double sign = 1.0;             ///< -1: mirrored
   double speed = 12.0;           ///< [m/s]
 
@@ -35,10 +36,13 @@ struct Drive {
     Random random(3);
     model::BodyMotion<double> body{.vx = speed};
     double psi = 0.0;
-    for (int i = 0; i * kCycle < seconds; ++i) {
-      const double time = i * kCycle;
+    Vec2 place;
+    for (int i = 0; i * cycle < seconds; ++i) {
+      const double time = i * cycle;
       model::Measurement now;
       now.time = time;
+      now.x = place.x();
+      now.y = place.y();
       now.psi = psi + heading_noise * random.normal();
       now.speed = std::hypot(body.vx, body.vy);
       watch.see(now, sent);
@@ -50,11 +54,13 @@ struct Drive {
       const model::Command acting = is_late ? effect(command) : command;
       constexpr int kParts = 10;
       for (int k = 0; k < kParts; ++k) {
-        const double dt = kCycle / kParts;
+        const double dt = cycle / kParts;
         const double psi_before = body.r;
         body = model.advance(body, acting.steer, longitudinal_acceleration(car, acting.throttle, body.vx), dt,
                              model.lags(dt));
         psi += 0.5 * dt * (psi_before + body.r);
+        place += dt * Vec2{body.vx * std::cos(psi) - body.vy * std::sin(psi),
+                           body.vx * std::sin(psi) + body.vy * std::cos(psi)};
       }
     }
     return watch;
@@ -118,6 +124,33 @@ TEST(ActuatorWatch, FindsWeakBrakes) {
   EXPECT_FALSE(drive.after(kOnset + 1.5).has_weak_brakes());
 }
 
+TEST(ActuatorWatch, FindsTheSameInMeasurementsThatComeOftenOrSeldom) {
+  for (const double cycle : {0.005, 0.01, 0.02, 0.1}) {
+    Drive drive;
+    drive.cycle = cycle;
+    drive.effect = [](const model::Command& c) { return model::Command{0.5 * c.steer, c.throttle}; };
+    EXPECT_TRUE(drive.after(kOnset + 10.0).has_other_steering()) << cycle;
+    drive.speed = 40.0;
+    drive.throttle_after = -0.5;
+    drive.steer = 0.0;
+    drive.effect = [](const model::Command& c) { return model::Command{c.steer, 0.5 * c.throttle}; };
+    EXPECT_TRUE(drive.after(kOnset + 1.5).has_weak_brakes()) << cycle;
+  }
+}
+
+TEST(ActuatorWatch, KnowsTheCarWithTheBrakesThatItHas) {
+  Drive drive;
+  drive.speed = 40.0;
+  drive.throttle_after = -0.5;
+  drive.effect = [](const model::Command& c) { return model::Command{c.steer, 0.5 * c.throttle}; };
+  ActuatorWatch watch = drive.after(kOnset + 1.5);
+  const double usual = drive.car.brake_acceleration;
+  EXPECT_DOUBLE_EQ(watch.vehicle().brake_acceleration, watch.answer().braking * usual);
+  EXPECT_EQ(watch.usual_vehicle().brake_acceleration, usual);
+  watch.reset();
+  EXPECT_EQ(watch.vehicle().brake_acceleration, usual);
+}
+
 TEST(ActuatorWatch, JudgesNothingWhileNothingIsMeasured) {
   ActuatorWatch watch{model::road_car_params()};
   controller::CommandHistory sent;
@@ -126,6 +159,7 @@ TEST(ActuatorWatch, JudgesNothingWhileNothingIsMeasured) {
     model::Measurement now;
     now.time = i * kCycle;
     now.speed = 20.0;
+    now.x = 20.0 * now.time;
     watch.see(now, sent);
     if (i % 3 == 0) watch.skip();
   }

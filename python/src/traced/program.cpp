@@ -138,7 +138,7 @@ class Emitter {
   std::vector<int> uses_;
   std::vector<std::uint32_t> slot_;
   std::vector<bool> is_fused_;
-  std::vector<int> fused_;  ///< which operand of a sum is a product that it takes up
+  std::vector<int> fused_;  ///< operand of a sum that is a product and is taken up by it
   std::vector<std::size_t> candidates_;
   std::vector<std::uint32_t> free_;
   Program program_;

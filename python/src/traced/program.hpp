@@ -25,15 +25,15 @@ struct Load {
   std::uint32_t from = 0;  ///< variable or parameter
 };
 
-/// Where the results for one row are.
+/// Slots of the results for one row.
 struct ProgramRow {
   std::uint32_t value = 0;  ///< slot
   std::uint32_t slopes = 0, slope_count = 0;
   std::uint32_t curvatures = 0, curvature_count = 0;
 };
 
-/// A function as a list of operations on slots, with its derivatives up to an order. Constants stand in slots
-/// of their own from the start; what is a result keeps its slot to the end.
+/// A function as a list of operations on slots, with its derivatives up to an order. Constants have
+/// slots of their own from the start; the slot of a result is kept to the end.
 struct Program {
   std::vector<Instruction> code;
   std::vector<Load> variables, parameters;

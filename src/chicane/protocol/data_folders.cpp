@@ -55,7 +55,7 @@ DataOrigins data_origins() {
   DataOrigins origins;
   if (const char* folder = std::getenv("CHICANE_DATA_DIR"); folder != nullptr) origins.environment = folder;
   origins.program = running_program();
-  origins.library = containing_object();
+  origins.shared_object = containing_object();
   if (chicane_installed_header != nullptr) origins.header = chicane_installed_header;
   return origins;
 }
@@ -70,7 +70,7 @@ std::vector<std::string> data_folders(const DataOrigins& origins, std::string_vi
   };
   found.push_back((fs::path(".") / kind).string());
   if (!origins.environment.empty()) found.push_back((fs::path(origins.environment) / kind).string());
-  for (const std::string& file : {origins.program, origins.library}) {
+  for (const std::string& file : {origins.program, origins.shared_object}) {
     if (file.empty()) continue;
     const fs::path folder = fs::path(file).parent_path();
     add(folder / "share/chicane");

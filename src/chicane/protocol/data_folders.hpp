@@ -12,7 +12,7 @@ namespace chicane::protocol {
 struct DataOrigins {
   std::string environment{};  ///< value of the variable CHICANE_DATA_DIR: a folder with the folder `presets`
   std::string program{};      ///< file of the running program, absolute
-  std::string library{};      ///< file of the shared object that contains this library, absolute
+  std::string shared_object{};  ///< file of the shared object that contains this library, absolute
   std::string header{};  ///< this header in the installation that the program was compiled with, absolute
 };
 

@@ -123,22 +123,8 @@ class DriveNode {
         publisher_{std::move(publisher)},
         parameters_{std::move(parameters)},
         log_{hooks.log},
-        hooks_{.settings = hooks.settings,
-               .on_change = hooks.on_change,
-               .on_frame = hooks.on_frame,
-               .on_lap =
-                   [this, &hooks](const telemetry::CompletedLap& lap) {
-                     publisher_->publish(lap);
-                     if (hooks.on_lap) hooks.on_lap(lap);
-                   },
-               .on_other_road = hooks.on_other_road},
-        drive_{{.scenario = options.scenario,
-                .track = options.track,
-                .lap = options.lap,
-                .step_budget = options.step_budget,
-                .forget_after = options.forget_after},
-               std::move(controller),
-               hooks_},
+        hooks_{with_laps_published(hooks.drive())},
+        drive_{options.drive(), std::move(controller), hooks_},
         sight_{options.scenario, node.topics.path.empty() ? options.track : nullptr,
                node.is_base_at_rear_axle},
         clock_{node.topics.odom},
@@ -175,6 +161,14 @@ class DriveNode {
     return std::clamp<std::chrono::nanoseconds>(
         std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * left)), std::chrono::nanoseconds{100'000},
         kLongestWait);
+  }
+
+  run::ExternalDriveHooks with_laps_published(run::ExternalDriveHooks hooks) {
+    hooks.on_lap = [this, told = std::move(hooks.on_lap)](const telemetry::CompletedLap& lap) {
+      publisher_->publish(lap);
+      if (told) told(lap);
+    };
+    return hooks;
   }
 
   [[nodiscard]] double delay() const { return options_.scenario.latency + turn_around_; }

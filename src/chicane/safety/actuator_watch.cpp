@@ -13,10 +13,13 @@ namespace {
 constexpr double kFullSize = 4.5;       // [m] length of a car in full size
 constexpr double kShort = 0.12;         // [s] over which the car's motion is averaged
 constexpr double kLong = 0.4;           // [s] the same for noisy sensors, and of braking
+constexpr double kSpacing = 0.0095;     // [s] at least between samples: they reach half a second back
 constexpr double kLongestStep = 0.25;   // [s] between measurements that are compared
 constexpr double kMostUse = 0.75;       // of the tyres' peak slip: beyond it grip is in question, too
 constexpr double kSpareUse = 0.35;      // of it, up to which grip is not in question
 constexpr double kMostSideslip = 0.12;  // [rad]
+constexpr double kSlides = 0.08;        // [rad] of a course that is another one than a car that grips has
+constexpr double kCalmFor = 0.5;        // [s] after a slide, until the steering is judged again
 constexpr double kDiffersFor = 0.05;    // [s] out of its band before an answer counts as another one
 constexpr double kDeviations = 5.0;     // of the noise, added to the band
 constexpr double kLearned = 4.0;        // [s] of which the noise is the mean
@@ -37,21 +40,29 @@ constexpr double kLeastShare = 0.2;
 constexpr double kStrong = 0.9;  // share of the braking from which brakes are usual again
 constexpr int kParts = 4;        // of a step, in which the command may change
 
+model::VehicleParams without_name(model::VehicleParams vehicle) noexcept {
+  vehicle.name.clear();
+  return vehicle;
+}
+
 }  // namespace
 
 ActuatorWatch::ActuatorWatch(const model::VehicleParams& vehicle) noexcept
-    : model_{vehicle}, pace_{std::sqrt(std::min(vehicle.length / kFullSize, 1.0))} {}
+    : model_{without_name(vehicle)}, pace_{std::sqrt(std::min(vehicle.length / kFullSize, 1.0))} {}
 
 void ActuatorWatch::reset() noexcept { *this = ActuatorWatch{model_.vehicle()}; }
 
-void ActuatorWatch::set_vehicle(const model::VehicleParams& vehicle) noexcept { model_.set_vehicle(vehicle); }
+void ActuatorWatch::set_vehicle(const model::VehicleParams& vehicle) noexcept {
+  model_.set_vehicle(without_name(vehicle));
+}
 
 void ActuatorWatch::see(const model::Measurement& now, const controller::CommandHistory& sent) noexcept {
   const double elapsed = count_ > 0 ? now.time - back(0).time : 0.0;
+  if (elapsed > 0.0 && elapsed < kSpacing * pace_) return;
   if (count_ > 0 && !(elapsed > 0.0 && elapsed < kLongestStep)) count_ = 0;
   add_sample(now, sent);
   if (count_ < 2) {
-    for (Window& window : windows_) window.slide = window.differs_for = 0.0;
+    for (Window& window : windows_) window.slide = window.differs_for = window.calm_for = 0.0;
     weak_for_ = 0.0;
     return;
   }
@@ -68,13 +79,13 @@ void ActuatorWatch::see(const model::Measurement& now, const controller::Command
 
 void ActuatorWatch::add_sample(const model::Measurement& now,
                                const controller::CommandHistory& sent) noexcept {
-  Sample next{.time = now.time, .turned = now.psi, .speed = std::fabs(now.speed)};
+  Sample next{.time = now.time, .turned = now.psi, .speed = std::fabs(now.speed), .place = {now.x, now.y}};
   if (count_ > 0) {
     const Sample& last = back(0);
     const model::VehicleParams& car = model_.vehicle();
-    next = {now.time,   last.turned + angle_difference(now.psi, last_psi_),
-            last.angle, last.braking,
-            next.speed, 0.0};
+    next.turned = last.turned + angle_difference(now.psi, last_psi_);
+    next.angle = last.angle;
+    next.braking = last.braking;
     const double part = (now.time - last.time) / kParts;
     const double kept = car.steer_lag > 0.0 ? exp(-part / car.steer_lag) : 0.0;
     for (int i = 0; i < kParts; ++i) {
@@ -98,6 +109,15 @@ std::size_t ActuatorWatch::samples_back_to(double time) const noexcept {
   std::size_t i = 0;
   while (i + 1 < have && back(i).time > time) ++i;
   return i;
+}
+
+/// Whether the car moves otherwise across its heading than a car that grips: its tyres, not its wheels, are
+/// what differs.
+bool ActuatorWatch::slides(const Sample& from, double sideslip) const noexcept {
+  const Sample& now = back(0);
+  const Vec2 way = now.place - from.place;
+  const double heading = last_psi_ - 0.5 * (now.turned - from.turned);
+  return std::fabs(angle_difference(atan2(way.y(), way.x()), heading) - sideslip) > kSlides;
 }
 
 /// Equation 12: the wheel angle that turns the car as it turned over the last `length` [s], and the one that
@@ -125,7 +145,10 @@ bool ActuatorWatch::measure(Window& window, double length, double elapsed) const
   const double sideslip = std::fabs(window.slide) / car.vx;
   if (sideslip > 2.0 * kMostSideslip) window.slide = 0.0;
   window.use = std::max(tires.front, tires.rear);
-  return window.use < kMostUse && sideslip < kMostSideslip;
+  const bool is_calm =
+      window.use < kMostUse && sideslip < kMostSideslip && !slides(from, window.slide / car.vx);
+  window.calm_for = is_calm ? window.calm_for + elapsed : 0.0;
+  return window.calm_for > kCalmFor * pace_;
 }
 
 void ActuatorWatch::judge_steering(Window& window, double length, double elapsed) noexcept {
@@ -135,7 +158,8 @@ void ActuatorWatch::judge_steering(Window& window, double length, double elapsed
   }
   const double before = window.difference;
   window.difference = window.angle - answer_.gain * window.asked - answer_.offset;
-  const double band = kBand + kBandShare * std::fabs(window.asked) + kSlipShare * std::fabs(window.slip) +
+  const double slip_share = window.use > kSpareUse ? kSlipShareUsed : kSlipShare;
+  const double band = kBand + kBandShare * std::fabs(window.asked) + slip_share * std::fabs(window.slip) +
                       kChangeShare * window.changed + kDeviations * std::sqrt(window.noise);
   // Wheels that turn the car less than asked for may as well lack grip.
   const bool may_lack_grip = window.use > kSpareUse && window.difference * window.slip < 0.0;

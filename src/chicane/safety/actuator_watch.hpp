@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "chicane/base/vec2.hpp"
 #include "chicane/controller/command_history.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/prediction.hpp"
@@ -35,13 +36,14 @@ struct ActuatorAnswer {
 /// spare. No allocation; one thread.
 class ActuatorWatch {
  public:
-  static constexpr double kBand = 0.01;        ///< [rad] by which an angle may differ
-  static constexpr double kBandShare = 0.1;    ///< and of the angle
-  static constexpr double kChangeShare = 1.0;  ///< and of what it changes within a window
-  static constexpr double kSlipShare = 0.2;    ///< and of the front tyres' slip
-  static constexpr double kWeak = 0.75;        ///< share of the braking, below which brakes are weak
-  static constexpr double kUsualFor = 1.0;     ///< [s]
-  static constexpr double kSlowest = 6.0;      ///< [m/s] of a car in full size
+  static constexpr double kBand = 0.01;          ///< [rad] by which an angle may differ
+  static constexpr double kBandShare = 0.1;      ///< and of the angle
+  static constexpr double kChangeShare = 1.0;    ///< and of what it changes within a window
+  static constexpr double kSlipShare = 0.2;      ///< and of the front tyres' slip
+  static constexpr double kSlipShareUsed = 0.5;  ///< the same of tyres that are used, whose grip may be less
+  static constexpr double kWeak = 0.75;          ///< share of the braking, below which brakes are weak
+  static constexpr double kUsualFor = 1.0;       ///< [s]
+  static constexpr double kSlowest = 6.0;        ///< [m/s] of a car in full size
 
   explicit ActuatorWatch(const model::VehicleParams& vehicle) noexcept;
   void reset() noexcept;
@@ -54,6 +56,14 @@ class ActuatorWatch {
   void skip() noexcept { count_ = 0; }
 
   [[nodiscard]] const ActuatorAnswer& answer() const noexcept { return answer_; }
+  /// The car with usual actuators. Its name is empty: copies do not allocate.
+  [[nodiscard]] const model::VehicleParams& usual_vehicle() const noexcept { return model_.vehicle(); }
+  /// The car with the brakes that it has.
+  [[nodiscard]] model::VehicleParams vehicle() const noexcept {
+    model::VehicleParams car = model_.vehicle();
+    car.brake_acceleration *= answer_.braking;
+    return car;
+  }
   [[nodiscard]] bool has_other_steering() const noexcept { return is_steered_; }
   [[nodiscard]] bool has_weak_brakes() const noexcept { return answer_.braking < 1.0; }
 
@@ -66,6 +76,7 @@ class ActuatorWatch {
     double braking = 0.0;  ///< integral of the pedal's deceleration by the model [m/s]
     double speed = 0.0;    ///< [m/s]
     double pedal = 0.0;    ///< mean since the one before
+    Vec2 place{};          ///< [m]
   };
   static constexpr std::size_t kSamples = 64;
 
@@ -84,8 +95,10 @@ class ActuatorWatch {
     double difference = 0.0;          ///< of the angles from the expected answer [rad]
     double noise = 0.0;               ///< mean square of what of it is not there the next time [rad²]
     double learned = 0.0;             ///< time of which the noise is the mean [s]
+    double calm_for = 0.0;            ///< time without a slide [s]
     double differs_for = 0.0;         ///< [s]
   };
+  [[nodiscard]] bool slides(const Sample& from, double sideslip) const noexcept;
   [[nodiscard]] bool measure(Window& window, double length, double elapsed) const noexcept;
   void judge_steering(Window& window, double length, double elapsed) noexcept;
   void fit_steering(const Window& window, double length, double elapsed) noexcept;

@@ -78,6 +78,7 @@ void Guard::reset() noexcept {
   monitor_.reset();
   reset_watch_.reset();
   actuators_.reset();
+  count_with_actuators();
   supervisor_.reset();
   fallback_.reset();
   gate_.reset();
@@ -111,11 +112,13 @@ void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
 
 void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   actuators_.set_vehicle(vehicle);
-  believe(vehicle);
+  count_with_actuators();
 }
 
-/// The car that estimate, stops and fallback count with.
-void Guard::believe(const model::VehicleParams& vehicle) noexcept {
+/// Estimate, stops and fallback count with the car as its actuators answer.
+void Guard::count_with_actuators() noexcept {
+  const model::VehicleParams vehicle =
+      options_.mode == GuardMode::kOn ? actuators_.vehicle() : actuators_.usual_vehicle();
   fallback_.set_vehicle(vehicle);
   model_.set_vehicle(vehicle);
   filter_.set_vehicle(vehicle);
@@ -174,10 +177,7 @@ void Guard::watch_actuators(const model::Measurement& seen) noexcept {
   actuators_.see(seen, told_);
   if (answer().gain != before.gain || answer().offset != before.offset)
     sent_ = told_.changed([this](const model::Command& command) { return answer().effect_of(command); });
-  if (answer().braking == before.braking) return;
-  model::VehicleParams car = model_.vehicle();
-  car.brake_acceleration *= answer().braking / before.braking;
-  believe(car);
+  if (answer().braking != before.braking) count_with_actuators();
 }
 
 /// What of a measurement can be believed; estimate and road take it in.

@@ -113,7 +113,7 @@ class Guard {
   void watch_rest(double time, double throttle) noexcept;
   void release_brake(double time, model::Command& command) noexcept;
   [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
-  void believe(const model::VehicleParams& vehicle) noexcept;
+  void count_with_actuators() noexcept;
   void watch_actuators(const model::Measurement& seen) noexcept;
   [[nodiscard]] const ActuatorAnswer& answer() const noexcept;
   void send(const Cycle& cycle, const model::Command& asked, controller::StepResult& result) noexcept;

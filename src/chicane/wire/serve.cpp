@@ -90,18 +90,8 @@ class UdacityEndpoint::Control {
           const ServeHooks& hooks, Answer answer)
       : options_{options},
         answer_{std::move(answer)},
-        drive_hooks_{.settings = hooks.settings,
-                     .on_change = hooks.on_change,
-                     .on_frame = hooks.on_frame,
-                     .on_lap = hooks.on_lap,
-                     .on_other_road = hooks.on_other_road},
-        drive_{{.scenario = options.scenario,
-                .track = options.track,
-                .lap = options.lap,
-                .step_budget = options.step_budget,
-                .forget_after = options.forget_after},
-               std::move(controller),
-               drive_hooks_},
+        drive_hooks_{hooks.drive()},
+        drive_{options.drive(), std::move(controller), drive_hooks_},
         delay_{seconds(options.latency) + kTypicalTurnAround},
         thread_{[this] { work(); }} {}
   ~Control() { stop(); }

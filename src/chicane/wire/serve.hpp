@@ -21,6 +21,7 @@
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/road/racing_road.hpp"
+#include "chicane/run/external_drive.hpp"
 #include "chicane/run/setting.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/change.hpp"
@@ -52,6 +53,15 @@ struct ServeOptions {
   std::chrono::nanoseconds forget_after = std::chrono::milliseconds{500};
   std::chrono::nanoseconds quiet_after = std::chrono::seconds{1};   ///< then another connection may take over
   std::chrono::nanoseconds silent_after = std::chrono::seconds{3};  ///< then missing telemetry is reported
+
+  /// The part that the control cycles are made of.
+  [[nodiscard]] run::ExternalDriveOptions drive() const {
+    return {.scenario = scenario,
+            .track = track,
+            .lap = lap,
+            .step_budget = step_budget,
+            .forget_after = forget_after};
+  }
 };
 
 struct ServeHooks {
@@ -70,6 +80,15 @@ struct ServeHooks {
   /// Settings by name, as viewers see them: for the network thread. Outlives the endpoint; null: none.
   protocol::foxglove::ParameterStore* parameters = nullptr;
   const protocol::Run* description = nullptr;  ///< of the run; outlives the endpoint; null: not known
+
+  /// The part that the control cycles call.
+  [[nodiscard]] run::ExternalDriveHooks drive() const {
+    return {.settings = settings,
+            .on_change = on_change,
+            .on_frame = on_frame,
+            .on_lap = on_lap,
+            .on_other_road = on_other_road};
+  }
 };
 
 /// What has been served so far.
