@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -15,10 +16,7 @@ namespace {
 
 class BagMetadata : public testing::Test {
  protected:
-  BagMetadata() : folder_{std::filesystem::path(testing::TempDir()) / "bag_metadata_test"} {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
+  BagMetadata() { std::filesystem::create_directories(folder_); }
   ~BagMetadata() override { std::filesystem::remove_all(folder_); }
   [[nodiscard]] std::string file(const char* name) const { return (folder_ / name).string(); }
   [[nodiscard]] static std::string text_of(const std::string& path) {
@@ -27,7 +25,9 @@ class BagMetadata : public testing::Test {
     return text.str();
   }
 
-  std::filesystem::path folder_;
+  // A folder for each process: tests run beside each other.
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("chicane_bag_metadata_" + std::to_string(::getpid()));
 };
 
 TEST_F(BagMetadata, CountsTheMessagesOfARecordingInTheLayoutOfRosbag2) {
