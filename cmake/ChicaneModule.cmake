@@ -6,7 +6,8 @@
 # Without HEADERS and SOURCES all of the folder belong to the module: so in folders that get a file for each controller, plant, fault or
 # track format; PRIVATE_HEADERS are for our own sources and not installed. SIMD_SOURCES are compiled once for each instruction set
 # (InstructionSets.cmake). A test without SOURCES has every *_test.cpp of its folder; each of its tests is a process of its own, but those
-# of a suite in SUITES, which share what takes long to make.
+# of a suite in SUITES, which share what takes long to make. OWN_OPTIONS is for tests that are compiled with further options, and so
+# cannot have the precompiled headers of the others.
 #
 # Most of a small source file's compile time goes into the headers that it includes. UNITY compiles the module's sources as one file,
 # and chicane_unity(TARGET GROUP FILE...) some of a target's, so names in their anonymous namespaces must differ; files that no group
@@ -65,8 +66,14 @@ function(chicane_module name)
   endif()
 endfunction()
 
+function(chicane_test_options target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Og>)
+  target_link_libraries(${target} PRIVATE chicane_options chicane_test_support)
+  target_compile_definitions(${target} PRIVATE CHICANE_ENABLE_ASSERT CHICANE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+endfunction()
+
 function(chicane_test name)
-  cmake_parse_arguments(T "" "" "SOURCES;DEPENDS;LABELS;PRIVATE;SUITES" ${ARGN})
+  cmake_parse_arguments(T "OWN_OPTIONS" "" "SOURCES;DEPENDS;LABELS;PRIVATE;SUITES" ${ARGN})
   if(NOT T_DEPENDS)
     set(T_DEPENDS ${name})
   endif()
@@ -76,9 +83,11 @@ function(chicane_test name)
   list(TRANSFORM T_DEPENDS PREPEND chicane_)
   set(target ${name}_test)
   add_executable(${target} ${T_SOURCES})
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Og>)
-  target_link_libraries(${target} PRIVATE ${T_DEPENDS} chicane_options chicane_test_support ${T_PRIVATE})
-  target_compile_definitions(${target} PRIVATE CHICANE_ENABLE_ASSERT CHICANE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  chicane_test_options(${target})
+  target_link_libraries(${target} PRIVATE ${T_DEPENDS} ${T_PRIVATE})
+  if(NOT T_OWN_OPTIONS)
+    target_precompile_headers(${target} REUSE_FROM chicane_test_headers)
+  endif()
   # One label with all words in it, which `ctest -L` and `-LE` find: gtest_discover_tests takes lists apart.
   string(JOIN ":" labels ${name} ${T_LABELS})
   set(others ${T_SUITES})

@@ -15,6 +15,8 @@ done
 stats=.processor_times.$$
 TIMEFORMAT='%U %S'
 exec 3>&1 4>&2
+# Without these, ccache keeps nothing that was compiled with precompiled headers.
+export CCACHE_SLOPPINESS=pch_defines,time_macros
 spent=$( { time CCACHE_STATSLOG=$PWD/$stats "$@" >&3 2>&4; } 2>&1 )
 result=$?
 kind=run

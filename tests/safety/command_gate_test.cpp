@@ -66,8 +66,7 @@ TEST(CommandGate, ReplacesWhatIsNotFiniteByTheLastSteeringAndGentleBraking) {
     const GateResult throttle = gate.pass({0.2, bad}, 0.1);
     EXPECT_EQ(throttle.reason, GateReason::kNotFinite);
     EXPECT_EQ(throttle.command.steer, 0.2);
-    EXPECT_LT(throttle.command.throttle, 0.0);
-    EXPECT_GT(throttle.command.throttle, -vehicle.brake_throttle_limit);
+    EXPECT_DOUBLE_EQ(throttle.command.throttle, -0.4 * vehicle.brake_throttle_limit);
   }
 }
 
@@ -104,6 +103,24 @@ TEST(CommandGate, ReportsTheWorstReason) {
   CommandGate gate{road_car()};
   EXPECT_EQ(gate.pass({9.0, kNaN}, 0.1).reason, GateReason::kNotFinite);
   EXPECT_EQ(gate.pass({-9.0, 0.0}, 0.1).reason, GateReason::kRange);
+  EXPECT_EQ(gate.pass({0.4, kNaN}, 0.1).reason, GateReason::kNotFinite) << "rate and not finite";
+  EXPECT_EQ(gate.pass({0.4, 7.0}, 0.1).reason, GateReason::kRange) << "rate and range";
+  EXPECT_EQ(gate.pass({9.0, 7.0}, 0.1).reason, GateReason::kRange);
+}
+
+TEST(CommandGate, NamesThePedalOutOfRangeByItself) {
+  for (const double pedal : {1.0001, -1.0001}) {
+    CommandGate gate{road_car()};
+    EXPECT_EQ(gate.pass({0.0, pedal}, 0.1).reason, GateReason::kRange) << pedal;
+  }
+}
+
+/// limited() looks ahead: what pass() would send, and nothing changes.
+TEST(CommandGate, SaysWhatItWouldSendWithoutSendingIt) {
+  CommandGate gate{road_car()};
+  EXPECT_DOUBLE_EQ(gate.limited({0.4, 0.0}, 0.1).command.steer, 0.15);
+  EXPECT_DOUBLE_EQ(gate.limited({0.4, 0.0}, 0.1).command.steer, 0.15);
+  EXPECT_DOUBLE_EQ(gate.pass({0.4, 0.0}, 0.1).command.steer, 0.15);
 }
 
 TEST(CommandGate, ForgetsTheLastCommandOnReset) {

@@ -76,6 +76,36 @@ path::RoadData straight_road(int intervals) {
   return road;
 }
 
+/// A car that stands although it should move has a sentence and a way out: its pedals are released now and
+/// then, more often where a brake is known to stay on.
+TEST(GuardOfAStuckCar, NamesItAndReleasesItsPedals) {
+  for (const bool latches : {false, true}) {
+    model::VehicleParams vehicle = car();
+    vehicle.brake_latch_speed = latches ? 0.5 : 0.0;
+    const double release = latches ? vehicle.brake_release_throttle : 0.0;
+    Scripted scripted;
+    scripted.result.command = {.steer = 0.0, .throttle = 0.5};
+    Guard guard{std::make_unique<test::Borrowed>(scripted), vehicle};
+    controller::StepResult sent;
+    const auto step = [&](double time, double speed) {
+      const model::Measurement seen{.time = time, .x = 7.0, .speed = speed, .delay = 0.1};
+      guard.step(seen, Deadline::never(), {.interval = 0.04}, sent);
+      return sent.report.reason == controller::GuardReason::kStuck;
+    };
+    int released = 0;
+    for (int i = 0; i <= 250; ++i) {
+      const double time = 1000.0 + 0.04 * i;
+      EXPECT_EQ(step(time, 0.0), 0.04 * i > 3.0 + 1e-6) << i;
+      released += sent.command.throttle == release ? 1 : 0;
+    }
+    EXPECT_EQ(released, latches ? 19 : 3);
+    scripted.result.command.throttle = 0.0;
+    EXPECT_FALSE(step(1010.04, 0.0)) << "need not move";
+    scripted.result.command.throttle = 0.5;
+    EXPECT_FALSE(step(1010.08, 0.0)) << "counts anew";
+  }
+}
+
 TEST_F(GuardTest, PassesAnAnswerOnUnchanged) {
   scripted_.result.command = {.steer = 0.123, .throttle = 0.456};
   const controller::StepResult& result = step(at(1.0));

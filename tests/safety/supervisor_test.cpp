@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <iterator>
+
 namespace chicane::safety {
 namespace {
 
@@ -22,24 +24,41 @@ Supervisor::Verdict after(Supervisor& supervisor, const Findings& findings, doub
 }
 
 TEST(Supervisor, ToleratesWhatIsShortAndStopsForWhatLasts) {
-  struct Case {
+  for (const Condition& each : kConditions) {
     Findings findings;
-    controller::GuardReason reason;
-    double tolerated;
-  };
-  const Case cases[] = {{{.unmeasured = true}, kNotMeasured, Supervisor::kUnmeasured},
-                        {{.speed_mismatch = true}, kSpeedMismatch, Supervisor::kTolerated},
-                        {{.heading_jump = true}, kHeadingJump, Supervisor::kTolerated},
-                        {{.position_jump = true}, kPositionJump, Supervisor::kTolerated}};
-  for (const Case& each : cases) {
+    findings.*each.finding = true;
     Supervisor supervisor;
-    double time = 10.0;
-    EXPECT_FALSE(after(supervisor, {}, time, 1.0).must_stop);
-    EXPECT_FALSE(after(supervisor, each.findings, time, each.tolerated - 0.04).must_stop);
-    const Supervisor::Verdict verdict = after(supervisor, each.findings, time, 0.16);
+    EXPECT_FALSE(supervisor.judge({}, 10.0, 20.0).must_stop);
+    if (each.tolerated > 0.0) {
+      EXPECT_FALSE(supervisor.judge(findings, 10.0 + 0.999 * each.tolerated, 20.0).must_stop);
+    }
+    const Supervisor::Verdict verdict = supervisor.judge(findings, 10.001 + each.tolerated, 20.0);
     EXPECT_TRUE(verdict.must_stop);
     EXPECT_EQ(verdict.reason, each.reason);
-    EXPECT_FALSE(after(supervisor, {}, time, 0.05).must_stop) << "it ends by itself";
+    EXPECT_FALSE(supervisor.judge({}, 10.01 + each.tolerated, 20.0).must_stop) << "it ends by itself";
+    EXPECT_EQ(supervisor.judge({}, 10.02 + each.tolerated, 20.0).reason, kNone);
+  }
+}
+
+/// What a condition costs a car and a driver: a change of this table is a decision.
+TEST(Supervisor, HasEachConditionWithItsTimeInTheOrderOfSeverity) {
+  const struct {
+    bool Findings::*finding;
+    controller::GuardReason reason;
+    double tolerated;
+    ConditionEnd ends;
+  } expected[] = {{&Findings::late, kLate, 0.12, ConditionEnd::kByItself},
+                  {&Findings::unmeasured, kNotMeasured, 0.12, ConditionEnd::kByItself},
+                  {&Findings::frozen, kFrozen, 0.0, ConditionEnd::kByItself},
+                  {&Findings::speed_mismatch, kSpeedMismatch, 0.1, ConditionEnd::kAfterStanding},
+                  {&Findings::heading_jump, kHeadingJump, 0.1, ConditionEnd::kByPerson},
+                  {&Findings::position_jump, kPositionJump, 0.1, ConditionEnd::kByPerson}};
+  ASSERT_EQ(kConditions.size(), std::size(expected));
+  for (std::size_t i = 0; i < kConditions.size(); ++i) {
+    EXPECT_EQ(kConditions[i].finding, expected[i].finding) << i;
+    EXPECT_EQ(kConditions[i].reason, expected[i].reason) << i;
+    EXPECT_EQ(kConditions[i].tolerated, expected[i].tolerated) << i;
+    EXPECT_EQ(kConditions[i].ends, expected[i].ends) << i;
   }
 }
 
@@ -52,6 +71,42 @@ TEST(Supervisor, NamesTheWorstCondition) {
   Supervisor supervisor;
   double time = 0.0;
   EXPECT_EQ(after(supervisor, {.unmeasured = true, .position_jump = true}, time, 1.0).reason, kPositionJump);
+  // The worst that has lasted: a jump of this moment is tolerated.
+  EXPECT_EQ(supervisor.judge({.unmeasured = true}, time, 20.0).reason, kNotMeasured);
+  EXPECT_EQ(supervisor.judge({.unmeasured = true, .position_jump = true}, time + 0.04, 20.0).reason,
+            kNotMeasured);
+}
+
+TEST(Supervisor, CountsStandingFromWhenTheCarStood) {
+  Supervisor supervisor;
+  double time = 0.0;
+  const Findings wrong{.speed_mismatch = true};
+  EXPECT_FALSE(after(supervisor, wrong, time, Supervisor::kStanding - 0.1, 0.0).may_begin_anew);
+  EXPECT_FALSE(after(supervisor, wrong, time, 0.04, Supervisor::kStandingSpeed).may_begin_anew) << "it moves";
+  EXPECT_FALSE(after(supervisor, wrong, time, Supervisor::kStanding - 0.1, 0.0).may_begin_anew);
+  EXPECT_FALSE(after(supervisor, {}, time, 0.04, 0.0).may_begin_anew) << "it agrees";
+  EXPECT_FALSE(after(supervisor, wrong, time, Supervisor::kStanding - 0.1, 0.0).may_begin_anew);
+}
+
+TEST(Supervisor, BelievesASpeedAnewAfterAMinuteAgain) {
+  Supervisor supervisor;
+  double time = 0.0;
+  const Findings wrong{.speed_mismatch = true};
+  ASSERT_TRUE(after(supervisor, wrong, time, Supervisor::kStanding + 0.2, 0.0).may_begin_anew);
+  const double at = time;
+  EXPECT_FALSE(after(supervisor, wrong, time, Supervisor::kOnceIn - 1.0, 0.0).may_begin_anew);
+  EXPECT_TRUE(after(supervisor, wrong, time, 2.0, 0.0).may_begin_anew) << time - at;
+}
+
+TEST(Supervisor, ForgetsAllOnReset) {
+  Supervisor supervisor;
+  double time = 0.0;
+  EXPECT_TRUE(after(supervisor, {.heading_jump = true}, time, 5.0, 0.0).must_stop);
+  supervisor.rearm();
+  supervisor.reset();
+  EXPECT_FALSE(supervisor.judge({.heading_jump = true}, 0.05, 0.0).must_stop);
+  time = 0.05;
+  EXPECT_FALSE(after(supervisor, {.heading_jump = true}, time, 5.0, 0.0).may_begin_anew) << "no person since";
 }
 
 TEST(Supervisor, BelievesASpeedAnewOnceWhenTheCarHasStood) {

@@ -38,7 +38,8 @@
       "a receiver left alone could not stop the car on the road")                                                \
   ROW(kLate, "late", kError, "the measurements are of an earlier moment")                                        \
   ROW(kOtherSteering, "other_steering", kWarning, "the wheels turn otherwise than they are asked to")            \
-  ROW(kWeakBrakes, "weak_brakes", kWarning, "the brakes give less than they are asked for")
+  ROW(kWeakBrakes, "weak_brakes", kWarning, "the brakes give less than they are asked for")                      \
+  ROW(kStuck, "stuck", kWarning, "the car does not move although it is told to")
 // clang-format on
 
 namespace chicane::controller {

@@ -91,6 +91,7 @@ void Guard::reset() noexcept {
   has_place_ = is_astray_ = false;
   is_led_ = rests_ = false;
   refused_since_ = stuck_since_ = still_since_ = moved_at_ = 0.0;
+  released_at_ = std::numeric_limits<double>::infinity();
   tried_ = 0.0;
 }
 
@@ -134,7 +135,7 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   choose(seen, cycle, result);
   const model::Command asked = result.command;
   if (options_.mode == GuardMode::kOn && !cycle.manual) {
-    release_brake(seen.time, result.command);
+    free_stuck_car(seen.time, result);
     watch_rest(seen.time, result.command.throttle);
     result.command = limited(result.command, cycle.interval);
   }
@@ -289,8 +290,8 @@ model::Command Guard::limited(const model::Command& command, double interval) co
   model::Command inside = answer().effect_of(gate_.limited(answer().command_for(command), interval).command);
   const model::VehicleParams& car = model_.vehicle();
   const double v = act_speed_;
-  const bool releases = car.latches_brakes() && inside.throttle == car.brake_release_throttle;
-  if (rests_ && car.reverse_speed > 0.0 && !releases) inside.throttle = std::max(inside.throttle, 0.0);
+  if (car.latches_brakes() && inside.throttle == car.brake_release_throttle) return inside;
+  if (rests_ && car.reverse_speed > 0.0) inside.throttle = std::max(inside.throttle, 0.0);
   if (v < car.reverse_speed && inside.throttle < 0.0)
     inside.throttle = std::max(inside.throttle, throttle_to_rest(car, -car.reverse_acceleration, v));
   return inside;

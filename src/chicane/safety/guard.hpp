@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -111,7 +112,7 @@ class Guard {
   [[nodiscard]] bool try_reset(const StopStart& start, const Cycle& cycle, double time,
                                controller::StepResult& result) noexcept;
   void watch_rest(double time, double throttle) noexcept;
-  void release_brake(double time, model::Command& command) noexcept;
+  void free_stuck_car(double time, controller::StepResult& result) noexcept;
   [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
   void count_with_actuators() noexcept;
   void watch_actuators(const model::Measurement& seen) noexcept;
@@ -147,8 +148,9 @@ class Guard {
   double refused_since_ = 0.0;  ///< commands of a standing car [s]
   double moved_at_ = 0.0;       ///< last faster than at rest [s]
   double stuck_since_ = 0.0;    ///< a car that should move stands [s]
-  double act_speed_ = 0.0;      ///< estimated where the command acts [m/s]
-  double sent_from_ = 0.0;      ///< from which the command of this cycle acts [s]
+  double released_at_ = std::numeric_limits<double>::infinity();  ///< its brake, or began to stand [s]
+  double act_speed_ = 0.0;                                        ///< estimated where the command acts [m/s]
+  double sent_from_ = 0.0;  ///< from which the command of this cycle acts [s]
 };
 
 }  // namespace chicane::safety

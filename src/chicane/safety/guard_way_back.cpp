@@ -22,6 +22,7 @@ constexpr double kAcross = 0.8;        // [rad] off the road's direction the car
 constexpr double kAlong = 0.2;         // [rad] within which it is along it again
 constexpr double kRefusedTime = 1.0;   // [s] of refused commands after which a standing car is led back
 constexpr double kReleaseTime = 0.5;   // [s] a car that should move may stand before its brake is released
+constexpr double kStuckTime = 3.0;     // [s] a car that should move may stand before it is stuck
 constexpr double kDrives = 0.1;        // pedal from which on a car should move
 constexpr double kMostAgainstRolling = 0.7;  // pedal against rolling back
 constexpr double kStillTime = 1.0;   // [s] a car stands before it is tried whether it was put elsewhere
@@ -126,13 +127,17 @@ void Guard::watch_rest(double time, double throttle) noexcept {
   if (speed > kStandingSpeed || throttle > kDrives) rests_ = false;
 }
 
-/// A car whose brake stays on at rest until the pedal has been released moves again after a short release.
-void Guard::release_brake(double time, model::Command& command) noexcept {
+/// A car that should move and stands is stuck after kStuckTime. Its pedals are released for a cycle now and
+/// then: a brake that stays on at rest lets go then.
+void Guard::free_stuck_car(double time, controller::StepResult& result) noexcept {
+  model::Command& command = result.command;
+  const model::VehicleParams& car = model_.vehicle();
   const bool should_move = command.throttle > kDrives && std::fabs(estimator_.state().vx) < kStandingSpeed;
-  if (!should_move) stuck_since_ = time;
-  if (!(time - stuck_since_ > kReleaseTime) || !model_.vehicle().latches_brakes()) return;
-  command.throttle = model_.vehicle().brake_release_throttle;
-  stuck_since_ = time;
+  if (!should_move || !(released_at_ <= time)) stuck_since_ = released_at_ = time;
+  if (time - stuck_since_ > kStuckTime) result.report.reason = controller::GuardReason::kStuck;
+  if (!(time - released_at_ > (car.latches_brakes() ? kReleaseTime : kStuckTime))) return;
+  command.throttle = car.latches_brakes() ? car.brake_release_throttle : 0.0;
+  released_at_ = time;
 }
 
 }  // namespace chicane::safety

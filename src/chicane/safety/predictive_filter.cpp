@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 
 #include "chicane/base/math.hpp"
@@ -48,6 +49,8 @@ constexpr Braking kStops[] = {{kGentle, kOpenStability, kHeldByFeedback},
                               {1.0, kBarelyStable},
                               {1.0, kHeldByFeedback},
                               {1.0, 0.0}};
+constexpr int kStopCount = static_cast<int>(std::size(kStops));
+constexpr int kDriveOnCount = static_cast<int>(std::size(kDriveOn));
 constexpr double kUnfit = 200.0;  // [m] worse than any candidate that fits
 
 }  // namespace
@@ -102,9 +105,12 @@ Fit PredictiveFilter::verify(const Request& request, controller::StepReport& rep
   const bool plans = goal.is_planned = intended_->stop.size > 1;
 
   Fit fit = Fit::kNone;
-  if (use < kMostUse) {
-    if (use < (!plans ? kLawUseUnplanned : road.is_raced() ? kRacedUse : kLawUse))
-      fit = stop_now(road, next, goal, report);
+  if (use < kMostUse && goal.edge_before >= goal.margin) {
+    const bool can_stop_now = use < (!plans ? kLawUseUnplanned : road.is_raced() ? kRacedUse : kLawUse);
+    // Where a backup need not be held blindly, any that holds will do: first the kind that held a cycle ago.
+    if (plans && !(goal.open_time > 0.0) && (can_stop_now || held_ >= kStopCount))
+      fit = stop_by(held_, road, next, goal, fit, report);
+    if (fit == Fit::kNone && can_stop_now) fit = stop_now(road, next, goal, report);
     if (fit == Fit::kNone && plans) fit = stop_later(road, next, goal, report);
     if (fit == Fit::kNone && plans && !road.is_raced()) fit = stop_searched(road, next, goal, report);
   }
@@ -131,31 +137,38 @@ bool PredictiveFilter::drives_planned_lap(const road::KnownRoad& road, const Sto
          planner_.edge(road, at) >= terms_.margin / wide;
 }
 
+/// One kind of backup, stored where it fits better than `best`: kStops at once, then, numbered on, kDriveOn
+/// along the controller's plan before the stop. Returns the better fit.
+Fit PredictiveFilter::stop_by(int kind, const road::KnownRoad& road, const StopStart& from, const Goal& goal,
+                              Fit best, controller::StepReport& report) noexcept {
+  const auto i = static_cast<std::size_t>(kind);
+  const StopCheck check = kind < kStopCount
+                              ? planner_.plan(road, from, kStops[i], *tried_, goal.margin)
+                              : planner_.plan_later(road, from, *intended_, kDriveOn[i - kStopCount],
+                                                    kStops[1], *tried_, goal.margin);
+  const Candidate candidate = judge(road, from, check, goal);
+  if (candidate.fit <= best) return best;
+  store(candidate, report);
+  held_ = kind;
+  return candidate.fit;
+}
+
 /// The first stop that fits open loop, else the first that fits.
 Fit PredictiveFilter::stop_now(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
                                controller::StepReport& report) noexcept {
   Fit best = Fit::kNone;
-  for (const Braking& braking : kStops) {
-    const StopCheck check = planner_.plan(road, from, braking, *tried_);
-    const Candidate candidate = judge(road, from, check, goal);
-    if (candidate.fit <= best) continue;
-    best = candidate.fit;
-    store(candidate, report);
-    if (best == Fit::kOpen) break;
-  }
+  for (int kind = 0; kind < kStopCount && best != Fit::kOpen; ++kind)
+    best = stop_by(kind, road, from, goal, best, report);
   return best;
 }
 
+/// The first stop that fits at all.
 Fit PredictiveFilter::stop_later(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
                                  controller::StepReport& report) noexcept {
-  for (const double time : kDriveOn) {
-    const StopCheck check = planner_.plan_later(road, from, *intended_, time, kStops[1], *tried_);
-    const Candidate candidate = judge(road, from, check, goal);
-    if (candidate.fit == Fit::kNone) continue;
-    store(candidate, report);
-    return candidate.fit;
-  }
-  return Fit::kNone;
+  Fit best = Fit::kNone;
+  for (int kind = kStopCount; kind < kStopCount + kDriveOnCount && best == Fit::kNone; ++kind)
+    best = stop_by(kind, road, from, goal, best, report);
+  return best;
 }
 
 Fit PredictiveFilter::stop_searched(const road::KnownRoad& road, const StopStart& from, const Goal& goal,

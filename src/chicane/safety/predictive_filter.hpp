@@ -54,6 +54,7 @@ class PredictiveFilter {
   /// Forgets the stored backup: its places belong to another line or another run.
   void forget() noexcept {
     backup_->stop.size = 0;
+    held_ = 0;
     search_.forget();
   }
 
@@ -98,6 +99,8 @@ class PredictiveFilter {
   [[nodiscard]] Candidate judge(const road::KnownRoad& road, const StopStart& from, const StopCheck& check,
                                 const Goal& goal) const noexcept;
   void store(const Candidate& candidate, controller::StepReport& report) noexcept;
+  [[nodiscard]] Fit stop_by(int kind, const road::KnownRoad& road, const StopStart& from, const Goal& goal,
+                            Fit best, controller::StepReport& report) noexcept;
   [[nodiscard]] Fit stop_now(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
                              controller::StepReport& report) noexcept;
   [[nodiscard]] Fit stop_later(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
@@ -118,6 +121,7 @@ class PredictiveFilter {
   Owned<StopCourse> tried_;     ///< the candidate being simulated, then the spare
   Owned<StopCourse> intended_;  ///< the controller's plan along the line
   Fit backup_fit_ = Fit::kNone;
+  int held_ = 0;             ///< the kind of backup that held last, stop_by()
   bool is_current_ = false;  ///< the backup was stored or shifted in this cycle
   static const StopPlan kNoStop;
 };

@@ -332,9 +332,9 @@ model::Command StopPlanner::along(const StopCourse& before, std::size_t& place, 
 }
 
 StopCheck StopPlanner::plan(const road::KnownRoad& road, const StopStart& start, const Braking& braking,
-                            StopCourse& out) const noexcept {
+                            StopCourse& out, double least) const noexcept {
   return drive(
-      road, start, [&](const StopStart& at) { return law(road, at, braking); }, out);
+      road, start, [&](const StopStart& at) { return law(road, at, braking); }, out, least);
 }
 
 StopCheck StopPlanner::follow(const road::KnownRoad& road, const StopStart& start, const StopCourse& before,
@@ -384,20 +384,20 @@ void StopPlanner::course_of(const road::KnownRoad& road, const StopStart& start,
 
 StopCheck StopPlanner::plan_later(const road::KnownRoad& road, const StopStart& start,
                                   const StopCourse& intended, double time, const Braking& braking,
-                                  StopCourse& out) const noexcept {
+                                  StopCourse& out, double least) const noexcept {
   const auto last = static_cast<std::size_t>(intended.stop.size - 1);
   std::size_t place = 0;
   const auto command_at = [&](const StopStart& at) {
     const bool drives_on = at.time < start.time + time && at.s < intended.places[last].s;
     return drives_on ? along(intended, place, 0.0, at) : law(road, at, braking);
   };
-  return drive(road, start, command_at, out);
+  return drive(road, start, command_at, out, least);
 }
 
-/// To standstill with what `command_at` says every 100 ms.
+/// To standstill, or nearer to the edge than `least` [m], with what `command_at` says every 100 ms.
 template <class Law>
 StopCheck StopPlanner::drive(const road::KnownRoad& road, const StopStart& start, const Law& command_at,
-                             StopCourse& out) const noexcept {
+                             StopCourse& out, double least) const noexcept {
   const double reach = steer_reach(kStep);
   const double end = road.line().is_closed() ? start.s + road.line().length() : road.line().length();
   StopCheck check{.least_edge = edge(road, start)};
@@ -408,7 +408,8 @@ StopCheck StopPlanner::drive(const road::KnownRoad& road, const StopStart& start
   model::Command command;
   for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity; ++i) {
     if (i % kStepsPerPoint == 0) command = command_at(at);
-    const bool has_ended = speed < kStanding || !(std::fabs(at.d) < kMostOffset) || !(at.s < end);
+    const bool has_ended =
+        speed < kStanding || !(std::fabs(at.d) < kMostOffset) || !(at.s < end) || check.least_edge < least;
     if (i % kStepsPerPoint == 0 || has_ended) out.add(at, driven, speed, command);
     if (has_ended) break;
     const double before = speed;
@@ -417,7 +418,7 @@ StopCheck StopPlanner::drive(const road::KnownRoad& road, const StopStart& start
     driven += 0.5 * kStep * (before + speed);
     check.least_edge = std::min(check.least_edge, edge(road, at));
   }
-  check.stands = speed < kStanding && at.s < end;
+  check.stands = speed < kStanding && at.s < end && !(check.least_edge < least);
   check.distance = driven;
   return check;
 }

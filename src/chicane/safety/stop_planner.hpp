@@ -78,10 +78,11 @@ class StopPlanner {
   /// Whether the car is simulated with its four wheels (StopCar), and so closer than an estimate counts on.
   [[nodiscard]] bool has_wheels() const noexcept { return car_.has_wheels(); }
 
-  /// The stop from `start` on, no harder than `braking`. Pre: the road is not
-  /// empty, `start` is finite.
+  static constexpr double kToTheEnd = -1e9;  ///< [m] a least edge below which no car comes
+  /// The stop from `start` on, no harder than `braking`; given up, and so without standstill, where it comes
+  /// nearer to the edge than `least` [m]. Pre: the road is not empty, `start` is finite.
   [[nodiscard]] StopCheck plan(const road::KnownRoad& road, const StopStart& start, const Braking& braking,
-                               StopCourse& out) const noexcept;
+                               StopCourse& out, double least = kToTheEnd) const noexcept;
   /// From `start` on along another stop: its commands by place, corrected where the car is not as planned
   /// there, and the law where it ends. Pre: as plan(), before.stop.size > 0.
   [[nodiscard]] StopCheck follow(const road::KnownRoad& road, const StopStart& start,
@@ -94,7 +95,7 @@ class StopPlanner {
   /// > 1.
   [[nodiscard]] StopCheck plan_later(const road::KnownRoad& road, const StopStart& start,
                                      const StopCourse& intended, double time, const Braking& braking,
-                                     StopCourse& out) const noexcept;
+                                     StopCourse& out, double least = kToTheEnd) const noexcept;
   static constexpr double kLongestDriveOn = 3.0;  ///< [s]
   /// How near to the edge [m] a receiver comes in the first `time` [s] that plays `stop` blindly, the car
   /// being a little other than believed: its rear axle softer while it turns in more than estimated, and
@@ -131,7 +132,7 @@ class StopPlanner {
                                         const Law& command_at) const noexcept;
   template <class Law>
   [[nodiscard]] StopCheck drive(const road::KnownRoad& road, const StopStart& start, const Law& command_at,
-                                StopCourse& out) const noexcept;
+                                StopCourse& out, double least = kToTheEnd) const noexcept;
   [[nodiscard]] model::Command along(const StopCourse& before, std::size_t& place, double lap,
                                      const StopStart& at) const noexcept;
   [[nodiscard]] double back_to(double beside, double course, double v) const noexcept;

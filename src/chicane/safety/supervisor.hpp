@@ -1,29 +1,47 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "chicane/controller/controller.hpp"
 #include "chicane/safety/measurement_monitor.hpp"
 
 namespace chicane::safety {
 
-/// Decides from what the monitor finds whether the car has to be stopped, and when it may drive on:
-///
-///     condition        tolerated [s]   ends
-///     late             0.12            by itself
-///     not measured     0.12            by itself
-///     frozen           0               by itself
-///     speed mismatch   0.1             by itself when the sensor agrees again; else as below
-///     heading jump     0.1             by itself when the sensor agrees again, else by a person
-///     position jump    0.1             the same
-///
-/// A speed that still disagrees when the car has stood for kStanding is believed anew, once in kOnceIn; after
-/// that, and where the place jumped, a person has to: by a reset of the run, or by taking over. A place that
-/// is believed because it lasts leads a car off the road that it stands on. Worst condition wins. No
-/// allocation; one thread.
+/// How a condition ends.
+enum class ConditionEnd {
+  kByItself,       ///< when the sensor agrees again
+  kAfterStanding,  ///< also when the car has stood for Supervisor::kStanding: the sensor is believed anew,
+                   ///< once in kOnceIn
+  kByPerson        ///< also when the car has stood so and a person has taken over or reset the run
+};
+
+/// What the car is stopped for.
+struct Condition {
+  bool Findings::*finding;
+  controller::GuardReason reason;
+  double tolerated;  ///< [s] for which it may last
+  ConditionEnd ends;
+};
+
+/// All of them, the worst last: of several that last too long, the last is named. A moment's doubt comes from
+/// noise or a car that slides, so 0.1 s of it, five measurements of the fastest sensor, is tolerated; without
+/// a measurement 0.12 s, three at the simulator's 25 Hz. What is frozen has repeated for 0.3 m of driving
+/// before it is found.
+inline constexpr std::array<Condition, 6> kConditions{{
+    {&Findings::late, controller::GuardReason::kLate, 0.12, ConditionEnd::kByItself},
+    {&Findings::unmeasured, controller::GuardReason::kNotMeasured, 0.12, ConditionEnd::kByItself},
+    {&Findings::frozen, controller::GuardReason::kFrozen, 0.0, ConditionEnd::kByItself},
+    {&Findings::speed_mismatch, controller::GuardReason::kSpeedMismatch, 0.1, ConditionEnd::kAfterStanding},
+    {&Findings::heading_jump, controller::GuardReason::kHeadingJump, 0.1, ConditionEnd::kByPerson},
+    {&Findings::position_jump, controller::GuardReason::kPositionJump, 0.1, ConditionEnd::kByPerson},
+}};
+
+/// Decides by kConditions whether the car has to be stopped, and when it may drive on. A place that was
+/// believed because it lasts would lead a car off the road that it stands on. No allocation; one thread.
 class Supervisor {
  public:
-  static constexpr double kTolerated = 0.1;      ///< [s] of a sensor that disagrees
-  static constexpr double kUnmeasured = 0.12;    ///< [s] without a measurement
   static constexpr double kStanding = 3.0;       ///< [s]
   static constexpr double kOnceIn = 60.0;        ///< [s]
   static constexpr double kStandingSpeed = 0.3;  ///< [m/s]
@@ -42,26 +60,21 @@ class Supervisor {
   };
   /// `speed`: as estimated [m/s].
   [[nodiscard]] Verdict judge(const Findings& findings, double time, double speed) noexcept {
-    using enum controller::GuardReason;
     Verdict verdict;
-    const auto note = [&](double& since, bool is_there, double tolerated, controller::GuardReason reason) {
-      if (!is_there) since = time;
-      if (!is_there || !(time - since > tolerated)) return;
-      verdict.reason = reason;
-      verdict.must_stop = true;
-    };
-    note(late_, findings.late, kUnmeasured, kLate);
-    note(unmeasured_, findings.unmeasured, kUnmeasured, kNotMeasured);
-    note(frozen_, findings.frozen, 0.0, kFrozen);
-    note(speed_, findings.speed_mismatch, kTolerated, kSpeedMismatch);
-    note(heading_, findings.heading_jump, kTolerated, kHeadingJump);
-    note(position_, findings.position_jump, kTolerated, kPositionJump);
-    const bool is_latched =
-        verdict.reason == kSpeedMismatch || verdict.reason == kHeadingJump || verdict.reason == kPositionJump;
+    const Condition* worst = nullptr;
+    for (std::size_t i = 0; i < kConditions.size(); ++i) {
+      if (!(findings.*kConditions[i].finding))
+        since_[i] = time;
+      else if (time - since_[i] > kConditions[i].tolerated)
+        worst = &kConditions[i];
+    }
+    if (worst != nullptr) verdict = {.reason = worst->reason, .must_stop = true};
+    const bool is_latched = worst != nullptr && worst->ends != ConditionEnd::kByItself;
     if (!is_latched || !(speed < kStandingSpeed)) stood_ = time;
-    const bool is_due = verdict.reason == kSpeedMismatch ? time - rearmed_ > kOnceIn : has_person_;
-    if (is_latched && is_due && time - stood_ > kStanding) {
-      verdict.may_begin_anew = true;
+    if (!is_latched || !(time - stood_ > kStanding)) return verdict;
+    verdict.may_begin_anew =
+        worst->ends == ConditionEnd::kAfterStanding ? time - rearmed_ > kOnceIn : has_person_;
+    if (verdict.may_begin_anew) {
       rearmed_ = time;
       has_person_ = false;
     }
@@ -70,8 +83,7 @@ class Supervisor {
 
  private:
   static constexpr double kNever = -1e9;
-  double late_ = 0.0, unmeasured_ = 0.0, frozen_ = 0.0, speed_ = 0.0, heading_ = 0.0,
-         position_ = 0.0;  ///< since [s]
+  std::array<double, kConditions.size()> since_{};  ///< when each was last not there [s]
   double stood_ = 0.0;
   double rearmed_ = kNever;
   bool has_person_ = false;  ///< has taken over since
