@@ -40,13 +40,22 @@ void expect_clean(Settings settings, const std::string& what) {
   EXPECT_EQ(run.off_track_events, 0) << what;
 }
 
-// Also where both passages have a waypoint in the same place, and where the run starts there.
+// Also where both passages have a waypoint in the same place, and where the run starts there. The cars take
+// turns; with the slow tests each drives all of them.
 TEST(CrossingRoad, IsDrivenFromTheTrackAndFromWaypoints) {
+#ifdef CHICANE_SLOW_TESTS
+  constexpr bool kTakesTurns = false;
+#else
+  constexpr bool kTakesTurns = true;
+#endif
   for (const double height : {120.0, -120.0}) {
     for (const double start : {0.0, 0.13}) {
       const std::string file = write_eight(200.0, height, start);
-      for (const char* car : {"udacity", "road-car"}) {
+      for (const std::string car : {"udacity", "road-car"}) {
         for (const char* road : {"track", "waypoints"}) {
+          const bool is_mirrored = height < 0.0;
+          const bool is_offset = start > 0.0;
+          if (kTakesTurns && (car == "udacity") == (is_mirrored == is_offset)) continue;
           const std::string what =
               std::to_string(height) + ' ' + std::to_string(start) + ' ' + car + ' ' + road;
           expect_clean({{"preset", "default"}, {"car", car}, {"track", file}, {"guard.road", road}}, what);
@@ -95,19 +104,14 @@ TEST(OpenRoad, IsFinishedAlsoWhereItEnds) {
 
 TEST(OpenRoad, IsRacedAndEndsAtAStand) {
   for (const char* car : {"udacity", "road-car"}) {
-    const Settings race{{"preset", "race"}, {"car", car}, {"track", "stage"}, {"laps", "1"}};
-    Settings slow = race;
-    slow[0].second = "default";
-    const auto run = drive(race);
-    EXPECT_TRUE(run.completed) << car << ": " << run.end_reason;
-    EXPECT_EQ(run.off_track_events, 0) << car;
-    EXPECT_LT(run.laps[0].lap_time, 0.95 * drive(slow).laps[0].lap_time) << car;
-    Settings on = race;
-    on[3].second = "0";
-    on.emplace_back("time_limit_s", "75");
+    const Settings slow{{"preset", "default"}, {"car", car}, {"track", "stage"}, {"laps", "1"}};
+    const Settings on{
+        {"preset", "race"}, {"car", car}, {"track", "stage"}, {"laps", "0"}, {"time_limit_s", "75"}};
     const auto loop = ClosedLoop::create(protocol::compose({.scenario_file = "", .settings = on}).value());
     ASSERT_TRUE(loop);
     const auto longer = run_closed_loop(**loop);
+    ASSERT_EQ(longer.laps_completed, 1) << car;
+    EXPECT_LT(longer.laps[0].lap_time, 0.95 * drive(slow).laps[0].lap_time) << car;
     EXPECT_EQ(longer.off_track_events, 0) << car;
     EXPECT_LT((*loop)->frame().measurement.speed, 1.0) << car;
     const double place = (*loop)->track().start_s() + (*loop)->world().progress;

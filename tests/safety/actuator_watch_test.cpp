@@ -27,6 +27,7 @@ struct Drive {
   double cycle = kCycle;         ///< [s]
   double sign = 1.0;             ///< -1: mirrored
   double speed = 12.0;           ///< [m/s]
+  ActuatorWatch::AxleUse use{};  ///< of the tyres, as the watch is told
 
   /// What the watch holds after `seconds`; `first`: when it differed first [s].
   ActuatorWatch after(double seconds, double* first = nullptr) const {
@@ -45,7 +46,7 @@ struct Drive {
       now.y = place.y();
       now.psi = psi + heading_noise * random.normal();
       now.speed = std::hypot(body.vx, body.vy);
-      watch.see(now, sent);
+      watch.see(now, sent, use);
       if (first != nullptr && !(*first > 0.0) && !watch.answer().is_usual()) *first = time;
       const bool is_late = time >= kOnset && time < ends;
       const model::Command command{sign * steer * (0.6 + std::sin(1.3 * time)),
@@ -102,6 +103,22 @@ TEST(ActuatorWatch, FindsAnOffsetWithinAThirdOfASecond) {
     EXPECT_GT(first, kOnset) << offset;
     EXPECT_LT(first, kOnset + 0.33) << offset;
   }
+}
+
+// A car that counter-steers in a slide was taken for one whose wheels turn otherwise, and spun by what the
+// guard made of it (vw-vanagon, raced on lakeside).
+TEST(ActuatorWatch, JudgesNothingOfACarWhoseTyresSlide) {
+  Drive drive;
+  drive.use.rear = 0.8;
+  drive.effect = [](const model::Command& c) { return model::Command{c.steer + 0.06, c.throttle}; };
+  EXPECT_TRUE(drive.after(kOnset + 5.0).answer().is_usual());
+  Drive braked;
+  braked.speed = 40.0;
+  braked.throttle_after = -0.5;
+  braked.steer = 0.0;
+  braked.use.front = 0.8;
+  braked.effect = [](const model::Command& c) { return model::Command{c.steer, 0.5 * c.throttle}; };
+  EXPECT_FALSE(braked.after(kOnset + 1.5).has_weak_brakes());
 }
 
 TEST(ActuatorWatch, ForgetsAnAnswerThatHasEnded) {

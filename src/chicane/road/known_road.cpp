@@ -78,7 +78,9 @@ void KnownRoad::use_line(const RacingRoad* lap) {
   line_ = lap->line();
   edges_.clear();
   for (std::size_t i = 0; i < line_.samples().size(); ++i) {
-    const Road::Room room = lap->room(static_cast<double>(i) * line_.spacing());
+    const double s = static_cast<double>(i) * line_.spacing();
+    const double offset = line_.demand(s).offset;
+    const Road::Room room = seen_ ? Road::Room{half_width_ - offset, half_width_ + offset} : lap->room(s);
     edges_.push_back({room.left, room.right});
   }
   is_raced_ = true;
@@ -86,15 +88,18 @@ void KnownRoad::use_line(const RacingRoad* lap) {
 }
 
 void KnownRoad::reset() noexcept {
-  if (seen_) seen_->reset();
+  if (!seen_) return;
+  seen_->reset();
+  if (is_raced_) ++lines_;
+  is_raced_ = false;
 }
 
 void KnownRoad::add(const model::Measurement& now) noexcept {
-  if (seen_) seen_->add(now);
+  if (is_learning()) seen_->add(now);
 }
 
 KnownRoad::Edges KnownRoad::edges(double s) const noexcept {
-  if (seen_) {
+  if (is_learning()) {
     const double offset = seen_->line().demand(s).offset;
     return {half_width_ - offset, half_width_ + offset};
   }

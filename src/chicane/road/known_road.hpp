@@ -26,8 +26,9 @@ class KnownRoad {
   /// From waypoints; `half_width`: assumed each side of their line [m].
   KnownRoad(double half_width, const model::VehicleParams& vehicle);
 
-  /// Instead of the middle of the track, a line to race by: its places, the room beside it, and the line
-  /// itself as target(). Allocates; null changes nothing.
+  /// Instead of the middle of the road, a line to race by: its places, the room beside it, and the line
+  /// itself as target(). On a road from waypoints until reset(), with `half_width` of room each side of their
+  /// line. Allocates; null changes nothing.
   void use_line(const RacingRoad* lap);
 
   void reset() noexcept;
@@ -35,7 +36,7 @@ class KnownRoad {
   void add(const model::Measurement& now) noexcept;
 
   /// In W; empty while nothing is known.
-  [[nodiscard]] const ReferenceLine& line() const noexcept { return seen_ ? seen_->line() : line_; }
+  [[nodiscard]] const ReferenceLine& line() const noexcept { return is_learning() ? seen_->line() : line_; }
   /// Distances from the line to the edges at s, both positive on the road [m]. Pre: the line is not empty.
   struct Edges {
     double left = 0.0;
@@ -52,9 +53,10 @@ class KnownRoad {
   /// A line to race by takes the place of the road's own: its demand().speed is that of the planned lap.
   [[nodiscard]] bool is_raced() const noexcept { return is_raced_; }
   /// Increases with every new line: positions along an older one mean nothing any more.
-  [[nodiscard]] unsigned revision() const noexcept { return seen_ ? seen_->revision() : lines_; }
+  [[nodiscard]] unsigned revision() const noexcept { return lines_ + (seen_ ? seen_->revision() : 0U); }
 
  private:
+  [[nodiscard]] bool is_learning() const noexcept { return seen_ && !is_raced_; }
   void smooth(const path::RoadData& data, const model::VehicleParams& vehicle);
 
   ReferenceLine line_;

@@ -85,7 +85,10 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::
   if (!basis.is_learned) return plan_on(in_full_size(*track, scenario), scenario, basis, go_on);
   const model::VehicleParams car = full_size(scenario);
   const double beside = 0.5 * (car.track_width + car.tire_width);
-  const double half_width = options_of(scenario).assumed_half_width + beside;
+  // No more road than the guard grants.
+  const bool is_guarded = scenario.guard.mode == safety::GuardMode::kOn;
+  const double granted = is_guarded ? scenario.guard.half_width : std::numeric_limits<double>::infinity();
+  const double half_width = std::min(options_of(scenario).assumed_half_width + beside, granted);
   std::vector<path::TrackPoint> points;
   points.reserve(wish.waypoints.size());
   for (const Vec2& waypoint : wish.waypoints) points.push_back({waypoint, half_width, half_width});

@@ -10,12 +10,13 @@
 namespace chicane::safety {
 namespace {
 
-constexpr double kFullSize = 4.5;       // [m] length of a car in full size
-constexpr double kShort = 0.12;         // [s] over which the car's motion is averaged
-constexpr double kLong = 0.4;           // [s] the same for noisy sensors, and of braking
-constexpr double kSpacing = 0.0095;     // [s] at least between samples: they reach half a second back
-constexpr double kLongestStep = 0.25;   // [s] between measurements that are compared
-constexpr double kMostUse = 0.75;       // of the tyres' peak slip: beyond it grip is in question, too
+constexpr double kFullSize = 4.5;      // [m] length of a car in full size
+constexpr double kShort = 0.12;        // [s] over which the car's motion is averaged
+constexpr double kLong = 0.4;          // [s] the same for noisy sensors, and of braking
+constexpr double kSpacing = 0.0095;    // [s] at least between samples: they reach half a second back
+constexpr double kLongestStep = 0.25;  // [s] between measurements that are compared
+constexpr double kMostUse = 0.75;      // of the tyres' peak slip: beyond it grip is in question, too
+constexpr double kSliding = 0.75;  // of the tyres' peak slip as estimated: the car may slide or counter-steer
 constexpr double kSpareUse = 0.35;      // of it, up to which grip is not in question
 constexpr double kMostSideslip = 0.12;  // [rad]
 constexpr double kSlides = 0.08;        // [rad] of a course that is another one than a car that grips has
@@ -56,7 +57,9 @@ void ActuatorWatch::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   model_.set_vehicle(without_name(vehicle));
 }
 
-void ActuatorWatch::see(const model::Measurement& now, const controller::CommandHistory& sent) noexcept {
+void ActuatorWatch::see(const model::Measurement& now, const controller::CommandHistory& sent,
+                        const AxleUse& use) noexcept {
+  use_ = use;
   const double elapsed = count_ > 0 ? now.time - back(0).time : 0.0;
   if (elapsed > 0.0 && elapsed < kSpacing * pace_) return;
   if (count_ > 0 && !(elapsed > 0.0 && elapsed < kLongestStep)) count_ = 0;
@@ -145,8 +148,8 @@ bool ActuatorWatch::measure(Window& window, double length, double elapsed) const
   const double sideslip = std::fabs(window.slide) / car.vx;
   if (sideslip > 2.0 * kMostSideslip) window.slide = 0.0;
   window.use = std::max(tires.front, tires.rear);
-  const bool is_calm =
-      window.use < kMostUse && sideslip < kMostSideslip && !slides(from, window.slide / car.vx);
+  const bool is_calm = window.use < kMostUse && use_.rear < kSliding && sideslip < kMostSideslip &&
+                       !slides(from, window.slide / car.vx);
   window.calm_for = is_calm ? window.calm_for + elapsed : 0.0;
   return window.calm_for > kCalmFor * pace_;
 }
@@ -219,7 +222,7 @@ void ActuatorWatch::judge_braking(double elapsed) noexcept {
   const Sample& from = back(size);
   double gentlest = -1.0;
   for (std::size_t i = 0; i <= size; ++i) gentlest = std::max(gentlest, back(i).pedal);
-  if (gentlest > -kBraked * car.brake_throttle_limit) {
+  if (gentlest > -kBraked * car.brake_throttle_limit || std::max(use_.front, use_.rear) > kSliding) {
     weak_for_ = 0.0;
     return;
   }

@@ -30,10 +30,10 @@ struct ActuatorAnswer {
   }
 };
 
-/// Compares how the car turns and brakes with what was sent to it, by its model (docs/safety.md, eq. 12 and
-/// 13). The answer is the usual one until the difference exceeds its band; then it is estimated, until it has
-/// been the usual one for kUsualFor. It judges a car that moves forward, faster than kSlowest, with grip to
-/// spare. No allocation; one thread.
+/// Compares how the car turns and brakes with what was sent to it, by its model (docs/safety_derivation.md,
+/// eq. 12 and 13). The answer is the usual one until the difference exceeds its band; then it is estimated,
+/// until it has been the usual one for kUsualFor. It judges a car that moves forward, faster than kSlowest,
+/// with grip to spare. No allocation; one thread.
 class ActuatorWatch {
  public:
   static constexpr double kBand = 0.01;          ///< [rad] by which an angle may differ
@@ -50,8 +50,18 @@ class ActuatorWatch {
   /// Another car from now on, as it is with usual actuators.
   void set_vehicle(const model::VehicleParams& vehicle) noexcept;
 
-  /// A measurement that is not in doubt; `sent`: what the actuators were told.
-  void see(const model::Measurement& now, const controller::CommandHistory& sent) noexcept;
+  /// Of the tyres of an axle, as estimated: 1 at their peak slip.
+  struct AxleUse {
+    double front = 0.0;
+    double rear = 0.0;
+  };
+  /// A measurement that is not in doubt; `sent`: what the actuators were told. While the rear axle slides the
+  /// steering is not judged, and while either does the brakes are not.
+  void see(const model::Measurement& now, const controller::CommandHistory& sent,
+           const AxleUse& use) noexcept;
+  void see(const model::Measurement& now, const controller::CommandHistory& sent) noexcept {
+    see(now, sent, {});
+  }
   /// Nothing is measured that can be believed.
   void skip() noexcept { count_ = 0; }
 
@@ -108,6 +118,7 @@ class ActuatorWatch {
   double pace_;  ///< of time, over that of a car in full size
   ActuatorAnswer answer_;
   std::array<Sample, kSamples> samples_{};
+  AxleUse use_;
   std::size_t count_ = 0;
   double angle_ = 0.0;               ///< of the wheels if they answered as usual [rad]
   double last_psi_ = 0.0;            ///< [rad]

@@ -105,7 +105,8 @@ void Guard::forget_road() {
 }
 
 void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
-  if (options_.road == GuardRoad::kTrack && lap && !lap->is_learned()) road_.use_line(lap.get());
+  // The road that the lap was planned for has to be the one that the guard knows.
+  if (lap && lap->is_learned() == (options_.road == GuardRoad::kWaypoints)) road_.use_line(lap.get());
   has_place_ = false;
   filter_.forget();
   controller_->use_line(std::move(lap));
@@ -175,7 +176,13 @@ void Guard::watch_actuators(const model::Measurement& seen) noexcept {
                           found.heading_jump || found.position_jump || direction_.rolls_back();
   if (is_doubted) return actuators_.skip();
   const ActuatorAnswer before = answer();
-  actuators_.see(seen, told_);
+  ActuatorWatch::AxleUse use;
+  const model::State& car = estimator_.state();
+  if (estimator_.is_started() && car.vx > kRollsBackAtMost) {
+    const auto tires = model_.tire_use(model::BodyMotion<double>{car.vx, car.vy, car.r, car.steer, 0.0});
+    use = {tires.front, tires.rear};
+  }
+  actuators_.see(seen, told_, use);
   if (answer().gain != before.gain || answer().offset != before.offset)
     sent_ = told_.changed([this](const model::Command& command) { return answer().effect_of(command); });
   if (answer().braking != before.braking) count_with_actuators();

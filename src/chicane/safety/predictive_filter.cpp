@@ -39,7 +39,7 @@ constexpr double kLapFaster = 1.0;  // [m/s]
 constexpr double kWideLap = 4.0;    // times as much where no verified backup is in store
 
 // What a stop brakes with, tried in turn: gently and stable without feedback, hard, hard with less and less
-// static stability left (docs/safety.md, eq. 5).
+// static stability left (docs/safety_derivation.md, eq. 5).
 constexpr double kGentle = 0.8;
 constexpr double kOpenStability = 1.6;
 constexpr double kBarelyStable = 1.1;

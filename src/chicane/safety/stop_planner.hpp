@@ -65,9 +65,9 @@ struct BlindCheck {
 };
 
 /// Plans the stop along a line: path-following steering and as much braking as the curve leaves, simulated
-/// with the car the controller believes in until it stands (docs/safety.md, eq. 1–5). The plan and the check
-/// come from the same simulation. Bounded time, tens of µs for a stop from 45 m/s; no allocation; one
-/// thread.
+/// with the car the controller believes in until it stands (docs/safety_derivation.md, eq. 1–5). The plan and
+/// the check come from the same simulation. Bounded time, tens of µs for a stop from 45 m/s; no allocation;
+/// one thread.
 class StopPlanner {
  public:
   explicit StopPlanner(const model::VehicleParams& vehicle) noexcept

@@ -14,8 +14,8 @@
 namespace chicane::safety {
 
 /// Searches for the stop that a law does not find, where a car is near the limit of its tyres: with
-/// foresight, it brakes where the road leaves the grip for it (docs/safety.md, "The stop", eq. 5a).
-/// The optimal control problem of the default controller with another aim: standing instead of fast.
+/// foresight, it brakes where the road leaves the grip for it (docs/safety_derivation.md, "The stop", eq.
+/// 5a). The optimal control problem of the default controller with another aim: standing instead of fast.
 ///
 /// Memory is reserved at construction; one thread. Each search begins with what the last one found.
 class StopSearch {
