@@ -112,9 +112,24 @@ TEST_F(CInterface, TakesBoundsGuessesAndFloats) {
   ASSERT_EQ(chicane_solvef(solver_, x0, &report_), CHICANE_DONE);
   EXPECT_EQ(report_.is_usable, 1);
   EXPECT_EQ(get(CHICANE_INPUTS)[0], 0.25);
-  const int cold = report_.iterations;
+  const double cost = report_.cost;
+  chicane_options options;
+  chicane_default_options(&options);
+  options.max_iterations = 1;
+  options.start_from_states = 1;
+  ASSERT_EQ(chicane_set_options(solver_, &options), CHICANE_DONE);
   ASSERT_EQ(chicane_solvef(solver_, x0, &report_), CHICANE_DONE);  // from its own answer
-  EXPECT_LT(report_.iterations, cold);
+  EXPECT_EQ(report_.is_usable, 1);
+  EXPECT_NEAR(report_.cost, cost, 1e-4);
+  std::vector<double> guess(20, 0.0);
+  ASSERT_EQ(chicane_set(solver_, CHICANE_INPUTS, guess.data(), 20), CHICANE_DONE);
+  EXPECT_EQ(get(CHICANE_INPUTS), guess);
+  chicane_default_options(&options);
+  guess[3] = std::numeric_limits<double>::quiet_NaN();
+  ASSERT_EQ(chicane_set_options(solver_, &options), CHICANE_DONE);
+  ASSERT_EQ(chicane_set(solver_, CHICANE_INPUTS, guess.data(), 20), CHICANE_DONE);
+  ASSERT_EQ(chicane_solvef(solver_, x0, &report_), CHICANE_DONE);
+  EXPECT_NEAR(report_.cost, cost, 1e-6);
   const auto before = get(CHICANE_STATES);
   ASSERT_EQ(chicane_shift(solver_), CHICANE_DONE);
   const auto after = get(CHICANE_STATES);
@@ -215,7 +230,7 @@ TEST(TurnLog, HasEachTurnWithItsStepAndCountsWhatDoesNotFit) {
   EXPECT_GT(turns.front().barrier, turns.back().barrier);
   for (const Turn& turn : turns.first(turns.size() - 1)) EXPECT_GT(turn.step, 0.0);
 
-  TurnLog small(std::span(memory).first(2));
+  TurnLog small(std::span<Turn>(memory).first(2));
   solver->record_turns(&small);
   t = {.horizon = 20};
   solver->solve(problem, {1.0, 0.3}, t);

@@ -38,7 +38,7 @@ class CSolver final : public chicane_solver {
   static constexpr int kHorizon = P::kHorizon;
   static constexpr std::size_t kNx = P::kNx, kNu = P::kNu, kNc = P::kNc;
 
-  explicit CSolver(const chicane_problem* problem) noexcept : chicane_solver{problem, 0} {
+  explicit CSolver(const chicane_problem* own) noexcept : chicane_solver{own, 0} {
     trajectory_.horizon = kHorizon;
   }
 
