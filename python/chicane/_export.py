@@ -2,6 +2,8 @@
 """A recorded problem as C++: a structured problem of the library (docs/solver.md, "Use")."""
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +12,7 @@ if TYPE_CHECKING:
     from ._problem import Problem
     from ._symbols import Symbol
 
+_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _CALLS = {"sin": "sin", "cos": "cos", "tan": "tan", "atan": "atan", "asin": "asin", "acos": "acos", "exp": "exp", "log": "log", "tanh": "tanh",
           "sqrt": "sqrt"}
 _MOST_INLINED = 150
@@ -121,26 +124,26 @@ def _bounds(problem: Problem) -> str:
     lower, upper = problem.input_bounds
     text = ""
     for name, values in (("lower", lower), ("upper", upper)):
-        rows = [", ".join(number(value) for value in row) for row in values]
+        rows = [", ".join(f"Real({number(value)})" for value in row) for row in values]
         is_same = len(set(rows)) == 1
         fill = f"{name}.fill({{{rows[0]}}});" if is_same else f"{name} = {{{{{', '.join('{' + row + '}' for row in rows)}}}}};"
         text += "    " + fill + "\n"
     return text
 
 
-def header(problem: Problem, name: str) -> str:
-    """The header's text."""
-    if not name.isidentifier():
+def header(problem: Problem, name: str, with_hidden: bool = False) -> str:
+    """The header's text. with_hidden: parameters of the problem's own are among kParameters, and its cost is the residuals'."""
+    if not _IDENTIFIER.fullmatch(name):
         raise ValueError(f"export: got the name {name!r}, expected a C++ identifier")
     rows = problem.all_rows()
     count = problem.full_count
-    sizes = [f"kNx = {problem.nx}, kNu = {problem.nu}, kNr = {len(rows['residual'])}, kNe = {len(rows['terminal_residual'])}, "
+    sizes = [f"kNx = {problem.nx}, kNu = {problem.all_inputs}, kNr = {len(rows['residual'])}, kNe = {len(rows['terminal_residual'])}, "
              f"kNc = {len(rows['constraint'])}"]
     for kind, size in (("equality", "kNh"), ("terminal_equality", "kNeh"), ("terminal_constraint", "kNec")):
         if rows[kind]:
             sizes.append(f"{size} = {len(rows[kind])}")
     functions = "".join(_function(problem, kind, rows[kind]) for kind in rows if rows[kind] or kind in ("residual", "terminal_residual"))
-    hidden = "".join(f"    for (double& value : p[{problem.parameters + n}].values) value = {number(value)};\n"
+    hidden = "".join(f"    for (Real& value : p[{problem.parameters + n}].values) value = Real({number(value)});\n"
                      for n, value in enumerate(problem.hidden_parameters()))
     n = problem.horizon
     return f"""// Written by chicane (ocp.export). An optimal control problem for chicane::solver::OcpSolver<{name}, {name}::kHorizon>.
@@ -156,18 +159,117 @@ def header(problem: Problem, name: str) -> str:
 #include "chicane/base/math.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 
-struct {name} {{
+/// Over its numbers: doubles for one problem, packs for several side by side (chicane/solver/batch_solver.hpp).
+template <class Real>
+struct {name}Over {{
   static constexpr int {", ".join(sizes)};
-  static constexpr int kHorizon = {n}, kParameters = {problem.parameters};
+  static constexpr const char* kName = "{name}";
+  static constexpr int kHorizon = {n}, kParameters = {count if with_hidden else problem.parameters};
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  static constexpr double kCostOffset = {number(problem.cost_offset())};  ///< the solver's cost lacks this
+  static constexpr double kCostOffset = {number(0.0 if with_hidden else problem.cost_offset())};  ///< the solver's cost lacks this
 
-  std::array<chicane::solver::StageData<kHorizon + 1>, {max(count, 1)}> p{{}};  ///< p[i][k]: parameter i of stage k
-  std::array<std::array<double, kNu>, kHorizon> lower{{}}, upper{{}};
+  std::array<chicane::solver::StageData<kHorizon + 1, Real>, {max(count, 1)}> p{{}};  ///< p[i][k]: parameter i of stage k
+  std::array<std::array<Real, kNu>, chicane::solver::padded_stages(kHorizon)> lower{{}}, upper{{}};
 
-  {name}() {{
+  {name}Over() {{
 {_bounds(problem)}{hidden}  }}
-{functions}{_prices(problem)}  [[nodiscard]] std::array<double, kNu> input_lower(int k) const {{ return lower[static_cast<std::size_t>(k)]; }}
-  [[nodiscard]] std::array<double, kNu> input_upper(int k) const {{ return upper[static_cast<std::size_t>(k)]; }}
+{functions}{_prices(problem)}  [[nodiscard]] std::array<Real, kNu> input_lower(int k) const {{ return lower[static_cast<std::size_t>(k)]; }}
+  [[nodiscard]] std::array<Real, kNu> input_upper(int k) const {{ return upper[static_cast<std::size_t>(k)]; }}
 }};
+struct {name} : {name}Over<double> {{}};
 """
+
+
+def c_source(problem: Problem, name: str, with_hidden: bool = False) -> str:
+    """A C++ source with the problem behind the C function `name`."""
+    return "// clang-format off\n" + header(problem, f"Exported_{name}", with_hidden).replace("#pragma once\n", "", 1) + f"""
+#include "chicane/solver/c_interface.hpp"
+
+extern "C" [[gnu::visibility("default")]] const chicane_problem* {name}(void) {{ return chicane::solver::c_problem<Exported_{name}>(); }}
+"""
+
+
+def can_use_lanes(problem: Problem) -> bool:
+    """Whether many of it can be solved in lanes: nothing that must hold, and stages that are inlined."""
+    rows = problem.all_rows()
+    is_soft = not any(problem.is_hard) and not any(rows[kind] for kind in ("equality", "terminal_equality", "terminal_constraint"))
+    return is_soft and all(_Writer(problem, kind.startswith("terminal")).write(own).count("\n") <= _MOST_INLINED for kind, own in rows.items() if own)
+
+
+def many_source(name: str) -> str:
+    """Behind c_source(): many problems at once, for CompiledSolver.solve_many()."""
+    return _MANY.replace("NAME", f"Exported_{name}")
+
+
+_MANY = """
+#include <memory>
+#include <vector>
+
+#include "chicane/solver/many.hpp"
+
+// options: tolerance, turns. x0, p and guess as of one problem after the other; shares p where p_step is 0. Returns how many were handed over.
+extern "C" [[gnu::visibility("default")]] std::size_t solve_many(std::size_t count, int with_lanes, const double* options, const double* lower,
+    const double* upper, const double* p, std::size_t p_step, const double* x0, const double* guess, double* x, double* u, double* cost,
+    double* violation, int* status, int* iterations) {
+  using namespace chicane::solver;
+  using Many = ManySolver<NAMEOver, NAME::kHorizon>;
+  constexpr int kN = NAME::kHorizon, kNx = NAME::kNx, kNu = NAME::kNu;
+  std::vector<Many::One> problems(count);
+  std::vector<Many::State> starts(count);
+  std::vector<Many::Trajectory> trajectories(count);
+  std::vector<SolveReport> reports(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    const double* own = p + n * p_step;
+    for (int k = 0; k <= kN; ++k) {
+      for (int i = 0; i < NAME::kParameters; ++i) problems[n].p[i].values[k] = *own++;
+    }
+    trajectories[n].horizon = kN;
+    for (int k = 0; k < kN; ++k) {
+      std::copy_n(lower + k * kNu, kNu, problems[n].lower[k].begin());
+      std::copy_n(upper + k * kNu, kNu, problems[n].upper[k].begin());
+      std::copy_n(guess + k * kNu, kNu, trajectories[n].u[k].begin());
+    }
+    std::copy_n(x0 + n * kNx, kNx, starts[n].begin());
+  }
+  const auto solver = std::make_unique<Many>(SolverOptions{.tolerance = options[0], .max_iterations = static_cast<int>(options[1])});
+  std::size_t handed_over = 0;
+  if (with_lanes != 0) handed_over = solver->solve_in_lanes(problems, starts, trajectories, reports);
+  if (with_lanes == 0) solver->solve_alone(problems, starts, trajectories, reports);
+  for (std::size_t n = 0; n < count; ++n) {
+    for (int k = 0; k <= kN; ++k) x = std::copy(trajectories[n].x[k].begin(), trajectories[n].x[k].end(), x);
+    for (int k = 0; k < kN; ++k) u = std::copy(trajectories[n].u[k].begin(), trajectories[n].u[k].end(), u);
+    cost[n] = reports[n].cost;
+    violation[n] = reports[n].violation;
+    status[n] = static_cast<int>(reports[n].status);
+    iterations[n] = reports[n].iterations;
+  }
+  return handed_over;
+}
+"""
+
+
+def c_header(problem: Problem, name: str) -> str:
+    """Declares that function."""
+    rows = {kind: len(own) for kind, own in problem.all_rows().items()}
+    return f"""/* Written by chicane (ocp.export_c). nx {problem.nx}, nu {problem.all_inputs}, horizon {problem.horizon}, {problem.parameters} parameters,
+ * {rows["constraint"]} constraints. Beside {name}.cpp, which a C++ compiler compiles; used by chicane/solver.h. */
+#ifndef CHICANE_PROBLEM_{name.upper()}_H
+#define CHICANE_PROBLEM_{name.upper()}_H
+
+#include "chicane/solver.h"
+
+#ifdef __cplusplus
+extern "C"
+#endif
+const chicane_problem* {name}(void);
+
+#endif
+"""
+
+
+def write_c(problem: Problem, path: Path) -> None:
+    """path.h and path.cpp."""
+    if not _IDENTIFIER.fullmatch(path.name):
+        raise ValueError(f"export_c: got the name {path.name!r}, expected a C identifier, with no ending: {path.name!r}.h and .cpp are written")
+    path.with_name(path.name + ".cpp").write_text(c_source(problem, path.name), encoding="utf-8")
+    path.with_name(path.name + ".h").write_text(c_header(problem, path.name), encoding="utf-8")
