@@ -12,21 +12,19 @@
 #include "chicane/base/math.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 
-/// Over its numbers: doubles for one problem, packs for several side by side (chicane/solver/batch_solver.hpp).
-template <class Real>
-struct Exported_cart_pole_problemOver {
+struct Exported_cart_pole_problem {
   static constexpr int kNx = 4, kNu = 1, kNr = 5, kNe = 4, kNc = 0;
   static constexpr const char* kName = "Exported_cart_pole_problem";
   static constexpr int kHorizon = 50, kParameters = 1;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr double kCostOffset = 0.0;  ///< the solver's cost lacks this
 
-  std::array<chicane::solver::StageData<kHorizon + 1, Real>, 1> p{};  ///< p[i][k]: parameter i of stage k
-  std::array<std::array<Real, kNu>, chicane::solver::padded_stages(kHorizon)> lower{}, upper{};
+  std::array<chicane::solver::StageData<kHorizon + 1>, 1> p{};  ///< p[i][k]: parameter i of stage k
+  std::array<std::array<double, kNu>, kHorizon> lower{}, upper{};
 
-  Exported_cart_pole_problemOver() {
-    lower.fill({Real((-20.0))});
-    upper.fill({Real(20.0)});
+  Exported_cart_pole_problem() {
+    lower.fill({(-20.0)});
+    upper.fill({20.0});
   }
   template <class K, class X, class U>
   CHICANE_INLINE auto dynamics([[maybe_unused]] K k, [[maybe_unused]] const X& x, [[maybe_unused]] const U& u) const {
@@ -85,10 +83,9 @@ struct Exported_cart_pole_problemOver {
     const auto t54 = 5.0 * std::get<3>(x);
     return std::make_tuple(t49, t51, t53, t54);
   }
-  [[nodiscard]] std::array<Real, kNu> input_lower(int k) const { return lower[static_cast<std::size_t>(k)]; }
-  [[nodiscard]] std::array<Real, kNu> input_upper(int k) const { return upper[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] std::array<double, kNu> input_lower(int k) const { return lower[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] std::array<double, kNu> input_upper(int k) const { return upper[static_cast<std::size_t>(k)]; }
 };
-struct Exported_cart_pole_problem : Exported_cart_pole_problemOver<double> {};
 
 #include "chicane/solver/c_interface.hpp"
 

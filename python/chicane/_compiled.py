@@ -46,8 +46,6 @@ class _Report(ctypes.Structure):
                 ("miss_kind", ctypes.c_int), ("miss_stage", ctypes.c_int), ("miss_row", ctypes.c_int), ("time", ctypes.c_double)]
 
 
-_PART = 16
-"""Of solve_many()'s problems the first so many say whether lanes pay."""
 _PARAMETERS, _LOWER, _UPPER, _STATES, _INPUTS = range(5)
 _ANSWERS = ("x", "u", "dynamics", "bounds", "constraints", "equalities", "end")
 """Arrays of chicane/solver.h that a solve writes, from CHICANE_STATES on."""
@@ -87,8 +85,6 @@ class Compilation:
         name, flags = instruction_set()
         include = headers()
         source = _export.c_source(problem, "problem", with_hidden=True)
-        if _export.can_use_lanes(problem):
-            source += _export.many_source("problem")
         # What several such libraries in one process have in common must not be taken for the same.
         command = [compiler, "-std=c++20", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-fno-gnu-unique",
                    "-ffp-contract=off", "-fno-math-errno", "-w", f"-DCHICANE_ARCH={name}", *flags]
@@ -191,8 +187,6 @@ def _load(file: Path) -> ctypes.CDLL:
     library.chicane_set.argtypes = library.chicane_get.argtypes = [pointer, ctypes.c_int, _Double, count]
     library.chicane_solve.argtypes = [pointer, _Double, pointer]
     library.chicane_prepare.argtypes = [pointer]
-    if hasattr(library, "solve_many"):
-        library.solve_many.restype = count
     return library
 
 
@@ -224,38 +218,14 @@ class CompiledSolver:
         return self._main.answer() | {"time": seconds, "is_solved": bool(is_solved.value)}
 
     def solve_many(self, x0: Array, parameters: Array, guess: Array, threads: int) -> dict[str, Any]:
-        """In lanes where the first problems say that it pays: the same bits for any number of threads."""
-        has_own = len(parameters) > 1
-        size = max(_PART, min(256, -(-len(x0) // (2 * threads))))
-        parts = [range(0, min(_PART, len(x0)))] + [range(n, min(n + size, len(x0))) for n in range(_PART, len(x0), size)]
-        self.has_lanes = hasattr(self._library, "solve_many")
+        states = np.zeros((self._problem.horizon + 1, self._problem.nx))
 
-        def work(numbers: range) -> dict[str, Any]:
-            own = parameters[numbers.start:numbers.stop] if has_own else parameters
-            return self._solve_part(x0[numbers.start:numbers.stop], own, guess)
-        answers = []
-        if self.has_lanes:
-            answers.append(work(parts.pop(0)))
-            self.has_lanes = 3 * answers[0]["handed_over"] <= len(answers[0]["cost"])
+        def work(numbers: range) -> list[dict[str, Any]]:
+            handle = _Handle(self._library)
+            return [handle.solve(self._setting, x0[n], parameters[n if len(parameters) > 1 else 0], states, guess) for n in numbers]
+        share = -(-len(x0) // threads)
         with ThreadPoolExecutor(threads) as pool:
-            answers += pool.map(work, parts)
-        return {name: np.concatenate([told[name] for told in answers]) for name in ("x", "u", "cost", "violation", "status", "iterations", "time")}
-
-    def _solve_part(self, x0: Array, parameters: Array, guess: Array) -> dict[str, Any]:
-        s, count = self._main.sizes, len(x0)
-        if not hasattr(self._library, "solve_many"):
-            handle, states = _Handle(self._library), np.zeros((s.horizon + 1, s.nx))
-            told = [handle.solve(self._setting, x0[n], parameters[n if len(parameters) > 1 else 0], states, guess) for n in range(count)]
-            part = {name: np.array([one[name] for one in told]) for name in ("x", "u", "cost", "status", "iterations", "time")}
-            return part | {"violation": np.array([max(one["violation"], one["miss"]) for one in told]), "handed_over": 0}
-        options, lower, upper = self._setting
-        part = {"x": np.empty((count, s.horizon + 1, s.nx)), "u": np.empty((count, s.horizon, s.nu)), "cost": np.empty(count), "violation": np.empty(count),
-                "status": np.empty(count, np.int32), "iterations": np.empty(count, np.int32)}
-        given = [np.ascontiguousarray(array, float) for array in ([options.tolerance, options.max_iterations], lower, upper, parameters, x0, guess)]
-        words, low, high, p, starts, inputs = (ctypes.c_void_p(array.ctypes.data) for array in given)
-        step = given[3][0].size if len(parameters) > 1 else 0
-        begin = time.perf_counter()
-        handed_over = self._library.solve_many(ctypes.c_size_t(count), int(self.has_lanes), words, low, high, p, ctypes.c_size_t(step), starts, inputs,
-                                               *(ctypes.c_void_p(array.ctypes.data) for array in part.values()))
-        seconds = (time.perf_counter() - begin) / count
-        return part | {"time": np.full(count, seconds), "handed_over": int(handed_over)}
+            answers = [told for part in pool.map(work, [range(n, min(n + share, len(x0))) for n in range(0, len(x0), share)]) for told in part]
+        many = {name: np.array([told[name] for told in answers]) for name in ("x", "u", "cost", "status", "iterations", "time")}
+        many["violation"] = np.array([max(told["violation"], told["miss"]) for told in answers])
+        return many

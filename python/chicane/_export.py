@@ -124,7 +124,7 @@ def _bounds(problem: Problem) -> str:
     lower, upper = problem.input_bounds
     text = ""
     for name, values in (("lower", lower), ("upper", upper)):
-        rows = [", ".join(f"Real({number(value)})" for value in row) for row in values]
+        rows = [", ".join(number(value) for value in row) for row in values]
         is_same = len(set(rows)) == 1
         fill = f"{name}.fill({{{rows[0]}}});" if is_same else f"{name} = {{{{{', '.join('{' + row + '}' for row in rows)}}}}};"
         text += "    " + fill + "\n"
@@ -143,7 +143,7 @@ def header(problem: Problem, name: str, with_hidden: bool = False) -> str:
         if rows[kind]:
             sizes.append(f"{size} = {len(rows[kind])}")
     functions = "".join(_function(problem, kind, rows[kind]) for kind in rows if rows[kind] or kind in ("residual", "terminal_residual"))
-    hidden = "".join(f"    for (Real& value : p[{problem.parameters + n}].values) value = Real({number(value)});\n"
+    hidden = "".join(f"    for (double& value : p[{problem.parameters + n}].values) value = {number(value)};\n"
                      for n, value in enumerate(problem.hidden_parameters()))
     n = problem.horizon
     return f"""// Written by chicane (ocp.export). An optimal control problem for chicane::solver::OcpSolver<{name}, {name}::kHorizon>.
@@ -159,24 +159,21 @@ def header(problem: Problem, name: str, with_hidden: bool = False) -> str:
 #include "chicane/base/math.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 
-/// Over its numbers: doubles for one problem, packs for several side by side (chicane/solver/batch_solver.hpp).
-template <class Real>
-struct {name}Over {{
+struct {name} {{
   static constexpr int {", ".join(sizes)};
   static constexpr const char* kName = "{name}";
   static constexpr int kHorizon = {n}, kParameters = {count if with_hidden else problem.parameters};
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr double kCostOffset = {number(0.0 if with_hidden else problem.cost_offset())};  ///< the solver's cost lacks this
 
-  std::array<chicane::solver::StageData<kHorizon + 1, Real>, {max(count, 1)}> p{{}};  ///< p[i][k]: parameter i of stage k
-  std::array<std::array<Real, kNu>, chicane::solver::padded_stages(kHorizon)> lower{{}}, upper{{}};
+  std::array<chicane::solver::StageData<kHorizon + 1>, {max(count, 1)}> p{{}};  ///< p[i][k]: parameter i of stage k
+  std::array<std::array<double, kNu>, kHorizon> lower{{}}, upper{{}};
 
-  {name}Over() {{
+  {name}() {{
 {_bounds(problem)}{hidden}  }}
-{functions}{_prices(problem)}  [[nodiscard]] std::array<Real, kNu> input_lower(int k) const {{ return lower[static_cast<std::size_t>(k)]; }}
-  [[nodiscard]] std::array<Real, kNu> input_upper(int k) const {{ return upper[static_cast<std::size_t>(k)]; }}
+{functions}{_prices(problem)}  [[nodiscard]] std::array<double, kNu> input_lower(int k) const {{ return lower[static_cast<std::size_t>(k)]; }}
+  [[nodiscard]] std::array<double, kNu> input_upper(int k) const {{ return upper[static_cast<std::size_t>(k)]; }}
 }};
-struct {name} : {name}Over<double> {{}};
 """
 
 
@@ -186,65 +183,6 @@ def c_source(problem: Problem, name: str, with_hidden: bool = False) -> str:
 #include "chicane/solver/c_interface.hpp"
 
 extern "C" [[gnu::visibility("default")]] const chicane_problem* {name}(void) {{ return chicane::solver::c_problem<Exported_{name}>(); }}
-"""
-
-
-def can_use_lanes(problem: Problem) -> bool:
-    """Whether many of it can be solved in lanes: nothing that must hold, and stages that are inlined."""
-    rows = problem.all_rows()
-    is_soft = not any(problem.is_hard) and not any(rows[kind] for kind in ("equality", "terminal_equality", "terminal_constraint"))
-    return is_soft and all(_Writer(problem, kind.startswith("terminal")).write(own).count("\n") <= _MOST_INLINED for kind, own in rows.items() if own)
-
-
-def many_source(name: str) -> str:
-    """Behind c_source(): many problems at once, for CompiledSolver.solve_many()."""
-    return _MANY.replace("NAME", f"Exported_{name}")
-
-
-_MANY = """
-#include <memory>
-#include <vector>
-
-#include "chicane/solver/many.hpp"
-
-// options: tolerance, turns. x0, p and guess as of one problem after the other; shares p where p_step is 0. Returns how many were handed over.
-extern "C" [[gnu::visibility("default")]] std::size_t solve_many(std::size_t count, int with_lanes, const double* options, const double* lower,
-    const double* upper, const double* p, std::size_t p_step, const double* x0, const double* guess, double* x, double* u, double* cost,
-    double* violation, int* status, int* iterations) {
-  using namespace chicane::solver;
-  using Many = ManySolver<NAMEOver, NAME::kHorizon>;
-  constexpr int kN = NAME::kHorizon, kNx = NAME::kNx, kNu = NAME::kNu;
-  std::vector<Many::One> problems(count);
-  std::vector<Many::State> starts(count);
-  std::vector<Many::Trajectory> trajectories(count);
-  std::vector<SolveReport> reports(count);
-  for (std::size_t n = 0; n < count; ++n) {
-    const double* own = p + n * p_step;
-    for (int k = 0; k <= kN; ++k) {
-      for (int i = 0; i < NAME::kParameters; ++i) problems[n].p[i].values[k] = *own++;
-    }
-    trajectories[n].horizon = kN;
-    for (int k = 0; k < kN; ++k) {
-      std::copy_n(lower + k * kNu, kNu, problems[n].lower[k].begin());
-      std::copy_n(upper + k * kNu, kNu, problems[n].upper[k].begin());
-      std::copy_n(guess + k * kNu, kNu, trajectories[n].u[k].begin());
-    }
-    std::copy_n(x0 + n * kNx, kNx, starts[n].begin());
-  }
-  const auto solver = std::make_unique<Many>(SolverOptions{.tolerance = options[0], .max_iterations = static_cast<int>(options[1])});
-  std::size_t handed_over = 0;
-  if (with_lanes != 0) handed_over = solver->solve_in_lanes(problems, starts, trajectories, reports);
-  if (with_lanes == 0) solver->solve_alone(problems, starts, trajectories, reports);
-  for (std::size_t n = 0; n < count; ++n) {
-    for (int k = 0; k <= kN; ++k) x = std::copy(trajectories[n].x[k].begin(), trajectories[n].x[k].end(), x);
-    for (int k = 0; k < kN; ++k) u = std::copy(trajectories[n].u[k].begin(), trajectories[n].u[k].end(), u);
-    cost[n] = reports[n].cost;
-    violation[n] = reports[n].violation;
-    status[n] = static_cast<int>(reports[n].status);
-    iterations[n] = reports[n].iterations;
-  }
-  return handed_over;
-}
 """
 
 

@@ -366,10 +366,7 @@ class Compiled(unittest.TestCase):
             np.testing.assert_allclose(answer.u, again.u, atol=1e-4)
             self.assertGreater(again.log.count, 1)
             many = ocp.solve_many([[1.0, 0.0], [0.5, 0.1]], [-0.4], threads=2)
-            self.assertTrue(ocp._compiled.solver.has_lanes)                             # eight at a time
-            self.assertAlmostEqual(many.cost[0], compiled.cost, delta=1e-6)
-            alone = ocp.solve_many([[0.5, 0.1]] * 40, [-0.4], threads=1)
-            np.testing.assert_array_equal(alone.u[:, :, 0], np.tile(many.u[1, :, 0], (40, 1)))
+            self.assertEqual(many.cost[0], compiled.cost)
             made = os.listdir(f"{folder}/chicane")
             self.assertEqual(len(made), 1)
             again = double_integrator(parameters=1)

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstddef>
-#include <type_traits>
 
 #include "chicane/base/inlining.hpp"
 
@@ -22,17 +21,17 @@ inline constexpr std::size_t kMostLanes = 8;
   return (count + kMostLanes - 1) / kMostLanes * kMostLanes;
 }
 
-/// One number for each stage 0 … Capacity − 1, readable for one stage or for several in lanes. Of a problem
-/// over its numbers (batch_solver.hpp) they are `Real`, readable for one stage.
-template <std::size_t Capacity, class Real = double>
+/// One number for each stage 0 … Capacity − 1, readable for one stage or for several in lanes.
+template <std::size_t Capacity>
 struct StageData {
-  alignas(64) std::array<Real, padded_stages(Capacity)> values{};
+  alignas(64) std::array<double, padded_stages(Capacity)> values{};
 
-  [[nodiscard]] Real& operator[](std::size_t k) noexcept { return values[k]; }
-  [[nodiscard]] Real at(int k) const noexcept { return values[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] double& operator[](std::size_t k) noexcept { return values[k]; }
+  [[nodiscard]] double at(int k) const noexcept { return values[static_cast<std::size_t>(k)]; }
   template <class V>
-  requires std::is_same_v<Real, double>
-  [[nodiscard]] V at(StageLanes<V> k) const noexcept { return V::load(values.data() + k.first); }
+  [[nodiscard]] V at(StageLanes<V> k) const noexcept {
+    return V::load(values.data() + k.first);
+  }
 };
 
 /// The number of a stage as a value: k itself, or one in each lane.
