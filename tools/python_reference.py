@@ -54,7 +54,7 @@ def block(text: str) -> str:
             deep = False
             is_code = False
         is_code = is_code or deep
-        lines.append(line[4:] if is_code else re.sub(r"^([\w, ]{1,60}: )", r"- \1", line))
+        lines.append(line[4:] if is_code else re.sub(r"^([a-z][\w, ]{0,60}: )", r"- \1", line))
     if is_code:
         lines.append("```")
     return "\n".join(line.rstrip() if line.strip() else "" for line in "\n".join(lines).split("\n"))
