@@ -110,7 +110,12 @@ def changes(count):
 def reference(name, make):
     """Its line: our solver interpreted and compiled, by hand where there is one, and Ipopt, all cold from a simulation of zeros."""
     ocp, x0, p = make()
-    interpreted = fastest(lambda: ocp.solve(x0, p), 9)
+    seconds = []                                            # of the processor, as for the others
+    for _ in range(25):
+        begin = time.thread_time()
+        interpreted = ocp.solve(x0, p)
+        seconds.append(time.thread_time() - begin)
+    least = min(seconds)
     with tempfile.TemporaryDirectory() as folder:
         header, program = Path(folder) / "problem.hpp", Path(folder) / "program"
         ocp.export(header, "Problem")
@@ -126,9 +131,9 @@ def reference(name, make):
     cost = told["own_cost"] + ocp.cost_offset()
     apart = abs(told["ipopt_cost"] - told["own_cost"]) / max(1.0, abs(told["own_cost"]))
     by_hand = f"{told['own_s'] / told['written_s']:.2f}" if is_written else "–"
-    print(f"| {name} | {cost:.6g} | {apart:.0e} | {1e3 * told['ipopt_s']:.1f} | {told['ipopt_turns']} | {1e3 * interpreted.time:.2f} | "
-          f"{1e3 * told['own_s']:.2f} | {told['ipopt_s'] / interpreted.time:.0f} | {told['ipopt_s'] / told['own_s']:.0f} | {by_hand} |", flush=True)
-    return told["status"] == 0 and abs(interpreted.cost - cost) <= 1e-9 * max(1.0, abs(cost)), told["ipopt_s"] / interpreted.time, told["ipopt_s"] / told["own_s"]
+    print(f"| {name} | {cost:.6g} | {apart:.0e} | {1e3 * told['ipopt_s']:.1f} | {told['ipopt_turns']} | {1e3 * least:.2f} | "
+          f"{1e3 * told['own_s']:.2f} | {told['ipopt_s'] / least:.0f} | {told['ipopt_s'] / told['own_s']:.0f} | {by_hand} |", flush=True)
+    return told["status"] == 0 and abs(interpreted.cost - cost) <= 1e-9 * max(1.0, abs(cost)), told["ipopt_s"] / least, told["ipopt_s"] / told["own_s"]
 
 
 def references(names):
