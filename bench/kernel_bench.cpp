@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the passes over a quadratic program cost for each stage, for each instruction set of this processor:
-// the described problem's pattern, and full ones; what its functions cost; and the throughput of batches.
+// the described problem's pattern, and full ones; and what its functions cost.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -33,16 +33,6 @@ void Pass(benchmark::State& state, InstructionSet set, Kernel kernel, Shape shap
 }
 void Functions(benchmark::State& state, InstructionSet set, Look look) {
   per_stage(state, set, [&](auto arch) { bench::run_look<decltype(arch)>(look); });
-}
-
-void Batch(benchmark::State& state, InstructionSet set) {
-  int solved = 0;
-  with_instructions(set, [&](auto arch) {
-    for (auto _ : state) solved = bench::run_batch<decltype(arch)>(static_cast<int>(state.range(0)));
-  });
-  state.counters["solved"] = solved;
-  state.counters["problems/s"] =
-      benchmark::Counter(bench::kBatchProblems, benchmark::Counter::kIsIterationInvariantRate);
 }
 
 const struct {
@@ -83,12 +73,6 @@ int main(int argc, char** argv) {
       benchmark::RegisterBenchmark((std::string(look.name) + "/described/" + name).c_str(),
                                    [=](benchmark::State& state) { Functions(state, set, look.look); });
     }
-    benchmark::RegisterBenchmark(("BatchWarm/" + name).c_str(),
-                                 [=](benchmark::State& state) { Batch(state, set); })
-        ->Arg(10)
-        ->Arg(20)
-        ->Arg(50)
-        ->Unit(benchmark::kMicrosecond);
   }
   benchmark::RunSpecifiedBenchmarks();
   return 0;

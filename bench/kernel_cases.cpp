@@ -5,13 +5,12 @@
 #include <memory>
 
 #include "chicane/base/random.hpp"
-#include "chicane/solver/batch_solver.hpp"
 #include "chicane/solver/detail/adjoint.hpp"
 #include "chicane/solver/detail/linearisation.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
 #include "chicane/solver/detail/problem_pattern.hpp"
 #include "chicane/solver/detail/roll_out.hpp"
-#include "problems/described_batch.hpp"
+#include "problems/described_problem.hpp"
 
 namespace chicane::bench {
 namespace {
@@ -101,55 +100,6 @@ struct Looks {
   }
 };
 
-template <class Arch>
-struct WarmBatch {
-  using Batch = solver::BatchSolver<DescribedOver, Arch, kCapacity>;
-  Batch batch;
-  std::array<DescribedOver<double>, kBatchProblems> problems;
-  std::array<std::array<double, 7>, kBatchProblems> starts;
-  std::array<typename Batch::Trajectory, kBatchProblems> guesses;
-  std::array<typename Batch::Trajectory, kBatchProblems> answers;
-  std::array<solver::SolveReport, kBatchProblems> reports;
-  int horizon = 0;
-
-  struct GiveUp {
-    template <class Problem, class State, class Trajectory>
-    solver::SolveReport operator()(const Problem&, const State&, Trajectory&) const noexcept {
-      return {};
-    }
-  };
-  /// Guesses are the optima of a cycle before: a step earlier, another speed wanted.
-  void prepare(int wanted) noexcept {
-    horizon = wanted;
-    Random random{1};
-    for (std::size_t i = 0; i < problems.size(); ++i) {
-      const DescribedInstance instance = random_instance(random, horizon);
-      problems[i] = for_batch(instance.problem, instance.start[4]);
-      starts[i] = StructuredDescribedProblem::without_cte(instance.start);
-      guesses[i].horizon = horizon;
-      guesses[i].u.fill({});
-      problems[i].speed_reference -= 0.5;
-      starts[i][1] -= 0.05;
-    }
-    batch.solve(problems, starts, guesses, reports, GiveUp{});
-    for (std::size_t i = 0; i < problems.size(); ++i) {
-      problems[i].speed_reference += 0.5;
-      starts[i][1] += 0.05;
-    }
-  }
-  int run(int wanted) noexcept {
-    if (wanted != horizon) prepare(wanted);
-    for (std::size_t i = 0; i < answers.size(); ++i) {
-      answers[i].horizon = horizon;
-      for (std::size_t k = 0; k < static_cast<std::size_t>(horizon); ++k) answers[i].u[k] = guesses[i].u[k];
-    }
-    batch.solve(problems, starts, answers, reports, GiveUp{});
-    int solved = 0;
-    for (const auto& report : reports) solved += report.status == solver::SolveStatus::kOptimal ? 1 : 0;
-    return solved;
-  }
-};
-
 }  // namespace
 
 template <class Arch>
@@ -176,14 +126,7 @@ void run_look(Look look) noexcept {
   looks.run(look);
 }
 
-template <class Arch>
-int run_batch(int horizon) noexcept {
-  static WarmBatch<Arch> batch;
-  return batch.run(horizon);
-}
-
 template void run_kernel<arch::Native>(Kernel, Shape) noexcept;
 template void run_look<arch::Native>(Look) noexcept;
-template int run_batch<arch::Native>(int) noexcept;
 
 }  // namespace chicane::bench

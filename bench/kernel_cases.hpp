@@ -23,9 +23,4 @@ enum class Look { kRollOut, kFirstOrder, kSecondOrder, kSetStages };
 template <class Arch>
 void run_look(Look look) noexcept;
 
-/// One batch of 64 warm starts of the described problem; returns how many lanes solved.
-template <class Arch>
-int run_batch(int horizon) noexcept;
-constexpr int kBatchProblems = 64;
-
 }  // namespace chicane::bench

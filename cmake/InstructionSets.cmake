@@ -12,10 +12,6 @@
 # CHECK_SYMBOLS adds a test for each file and instruction set (needs python3 and nm): its object defines no code that the linker could
 # take for another's. In chicane's own build, where a target may leave out its `chicane_`, that is always so.
 
-# What sources with a BatchSolver gain from: a stage of it is one block of 700 operations, which GCC by default schedules
-# only after registers are given out. 12 % of a batch; nothing elsewhere.
-set(CHICANE_BATCH_OPTIONS $<$<CXX_COMPILER_ID:GNU>:-fschedule-insns> $<$<CXX_COMPILER_ID:GNU>:-fsched-pressure>)
-
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
   set(CHICANE_INSTRUCTION_SETS Baseline Avx2 Avx512)
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")

@@ -70,6 +70,8 @@ def includes(folder):
 
 def library_header(path):
     """("module", "module/file.hpp") of "chicane/module/file.hpp", else nothing."""
+    if path == "chicane/solver.h":  # in C, with a short name for those who only have a C compiler
+        return "solver", "solver/c_interface.hpp"
     parts = path.split("/")
     return (parts[1], "/".join(parts[1:])) if parts[0] == "chicane" and len(parts) > 2 else None
 

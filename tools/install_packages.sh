@@ -19,7 +19,7 @@ test_packages=("${bench_packages[@]}" "${package_packages[@]}" "${python_package
 # For a page that drives without a program, on top of the first: 1 GB.
 page_packages=(emscripten)
 # For the slow tests, on top of all of those.
-slow_test_packages=(openmpi-bin slurm-wlm munge mmdebstrap lintian "${page_packages[@]}")
+slow_test_packages=(jupyter-nbconvert python3-ipykernel python3-matplotlib python3-torch openmpi-bin slurm-wlm munge mmdebstrap lintian "${page_packages[@]}")
 # To run tools/check.sh, on top of those.
 check_packages=(clang-format clang-tidy)
 

@@ -82,8 +82,7 @@ struct DescribedProblem : DescribedData {
 
 /// The same problem in the solver's structured form, by the equations of controller/described_model.hpp:
 /// cte_{k+1} depends on stage k alone, an output, not a state. State (x, y, ψ, v, eψ, previous δ, previous
-/// a), with the constant 1 as wide as one 512-bit vector. Over its numbers: doubles for one problem, packs
-/// for several side by side (solver/batch_solver.hpp).
+/// a), with the constant 1 as wide as one 512-bit vector. Over its numbers.
 template <class Real>
 struct DescribedOver {
   static constexpr int kNx = 7;

@@ -19,8 +19,6 @@ namespace {
 constexpr int kGrowthHorizons[] = {10, 20, 50, 100, 200};
 constexpr int kGrowthInstances = 64;
 constexpr int kDrives = 3;
-constexpr int kBatchHorizons[] = {10, 20};
-constexpr int kBatchProblems = 192;
 
 void measure_solves(const Request& request, References& references, const std::atomic<bool>& stop,
                     BenchReport& report) {
@@ -58,16 +56,6 @@ void measure_growth(const std::atomic<bool>& stop, BenchReport& report) {
     if (row.instances == kGrowthInstances) report.growth.push_back(row);
   }
   report.growth_exponent = exponent(report.growth);
-}
-
-void measure_batches(const std::atomic<bool>& stop, BenchReport& report) {
-  for (const std::string_view family : families()) {
-    for (const int horizon : kBatchHorizons) {
-      if (stop) return;
-      fmt::print(stderr, "{}, N = {}, {} problems in lanes\n", family, horizon, kBatchProblems);
-      report.batches.push_back(time_batch(family, horizon, kBatchProblems, stop));
-    }
-  }
 }
 
 /// Two laps of what `chicane drive` does by default, in virtual time, and again: every drive takes the same
@@ -111,7 +99,6 @@ Result<BenchReport> measure(const Request& request, References& references, cons
   BenchReport report{.machine = this_machine(references)};
   measure_solves(request, references, stop, report);
   measure_growth(stop, report);
-  measure_batches(stop, report);
   if (!request.reference_folder.empty()) {
     Result<std::vector<GoldenRow>> golden = solve_golden(request.reference_folder, stop);
     if (!golden) return fail(golden.error());

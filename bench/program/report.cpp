@@ -97,19 +97,6 @@ std::string target_table(const std::vector<Target>& rows) {
   return text;
 }
 
-std::string batch_table(const std::vector<BatchRow>& rows) {
-  std::string text =
-      "| family | N | thousand/s | one by one | ratio | µs each | turns | handed over | unsolved | cost over "
-      "the single solver's, worst |\n|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const BatchRow& row : rows) {
-    text += fmt::format("| {} | {} | {:.0f} | {:.0f} | {:.1f} | {:.2f} | {:.1f} | {} | {} | {} |\n",
-                        row.family, row.horizon, row.per_second / 1e3, row.single_per_second / 1e3,
-                        row.ratio(), 1e6 / row.per_second, row.mean_turns, row.handed_over, row.unsolved,
-                        small(row.worst_excess));
-  }
-  return text;
-}
-
 const SolveRow* row_of(const std::vector<SolveRow>& rows, std::string_view family, int horizon) {
   for (const SolveRow& row : rows) {
     if (row.family == family && row.horizon == horizon) return &row;
@@ -150,23 +137,6 @@ Json json_of(const std::vector<SolveRow>& rows) {
     put(row, solved.own);
     for (const SolverColumn& column : solved.references) put(row, column);
     list.push_back(row);
-  }
-  return list;
-}
-
-Json json_of(const std::vector<BatchRow>& rows) {
-  Json list = Json::array();
-  for (const BatchRow& row : rows) {
-    list.push_back({{"family", row.family},
-                    {"horizon", row.horizon},
-                    {"problems", row.problems},
-                    {"per_second", row.per_second},
-                    {"single_per_second", row.single_per_second},
-                    {"ratio", row.ratio()},
-                    {"mean_turns", row.mean_turns},
-                    {"handed_over", row.handed_over},
-                    {"unsolved", row.unsolved},
-                    {"worst_excess_over_single", row.worst_excess}});
   }
   return list;
 }
@@ -239,16 +209,10 @@ std::vector<Target> targets(const BenchReport& report) {
   add("corridor-warm, N = 20, median [µs]", 15, 10, true, own("corridor-warm", 20).time_us.median);
   add("corridor-warm, N = 40, median [µs]", 35, 25, true, own("corridor-warm", 40).time_us.median);
   add("warm, N = 20, time of the dense form over the structured one", 3, 2, true, against("warm", "dense"));
-  double throughput = std::nan("");
-  for (const BatchRow& row : report.batches) {
-    if (row.family == "warm" && row.horizon == 20) throughput = row.per_second / 1e3;
-  }
-  add("warm, N = 20, in a batch, thousand problems per second and core", 500, 1000, false, throughput);
   add("exponent of the time over N, 10 to 200", 1.1, 1.1, true, report.growth_exponent);
   double unsolved = 0.0;
   for (const SolveRow& row : report.solves) unsolved += row.own.unsolved;
   for (const GoldenRow& row : report.golden) unsolved += row.unsolved;
-  for (const BatchRow& row : report.batches) unsolved += row.unsolved;
   add("problems not solved", 0, 0, true, report.solves.empty() ? std::nan("") : unsolved);
   add("whole control step of default, p99.9 of CPU time [µs]", 100, 40, true,
       report.steps > 0 ? report.step_cpu_us.p999 : std::nan(""));
@@ -287,10 +251,6 @@ std::string to_markdown(const BenchReport& report) {
     }
     text += fmt::format("; exponent {}.\n", number(report.growth_exponent, 2));
   }
-  if (!report.batches.empty()) {
-    text += fmt::format("\n{} problems at once on one core, in lanes:\n\n", report.batches.front().problems) +
-            batch_table(report.batches);
-  }
   if (!report.golden.empty()) text += "\n" + golden_table(report.golden);
   if (report.steps > 0) {
     text +=
@@ -319,7 +279,6 @@ std::string to_json(const BenchReport& report) {
                   {"solves", json_of(report.solves)},
                   {"growth", json_of(report.growth)},
                   {"growth_exponent", report.growth_exponent},
-                  {"batches", json_of(report.batches)},
                   {"golden", json_of(report.golden)},
                   {"steps", report.steps},
                   {"step_cpu_time_us", json_of(report.step_cpu_us)},

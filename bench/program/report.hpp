@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "program/batches.hpp"
 #include "program/golden.hpp"
 #include "program/solves.hpp"
 
@@ -23,11 +22,10 @@ struct BenchReport {
   Machine machine;
   std::vector<SolveRow> solves{};
   std::vector<SolveRow> growth{};  ///< cost against horizon, own solver only
-  std::vector<BatchRow> batches{};
-  double growth_exponent = 0.0;  ///< of the median time over the horizon; NaN when not measured
-  Spread step_cpu_us{};          ///< CPU time of a control step and one physics step, default controller
-  Spread step_us{};              ///< whole control steps of the default controller, wall clock
-  Spread step_solve_us{};        ///< the optimisation in them
+  double growth_exponent = 0.0;    ///< of the median time over the horizon; NaN when not measured
+  Spread step_cpu_us{};            ///< CPU time of a control step and one physics step, default controller
+  Spread step_us{};                ///< whole control steps of the default controller, wall clock
+  Spread step_solve_us{};          ///< the optimisation in them
   std::size_t steps = 0;
   std::vector<GoldenRow> golden{};
   bool was_interrupted = false;

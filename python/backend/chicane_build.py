@@ -87,7 +87,7 @@ def files_of(package: Path) -> dict[str, bytes]:
                 files[f"chicane/share/chicane/{folder}/{file.name}"] = file.read_bytes()
     source = ROOT / "src"                                     # what Problem.compile() needs
     for file in sorted([*source.glob("chicane/solver/**/*.hpp"), *source.glob("chicane/base/**/*.hpp"), source / "chicane/base/math.cpp",
-                        source / "chicane/version.hpp"]):
+                        source / "chicane/solver.h", source / "chicane/version.hpp"]):
         files[f"chicane/share/chicane/include/{file.relative_to(source)}"] = file.read_bytes()
     return files
 

@@ -20,28 +20,33 @@ from . import _interpreter
 
 _interpreter.prepare()
 
-from ._chicane import NO_ANSWER, Command, Seen, __version__  # noqa: E402
+from ._chicane import NO_ANSWER, CarState, Command, Seen, __version__  # noqa: E402
 from ._controller import Controller  # noqa: E402
 from ._drive import drive, read, verify  # noqa: E402
+from ._integrators import gauss_legendre, implicit_euler  # noqa: E402
 from ._known import cars, faults, frame_fields, parameters, presets, scenarios, tracks  # noqa: E402
 from ._limit import Limit, limit  # noqa: E402
+from ._plant import Plant  # noqa: E402
 from ._problem import Problem  # noqa: E402
 from ._run import Frames, Recording, Run  # noqa: E402
-from ._solution import Solution, Solutions  # noqa: E402
+from ._solution import Feedback, Solution, Solutions  # noqa: E402
 from ._sweep import sweep  # noqa: E402
 from ._symbols import (  # noqa: E402
     Symbol, TraceError, acos, asin, atan, atan2, clip, cos, exp, hypot, log, maximum, minimum, norm2, rk4, sin, sqrt, table, tan, tanh, where,
 )
+from ._track import Track, TrackReader, use_track_reader  # noqa: E402
+from ._turns import Turns  # noqa: E402
 from ._view import view  # noqa: E402
 
 if TYPE_CHECKING:
     from ._env import Env, VecEnv
 
 __all__ = [
-    "Command", "Controller", "Env", "Frames", "Limit", "NO_ANSWER", "Problem", "Recording", "Run", "Seen", "Solution", "Solutions", "Symbol",
-    "TraceError", "VecEnv", "__version__", "acos", "asin", "atan", "atan2", "cars", "clip", "cos", "drive", "exp", "faults", "frame_fields",
-    "hypot", "limit", "log", "maximum", "minimum", "norm2", "parameters", "presets", "read", "rk4", "scenarios", "sin", "sqrt", "sweep",
-    "table", "tan", "tanh", "tracks", "verify", "view", "where",
+    "CarState", "Command", "Controller", "Env", "Feedback", "Frames", "Limit", "NO_ANSWER", "Plant", "Problem", "Recording", "Run", "Seen",
+    "Solution", "Solutions", "Symbol", "TraceError", "Track", "TrackReader", "Turns", "VecEnv", "__version__", "acos", "asin", "atan",
+    "atan2", "cars", "clip", "cos", "drive", "exp", "faults", "frame_fields", "gauss_legendre", "hypot", "implicit_euler", "limit", "log",
+    "maximum", "minimum", "norm2", "parameters", "presets", "read", "rk4", "scenarios", "sin", "sqrt", "sweep", "table", "tan", "tanh",
+    "tracks", "use_track_reader", "verify", "view", "where",
 ]
 
 

@@ -24,77 +24,31 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 _HERE = Path(__file__)
-_GLUE = """
-#include <algorithm>
-#include <chrono>
-#include <memory>
-namespace {
-using namespace chicane::solver;
-struct Solver {
-  Problem problem;
-  OcpSolver<Problem, Problem::kHorizon> solver;
-  Trajectory<Problem::kNx, Problem::kNu, Problem::kHorizon> trajectory;
-};
-// Multipliers and misses of what must hold, where the problem has such rows.
-template <class Solver, class Report>
-void store_hard(const Solver& solver, const Report& r, double* equalities, double* end, double* report) {
-  if constexpr (HardProblem<Problem>) {
-    report[9] = r.miss;
-    report[10] = static_cast<int>(r.kind);
-    report[11] = r.miss_stage;
-    report[12] = r.miss_row;
-    for (int k = 0; k < Problem::kHorizon; ++k) {
-      for (int n = 0; n < equality_count<Problem>(); ++n) *equalities++ = solver.equality_multiplier(k, n);
-    }
-    for (int n = 0; n < terminal_equality_count<Problem>(); ++n) *end++ = solver.terminal_equality_multiplier(n);
-    for (int n = 0; n < terminal_constraint_count<Problem>(); ++n) *end++ = solver.terminal_constraint_multiplier(n);
-  }
-}
-}  // namespace
-#pragma GCC visibility push(default)
-extern "C" {
-void* chicane_new() { return new Solver; }
-void chicane_delete(void* self) { delete static_cast<Solver*>(self); }
-// options: tolerance, turns, second order, start from states, budget [s]; report: status, turns, cost, stationarity, defect,
-// complementarity, violation, its stage and constraint, miss, its kind, stage and row, seconds
-void chicane_solve(void* self, const double* options, const double* lower, const double* upper, const double* p, const double* x0, double* x,
-                   double* u, double* dynamics, double* bounds, double* constraints, double* equalities, double* end, double* report) {
-  Solver& s = *static_cast<Solver*>(self);
-  constexpr int kN = Problem::kHorizon, kNx = Problem::kNx, kNu = Problem::kNu;
-  const auto begin = std::chrono::steady_clock::now();
-  s.solver.set_options({.tolerance = options[0], .max_iterations = static_cast<int>(options[1]), .start_from_states = options[3] != 0.0,
-                        .second_order = options[2] != 0.0});
-  s.trajectory.horizon = kN;
-  for (int k = 0; k <= kN; ++k) {
-    for (std::size_t n = 0; n < PARAMETERS; ++n) s.problem.p[n][static_cast<std::size_t>(k)] = *p++;
-    std::copy_n(x + k * kNx, kNx, s.trajectory.x[k].begin());
-    if (k == kN) break;
-    std::copy_n(u + k * kNu, kNu, s.trajectory.u[k].begin());
-    std::copy_n(lower + k * kNu, kNu, s.problem.lower[k].begin());
-    std::copy_n(upper + k * kNu, kNu, s.problem.upper[k].begin());
-  }
-  std::array<double, Problem::kNx> start;
-  std::copy_n(x0, kNx, start.begin());
-  const chicane::Deadline deadline = options[4] > 0.0 ? chicane::Deadline::after(std::chrono::nanoseconds(static_cast<long long>(1e9 * options[4])))
-                                             : chicane::Deadline::never();
-  const auto r = s.solver.solve(s.problem, start, s.trajectory, deadline);
-  for (int k = 0; k <= kN; ++k) std::copy_n(s.trajectory.x[k].begin(), kNx, x + k * kNx);
-  for (int k = 0; k < kN; ++k) {
-    std::copy_n(s.trajectory.u[k].begin(), kNu, u + k * kNu);
-    for (int i = 0; i < kNx; ++i) *dynamics++ = s.solver.adjoint(k, i);
-    for (int m = 0; m < kNu; ++m) *bounds++ = s.solver.bound_multiplier(k, m);
-    for (int c = 0; c < Problem::kNc; ++c) *constraints++ = s.solver.constraint_multiplier(k, c);
-  }
-  const double told[] = {static_cast<double>(static_cast<int>(r.status)), double(r.iterations), r.cost, r.stationarity, r.defect, r.complementarity,
-                         r.violation, double(r.worst_stage), double(r.worst_constraint)};
-  std::copy(std::begin(told), std::end(told), report);
-  report[9] = report[10] = 0.0;
-  report[11] = report[12] = -1.0;
-  store_hard(s.solver, r, equalities, end, report);
-  report[13] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-}
-"""
+
+_Double = ctypes.POINTER(ctypes.c_double)
+
+
+class _Sizes(ctypes.Structure):
+    """chicane_sizes of chicane/solver.h, as the structures below."""
+    _fields_ = [(name, ctypes.c_int) for name in ("version", "nx", "nu", "horizon", "parameters", "constraints", "equalities",
+                                                  "terminal_equalities", "terminal_constraints")] + [("bytes", ctypes.c_size_t)]
+
+
+class _Options(ctypes.Structure):
+    _fields_ = [("tolerance", ctypes.c_double), ("budget_s", ctypes.c_double), ("max_iterations", ctypes.c_int),
+                ("second_order", ctypes.c_int), ("start_from_states", ctypes.c_int)]
+
+
+class _Report(ctypes.Structure):
+    _fields_ = [("status", ctypes.c_int), ("is_usable", ctypes.c_int), ("iterations", ctypes.c_int), ("cost", ctypes.c_double),
+                ("stationarity", ctypes.c_double), ("defect", ctypes.c_double), ("complementarity", ctypes.c_double),
+                ("violation", ctypes.c_double), ("worst_stage", ctypes.c_int), ("worst_constraint", ctypes.c_int), ("miss", ctypes.c_double),
+                ("miss_kind", ctypes.c_int), ("miss_stage", ctypes.c_int), ("miss_row", ctypes.c_int), ("time", ctypes.c_double)]
+
+
+_PARAMETERS, _LOWER, _UPPER, _STATES, _INPUTS = range(5)
+_ANSWERS = ("x", "u", "dynamics", "bounds", "constraints", "equalities", "end")
+"""Arrays of chicane/solver.h that a solve writes, from CHICANE_STATES on."""
 
 
 def headers() -> Path:
@@ -130,11 +84,12 @@ class Compilation:
             raise RuntimeError("compile: g++ is not there: apt-get install g++")
         name, flags = instruction_set()
         include = headers()
-        source = _export.header(problem, "Problem") + _GLUE.replace("PARAMETERS", str(problem.full_count))
+        source = _export.c_source(problem, "problem", with_hidden=True)
         # What several such libraries in one process have in common must not be taken for the same.
-        command = [compiler, "-std=c++20", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-fno-gnu-unique", "-ffp-contract=off", "-fno-math-errno", "-w", f"-DCHICANE_ARCH={name}", *flags]
+        command = [compiler, "-std=c++20", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-fno-gnu-unique",
+                   "-ffp-contract=off", "-fno-math-errno", "-w", f"-DCHICANE_ARCH={name}", *flags]
         version = (include / "chicane/version.hpp").read_bytes() if (include / "chicane/version.hpp").is_file() else b""
-        library = b"".join(file.read_bytes() for file in sorted((include / "chicane/solver").rglob("*.hpp")))
+        library = b"".join(file.read_bytes() for file in [*sorted((include / "chicane/solver").rglob("*.hpp")), include / "chicane/solver.h"])
         key = hashlib.sha256(source.encode() + repr(command[1:]).encode() + version + library).hexdigest()[:24]
         cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "chicane"
         cache.mkdir(parents=True, exist_ok=True)
@@ -172,58 +127,102 @@ class Compilation:
         return self.solver is not None
 
 
+class _Handle:
+    """A solver of the library in memory of its own. One thread at a time."""
+
+    def __init__(self, library: ctypes.CDLL) -> None:
+        self.library = library
+        self.problem = library.problem()
+        self.sizes = _Sizes()
+        self.check(library.chicane_sizes_of(self.problem, ctypes.byref(self.sizes)))
+        self._memory = ctypes.create_string_buffer(self.sizes.bytes)
+        self.solver = ctypes.c_void_p()
+        self.check(library.chicane_create(self.problem, self._memory, self.sizes.bytes, ctypes.byref(self.solver)))
+
+    def check(self, error: int) -> None:
+        if error != 0:
+            raise RuntimeError(f"compile: {self.library.chicane_error_text(error).decode()}")
+
+    def put(self, array: int, numbers: Array) -> None:
+        numbers = np.ascontiguousarray(numbers, float)
+        if numbers.size > 0:
+            self.check(self.library.chicane_set(self.solver, array, numbers.ctypes.data_as(_Double), numbers.size))
+
+    def get(self, array: int, shape: tuple[int, ...]) -> Array:
+        numbers = np.zeros(shape)
+        if numbers.size > 0:
+            self.check(self.library.chicane_get(self.solver, array, numbers.ctypes.data_as(_Double), numbers.size))
+        return numbers
+
+    def solve(self, setting: tuple[_Options, Array, Array], x0: Array, parameters: Array, x: Array, u: Array) -> dict[str, Any]:
+        options, lower, upper = setting
+        self.check(self.library.chicane_set_options(self.solver, ctypes.byref(options)))
+        for array, numbers in ((_PARAMETERS, parameters), (_LOWER, lower), (_UPPER, upper), (_STATES, x), (_INPUTS, u)):
+            self.put(array, numbers)
+        report = _Report()
+        x0 = np.ascontiguousarray(x0, float)
+        self.check(self.library.chicane_solve(self.solver, x0.ctypes.data_as(_Double), ctypes.byref(report)))
+        told: dict[str, Any] = {name: getattr(report, name) for name, _ in _Report._fields_}
+        return told | self.answer()
+
+    def answer(self) -> dict[str, Any]:
+        """States, inputs and multipliers of the last solve or feedback."""
+        s = self.sizes
+        shapes = ((s.horizon + 1, s.nx), (s.horizon, s.nu), (s.horizon, s.nx), (s.horizon, s.nu), (s.horizon, s.constraints),
+                  (s.horizon, s.equalities), (s.terminal_equalities + s.terminal_constraints,))
+        told: dict[str, Any] = {name: self.get(_STATES + n, shape) for n, (name, shape) in enumerate(zip(_ANSWERS, shapes))}
+        told["terminal_equality"], told["terminal_constraint"] = np.split(told.pop("end"), [s.terminal_equalities])
+        return told
+
+
+def _load(file: Path) -> ctypes.CDLL:
+    library = ctypes.CDLL(str(file))
+    library.problem.restype = ctypes.c_void_p
+    pointer, count = ctypes.c_void_p, ctypes.c_size_t
+    library.chicane_sizes_of.argtypes = [pointer, pointer]
+    library.chicane_create.argtypes = [pointer, pointer, count, pointer]
+    library.chicane_error_text.restype = ctypes.c_char_p
+    library.chicane_set_options.argtypes = [pointer, pointer]
+    library.chicane_feedback.argtypes = [pointer, _Double, pointer]
+    library.chicane_set.argtypes = library.chicane_get.argtypes = [pointer, ctypes.c_int, _Double, count]
+    library.chicane_solve.argtypes = [pointer, _Double, pointer]
+    library.chicane_prepare.argtypes = [pointer]
+    return library
+
+
 class CompiledSolver:
     """The same functions as the interpreter's, by the compiled library."""
 
     def __init__(self, problem: Problem, file: Path) -> None:
-        self._library = ctypes.CDLL(str(file))
-        self._library.chicane_new.restype = ctypes.c_void_p
-        self._library.chicane_delete.argtypes = [ctypes.c_void_p]
-        self._library.chicane_solve.argtypes = [ctypes.c_void_p] + [ctypes.c_void_p] * 13
-        self._library.chicane_solve.restype = None
         self._problem = problem
-        self._handle = self._library.chicane_new()
-        rows = {name: len(own) for name, own in problem.all_rows().items()}
-        self._rows = rows
-
-    def __del__(self) -> None:
-        if getattr(self, "_handle", None):
-            self._library.chicane_delete(self._handle)
+        self._library = _load(file)
+        self._main = _Handle(self._library)
 
     def set(self, lower: Array, upper: Array, prices: Array, is_hard: list[bool], options: dict[str, Any]) -> None:
         """For the next solves; prices are compiled in."""
-        self._lower, self._upper = np.ascontiguousarray(lower), np.ascontiguousarray(upper)
-        self._options = np.array([options["tolerance"], options["max_iterations"], options["second_order"], options["start_from_states"],
-                                  options["budget_s"]], float)
+        words = _Options(options["tolerance"], options["budget_s"], options["max_iterations"], options["second_order"], options["start_from_states"])
+        self._setting = words, lower, upper
 
-    def solve(self, x0: Array, parameters: Array, x: Array, u: Array, goes_on: bool) -> dict[str, Any]:
-        return self._solve(self._handle, x0, parameters, x, u)
+    def solve(self, x0: Array, parameters: Array, x: Array, u: Array, goes_on: bool, turns: int) -> dict[str, Any]:
+        return self._main.solve(self._setting, x0, parameters, x, u)
 
-    def _solve(self, handle: int, x0: Array, parameters: Array, x: Array, u: Array) -> dict[str, Any]:
-        horizon, nx, nu = self._problem.horizon, self._problem.nx, self._problem.nu
-        rows = self._rows
-        told: dict[str, Any] = {"x": x.copy(), "u": u.copy(), "dynamics": np.empty((horizon, nx)), "bounds": np.empty((horizon, nu)),
-                                "constraints": np.empty((horizon, rows["constraint"])), "equalities": np.zeros((horizon, rows["equality"]))}
-        end = np.zeros(rows["terminal_equality"] + rows["terminal_constraint"])
-        report = np.zeros(14)
-        given = [self._options, self._lower, self._upper, np.ascontiguousarray(parameters), np.ascontiguousarray(x0), *told.values(), end, report]
-        self._library.chicane_solve(handle, *(array.ctypes.data for array in given))
-        names = ("status", "iterations", "cost", "stationarity", "defect", "complementarity", "violation", "worst_stage", "worst_constraint",
-                 "miss", "miss_kind", "miss_stage", "miss_row", "time")
-        for name, value in zip(names, report):
-            told[name] = int(value) if name in ("status", "iterations") or name.endswith(("_stage", "_row", "_kind", "_constraint")) else float(value)
-        told["terminal_equality"], told["terminal_constraint"] = np.split(end, [rows["terminal_equality"]])
-        return told
+    def prepare(self) -> bool:
+        return bool(self._library.chicane_prepare(self._main.solver) == 0)
+
+    def feedback(self, x0: Array) -> dict[str, Any]:
+        is_solved = ctypes.c_int()
+        state = np.ascontiguousarray(x0).ctypes.data_as(_Double)
+        begin = time.perf_counter()
+        self._main.check(self._library.chicane_feedback(self._main.solver, state, ctypes.byref(is_solved)))
+        seconds = time.perf_counter() - begin
+        return self._main.answer() | {"time": seconds, "is_solved": bool(is_solved.value)}
 
     def solve_many(self, x0: Array, parameters: Array, guess: Array, threads: int) -> dict[str, Any]:
         states = np.zeros((self._problem.horizon + 1, self._problem.nx))
 
         def work(numbers: range) -> list[dict[str, Any]]:
-            handle = self._library.chicane_new()
-            try:
-                return [self._solve(handle, x0[n], parameters[n if len(parameters) > 1 else 0], states, guess) for n in numbers]
-            finally:
-                self._library.chicane_delete(handle)
+            handle = _Handle(self._library)
+            return [handle.solve(self._setting, x0[n], parameters[n if len(parameters) > 1 else 0], states, guess) for n in numbers]
         share = -(-len(x0) // threads)
         with ThreadPoolExecutor(threads) as pool:
             answers = [told for part in pool.map(work, [range(n, min(n + share, len(x0))) for n in range(0, len(x0), share)]) for told in part]

@@ -10,18 +10,20 @@ from typing import Any
 
 from . import _chicane
 from ._controller import Controller
+from ._plant import Plant
 from ._request import Settings, make_request
 from ._run import Frames, Recording, Run
+from ._track import AnyTrack
 
 
-def drive(track: str | None = None, *, car: str | None = None, preset: str | None = None, scenario: str = "",
-          controller: str | Controller | None = None, laps: int | None = None, latency_ms: float | None = None,
+def drive(track: AnyTrack | None = None, *, car: str | None = None, preset: str | None = None, scenario: str = "",
+          controller: str | Controller | None = None, plant: str | Plant | None = None, laps: int | None = None, latency_ms: float | None = None,
           seed: int | None = None, speed_mps: float | None = None, settings: Settings = {}, faults: Iterable[str] = (),
           record: str | os.PathLike[str] = "", frames: bool = True, step_limit_s: float = 10.0) -> Run:
     """Drives a car round a track, in virtual time, and returns what came of it: the run of `chicane drive --fast`.
 
-    track, car, preset, scenario: names of what ships (tracks(), cars(), ...) or files.
-    controller: the name of one of the library's, or an instance of a Controller of your own.
+    track, car, preset, scenario: names of what ships (tracks(), cars(), ...) or files; track also a Track of your own.
+    controller, plant: the name of one of the library's, or an instance of a Controller or a Plant of your own.
     laps: the first is from standstill; 0: until the car is lost or `settings["time_limit_s"]` is over.
     latency_ms: from measurement to the command's effect [ms].
     speed_mps: the reference of whichever controller drives [m/s].
@@ -29,20 +31,21 @@ def drive(track: str | None = None, *, car: str | None = None, preset: str | Non
     faults: "half_grip@12+5*0.5" is half_grip at 12 s for 5 s of strength 0.5; faults() lists them.
     record: a file for `read`, `verify`, `chicane replay` and the dashboard (.mcap); an older recording is replaced.
     frames: False leaves Run.frames empty, which saves memory: about 500 bytes for each control cycle.
-    step_limit_s: longest time of one step of a Controller of your own by the wall clock [s]; 0: none.
+    step_limit_s: longest time of one step of a Controller or a Plant of your own by the wall clock [s]; 0: none.
 
     The same arguments give the same run, bit for bit: run["state_hash"] tells. ValueError for what cannot be driven."""
     own = controller if isinstance(controller, Controller) or hasattr(controller, "step") else None
+    own_plant = plant if not isinstance(plant, str) else None
     named: dict[str, Any] = {"track": track, "car": car, "preset": preset, "laps": laps, "latency_ms": latency_ms, "seed": seed,
-                             "controller": None if own is not None else controller}
+                             "controller": None if own is not None else controller, "plant": plant if own_plant is None else None}
     request = make_request(named, settings, faults, scenario, speed_mps)
     _make_room(record)
-    told = _chicane.drive(request, own, os.fspath(record), frames, step_limit_s)
+    told = _chicane.drive(request, own, own_plant, os.fspath(record), frames, step_limit_s)
     error = told["error"]
     if error is not None:
         print(f"chicane: {type(own).__name__} failed at {told['error_time']:.2f} s; the guard stops the car:\n{error}",
               end="", file=sys.stderr)
-    again = None if own is not None else dict(named=named, settings=dict(settings), faults=_listed(faults), scenario=scenario,
+    again = None if own is not None or own_plant is not None else dict(named=named, settings=dict(settings), faults=_listed(faults), scenario=scenario,
                                               speed_mps=speed_mps)
     return Run(json.loads(told["report"]), told["table"], Frames(told["frames"]), told["road"], error, os.fspath(record), again)
 

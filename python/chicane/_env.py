@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from . import _chicane
 from ._request import Settings, make_request
+from ._track import AnyTrack
 from ._spaces import BaseEnv, BaseVecEnv, Box, batch_space, box
 
 Array = npt.NDArray[np.float64]
@@ -20,7 +21,7 @@ NOISE = {"sensor.position_noise_m": 0.05, "sensor.heading_noise_deg": 0.3, "sens
 """What `noise=True` sets: standard deviations of a good localisation in full size."""
 
 
-def _request(track: str | None, car: str | None, rate_hz: float, noise: bool | Settings, seed: int, faults: Iterable[str],
+def _request(track: AnyTrack | None, car: str | None, rate_hz: float, noise: bool | Settings, seed: int, faults: Iterable[str],
              settings: Settings) -> _chicane.Request:
     if not 1.0 <= rate_hz <= 200.0:
         raise ValueError(f"rate_hz: got {rate_hz}, expected a number in [1, 200]")
@@ -73,7 +74,7 @@ class Env(BaseEnv):
 
     metadata: dict[str, Any] = {"render_modes": []}
 
-    def __init__(self, track: str | None = None, car: str | None = None, rate_hz: float = 20.0, noise: bool | Settings = False,
+    def __init__(self, track: AnyTrack | None = None, car: str | None = None, rate_hz: float = 20.0, noise: bool | Settings = False,
                  seed: int = 1, *, observation: str = "track", reward: Reward | None = None, faults: Iterable[str] = (),
                  random_faults: Iterable[str] = (), randomise: Mapping[str, tuple[float, float]] = {},
                  starts_anywhere: bool = False, ends_off_road: bool = True, off_road_cost: float = 10.0, episode_s: float = 0.0,
@@ -140,7 +141,7 @@ class VecEnv(BaseVecEnv):
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": "SameStep"}
 
-    def __init__(self, count: int, track: str | None = None, car: str | None = None, rate_hz: float = 20.0,
+    def __init__(self, count: int, track: AnyTrack | None = None, car: str | None = None, rate_hz: float = 20.0,
                  noise: bool | Settings = False, seed: int = 1, *, threads: int = 0, observation: str = "track",
                  faults: Iterable[str] = (), random_faults: Iterable[str] = (),
                  randomise: Mapping[str, tuple[float, float]] = {}, starts_anywhere: bool = False, ends_off_road: bool = True,

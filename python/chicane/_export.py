@@ -2,6 +2,8 @@
 """A recorded problem as C++: a structured problem of the library (docs/solver.md, "Use")."""
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +12,7 @@ if TYPE_CHECKING:
     from ._problem import Problem
     from ._symbols import Symbol
 
+_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _CALLS = {"sin": "sin", "cos": "cos", "tan": "tan", "atan": "atan", "asin": "asin", "acos": "acos", "exp": "exp", "log": "log", "tanh": "tanh",
           "sqrt": "sqrt"}
 _MOST_INLINED = 150
@@ -128,13 +131,13 @@ def _bounds(problem: Problem) -> str:
     return text
 
 
-def header(problem: Problem, name: str) -> str:
-    """The header's text."""
-    if not name.isidentifier():
+def header(problem: Problem, name: str, with_hidden: bool = False) -> str:
+    """The header's text. with_hidden: parameters of the problem's own are among kParameters, and its cost is the residuals'."""
+    if not _IDENTIFIER.fullmatch(name):
         raise ValueError(f"export: got the name {name!r}, expected a C++ identifier")
     rows = problem.all_rows()
     count = problem.full_count
-    sizes = [f"kNx = {problem.nx}, kNu = {problem.nu}, kNr = {len(rows['residual'])}, kNe = {len(rows['terminal_residual'])}, "
+    sizes = [f"kNx = {problem.nx}, kNu = {problem.all_inputs}, kNr = {len(rows['residual'])}, kNe = {len(rows['terminal_residual'])}, "
              f"kNc = {len(rows['constraint'])}"]
     for kind, size in (("equality", "kNh"), ("terminal_equality", "kNeh"), ("terminal_constraint", "kNec")):
         if rows[kind]:
@@ -158,9 +161,10 @@ def header(problem: Problem, name: str) -> str:
 
 struct {name} {{
   static constexpr int {", ".join(sizes)};
-  static constexpr int kHorizon = {n}, kParameters = {problem.parameters};
+  static constexpr const char* kName = "{name}";
+  static constexpr int kHorizon = {n}, kParameters = {count if with_hidden else problem.parameters};
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  static constexpr double kCostOffset = {number(problem.cost_offset())};  ///< the solver's cost lacks this
+  static constexpr double kCostOffset = {number(0.0 if with_hidden else problem.cost_offset())};  ///< the solver's cost lacks this
 
   std::array<chicane::solver::StageData<kHorizon + 1>, {max(count, 1)}> p{{}};  ///< p[i][k]: parameter i of stage k
   std::array<std::array<double, kNu>, kHorizon> lower{{}}, upper{{}};
@@ -171,3 +175,39 @@ struct {name} {{
   [[nodiscard]] std::array<double, kNu> input_upper(int k) const {{ return upper[static_cast<std::size_t>(k)]; }}
 }};
 """
+
+
+def c_source(problem: Problem, name: str, with_hidden: bool = False) -> str:
+    """A C++ source with the problem behind the C function `name`."""
+    return "// clang-format off\n" + header(problem, f"Exported_{name}", with_hidden).replace("#pragma once\n", "", 1) + f"""
+#include "chicane/solver/c_interface.hpp"
+
+extern "C" [[gnu::visibility("default")]] const chicane_problem* {name}(void) {{ return chicane::solver::c_problem<Exported_{name}>(); }}
+"""
+
+
+def c_header(problem: Problem, name: str) -> str:
+    """Declares that function."""
+    rows = {kind: len(own) for kind, own in problem.all_rows().items()}
+    return f"""/* Written by chicane (ocp.export_c). nx {problem.nx}, nu {problem.all_inputs}, horizon {problem.horizon}, {problem.parameters} parameters,
+ * {rows["constraint"]} constraints. Beside {name}.cpp, which a C++ compiler compiles; used by chicane/solver.h. */
+#ifndef CHICANE_PROBLEM_{name.upper()}_H
+#define CHICANE_PROBLEM_{name.upper()}_H
+
+#include "chicane/solver.h"
+
+#ifdef __cplusplus
+extern "C"
+#endif
+const chicane_problem* {name}(void);
+
+#endif
+"""
+
+
+def write_c(problem: Problem, path: Path) -> None:
+    """path.h and path.cpp."""
+    if not _IDENTIFIER.fullmatch(path.name):
+        raise ValueError(f"export_c: got the name {path.name!r}, expected a C identifier, with no ending: {path.name!r}.h and .cpp are written")
+    path.with_name(path.name + ".cpp").write_text(c_source(problem, path.name), encoding="utf-8")
+    path.with_name(path.name + ".h").write_text(c_header(problem, path.name), encoding="utf-8")

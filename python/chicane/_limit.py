@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from . import _chicane
 from ._request import Settings, make_request
+from ._track import AnyTrack
 
 
 class Limit:
@@ -31,7 +32,7 @@ class Limit:
         return f"<Limit: {self.bound_s:.3f} s{witness}>"
 
 
-def limit(track: str | None = None, *, car: str | None = None, settings: Settings = {}, quick: bool = False,
+def limit(track: AnyTrack | None = None, *, car: str | None = None, settings: Settings = {}, quick: bool = False,
           witness: bool = True) -> Limit:
     """Finds the fastest lap of a car on a closed road: 1 to 60 s, as `chicane limit` does.
 

@@ -12,12 +12,16 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _chicane, _cost
-from ._solution import Solution, Solutions
+from ._integrators import Implicit
+from ._solution import Feedback, Solution, Solutions
 from ._symbols import Graph, Objects, Symbol, TraceError, refuse, where
 
 Array = npt.NDArray[np.float64]
 Function = Callable[..., Any]
 FUNCTIONS = ("dynamics", "residual", "constraint", "equality", "terminal_residual", "terminal_equality", "terminal_constraint")
+
+
+_INSIDE = "the implicit step"
 
 
 class Problem:
@@ -55,20 +59,27 @@ class Problem:
         self.is_hard: list[bool] = []
         self._lower = np.full((self.horizon, self.nu), -np.inf)
         self._upper = np.full((self.horizon, self.nu), np.inf)
+        self.unknowns = 0                                        # of a stage, beside its inputs: states inside an implicit step
         self._rest: dict[str, Symbol | None] = {"residual": None, "terminal_residual": None}
         self._numbers = {"residual": 0.0, "terminal_residual": 0.0}
         self._at_least = {"residual": 0.0, "terminal_residual": 0.0}
         self._interpreter: _chicane.Interpreter | None = None
         self._compiled: Any = None
         self._last: Solution | None = None
+        self._prepared: Any = None
+        self._solved_by: Any = None
+        self._course: Solution | Feedback | None = None
 
     # ---- what the problem is
 
     def dynamics(self, function: Function) -> Function:
-        """The next state, nx values. Also as a decorator."""
+        """The next state, nx values. Also as a decorator. ch.rk4, ch.implicit_euler and ch.gauss_legendre make it from ẋ = f(x, u)."""
+        if isinstance(function, Implicit):
+            return self._add_implicit(function)
         rows = self._trace(function, "dynamics")
         if len(rows) != self.nx:
             raise ValueError(f"dynamics: got {len(rows)} values, expected {self.nx}, one for each state")
+        self._remove_unknowns()
         self.rows["dynamics"] = rows
         self._change()
         return function
@@ -126,32 +137,78 @@ class Problem:
 
     def solve(self, x0: npt.ArrayLike, p: npt.ArrayLike | None = None, *, u: npt.ArrayLike | None = None, x: npt.ArrayLike | None = None,
               start: Solution | None = None, tolerance: float = 1e-6, max_iterations: int = 1000, budget_s: float = 0.0,
-              second_order: bool = True) -> Solution:
+              second_order: bool = True, log: bool = False) -> Solution:
         """The best inputs from x0.
 
         x0: (nx,). p: (parameters,), or (horizon + 1, parameters) with a row for each stage and the end.
         u: inputs to start from, (horizon, nu); x: states to start from, (horizon + 1, nx); else inputs of 0, simulated.
         start: an earlier solution, in the place of both, with its multipliers.
-        tolerance: of the conditions of optimality, (0, 1e-2]. budget_s: when to stop, best answer so far [s]; 0: never."""
+        tolerance: of the conditions of optimality, (0, 1e-2]. budget_s: when to stop, best answer so far [s]; 0: never.
+        log: the turns are in the solution's log, one row each (Turns); the problem is interpreted then."""
         state = self._array("x0", x0, (self.nx,))
         if not np.all(np.isfinite(state)):
             raise ValueError(f"x0: got {state}, expected finite numbers")
         inputs = self._array("u", 0.0 if start is None and u is None else start.u if start is not None else u, (self.horizon, self.nu))
         has_states = start is not None or x is not None
         states = self._array("x", (start.x if start is not None else x) if has_states else 0.0, (self.horizon + 1, self.nx))
+        if start is not None and start.unknowns.shape[1] != self.unknowns:
+            raise ValueError("start: got a solution of another problem")
+        if self.unknowns > 0:
+            inputs = np.hstack([inputs, start.unknowns if start is not None else self._guess_unknowns(state, states if has_states else None)])
         options = {"tolerance": self._number("tolerance", tolerance, 1e-14, 1e-2), "budget_s": self._number("budget_s", budget_s, 0.0, 1e6),
                    "max_iterations": int(self._number("max_iterations", max_iterations, 1, 10000)), "second_order": bool(second_order),
                    "start_from_states": has_states}
         values = self.stage_parameters(p)
         told = {}
+        turns = 2 * int(max_iterations) + 1000 if log else 0
         for shift in self._shifts():
             full = self._with_shifts(values, shift)
-            told = self._solver(options).solve(state, full, states, inputs, start is not None and start is self._last)
+            solver = self._solver(options, must_interpret=log)
+            told = solver.solve(state, full, states, inputs, start is not None and start is self._last, turns)
             if told["status"] >= 0 or not self._has_rest():
                 break
         told["cost"] += self._offset(full)
-        self._last = Solution(self, told, state, values, full)
+        self._solved_by, self._prepared = solver, None
+        self._course = self._last = Solution(self, told, state, values, full)
         return self._last
+
+    def prepare(self, x0: npt.ArrayLike | None = None, p: npt.ArrayLike | None = None, *, shift: int = 0, tolerance: float = 1e-6,
+                max_iterations: int = 1000, budget_s: float = 0.0) -> Solution:
+        """What can be done before the state is measured: solves for the expected x0, linearises and factorises there. Then
+        feedback(x0) answers the measured one in microseconds.
+
+        x0: expected; the last answer's x[shift] unless said otherwise. p: as solve(); that of the last solution unless said otherwise.
+        shift: stages by which the horizon has moved on since the last answer, with which the solve starts. max_iterations: 1 is
+        the real-time iteration; the more, the better the point that is linearised at."""
+        last = self._last
+        if last is None and x0 is None:
+            raise ValueError("prepare: got no x0 and no earlier answer, expected one of both")
+        shift = int(self._number("shift", shift, 0, self.horizon))
+        options = {"tolerance": tolerance, "max_iterations": max_iterations, "budget_s": budget_s}
+        if last is None or self._course is None:
+            solution = self.solve(x0, p, **options)  # type: ignore[arg-type]
+        else:
+            stages = np.minimum(np.arange(self.horizon + 1) + shift, self.horizon)
+            x, u = self._course.x[stages], self._course.u[np.minimum(stages[:-1], self.horizon - 1)]
+            given = last.parameters if p is None and self.parameters > 0 else p
+            solution = self.solve(x[0] if x0 is None else x0, given, x=x, u=u, **options)  # type: ignore[arg-type]
+        if not np.all(np.isfinite(solution.x)) or not self._solved_by.prepare():
+            raise ValueError(f"prepare: got a solution that is {solution.status}, expected a finite one")
+        self._prepared = self._solved_by
+        return solution
+
+    def feedback(self, x0: npt.ArrayLike) -> Feedback:
+        """Inputs and states from the measured x0, by what prepare() has left: exact to first order in the distance from the expected
+        one. Input bounds become active and inactive as in a quadratic program; soft constraints, and what must hold, answer by their
+        derivatives. May be called again and again."""
+        if self._prepared is None:
+            raise ValueError("feedback: got no preparation, expected prepare() after the last solve() or change")
+        state = self._array("x0", x0, (self.nx,))
+        if not np.all(np.isfinite(state)):
+            raise ValueError(f"x0: got {state}, expected finite numbers")
+        told = self._prepared.feedback(state)
+        self._course = Feedback(told | {"u": np.ascontiguousarray(told["u"][:, :self.nu])}, state)
+        return self._course
 
     def solve_many(self, x0: npt.ArrayLike, p: npt.ArrayLike | None = None, *, u: npt.ArrayLike | None = None, threads: int = 0,
                    tolerance: float = 1e-6, max_iterations: int = 1000) -> Solutions:
@@ -170,7 +227,10 @@ class Problem:
         own = np.stack([self.stage_parameters(each) for each in given]) if has_own else self.stage_parameters(p)[None]
         full = np.stack([self._with_shifts(each, next(iter(self._shifts()))) for each in own])
         inputs = self._array("u", 0.0 if u is None else u, (self.horizon, self.nu))
+        if self.unknowns > 0:
+            inputs = np.hstack([inputs, self._guess_unknowns(states.mean(axis=0) if len(states) else np.zeros(self.nx), None)])
         told = self._solver(options).solve_many(states, full, inputs, threads)
+        told["u"] = np.ascontiguousarray(told["u"][:, :, :self.nu])
         told["cost"] += self._offset(full[0])
         return Solutions(told)
 
@@ -179,6 +239,12 @@ class Problem:
         same optimum (docs/python_problems.md)."""
         from . import _export
         Path(file).write_text(_export.header(self, name), encoding="utf-8")
+
+    def export_c(self, path: str | Path) -> None:
+        """Writes the problem for programs in C, and for all that call C (MATLAB, Julia, Rust, embedded targets): path.cpp, which a C++
+        compiler compiles, and path.h, with a function of that name for chicane/solver.h (docs/python_problems.md)."""
+        from . import _export
+        _export.write_c(self, Path(path))
 
     def compile(self, wait: bool = False) -> bool:
         """Compiles the problem by g++ in the background, to solve it faster from the next solve after that on: seconds the
@@ -198,7 +264,7 @@ class Problem:
         return symbols
 
     def _change(self) -> None:
-        self._interpreter = self._compiled = self._last = None
+        self._interpreter = self._compiled = self._last = self._prepared = self._course = None
 
     def _call(self, function: Function, kind: str) -> Any:
         """What a function returns when it is called with symbols."""
@@ -221,6 +287,38 @@ class Problem:
     def _trace(self, function: Function, kind: str) -> list[Symbol]:
         """What a function returns, as symbols."""
         return self._listed(self._call(function, kind), kind)
+
+    def _add_implicit(self, method: Implicit) -> Function:
+        """Dynamics with unknowns behind the inputs."""
+        count = method.count * self.nx
+        if self.nu + count > 8:
+            raise ValueError(f"dynamics: got {count} unknowns inside the interval beside {self.nu} inputs, expected at most 8 together: fewer "
+                             "steps or stages, or ch.rk4 with more steps")
+        self._remove_unknowns()
+        unknowns = self._symbols("variable", range(self.nx + self.nu, self.nx + self.nu + count)).reshape(-1, self.nx)
+        zeros: list[Symbol] = []
+
+        def step(x: Any, u: Any, *rest: Any) -> Any:
+            next_state, misses = method.apply(x, unknowns, u, *rest)
+            zeros.extend(self._listed(misses, "dynamics"))
+            return next_state
+        step.__wrapped__ = method.__wrapped__  # type: ignore[attr-defined]
+        self.rows["dynamics"] = self._trace(step, "dynamics")
+        self.unknowns = count
+        self.rows["equality"][:0] = zeros
+        self.names["equality"][:0] = [_INSIDE] * count
+        self._change()
+        return method.__wrapped__
+
+    def _remove_unknowns(self) -> None:
+        """Those of earlier dynamics."""
+        del self.rows["equality"][:self.unknowns], self.names["equality"][:self.unknowns]
+        self.unknowns = 0
+
+    def _guess_unknowns(self, x0: Array, states: Array | None) -> Array:
+        """States inside intervals, as the ones at their ends, or all as the first one."""
+        ends = np.tile(x0, (self.horizon, 1)) if states is None else states[1:]
+        return np.tile(ends, (1, self.unknowns // self.nx))
 
     def _listed(self, result: Any, kind: str) -> list[Symbol]:
         return [self._symbol(value, kind) for value in np.ravel(np.array(result, dtype=object))]
@@ -346,21 +444,21 @@ class Problem:
         nodes = list(self.graph.nodes)
         count = self.full_count
         if with_parameters:
-            nodes = [("variable", self.nx + self.nu + node[1], -1, -1, 0.0) if node[0] == "parameter" else node for node in nodes]
+            nodes = [("variable", self.nx + self.all_inputs + node[1], -1, -1, 0.0) if node[0] == "parameter" else node for node in nodes]
         ops = np.array([operations[node[0]] for node in nodes], np.int32)
         operands = np.array([node[1:4] for node in nodes], np.int32)
         numbers = np.array([node[4] for node in nodes], float)
         outputs = [[symbol.node for symbol in rows[name]] for name in FUNCTIONS]
-        return _chicane.Interpreter(self.nx, self.nu + (count if with_parameters else 0), 0 if with_parameters else count, self.horizon, ops,
+        return _chicane.Interpreter(self.nx, self.all_inputs + (count if with_parameters else 0), 0 if with_parameters else count, self.horizon, ops,
                                     operands, numbers, outputs, not with_parameters)
 
-    def _solver(self, options: dict[str, Any]) -> Any:
+    def _solver(self, options: dict[str, Any], must_interpret: bool = False) -> Any:
         if self._interpreter is None:
             self._interpreter = self.make_interpreter()
         solver: Any = self._interpreter
-        if self.speed == "compiled":
+        if self.speed == "compiled" and not must_interpret:
             solver = self._compiled.solver
-        solver.set(self._lower, self._upper, np.array(self.prices, float).reshape(-1, 3), self.is_hard, options)
+        solver.set(*self.input_bounds, np.array(self.prices, float).reshape(-1, 3), self.is_hard, options)
         return solver
 
     @property
@@ -378,8 +476,14 @@ class Problem:
 
     @property
     def input_bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bounds of the inputs, (horizon, nu) each."""
-        return self._lower, self._upper
+        """Lower and upper bounds of all inputs, (horizon, all_inputs) each."""
+        none = np.full((self.horizon, self.unknowns), np.inf)
+        return np.hstack([self._lower, -none]), np.hstack([self._upper, none])
+
+    @property
+    def all_inputs(self) -> int:
+        """Inputs, and unknowns inside intervals behind them."""
+        return self.nu + self.unknowns
 
     @property
     def speed(self) -> str:

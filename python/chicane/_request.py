@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from . import _chicane
+from ._track import file_of
 
 Settings = Mapping[str, Any]
 
@@ -26,6 +27,5 @@ def make_request(named: Settings, settings: Settings, faults: Iterable[str] = ()
     """The experiment asked for. `settings` win over `named`; None is left out."""
     if isinstance(faults, str):
         faults = [faults]
-    pairs = [(key, text_of(value)) for key, value in named.items() if value is not None]
-    pairs += [(key, text_of(value)) for key, value in settings.items()]
+    pairs = [(key, file_of(value) if key == "track" else text_of(value)) for key, value in [*named.items(), *settings.items()] if value is not None]
     return _chicane.Request(scenario, pairs, "" if speed_mps is None else text_of(speed_mps), list(faults))

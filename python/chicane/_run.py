@@ -78,7 +78,10 @@ class Run(Mapping[str, Any]):
         self.file = file
 
     def __getitem__(self, key: str) -> Any:
-        return self._report[key]
+        try:
+            return self._report[key]
+        except KeyError:
+            raise KeyError(f"got {key!r}, expected one of {', '.join(self._report)}; laps and frames have their own") from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._report)

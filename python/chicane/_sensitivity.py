@@ -37,7 +37,8 @@ class _Conditions:
 
     def __init__(self, problem: Problem, solution: Solution) -> None:
         self.problem, self.solution = problem, solution
-        self.nx, self.nu, self.horizon = problem.nx, problem.nu, problem.horizon
+        self.nx, self.nu, self.horizon = problem.nx, problem.all_inputs, problem.horizon
+        self.u = np.hstack([solution.u, solution.unknowns])
         self.interpreter = problem.make_interpreter(with_parameters=True)
         self.block = self.nx + self.nu
         self.size = self.horizon * self.block
@@ -61,7 +62,7 @@ class _Conditions:
 
     def points(self, stages: range) -> Array:
         s = self.solution
-        u = np.vstack([s.u, np.zeros((1, self.nu))])
+        u = np.vstack([self.u, np.zeros((1, self.nu))])
         return np.ascontiguousarray(np.hstack([s.x[stages], u[stages], self.full[stages]]))
 
     def evaluate(self, function: int, stages: range, weights: Array) -> tuple[Array, Array, Array]:
@@ -150,7 +151,7 @@ class _Conditions:
     def add_bounds(self) -> None:
         lower, upper = self.problem.input_bounds
         for k in range(self.horizon):
-            for m in range(self.nu):
+            for m in range(self.problem.nu):
                 room = min(self.solution.u[k, m] - lower[k, m], upper[k, m] - self.solution.u[k, m])
                 price = abs(self.solution.multipliers["bounds"][k, m])
                 if room <= 1e-9 * (1.0 + abs(self.solution.u[k, m])):
@@ -204,8 +205,8 @@ def find(problem: Problem, solution: Solution, of: str) -> Sensitivity:
         raise ValueError(f"sensitivity: got a solution that is {solution.status}, expected a usable one")
     conditions = _Conditions(problem, solution)
     change: Any = conditions.solve()
-    nx, nu, horizon = problem.nx, problem.nu, problem.horizon
+    nx, nu, inputs = problem.nx, problem.nu, problem.all_inputs
     columns = slice(0, nx) if of == "x0" else slice(nx, nx + problem.parameters)
-    steps = change[:, columns].reshape(horizon, nu + nx, -1)
+    steps = change[:, columns].reshape(problem.horizon, inputs + nx, -1)
     first = np.eye(nx)[None] if of == "x0" else np.zeros((1, nx, problem.parameters))
-    return Sensitivity(np.ascontiguousarray(steps[:, :nu]), np.vstack([first, steps[:, nu:]]), conditions.is_one_sided)
+    return Sensitivity(np.ascontiguousarray(steps[:, :nu]), np.vstack([first, steps[:, inputs:]]), conditions.is_one_sided)

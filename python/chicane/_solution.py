@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _chicane
+from ._turns import Turns
 
 if TYPE_CHECKING:
     from ._problem import Problem
@@ -25,13 +26,15 @@ class Solution:
     violation: the largest amount by which something that should hold does not, in its own unit, and `violated`, what and where.
     multipliers: "dynamics" (horizon, nx), the price of each next state; "bounds" (horizon, nu); "constraints" and "equalities",
     (horizon, rows); "terminal_equality", "terminal_constraint", (rows,).
-    iterations: turns of the solver. residual: how far from optimal. time: how long C++ worked [s]."""
+    unknowns: states inside the intervals of an implicit method, (horizon, count). iterations: turns of the solver. residual: how far from optimal. time: how long C++ worked [s]. log: the turns, where solve() was
+    asked for them (Turns), else None."""
 
     def __init__(self, problem: Problem, told: dict[str, Any], x0: Array, parameters: Array, full: Array) -> None:
         self._problem = problem
         self._parameters, self._full = parameters, full
         self.x0 = x0
-        self.u: Array = told["u"]
+        self.u: Array = np.ascontiguousarray(told["u"][:, :problem.nu])
+        self.unknowns: Array = np.ascontiguousarray(told["u"][:, problem.nu:])
         self.x: Array = told["x"]
         self.status: str
         self.status, self._sentence = _chicane.SOLVE_STATUSES[told["status"]]
@@ -40,8 +43,11 @@ class Solution:
         self.iterations: int = told["iterations"]
         self.residual: float = max(told["stationarity"], told["defect"], told["complementarity"])
         self.time: float = told["time"]
+        self.log = Turns(told["log"]) if "log" in told else None
         self.multipliers: dict[str, Array] = {name: told[name] for name in ("dynamics", "bounds", "constraints", "equalities",
                                                                             "terminal_equality", "terminal_constraint")}
+        self.multipliers["equalities"] = np.ascontiguousarray(told["equalities"][:, problem.unknowns:])
+        self.multipliers["bounds"] = np.ascontiguousarray(told["bounds"][:, :problem.nu])
         self.violation, self.violated = self._find_violation(told)
 
     def _find_violation(self, told: dict[str, Any]) -> tuple[float, str]:
@@ -62,6 +68,11 @@ class Solution:
             raise ValueError("sensitivity: got a solution from a pickle, expected one that solve() has returned")
         from . import _sensitivity
         return _sensitivity.find(self._problem, self, of)
+
+    @property
+    def parameters(self) -> Array:
+        """p by stage, (horizon + 1, parameters)."""
+        return self._parameters
 
     @property
     def full_parameters(self) -> Array:
@@ -88,6 +99,21 @@ class Solution:
     def __getstate__(self) -> dict[str, Any]:
         """All but the problem, whose functions cannot be pickled: a copy has no sensitivities."""
         return {name: value for name, value in self.__dict__.items() if name != "_problem"}
+
+
+class Feedback:
+    """The answer of feedback(): u (horizon, nu) and x (horizon + 1, nx) from x0, by the linearisation of the last prepare().
+    is_solved: the quadratic program is; else inputs were cut to their bounds. time: how long C++ worked [s]."""
+
+    def __init__(self, told: dict[str, Any], x0: Array) -> None:
+        self.x0 = x0
+        self.u: Array = told["u"]
+        self.x: Array = told["x"]
+        self.is_solved: bool = told["is_solved"]
+        self.time: float = told["time"]
+
+    def __repr__(self) -> str:
+        return f"<Feedback: u[0] = {self.u[0]}, {1e6 * self.time:.3g} µs{'' if self.is_solved else ', cut to bounds'}>"
 
 
 class Solutions:

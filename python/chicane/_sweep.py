@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _chicane
 from ._request import Settings
+from ._track import file_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,6 +48,10 @@ def sweep(axes: Mapping[str, Any], *, settings: Settings = {}, keep: Iterable[st
     import tempfile  # here, because importing chicane shall be quick
 
     import pandas as pd
+    if "track" in settings:
+        settings = {**settings, "track": file_of(settings["track"])}
+    if isinstance(axes.get("track"), list):
+        axes = {**axes, "track": [file_of(track) for track in axes["track"]]}
     plan = plan_of(axes, settings, keep, name)
     with tempfile.TemporaryDirectory(prefix="chicane-") as folder:
         file = Path(os.fspath(output) or Path(folder) / "sweep.jsonl")

@@ -57,7 +57,7 @@ def _recording_of(run: Run | Recording | str | os.PathLike[str], folder: str) ->
     if isinstance(run, Recording) or run._request is None:
         raise ValueError("view: got a run with a controller of your own that was not recorded, expected drive(..., record=\"run.mcap\")")
     file = str(Path(folder) / "run.mcap")
-    _chicane.drive(make_request(**run._request), None, file, False, 0.0)
+    _chicane.drive(make_request(**run._request), None, None, file, False, 0.0)
     return file
 
 

@@ -17,6 +17,7 @@
 #include "faces.hpp"
 #include "frame_columns.hpp"
 #include "python_controller.hpp"
+#include "python_plant.hpp"
 #include "signals.hpp"
 
 namespace chicane::python {
@@ -25,6 +26,18 @@ namespace {
 constexpr double kStandingSpeed = 0.1;  // [m/s] at which a run ends whose controller has failed
 constexpr double kTimeToStop = 30.0;    // [s] after which it ends anyway
 constexpr double kRoadSpacing = 2.0;    // [m] between the points of the road that is told
+
+/// What was raised in Python while a run was under way.
+struct Failures {
+  std::shared_ptr<ControllerFailure> controller = std::make_shared<ControllerFailure>();
+  std::shared_ptr<PlantFailure> plant = std::make_shared<PlantFailure>();
+
+  /// Raises what ends a run at once.
+  void raise() const {
+    if (controller->interrupt) throw py::error_already_set(*controller->interrupt);
+    if (plant->error) throw py::error_already_set(*plant->error);
+  }
+};
 
 struct DriveOptions {
   std::string record;  ///< file; empty: nothing is recorded
@@ -46,6 +59,20 @@ run::ControllerFactory factory_of(const py::object& controller, double step_limi
   return [=](const scenario::Scenario& scenario) -> Result<std::unique_ptr<controller::Controller>> {
     const py::gil_scoped_acquire lock;
     return std::make_unique<PythonController>(controller, scenario.vehicle, step_limit, failure);
+  };
+}
+
+/// The same for the simulated car.
+run::PlantFactory plant_factory_of(const py::object& plant, double step_limit,
+                                   const std::shared_ptr<PlantFailure>& failure) {
+  if (plant.is_none()) return run::make_plant;
+  return [=](const scenario::Scenario& scenario) -> Result<std::unique_ptr<sim::Plant>> {
+    const py::gil_scoped_acquire lock;
+    try {
+      return std::make_unique<PythonPlant>(plant, scenario.vehicle, step_limit, failure);
+    } catch (const std::exception& error) {
+      return chicane::fail(ErrorCode::kInvalidArgument, error.what());
+    }
   };
 }
 
@@ -77,16 +104,16 @@ run::RunHooks hooks_of(Driven& driven, recording::Recorder* recorder, bool wants
 }
 
 /// Without the interpreter's lock.
-Result<Driven> run_to_end(const scenario::Scenario& scenario, const run::ControllerFactory& make,
-                          const DriveOptions& options, const ControllerFailure& failure,
-                          SignalWatch& signals) {
+Result<Driven> run_to_end(const scenario::Scenario& scenario, const run::Factories& make,
+                          const DriveOptions& options, const Failures& failures, SignalWatch& signals) {
+  const ControllerFailure& failure = *failures.controller;
   const auto loop = run::ClosedLoop::create(scenario, make);
   if (!loop) return fail(loop.error());
   auto recorder = recorder_of(**loop, options.record);
   if (!recorder) return fail(recorder.error());
   Driven driven;
   const auto has_stopped = [&] {
-    if (failure.interrupt) return true;
+    if (failure.interrupt || failures.plant->has_failed()) return true;
     const bool is_standing = (*loop)->frame().truth.vx < kStandingSpeed;
     return failure.has_failed() && (is_standing || (*loop)->time() > failure.time + kTimeToStop);
   };
@@ -114,17 +141,19 @@ scenario::Scenario scenario_of(const protocol::Request& request, const py::objec
   return scenario;
 }
 
-py::dict drive(const protocol::Request& request, const py::object& controller, const std::string& record,
-               bool wants_frames, double step_limit) {
-  const auto failure = std::make_shared<ControllerFailure>();
+py::dict drive(const protocol::Request& request, const py::object& controller, const py::object& plant,
+               const std::string& record, bool wants_frames, double step_limit) {
+  const Failures failures;
+  const auto& failure = failures.controller;
   const scenario::Scenario scenario = scenario_of(request, controller);
-  const run::ControllerFactory make = factory_of(controller, step_limit, failure);
+  run::Factories make = factory_of(controller, step_limit, failure);
+  make.plant = plant_factory_of(plant, step_limit, failures.plant);
   SignalWatch signals;
   Driven driven = value_of(unlocked([&] {
-    return run_to_end(scenario, make, {.record = record, .wants_frames = wants_frames}, *failure, signals);
+    return run_to_end(scenario, make, {.record = record, .wants_frames = wants_frames}, failures, signals);
   }));
   signals.raise();
-  if (failure->interrupt) throw py::error_already_set(*failure->interrupt);
+  failures.raise();
   py::dict told;
   told["report"] = protocol::to_json(driven.summary);
   told["table"] = protocol::to_table(driven.summary);
@@ -155,7 +184,7 @@ py::dict verify(const std::string& file, const py::object& controller, double st
 }  // namespace
 
 void add_drive(py::module_& module) {
-  module.def("drive", drive, py::arg("request"), py::arg("controller"), py::arg("record"),
+  module.def("drive", drive, py::arg("request"), py::arg("controller"), py::arg("plant"), py::arg("record"),
              py::arg("wants_frames"), py::arg("step_limit_s"));
   module.def("verify", verify, py::arg("file"), py::arg("controller"), py::arg("step_limit_s"));
 }

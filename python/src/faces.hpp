@@ -9,6 +9,7 @@ namespace chicane::python {
 
 void add_scenario(pybind11::module_& module);
 void add_controller(pybind11::module_& module);
+void add_plant(pybind11::module_& module);
 void add_drive(pybind11::module_& module);
 void add_recording(pybind11::module_& module);
 void add_limit(pybind11::module_& module);

@@ -5,6 +5,7 @@ PYBIND11_MODULE(_chicane, module) {
   using namespace chicane::python;
   add_scenario(module);
   add_controller(module);
+  add_plant(module);
   add_drive(module);
   add_recording(module);
   add_limit(module);

@@ -160,18 +160,24 @@ class Interpreter {
     setting_.budget_s = options["budget_s"].cast<double>();
   }
 
-  py::dict solve(const Array& x0, const Array& parameters, const Array& x, const Array& u, bool goes_on) {
+  /// With `turns` > 0 a log of so many.
+  py::dict solve(const Array& x0, const Array& parameters, const Array& x, const Array& u, bool goes_on,
+                 std::size_t turns) {
     if (main_ == nullptr) main_ = std::make_unique<Worker>(*this);
     TracedAnswer& answer = main_->answer;
     std::copy(x.data(), x.data() + x.size(), answer.x.begin());
     std::copy(u.data(), u.data() + u.size(), answer.u.begin());
     double seconds = 0.0;
-    unlocked([&] { seconds = main_->solve(*this, x0.data(), parameters.data(), goes_on); });
+    std::vector<solver::Turn> memory(turns);
+    solver::TurnLog log(memory);
+    unlocked([&] {
+      seconds = main_->solve(*this, x0.data(), parameters.data(), goes_on, turns > 0 ? &log : nullptr);
+    });
     py::dict told = report_of(answer.report, seconds);
     const auto nx = static_cast<py::ssize_t>(problem_.nx);
     const auto nu = static_cast<py::ssize_t>(problem_.nu);
-    told["x"] = shaped(answer.x, horizon_ + 1, nx);
-    told["u"] = shaped(answer.u, horizon_, nu);
+    add_trajectory(told);
+    if (turns > 0) told["log"] = table_of(log);
     told["dynamics"] = shaped(answer.adjoint, horizon_, nx);
     told["bounds"] = shaped(answer.bound, horizon_, nu);
     told["constraints"] = shaped(answer.constraint, horizon_, problem_.rows(Function::kConstraint));
@@ -180,6 +186,23 @@ class Interpreter {
                                                     answer.terminal_equality.data());
     told["terminal_constraint"] = py::array_t<double>(
         static_cast<py::ssize_t>(answer.terminal_constraint.size()), answer.terminal_constraint.data());
+    return told;
+  }
+
+  bool prepare() {
+    if (main_ == nullptr) return false;
+    bool is_ready = false;
+    unlocked([&] { is_ready = main_->solver->prepare(); });
+    return is_ready;
+  }
+  py::dict feedback(const Array& x0) {
+    if (main_ == nullptr || x0.size() != problem_.nx) throw py::value_error("feedback: got no preparation");
+    const auto begin = std::chrono::steady_clock::now();
+    const bool is_solved = main_->solver->feedback(x0.data(), main_->answer);
+    py::dict told;
+    told["time"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    told["is_solved"] = is_solved;
+    add_trajectory(told);
     return told;
   }
 
@@ -298,7 +321,8 @@ class Interpreter {
       answer.terminal_equality.resize(rows(Function::kTerminalEquality));
       answer.terminal_constraint.resize(rows(Function::kTerminalConstraint));
     }
-    double solve(const Interpreter& of, const double* x0, const double* from, bool goes_on) {
+    double solve(const Interpreter& of, const double* x0, const double* from, bool goes_on,
+                 solver::TurnLog* log = nullptr) {
       const Setting& setting = of.setting_;
       parameters.fill(from, of.problem_.np, of.horizon_ + 1);
       const auto begin = std::chrono::steady_clock::now();
@@ -316,7 +340,8 @@ class Interpreter {
                             .is_hard = setting.is_hard.get(),
                             .options = setting.options,
                             .goes_on = goes_on,
-                            .deadline = deadline};
+                            .deadline = deadline,
+                            .log = log};
       solver->solve(call, answer);
       return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     }
@@ -326,6 +351,30 @@ class Interpreter {
     TracedAnswer answer;
   };
 
+  void add_trajectory(py::dict& told) const {
+    told["x"] = shaped(main_->answer.x, horizon_ + 1, problem_.nx);
+    told["u"] = shaped(main_->answer.u, horizon_, problem_.nu);
+  }
+  /// A column for each number of a turn.
+  static py::dict table_of(const solver::TurnLog& log) {
+    const auto turns = log.turns();
+    py::dict table;
+    const auto add = [&](const char* name, const auto& number) {
+      py::array_t<decltype(number(turns[0]))> column(static_cast<py::ssize_t>(turns.size()));
+      std::transform(turns.begin(), turns.end(), column.mutable_data(), number);
+      table[name] = column;
+    };
+    using solver::Turn;
+    add("round", [](const Turn& turn) { return turn.round; });
+    add("kind", [](const Turn& turn) { return static_cast<int>(turn.kind); });
+    add("cost", [](const Turn& turn) { return turn.cost; });
+    add("stationarity", [](const Turn& turn) { return turn.stationarity; });
+    add("defect", [](const Turn& turn) { return turn.defect; });
+    add("complementarity", [](const Turn& turn) { return turn.complementarity; });
+    add("step", [](const Turn& turn) { return turn.step; });
+    add("barrier", [](const Turn& turn) { return turn.barrier; });
+    return table;
+  }
   static py::dict report_of(const solver::HardReport& report, double seconds) {
     py::dict told;
     told["status"] = static_cast<int>(report.status);
@@ -378,6 +427,8 @@ void add_problem(py::module_& module) {
                     const std::vector<std::vector<std::int32_t>>&, bool>())
       .def("set", &Interpreter::set)
       .def("solve", &Interpreter::solve)
+      .def("prepare", &Interpreter::prepare)
+      .def("feedback", &Interpreter::feedback)
       .def("solve_many", &Interpreter::solve_many)
       .def("evaluate", &Interpreter::evaluate)
       .def("operations", &Interpreter::operations);

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Optimal control problems of many kinds, written in Python: for tests and for the table of docs/python_problems.md.
 
-Those of bench/families that are marked so have the same equations, costs and bounds; the others are new."""
+cart_pole() is the one of bench/families/cart_pole.hpp, with its equations, costs and bounds. Others with names of bench/families are of
+the same kind, but not the same: models, costs and bounds are other ones. swimmer, race_car, satellite and pendulum_by_energy are new."""
 from __future__ import annotations
 
 from collections.abc import Callable

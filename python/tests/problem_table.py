@@ -5,16 +5,25 @@
     ./run.sh python python/tests/problem_table.py             a row for each family
     ./run.sh python python/tests/problem_table.py --many      10,000 cart-poles at once
     ./run.sh python python/tests/problem_table.py --changes   sensitivities of 200 instances against differences
+    ./run.sh python python/tests/problem_table.py --references   Ipopt, and cart-pole written by hand (needs bench's packages)
+    ./run.sh python python/tests/problem_table.py --feedback  feedback against whole solves
 
 Compiles each family by g++: minutes the first time. Exit code 1 where an answer is wrong."""
 import argparse
+import json
 import os
+import subprocess
 import sys
+import tempfile
 import time
+from pathlib import Path
 
 import numpy as np
 
 import families
+from chicane import _compiled
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def fastest(solve, times=30):
@@ -98,14 +107,79 @@ def changes(count):
     return worst <= 1e-5
 
 
+def reference(name, make):
+    """Its line: our solver interpreted and compiled, by hand where there is one, and Ipopt, all cold from a simulation of zeros."""
+    ocp, x0, p = make()
+    seconds = []                                            # of the processor, as for the others
+    for _ in range(25):
+        begin = time.thread_time()
+        interpreted = ocp.solve(x0, p)
+        seconds.append(time.thread_time() - begin)
+    least = min(seconds)
+    with tempfile.TemporaryDirectory() as folder:
+        header, program = Path(folder) / "problem.hpp", Path(folder) / "program"
+        ocp.export(header, "Problem")
+        flags = subprocess.run(["pkg-config", "--cflags", "--libs", "ipopt", "eigen3"], capture_output=True, text=True, check=True).stdout.split()
+        arch, own = _compiled.instruction_set()
+        is_written = name == "cart-pole swing-up"
+        subprocess.run(["g++", "-std=c++20", "-O2", "-DNDEBUG", "-ffp-contract=off", "-fno-math-errno", "-w", f"-DCHICANE_ARCH={arch}", *own,
+                        f'-DEXPORTED="{header}"', *(["-DWRITTEN"] if is_written else []), f"-I{ROOT}/src", f"-I{ROOT}/bench",
+                        str(ROOT / "bench/exported_problem.cpp"), str(ROOT / "src/chicane/base/math.cpp"), "-o", str(program), *flags], check=True)
+        numbers = [*x0, *(ocp.stage_parameters(p).ravel() if p is not None else ())]
+        told = json.loads(subprocess.run([str(program)], input=" ".join(repr(float(value)) for value in numbers), capture_output=True, text=True,
+                                         check=True).stdout)
+    cost = told["own_cost"] + ocp.cost_offset()
+    apart = abs(told["ipopt_cost"] - told["own_cost"]) / max(1.0, abs(told["own_cost"]))
+    by_hand = f"{told['own_s'] / told['written_s']:.2f}" if is_written else "–"
+    print(f"| {name} | {cost:.6g} | {apart:.0e} | {1e3 * told['ipopt_s']:.1f} | {told['ipopt_turns']} | {1e3 * least:.2f} | "
+          f"{1e3 * told['own_s']:.2f} | {told['ipopt_s'] / least:.0f} | {told['ipopt_s'] / told['own_s']:.0f} | {by_hand} |", flush=True)
+    return told["status"] == 0 and abs(interpreted.cost - cost) <= 1e-9 * max(1.0, abs(cost)), told["ipopt_s"] / least, told["ipopt_s"] / told["own_s"]
+
+
+def references(names):
+    print("| family | cost | Ipopt's apart | Ipopt [ms] | turns | interpreted [ms] | compiled [ms] | × interpreted | × compiled | compiled / by hand |")
+    print("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|")
+    rows = [reference(name, make) for name, make in families.FAMILIES.items() if not names or name in names]
+    print(f"\nmedians: {np.median([row[1] for row in rows]):.0f} × interpreted, {np.median([row[2] for row in rows]):.0f} × compiled")
+    return all(right for right, _, _ in rows)
+
+
+def feedback():
+    """Of each family, interpreted: a whole warm solve from a state beside the prepared one, and feedback, in turns."""
+    print("| family | prepare [ms] | feedback [µs] | whole solve [µs] | ratio | inputs apart |")
+    print("|---|--:|--:|--:|--:|--:|")
+    for name, make in families.FAMILIES.items():
+        ocp, x0, p = make()
+        beside = x0 + 1e-4
+        first = ocp.solve(x0, p)
+        preparation, answers, solves = [], [], []
+        for _ in range(15):
+            ocp.solve(x0, p, u=first.u, x=first.x)
+            begin = time.perf_counter()
+            ocp.prepare(x0, p)
+            preparation.append(time.perf_counter() - begin)
+            answers.append(ocp.feedback(beside))
+            solves.append(ocp.solve(beside, p, u=first.u, x=first.x))
+        quick, whole = min(answer.time for answer in answers), min(one.time for one in solves)
+        apart = np.abs(answers[-1].u - solves[-1].u).max() / max(1.0, np.abs(solves[-1].u).max())
+        print(f"| {name} | {1e3 * min(preparation):.2f} | {1e6 * quick:.0f} | {1e6 * whole:.0f} | {whole / quick:.0f} | {apart:.0e} |", flush=True)
+    return True
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--many", type=int, nargs="?", const=10000, default=0)
     parser.add_argument("--changes", type=int, nargs="?", const=200, default=0)
+    parser.add_argument("--references", nargs="*")
+    parser.add_argument("--feedback", action="store_true")
     given = parser.parse_args()
     print(f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}")
     if given.many:
         return 0 if many(given.many) else 1
+    if given.references is not None:
+        return 0 if references(given.references) else 1
+    if given.feedback:
+        return 0 if feedback() else 1
     if given.changes:
         return 0 if changes(given.changes) else 1
     return 0 if table() else 1

@@ -3,8 +3,11 @@
 import math
 import os
 import pickle
+import subprocess
+import sys
 import tempfile
 import unittest
+from pathlib import Path
 from unittest import mock
 
 import numpy as np
@@ -73,6 +76,18 @@ class Solving(unittest.TestCase):
         self.assertAlmostEqual(solution.u[0, 0], math.log(2.0), places=6)
         self.assertAlmostEqual(solution.cost, 2.0 - 2.0 * math.log(2.0), places=9)
 
+    def test_what_is_convex_over_a_nonlinear_function_is_a_cost(self):
+        ocp = ch.Problem(1, 1, 1)
+        ocp.dynamics(lambda x, u: [x[0] + u[0]])
+        miss = lambda u: u ** 3 + u - 3.0  # noqa: E731
+        ocp.cost(lambda x, u: ch.sqrt(1.0 + miss(u[0]) ** 2) + ch.log(1.0 + ch.exp(4.0 * (u[0] - 1.0))))
+        ocp.terminal(lambda x: 0.0 * x[0])
+        solution = ocp.solve([0.0], tolerance=1e-8)
+        grid = np.linspace(-1, 3, 400001)
+        costs = np.sqrt(1.0 + miss(grid) ** 2) + np.log1p(np.exp(4.0 * (grid - 1.0)))
+        self.assertAlmostEqual(solution.cost, costs.min(), places=7)
+        self.assertAlmostEqual(solution.u[0, 0], grid[costs.argmin()], places=4)
+
     def test_a_quadratic_form_becomes_squares(self):
         weight = np.array([[2.0, 0.5, 0.0], [0.5, 1.0, 0.2], [0.0, 0.2, 3.0]])
         ocp = ch.Problem(3, 1, 5)
@@ -121,6 +136,136 @@ class Solving(unittest.TestCase):
         alone = ocp.solve(x0[7])
         np.testing.assert_array_equal(one.u[7], alone.u)
         self.assertEqual(one.cost[7], alone.cost)
+
+
+class Turns(unittest.TestCase):
+    def test_the_log_has_each_turn_and_changes_nothing(self):
+        for make in (families.cart_pole, families.cart_pole_exactly):
+            ocp, x0, _ = make()
+            plain, logged = ocp.solve(x0), ocp.solve(x0, log=True)
+            np.testing.assert_array_equal(plain.u, logged.u)
+            log = logged.log
+            self.assertIsNone(plain.log)
+            self.assertGreaterEqual(log.count, logged.iterations)
+            self.assertEqual({"filter", "full step"}, set(log["kind"]))
+            self.assertEqual(log["step"][-1], 0.0)
+            self.assertLess(max(log["stationarity"][-1], log["defect"][-1], log["complementarity"][-1]), 1e-6)
+            self.assertLess(log["barrier"][-1], log["barrier"][0])
+            self.assertEqual(len(log.to_pandas()), log.count)
+            self.assertEqual(len(str(log).split("\n")), log.count + 1)
+            self.assertIn("<th>stationarity</th>", log._repr_html_())
+        self.assertEqual(list(np.unique(log["round"])), list(range(1, int(log["round"].max()) + 1)))
+        with self.assertRaisesRegex(KeyError, "got 'price', expected one of round, kind, cost"):
+            log["price"]
+
+
+class Feedback(unittest.TestCase):
+    def test_is_of_first_order_as_sensitivities_are(self):
+        ocp = double_integrator()
+        ocp.subject_to(lambda x, u: -x[1] - 0.3, price=(5, 5))
+        solution = ocp.prepare([1.0, 0.0], tolerance=1e-9)
+        change = solution.sensitivity("x0")
+        step = np.array([1e-4, -2e-4])
+        answer = ocp.feedback(solution.x0 + step)
+        self.assertTrue(answer.is_solved)
+        np.testing.assert_array_equal(answer.x[0], solution.x0 + step)
+        np.testing.assert_allclose(answer.u - solution.u, change.u @ step, atol=2e-6)
+
+    def test_is_exact_for_a_quadratic_program_whatever_bounds_become_active(self):
+        ocp = double_integrator()
+        ocp.prepare([0.3, 0.0])
+        for x0 in ([0.3, 0.0], [2.0, 0.5], [-3.0, 0.0], [0.0, 0.1]):
+            answer, solution = ocp.feedback(x0), double_integrator().solve(x0)
+            self.assertTrue(answer.is_solved)
+            np.testing.assert_allclose(answer.u, solution.u, atol=1e-6)
+            np.testing.assert_allclose(answer.x, solution.x, atol=1e-6)
+
+    def test_drives_a_loop_by_real_time_iterations(self):
+        ocp = ch.Problem(2, 1, 30)
+        pendulum = ch.rk4(lambda x, u: [x[1], 9.81 * ch.sin(x[0]) + u[0]], 0.05)
+        ocp.dynamics(pendulum)
+        ocp.cost(lambda x, u: 5 * x[0] ** 2 + 0.1 * x[1] ** 2 + 0.01 * u[0] ** 2)
+        ocp.bounds(u=(-15, 15))
+        state = np.array([0.6, 0.0])
+        ocp.solve(state)
+        for cycle in range(60):
+            ocp.prepare(shift=min(cycle, 1), max_iterations=1)
+            u = ocp.feedback(state).u[0]
+            state = np.asarray(pendulum(state, u), float) + [0.0, 1e-3]
+        self.assertLess(np.abs(state).max(), 0.02)
+
+    def test_says_what_is_missing(self):
+        ocp = double_integrator()
+        with self.assertRaisesRegex(ValueError, "prepare: got no x0 and no earlier answer"):
+            ocp.prepare()
+        with self.assertRaisesRegex(ValueError, r"feedback: got no preparation, expected prepare\(\)"):
+            ocp.feedback([1.0, 0.0])
+        ocp.prepare([1.0, 0.0])
+        ocp.solve([1.0, 0.0])
+        with self.assertRaisesRegex(ValueError, "feedback: got no preparation"):
+            ocp.feedback([1.0, 0.0])
+        ocp.prepare()
+        with self.assertRaisesRegex(ValueError, "x0: got .*expected finite"):
+            ocp.feedback([np.nan, 0.0])
+
+
+def valve(method):
+    """A slow state behind a valve that settles in a millisecond, by an implicit method over 0.1 s."""
+    ocp = ch.Problem(2, 1, 20, parameters=1)
+    ocp.dynamics(method)
+    ocp.cost(lambda x, u, p: 10 * (x[0] - p[0]) ** 2 + 0.1 * u @ u)
+    ocp.bounds(u=(0, 1))
+    return ocp
+
+
+class Implicit(unittest.TestCase):
+    def test_a_stiff_system_is_that_of_the_method_solved_otherwise(self):
+        matrix, h = np.array([[-1.0, 1.0], [0.0, -1000.0]]), 0.1
+        flow = lambda x, u: [x[1] - x[0], 1000 * (u[0] - x[1])]  # noqa: E731
+        eye, drive = np.eye(2), np.array([0.0, 1000.0])
+        euler = lambda x, u: np.linalg.solve(eye - h * matrix, x + h * drive * u)  # noqa: E731
+        middle = lambda x, u: np.linalg.solve(eye - h / 2 * matrix, (eye + h / 2 * matrix) @ x + h * drive * u)  # noqa: E731
+        for method, step in ((ch.implicit_euler(flow, h), euler), (ch.gauss_legendre(flow, h, stages=1), middle)):
+            ocp = valve(method)
+            solution = ocp.solve([0.0, 0.0], [0.5])
+            self.assertEqual(solution.status, "optimal")
+            self.assertEqual((solution.u.shape, solution.unknowns.shape, solution.multipliers["equalities"].shape), ((20, 1), (20, 2), (20, 0)))
+            x = np.zeros(2)
+            for k in range(20):
+                x = step(x, solution.u[k, 0])
+                np.testing.assert_allclose(solution.x[k + 1], x, atol=2e-6)
+            again = ocp.solve([0.0, 0.0], [0.5], start=solution)
+            self.assertLess(again.iterations, solution.iterations)
+            many = ocp.solve_many([[0.0, 0.0], [0.2, 0.1]], [0.5])
+            self.assertEqual(many.u.shape, (2, 20, 1))
+            self.assertTrue(many.is_usable.all())
+        self.assertFalse(valve(ch.rk4(flow, h)).solve([0.0, 0.0], [0.5]).status == "optimal")       # as it would be without
+
+    def test_gauss_and_legendre_agree_with_runge_and_kutta_where_nothing_is_stiff(self):
+        flow = lambda x, u: [x[1], -9.81 * ch.sin(x[0]) + u[0]]  # noqa: E731
+        solutions = []
+        for method in (ch.gauss_legendre(flow, 0.05), ch.rk4(flow, 0.05, 4)):
+            ocp = ch.Problem(2, 1, 20)
+            ocp.dynamics(method)
+            ocp.cost(lambda x, u: 10 * (x[0] - 0.5) ** 2 + 0.1 * u @ u)
+            ocp.bounds(u=(-8, 8))
+            solutions.append(ocp.solve([0.0, 0.0]))
+            self.assertEqual(solutions[-1].status, "optimal")
+        implicit, explicit = solutions
+        np.testing.assert_allclose(implicit.x, explicit.x, atol=2e-5)
+        np.testing.assert_allclose(implicit.sensitivity().u, explicit.sensitivity().u, atol=2e-3)
+
+    def test_refuses_what_does_not_fit(self):
+        ocp = ch.Problem(4, 1, 10)
+        with self.assertRaisesRegex(ValueError, "got 8 unknowns inside the interval beside 1 inputs, expected at most 8 together"):
+            ocp.dynamics(ch.gauss_legendre(lambda x, u: x, 0.1))
+        with self.assertRaisesRegex(ValueError, "got a derivative of 2 values, expected 4"):
+            ocp.dynamics(ch.implicit_euler(lambda x, u: x[:2], 0.1))
+        with self.assertRaisesRegex(ValueError, "gauss_legendre: got 3 stages, expected 1 or 2"):
+            ch.gauss_legendre(lambda x, u: x, 0.1, stages=3)
+        ocp.dynamics(ch.implicit_euler(lambda x, u: -1.0 * x, 0.1))
+        ocp.dynamics(lambda x, u: x)                            # takes its place
+        self.assertEqual((ocp.unknowns, len(ocp.rows["equality"])), (0, 0))
 
 
 class Derivatives(unittest.TestCase):
@@ -194,6 +339,16 @@ class Derivatives(unittest.TestCase):
 
 
 class Compiled(unittest.TestCase):
+    def test_the_example_in_c_has_the_problem_that_is_exported_now(self):
+        folder = Path(__file__).resolve().parents[2] / "examples/c"
+        with tempfile.TemporaryDirectory() as made:
+            subprocess.run([sys.executable, str(folder / "cart_pole_problem.py"), made], check=True)
+            for name in ("cart_pole_problem.cpp", "cart_pole_problem.h"):
+                self.assertEqual(Path(made, name).read_text(encoding="utf-8"), (folder / name).read_text(encoding="utf-8"),
+                                 "./run.sh python examples/c/cart_pole_problem.py")
+        with self.assertRaisesRegex(ValueError, "export_c: got the name 'cart-pole', expected a C identifier"):
+            families.cart_pole()[0].export_c("cart-pole")
+
     def test_the_exported_header_has_the_same_optimum_and_is_kept(self):
         with tempfile.TemporaryDirectory() as folder, mock.patch.dict(os.environ, {"XDG_CACHE_HOME": folder}):
             ocp = double_integrator(parameters=1)
@@ -204,6 +359,12 @@ class Compiled(unittest.TestCase):
             self.assertEqual((ocp.speed, compiled.status), ("compiled", "optimal"))
             self.assertAlmostEqual(compiled.cost, interpreted.cost, delta=1e-9 * interpreted.cost)
             np.testing.assert_allclose(compiled.u, interpreted.u, atol=1e-6)
+            prepared = ocp.prepare([1.0, 0.0], [-0.4])
+            self.assertAlmostEqual(prepared.cost, compiled.cost, delta=1e-5)
+            answer = ocp.feedback([1.0001, 0.0])
+            again = ocp.solve([1.0001, 0.0], [-0.4], log=True)     # interpreted, as a log wants it
+            np.testing.assert_allclose(answer.u, again.u, atol=1e-4)
+            self.assertGreater(again.log.count, 1)
             many = ocp.solve_many([[1.0, 0.0], [0.5, 0.1]], [-0.4], threads=2)
             self.assertEqual(many.cost[0], compiled.cost)
             made = os.listdir(f"{folder}/chicane")

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "program/batches.hpp"
 #include "program/golden.hpp"
 #include "program/solves.hpp"
 #ifdef CHICANE_HAVE_IPOPT
@@ -65,20 +64,6 @@ TEST(TimeSolves, StopsWhenAsked) {
   const std::atomic<bool> stop{true};
   References references = all_references();
   EXPECT_EQ(time_solves("cold0", 6, 5, references, stop).instances, 0);
-}
-
-TEST(TimeBatch, SolvesEveryFamilyToTheOptimum) {
-  const std::atomic<bool> stop{false};
-  for (const std::string_view family : families()) {
-    const BatchRow row = time_batch(family, 6, 20, stop);
-    EXPECT_EQ(row.problems, 20) << family;
-    EXPECT_EQ(row.unsolved, 0) << family;
-    EXPECT_LE(row.handed_over, 2) << family;
-    EXPECT_GT(row.mean_turns, 1.0) << family;
-    EXPECT_LE(row.worst_excess, 1e-7) << family;
-    EXPECT_GT(row.per_second, 0.0) << family;
-    EXPECT_GT(row.ratio(), 0.0) << family;
-  }
 }
 
 TEST(Golden, RefusesAFolderWithoutProblems) {

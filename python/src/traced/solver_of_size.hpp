@@ -26,11 +26,12 @@ class SolverOfSize final : public TracedSolver {
   void solve(const TracedCall& call, TracedAnswer& answer) noexcept override {
     problem_.call = call;
     load(answer);
-    std::array<double, Sizes.nx> x0{};
-    std::copy(call.x0, call.x0 + problem_.problem->nx, x0.begin());
-    if (has_equalities_ || has_hard()) {
+    const std::array<double, Sizes.nx> x0 = state(call.x0);
+    is_hard_ = has_equalities_ || has_hard();
+    if (is_hard_) {
       if (hard_ == nullptr) hard_ = std::make_unique<Hard>(call.options);
       hard_->set_options(call.options);
+      hard_->record_turns(call.log);
       prices_.is_known = prices_.is_known && call.goes_on;
       answer.report = hard_->solve(problem_, x0, trajectory_, prices_, call.deadline);
       store_multipliers(*hard_, answer);
@@ -38,6 +39,7 @@ class SolverOfSize final : public TracedSolver {
     } else {
       if (soft_ == nullptr) soft_ = std::make_unique<Soft>(call.options);
       soft_->set_options(call.options);
+      soft_->record_turns(call.log);
       answer.report = {};
       static_cast<solver::SolveReport&>(answer.report) =
           soft_->solve(augmented_, x0, trajectory_, call.deadline);
@@ -46,12 +48,25 @@ class SolverOfSize final : public TracedSolver {
     store(answer);
   }
 
+  bool prepare() noexcept override { return is_hard_ ? hard_->prepare() : soft_->prepare(augmented_); }
+  bool feedback(const double* x0, TracedAnswer& answer) noexcept override {
+    const auto done =
+        is_hard_ ? hard_->feedback(state(x0), trajectory_) : soft_->feedback(state(x0), trajectory_);
+    store(answer);
+    return done.is_solved;
+  }
+
  private:
   using Problem = InterpretedProblem<Arch, Sizes>;
   using Augmented = solver::Augmented<Problem, kMostStages>;
   using Soft = solver::OcpSolver<Augmented, kMostStages, Arch>;
   using Hard = solver::OcpSolver<Problem, kMostStages, Arch>;
 
+  [[nodiscard]] std::array<double, Sizes.nx> state(const double* from) const noexcept {
+    std::array<double, Sizes.nx> state{};
+    std::copy(from, from + problem_.problem->nx, state.begin());
+    return state;
+  }
   [[nodiscard]] bool has_hard() const noexcept {
     for (std::size_t c = 0; c < problem_.constraint_count(); ++c) {
       if (problem_.call.is_hard[c]) return true;
@@ -106,6 +121,7 @@ class SolverOfSize final : public TracedSolver {
   Problem problem_;
   Augmented augmented_;
   bool has_equalities_ = false;
+  bool is_hard_ = false;  ///< the last solve was with what must hold
   std::unique_ptr<Soft> soft_;
   std::unique_ptr<Hard> hard_;
   solver::HardPrices<Problem, kMostStages> prices_;

@@ -9,6 +9,7 @@
 #include "chicane/base/deadline.hpp"
 #include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/problem.hpp"
+#include "chicane/solver/turn_log.hpp"
 #include "traced/program.hpp"
 
 namespace chicane::python {
@@ -30,6 +31,7 @@ struct TracedCall {
   solver::SolverOptions options;
   bool goes_on = false;  ///< from the multipliers of the solve before
   Deadline deadline = Deadline::never();
+  solver::TurnLog* log = nullptr;
 };
 
 /// States and inputs (in: the guess), multipliers and the report. Vectors have the sizes of the problem.
@@ -69,6 +71,10 @@ class TracedSolver {
  public:
   virtual ~TracedSolver() = default;
   virtual void solve(const TracedCall& call, TracedAnswer& answer) noexcept = 0;
+  /// At the answer of the last solve; false where that is not finite.
+  virtual bool prepare() noexcept = 0;
+  /// States and inputs from x0 (nx), after prepare(); returns whether the quadratic program is solved.
+  virtual bool feedback(const double* x0, TracedAnswer& answer) noexcept = 0;
 };
 
 /// Sizes for which code exists; a problem takes the first that it fits in.

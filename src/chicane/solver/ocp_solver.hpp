@@ -26,6 +26,7 @@
 #include "chicane/solver/detail/working_set_qp.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/solution.hpp"
+#include "chicane/solver/turn_log.hpp"
 #include "chicane/solver/warm_start.hpp"
 
 namespace chicane::solver {
@@ -81,6 +82,19 @@ class OcpSolver {
     is_exact_ = options_.second_order;
     return run(problem, x0, trajectory, deadline, {});
   }
+
+  // ---- preparation and feedback apart
+
+  /// After a usable solve, or after a solve that ended at its limit with a finite answer: linearises and
+  /// factorises there, so that feedback() takes a few sweeps. False where that is not finite.
+  bool prepare(const P& problem) noexcept requires(!kHasRateBounds<P>);
+  /// The answer from x0 by what prepare() has left: the solution of that quadratic program with the step of
+  /// the first state given, its inputs inside their bounds. Soft constraints and what must hold answer as at
+  /// the prepared point; input bounds become active and inactive. May be called again and again.
+  FeedbackReport feedback(const State& x0, Trajectory& trajectory) noexcept requires(!kHasRateBounds<P>);
+
+  /// From the next solve on, turns are added to `log`, which must live as long; null: none.
+  void record_turns(TurnLog* log) noexcept { log_ = log; }
 
   /// From the next solve on: gives up where full steps lose their way.
   void use_full_steps_only(bool do_so) noexcept { has_full_steps_only_ = do_so; }
@@ -156,6 +170,8 @@ class OcpSolver {
         if (is_filtering_) continue;
       }
       look(problem, report);
+      if (log_ != nullptr)
+        log_->add(report, full_steps_ ? Turn::Kind::kFullStep : Turn::Kind::kDescent, barrier_.mu());
       if (!is_finite(report) && !has_best_) {
         if (stand_still(problem, report)) continue;
         return give_up(problem, x0, trajectory, report);
@@ -327,6 +343,7 @@ class OcpSolver {
     add_step<Arch>(t_, length, step_, t_);
     now_.chains.keep_previous(t_);
     progress_.note(longest, !barrier_.is_final() && !is_growing());
+    if (log_ != nullptr) log_->set_step(length * longest);
     is_exact_ = options_.second_order && ((longest <= kNear && curvature_pays()) || is_crawling());
     return true;
   }
@@ -356,6 +373,7 @@ class OcpSolver {
   }
   bool begin_filter(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept;
   bool filter_turn(const P& problem, const Deadline& deadline, SolveReport& report) noexcept;
+  void record_filter_turn(const SolveReport& report) noexcept;
   void take_cheapest(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept;
   bool is_at_floor(const SolveReport& report) noexcept;
 
@@ -405,35 +423,14 @@ class OcpSolver {
   [[nodiscard]] double share_of_horizon() const noexcept {
     return static_cast<double>(t_.horizon) / static_cast<double>(target_);
   }
-  bool start_short(const P& problem, const Trajectory& trajectory) noexcept {
-    if (!take_guess(problem, trajectory)) t_ = best_;
-    t_.horizon = kFirstHorizon;
-    has_grown_ = true;
-    const bool is_good = restart(problem);
-    barrier_.start(problem, options_.tolerance, Evaluate::violation(problem, t_));
-    return is_good;
-  }
-  bool grow(const P& problem) noexcept {
-    const std::size_t known = t_.horizon;
-    t_.horizon = std::min(target_, known + std::min((known + 1) / 2, kMaxGrowth));
-    for (std::size_t m = 0; m < kNu; ++m) {
-      for (std::size_t k = known; k < t_.horizon; ++k)
-        t_.u[m][k] = nearest(t_.u[m][known - 1], now_.lower[m][k], now_.upper[m][k]);
-    }
-    admit_inputs();
-    return restart(problem);
-  }
-  bool restart(const P& problem) noexcept {
-    full_steps_ = is_fresh_ = true;
-    has_best_ = is_exact_ = false;
-    progress_.restart();
-    descent_.forget();
-    return roll_out(problem);
-  }
+  bool start_short(const P& problem, const Trajectory& trajectory) noexcept;
+  bool grow(const P& problem) noexcept;
+  bool restart(const P& problem) noexcept;
 
   /// The last rung: one step that lowers the cost. False when there is none.
   bool descend(const P& problem, const Deadline& deadline, SolveReport& report) noexcept {
     if (!descent_.step(problem, now_, lq_, barrier_, t_, deadline, report.sweeps)) return false;
+    if (log_ != nullptr) log_->set_step(descent_.moved());
     is_exact_ = options_.second_order && descent_.is_under_way();
     if (!descent_.is_smooth()) return true;
     full_steps_ = true;
@@ -477,6 +474,7 @@ class OcpSolver {
   Iterate<kNx, kNu, kSize> step_;  ///< from it to the next
   Iterate<kNx, kNu, kSize> best_;
   SolveReport best_report_{};
+  TurnLog* log_ = nullptr;
   bool has_best_ = false;
   bool shows_best_ = false;  ///< the last look was at the best iterate
   bool full_steps_ = true;
@@ -498,3 +496,4 @@ class OcpSolver {
 #include "chicane/solver/detail/hard_solver.hpp"
 #include "chicane/solver/detail/ocp_endings.hpp"
 #include "chicane/solver/detail/ocp_fallback.hpp"
+#include "chicane/solver/detail/ocp_feedback.hpp"

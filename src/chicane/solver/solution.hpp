@@ -63,6 +63,12 @@ struct SolveReport {
   int rate_input = -1;
 };
 
+/// What OcpSolver::feedback did.
+struct FeedbackReport {
+  bool is_solved = false;  ///< the quadratic program is; else inputs were cut to their bounds
+  int sweeps = 0;          ///< Riccati sweeps backwards that a change of active bounds took
+};
+
 /// Finds the violation that a report tells: the largest, but one above its cap before all others, which may
 /// be in other units.
 class WorstViolation {

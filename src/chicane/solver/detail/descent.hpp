@@ -12,6 +12,7 @@
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/linearisation.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
+#include "chicane/solver/detail/steps.hpp"
 #include "chicane/solver/problem.hpp"
 
 namespace chicane::solver {
@@ -42,6 +43,8 @@ class Descent {
   /// The last step led to values that are not finite.
   void damp() noexcept { shift_ = std::max(10.0 * shift_, 1.0); }
 
+  /// The longest move of an input in the last step.
+  [[nodiscard]] double moved() const noexcept { return moved_; }
   /// Near enough to the solution for exact curvature.
   [[nodiscard]] bool is_under_way() const noexcept { return taken_ > 3; }
   /// Whole unshifted steps were taken: full steps may be tried again. Each yes makes the next one harder.
@@ -78,6 +81,7 @@ class Descent {
         if (deadline.spent()) return false;
         const double allowed = now.merit + 1e-4 * length * expected + 1e-13 * std::fabs(now.merit);
         if (!(try_step(problem, t, now, lq, slacks, length) <= allowed)) continue;
+        moved_ = longest_move(t, candidate_);
         t = candidate_;
         slacks.lower_for_gain(-expected, t.horizon);
         ++taken_;
@@ -148,9 +152,10 @@ class Descent {
 
   Point candidate_;
   double shift_ = 0.0;  ///< Levenberg shift on the input blocks
-  int taken_ = 0;       ///< steps since the descent began
-  int smooth_ = 0;      ///< whole unshifted ones in a row
-  int needed_ = 2;      ///< of these before full steps are tried again
+  double moved_ = 0.0;
+  int taken_ = 0;   ///< steps since the descent began
+  int smooth_ = 0;  ///< whole unshifted ones in a row
+  int needed_ = 2;  ///< of these before full steps are tried again
 };
 
 }  // namespace chicane::solver

@@ -107,6 +107,8 @@ class FilterMethod {
     is_fresh_ = is_new_barrier_ = true;
     return true;
   }
+  /// The longest move of an input in the last step that was taken.
+  [[nodiscard]] double moved() const noexcept { return moved_; }
   /// The point where it stands; after start().
   [[nodiscard]] const Point& point() const noexcept { return candidate_; }
 
@@ -269,6 +271,7 @@ class FilterMethod {
       }
       if (!is_good) continue;
       if (length >= 0.05 || there.miss <= 0.9 * here.miss) failures_ = 0;
+      moved_ = longest_move(t, candidate_);
       t = candidate_;
       bounds_.move(dual, mu_);
       soft_.move(slacks, t.horizon, dual);
@@ -422,6 +425,7 @@ class FilterMethod {
   bool is_new_barrier_ = true;  ///< the filter is of another problem
   bool are_sides_new_ = true;   ///< the slacks of bounds do not belong to the present point
   bool stops_at_barriers_ = false;
+  double moved_ = 0.0;
   int failures_ = 0;
   int simulations_ = 0;
 };

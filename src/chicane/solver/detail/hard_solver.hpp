@@ -55,6 +55,16 @@ class HardSolver {
     return report;
   }
 
+  /// As of problems without; what must hold answers with the multipliers and weights of the last solve.
+  bool prepare() noexcept { return inner_.prepare(problem_); }
+  FeedbackReport feedback(const State& x0, Trajectory& trajectory) noexcept {
+    return inner_.feedback(x0, trajectory);
+  }
+  void record_turns(TurnLog* log) noexcept {
+    log_ = log;
+    inner_.record_turns(log);
+  }
+
   /// After a solve: multipliers, d(cost)/d(right-hand side).
   [[nodiscard]] double equality_multiplier(int k, int n) const noexcept {
     return prices_.equality[static_cast<std::size_t>(n)].at(k);
@@ -215,6 +225,7 @@ class HardSolver {
   bool round(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
              HardReport& report) noexcept {
     inner_.allow_iterations(trial_ > 0 ? std::min(left, trial_) : left);
+    if (log_ != nullptr) log_->begin_round();
     const SolveReport now = can_go_on_ ? inner_.solve_again(problem_, x0, trajectory, deadline)
                                        : inner_.solve(problem_, x0, trajectory, deadline);
     inner_.start_from_states(true);
@@ -452,6 +463,7 @@ class HardSolver {
   Prices prices_;
   double unit_ = 1.0;  ///< of costs
   Misses first_;       ///< of the guess
+  TurnLog* log_ = nullptr;
   Trajectory guess_;
   Trajectory kept_;         ///< of the first weights, where others were tried as well
   double kept_miss_ = 0.0;  ///< largest of its misses

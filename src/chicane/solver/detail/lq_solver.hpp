@@ -26,7 +26,7 @@ struct alignas(64) Feedback {
   double g[Nu]{};      ///< its slope at δu = 0
 };
 
-/// Solves min Σ ½ zᵀLz + terminal cost s.t. δx₀ = 0, δx⁺ = F z and bounds on δu and on its change, for one
+/// Solves min Σ ½ zᵀLz + terminal cost s.t. δx₀ given, δx⁺ = F z and bounds on δu and on its change, for one
 /// horizon (docs/solver.md, eq. 8–11). A backward sweep eliminates stage by stage with the inputs of the
 /// working set held at their bounds; a forward sweep finds the step and corrects the working set. Repeating
 /// both until nothing changes is the primal-dual active set method (Hintermüller, Ito, Kunisch 2003).
@@ -47,8 +47,9 @@ class LqSolver {
   Hold hold[Lq::kStages][kNu]{};  ///< working set
   using Feedback = solver::Feedback<kNu, kLanes>;
   Feedback feedback[Lq::kStages]{};
-  alignas(64) double dx[Capacity + 1][kLanes]{};  ///< step of the states
-  double du[Capacity][kNu]{};                     ///< step of the inputs
+  alignas(
+      64) double dx[Capacity + 1][kLanes]{};  ///< step of the states; of the first one as it is set, else 0
+  double du[Capacity][kNu]{};                 ///< step of the inputs
 
   /// Whether the change of input m is bounded, and the state that it starts from.
   static constexpr bool has_rate(std::size_t m) noexcept { return Pattern::kRateState[m] >= 0; }
@@ -87,9 +88,9 @@ class LqSolver {
   /// or none; with kClip du is cut to its bounds. Returns how many inputs contradicted it.
   int forward(std::size_t horizon, Repair repair) noexcept {
     Contradictions found;
-    double x[kNx] = {};
+    double x[kNx];
     double carried[kNu] = {};
-    unroll<kNx>([&](auto i) CHICANE_INLINE { dx[0][i] = 0.0; });
+    unroll<kNx>([&](auto i) CHICANE_INLINE { x[i] = dx[0][i]; });
     for (std::size_t k = 0; k < horizon; ++k) {
       double u[kNu];
       unroll<kNu>([&](auto m) CHICANE_INLINE {
@@ -116,7 +117,8 @@ class LqSolver {
 
   /// The states that follow from the du as they are.
   void simulate(std::size_t horizon) noexcept {
-    double x[kNx] = {};
+    double x[kNx];
+    unroll<kNx>([&](auto i) CHICANE_INLINE { x[i] = dx[0][i]; });
     for (std::size_t k = 0; k < horizon; ++k) {
       Algebra::advance(lq.stage[k], x, du[k]);
       unroll<kNx>([&](auto i) CHICANE_INLINE { dx[k + 1][i] = x[i]; });

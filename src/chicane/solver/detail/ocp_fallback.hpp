@@ -40,6 +40,7 @@ bool OcpSolver<P, Capacity, Arch>::filter_turn(const P& problem, const Deadline&
   using Outcome = typename Filter::Outcome;
   if (work_ >= options_.max_iterations || deadline.spent()) return false;
   const Outcome outcome = filter_.turn(problem, now_, lq_, barrier_, t_, deadline, report);
+  record_filter_turn(report);
   if (outcome == Outcome::kGoing) return true;
   is_filtering_ = false;
   if (outcome != Outcome::kSolved) return false;
@@ -70,6 +71,7 @@ bool OcpSolver<P, Capacity, Arch>::follow_path(const P& problem, Trajectory& tra
   using Outcome = typename Filter::Outcome;
   for (; report.iterations < most; ++report.iterations) {
     const Outcome outcome = filter_.turn(problem, now_, lq_, barrier_, t_, deadline, report);
+    record_filter_turn(report);
     if (outcome == Outcome::kGoing) continue;
     if (outcome == Outcome::kSolved) t_.write(trajectory);
     return outcome == Outcome::kSolved;
@@ -80,6 +82,43 @@ template <OcpProblem P, int Capacity, class Arch>
 void OcpSolver<P, Capacity, Arch>::end_path() noexcept {
   filter_.hand_over(now_, lq_);
   barrier_.set_mu(std::max(barrier_.mu(), options_.tolerance));
+}
+
+/// The second rung: a short horizon first.
+template <OcpProblem P, int Capacity, class Arch>
+bool OcpSolver<P, Capacity, Arch>::start_short(const P& problem, const Trajectory& trajectory) noexcept {
+  if (!take_guess(problem, trajectory)) t_ = best_;
+  t_.horizon = kFirstHorizon;
+  has_grown_ = true;
+  const bool is_good = restart(problem);
+  barrier_.start(problem, options_.tolerance, Evaluate::violation(problem, t_));
+  return is_good;
+}
+template <OcpProblem P, int Capacity, class Arch>
+bool OcpSolver<P, Capacity, Arch>::grow(const P& problem) noexcept {
+  const std::size_t known = t_.horizon;
+  t_.horizon = std::min(target_, known + std::min((known + 1) / 2, kMaxGrowth));
+  for (std::size_t m = 0; m < kNu; ++m) {
+    for (std::size_t k = known; k < t_.horizon; ++k)
+      t_.u[m][k] = nearest(t_.u[m][known - 1], now_.lower[m][k], now_.upper[m][k]);
+  }
+  admit_inputs();
+  return restart(problem);
+}
+
+template <OcpProblem P, int Capacity, class Arch>
+bool OcpSolver<P, Capacity, Arch>::restart(const P& problem) noexcept {
+  full_steps_ = is_fresh_ = true;
+  has_best_ = is_exact_ = false;
+  progress_.restart();
+  descent_.forget();
+  return roll_out(problem);
+}
+template <OcpProblem P, int Capacity, class Arch>
+void OcpSolver<P, Capacity, Arch>::record_filter_turn(const SolveReport& report) noexcept {
+  if (log_ == nullptr) return;
+  log_->add(report, Turn::Kind::kFilter, filter_.mu());
+  log_->set_step(filter_.moved());
 }
 
 /// Steps have become as short as rounding lets them: the present iterate, whose slacks and prices are known,

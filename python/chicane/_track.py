@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: MIT
+"""Roads of your own, and readers of their files."""
+from __future__ import annotations
+
+import hashlib
+import os
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+
+class Track:
+    """A road of your own: give it to drive(), limit() or Env() in the place of a name, or as a setting "track".
+
+    xy: points of a line along the road in driving order, shape (n, 2) [m], n >= 4. left, right: distance from there to the edges [m],
+    numbers or of shape (n,). closed: whether it is a circuit; None: where the gap from end to start is like the others.
+    options: of the comments of a file (docs/tracks.md), such as start_s_m, kerb_width_m, smoothing_sigma_m.
+
+    What is no road (an edge across itself, a gap) is refused by whoever drives on it."""
+
+    def __init__(self, xy: npt.ArrayLike, left: npt.ArrayLike = 4.5, right: npt.ArrayLike = 4.5, *, closed: bool | None = None,
+                 name: str = "own", **options: float) -> None:
+        self.xy = np.ascontiguousarray(xy, float)
+        if self.xy.ndim != 2 or self.xy.shape[1] != 2 or len(self.xy) < 4:
+            raise ValueError(f"Track: xy: got shape {self.xy.shape}, expected (n, 2) with n >= 4")
+        try:
+            self.left, self.right = (np.broadcast_to(np.asarray(width, float), len(self.xy)) for width in (left, right))
+        except ValueError:
+            raise ValueError(f"Track: got widths of shapes {np.shape(left)} and {np.shape(right)}, expected numbers or ({len(self.xy)},)") from None
+        if not name or Path(name).name != name:
+            raise ValueError(f"Track: name: got {name!r}, expected the name of a file without its ending")
+        self.closed, self.name, self.options = closed, name, options
+
+    def text(self) -> str:
+        """As a file of the library, to the last bit."""
+        options = {key: repr(float(value)) for key, value in self.options.items()}
+        if self.closed is not None:
+            options["closed"] = "true" if self.closed else "false"
+        head = [f"# {self.name}"] + (["# " + ", ".join(f"{key}={value}" for key, value in options.items())] if options else [])
+        rows = [",".join(repr(float(value)) for value in row) for row in np.column_stack([self.xy, self.right, self.left])]
+        return "\n".join([*head, "# x_m,y_m,w_tr_right_m,w_tr_left_m", *rows]) + "\n"
+
+    def save(self, file: str | os.PathLike[str]) -> None:
+        """Writes it as .csv, for the program."""
+        Path(file).write_text(self.text(), encoding="utf-8")
+
+    def file(self) -> str:
+        """A file with it in $XDG_CACHE_HOME/chicane/tracks, kept by its content: recordings name it."""
+        text = self.text()
+        cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "chicane/tracks"
+        file = cache / hashlib.sha256(text.encode()).hexdigest()[:16] / f"{self.name}.csv"
+        if not file.is_file():
+            file.parent.mkdir(parents=True, exist_ok=True)
+            unfinished = file.with_name(f"{file.name}.{os.getpid()}")
+            unfinished.write_text(text, encoding="utf-8")
+            unfinished.replace(file)
+        return str(file)
+
+    def __repr__(self) -> str:
+        return f"<Track {self.name}: {len(self.xy)} points>"
+
+
+AnyTrack = str | os.PathLike[str] | Track
+"""A name, a file, or a road."""
+
+
+class TrackReader:
+    """Reads roads from files of a kind of your own: derive from it, write read(), and tell use_track_reader().
+
+        class Points(ch.TrackReader):
+            extension = ".points"
+
+            def read(self, path):
+                return ch.Track(np.loadtxt(path), left=4, right=4)
+        ch.use_track_reader(Points())
+        ch.drive("road.points")"""
+
+    extension: str = ""
+    """End of the files' names, such as ".gpx"."""
+
+    def read(self, path: str) -> Track:
+        """The road of a file."""
+        raise NotImplementedError(f"{type(self).__name__}.read(path) is not written yet")
+
+
+_readers: dict[str, TrackReader] = {}
+
+
+def use_track_reader(reader: TrackReader) -> None:
+    """From now on files with the reader's extension can be given wherever a track can. A later reader of the same extension wins."""
+    if not isinstance(reader, TrackReader) or not reader.extension.startswith(".") or reader.extension == ".csv":
+        raise ValueError(f"use_track_reader: got {reader!r}, expected a TrackReader with an extension such as \".gpx\"; .csv is the library's")
+    _readers[reader.extension] = reader
+
+
+def file_of(track: AnyTrack) -> str:
+    """What the library is told of a track: a name, or a file that it reads."""
+    if isinstance(track, Track):
+        return track.file()
+    name = os.fspath(track)
+    reader = _readers.get(Path(name).suffix)
+    if reader is None:
+        return name
+    if not Path(name).is_file():
+        raise ValueError(f"track: got {name!r}, and there is no such file")
+    road = reader.read(name)
+    if not isinstance(road, Track):
+        raise ValueError(f"{type(reader).__name__}.read: got {road!r}, expected a Track")
+    return road.file()

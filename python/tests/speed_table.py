@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""What the Python module costs: the figures of docs/python.md, each pair taken in turns.
+
+    ./run.sh python python/tests/speed_table.py
+
+f1tenth_gym's simulator class, where it can be imported (`F110Env`'s Simulator), is stepped beside it."""
+import importlib.util
+import os
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+import chicane as ch
+
+STEPS = 200
+
+
+def seconds(work, clock=time.perf_counter):
+    begin = clock()
+    work()
+    return clock() - begin
+
+
+def in_turns(*works, clock=time.perf_counter, times=9):
+    """The least time of each."""
+    return [min(column) for column in zip(*([seconds(work, clock) for work in works] for _ in range(times)))]
+
+
+def import_time():
+    """CPU time of a process that imports the module, beyond one that imports numpy."""
+    def cpu(code):
+        before = os.times()
+        subprocess.run([sys.executable, "-c", code], check=True)
+        after = os.times()
+        return after.children_user + after.children_system - before.children_user - before.children_system
+    pairs = [(cpu("import chicane"), cpu("import numpy"), cpu("pass")) for _ in range(7)]
+    return [min(column) for column in zip(*pairs)]
+
+
+def environment(car):
+    """Steps per second of processor time at 20 Hz, by Python and in C++."""
+    def make():
+        env = ch.Env("oval", car=car, rate_hz=20, ends_off_road=False, seed=1)
+        env.reset()
+        return env
+    python, native = make(), make()
+    action = np.array([0.05, 0.2])
+
+    def by_python():
+        for _ in range(STEPS):
+            python.step(action)
+    by_python()
+    least = in_turns(by_python, lambda: native._core.repeat(*action, STEPS), clock=time.thread_time)
+    return [STEPS / each for each in least]
+
+
+def threads(car, count=16):
+    """Steps per second of a VecEnv on one thread and on two."""
+    made = []
+    for number in (1, 2):
+        envs = ch.VecEnv(count, "oval", car=car, rate_hz=20, threads=number, ends_off_road=False, seed=1)
+        envs.reset()
+        made.append(envs)
+    actions = np.tile([0.05, 0.2], (count, 1))
+    works = [lambda envs=envs: [envs.step(actions) for _ in range(STEPS // 8)] for envs in made]
+    return [count * (STEPS // 8) / each for each in in_turns(*works)]
+
+
+def main():
+    print(f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}")
+    own, numpy, nothing = import_time()
+    print(f"import chicane: {1e3 * own:.0f} ms of processor time in all; import numpy {1e3 * numpy:.0f}, Python itself {1e3 * nothing:.0f}")
+    print("\n| car | steps/s in Python | in C++ | share | VecEnv(16), 1 thread | 2 threads | gain |\n|---|--:|--:|--:|--:|--:|--:|")
+    for car in ("f1tenth", "road-car", "udacity"):
+        python, native = environment(car)
+        one, two = threads(car)
+        print(f"| `{car}` | {python:,.0f} | {native:,.0f} | {python / native:.2f} | {one:,.0f} | {two:,.0f} | {two / one:.2f} |", flush=True)
+    if importlib.util.find_spec("f110_gym") is None:
+        print("\nf1tenth_gym is not there: pip install f110-gym in another environment, and run this again")
+        return
+    from f110_gym.envs.base_classes import Integrator, RaceCar, Simulator
+    from f110_gym.envs.f110_env import F110Env  # its parameters
+    simulator = Simulator(F110Env().params, 1, 12345, time_step=0.01, integrator=Integrator.RK4)
+    RaceCar.scan_simulator = None
+    simulator.reset(np.zeros((1, 3)))
+    control = np.array([[0.05, 2.0]])
+    gym = min(seconds(lambda: [simulator.step(control) for _ in range(5 * STEPS)]) for _ in range(5))
+    print(f"f1tenth_gym's Simulator, 50 ms of simulated time: {STEPS / gym:,.0f} a second")
+
+
+if __name__ == "__main__":
+    main()

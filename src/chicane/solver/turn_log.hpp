@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "chicane/base/inlining.hpp"
+#include "chicane/solver/solution.hpp"
+
+namespace chicane::solver {
+
+/// One turn of a solve: the iterate it began at, and the step from there.
+struct Turn {
+  /// How the step was found (docs/solver.md): by the working set, by a line search over simulations, by the
+  /// filter method.
+  enum class Kind : std::uint8_t { kFullStep, kDescent, kFilter };
+  int round = 0;  ///< of the augmented Lagrangian, from 1; 0 for problems without what must hold
+  Kind kind = Kind::kFullStep;
+  double cost = 0.0;  ///< of the iterate; of the problem of the present round
+  double stationarity = 0.0, defect = 0.0, complementarity = 0.0;  ///< as of SolveReport
+  double step = 0.0;     ///< longest move of an input; 0 where no step was taken
+  double barrier = 0.0;  ///< of soft constraints, or of the filter method
+};
+
+/// Turns of a solve, in memory of the caller. What does not fit is counted, not kept.
+class TurnLog {
+ public:
+  explicit TurnLog(std::span<Turn> memory) noexcept : turns_{memory} {}
+
+  void clear() noexcept {
+    count_ = 0;
+    round_ = 0;
+  }
+  void begin_round() noexcept { ++round_; }
+  [[gnu::noinline]] void add(const SolveReport& report, Turn::Kind kind, double barrier) noexcept {
+    if (count_ < turns_.size())
+      turns_[count_] = {
+          round_, kind,   report.cost, report.stationarity, report.defect, report.complementarity,
+          0.0,    barrier};
+    ++count_;
+  }
+  /// Of the turn that was added last.
+  void set_step(double step) noexcept {
+    if (count_ > 0 && count_ <= turns_.size()) turns_[count_ - 1].step = step;
+  }
+
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  /// Those that are kept, in their order.
+  [[nodiscard]] std::span<const Turn> turns() const noexcept {
+    return turns_.first(count_ < turns_.size() ? count_ : turns_.size());
+  }
+
+ private:
+  std::span<Turn> turns_;
+  std::size_t count_ = 0;
+  int round_ = 0;
+};
+
+}  // namespace chicane::solver
