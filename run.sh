@@ -24,7 +24,7 @@ fi
 if [ "${1:-}" = package ] && [ $# -eq 1 ]; then
   mapfile -t node < <(node_packages)
   install_packages "${run_packages[@]}" "${package_packages[@]}" "${node[@]}"
-  options=(CHICANE_SIMD=all)
+  options=(CHICANE_SIMD=all CHICANE_PYTHON=ON)
   is_configured "$root" || options+=(CHICANE_BUILD_TESTS=OFF CHICANE_BUILD_EXAMPLES=OFF)
   build_release "$root" chicane_installed "${options[@]}"
   (cd "$root/build/release" && rm -rf packages && cpack >cpack.log 2>&1) || { cat "$root/build/release/cpack.log" >&2; exit 3; }
@@ -43,7 +43,7 @@ extra=()
 case " $* " in
   *' -h '* | *' --help '*) ;;
   ' bench '*) target=chicane_bench extra=("${bench_packages[@]}") ;;
-  ' ros '*) extra=("${ros_packages[@]}") ;;
+  ' ros '*) target=chicane_ros_app extra=("${ros_packages[@]}") ;;
 esac
 mapfile -t node < <(node_packages)
 install_packages "${run_packages[@]}" "${extra[@]}" "${node[@]}"

@@ -8,6 +8,12 @@ if(CHICANE_SOLVER_ONLY)
   set(CHICANE_PACKAGES libchicane-solver-dev)
 elseif(TARGET chicane_app)
   set(CHICANE_PACKAGES chicane libchicane-dev chicane-doc)
+  if(CHICANE_HAVE_ROS)
+    list(APPEND CHICANE_PACKAGES chicane-ros)
+  endif()
+  if(TARGET chicane_python)
+    list(APPEND CHICANE_PACKAGES python3-chicane)
+  endif()
 else()
   set(CHICANE_PACKAGES libchicane-dev chicane-doc)
 endif()
@@ -23,6 +29,12 @@ add_dependencies(chicane_installed ${modules})
 if(TARGET chicane_app)
   add_dependencies(chicane_installed chicane_app)
 endif()
+if(CHICANE_HAVE_ROS AND TARGET chicane_ros_app)
+  add_dependencies(chicane_installed chicane_ros_app)
+endif()
+if(TARGET chicane_python)
+  add_dependencies(chicane_installed chicane_python)
+endif()
 
 set(CPACK_PACKAGE_NAME chicane)
 set(CPACK_PACKAGE_VENDOR "The chicane authors")
@@ -37,6 +49,7 @@ set(CPACK_GENERATOR DEB)
 if(TARGET chicane_app)
   list(APPEND CPACK_GENERATOR TZST)
 endif()
+set(CPACK_CHICANE_TARBALL_COMPONENTS program plain ros libraries)
 set(CPACK_CHICANE_TARBALL chicane-${PROJECT_VERSION}-linux-${CMAKE_SYSTEM_PROCESSOR})
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -61,10 +74,10 @@ function(package_file name file folder)
 endfunction()
 
 # chicane_package(NAME COMPONENTS one two SECTION science SUMMARY "..." TEXT "..." [ARCH all] [SHLIBDEPS]
-#                 [DEPENDS "a, b"] [CONFLICTS ...] [SUGGESTS ...])
+#                 [DEPENDS "a, b"] [CONFLICTS ...] [SUGGESTS ...] [SCRIPTS postinst prerm])
 # TEXT has lines of at most 79 characters; a line with nothing but a dot begins a paragraph.
 function(chicane_package name)
-  cmake_parse_arguments(P "SHLIBDEPS" "SECTION;SUMMARY;TEXT;ARCH;DEPENDS;CONFLICTS;SUGGESTS" "COMPONENTS" ${ARGN})
+  cmake_parse_arguments(P "SHLIBDEPS" "SECTION;SUMMARY;TEXT;ARCH;DEPENDS;CONFLICTS;SUGGESTS" "COMPONENTS;SCRIPTS" ${ARGN})
   if(NOT name IN_LIST CHICANE_PACKAGES)
     return()
   endif()
@@ -81,6 +94,8 @@ function(chicane_package name)
   foreach(field DEPENDS CONFLICTS SUGGESTS)
     set(CPACK_DEBIAN_${upper}_PACKAGE_${field} "${P_${field}}" PARENT_SCOPE)
   endforeach()
+  list(TRANSFORM P_SCRIPTS PREPEND ${debian_dir}/${name}/)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA "${P_SCRIPTS}" PARENT_SCOPE)
   if(P_SHLIBDEPS)
     set(CPACK_DEBIAN_${upper}_PACKAGE_SHLIBDEPS ON PARENT_SCOPE)
   endif()
@@ -117,13 +132,35 @@ if(TARGET chicane_app)
 endif()
 list(JOIN dev_depends ", " dev_depends)
 
-chicane_package(chicane COMPONENTS program SECTION science SHLIBDEPS SUGGESTS "chicane-doc, libchicane-dev"
+# The module is for one version of Python.
+if(TARGET chicane_python)
+  execute_process(COMMAND ${CHICANE_PYTHON_EXECUTABLE} -c "import sys; a, b = sys.version_info[:2]; print(f'{a}.{b};{a}.{b + 1}', end='')"
+                  OUTPUT_VARIABLE python_versions COMMAND_ERROR_IS_FATAL ANY)
+  list(GET python_versions 0 python_version)
+  list(GET python_versions 1 python_next)
+  set(python_folder lib/python3/dist-packages/chicane)
+  install(DIRECTORY python/chicane/ DESTINATION ${python_folder} COMPONENT python EXCLUDE_FROM_ALL
+          FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN py.typed PATTERN __pycache__ EXCLUDE)
+  install(TARGETS chicane_python LIBRARY DESTINATION ${python_folder} COMPONENT python EXCLUDE_FROM_ALL)
+endif()
+
+chicane_package(chicane COMPONENTS program SECTION science SHLIBDEPS SUGGESTS "chicane-doc, chicane-ros, libchicane-dev, python3-chicane"
   SUMMARY "drives a car round a track by model predictive control"
   TEXT "Controller, simulator, recorder and dashboard in one program, with cars, tracks
 and presets. A guard keeps a verified stop at hand.
 .
 The program serves its dashboard to a browser, drives external simulators by
 WebSocket, compares controllers, and finds the limit of a car.")
+chicane_package(chicane-ros COMPONENTS ros SECTION science SHLIBDEPS DEPENDS "chicane (= ${deb_version})" SUGGESTS chicane-doc
+  SUMMARY "model predictive control of cars - ROS 2 node without ROS"
+  TEXT "The command chicane ros: the controller as a ROS 2 node, or the simulator for
+one, by DDS alone. It needs no ROS installation.")
+chicane_package(python3-chicane COMPONENTS python SECTION python SHLIBDEPS SCRIPTS postinst prerm
+  DEPENDS "chicane (= ${deb_version}), python3 (>= ${python_version}~), python3 (<< ${python_next}~), python3-numpy" SUGGESTS chicane-doc
+  SUMMARY "model predictive control of cars - Python module"
+  TEXT "The module chicane: drives and measures cars, reads recordings, runs sweeps,
+controllers and environments for learning written in Python, and optimal
+control problems.")
 chicane_package(libchicane-dev COMPONENTS dev SECTION libdevel DEPENDS "${dev_depends}" CONFLICTS libchicane-solver-dev
   SUGGESTS chicane-doc
   SUMMARY "model predictive control of cars - C++ library"
@@ -149,23 +186,28 @@ if(TARGET chicane_app)
   install(FILES ${debian_dir}/chicane.desktop DESTINATION share/applications COMPONENT deb_chicane EXCLUDE_FROM_ALL)
   install(FILES web/public/favicon.svg DESTINATION share/icons/hicolor/scalable/apps RENAME chicane.svg COMPONENT deb_chicane
           EXCLUDE_FROM_ALL)
-  install(FILES ${debian_dir}/chicane-serve@.service ${debian_dir}/chicane-ros@.service DESTINATION lib/systemd/system COMPONENT deb_chicane EXCLUDE_FROM_ALL)
+  install(FILES ${debian_dir}/chicane-serve@.service DESTINATION lib/systemd/system COMPONENT deb_chicane EXCLUDE_FROM_ALL)
+  install(FILES ${debian_dir}/chicane-ros@.service DESTINATION lib/systemd/system COMPONENT deb_chicane-ros EXCLUDE_FROM_ALL)
 
   # The tarball brings along the libraries that not every system has; the C library is the system's.
   set(private_libraries lib/chicane)
   set_target_properties(chicane_app PROPERTIES INSTALL_RPATH "$ORIGIN/../${private_libraries}")
   target_link_options(chicane_app PRIVATE -Wl,--disable-new-dtags)  # an RPATH, which holds for the libraries of libraries, too
+  set(program_files ${program_file})
   # Debian's libddsc has a path of its own, which keeps the loader from ours for what it needs: the program names it, too.
   if(CHICANE_HAVE_ROS)
+    list(APPEND program_files $<TARGET_FILE:chicane_ros_app>)
+    set_target_properties(chicane_ros_app PROPERTIES INSTALL_RPATH "$ORIGIN/../../${private_libraries}")
+    target_link_options(chicane_ros_app PRIVATE -Wl,--disable-new-dtags)
     foreach(library IN ITEMS ssl iceoryx_binding_c)
       find_library(CHICANE_${library}_OF_DDSC ${library})
       mark_as_advanced(CHICANE_${library}_OF_DDSC)
       if(CHICANE_${library}_OF_DDSC)
-        target_link_options(chicane_app PRIVATE "LINKER:--push-state,--no-as-needed,-l${library},--pop-state")
+        target_link_options(chicane_ros_app PRIVATE "LINKER:--push-state,--no-as-needed,-l${library},--pop-state")
       endif()
     endforeach()
   endif()
-  install(CODE "file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${program_file} RESOLVED_DEPENDENCIES_VAR libraries
+  install(CODE "file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${program_files} RESOLVED_DEPENDENCIES_VAR libraries
                      POST_EXCLUDE_REGEXES [[/(ld-linux.*|lib(c|m))[.]so]])
                 file(INSTALL \${libraries} DESTINATION \${CMAKE_INSTALL_PREFIX}/${private_libraries} FOLLOW_SYMLINK_CHAIN)"
           COMPONENT libraries EXCLUDE_FROM_ALL)

@@ -63,31 +63,57 @@ check_library() {
   timed "  the plant is driven a lap" in_bare sh -c 'cd / && /check/built/own_plant /check/plant.mcap'
 }
 
+check_ros() {
+  [ -n "${deb[chicane-ros]:-}" ] || return 0
+  ! in_bare chicane ros --domain 77 >"$log" 2>&1 || fail "chicane ros without its package: got success"
+  grep -q 'apt install ./chicane-ros_' "$log" || fail "chicane ros without its package does not say how to install it: $(cat "$log")"
+  timed "apt install ./chicane-ros_*.deb" apt install "${deb[chicane-ros]}"
+  say "  packages" "$(sed -n 's/^\([0-9]*\) upgraded, \([0-9]*\) newly installed.*/\2/p' "$log")"
+  say "  bytes of the package" "$(stat -c %s "$bare${deb[chicane-ros]}")"
+  timed "  a lap by chicane ros and chicane ros --simulate" in_bare sh -c \
+    'chicane ros --domain 77 --track oval --port 0 & chicane ros --domain 77 --simulate --track oval --laps 1; code=$?; kill $!; exit $code'
+}
+
+check_python() {
+  [ -n "${deb[python3-chicane]:-}" ] || return 0
+  timed "apt install ./python3-chicane_*.deb" apt install "${deb[python3-chicane]}"
+  timed "  a lap from Python" in_bare sh -c \
+    'cd / && python3 -c "import chicane; run = chicane.drive(laps=1); assert run[\"laps_completed\"] == 1"'
+}
+
 check_without_proc() {
   umount -l "$bare/proc" 2>/dev/null || true
   [ ! -e "$bare/proc/self" ] || fail "the bare system still has /proc"
   timed "without /proc: chicane drive --fast --laps 1" in_bare chicane drive --fast --laps 1
   timed "without /proc: README's program" in_bare sh -c 'cd / && /check/lap'
+  [ -z "${deb[chicane-ros]:-}" ] || timed "without /proc: chicane ros starts" in_bare sh -c \
+    'chicane ros --interface none-such; test $? = 3'
 }
 
 check_purge() {
-  timed "purge of all packages" apt purge chicane libchicane-dev chicane-doc
+  timed "purge of all packages" apt purge "${!deb[@]}"
   local left
   left=$(traces)
   [ -z "$left" ] || fail "purge has left $left"
-  ! in_bare dpkg -l 'chicane*' 'libchicane*' 2>/dev/null | grep -E '^[a-z]c' || fail "purge has left settings"
+  ! in_bare dpkg -l '*chicane*' 2>/dev/null | grep -E '^[a-z]c' || fail "purge has left settings"
 }
 
 if [ "${1:-}" = --in ]; then
   bare=$2 log=$2/check.log
   declare -A deb
   mkdir "$bare/check"
-  cp "$3"/chicane*.deb "$3"/libchicane*.deb "$3"/chicane-*.tar.zst "$bare/check"
-  for package in chicane libchicane-dev chicane-doc; do deb[$package]=/check/$(cd "$3" && echo "${package}"_*.deb); done
+  cp "$3"/*.deb "$3"/chicane-*.tar.zst "$bare/check"
+  for package in chicane libchicane-dev chicane-doc chicane-ros python3-chicane; do  # the last two where they were built
+    file=$(cd "$3" && echo "${package}"_*.deb)
+    [ ! -e "$3/$file" ] || deb[$package]=/check/$file
+  done
+  for package in chicane libchicane-dev chicane-doc; do [ -n "${deb[$package]:-}" ] || fail "$3: there is no package $package"; done
   [ -e "$bare/proc/self/exe" ] || fail "the bare system has no /proc to begin with"
   check_tarball
   check_program
+  check_ros
   check_library
+  check_python
   check_without_proc
   check_purge
   mount -t proc proc "$bare/proc" 2>/dev/null || true  # as mmdebstrap left it

@@ -10,12 +10,12 @@ run_packages=(
 bench_packages=(libeigen3-dev coinor-libipopt-dev liblapack-dev libblas-dev)
 # For `chicane ros`, on top of the first.
 ros_packages=(cyclonedds-dev libssl-dev)
-# To make packages of all that the program can do, on top of the first.
-package_packages=(dpkg-dev libnlopt-dev "${ros_packages[@]}")
 # For the Python module, on top of the first.
 python_packages=(python3 python3-dev python3-venv python3-pip python3-numpy pybind11-dev)
+# To make packages of all that the program can do, on top of the first.
+package_packages=(dpkg-dev libnlopt-dev "${ros_packages[@]}" "${python_packages[@]}")
 # To build and run the tests, on top of the first.
-test_packages=("${bench_packages[@]}" "${package_packages[@]}" "${python_packages[@]}" libgtest-dev libgmock-dev libfastcdr-dev locales python3-pandas mypy groff fish parallel)
+test_packages=("${bench_packages[@]}" "${package_packages[@]}" libgtest-dev libgmock-dev libfastcdr-dev locales python3-pandas mypy groff fish parallel)
 # For a page that drives without a program, on top of the first: 1 GB.
 page_packages=(emscripten)
 # For the slow tests, on top of all of those.

@@ -10,7 +10,7 @@ constexpr Command kCommands[] = {
     {"drive", "Controller and simulator in one process, with a dashboard", drive},
     {"serve", "Controller for an external simulator, as the original program was", serve},
     {"simulate", "Simulator for an external controller, as the original game was", simulate},
-    {"ros", "Controller as a ROS 2 node without ROS, or the simulator for one", ros_node},
+    {"ros", "Controller as a ROS 2 node without ROS, or the simulator for one", ros},
     {"limit", "Fastest lap and racing line of a car on a track", limit},
     {"replay", "Show recorded runs, verify them bit for bit, or drive on from within one", replay},
     {"report", "Recorded runs as one HTML page that needs nothing else", report_logs},

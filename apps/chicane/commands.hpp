@@ -23,7 +23,8 @@ struct Command {
 [[nodiscard]] ExitCode drive(const Options& options);
 [[nodiscard]] ExitCode serve(const Options& options);
 [[nodiscard]] ExitCode simulate(const Options& options);
-[[nodiscard]] ExitCode ros_node(const Options& options);
+/// Becomes the program chicane-ros (ros_main.cpp); kUsage where that is not installed.
+[[nodiscard]] ExitCode ros(const Options& options);
 [[nodiscard]] ExitCode limit(const Options& options);
 [[nodiscard]] ExitCode replay(const Options& options);
 [[nodiscard]] ExitCode report_logs(const Options& options);

@@ -424,6 +424,7 @@ std::variant<Options, Done> parse_command_line(int count, const char* const* wor
     return explain(app, error);
   }
   options.command = app.get_subcommands().front()->get_name();
+  options.words.assign(words + 2, words + count);
   return options;
 }
 

@@ -16,11 +16,12 @@ enum ExitCode : int {
   kSuccess = 0,
   kRunFailed = 1,    ///< the run left the road, or did not do all its laps
   kUsage = 2,        ///< wrong usage or a bad input file
-  kEnvironment = 3,  ///< port in use, no permission, chicane-bench not built
+  kEnvironment = 3,  ///< port in use, no permission, a program of its own that is not there
 };
 
 struct Options {
   std::string command;
+  std::vector<std::string> words{};  ///< behind the command, as they were given
 
   std::string scenario_file;  ///< empty: none
   std::vector<std::pair<std::string, std::string>>

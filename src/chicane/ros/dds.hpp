@@ -66,10 +66,8 @@ class Reader {
 /// thread, but for Writer. One object for a domain and process at a time.
 class Participant {
  public:
-  /// kIo with the sentence that helps: no such interface, or a build without Cyclone DDS.
+  /// kIo with the sentence that helps, as where there is no such interface.
   [[nodiscard]] static Result<std::unique_ptr<Participant>> create(const NetworkOptions& options);
-  /// This build can talk DDS.
-  [[nodiscard]] static bool is_available() noexcept;
 
   virtual ~Participant() = default;
   /// `topic` and `type` as in ROS 2: "/odom", "nav_msgs/msg/Odometry". Gone before the participant.

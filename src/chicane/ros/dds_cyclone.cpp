@@ -238,8 +238,6 @@ class CycloneParticipant final : public Participant {
 
 }  // namespace
 
-bool Participant::is_available() noexcept { return true; }
-
 Result<std::unique_ptr<Participant>> Participant::create(const NetworkOptions& options) {
   // What Cyclone would print: of a refused interface the error says as much, and of a stranger's packets
   // there may be any number.

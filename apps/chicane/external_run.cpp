@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "external_run.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <utility>
+
+#include "access.hpp"
+#include "chicane/live/assets.hpp"
+#include "chicane/live/description.hpp"
+#include "chicane/live/run_limit.hpp"
+#include "chicane/protocol/json_report.hpp"
+#include "chicane/run/make.hpp"
+#include "chicane/run/racing.hpp"
+#include "experiment.hpp"
+#include "guard_notice.hpp"
+#include "progress.hpp"
+#include "record.hpp"
+
+namespace chicane::apps {
+namespace {
+
+/// Our road and car; the controller is not known.
+protocol::Run description_of_external(const scenario::Scenario& scenario, const path::Track& track) {
+  protocol::Run run;
+  run.controller = run.preset = "external";
+  run.vehicle = scenario.vehicle;
+  run.mode = recording::kSimulateMode;
+  run.limit = live::RunLimit::first_answer(track);
+  live::describe(track, run);
+  return run;
+}
+
+}  // namespace
+
+Result<wire::ServeSummary> drive_external_car(const Options& options, scenario::Scenario scenario,
+                                              std::optional<path::Track> track,
+                                              const std::function<std::string(std::uint16_t)>& partner,
+                                              const std::atomic<bool>& stop,
+                                              const live::ServeFunction& serve) {
+  Result<std::unique_ptr<controller::Controller>> controller = run::make_controller(scenario);
+  if (!controller) return fail(controller.error());
+  // What is recorded says where the guard knew the road from, so that a replay computes the same.
+  if (!track) scenario.guard.road = safety::GuardRoad::kWaypoints;
+  const Result<net::ServerOptions> server = server_options(options);
+  if (!server) return fail(server.error());
+  auto planned = run::plan_lap(scenario, track ? &*track : nullptr);
+  if (!planned) return fail(planned.error());
+  live::ServedRun served(*server, scenario, std::move(*controller), std::move(track), live::embedded_assets(),
+                         std::move(*planned));
+  const auto kept = KeptRun::start(options, served.description(), scenario, served.step_budget());
+  if (!kept) return fail(kept.error());
+  print_guard_notice(options, scenario.guard);
+  Progress progress;
+  auto summary = served.run(
+      (*kept)->recorder(),
+      {.on_frame = [&](const telemetry::Frame& frame) { progress.show(frame); },
+       .on_lap = [&](const telemetry::CompletedLap& lap) { progress.say(line_of(lap)); },
+       .say = [&](std::string_view line) { progress.say(line); }},
+      [&](std::uint16_t port) {
+        progress.say(fmt::format("{} ({}) waits for {}; dashboard at {} (Ctrl-C ends)", scenario.preset,
+                                 scenario.controller, partner(port), link(*server, port)));
+      },
+      stop, serve);
+  if (const Result<void> done = (*kept)->finish(); summary && !done) return fail(done.error());
+  return summary;
+}
+
+ExitCode print(const Options& options, const wire::ServeSummary& summary, std::string_view answers,
+               std::string_view partners) {
+  fmt::print(stderr, "{} {} to {} {}; {} unusable messages, {} commands changed by the gate\n",
+             summary.answers, answers, summary.connections, partners, summary.unusable,
+             summary.interventions);
+  fmt::print("{}", options.is_json ? protocol::to_json(summary.run) : protocol::to_table(summary.run));
+  return kSuccess;
+}
+
+Result<wire::SimulateReport> drive_by_external(const Options& options, const ExternalController& external,
+                                               const std::atomic<bool>& stop,
+                                               const SimulateFunction& simulate) {
+  const Result<scenario::Scenario> scenario = experiment(options);
+  if (!scenario) return fail(scenario.error());
+  const Result<path::Track> track = run::make_track(*scenario);
+  if (!track) return fail(track.error());
+  const auto kept = KeptRun::start(options, description_of_external(*scenario, *track), *scenario, 0.0);
+  if (!kept) return fail(kept.error());
+  live::RunLimit limit;
+  if (external.wants_limit) limit.search(*track, *scenario);
+  Result<wire::SimulateReport> done;
+  {
+    Progress progress;
+    if (external.on_start) progress.say(external.on_start(*scenario, *track));
+    done = simulate(*scenario, *track,
+                    {.on_frame =
+                         [&](const telemetry::Frame& frame) {
+                           if (auto news = limit.news()) (*kept)->record(std::move(news));
+                           (*kept)->record(frame);
+                           progress.show(frame);
+                         },
+                     .on_lap =
+                         [&](const telemetry::CompletedLap& lap) {
+                           (*kept)->record(lap);
+                           progress.say(line_of(lap));
+                         },
+                     .log = [&](std::string_view line) { progress.say(line); }});
+  }
+  if (done && external.wants_limit) {
+    if (limit.is_awaited(done->run) && !stop)
+      fmt::print(stderr, "the limit is still being computed; Ctrl-C does without\n");
+    limit.compare(done->run, stop);
+    if (auto news = limit.news()) (*kept)->record(std::move(news));
+  }
+  if (const Result<void> finished = (*kept)->finish(); done && !finished) return fail(finished.error());
+  return done;
+}
+
+}  // namespace chicane::apps

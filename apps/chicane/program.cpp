@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "program.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <variant>
+
+#include "chicane/base/instruction_set.hpp"
+
+namespace chicane::apps {
+namespace {
+
+ExitCode parse_and_run(int count, const char* const* words, ExitCode (*run)(const Options&)) {
+  const std::variant<Options, Done> parsed = parse_command_line(count, words);
+  if (const Done* done = std::get_if<Done>(&parsed)) return done->code;
+  if (const auto set = environment_instruction_set(); !set) {
+    std::fprintf(stderr, "chicane: %s\n", set.error().message.c_str());
+    return kUsage;
+  }
+  const ExitCode code = run(std::get<Options>(parsed));
+  if (std::fflush(stdout) == 0) return code;
+  std::fprintf(stderr, "chicane: the results could not be written: %s\n", std::strerror(errno));
+  return kEnvironment;
+}
+
+}  // namespace
+
+int program(int count, const char* const* words, ExitCode (*run)(const Options&)) noexcept {
+  try {
+    return parse_and_run(count, words, run);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "chicane: %s\n", e.what());
+  } catch (...) {
+    std::fprintf(stderr, "chicane: unknown error\n");
+  }
+  return kEnvironment;
+}
+
+}  // namespace chicane::apps
