@@ -20,13 +20,18 @@ double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(
 
 }  // namespace
 
-Result<RangeScanner> RangeScanner::create(const path::Track& track, const RangeScannerOptions& options) {
+Result<void> check(const RangeScannerOptions& options) {
   const bool is_sound = options.beams >= 2 && options.beams <= 100'000 && options.field_of_view > 0.0 &&
                         options.field_of_view <= kTwoPi && options.range_max > 0.0 && options.spacing > 0.0;
   if (!is_sound)
     return fail(
         ErrorCode::kInvalidArgument,
         "scanner: expected beams in [2, 100000], a field of view in (0, 2 pi], range and spacing > 0");
+  return {};
+}
+
+Result<RangeScanner> RangeScanner::create(const path::Track& track, const RangeScannerOptions& options) {
+  if (const Result<void> sound = check(options); !sound) return fail(sound.error());
   RangeScanner scanner;
   scanner.options_ = options;
   scanner.add_wall(track, 1.0);

@@ -16,8 +16,16 @@ struct RangeScannerOptions {
   int beams = 1080;                   ///< [2, 100000]
   double field_of_view = 4.71238898;  ///< from the first beam to the last [rad], (0, 2π]
   double range_max = 30.0;            ///< beams that hit nothing nearer report infinity [m], > 0
-  double spacing = 0.05;              ///< between the points of the walls [m], > 0
+  double spacing = 0.05;              ///< between the points of the walls of a road [m], > 0
+
+  /// From the sensor's x axis to the first beam, on the right [rad].
+  [[nodiscard]] double first_angle() const noexcept { return -0.5 * field_of_view; }
+  /// Between two beams [rad].
+  [[nodiscard]] double increment() const noexcept { return field_of_view / (beams - 1); }
 };
+
+/// kInvalidArgument for options out of range.
+[[nodiscard]] Result<void> check(const RangeScannerOptions& options);
 
 /// Distances from a point to the walls of a road, which stand along its edges, outside the kerbs. Where a
 /// road crosses itself the crossing is open. Immutable after create(): safe from many threads.
@@ -36,9 +44,9 @@ class RangeScanner {
 
   [[nodiscard]] const RangeScannerOptions& options() const noexcept { return options_; }
   /// From the sensor's x axis to the first beam [rad].
-  [[nodiscard]] double first_angle() const noexcept { return -0.5 * options_.field_of_view; }
+  [[nodiscard]] double first_angle() const noexcept { return options_.first_angle(); }
   /// Between two beams [rad].
-  [[nodiscard]] double increment() const noexcept { return options_.field_of_view / (options_.beams - 1); }
+  [[nodiscard]] double increment() const noexcept { return options_.increment(); }
   /// The walls as polylines in W [m], for drawing and tests.
   [[nodiscard]] std::vector<std::vector<Vec2>> walls() const;
 
