@@ -88,6 +88,23 @@ TEST(CarMessages, AreReadAsTheyWereWritten) {
   EXPECT_EQ(decode_bool(encode_bool(false)), false);
 }
 
+TEST(CarMessages, TransformsAndTimesAreReadAsTheyWereWritten) {
+  const std::string bytes = encode(TransformMessage{
+      .stamp = kStamp, .frame = "map", .child_frame = "odom", .pose = {.x = 1.0, .y = -2.0, .psi = 0.5}});
+  const auto transforms = decode_transforms(bytes);
+  ASSERT_TRUE(transforms);
+  ASSERT_EQ(transforms->size(), 1U);
+  EXPECT_EQ((*transforms)[0].stamp, kStamp);
+  EXPECT_EQ((*transforms)[0].frame, "map");
+  EXPECT_EQ((*transforms)[0].child_frame, "odom");
+  EXPECT_EQ((*transforms)[0].pose.y, -2.0);
+  EXPECT_NEAR((*transforms)[0].pose.psi, 0.5, 1e-12);  // by way of a quaternion
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_FALSE(decode_transforms(std::string_view(bytes).substr(0, size))) << size;
+  EXPECT_EQ(decode_clock(encode_clock(kStamp)), kStamp);
+  EXPECT_FALSE(decode_clock(encode_clock(kStamp).substr(0, 11)));
+}
+
 TEST(CarMessages, AStopIsReadAsItWasWrittenAndRefusedWhenItIsUnsound) {
   StopMessage message{.stamp = kStamp};
   message.stop.size = 3;

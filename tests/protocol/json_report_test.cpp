@@ -145,5 +145,27 @@ TEST(JsonReport, TheTableSaysHowItEnded) {
   EXPECT_THAT(to_table(run), HasSubstr("not completed: time limit of 600 s reached"));
 }
 
+TEST(JsonReport, IsReadAsItWasWritten) {
+  const auto read = read_run(to_json(example()));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->track, "lakeside");
+  EXPECT_TRUE(read->completed);
+  EXPECT_EQ(read->laps_completed, 1);
+  EXPECT_NEAR(read->latency, 0.1, 1e-12);  // by way of milliseconds
+  ASSERT_EQ(read->laps.size(), 1U);
+  EXPECT_EQ(read->laps[0].lap_time, 28.5);
+  EXPECT_EQ(read->laps[0].min_edge_distance, 0.75);
+  EXPECT_EQ(read->laps[0].sector_times[1], 9.5);
+  EXPECT_NEAR(read->step_time.p50, 25e-6, 1e-12);  // by way of microseconds
+  EXPECT_TRUE(completed_on_road(*read));
+}
+
+TEST(JsonReport, OtherTextIsNoRun) {
+  for (const char* text : {"", "{", "[]", "{}", R"({"laps": 3, "total": {}, "completed": true})",
+                           R"({"laps": [], "total": {}, "completed": 1})"})
+    EXPECT_FALSE(read_run(text)) << text;
+  EXPECT_TRUE(read_run(R"({"laps": [1, {"sector_times_s": [null]}], "total": 7, "completed": false})"));
+}
+
 }  // namespace
 }  // namespace chicane::protocol

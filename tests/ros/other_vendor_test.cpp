@@ -121,6 +121,7 @@ TEST(OtherVendor, WritesStopsFlagsAndParametersAsWeDo) {
   for (const double value : {0.1, 1.0, 2.0, 0.3, -0.4}) other.put(std::vector<double>{value});
   EXPECT_EQ(encode(stop), other.bytes());
   EXPECT_EQ(encode_bool(true), Other().put(true).bytes());
+  EXPECT_EQ(encode_clock(kStamp), Other().stamp().bytes());
   EXPECT_EQ(encode_names_request({.call = {7, 8}, .names = {"a"}}),
             Other()
                 .put(std::uint64_t{7}, std::int64_t{8}, std::vector<std::string>{"a"}, std::uint64_t{0})

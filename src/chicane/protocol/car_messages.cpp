@@ -233,6 +233,20 @@ std::string encode(const TransformMessage& message) {
   return to.bytes();
 }
 
+std::optional<std::vector<TransformMessage>> decode_transforms(std::string_view bytes) {
+  constexpr std::size_t kSmallestTransform = 72;
+  CdrSource from(bytes);
+  std::vector<TransformMessage> transforms;
+  for (std::uint32_t i = from.count(kSmallestTransform); i > 0 && from.ok(); --i) {
+    TransformMessage transform;
+    get_header(from, transform);
+    transform.child_frame = from.text();
+    transform.pose = get_pose(from);
+    transforms.push_back(std::move(transform));
+  }
+  return checked(from, std::move(transforms));
+}
+
 std::string encode(const StopMessage& message) {
   const auto size = static_cast<std::size_t>(message.stop.size);
   CdrWriter to{64 + 5 * (8 + sizeof(double) * size)};
@@ -275,6 +289,14 @@ std::optional<StopMessage> decode_stop(std::string_view bytes) {
     is_sound = stop.points[i].time >= stop.points[i - 1].time;
   if (!is_sound) return std::nullopt;
   return checked(from, std::move(message));
+}
+
+std::string encode_clock(std::int64_t time) { return CdrWriter{16}.stamp_ns(time).bytes(); }
+
+std::optional<std::int64_t> decode_clock(std::string_view bytes) {
+  CdrSource from(bytes);
+  const std::int64_t time = from.stamp();
+  return from.ok() ? std::optional(time) : std::nullopt;
 }
 
 std::string encode_bool(bool value) { return CdrWriter{16}.put(value).bytes(); }

@@ -101,6 +101,8 @@ struct TransformMessage {
   model::Pose pose{};  ///< of the child frame
 };
 [[nodiscard]] std::string encode(const TransformMessage& message);
+/// All transforms of a message.
+[[nodiscard]] std::optional<std::vector<TransformMessage>> decode_transforms(std::string_view bytes);
 
 /// chicane_msgs/msg/StopPlan: times of the plan are [s] after the stamp.
 struct StopMessage {
@@ -111,6 +113,10 @@ struct StopMessage {
 [[nodiscard]] std::string encode(const StopMessage& message);
 /// None also for a plan with numbers that are not finite, or with times that decrease.
 [[nodiscard]] std::optional<StopMessage> decode_stop(std::string_view bytes);
+
+inline constexpr std::string_view kClockType = "rosgraph_msgs/msg/Clock";
+[[nodiscard]] std::string encode_clock(std::int64_t time);
+[[nodiscard]] std::optional<std::int64_t> decode_clock(std::string_view bytes);
 
 inline constexpr std::string_view kBoolType = "std_msgs/msg/Bool";
 [[nodiscard]] std::string encode_bool(bool value);
