@@ -9,7 +9,7 @@ run_packages=(
 # To compare with Ipopt in `chicane bench`, on top of those.
 bench_packages=(libeigen3-dev coinor-libipopt-dev liblapack-dev libblas-dev)
 # For `chicane ros`, on top of the first.
-ros_packages=(cyclonedds-dev libssl-dev)
+ros_packages=(cyclonedds-dev libssl-dev libpng-dev)
 # For the Python module, on top of the first.
 python_packages=(python3 python3-dev python3-venv python3-pip python3-numpy pybind11-dev)
 # To make packages of all that the program can do, on top of the first.
@@ -19,7 +19,7 @@ test_packages=("${bench_packages[@]}" "${package_packages[@]}" libgtest-dev libg
 # For a page that drives without a program, on top of the first: 1 GB.
 page_packages=(emscripten)
 # For the slow tests, on top of all of those.
-slow_test_packages=(jupyter-nbconvert python3-ipykernel python3-matplotlib python3-torch openmpi-bin slurm-wlm munge mmdebstrap lintian "${page_packages[@]}")
+slow_test_packages=(jupyter-nbconvert python3-ipykernel python3-matplotlib python3-torch openmpi-bin slurm-wlm munge mmdebstrap lintian libfastrtps-dev cyclonedds-tools "${page_packages[@]}")
 # To run tools/check.sh, on top of those.
 check_packages=(clang-format clang-tidy)
 

@@ -77,6 +77,9 @@ struct Options {
     std::string odom_topic = "/ego_racecar/odom", drive_topic = "/drive", imu_topic = "/imu";
     std::string autoware_topic{}, path_topic{};  ///< empty: none
     std::string map_frame = "map", base_frame = "ego_racecar/base_link", base_at = "rear-axle";
+    bool is_time_simulated = false;
+    double pace = 0.0;       ///< seconds of the simulator in one of the clock; 0: one, without /clock
+    std::string map_file{};  ///< whose walls /scan sees; empty: those of the track
     std::string drive_by = "speed";
     double speed_lead = 0.25;  ///< [s]
     std::string odom_qos = "best-effort", drive_qos = "reliable";

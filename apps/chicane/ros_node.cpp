@@ -34,6 +34,9 @@ ros::NodeOptions node_of(const Options& options) {
   node.topics.path = told.path_topic;
   node.topics.imu = told.imu_topic;
   node.frames = {.map = told.map_frame, .odom = told.map_frame, .base = told.base_frame};
+  node.is_time_simulated = told.is_time_simulated;
+  node.pace = told.pace;
+  node.map_file = told.map_file;
   node.drive = {.is_by_speed = told.drive_by == "speed", .speed_lead = told.speed_lead};
   node.is_base_at_rear_axle = told.base_at == "rear-axle";
   node.odom_qos.is_reliable = told.odom_qos == "reliable";

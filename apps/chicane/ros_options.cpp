@@ -47,6 +47,23 @@ void add_ros_network(CLI::App& command, Options& options) {
                   "centre of mass")
       ->check(CLI::IsMember({"rear-axle", "centre-of-mass"}))
       ->capture_default_str();
+  CLI::Option* const simulates = command.get_option("--simulate");
+  command
+      .add_flag("--use-sim-time", ros.is_time_simulated,
+                "Count time by /clock, as a simulator sends it, in place of this machine's")
+      ->excludes(simulates);
+  command
+      .add_option("--pace", ros.pace,
+                  "With --simulate: seconds of the simulator in a second of the clock; sends /clock")
+      ->type_name("X")
+      ->check(CLI::Range(0.05, 20.0))
+      ->needs(simulates);
+  command
+      .add_option("--map", ros.map_file,
+                  "With --simulate: /scan sees the walls of this occupancy map, as map_server reads it, in "
+                  "place of the track's edges")
+      ->type_name("FILE.yaml")
+      ->needs(simulates);
   command.add_option("--drive-by", ros.drive_by, "What of a drive message the car follows")
       ->check(CLI::IsMember({"speed", "acceleration"}))
       ->capture_default_str();

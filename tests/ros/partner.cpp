@@ -10,11 +10,20 @@
 // twice            each message twice, each tenth late
 // garbage          now and then bytes that are no message
 // no-numbers       now and then numbers that are not finite
+// odom-frame       odometry in a frame that a transform leads to
+// measure          prints the time from odometry to command
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <map>
+#include <memory>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "chicane/protocol/car_messages.hpp"
 #include "chicane/protocol/parameter_messages.hpp"
@@ -42,6 +51,7 @@ void send(Writer& writer, const std::string& fault, int count) {
   OdometryMessage message = standing();
   if (fault == "clock" && count > 100) message.stamp += kJump;
   if (fault == "garbage" && count % 10 == 5) return void(writer.write(std::string("\0\1\0\0what", 8)));
+  if (fault == "odom-frame") message.frame = "odom";
   if (fault == "no-numbers" && count % 10 == 0) message.pose.x = std::numeric_limits<double>::quiet_NaN();
   if (fault == "twice" && count % 10 == 0) message.stamp -= 30'000'000;
   writer.write(encode(message));
@@ -56,6 +66,37 @@ int tell_stop(Participant& node, bool wanted) {
   (*writer)->write(chicane::protocol::encode_bool(wanted));
   std::this_thread::sleep_for(milliseconds{100});
   return 0;
+}
+
+/// Listens to both topics, and prints how long after an odometry its command came.
+int measure(Participant& node, std::chrono::steady_clock::time_point end) {
+  auto odometry = node.reader(kOdometry, std::string(OdometryMessage::kType), {.is_reliable = false});
+  auto drive =
+      node.reader("/drive", std::string(chicane::protocol::DriveMessage::kType), {.is_reliable = false});
+  if (!odometry || !drive) return 3;
+  std::map<std::int64_t, std::chrono::steady_clock::time_point> asked;
+  std::vector<double> answers;  // [ms]
+  while (std::chrono::steady_clock::now() < end) {
+    node.wait(milliseconds{20});
+    const auto now = std::chrono::steady_clock::now();
+    for (const auto& sample : (*odometry)->take())
+      if (const auto message = chicane::protocol::decode_odometry(sample.bytes)) asked[message->stamp] = now;
+    for (const auto& sample : (*drive)->take()) {
+      const auto message = chicane::protocol::decode_drive(sample.bytes);
+      const auto since = message ? asked.find(message->stamp) : asked.end();
+      if (since != asked.end())
+        answers.push_back(std::chrono::duration<double, std::milli>(now - since->second).count());
+    }
+  }
+  std::sort(answers.begin(), answers.end());
+  const auto quantile = [&](double share) {
+    return answers.empty()
+               ? -1.0
+               : answers[static_cast<std::size_t>(share * static_cast<double>(answers.size() - 1))];
+  };
+  std::printf("{\"answered\": %zu, \"p50_ms\": %.3f, \"p999_ms\": %.3f}\n", answers.size(), quantile(0.5),
+              quantile(0.999));
+  return answers.empty() ? 1 : 0;
 }
 
 /// 0 when the service said that it did.
@@ -88,6 +129,7 @@ int main(int count, char** words) {
   if (!node) return 3;
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{std::atoi(words[2])};
   if (fault == "stop" || fault == "go") return tell_stop(**node, fault == "stop");
+  if (fault == "measure") return measure(**node, end);
   if (fault == "set") return set_weight(**node, end);
   if (fault == "reliable-reader") {
     auto reader = (*node)->reader("/drive", std::string(chicane::protocol::DriveMessage::kType), {});
@@ -98,7 +140,18 @@ int main(int count, char** words) {
                                                  : std::string(OdometryMessage::kType);
   auto writer = (*node)->writer(kOdometry, type, {.is_reliable = fault != "best-effort"});
   if (!writer) return 3;
+  std::unique_ptr<Writer> transforms;
+  if (fault == "odom-frame") {
+    auto made =
+        (*node)->writer("/tf", std::string(chicane::protocol::TransformMessage::kType), {.depth = 100});
+    if (!made) return 3;
+    transforms = std::move(*made);
+  }
   for (int i = 1; std::chrono::steady_clock::now() < end; ++i) {
+    if (transforms) {
+      transforms->write(encode(chicane::protocol::TransformMessage{
+          .stamp = standing().stamp, .frame = "map", .child_frame = "odom", .pose = {.x = 1.0}}));
+    }
     send(**writer, fault, i);
     std::this_thread::sleep_for(milliseconds{20});
   }

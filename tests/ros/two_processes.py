@@ -3,7 +3,10 @@
 
     two_processes.py CHICANE "" PARTNER          a lap like that of `drive`, a parameter set by its service; kill -9 of
                                                  the controller, then of the simulator
-    two_processes.py CHICANE --laps              three laps on two tracks, with both meanings of a drive message
+    two_processes.py CHICANE --laps PARTNER      three laps on two tracks, with both meanings of a drive message
+    two_processes.py CHICANE --pace              both in simulated time, by /clock at half the pace
+    two_processes.py CHICANE --own PROGRAM       a program of examples/ros drives the simulated car
+    two_processes.py CHICANE --vendors RELAY     another vendor's DDS between the two (fast_relay.cpp): laps, and a bad network
     two_processes.py CHICANE --misfit PARTNER    partners that do it wrong (partner.cpp): each is said in words
 """
 import atexit
@@ -116,10 +119,13 @@ def laps(chicane, folder):
             name = f"{track}_{drive_by}"
             simulator = Program(chicane, folder, f"simulator_{name}", "--simulate", "--drive-by", drive_by, *words)
             controller = Program(chicane, folder, f"controller_{name}", "--track", track, "--drive-by", drive_by, "--port", "0")
+            listener = subprocess.Popen([sys.argv[3], str(DOMAIN), "30", "measure"], stdout=subprocess.PIPE, text=True)
             code, run = simulator.finish(400)
             controller.interrupt()
             both = [lap["lap_time_s"] for lap in run["laps"]]
             worst = max(abs(a - b) for a, b in zip(alone, both, strict=True))
+            heard = json.loads(listener.communicate()[0])
+            check(heard["answered"] > 100, f"from odometry to command {heard['p50_ms']:.2f} ms p50, {heard['p999_ms']:.2f} ms p99.9")
             check(code == 0 and worst <= CLOSE_S,
                   f"{track} by {drive_by}: {', '.join(f'{t:.2f}' for t in both)} s, at most {worst:.3f} s from one process")
 
@@ -135,6 +141,108 @@ def lap_by_path(chicane, folder):
     knows.interrupt()
 
 
+class Relay:
+    """fast_relay between a simulator's domain and a controller's."""
+
+    def __init__(self, folder, name, domain, *words):
+        self.out = Path(folder, name + ".relay")
+        with self.out.open("wb") as out:
+            self.process = subprocess.Popen([sys.argv[3], str(domain), str(domain + 1), "600", *words], stdout=out)
+        atexit.register(self.process.kill)
+
+    def finish(self):
+        self.process.terminate()
+        self.process.wait(timeout=20)
+        return json.loads(self.out.read_text())
+
+
+def both_ends(chicane, folder, name, domain, track, laps, *words):
+    """Simulator and controller, each in a domain of its own."""
+    simulator = Program(chicane, folder, f"simulator_{name}", "--simulate", "--track", track, "--laps", str(laps), domain=domain)
+    controller = Program(chicane, folder, f"controller_{name}", "--track", track, "--port", "0", *words, domain=domain + 1)
+    return simulator, controller
+
+
+def vendors(chicane, folder):
+    """The other vendor receives, decodes, encodes anew and sends every message."""
+    domain = 2 * (DOMAIN // 2)
+    for track in ("oval", "lakeside"):
+        alone = laps_alone(chicane, "--track", track, "--laps", "3")
+        relay = Relay(folder, track, domain)
+        simulator, controller = both_ends(chicane, folder, f"vendors_{track}", domain, track, 3)
+        code, run = simulator.finish(400)
+        controller.interrupt()
+        passed = relay.finish()
+        both = [lap["lap_time_s"] for lap in run["laps"]]
+        worst = max(abs(a - b) for a, b in zip(alone, both, strict=True))
+        check(code == 0 and worst <= CLOSE_S, f"{track} through Fast DDS: {', '.join(f'{t:.2f}' for t in both)} s, at most "
+              f"{worst:.3f} s from one process")
+        check(passed["different"] == 0, f"its bytes are ours, {passed['commands']} commands; from odometry to command "
+              f"{passed['p50_ms']:.2f} ms p50, {passed['p999_ms']:.2f} ms p99.9")
+    bad = [  # what the network does, and what the controller says of it
+        (["loss=0.1"], ""),
+        (["twice=0.2"], r"a message of /ego_racecar/odom came twice: such messages are left out"),
+        (["swap=0.1"], r"a message of /ego_racecar/odom came after a newer one: such messages are left out"),
+        (["loss=0.1", "twice=0.1", "swap=0.1"], r"such messages are left out"),
+        (["jump_s=5", "jump_at_s=6"], r"the clock of /ego_racecar/odom jumped by \+5.0 s"),
+        (["jump_s=-5", "jump_at_s=6"], r"the clock of /ego_racecar/odom jumped by -5.0 s"),
+    ]
+    for words, pattern in bad:
+        name = "_".join(words).replace("=", "")
+        relay = Relay(folder, name, domain, *words)
+        simulator, controller = both_ends(chicane, folder, name, domain, "oval", 1)
+        code, run = simulator.finish(120)
+        said = controller.wait_for(pattern, 1)[0] if pattern else "nothing to say"
+        controller.interrupt()
+        relay.finish()
+        check(code == 0, f"{' '.join(words)}: a lap of {run['laps'][0]['lap_time_s']:.2f} s, on the road; {said}")
+    relay = Relay(folder, "kill", domain)
+    simulator, controller = both_ends(chicane, folder, "kill", domain, "oval", 0)
+    controller.wait_for(r"odometry of", 20)
+    time.sleep(6.0)
+    controller.kill()
+    simulator.wait_for(r"no command in time: the car is stopped from", 5)
+    stands = simulator.wait_for(r"the car stands, its outermost wheel ([\d.]+) m (\w+) the road's edge", 10)
+    check(stands[2] == "inside", f"kill -9 of the controller: the car stands {stands[1]} m inside the edge")
+    other = Program(chicane, folder, "after", "--track", "oval", "--port", "0", domain=domain + 1)
+    simulator.wait_for(r"commands again", 30)
+    time.sleep(2.0)
+    relay.process.kill()  # the other vendor's program
+    other.wait_for(r"no odometry on /ego_racecar/odom for", 10)
+    stands = simulator.wait_for(r"(?s)commands again.*the car stands, its outermost wheel ([\d.]+) m (\w+) the road's edge", 15)
+    check(stands[2] == "inside", f"kill -9 of the program between: the car stands {stands[1]} m inside the edge, and both ends say why")
+    simulator.kill()
+    other.interrupt()
+    relay = Relay(folder, "qos", domain, "best-effort")
+    simulator, controller = both_ends(chicane, folder, "qos", domain, "oval", 1, "--odom-qos", "reliable")
+    said = controller.wait_for(r"is sent best effort by a partner, .*use --odom-qos best-effort", 20)[0]
+    check(True, f"best effort to a reliable reader: {said}")
+    simulator.kill()
+    controller.interrupt()
+    relay.finish()
+
+
+def laps_in_simulated_time(chicane, folder):
+    alone = laps_alone(chicane, "--track", "oval", "--laps", "1")
+    simulator = Program(chicane, folder, "slow_simulator", "--simulate", "--track", "oval", "--laps", "1", "--pace", "0.5")
+    controller = Program(chicane, folder, "slow_controller", "--track", "oval", "--port", "0", "--use-sim-time")
+    code, run = simulator.finish(60)
+    controller.wait_for("/clock is there: time is simulated", 1)
+    controller.interrupt()
+    lap = run["laps"][0]["lap_time_s"]
+    check(code == 0 and abs(lap - alone[0]) <= CLOSE_BESIDE_OTHERS_S and run["wall_time_s"] > 1.8 * lap,
+          f"by /clock at half the pace: {lap:.2f} s in {run['wall_time_s']:.1f} s, and {alone[0]:.2f} s in one process")
+
+
+def own_program(chicane, folder):
+    simulator = Program(chicane, folder, "own_simulator", "--simulate", "--track", "oval", "--laps", "1")
+    program = subprocess.Popen([sys.argv[3], str(DOMAIN)], stdout=subprocess.DEVNULL)
+    atexit.register(program.kill)
+    code, run = simulator.finish(90)
+    program.kill()
+    check(code == 0, f"a program of one's own drives a lap in {run['laps'][0]['lap_time_s']:.2f} s, on the road")
+
+
 def misfits(chicane, folder):
     partner = sys.argv[3]
     cases = [  # a fault of the partner, options of the controller, what is said
@@ -147,6 +255,7 @@ def misfits(chicane, folder):
         ("twice", [], r"a message of /ego_racecar/odom came (twice|after a newer one): such messages are left out"),
         ("garbage", [], r"got bytes that are no nav_msgs/msg/Odometry"),
         ("no-numbers", [], r"got numbers that are not finite"),
+        ("odom-frame", [], r"got the frame \"odom\", expected \"map\": brought there by /tf"),
         ("", [], r"no other program in domain \d+"),
     ]
     running = []
@@ -168,7 +277,7 @@ def misfits(chicane, folder):
 def main():
     chicane, mode = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else ""
     with tempfile.TemporaryDirectory() as folder:
-        {"": a_lap_and_two_kills, "--laps": laps, "--misfit": misfits}[mode](chicane, folder)
+        {"": a_lap_and_two_kills, "--laps": laps, "--misfit": misfits, "--own": own_program, "--pace": laps_in_simulated_time, "--vendors": vendors}[mode](chicane, folder)
 
 
 main()

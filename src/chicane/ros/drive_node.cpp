@@ -15,7 +15,10 @@
 #include "chicane/protocol/car_messages.hpp"
 #include "chicane/ros/car_sight.hpp"
 #include "chicane/ros/clock_watch.hpp"
+#include "chicane/ros/detail/car_topics.hpp"
 #include "chicane/ros/drive_command.hpp"
+#include "chicane/ros/frame_tree.hpp"
+#include "chicane/ros/node_clock.hpp"
 #include "chicane/ros/parameter_services.hpp"
 #include "chicane/ros/partner_watch.hpp"
 #include "chicane/ros/run_publisher.hpp"
@@ -39,75 +42,6 @@ constexpr double kStanding = 0.1;    // of a car in full size [m/s]
 constexpr milliseconds kLongestWait{50};
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
-std::int64_t system_now() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
-std::vector<WantedPartner> wanted_partners(const NodeOptions& node) {
-  std::vector<WantedPartner> wanted{{.topic = node.topics.odom,
-                                     .type = std::string(protocol::OdometryMessage::kType),
-                                     .qos = node.odom_qos,
-                                     .qos_option = "--odom-qos",
-                                     .topic_option = "--odom-topic"},
-                                    {.is_reader = false,
-                                     .topic = node.topics.drive,
-                                     .type = std::string(protocol::DriveMessage::kType),
-                                     .qos = node.drive_qos,
-                                     .qos_option = "--drive-qos",
-                                     .topic_option = "--drive-topic"}};
-  if (!node.topics.path.empty()) {
-    wanted.push_back({.topic = node.topics.path,
-                      .type = std::string(protocol::PathMessage::kType),
-                      .qos = {.is_reliable = false},
-                      .qos_option = "",
-                      .topic_option = "--path-topic"});
-  }
-  return wanted;
-}
-
-/// The topics of the car; null where their names are empty.
-struct CarTopics {
-  std::unique_ptr<Reader> odom{}, imu{}, path{}, kept_path{}, initial_pose{}, stop{};
-  std::unique_ptr<Writer> drive{}, autoware{}, stop_plan{};
-
-  static Result<CarTopics> create(Participant& at, const NodeOptions& node) {
-    CarTopics topics;
-    Result<void> made;
-    const auto read = [&](std::unique_ptr<Reader>& to, const std::string& name, std::string_view type,
-                          Qos qos) {
-      if (name.empty() || !made) return;
-      if (auto reader = at.reader(name, std::string(type), qos))
-        to = std::move(*reader);
-      else
-        made = fail(reader.error());
-    };
-    const auto send = [&](std::unique_ptr<Writer>& to, const std::string& name, std::string_view type,
-                          Qos qos) {
-      if (name.empty() || !made) return;
-      if (auto writer = at.writer(name, std::string(type), qos))
-        to = std::move(*writer);
-      else
-        made = fail(writer.error());
-    };
-    const Qos any{.is_reliable = false};
-    read(topics.odom, node.topics.odom, protocol::OdometryMessage::kType, node.odom_qos);
-    read(topics.imu, node.topics.imu, protocol::ImuMessage::kType, any);
-    read(topics.path, node.topics.path, protocol::PathMessage::kType, any);
-    // One that was sent before, too: a volatile reader gets none of those, and a transient local one no
-    // others.
-    read(topics.kept_path, node.topics.path, protocol::PathMessage::kType,
-         {.is_transient_local = true, .depth = 1});
-    read(topics.initial_pose, node.topics.initial_pose, protocol::PoseMessage::kType, {});
-    read(topics.stop, node.topics.stop, protocol::kBoolType, {});
-    send(topics.drive, node.topics.drive, protocol::DriveMessage::kType, node.drive_qos);
-    send(topics.autoware, node.topics.autoware, protocol::DriveMessage::kAutowareType, node.drive_qos);
-    send(topics.stop_plan, node.topics.stop_plan, protocol::StopMessage::kType, node.drive_qos);
-    if (!made) return fail(made.error());
-    return topics;
-  }
-};
 
 /// The controller's side of the topics, on the thread that calls run().
 class DriveNode {
@@ -125,6 +59,7 @@ class DriveNode {
         log_{hooks.log},
         hooks_{with_laps_published(hooks.drive())},
         drive_{options.drive(), std::move(controller), hooks_},
+        time_{node.is_time_simulated},
         sight_{options.scenario, node.topics.path.empty() ? options.track : nullptr,
                node.is_base_at_rear_axle},
         clock_{node.topics.odom},
@@ -134,19 +69,21 @@ class DriveNode {
 
   wire::ServeSummary run(const std::atomic<bool>& stop) {
     while (!stop) {
-      participant_->wait(patience(Clock::now()));
+      participant_->wait(patience(time_.now()));
+      read_clock();
       read_requests();
       if (parameters_) parameters_->serve();
+      read_transforms();
       read_path();
       read_odometry();
       read_imu();
-      const Clock::time_point now = Clock::now();
+      const Clock::time_point now = time_.now();
       if (is_stopped_) {
         play_stop(now);
       } else {
         cycle(now);
       }
-      look_at_partners(now);
+      look_at_partners(Clock::now());
     }
     summary_.delay = delay();
     summary_.run = drive_.summary();
@@ -156,7 +93,7 @@ class DriveNode {
  private:
   /// Until the next cycle without odometry is due.
   [[nodiscard]] std::chrono::nanoseconds patience(Clock::time_point now) const {
-    if (!is_driving_) return kLongestWait;
+    if (!is_driving_ || time_.is_simulated()) return kLongestWait;  // each tick of /clock ends it
     const double left = kLatest * habit_ - seconds(now - last_cycle_);
     return std::clamp<std::chrono::nanoseconds>(
         std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * left)), std::chrono::nanoseconds{100'000},
@@ -173,9 +110,49 @@ class DriveNode {
 
   [[nodiscard]] double delay() const { return options_.scenario.latency + turn_around_; }
 
+  void read_clock() {
+    if (!topics_.clock) return;
+    for (const Sample& sample : topics_.clock->take()) {
+      const auto time = protocol::decode_clock(sample.bytes);
+      if (!time) continue;
+      const std::string news = time_.tick(*time);
+      if (news.empty()) continue;
+      log_.say(news);
+      clock_.forget();
+      drive_.begin();
+      is_driving_ = false;
+    }
+  }
+
+  void read_transforms() {
+    for (Reader* reader : {topics_.fixed_transforms.get(), topics_.transforms.get()}) {
+      for (const Sample& sample : reader->take())
+        if (const auto transforms = protocol::decode_transforms(sample.bytes))
+          for (const protocol::TransformMessage& transform : *transforms) frames_.put(transform);
+    }
+  }
+
+  /// Where `frame` lies on the road's map: nowhere else, where no transform says so.
+  [[nodiscard]] model::Pose place_of(const std::string& frame) const {
+    return frames_.find(node_.frames.map, frame).value_or(model::Pose{});
+  }
+
+  /// Into the frame of the road. Says once whether there is a transform.
+  void bring_to_map(protocol::OdometryMessage& odometry) {
+    if (odometry.frame == node_.frames.map) return;
+    const auto place = frames_.find(node_.frames.map, odometry.frame);
+    if (has_transform_ != place.has_value()) {
+      has_transform_ = place.has_value();
+      log_.say(fmt::format("{}: got the frame \"{}\", expected \"{}\": {}", node_.topics.odom, odometry.frame,
+                           node_.frames.map,
+                           place ? "brought there by /tf" : "used as it is, without a transform on /tf"));
+    }
+    if (place) odometry.pose = composed(*place, odometry.pose);
+  }
+
   void read_odometry() {
     for (const Sample& sample : topics_.odom->take()) {
-      const Clock::time_point now = Clock::now();
+      const Clock::time_point now = time_.now();
       const auto message = protocol::decode_odometry(sample.bytes);
       if (!message) {
         ++summary_.unusable;
@@ -185,12 +162,13 @@ class DriveNode {
       }
       if (sample.writer != writer_) begin(sample.writer, *message);
       const bool is_new = clock_.accept(
-          message->stamp, std::chrono::nanoseconds(now.time_since_epoch()).count(), system_now());
+          message->stamp, std::chrono::nanoseconds(now.time_since_epoch()).count(), time_.stamp_now());
       if (const std::string news = clock_.news(); !news.empty()) log_.say(news);
       if (!is_new) continue;
       if (is_silent_) log_.say(fmt::format("{} again", node_.topics.odom));
       is_silent_ = false;
       odometry_ = *message;
+      bring_to_map(odometry_);
       arrived_ = now;
       moment_ = Clock::time_point(std::chrono::nanoseconds(clock_.moment()));
       is_fresh_ = true;
@@ -205,11 +183,8 @@ class DriveNode {
     drive_.begin();
     is_driving_ = false;
     habit_ = period_;
+    has_transform_.reset();
     log_.say(fmt::format("odometry of {} in {} by {}", first.child_frame, first.frame, node_.topics.odom));
-    if (first.frame != node_.frames.map) {
-      log_.say(fmt::format("{}: got the frame \"{}\", expected \"{}\": used as it is (--map-frame)",
-                           node_.topics.odom, first.frame, node_.frames.map));
-    }
   }
 
   /// A cycle, if one is due.
@@ -266,13 +241,14 @@ class DriveNode {
                                            : std::max(0.0, last_speed_);
     last_speed_ = act_speed;
     send(frame.result.command, act_speed, stamp, &drive_.stop(), frame.time);
-    const Clock::time_point sent = Clock::now();
+    const Clock::time_point sent = time_.now();
     turn_around_ += kHabit * (std::min(seconds(sent - received), period_) - turn_around_);
     sight_.sent(drive_.time(sent), frame.result.command);
     ++summary_.answers;
     if (frame.result.report.gated) ++summary_.interventions;
     drive_.finish();
-    publisher_->publish(drive_.frame(), 1e-9 * static_cast<double>(system_now()) - drive_.time(Clock::now()));
+    publisher_->publish(drive_.frame(),
+                        1e-9 * static_cast<double>(time_.stamp_now()) - drive_.time(time_.now()));
   }
 
   /// The stop goes before the command that it belongs to.
@@ -314,7 +290,7 @@ class DriveNode {
     if (wanted && !is_stopped_) {
       is_stopped_ = true;
       player_.emplace(options_.scenario.vehicle, period_, options_.scenario.guard.receiver);
-      player_->arrived(drive_.time(Clock::now()), drive_.stop());
+      player_->arrived(drive_.time(time_.now()), drive_.stop());
       stopping_ = drive_.frame().result.command;
       log_.say("stopped by request");
       return;
@@ -357,7 +333,13 @@ class DriveNode {
             fmt::format("{}: got bytes that are no {}", node_.topics.path, protocol::PathMessage::kType));
         continue;
       }
-      if (const Result<void> used = sight_.use_path(path->points); !used)
+      std::vector<Vec2> points = path->points;
+      const model::Pose place = path->frame == node_.frames.map ? model::Pose{} : place_of(path->frame);
+      for (Vec2& point : points) {
+        const model::Pose moved = composed(place, {.x = point.x(), .y = point.y()});
+        point = {moved.x, moved.y};
+      }
+      if (const Result<void> used = sight_.use_path(points); !used)
         log_.complain(fmt::format("{}: {}", node_.topics.path, used.error().message));
     }
   }
@@ -384,10 +366,14 @@ class DriveNode {
   void look_at_partners(Clock::time_point now) {
     if (seconds(now - looked_) < kLookPeriod) return;
     looked_ = now;
-    std::vector<int> matched{topics_.odom->matched(), topics_.drive ? topics_.drive->matched() : 0};
-    if (topics_.path) matched.push_back(topics_.path->matched());
-    for (const std::string& line : partners_.look(drive_.time(now), participant_->others(), matched))
+    const std::vector<Endpoint> others = participant_->others();
+    for (const std::string& line : partners_.look(drive_.time(now), others, topics_.matched()))
       log_.say(line);
+    const bool has_clock = std::any_of(others.begin(), others.end(), [](const Endpoint& other) {
+      return other.is_writer && other.topic == "/clock";
+    });
+    if (has_clock && !time_.is_simulated() && !std::exchange(has_said_clock_, true))
+      log_.say("/clock is sent by a partner: time is simulated; --use-sim-time counts by it");
   }
 
   const NodeOptions& node_;
@@ -399,8 +385,11 @@ class DriveNode {
   wire::SparseLog log_;
   run::ExternalDriveHooks hooks_;
   run::ExternalDrive drive_;
+  NodeClock time_;
   CarSight sight_;
   ClockWatch clock_;
+  FrameTree frames_;
+  std::optional<bool> has_transform_{};  ///< from the odometry's frame to the map's; said so
   PartnerWatch partners_;
   wire::ServeSummary summary_;
   protocol::StopMessage stop_message_;
@@ -421,6 +410,7 @@ class DriveNode {
   model::Command stopping_;  ///< the last command before the stop
   int odd_imu_ = 0;
   bool has_said_imu_ = false;
+  bool has_said_clock_ = false;
 };
 
 }  // namespace

@@ -37,6 +37,10 @@ struct NodeOptions {
   DriveOptions drive{};
   /// Of the odometry's child frame: the middle of the rear axle; false: the centre of mass.
   bool is_base_at_rear_axle = true;
+  bool is_time_simulated = false;  ///< the controller's time is that of /clock
+  /// Seconds of the simulator in a second of the clock, > 0; it then sends /clock. 0: as many, without.
+  double pace = 0.0;
+  std::string map_file{};  ///< of the simulator: /scan sees this occupancy map; empty: the road's edges
   Qos odom_qos{.is_reliable = false};  ///< of the controller's reader; the simulator sends reliably
   Qos drive_qos{};                     ///< of the controller's writer; the simulator reads best effort
 };

@@ -9,19 +9,23 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/car_messages.hpp"
 #include "chicane/ros/drive_command.hpp"
+#include "chicane/ros/map_file.hpp"
 #include "chicane/ros/partner_watch.hpp"
 #include "chicane/run/account.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/observe.hpp"
 #include "chicane/safety/stop_player.hpp"
 #include "chicane/sim/actuation_delay.hpp"
+#include "chicane/sim/map_scanner.hpp"
 #include "chicane/sim/range_scanner.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
@@ -35,6 +39,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double kCatchUp = 1.0 / 3.0;           // physics skips time it cannot catch up [s]
 constexpr double kStanding = 0.1;                // of a car in full size [m/s]
 constexpr double kScanPeriod = 0.025;            // of the Hokuyo UST-10LX [s]
+constexpr double kTickPeriod = 0.005;            // of /clock [s]
 constexpr double kScannerAhead = 0.275 / 0.307;  // of the rear axle, in wheelbases: as f1tenth_gym_ros has it
 constexpr double kLookPeriod = 0.5;              // between looks at partners [s]
 constexpr double kRangeMin = 0.02;               // [m]
@@ -69,7 +74,7 @@ std::vector<WantedPartner> wanted_partners(const NodeOptions& node) {
 /// Topics of the simulator.
 struct SimTopics {
   std::unique_ptr<Reader> drive{}, stop_plan{}, initial_pose{};
-  std::unique_ptr<Writer> odom{}, transform{}, fixed_transform{}, imu{}, scan{};
+  std::unique_ptr<Writer> odom{}, transform{}, fixed_transform{}, imu{}, scan{}, clock{};
 
   static Result<SimTopics> create(Participant& at, const NodeOptions& node) {
     SimTopics topics;
@@ -99,27 +104,61 @@ struct SimTopics {
     send(topics.fixed_transform, "/tf_static", protocol::TransformMessage::kType,
          {.is_transient_local = true, .depth = 1});
     send(topics.imu, node.topics.imu, protocol::ImuMessage::kType, {});
+    if (node.pace > 0.0) send(topics.clock, "/clock", protocol::kClockType, {});
     send(topics.scan, node.topics.scan, protocol::ScanMessage::kType, {});
     if (!made) return fail(made.error());
     return topics;
   }
 };
 
+/// What the laser sees: the walls of the road, or those of a map.
+class Walls {
+ public:
+  static Result<Walls> create(const path::Track& track, double size, const std::string& map_file) {
+    if (map_file.empty()) {
+      auto road = sim::RangeScanner::create(track, {.spacing = std::max(0.05, 0.5 * size)});
+      if (!road) return fail(road.error());
+      return Walls(std::move(*road));
+    }
+    const auto grid = read_map(map_file);
+    if (!grid) return fail(grid.error());
+    auto map = sim::MapScanner::create(*grid);
+    if (!map) return fail(map.error().code, map_file + ": " + map.error().message);
+    return Walls(std::move(*map));
+  }
+  void scan(const model::Pose& sensor, std::span<float> ranges) const {
+    std::visit([&](const auto& scanner) { scanner.scan(sensor, ranges); }, scanner_);
+  }
+  [[nodiscard]] const sim::RangeScannerOptions& options() const {
+    return std::visit(
+        [](const auto& scanner) -> const sim::RangeScannerOptions& { return scanner.options(); }, scanner_);
+  }
+  /// Of a map; a road is free.
+  [[nodiscard]] bool is_wall(const Vec2& place) const {
+    const auto* map = std::get_if<sim::MapScanner>(&scanner_);
+    return map != nullptr && map->is_wall(place);
+  }
+
+ private:
+  template <class Scanner>
+  explicit Walls(Scanner scanner) : scanner_{std::move(scanner)} {}
+  std::variant<sim::RangeScanner, sim::MapScanner> scanner_;
+};
+
 /// The parts of the simulated world that are made once.
 struct Parts {
   path::Track track;
   std::unique_ptr<sim::Plant> plant;
-  sim::RangeScanner scanner;
+  Walls walls;
 
-  static Result<Parts> create(const scenario::Scenario& scenario) {
+  static Result<Parts> create(const scenario::Scenario& scenario, const std::string& map_file) {
     auto track = run::make_track(scenario);
     if (!track) return fail(track.error());
     auto plant = run::make_plant(scenario);
     if (!plant) return fail(plant.error());
-    const double size = scenario.vehicle.scale;
-    auto scanner = sim::RangeScanner::create(*track, {.spacing = std::max(0.05, 0.5 * size)});
-    if (!scanner) return fail(scanner.error());
-    return Parts{std::move(*track), std::move(*plant), std::move(*scanner)};
+    auto walls = Walls::create(*track, scenario.vehicle.scale, map_file);
+    if (!walls) return fail(walls.error());
+    return Parts{std::move(*track), std::move(*plant), std::move(*walls)};
   }
 };
 
@@ -133,7 +172,7 @@ class SimNode {
         participant_{std::move(participant)},
         topics_{std::move(topics)},
         log_{hooks.log},
-        scanner_{parts.scanner},
+        walls_{parts.walls},
         plant_{*parts.plant},
         world_{plant_, parts.track},
         sensor_{scenario.sensor, scenario.seed},
@@ -141,18 +180,26 @@ class SimNode {
         account_{terms(scenario, parts.track)},
         partners_{wanted_partners(node), node.network},
         scanner_ahead_{kScannerAhead * scenario.vehicle.wheelbase()},
+        pace_{node.pace > 0.0 ? node.pace : 1.0},
         standing_{kStanding * std::sqrt(scenario.vehicle.scale)} {
     world_.place(parts.track.start_s(), parts.track.start_d());
     in_flight_.reset({});
-    ranges_.resize(static_cast<std::size_t>(scanner_.options().beams));
+    ranges_.resize(static_cast<std::size_t>(walls_.options().beams));
   }
 
   wire::SimulateReport run(const std::atomic<bool>& stop) {
     started_ = began_ = Clock::now();
+    if (topics_.clock) next_tick_ = 0.0;
     send_scanner_place();
+    const model::State& car = plant_.state();
+    if (walls_.is_wall({car.x, car.y})) {
+      log_.say(fmt::format(
+          "{}: got a wall at ({:.2f}, {:.2f}), where the car stands, expected a map of this track",
+          node_.map_file, car.x, car.y));
+    }
     while (!stop && !account_.is_over()) {
       participant_->wait(std::chrono::nanoseconds(std::max<Clock::duration>(
-          std::chrono::microseconds{50}, began_ + duration(next_moment()) - Clock::now())));
+          std::chrono::microseconds{50}, began_ + duration(next_moment() / pace_) - Clock::now())));
       const Clock::time_point now = Clock::now();
       read_commands();
       read_initial_pose();
@@ -167,11 +214,11 @@ class SimNode {
 
  private:
   /// Time of the simulated clock [s]: that of the world once it moves.
-  [[nodiscard]] double elapsed(Clock::time_point now) const { return seconds(now - began_); }
+  [[nodiscard]] double elapsed(Clock::time_point now) const { return pace_ * seconds(now - began_); }
   [[nodiscard]] std::int64_t stamp(double time) const {
     return epoch_ + static_cast<std::int64_t>(std::llround(1e9 * time));
   }
-  [[nodiscard]] double next_moment() const { return std::min(next_odometry_, next_scan_); }
+  [[nodiscard]] double next_moment() const { return std::min({next_odometry_, next_scan_, next_tick_}); }
 
   // ---- In ----
 
@@ -202,9 +249,10 @@ class SimNode {
     writer_ = writer;
     if (report_.connections++ > 0) return log_.say(fmt::format("another sender on {}", node_.topics.drive));
     const double ahead = elapsed(Clock::now());
-    began_ += duration(ahead);  // the world begins with the first command, and the stamps go on
+    began_ += duration(ahead / pace_);  // the world begins with the first command, and the stamps go on
     epoch_ += static_cast<std::int64_t>(std::llround(1e9 * ahead));
     next_odometry_ = next_scan_ = 0.0;
+    if (topics_.clock) next_tick_ = 0.0;
     log_.say(fmt::format("first command on {}", node_.topics.drive));
   }
 
@@ -250,7 +298,7 @@ class SimNode {
     const double step = plant_.step_length();
     const double until = elapsed(now);
     const double forgotten = std::max(0.0, until - world_.time() - kCatchUp);
-    began_ += duration(forgotten);
+    began_ += duration(forgotten / pace_);
     epoch_ += static_cast<std::int64_t>(std::llround(1e9 * forgotten));
     const double speed = plant_.output().speed;
     while (world_.time() + step <= until - forgotten && !account_.is_over()) {
@@ -292,6 +340,10 @@ class SimNode {
 
   void sense(Clock::time_point now) {
     const double time = report_.connections > 0 ? world_.time() : elapsed(now);
+    if (topics_.clock && time + 1e-9 >= next_tick_) {
+      next_tick_ = std::max(next_tick_ + kTickPeriod, time);
+      static_cast<void>(topics_.clock->write(protocol::encode_clock(stamp(time))));
+    }
     if (time + 1e-9 >= next_odometry_) {
       next_odometry_ = std::max(next_odometry_ + scenario_.control_period, time);
       send_odometry(time);
@@ -362,15 +414,15 @@ class SimNode {
   void send_scan(double time) {
     const model::State& car = plant_.state();
     const double ahead = scanner_ahead_ - scenario_.vehicle.rear_axle;
-    scanner_.scan({car.x + ahead * chicane::cos(car.psi), car.y + ahead * chicane::sin(car.psi), car.psi},
-                  ranges_);
+    walls_.scan({car.x + ahead * chicane::cos(car.psi), car.y + ahead * chicane::sin(car.psi), car.psi},
+                ranges_);
     protocol::ScanMessage message{.stamp = stamp(time),
                                   .frame = scanner_frame(),
-                                  .angle_min = scanner_.first_angle(),
-                                  .angle_increment = scanner_.increment(),
+                                  .angle_min = walls_.options().first_angle(),
+                                  .angle_increment = walls_.options().increment(),
                                   .scan_time = kScanPeriod,
                                   .range_min = kRangeMin,
-                                  .range_max = scanner_.options().range_max,
+                                  .range_max = walls_.options().range_max,
                                   .ranges = ranges_};
     static_cast<void>(topics_.scan->write(protocol::encode(message)));
   }
@@ -390,7 +442,7 @@ class SimNode {
   std::unique_ptr<Participant> participant_;
   SimTopics topics_;
   wire::SparseLog log_;
-  const sim::RangeScanner& scanner_;
+  const Walls& walls_;
   sim::Plant& plant_;
   sim::World world_;
   sim::Sensor sensor_;
@@ -402,6 +454,7 @@ class SimNode {
   telemetry::Frame frame_;
 
   const double scanner_ahead_;  ///< of the rear axle [m]
+  const double pace_;           ///< seconds simulated in a second of the clock
   const double standing_;       ///< [m/s]
   std::vector<float> ranges_;
   std::array<protocol::StopMessage, 8> stops_{};  ///< the last ones, a ring
@@ -410,9 +463,10 @@ class SimNode {
   Clock::time_point started_{}, began_{}, looked_{};
   std::int64_t epoch_ = std::chrono::duration_cast<std::chrono::nanoseconds>(
                             std::chrono::system_clock::now().time_since_epoch())
-                            .count();             ///< of the simulated time 0 [ns since 1970]
-  double next_odometry_ = 0.0, next_scan_ = 0.0;  ///< [s]
-  double arrived_ = 0.0;                          ///< the last command [s]
+                            .count();                           ///< of the simulated time 0 [ns since 1970]
+  double next_odometry_ = 0.0, next_scan_ = 0.0;                ///< [s]
+  double next_tick_ = std::numeric_limits<double>::infinity();  ///< of /clock [s]
+  double arrived_ = 0.0;                                        ///< the last command [s]
   model::Command applied_;
   bool is_forsaken_ = false;
   bool is_told_standing_ = true;  ///< nothing more to say about the stop
@@ -422,7 +476,7 @@ class SimNode {
 
 Result<wire::SimulateReport> simulate(const NodeOptions& node, const scenario::Scenario& scenario,
                                       const wire::SimulateHooks& hooks, const std::atomic<bool>& stop) {
-  auto parts = Parts::create(scenario);
+  auto parts = Parts::create(scenario, node.map_file);
   if (!parts) return fail(parts.error());
   auto participant = Participant::create(node.network);
   if (!participant) return fail(participant.error());

@@ -23,9 +23,7 @@ Interval inside(double x0, double u, double size) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-int cell(double at, int low, int high) {
-  return std::clamp(static_cast<int>(std::floor(at)), low, high);
-}
+int cell(double at, int low, int high) { return std::clamp(static_cast<int>(std::floor(at)), low, high); }
 
 }  // namespace
 
@@ -104,10 +102,10 @@ double MapScanner::cast(const Vec2& from, const Vec2& direction) const noexcept 
     if (free == 0) return t;
     // Out of the square of free cells around this one, into the cell next to it.
     const int step_x = direction.x() > 0.0 ? free : -free, step_y = direction.y() > 0.0 ? free : -free;
-    const double to_x = direction.x() == 0.0 ? kInfinity
-                                             : (x + (step_x > 0 ? step_x : step_x + 1) - from.x()) * per_x;
-    const double to_y = direction.y() == 0.0 ? kInfinity
-                                             : (y + (step_y > 0 ? step_y : step_y + 1) - from.y()) * per_y;
+    const double to_x =
+        direction.x() == 0.0 ? kInfinity : (x + (step_x > 0 ? step_x : step_x + 1) - from.x()) * per_x;
+    const double to_y =
+        direction.y() == 0.0 ? kInfinity : (y + (step_y > 0 ? step_y : step_y + 1) - from.y()) * per_y;
     if (to_x <= to_y) {
       t = to_x;
       y = cell(from.y() + t * direction.y(), y - free + 1, y + free - 1);

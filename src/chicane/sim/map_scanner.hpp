@@ -17,9 +17,9 @@ namespace chicane::sim {
 struct OccupancyGrid {
   static constexpr std::size_t kMostCells = 64'000'000;
 
-  int width = 0, height = 0;      ///< [cells], > 0, at most kMostCells in all
-  double resolution = 0.05;       ///< side of a cell [m], > 0
-  model::Pose origin{};           ///< of the lower left corner of the first cell; rows go along its x axis
+  int width = 0, height = 0;       ///< [cells], > 0, at most kMostCells in all
+  double resolution = 0.05;        ///< side of a cell [m], > 0
+  model::Pose origin{};            ///< of the lower left corner of the first cell; rows go along its x axis
   std::vector<bool> is_wall = {};  ///< row by row, the lowest row first
 };
 
@@ -57,9 +57,9 @@ class MapScanner {
   int width_ = 0, height_ = 0;
   double resolution_ = 0.0;
   model::Pose origin_{};
-  Vec2 axis_{1.0, 0.0};              ///< of the rows, in W
-  std::vector<std::uint8_t> room_;   ///< 0: wall; n: all cells less than n away, diagonals too, are free
-  std::vector<Vec2> directions_;     ///< of the beams, in the sensor's frame
+  Vec2 axis_{1.0, 0.0};             ///< of the rows, in W
+  std::vector<std::uint8_t> room_;  ///< 0: wall; n: all cells less than n away, diagonals too, are free
+  std::vector<Vec2> directions_;    ///< of the beams, in the sensor's frame
 };
 
 }  // namespace chicane::sim
