@@ -6,7 +6,7 @@
 #   ./run.sh drive --fast --laps 2 --json         any command of `chicane`; stdout carries its results only
 #   ./run.sh bench                                builds the benchmark, too, with Ipopt to compare with
 #   ./run.sh ros --car f1tenth                    a ROS 2 node; installs Cyclone DDS, too (docs/ros.md)
-#   ./run.sh package                              makes Debian packages and a tarball in build/release/packages (docs/packages.md)
+#   ./run.sh package [--page]                     makes Debian packages and a tarball in build/release/packages (docs/packages.md)
 #   ./run.sh python [ARGUMENT...]                 Python with `import chicane` (docs/python.md): a prompt, or a script and its arguments
 #   ./run.sh page --out DIR                       writes a page that drives without a program, in the browser alone (WebAssembly)
 set -euo pipefail
@@ -21,13 +21,23 @@ if [ "${1:-}" = page ] && [[ " $* " != *' -h '* && " $* " != *' --help '* ]]; th
   exec "$root/tools/build_page.sh" "$3"
 fi
 
-if [ "${1:-}" = package ] && [ $# -eq 1 ]; then
+if [ "${1:-}" = package ] && { [ $# -eq 1 ] || { [ $# -eq 2 ] && [ "$2" = --page ]; }; }; then
   mapfile -t node < <(node_packages)
   install_packages "${run_packages[@]}" "${package_packages[@]}" "${node[@]}"
   options=(CHICANE_SIMD=all CHICANE_PYTHON=ON)
   is_configured "$root" || options+=(CHICANE_BUILD_TESTS=OFF CHICANE_BUILD_EXAMPLES=OFF)
   build_release "$root" chicane_installed "${options[@]}"
   (cd "$root/build/release" && rm -rf packages && cpack >cpack.log 2>&1) || { cat "$root/build/release/cpack.log" >&2; exit 3; }
+  # The page that needs no program, beside the tarball: asked for, because emscripten is 1 GB.
+  if [ "${2:-}" = --page ]; then
+    install_packages "${page_packages[@]}"
+    version=$(sed -n 's/^CMAKE_PROJECT_VERSION:[A-Z]*=//p' "$root/build/release/CMakeCache.txt")
+    page=$root/build/release/packages/chicane-$version-page
+    "$root/tools/build_page.sh" "$page"
+    cp "$root/LICENSE" "$page"
+    tar -C "$root/build/release/packages" --sort=name --owner=0 --group=0 -cf "$page.tar.zst" --zstd "chicane-$version-page"
+    rm -r "$page"
+  fi
   printf '%s\n' "$root"/build/release/packages/*
   exit 0
 fi

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A simulated car and a reader of road files that the library does not know, driven by one of its controllers.
+// A simulated car and a reader of road files that the library does not know, driven by one of its
+// controllers.
 #include <algorithm>
 #include <array>
 #include <cmath>

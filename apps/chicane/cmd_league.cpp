@@ -20,12 +20,15 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "many_runs.hpp"
+#include "ros_trial.hpp"
 
 namespace chicane::apps {
 namespace {
 
 using sweep::ExternalTrial;
 using sweep::League;
+
+constexpr int kRosDomain = 110, kRosDomains = 80;  ///< DDS domains of ROS 2 programs, one for each process
 
 /// `wanted` where nobody listens on it, or with 0 any free port of this machine; nothing where it is taken.
 std::optional<int> free_port(int wanted) {
@@ -55,6 +58,9 @@ std::string own_program() {
 /// for `patience` [s] never will.
 Result<telemetry::RunSummary> drive_program(const ExternalTrial& trial, double patience,
                                             const std::atomic<bool>& stop) {
+  if (sweep::is_ros(trial))
+    return drive_ros_program(trial, kRosDomain + static_cast<int>(::getpid()) % kRosDomains, own_program(),
+                             patience, stop);
   const bool has_port = trial.command.find("{port}") != std::string::npos;
   const std::optional<int> port = free_port(has_port ? 0 : sweep::kOriginalPort);
   if (!port)

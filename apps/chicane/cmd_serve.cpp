@@ -32,9 +32,9 @@ Result<wire::ServeSummary> serve_until_stopped(const Options& options) {
   if (!scenario) return fail(scenario.error());
   Result<std::optional<path::Track>> track = told_track(options, *scenario);
   if (!track) return fail(track.error());
-  return drive_external_car(options, std::move(*scenario), std::move(*track),
-                            [](std::uint16_t port) { return fmt::format("a simulator on port {}", port); },
-                            stop);
+  return drive_external_car(
+      options, std::move(*scenario), std::move(*track),
+      [](std::uint16_t port) { return fmt::format("a simulator on port {}", port); }, stop);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `chicane bench` starts chicane-bench and `chicane ros` chicane-ros, wherever the program stands. Seen with a
-// copy of the program and scripts.
+// `chicane bench` starts chicane-bench and `chicane ros` chicane-ros, wherever the program stands. Seen with
+// a copy of the program and scripts.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -41,7 +41,9 @@ class OtherProgram : public ::testing::Test {
   int run(const std::string& words) {
     const std::string where = "'" + folder_.string() + "/";
     const int status = std::system(  // NOLINT(cert-env33-c): a shell is what users have
-        ("PATH=" + where + "path' " + where + "bin/chicane' " + words + " > " + where + "out' 2> " + where + "err'").c_str());
+        ("PATH=" + where + "path' " + where + "bin/chicane' " + words + " > " + where + "out' 2> " + where +
+         "err'")
+            .c_str());
     out = read("out");
     err = read("err");
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;

@@ -67,6 +67,18 @@ TEST(League, ACommandWithoutAPlaceForLatencyIsNotTriedWithIt) {
   EXPECT_EQ(trials[4].why_not, "the command has no place {latency_ms}");
 }
 
+TEST(League, ARosControllerIsTheOneWithAPlaceForTheDomain) {
+  auto league = parse_league(kLeague, "l.yaml");
+  ASSERT_TRUE(league);
+  add_external(*league, "./follow {domain}");
+  const auto trials = league->external_trials();
+  ASSERT_GT(trials.size(), 4U);
+  EXPECT_FALSE(is_ros(trials[0]));
+  ASSERT_TRUE(is_ros(trials[3]));
+  EXPECT_EQ(filled(trials[3], 7), "./follow 7");
+  EXPECT_EQ(trials[4].why_not, "") << "latency is that of the simulated car";
+}
+
 TEST(League, TellsAllFaultsWithTheirLines) {
   const std::string fault = league_fault(R"(entries:
   a: {preset: nothing_like_this, latency_ms: x}

@@ -207,7 +207,7 @@ std::vector<ExternalTrial> League::external_trials() const {
             if (each != disturbance) continue;
             for (const auto& setting : settings) {
               if (setting.first.starts_with("fault")) trial.why_not = "faults are in our own control loop";
-              if (setting.first == "latency_ms" && !has_place(entry.command, "latency_ms"))
+              if (setting.first == "latency_ms" && !has_place(entry.command, "latency_ms") && !is_ros(trial))
                 trial.why_not = "the command has no place {latency_ms}";
               trial.settings.push_back(setting);
             }
@@ -217,6 +217,8 @@ std::vector<ExternalTrial> League::external_trials() const {
   return trials;
 }
 
+bool is_ros(const ExternalTrial& trial) { return has_place(trial.command, "domain"); }
+
 std::string filled(const ExternalTrial& trial, int port, const std::string& program) {
   std::string latency = "100";
   for (const auto& [key, text] : trial.settings)
@@ -224,6 +226,7 @@ std::string filled(const ExternalTrial& trial, int port, const std::string& prog
   std::string command = trial.command;
   for (const auto& [place, text] :
        {std::pair{std::string("{port}"), fmt::format("{}", port)},
+        std::pair{std::string("{domain}"), fmt::format("{}", port)},
         std::pair{std::string("{latency_ms}"), latency}, std::pair{std::string("{track}"), trial.track},
         std::pair{std::string("{chicane}"), program}}) {
     for (std::size_t at = command.find(place); at != std::string::npos;

@@ -20,7 +20,8 @@ inline constexpr std::string_view kDisturbanceKey = "disturbance";
 struct ExternalEntry {
   std::string name{};
   /// Of a shell; starts it. {port}, {latency_ms}, {track} and {chicane} stand for what it shall listen to,
-  /// the sleep before each answer, the road, and the program that reads this.
+  /// the sleep before each answer, the road, and the program that reads this. A ROS 2 controller has {domain}
+  /// in place of {port}: the DDS domain in which the car is.
   std::string command{};
   std::vector<std::string> tracks{}, cars{}, disturbances{};  ///< on which it is tried
 };
@@ -46,7 +47,9 @@ struct League {
 
 /// Port of the original's controllers, which commands without {port} listen to.
 inline constexpr int kOriginalPort = 4567;
-/// The command with what its places in braces stand for.
+/// It is a ROS 2 controller: the command has the place {domain}.
+[[nodiscard]] bool is_ros(const ExternalTrial& trial);
+/// The command with `port` for {port} and {domain}, and what its other places in braces stand for.
 [[nodiscard]] std::string filled(const ExternalTrial& trial, int port,
                                  const std::string& program = "chicane");
 

@@ -156,6 +156,10 @@ Result<void> read_own(const League& league, const std::string& file, LeagueResul
 
 std::string simulate_command(const ExternalTrial& trial) {
   std::string rest;
+  if (is_ros(trial)) {
+    for (const auto& [key, text] : trial.settings) rest += fmt::format(" --set {}={}", key, text);
+    return fmt::format("chicane ros --simulate{} & {}", rest, filled(trial, 0));
+  }
   for (const auto& [key, text] : trial.settings)
     if (key != "track" && key != "car" && key != "latency_ms") rest += fmt::format(" --set {}={}", key, text);
   return fmt::format("chicane simulate --server '{}' --track {} --car {}{}", filled(trial, kOriginalPort),
