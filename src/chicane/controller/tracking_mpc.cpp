@@ -393,7 +393,9 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     explain<TrackingTerms>(problem_, horizon_, explanation);
     const road::ReferenceLine::Demand planned = line().demand(s_);
     explanation.speed_limit = planned.speed;
-    explanation.speed_limiter = limiter_of(speed, planned.speed, planned.limiter, explanation.active_now);
+    explanation.speed_limiter =
+        road_.is_raced() ? limiter_of_lap(planned, model_.vehicle(), explanation.active_now)
+                         : limiter_of(speed, planned.speed, planned.limiter, explanation.active_now);
   }
 
   /// No time to solve, and the last plan is old: the wheel by feedback to the line, all useful braking.

@@ -3,6 +3,7 @@ import { clamp, degrees } from '../lib/math';
 import { CLOSE_TO_EDGE_M } from '../state/alerts';
 import { bestLap } from '../state/laps';
 import { run } from '../state/run';
+import { brakeShare, pedalInWords } from '../state/sentence';
 import { shown } from '../state/shown';
 
 function Lap() {
@@ -89,17 +90,16 @@ function Bar({
   );
 }
 
-function pedalInWords(throttle: number): string {
-  if (!Number.isFinite(throttle)) return UNKNOWN;
-  const percent = `${fixed(Math.abs(throttle) * 100, 0)} %`;
-  return throttle < 0 ? `brake ${percent}` : `drive ${percent}`;
-}
+/** Between full braking, −1, and full throttle, 1. */
+const pedalShare = (throttle: number, fullBrake: number): number =>
+  throttle < 0 ? -brakeShare(throttle, fullBrake) : throttle;
 
 function Controls() {
   const frame = shown.value;
   const limit = run.value?.steer_limit_rad ?? NaN;
   const steer = frame?.steer_applied_rad ?? NaN;
   const name = side(degrees(steer) / 10);
+  const fullBrake = run.value?.brake_throttle_limit ?? NaN;
   return (
     <div class="bars" title="Bar: what acts on the car now. Mark: what the controller asks for.">
       {/* Left is positive in the data and on the left on the screen. */}
@@ -113,9 +113,9 @@ function Controls() {
       <Bar
         id="pedal"
         label="Pedal"
-        share={frame?.throttle_applied ?? NaN}
-        marker={frame?.throttle_asked ?? NaN}
-        text={pedalInWords(frame?.throttle_applied ?? NaN)}
+        share={pedalShare(frame?.throttle_applied ?? NaN, fullBrake)}
+        marker={pedalShare(frame?.throttle_asked ?? NaN, fullBrake)}
+        text={pedalInWords(frame?.throttle_applied ?? NaN, fullBrake)}
       />
     </div>
   );
