@@ -1,13 +1,16 @@
 import { duration, fixed, lapTime, side, UNKNOWN } from '../lib/format';
 import { clamp, degrees } from '../lib/math';
 import { CLOSE_TO_EDGE_M } from '../state/alerts';
-import { bestLap } from '../state/laps';
+import { bestLap, laps } from '../state/laps';
 import { run } from '../state/run';
 import { brakeShare, pedalInWords } from '../state/sentence';
 import { shown } from '../state/shown';
+import { Meaning } from './meaning';
 
 function Lap() {
   const frame = shown.value;
+  // The table has the same times, and the lap that ended the run: after it there is no frame.
+  const last = laps.value.at(-1)?.lap_time_s ?? frame?.last_lap_time_s ?? NaN;
   return (
     <div class="lap">
       <p class="label">
@@ -18,7 +21,7 @@ function Lap() {
       </p>
       <p class="beside">
         <span>
-          last <b>{frame && frame.last_lap_time_s > 0 ? lapTime(frame.last_lap_time_s, 3) : UNKNOWN}</b>
+          last <b>{last > 0 ? lapTime(last, 3) : UNKNOWN}</b>
         </span>
         <span>
           best <b>{lapTime(bestLap.value, 3)}</b>
@@ -57,6 +60,10 @@ function Reading({
   );
 }
 
+const BAR_MEANING =
+  'Filled: what acts on the car now. Marked: what the controller asks for, which acts after the delay. ' +
+  'The pedal goes from full braking on the left to full throttle on the right.';
+
 /**
  * A bar that grows from its middle: steering to its side; throttle to the right, brake to the left.
  */
@@ -77,7 +84,9 @@ function Bar({
   const [from, to] = [Math.min(50, at(share)), Math.max(50, at(share))];
   return (
     <div class="bar-row">
-      <span class="label">{label}</span>
+      <span class="label">
+        <Meaning of={label}>{BAR_MEANING}</Meaning>
+      </span>
       <div class="bar" aria-hidden="true">
         {/* Moved by transforms, which need no layout in each repaint. */}
         <span class="fill" style={{ transform: `translateX(${from}%) scaleX(${(to - from) / 100})` }} />
@@ -101,7 +110,7 @@ function Controls() {
   const name = side(degrees(steer) / 10);
   const fullBrake = run.value?.brake_throttle_limit ?? NaN;
   return (
-    <div class="bars" title="Bar: what acts on the car now. Mark: what the controller asks for.">
+    <div class="bars">
       {/* Left is positive in the data and on the left on the screen. */}
       <Bar
         id="wheels"

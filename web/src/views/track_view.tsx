@@ -36,6 +36,7 @@ import {
   zoomCamera,
 } from '../scene3d/view_state';
 import { cursorMark, pointAt, timeNear } from '../state/cursor';
+import { lossesNow, markedCorners, startLine } from '../state/compared';
 import { faultMarks } from '../state/faults';
 import { hindsight } from '../state/hindsight';
 import { type Layer, layers, toggleLayer } from '../state/layers';
@@ -47,6 +48,7 @@ import { road } from '../state/road';
 import { isPaused, run } from '../state/run';
 import { seekTo } from '../state/seek';
 import { shown } from '../state/shown';
+import { tab } from '../state/tab';
 import { everyFrame } from '../state/ticker';
 import { AlertsView, dangerNow, HudView } from './hud_view';
 
@@ -129,6 +131,10 @@ class Painter {
     const scene: Scene = {
       road: this.#road,
       racingLine: layers.racingLine.value ? limit.value : null,
+      corners: isInset ? [] : markedCorners(),
+      kerb: run.value?.kerb_width_m ?? 0,
+      start: startLine(),
+      losses: layers.timeLost.value && tab.value === 'laps' ? lossesNow.value : null,
       reference: road.reference,
       trace: { x: live.trace.column(0), y: live.trace.column(1) },
       plan: live.plan,
@@ -147,6 +153,9 @@ class Painter {
       this.#canvas.height,
       this.#road,
       scene.racingLine,
+      scene.corners,
+      scene.start,
+      scene.losses,
       theme(),
     ];
     const mark = cursorMark();
@@ -334,6 +343,13 @@ function Legend() {
         label="plan 1 s ago"
         title="The plan of a second ago and the path driven since; the outline is the position it predicted for now (O)"
       />
+      {!shows3d.value && tab.value === 'laps' && lossesNow.value && (
+        <Switch
+          layer="timeLost"
+          label="time lost"
+          title="Lap A: red where it loses time to lap B, green where it gains"
+        />
+      )}
       {ghost !== null && <Swatch name="ghost" label={ghost} />}
       {shows3d.value && <Swatch name="rubber" label="tyres sliding" isMinor />}
       {shows3d.value && <Swatch name="brake" label="braking begins" isMinor />}
