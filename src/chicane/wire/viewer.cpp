@@ -302,7 +302,7 @@ void ViewerEndpoint::send_kept(net::ConnectionId id, Client& client) {
   const auto send_page = [&](std::uint32_t channel, std::uint64_t& next, auto from) {
     const auto wanted = client.subscriptions.find(channel);
     if (wanted == client.subscriptions.end()) return true;
-    for (std::size_t sent = 0; sent < kPage && has_room(id, client); ++sent) {
+    for (std::size_t room = room_for(id, client); room > 0 && has_room(id, client); --room) {
       const KeptMessage* message = (memory_.*from)(next);
       if (message == nullptr) return true;
       deliver(id, client, data_of(wanted->second, message->time, message->payload));
@@ -318,13 +318,19 @@ void ViewerEndpoint::send_kept(net::ConnectionId id, Client& client) {
 /// A page of the past, from the present backwards.
 void ViewerEndpoint::send_past(net::ConnectionId id, Client& client) {
   const std::uint32_t subscription = client.subscriptions.at(past_channel());
+  const std::size_t room = room_for(id, client);
   std::size_t sent = 0;
-  for (; sent < kPage && has_room(id, client) && client.past_before > 0; ++sent) {
+  for (; sent < room && has_room(id, client) && client.past_before > 0; ++sent) {
     const KeptMessage* message = memory_.frame_before(client.past_before);
     client.past_before = message != nullptr ? message->number : 0;
     if (message != nullptr) deliver(id, client, data_of(subscription, message->time, message->payload));
   }
   if (sent > 0) send_text(id, foxglove::past_left(memory_.frames_before(client.past_before)));
+}
+
+/// Messages of the next page.
+std::size_t ViewerEndpoint::room_for(net::ConnectionId id, const Client& client) const {
+  return has_room(id, client) ? kPage - server_->waiting(id) : 0;
 }
 
 bool ViewerEndpoint::has_room(net::ConnectionId id, const Client& client) const {

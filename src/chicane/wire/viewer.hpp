@@ -125,6 +125,7 @@ class ViewerEndpoint final : public Endpoint {
   void send_kept(net::ConnectionId id, Client& client);
   void send_past(net::ConnectionId id, Client& client);
   void deliver(net::ConnectionId id, Client& client, net::Bytes bytes);
+  [[nodiscard]] std::size_t room_for(net::ConnectionId id, const Client& client) const;
   [[nodiscard]] bool has_room(net::ConnectionId id, const Client& client) const;
   [[nodiscard]] double now() const;
   void send_cadence(protocol::Cadence cadence);

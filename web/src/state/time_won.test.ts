@@ -85,7 +85,12 @@ describe('corners', () => {
 
   it('are none on a line that is too short', () => {
     expect(cornersOf([])).toEqual([]);
-    expect(cornersOf([{ x: 0, y: 0 }, { x: 1, y: 0 }])).toEqual([]);
+    expect(
+      cornersOf([
+        { x: 0, y: 0 },
+        { x: 1, y: 0 },
+      ]),
+    ).toEqual([]);
   });
 });
 

@@ -78,9 +78,7 @@ function Why() {
   const { title, text, limiter } = stateSentence(frame, circumstancesOf(frame, live.plots, canReset()));
   return (
     <p class="why" data-testid="why">
-      {limiter !== null && (
-        <span class="dot" style={{ background: `var(--limiter-${limiter})` }} aria-hidden="true" />
-      )}
+      {limiter !== null && <span class="dot" style={{ background: `var(--limiter-${limiter})` }} aria-hidden="true" />}
       <b>{title}.</b> <span class="why-long">{text}</span>
     </p>
   );

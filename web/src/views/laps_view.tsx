@@ -3,7 +3,7 @@ import { download, downloadPng, fileName } from '../lib/download';
 import { fixed, lapTime, UNKNOWN } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import type { Lap, Limit } from '../protocol/topics';
-import { chosen, LIMIT, pair as comparedPair } from '../state/compared';
+import { chosen, pair as comparedPair, LIMIT } from '../state/compared';
 import { differences, setupInWords } from '../state/lap_setup';
 import { bestsOf, type LapBests, lapSamplesCsv, lapsCsv } from '../state/lap_table';
 import { bestLap, lapSamples, laps, sampledLaps } from '../state/laps';

@@ -35,8 +35,8 @@ import {
   wants3d,
   zoomCamera,
 } from '../scene3d/view_state';
-import { cursorMark, pointAt, timeNear } from '../state/cursor';
 import { lossesNow, markedCorners, startLine } from '../state/compared';
+import { cursorMark, pointAt, timeNear } from '../state/cursor';
 import { faultMarks } from '../state/faults';
 import { hindsight } from '../state/hindsight';
 import { type Layer, layers, toggleLayer } from '../state/layers';
