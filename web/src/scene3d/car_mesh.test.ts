@@ -95,7 +95,11 @@ describe('cars with a roof', () => {
     body_length_m: 4.569,
     body_width_m: 1.844,
   };
-  const cars = { 'road-car': SIZE, 'bmw-320i': { ...SIZE, body_width_m: 1.61, track_width_m: 1.375 }, 'vw-vanagon': VAN_SIZE };
+  const cars = {
+    'road-car': SIZE,
+    'bmw-320i': { ...SIZE, body_width_m: 1.61, track_width_m: 1.375 },
+    'vw-vanagon': VAN_SIZE,
+  };
   for (const [car, size] of Object.entries(cars)) {
     it(`${car} is as long, wide and high as such a car, and closed`, () => {
       const closed = carModel({ ...size, car });

@@ -145,7 +145,13 @@ export function addClosedBody(
   };
   const isRoof = (x: number, face: number): boolean => face >= 1 && face <= 3 && x > r0 && x < r1;
   paint.loft(
-    [pane(g0, 0, 0.86), pane(r0, roof, 0.8), pane((r0 + r1) / 2, roof * 1.01, 0.81), pane(r1, roof, 0.8), pane(g1, 0, 0.86)],
+    [
+      pane(g0, 0, 0.86),
+      pane(r0, roof, 0.8),
+      pane((r0 + r1) / 2, roof * 1.01, 0.81),
+      pane(r1, roof, 0.8),
+      pane(g1, 0, 0.86),
+    ],
     (x, face) => (isRoof(x, face) ? profile.upper : GLASS),
   );
 

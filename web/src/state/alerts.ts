@@ -67,7 +67,7 @@ export function alertsOf(frame: Frame, history: History, faultNames: readonly st
   const alerts: Alert[] = [];
   if (isStuck(frame, history)) {
     const help = helpOf(frame, { isStuck: true, canReset });
-    alerts.push({ name: 'stuck', severity: 'bad', text: `The car stands and should drive: ${help}` });
+    alerts.push({ name: 'stuck', severity: 'bad', text: `The car stands and should drive${help && `: ${help}`}` });
   }
   const edge = extremeOf(history, Column.edge_distance_m, Math.min);
   const use = Math.max(

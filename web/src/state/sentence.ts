@@ -38,10 +38,10 @@ const capital = (text: string): string => text.charAt(0).toUpperCase() + text.sl
 export const drivesByPlan = (frame: Frame, { isStuck }: Circumstances): boolean =>
   !frame.is_manual && !isStuck && frame.rung === RUNG.CONTROLLER;
 
-/** What frees a car that stands. */
+/** What frees a car that stands; empty where nobody on this page can. */
 export function helpOf(frame: Frame, { canReset }: Circumstances): string {
   if (frame.active_faults !== 0) return 'it may go on when the fault ends';
-  return canReset ? 'Reset puts it back to the start' : 'nobody watching can free it';
+  return canReset ? 'Reset frees it' : '';
 }
 
 function splitAt({ severity, text }: Sentence): StateSentence {
@@ -56,7 +56,7 @@ export function stateSentence(frame: Frame, circumstances: Circumstances): State
     return {
       severity: 'bad',
       title: 'The car stands and should drive',
-      text: `${capital(helpOf(frame, circumstances))}.`,
+      text: helpOf(frame, circumstances) === '' ? '' : `${capital(helpOf(frame, circumstances))}.`,
       limiter: null,
     };
   }

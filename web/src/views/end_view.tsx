@@ -1,6 +1,5 @@
 import { useSignalEffect } from '@preact/signals';
 import { fixed, lapTime, plural } from '../lib/format';
-import { HashView } from '../page/hash_view';
 import { bestsOf } from '../state/lap_table';
 import { laps } from '../state/laps';
 import { gapsToLimit, limit } from '../state/limit';
@@ -12,6 +11,7 @@ import { closeEnd, reopenEnd, runEnd, showsEnd } from '../state/run_end';
 import { settings } from '../state/settings';
 import { commandAgain, sharedNow } from '../state/share';
 import { silence } from '../state/shown';
+import { HashView } from './hash_view';
 
 function Results() {
   const all = laps.value;
