@@ -76,7 +76,6 @@ export async function watch(url) {
     get newest() {
       return seen.newest;
     },
-    set: (name, value) => client.setParameters([{ name, value, type: 'float64' }], `set ${name}`),
     close: () => socket.terminate(),
   };
 }

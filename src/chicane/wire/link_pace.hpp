@@ -6,13 +6,14 @@
 #include <cstdint>
 #include <deque>
 #include <limits>
+#include <utility>
 
 namespace chicane::wire {
 
 /// How much may be on its way to a reader that acknowledges what it reads, so that what is sent next arrives
 /// soon: congestion control by delay, after LEDBAT (RFC 6817). The window grows while acknowledgements come
 /// soon after the message, and shrinks to what the link carries in that time where they come later. It covers
-/// everything between the two programs: sockets, proxies, and a reader that is busy. One thread.
+/// everything between the two programs: sockets, proxies, and a reader that is busy for long. One thread.
 class LinkPace {
  public:
   static constexpr double kDelayAimed = 0.15;  ///< in queues on the way, beside the shortest round trip [s]
@@ -38,11 +39,13 @@ class LinkPace {
       on_way_.pop_front();
     }
     if (last.total == 0) return;  // a part of a message
-    const double round_trip = now - last.at;
-    shortest_ = std::min(shortest_, round_trip);
-    if (round_trip - shortest_ < kDelayAimed) {
+    // One that was held up by a busy machine says nothing of the way: two in a row do.
+    const double newest = now - last.at;
+    const double round_trip = std::min(newest, std::exchange(before_, newest));
+    shortest_ = std::min(shortest_, newest);
+    if (newest - shortest_ < kDelayAimed) {
       if (last.in_flight * 2 >= window_) window_ = std::min(kMost, window_ + newly);
-    } else {
+    } else if (round_trip - shortest_ >= kDelayAimed) {
       const double carried = static_cast<double>(last.in_flight) * (shortest_ + kDelayAimed) / round_trip;
       window_ = std::clamp(static_cast<std::size_t>(carried), kLeast, std::max(kLeast, window_));
     }
@@ -54,6 +57,7 @@ class LinkPace {
   [[nodiscard]] bool has_room() const { return in_flight() < window_; }
 
  private:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   struct Sent {
     std::uint64_t total = 0;    ///< bytes sent up to its end
     std::size_t in_flight = 0;  ///< with it [byte]
@@ -62,7 +66,8 @@ class LinkPace {
   std::deque<Sent> on_way_;
   std::uint64_t sent_ = 0, received_ = 0;  ///< [byte]
   std::size_t window_ = kFirst;
-  double shortest_ = std::numeric_limits<double>::infinity();  ///< round trip [s]
+  double before_ = kInfinity;    ///< the round trip before the newest [s]
+  double shortest_ = kInfinity;  ///< round trip [s]
 };
 
 }  // namespace chicane::wire

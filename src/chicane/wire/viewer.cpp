@@ -33,8 +33,10 @@ constexpr std::size_t kMostWaiting = 100;  // viewers between the upgrade and it
 // net::ServerOptions::max_queue.
 constexpr std::size_t kPage = 192;
 
-// While frames of the past are sent to a viewer, a slow line is not filled by those of the present [s].
-constexpr double kNewestBesidePast = 0.2;
+// While frames of the past are sent to a viewer, a slow line is not filled by those of the present: between
+// two of them, and between two plans, which are ten times as large [s].
+constexpr double kNewestBesidePast = 0.1;
+constexpr double kPlanBesidePast = 0.5;
 
 constexpr std::uint16_t kGoingAway = 1001;  // RFC 6455 §7.4.1
 
@@ -149,7 +151,8 @@ void ViewerEndpoint::dismiss(std::chrono::milliseconds patience) {
   std::function<void()> look = [&] {
     if (!std::exchange(has_ticked, true)) tick();
     for (const auto& [id, client] : clients_) {
-      const bool has_all = server_->waiting(id) == 0 && client.past_before == 0 && !client.is_behind;
+      const bool has_all =
+          server_->waiting(id) == 0 && client.past_before == 0 && client.owed.empty() && !client.is_behind;
       if (has_all && told.insert(id).second) server_->close(id, kGoingAway, "the run is over");
     }
     if (clients_.empty() || Clock::now() >= end) return gone.set_value();
@@ -210,7 +213,20 @@ void ViewerEndpoint::tick() {
 /// The present first, then what is missing of laps and changes, then the past.
 void ViewerEndpoint::serve(net::ConnectionId id, Client& client) {
   send_newest(id, client);
+  send_owed(id, client);
   send_kept(id, client);
+}
+
+/// Descriptions that a paced viewer has subscribed to: roads are as large as a second of frames.
+void ViewerEndpoint::send_owed(net::ConnectionId id, Client& client) {
+  while (!client.owed.empty() && has_room(id, client)) {
+    const std::uint32_t channel = *client.owed.begin();
+    client.owed.erase(client.owed.begin());
+    const auto wanted = client.subscriptions.find(channel);
+    if (wanted == client.subscriptions.end()) continue;
+    const protocol::RosTopic& topic = protocol::ros_topics()[channel];
+    deliver(id, client, data_of(wanted->second, frame_.time, topic.encode(frame_, options_.run)));
+  }
 }
 
 /// What was before a run began anew is not of this one.
@@ -286,12 +302,15 @@ void ViewerEndpoint::send_newest(net::ConnectionId id, Client& client) {
   client.heard.reset();
   client.is_behind = false;
   client.newest_sent_at = now();
+  const bool is_whole = client.past_before == 0 || now() - client.whole_sent_at >= kPlanBesidePast;
+  if (is_whole) client.whole_sent_at = now();
   if (client.subscriptions.empty()) return;
   deliver(id, client,
           std::make_shared<const std::string>(foxglove::time_message(protocol::to_nanoseconds(frame_.time))));
   const auto& topics = protocol::ros_topics();
   for (const auto& [channel, subscription] : client.subscriptions) {
     if (channel >= topics.size() || topics[channel].cadence != Cadence::kFrame) continue;
+    if (!is_whole && channel != frame_channel()) continue;
     deliver(id, client, data_of(subscription, frame_.time, topics[channel].encode(frame_, options_.run)));
   }
 }
@@ -365,6 +384,7 @@ void ViewerEndpoint::send_channel(std::uint32_t channel) {
     const auto wanted = client.subscriptions.find(channel);
     if (wanted == client.subscriptions.end()) continue;
     if (client.pace && topic.cadence == Cadence::kFrame) continue;  // send_newest()
+    if (client.owed.contains(channel)) continue;                    // send_owed()
     if (!payload) payload = topic.encode(frame_, options_.run);
     net::Bytes& bytes = by_subscription[wanted->second];
     if (!bytes)

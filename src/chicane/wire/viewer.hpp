@@ -97,6 +97,8 @@ class ViewerEndpoint final : public Endpoint {
     std::optional<LinkPace> pace{};  ///< none: it gets everything as soon as it is there
     std::uint64_t past_before = 0;   ///< frames of memory_ with lower numbers are still to be sent
     bool is_behind = false;          ///< paced, and the newest frame is not sent yet
+    double whole_sent_at = 0.0;      ///< with plan and all else [s]
+    std::set<std::uint32_t> owed{};  ///< channels of descriptions, paced, sent behind the newest
     double newest_sent_at = 0.0;     ///< [s]
     std::optional<protocol::foxglove::Received> heard{};  ///< to be answered
     double heard_at = 0.0;                                ///< [s]
@@ -122,6 +124,7 @@ class ViewerEndpoint final : public Endpoint {
   void note_frame();
   void serve(net::ConnectionId id, Client& client);
   void send_newest(net::ConnectionId id, Client& client);
+  void send_owed(net::ConnectionId id, Client& client);
   void send_kept(net::ConnectionId id, Client& client);
   void send_past(net::ConnectionId id, Client& client);
   void deliver(net::ConnectionId id, Client& client, net::Bytes bytes);

@@ -54,6 +54,10 @@ void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::Subscribe& mes
       client.is_behind = has_frame_;
       continue;
     }
+    if (client.pace && (cadence == Cadence::kRoad || cadence == Cadence::kLimit)) {
+      client.owed.insert(channel);
+      continue;
+    }
     if (cadence == Cadence::kLap) client.next_lap = 0;
     if (cadence == Cadence::kEvent) client.next_change = 0;
     if (cadence == Cadence::kLap || cadence == Cadence::kEvent) {

@@ -1,5 +1,5 @@
 import type { Frame } from '../protocol/topics';
-import { frameListeners } from '../state/demultiplexer';
+import { frameListeners, rebuildListeners } from '../state/demultiplexer';
 import { ghostShown } from '../state/ghost_shown';
 import { replayListeners } from '../state/replay';
 import { run } from '../state/run';
@@ -94,6 +94,7 @@ export class Session {
 export const session = new Session();
 
 let track = '';
+rebuildListeners.add(() => session.forget());
 // What is shown again moves the car and leaves no marks.
 replayListeners.add((frame, now) => session.playout.push(motionOf(frame), now));
 frameListeners.add((frame, now) => {

@@ -21,6 +21,9 @@ export const frameListeners = new Set<(frame: Frame, now: number) => void>();
 /** Called when the run that is shown has begun anew. */
 export const restartListeners = new Set<() => void>();
 
+/** Called when all frames of the run follow once more, because older ones have come. */
+export const rebuildListeners = new Set<() => void>();
+
 /** Stores one message, also of an older program. `now` as of performance.now() [ms]. */
 export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: number): void {
   const message = complete(topic, sent);
@@ -98,7 +101,7 @@ export function receivePastLeft(left: number, now: number): void {
   forgetSamples();
   forgetFrameEvents();
   forgetFaultMarks();
-  for (const listener of restartListeners) listener();
+  for (const listener of rebuildListeners) listener();
   let before: Frame | null = null;
   for (const frame of frames) {
     keepFrame(frame, now, true, false); // the newest one is shown already

@@ -4,7 +4,9 @@ import { changeAt, frameWith } from './test_messages';
 
 // A page of its own, whatever other tests have loaded.
 vi.resetModules();
-const { beginSession, frameListeners, receive, receivePastLeft } = await import('./demultiplexer');
+const { beginSession, frameListeners, rebuildListeners, restartListeners, receive, receivePastLeft } = await import(
+  './demultiplexer'
+);
 const { Column } = await import('./columns');
 const { events } = await import('./event_log');
 const { faultMarks } = await import('./faults');
@@ -55,9 +57,15 @@ it('shows the present at once, and puts the past before it', () => {
   for (let i = 100; i >= 0; --i) receive('/chicane/past', frameAt(i), 3000);
   const heard: bigint[] = [];
   const listen = (frame: Frame) => void heard.push(frame.cycle);
+  const told: string[] = [];
+  rebuildListeners.add(() => void told.push('all frames follow'));
+  restartListeners.add(() => void told.push('another run'));
   frameListeners.add(listen);
   receivePastLeft(0, 3000);
   frameListeners.delete(listen);
+  rebuildListeners.clear();
+  restartListeners.clear();
+  expect(told).toEqual(['all frames follow']);
   expect(times()).toEqual(upTo(0, 361));
   expect(live.frame?.cycle, 'the newest stays on the screen').toBe(361n);
   expect(heard.map(Number), 'in three dimensions, too').toEqual(upTo(0, 361));

@@ -88,6 +88,8 @@ export function zoom(factor: number): void {
   else metresAcross.value = zoomed(metresAcross.value, factor);
 }
 
+const NO_LINE = { x: [], y: [] };
+
 /** Paints the map; holds what is kept from one picture to the next. */
 class Painter {
   readonly #canvas: HTMLCanvasElement;
@@ -128,15 +130,17 @@ class Painter {
     const length = scaleBar(camera.scale, Math.min(120, width / 4));
     if (bar.value.metres !== length.metres || Math.abs(bar.value.pixels - length.pixels) > 0.5) bar.value = length;
 
+    // The way driven would lie on the line of the lap that is coloured.
+    const losses = layers.timeLost.value && tab.value === 'laps' && !isInset ? lossesNow.value : null;
     const scene: Scene = {
       road: this.#road,
       racingLine: layers.racingLine.value ? limit.value : null,
       corners: isInset ? [] : markedCorners(),
       kerb: run.value?.kerb_width_m ?? 0,
       start: startLine(),
-      losses: layers.timeLost.value && tab.value === 'laps' ? lossesNow.value : null,
+      losses,
       reference: road.reference,
-      trace: { x: live.trace.column(0), y: live.trace.column(1) },
+      trace: losses ? NO_LINE : { x: live.trace.column(0), y: live.trace.column(1) },
       plan: live.plan,
       speedScale: top,
       hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
