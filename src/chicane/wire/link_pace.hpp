@@ -54,7 +54,8 @@ class LinkPace {
   /// Bytes that were sent and not acknowledged.
   [[nodiscard]] std::size_t in_flight() const { return static_cast<std::size_t>(sent_ - received_); }
   [[nodiscard]] std::size_t window() const { return window_; }
-  [[nodiscard]] bool has_room() const { return in_flight() < window_; }
+  /// `reserve`: beyond the window, for what must not wait behind other things [byte].
+  [[nodiscard]] bool has_room(std::size_t reserve = 0) const { return in_flight() < window_ + reserve; }
 
  private:
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -37,6 +37,9 @@ constexpr std::size_t kPage = 192;
 // two of them, and between two plans, which are ten times as large [s].
 constexpr double kNewestBesidePast = 0.1;
 constexpr double kPlanBesidePast = 0.5;
+// What may be on its way to a viewer beyond its window, so that the newest frame does not wait for the past
+// [byte].
+constexpr std::size_t kReserve = 4096;
 
 constexpr std::uint16_t kGoingAway = 1001;  // RFC 6455 §7.4.1
 
@@ -296,7 +299,9 @@ void ViewerEndpoint::note_lap(bool begins) {
 
 /// The newest frame for a paced viewer, once there is room for it.
 void ViewerEndpoint::send_newest(net::ConnectionId id, Client& client) {
-  if (!client.pace || !client.is_behind || !has_frame_ || !has_room(id, client)) return;
+  if (!client.pace || !client.is_behind || !has_frame_ || server_->waiting(id) >= kPage ||
+      !client.pace->has_room(kReserve))
+    return;
   if (client.past_before > 0 && now() - client.newest_sent_at < kNewestBesidePast) return;
   if (client.heard) send_text(id, foxglove::heard(client.heard->at, now() - client.heard_at));
   client.heard.reset();
