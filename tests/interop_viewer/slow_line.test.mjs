@@ -33,7 +33,8 @@ it('shows the newest frame within three seconds, and the past behind it', async 
     const behind = now - shown;
     return (behind < -PACE ? behind + Number(lap) : behind) / PACE; // the line may be between them
   };
-  await dashboard.until(age, (seconds) => seconds <= 1.1, 'a frame of the last second'); // the text is renewed each 0.1 s
+  // The text is renewed ten times a second.
+  await dashboard.until(age, (seconds) => seconds <= 1.1, 'a frame of the last second');
   assert.ok(performance.now() - opened < 3000, `after ${performance.now() - opened} ms`);
   const before = line.carried.bytes;
   const from = performance.now();

@@ -112,8 +112,9 @@ void explain(const Problem& problem, const Trajectory& answer, Explanation& expl
   if (is_active(Constraint::kBrakeMax) || along < rolling - kSlowing) return SpeedLimiter::kBraking;
   const double grip = car.cornering_friction() * car.load(v);
   const double across = v * v * (1.0 - car.steer_helper) * planned.curvature;
+  const double coupled = car.friction_coupling * along;
   if (is_active(Constraint::kFrontTire, Constraint::kRearTire, Constraint::kFrictionEllipse) ||
-      std::hypot(across, car.friction_coupling * along) > kNearly * grip)
+      across * across + coupled * coupled > kNearly * kNearly * grip * grip)
     return SpeedLimiter::kCurvature;
   if (along > longitudinal_acceleration(car, 1.0, v) - kNoMore) return SpeedLimiter::kPower;
   const double steer_rate = car.wheelbase() * std::fabs(planned.curvature_slope) * v;
@@ -121,6 +122,15 @@ void explain(const Problem& problem, const Trajectory& answer, Explanation& expl
     return SpeedLimiter::kSteerRate;
   if (is_active(Constraint::kLeftEdge, Constraint::kRightEdge)) return SpeedLimiter::kEdge;
   return SpeedLimiter::kPlan;
+}
+
+/// Speed and limiter of what is planned where the command acts; `raced`: the car that a lap was planned for.
+inline void explain_speed(const road::ReferenceLine::Demand& planned, double speed,
+                          const model::VehicleParams* raced, Explanation& explanation) noexcept {
+  explanation.speed_limit = planned.speed;
+  explanation.speed_limiter = raced != nullptr
+                                  ? limiter_of_lap(planned, *raced, explanation.active_now)
+                                  : limiter_of(speed, planned.speed, planned.limiter, explanation.active_now);
 }
 
 }  // namespace chicane::controller

@@ -12,17 +12,18 @@ const seconds = (lost: number): string => `${lost >= 0 ? '+' : ''}${fixed(lost, 
 const WORTH_S = 0.005;
 
 function causeInWords(cause: Cause, isLost: boolean): string {
+  const pace = isLost ? 'slower' : 'faster';
   switch (cause.kind) {
     case 'braking':
       return `braking ${fixed(Math.abs(cause.metres), 0)} m ${isLost ? 'earlier' : 'later'}`;
     case 'apex':
-      return `${fixed(Math.abs(inSpeedUnit(cause.mps)), 1)} ${speedUnit().name} ${isLost ? 'slower' : 'faster'} in the bend`;
+      return `${fixed(Math.abs(inSpeedUnit(cause.mps)), 1)} ${speedUnit().name} ${pace} in the bend`;
     case 'in':
       return `${isLost ? 'less' : 'more'} speed on the way in`;
     case 'out':
       return `${isLost ? 'less' : 'more'} speed on the way out`;
     case 'way':
-      return `a ${isLost ? 'slower' : 'faster'} way through the bend`;
+      return `a ${pace} way through the bend`;
   }
 }
 
