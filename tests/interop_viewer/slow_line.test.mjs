@@ -44,7 +44,9 @@ it('shows the newest frame within three seconds, and the past behind it', async 
     await dashboard.page.waitForTimeout(250);
   }
   ages.sort((a, b) => a - b);
-  assert.ok(ages.at(-2) <= 1.1, `stays there: ${ages.map((each) => each.toFixed(2)).join(' ')}`);
+  const told = ages.map((each) => each.toFixed(2)).join(' ');
+  assert.ok(ages[Math.floor(ages.length / 2)] <= 1, `of the last second, half of the time and more: ${told}`);
+  assert.ok(ages.at(-1) <= 3, `and not much older beside busy programs: ${told}`);
   const used = (line.carried.bytes - before) / (RATE * ((performance.now() - from) / 1000));
   assert.ok(used > 0.3, `the past uses the line: ${used.toFixed(2)} of it`);
   assert.equal(await dashboard.page.getByText('Live', { exact: true }).count(), 1);
