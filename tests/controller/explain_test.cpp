@@ -103,6 +103,32 @@ TEST(Explanation, SaysWhatLimitsTheSpeed) {
   EXPECT_EQ(answer(*described, on_a_left_bend()).report.explanation.speed_limiter, SpeedLimiter::kAsked);
 }
 
+TEST(Explanation, SaysWhatLimitsTheSpeedOfAPlannedLap) {
+  const model::VehicleParams car = model::road_car_params();
+  const auto says = [&](const road::ReferenceLine::Demand& planned, std::uint32_t active = 0) {
+    return limiter_of_lap(planned, car, active);
+  };
+  const double v = 20.0, grip = car.cornering_friction() * car.load(v) / (v * v);
+  const double most = longitudinal_acceleration(car, 1.0, v) / v;
+  EXPECT_EQ(says({.curvature = grip, .speed = v}), SpeedLimiter::kCurvature);
+  EXPECT_EQ(says({.curvature = 0.5 * grip, .speed = v, .speed_slope = -0.2}), SpeedLimiter::kBraking);
+  EXPECT_EQ(says({.speed = v, .speed_slope = most}), SpeedLimiter::kPower);
+  EXPECT_EQ(says({.curvature_slope = car.steer_rate_limit / (car.wheelbase() * v), .speed = v}),
+            SpeedLimiter::kSteerRate);
+  EXPECT_EQ(says({.speed = v}, bit(Constraint::kLeftEdge)), SpeedLimiter::kEdge);
+  EXPECT_EQ(says({.speed = v}, bit(Constraint::kFrictionEllipse)), SpeedLimiter::kCurvature);
+  EXPECT_EQ(says({.curvature = grip, .speed = v}, bit(Constraint::kThrottleMax)), SpeedLimiter::kPower);
+  EXPECT_EQ(says({.speed = v}), SpeedLimiter::kPlan);
+}
+
+TEST(Explanation, SaysInOneSentenceEachWhatLimitsTheSpeed) {
+  for (const auto& word : road::kSpeedLimiterWords) {
+    EXPECT_EQ(word.value, static_cast<SpeedLimiter>(&word - road::kSpeedLimiterWords.data()));
+    EXPECT_LE(std::count(word.sentence.begin(), word.sentence.end(), ' '), 13) << word.sentence;
+    EXPECT_EQ(word.sentence.find_last_not_of("abcdefghijklmnopqrstuvwxyz "), std::string_view::npos);
+  }
+}
+
 TEST(Explanation, BaselinesKnowTheirInputsAndTheBendAhead) {
   const auto pid = std::move(*make_pid({.proportional_gain = 10.0, .speed = {}}, model::udacity_params()));
   const Explanation full_lock = answer(*pid, on_a_left_bend()).report.explanation;

@@ -30,6 +30,32 @@ describe('the page', () => {
     await page.getByText('Live', { exact: true }).waitFor();
   });
 
+  it('gives the stage three fifths of a laptop', async () => {
+    const { width, height } = await page.locator('.stage').boundingBox();
+    assert.ok(width * height >= 0.6 * 1366 * 768 * 0.93, `${width} x ${height}, beside a header of 7 %`);
+  });
+
+  it('can be used at 200 % and at 320 pixels', async () => {
+    for (const viewport of [
+      { width: 683, height: 384 },
+      { width: 320, height: 640 },
+    ]) {
+      await page.setViewportSize(viewport);
+      const box = (selector) => page.locator(selector).first().boundingBox();
+      const map = await dashboard.until(
+        () => box('.map'),
+        ({ height }) => height >= 200,
+        `a picture that can be seen at ${viewport.width}`,
+      );
+      const [hud, controls] = [await box('.hud'), await box('.map-controls')];
+      assert.ok(hud.y >= controls.y + controls.height, 'the speed is below the buttons');
+      assert.ok(hud.y + hud.height <= map.y + map.height, 'and on the picture');
+      const { across } = await dashboard.overflow();
+      assert.ok(across <= 0, `nothing is cut off at ${viewport.width}`);
+      assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    }
+  });
+
   it('keeps how far each panel was scrolled', async () => {
     const body = page.locator('#panel');
     const scrolled = () => body.evaluate((element) => element.scrollTop);

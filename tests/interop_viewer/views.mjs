@@ -13,6 +13,8 @@ export const SIZES = {
   tablet: { viewport: { width: 768, height: 1024 }, hasTouch: true },
   laptop: { viewport: { width: 1280, height: 720 } },
   screen: { viewport: { width: 1920, height: 1080 } },
+  narrow: { ...PHONE, viewport: { width: 320, height: 640 } },
+  zoomed: { viewport: { width: 683, height: 384 }, deviceScaleFactor: 2 }, // 1366 x 768 at 200 %
 };
 export const THEMES = ['light', 'dark'];
 

@@ -69,6 +69,17 @@ TEST(FoxgloveCodec, ReadsServiceCalls) {
   EXPECT_EQ(call.payload, "\0\1\0\0x"s);
 }
 
+TEST(FoxgloveCodec, ReadsWhatAPacedReaderHasRead) {
+  const auto read = parsed<Received>(R"({"op":"received","bytes":5000000000,"at":17.25})");
+  EXPECT_EQ(read.bytes, 5'000'000'000U);
+  EXPECT_EQ(read.at, 17.25);
+  EXPECT_EQ(nlohmann::json::parse(heard(17.25, 0.5)),
+            (nlohmann::json{{"op", "heard"}, {"at", 17.25}, {"held", 0.5}}));
+  EXPECT_EQ(refusal(R"({"op":"received","bytes":-1,"at":0})"),
+            "bytes: got -1, expected a whole number of 0 or more");
+  EXPECT_EQ(refusal(R"({"op":"received","bytes":1})"), "at: got null, expected a finite number");
+}
+
 TEST(FoxgloveCodec, RefusesInWordsWhatIsWrong) {
   EXPECT_EQ(refusal(R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":3}]})"),
             "subscriptions.id: got -1, expected a whole number from 0 to 4294967295");

@@ -62,6 +62,7 @@ TEST(RosMessages, RunSaysWhatTheBitsAndTermsOfAFrameMean) {
   EXPECT_EQ(reader.text(), "observe");
   EXPECT_EQ(reader.text(), "waypoints");
   EXPECT_EQ(reader.get<std::uint32_t>(), 7U);
+  EXPECT_EQ(reader.number(), samples::run().vehicle.brake_throttle_limit);
   EXPECT_TRUE(reader.is_at_end());
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -11,11 +12,14 @@ namespace {
 
 std::vector<double> frame_times(const RunMemory& memory) {
   std::vector<double> times;
-  std::uint64_t next = 0;
-  while (const KeptMessage* message = memory.frame_from(next)) {
+  std::uint64_t before = memory.end();
+  EXPECT_EQ(memory.frame_before(0), nullptr);
+  while (const KeptMessage* message = memory.frame_before(before)) {
+    before = message->number;
+    EXPECT_EQ(memory.frames_before(memory.end()) - memory.frames_before(before), times.size() + 1);
     times.push_back(message->time);
-    next = message->number + 1;
   }
+  std::reverse(times.begin(), times.end());
   return times;
 }
 
@@ -65,7 +69,7 @@ TEST(RunMemory, GoesOnCountingWhenTheRunBeginsAnew) {
   const std::uint64_t seen = memory.lap_from(0)->number;
   memory.forget();
   EXPECT_EQ(memory.lap_from(0), nullptr);
-  EXPECT_EQ(memory.frame_from(0), nullptr);
+  EXPECT_EQ(memory.frame_before(memory.end()), nullptr);
   memory.add_lap({.lap = 1}, 0.5, "new");
   ASSERT_NE(memory.lap_from(seen + 1), nullptr);
   EXPECT_EQ(memory.lap_from(seen + 1)->payload, "new");

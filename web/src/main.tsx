@@ -6,13 +6,14 @@ import { nextSpeedUnit } from './lib/units';
 import { WorkerLink } from './page/worker_link';
 import { Connection, SUBPROTOCOLS } from './protocol/connection';
 import { answerBy, programPage } from './protocol/program_page';
+import { ReadingSocket } from './protocol/reading';
 import { readSchema } from './protocol/schema';
 import type { Source } from './protocol/source';
 import { begin, isReading, summary, timeline } from './recording/begin';
 import { isReport } from './recording/mode';
-import { beginSession, receive } from './state/demultiplexer';
+import { beginSession, receive, receivePastLeft } from './state/demultiplexer';
 import { toggleLayer } from './state/layers';
-import { attempt, link, notice, services } from './state/link';
+import { ageAtArrival, attempt, link, notice, pastLeft, services } from './state/link';
 import { call, can, refresh } from './state/operate';
 import { rememberRun } from './state/other_run';
 import { toggleFrozen } from './state/plot_view';
@@ -44,17 +45,23 @@ async function loadSchema(): Promise<void> {
   }
 }
 
+function tellPastLeft(messages: number): void {
+  pastLeft.value = messages;
+  receivePastLeft(messages, performance.now());
+}
+
 /** Opens the connection to the program, or to the worker of a page that needs none. */
 function opener(): () => IWebSocket {
+  const told = { age: (seconds: number) => (ageAtArrival.value = seconds), pastLeft: tellPastLeft };
   if (__PAGE__) {
     const worker = new WorkerLink((sentence) => (notice.value = sentence));
     answerBy((path) => worker.get(`/${path}`));
-    return () => worker.open();
+    return () => new ReadingSocket(worker.open(), told, { acknowledges: false });
   }
   const url = new URL('viewer', location.href);
-  url.search = '?past'; // the frames of the last minutes before the newest
+  url.search = '?past&paced'; // the frames of the last minutes, behind the newest; no more than arrives in time
   url.protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
-  return () => new WebSocket(url, SUBPROTOCOLS);
+  return () => new ReadingSocket(new WebSocket(url, SUBPROTOCOLS), told);
 }
 
 function live(): Source {
@@ -63,6 +70,7 @@ function live(): Source {
       // The program tells of its run from the beginning, whenever the page comes.
       const isOther = name !== session;
       beginSession(isOther);
+      ageAtArrival.value = pastLeft.value = 0;
       if (isOther) {
         if (session !== null) rememberRun();
         beginSettings();

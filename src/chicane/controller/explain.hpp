@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -10,6 +11,8 @@
 #include "chicane/controller/cubic_problem.hpp"
 #include "chicane/controller/explanation.hpp"
 #include "chicane/controller/tracking_problem.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/road/reference_line.hpp"
 #include "chicane/solver/problem.hpp"
 
 /// What an optimal control problem's answer says about itself: cost by term, active constraints. Evaluates
@@ -89,8 +92,45 @@ void explain(const Problem& problem, const Trajectory& answer, Explanation& expl
   constexpr double kReached = 0.5;  // [m/s]
   const bool is_reached = speed >= limit - kReached;
   if (!is_reached && (active_now & bit(Constraint::kThrottleMax)) != 0U) return SpeedLimiter::kPower;
-  // Below the wanted speed at part throttle other prices hold the car back.
-  return !is_reached && by == SpeedLimiter::kAsked ? SpeedLimiter::kNone : by;
+  // Below the wanted speed other prices than the speed's hold the car back.
+  return !is_reached && by == SpeedLimiter::kAsked ? SpeedLimiter::kPartThrottle : by;
+}
+
+/// What keeps a car from driving a planned lap faster at a place of it: a constraint that is active in the
+/// first stage, else what the lap was planned against there.
+[[nodiscard]] inline SpeedLimiter limiter_of_lap(const road::ReferenceLine::Demand& planned,
+                                                 const model::VehicleParams& car,
+                                                 std::uint32_t active_now) noexcept {
+  constexpr double kSlowing = 0.5;  // planned deceleration beyond rolling [m/s²]
+  constexpr double kNearly = 0.9;   // of the grip and of the steering rate
+  constexpr double kNoMore = 0.3;   // of the drive's acceleration is left [m/s²]
+  const auto is_active = [&](auto... constraints) { return (active_now & (bit(constraints) | ...)) != 0U; };
+  if (is_active(Constraint::kThrottleMax)) return SpeedLimiter::kPower;
+  const double v = planned.speed;
+  const double along = v * planned.speed_slope;
+  const double rolling = longitudinal_acceleration(car, 0.0, v);
+  if (is_active(Constraint::kBrakeMax) || along < rolling - kSlowing) return SpeedLimiter::kBraking;
+  const double grip = car.cornering_friction() * car.load(v);
+  const double across = v * v * (1.0 - car.steer_helper) * planned.curvature;
+  const double coupled = car.friction_coupling * along;
+  if (is_active(Constraint::kFrontTire, Constraint::kRearTire, Constraint::kFrictionEllipse) ||
+      across * across + coupled * coupled > kNearly * kNearly * grip * grip)
+    return SpeedLimiter::kCurvature;
+  if (along > longitudinal_acceleration(car, 1.0, v) - kNoMore) return SpeedLimiter::kPower;
+  const double steer_rate = car.wheelbase() * std::fabs(planned.curvature_slope) * v;
+  if (is_active(Constraint::kSteerRate) || steer_rate > kNearly * car.steer_rate_limit)
+    return SpeedLimiter::kSteerRate;
+  if (is_active(Constraint::kLeftEdge, Constraint::kRightEdge)) return SpeedLimiter::kEdge;
+  return SpeedLimiter::kPlan;
+}
+
+/// Speed and limiter of what is planned where the command acts; `raced`: the car that a lap was planned for.
+inline void explain_speed(const road::ReferenceLine::Demand& planned, double speed,
+                          const model::VehicleParams* raced, Explanation& explanation) noexcept {
+  explanation.speed_limit = planned.speed;
+  explanation.speed_limiter = raced != nullptr
+                                  ? limiter_of_lap(planned, *raced, explanation.active_now)
+                                  : limiter_of(speed, planned.speed, planned.limiter, explanation.active_now);
 }
 
 }  // namespace chicane::controller

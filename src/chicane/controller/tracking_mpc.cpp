@@ -391,9 +391,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   void explain_answer(double speed) noexcept {
     Explanation& explanation = result_.report.explanation;
     explain<TrackingTerms>(problem_, horizon_, explanation);
-    const road::ReferenceLine::Demand planned = line().demand(s_);
-    explanation.speed_limit = planned.speed;
-    explanation.speed_limiter = limiter_of(speed, planned.speed, planned.limiter, explanation.active_now);
+    explain_speed(line().demand(s_), speed, road_.is_raced() ? &model_.vehicle() : nullptr, explanation);
   }
 
   /// No time to solve, and the last plan is old: the wheel by feedback to the line, all useful braking.

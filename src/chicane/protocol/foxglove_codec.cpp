@@ -113,6 +113,14 @@ Result<ClientMessage> with_names(const Json& message) {
   return Message{std::move(*names)};
 }
 
+Result<ClientMessage> to_received(const Json& message) {
+  const Json& bytes = member(message, "bytes");
+  if (!bytes.is_number_unsigned()) return refuse("bytes", bytes, "a whole number of 0 or more");
+  const auto at = to_number("at", member(message, "at"));
+  if (!at) return fail(at.error());
+  return Received{bytes.get<std::uint64_t>(), *at};
+}
+
 Result<ClientMessage> parse_text(std::string_view bytes) {
   const Json message = parse_json(bytes);
   if (!message.is_object()) return fail(ErrorCode::kParse, "a text message must be one JSON object in UTF-8");
@@ -139,6 +147,7 @@ Result<ClientMessage> parse_text(std::string_view bytes) {
   }
   if (op == "subscribeParameterUpdates") return with_names<SubscribeParameters>(message);
   if (op == "unsubscribeParameterUpdates") return with_names<UnsubscribeParameters>(message);
+  if (op == "received") return to_received(message);
   return fail(ErrorCode::kParse, fmt::format("op: {} is not offered by this server", shown(op)));
 }
 
@@ -237,6 +246,12 @@ std::string advertise_services(std::span<const Service> services) {
 
 std::string status(StatusLevel level, std::string_view message) {
   return json_text({{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}});
+}
+
+std::string heard(double at, double held) { return json_text({{"op", "heard"}, {"at", at}, {"held", held}}); }
+
+std::string past_left(std::size_t messages) {
+  return json_text({{"op", "pastLeft"}, {"messages", messages}});
 }
 
 std::string parameter_values(std::span<const Parameter> parameters,

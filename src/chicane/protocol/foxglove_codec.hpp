@@ -76,8 +76,14 @@ struct CallService {
   std::string payload;
 };
 
+/// Our own addition to the protocol, of readers that ask for pacing (wire/viewer.hpp): what was read so far.
+struct Received {
+  std::uint64_t bytes = 0;  ///< of binary messages, since the connection began
+  double at = 0.0;          ///< by the reader's clock, which gets it back: any finite number
+};
+
 using ClientMessage = std::variant<Subscribe, Unsubscribe, GetParameters, SetParameters, SubscribeParameters,
-                                   UnsubscribeParameters, CallService>;
+                                   UnsubscribeParameters, CallService, Received>;
 
 /// Most entries that one message may list.
 inline constexpr std::size_t kMaxEntries = 1024;
@@ -119,6 +125,10 @@ struct Capabilities {
 [[nodiscard]] std::string advertise(std::span<const Channel> channels);
 [[nodiscard]] std::string advertise_services(std::span<const Service> services);
 [[nodiscard]] std::string status(StatusLevel level, std::string_view message);
+/// The answer to Received: its `at`, and for how long it was held here [s]. The next frame follows.
+[[nodiscard]] std::string heard(double at, double held);
+/// So many messages of the past are still to come on "/chicane/past".
+[[nodiscard]] std::string past_left(std::size_t messages);
 [[nodiscard]] std::string parameter_values(std::span<const Parameter> parameters,
                                            const std::optional<std::string>& request = {});
 [[nodiscard]] std::string service_failure(const CallService& call, std::string_view message);

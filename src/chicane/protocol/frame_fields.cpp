@@ -15,7 +15,6 @@
 namespace chicane::protocol {
 namespace {
 
-using controller::SpeedLimiter;
 using telemetry::Frame;
 using Numbers = std::span<const double>;
 
@@ -205,15 +204,8 @@ constexpr std::array kSent{
     field<bool>("is_manual", "a person drives", [](const Frame& f) { return f.is_manual; }),
 };
 
-constexpr std::array kSpeedLimiters{
-    constant("SPEED_LIMITER_NONE", SpeedLimiter::kNone, "nothing that is known"),
-    constant("SPEED_LIMITER_ASKED", SpeedLimiter::kAsked, "the speed asked for is reached"),
-    constant("SPEED_LIMITER_CURVATURE", SpeedLimiter::kCurvature, "tyre grip in the bend"),
-    constant("SPEED_LIMITER_BRAKING", SpeedLimiter::kBraking, "braking for a slower place ahead"),
-    constant("SPEED_LIMITER_POWER", SpeedLimiter::kPower,
-             "throttle at its bound, or the drive out of the last bend"),
-    constant("SPEED_LIMITER_SIGHT", SpeedLimiter::kSight, "road known too short"),
-};
+constexpr auto kLimiterNames = capital_names("SPEED_LIMITER_", road::kSpeedLimiterWords);
+constexpr auto kSpeedLimiters = constants(kLimiterNames, road::kSpeedLimiterWords);
 
 constexpr std::array kReasons{
     field<Numbers>("cost_terms", "of the plan, summed over its stages (names: Run.cost_term_names)",

@@ -90,6 +90,7 @@ std::string encode_run(const Frame&, const Run& run) {
       .text(run.guard.mode)
       .text(run.guard.road)
       .put(static_cast<std::uint32_t>(run.guard.version))
+      .put(car.brake_throttle_limit)
       .bytes();
 }
 

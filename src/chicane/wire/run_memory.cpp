@@ -18,6 +18,14 @@ const KeptMessage* first_from(const Messages& messages, std::uint64_t number) {
   return found == messages.end() ? nullptr : &*found;
 }
 
+/// Messages with a lower number. By bisection.
+std::size_t count_before(const std::deque<KeptMessage>& messages, std::uint64_t number) {
+  const auto found =
+      std::lower_bound(messages.begin(), messages.end(), number,
+                       [](const KeptMessage& each, std::uint64_t wanted) { return each.number < wanted; });
+  return static_cast<std::size_t>(found - messages.begin());
+}
+
 }  // namespace
 
 void RunMemory::forget() {
@@ -61,9 +69,15 @@ void RunMemory::add_change(double time, std::string payload) {
   changes_.push_back({next_++, time, std::move(payload)});
 }
 
-const KeptMessage* RunMemory::frame_from(std::uint64_t number) const {
-  const KeptMessage* older = first_from(sparse_, number);
-  return older != nullptr ? older : first_from(dense_, number);
+const KeptMessage* RunMemory::frame_before(std::uint64_t number) const {
+  const std::size_t newer = count_before(dense_, number);
+  if (newer > 0) return &dense_[newer - 1];
+  const std::size_t older = count_before(sparse_, number);
+  return older > 0 ? &sparse_[older - 1] : nullptr;
+}
+
+std::size_t RunMemory::frames_before(std::uint64_t number) const {
+  return count_before(sparse_, number) + count_before(dense_, number);
 }
 
 const KeptMessage* RunMemory::lap_from(std::uint64_t number) const { return first_from(laps_, number); }

@@ -19,7 +19,7 @@ struct KeptMessage {
 /// What a run has been so far, as encoded messages in bounded memory, so that a viewer that comes late knows
 /// what the others know: laps, changes of settings, and frames; the newest frames all, older ones at a
 /// distance. A reader keeps the number of the next message that it wants, and asks for the first from there
-/// on.
+/// on, or, of frames, for the last one before.
 class RunMemory {
  public:
   static constexpr double kDense = 60.0;   ///< all frames of the last ... [s]
@@ -37,7 +37,11 @@ class RunMemory {
   void add_change(double time, std::string payload);
 
   /// The first with this number or a higher one; null when there is none. Valid until the next addition.
-  [[nodiscard]] const KeptMessage* frame_from(std::uint64_t number) const;
+  /// The last frame with a lower number, and how many there are; null and 0 when there is none.
+  [[nodiscard]] const KeptMessage* frame_before(std::uint64_t number) const;
+  [[nodiscard]] std::size_t frames_before(std::uint64_t number) const;
+  /// Higher than the number of every message that was added.
+  [[nodiscard]] std::uint64_t end() const { return next_; }
   [[nodiscard]] const KeptMessage* lap_from(std::uint64_t number) const;
   [[nodiscard]] const KeptMessage* change_from(std::uint64_t number) const;
 

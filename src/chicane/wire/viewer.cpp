@@ -9,11 +9,20 @@
 #include <memory>
 #include <utility>
 
+#include "chicane/wire/detail/viewer_channels.hpp"
+
 namespace chicane::wire {
-namespace {
 
 namespace foxglove = protocol::foxglove;
+using detail::change_channel;
+using detail::data_of;
+using detail::delivery_of;
+using detail::frame_channel;
+using detail::lap_channel;
+using detail::past_channel;
 using protocol::Cadence;
+
+namespace {
 
 /// Topic number of the time for net::Delivery::kNewest; channels use their own number plus one.
 constexpr std::uint32_t kTimeTopic = 1'000'000;
@@ -24,42 +33,28 @@ constexpr std::size_t kMostWaiting = 100;  // viewers between the upgrade and it
 // net::ServerOptions::max_queue.
 constexpr std::size_t kPage = 192;
 
+// While frames of the past are sent to a viewer, a slow line is not filled by those of the present: between
+// two of them, and between two plans, which are ten times as large [s].
+constexpr double kNewestBesidePast = 0.1;
+constexpr double kPlanBesidePast = 0.5;
+// What may be on its way to a viewer beyond its window, so that the newest frame does not wait for the past
+// [byte].
+constexpr std::size_t kReserve = 4096;
+
 constexpr std::uint16_t kGoingAway = 1001;  // RFC 6455 §7.4.1
 
-constexpr std::string_view kWatchOnly =
-    "this connection may watch only; connect with the token of the link that the program printed to control";
 constexpr std::string_view kTrigger = "std_srvs/srv/Trigger";
 constexpr std::string_view kSetBool = "std_srvs/srv/SetBool";
 constexpr std::string_view kAsk = "chicane_msgs/srv/Ask";
 
-std::vector<foxglove::Channel> channels() {
+std::vector<foxglove::Channel> channels(bool with_past) {
   std::vector<foxglove::Channel> list;
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
     list.push_back({static_cast<std::uint32_t>(list.size()), topic.name, topic.type, topic.schema});
   }
+  const protocol::RosTopic& frame = protocol::ros_topics()[frame_channel()];
+  if (with_past) list.push_back({past_channel(), detail::kPastTopic, frame.type, frame.schema});
   return list;
-}
-
-std::uint32_t channel_of(Cadence cadence) {
-  const auto& topics = protocol::ros_topics();
-  const auto found = std::find_if(topics.begin(), topics.end(),
-                                  [&](const protocol::RosTopic& topic) { return topic.cadence == cadence; });
-  return static_cast<std::uint32_t>(found - topics.begin());
-}
-
-std::uint32_t change_channel() {
-  static const auto channel = channel_of(Cadence::kEvent);
-  return channel;
-}
-
-std::uint32_t lap_channel() {
-  static const auto channel = channel_of(Cadence::kLap);
-  return channel;
-}
-
-std::uint32_t frame_channel() {
-  static const auto channel = channel_of(Cadence::kFrame);
-  return channel;
 }
 
 /// Manual driving changes thirty times a second, which is of no interest later.
@@ -67,20 +62,16 @@ bool is_worth_keeping(const telemetry::Change& change) {
   return change.name.view() != "manual.steer" && change.name.view() != "manual.throttle";
 }
 
-bool asks_for_past(std::string_view target) {
+/// Whether the query of an address has this word.
+bool asks_for(std::string_view word, std::string_view target) {
   const std::size_t query = target.find('?');
   if (query == std::string_view::npos) return false;
   for (std::string_view rest = target.substr(query + 1); !rest.empty();) {
     const std::size_t end = std::min(rest.find('&'), rest.size());
-    if (rest.substr(0, end) == "past") return true;
+    if (rest.substr(0, end) == word) return true;
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return false;
-}
-
-/// A frame is stale once the next one is there; descriptions of the run must arrive.
-net::Delivery delivery_of(Cadence cadence) {
-  return cadence == Cadence::kFrame ? net::Delivery::kNewest : net::Delivery::kReliable;
 }
 
 std::function<Result<std::string>(std::string_view)> trigger(std::function<Result<void>()> action,
@@ -163,7 +154,8 @@ void ViewerEndpoint::dismiss(std::chrono::milliseconds patience) {
   std::function<void()> look = [&] {
     if (!std::exchange(has_ticked, true)) tick();
     for (const auto& [id, client] : clients_) {
-      const bool has_all = server_->waiting(id) == 0 && !client.next_frame;
+      const bool has_all =
+          server_->waiting(id) == 0 && client.past_before == 0 && client.owed.empty() && !client.is_behind;
       if (has_all && told.insert(id).second) server_->close(id, kGoingAway, "the run is over");
     }
     if (clients_.empty() || Clock::now() >= end) return gone.set_value();
@@ -208,14 +200,36 @@ void ViewerEndpoint::tick() {
   tell_changes(begins);
   note_lap(begins);
   if (is_new) note_frame();
-  for (auto& [id, client] : clients_) send_kept(id, client);
-  if (!is_new) return;
-  const auto time =
-      std::make_shared<const std::string>(foxglove::time_message(protocol::to_nanoseconds(frame_.time)));
-  for (const auto& [id, client] : clients_) {
-    if (!client.subscriptions.empty()) server_->send(id, time, true, net::Delivery::kNewest, kTimeTopic);
+  if (is_new) {
+    const auto time =
+        std::make_shared<const std::string>(foxglove::time_message(protocol::to_nanoseconds(frame_.time)));
+    for (auto& [id, client] : clients_) {
+      client.is_behind = client.pace.has_value();
+      if (!client.pace && !client.subscriptions.empty())
+        server_->send(id, time, true, net::Delivery::kNewest, kTimeTopic);
+    }
+    send_cadence(Cadence::kFrame);
   }
-  send_cadence(Cadence::kFrame);
+  for (auto& [id, client] : clients_) serve(id, client);
+}
+
+/// The present first, then what is missing of laps and changes, then the past.
+void ViewerEndpoint::serve(net::ConnectionId id, Client& client) {
+  send_newest(id, client);
+  send_owed(id, client);
+  send_kept(id, client);
+}
+
+/// Descriptions that a paced viewer has subscribed to: roads are as large as a second of frames.
+void ViewerEndpoint::send_owed(net::ConnectionId id, Client& client) {
+  while (!client.owed.empty() && has_room(id, client)) {
+    const std::uint32_t channel = *client.owed.begin();
+    client.owed.erase(client.owed.begin());
+    const auto wanted = client.subscriptions.find(channel);
+    if (wanted == client.subscriptions.end()) continue;
+    const protocol::RosTopic& topic = protocol::ros_topics()[channel];
+    deliver(id, client, data_of(wanted->second, frame_.time, topic.encode(frame_, options_.run)));
+  }
 }
 
 /// What was before a run began anew is not of this one.
@@ -246,11 +260,10 @@ void ViewerEndpoint::tell_changes(bool begins) {
       memory_.add_change(change.time, payload);
       continue;  // send_kept() sends it
     }
-    for (const auto& [id, client] : clients_) {
+    for (auto& [id, client] : clients_) {
       const auto wanted = client.subscriptions.find(change_channel());
       if (wanted == client.subscriptions.end()) continue;
-      server_->send(
-          id, foxglove::message_data(wanted->second, protocol::to_nanoseconds(change.time), payload), true);
+      deliver(id, client, data_of(wanted->second, change.time, payload));
     }
   }
   options_.parameters->update();
@@ -284,28 +297,78 @@ void ViewerEndpoint::note_lap(bool begins) {
                   protocol::ros_topics()[lap_channel()].encode(frame, options_.run));
 }
 
+/// The newest frame for a paced viewer, once there is room for it.
+void ViewerEndpoint::send_newest(net::ConnectionId id, Client& client) {
+  if (!client.pace || !client.is_behind || !has_frame_ || server_->waiting(id) >= kPage ||
+      !client.pace->has_room(kReserve))
+    return;
+  if (client.past_before > 0 && now() - client.newest_sent_at < kNewestBesidePast) return;
+  if (client.heard) send_text(id, foxglove::heard(client.heard->at, now() - client.heard_at));
+  client.heard.reset();
+  client.is_behind = false;
+  client.newest_sent_at = now();
+  const bool is_whole = client.past_before == 0 || now() - client.whole_sent_at >= kPlanBesidePast;
+  if (is_whole) client.whole_sent_at = now();
+  if (client.subscriptions.empty()) return;
+  deliver(id, client,
+          std::make_shared<const std::string>(foxglove::time_message(protocol::to_nanoseconds(frame_.time))));
+  const auto& topics = protocol::ros_topics();
+  for (const auto& [channel, subscription] : client.subscriptions) {
+    if (channel >= topics.size() || topics[channel].cadence != Cadence::kFrame) continue;
+    if (!is_whole && channel != frame_channel()) continue;
+    deliver(id, client, data_of(subscription, frame_.time, topics[channel].encode(frame_, options_.run)));
+  }
+}
+
 /// A page of what it has not been sent; the next one when it has read this. All at once would be more than
 /// may wait for a connection.
 void ViewerEndpoint::send_kept(net::ConnectionId id, Client& client) {
   const auto send_page = [&](std::uint32_t channel, std::uint64_t& next, auto from) {
     const auto wanted = client.subscriptions.find(channel);
     if (wanted == client.subscriptions.end()) return true;
-    for (std::size_t room = kPage - std::min(kPage, server_->waiting(id)); room > 0; --room) {
+    for (std::size_t room = room_for(id, client); room > 0 && has_room(id, client); --room) {
       const KeptMessage* message = (memory_.*from)(next);
       if (message == nullptr) return true;
-      server_->send(
-          id,
-          foxglove::message_data(wanted->second, protocol::to_nanoseconds(message->time), message->payload),
-          true);
+      deliver(id, client, data_of(wanted->second, message->time, message->payload));
       next = message->number + 1;
     }
     return false;
   };
   const bool has_laps = send_page(lap_channel(), client.next_lap, &RunMemory::lap_from);
   send_page(change_channel(), client.next_change, &RunMemory::change_from);
-  if (!client.next_frame || !has_laps) return;  // the table before the curves
-  const bool has_all = send_page(frame_channel(), *client.next_frame, &RunMemory::frame_from);
-  if (has_all) client.next_frame.reset();
+  if (has_laps && client.past_before > 0) send_past(id, client);  // the table before the curves
+}
+
+/// A page of the past, from the present backwards.
+void ViewerEndpoint::send_past(net::ConnectionId id, Client& client) {
+  const std::uint32_t subscription = client.subscriptions.at(past_channel());
+  const std::size_t room = room_for(id, client);
+  std::size_t sent = 0;
+  for (; sent < room && has_room(id, client) && client.past_before > 0; ++sent) {
+    const KeptMessage* message = memory_.frame_before(client.past_before);
+    client.past_before = message != nullptr ? message->number : 0;
+    if (message != nullptr) deliver(id, client, data_of(subscription, message->time, message->payload));
+  }
+  if (sent > 0) send_text(id, foxglove::past_left(memory_.frames_before(client.past_before)));
+}
+
+/// Messages of the next page.
+std::size_t ViewerEndpoint::room_for(net::ConnectionId id, const Client& client) const {
+  return has_room(id, client) ? kPage - server_->waiting(id) : 0;
+}
+
+bool ViewerEndpoint::has_room(net::ConnectionId id, const Client& client) const {
+  return server_->waiting(id) < kPage && (!client.pace || client.pace->has_room());
+}
+
+void ViewerEndpoint::deliver(net::ConnectionId id, Client& client, net::Bytes bytes) {
+  if (client.pace) client.pace->sent(bytes->size(), now());
+  server_->send(id, std::move(bytes), true);
+}
+
+double ViewerEndpoint::now() const {
+  if (options_.clock) return options_.clock();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 void ViewerEndpoint::send_cadence(Cadence cadence) {
@@ -322,15 +385,19 @@ void ViewerEndpoint::send_channel(std::uint32_t channel) {
   // bytes.
   std::optional<std::string> payload;
   std::map<std::uint32_t, net::Bytes> by_subscription;
-  for (const auto& [id, client] : clients_) {
+  for (auto& [id, client] : clients_) {
     const auto wanted = client.subscriptions.find(channel);
     if (wanted == client.subscriptions.end()) continue;
-    if (channel == frame_channel() && client.next_frame) continue;  // the past comes first
+    if (client.pace && topic.cadence == Cadence::kFrame) continue;  // send_newest()
+    if (client.owed.contains(channel)) continue;                    // send_owed()
     if (!payload) payload = topic.encode(frame_, options_.run);
     net::Bytes& bytes = by_subscription[wanted->second];
     if (!bytes)
       bytes = std::make_shared<const std::string>(foxglove::message_data(wanted->second, time, *payload));
-    server_->send(id, bytes, true, delivery_of(topic.cadence), channel + 1);
+    if (client.pace)
+      deliver(id, client, bytes);
+    else
+      server_->send(id, bytes, true, delivery_of(topic.cadence), channel + 1);
   }
 }
 
@@ -354,7 +421,8 @@ net::UpgradeAnswer ViewerEndpoint::on_upgrade(const net::UpgradeRequest& request
       if (upgrades_.size() >= kMostWaiting) upgrades_.erase(upgrades_.begin());
       Client& client = upgrades_[request.id];
       client.may_control = request.may_control;
-      client.wants_past = asks_for_past(request.target);
+      client.wants_past = asks_for("past", request.target);
+      if (asks_for("paced", request.target)) client.pace.emplace();
       return {.accept = true, .subprotocol = std::string{ours}};
     }
   }
@@ -369,130 +437,12 @@ void ViewerEndpoint::on_open(net::ConnectionId id) {
   send_text(id, foxglove::server_info(
                     "chicane", session_,
                     {.parameters = options_.parameters != nullptr, .services = !services_.empty()}));
-  send_text(id, foxglove::advertise(channels()));
+  send_text(id, foxglove::advertise(channels(clients_[id].wants_past)));
   std::vector<foxglove::Service> services;
   for (const ServiceEntry& service : services_) services.push_back(service.description);
   if (!services.empty()) send_text(id, foxglove::advertise_services(services));
 }
 
 void ViewerEndpoint::on_close(net::ConnectionId id, std::string_view /*why*/) { clients_.erase(id); }
-
-void ViewerEndpoint::on_message(net::ConnectionId id, std::string_view bytes, bool binary) {
-  const Result<foxglove::ClientMessage> message = foxglove::parse(bytes, binary);
-  if (!message) return warn(id, message.error().message);
-  std::visit([&](const auto& content) { handle(id, content); }, *message);
-}
-
-void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::Subscribe& message) {
-  const auto& topics = protocol::ros_topics();
-  for (const auto& [subscription, channel] : message.subscriptions) {
-    if (channel >= topics.size()) {
-      warn(id, fmt::format("subscribe: there is no channel {}", channel));
-      continue;
-    }
-    if (!clients_[id].subscriptions.try_emplace(channel, subscription).second) {
-      warn(id, fmt::format("subscribe: {} is subscribed to already", topics[channel].name));
-      continue;
-    }
-    // What is known now, because the next change may be far away.
-    Client& client = clients_[id];
-    if (channel == frame_channel() && client.wants_past) {
-      client.next_frame = 0;  // from the next tick on: what describes the run comes first
-      continue;
-    }
-    const Cadence cadence = topics[channel].cadence;
-    if (cadence == Cadence::kLap) client.next_lap = 0;
-    if (cadence == Cadence::kEvent) client.next_change = 0;
-    if (cadence == Cadence::kLap || cadence == Cadence::kEvent) {
-      send_kept(id, client);
-      continue;
-    }
-    if (topics[channel].cadence == Cadence::kFrame && !has_frame_) continue;
-    server_->send(id,
-                  foxglove::message_data(subscription, protocol::to_nanoseconds(frame_.time),
-                                         topics[channel].encode(frame_, options_.run)),
-                  true, delivery_of(topics[channel].cadence), channel + 1);
-  }
-}
-
-void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::Unsubscribe& message) {
-  for (const std::uint32_t subscription : message.ids) {
-    if (std::erase_if(clients_[id].subscriptions,
-                      [&](const auto& entry) { return entry.second == subscription; }) == 0) {
-      warn(id, fmt::format("unsubscribe: there is no subscription {}", subscription));
-    }
-  }
-}
-
-void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::GetParameters& message) {
-  if (options_.parameters == nullptr) return warn(id, "getParameters: this run has none");
-  std::vector<foxglove::Parameter> values;
-  if (message.names.empty()) values = options_.parameters->list();
-  for (const std::string& name : message.names) {
-    if (auto parameter = options_.parameters->get(name)) values.push_back(std::move(*parameter));
-  }
-  send_text(id, foxglove::parameter_values(values, message.request));
-}
-
-void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::SetParameters& message) {
-  if (options_.parameters == nullptr) return warn(id, "setParameters: this run has none");
-  std::vector<foxglove::Parameter> values;
-  const bool is_allowed = clients_[id].may_control;
-  if (!is_allowed) warn(id, fmt::format("setParameters: {}", kWatchOnly));
-  for (const foxglove::Parameter& parameter : message.parameters) {
-    if (const Result<void> result = is_allowed ? options_.parameters->set(parameter) : Result<void>{};
-        !result)
-      warn(id, result.error().message);
-    // The value that holds now, also after a refusal: the viewer's slider must not show another.
-    if (auto now = options_.parameters->get(parameter.name)) values.push_back(std::move(*now));
-  }
-  if (message.request) send_text(id, foxglove::parameter_values(values, message.request));
-  // A choice of preset changes more than its own value.
-  for (foxglove::Parameter& other : options_.parameters->news()) {
-    const bool is_told = std::any_of(values.begin(), values.end(), [&](const foxglove::Parameter& value) {
-      return value.name == other.name;
-    });
-    if (!is_told) values.push_back(std::move(other));
-  }
-  send_parameters(values);
-}
-
-void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::SubscribeParameters& message) {
-  if (options_.parameters == nullptr)
-    return warn(id, "subscribeParameterUpdates: this run has no parameters");
-  Client& client = clients_[id];
-  if (message.names.empty()) client.wants_all_parameters = true;
-  // Names that do not exist are dropped, so a client cannot make us remember more than there is.
-  for (const std::string& name : message.names) {
-    if (options_.parameters->get(name)) client.wanted_parameters.insert(name);
-  }
-}
-
-void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::UnsubscribeParameters& message) {
-  Client& client = clients_[id];
-  if (message.names.empty()) {
-    client.wants_all_parameters = false;
-    client.wanted_parameters.clear();
-  }
-  for (const std::string& name : message.names) client.wanted_parameters.erase(name);
-}
-
-void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::CallService& call) {
-  if (call.service >= services_.size()) {
-    return send_text(id,
-                     foxglove::service_failure(call, fmt::format("there is no service {}", call.service)));
-  }
-  if (call.encoding != "cdr") {
-    return send_text(id, foxglove::service_failure(call, "requests must be encoded as cdr"));
-  }
-  if (!clients_[id].may_control) return send_text(id, foxglove::service_failure(call, kWatchOnly));
-  const Result<std::string> done = services_[call.service].call(call.payload);
-  if (!done && done.error().code == ErrorCode::kParse) {
-    return send_text(id, foxglove::service_failure(call, done.error().message));
-  }
-  const std::string answer =
-      protocol::encode_service_response(done.has_value(), done ? *done : done.error().message);
-  server_->send(id, foxglove::service_response(call, answer), true);
-}
 
 }  // namespace chicane::wire

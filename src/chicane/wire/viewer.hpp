@@ -20,6 +20,7 @@
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/lap_ledger.hpp"
 #include "chicane/wire/endpoint.hpp"
+#include "chicane/wire/link_pace.hpp"
 #include "chicane/wire/run_memory.hpp"
 
 namespace chicane::wire {
@@ -41,7 +42,8 @@ struct ViewerOptions {
   protocol::Run run;
   ViewerServices services;
   protocol::foxglove::ParameterStore* parameters =
-      nullptr;  ///< outlives the endpoint; null: none are offered
+      nullptr;                      ///< outlives the endpoint; null: none are offered
+  std::function<double()> clock{};  ///< [s], rising; empty: the machine's steady clock
 };
 
 /// Shows a run to viewers: our dashboard, Foxglove, Lichtblick, PlotJuggler or a script, all by the Foxglove
@@ -50,8 +52,10 @@ struct ViewerOptions {
 ///
 /// Who may watch only (net::UpgradeRequest::may_control) gets everything but services and set parameters.
 ///
-/// Laps and changes of the run are sent from its beginning to whoever subscribes. A viewer whose address ends
-/// with "?past" gets the frames of the last minutes before the newest (run_memory.hpp).
+/// Laps and changes of the run are sent from its beginning to whoever subscribes. The query of a viewer's
+/// address may ask for more: "past" offers the topic "/chicane/past", the frames of the last minutes before
+/// it came (run_memory.hpp), the newest first, behind the present; "paced" sends no more than the viewer
+/// acknowledges in time (link_pace.hpp, foxglove::Received), the newest frame before everything else.
 ///
 /// Must outlive the server it is started with.
 class ViewerEndpoint final : public Endpoint {
@@ -90,8 +94,15 @@ class ViewerEndpoint final : public Endpoint {
   struct Client {
     bool may_control = false;
     bool wants_past = false;
-    std::optional<std::uint64_t> next_frame{};  ///< of those of the past; none: it follows the newest
-    std::uint64_t next_lap = 0;                 ///< of memory_, to be sent to it
+    std::optional<LinkPace> pace{};  ///< none: it gets everything as soon as it is there
+    std::uint64_t past_before = 0;   ///< frames of memory_ with lower numbers are still to be sent
+    bool is_behind = false;          ///< paced, and the newest frame is not sent yet
+    double whole_sent_at = 0.0;      ///< with plan and all else [s]
+    std::set<std::uint32_t> owed{};  ///< channels of descriptions, paced, sent behind the newest
+    double newest_sent_at = 0.0;     ///< [s]
+    std::optional<protocol::foxglove::Received> heard{};  ///< to be answered
+    double heard_at = 0.0;                                ///< [s]
+    std::uint64_t next_lap = 0;                           ///< of memory_, to be sent to it
     std::uint64_t next_change = 0;
     std::map<std::uint32_t, std::uint32_t> subscriptions;  ///< channel → subscription
     bool wants_all_parameters = false;
@@ -111,7 +122,15 @@ class ViewerEndpoint final : public Endpoint {
   void send_parameters(const std::vector<protocol::foxglove::Parameter>& values);
   void note_lap(bool begins);
   void note_frame();
+  void serve(net::ConnectionId id, Client& client);
+  void send_newest(net::ConnectionId id, Client& client);
+  void send_owed(net::ConnectionId id, Client& client);
   void send_kept(net::ConnectionId id, Client& client);
+  void send_past(net::ConnectionId id, Client& client);
+  void deliver(net::ConnectionId id, Client& client, net::Bytes bytes);
+  [[nodiscard]] std::size_t room_for(net::ConnectionId id, const Client& client) const;
+  [[nodiscard]] bool has_room(net::ConnectionId id, const Client& client) const;
+  [[nodiscard]] double now() const;
   void send_cadence(protocol::Cadence cadence);
   void send_channel(std::uint32_t channel);
   void send_text(net::ConnectionId id, std::string text);
@@ -125,6 +144,7 @@ class ViewerEndpoint final : public Endpoint {
   void handle(net::ConnectionId id, const protocol::foxglove::SubscribeParameters& message);
   void handle(net::ConnectionId id, const protocol::foxglove::UnsubscribeParameters& message);
   void handle(net::ConnectionId id, const protocol::foxglove::CallService& message);
+  void handle(net::ConnectionId id, const protocol::foxglove::Received& message);
 
   ViewerOptions options_;
   std::vector<ServiceEntry> services_;

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { firstSince, rangeAboutZero, rangeFromZero, rangeInSteps, secondsBack, silencesIn } from './axis';
+import { firstSince, rangeAboutZero, rangeFromZero, rangeInSteps, secondsBack, silencesIn, ticksOf } from './axis';
 
 describe('axes', () => {
   it('start at zero and end at a round number', () => {
@@ -41,5 +41,21 @@ describe('axes', () => {
     ]);
     expect(silencesIn(times, 3, 4, 1)).toEqual([]);
     expect(silencesIn([], 0, 0, 1)).toEqual([]);
+  });
+});
+
+describe('ticks', () => {
+  it('are few, round, and within the range', () => {
+    expect(ticksOf(0, 62.4, 8)).toEqual([0, 10, 20, 30, 40, 50, 60]);
+    expect(ticksOf(-0.07, 0.31, 4)).toEqual([0, 0.1, 0.2, 0.3]);
+    expect(ticksOf(-25, 25, 5)).toEqual([-20, 0, 20]);
+    expect(ticksOf(3, 3, 5)).toEqual([]);
+    expect(ticksOf(NaN, 3, 5)).toEqual([]);
+    for (const high of [0.013, 0.7, 1, 9.99, 480, 3600]) {
+      const ticks = ticksOf(0, high, 6);
+      expect(ticks.length).toBeGreaterThan(1);
+      expect(ticks.length).toBeLessThanOrEqual(6);
+      expect(ticks.at(-1)).toBeLessThanOrEqual(high);
+    }
   });
 });

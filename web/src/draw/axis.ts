@@ -51,3 +51,14 @@ export function silencesIn(times: ArrayLike<number>, first: number, last: number
 /** Ticks for the last `seconds` up to `now`, in whole steps back from now, so that the grid does not move. */
 export const secondsBack = (now: number, seconds: number, step: number): number[] =>
   Array.from({ length: Math.floor(seconds / step) + 1 }, (_, i) => now - seconds + i * step);
+
+/** Round numbers from `low` to `high`, at most `most` of them: 1, 2 or 5 times a power of ten apart. */
+export function ticksOf(low: number, high: number, most: number): number[] {
+  const span = high - low;
+  if (!(span > 0) || !Number.isFinite(span)) return [];
+  const power = 10 ** Math.floor(Math.log10(span / most));
+  const step = [1, 2, 5, 10, 20].map((factor) => factor * power).find((each) => span / each < most) ?? 20 * power;
+  const first = Math.ceil(low / step - 1e-9);
+  const count = Math.floor(high / step + 1e-9) - first + 1;
+  return Array.from({ length: count }, (_, i) => Number(((first + i) * step).toPrecision(12)));
+}

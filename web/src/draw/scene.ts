@@ -2,9 +2,11 @@ import type { Box, Point } from '../lib/math';
 import type { Limit, Plan } from '../protocol/topics';
 import type { Hindsight, Pose } from '../state/hindsight';
 import type { RoadLines } from '../state/road';
+import type { Losses, MarkedCorner } from '../state/road_marks';
 import { type Camera, groundGrid, transformOf, worldInView } from './camera';
 import type { CarShape } from './car';
 import { addLine, type Line, lengthsOf, lineOf, longestStep, stretchesInside } from './line';
+import { drawCornerNumbers, drawKerbs, drawLosses, drawStartLine } from './road_marks';
 import { speedColour } from './speed_colour';
 import type { Theme } from './theme';
 
@@ -12,6 +14,10 @@ import type { Theme } from './theme';
 export interface Scene {
   readonly road: RoadShape | null;
   readonly racingLine: Limit | null; // of the fastest lap possible
+  readonly corners: readonly MarkedCorner[];
+  readonly kerb: number; // width [m]
+  readonly start: number; // of laps, along the centre line [m]
+  readonly losses: Losses | null; // the line of a lap, coloured by the time lost on it
   readonly reference: readonly Point[];
   readonly trace: Line; // where the car has been
   readonly plan: Plan | null;
@@ -103,10 +109,6 @@ function drawRoad(
   }
   ctx.lineDashOffset = 0;
   ctx.setLineDash([]);
-  const start = new Path2D();
-  start.moveTo(left.x[0] ?? NaN, left.y[0] ?? NaN);
-  start.lineTo(right.x[0] ?? NaN, right.y[0] ?? NaN);
-  stroke(ctx, start, colours.edge, Math.max(0.5, 2 * px));
 }
 
 const JUMP_M = 20; // the car was placed elsewhere: no line across the jump
@@ -272,7 +274,7 @@ function drawGhost(ctx: Context, ghost: Pose, car: NonNullable<Scene['car']>, co
  */
 export function drawWorld(
   ctx: Context,
-  scene: Pick<Scene, 'road' | 'racingLine'>,
+  scene: Pick<Scene, 'road' | 'racingLine' | 'corners' | 'kerb' | 'start' | 'losses'>,
   camera: Camera,
   colours: Theme,
   ratio: number,
@@ -285,8 +287,14 @@ export function drawWorld(
   const px = 1 / camera.scale; // one CSS pixel in metres
   const view = worldInView(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
   drawGround(ctx, camera, colours.groundLine, ratio);
-  if (scene.road) drawRoad(ctx, scene.road, view, colours, px);
+  if (scene.road) {
+    drawRoad(ctx, scene.road, view, colours, px);
+    drawKerbs(ctx, scene.road, scene.corners, scene.kerb, view, colours);
+    drawStartLine(ctx, scene.road, scene.start, colours, px);
+  }
+  if (scene.losses) drawLosses(ctx, scene.losses, colours, Math.max(1, 6 * px));
   if (scene.racingLine) drawRacingLine(ctx, scene.racingLine, view, colours, px);
+  if (scene.road) drawCornerNumbers(ctx, scene.road, scene.corners, camera, colours, ratio);
 }
 
 /** The moving part of the scene, on top of drawWorld(). */

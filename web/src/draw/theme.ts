@@ -18,6 +18,9 @@ export interface Theme {
   readonly carEdge: string;
   readonly wheel: string;
   readonly brake: string;
+  readonly gain: string;
+  readonly kerb: string;
+  readonly kerbLight: string;
   readonly text: string;
   readonly faint: string;
   readonly grid: string;
@@ -46,6 +49,9 @@ function read(): Theme {
     carEdge: colour('car-edge'),
     wheel: colour('wheel'),
     brake: colour('bad'),
+    gain: colour('good'),
+    kerb: colour('kerb'),
+    kerbLight: colour('kerb-light'),
     text: colour('text'),
     faint: colour('text-faint'),
     grid: colour('grid'),

@@ -1,4 +1,12 @@
-import { REASON, REASON_WORDS, RUNG, RUNG_WORDS, STATUS_WORDS } from '../protocol/messages';
+import {
+  REASON,
+  REASON_WORDS,
+  RUNG,
+  RUNG_WORDS,
+  SPEED_LIMITER,
+  SPEED_LIMITER_WORDS,
+  STATUS_WORDS,
+} from '../protocol/messages';
 import type { Frame } from '../protocol/topics';
 
 export type Severity = 'good' | 'warning' | 'bad' | 'unknown';
@@ -67,28 +75,38 @@ export function sightInWords(hasMap: boolean, metres: number): Sentence {
   return { severity: 'good', text: hasMap ? `Track known, uses ${sight} of it` : `Sees ${sight} ahead` };
 }
 
-/** What limits the speed, by Frame.speed_limiter: headline, reason, and short name for charts. */
-export const LIMITERS: readonly { readonly title: string; readonly why: string; readonly short: string }[] = [
-  { title: 'Not known', why: 'The controller does not report what limits the speed.', short: 'unknown' },
-  { title: 'Reference speed', why: 'The car may drive no faster than its speed reference.', short: 'reference' },
-  {
-    title: 'Grip in the bend',
-    why: 'Any faster, and the bend would take more of the grip than the plan may use.',
-    short: 'grip',
-  },
-  {
-    title: 'Braking for a bend',
-    why: 'Any faster, and the car could not brake in time for the bend.',
-    short: 'braking',
-  },
-  { title: 'Power', why: 'Full throttle gives no more.', short: 'power' },
-  { title: 'Sight', why: 'The road is not known far enough ahead to drive faster.', short: 'sight' },
-];
+/** What limits the speed: headline, reason, and short name for charts. */
+export interface LimiterWords {
+  readonly title: string;
+  readonly why: string;
+  readonly short: string;
+}
 
-export const limiterInWords = (limiter: number): (typeof LIMITERS)[number] =>
+/** Headlines and short names; the sentences are the program's (road/speed_limiter.hpp). */
+const LIMITER_NAMES: Readonly<Record<keyof typeof SPEED_LIMITER, readonly [title: string, short: string]>> = {
+  NONE: ['Not said', 'not said'],
+  ASKED: ['Speed asked for', 'asked for'],
+  CURVATURE: ['Grip in the bend', 'grip'],
+  BRAKING: ['Braking for a bend', 'braking'],
+  POWER: ['Power', 'power'],
+  SIGHT: ['Sight', 'sight'],
+  PART_THROTTLE: ['Part throttle', 'part throttle'],
+  STEER_RATE: ['Steering rate', 'steering'],
+  EDGE: ['Edge of the road', 'edge'],
+  PLAN: ['Planned lap', 'planned lap'],
+};
+
+/** By Frame.speed_limiter. */
+export const LIMITERS: readonly LimiterWords[] = Object.entries(LIMITER_NAMES).map(([name, [title, short]]) => ({
+  title,
+  short,
+  why: `${capital(SPEED_LIMITER_WORDS[SPEED_LIMITER[name as keyof typeof SPEED_LIMITER]]?.text ?? '')}.`,
+}));
+
+export const limiterInWords = (limiter: number): LimiterWords =>
   LIMITERS[limiter] ?? {
     title: `Limit ${limiter}`,
-    why: 'This version of the dashboard does not know this limit.',
+    why: 'This page does not know this limit.',
     short: `${limiter}`,
   };
 

@@ -22,7 +22,9 @@ function read<T>(name: string): T {
 
 describe('messages of the C++ side', () => {
   it('include every topic this page subscribes to', () => {
-    for (const name of TOPIC_NAMES) expect(topics.map((each) => each.topic)).toContain(name);
+    // The past has the type of a frame, and a channel of viewers alone (wire/viewer.hpp).
+    const sent = TOPIC_NAMES.filter((name) => name !== '/chicane/past');
+    for (const name of sent) expect(topics.map((each) => each.topic)).toContain(name);
   });
 
   it('carry a frame', () => {
@@ -118,6 +120,7 @@ describe('messages of the C++ side', () => {
       guard_mode: 'observe',
       guard_road: 'waypoints',
       guard_version: 7,
+      brake_throttle_limit: 0.04,
     });
   });
 

@@ -211,18 +211,26 @@ export const REASON = {
 
 /** Frame.speed_limiter */
 export const SPEED_LIMITER = {
-  /** nothing that is known */
+  /** the controller does not say what limits the speed */
   NONE: 0,
-  /** the speed asked for is reached */
+  /** the car drives at the speed that is asked for */
   ASKED: 1,
-  /** tyre grip in the bend */
+  /** the bend takes all the grip that the plan may use */
   CURVATURE: 2,
-  /** braking for a slower place ahead */
+  /** the car must be slower at the bend ahead */
   BRAKING: 3,
-  /** throttle at its bound, or the drive out of the last bend */
+  /** the drive gives no more */
   POWER: 4,
-  /** road known too short */
+  /** the road is not known far enough ahead */
   SIGHT: 5,
+  /** the controller gives less than full throttle */
+  PART_THROTTLE: 6,
+  /** the wheels cannot be turned any faster */
+  STEER_RATE: 7,
+  /** the car already uses the road up to its edge */
+  EDGE: 8,
+  /** the planned lap is no faster here */
+  PLAN: 9,
 } as const;
 
 /** What a Frame says when nothing is known. */
@@ -477,6 +485,50 @@ export const REASON_WORDS: Words = {
   },
 };
 
+/** Frame.speed_limiter in words. */
+export const SPEED_LIMITER_WORDS: Words = {
+  [SPEED_LIMITER.NONE]: {
+    severity: 'good',
+    text: 'the controller does not say what limits the speed',
+  },
+  [SPEED_LIMITER.ASKED]: {
+    severity: 'good',
+    text: 'the car drives at the speed that is asked for',
+  },
+  [SPEED_LIMITER.CURVATURE]: {
+    severity: 'good',
+    text: 'the bend takes all the grip that the plan may use',
+  },
+  [SPEED_LIMITER.BRAKING]: {
+    severity: 'good',
+    text: 'the car must be slower at the bend ahead',
+  },
+  [SPEED_LIMITER.POWER]: {
+    severity: 'good',
+    text: 'the drive gives no more',
+  },
+  [SPEED_LIMITER.SIGHT]: {
+    severity: 'good',
+    text: 'the road is not known far enough ahead',
+  },
+  [SPEED_LIMITER.PART_THROTTLE]: {
+    severity: 'good',
+    text: 'the controller gives less than full throttle',
+  },
+  [SPEED_LIMITER.STEER_RATE]: {
+    severity: 'good',
+    text: 'the wheels cannot be turned any faster',
+  },
+  [SPEED_LIMITER.EDGE]: {
+    severity: 'good',
+    text: 'the car already uses the road up to its edge',
+  },
+  [SPEED_LIMITER.PLAN]: {
+    severity: 'good',
+    text: 'the planned lap is no faster here',
+  },
+};
+
 /**
  * chicane_msgs/msg/Plan. What the controller intends: predicted motion of the centre of mass with its commands, all
  * arrays of the same length; element 0 is where the first command acts.
@@ -551,6 +603,8 @@ export interface Run {
   guard_road: string;
   /** 0: not known */
   guard_version: number;
+  /** the throttle that brakes fully is minus this */
+  brake_throttle_limit: number;
 }
 
 /** What a Run says when nothing is known. */
@@ -582,6 +636,7 @@ export const UNKNOWN_RUN: Run = {
   guard_mode: '',
   guard_road: '',
   guard_version: 0,
+  brake_throttle_limit: NaN,
 };
 
 /** chicane_msgs/msg/Lap. One completed lap, sent when it is. */

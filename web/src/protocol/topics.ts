@@ -21,6 +21,8 @@ export interface Topics {
   '/chicane/lap': Lap;
   '/chicane/change': Change;
   '/chicane/limit': Limit;
+  /** Frames from before the page came, the newest first. */
+  '/chicane/past': Frame;
 }
 
 export type TopicName = keyof Topics;
@@ -36,4 +38,5 @@ export const TOPIC_NAMES: readonly TopicName[] = [
   '/chicane/lap',
   '/chicane/change',
   '/chicane/limit',
+  '/chicane/past',
 ];

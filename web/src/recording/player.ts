@@ -1,8 +1,8 @@
 import { computed, effect, signal, untracked } from '@preact/signals';
 import { readSchema } from '../protocol/schema';
 import type { Frame, Run } from '../protocol/topics';
-import { session as drawing } from '../scene3d/session';
 import { beginSession, receive, rewind } from '../state/demultiplexer';
+import { ghostShown } from '../state/ghost_shown';
 import { keepAllLaps, lapSamples, laps, sampleLap } from '../state/laps';
 import { link, notice, services } from '../state/link';
 import { complete } from '../state/message_fields';
@@ -94,7 +94,7 @@ export const beside = signal(1);
 /** Shows another recording as a ghost, where it was driven on the same track. */
 export async function showBeside(which: number, log = logs.value[played.value]): Promise<void> {
   const rival = logs.value[which] === log ? logs.value.find((each) => each !== log) : logs.value[which];
-  drawing.rival = null;
+  ghostShown.source = null;
   beside.value = rival ? logs.value.indexOf(rival) : -1;
   if (!rival || !log) return;
   const [mine, other] = await Promise.all([trackOf(log), trackOf(rival)]);
@@ -103,7 +103,7 @@ export async function showBeside(which: number, log = logs.value[played.value]):
     beside.value = -1;
     return;
   }
-  drawing.rival = RecordedDrive.from(rival.name, await framesOf(rival), () => position.value);
+  ghostShown.source = RecordedDrive.from(rival.name, await framesOf(rival), () => position.value);
 }
 
 async function trackOf(log: McapLog): Promise<string> {

@@ -1,5 +1,7 @@
 import './summary.css';
 import { signal } from '@preact/signals';
+import { useEffect } from 'preact/hooks';
+import { ticksOf } from '../draw/axis';
 import { speedColour, topOfScale } from '../draw/speed_colour';
 import { fixed, lapTime, UNKNOWN } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
@@ -54,7 +56,23 @@ function Curve({
           {fixed(low, 1)} to {fixed(high, 1)}
         </span>
       </figcaption>
-      <svg viewBox={`0 0 ${WIDTH} ${tall}`} role="img" aria-label={`${title} over the whole run`}>
+      <svg viewBox={`-50 -8 ${WIDTH + 60} ${tall + 30}`} role="img" aria-label={`${title} over the whole run`}>
+        {ticksOf(low, high, 5).map((value) => (
+          <g key={`y ${value}`} class="summary-tick">
+            <line x1={0} x2={WIDTH} y1={y(value / factor)} y2={y(value / factor)} />
+            <text x={-6} y={y(value / factor) + 4} text-anchor="end">
+              {String(value).replace('-', '−')}
+            </text>
+          </g>
+        ))}
+        {ticksOf(from, trace.time.at(-1) ?? from, 10).map((time) => (
+          <g key={`x ${time}`} class="summary-tick">
+            <line x1={x(time)} x2={x(time)} y1={tall} y2={tall + 4} />
+            <text x={x(time)} y={tall + 17} text-anchor="middle">
+              {time} s
+            </text>
+          </g>
+        ))}
         {report.faults.map(({ time, name }) => (
           <line key={`${name}${time}`} x1={x(time)} x2={x(time)} y1={0} y2={tall} class="summary-fault" />
         ))}
@@ -186,6 +204,24 @@ function RunSection({ report }: { report: RunReport }) {
   );
 }
 
+/** On paper nothing can be opened: everything is, while it is printed. */
+function openWhilePrinting(): () => void {
+  let closed: HTMLDetailsElement[] = [];
+  const open = (): void => {
+    closed = [...document.querySelectorAll<HTMLDetailsElement>('.summary-page details:not([open])')];
+    for (const each of closed) each.open = true;
+  };
+  const close = (): void => {
+    for (const each of closed) each.open = false;
+  };
+  addEventListener('beforeprint', open);
+  addEventListener('afterprint', close);
+  return () => {
+    removeEventListener('beforeprint', open);
+    removeEventListener('afterprint', close);
+  };
+}
+
 /** Runs side by side, where there are several. */
 function Comparison() {
   const all = reports.value;
@@ -231,6 +267,7 @@ function Comparison() {
 /** What the recordings show, first in words: for reading and for print. */
 export function SummaryView() {
   const all = reports.value;
+  useEffect(openWhilePrinting, []);
   return (
     <main class={isSummaryShown.value ? 'summary-page' : 'summary-page hidden'} aria-label="Report" tabIndex={0}>
       <div class="summary-sheet">

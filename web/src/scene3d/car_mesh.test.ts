@@ -85,3 +85,54 @@ describe('the car', () => {
     expect(Math.max(...corners(toy.paint).map(([, , z]) => z ?? NaN))).toBeLessThan(0.15);
   });
 });
+
+describe('cars with a roof', () => {
+  const VAN_SIZE = {
+    front_axle_m: 1.15,
+    rear_axle_m: 1.31,
+    track_width_m: 1.559,
+    tire_width_m: 0.185,
+    body_length_m: 4.569,
+    body_width_m: 1.844,
+  };
+  const cars = {
+    'road-car': SIZE,
+    'bmw-320i': { ...SIZE, body_width_m: 1.61, track_width_m: 1.375 },
+    'vw-vanagon': VAN_SIZE,
+  };
+  for (const [car, size] of Object.entries(cars)) {
+    it(`${car} is as long, wide and high as such a car, and closed`, () => {
+      const closed = carModel({ ...size, car });
+      const all = corners(closed.paint);
+      const range = (axis: 0 | 1 | 2): number =>
+        Math.max(...all.map((corner) => corner[axis] ?? NaN)) - Math.min(...all.map((corner) => corner[axis] ?? NaN));
+      expect(range(0)).toBeCloseTo(size.body_length_m, 1);
+      expect(range(1)).toBeCloseTo(Math.max(size.body_width_m, size.track_width_m + size.tire_width_m), 1);
+      const top = Math.max(...all.map(([, , z]) => z ?? NaN));
+      expect(top).toBeGreaterThan(car === 'vw-vanagon' ? 1.85 : 1.3);
+      expect(top).toBeLessThan(car === 'vw-vanagon' ? 2.05 : 1.6);
+      for (const part of ['paint', 'dark', 'lamps', 'headlamps'] as const) {
+        expect(volume(closed[part]), part).toBeGreaterThan(0);
+        expect(closed[part].positions.every(Number.isFinite), part).toBe(true);
+      }
+      // A body fills about half of its box: the skin is closed and turned outwards.
+      expect(volume(closed.paint) / (range(0) * range(1) * top)).toBeGreaterThan(0.35);
+      expect(volume(closed.paint) / (range(0) * range(1) * top)).toBeLessThan(1);
+      expect(closed.paint.positions.length / 9).toBeLessThan(3000);
+    });
+
+    it(`${car} leaves room for its wheels, and for the driver's eyes`, () => {
+      const closed = carModel({ ...size, car });
+      for (const { x, radius } of closed.wheels) {
+        const above = corners(closed.paint).filter(
+          ([px = 0, py = 0, pz = 0]) =>
+            Math.hypot(px - x, pz - radius) < radius * 0.98 && Math.abs(py) > size.track_width_m / 2,
+        );
+        expect(above).toEqual([]);
+      }
+      const [, , z] = closed.eye;
+      expect(z).toBeLessThan(Math.max(...corners(closed.paint).map(([, , high]) => high ?? NaN)));
+      expect(z).toBeGreaterThan(0.9);
+    });
+  }
+});

@@ -1,4 +1,5 @@
 import type { CarSize } from '../draw/car';
+import { addClosedBody, type Profile, SALOON, VAN } from './closed_body';
 import { type Colour, colourOf, MeshBuilder, type MeshData, mirroredRing, type Vector } from './mesh';
 
 /** The parts of a car in its own axes: x forward, y left, z up from the road, origin at the centre of mass [m]. */
@@ -129,7 +130,7 @@ function helmetMesh(centre: Vector, radius: number): MeshData {
 }
 
 /** The dimensions that the parts are built from [m]. */
-interface Measures {
+export interface Measures {
   readonly k: number; // scale: 1 for a car of 4.5 m
   readonly front: number; // axles, and ends of the body
   readonly rear: number;
@@ -148,14 +149,14 @@ interface Measures {
 }
 
 /** Meshes under construction, one for each kind of surface. */
-interface Parts {
+export interface Parts {
   readonly paint: MeshBuilder;
   readonly dark: MeshBuilder;
   readonly lamps: MeshBuilder;
   readonly headlamps: MeshBuilder;
 }
 
-function measure(size: CarSize): Measures {
+function measure(size: CarSize, isClosed: boolean): Measures {
   const wheelbase = size.front_axle_m + size.rear_axle_m;
   const length = Math.max(size.body_length_m, wheelbase * 1.15);
   const k = length / 4.5; // drawn for a car of 4.5 m
@@ -163,7 +164,7 @@ function measure(size: CarSize): Measures {
   const [front, rear] = [size.front_axle_m, -size.rear_axle_m];
   const [nose, tail] = [front + overhang, rear - overhang];
   const radius = Math.min(0.33 * k, 0.16 * wheelbase);
-  const tyre = Math.max(size.tire_width_m, 0.24 * k);
+  const tyre = isClosed ? size.tire_width_m : Math.max(size.tire_width_m, 0.24 * k);
   const halfTrack = size.track_width_m / 2;
   const halfWidth = Math.max(size.body_width_m, size.track_width_m + tyre) / 2;
   const inner = Math.max(halfTrack - tyre / 2 - 0.16 * k, 0.3 * k); // half the room between the wheels
@@ -320,12 +321,19 @@ function addWishbones({ dark }: Parts, { k, front, rear, radius, tyre, halfTrack
   }
 }
 
+/** Cars with a roof, by name; all others are open. */
+const PROFILES: Readonly<Record<string, Profile>> = { 'road-car': SALOON, 'bmw-320i': SALOON, 'vw-vanagon': VAN };
+
+/** What the shape of a car follows from. */
+export type CarLooks = CarSize & { readonly car?: string };
+
 /**
- * An open single-seater, whose front wheels are visible from every camera. Axles, track, tyres, length and width are
- * those of the car; the rest of the shape is invented.
+ * A saloon or a van where the car is one, else an open single-seater, whose front wheels are visible from every camera.
+ * Axles, track, tyres, length and width are those of the car; the rest of the shape is invented.
  */
-export function carModel(size: CarSize): CarModel {
-  const measures = measure(size);
+export function carModel(size: CarLooks): CarModel {
+  const profile = PROFILES[size.car ?? ''] ?? null;
+  const measures = measure(size, profile !== null);
   const { k, front, rear, radius, tyre, halfTrack, halfWidth, length, at } = measures;
   const parts: Parts = {
     paint: new MeshBuilder(),
@@ -333,13 +341,15 @@ export function carModel(size: CarSize): CarModel {
     lamps: new MeshBuilder(),
     headlamps: new MeshBuilder(),
   };
-  for (const add of [addTub, addPods, addWings, addWishbones]) add(parts, measures);
+  const open = { eye: [at(0.41), 0, 0.97 * k] as Vector, steeringWheel: [at(0.6), 0, 0.66 * k] as Vector };
+  if (profile === null) for (const add of [addTub, addPods, addWings, addWishbones]) add(parts, measures);
+  const { eye, steeringWheel } = profile === null ? open : addClosedBody(parts, measures, profile);
   return {
     paint: parts.paint.data(),
     dark: parts.dark.data(),
     lamps: parts.lamps.data(),
     headlamps: parts.headlamps.data(),
-    helmet: helmetMesh([at(0.425), 0, 0.82 * k], 0.14 * k),
+    helmet: helmetMesh(profile === null ? [at(0.425), 0, 0.82 * k] : eye, (profile === null ? 0.14 : 0.11) * k),
     hand: handMesh(k),
     wheel: wheelMesh(radius, tyre),
     wheels: [
@@ -349,8 +359,8 @@ export function carModel(size: CarSize): CarModel {
       { x: rear, y: -halfTrack, radius },
     ],
     wheelRadius: radius,
-    steeringWheel: [at(0.6), 0, 0.66 * k],
-    eye: [at(0.41), 0, 0.97 * k],
+    steeringWheel,
+    eye,
     length,
     width: 2 * halfWidth,
   };

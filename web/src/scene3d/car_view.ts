@@ -16,7 +16,7 @@ import {
   ShadowMaterial,
 } from 'three';
 import { type CarSize, carShape } from '../draw/car';
-import { type CarModel, carModel } from './car_mesh';
+import { type CarLooks, type CarModel, carModel } from './car_mesh';
 import { geometryOf } from './geometry';
 import type { MeshData } from './mesh';
 import type { Palette } from './palette';
@@ -111,7 +111,7 @@ export class CarView {
   readonly #shadow: ShadowMaterial;
   readonly #garbage: { dispose(): void }[] = [];
 
-  constructor(scene: Scene, size: CarSize) {
+  constructor(scene: Scene, size: CarLooks) {
     this.#scene = scene;
     this.model = carModel(size);
     const paint = this.#keep(new MeshStandardMaterial({ vertexColors: true, metalness: 0.15, roughness: 0.38 }));

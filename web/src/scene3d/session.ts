@@ -1,5 +1,6 @@
 import type { Frame } from '../protocol/topics';
-import { frameListeners } from '../state/demultiplexer';
+import { frameListeners, rebuildListeners } from '../state/demultiplexer';
+import { ghostShown } from '../state/ghost_shown';
 import { replayListeners } from '../state/replay';
 import { run } from '../state/run';
 import { type GhostSource, LapRecorder } from './ghost';
@@ -21,15 +22,13 @@ export class Session {
   readonly marks = new TyreMarks();
   readonly trace = new RibbonRing(4000, 1);
   readonly brakes = new RibbonRing(256, 1);
-  /** Another drive to show as the ghost; null shows the best lap. */
-  rival: GhostSource | null = null;
   #last: Motion | null = null;
   #jumps = 0;
   #tracePoint = { x: NaN, y: NaN };
 
   /** The ghost: the rival if there is one, else the best lap of this session. */
   get ghost(): GhostSource | null {
-    return this.rival ?? this.laps.best;
+    return ghostShown.source ?? this.laps.best;
   }
 
   take(frame: Frame, now: number): void {
@@ -95,6 +94,7 @@ export class Session {
 export const session = new Session();
 
 let track = '';
+rebuildListeners.add(() => session.forget());
 // What is shown again moves the car and leaves no marks.
 replayListeners.add((frame, now) => session.playout.push(motionOf(frame), now));
 frameListeners.add((frame, now) => {

@@ -265,6 +265,7 @@ export class Stage {
     const { run } = view;
     if (run) {
       const carKey = [
+        run.car,
         run.front_axle_m,
         run.rear_axle_m,
         run.track_width_m,

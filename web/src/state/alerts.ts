@@ -8,6 +8,7 @@ import { faultInWords } from './event_log';
 import { rowsSince } from './explain';
 import { secondsLeft } from './faults';
 import type { History } from './history';
+import { type Circumstances, helpOf } from './sentence';
 
 /** What is near its limit is told at least this long, so that words can be read [s]. */
 const HELD_S = 0.7;
@@ -46,6 +47,12 @@ export function isStuck(frame: Frame, history: History): boolean {
   return speeds.subarray(from).every((speed) => speed < STANDING_MPS);
 }
 
+/** What decides, beside the frame itself, which sentence it has. */
+export const circumstancesOf = (frame: Frame, history: History, canReset: boolean): Circumstances => ({
+  isStuck: isStuck(frame, history),
+  canReset,
+});
+
 function faultText(name: string, now: number): string {
   const left = secondsLeft(`fault.${name.replace(/^fault\./, '')}`, now);
   const rest = Number.isFinite(left) ? `, ${Math.ceil(left)} s left` : '';
@@ -59,7 +66,7 @@ function faultText(name: string, now: number): string {
 export function alertsOf(frame: Frame, history: History, faultNames: readonly string[], canReset = false): Alert[] {
   const alerts: Alert[] = [];
   if (isStuck(frame, history)) {
-    const help = frame.active_faults !== 0 ? 'it may go on when the fault ends' : canReset ? 'Reset frees it' : '';
+    const help = helpOf(frame, { isStuck: true, canReset });
     alerts.push({ name: 'stuck', severity: 'bad', text: `The car stands and should drive${help && `: ${help}`}` });
   }
   const edge = extremeOf(history, Column.edge_distance_m, Math.min);

@@ -1,11 +1,12 @@
 import type { Change, Frame, Lap, Limit, Path, Plan, Run, TopicName, Topics } from '../protocol/topics';
-import { forgetEvents, noteChange, noteEvents, setFaultNames } from './event_log';
-import { forgetFaults, noteFaultChange, noteFaultMarks } from './faults';
-import { forgetLaps, noteLap, receiveLap } from './laps';
+import { forgetEvents, forgetFrameEvents, noteChange, noteEvents, setFaultNames } from './event_log';
+import { forgetFaultMarks, forgetFaults, noteFaultChange, noteFaultMarks } from './faults';
+import { forgetLaps, forgetSamples, noteLap, receiveLap } from './laps';
 import { noteScore } from './leaderboard';
 import { forgetLimit, receiveLimit } from './limit';
-import { forgetHistory, keepFrame, keepPlan, live } from './live';
+import { forgetHistory, forgetRows, keepFrame, keepPlan, live } from './live';
 import { complete } from './message_fields';
+import { Past } from './past';
 import { forgetRecent, isReplaying, keepRecent } from './replay';
 import { type RoadLines, receiveReference, receiveRoadLine } from './road';
 import { receiveRun, run } from './run';
@@ -20,12 +21,18 @@ export const frameListeners = new Set<(frame: Frame, now: number) => void>();
 /** Called when the run that is shown has begun anew. */
 export const restartListeners = new Set<() => void>();
 
+/** Called when all frames of the run follow once more, because older ones have come. */
+export const rebuildListeners = new Set<() => void>();
+
 /** Stores one message, also of an older program. `now` as of performance.now() [ms]. */
 export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: number): void {
   const message = complete(topic, sent);
   switch (topic) {
     case '/chicane/frame':
       receiveFrame(message as Frame, now);
+      break;
+    case '/chicane/past':
+      past.keepBefore(message as Frame);
       break;
     case '/chicane/plan':
       newestPlan = message as Plan;
@@ -58,11 +65,13 @@ export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: num
 
 let newest: Frame | null = null;
 let newestPlan: Plan | null = null;
+const past = new Past();
 
 function receiveFrame(frame: Frame, now: number): void {
   let before = newest;
   if (before && frame.time_s < before.time_s) {
     forget();
+    past.drop();
     for (const listener of restartListeners) listener();
     before = null;
   }
@@ -71,12 +80,38 @@ function receiveFrame(frame: Frame, now: number): void {
   newest = frame;
   keepFrame(frame, now, isNew, isShown);
   if (isNew) {
+    past.keepNew(frame);
     keepRecent(frame, newestPlan);
     noteEvents(frame, before);
     noteFaultMarks(frame, before, run.value?.fault_names ?? []);
     noteLap(frame);
   }
   if (isShown) for (const listener of frameListeners) listener(frame, now);
+}
+
+/**
+ * So many frames of before are still to come. What has come is put before the present from time to time, and when all
+ * of it is here: history, samples of laps and events are made anew from all frames.
+ */
+export function receivePastLeft(left: number, now: number): void {
+  const frames = past.take(left, now);
+  if (!frames) return;
+  const [plan, isShown] = [live.plan, !isReplaying()];
+  forgetRows();
+  forgetSamples();
+  forgetFrameEvents();
+  forgetFaultMarks();
+  for (const listener of rebuildListeners) listener();
+  let before: Frame | null = null;
+  for (const frame of frames) {
+    keepFrame(frame, now, true, false); // the newest one is shown already
+    noteEvents(frame, before);
+    noteFaultMarks(frame, before, run.value?.fault_names ?? []);
+    noteLap(frame);
+    if (isShown) for (const listener of frameListeners) listener(frame, now);
+    before = frame;
+  }
+  live.plan = plan;
 }
 
 /**
@@ -96,6 +131,7 @@ export function forget(): void {
  */
 export function beginSession(isOtherRun = true): void {
   forget();
+  past.expect();
   newest = null;
   live.frame = null;
   if (!isOtherRun) return;

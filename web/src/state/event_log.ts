@@ -10,6 +10,7 @@ export interface RunEvent {
   readonly text: string;
   readonly time: number; // of the run [s]
   readonly duration: number | null; // null: not over yet, or without a duration
+  readonly isChange?: boolean; // somebody changed something; all others are found in frames
 }
 
 const KEPT = 60;
@@ -40,6 +41,12 @@ let faultNames: readonly string[] = [];
 
 export function forgetEvents(): void {
   events.value = [];
+  open = new Map();
+}
+
+/** Clears the events that were found in frames. */
+export function forgetFrameEvents(): void {
+  events.value = events.value.filter(({ isChange }) => isChange);
   open = new Map();
 }
 
@@ -96,5 +103,6 @@ export function noteChange({ stamp, name, value }: Change): void {
     text: isPlan ? planned : `${name} set to ${value}`,
     time: stamp.sec + stamp.nsec / 1e9,
     duration: null,
+    isChange: true,
   });
 }

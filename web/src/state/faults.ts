@@ -20,8 +20,13 @@ export const faultMarks = signal<readonly FaultMark[]>([]);
 const untils = new Map<string, number>();
 
 export function forgetFaults(): void {
-  if (faultMarks.value.length > 0) faultMarks.value = [];
+  forgetFaultMarks();
   untils.clear();
+}
+
+/** Clears where faults began, which is found in frames. */
+export function forgetFaultMarks(): void {
+  if (faultMarks.value.length > 0) faultMarks.value = [];
 }
 
 /** Takes from a change of a switch how long its fault will last: "true", or "+5*0.5". */

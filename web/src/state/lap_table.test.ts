@@ -31,6 +31,11 @@ describe('the table of laps', () => {
     expect(bestsOf([])).toEqual({ lap: -1, time: NaN, sectors: [NaN, NaN, NaN], topSpeed: NaN });
   });
 
+  it('counts the standing start only while there is no other clean lap', () => {
+    expect(bestsOf([lap(1, [9, 9, 9])]).lap).toBe(1);
+    expect(bestsOf([lap(1, [9, 9, 9]), lap(2, [9, 9, 10])]).lap).toBe(2);
+  });
+
   it('is written as a file', () => {
     const driven = { by_hand_share: 0.5, setting_names: ['latency_ms', 'seed'], setting_values: ['60', '2'] };
     const lines = lapsCsv([lap(1, [12, 9, 9], driven)], null).split('\n');

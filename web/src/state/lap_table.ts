@@ -4,7 +4,8 @@ import { LAP_CHANNELS, type LapSamples } from './lap_samples';
 import { gapsToLimit } from './limit';
 
 export interface LapBests {
-  readonly lap: number; // fastest clean lap, or the fastest if none is clean; −1 without laps
+  /** Fastest clean lap, or the fastest if none is clean; −1 without laps. The first counts while there is no other. */
+  readonly lap: number;
   readonly time: number;
   readonly sectors: readonly number[];
   readonly topSpeed: number;
@@ -12,10 +13,14 @@ export interface LapBests {
 
 const least = (values: readonly number[]): number => values.reduce((a, b) => (b < a || Number.isNaN(a) ? b : a), NaN);
 
-/** The best value of each column over the clean laps, or over all laps if none is clean. */
+/**
+ * The best value of each column over the clean laps, or over all laps if none is clean. The first lap begins from
+ * standstill: it is no measure for others.
+ */
 export function bestsOf(laps: readonly Lap[]): LapBests {
   const clean = laps.filter(({ is_clean }) => is_clean);
-  const count = clean.length > 0 ? clean : laps;
+  const flying = clean.filter(({ lap }) => lap > 1);
+  const count = flying.length > 0 ? flying : clean.length > 0 ? clean : laps;
   const time = least(count.map(({ lap_time_s }) => lap_time_s));
   return {
     lap: count.find(({ lap_time_s }) => lap_time_s === time)?.lap ?? -1,

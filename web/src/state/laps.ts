@@ -48,6 +48,11 @@ export function forgetLaps(): void {
   if (!hasAllLaps) lapSamples.clear();
 }
 
+/** Clears the samples of laps, which are made of frames; the table of laps stays. */
+export function forgetSamples(): void {
+  if (!hasAllLaps) lapSamples.clear();
+}
+
 export function receiveLap(lap: Lap): void {
   const before = kept;
   const isNext = before.length === 0 || (before.at(-1)?.lap ?? 0) < lap.lap;

@@ -10,3 +10,8 @@ export const attempt = signal(0);
 export const services = signal<ReadonlySet<string>>(new Set());
 /** The last sentence from the server; null once it was read. */
 export const notice = signal<string | null>(null);
+
+/** How old the newest frame was at most when it came [s]; 0 where the source does not say. */
+export const ageAtArrival = signal(0);
+/** Frames from before the page came that are still to come. */
+export const pastLeft = signal(0);

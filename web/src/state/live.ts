@@ -28,11 +28,16 @@ const row: number[] = new Array<number>(COLUMN_COUNT).fill(NaN);
  * Clears the history. The newest frame stays, so that the display does not flicker before the next one arrives.
  */
 export function forgetHistory(): void {
+  forgetRows();
+  live.plan = null;
+  live.pastPlans = [];
+}
+
+/** Clears what is made of frames alone. */
+export function forgetRows(): void {
   live.plots.clear();
   live.trace.clear();
   live.stepTimes.clear();
-  live.plan = null;
-  live.pastPlans = [];
 }
 
 /**

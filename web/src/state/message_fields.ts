@@ -11,6 +11,7 @@ import type { TopicName, Topics } from '../protocol/topics';
 /** Values for fields that a sender leaves out. */
 const UNKNOWN: { readonly [T in TopicName]?: Topics[T] } = {
   '/chicane/frame': UNKNOWN_FRAME,
+  '/chicane/past': UNKNOWN_FRAME,
   '/chicane/plan': UNKNOWN_PLAN,
   '/chicane/run': { ...UNKNOWN_RUN, kerb_width_m: 0 }, // programs without this field drew no kerbs
   '/chicane/lap': UNKNOWN_LAP,

@@ -2,8 +2,8 @@ import { effect, signal } from '@preact/signals';
 import { wrapAngle } from '../lib/math';
 import { programPage } from '../protocol/program_page';
 import type { GhostPose, GhostSource } from '../scene3d/ghost';
-import { session } from '../scene3d/session';
 import { restartListeners } from './demultiplexer';
+import { ghostShown } from './ghost_shown';
 import { link, notice } from './link';
 import { live } from './live';
 import { askRival, can, canSet, requests } from './operate';
@@ -59,11 +59,11 @@ const ghost: GhostSource = {
 let shownBefore: GhostSource | null = null;
 effect(() => {
   const isOnStage = race.value?.state === 'racing';
-  if (isOnStage && session.rival !== ghost) {
-    shownBefore = session.rival;
-    session.rival = ghost;
-  } else if (!isOnStage && session.rival === ghost) {
-    session.rival = shownBefore;
+  if (isOnStage && ghostShown.source !== ghost) {
+    shownBefore = ghostShown.source;
+    ghostShown.source = ghost;
+  } else if (!isOnStage && ghostShown.source === ghost) {
+    ghostShown.source = shownBefore;
   }
 });
 

@@ -5,6 +5,7 @@ import { link, services } from './link';
 import { attach, requests } from './operate';
 import { refusals, schema, settings } from './settings';
 import {
+  commandAgain,
   commandOf,
   driveShared,
   filesChosen,
@@ -88,6 +89,15 @@ describe('a link to a run', () => {
     expect(commandOf(sharedNow.value)).toBe(
       'chicane drive --preset default --track oval --car udacity --set latency_ms=60',
     );
+  });
+
+  it('is driven again with as many laps, as fast, and on the same port', async () => {
+    await requests.set('latency_ms', 60);
+    const again = (laps: number, pace: number, port: number): string =>
+      commandAgain(sharedNow.value, { laps, pace, port }).replace(/^.*latency_ms=60/, '');
+    expect(again(2, 15, 4777)).toBe(' --laps 2 --pace 15 --port 4777');
+    expect(again(0, 1, 4567)).toBe('');
+    expect(again(0, NaN, 0)).toBe('');
   });
 
   it('cannot name a file', () => {

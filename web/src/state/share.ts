@@ -80,6 +80,23 @@ export function commandOf({ choices, changes }: SharedRun): string {
   return words.join(' ');
 }
 
+/** How a run is driven beside what is in a link. */
+export interface DrivenWith {
+  readonly laps: number; // 0: as many as the program drives without being told
+  readonly pace: number;
+  readonly port: number;
+}
+const USUAL_PORT = 4567;
+
+/** The command that drives the whole run once more, on the same page. */
+export function commandAgain(shared: SharedRun, { laps, pace, port }: DrivenWith): string {
+  const words = [commandOf(shared)];
+  if (laps > 0) words.push(`--laps ${laps}`);
+  if (Number.isFinite(pace) && pace !== 1) words.push(`--pace ${pace}`);
+  if (port > 0 && port !== USUAL_PORT) words.push(`--port ${port}`);
+  return words.join(' ');
+}
+
 /** The value that a text stands for; the program says so if it is none of that setting. */
 function meant(text: string, entry: SchemaEntry | undefined): Setting {
   if (entry?.kind === 'bool' && /^(true|false)$/.test(text)) return text === 'true';

@@ -1,6 +1,6 @@
 import { signal } from '@preact/signals';
 import type { Frame } from '../protocol/topics';
-import { link } from './link';
+import { ageAtArrival, link } from './link';
 import { live } from './live';
 import { isPaused } from './run';
 
@@ -8,10 +8,14 @@ import { isPaused } from './run';
 export const shown = signal<Frame | null>(null);
 /** Whole seconds since the last frame of a run that is not paused. */
 export const silence = signal(0);
+/** Whole seconds by which the newest frame is older than the run, that is not paused, has come to. */
+export const behind = signal(0);
 
 /** Brings what the text shows up to date; `now` as of performance.now(). */
 export function refreshText(now: number): void {
   shown.value = live.frame;
   const isExpected = link.value === 'live' && live.frame !== null && !isPaused.value;
-  silence.value = isExpected ? Math.max(0, Math.floor((now - live.receivedAt) / 1000)) : 0;
+  const since = isExpected ? Math.max(0, (now - live.receivedAt) / 1000) : 0;
+  silence.value = Math.floor(since);
+  behind.value = isExpected ? Math.floor(since + ageAtArrival.value) : 0;
 }

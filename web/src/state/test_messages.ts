@@ -1,5 +1,5 @@
-import { UNKNOWN_FRAME, UNKNOWN_LAP, UNKNOWN_PLAN, UNKNOWN_RUN } from '../protocol/messages';
-import type { Frame, Lap, Path, Plan, Run } from '../protocol/topics';
+import { UNKNOWN_CHANGE, UNKNOWN_FRAME, UNKNOWN_LAP, UNKNOWN_PLAN, UNKNOWN_RUN } from '../protocol/messages';
+import type { Change, Frame, Lap, Path, Plan, Run } from '../protocol/topics';
 
 // Messages for tests: with the fields that a test names, and those that any frame has.
 
@@ -34,4 +34,11 @@ export const planWith = (change: Partial<Plan> = {}): Plan => ({ ...UNKNOWN_PLAN
 
 export const pathOf = (...points: [number, number][]): Path => ({
   poses: points.map(([x, y]) => ({ pose: { position: { x, y } } })),
+});
+
+export const changeAt = (time: number, name: string, value: string): Change => ({
+  ...UNKNOWN_CHANGE,
+  stamp: { sec: Math.floor(time), nsec: 0 },
+  name,
+  value,
 });

@@ -1,6 +1,5 @@
 import { useSignalEffect } from '@preact/signals';
 import { fixed, lapTime, plural } from '../lib/format';
-import { HashView } from '../page/hash_view';
 import { bestsOf } from '../state/lap_table';
 import { laps } from '../state/laps';
 import { gapsToLimit, limit } from '../state/limit';
@@ -9,8 +8,10 @@ import { call, can, retry } from '../state/operate';
 import { canReplay, endReplay, REPLAY_S, replayLeft, startReplay } from '../state/replay';
 import { isPaused, run } from '../state/run';
 import { closeEnd, reopenEnd, runEnd, showsEnd } from '../state/run_end';
-import { commandOf, sharedNow } from '../state/share';
+import { settings } from '../state/settings';
+import { commandAgain, sharedNow } from '../state/share';
 import { silence } from '../state/shown';
+import { HashView } from './hash_view';
 
 function Results() {
   const all = laps.value;
@@ -25,7 +26,7 @@ function Results() {
         <dd data-testid="end-laps">{all.length}</dd>
       </div>
       <div>
-        <dt>Best</dt>
+        <dt>{bests.lap === 1 ? 'Best, from standstill' : 'Best'}</dt>
         <dd>{lapTime(bests.time, 3)}</dd>
       </div>
       {Number.isFinite(gap) && (
@@ -45,7 +46,12 @@ function Results() {
 }
 
 function Buttons() {
-  const command = commandOf(sharedNow.value);
+  const pace = settings.value.get('run.pace');
+  const command = commandAgain(sharedNow.value, {
+    laps: runEnd.value?.kind === 'finished' ? laps.value.length : 0,
+    pace: typeof pace === 'number' ? pace : NaN,
+    port: Number(location.port),
+  });
   // A program that waits for the limit, or ends, begins nothing any more.
   const canReset = can('/reset') && (isPaused.value || silence.value === 0);
   return (

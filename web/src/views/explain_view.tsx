@@ -5,18 +5,19 @@ import {
   driverInWords,
   gateInWords,
   LIMITERS,
-  limiterInWords,
   nameInWords,
   type Sentence,
   sightInWords,
-  statusInWords,
   worstInWords,
 } from '../lib/words';
+import { circumstancesOf } from '../state/alerts';
 import { Column } from '../state/columns';
 import { bitSharesOf, rmsOf, sharesOf } from '../state/explain';
 import { live } from '../state/live';
+import { can } from '../state/operate';
 import { cursorTime } from '../state/plot_view';
 import { run } from '../state/run';
+import { plannedOf, solverInWords, stateSentence } from '../state/sentence';
 import { shown } from '../state/shown';
 import { CanvasView } from './canvas_view';
 import { EventsView } from './events_view';
@@ -27,24 +28,33 @@ const WINDOW_S = 20;
 
 function Limiter() {
   const frame = shown.value;
-  const limiter = frame?.speed_limiter ?? 0;
-  const { title, why } = limiterInWords(limiter);
+  const now = frame ? circumstancesOf(frame, live.plots, run.value?.mode !== 'replay' && can('/reset')) : null;
+  const sentence = frame && now ? stateSentence(frame, now) : null;
+  const planned = frame && now ? plannedOf(frame, now) : NaN;
   const shares = sharesOf(live.plots, Column.speed_limiter, LIMITERS.length, WINDOW_S);
   return (
     <section class="block limiter" aria-label="What limits the speed">
       <h2>What limits the speed</h2>
       <div class="limiter-now">
-        <span class="limiter-colour" style={{ background: `var(--limiter-${limiter})` }} aria-hidden="true" />
+        <span
+          class="limiter-colour"
+          style={{ background: `var(--limiter-${sentence?.limiter ?? 0})` }}
+          aria-hidden="true"
+        />
         <div>
           <p class="headline" data-testid="limiter">
-            {title}
+            {sentence?.title ?? 'Waiting for a run'}
           </p>
-          <p class="soft">{why}</p>
+          <p class="soft">{sentence?.text}</p>
         </div>
         <p class="allowed">
-          <b data-testid="speed-limit">{fixed(inSpeedUnit(frame?.speed_limit_mps ?? NaN), 0)}</b>{' '}
-          <span class="unit">{speedUnit().name} allowed here</span>
-          <br />
+          {Number.isFinite(planned) && (
+            <>
+              <b data-testid="speed-limit">{fixed(inSpeedUnit(planned), 0)}</b>{' '}
+              <span class="unit">{speedUnit().name} planned, a delay ahead</span>
+              <br />
+            </>
+          )}
           <b>{fixed(inSpeedUnit(frame?.speed_mps ?? NaN), 0)}</b> <span class="unit">{speedUnit().name} driven</span>
         </p>
       </div>
@@ -130,7 +140,7 @@ function Answer() {
   // Controllers such as PID have no solver.
   const solved = frame && (frame.iterations > 0 || /mpc$/.test(run.value?.controller ?? '')) ? frame : null;
   const worst = solved ? worstInWords(solved, run.value?.constraint_names ?? []) : null;
-  const solve = solved ? statusInWords(solved.solve_status) : null;
+  const solve = solved ? solverInWords(solved) : null;
   const [optimality, violation] = [solved?.stationarity ?? NaN, solved?.violation ?? NaN];
   const numbers = [
     solved && solved.iterations > 0 ? plural(solved.iterations, 'iteration') : '',

@@ -1,14 +1,14 @@
 import { scheme, toggleScheme } from '../lib/appearance';
 import { fixed } from '../lib/format';
 import { tidy } from '../lib/scale';
-import { attempt, link, notice, services } from '../state/link';
+import { attempt, link, notice, pastLeft, services } from '../state/link';
 import { call, can, canSet, retry } from '../state/operate';
 import { chooseBefore, forgetOtherRun, inWords, otherRun } from '../state/other_run';
 import { isStageAlone } from '../state/presentation';
 import { replayLeft } from '../state/replay';
 import { guardInWords, isPaused, run } from '../state/run';
 import { settings } from '../state/settings';
-import { shown, silence } from '../state/shown';
+import { behind, shown, silence } from '../state/shown';
 import { isHelpOpen } from './help_view';
 import { TourButton } from './tour_view';
 
@@ -36,8 +36,12 @@ function LinkState() {
   if (isPaused.value) return <p class="pill warning">Paused</p>;
   if (silence.value > 0 && end !== '') return <p class="pill">Over</p>;
   if (silence.value > 0) return <p class="pill">No data for {silence.value} s</p>;
+  if (behind.value > 0) return <p class="pill warning">{behind.value} s behind</p>;
   return <p class="pill good">Live</p>;
 }
+
+/** So many frames come within a moment on any line but a slow one. */
+const SOON = 400;
 
 /** Marks for unusual states: next run, driving by hand, faults, pace. */
 function Marks() {
@@ -53,6 +57,7 @@ function Marks() {
       )}
       {frame?.is_manual && <p class="pill accent">By hand</p>}
       {(frame?.active_faults ?? 0) !== 0 && <p class="pill bad">Fault</p>}
+      {pastLeft.value > SOON && <p class="pill">Loading the past: {pastLeft.value} frames</p>}
       {Number.isFinite(pace) && Math.abs(pace - 1) > 1e-6 && <p class="pill">{tidy(pace)}× speed</p>}
     </>
   );

@@ -1,20 +1,20 @@
 import { fixed } from '../lib/format';
 import { inSpeedUnit, nextSpeedUnit, speedUnit } from '../lib/units';
-import { driverInWords, limiterInWords } from '../lib/words';
-import { RUNG } from '../protocol/messages';
-import { alertsOf } from '../state/alerts';
+import { alertsOf, circumstancesOf } from '../state/alerts';
 import { lapSamples } from '../state/laps';
 import { limit, limitTimeAt } from '../state/limit';
 import { live } from '../state/live';
 import { can } from '../state/operate';
 import { run } from '../state/run';
+import { aimOf, stateSentence } from '../state/sentence';
 import { shown } from '../state/shown';
+
+const canReset = (): boolean => run.value?.mode !== 'replay' && can('/reset');
 
 function Speed() {
   const unit = speedUnit();
   const frame = shown.value;
-  // The speed that the controller aims at means nothing while another drives.
-  const aim = frame && !frame.is_manual && frame.rung === RUNG.CONTROLLER ? frame.speed_reference_mps : NaN;
+  const aim = frame ? aimOf(frame, circumstancesOf(frame, live.plots, canReset())) : NaN;
   return (
     <p class="big">
       <span class="value" data-testid="speed">
@@ -71,27 +71,15 @@ function Deltas() {
   );
 }
 
-/** The one sentence why the car is not faster. */
+/** The one sentence of this state: who drives, what is stuck, or why the car is not faster. */
 function Why() {
   const frame = shown.value;
   if (!frame) return null;
-  // What limits the controller's plan is no reason for the speed of a car that something else drives.
-  if (frame.is_manual || frame.rung !== RUNG.CONTROLLER) {
-    const [who, more] = driverInWords(frame).text.split(': ');
-    return (
-      <p class="why" data-testid="why">
-        <b>{who}</b>
-        {more && <span class="why-long">: {more}</span>}.
-      </p>
-    );
-  }
-  const limiter = frame.speed_limiter;
-  if (limiter === 0) return null;
-  const { title, why } = limiterInWords(limiter);
+  const { title, text, limiter } = stateSentence(frame, circumstancesOf(frame, live.plots, canReset()));
   return (
     <p class="why" data-testid="why">
-      <span class="dot" style={{ background: `var(--limiter-${limiter})` }} aria-hidden="true" />
-      <b>{title}.</b> <span class="why-long">{why}</span>
+      {limiter !== null && <span class="dot" style={{ background: `var(--limiter-${limiter})` }} aria-hidden="true" />}
+      <b>{title}.</b> <span class="why-long">{text}</span>
     </p>
   );
 }
@@ -110,8 +98,7 @@ export function HudView() {
 /** On the picture, when something matters: off the road, near an edge, sliding, faults, and who drives. */
 export function AlertsView() {
   const frame = shown.value;
-  const canReset = run.value?.mode !== 'replay' && can('/reset');
-  const alerts = frame ? alertsOf(frame, live.plots, run.value?.fault_names ?? [], canReset) : [];
+  const alerts = frame ? alertsOf(frame, live.plots, run.value?.fault_names ?? [], canReset()) : [];
   return (
     <div class="alerts" role="status" data-testid="alerts">
       {alerts.map(({ name, severity, text }) => (

@@ -1,12 +1,16 @@
 import { duration, fixed, lapTime, side, UNKNOWN } from '../lib/format';
 import { clamp, degrees } from '../lib/math';
 import { CLOSE_TO_EDGE_M } from '../state/alerts';
-import { bestLap } from '../state/laps';
+import { bestLap, laps } from '../state/laps';
 import { run } from '../state/run';
+import { brakeShare, pedalInWords } from '../state/sentence';
 import { shown } from '../state/shown';
+import { Meaning } from './meaning';
 
 function Lap() {
   const frame = shown.value;
+  // The table has the same times, and the lap that ended the run: after it there is no frame.
+  const last = laps.value.at(-1)?.lap_time_s ?? frame?.last_lap_time_s ?? NaN;
   return (
     <div class="lap">
       <p class="label">
@@ -17,7 +21,7 @@ function Lap() {
       </p>
       <p class="beside">
         <span>
-          last <b>{frame && frame.last_lap_time_s > 0 ? lapTime(frame.last_lap_time_s, 3) : UNKNOWN}</b>
+          last <b>{last > 0 ? lapTime(last, 3) : UNKNOWN}</b>
         </span>
         <span>
           best <b>{lapTime(bestLap.value, 3)}</b>
@@ -56,6 +60,10 @@ function Reading({
   );
 }
 
+const BAR_MEANING =
+  'Filled: what acts on the car now. Marked: what the controller asks for, which acts after the delay. ' +
+  'The pedal goes from full braking on the left to full throttle on the right.';
+
 /**
  * A bar that grows from its middle: steering to its side; throttle to the right, brake to the left.
  */
@@ -76,7 +84,9 @@ function Bar({
   const [from, to] = [Math.min(50, at(share)), Math.max(50, at(share))];
   return (
     <div class="bar-row">
-      <span class="label">{label}</span>
+      <span class="label">
+        <Meaning of={label}>{BAR_MEANING}</Meaning>
+      </span>
       <div class="bar" aria-hidden="true">
         {/* Moved by transforms, which need no layout in each repaint. */}
         <span class="fill" style={{ transform: `translateX(${from}%) scaleX(${(to - from) / 100})` }} />
@@ -89,19 +99,18 @@ function Bar({
   );
 }
 
-function pedalInWords(throttle: number): string {
-  if (!Number.isFinite(throttle)) return UNKNOWN;
-  const percent = `${fixed(Math.abs(throttle) * 100, 0)} %`;
-  return throttle < 0 ? `brake ${percent}` : `drive ${percent}`;
-}
+/** Between full braking, −1, and full throttle, 1. */
+const pedalShare = (throttle: number, fullBrake: number): number =>
+  throttle < 0 ? -brakeShare(throttle, fullBrake) : throttle;
 
 function Controls() {
   const frame = shown.value;
   const limit = run.value?.steer_limit_rad ?? NaN;
   const steer = frame?.steer_applied_rad ?? NaN;
   const name = side(degrees(steer) / 10);
+  const fullBrake = run.value?.brake_throttle_limit ?? NaN;
   return (
-    <div class="bars" title="Bar: what acts on the car now. Mark: what the controller asks for.">
+    <div class="bars">
       {/* Left is positive in the data and on the left on the screen. */}
       <Bar
         id="wheels"
@@ -113,9 +122,9 @@ function Controls() {
       <Bar
         id="pedal"
         label="Pedal"
-        share={frame?.throttle_applied ?? NaN}
-        marker={frame?.throttle_asked ?? NaN}
-        text={pedalInWords(frame?.throttle_applied ?? NaN)}
+        share={pedalShare(frame?.throttle_applied ?? NaN, fullBrake)}
+        marker={pedalShare(frame?.throttle_asked ?? NaN, fullBrake)}
+        text={pedalInWords(frame?.throttle_applied ?? NaN, fullBrake)}
       />
     </div>
   );

@@ -11,7 +11,7 @@ import { type LapChannel, timeGap } from '../state/lap_samples';
 import { lapSamples } from '../state/laps';
 import { limit, limitChannel } from '../state/limit';
 import { cursorPlace, cursorTime } from '../state/plot_view';
-import { chartColours } from './plot_colours';
+import { type ChartColours, chartColours } from './plot_colours';
 
 interface Curve {
   readonly title: string;
@@ -20,6 +20,8 @@ interface Curve {
   /** Both laps, or their difference. */
   data(a: number, b: number): (Float64Array | null)[];
   readonly range: (columns: readonly ArrayLike<number>[]) => [number, number];
+  /** What is above zero is lost, and filled in red; below it is gained, and filled in green. */
+  readonly isFilled?: boolean;
 }
 
 /** Laps count from 0; −1 is the limit, the fastest possible lap. */
@@ -61,8 +63,24 @@ const OTHERS: readonly Curve[] = [
       return [first && second ? timeGap(first, second) : null];
     },
     range: (columns) => rangeAboutZero(columns, 0.1),
+    isFilled: true,
   },
 ];
+
+/** Red above zero, green below it. */
+function lossGradient(plot: uPlot, { bad, good }: ChartColours): CanvasGradient {
+  const { top, height } = plot.bbox;
+  const zero = Math.min(1, Math.max(0, (plot.valToPos(0, 'y', true) - top) / height));
+  const gradient = plot.ctx.createLinearGradient(0, top, 0, top + height);
+  for (const [at, colour] of [
+    [0, bad],
+    [zero, bad],
+    [zero, good],
+    [1, good],
+  ] as const)
+    gradient.addColorStop(at, `${colour}59`); // colours are #rrggbb
+  return gradient;
+}
 
 /** Metres from the start line of a place along the road. */
 function distanceFromLine(place: number): number {
@@ -109,7 +127,15 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
             values: (_plot, ticks) => ticks.map((tick) => String(Number(tick.toPrecision(6))).replace('-', '−')),
           },
         ],
-        series: [{}, ...columns.map((_, i) => ({ stroke: stroke[i] ?? '', width: 1.75, points: { show: false } }))],
+        series: [
+          {},
+          ...columns.map((_, i) => ({
+            stroke: stroke[i] ?? '',
+            width: 1.75,
+            points: { show: false },
+            ...(curve.isFilled && { fill: (self: uPlot) => lossGradient(self, colours), fillTo: 0 }),
+          })),
+        ],
         hooks: {
           setCursor: [
             (plot) => {

@@ -3,6 +3,7 @@ import { download, downloadPng, fileName } from '../lib/download';
 import { fixed, lapTime, UNKNOWN } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import type { Lap, Limit } from '../protocol/topics';
+import { chosen, pair as comparedPair, LIMIT } from '../state/compared';
 import { differences, setupInWords } from '../state/lap_setup';
 import { bestsOf, type LapBests, lapSamplesCsv, lapsCsv } from '../state/lap_table';
 import { bestLap, lapSamples, laps, sampledLaps } from '../state/laps';
@@ -14,12 +15,7 @@ import { everyFrame } from '../state/ticker';
 import { canFilm, film, isFilming } from './clip';
 import { LapCompareView } from './lap_compare_view';
 import { LeaderboardView } from './leaderboard_view';
-
-/** Number of the limit, the fastest possible lap, in the table. */
-const LIMIT = 0;
-
-/** The laps to compare, by number; null for the default: the newest against the best. */
-const chosen = signal<readonly [number | null, number | null]>([null, null]);
+import { TimeWonView } from './time_won_view';
 
 function gap(seconds: number): string {
   if (!(Math.abs(seconds) >= 0.0005)) return UNKNOWN;
@@ -161,22 +157,6 @@ function rowsOf(all: readonly Lap[], bests: LapBests): Lap[] {
   return all.filter((lap, i) => i >= first || lap.lap === bests.lap).reverse();
 }
 
-/**
- * The pair shown: the laps chosen, else the newest complete lap against the best, or against the one before it.
- */
-function compared(all: readonly Lap[], bests: LapBests): [number, number] {
-  const seen = all.filter(({ lap }) => lapSamples.laps.includes(lap - 1)).map(({ lap }) => lap);
-  const newest = seen.at(-1) ?? all.at(-1)?.lap ?? -1;
-  const isOther = ({ lap }: Lap): boolean => lap !== newest;
-  const other =
-    bests.lap !== newest && seen.includes(bests.lap)
-      ? bests.lap
-      : (seen.at(-2) ?? all.filter(isOther).at(-1)?.lap ?? newest);
-  const isKnown = (lap: number | null): lap is number =>
-    (lap === LIMIT && limit.value !== null) || all.some((each) => each.lap === lap);
-  return [isKnown(chosen.value[0]) ? chosen.value[0] : newest, isKnown(chosen.value[1]) ? chosen.value[1] : other];
-}
-
 /** Saves the map as a picture, right after it was painted: a 3D canvas is cleared later. */
 function savePicture(): void {
   const end = everyFrame(() => {
@@ -250,7 +230,7 @@ export function LapsView() {
   const all = laps.value;
   void sampledLaps.value;
   const bests = bestsOf(all);
-  const pair = compared(all, bests);
+  const pair = comparedPair.value;
   const hasSetups = all.some((lap) => setupInWords(lap, startSettings.value).length > 0);
   return (
     <div class="laps">
@@ -294,6 +274,7 @@ export function LapsView() {
       )}
       <LeaderboardView />
       <Differences all={all} pair={pair} />
+      <TimeWonView />
       {(all.length > 1 || pair.includes(LIMIT)) && <LapCompareView a={pair[0] - 1} b={pair[1] - 1} />}
     </div>
   );

@@ -1,4 +1,5 @@
 import { onThemeChange } from '../draw/theme';
+import { LIMITERS } from '../lib/words';
 
 /** The colours of the style sheet that charts need. */
 export interface ChartColours {
@@ -20,7 +21,7 @@ function read(): ChartColours {
   const colour = (name: string): string => style.getPropertyValue(`--${name}`).trim();
   return {
     series: Array.from({ length: 10 }, (_, i) => colour(`series-${i + 1}`)),
-    limiter: Array.from({ length: 6 }, (_, i) => colour(`limiter-${i}`)),
+    limiter: Array.from({ length: LIMITERS.length }, (_, i) => colour(`limiter-${i}`)),
     good: colour('good'),
     warning: colour('warning'),
     bad: colour('bad'),

@@ -35,6 +35,7 @@ import {
   wants3d,
   zoomCamera,
 } from '../scene3d/view_state';
+import { lossesNow, markedCorners, startLine } from '../state/compared';
 import { cursorMark, pointAt, timeNear } from '../state/cursor';
 import { faultMarks } from '../state/faults';
 import { hindsight } from '../state/hindsight';
@@ -47,6 +48,7 @@ import { road } from '../state/road';
 import { isPaused, run } from '../state/run';
 import { seekTo } from '../state/seek';
 import { shown } from '../state/shown';
+import { tab } from '../state/tab';
 import { everyFrame } from '../state/ticker';
 import { AlertsView, dangerNow, HudView } from './hud_view';
 
@@ -85,6 +87,8 @@ export function zoom(factor: number): void {
   if (shows3d.value) zoomCamera(factor);
   else metresAcross.value = zoomed(metresAcross.value, factor);
 }
+
+const NO_LINE = { x: [], y: [] };
 
 /** Paints the map; holds what is kept from one picture to the next. */
 class Painter {
@@ -126,11 +130,17 @@ class Painter {
     const length = scaleBar(camera.scale, Math.min(120, width / 4));
     if (bar.value.metres !== length.metres || Math.abs(bar.value.pixels - length.pixels) > 0.5) bar.value = length;
 
+    // The way driven would lie on the line of the lap that is coloured.
+    const losses = layers.timeLost.value && tab.value === 'laps' && !isInset ? lossesNow.value : null;
     const scene: Scene = {
       road: this.#road,
       racingLine: layers.racingLine.value ? limit.value : null,
+      corners: isInset ? [] : markedCorners(),
+      kerb: run.value?.kerb_width_m ?? 0,
+      start: startLine(),
+      losses,
       reference: road.reference,
-      trace: { x: live.trace.column(0), y: live.trace.column(1) },
+      trace: losses ? NO_LINE : { x: live.trace.column(0), y: live.trace.column(1) },
       plan: live.plan,
       speedScale: top,
       hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
@@ -147,6 +157,9 @@ class Painter {
       this.#canvas.height,
       this.#road,
       scene.racingLine,
+      scene.corners,
+      scene.start,
+      scene.losses,
       theme(),
     ];
     const mark = cursorMark();
@@ -334,6 +347,13 @@ function Legend() {
         label="plan 1 s ago"
         title="The plan of a second ago and the path driven since; the outline is the position it predicted for now (O)"
       />
+      {!shows3d.value && tab.value === 'laps' && lossesNow.value && (
+        <Switch
+          layer="timeLost"
+          label="time lost"
+          title="Lap A: red where it loses time to lap B, green where it gains"
+        />
+      )}
       {ghost !== null && <Swatch name="ghost" label={ghost} />}
       {shows3d.value && <Swatch name="rubber" label="tyres sliding" isMinor />}
       {shows3d.value && <Swatch name="brake" label="braking begins" isMinor />}

@@ -3,6 +3,7 @@ import { lapTime } from '../lib/format';
 import { tidy } from '../lib/scale';
 import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
+import { watchBoth } from '../recording/what_if_ghost';
 import { canSet, set } from '../state/operate';
 import { cursorTime } from '../state/plot_view';
 import { endReplay, replayLeft } from '../state/replay';
@@ -27,7 +28,6 @@ import {
   type Wish,
   wishes,
 } from '../state/what_if';
-import { watchBoth } from '../state/what_if_ghost';
 import { DraftBox } from './draft_box';
 import { RaceView } from './race_view';
 import { SettingCombo } from './setting_combo';

@@ -33,7 +33,7 @@ export const titleOf = (name: Tab): string => PANELS.find((each) => each.name ==
 
 type Dock = 'right' | 'bottom';
 const dock = persisted<Dock>('dock', 'right', (value) => value === 'right' || value === 'bottom');
-const shareRight = persisted<number>('dock.right', 0.43);
+const shareRight = persisted<number>('dock.right', 0.36);
 const shareBottom = persisted<number>('dock.bottom', 0.44);
 /** Whether only the panel is shown, without picture and instruments. */
 export const isPanelAlone = signal(false);

@@ -159,6 +159,7 @@ string end_reason                       # why, in one sentence; empty when it fi
 string guard_mode                       # "on", "observe", "off"; empty: not known
 string guard_road                       # where the guard knows the road from: "track", "waypoints"
 uint32 guard_version                    # 0: not known
+float64 brake_throttle_limit            # the throttle that brakes fully is minus this
 )"},
     RosDefinition{"chicane_msgs/Lap", R"(# One completed lap, sent when it is.
 uint32 lap                              # its number, from 1

@@ -1,11 +1,11 @@
 import { effect } from '@preact/signals';
-import { RecordedDrive } from '../recording/recorded_drive';
-import { session } from '../scene3d/session';
-import { live } from './live';
-import { complete } from './message_fields';
-import { type Moment, showAgain } from './replay';
-import { answer } from './what_if';
-import type { Trace, WhatIfAnswer } from './what_if_answer';
+import { ghostShown } from '../state/ghost_shown';
+import { live } from '../state/live';
+import { complete } from '../state/message_fields';
+import { type Moment, showAgain } from '../state/replay';
+import { answer } from '../state/what_if';
+import type { Trace, WhatIfAnswer } from '../state/what_if_answer';
+import { RecordedDrive } from './recorded_drive';
 
 // The second future as a ghost on the picture: beside the car while the run comes to the same moments, and beside the
 // first future when both are watched.
@@ -51,13 +51,14 @@ export function momentsOf({ was: { trace } }: WhatIfAnswer): Moment[] {
 /** Shows both futures on the picture, from their first moment on. */
 export const watchBoth = (found: WhatIfAnswer): void => showAgain(momentsOf(found));
 
-let shownBefore: typeof session.rival = null;
+let shownBefore: typeof ghostShown.source = null;
 effect(() => {
   const found = answer.value;
   if (found) {
-    if (!(session.rival instanceof RecordedDrive && session.rival.label === 'what if')) shownBefore = session.rival;
-    session.rival = ghostOf(found.branch);
-  } else if (session.rival?.label === 'what if') {
-    session.rival = shownBefore;
+    if (!(ghostShown.source instanceof RecordedDrive && ghostShown.source.label === 'what if'))
+      shownBefore = ghostShown.source;
+    ghostShown.source = ghostOf(found.branch);
+  } else if (ghostShown.source?.label === 'what if') {
+    ghostShown.source = shownBefore;
   }
 });

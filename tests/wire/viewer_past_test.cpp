@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// What a viewer that comes late gets, in which order, and how much at a time.
+#include <algorithm>
+
+#include "wire/fake_viewer.hpp"
+
+namespace chicane::wire {
+namespace {
+
+using testing::HasSubstr;
+
+/// Times of the messages of a subscription that were sent since the last look [s].
+std::vector<double> times_of(FakeServer& server, net::ConnectionId to, std::uint32_t subscription) {
+  std::vector<double> found;
+  for (const auto& message : server.take()) {
+    if (message.to != to || message.bytes->front() != 1 || subscription_of(message) != subscription) continue;
+    std::uint64_t nanoseconds = 0;
+    std::memcpy(&nanoseconds, message.bytes->data() + 5, sizeof(nanoseconds));
+    found.push_back(1e-9 * static_cast<double>(nanoseconds));
+  }
+  return found;
+}
+
+std::string subscribe_past(std::uint32_t id) {
+  return json{{"op", "subscribe"},
+              {"subscriptions", {{{"id", id}, {"channelId", protocol::ros_topics().size()}}}}}
+      .dump();
+}
+
+/// A run of 300 frames.
+class ViewerOfAPast : public Viewer {
+ protected:
+  void drive(int frames) {
+    for (int i = 0; i < frames; ++i) {
+      frame.time += 0.04;
+      ++frame.cycle;
+      endpoint->publish(frame);
+      clock += 0.04;
+      server.pass_time();
+    }
+  }
+  void begin() {
+    ViewerOptions options;
+    options.clock = [this] { return clock; };
+    start(std::move(options));
+    drive(300);
+    server.take();
+  }
+  telemetry::Frame frame;
+  double clock = 100.0;
+};
+
+TEST_F(ViewerOfAPast, GetsThePresentAtOnceAndTheFramesOfBeforeBehindIt) {
+  begin();
+  connect(2, false, "/viewer?x=1&past");
+  connect(3, false, "/viewer?passed");
+  server.take();
+  endpoint->on_message(3, subscribe_past(5), false);
+  EXPECT_THAT(answer()["message"].get<std::string>(), HasSubstr("no channel")) << "it has not asked";
+  endpoint->on_message(2, subscribe(4, "/chicane/frame"), false);
+  EXPECT_EQ(times_of(server, 2, 4).size(), 1U);
+  endpoint->on_message(2, subscribe_past(5), false);
+  drive(1);
+  const auto first = std::exchange(server.sent, {});
+  EXPECT_EQ(subscription_of(first.at(1)), 4U) << "the time, then the newest frame";
+  server.sent = first;
+  std::vector<double> seen = times_of(server, 2, 5);
+  EXPECT_EQ(seen.size(), 192U) << "a page, and the next one when it has been read";
+  drive(1);
+  for (const double time : times_of(server, 2, 5)) seen.push_back(time);
+  ASSERT_EQ(seen.size(), 300U) << "those that were before it subscribed";
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    EXPECT_NEAR(seen[i], 0.04 * (300.0 - static_cast<double>(i)), 1e-6);
+  drive(1);
+  EXPECT_TRUE(times_of(server, 2, 5).empty());
+}
+
+TEST_F(ViewerOfAPast, IsToldHowMuchOfItIsLeft) {
+  begin();
+  connect(2, false, "/viewer?past");
+  endpoint->on_message(2, subscribe_past(5), false);
+  server.take();
+  std::vector<int> left;
+  for (int i = 0; i < 4; ++i) {
+    drive(1);
+    for (const auto& message : server.take()) {
+      if (message.to == 2 && !message.binary) left.push_back(json::parse(*message.bytes)["messages"]);
+    }
+  }
+  EXPECT_EQ(left, (std::vector{108, 0}));
+}
+
+TEST_F(ViewerOfAPast, IsPacedByWhatItHasRead) {
+  begin();
+  connect(2, false, "/viewer?past&paced");
+  endpoint->on_message(2, subscribe(4, "/chicane/frame"), false);
+  endpoint->on_message(2, subscribe_past(5), false);
+  server.take();
+  std::size_t sent = 0;
+  int newest = 0;
+  const auto look = [&] {
+    for (const auto& message : server.take()) {
+      if (message.to != 2 || !message.binary) continue;
+      EXPECT_EQ(message.delivery, net::Delivery::kReliable) << "nothing that is counted may be replaced";
+      sent += message.bytes->size();
+      if (message.bytes->front() == 1 && subscription_of(message) == 4) ++newest;
+    }
+  };
+  drive(50);
+  look();
+  EXPECT_GE(newest, 1);
+  EXPECT_LT(newest, 15) << "it reads nothing";
+  EXPECT_LT(sent, LinkPace::kFirst + 4096 + 2000);
+  const std::string read = json{{"op", "received"}, {"bytes", sent}, {"at", 12.5}}.dump();
+  endpoint->on_message(2, read, false);
+  const auto next = std::exchange(server.sent, {});
+  EXPECT_EQ(json::parse(*next.at(0).bytes), (json{{"op", "heard"}, {"at", 12.5}, {"held", 0.0}}));
+  EXPECT_EQ(next.at(1).bytes->front(), 2);
+  EXPECT_EQ(subscription_of(next.at(2)), 4U) << "at once, and before more of the past";
+  EXPECT_EQ(subscription_of(next.at(next.size() - 2)), 5U) << "what is left is told last";
+  endpoint->on_message(1, read, false);
+  EXPECT_THAT(answer()["message"].get<std::string>(), HasSubstr("does not ask for pacing"));
+}
+
+TEST_F(Viewer, GetsAllLapsBeforeTheFramesOfBefore) {
+  start({});
+  telemetry::Frame frame;
+  for (int lap = 1; lap <= 40; ++lap) {
+    frame.time += 20.0;
+    ++frame.cycle;
+    endpoint->publish({.lap = lap}, frame.time);
+    endpoint->publish(frame);
+    server.pass_time();
+  }
+  connect(2, false, "/viewer?past");
+  server.take();
+  endpoint->on_message(2, subscribe_past(4), false);
+  endpoint->on_message(2, subscribe(5, "/chicane/lap"), false);
+  std::string order;
+  for (int i = 0; i < 4; ++i) {
+    for (const auto& message : server.take()) {
+      if (message.to == 2 && message.binary && message.bytes->front() == 1)
+        order += subscription_of(message) == 5 ? 'l' : 'f';
+    }
+    server.pass_time();
+  }
+  EXPECT_EQ(std::count(order.begin(), order.end(), 'l'), 40);
+  EXPECT_GT(order.find('f'), order.rfind('l')) << order;
+}
+
+}  // namespace
+}  // namespace chicane::wire

@@ -1,0 +1,95 @@
+import type { IWebSocket } from '@foxglove/ws-protocol';
+
+// What this page adds to the protocol: it acknowledges what it has read, so that the program sends no more than
+// arrives in time, and measures how old the newest frame is when it arrives (docs/viewer.md).
+
+/** What the program says in these additions. */
+type Told =
+  | { readonly op: 'heard'; readonly at: number; readonly held: number }
+  | { readonly op: 'pastLeft'; readonly messages: number };
+
+/** What a page learns of its connection. */
+export interface ReadingEvents {
+  /** The next frame was sent at most `seconds` ago. */
+  age(seconds: number): void;
+  /** Frames of before that are still to come. */
+  pastLeft(messages: number): void;
+}
+
+/** How to acknowledge: not at all where what carries the messages does it, such as a worker's port. */
+export interface Acknowledging {
+  readonly acknowledges?: boolean;
+  readonly now?: () => number; // [ms]
+}
+
+const EVERY_BYTES = 4096;
+const EVERY_MS = 40;
+
+/** What our own server says; null for messages of the protocol. */
+function told(text: string): Told | null {
+  if (!/^\{[^{}]*"op":"(heard|pastLeft)"[^{}]*\}$/.test(text)) return null;
+  return JSON.parse(text) as Told;
+}
+
+/**
+ * A socket that acknowledges the bytes of binary messages: of every few thousand, and of every message that comes some
+ * time after the last. Without timers: browsers let those of hidden pages rest.
+ */
+export class ReadingSocket implements IWebSocket {
+  readonly #socket: IWebSocket;
+  readonly #now: () => number; // [ms]
+  #read = 0;
+  #acknowledged = 0;
+  #acknowledgedAt = Number.NEGATIVE_INFINITY;
+  onerror: IWebSocket['onerror'];
+  onopen: IWebSocket['onopen'];
+  onclose: IWebSocket['onclose'];
+  onmessage: IWebSocket['onmessage'];
+
+  constructor(
+    socket: IWebSocket,
+    events: ReadingEvents,
+    { acknowledges = true, now = () => performance.now() }: Acknowledging = {},
+  ) {
+    this.#socket = socket;
+    this.#now = now;
+    socket.onopen = (event) => this.onopen?.(event);
+    socket.onclose = (event) => this.onclose?.(event);
+    socket.onerror = (event) => this.onerror?.(event);
+    socket.onmessage = (event) => {
+      const { data } = event;
+      const said = typeof data === 'string' ? told(data) : null;
+      if (said?.op === 'heard') events.age(Math.max(0, (now() - said.at) / 1000 - said.held));
+      else if (said) events.pastLeft(said.messages);
+      else this.onmessage?.(event);
+      if (acknowledges && data instanceof ArrayBuffer) this.#count(data.byteLength);
+    };
+  }
+
+  get binaryType(): string {
+    return this.#socket.binaryType;
+  }
+  set binaryType(type: string) {
+    this.#socket.binaryType = type;
+  }
+  get protocol(): string {
+    return this.#socket.protocol;
+  }
+
+  send(data: string | ArrayBuffer | ArrayBufferView): void {
+    this.#socket.send(data);
+  }
+
+  close(): void {
+    this.#socket.close();
+  }
+
+  #count(bytes: number): void {
+    this.#read += bytes;
+    const now = this.#now();
+    if (this.#read - this.#acknowledged < EVERY_BYTES && now - this.#acknowledgedAt < EVERY_MS) return;
+    this.#acknowledged = this.#read;
+    this.#acknowledgedAt = now;
+    this.#socket.send(JSON.stringify({ op: 'received', bytes: this.#read, at: now }));
+  }
+}

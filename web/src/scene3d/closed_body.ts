@@ -1,0 +1,181 @@
+import type { Measures, Parts } from './car_mesh';
+import { type Colour, colourOf, mirroredRing, type Vector } from './mesh';
+
+// Bodies with a roof: a saloon and a van. Lengths and heights are those of the shape, drawn for a car of its usual
+// length and scaled to the one driven; axles, track, wheels and width are those of the car.
+
+const WHITE = colourOf('#f1f3f7');
+const ACCENT = colourOf('#2158c9');
+const GLASS = colourOf('#1d2732');
+const DARK = colourOf('#23282f');
+const LAMP = colourOf('#ff2a1c');
+const LIGHT = colourOf('#fff4d8');
+
+/** A closed body in profile. Along the car: 0 at the tail, 1 at the nose; heights from the road [m]. */
+export interface Profile {
+  readonly usualLength: number; // [m]
+  /** The upper edge of the body, which the glass stands on. */
+  readonly belt: readonly (readonly [along: number, height: number])[];
+  /** The glass: where it begins and ends at the belt, and where the roof does. */
+  readonly glass: readonly [tail: number, roofTail: number, roofNose: number, nose: number];
+  readonly roof: number;
+  readonly sill: number;
+  readonly lamps: number; // height
+  readonly upper: Colour;
+  readonly lower: Colour;
+  readonly eye: { readonly along: number; readonly height: number };
+}
+
+export const SALOON: Profile = {
+  usualLength: 4.3,
+  belt: [
+    [0, 0.86],
+    [0.04, 0.96],
+    [0.18, 0.98],
+    [0.68, 0.94],
+    [0.9, 0.8],
+    [0.98, 0.68],
+    [1, 0.56],
+  ],
+  glass: [0.13, 0.3, 0.5, 0.68],
+  roof: 1.4,
+  sill: 0.2,
+  lamps: 0.72,
+  upper: WHITE,
+  lower: WHITE,
+  eye: { along: 0.5, height: 1.16 },
+};
+
+export const VAN: Profile = {
+  usualLength: 4.57,
+  belt: [
+    [0, 1.06],
+    [0.5, 1.08],
+    [0.96, 1.06],
+    [0.985, 0.9],
+    [1, 0.6],
+  ],
+  glass: [0.01, 0.05, 0.83, 0.965],
+  roof: 1.94,
+  sill: 0.26,
+  lamps: 0.78,
+  upper: WHITE,
+  lower: ACCENT,
+  eye: { along: 0.79, height: 1.5 },
+};
+
+const mixed = (table: Profile['belt'], along: number): number => {
+  const next = Math.max(
+    1,
+    table.findIndex(([at]) => at >= along),
+  );
+  const [[a, low], [b, high]] = [table[next - 1] ?? [0, 0], table[next] ?? [1, 0]];
+  return low + ((high - low) * Math.min(1, Math.max(0, along - a))) / (b - a || 1);
+};
+
+/** Where the body is cut along the car [m], and the lower edge there: the sill, or the arch over a wheel. */
+function edgesOf(measures: Measures, profile: Profile, k: number): { x: number; low: number }[] {
+  const { front, rear, nose, tail, radius } = measures;
+  const [arch, sill] = [1.14 * radius, profile.sill * k];
+  const edges = profile.belt.map(([along]) => ({ x: tail + along * (nose - tail), low: sill }));
+  for (const axle of [front, rear])
+    for (const share of [-1, -0.92, -0.7, -0.35, 0, 0.35, 0.7, 0.92, 1]) {
+      const height = radius + arch * Math.sqrt(Math.max(0, 1 - share * share));
+      edges.push({ x: axle + share * arch, low: Math.abs(share) === 1 ? sill : Math.max(sill, height) });
+    }
+  const inArch = (x: number): boolean => [front, rear].some((axle) => Math.abs(x - axle) < arch * 0.999);
+  const isOfArch = (low: number): boolean => low > sill;
+  return edges
+    .filter(({ x, low }) => x >= tail && x <= nose && (isOfArch(low) || !inArch(x)))
+    .sort((a, b) => a.x - b.x || a.low - b.low);
+}
+
+/** The body of a profile; returns where the driver looks from, and the steering wheel's centre. */
+export function addClosedBody(
+  { paint, dark, lamps, headlamps }: Parts,
+  measures: Measures,
+  profile: Profile,
+): { eye: Vector; steeringWheel: Vector } {
+  const { nose, tail, halfWidth, halfTrack, tyre, length } = measures;
+  const k = length / profile.usualLength;
+  const place = (along: number): number => tail + along * (nose - tail);
+  const height = (x: number): number => k * mixed(profile.belt, (x - tail) / (nose - tail));
+  const half = halfWidth;
+  const inner = Math.min(halfTrack - tyre / 2 - 0.04 * k, 0.82 * half);
+  const edges = edgesOf(measures, profile, k);
+  // Narrower at both ends.
+  const wide = (x: number): number => half * (1 - 0.1 * Math.abs((2 * (x - tail)) / (nose - tail) - 1) ** 4);
+
+  // Between the wheels, then the sides over them.
+  const middle = edges.map(({ x }) =>
+    mirroredRing(x, [
+      [inner, profile.sill * k],
+      [inner, height(x)],
+    ]),
+  );
+  paint.loft(middle, (_x, face) => (face === 1 ? profile.upper : profile.lower));
+  for (const side of [-1, 1]) {
+    const rings = edges.map(({ x, low }) => {
+      const [out, top] = [wide(x), height(x)];
+      const shoulder = Math.max(low + 0.02 * k, top - 0.1 * k);
+      const corners: Vector[] = [
+        [x, inner, low],
+        [x, out - 0.03 * k, low],
+        [x, out, Math.min(low + 0.08 * k, shoulder - 0.01 * k)],
+        [x, out, shoulder],
+        [x, out - 0.07 * k, Math.max(top, shoulder + 0.01 * k)],
+        [x, inner, Math.max(top, shoulder + 0.01 * k)],
+      ];
+      return side > 0 ? corners : corners.map(([a, b, c]): Vector => [a, -b, c]).reverse();
+    });
+    paint.loft(rings, profile.lower);
+  }
+
+  // Glass all round, with the roof on it.
+  const [g0, r0, r1, g1] = profile.glass.map(place) as [number, number, number, number];
+  const roof = profile.roof * k;
+  const pane = (x: number, top: number, share: number): Vector[] => {
+    const low = height(x) - 0.02 * k;
+    const high = Math.max(top, low + 0.03 * k);
+    return mirroredRing(x, [
+      [half * 0.9, low],
+      [half * share, high - 0.06 * k > low ? high - 0.06 * k : low + 0.01 * k],
+      [half * (share - 0.06), high],
+    ]);
+  };
+  const isRoof = (x: number, face: number): boolean => face >= 1 && face <= 3 && x > r0 && x < r1;
+  paint.loft(
+    [
+      pane(g0, 0, 0.86),
+      pane(r0, roof, 0.8),
+      pane((r0 + r1) / 2, roof * 1.01, 0.81),
+      pane(r1, roof, 0.8),
+      pane(g1, 0, 0.86),
+    ],
+    (x, face) => (isRoof(x, face) ? profile.upper : GLASS),
+  );
+
+  // Bumpers, floor, lamps.
+  const [low, z] = [profile.sill * k, profile.lamps * k];
+  dark.box([tail - 0.01, -half * 0.84, low], [tail + 0.1 * k, half * 0.84, low + 0.2 * k], DARK);
+  dark.box([nose - 0.1 * k, -half * 0.84, low], [nose + 0.01, half * 0.84, low + 0.2 * k], DARK);
+  dark.box([tail + 0.1 * k, -inner, low - 0.05 * k], [nose - 0.1 * k, inner, low], DARK);
+  for (const side of [-1, 1]) {
+    const [a, b] = [side * half * 0.62, side * half * 0.84];
+    const [from, to] = [Math.min(a, b), Math.max(a, b)];
+    lamps.box([tail - 0.012, from, z], [tail + 0.05 * k, to, z + 0.12 * k], LAMP);
+    headlamps.box([nose - 0.12 * k, from, z - 0.16 * k], [nose + 0.012, to, z - 0.05 * k], LIGHT);
+    const mirror = [side * (half * 0.93), side * (half + 0.08 * k)] as const;
+    dark.box(
+      [g1 - 0.34 * k, Math.min(...mirror), height(g1)],
+      [g1 - 0.26 * k, Math.max(...mirror), height(g1) + 0.13 * k],
+      DARK,
+    );
+  }
+  const y = 0.4 * half;
+  const x = place(profile.eye.along);
+  return {
+    eye: [x, y, profile.eye.height * k],
+    steeringWheel: [x + 0.45 * k, y, (profile.eye.height - 0.3) * k],
+  };
+}

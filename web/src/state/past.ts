@@ -1,0 +1,60 @@
+import type { Frame } from '../protocol/topics';
+
+/** Between two looks at what has come of the past, at least so long [ms], unless it is all. */
+const SHOWN_EVERY_MS = 1000;
+
+/**
+ * Frames of before that a page is sent behind those of the present, the newest first, until all are here; and those of
+ * the present since it came. Together they are what is known of the run.
+ */
+export class Past {
+  #before: Frame[] = []; // the newest first
+  #since: Frame[] = [];
+  #isExpected = false;
+  #shown = 0;
+  #shownAt = Number.NEGATIVE_INFINITY;
+
+  /** A connection begins: the past of its run may follow. */
+  expect(): void {
+    this.#before = [];
+    this.#since = [];
+    this.#shown = 0;
+    this.#shownAt = Number.NEGATIVE_INFINITY;
+    this.#isExpected = true;
+  }
+
+  /** The run has begun anew: what is still on its way is of the one before. */
+  drop(): void {
+    this.#before = [];
+    this.#since = [];
+    this.#isExpected = false;
+  }
+
+  keepBefore(frame: Frame): void {
+    if (this.#isExpected) this.#before.push(frame);
+  }
+
+  keepNew(frame: Frame): void {
+    if (this.#isExpected) this.#since.push(frame);
+  }
+
+  /**
+   * All frames so far, in their order, when it is time to show them: when all are here (`left` is 0), or twice as many
+   * as at the last time; null otherwise. Nothing is kept once all are here.
+   */
+  take(left: number, now: number): readonly Frame[] | null {
+    if (!this.#isExpected || this.#before.length === 0) {
+      if (left === 0) this.drop();
+      return null;
+    }
+    const isTime = this.#before.length >= 2 * this.#shown && now - this.#shownAt >= SHOWN_EVERY_MS;
+    if (left > 0 && !isTime) return null;
+    this.#shown = this.#before.length;
+    this.#shownAt = now;
+    const first = this.#since[0]?.time_s ?? Number.POSITIVE_INFINITY;
+    // The newest of before and the first of the present may be the same one.
+    const all = [...this.#before.filter(({ time_s }) => time_s < first).reverse(), ...this.#since];
+    if (left === 0) this.drop();
+    return all;
+  }
+}
