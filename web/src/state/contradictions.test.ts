@@ -89,13 +89,23 @@ describe('the page', () => {
   });
 
   it('says what the guard does while the controller drives', () => {
-    const held = frameWith({ guard_reason: REASON.WEAK_BRAKES });
-    expect(stateSentence(held, { isStuck: false, canReset: true })).toEqual({
-      severity: 'warning',
-      title: 'The guard holds the car back',
-      text: 'The brakes give less than they are asked for.',
-      limiter: null,
-    });
+    const titles = {
+      [REASON.WEAK_BRAKES]: ['The guard makes up for what it found', 'The brakes give less than they are asked for.'],
+      [REASON.TOO_FAST_FOR_SILENCE]: [
+        'The guard holds the car back',
+        'A receiver left alone could not stop the car on the road.',
+      ],
+      [REASON.STUCK]: ['The car stands and should drive', 'The car does not move although it is told to.'],
+    };
+    for (const [reason, [title, text]] of Object.entries(titles)) {
+      const frame = frameWith({ guard_reason: Number(reason) });
+      expect(stateSentence(frame, { isStuck: false, canReset: true })).toEqual({
+        severity: 'warning',
+        title,
+        text,
+        limiter: null,
+      });
+    }
   });
 
   it('tells the brake as a share of full braking', () => {

@@ -44,6 +44,12 @@ export function helpOf(frame: Frame, { canReset }: Circumstances): string {
   return canReset ? 'Reset frees it' : '';
 }
 
+/** What the guard does while the controller goes on driving, by its reason. */
+const WARNING_TITLES: Record<number, string> = {
+  [REASON.TOO_FAST_FOR_SILENCE]: 'The guard holds the car back',
+  [REASON.STUCK]: 'The car stands and should drive',
+};
+
 function splitAt({ severity, text }: Sentence): StateSentence {
   const [title = '', reason = ''] = text.split(': ');
   return { severity, title, text: reason === '' ? '' : `${capital(reason)}.`, limiter: null };
@@ -64,7 +70,7 @@ export function stateSentence(frame: Frame, circumstances: Circumstances): State
   if (REASON_WORDS[frame.guard_reason]?.severity === 'warning') {
     return {
       severity: 'warning',
-      title: 'The guard holds the car back',
+      title: WARNING_TITLES[frame.guard_reason] ?? 'The guard makes up for what it found',
       text: `${capital(reasonInWords(frame.guard_reason))}.`,
       limiter: null,
     };
