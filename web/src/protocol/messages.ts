@@ -207,6 +207,8 @@ export const REASON = {
   OTHER_STEERING: 11,
   /** the brakes give less than they are asked for */
   WEAK_BRAKES: 12,
+  /** the car does not move although it is told to */
+  STUCK: 13,
 } as const;
 
 /** Frame.speed_limiter */
@@ -482,6 +484,10 @@ export const REASON_WORDS: Words = {
   [REASON.WEAK_BRAKES]: {
     severity: 'warning',
     text: 'the brakes give less than they are asked for',
+  },
+  [REASON.STUCK]: {
+    severity: 'warning',
+    text: 'the car does not move although it is told to',
   },
 };
 
