@@ -33,7 +33,7 @@ class TurnLog {
     round_ = 0;
   }
   void begin_round() noexcept { ++round_; }
-  [[gnu::noinline]] void add(const SolveReport& report, Turn::Kind kind, double barrier) noexcept {
+  CHICANE_INLINE inline void add(const SolveReport& report, Turn::Kind kind, double barrier) noexcept {
     if (count_ < turns_.size())
       turns_[count_] = {
           round_, kind,   report.cost, report.stationarity, report.defect, report.complementarity,

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/math_pack.hpp"
 #include "chicane/solver/problem.hpp"
 
@@ -52,7 +53,7 @@ struct Iterate {
   }
   /// Into the public form.
   template <class Trajectory>
-  void write(Trajectory& trajectory) const noexcept {
+  CHICANE_INLINE inline void write(Trajectory& trajectory) const noexcept {
     trajectory.horizon = static_cast<int>(horizon);
     for (std::size_t k = 0; k <= horizon; ++k) trajectory.x[k] = state<double>(k);
     for (std::size_t k = 0; k < horizon; ++k) trajectory.u[k] = input<double>(k);

@@ -55,7 +55,7 @@ void add_step(const Point& from, double length, const Point& step, Point& to) no
 
 /// The longest move of an input between two points.
 template <class Point>
-double longest_move(const Point& from, const Point& to) noexcept {
+CHICANE_INLINE inline double longest_move(const Point& from, const Point& to) noexcept {
   double longest = 0.0;
   for (std::size_t m = 0; m < std::size(from.u); ++m) {
     for (std::size_t k = 0; k < from.horizon; ++k)
