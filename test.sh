@@ -22,8 +22,7 @@ processor_seconds built
 say "chicane: ctest ${selection[*]} $*"
 log=$root/build/release/test.log
 result=0
-# One more than there are cores: many tests wait for a browser or a clock.
-ctest --test-dir "$root/build/release" -j $(($(nproc) + 1)) --output-on-failure --no-tests=error --no-label-summary \
+ctest --test-dir "$root/build/release" -j "$(nproc)" --output-on-failure --no-tests=error --no-label-summary \
   --output-log "$log" "${selection[@]}" "$@" || result=$?
 grep -E '^[0-9]+% tests passed' "$log" || true  # again, below the list of what was skipped
 processor_seconds all
