@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A problem that Python exported (ocp.export), by our solver, by Ipopt, and beside the same problem written
-// by hand: in turns, the least CPU time of each. Compiled for each problem by python/tests/problem_table.py
-// --references, with
+// Times a problem that Python exported (ocp.export) with our solver, with Ipopt, and beside the same problem
+// written by hand, in turns: the least CPU time of each. python/tests/problem_table.py --references compiles
+// it for each problem, with
 //
 //   -DEXPORTED='"problem.hpp"'     its header, with a struct Problem
 //   -DWRITTEN                      cart-pole: bench/families/cart_pole.hpp as well

@@ -86,14 +86,14 @@ Result<path::Track> read_pieces(const std::string& text, const std::string& file
 int main() {
   auto scenario = protocol::compose({.scenario_file = {}, .settings = {{"preset", "pid"}, {"laps", "1"}}});
   if (!scenario) return std::puts(scenario.error().message.c_str()), 2;
-  scenario->car = scenario->plant = "cart";  // what the report calls them
+  scenario->car = scenario->plant = "cart";  // names in the report
   scenario->track = "ring.pieces";
   run::Factories parts;
   parts.plant = [](const scenario::Scenario&) -> Result<std::unique_ptr<sim::Plant>> {
     return std::make_unique<Cart>();
   };
   parts.track = [](const scenario::Scenario& wanted) {
-    return read_pieces("200 0\n188.5 180\n200 0\n188.5 180\n", wanted.track);  // or the file's text
+    return read_pieces("200 0\n188.5 180\n200 0\n188.5 180\n", wanted.track);  // a file's text serves as well
   };
   const auto loop = run::ClosedLoop::create(*scenario, parts);
   if (!loop) return std::puts(loop.error().message.c_str()), 2;

@@ -41,7 +41,7 @@ Result<wire::ServeSummary> drive_external_car(const Options& options, scenario::
                                               const live::ServeFunction& serve) {
   Result<std::unique_ptr<controller::Controller>> controller = run::make_controller(scenario);
   if (!controller) return fail(controller.error());
-  // What is recorded says where the guard knew the road from, so that a replay computes the same.
+  // Recorded: where the guard knew the road from; a replay computes the same by it.
   if (!track) scenario.guard.road = safety::GuardRoad::kWaypoints;
   const Result<net::ServerOptions> server = server_options(options);
   if (!server) return fail(server.error());

@@ -5,8 +5,8 @@
 
 namespace chicane::apps {
 
-/// What `main` of a program is: reads the command line, does `run`, and says what went wrong. `words`: those
-/// of main, the first one the program, the second a command.
+/// The body of a program's `main`: reads the command line, does `run`, and prints what went wrong. `words`:
+/// main's, the program first and a command second.
 [[nodiscard]] int program(int count, const char* const* words, ExitCode (*run)(const Options&)) noexcept;
 
 }  // namespace chicane::apps

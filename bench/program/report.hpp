@@ -22,7 +22,7 @@ struct BenchReport {
   Machine machine;
   std::vector<SolveRow> solves{};
   std::vector<SolveRow> growth{};  ///< cost against horizon, own solver only
-  double growth_exponent = 0.0;    ///< of the median time over the horizon; NaN when not measured
+  double growth_exponent = 0.0;    ///< growth of the median time with the horizon; NaN when not measured
   Spread step_cpu_us{};            ///< CPU time of a control step and one physics step, default controller
   Spread step_us{};                ///< whole control steps of the default controller, wall clock
   Spread step_solve_us{};          ///< the optimisation in them

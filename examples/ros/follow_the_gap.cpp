@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A ROS 2 program of one's own with nothing but Cyclone DDS: reads /scan and sends /drive, towards
-// where the road is free. It drives the car of `chicane ros --simulate`; the same program drives an F1TENTH
+// A ROS 2 program of one's own with nothing but Cyclone DDS: reads /scan and sends /drive, towards the free
+// road. It drives the car of `chicane ros --simulate`; the same program drives an F1TENTH
 // car.
 #include <dds/dds.h>
 

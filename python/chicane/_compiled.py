@@ -130,38 +130,38 @@ class Compilation:
 class _Handle:
     """A solver of the library in memory of its own. One thread at a time."""
 
-    def __init__(self, library: ctypes.CDLL) -> None:
-        self.library = library
-        self.problem = library.problem()
+    def __init__(self, calls: ctypes.CDLL) -> None:
+        self._calls = calls
+        self.problem = calls.problem()
         self.sizes = _Sizes()
-        self.check(library.chicane_sizes_of(self.problem, ctypes.byref(self.sizes)))
+        self.check(calls.chicane_sizes_of(self.problem, ctypes.byref(self.sizes)))
         self._memory = ctypes.create_string_buffer(self.sizes.bytes)
         self.solver = ctypes.c_void_p()
-        self.check(library.chicane_create(self.problem, self._memory, self.sizes.bytes, ctypes.byref(self.solver)))
+        self.check(calls.chicane_create(self.problem, self._memory, self.sizes.bytes, ctypes.byref(self.solver)))
 
     def check(self, error: int) -> None:
         if error != 0:
-            raise RuntimeError(f"compile: {self.library.chicane_error_text(error).decode()}")
+            raise RuntimeError(f"compile: {self._calls.chicane_error_text(error).decode()}")
 
     def put(self, array: int, numbers: Array) -> None:
         numbers = np.ascontiguousarray(numbers, float)
         if numbers.size > 0:
-            self.check(self.library.chicane_set(self.solver, array, numbers.ctypes.data_as(_Double), numbers.size))
+            self.check(self._calls.chicane_set(self.solver, array, numbers.ctypes.data_as(_Double), numbers.size))
 
     def get(self, array: int, shape: tuple[int, ...]) -> Array:
         numbers = np.zeros(shape)
         if numbers.size > 0:
-            self.check(self.library.chicane_get(self.solver, array, numbers.ctypes.data_as(_Double), numbers.size))
+            self.check(self._calls.chicane_get(self.solver, array, numbers.ctypes.data_as(_Double), numbers.size))
         return numbers
 
     def solve(self, setting: tuple[_Options, Array, Array], x0: Array, parameters: Array, x: Array, u: Array) -> dict[str, Any]:
         options, lower, upper = setting
-        self.check(self.library.chicane_set_options(self.solver, ctypes.byref(options)))
+        self.check(self._calls.chicane_set_options(self.solver, ctypes.byref(options)))
         for array, numbers in ((_PARAMETERS, parameters), (_LOWER, lower), (_UPPER, upper), (_STATES, x), (_INPUTS, u)):
             self.put(array, numbers)
         report = _Report()
         x0 = np.ascontiguousarray(x0, float)
-        self.check(self.library.chicane_solve(self.solver, x0.ctypes.data_as(_Double), ctypes.byref(report)))
+        self.check(self._calls.chicane_solve(self.solver, x0.ctypes.data_as(_Double), ctypes.byref(report)))
         told: dict[str, Any] = {name: getattr(report, name) for name, _ in _Report._fields_}
         return told | self.answer()
 

@@ -19,8 +19,6 @@ from ._symbols import Graph, Objects, Symbol, TraceError, refuse, where
 Array = npt.NDArray[np.float64]
 Function = Callable[..., Any]
 FUNCTIONS = ("dynamics", "residual", "constraint", "equality", "terminal_residual", "terminal_equality", "terminal_constraint")
-
-
 _INSIDE = "the implicit step"
 
 

@@ -79,9 +79,8 @@ void KnownRoad::use_line(const RacingRoad* lap) {
   edges_.clear();
   for (std::size_t i = 0; i < line_.samples().size(); ++i) {
     const double s = static_cast<double>(i) * line_.spacing();
-    const double offset = line_.demand(s).offset;
-    const Road::Room room = seen_ ? Road::Room{half_width_ - offset, half_width_ + offset} : lap->room(s);
-    edges_.push_back({room.left, room.right});
+    const Road::Room room = lap->room(s);
+    edges_.push_back(seen_ ? assumed_edges(line_.demand(s).offset) : Edges{room.left, room.right});
   }
   is_raced_ = true;
   ++lines_;
@@ -99,10 +98,7 @@ void KnownRoad::add(const model::Measurement& now) noexcept {
 }
 
 KnownRoad::Edges KnownRoad::edges(double s) const noexcept {
-  if (is_learning()) {
-    const double offset = seen_->line().demand(s).offset;
-    return {half_width_ - offset, half_width_ + offset};
-  }
+  if (is_learning()) return assumed_edges(seen_->line().demand(s).offset);
   const double length = line_.length();
   const double along = line_.is_closed() ? s - std::floor(s / length) * length : std::clamp(s, 0.0, length);
   const auto last = edges_.size() - 2;

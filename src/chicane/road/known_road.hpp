@@ -57,6 +57,10 @@ class KnownRoad {
 
  private:
   [[nodiscard]] bool is_learning() const noexcept { return seen_ && !is_raced_; }
+  /// On a road from waypoints, of a line that far to the left of theirs [m].
+  [[nodiscard]] Edges assumed_edges(double offset) const noexcept {
+    return {half_width_ - offset, half_width_ + offset};
+  }
   void smooth(const path::RoadData& data, const model::VehicleParams& vehicle);
 
   ReferenceLine line_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/sim_node.hpp"
+#include "chicane/ros/detail/endpoints.hpp"
 
 #include <fmt/format.h>
 
@@ -78,35 +79,19 @@ struct SimTopics {
 
   static Result<SimTopics> create(Participant& at, const NodeOptions& node) {
     SimTopics topics;
-    Result<void> made;
-    const auto read = [&](std::unique_ptr<Reader>& to, const std::string& name, std::string_view type) {
-      if (name.empty() || !made) return;
-      auto reader = at.reader(name, std::string(type), {.is_reliable = false});
-      if (reader)
-        to = std::move(*reader);
-      else
-        made = fail(reader.error());
-    };
-    const auto send = [&](std::unique_ptr<Writer>& to, const std::string& name, std::string_view type,
-                          Qos qos) {
-      if (name.empty() || !made) return;
-      auto writer = at.writer(name, std::string(type), qos);
-      if (writer)
-        to = std::move(*writer);
-      else
-        made = fail(writer.error());
-    };
-    read(topics.drive, node.topics.drive, protocol::DriveMessage::kType);
-    read(topics.stop_plan, node.topics.stop_plan, protocol::StopMessage::kType);
-    read(topics.initial_pose, node.topics.initial_pose, protocol::PoseMessage::kType);
-    send(topics.odom, node.topics.odom, protocol::OdometryMessage::kType, {});
-    send(topics.transform, "/tf", protocol::TransformMessage::kType, {.depth = 100});
-    send(topics.fixed_transform, "/tf_static", protocol::TransformMessage::kType,
-         {.is_transient_local = true, .depth = 1});
-    send(topics.imu, node.topics.imu, protocol::ImuMessage::kType, {});
-    if (node.pace > 0.0) send(topics.clock, "/clock", protocol::kClockType, {});
-    send(topics.scan, node.topics.scan, protocol::ScanMessage::kType, {});
-    if (!made) return fail(made.error());
+    Endpoints endpoints{at};
+    const Qos any{.is_reliable = false};
+    endpoints.read(topics.drive, node.topics.drive, protocol::DriveMessage::kType, any);
+    endpoints.read(topics.stop_plan, node.topics.stop_plan, protocol::StopMessage::kType, any);
+    endpoints.read(topics.initial_pose, node.topics.initial_pose, protocol::PoseMessage::kType, any);
+    endpoints.send(topics.odom, node.topics.odom, protocol::OdometryMessage::kType, {});
+    endpoints.send(topics.transform, "/tf", protocol::TransformMessage::kType, {.depth = 100});
+    endpoints.send(topics.fixed_transform, "/tf_static", protocol::TransformMessage::kType,
+                   {.is_transient_local = true, .depth = 1});
+    endpoints.send(topics.imu, node.topics.imu, protocol::ImuMessage::kType, {});
+    if (node.pace > 0.0) endpoints.send(topics.clock, "/clock", protocol::kClockType, {});
+    endpoints.send(topics.scan, node.topics.scan, protocol::ScanMessage::kType, {});
+    if (!endpoints.made()) return fail(endpoints.made().error());
     return topics;
   }
 };

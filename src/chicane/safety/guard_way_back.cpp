@@ -127,14 +127,16 @@ void Guard::watch_rest(double time, double throttle) noexcept {
   if (speed > kStandingSpeed || throttle > kDrives) rests_ = false;
 }
 
-/// A car that should move and stands is stuck after kStuckTime. Its pedals are released for a cycle now and
-/// then: a brake that stays on at rest lets go then.
+/// A car that should move and stands is stuck after kStuckTime, where nothing worse is said of it. Its pedals
+/// are released for a cycle now and then: a brake that stays on at rest lets go then.
 void Guard::free_stuck_car(double time, controller::StepResult& result) noexcept {
   model::Command& command = result.command;
   const model::VehicleParams& car = model_.vehicle();
   const bool should_move = command.throttle > kDrives && std::fabs(estimator_.state().vx) < kStandingSpeed;
   if (!should_move || !(released_at_ <= time)) stuck_since_ = released_at_ = time;
-  if (time - stuck_since_ > kStuckTime) result.report.reason = controller::GuardReason::kStuck;
+  controller::GuardReason& reason = result.report.reason;
+  const bool has_worse = controller::word_of(reason).severity == Severity::kError;
+  if (time - stuck_since_ > kStuckTime && !has_worse) reason = controller::GuardReason::kStuck;
   if (!(time - released_at_ > (car.latches_brakes() ? kReleaseTime : kStuckTime))) return;
   command.throttle = car.latches_brakes() ? car.brake_release_throttle : 0.0;
   released_at_ = time;

@@ -13,7 +13,7 @@ import {
   roadShape,
   type Scene,
 } from '../draw/scene';
-import { speedGradient, topOfScale } from '../draw/speed_colour';
+import { topOfScale } from '../draw/speed_colour';
 import { onThemeChange, theme } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { type Box, boundsOf, extrapolate, type Point, wrapAngle } from '../lib/math';
@@ -23,23 +23,12 @@ import { CAMERAS } from '../scene3d/cameras';
 import type { GhostPose } from '../scene3d/ghost';
 import { Scene3dView } from '../scene3d/scene3d_view';
 import { session } from '../scene3d/session';
-import {
-  camera,
-  choose,
-  type Dimension,
-  dimension,
-  isSpared,
-  nextCamera,
-  obstacle,
-  shows3d,
-  wants3d,
-  zoomCamera,
-} from '../scene3d/view_state';
+import { camera, choose, type Dimension, nextCamera, shows3d, wants3d, zoomCamera } from '../scene3d/view_state';
 import { lossesNow, markedCorners, startLine } from '../state/compared';
 import { cursorMark, pointAt, timeNear } from '../state/cursor';
 import { faultMarks } from '../state/faults';
 import { hindsight } from '../state/hindsight';
-import { type Layer, layers, toggleLayer } from '../state/layers';
+import { layers } from '../state/layers';
 import { limit } from '../state/limit';
 import { link } from '../state/link';
 import { live } from '../state/live';
@@ -51,6 +40,7 @@ import { shown } from '../state/shown';
 import { tab } from '../state/tab';
 import { everyFrame } from '../state/ticker';
 import { AlertsView, dangerNow, HudView } from './hud_view';
+import { LegendView } from './legend_view';
 
 export type View = 'behind' | 'above' | 'whole';
 
@@ -293,81 +283,6 @@ class Painter {
   }
 }
 
-function Swatch({ name, label, isMinor = false }: { name: string; label: string; isMinor?: boolean }) {
-  return (
-    <div class={isMinor ? 'legend-item minor' : 'legend-item'}>
-      <span class={`swatch ${name}`} />
-      <span>{label}</span>
-    </div>
-  );
-}
-
-/** A button that shows or hides a line. */
-function Switch({ layer, label, title }: { layer: Layer; label: string; title: string }) {
-  const isOn = layers[layer].value;
-  return (
-    <button type="button" class="legend-item" aria-pressed={isOn} title={title} onClick={() => toggleLayer(layer)}>
-      <span class={`swatch ${layer}`} />
-      <span>{label}</span>
-    </button>
-  );
-}
-
-/** Why there is no 3D picture, where one could be expected. */
-function Note() {
-  if (dimension.value === '3d' && obstacle.value !== null) {
-    return (
-      <p class="obstacle warning" role="status">
-        {obstacle.value}
-      </p>
-    );
-  }
-  return isSpared.value ? <p class="obstacle">No graphics card here: 3D works, but slowly.</p> : null;
-}
-
-function Legend() {
-  const top = inSpeedUnit(scaleTop.value);
-  const ghost = ghostLabel.value;
-  return (
-    <div class="legend">
-      <Note />
-      {!shows3d.value && (
-        <div class="legend-item">
-          <span class="scale-bar" style={{ width: `${bar.value.pixels}px` }} />
-          <span>{bar.value.metres} m</span>
-        </div>
-      )}
-      <Swatch name="reference" label="reference" isMinor />
-      <Swatch name="trace" label="driven" isMinor />
-      {limit.value && (
-        <Switch layer="racingLine" label="racing line" title="The line of the fastest lap possible (L)" />
-      )}
-      <Switch
-        layer="hindsight"
-        label="plan 1 s ago"
-        title="The plan of a second ago and the path driven since; the outline is the position it predicted for now (O)"
-      />
-      {!shows3d.value && tab.value === 'laps' && lossesNow.value && (
-        <Switch
-          layer="timeLost"
-          label="time lost"
-          title="Lap A: red where it loses time to lap B, green where it gains"
-        />
-      )}
-      {ghost !== null && <Swatch name="ghost" label={ghost} />}
-      {shows3d.value && <Swatch name="rubber" label="tyres sliding" isMinor />}
-      {shows3d.value && <Swatch name="brake" label="braking begins" isMinor />}
-      <div class="legend-item">
-        <span>plan 0</span>
-        <span class="gradient" style={{ background: speedGradient() }} />
-        <span>
-          {fixed(top, 0)} {speedUnit().name}
-        </span>
-      </div>
-    </div>
-  );
-}
-
 function describeMap(): string {
   const frame = shown.value;
   if (!frame) return 'Map of the track, no car yet';
@@ -501,7 +416,7 @@ export function TrackView() {
       <AlertsView />
       <div class="map-foot">
         <HudView />
-        <Legend />
+        <LegendView bar={bar} scaleTop={scaleTop} ghostLabel={ghostLabel} />
       </div>
     </section>
   );

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/detail/car_topics.hpp"
 
+#include "chicane/ros/detail/endpoints.hpp"
+
 #include <string>
 #include <string_view>
 #include <utility>
@@ -40,41 +42,27 @@ std::vector<WantedPartner> wanted_partners(const NodeOptions& node) {
 
 Result<CarTopics> CarTopics::create(Participant& at, const NodeOptions& node) {
   CarTopics topics;
-  Result<void> made;
-  const auto read = [&](std::unique_ptr<Reader>& to, const std::string& name, std::string_view type,
-                        Qos qos) {
-    if (name.empty() || !made) return;
-    if (auto reader = at.reader(name, std::string(type), qos))
-      to = std::move(*reader);
-    else
-      made = fail(reader.error());
-  };
-  const auto send = [&](std::unique_ptr<Writer>& to, const std::string& name, std::string_view type,
-                        Qos qos) {
-    if (name.empty() || !made) return;
-    if (auto writer = at.writer(name, std::string(type), qos))
-      to = std::move(*writer);
-    else
-      made = fail(writer.error());
-  };
+  Endpoints endpoints{at};
   const Qos any{.is_reliable = false};
-  read(topics.odom, node.topics.odom, protocol::OdometryMessage::kType, node.odom_qos);
-  read(topics.imu, node.topics.imu, protocol::ImuMessage::kType, any);
-  read(topics.path, node.topics.path, protocol::PathMessage::kType, any);
+  endpoints.read(topics.odom, node.topics.odom, protocol::OdometryMessage::kType, node.odom_qos);
+  endpoints.read(topics.imu, node.topics.imu, protocol::ImuMessage::kType, any);
+  endpoints.read(topics.path, node.topics.path, protocol::PathMessage::kType, any);
   // One that was sent before, too: a volatile reader gets none of those, and a transient local one no
   // others.
-  read(topics.kept_path, node.topics.path, protocol::PathMessage::kType,
-       {.is_transient_local = true, .depth = 1});
-  read(topics.transforms, "/tf", protocol::TransformMessage::kType, {.is_reliable = false, .depth = 100});
-  read(topics.fixed_transforms, "/tf_static", protocol::TransformMessage::kType,
-       {.is_transient_local = true, .depth = 100});
-  if (node.is_time_simulated) read(topics.clock, "/clock", protocol::kClockType, any);
-  read(topics.initial_pose, node.topics.initial_pose, protocol::PoseMessage::kType, {});
-  read(topics.stop, node.topics.stop, protocol::kBoolType, {});
-  send(topics.drive, node.topics.drive, protocol::DriveMessage::kType, node.drive_qos);
-  send(topics.autoware, node.topics.autoware, protocol::DriveMessage::kAutowareType, node.drive_qos);
-  send(topics.stop_plan, node.topics.stop_plan, protocol::StopMessage::kType, node.drive_qos);
-  if (!made) return fail(made.error());
+  endpoints.read(topics.kept_path, node.topics.path, protocol::PathMessage::kType,
+                 {.is_transient_local = true, .depth = 1});
+  endpoints.read(topics.transforms, "/tf", protocol::TransformMessage::kType,
+                 {.is_reliable = false, .depth = 100});
+  endpoints.read(topics.fixed_transforms, "/tf_static", protocol::TransformMessage::kType,
+                 {.is_transient_local = true, .depth = 100});
+  if (node.is_time_simulated) endpoints.read(topics.clock, "/clock", protocol::kClockType, any);
+  endpoints.read(topics.initial_pose, node.topics.initial_pose, protocol::PoseMessage::kType, {});
+  endpoints.read(topics.stop, node.topics.stop, protocol::kBoolType, {});
+  endpoints.send(topics.drive, node.topics.drive, protocol::DriveMessage::kType, node.drive_qos);
+  endpoints.send(topics.autoware, node.topics.autoware, protocol::DriveMessage::kAutowareType,
+                 node.drive_qos);
+  endpoints.send(topics.stop_plan, node.topics.stop_plan, protocol::StopMessage::kType, node.drive_qos);
+  if (!endpoints.made()) return fail(endpoints.made().error());
   return topics;
 }
 
