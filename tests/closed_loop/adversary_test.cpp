@@ -74,9 +74,14 @@ std::vector<Case> cases() {
 }
 
 TEST(Adversary, StaysOnTheRoad) {
+  int place = 0;
+  int turn = 0;  // every other one drives here, the others on the next track; with the slow tests all everywhere
   for (const char* car : {"udacity", "road-car"}) {
     for (const char* track : {"lakeside", "oval"}) {
+      ++place;
+      turn = 0;
       for (const Case& each : cases()) {
+        if (!kDrivesAll && (place + turn++) % 2 != 0) continue;
         const auto scenario = protocol::compose(
             {.scenario_file = {}, .settings = {{"track", track}, {"car", car}, {"laps", "0"}}});
         ASSERT_TRUE(scenario);

@@ -68,7 +68,7 @@ TEST(Latency, DoesNotSpinAnOrdinaryCarThatBrakesFromTopSpeed) {
   const auto run = drive({{"preset", "default"},
                           {"car", "road-car"},
                           {"track", "speedway"},
-                          {"laps", "2"},
+                          {"laps", kDrivesAll ? "2" : "1"},
                           {"latency_ms", "300"},
                           {"time_limit_s", "300"}});
   EXPECT_TRUE(run.completed);

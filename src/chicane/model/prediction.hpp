@@ -316,7 +316,7 @@ class PredictionModel {
   /// Secant of the tyre curve over its initial slope, by the square of the slip z over peak force by initial
   /// stiffness: that of the magic formula, sin(C atan(z/C))/z, or of the original simulator's curve.
   template <class T>
-  [[nodiscard]] CHICANE_INLINE inline T secant(const T& square) const noexcept {
+  [[nodiscard]] [[gnu::noinline]] T secant(const T& square) const noexcept {
     const T z = sqrt(square + kLeastSquare);
     if (vehicle_.tire_shape > 0.0)
       return sin(vehicle_.tire_shape * atan((1.0 / vehicle_.tire_shape) * z)) / z;

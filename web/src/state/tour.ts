@@ -122,10 +122,16 @@ export const STEPS: readonly Step[] = [
     where: '.fault-card:has([data-key="fault.steering_stuck"])',
     tasks: ['Let the car leave the road, or the guard stop it', 'Wait until it drives again, or press Reset'],
     isPossible: () => hasFault(['actuator', 'road']),
-    watch: () => (frame) => [
-      !frame.is_manual && (frame.is_off_track || frame.rung !== 0),
-      frame.active_faults === 0 && isDriving(frame),
-    ],
+    watch() {
+      let isBroken = false; // a stop for another reason does not count
+      return (frame) => {
+        isBroken ||= isFaulty(frame, ['actuator', 'road']);
+        return [
+          isBroken && !frame.is_manual && (frame.is_off_track || frame.rung !== 0),
+          frame.active_faults === 0 && isDriving(frame),
+        ];
+      };
+    },
   },
   {
     name: 'tune',
