@@ -25,7 +25,7 @@ set(pc_requires_of_zstd::libzstd_shared "libzstd")
 set(pc_libs_of_Threads::Threads "-pthread")
 
 # Headers that only our own sources include: of no concern to users. As a public link they are.
-set(built_with Boost::headers Boost::boost nlohmann_json::nlohmann_json)
+set(built_with Boost::headers Boost::boost nlohmann_json::nlohmann_json Eigen3::Eigen)
 
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/chicane)
 set(pc_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
@@ -73,8 +73,12 @@ function(write_pc target pc_name)
   set(requires "")
   set(libs "")
   set(pc_definitions "")
+  foreach(set IN LISTS CHICANE_LEFT_OUT)
+    string(TOUPPER ${set} name)
+    string(APPEND pc_definitions " -DCHICANE_WITHOUT_${name}")
+  endforeach()
   if(target STREQUAL "chicane_protocol" OR "chicane_protocol" IN_LIST uses_of_${target})
-    set(pc_definitions " -DCHICANE_USES_INSTALLATION")  # protocol/data_folders.hpp
+    string(APPEND pc_definitions " -DCHICANE_USES_INSTALLATION")  # protocol/data_folders.hpp
   endif()
   foreach(module IN LISTS modules)  # in the order of the layers
     if(module STREQUAL target OR module IN_LIST uses_of_${target})

@@ -4,10 +4,10 @@
 # To build and run the program.
 run_packages=(
   g++ cmake ninja-build ccache pkg-config
-  libexpected-dev libboost-dev nlohmann-json3-dev libyaml-cpp-dev libcli11-dev libfmt-dev libzstd-dev
+  libexpected-dev libboost-dev nlohmann-json3-dev libyaml-cpp-dev libcli11-dev libeigen3-dev libfmt-dev libzstd-dev
 )
 # To compare with Ipopt in `chicane bench`, on top of those.
-bench_packages=(libeigen3-dev coinor-libipopt-dev liblapack-dev libblas-dev)
+bench_packages=(coinor-libipopt-dev liblapack-dev libblas-dev)
 # For `chicane ros`, on top of the first.
 ros_packages=(cyclonedds-dev libssl-dev libpng-dev)
 # For the Python module, on top of the first.

@@ -3,9 +3,6 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 
 #include "chicane/run/make.hpp"
 #include "commands.hpp"
@@ -17,14 +14,6 @@
 
 namespace chicane::apps {
 namespace {
-
-Result<void> keep(const std::string& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (stream) return {};
-  return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
-}
 
 Result<void> print_limit(const Options& options) {
   static std::atomic<bool> wants_stop{false};  // as long as signals may come
@@ -39,7 +28,7 @@ Result<void> print_limit(const Options& options) {
   LimitRun told{.track = track->name(), .car = scenario->car};
   const auto tell = [&](const auto& limit) -> Result<void> {
     if (!options.csv_file.empty()) {
-      if (Result<void> kept = keep(options.csv_file, to_csv(told, *track, limit)); !kept) return kept;
+      if (Result<void> kept = write_file(options.csv_file, to_csv(told, *track, limit)); !kept) return kept;
     }
     fmt::print("{}", options.is_json ? to_json(told, limit) : to_table(told, limit));
     return {};

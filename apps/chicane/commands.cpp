@@ -24,6 +24,7 @@ constexpr Command kCommands[] = {
     {"recover", "From anywhere beside the road: whether the car comes back", recover},
     {"lane-change", "Highest entry speed of the severe double lane change, ISO 3888-2", lane_change},
     {"claims", "What five write-ups say, each tried on its own terms", try_claims},
+    {"identify", "A car's model from logs of driving it", identify_car},
     {"check", "Validate scenarios, presets, cars and tracks, and explain what is wrong", check},
     {"list", "Presets, tracks, cars, scenarios, controllers and parameters", list},
     {"bench", "Times of solver and control step on this machine, beside Ipopt's", bench},

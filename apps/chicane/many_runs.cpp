@@ -32,6 +32,14 @@ void keep_memory() {
 #endif
 }
 
+Result<void> write_file(const std::string& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (stream) return {};
+  return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
+}
+
 Result<void> check_writable(const std::string& file) {
   if (file.empty()) return {};
   const bool is_new = !std::filesystem::exists(file);

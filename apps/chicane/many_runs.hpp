@@ -16,6 +16,9 @@ void keep_memory();
 /// is no file.
 [[nodiscard]] Result<void> check_writable(const std::string& file);
 
+/// Replaces the file's content. kIo with the system's reason.
+[[nodiscard]] Result<void> write_file(const std::string& file, const std::string& text);
+
 /// Tells on stderr how many of many runs are done, how fast, and how long the rest will take: on a terminal
 /// one line that renews itself, otherwise a line every ten seconds. One thread at a time.
 class RunCounter {

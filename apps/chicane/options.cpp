@@ -258,6 +258,33 @@ void add_report(CLI::App& command, Options& options) {
   command.footer("Example: chicane report run.mcap -o run.html");
 }
 
+void add_identify(CLI::App& command, Options& options) {
+  add_logs(command, options, "Recordings, bags (.mcap) and CSV files of one car; several count together");
+  add_setting(command, options, "--car", "car", "NAME|FILE",
+              "Car to begin with: mass, width, tyre shape and limits are not in a log");
+  command
+      .add_option("-o,--output", options.output_file,
+                  "Write the car into this file; an older one is replaced")
+      ->type_name("CAR.yaml");
+  command
+      .add_option("--hold-out", options.identify.hold_out,
+                  "Share of each log, at its end, that only tests the predictions")
+      ->type_name("X")
+      ->check(CLI::Range(0.0, 0.8))
+      ->capture_default_str();
+  command
+      .add_option("--columns", options.identify.columns,
+                  "Columns of a CSV file with names of their own: steer=cmd_delta_rad,psi=yaw_deg")
+      ->type_name("MEANING=NAME,...")
+      ->delimiter(',');
+  command.add_option("--odom-topic", options.identify.odom_topic, "Odometry of a bag that has several")
+      ->type_name("TOPIC");
+  command.add_option("--drive-topic", options.identify.drive_topic, "Commands of a bag that has several")
+      ->type_name("TOPIC");
+  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  command.footer("Example: chicane identify run.mcap --car road-car -o mine.yaml");
+}
+
 void add_check(CLI::App& command, Options& options) {
   command
       .add_option("files", options.files,
@@ -315,16 +342,27 @@ void add_manual(CLI::App& command, Options&) { command.footer("Example: chicane 
 
 /// The options of each command.
 constexpr std::pair<std::string_view, void (*)(CLI::App&, Options&)> kOptionsOf[] = {
-    {"drive", add_drive},       {"serve", add_serve},
-    {"simulate", add_simulate}, {"ros", add_ros},
-    {"limit", add_limit},       {"replay", add_replay},
-    {"report", add_report},     {"video", add_video},
-    {"sweep", add_sweep},       {"league", add_league},
-    {"claims", add_claims},     {"tune", add_tune},
-    {"merge", add_merge},       {"campaign", add_campaign},
-    {"recover", add_recover},   {"lane-change", add_lane_change},
-    {"check", add_check},       {"list", add_list},
-    {"bench", add_bench},       {"completion", add_completion},
+    {"drive", add_drive},
+    {"serve", add_serve},
+    {"simulate", add_simulate},
+    {"ros", add_ros},
+    {"limit", add_limit},
+    {"replay", add_replay},
+    {"report", add_report},
+    {"video", add_video},
+    {"sweep", add_sweep},
+    {"league", add_league},
+    {"claims", add_claims},
+    {"tune", add_tune},
+    {"merge", add_merge},
+    {"campaign", add_campaign},
+    {"recover", add_recover},
+    {"lane-change", add_lane_change},
+    {"identify", add_identify},
+    {"check", add_check},
+    {"list", add_list},
+    {"bench", add_bench},
+    {"completion", add_completion},
     {"manual", add_manual},
 };
 

@@ -86,6 +86,13 @@ struct Options {
   };
   Ros ros{};
 
+  struct Identify {
+    double hold_out = 0.3;               ///< share of each log for the prediction errors
+    std::vector<std::string> columns{};  ///< MEANING=NAME of a CSV file
+    std::string odom_topic{}, drive_topic{};
+  };
+  Identify identify{};
+
   struct Sweep {
     std::string plan_file{};
     std::string shard{};            ///< I/N; empty: as the environment says

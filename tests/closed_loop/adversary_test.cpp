@@ -75,7 +75,8 @@ std::vector<Case> cases() {
 
 TEST(Adversary, StaysOnTheRoad) {
   int place = 0;
-  int turn = 0;  // every other one drives here, the others on the next track; with the slow tests all everywhere
+  int turn =
+      0;  // every other one drives here, the others on the next track; with the slow tests all everywhere
   for (const char* car : {"udacity", "road-car"}) {
     for (const char* track : {"lakeside", "oval"}) {
       ++place;

@@ -33,7 +33,8 @@ inline telemetry::RunSummary drive(const Settings& settings) {
 #ifdef CHICANE_SLOW_TESTS
 inline constexpr bool kDrivesAll = true;
 #else
-inline constexpr bool kDrivesAll = false;  ///< tests drive a sample of their cases, `./test.sh --all` drives all
+inline constexpr bool kDrivesAll =
+    false;  ///< tests drive a sample of their cases, `./test.sh --all` drives all
 #endif
 
 inline double top_mph(const telemetry::RunSummary& run) { return mps_to_mph(run.total.top_speed); }

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "chicane/base/text.hpp"
+#include "chicane/identify/identification.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/protocol/schema.hpp"
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "many_runs.hpp"
+#include "setting_options.hpp"
+
+namespace chicane::apps {
+namespace {
+
+using identify::Estimate;
+using identify::Identification;
+
+Result<identify::LogOptions> log_options(const Options::Identify& options) {
+  identify::LogOptions log{{}, options.odom_topic, options.drive_topic};
+  for (const std::string& column : options.columns) {
+    const std::size_t equals = column.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == column.size())
+      return fail(ErrorCode::kInvalidArgument,
+                  fmt::format("--columns: got {}, expected MEANING=NAME such as steer=delta_rad", column));
+    log.columns[column.substr(0, equals)] = column.substr(equals + 1);
+  }
+  return log;
+}
+
+/// Progress on a terminal: a line that renews itself.
+class Share {
+ public:
+  bool operator()(double done) {
+    if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\ridentify: {:3.0f} %", 100.0 * done);
+    return !wants_stop_;
+  }
+  explicit Share(const std::atomic<bool>& wants_stop) : wants_stop_{wants_stop} {}
+  ~Share() {
+    if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r               \r");
+  }
+  Share(const Share&) = delete;
+  Share& operator=(const Share&) = delete;
+
+ private:
+  const std::atomic<bool>& wants_stop_;
+};
+
+std::string interval(const Estimate& each) {
+  return fmt::format("{} to {}", number_text(each.low, 3), number_text(each.high, 3));
+}
+
+std::string advice(const Identification& found) {
+  std::string text;
+  if (!found.has_pedal)
+    text += "The log has no pedal: drive, brakes and drag are those of the car it began with.\n";
+  if (!found.knows_tires())
+    text += fmt::format(
+        "The tyres reached {:.0f} % (front) and {:.0f} % (rear) of their peak: grip is not known, so do not "
+        "race by\n"
+        "this car. Drive bends nearer to the limit, at least {:.0f} %.\n",
+        100.0 * found.use_front, 100.0 * found.use_rear, 100.0 * identify::kRaceUse);
+  for (const Estimate& each : found.estimates) {
+    if (each.key == "steer_offset_deg" && each.is_excited && (each.low > 0.1 || each.high < -0.1))
+      text += fmt::format("The wheels point {} deg {} when 0 is asked: correct it where commands are sent.\n",
+                          number_text(std::fabs(each.value), 2), each.value > 0.0 ? "left" : "right");
+  }
+  return text;
+}
+
+std::string table_of(const Identification& found, const std::string& logs) {
+  std::string text = fmt::format("{:.0f} s of driving from {}\n\n{:<28} {:>10} {:>22}  {:>10}\n",
+                                 found.driven, logs, "", "found", "95 % interval", "assumed");
+  for (const Estimate& each : found.estimates)
+    text += fmt::format(
+        "{:<28} {:>10} {:>22}  {:>10} {}{}\n", each.key, number_text(each.value, 4), interval(each),
+        number_text(each.assumed, 4), each.unit,
+        each.is_excited ? "" : (each.unit.empty() ? "not excited by the log" : ", not excited by the log"));
+  text += fmt::format(
+      "\ntyres used           {:.0f} % of the peak at the front, {:.0f} % at the rear\n"
+      "left unexplained     {:.3f} m, {:.2f} deg, {:.3f} m/s\n",
+      100.0 * found.use_front, 100.0 * found.use_rear, found.residual[0], found.residual[1] * 180.0 / kPi,
+      found.residual[2]);
+  for (const identify::PredictionError& error : found.held_out)
+    text += fmt::format("predicted {:.2g} s ahead  {:.2f} m, {:.1f} deg, {:.2f} m/s off (held-out part)\n",
+                        error.ahead, error.position, error.yaw * 180.0 / kPi, error.speed);
+  const std::string words = advice(found);
+  return words.empty() ? text : text + "\n" + words;
+}
+
+std::string json_of(const Identification& found) {
+  nlohmann::ordered_json json;
+  json["driven_s"] = found.driven;
+  json["delay_ms"] = 1e3 * found.delay;
+  for (const Estimate& each : found.estimates)
+    json["estimates"].push_back({{"key", each.key},
+                                 {"unit", each.unit},
+                                 {"value", each.value},
+                                 {"low", each.low},
+                                 {"high", each.high},
+                                 {"assumed", each.assumed},
+                                 {"is_excited", each.is_excited}});
+  json["tire_use"] = {found.use_front, found.use_rear};
+  json["knows_tires"] = found.knows_tires();
+  json["held_out"] = nlohmann::ordered_json::array();
+  for (const identify::PredictionError& error : found.held_out)
+    json["held_out"].push_back({{"ahead_s", error.ahead},
+                                {"position_m", error.position},
+                                {"yaw_rad", error.yaw},
+                                {"speed_mps", error.speed}});
+  return json.dump(2) + "\n";
+}
+
+/// The car file: the start's plant, and the model as it was found.
+std::string to_car(const Identification& found, scenario::Scenario scenario, const std::string& logs) {
+  std::string text =
+      fmt::format("# {}, identified from {:.0f} s of {}\n", scenario.vehicle.name, found.driven, logs);
+  if (!found.knows_tires())
+    text += "# Grip is not known: the tyres were used too little. Do not race by this car.\n";
+  text +=
+      "# [log] 95 % interval in brackets; [assumed] as the car it began with, because the log does not "
+      "excite it.\n";
+  const scenario::Scenario fresh;
+  scenario.vehicle = found.vehicle;
+  std::string group;
+  for (const protocol::Parameter& row : protocol::list()) {
+    const bool is_vehicle = row.group == "vehicle";
+    if (row.key == "latency_ms") {
+      text += fmt::format("latency_ms: {}\n", number_text(std::round(1e4 * found.delay) / 10.0));
+      continue;
+    }
+    if (row.key != "plant" && row.key != "control_period_ms" && !is_vehicle && row.group != "plant_params")
+      continue;
+    if (!is_vehicle && row.key != "plant" &&
+        protocol::get_text(scenario, row) == protocol::get_text(fresh, row))
+      continue;
+    if (row.group != group) text += fmt::format("{}:\n", row.group);
+    group = row.group;
+    const std::string_view key = row.key.substr(row.group.empty() ? 0 : row.group.size() + 1);
+    std::string value = protocol::get_text(scenario, row);
+    std::string remark;
+    for (const Estimate& each : found.estimates) {
+      if (!is_vehicle || each.key != key) continue;
+      value = number_text(each.value, 5);
+      remark = each.is_excited ? fmt::format("  # [log] {}", interval(each)) : "  # [assumed]";
+    }
+    text += fmt::format("{}{}: {}{}\n", row.group.empty() ? "" : "  ", key, value, remark);
+  }
+  return text;
+}
+
+Result<void> identify_and_tell(const Options& options) {
+  static std::atomic<bool> wants_stop{false};  // as long as signals may come
+  catch_interrupts(wants_stop);
+  const Result<scenario::Scenario> start =
+      protocol::compose({.scenario_file = {}, .settings = options.settings});
+  if (!start) return fail(start.error());
+  const auto how = log_options(options.identify);
+  if (!how) return fail(how.error());
+  if (Result<void> writable = check_writable(options.output_file); !writable) return writable;
+  std::vector<identify::DriveLog> logs;
+  std::string names;
+  for (const std::string& file : options.log_files) {
+    auto parts = identify::read_log(file, *how);
+    if (!parts) return fail(parts.error());
+    std::move(parts->begin(), parts->end(), std::back_inserter(logs));
+    names += (names.empty() ? "" : ", ") + std::filesystem::path(file).filename().string();
+  }
+  const auto found = [&] {
+    Share share(wants_stop);
+    return identify::identify(logs, start->vehicle, options.identify.hold_out,
+                              [&](double done) { return share(done); });
+  }();
+  if (!found) return fail(found.error());
+  if (wants_stop) fmt::print(stderr, "identify: interrupted, these are the values so far\n");
+  if (!options.output_file.empty()) {
+    if (Result<void> kept = write_file(options.output_file, to_car(*found, *start, names)); !kept)
+      return kept;
+  }
+  fmt::print("{}", options.is_json ? json_of(*found) : table_of(*found, names));
+  if (!options.output_file.empty() && !options.is_json)
+    fmt::print("\n{}: chicane drive --car {}{}\n", options.output_file, options.output_file,
+               found->knows_tires() ? " --preset race" : "");
+  return {};
+}
+
+}  // namespace
+
+ExitCode identify_car(const Options& options) {
+  const Result<void> done = identify_and_tell(options);
+  return done ? kSuccess : report(done.error());
+}
+
+}  // namespace chicane::apps

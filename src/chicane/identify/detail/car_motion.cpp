@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/identify/detail/car_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "chicane/base/math.hpp"
+#include "chicane/model/prediction.hpp"
+
+namespace chicane::identify {
+namespace {
+
+/// Integral of held commands over time: means over any interval follow, continuous in its ends.
+class Held {
+ public:
+  Held(const std::vector<Told>& told, double Told::*value) : told_{told}, value_{value} {
+    sums_.reserve(told.size());
+    double sum = 0.0;
+    for (std::size_t i = 0; i < told.size(); ++i) {
+      if (i > 0) sum += told[i - 1].*value * (told[i].time - told[i - 1].time);
+      sums_.push_back(sum);
+    }
+  }
+  /// Intervals have to be asked for in their order.
+  double mean(double from, double to) { return (integral(to) - integral(from)) / (to - from); }
+
+ private:
+  double integral(double t) {
+    while (at_ + 1 < told_.size() && told_[at_ + 1].time <= t) ++at_;
+    while (at_ > 0 && told_[at_].time > t) --at_;
+    return sums_[at_] + told_[at_].*value_ * (t - told_[at_].time);
+  }
+  const std::vector<Told>& told_;
+  double Told::*value_;
+  std::vector<double> sums_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.front().time} {
+  const auto count = static_cast<std::size_t>((log.samples.back().time - start_) / kStep) + 2;
+  const model::PredictionModel model(car.vehicle);
+  const auto lags = model.lags(kStep);
+  Held steering(log.told, &Told::steer);
+  Held pedal(log.told, &Told::throttle);
+  const bool has_throttle = log.has_throttle();
+  steer_.reserve(count);
+  std::size_t sample = 0;
+  double steer = log.told.front().steer;
+  double acceleration = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double t = start_ + kStep * static_cast<double>(i);
+    while (sample + 2 < log.samples.size() && log.samples[sample + 1].time <= t) ++sample;
+    const Sample& a = log.samples[sample];
+    const Sample& b = log.samples[std::min(sample + 1, log.samples.size() - 1)];
+    const double share = b.time > a.time ? std::clamp((t - a.time) / (b.time - a.time), 0.0, 1.0) : 0.0;
+    const double speed = a.speed + share * (b.speed - a.speed);
+    const double asked = steering.mean(t - car.delay, t - car.delay + kStep);
+    const double throttle =
+        has_throttle ? std::clamp(pedal.mean(t - car.delay, t - car.delay + kStep), -1.0, 1.0) : 0.0;
+    const double wanted = model::longitudinal_acceleration(car.vehicle, throttle, speed);
+    if (i == 0) acceleration = wanted;
+    steer_.push_back(steer);
+    speed_.push_back(speed);
+    throttle_.push_back(throttle);
+    acceleration_.push_back(acceleration);
+    const double most = car.vehicle.steer_rate_limit * kStep;
+    steer += std::clamp(asked + (steer - asked) * lags.steer.end - steer, -most, most);
+    acceleration = wanted + (acceleration - wanted) * lags.drive.end;
+  }
+}
+
+void drive(const Car& car, const DriveLog& log, const Actuators& actuators, std::size_t first,
+           std::size_t last, const Start& start, std::vector<Expected>& expected) {
+  constexpr double kStep = Actuators::kStep;
+  const model::PredictionModel model(car.vehicle);
+  const auto lags = model.lags(kStep);
+  const bool has_throttle = log.has_throttle();
+  double x = start[0], y = start[1], psi = start[2];
+  model::BodyMotion<double> now{start[3], start[4], start[5], 0.0, 0.0};
+  double t = log.samples[first].time;
+  auto i = static_cast<std::size_t>((t - actuators.start()) / kStep);
+  now.acceleration = actuators.acceleration(i);
+  expected.clear();
+  const auto keep = [&](double ahead) {  // a moment that is not on the grid
+    const double course = psi + 0.5 * ahead * now.r;
+    const double px = x + ahead * (now.vx * cos(course) - now.vy * sin(course));
+    const double py = y + ahead * (now.vx * sin(course) + now.vy * cos(course));
+    const double yaw = psi + ahead * now.r;
+    const double across = now.vy + car.reference * now.r;
+    expected.push_back({px + car.reference * cos(yaw), py + car.reference * sin(yaw), yaw,
+                        hypot(now.vx + ahead * now.acceleration, across), now.r, now.vx, now.vy,
+                        actuators.steer(i) + car.steer_offset});
+  };
+  for (std::size_t sample = first; sample < last; ++sample) {
+    const double until = log.samples[sample].time;
+    while (until - t >= kStep && i + 1 < actuators.size()) {
+      const double steer = 0.5 * (actuators.steer(i) + actuators.steer(i + 1)) + car.steer_offset;
+      const double wanted = model::longitudinal_acceleration(car.vehicle, actuators.throttle(i), now.vx);
+      const double mean = wanted + (now.acceleration - wanted) * lags.drive.mean;
+      model::BodyMotion<double> next = model.advance(now, steer, has_throttle ? mean : 0.0, kStep);
+      next.acceleration = has_throttle ? wanted + (now.acceleration - wanted) * lags.drive.end : 0.0;
+      if (!has_throttle) next.vx = now.vx + actuators.speed(i + 1) - actuators.speed(i);
+      const double course = psi + 0.25 * kStep * (now.r + next.r);
+      const double vx = 0.5 * (now.vx + next.vx), vy = 0.5 * (now.vy + next.vy);
+      x += kStep * (vx * cos(course) - vy * sin(course));
+      y += kStep * (vx * sin(course) + vy * cos(course));
+      psi += 0.5 * kStep * (now.r + next.r);
+      now = next;
+      t += kStep;
+      ++i;
+    }
+    keep(until - t);
+  }
+}
+
+}  // namespace chicane::identify

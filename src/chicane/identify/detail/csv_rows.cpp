@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/text.hpp"
+#include "chicane/identify/detail/log_rows.hpp"
+
+namespace chicane::identify {
+namespace {
+
+/// What a column holds.
+enum Quantity { kTime, kX, kY, kPsi, kSpeed, kYawRate, kSteer, kThrottle, kQuantities };
+
+struct Meaning {
+  std::string_view name;
+  std::array<std::string_view, 5> others;  ///< names that mean the same
+  bool is_needed;
+};
+constexpr Meaning kMeanings[kQuantities] = {
+    {"time", {"t", "timestamp", "stamp", "", ""}, true},
+    {"x", {"pos_x", "position_x", "", "", ""}, true},
+    {"y", {"pos_y", "position_y", "", "", ""}, true},
+    {"psi", {"yaw", "heading", "theta", "", ""}, true},
+    {"speed", {"v", "vx", "velocity", "", ""}, true},
+    {"yaw_rate", {"r", "omega", "gyro_z", "", ""}, false},
+    {"steer", {"steering", "steering_angle", "delta", "steer_angle"}, true},
+    {"throttle", {"pedal", "", "", "", ""}, false},
+};
+
+struct Suffix {
+  std::string_view end;
+  double factor;
+};
+constexpr Suffix kSuffixes[] = {
+    {"_degps", kPi / 180.0}, {"_radps", 1.0},     {"_deg", kPi / 180.0}, {"_rad", 1.0},
+    {"_mps", 1.0},           {"_kmh", 1.0 / 3.6}, {"_mph", 0.44704},     {"_ms", 1e-3},
+    {"_us", 1e-6},           {"_ns", 1e-9},       {"_s", 1.0},           {"_m", 1.0},
+};
+
+struct Column {
+  std::size_t at = 0;
+  double factor = 1.0;
+};
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r\"";
+  const std::size_t from = text.find_first_not_of(kBlank);
+  if (from == std::string_view::npos) return {};
+  return text.substr(from, text.find_last_not_of(kBlank) - from + 1);
+}
+
+std::vector<std::string_view> cells(std::string_view line, char separator) {
+  std::vector<std::string_view> found;
+  for (std::size_t from = 0;;) {
+    const std::size_t to = line.find(separator, from);
+    found.push_back(trimmed(line.substr(from, to - from)));
+    if (to == std::string_view::npos) return found;
+    from = to + 1;
+  }
+}
+
+/// A name without its unit, and the factor of the unit.
+std::pair<std::string, double> parted(std::string_view name) {
+  std::string lower(name);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  for (const Suffix& suffix : kSuffixes) {
+    if (lower.size() > suffix.end.size() && lower.ends_with(suffix.end))
+      return {lower.substr(0, lower.size() - suffix.end.size()), suffix.factor};
+  }
+  return {lower, 1.0};
+}
+
+bool means(const Meaning& meaning, std::string_view name) {
+  return name == meaning.name || (!name.empty() && std::find(meaning.others.begin(), meaning.others.end(),
+                                                             name) != meaning.others.end());
+}
+
+std::optional<double> number_in(std::string_view cell) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+struct Header {
+  std::array<std::optional<Column>, kQuantities> columns;
+  std::size_t count = 0;
+};
+
+Result<Header> read_header(const std::vector<std::string_view>& names, const std::string& place,
+                           const LogOptions& options) {
+  Header header;
+  header.count = names.size();
+  for (std::size_t q = 0; q < kQuantities; ++q) {
+    const Meaning& meaning = kMeanings[q];
+    const auto told = options.columns.find(std::string(meaning.name));
+    for (std::size_t i = 0; i < names.size() && !header.columns[q]; ++i) {
+      const auto [name, factor] = parted(names[i]);
+      const bool is_it = told == options.columns.end() ? means(meaning, name) : told->second == names[i];
+      if (is_it) header.columns[q] = Column{i, factor};
+    }
+    if (header.columns[q]) continue;
+    if (told != options.columns.end())
+      return fail(ErrorCode::kParse, fmt::format("{}: header: got no column {}, expected one for {}", place,
+                                                 printable(told->second), meaning.name));
+    if (!meaning.is_needed) continue;
+    std::string got;
+    for (const std::string_view name : names) got += (got.empty() ? "" : ",") + printable(name);
+    return fail(ErrorCode::kParse,
+                fmt::format("{}: header: got {}, expected a column {}; name it by --columns {}=NAME", place,
+                            got.substr(0, 120), meaning.name, meaning.name));
+  }
+  return header;
+}
+
+}  // namespace
+
+Result<LogRows> read_csv_rows(const std::string& text, const std::string& file, const LogOptions& options) {
+  LogRows rows;
+  std::optional<Header> header;
+  char separator = ',';
+  std::size_t line_number = 0;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find('\n', from), text.size());
+    std::string_view line = trimmed(std::string_view(text).substr(from, end - from));
+    from = end + 1;
+    ++line_number;
+    if (line_number == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+    const std::string place = fmt::format("{}:{}", file, line_number);
+    if (!header) {
+      line = trimmed(line.starts_with('#') ? line.substr(1) : line);
+      if (line.empty()) continue;
+      for (const char each : {';', '\t'}) {
+        if (line.find(each) != std::string_view::npos) separator = each;
+      }
+      const auto read = read_header(cells(line, separator), place, options);
+      if (!read) return fail(read.error());
+      header = *read;
+      continue;
+    }
+    if (line.empty() || line.starts_with('#')) continue;
+    const std::vector<std::string_view> values = cells(line, separator);
+    if (values.size() != header->count)
+      return fail(ErrorCode::kParse,
+                  fmt::format("{}: row: got {} columns, expected {}", place, values.size(), header->count));
+    std::array<double, kQuantities> row;
+    row.fill(std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t q = 0; q < kQuantities; ++q) {
+      if (!header->columns[q]) continue;
+      const std::optional<double> value = number_in(values[header->columns[q]->at]);
+      if (!value)
+        return fail(ErrorCode::kParse,
+                    fmt::format("{}: {}: got {}, expected a finite number", place, kMeanings[q].name,
+                                printable(values[header->columns[q]->at])));
+      row[q] = *value * header->columns[q]->factor;
+    }
+    rows.samples.push_back({row[kTime], row[kX], row[kY], row[kPsi], row[kSpeed], row[kYawRate]});
+    rows.told.push_back({row[kTime], row[kSteer], row[kThrottle]});
+  }
+  if (!header) return fail(ErrorCode::kParse, fmt::format("{}: got no header, expected one", file));
+  return rows;
+}
+
+}  // namespace chicane::identify

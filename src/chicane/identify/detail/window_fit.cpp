@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/identify/detail/window_fit.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace chicane::identify {
+namespace {
+
+constexpr int kStartSize = 6;
+constexpr double kHuber = 2.5;          ///< deviations from which on a residual counts linearly
+constexpr double kSideslipSpeed = 1.0;  ///< what v_y may be at a start, as a standard deviation [m/s]
+constexpr Start kStartStep{1e-4, 1e-4, 1e-5, 1e-4, 1e-4, 1e-5};
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Residuals of a window over their deviations: samples, then what is believed of the start.
+void residuals(const DriveLog& log, const Window& window, const std::vector<Expected>& expected,
+               const Start& start, const Noise& noise, VectorXd& r) {
+  const auto count = static_cast<Eigen::Index>(window.last - window.first);
+  r.resize(5 * count + 1);
+  for (Eigen::Index n = 0; n < count; ++n) {
+    const Sample& seen = log.samples[window.first + static_cast<std::size_t>(n)];
+    const Expected& e = expected[static_cast<std::size_t>(n)];
+    r[5 * n] = (e[0] - seen.x) / noise[0];
+    r[5 * n + 1] = (e[1] - seen.y) / noise[1];
+    r[5 * n + 2] = (e[2] - seen.psi) / noise[2];
+    r[5 * n + 3] = (e[3] - seen.speed) / noise[3];
+    r[5 * n + 4] = std::isfinite(seen.yaw_rate) ? (e[4] - seen.yaw_rate) / noise[4] : 0.0;
+  }
+  r[5 * count] = start[4] / kSideslipSpeed;
+}
+
+double loss(const VectorXd& r) {
+  double sum = 0.0;
+  for (const double each : r) {
+    const double size = std::fabs(each);
+    sum += size <= kHuber ? 0.5 * size * size : kHuber * (size - 0.5 * kHuber);
+  }
+  return sum;
+}
+
+/// Weights that make least squares of Huber's loss.
+VectorXd roots_of_weights(const VectorXd& r) {
+  return r.unaryExpr(
+      [](double each) { return std::fabs(each) <= kHuber ? 1.0 : std::sqrt(kHuber / std::fabs(each)); });
+}
+
+/// A window's derivatives, its start eliminated (eq. 7).
+struct Eliminated {
+  MatrixXd by_theta;  ///< of what the start cannot explain
+  VectorXd rest;
+  MatrixXd start_matrix;  ///< triangular
+  MatrixXd start_theta;
+  VectorXd start_rest;
+};
+
+Eliminated eliminate(const MatrixXd& by_start, const MatrixXd& by_theta, const VectorXd& r) {
+  const Eigen::HouseholderQR<MatrixXd> qr(by_start);
+  MatrixXd all(r.size(), by_theta.cols() + 1);
+  all << by_theta, r;
+  all.applyOnTheLeft(qr.householderQ().adjoint());
+  const Eigen::Index below = r.size() - kStartSize;
+  Eliminated e;
+  e.by_theta = all.bottomLeftCorner(below, by_theta.cols());
+  e.rest = all.bottomRightCorner(below, 1);
+  e.start_matrix = qr.matrixQR().topRows(kStartSize).triangularView<Eigen::Upper>();
+  e.start_matrix.diagonal().array() += (e.start_matrix.diagonal().array() == 0.0).cast<double>() * 1e-12;
+  e.start_theta = all.topLeftCorner(kStartSize, by_theta.cols());
+  e.start_rest = all.topRightCorner(kStartSize, 1);
+  return e;
+}
+
+Start moved(Start start, const VectorXd& by) {
+  for (int i = 0; i < kStartSize; ++i) start[static_cast<std::size_t>(i)] += by[i];
+  return start;
+}
+
+MatrixXd derivatives_by_start(const Car& car, const DriveLog& log, const Actuators& actuators,
+                              const Window& window, const Noise& noise, const VectorXd& r) {
+  MatrixXd j(r.size(), kStartSize);
+  std::vector<Expected> expected;
+  VectorXd other;
+  for (std::size_t i = 0; i < kStartSize; ++i) {
+    Start start = window.start;
+    start[i] += kStartStep[i];
+    drive(car, log, actuators, window.first, window.last, start, expected);
+    residuals(log, window, expected, start, noise, other);
+    j.col(static_cast<Eigen::Index>(i)) = (other - r) / kStartStep[i];
+  }
+  return j;
+}
+
+std::vector<Actuators> actuators_of(const std::vector<DriveLog>& logs, const Car& car) {
+  std::vector<Actuators> all;
+  all.reserve(logs.size());
+  for (const DriveLog& log : logs) all.emplace_back(log, car);
+  return all;
+}
+
+/// The loss of a window that begins at `start`; infinite where the car is lost.
+double loss_from(const DriveLog& log, const Window& window, const Car& car, const Actuators& actuators,
+                 const Noise& noise, const Start& start) {
+  std::vector<Expected> expected;
+  VectorXd r;
+  drive(car, log, actuators, window.first, window.last, start, expected);
+  residuals(log, window, expected, start, noise, r);
+  const double sum = loss(r);
+  return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
+}
+
+/// Moves the start by the share of `step` that explains the window best; its loss there.
+double move_start(const DriveLog& log, Window& window, const Car& car, const Actuators& actuators,
+                  const Noise& noise, const VectorXd& step) {
+  double best = std::numeric_limits<double>::infinity();
+  const Start from = window.start;
+  for (const double share : {1.0, 0.5, 0.2, 0.05, 0.0}) {
+    const Start tried = moved(from, share * step);
+    const double now = loss_from(log, window, car, actuators, noise, tried);
+    if (now < best) {
+      best = now;
+      window.start = tried;
+    }
+    if (share == 1.0 && best < std::numeric_limits<double>::infinity() &&
+        best < loss_from(log, window, car, actuators, noise, from))
+      break;
+  }
+  return best;
+}
+
+/// Gauss and Newton's steps of the start alone.
+double improve_start(const DriveLog& log, Window& window, const Car& car, const Actuators& actuators,
+                     const Noise& noise, int steps) {
+  std::vector<Expected> expected;
+  VectorXd r;
+  double now = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < steps; ++i) {
+    drive(car, log, actuators, window.first, window.last, window.start, expected);
+    residuals(log, window, expected, window.start, noise, r);
+    const VectorXd root = roots_of_weights(r);
+    const MatrixXd j = root.asDiagonal() * derivatives_by_start(car, log, actuators, window, noise, r);
+    now =
+        move_start(log, window, car, actuators, noise, -j.colPivHouseholderQr().solve(root.cwiseProduct(r)));
+  }
+  return now;
+}
+
+Eigen::Map<const VectorXd> mapped(const std::vector<double>& values) {
+  return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
+std::vector<double> listed(const VectorXd& values) { return {values.begin(), values.end()}; }
+
+/// Beliefs as vectors.
+struct Expectation {
+  explicit Expectation(const Beliefs& beliefs)
+      : mean{mapped(beliefs.mean)}, deviation{mapped(beliefs.deviation)}, of{beliefs.car} {}
+  [[nodiscard]] Car car(const VectorXd& theta) const { return of(listed(theta)); }
+  VectorXd mean, deviation;
+  const std::function<Car(const std::vector<double>&)>& of;
+};
+
+double loss_of_beliefs(const Expectation& beliefs, const VectorXd& theta) {
+  return 0.5 * (theta - beliefs.mean).cwiseQuotient(beliefs.deviation).squaredNorm();
+}
+
+/// All windows at one theta: what they say of it, and how their starts follow.
+struct Linearised {
+  MatrixXd information;
+  VectorXd slope;
+  MatrixXd disagreement;
+  std::vector<Eliminated> windows;
+};
+
+Linearised linearise(const std::vector<DriveLog>& logs, const std::vector<Window>& windows,
+                     const Expectation& beliefs, const VectorXd& theta, const Noise& noise) {
+  const Eigen::Index p = theta.size();
+  const VectorXd weight = beliefs.deviation.cwiseAbs2().cwiseInverse();
+  Linearised now{weight.asDiagonal(), weight.cwiseProduct(theta - beliefs.mean), MatrixXd::Zero(p, p), {}};
+  struct Side {
+    Car car;
+    std::vector<Actuators> actuators;
+  };
+  const auto side = [&](Eigen::Index i, double step) {
+    VectorXd other = theta;
+    if (i >= 0) other[i] += step;
+    const Car car = beliefs.car(other);
+    return Side{car, actuators_of(logs, car)};
+  };
+  std::vector<Side> sides;  // above and below for each number
+  const VectorXd steps = 1e-3 * beliefs.deviation;
+  const Side here = side(-1, 0.0);
+  for (Eigen::Index i = 0; i < p; ++i) {
+    sides.push_back(side(i, steps[i]));
+    sides.push_back(side(i, -steps[i]));
+  }
+  std::vector<Expected> expected;
+  VectorXd r, above, below;
+  for (const Window& window : windows) {
+    const DriveLog& log = logs[window.log];
+    const auto at = [&](const Side& s, VectorXd& to) {
+      drive(s.car, log, s.actuators[window.log], window.first, window.last, window.start, expected);
+      residuals(log, window, expected, window.start, noise, to);
+    };
+    at(here, r);
+    MatrixXd by_theta(r.size(), p);
+    for (Eigen::Index i = 0; i < p; ++i) {
+      at(sides[static_cast<std::size_t>(2 * i)], above);
+      at(sides[static_cast<std::size_t>(2 * i + 1)], below);
+      by_theta.col(i) = (above - below) / (2.0 * steps[i]);
+    }
+    const VectorXd root = roots_of_weights(r);
+    const MatrixXd by_start =
+        root.asDiagonal() * derivatives_by_start(here.car, log, here.actuators[window.log], window, noise, r);
+    Eliminated e = eliminate(by_start, root.asDiagonal() * by_theta, root.cwiseProduct(r));
+    now.information += e.by_theta.transpose() * e.by_theta;
+    const VectorXd slope = e.by_theta.transpose() * e.rest;
+    now.slope += slope;
+    now.disagreement += slope * slope.transpose();
+    e.by_theta.resize(0, 0);
+    now.windows.push_back(std::move(e));
+  }
+  return now;
+}
+
+}  // namespace
+
+WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& windows,
+                      const Beliefs& believed, const std::vector<double>& from, const Noise& noise,
+                      const std::function<bool()>& go_on) {
+  constexpr int kMostIterations = 40;
+  constexpr double kSmallStep = 1e-4;  // of the deviations believed
+  const Expectation beliefs(believed);
+  VectorXd theta = mapped(from);
+  WindowFit fit;
+  double lambda = 1e-3;
+  double now = loss_of_beliefs(beliefs, theta);
+  {
+    const Car car = beliefs.car(theta);
+    const std::vector<Actuators> actuators = actuators_of(logs, car);
+    for (Window& window : windows)
+      now += improve_start(logs[window.log], window, car, actuators[window.log], noise, 5);
+  }
+  Linearised at = linearise(logs, windows, beliefs, theta, noise);
+  for (; fit.iterations < kMostIterations && go_on(); ++fit.iterations) {
+    MatrixXd damped = at.information;
+    damped.diagonal() *= 1.0 + lambda;
+    const VectorXd step = -damped.ldlt().solve(at.slope);
+    std::vector<Window> tried = windows;
+    const Car car = beliefs.car(theta + step);
+    const std::vector<Actuators> actuators = actuators_of(logs, car);
+    double then = loss_of_beliefs(beliefs, theta + step);
+    for (std::size_t w = 0; w < windows.size() && then < now; ++w) {
+      const Eliminated& e = at.windows[w];
+      Window& window = tried[w];
+      then += move_start(
+          logs[window.log], window, car, actuators[window.log], noise,
+          -e.start_matrix.triangularView<Eigen::Upper>().solve(e.start_rest + e.start_theta * step));
+    }
+    if (!(then < now)) {
+      lambda *= 10.0;
+      if (lambda > 1e8) break;
+      continue;
+    }
+    const bool is_done = step.cwiseQuotient(beliefs.deviation).cwiseAbs().maxCoeff() < kSmallStep &&
+                         now - then < 1e-6 * (1.0 + now);
+    theta += step;
+    windows = std::move(tried);
+    now = then;
+    lambda = std::max(0.1 * lambda, 1e-9);
+    at = linearise(logs, windows, beliefs, theta, noise);
+    if (is_done) break;
+  }
+  const double count = static_cast<double>(windows.size());
+  const MatrixXd inverse = at.information.ldlt().solve(MatrixXd::Identity(theta.size(), theta.size()));
+  const double more = count / std::max(1.0, count - static_cast<double>(theta.size()));
+  const VectorXd weight = beliefs.deviation.cwiseAbs2().cwiseInverse();
+  const MatrixXd covariance = inverse * (more * at.disagreement + MatrixXd(weight.asDiagonal())) * inverse;
+  fit.deviation = listed(inverse.diagonal().cwiseMax(covariance.diagonal()).cwiseMax(0.0).cwiseSqrt());
+  fit.theta = listed(theta);
+  // What is left, by kind.
+  const Car car = beliefs.car(theta);
+  const std::vector<Actuators> actuators = actuators_of(logs, car);
+  std::array<std::vector<double>, 5> sizes;
+  std::vector<Expected> expected;
+  VectorXd r;
+  for (const Window& window : windows) {
+    drive(car, logs[window.log], actuators[window.log], window.first, window.last, window.start, expected);
+    residuals(logs[window.log], window, expected, window.start, noise, r);
+    for (Eigen::Index i = 0; i + 1 < r.size(); ++i)
+      sizes[static_cast<std::size_t>(i % 5)].push_back(std::fabs(r[i]) *
+                                                       noise[static_cast<std::size_t>(i % 5)]);
+  }
+  for (std::size_t kind = 0; kind < 5; ++kind) {
+    if (sizes[kind].empty()) continue;
+    const auto middle = sizes[kind].begin() + static_cast<std::ptrdiff_t>(sizes[kind].size() / 2);
+    std::nth_element(sizes[kind].begin(), middle, sizes[kind].end());
+    fit.residual[kind] = 1.4826 * *middle;  // of a normal distribution with this median
+  }
+  return fit;
+}
+
+void fit_start(const std::vector<DriveLog>& logs, Window& window, std::size_t fitted, const Car& car,
+               const Actuators& actuators, const Noise& noise) {
+  Window seen = window;
+  seen.last = fitted;
+  improve_start(logs[window.log], seen, car, actuators, noise, 5);
+  window.start = seen.start;
+}
+
+}  // namespace chicane::identify

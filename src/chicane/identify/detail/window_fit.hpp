@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "chicane/identify/detail/car_motion.hpp"
+
+namespace chicane::identify {
+
+/// A stretch of a log that is predicted from its start, which is fitted with it.
+struct Window {
+  std::size_t log = 0;
+  std::size_t first = 0, last = 0;  ///< samples first … last - 1
+  Start start{};
+};
+
+/// Standard deviations of what was measured: x and y [m], psi [rad], speed [m/s], r [rad/s].
+using Noise = std::array<double, 5>;
+
+/// What is estimated: numbers without bounds, each with what is believed of it before the log is seen.
+struct Beliefs {
+  std::vector<double> mean, deviation;
+  std::function<Car(const std::vector<double>&)> car;
+};
+
+struct WindowFit {
+  std::vector<double> theta;
+  /// Standard deviations: the larger of what the residuals' size says, and of what the windows' disagreement
+  /// does.
+  std::vector<double> deviation;
+  Noise residual{};  ///< standard deviations of what is left, by its median
+  int iterations = 0;
+};
+
+/// Multiple shooting (docs/identification.md, eq. 4–8): the numbers and the starts of all windows that
+/// explain the samples best, by Levenberg and Marquardt with the starts eliminated window by window. Huber's
+/// loss. Windows keep their fitted starts.
+[[nodiscard]] WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& windows,
+                                    const Beliefs& beliefs, const std::vector<double>& theta,
+                                    const Noise& noise, const std::function<bool()>& go_on);
+
+/// The start alone, of one window in which only samples up to `fitted` count.
+void fit_start(const std::vector<DriveLog>& logs, Window& window, std::size_t fitted, const Car& car,
+               const Actuators& actuators, const Noise& noise);
+
+}  // namespace chicane::identify

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/identify/drive_log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
+#include "chicane/identify/detail/log_rows.hpp"
+#include "chicane/protocol/library.hpp"
+
+namespace chicane::identify {
+namespace {
+
+constexpr double kLongestGap = 0.5;   ///< [s]
+constexpr double kShortestLog = 2.0;  ///< [s]
+
+/// Parts in which time increases, without gaps and jumps; yaw is unwrapped, samples of one time count once.
+std::vector<DriveLog> parts_of(LogRows rows, const std::string& file) {
+  const auto earlier = [](const auto& a, const auto& b) { return a.time < b.time; };
+  std::vector<DriveLog> parts;
+  const DriveLog empty{file, {}, {}, rows.is_centre_of_mass};
+  DriveLog part = empty;
+  std::vector<Told> told = rows.told;
+  std::stable_sort(told.begin(), told.end(), earlier);
+  const auto finish = [&] {
+    if (!part.samples.empty() && part.samples.back().time - part.samples.front().time >= kShortestLog) {
+      // Commands from a second before, which may act still.
+      const auto from =
+          std::lower_bound(told.begin(), told.end(), Told{.time = part.samples.front().time - 1.0}, earlier);
+      const auto to =
+          std::upper_bound(told.begin(), told.end(), Told{.time = part.samples.back().time}, earlier);
+      part.told.assign(from, to);
+      if (!part.told.empty()) parts.push_back(std::move(part));
+    }
+    part = empty;
+  };
+  for (const Sample& each : rows.samples) {
+    Sample now = each;
+    if (!std::isfinite(now.x + now.y + now.psi + now.speed)) continue;
+    if (!part.samples.empty()) {
+      const Sample& last = part.samples.back();
+      const double passed = now.time - last.time;
+      if (passed == 0.0) continue;
+      const double moved = hypot(now.x - last.x, now.y - last.y);
+      if (passed < 0.0 || passed > kLongestGap ||
+          moved > 2.0 + 3.0 * passed * std::max(now.speed, last.speed)) {
+        finish();
+      } else {
+        now.psi = last.psi + wrap_angle(now.psi - last.psi);
+      }
+    }
+    part.samples.push_back(now);
+  }
+  finish();
+  return parts;
+}
+
+/// Sums over all parts: how far signals agree that have to.
+struct Agreement {
+  double path = 0.0, speed_path = 0.0;  ///< driven by place, and by speed [m]
+  double along = 0.0;                   ///< of the path in the direction of yaw [m]
+  double turned_right = 0.0,
+         turned_left = 0.0;  ///< of the path's own turning, against yaw's and with it [rad]
+  double steer_with = 0.0, steer_against = 0.0;  ///< steering with the turning, and against it [rad s]
+  double most_steer = 0.0;                       ///< [rad]
+
+  void look_at(const DriveLog& log) {
+    std::size_t command = 0;
+    double last_course = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t i = 1; i < log.samples.size(); ++i) {
+      const Sample& a = log.samples[i - 1];
+      const Sample& b = log.samples[i];
+      const double dx = b.x - a.x, dy = b.y - a.y, dt = b.time - a.time;
+      const double moved = hypot(dx, dy);
+      if (0.5 * (a.speed + b.speed) * dt < 0.02 || a.speed < 0.3) continue;
+      path += moved;
+      speed_path += 0.5 * (a.speed + b.speed) * dt;
+      const double middle = 0.5 * (a.psi + b.psi);
+      along += dx * cos(middle) + dy * sin(middle);
+      const double course = atan2(dy, dx);
+      const double yawed = b.psi - a.psi;
+      if (std::isfinite(last_course)) {
+        const double turned = wrap_angle(course - last_course);
+        (turned * yawed >= 0.0 ? turned_left : turned_right) += std::min(std::fabs(turned), std::fabs(yawed));
+      }
+      last_course = course;
+      while (command + 1 < log.told.size() && log.told[command + 1].time <= a.time - 0.1) ++command;
+      const double steer = log.told[command].steer;
+      most_steer = std::max(most_steer, std::fabs(steer));
+      (steer * yawed >= 0.0 ? steer_with : steer_against) += std::fabs(steer) * dt;
+    }
+  }
+};
+
+Result<void> check(const Agreement& seen, const std::string& file) {
+  if (seen.path < 20.0 && seen.speed_path < 20.0)
+    return fail(ErrorCode::kParse,
+                fmt::format("{}: got {:.1f} m of driving, expected at least 20 m", file, seen.path));
+  const double ratio = seen.speed_path / std::max(seen.path, 1e-9);
+  if (ratio < 0.8 || ratio > 1.25) {
+    const char* guess = std::fabs(ratio - 2.237) < 0.15 ? "; is it in mph?"
+                        : std::fabs(ratio - 3.6) < 0.25 ? "; is it in km/h?"
+                                                        : "";
+    return fail(
+        ErrorCode::kParse,
+        fmt::format("{}: speed: got {:.2f} times the speed of the path, expected 1{}", file, ratio, guess));
+  }
+  if (seen.turned_right > 2.0 * seen.turned_left && seen.turned_right > 0.5)
+    return fail(ErrorCode::kParse,
+                file + ": psi: got a yaw that turns against the path, expected left positive");
+  if (seen.along < 0.7 * seen.path)
+    return fail(
+        ErrorCode::kParse,
+        fmt::format("{}: psi: got a car that moves {:.0f} % of its way forwards, expected nearly all; yaw is "
+                    "counted from +x, left positive [rad]",
+                    file, 100.0 * seen.along / seen.path));
+  if (seen.most_steer > 1.2)
+    return fail(ErrorCode::kParse,
+                fmt::format("{}: steer: got {:.3g} rad, expected a road-wheel angle below 1.2 rad; "
+                            "is it in degrees? (name the column steer_deg)",
+                            file, seen.most_steer));
+  if (seen.steer_against > 2.0 * seen.steer_with && seen.steer_against > 0.02)
+    return fail(ErrorCode::kParse,
+                file + ": steer: got steering against the turning, expected left positive");
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<DriveLog>> read_log(const std::string& file, const LogOptions& options) {
+  Result<LogRows> rows;
+  if (file.ends_with(".mcap")) {
+    rows = read_mcap_rows(file, options);
+  } else {
+    const Result<std::string> text = protocol::read_file(file);
+    if (!text) return fail(text.error());
+    rows = read_csv_rows(*text, file, options);
+  }
+  if (!rows) return fail(rows.error());
+  std::vector<DriveLog> parts = parts_of(std::move(*rows), file);
+  Agreement seen;
+  for (const DriveLog& part : parts) seen.look_at(part);
+  if (const Result<void> good = check(seen, file); !good) return fail(good.error());
+  return parts;
+}
+
+}  // namespace chicane::identify

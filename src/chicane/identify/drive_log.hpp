@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+
+/// Logs of driving: where a car was and what it was told, without the program that drove it.
+namespace chicane::identify {
+
+/// Where the car was, in axes with x forward, y left and yaw positive to the left (docs/notation.md).
+struct Sample {
+  double time = 0.0;                                           ///< [s]
+  double x = 0.0;                                              ///< of the reference point [m]
+  double y = 0.0;                                              ///< [m]
+  double psi = 0.0;                                            ///< [rad], not wrapped: it goes on past π
+  double speed = 0.0;                                          ///< [m/s], >= 0
+  double yaw_rate = std::numeric_limits<double>::quiet_NaN();  ///< [rad/s]; NaN: not measured
+};
+
+/// What the car was told, until the next one.
+struct Told {
+  double time = 0.0;   ///< when it was sent [s], by the clock of the samples
+  double steer = 0.0;  ///< road-wheel angle [rad], left positive
+  double throttle = std::numeric_limits<double>::quiet_NaN();  ///< [-1, 1]; NaN: the log has no pedal
+};
+
+/// A log without gaps in its place: times increase.
+struct DriveLog {
+  std::string source;  ///< file, for messages
+  std::vector<Sample> samples;
+  std::vector<Told> told;
+  bool is_centre_of_mass = false;  ///< of the reference point; else where it lies is to be found
+  [[nodiscard]] bool has_throttle() const noexcept {
+    return !told.empty() && told.front().throttle == told.front().throttle;
+  }
+};
+
+/// How a log is read.
+struct LogOptions {
+  std::map<std::string, std::string> columns{};  ///< of a CSV file: {"steer", "cmd_delta_rad"}
+  std::string odom_topic{};                      ///< of a foreign MCAP file; empty: the only one of its type
+  std::string drive_topic{};                     ///< the same
+};
+
+/// Reads recordings of ours, MCAP files with nav_msgs/Odometry and ackermann_msgs/AckermannDrive(Stamped) in
+/// CDR, and CSV files with a header. A log that jumps, or has no samples for half a second, becomes several.
+///
+/// CSV columns are found by name, with their unit behind (`_deg`, `_rad`, `_mps`, `_kmh`, `_mph`, `_ms`,
+/// `_s`): time, x, y, psi (yaw, heading), speed (v, vx), yaw_rate, steer (steering, delta), throttle (pedal).
+///
+/// kIo; kParse with file and line for what is no log, and for values that cannot be what their column says:
+/// steering in degrees, a speed in other units than the path, steering or yaw positive to the right.
+[[nodiscard]] Result<std::vector<DriveLog>> read_log(const std::string& file, const LogOptions& options);
+
+}  // namespace chicane::identify

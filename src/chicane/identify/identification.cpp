@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/identify/identification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "chicane/base/math.hpp"
+#include "chicane/base/option.hpp"
+#include "chicane/identify/detail/window_fit.hpp"
+#include "chicane/model/prediction.hpp"
+
+namespace chicane::identify {
+namespace {
+
+constexpr double kWindow = 3.0;      ///< of a car in full size [s]
+constexpr double kSeen = 0.5;        ///< samples from which a prediction starts [s]
+constexpr double kLeastSpeed = 0.7;  ///< below it there is standing and reversing [m/s]
+constexpr std::size_t kMostWindows = 400;
+
+/// A number that is estimated: where it is in a car, and what is expected of it.
+struct Row {
+  std::string_view key, unit;
+  double per_si;     ///< what people see of one in SI
+  bool is_log;       ///< positive: its logarithm is estimated
+  double mean;       ///< [SI]
+  double deviation;  ///< [SI], or of the logarithm
+  double& (*of)(Car&);
+};
+
+void scale_wheelbase(Car& car, double to) {
+  const double by = to / car.vehicle.wheelbase();
+  car.vehicle.front_axle *= by;
+  car.vehicle.rear_axle *= by;
+  car.vehicle.kinematic_length *= by;
+}
+
+std::vector<Row> rows_for(const model::VehicleParams& start, bool has_pedal, bool is_centre_of_mass) {
+  const double size = start.scale;
+  std::vector<Row> rows{
+      {"latency_ms", "ms", 1e3, false, 0.1, 0.1, [](Car& c) -> double& { return c.delay; }},
+      {"steer_lag_ms", "ms", 1e3, true, std::max(start.steer_lag, 0.02), 1.0,
+       [](Car& c) -> double& { return c.vehicle.steer_lag; }},
+      {"steer_offset_deg", "deg", 180.0 / kPi, false, 0.0, 0.035,
+       [](Car& c) -> double& { return c.steer_offset; }},
+      {"wheelbase_m", "m", 1.0, true, start.wheelbase(), 0.2, nullptr},
+      {"cornering_front", "1/rad", 1.0, true, start.cornering_front, 0.5,
+       [](Car& c) -> double& { return c.vehicle.cornering_front; }},
+      {"cornering_rear", "1/rad", 1.0, true, start.cornering_rear, 0.5,
+       [](Car& c) -> double& { return c.vehicle.cornering_rear; }},
+      {"friction", "", 1.0, true, start.friction, 0.3, [](Car& c) -> double& { return c.vehicle.friction; }},
+      {"yaw_inertia_kgm2", "kg m²", 1.0, true, start.yaw_inertia, 0.3,
+       [](Car& c) -> double& { return c.vehicle.yaw_inertia; }},
+  };
+  if (std::isfinite(start.steer_rate_limit))
+    rows.push_back({"steer_rate_limit_degps", "deg/s", 180.0 / kPi, true, start.steer_rate_limit, 1.0,
+                    [](Car& c) -> double& { return c.vehicle.steer_rate_limit; }});
+  if (!is_centre_of_mass)
+    rows.push_back({"reference_m", "m", 1.0, false, 0.0, 0.5 * start.wheelbase(),
+                    [](Car& c) -> double& { return c.reference; }});
+  if (!has_pedal) return rows;
+  const auto add = [&](Row row) {
+    if (row.mean > 0.0 && std::isfinite(row.mean)) rows.push_back(row);
+  };
+  add({"drive_acceleration_mps2", "m/s²", 1.0, true, start.drive_acceleration, 0.5,
+       [](Car& c) -> double& { return c.vehicle.drive_acceleration; }});
+  add({"drive_power_per_mass_wpkg", "W/kg", 1.0, true, start.drive_power_per_mass, 0.5,
+       [](Car& c) -> double& { return c.vehicle.drive_power_per_mass; }});
+  add({"brake_acceleration_mps2", "m/s²", 1.0, true, start.brake_acceleration, 0.5,
+       [](Car& c) -> double& { return c.vehicle.brake_acceleration; }});
+  add({"drive_lag_ms", "ms", 1e3, true, std::max(start.drive_lag, 0.02 * std::sqrt(size)), 1.0,
+       [](Car& c) -> double& { return c.vehicle.drive_lag; }});
+  add({"drag_constant_mps2", "m/s²", 1.0, true, start.drag_constant, 1.0,
+       [](Car& c) -> double& { return c.vehicle.drag_constant; }});
+  add({"drag_linear", "1/s", 1.0, true, start.drag_linear, 1.0,
+       [](Car& c) -> double& { return c.vehicle.drag_linear; }});
+  add({"drag_quadratic", "1/m", 1.0, true, start.drag_quadratic, 1.0,
+       [](Car& c) -> double& { return c.vehicle.drag_quadratic; }});
+  return rows;
+}
+
+double value_of(const Row& row, double theta) { return row.is_log ? exp(theta) : theta; }
+
+Beliefs beliefs_of(const std::vector<Row>& rows, const model::VehicleParams& start) {
+  Beliefs beliefs;
+  for (const Row& row : rows) {
+    beliefs.mean.push_back(row.is_log ? log(row.mean) : row.mean);
+    beliefs.deviation.push_back(row.deviation);
+  }
+  beliefs.car = [rows, start](const std::vector<double>& theta) {
+    Car car{.vehicle = start};
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double value = value_of(rows[i], theta[i]);
+      if (rows[i].of == nullptr) {
+        scale_wheelbase(car, value);
+      } else {
+        rows[i].of(car) = value;
+      }
+    }
+    return car;
+  };
+  return beliefs;
+}
+
+/// Stretches of `length` [s] without standing; the start is what the samples say.
+void add_windows(const std::vector<DriveLog>& logs, std::size_t log, double from, double to, double length,
+                 double least_speed, std::vector<Window>& windows) {
+  const std::vector<Sample>& samples = logs[log].samples;
+  std::size_t first = 0;
+  while (first < samples.size() && samples[first].time < from) ++first;
+  while (first < samples.size()) {
+    std::size_t last = first;
+    while (last < samples.size() && samples[last].time < std::min(samples[first].time + length, to) &&
+           samples[last].speed > least_speed)
+      ++last;
+    if (last > first + 8 && samples[last - 1].time - samples[first].time > 0.6 * length) {
+      const Sample& at = samples[first];
+      const Sample& next = samples[first + 4];
+      const double r = (next.psi - at.psi) / (next.time - at.time);
+      windows.push_back({log, first, last, {at.x, at.y, at.psi, at.speed, 0.0, r}});
+    }
+    if (last < samples.size() && samples[last].time >= to) return;
+    first = std::max(last, first + 1);
+  }
+}
+
+/// Of the tyres, in all windows: the share of the peak that one sample in a hundred exceeds.
+std::array<double, 2> tire_use(const std::vector<DriveLog>& logs, const std::vector<Window>& windows,
+                               const Car& car) {
+  const model::PredictionModel model(car.vehicle);
+  std::array<std::vector<double>, 2> uses;
+  std::vector<Expected> expected;
+  std::vector<Actuators> actuators;
+  for (const DriveLog& log : logs) actuators.emplace_back(log, car);
+  for (const Window& window : windows) {
+    drive(car, logs[window.log], actuators[window.log], window.first, window.last, window.start, expected);
+    for (const Expected& e : expected) {
+      const auto use = model.tire_use(model::BodyMotion<double>{e[5], e[6], e[4], e[7], 0.0});
+      uses[0].push_back(use.front);
+      uses[1].push_back(use.rear);
+    }
+  }
+  std::array<double, 2> most{};
+  for (std::size_t axle = 0; axle < 2; ++axle) {
+    if (uses[axle].empty()) continue;
+    const auto at = uses[axle].begin() + static_cast<std::ptrdiff_t>(uses[axle].size() * 99 / 100);
+    std::nth_element(uses[axle].begin(), at, uses[axle].end());
+    most[axle] = *at;
+  }
+  return most;
+}
+
+std::vector<PredictionError> prediction_errors(const std::vector<DriveLog>& logs, std::vector<Window> windows,
+                                               const Car& car, const Noise& noise, double size) {
+  std::vector<PredictionError> errors{{.ahead = 1.0 * size}, {.ahead = 2.0 * size}, {.ahead = 3.0 * size}};
+  std::vector<int> counts(errors.size());
+  std::vector<Actuators> actuators;
+  for (const DriveLog& log : logs) actuators.emplace_back(log, car);
+  std::vector<Expected> expected;
+  for (Window& window : windows) {
+    const std::vector<Sample>& samples = logs[window.log].samples;
+    std::size_t seen = window.first;
+    while (seen < window.last && samples[seen].time < samples[window.first].time + kSeen * size) ++seen;
+    fit_start(logs, window, seen, car, actuators[window.log], noise);
+    drive(car, logs[window.log], actuators[window.log], window.first, window.last, window.start, expected);
+    for (std::size_t h = 0; h < errors.size(); ++h) {
+      std::size_t at = seen;
+      while (at < window.last && samples[at].time < samples[seen - 1].time + errors[h].ahead) ++at;
+      if (at == window.last) continue;
+      const Sample& then = samples[at];
+      const Expected& e = expected[at - window.first];
+      errors[h].position += (e[0] - then.x) * (e[0] - then.x) + (e[1] - then.y) * (e[1] - then.y);
+      errors[h].yaw += (e[2] - then.psi) * (e[2] - then.psi);
+      errors[h].speed += (e[3] - then.speed) * (e[3] - then.speed);
+      ++counts[h];
+    }
+  }
+  std::vector<PredictionError> found;
+  for (std::size_t h = 0; h < errors.size(); ++h) {
+    if (counts[h] == 0) continue;
+    const auto mean = [&](double sum) { return std::sqrt(sum / counts[h]); };
+    found.push_back({errors[h].ahead, mean(errors[h].position), mean(errors[h].yaw), mean(errors[h].speed)});
+  }
+  return found;
+}
+
+/// Every other one, until there are few enough.
+void thin(std::vector<Window>& windows) {
+  while (windows.size() > kMostWindows) {
+    std::vector<Window> half;
+    for (std::size_t i = 0; i < windows.size(); i += 2) half.push_back(windows[i]);
+    windows = std::move(half);
+  }
+}
+
+}  // namespace
+
+bool Identification::knows_tires() const noexcept { return use_front >= kRaceUse && use_rear >= kRaceUse; }
+
+Result<Identification> identify(const std::vector<DriveLog>& logs, const model::VehicleParams& start,
+                                double hold_out, const std::function<bool(double)>& progress) {
+  const double size = std::sqrt(start.scale);  // of times and speeds
+  std::vector<Window> windows, held_out;
+  Identification found;
+  bool has_pedal = !logs.empty();
+  bool is_centre_of_mass = true;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    const double from = logs[i].samples.front().time, to = logs[i].samples.back().time;
+    const double split = to - hold_out * (to - from);
+    add_windows(logs, i, from, split, kWindow * size, kLeastSpeed * size, windows);
+    add_windows(logs, i, split, to, (kSeen + 3.3) * size, kLeastSpeed * size, held_out);
+    found.driven += to - from;
+    has_pedal = has_pedal && logs[i].has_throttle();
+    is_centre_of_mass = is_centre_of_mass && logs[i].is_centre_of_mass;
+  }
+  thin(windows);
+  if (static_cast<double>(windows.size()) * kWindow < 10.0)
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("logs: got {:.0f} s of driving to fit, expected at least 10 s",
+                            static_cast<double>(windows.size()) * kWindow * size));
+  const std::vector<Row> rows = rows_for(start, has_pedal, is_centre_of_mass);
+  const Beliefs beliefs = beliefs_of(rows, start);
+  Noise noise{0.05 * start.scale + 0.005, 0.05 * start.scale + 0.005, 0.005, 0.1 * size, 0.02 / size};
+  const Noise least{1e-3, 1e-3, 2e-4, 5e-3, 1e-3};
+  // A limit that is believed too low explains every bend wrongly, one that is too high changes nothing: the
+  // first round has a high one.
+  Beliefs first = beliefs;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].key != "steer_rate_limit_degps") continue;
+    first.mean[i] += 1.5;
+    first.deviation[i] = 0.01;
+  }
+  WindowFit fit;
+  fit.theta = first.mean;
+  constexpr int kRounds = 3;
+  bool goes_on = true;
+  for (int round = 0; round < kRounds && goes_on; ++round) {
+    int step = 0;
+    fit = fit_windows(logs, windows, round == 0 ? first : beliefs, fit.theta, noise, [&] {
+      goes_on = progress((round + std::min(1.0, 0.07 * step++)) / kRounds);
+      return goes_on;
+    });
+    // Both directions of the place are alike.
+    fit.residual[0] = fit.residual[1] = std::max(fit.residual[0], fit.residual[1]);
+    for (std::size_t kind = 0; kind < noise.size(); ++kind)
+      noise[kind] = std::max(fit.residual[kind], least[kind]);
+  }
+  const Car car = beliefs.car(fit.theta);
+  found.vehicle = car.vehicle;
+  found.vehicle.name = start.name;
+  found.delay = std::max(0.0, car.delay);
+  found.has_pedal = has_pedal;
+  found.residual = {fit.residual[0], fit.residual[2], fit.residual[3]};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double deviation = fit.deviation[i];
+    const auto outside = [&](double theta) { return value_of(rows[i], theta) * rows[i].per_si; };
+    found.estimates.push_back({std::string(rows[i].key), std::string(rows[i].unit), outside(fit.theta[i]),
+                               outside(fit.theta[i] - 2.0 * deviation),
+                               outside(fit.theta[i] + 2.0 * deviation), outside(beliefs.mean[i]),
+                               deviation < 0.4 * beliefs.deviation[i]});
+  }
+  const auto use = tire_use(logs, windows, car);
+  found.use_front = use[0];
+  found.use_rear = use[1];
+  for (Estimate& each : found.estimates) {  // the curve's beginning says little of its peak
+    if (each.key == "friction" && !found.knows_tires()) each.is_excited = false;
+  }
+  found.held_out = prediction_errors(logs, std::move(held_out), car, noise, size);
+  return found;
+}
+
+}  // namespace chicane::identify

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/identify/drive_log.hpp"
+#include "chicane/model/vehicle.hpp"
+
+/// A car's model from logs of driving it (docs/identification.md).
+namespace chicane::identify {
+
+/// One number of the car, in the unit that people see.
+struct Estimate {
+  std::string key;  ///< as in a car file: "steer_lag_ms"; "wheelbase_m", "steer_offset_deg" and "reference_m"
+                    ///< are in none
+  std::string unit;  ///< "ms"
+  double value = 0.0;
+  double low = 0.0, high = 0.0;  ///< 95 % interval
+  double assumed = 0.0;          ///< before the log was seen
+  bool is_excited = true;        ///< the log narrows what was assumed to less than two fifths
+};
+
+/// How far predictions are off, from half a second of samples on.
+struct PredictionError {
+  double ahead = 0.0;     ///< [s]
+  double position = 0.0;  ///< root mean square [m]
+  double yaw = 0.0;       ///< [rad]
+  double speed = 0.0;     ///< [m/s]
+};
+
+struct Identification {
+  model::VehicleParams vehicle;  ///< the start's, with what was estimated
+  double delay = 0.0;            ///< from command to effect [s]
+  std::vector<Estimate> estimates;
+  std::vector<PredictionError>
+      held_out;         ///< on the end of each log, which the fit has not seen; may be empty
+  double driven = 0.0;  ///< length of all logs [s]
+  /// Largest share of the peak that each axle's tyres reached, but for one sample in a hundred.
+  double use_front = 0.0, use_rear = 0.0;
+  /// Standard deviations of what is left: position [m], yaw [rad], speed [m/s].
+  std::array<double, 3> residual{};
+  bool has_pedal = true;  ///< else drive and brakes are the start's
+  /// Whether the tyres were used enough for a lap near the limit: kRaceUse of the peak at both axles.
+  [[nodiscard]] bool knows_tires() const noexcept;
+};
+inline constexpr double kRaceUse = 0.6;
+
+/// Finds delay, lags, offset, wheelbase, tyres, inertia, drive, brakes and drag of the car that drove `logs`.
+/// `start` gives what logs cannot tell (mass, track width, tyre shape, limits) and what to expect of the
+/// rest. `hold_out`: share of each log, at its end, kept for the prediction errors, in [0, 0.8]. `progress`
+/// is told the share done and ends the search by returning false: the best so far is the result.
+///
+/// kInvalidArgument where the logs have less than ten seconds of driving.
+[[nodiscard]] Result<Identification> identify(const std::vector<DriveLog>& logs,
+                                              const model::VehicleParams& start, double hold_out,
+                                              const std::function<bool(double)>& progress);
+
+}  // namespace chicane::identify

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/identify/drive_log.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <string>
+
+namespace chicane::identify {
+namespace {
+
+using testing::HasSubstr;
+
+/// A circle to the left with 10 m radius at 5 m/s, 0.27 rad of steering, 20 samples a second.
+struct Row {
+  double time, x, y, psi, speed, steer;
+};
+std::string rows(const std::string& header, const std::function<std::string(const Row&)>& line,
+                 int count = 200) {
+  std::ostringstream text;
+  text.precision(12);
+  text << header << '\n';
+  for (int i = 0; i < count; ++i) {
+    const double t = 0.05 * i, angle = 0.5 * t;
+    text << line({t, 10.0 * std::sin(angle), 10.0 - 10.0 * std::cos(angle), angle, 5.0, 0.27}) << '\n';
+  }
+  return text.str();
+}
+std::string plain(const Row& r) {
+  std::ostringstream text;
+  text.precision(12);
+  text << r.time << ',' << r.x << ',' << r.y << ',' << r.psi << ',' << r.speed << ',' << r.steer;
+  return text.str();
+}
+
+class Csv {
+ public:
+  explicit Csv(const std::string& text)
+      : file_{
+            (std::filesystem::temp_directory_path() / ("chicane_log_" + std::to_string(::getpid()) + ".csv"))
+                .string()} {
+    std::ofstream(file_) << text;
+  }
+  ~Csv() { std::filesystem::remove(file_); }
+  Csv(const Csv&) = delete;
+  Csv& operator=(const Csv&) = delete;
+  [[nodiscard]] Result<std::vector<DriveLog>> read(const LogOptions& options = {}) const {
+    return read_log(file_, options);
+  }
+  [[nodiscard]] std::string refusal(const LogOptions& options = {}) const {
+    const auto logs = read(options);
+    return logs ? "read" : logs.error().message;
+  }
+
+ private:
+  std::string file_;
+};
+
+TEST(DriveLog, IsReadFromACsvFileWithAHeader) {
+  const auto logs = Csv(rows("time,x,y,psi,speed,steer", plain)).read();
+  ASSERT_TRUE(logs) << logs.error().message;
+  ASSERT_EQ(logs->size(), 1U);
+  const DriveLog& log = logs->front();
+  ASSERT_EQ(log.samples.size(), 200U);
+  EXPECT_EQ(log.told.size(), 200U);
+  EXPECT_FALSE(log.has_throttle());
+  EXPECT_FALSE(log.is_centre_of_mass);
+  EXPECT_NEAR(log.samples[10].psi, 0.25, 1e-9);
+  EXPECT_NEAR(log.told[10].steer, 0.27, 1e-9);
+}
+
+TEST(DriveLog, TakesUnitsFromTheNamesOfColumns) {
+  const auto logs =
+      Csv(rows("\xEF\xBB\xBFstamp_ms;pos_x;pos_y;yaw_deg;v_kmh;Steering_Angle_deg;pedal", [](const Row& r) {
+        std::ostringstream text;
+        text.precision(12);
+        text << 1e3 * r.time << ';' << r.x << ';' << r.y << ';' << r.psi * 57.295779513082 << ';'
+             << 3.6 * r.speed << ';' << r.steer * 57.295779513082 << ";0.5";
+        return text.str();
+      })).read();
+  ASSERT_TRUE(logs) << logs.error().message;
+  const DriveLog& log = logs->front();
+  EXPECT_TRUE(log.has_throttle());
+  EXPECT_NEAR(log.samples[20].time, 1.0, 1e-9);
+  EXPECT_NEAR(log.samples[20].psi, 0.5, 1e-9);
+  EXPECT_NEAR(log.samples[20].speed, 5.0, 1e-9);
+  EXPECT_NEAR(log.told[20].steer, 0.27, 1e-9);
+}
+
+TEST(DriveLog, TakesColumnsByNameWhereTheyAreTold) {
+  const Csv file(rows("time,x,y,psi,speed,my_column", plain));
+  EXPECT_THAT(file.refusal(),
+              HasSubstr(":1: header: got time,x,y,psi,speed,my_column, expected a column steer; "
+                        "name it by --columns steer=NAME"));
+  EXPECT_EQ(file.refusal({.columns = {{"steer", "my_column"}}}), "read");
+  EXPECT_THAT(file.refusal({.columns = {{"steer", "yours"}}}), HasSubstr("got no column yours"));
+}
+
+TEST(DriveLog, RefusesWhatCannotBeWhatItsColumnSays) {
+  const auto with = [](double psi, double speed, double steer) {
+    return Csv(rows("time,x,y,psi,speed,steer",
+                    [=](const Row& r) {
+                      return plain({r.time, r.x, r.y, psi * r.psi, speed * r.speed, steer * r.steer});
+                    }))
+        .refusal();
+  };
+  EXPECT_EQ(with(1.0, 1.0, 1.0), "read");
+  EXPECT_THAT(with(1.0, 1.0, 57.3), HasSubstr("is it in degrees?"));
+  EXPECT_THAT(with(1.0, 2.237, 1.0), HasSubstr("is it in mph?"));
+  EXPECT_THAT(with(1.0, 3.6, 1.0), HasSubstr("is it in km/h?"));
+  EXPECT_THAT(with(-1.0, 1.0, 1.0), HasSubstr("psi: got"));
+  EXPECT_THAT(with(1.0, 1.0, -1.0),
+              HasSubstr("steer: got steering against the turning, expected left positive"));
+}
+
+TEST(DriveLog, NamesLineAndColumnOfAWrongCell) {
+  std::string text = rows("time,x,y,psi,speed,steer", plain);
+  EXPECT_THAT(Csv(text + "10.0,1,2,nan,5,0.1\n").refusal(),
+              HasSubstr(":202: psi: got nan, expected a finite number"));
+  EXPECT_THAT(Csv(text + "10.0,1,2\n").refusal(), HasSubstr(":202: row: got 3 columns, expected 6"));
+  EXPECT_THAT(Csv("").refusal(), HasSubstr("got no header"));
+  EXPECT_THAT(Csv(rows("time,x,y,psi,speed,steer", plain, 20)).refusal(),
+              HasSubstr("expected at least 20 m"));
+}
+
+TEST(DriveLog, IsPartedAtGapsAndJumps) {
+  std::ostringstream text;
+  text << "time,x,y,psi,speed,steer\n";
+  double x = 0.0;
+  for (int i = 0; i < 400; ++i) {
+    if (i == 150) x += 30.0;
+    const double time = 0.05 * i + (i >= 250 ? 2.0 : 0.0);
+    text << plain({time, x, 0.0, 0.0, 5.0, 0.0}) << '\n';
+    x += 0.25;
+  }
+  const auto logs = Csv(text.str()).read();
+  ASSERT_TRUE(logs) << logs.error().message;
+  ASSERT_EQ(logs->size(), 3U);
+  EXPECT_EQ((*logs)[0].samples.size(), 150U);
+  EXPECT_EQ((*logs)[1].samples.size(), 100U);
+  EXPECT_EQ((*logs)[2].samples.size(), 150U);
+}
+
+}  // namespace
+}  // namespace chicane::identify

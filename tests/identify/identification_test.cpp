@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/identify/identification.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "chicane/protocol/library.hpp"
+#include "chicane/run/closed_loop.hpp"
+
+namespace chicane::identify {
+namespace {
+
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+/// What was measured and sent in a run.
+DriveLog drive_log(const Settings& settings, double steer_offset = 0.0) {
+  const auto scenario = protocol::compose({.scenario_file = "", .settings = settings});
+  EXPECT_TRUE(scenario);
+  auto loop = run::ClosedLoop::create(*scenario);
+  EXPECT_TRUE(loop);
+  DriveLog log{"run", {}, {}, true};
+  double last = -1.0;
+  while (!(*loop)->is_over()) {
+    (*loop)->advance();
+    const telemetry::Frame& frame = (*loop)->frame();
+    const model::Measurement& m = frame.measurement;
+    if (m.time <= last) continue;
+    last = m.time;
+    double psi = m.psi;
+    if (!log.samples.empty())
+      psi = log.samples.back().psi + std::remainder(psi - log.samples.back().psi, 2.0 * kPi);
+    log.samples.push_back({.time = m.time, .x = m.x, .y = m.y, .psi = psi, .speed = m.speed});
+    log.told.push_back({m.time, frame.result.command.steer - steer_offset, frame.result.command.throttle});
+  }
+  return log;
+}
+
+const Estimate& of(const Identification& found, const std::string& key) {
+  const auto each = std::find_if(found.estimates.begin(), found.estimates.end(),
+                                 [&](const Estimate& estimate) { return estimate.key == key; });
+  EXPECT_NE(each, found.estimates.end()) << key;
+  return each == found.estimates.end() ? found.estimates.front() : *each;
+}
+
+/// The road car as one begins with who has measured little of it.
+model::VehicleParams guess() {
+  model::VehicleParams car = model::road_car_params();
+  car.front_axle *= 1.06;
+  car.rear_axle *= 1.06;
+  car.cornering_front = 12.0;
+  car.cornering_rear = 14.0;
+  car.yaw_inertia = 1700.0;
+  car.friction = 1.1;
+  car.drive_acceleration = 4.5;
+  car.brake_acceleration = 8.0;
+  car.steer_lag = 0.08;
+  return car;
+}
+
+const auto kGoOn = [](double) { return true; };
+
+TEST(Identification, FindsTheCarThatDrove) {
+  const DriveLog log =
+      drive_log({{"car", "road-car"}, {"track", "hairpins"}, {"laps", "1"}, {"latency_ms", "70"}}, 0.01);
+  const auto found = identify({log}, guess(), 0.3, kGoOn);
+  ASSERT_TRUE(found) << found.error().message;
+  const model::VehicleParams truth = model::road_car_params();
+  // Smooth steering tells delay and lag apart only by a few milliseconds of their sum.
+  EXPECT_NEAR(1e3 * found->delay + of(*found, "steer_lag_ms").value, 120.0, 12.0);
+  EXPECT_NEAR(found->delay, 0.07, 0.035);
+  EXPECT_NEAR(of(*found, "steer_offset_deg").value, 0.573, 0.1);
+  EXPECT_NEAR(of(*found, "wheelbase_m").value, truth.wheelbase(), 0.03 * truth.wheelbase());
+  EXPECT_NEAR(found->vehicle.cornering_front, truth.cornering_front, 0.2 * truth.cornering_front);
+  EXPECT_NEAR(found->vehicle.cornering_rear, truth.cornering_rear, 0.2 * truth.cornering_rear);
+  EXPECT_NEAR(found->vehicle.brake_acceleration, truth.brake_acceleration, 0.1 * truth.brake_acceleration);
+  EXPECT_FALSE(found->knows_tires()) << "the default preset leaves half of the grip";
+  EXPECT_FALSE(of(*found, "friction").is_excited);
+  for (const Estimate& each : found->estimates) {
+    EXPECT_LE(each.low, each.value) << each.key;
+    EXPECT_GE(each.high, each.value) << each.key;
+  }
+  ASSERT_EQ(found->held_out.size(), 3U);
+  EXPECT_LT(found->held_out[0].position, 0.1);
+  EXPECT_LT(found->held_out[2].position, 0.3);
+}
+
+TEST(Identification, SaysWhatTheLogDoesNotExcite) {
+  // Nearly straight, at a steady speed.
+  DriveLog log{"straight", {}, {}, true};
+  for (int i = 0; i < 800; ++i) {
+    const double t = 0.05 * i;
+    log.samples.push_back({.time = t, .x = 20.0 * t, .y = 0.0, .psi = 0.0, .speed = 20.0});
+    log.told.push_back({t, 0.0, 0.1});
+  }
+  const auto found = identify({log}, guess(), 0.3, kGoOn);
+  ASSERT_TRUE(found) << found.error().message;
+  for (const char* key : {"friction", "cornering_front", "cornering_rear", "yaw_inertia_kgm2", "wheelbase_m"})
+    EXPECT_FALSE(of(*found, key).is_excited) << key;
+  EXPECT_TRUE(of(*found, "steer_offset_deg").is_excited);
+  EXPECT_FALSE(found->knows_tires());
+}
+
+TEST(Identification, IsTheMirrorImageOfAMirroredLog) {
+  const DriveLog log = drive_log({{"car", "road-car"}, {"track", "oval"}, {"laps", "1"}}, 0.01);
+  DriveLog mirrored = log;
+  for (Sample& sample : mirrored.samples) {
+    sample.y = -sample.y;
+    sample.psi = -sample.psi;
+  }
+  for (Told& told : mirrored.told) told.steer = -told.steer;
+  const auto a = identify({log}, guess(), 0.5, kGoOn);
+  const auto b = identify({mirrored}, guess(), 0.5, kGoOn);
+  ASSERT_TRUE(a && b);
+  for (std::size_t i = 0; i < a->estimates.size(); ++i) {
+    const Estimate& one = a->estimates[i];
+    const double sign = one.key == "steer_offset_deg" ? -1.0 : 1.0;
+    EXPECT_NEAR(one.value, sign * b->estimates[i].value, 0.02 * (1e-2 + std::fabs(one.value))) << one.key;
+  }
+}
+
+TEST(Identification, EndsWhenItIsAskedTo) {
+  const DriveLog log = drive_log({{"car", "road-car"}, {"track", "oval"}, {"laps", "1"}});
+  int asked = 0;
+  const auto found = identify({log}, guess(), 0.0, [&](double) { return ++asked < 2; });
+  ASSERT_TRUE(found);
+  EXPECT_EQ(asked, 2);
+  EXPECT_TRUE(found->held_out.empty());
+}
+
+TEST(Identification, NeedsTenSecondsOfDriving) {
+  DriveLog log{"short", {}, {}, true};
+  for (int i = 0; i < 100; ++i) {
+    log.samples.push_back({.time = 0.05 * i, .x = 1.0 * i, .y = 0.0, .psi = 0.0, .speed = 20.0});
+    log.told.push_back({0.05 * i, 0.0, 0.1});
+  }
+  const auto found = identify({log}, guess(), 0.0, kGoOn);
+  ASSERT_FALSE(found);
+  EXPECT_THAT(found.error().message, testing::HasSubstr("expected at least 10 s"));
+}
+
+}  // namespace
+}  // namespace chicane::identify
