@@ -14,6 +14,7 @@
 #include <string>
 #include <variant>
 
+#include "chicane/identify/drive_log.hpp"
 #include "chicane/net/server.hpp"
 #include "chicane/protocol/foxglove_codec.hpp"
 #include "chicane/protocol/ros_messages.hpp"
@@ -132,6 +133,16 @@ void track(std::string_view bytes) {
   promise(std::isfinite(made->centre().length()) && made->centre().length() > 0.0);
 }
 
+void log(std::string_view bytes) {
+  const auto logs = identify::parse_csv_log(std::string(bytes), "f.csv", {});
+  if (!logs) return check(logs.error());
+  for (const identify::DriveLog& log : *logs) {
+    promise(!log.samples.empty() && !log.told.empty());
+    for (std::size_t i = 1; i < log.samples.size(); ++i)
+      promise(log.samples[i].time > log.samples[i - 1].time && std::isfinite(log.samples[i].psi));
+  }
+}
+
 void mcap(std::string_view bytes) {
   static const int file = ::memfd_create("fuzz", MFD_CLOEXEC);
   promise(file >= 0 && ::ftruncate(file, 0) == 0);
@@ -191,9 +202,9 @@ void plan(std::string_view bytes) {
   }
 }
 
-constexpr std::array kTargets{
-    Target{"telemetry", telemetry}, Target{"viewer", viewer}, Target{"http", http}, Target{"yaml", yaml},
-    Target{"track", track},         Target{"mcap", mcap},     Target{"cdr", cdr},   Target{"plan", plan}};
+constexpr std::array kTargets{Target{"telemetry", telemetry}, Target{"viewer", viewer}, Target{"http", http},
+                              Target{"yaml", yaml},           Target{"track", track},   Target{"log", log},
+                              Target{"mcap", mcap},           Target{"cdr", cdr},       Target{"plan", plan}};
 
 }  // namespace
 

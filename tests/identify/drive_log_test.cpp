@@ -12,6 +12,9 @@
 #include <sstream>
 #include <string>
 
+#include "chicane/protocol/car_messages.hpp"
+#include "chicane/telemetry/mcap_writer.hpp"
+
 namespace chicane::identify {
 namespace {
 
@@ -127,6 +130,61 @@ TEST(DriveLog, NamesLineAndColumnOfAWrongCell) {
   EXPECT_THAT(Csv("").refusal(), HasSubstr("got no header"));
   EXPECT_THAT(Csv(rows("time,x,y,psi,speed,steer", plain, 20)).refusal(),
               HasSubstr("expected at least 20 m"));
+}
+
+/// Writes a bag as other programs do: odometry and commands on topics of their own, in CDR.
+void write_bag(const std::string& file, bool has_second_odometry) {
+  std::filesystem::remove(file);
+  const auto writer = telemetry::McapWriter::create(file, "test", false);
+  ASSERT_TRUE(writer) << writer.error().message;
+  const auto odom = (*writer)->add_channel("/pf/odom", protocol::OdometryMessage::kType, "");
+  const auto other =
+      has_second_odometry ? (*writer)->add_channel("/odom", protocol::OdometryMessage::kType, "") : odom;
+  const auto drive = (*writer)->add_channel("/cmd", protocol::DriveMessage::kType, "");
+  constexpr std::int64_t kStart = 1'700'000'000'000'000'000;
+  for (int i = 0; i < 200; ++i) {
+    const std::int64_t stamp = kStart + 50'000'000LL * i;
+    const double angle = 0.025 * i;
+    protocol::OdometryMessage at{.stamp = stamp, .frame = "map", .child_frame = "base_link"};
+    at.pose = {10.0 * std::sin(angle), 10.0 - 10.0 * std::cos(angle),
+               std::remainder(angle, 6.283185307179586)};
+    at.vx = 5.0;
+    at.yaw_rate = 0.5;
+    const protocol::DriveMessage told{.stamp = stamp, .frame = "base_link", .steer = 0.27, .speed = 5.0};
+    const auto time = static_cast<std::uint64_t>(stamp);
+    ASSERT_TRUE((*writer)->write(odom, time, time, protocol::encode(at)));
+    if (has_second_odometry) {
+      ASSERT_TRUE((*writer)->write(other, time, time, protocol::encode(at)));
+    }
+    ASSERT_TRUE((*writer)->write(drive, time, time, protocol::encode(told)));
+  }
+  ASSERT_TRUE((*writer)->close());
+}
+
+TEST(DriveLog, IsReadFromABagOfOdometryAndCommands) {
+  const std::string file =
+      (std::filesystem::temp_directory_path() / ("chicane_log_" + std::to_string(::getpid()) + ".mcap"))
+          .string();
+  write_bag(file, false);
+  const auto logs = read_log(file, {});
+  ASSERT_TRUE(logs) << logs.error().message;
+  ASSERT_EQ(logs->size(), 1U);
+  const DriveLog& log = logs->front();
+  ASSERT_EQ(log.samples.size(), 200U);
+  EXPECT_NEAR(log.samples[199].time, 9.95, 1e-9);
+  EXPECT_NEAR(log.samples[199].psi, 4.975, 1e-9) << "not wrapped";
+  EXPECT_NEAR(log.samples[10].yaw_rate, 0.5, 1e-12);
+  EXPECT_NEAR(log.told[10].steer, 0.27, 1e-6);
+  EXPECT_FALSE(log.is_centre_of_mass);
+
+  write_bag(file, true);
+  const auto unclear = read_log(file, {});
+  ASSERT_FALSE(unclear);
+  EXPECT_THAT(unclear.error().message,
+              HasSubstr("got the topics /odom, /pf/odom of nav_msgs/msg/Odometry, expected "
+                        "one; name it by --odom-topic"));
+  EXPECT_TRUE(read_log(file, {.odom_topic = "/odom"}));
+  std::filesystem::remove(file);
 }
 
 TEST(DriveLog, IsPartedAtGapsAndJumps) {

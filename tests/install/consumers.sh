@@ -22,9 +22,6 @@ if grep -qF "$build/" <<<"$flags"; then [[ $prefix == "$build"/* ]] || { echo "c
 [ -f "$(pkg-config --variable=datadir chicane)/presets/default.yaml" ] || { echo "chicane.pc: no presets/default.yaml in datadir"; exit 1; }
 
 examples=$(dirname "$(find "$prefix" -name 01_drive_a_lap.cpp)")
-# shellcheck disable=SC2086
-"$compiler" "$examples/01_drive_a_lap.cpp" -o "$work/pkg_config_lap" $flags
-(cd / && "$work/pkg_config_lap")
 rm -rf "$work/examples"
 cmake -G Ninja -S "$examples" -B "$work/examples" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
 cmake --build "$work/examples" --target 01_drive_a_lap >/dev/null

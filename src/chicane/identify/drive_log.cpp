@@ -128,23 +128,26 @@ Result<void> check(const Agreement& seen, const std::string& file) {
   return {};
 }
 
-}  // namespace
-
-Result<std::vector<DriveLog>> read_log(const std::string& file, const LogOptions& options) {
-  Result<LogRows> rows;
-  if (file.ends_with(".mcap")) {
-    rows = read_mcap_rows(file, options);
-  } else {
-    const Result<std::string> text = protocol::read_file(file);
-    if (!text) return fail(text.error());
-    rows = read_csv_rows(*text, file, options);
-  }
+Result<std::vector<DriveLog>> checked(Result<LogRows> rows, const std::string& file) {
   if (!rows) return fail(rows.error());
   std::vector<DriveLog> parts = parts_of(std::move(*rows), file);
   Agreement seen;
   for (const DriveLog& part : parts) seen.look_at(part);
   if (const Result<void> good = check(seen, file); !good) return fail(good.error());
   return parts;
+}
+
+}  // namespace
+
+Result<std::vector<DriveLog>> parse_csv_log(const std::string& text, const std::string& file,
+                                            const LogOptions& options) {
+  return checked(read_csv_rows(text, file, options), file);
+}
+
+Result<std::vector<DriveLog>> read_log(const std::string& file, const LogOptions& options) {
+  if (file.ends_with(".mcap")) return checked(read_mcap_rows(file, options), file);
+  const Result<std::string> text = protocol::read_file(file);
+  return text ? parse_csv_log(*text, file, options) : fail(text.error());
 }
 
 }  // namespace chicane::identify

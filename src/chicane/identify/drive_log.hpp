@@ -46,7 +46,7 @@ struct LogOptions {
   std::string drive_topic{};                     ///< the same
 };
 
-/// Reads recordings of ours, MCAP files with nav_msgs/Odometry and ackermann_msgs/AckermannDrive(Stamped) in
+/// Reads recordings of ours, MCAP files with nav_msgs/Odometry and ackermann_msgs/AckermannDriveStamped in
 /// CDR, and CSV files with a header. A log that jumps, or has no samples for half a second, becomes several.
 ///
 /// CSV columns are found by name, with their unit behind (`_deg`, `_rad`, `_mps`, `_kmh`, `_mph`, `_ms`,
@@ -55,5 +55,8 @@ struct LogOptions {
 /// kIo; kParse with file and line for what is no log, and for values that cannot be what their column says:
 /// steering in degrees, a speed in other units than the path, steering or yaw positive to the right.
 [[nodiscard]] Result<std::vector<DriveLog>> read_log(const std::string& file, const LogOptions& options);
+/// The same of a CSV file's text; `file` is for messages.
+[[nodiscard]] Result<std::vector<DriveLog>> parse_csv_log(const std::string& text, const std::string& file,
+                                                          const LogOptions& options);
 
 }  // namespace chicane::identify
