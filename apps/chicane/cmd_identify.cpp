@@ -107,6 +107,7 @@ std::string json_of(const Identification& found) {
                                  {"high", each.high},
                                  {"assumed", each.assumed},
                                  {"is_excited", each.is_excited}});
+  json["residual_m"] = found.residual[0];
   json["tire_use"] = {found.use_front, found.use_rear};
   json["knows_tires"] = found.knows_tires();
   json["held_out"] = nlohmann::ordered_json::array();

@@ -282,6 +282,7 @@ void add_identify(CLI::App& command, Options& options) {
   command.add_option("--drive-topic", options.identify.drive_topic, "Commands of a bag that has several")
       ->type_name("TOPIC");
   command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  add_set(command, options);
   command.footer("Example: chicane identify run.mcap --car road-car -o mine.yaml");
 }
 
