@@ -31,6 +31,7 @@ struct DescribedTerms {
   double speed_reference = 0.0;     ///< as the model's v
   double error_sign = 1.0;          ///< of the last term of cte
   double heading_reach = 1.0;       ///< of the desired yaw (controller/described_model.hpp)
+  bool is_lateral_recursive = false;  ///< cte⁺ = cte + v sin eψ dt
   std::array<double, 8> weights{};  ///< of cte, eψ, v, δ, a, Δδ, Δa, v δ
   std::array<double, 4> line{};     ///< coefficients, from the constant on
   bool acts_late = false;           ///< the inputs of a stage act in the next one
@@ -109,7 +110,8 @@ class CppadProblem {
     fg[1 + at_.state(1, t)] = vars[at_.state(1, t)] - (y + v * sin(psi) * dt);
     fg[1 + at_.state(2, t)] = vars[at_.state(2, t)] - (psi + turn);
     fg[1 + at_.state(3, t)] = vars[at_.state(3, t)] - (v + throttle * dt);
-    fg[1 + at_.state(4, t)] = vars[at_.state(4, t)] - ((f - y) + v * sin(epsi) * (terms_.error_sign * dt));
+    const Number cte = terms_.is_lateral_recursive ? vars[at_.state(4, t - 1)] : f - y;
+    fg[1 + at_.state(4, t)] = vars[at_.state(4, t)] - (cte + v * sin(epsi) * (terms_.error_sign * dt));
     fg[1 + at_.state(5, t)] = vars[at_.state(5, t)] - ((psi - desired) + turn);
   }
 

@@ -32,6 +32,7 @@ struct DenseCubicProblem {
         speed_reference{structured.speed_reference},
         error_sign{structured.error_sign},
         is_integrated{structured.heading_reach == 0.0},
+        is_lateral_recursive{structured.is_lateral_recursive},
         acts_late{structured.acts_late},
         root{structured.root},
         line{structured.line} {}
@@ -50,7 +51,7 @@ struct DenseCubicProblem {
             x[kY] + x[kV] * sin(x[kPsi]) * dt,
             x[kPsi] + turn,
             x[kV] + throttle * dt,
-            line.at(x[kX]) - x[kY] + x[kV] * sin(x[kEpsi]) * (error_sign * dt),
+            (is_lateral_recursive ? x[kCte] : line.at(x[kX]) - x[kY]) + x[kV] * sin(x[kEpsi]) * (error_sign * dt),
             (is_integrated ? x[kEpsi] : x[kPsi] - atan(line.slope(x[kX]))) + turn,
             u[kSteer],
             u[kThrottle]};
@@ -84,6 +85,7 @@ struct DenseCubicProblem {
   double speed_reference;
   double error_sign;
   bool is_integrated;  ///< the heading error, from step to step
+  bool is_lateral_recursive;  ///< the lateral error, from step to step
   bool acts_late;
   std::array<double, kNr> root;
   Cubic line;
