@@ -25,7 +25,7 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-MODULES = sorted(path.name for path in (ROOT / "src/chicane").iterdir() if path.is_dir() and (ROOT / "tests" / path.name).is_dir())
+MODULES = sorted(path.name for path in (ROOT / "src/chicane").glob("*") if path.is_dir() and (ROOT / "tests" / path.name).is_dir())
 EQUIVALENT = ROOT / "tools/equivalent_mutants.txt"
 # What each operator or word becomes. Operators count where clang-format puts spaces around them.
 SWAPS = {" < ": " >= ", " > ": " <= ", " <= ": " > ", " >= ": " < ", " == ": " != ", " != ": " == ", " && ": " || ", " || ": " && ",
@@ -97,7 +97,7 @@ def mutants_of(module, name):
 
 def from_compiler(command):
     """The words of a compiler's command without the programs before it: ccache, timing."""
-    first = next(i for i, word in enumerate(command) if re.fullmatch(r"(c\+\+|g\+\+|clang\+\+)(-\d+)?", pathlib.Path(word).name))
+    first = next(i for i, word in enumerate(command) if re.fullmatch(r"(cc|gcc|clang|c\+\+|g\+\+|clang\+\+)(-\d+)?", pathlib.Path(word).name))
     return command[first:]
 
 
