@@ -95,8 +95,8 @@ TEST(CubicProblem, PaysTheDescribedSum) {
 /// of the others.
 std::vector<CubicProblem> all_variants(Random& random) {
   std::vector<CubicProblem> problems;
-  for (const unsigned variant : {0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 10U, 11U, 12U, 13U, 14U, 15U,
-                                 24U, 25U, 26U, 27U, 28U, 29U, 30U, 31U}) {
+  for (const unsigned variant : {0U,  1U,  2U,  3U,  4U,  5U,  6U,  7U,  8U,  9U,  10U, 11U,
+                                 12U, 13U, 14U, 15U, 24U, 25U, 26U, 27U, 28U, 29U, 30U, 31U}) {
     CubicMpcOptions options;
     options.latency_handling = (variant & 4U) != 0 ? LatencyHandling::kInsideModel : LatencyHandling::kNone;
     options.steering_right_positive = (variant & 2U) != 0;

@@ -74,6 +74,30 @@ TEST(SpeedPlan, BrakesWithWhatTheSurfaceGives) {
   EXPECT_NEAR(before_bend(0.5), 0.85 * grip + drag, 0.2) << "what the road gives";
 }
 
+// Brakes in a wide bend for a narrow one: with what the friction ellipse leaves beside the sideways force.
+TEST(SpeedPlan, SharesTheGripBetweenBrakingAndCornering) {
+  for (const double coupling : {1.0, 0.5}) {
+    model::VehicleParams car = model::road_car_params();
+    car.friction_coupling = coupling;
+    const SpeedPlanOptions options{.grip_share = 0.9, .brake_share = 0.5};
+    ReferenceLine line = with_a_bend(30.0);
+    for (std::size_t i = 60; i < 167; ++i) line.samples()[i].curve.curvature = 1.0 / 90.0;
+    SpeedPlan speeds(401);
+    speeds.begin(car, options);
+    for (int work = 1'000'000; !speeds.advance(work, line);) ADD_FAILURE();
+    const double v = line.samples()[158].speed;  // 13 m before the narrow bend
+    const double before = line.samples()[157].speed;
+    ASSERT_EQ(line.samples()[157].limiter, SpeedLimiter::kBraking);
+    const double use =
+        v * v / 90.0 * (1.0 - car.steer_helper) / (options.grip_share * car.cornering_friction() * car.load(v));
+    ASSERT_GT(use, 0.3);
+    const double drag = longitudinal_acceleration(car, 0.0, v);
+    const double force = drag - longitudinal_acceleration(car, -car.brake_throttle_limit, v);
+    EXPECT_NEAR((before * before - v * v) / (2.0 * line.spacing()),
+                options.brake_share * std::sqrt(1.0 - coupling * use * use) * force - drag, 1e-9);
+  }
+}
+
 TEST(SpeedPlan, EndsAnOpenLineAtTheSpeedOfTheBendThatMayFollow) {
   ReferenceLine line = with_a_bend(1e6);
   plan(line, {.end_curvature = 0.02});

@@ -247,14 +247,15 @@ constexpr std::array kOptions{
     option<&C::heading_error_integrated>(
         "heading_error_integrated",
         "The heading error is that of the beginning plus what the car turns, as write-up 1 has it."),
-    option<&C::lateral_error_integrated>(
-        "lateral_error_integrated",
-        "cte is that of the beginning plus the sum of v sin eψ dt, as write-up 1 has it: the bend ahead is not "
-        "seen."),
+    option<&C::lateral_error_integrated>("lateral_error_integrated",
+                                         "cte is that of the beginning plus the sum of v sin eψ dt, as "
+                                         "write-up 1 has it: the bend ahead is not "
+                                         "seen."),
     option<&C::line_order>("line_order", unit::kNone, 1, 3,
                            "Order of the polynomial that is fitted through the waypoints."),
     option<&C::latency_acceleration_term>(
-        "latency_acceleration_term", "The measured roll-forward has the term a tan δ τ² / (2 L_f) of write-up 1."),
+        "latency_acceleration_term",
+        "The measured roll-forward has the term a tan δ τ² / (2 L_f) of write-up 1."),
     option<&C::speed_in_mph>("speed_in_mph", "The model takes miles per hour for metres per second."),
     option<&C::roll_forward_in_mph>("roll_forward_in_mph", "The roll-forward over the latency does so, too."),
     option<&C::weight_lateral>("weight_lateral", unit::per("1/m²"), 0, kHighestWeight,
@@ -281,9 +282,10 @@ std::span<const Option> CubicMpcEntry::options() noexcept { return kOptions; }
 
 std::vector<OptionContradiction> CubicMpcEntry::contradictions(const CubicMpcOptions& options) {
   if (options.lateral_error_integrated && !options.heading_error_integrated)
-    return {{"lateral_error_integrated",
-             "got true, expected cubic_mpc.heading_error_integrated=true beside it: the write-up has both errors "
-             "from step to step"}};
+    return {
+        {"lateral_error_integrated",
+         "got true, expected cubic_mpc.heading_error_integrated=true beside it: the write-up has both errors "
+         "from step to step"}};
   constexpr double kSame = 1e-9;  // [s]: the same time, written in ms and in s
   const bool shifts_by_a_step = options.latency_handling == LatencyHandling::kInsideModel;
   if (!shifts_by_a_step || std::fabs(options.latency - options.step_length) <= kSame) return {};

@@ -46,8 +46,8 @@ class RollForward {
   [[nodiscard]] double compensated() const noexcept;
   void reset() noexcept { latency_ = first_latency_; }
   /// Other settings; a measured latency stays measured.
-  void configure(LatencyHandling handling, double latency, double kinematic_length,
-                 double speed_unit = 1.0, bool has_term = true) noexcept {
+  void configure(LatencyHandling handling, double latency, double kinematic_length, double speed_unit = 1.0,
+                 bool has_term = true) noexcept {
     const bool is_told_anew = handling != handling_ || latency != first_latency_;
     if (is_told_anew) latency_ = latency;
     handling_ = handling;
