@@ -53,6 +53,19 @@ TEST(SpeedPlan, SaysWhatLimitsTheSpeedBeforeInAndBehindABend) {
   EXPECT_NEAR(samples[183].speed, std::sqrt(0.9 * car.cornering_friction() * car.load_constant * 40.0), 1e-9);
 }
 
+// To turn in, the front axle needs more than the bend; to turn out, the rear one (docs/tracking.md, eq. 11).
+TEST(SpeedPlan, HoldsTheAxleThatNeedsMoreWhereTheCurvatureChanges) {
+  ReferenceLine line = with_a_bend(40.0);
+  plan(line, {.speed_limit = 40.0});
+  const model::VehicleParams car = uncoupled_car();
+  const double slope = 1.0 / 40.0 / 6.0;  // over 3 m each way
+  const double entry = 1.0 / 40.0 + car.yaw_inertia / (car.mass * car.rear_axle) * slope;
+  const double exit = 1.0 / 40.0 + car.yaw_inertia / (car.mass * car.front_axle) * slope;
+  const double grip = 0.9 * car.cornering_friction() * car.load_constant;
+  EXPECT_NEAR(line.samples()[167].speed, std::sqrt(grip / entry), 1e-9);
+  EXPECT_NEAR(line.samples()[200].speed, std::sqrt(grip / exit), 1e-9);
+}
+
 // Told the truth about a slippery road, the car braked as on a dry one and left the road (it did with 0.6 of
 // the grip).
 TEST(SpeedPlan, BrakesWithWhatTheSurfaceGives) {
