@@ -101,8 +101,8 @@ TEST(SpeedPlan, SharesTheGripBetweenBrakingAndCornering) {
     const double v = line.samples()[158].speed;  // 13 m before the narrow bend
     const double before = line.samples()[157].speed;
     ASSERT_EQ(line.samples()[157].limiter, SpeedLimiter::kBraking);
-    const double use =
-        v * v / 90.0 * (1.0 - car.steer_helper) / (options.grip_share * car.cornering_friction() * car.load(v));
+    const double use = v * v / 90.0 * (1.0 - car.steer_helper) /
+                       (options.grip_share * car.cornering_friction() * car.load(v));
     ASSERT_GT(use, 0.3);
     const double drag = longitudinal_acceleration(car, 0.0, v);
     const double force = drag - longitudinal_acceleration(car, -car.brake_throttle_limit, v);
