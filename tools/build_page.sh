@@ -4,6 +4,7 @@
 #
 #   tools/build_page.sh FOLDER     writes FOLDER/index.html
 set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/usage.sh"
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 folder=${1:?the folder to write}
 build=$root/build/page

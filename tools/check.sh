@@ -12,6 +12,7 @@
 #   tsan     thread sanitizer
 #   bits     the builds above compute the same laps, bit for bit
 set -uo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/usage.sh"
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
 source tools/install_packages.sh
 

@@ -1,7 +1,10 @@
 #!/usr/bin/env bash
 # Checks that every C++ file is formatted by .clang-format; --fix formats them. Other versions of clang-format give other results: exit
 # code 77 (skipped) without the one of Debian 12.
+#
+#   tools/check_format.sh [--fix]
 set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/usage.sh"
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 clang-format --version 2>/dev/null | grep -q 'version 14\.' || { echo "clang-format 14 is not installed: not checked"; exit 77; }
 

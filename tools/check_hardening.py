@@ -7,6 +7,8 @@ import re
 import subprocess
 import sys
 
+import usage
+
 
 def readelf(*arguments):
     return subprocess.run(["readelf", "--wide", *arguments], check=True, capture_output=True, text=True, errors="replace").stdout
@@ -34,6 +36,7 @@ def missing(program):
 
 
 if __name__ == "__main__":
+    usage.print_if_asked(__doc__)
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     faults = list(missing(sys.argv[1]))

@@ -9,6 +9,8 @@ import re
 import sys
 from pathlib import Path
 
+import usage
+
 LIST = "tools/header_tests.txt"
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
@@ -117,6 +119,7 @@ def check(root):
 
 
 def main():
+    usage.print_if_asked(__doc__)
     root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent.parent).resolve()
     violations = list(check(root))
     for violation in violations:

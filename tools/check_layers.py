@@ -8,6 +8,8 @@ import re
 import sys
 from pathlib import Path
 
+import usage
+
 INCLUDE = re.compile(r'^\s*#\s*include\s*"(?P<path>[^"]+)"')
 CALL = re.compile(r"(?P<command>\w+)\s*\((?P<arguments>[^()]*(?:\([^()]*\)[^()]*)*)\)")
 KEYWORDS = {"HEADERS", "SOURCES", "DEPENDS", "PRIVATE"}
@@ -156,6 +158,7 @@ def check(root):
 
 
 def main():
+    usage.print_if_asked(__doc__)
     root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent.parent).resolve()
     violations = list(check(root))
     for violation in violations:

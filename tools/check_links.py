@@ -7,6 +7,8 @@ import re
 import sys
 from pathlib import Path
 
+import usage
+
 LINK = re.compile(r"\]\((?P<target>[^)\s]+)\)")
 CODE_PATH = re.compile(r"`(?P<path>[\w.-]+(?:/[\w.-]+)+\.(?:hpp|cpp|py|sh|md|txt|yaml|csv|cmake|ts|tsx|json|png|svg))`")
 GENERATED = ("build/", "share/", "web/dist/")
@@ -44,6 +46,7 @@ def missing(root, page):
 
 
 def main():
+    usage.print_if_asked(__doc__)
     root = Path(__file__).resolve().parent.parent
     pages = [p for p in sorted(root.rglob("*.md")) if not IGNORED & set(p.relative_to(root).parts)]
     violations = [violation for page in pages for violation in missing(root, page)]

@@ -8,6 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import usage
+
 COMMAND = re.compile(r"ctest (?:--preset release |--test-dir build/release )?(?:-LE slow )?-R (?:'(?P<quoted>[^']+)'|(?P<plain>[^\s`'\"]+))")
 
 
@@ -18,6 +20,7 @@ def names(build):
 
 
 def main():
+    usage.print_if_asked(__doc__)
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     root = Path(__file__).resolve().parent.parent

@@ -4,6 +4,7 @@
 #   tools/check_package.sh [FOLDER]     FOLDER has the packages: build/release/packages, made by ./run.sh package
 # Exit code 77 where mmdebstrap is not installed. Root is not needed where user namespaces are allowed.
 set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/usage.sh"
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 fail() { printf 'check_package: %s\n' "$*" >&2; exit 1; }
 say() { printf '%-58s %s\n' "$1" "$2"; }

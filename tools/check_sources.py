@@ -10,6 +10,8 @@ import sys
 from pathlib import Path
 from typing import NamedTuple
 
+import usage
+
 ELEMENTARY = r"(?:sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot)"
 
 
@@ -130,6 +132,7 @@ def lengths(root):
 
 
 def main():
+    usage.print_if_asked(__doc__)
     arguments = [a for a in sys.argv[1:] if a != "--lengths"]
     root = Path(arguments[0] if arguments else Path(__file__).parent.parent).resolve()
     if "--lengths" in sys.argv[1:]:

@@ -11,6 +11,8 @@ Tables of constants are data: the same whoever made them.
 import subprocess
 import sys
 
+import usage
+
 
 def foreign_symbols(tag, path):
     listing = subprocess.run(["nm", "-C", "--defined-only", path], check=True, capture_output=True, text=True).stdout
@@ -21,6 +23,7 @@ def foreign_symbols(tag, path):
 
 
 def main():
+    usage.print_if_asked(__doc__)
     if len(sys.argv) < 3:
         sys.exit(__doc__)
     tag, paths = sys.argv[1], sys.argv[2:]

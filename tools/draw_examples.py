@@ -9,6 +9,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+import usage
+
 ROOT = Path(__file__).resolve().parent.parent
 DARK, BLUE, RED, GREY, SOFT = "#24292f", "#0969da", "#cf222e", "#8c959f", "#d8dee4"
 
@@ -125,6 +127,7 @@ EXAMPLES = {
 
 
 def main():
+    usage.print_if_asked(__doc__)
     build = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release")
     folder = Path(sys.argv[2] if len(sys.argv) > 2 else ROOT / "docs/figures")
     for name, (draw, title) in EXAMPLES.items():

@@ -1,29 +1,27 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes the tables and figures of docs/problem.md and of the pages on effects (latency, horizon, step_length, weights, friction) from
-the results of plans/effects.yaml, whose runs are named TABLE: ROW.
+"""Tables and figures of docs/problem.md and of the pages on effects (latency, horizon, step_length, weights, friction) from the results
+of plans/effects.yaml, whose runs are named TABLE: ROW.
 
-    /usr/bin/python3 tools/experiments.py [PROGRAM]   drives the plan, and writes
-    /usr/bin/python3 tools/experiments.py RUNS.jsonl  writes from the results of `chicane sweep plans/effects.yaml`
+    chicane sweep plans/effects.yaml -o runs.jsonl
+    tools/experiments.py runs.jsonl TABLE          prints one table in Markdown
+    tools/experiments.py runs.jsonl --draw FOLDER  draws the figures (matplotlib)
 
-PROGRAM is build/release/apps/chicane/chicane when left out. All runs are in virtual time: the same on every machine with the same arithmetic.
-"""
+tools/check_figures compares all of it with the pages, and writes it. All runs are in virtual time: the same on every machine with the same
+arithmetic."""
+import argparse
 import json
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-PLAN = "plans/effects.yaml"
 MPH = 0.44704
 NUMBERS = ("flying lap [s]", "mean [mph]", "top [mph]", "rms lateral error [m]", "tyre to edge, least [m]", "off the road")
-# page, table: what its first column is called
+# table: what its first column is called
 EFFECTS = {
-    "horizon.md": {"own_steps": "N", "steps": "N", "steps_measured": "N"},
-    "step_length.md": {"own_length": "dt [s]", "length": "dt [s]", "preview": "N, dt [s]", "higher": "N, dt [s]"},
-    "weights.md": {"own_lateral": "weight_lateral", "knob": "w_a", "speed": "w_v", "product": "w_vδ", "unit": "`speed_in_mph`"},
-    "friction.md": {"friction_udacity": "grip of the road", "friction_road_car": "grip of the road", "grip_share": "grip_share"},
+    "own_steps": "N", "steps": "N", "steps_measured": "N",
+    "own_length": "dt [s]", "length": "dt [s]", "preview": "N, dt [s]", "higher": "N, dt [s]",
+    "own_lateral": "weight_lateral", "knob": "w_a", "speed": "w_v", "product": "w_vδ", "unit": "`speed_in_mph`",
+    "friction_udacity": "grip of the road", "friction_road_car": "grip of the road", "grip_share": "grip_share",
 }
 # figure: its axis, whether it is logarithmic, and the name and table of each curve
 FIGURES = {
@@ -33,14 +31,6 @@ FIGURES = {
     "friction": ("grip of the road over that of the model", False,
                  {"udacity": "friction_udacity", "road-car": "friction_road_car", "road-car, road 0.7, over grip_share": "grip_share"}),
 }
-
-
-def results_of(program):
-    """The lines of a sweep, as the program writes them."""
-    with tempfile.TemporaryDirectory() as folder:
-        results = Path(folder) / "effects.jsonl"
-        subprocess.run([program, "sweep", PLAN, "--jobs", "0", "-o", results], check=True, stderr=subprocess.DEVNULL, cwd=ROOT)
-        return results.read_text(encoding="utf-8")
 
 
 def tables_of(lines):
@@ -135,12 +125,12 @@ def draw(axes, name, runs):
     axes.plot(off, [errors[number] for number in off], "x", color=curve.get_color(), markersize=11, markeredgewidth=2.5)
 
 
-def save(figure, name):
+def save(figure, folder, name):
     figure.tight_layout()
-    figure.savefig(ROOT / f"docs/figures/{name}.svg", metadata={"Date": None, "Creator": None})
+    figure.savefig(folder / f"{name}.svg", metadata={"Date": None, "Creator": None})
 
 
-def draw_effect(tables, name):
+def draw_effect(tables, folder, name):
     """Flying lap above, rms lateral error below."""
     label, is_logarithmic, curves = FIGURES[name]
     figure, (above, below) = plotting().subplots(2, 1, figsize=(9.5, 6.5), sharex=True)
@@ -158,10 +148,10 @@ def draw_effect(tables, name):
         if is_logarithmic:
             axes.set_xscale("log")
     above.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    save(figure, name)
+    save(figure, folder, name)
 
 
-def draw_latency(rows):
+def draw_latency(rows, folder):
     figure, axes = plotting().subplots(figsize=(9.5, 4.5))
     for method, runs in by_latency(rows).items():
         draw(axes, method, runs)
@@ -170,34 +160,35 @@ def draw_latency(rows):
     axes.set_title("lakeside at 40 mph: a cross is a run with a tyre off the road")
     axes.grid(alpha=0.3)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    save(figure, "latency")
+    save(figure, folder, "latency")
 
 
-def write(page, marker, table):
-    """Replaces what stands between <!-- marker: ... --> and <!-- /marker -->."""
-    path = ROOT / "docs" / page
-    text = path.read_text(encoding="utf-8")
-    begin, end = f"<!-- {marker}: tools/experiments.py -->\n", f"<!-- /{marker} -->"
-    head, rest = text.split(begin)
-    path.write_text(head + begin + table + end + rest.split(end, 1)[1], encoding="utf-8")
+def table_named(tables, name):
+    """The Markdown of one table."""
+    if name == "presets":
+        return preset_table(tables[name])
+    if name in ("latency", "fast"):
+        return latency_table(tables[name])
+    return cure_table(tables[name]) if name == "cure" else effect_table(tables[name], EFFECTS[name])
 
 
 def main():
-    if len(sys.argv) > 1 and sys.argv[1] in ("-h", "--help"):
-        print(__doc__)
+    names = ["presets", "latency", "fast", "cure", *EFFECTS]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("runs", type=Path, help="results of plans/effects.yaml")
+    parser.add_argument("table", nargs="?", choices=names, metavar="TABLE", help=", ".join(names))
+    parser.add_argument("--draw", type=Path, metavar="FOLDER", help="draw the figures into this folder")
+    arguments = parser.parse_args()
+    if bool(arguments.table) == bool(arguments.draw):
+        parser.error("expected a table, or --draw FOLDER")
+    tables = tables_of(arguments.runs.read_text(encoding="utf-8"))
+    if arguments.table:
+        sys.stdout.write(table_named(tables, arguments.table))
         return 0
-    given = Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else ROOT / "build/release/apps/chicane/chicane"
-    tables = tables_of(given.read_text(encoding="utf-8") if given.suffix == ".jsonl" else results_of(given))
-    write("problem.md", "presets", preset_table(tables["presets"]))
-    for marker in ("latency", "fast"):
-        write("latency.md", marker, latency_table(tables[marker]))
-    write("latency.md", "cure", cure_table(tables["cure"]))
-    for page, markers in EFFECTS.items():
-        for marker, what in markers.items():
-            write(page, marker, effect_table(tables[marker], what))
     for name in FIGURES:
-        draw_effect(tables, name)
-    draw_latency(tables["latency"])
+        draw_effect(tables, arguments.draw, name)
+    draw_latency(tables["latency"], arguments.draw)
+    print("drawn")
     return 0
 
 

@@ -9,6 +9,7 @@
 # What they find new stays in build/fuzz/corpus; an input that fails is kept as build/fuzz/NAME-crash-…: mend it, and put it
 # into tests/fuzz/corpus/NAME, where ./test.sh reads it again.
 set -uo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/usage.sh"
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
 command -v clang++ >/dev/null || { echo "clang++ is not installed: not fuzzed" >&2; exit 77; }
 limit=(-runs=10000000)

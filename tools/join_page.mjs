@@ -6,6 +6,10 @@ import { join } from 'node:path';
 import { gzipSync } from 'node:zlib';
 
 const [dist, worker, page] = process.argv.slice(2);
+if (page === undefined) {
+  process.stdout.write('node tools/join_page.mjs DIST WORKER.js PAGE.html: one file of a page and of its worker\n');
+  process.exit(dist === '--help' ? 0 : 2);
+}
 const assets = join(dist, 'assets');
 const only = (ending) => {
   const found = readdirSync(assets).filter((name) => name.endsWith(ending));

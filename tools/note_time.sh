@@ -6,6 +6,7 @@
 #   tools/note_time.sh -o FILE cmake -P ...       any other step
 #
 # A line: seconds of user and system, tab, "run" or "cached" (ccache had the answer), tab, FILE.
+[ "${1:-}" != --help ] || { sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"; exit 0; }
 file='' previous=''
 for word in "$@"; do
   [ "$previous" = -o ] && file=$word

@@ -8,6 +8,10 @@ import csv
 import sys
 from collections import defaultdict
 
+import usage
+
+usage.print_if_asked(__doc__)  # before an import that may fail
+
 import matplotlib
 
 matplotlib.use("svg")

@@ -10,6 +10,10 @@ import re
 import sys
 from pathlib import Path
 
+import usage
+
+usage.print_if_asked(__doc__)  # before an import that may fail
+
 import chicane as ch
 
 ROOT = Path(__file__).resolve().parents[1]

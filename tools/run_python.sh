@@ -1,7 +1,10 @@
 #!/usr/bin/env bash
 # Installs the Python module in an environment of its own, build/python/environment, and starts Python in it: a prompt with chicane
 # imported as ch, in IPython where that is there, or whatever the arguments say.
+#
+#   tools/run_python.sh [ARGUMENT...]     of Python; ./run.sh python calls this
 set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/usage.sh"
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 environment=$root/build/python/environment
 [ -x "$environment/bin/python" ] || /usr/bin/python3 -m venv --system-site-packages --without-pip "$environment"

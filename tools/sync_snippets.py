@@ -13,6 +13,8 @@ import sys
 import textwrap
 from pathlib import Path
 
+import usage
+
 SNIPPET = re.compile(r"(?P<marker><!-- snippet: (?P<file>\S+)(?: (?P<name>\w+))? -->\n)```(?P<language>\w*)\n(?P<body>.*?)```",
                      re.DOTALL)
 
@@ -35,6 +37,7 @@ def synced(root, text):
 
 
 def main():
+    usage.print_if_asked(__doc__)
     root = Path(__file__).resolve().parent.parent
     behind = []
     for page in [root / "README.md", *sorted((root / "docs").rglob("*.md"))]:

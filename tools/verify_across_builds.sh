@@ -6,6 +6,7 @@
 #
 # Exit code 1 when any step of any recording differs in any build, or was not computed again.
 set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/usage.sh"
 if [ $# -lt 1 ]; then
   sed -n '2,7s/^# \{0,1\}//p' "$0" >&2
   exit 2

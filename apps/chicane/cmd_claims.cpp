@@ -28,7 +28,8 @@ namespace {
 using sweep::Claim;
 using sweep::Settings;
 
-constexpr std::string_view kOriginalLake = "../shared/tracks/udacity/lake_scene.csv";
+/// The waypoints that the course hands out: not shipped, read where they are.
+constexpr std::string_view kCourseFile = "../shared/tracks/udacity/lake_track_waypoints.csv";
 
 /// How the numbers of a write-up are taken, where it says nothing of telemetry's miles per hour.
 struct Reading {
@@ -54,15 +55,27 @@ const Reading& own_reading(const Claim& claim) {
   return readings()[is_throughout ? 2 : is_set("cubic_mpc.speed_in_mph") ? 1 : 0];
 }
 
+/// Where a claim is tried: in all readings of speed, or in its preset's own alone.
 struct Lake {
   std::string_view name;
   std::string track;
+  bool is_in_all_readings = true;
   bool is_there = true;
+
+  [[nodiscard]] bool takes(const Claim& claim, const Reading& reading) const {
+    return is_there && (is_in_all_readings || reading.name == own_reading(claim).name);
+  }
 };
-std::vector<Lake> lakes() {
-  std::error_code error;
-  return {{"lakeside", "lakeside"},
-          {"the original lake", std::string(kOriginalLake), std::filesystem::exists(kOriginalLake, error)}};
+constexpr std::size_t kLakes = 3;
+const std::array<Lake, kLakes>& lakes() {
+  static const std::array<Lake, kLakes> kAll = [] {
+    std::error_code error;
+    return std::array<Lake, kLakes>{
+        {{"lakeside", "lakeside"},
+         {"original lake", "original-lake"},
+         {"course's file", std::string(kCourseFile), false, std::filesystem::exists(kCourseFile, error)}}};
+  }();
+  return kAll;
 }
 
 /// All claims of the folder, by file and place.
@@ -133,27 +146,25 @@ class Trials {
   std::map<std::string, telemetry::RunSummary> results_;
 };
 
-/// Whether a claim holds, by lake and reading; none where the lake is not there.
-using Marks = std::array<std::array<std::optional<bool>, 3>, 2>;
+/// Whether a claim holds on a lake, by reading; none where it is not tried.
+using Marks = std::array<std::optional<bool>, 3>;
 
-Marks marks_of(const Claim& claim, const Trials& trials) {
+Marks marks_of(const Claim& claim, const Trials& trials, const Lake& lake) {
   Marks marks;
-  const std::vector<Lake> all = lakes();
-  for (std::size_t l = 0; l < all.size(); ++l) {
-    for (std::size_t r = 0; r < readings().size() && all[l].is_there; ++r) {
-      sweep::CaseResults results;
-      for (const sweep::Case& each : claim.cases)
-        results[each.name] = trials.of(settings_of(claim, each, all[l], readings()[r]));
-      marks[l][r] = sweep::holds(claim, results);
-    }
+  for (std::size_t r = 0; r < readings().size(); ++r) {
+    if (!lake.takes(claim, readings()[r])) continue;
+    sweep::CaseResults results;
+    for (const sweep::Case& each : claim.cases)
+      results[each.name] = trials.of(settings_of(claim, each, lake, readings()[r]));
+    marks[r] = sweep::holds(claim, results);
   }
   return marks;
 }
 
-std::string cell_of(const std::array<std::optional<bool>, 3>& marks) {
-  if (!marks[0]) return "";
+std::string cell_of(const Marks& marks) {
   std::string cell;
-  for (const auto& mark : marks) cell += fmt::format("{}{}", cell.empty() ? "" : " · ", *mark ? "yes" : "no");
+  for (const auto& mark : marks)
+    if (mark) cell += fmt::format("{}{}", cell.empty() ? "" : " · ", *mark ? "yes" : "no");
   return cell;
 }
 
@@ -162,7 +173,7 @@ std::string verdict_of(const std::string& lakeside, const std::string& original)
   const std::string all = lakeside + original;
   if (all.find("no") == std::string::npos) return "**true**";
   if (all.find("yes") == std::string::npos) return "**false**";
-  if (original.empty() || lakeside == original) return "depends on the reading of speed";
+  if (lakeside == original) return "depends on the reading of speed";
   const auto is_even = [](const std::string& cell) {
     return cell.find("yes") == std::string::npos || cell.find("no") == std::string::npos;
   };
@@ -175,54 +186,72 @@ std::string figure(double value) {
              : number_text(std::fabs(value) < 1e-9 ? 0.0 : value, std::fabs(value) >= 100.0 ? 4 : 3);
 }
 
-/// "N25 50.7, N40 69.8" in one world.
+/// The least and the most of the clean points of a grid: "12 of 15 clean, least 7/0.1: 0.219, most ...".
+std::string grid_figures(const Claim& claim, const Trials& trials, const Lake& lake, const Reading& reading,
+                         const std::string& column) {
+  std::vector<std::pair<double, std::string>> clean;
+  for (std::size_t i = claim.cases.size() - claim.grid_size; i < claim.cases.size(); ++i) {
+    const auto& run = trials.of(settings_of(claim, claim.cases[i], lake, reading));
+    const double value = sweep::number_of(run, column);
+    if (sweep::number_of(run, "clean") > 0.0 && !std::isnan(value))
+      clean.emplace_back(value, claim.cases[i].name);
+  }
+  if (clean.empty()) return fmt::format("none of a grid of {} clean", claim.grid_size);
+  const auto [least, most] = std::minmax_element(clean.begin(), clean.end());
+  return fmt::format("{} of a grid of {} clean, least {}: {}, most {}: {}", clean.size(), claim.grid_size,
+                     least->second, figure(least->first), most->second, figure(most->first));
+}
+
+/// "N25: 50.7, N40: 69.8" in one world.
 std::string figures_of(const Claim& claim, const Trials& trials, const Lake& lake, const Reading& reading) {
   std::string text;
   for (const std::string& column : claim.shows) {
     text += fmt::format("{}`{}`", text.empty() ? "" : "; ", column);
-    for (std::size_t i = 0; i < claim.cases.size(); ++i) {
+    for (std::size_t i = 0; i < claim.cases.size() - claim.grid_size; ++i) {
       const sweep::Case& each = claim.cases[i];
       const auto& run = trials.of(settings_of(claim, each, lake, reading));
       text += fmt::format("{} {}: {}", i == 0 ? "" : ",", each.name, figure(sweep::number_of(run, column)));
     }
+    if (claim.grid_size > 0) text += ", " + grid_figures(claim, trials, lake, reading, column);
   }
   return text;
 }
 
-/// The cell of an older page, for a lake that is not there.
+/// The cell of an older page, for a lake that is not there; `column` 0 is the id.
 std::string older_cell(const std::string& page, const std::string& id, int column) {
-  const std::size_t row = page.find(fmt::format("| {} |", id));
-  std::size_t at = row;
+  const std::size_t row = page.find(fmt::format("\n| {} |", id));
+  if (row == std::string::npos) return "";
+  std::size_t at = row + 1;
   for (int i = 0; i < column && at != std::string::npos; ++i) at = page.find('|', at + 1);
-  if (row == std::string::npos || at == std::string::npos) return "";
-  const std::size_t end = page.find('|', at + 1);
-  return end == std::string::npos ? "" : page.substr(at + 2, end - at - 3);
+  const std::size_t end = at == std::string::npos ? at : page.find('|', at + 1);
+  return end == std::string::npos || end < at + 3 ? "" : page.substr(at + 2, end - at - 3);
 }
 
-/// The rows of the page: id, statement, verdict, lakeside, original lake, figures.
+/// The rows of the page: id, statement, verdict, a cell for each lake, figures. The verdict is that of the
+/// lakes that ship.
 std::string rows_of(const std::vector<Claim>& claims, const Trials& trials, const std::string& older) {
-  const std::vector<Lake> all = lakes();
+  const auto& all = lakes();
   std::string text;
   char group = 0;
   for (const Claim& claim : claims) {
     if (claim.id[0] != group) {
       group = claim.id[0];
       text += fmt::format(
-          "\n## Write-up {}\n\n| | statement | verdict | lakeside | original lake | figures, or where to see "
-          "|\n"
-          "|---|---|---|---|---|---|\n",
-          group);
+          "\n## Write-up {}\n\n| | statement | verdict | {} | {} | {} | figures, or where to see |\n"
+          "|---|---|---|---|---|---|---|\n",
+          group, all[0].name, all[1].name, all[2].name);
     }
     if (!claim.is_tried()) {
-      text += fmt::format("| {} | {} | {} | | | {} |\n", claim.id, claim.says, claim.found, claim.see);
+      text += fmt::format("| {} | {} | {} | | | | {} |\n", claim.id, claim.says, claim.found, claim.see);
       continue;
     }
-    const Marks marks = marks_of(claim, trials);
-    const std::string lakeside = cell_of(marks[0]);
-    const std::string original = all[1].is_there ? cell_of(marks[1]) : older_cell(older, claim.id, 5);
-    text +=
-        fmt::format("| {} | {} | {} | {} | {} | {} |\n", claim.id, claim.says, verdict_of(lakeside, original),
-                    lakeside, original, figures_of(claim, trials, all[0], own_reading(claim)));
+    std::array<std::string, kLakes> cells;
+    for (std::size_t l = 0; l < kLakes; ++l)
+      cells[l] = all[l].is_there ? cell_of(marks_of(claim, trials, all[l]))
+                                 : older_cell(older, claim.id, 3 + static_cast<int>(l));
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", claim.id, claim.says,
+                        verdict_of(cells[0], cells[1]), cells[0], cells[1], cells[2],
+                        figures_of(claim, trials, all[0], own_reading(claim)));
   }
   return text;
 }
@@ -237,17 +266,17 @@ std::string details_of(const std::vector<Claim>& claims, const Trials& trials) {
       continue;
     }
     for (const auto& condition : claim.conditions) text += fmt::format("    true when {}\n", condition.text);
-    const Marks marks = marks_of(claim, trials);
-    const std::vector<Lake> all = lakes();
-    for (std::size_t l = 0; l < all.size(); ++l) {
-      for (std::size_t r = 0; r < readings().size() && all[l].is_there; ++r)
-        text += fmt::format("    {:<18} {:<17} {:<4} {}\n", all[l].name, readings()[r].name,
-                            *marks[l][r] ? "yes" : "no", figures_of(claim, trials, all[l], readings()[r]));
-      if (!all[l].is_there) text += fmt::format("    {} is not there: {}\n", all[l].name, all[l].track);
+    for (const Lake& lake : lakes()) {
+      const Marks marks = marks_of(claim, trials, lake);
+      for (std::size_t r = 0; r < readings().size(); ++r)
+        if (marks[r])
+          text += fmt::format("    {:<18} {:<17} {:<4} {}\n", lake.name, readings()[r].name,
+                              *marks[r] ? "yes" : "no", figures_of(claim, trials, lake, readings()[r]));
+      if (!lake.is_there) text += fmt::format("    {:<18} skipped: no {}\n", lake.name, lake.track);
     }
     for (const sweep::Case& each : claim.cases)
       text += fmt::format("    {}: {}\n", each.name,
-                          sweep::command_of(settings_of(claim, each, all[0], own_reading(claim))));
+                          sweep::command_of(settings_of(claim, each, lakes()[0], own_reading(claim))));
     text += '\n';
   }
   return text;
@@ -261,17 +290,27 @@ std::string page_of(const std::string& older, const std::string& rows) {
                                     : older.substr(0, begin + kBegin.size()) + rows;
 }
 
-ExitCode compare(const std::string& file, const std::string& older, const std::string& rows) {
+/// The line of a page that begins with `start`.
+std::string line_with(const std::string& page, const std::string& start) {
+  const std::size_t row = page.find("\n" + start);
+  return row == std::string::npos ? "no such row" : page.substr(row + 1, page.find('\n', row + 1) - row - 1);
+}
+
+/// `count`: of the claims that were tried again.
+ExitCode compare(const std::string& file, const std::string& older, const std::string& rows,
+                 std::size_t count) {
   int different = 0;
   for (std::size_t at = 0; at < rows.size();) {
     const std::size_t end = rows.find('\n', at);
     const std::string line = rows.substr(at, end - at);
     if (older.find(line + "\n") == std::string::npos) {
-      fmt::print("{}: not there: {}\n", file, line);
+      fmt::print("{}: got {}\n{}: expected {}\n", file,
+                 line_with(older, line.substr(0, line.find('|', 2) + 1)), file, line);
       ++different;
     }
     at = end + 1;
   }
+  if (different == 0) fmt::print("{}: {} statements as the page has them\n", file, count);
   return different == 0 ? kSuccess : kRunFailed;
 }
 
@@ -283,16 +322,16 @@ ExitCode try_claims(const Options& options) {
   catch_interrupts(stop);
   const auto claims = read_claims(options.claims.folder, options.claims.ids);
   if (!claims) return report(claims.error());
-  const std::vector<Lake> all = lakes();
   Trials trials;
   for (const Claim& claim : *claims) {
     for (const sweep::Case& each : claim.cases) {
-      for (const Lake& lake : all)
+      for (const Lake& lake : lakes())
         for (const Reading& reading : readings())
-          if (lake.is_there) trials.add(settings_of(claim, each, lake, reading));
+          if (lake.takes(claim, reading)) trials.add(settings_of(claim, each, lake, reading));
     }
   }
-  if (!all[1].is_there) fmt::print(stderr, "{} is not there: tried on lakeside alone\n", all[1].track);
+  for (const Lake& lake : lakes())
+    if (!lake.is_there) fmt::print(stderr, "skipped: {}: no {}\n", lake.name, lake.track);
   const std::string& page = options.claims.page;
   if (const Result<void> writable = check_writable(options.claims.is_check ? "" : page); !writable)
     return report(writable.error());
@@ -308,7 +347,7 @@ ExitCode try_claims(const Options& options) {
   }
   const std::string older = protocol::read_file(page).value_or("");
   const std::string rows = rows_of(*claims, trials, older);
-  if (options.claims.is_check) return compare(page, older, rows);
+  if (options.claims.is_check) return compare(page, older, rows, claims->size());
   std::ofstream out(page, std::ios::trunc);
   out << page_of(older, rows);
   out.close();

@@ -26,15 +26,16 @@ namespace chicane::bench {
 
 /// What tells one described problem from another.
 struct DescribedTerms {
-  double dt = 0.1;                  ///< [s]
-  double turn_per_metre = 0.0;      ///< ± 1 / L_f [1/m]
-  double speed_reference = 0.0;     ///< as the model's v
-  double error_sign = 1.0;          ///< of the last term of cte
-  double heading_reach = 1.0;       ///< of the desired yaw (controller/described_model.hpp)
-  std::array<double, 8> weights{};  ///< of cte, eψ, v, δ, a, Δδ, Δa, v δ
-  std::array<double, 4> line{};     ///< coefficients, from the constant on
-  bool acts_late = false;           ///< the inputs of a stage act in the next one
-  std::array<double, 2> last{};     ///< the inputs before the first, where they act late
+  double dt = 0.1;                    ///< [s]
+  double turn_per_metre = 0.0;        ///< ± 1 / L_f [1/m]
+  double speed_reference = 0.0;       ///< as the model's v
+  double error_sign = 1.0;            ///< of the last term of cte
+  double heading_reach = 1.0;         ///< of the desired yaw (controller/described_model.hpp)
+  bool is_lateral_recursive = false;  ///< cte⁺ = cte + v sin eψ dt
+  std::array<double, 8> weights{};    ///< of cte, eψ, v, δ, a, Δδ, Δa, v δ
+  std::array<double, 4> line{};       ///< coefficients, from the constant on
+  bool acts_late = false;             ///< the inputs of a stage act in the next one
+  std::array<double, 2> last{};       ///< the inputs before the first, where they act late
 };
 
 /// Where the variables of a problem with `nodes` states begin: x, y, ψ, v, cte, eψ, δ, a.
@@ -109,7 +110,8 @@ class CppadProblem {
     fg[1 + at_.state(1, t)] = vars[at_.state(1, t)] - (y + v * sin(psi) * dt);
     fg[1 + at_.state(2, t)] = vars[at_.state(2, t)] - (psi + turn);
     fg[1 + at_.state(3, t)] = vars[at_.state(3, t)] - (v + throttle * dt);
-    fg[1 + at_.state(4, t)] = vars[at_.state(4, t)] - ((f - y) + v * sin(epsi) * (terms_.error_sign * dt));
+    const Number cte = terms_.is_lateral_recursive ? vars[at_.state(4, t - 1)] : f - y;
+    fg[1 + at_.state(4, t)] = vars[at_.state(4, t)] - (cte + v * sin(epsi) * (terms_.error_sign * dt));
     fg[1 + at_.state(5, t)] = vars[at_.state(5, t)] - ((psi - desired) + turn);
   }
 

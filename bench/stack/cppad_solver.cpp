@@ -18,6 +18,7 @@ DescribedTerms terms_of(const CubicProblem& problem, const CubicProblem::State& 
                        .speed_reference = problem.speed_reference,
                        .error_sign = problem.error_sign,
                        .heading_reach = problem.heading_reach,
+                       .is_lateral_recursive = problem.is_lateral_recursive,
                        .line = problem.line.c,
                        .acts_late = problem.acts_late,
                        .last = {begin[5], begin[6]}};

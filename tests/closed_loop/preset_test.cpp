@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <string>
 
 #include "closed_loop/drive.hpp"
@@ -21,9 +20,6 @@ constexpr Claim kClaims[] = {{"measured-latency", 38.0, 42.0}, {"fast-short-step
                              {"sixty-mph", 57.0, 62.0},        {"weighted", 45.0, 53.0},
                              {"delay-in-model", 80.0, 92.0},   {"pid", 28.0, 31.0},
                              {"pure-pursuit", 28.0, 31.0},     {"stanley", 28.0, 31.0}};
-
-const std::string kOriginalLake =
-    std::string{CHICANE_SOURCE_DIR} + "/../shared/tracks/udacity/lake_scene.csv";
 
 void expect_clean_laps(const telemetry::RunSummary& run) {
   EXPECT_TRUE(run.completed) << run.preset << " on " << run.track << ": " << run.end_reason;
@@ -45,12 +41,10 @@ TEST(Presets, LapTheLakesideCleanlyAtTheSpeedTheyClaim) {
 }
 
 TEST(Presets, LapTheOriginalLakeCleanlyAtTheSpeedTheyClaim) {
-  if (!std::filesystem::exists(kOriginalLake))
-    GTEST_SKIP() << "the presets are not tried on the original's lake: no " << kOriginalLake;
   for (const Claim& claim : kClaims) {
     const auto run = drive({{"guard.mode", "off"},
                             {"preset", claim.preset},
-                            {"track", kOriginalLake},
+                            {"track", "original-lake"},
                             {"laps", "3"},
                             {"latency_ms", "100"}});
     expect_clean_laps(run);

@@ -149,6 +149,15 @@ TEST_F(Estimating, CountsOnWithoutNumbersAndIgnoresWhatIsOutOfOrder) {
   EXPECT_TRUE(std::isfinite(estimator.predict(0.2, sent).state.x));
 }
 
+TEST_F(Estimating, IgnoresAMeasurementOfTheSameTime) {
+  estimator.correct({.time = 0.0, .speed = 10.0}, sent);
+  estimator.correct({.time = 0.05, .x = 0.5, .speed = 10.0}, sent);
+  const model::State before = estimator.state();
+  estimator.correct({.time = 0.05, .x = 0.9, .speed = 12.0}, sent);
+  EXPECT_EQ(estimator.state().x, before.x);
+  EXPECT_EQ(estimator.state().vx, before.vx);
+}
+
 TEST(InnovationGains, FallWithNoiseAndNotWithAModelThatIsWrong) {
   InnovationGains noisy{2.0};
   InnovationGains wrong{2.0};

@@ -95,20 +95,21 @@ TEST(CubicProblem, PaysTheDescribedSum) {
 /// of the others.
 std::vector<CubicProblem> all_variants(Random& random) {
   std::vector<CubicProblem> problems;
-  for (const unsigned variant : {0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 10U, 11U, 12U, 13U, 14U, 15U}) {
+  for (const unsigned variant : {0U,  1U,  2U,  3U,  4U,  5U,  6U,  7U,  8U,  9U,  10U, 11U,
+                                 12U, 13U, 14U, 15U, 24U, 25U, 26U, 27U, 28U, 29U, 30U, 31U}) {
     CubicMpcOptions options;
     options.latency_handling = (variant & 4U) != 0 ? LatencyHandling::kInsideModel : LatencyHandling::kNone;
     options.steering_right_positive = (variant & 2U) != 0;
     options.speed_in_mph = (variant & 1U) != 0;
     options.lateral_error_to_left = options.heading_error_integrated = (variant & 8U) != 0;
+    options.lateral_error_integrated = (variant & 16U) != 0;
     options.speed_reference = random.uniform(5.0, 25.0);
     options.weight_speed_steer = random.uniform(0.0, 1.0);
     options.weight_steer_change = random.uniform(0.0, 100.0);
     options.weight_throttle = random.uniform(0.1, 50.0);
     CubicProblem problem{options, model::VehicleParams{}};
-    problem.line = {{random.uniform(-1.5, 1.5), random.uniform(-0.3, 0.3), random.uniform(-4e-3, 4e-3),
-                     random.uniform(-3e-5, 3e-5)}};
-    problem.first_lateral_error = problem.line.at(0.0);
+    problem.follow({{random.uniform(-1.5, 1.5), random.uniform(-0.3, 0.3), random.uniform(-4e-3, 4e-3),
+                     random.uniform(-3e-5, 3e-5)}});
     problems.push_back(problem);
   }
   return problems;
@@ -201,7 +202,7 @@ TEST(CubicProblem, HasTheOptimaOfTheDenseForm) {
       }
     }
   }
-  EXPECT_GE(compared, 120) << "of 128";
+  EXPECT_GE(compared, 180) << "of 192";
 }
 
 TEST(CubicProblem, HasMirroredOptima) {
@@ -214,8 +215,9 @@ TEST(CubicProblem, HasMirroredOptima) {
     left->u.fill({});
     right->u.fill({});
     (void)solve(problem, start, *left);
-    for (double& c : problem.line.c) c = -c;
-    problem.first_lateral_error = -problem.first_lateral_error;
+    Cubic mirrored = problem.line;
+    for (double& c : mirrored.c) c = -c;
+    problem.follow(mirrored);
     start[CubicProblem::kEpsi] = -start[CubicProblem::kEpsi];
     start[CubicProblem::kLastSteer] = -start[CubicProblem::kLastSteer];
     (void)solve(problem, start, *right);

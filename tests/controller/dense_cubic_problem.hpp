@@ -32,6 +32,7 @@ struct DenseCubicProblem {
         speed_reference{structured.speed_reference},
         error_sign{structured.error_sign},
         is_integrated{structured.heading_reach == 0.0},
+        is_lateral_recursive{structured.is_lateral_recursive},
         acts_late{structured.acts_late},
         root{structured.root},
         line{structured.line} {}
@@ -46,14 +47,15 @@ struct DenseCubicProblem {
     const T steer = acts_late ? x[kLastSteer] : u[kSteer];
     const T throttle = acts_late ? x[kLastThrottle] : u[kThrottle];
     const T turn = x[kV] * steer * (turn_per_metre * dt);
-    return {x[kX] + x[kV] * cos(x[kPsi]) * dt,
-            x[kY] + x[kV] * sin(x[kPsi]) * dt,
-            x[kPsi] + turn,
-            x[kV] + throttle * dt,
-            line.at(x[kX]) - x[kY] + x[kV] * sin(x[kEpsi]) * (error_sign * dt),
-            (is_integrated ? x[kEpsi] : x[kPsi] - atan(line.slope(x[kX]))) + turn,
-            u[kSteer],
-            u[kThrottle]};
+    return {
+        x[kX] + x[kV] * cos(x[kPsi]) * dt,
+        x[kY] + x[kV] * sin(x[kPsi]) * dt,
+        x[kPsi] + turn,
+        x[kV] + throttle * dt,
+        (is_lateral_recursive ? x[kCte] : line.at(x[kX]) - x[kY]) + x[kV] * sin(x[kEpsi]) * (error_sign * dt),
+        (is_integrated ? x[kEpsi] : x[kPsi] - atan(line.slope(x[kX]))) + turn,
+        u[kSteer],
+        u[kThrottle]};
   }
 
   /// Equation 7, one stage. The first stage has no change to pay for, as described.
@@ -83,7 +85,8 @@ struct DenseCubicProblem {
   double steer_limit;
   double speed_reference;
   double error_sign;
-  bool is_integrated;  ///< the heading error, from step to step
+  bool is_integrated;         ///< the heading error, from step to step
+  bool is_lateral_recursive;  ///< the lateral error, from step to step
   bool acts_late;
   std::array<double, kNr> root;
   Cubic line;

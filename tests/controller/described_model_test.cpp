@@ -85,5 +85,26 @@ TEST(DescribedModel, AnIntegratedHeadingErrorIsTheOneBeforePlusTheTurn) {
   EXPECT_GT(std::fabs(model().line.slope(state[0]) - model().line.slope(0.0)), 0.01) << "the line does bend";
 }
 
+TEST(DescribedModel, ARecursiveLateralErrorIsTheOneBeforePlusItsStep) {
+  // Write-up 1: cte = y − f(x) at the beginning, then cte⁺ = cte + v sin eψ dt, whatever the line does.
+  const double slope = kLine.slope(0.0);
+  DescribedModel<Cubic> theirs = model();
+  theirs.error_sign = -1.0;
+  theirs.heading_reach = theirs.lateral_reach = 0.0;
+  theirs.lateral_by_x = slope / std::hypot(1.0, slope);
+  theirs.lateral_by_y = -1.0 / std::hypot(1.0, slope);
+  std::array<double, 7> state{0.0, 0.0, 0.0, 12.0, -std::atan(slope), 0.0, 0.0};
+  double expected = -kLine.at(0.0);
+  for (const double steer : {0.2, 0.1, -0.3, 0.0}) {
+    expected += state[3] * std::sin(state[4]) * theirs.dt;
+    EXPECT_NEAR(-theirs.next_lateral_error(state), expected, kRounding);
+    const std::array input{steer, 0.5};
+    state = std::apply([](auto... value) { return std::array<double, 7>{value...}; },
+                       theirs.next(state, input, input));
+  }
+  EXPECT_GT(std::fabs(theirs.next_lateral_error(state) - model().next_lateral_error(state)), 0.1)
+      << "the line bends away from its tangent";
+}
+
 }  // namespace
 }  // namespace chicane::controller

@@ -101,6 +101,19 @@ TEST(FitCubic, LowersTheDegreeForFewerPoints) {
   EXPECT_EQ(fit.c[3], 0.0);
 }
 
+TEST(FitCubic, HasTheOrderThatIsAsked) {
+  std::vector<Vec2> points;
+  for (const double x : {-3.0, -1.0, 1.0, 3.0}) points.emplace_back(x, 1.0 + x * x);
+  Cubic fit;
+  ASSERT_TRUE(fit_cubic(points, fit, 2));
+  EXPECT_NEAR(fit.at(3.0), 10.0, 1e-12);
+  ASSERT_TRUE(fit_cubic(points, fit, 1));
+  EXPECT_NEAR(fit.c[0], 6.0, 1e-12) << "the mean";
+  EXPECT_NEAR(fit.c[1], 0.0, 1e-12);
+  EXPECT_EQ(fit.c[2], 0.0);
+  EXPECT_EQ(fit.c[3], 0.0);
+}
+
 TEST(FitCubic, TakesTheMeanWherePointsShareAnX) {
   Cubic fit;
   ASSERT_TRUE(fit_cubic(std::vector<Vec2>{{0.0, 1.0}, {0.0, 3.0}, {10.0, 5.0}, {10.0, 7.0}}, fit));

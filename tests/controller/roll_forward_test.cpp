@@ -74,6 +74,15 @@ TEST(RollForward, AveragesTheMeasuredLatencyWithTheValueBefore) {
   EXPECT_DOUBLE_EQ(roll.compensated(), 0.1);
 }
 
+TEST(RollForward, LeavesOutTheTermOfTheAccelerationWhenAskedTo) {
+  RollForward with{LatencyHandling::kMeasured, 0.1, kLength};
+  RollForward without{LatencyHandling::kMeasured, 0.1, kLength, 1.0, false};
+  const double latency = 0.5 * (0.1 + 0.14);
+  const double term = 0.5 * 0.5 * std::tan(0.1) / kLength * latency * latency;
+  EXPECT_NEAR(with.predict(moving()).pose.psi - without.predict(moving()).pose.psi, term, 1e-14);
+  EXPECT_GT(term, 1e-4);
+}
+
 TEST(RollForward, BelievesNoImpossibleLatency) {
   RollForward roll{LatencyHandling::kMeasured, 0.1, kLength};
   model::Measurement now = moving();

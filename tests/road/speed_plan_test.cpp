@@ -53,6 +53,19 @@ TEST(SpeedPlan, SaysWhatLimitsTheSpeedBeforeInAndBehindABend) {
   EXPECT_NEAR(samples[183].speed, std::sqrt(0.9 * car.cornering_friction() * car.load_constant * 40.0), 1e-9);
 }
 
+// To turn in, the front axle needs more than the bend; to turn out, the rear one (docs/tracking.md, eq. 11).
+TEST(SpeedPlan, HoldsTheAxleThatNeedsMoreWhereTheCurvatureChanges) {
+  ReferenceLine line = with_a_bend(40.0);
+  plan(line, {.speed_limit = 40.0});
+  const model::VehicleParams car = uncoupled_car();
+  const double slope = 1.0 / 40.0 / 6.0;  // over 3 m each way
+  const double entry = 1.0 / 40.0 + car.yaw_inertia / (car.mass * car.rear_axle) * slope;
+  const double exit = 1.0 / 40.0 + car.yaw_inertia / (car.mass * car.front_axle) * slope;
+  const double grip = 0.9 * car.cornering_friction() * car.load_constant;
+  EXPECT_NEAR(line.samples()[167].speed, std::sqrt(grip / entry), 1e-9);
+  EXPECT_NEAR(line.samples()[200].speed, std::sqrt(grip / exit), 1e-9);
+}
+
 // Told the truth about a slippery road, the car braked as on a dry one and left the road (it did with 0.6 of
 // the grip).
 TEST(SpeedPlan, BrakesWithWhatTheSurfaceGives) {
@@ -72,6 +85,30 @@ TEST(SpeedPlan, BrakesWithWhatTheSurfaceGives) {
   EXPECT_NEAR(before_bend(1.0), car.brake_acceleration + drag, 0.2) << "what the brakes give";
   const double grip = model::with_grip(car, 0.5).cornering_friction() * car.load_constant;
   EXPECT_NEAR(before_bend(0.5), 0.85 * grip + drag, 0.2) << "what the road gives";
+}
+
+// Brakes in a wide bend for a narrow one: with what the friction ellipse leaves beside the sideways force.
+TEST(SpeedPlan, SharesTheGripBetweenBrakingAndCornering) {
+  for (const double coupling : {1.0, 0.5}) {
+    model::VehicleParams car = model::road_car_params();
+    car.friction_coupling = coupling;
+    const SpeedPlanOptions options{.grip_share = 0.9, .brake_share = 0.5};
+    ReferenceLine line = with_a_bend(30.0);
+    for (std::size_t i = 60; i < 167; ++i) line.samples()[i].curve.curvature = 1.0 / 90.0;
+    SpeedPlan speeds(401);
+    speeds.begin(car, options);
+    for (int work = 1'000'000; !speeds.advance(work, line);) ADD_FAILURE();
+    const double v = line.samples()[158].speed;  // 13 m before the narrow bend
+    const double before = line.samples()[157].speed;
+    ASSERT_EQ(line.samples()[157].limiter, SpeedLimiter::kBraking);
+    const double use = v * v / 90.0 * (1.0 - car.steer_helper) /
+                       (options.grip_share * car.cornering_friction() * car.load(v));
+    ASSERT_GT(use, 0.3);
+    const double drag = longitudinal_acceleration(car, 0.0, v);
+    const double force = drag - longitudinal_acceleration(car, -car.brake_throttle_limit, v);
+    EXPECT_NEAR((before * before - v * v) / (2.0 * line.spacing()),
+                options.brake_share * std::sqrt(1.0 - coupling * use * use) * force - drag, 1e-9);
+  }
 }
 
 TEST(SpeedPlan, EndsAnOpenLineAtTheSpeedOfTheBendThatMayFollow) {

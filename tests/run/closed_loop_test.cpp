@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -45,9 +44,7 @@ TEST(DefaultPreset, LapsLakesideFastAndClean) {
 }
 
 TEST(DefaultPreset, LapsTheOriginalWaypointsFastAndClean) {
-  const std::string file = CHICANE_SOURCE_DIR "/../shared/tracks/udacity/lake_scene.csv";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
-  const telemetry::RunSummary summary = run(scenario_of("udacity", file, 3));
+  const telemetry::RunSummary summary = run(scenario_of("udacity", "original-lake", 3));
   expect_clean(summary);
   ASSERT_EQ(summary.laps.size(), 3U);
   EXPECT_LE(summary.laps.back().lap_time, 29.0);

@@ -38,10 +38,11 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
   CubicMpc(const CubicMpcOptions& options, const model::VehicleParams& vehicle,
            std::unique_ptr<CubicSolver> solver)
       : uses_polar_{options.polar_waypoints},
+        line_order_{options.line_order},
         steer_sign_{options.steering_right_positive ? -1.0 : 1.0},
         stages_{options.horizon_steps - 1},
         roll_forward_{options.latency_handling, options.latency, vehicle.kinematic_length,
-                      rolled_unit(options)},
+                      rolled_unit(options), options.latency_acceleration_term},
         problem_{options, vehicle},
         solver_{std::move(solver)} {
     reset();
@@ -65,10 +66,11 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
     const bool means_the_same = steer_sign == steer_sign_;  // of the last answer's inputs
     const double ratio = options.step_length / problem_.dt;
     uses_polar_ = options.polar_waypoints;
+    line_order_ = options.line_order;
     steer_sign_ = steer_sign;
     stages_ = options.horizon_steps - 1;
     roll_forward_.configure(options.latency_handling, options.latency, vehicle.kinematic_length,
-                            rolled_unit(options));
+                            rolled_unit(options), options.latency_acceleration_term);
     problem_ = CubicProblem{options, vehicle};
     if (has_answer_ && means_the_same) {
       solver::resample(answer_, stages_, ratio);
@@ -102,7 +104,9 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
   bool see_line(const model::Measurement& now) noexcept {
     const LocalPoints local =
         uses_polar_ ? to_car_frame_polar(now, start_.pose) : to_car_frame(now, start_.pose);
-    if (!fit_cubic(local.view(), problem_.line)) return false;
+    Cubic line = problem_.line;
+    if (!fit_cubic(local.view(), line, line_order_)) return false;
+    problem_.follow(line);
     const Vec2 seen = to_start_frame(now.x, now.y);
     const double slope = problem_.line.slope(seen.x());
     StepReport& report = result_.report;
@@ -126,7 +130,6 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
   }
 
   void solve(const model::Measurement& now, const Deadline& deadline) noexcept {
-    problem_.first_lateral_error = problem_.line.at(0.0);
     const double started = deadline.elapsed();
     result_.report.solve = solver_->solve(problem_, initial_state(now), answer_, deadline);
     result_.report.solve_time = deadline.elapsed() - started;
@@ -206,6 +209,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
   }
 
   bool uses_polar_;
+  int line_order_;
   double steer_sign_;  ///< from the model's own steering sign to ours, and back
   int stages_;         ///< intervals: one less than states
   RollForward roll_forward_;
@@ -243,6 +247,15 @@ constexpr std::array kOptions{
     option<&C::heading_error_integrated>(
         "heading_error_integrated",
         "The heading error is that of the beginning plus what the car turns, as write-up 1 has it."),
+    option<&C::lateral_error_integrated>("lateral_error_integrated",
+                                         "cte is that of the beginning plus the sum of v sin eψ dt, as "
+                                         "write-up 1 has it: the bend ahead is not "
+                                         "seen."),
+    option<&C::line_order>("line_order", unit::kNone, 1, 3,
+                           "Order of the polynomial that is fitted through the waypoints."),
+    option<&C::latency_acceleration_term>(
+        "latency_acceleration_term",
+        "The measured roll-forward has the term a tan δ τ² / (2 L_f) of write-up 1."),
     option<&C::speed_in_mph>("speed_in_mph", "The model takes miles per hour for metres per second."),
     option<&C::roll_forward_in_mph>("roll_forward_in_mph", "The roll-forward over the latency does so, too."),
     option<&C::weight_lateral>("weight_lateral", unit::per("1/m²"), 0, kHighestWeight,
@@ -268,6 +281,11 @@ constexpr std::array kOptions{
 std::span<const Option> CubicMpcEntry::options() noexcept { return kOptions; }
 
 std::vector<OptionContradiction> CubicMpcEntry::contradictions(const CubicMpcOptions& options) {
+  if (options.lateral_error_integrated && !options.heading_error_integrated)
+    return {
+        {"lateral_error_integrated",
+         "got true, expected cubic_mpc.heading_error_integrated=true beside it: the write-up has both errors "
+         "from step to step"}};
   constexpr double kSame = 1e-9;  // [s]: the same time, written in ms and in s
   const bool shifts_by_a_step = options.latency_handling == LatencyHandling::kInsideModel;
   if (!shifts_by_a_step || std::fabs(options.latency - options.step_length) <= kSame) return {};

@@ -42,6 +42,12 @@ struct CubicMpcOptions {
   bool lateral_error_to_left = false;
   /// Equation 6 as eψ⁺ = eψ + v δ dt / L_f from step to step: the bend ahead is seen by cte alone.
   bool heading_error_integrated = false;
+  /// Equation 5 as cte⁺ = cte + v sin eψ dt from step to step: the distance from the line's tangent at the
+  /// beginning. Needs heading_error_integrated.
+  bool lateral_error_integrated = false;
+  int line_order = 3;  ///< of the polynomial through the waypoints, 1 to 3
+  /// Equation 16 with its term a tan δ τ² / (2 L_f).
+  bool latency_acceleration_term = true;
   double weight_lateral = 200.0;        ///< on cte² [1/m²]
   double weight_heading = 200.0;        ///< on eψ² [1/rad²]
   double weight_speed = 0.1;            ///< on (v − v_ref)² [s²/m²]

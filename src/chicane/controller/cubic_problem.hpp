@@ -47,6 +47,7 @@ struct CubicProblem {
         speed_reference{options.speed_reference * speed_unit},
         error_sign{options.lateral_error_to_left ? -1.0 : 1.0},
         heading_reach{options.heading_error_integrated ? 0.0 : 1.0},
+        is_lateral_recursive{options.lateral_error_integrated},
         acts_late{options.latency_handling == LatencyHandling::kInsideModel},
         root{weight_root(options.weight_lateral),         weight_root(options.weight_heading),
              weight_root(options.weight_speed),           weight_root(options.weight_steer),
@@ -97,10 +98,22 @@ struct CubicProblem {
   double speed_reference;            ///< as the model's v
   double error_sign;                 ///< of the last term of equation 5
   double heading_reach;              ///< of equation 6 (DescribedModel)
+  bool is_lateral_recursive;         ///< equation 5 as cte⁺ = cte + v sin eψ dt; pre: heading_reach is 0
   bool acts_late;                    ///< the inputs of a stage act in the next one
   std::array<double, kNr> root;      ///< √(2 weight) of: cte, eψ, v, δ, a, Δδ, Δa, v δ
   Cubic line;                        ///< reference, renewed in every step
   double first_lateral_error = 0.0;  ///< cte where the horizon begins, renewed in every step [m]
+
+  /// Renews the line, cte at its beginning, and, in the recursive form, the line's tangent there.
+  void follow(const Cubic& seen) noexcept {
+    line = seen;
+    first_lateral_error = line.at(0.0);
+    if (!is_lateral_recursive) return;
+    const double slope = line.slope(0.0);
+    const double cosine = 1.0 / hypot(1.0, slope);  // of eψ_0 = −arctan f′(0)
+    lateral_by_x_ = -error_sign * slope * cosine;
+    lateral_by_y_ = error_sign * cosine;
+  }
 
  private:
   [[nodiscard]] CHICANE_INLINE DescribedModel<Cubic> model() const noexcept {
@@ -108,7 +121,10 @@ struct CubicProblem {
             .dt = dt,
             .turn_per_length = turn_per_metre * dt,
             .error_sign = error_sign,
-            .heading_reach = heading_reach};
+            .heading_reach = heading_reach,
+            .lateral_reach = is_lateral_recursive ? 0.0 : 1.0,
+            .lateral_by_x = lateral_by_x_,
+            .lateral_by_y = lateral_by_y_};
   }
   /// The input that drives a stage: its own, or inside the model that of the stage before (equation 13).
   template <class Last, class Own>
@@ -117,6 +133,8 @@ struct CubicProblem {
     return own * (1.0 - late) + last * late;
   }
   static double weight_root(double weight) noexcept { return sqrt(2.0 * weight); }
+
+  double lateral_by_x_ = 0.0, lateral_by_y_ = -1.0;  ///< of DescribedModel
 };
 
 }  // namespace chicane::controller

@@ -12,6 +12,10 @@ namespace chicane::controller {
 /// beside a line y = f(x), in the car's frame. State x, y [m], ψ [rad], v [m/s], eψ [rad], and the inputs of
 /// the stage before; input δ [rad], a [m/s²]. The type of the states is the solver's: numbers, jets, or packs
 /// of either. A Line has at(x) [m] and slope(x).
+///
+/// Write-up 1 has both errors in recursive form, cte⁺ = cte + v sin eψ dt and eψ⁺ = eψ + v δ dt / L_f. Since
+/// ψ_0 = 0, eψ_k = eψ_0 + ψ_k, and by equations 1 and 2 the sum is exact: cte_k = cte_0 + cos eψ_0 y_k +
+/// sin eψ_0 x_k, the distance from the line's tangent at the beginning. So the recursion needs no state.
 template <class Line>
 struct DescribedModel {
   const Line& line;
@@ -23,6 +27,10 @@ struct DescribedModel {
   /// Equation 6: 1 where the desired yaw is the line's beside the car; 0 where it is the line's at the
   /// beginning, so that from eψ = ψ − arctan f′(0) on eψ⁺ = eψ ± v δ dt / L_f.
   double heading_reach = 1.0;
+  /// Equation 5: where cte is read from the line, f(x) − y, these are 1 and (0, −1). In its recursive form
+  /// (RecursiveError) it is a linear function of the position: reach 0, and the slopes by x and y.
+  double lateral_reach = 1.0;
+  double lateral_by_x = 0.0, lateral_by_y = -1.0;
 
   /// The state after one step, with the described recursion of the heading error. `acting`: the steering and
   /// acceleration that move the car meanwhile, `input` itself or what came before.
@@ -41,7 +49,8 @@ struct DescribedModel {
   template <class X>
   [[nodiscard]] CHICANE_INLINE auto next_lateral_error(const X& state) const noexcept {
     const auto& [x, y, psi, v, epsi, last_steer, last_acceleration] = state;
-    return line.at(x) - y + v * sin(epsi) * (error_sign * dt);
+    return line.at(x * lateral_reach) + lateral_by_y * y + lateral_by_x * x +
+           v * sin(epsi) * (error_sign * dt);
   }
 };
 

@@ -31,6 +31,8 @@ LocalPoints convert(const model::Measurement& now, const model::Pose& car, const
 /// The powers 1, t, t², t³ of the points' x (columns) with their y, turned row by row into R c = Qᵀ y.
 class LeastSquares {
  public:
+  explicit LeastSquares(int order) noexcept : used_columns_{static_cast<std::size_t>(order) + 1} {}
+
   void add(double t, double y) noexcept {
     double power = 1.0;
     for (auto& column : columns_) {
@@ -45,7 +47,7 @@ class LeastSquares {
     std::array<double, kColumns> diagonal{};
     std::array<std::size_t, kColumns> pivot_row{};
     std::size_t row = 0;
-    for (std::size_t j = 0; j < kColumns && row < rows_; ++j) {
+    for (std::size_t j = 0; j < used_columns_ && row < rows_; ++j) {
       const double rest = norm(columns_[j], row);
       if (rest <= kRankTolerance * norm(columns_[j], 0)) continue;
       pivot_row[j] = row;
@@ -91,6 +93,7 @@ class LeastSquares {
 
   std::array<Column, kColumns> columns_{};
   Column y_{};
+  std::size_t used_columns_;
   std::size_t rows_ = 0;
 };
 
@@ -112,7 +115,8 @@ LocalPoints to_car_frame_polar(const model::Measurement& now, const model::Pose&
   });
 }
 
-bool fit_cubic(std::span<const Vec2> points, Cubic& fit) noexcept {
+bool fit_cubic(std::span<const Vec2> points, Cubic& fit, int order) noexcept {
+  CHICANE_ASSERT(order >= 1 && order <= 3);
   CHICANE_ASSERT(points.size() <= kRows);
   if (points.size() < 2) return false;
   double low = points[0].x();
@@ -125,7 +129,7 @@ bool fit_cubic(std::span<const Vec2> points, Cubic& fit) noexcept {
 
   // Powers of t = x / scale in [-1, 1]: those of x itself differ by a factor of a million.
   const double scale = std::max(std::fabs(low), std::fabs(high));
-  LeastSquares system;
+  LeastSquares system{order};
   for (const Vec2& point : points) system.add(point.x() / scale, point.y());
   fit.c = system.solve();
   double unit = 1.0;

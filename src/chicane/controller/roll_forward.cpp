@@ -31,10 +31,11 @@ Motion roll_kinematic(const Motion& from, const model::Command& acting, double l
 }
 
 Motion roll_accelerating(const Motion& from, const model::Command& acting, double latency,
-                         double kinematic_length) noexcept {
+                         double kinematic_length, bool has_term) noexcept {
   const double curvature = tan(acting.steer) / kinematic_length;
   Motion to = roll_position(from, latency);
-  to.pose.psi += from.speed * curvature * latency + 0.5 * acting.throttle * curvature * latency * latency;
+  const double term = has_term ? 0.5 * acting.throttle * curvature * latency * latency : 0.0;
+  to.pose.psi += from.speed * curvature * latency + term;
   to.speed += acting.throttle * latency;
   return to;
 }
@@ -59,7 +60,7 @@ Motion RollForward::roll(const model::Measurement& now, const Motion& seen) noex
       return roll_kinematic(seen, acting, latency_, kinematic_length_);
     case LatencyHandling::kMeasured:
       if (std::isfinite(now.delay)) latency_ = 0.5 * (latency_ + std::clamp(now.delay, 0.0, kMaxLatency));
-      return roll_accelerating(seen, acting, latency_, kinematic_length_);
+      return roll_accelerating(seen, acting, latency_, kinematic_length_, has_term_);
   }
   return seen;
 }

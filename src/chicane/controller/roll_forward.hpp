@@ -22,20 +22,22 @@ struct Motion {
                                     double kinematic_length) noexcept;
 
 /// The form that goes with the measured latency (equation 16): ψ += v tan δ L / L_f + a tan δ L² / (2 L_f).
+/// `has_term`: false leaves out the last one, of the acceleration.
 [[nodiscard]] Motion roll_accelerating(const Motion& from, const model::Command& acting, double latency,
-                                       double kinematic_length) noexcept;
+                                       double kinematic_length, bool has_term = true) noexcept;
 
 /// Chooses among them, and keeps the measured latency. Latency lies in [0, 0.5] s whatever is measured.
 class RollForward {
  public:
-  /// `speed_unit`: what is taken for 1 m/s on the way.
-  RollForward(LatencyHandling handling, double latency, double kinematic_length,
-              double speed_unit = 1.0) noexcept
+  /// `speed_unit`: what is taken for 1 m/s on the way; `has_term`: equation 16 with its last term.
+  RollForward(LatencyHandling handling, double latency, double kinematic_length, double speed_unit = 1.0,
+              bool has_term = true) noexcept
       : handling_{handling},
         first_latency_{latency},
         latency_{latency},
         kinematic_length_{kinematic_length},
-        speed_unit_{speed_unit} {}
+        speed_unit_{speed_unit},
+        has_term_{has_term} {}
 
   /// The measured motion at the time the command acts, by the described means. Pre: finite pose, speed and
   /// commands.
@@ -44,14 +46,15 @@ class RollForward {
   [[nodiscard]] double compensated() const noexcept;
   void reset() noexcept { latency_ = first_latency_; }
   /// Other settings; a measured latency stays measured.
-  void configure(LatencyHandling handling, double latency, double kinematic_length,
-                 double speed_unit = 1.0) noexcept {
+  void configure(LatencyHandling handling, double latency, double kinematic_length, double speed_unit = 1.0,
+                 bool has_term = true) noexcept {
     const bool is_told_anew = handling != handling_ || latency != first_latency_;
     if (is_told_anew) latency_ = latency;
     handling_ = handling;
     first_latency_ = latency;
     kinematic_length_ = kinematic_length;
     speed_unit_ = speed_unit;
+    has_term_ = has_term;
   }
 
  private:
@@ -62,6 +65,7 @@ class RollForward {
   double latency_;
   double kinematic_length_;
   double speed_unit_;
+  bool has_term_;
 };
 
 }  // namespace chicane::controller

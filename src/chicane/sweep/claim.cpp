@@ -46,13 +46,17 @@ bool is_column(std::string_view text) {
   return text == "clean" || find_column(place_in(text).name) != nullptr;
 }
 
+/// Stands for every other clean case on the right of a comparison.
+constexpr std::string_view kEach = "each";
+
 std::optional<Condition::Value> value_in(const std::string& text, const std::vector<Case>& cases) {
   if (const auto number = real_in(text)) return Condition::Value{.constant = *number};
   const std::size_t dot = text.find('.');
   if (dot == std::string::npos) return std::nullopt;
   Condition::Value value{.name = text.substr(0, dot), .column = text.substr(dot + 1)};
-  const bool is_known =
-      std::any_of(cases.begin(), cases.end(), [&](const Case& each) { return each.name == value.name; });
+  const bool is_known = value.name == kEach || std::any_of(cases.begin(), cases.end(), [&](const Case& each) {
+                          return each.name == value.name;
+                        });
   if (!is_known || !is_column(value.column)) return std::nullopt;
   return value;
 }
@@ -64,7 +68,8 @@ std::optional<Condition> condition_in(const std::string& text, const std::vector
   Condition condition{.text = text};
   const auto a = value_in(left, cases);
   const auto b = value_in(right, cases);
-  if (!a || !b || a->name.empty() || comparison.size() != 1 || !more.empty()) return std::nullopt;
+  if (!a || !b || a->name.empty() || a->name == kEach || comparison.size() != 1 || !more.empty())
+    return std::nullopt;
   condition.left = *a;
   condition.right = *b;
   condition.comparison = comparison[0];
@@ -122,6 +127,30 @@ class ClaimReader {
     return settings;
   }
 
+  /// `{horizon_steps: [7, 20], step_length_s: [0.1, 0.2]}` as four cases, "7/0.1" to "20/0.2".
+  std::vector<Case> grid_of(const YamlNode& map) {
+    std::vector<Case> points{{}};
+    for (const YamlEntry& entry : map.entries()) {
+      if (!entry.value.is_list() || entry.value.children.empty()) {
+        fault(entry.key.line, printable(entry.key.text), "expected a list of values");
+        continue;
+      }
+      std::vector<Case> finer;
+      for (const Case& point : points) {
+        for (const YamlNode* value : entry.value.children) {
+          const Result<void> checked = check_setting(entry.key.text, value->text);
+          if (!checked) faults_.push_back(protocol::place(file_, value->line) + checked.error().message);
+          Case next = point;
+          next.name += (next.name.empty() ? "" : "/") + value->text;
+          next.settings.emplace_back(entry.key.text, value->text);
+          finer.push_back(std::move(next));
+        }
+      }
+      points = std::move(finer);
+    }
+    return points;
+  }
+
   void read_claim(const YamlNode& node, const Settings& shared) {
     if (!node.is_map()) return fault(node.line, "claims", "expected a map with id and says");
     Claim claim{.settings = shared};
@@ -139,6 +168,10 @@ class ClaimReader {
       } else if (key == "cases" && value.is_map()) {
         for (const YamlEntry& each : value.entries())
           claim.cases.push_back({each.key.text, settings_of(each.value, "")});
+      } else if (key == "grid" && value.is_map()) {
+        const std::vector<Case> points = grid_of(value);
+        claim.grid_size = points.size();
+        claim.cases.insert(claim.cases.end(), points.begin(), points.end());
       } else if (key == "true_when" && value.is_list()) {
         conditions = value.children;
       } else if (key == "shows" && value.is_list()) {
@@ -149,7 +182,7 @@ class ClaimReader {
         }
       } else {
         fault(entry.key.line, printable(key),
-              "expected id, says, settings, cases, true_when, shows, found or see");
+              "expected id, says, settings, cases, grid (behind cases), true_when, shows, found or see");
       }
     }
     for (const YamlNode* each : conditions) {
@@ -173,6 +206,8 @@ class ClaimReader {
   std::vector<std::string> faults_;
 };
 
+bool is_clean(const telemetry::RunSummary& run) { return run.completed && run.off_track_events == 0; }
+
 double value_of(const Condition::Value& value, const CaseResults& results) {
   if (value.name.empty()) return value.constant;
   const auto found = results.find(value.name);
@@ -182,7 +217,7 @@ double value_of(const Condition::Value& value, const CaseResults& results) {
 }  // namespace
 
 double number_of(const telemetry::RunSummary& run, std::string_view column) {
-  if (column == "clean") return run.completed && run.off_track_events == 0 ? 1.0 : 0.0;
+  if (column == "clean") return is_clean(run) ? 1.0 : 0.0;
   const ColumnPlace at = place_in(column);
   const Column* found = find_column(at.name);
   if (found == nullptr) return telemetry::kNotMeasured;
@@ -197,12 +232,19 @@ double number_of(const telemetry::RunSummary& run, std::string_view column) {
 
 bool holds(const Claim& claim, const CaseResults& results) {
   return std::all_of(claim.conditions.begin(), claim.conditions.end(), [&](const Condition& condition) {
-    const double left = value_of(condition.left, results);
-    const double right = value_of(condition.right, results) * condition.factor + condition.term;
-    if (std::isnan(left) || std::isnan(right)) return false;
-    return condition.comparison == '>'   ? left > right
-           : condition.comparison == '<' ? left < right
-                                         : left == right;
+    const auto compare = [&](double other) {
+      const double left = value_of(condition.left, results);
+      const double right = other * condition.factor + condition.term;
+      if (std::isnan(left) || std::isnan(right)) return false;
+      return condition.comparison == '>'   ? left > right
+             : condition.comparison == '<' ? left < right
+                                           : left == right;
+    };
+    if (condition.right.name != kEach) return compare(value_of(condition.right, results));
+    return std::all_of(results.begin(), results.end(), [&](const auto& other) {
+      const bool counts = other.first != condition.left.name && is_clean(other.second);
+      return !counts || compare(number_of(other.second, condition.right.column));
+    });
   });
 }
 

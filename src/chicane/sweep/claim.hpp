@@ -20,7 +20,8 @@ struct Case {
 };
 
 /// `N40.top_speed_mps > N25.top_speed_mps * 1.02`: one number of a case, a comparison, and a number or one of
-/// another case, times a factor or plus a term.
+/// another case, times a factor or plus a term. The other case `each` stands for every other one that is
+/// clean: an optimum among what keeps to the road.
 struct Condition {
   struct Value {
     std::string name{};  ///< of the case; empty: the number is `constant`
@@ -39,6 +40,7 @@ struct Claim {
   std::string says{};   ///< paraphrased
   Settings settings{};  ///< of all cases, the preset among them
   std::vector<Case> cases{};
+  std::size_t grid_size = 0;  ///< the last so many cases are points of a grid, with names made of its values
   std::vector<Condition> conditions{};  ///< true when all hold
   std::vector<std::string> shows{};     ///< columns
   /// Of a statement about what there is, which no run can try: "works", "partly" or "not so", and where to
@@ -58,8 +60,9 @@ using CaseResults = std::map<std::string, telemetry::RunSummary>;
 [[nodiscard]] double number_of(const telemetry::RunSummary& run, std::string_view column);
 
 /// Reads the claims of one file: `settings`, and a list `claims` of {id, says, settings, cases: {name:
-/// {settings}}, true_when: [conditions], shows: [columns]} or {id, says, found, see}. kParse with all faults
-/// and their lines.
+/// {settings}}, grid: {key: [values]}, true_when: [conditions], shows: [columns]} or {id, says, found, see}.
+/// The points of the grid are cases, too: a value of each key, the last key turning fastest. kParse with all
+/// faults and their lines.
 [[nodiscard]] Result<std::vector<Claim>> parse_claims(std::string_view text, const std::string& file);
 
 }  // namespace chicane::sweep

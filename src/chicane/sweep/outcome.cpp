@@ -75,6 +75,10 @@ double best_lap(const RunSummary& run) {
   return best;
 }
 
+double driven_in_last_lap(const RunSummary& run) {
+  return run.laps.empty() ? telemetry::kNotMeasured : run.laps.back().mean_speed * run.laps.back().lap_time;
+}
+
 constexpr std::array kColumns{
     Column{"completed", "All laps were driven.",
            [](const RunSummary& run) -> std::string { return run.completed ? "true" : "false"; },
@@ -88,6 +92,8 @@ constexpr std::array kColumns{
     number<&RunSummary::duration>("duration_s", "Of the run, in its own time."),
     number<&flying_lap>("lap_time_s", "Of the last completed lap."),
     number<&best_lap>("best_lap_time_s", "Of the fastest completed lap."),
+    number<&driven_in_last_lap>(
+        "driven_m", "In the last completed lap: less than the road's line where corners are cut."),
     number<[](const RunSummary& run) { return run.total.mean_speed; }>("mean_speed_mps",
                                                                        "Over the whole run."),
     number<[](const RunSummary& run) { return run.total.top_speed; }>("top_speed_mps", "Of the whole run."),

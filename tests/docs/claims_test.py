@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""`chicane claims` on a clone with nothing beside it: what needs a file that is not there is skipped by name and keeps its cell.
+
+    tests/docs/claims_test.py PROGRAM"""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+PROGRAM = ""
+ID = "A17"  # two runs in each world
+
+
+class ClaimsOnAClone(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.clone = Path(self.folder.name) / "outer/clone"
+        self.clone.mkdir(parents=True)
+        for name in ("claims", "presets", "cars", "tracks", "scenarios"):
+            (self.clone / name).symlink_to(ROOT / name)
+        self.page = self.clone / "claims.md"
+        shutil.copy(ROOT / "docs/claims.md", self.page)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def claims(self, *options):
+        environment = dict(os.environ, CHICANE_DATA_DIR=str(ROOT))
+        return subprocess.run([PROGRAM, "claims", ID, "--jobs", "1", *options], cwd=self.clone, env=environment, capture_output=True,
+                              text=True, check=False)
+
+    def row(self):
+        return next(line for line in self.page.read_text(encoding="utf-8").splitlines() if line.startswith(f"| {ID} |"))
+
+    def test_the_page_is_checked_and_the_missing_file_skipped_by_name(self):
+        done = self.claims("--page", "claims.md", "--check")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("skipped: course's file: no ../shared/tracks/udacity/lake_track_waypoints.csv", done.stderr)
+        self.assertIn("claims.md: 1 statements as the page has them", done.stdout)
+
+    def test_a_changed_digit_fails_with_both_rows(self):
+        row = self.row()
+        self.page.write_text(self.page.read_text(encoding="utf-8").replace(row, row.replace("own: 0.", "own: 1.", 1)), encoding="utf-8")
+        done = self.claims("--page", "claims.md", "--check")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(f"claims.md: got {row.replace('own: 0.', 'own: 1.', 1)}", done.stdout)
+        self.assertIn(f"claims.md: expected {row}", done.stdout)
+
+    def test_writing_keeps_the_cells_of_a_file_that_is_not_there(self):
+        row = self.row()
+        self.assertEqual(len(row.split(" | ")), 7)
+        self.assertIn(row.split(" | ")[5], ("yes", "no"), "the page was written where the file was")
+        done = self.claims("--page", "claims.md")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.row(), row)
+
+    def test_details_have_the_command_of_each_run(self):
+        done = self.claims()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("skipped: no ../shared/tracks/udacity/lake_track_waypoints.csv", done.stdout)
+        self.assertEqual(done.stdout.count("chicane drive "), 2)
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv.pop(1)
+    unittest.main()

@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Prints a table of a page in Markdown, from the results of the sweep that drives its runs.
+
+    chicane sweep plans/numbers.yaml -o runs.jsonl
+    tools/sweep_tables.py runs.jsonl numbers    README: controllers on the same car, track and seed (plans/numbers.yaml)
+    tools/sweep_tables.py runs.jsonl pid        docs/pid.md: presets by speed (plans/pid.yaml)
+    tools/sweep_tables.py runs.jsonl cars       docs/cars.md: cars by track (plans/cars.yaml)
+    tools/sweep_tables.py runs.jsonl sensors    docs/latency.md: presets by latency of the sensors (plans/sensor-latency.yaml)
+
+tools/check_figures compares them with the pages, and writes them."""
+import argparse
+import json
+import sys
+from pathlib import Path
+
+MPH = 0.44704
+
+
+def runs_of(path):
+    """The runs of a sweep, in the order of its plan."""
+    lines = (json.loads(line) for line in path.read_text(encoding="utf-8").splitlines())
+    return sorted((line for line in lines if "run" in line), key=lambda run: run["run"])
+
+
+def markdown(head, rows, numbers):
+    """A table whose last columns are numbers."""
+    rule = ["---"] * (len(head) - numbers) + ["--:"] * numbers
+    return "".join("| " + " | ".join(row) + " |\n" for row in (head, *rows)).replace("\n", "\n|" + "|".join(rule) + "|\n", 1)
+
+
+def is_clean(run):
+    return "error" not in run and run["completed"] and not run["off_track_events"]
+
+
+def setting(run, key):
+    return str(run["settings"][key])
+
+
+def lap(run):
+    return f"{run['lap_time_s']:.2f}" if run["completed"] else "did not finish"
+
+
+def numbers(runs):
+    """The last of three laps; distance and times off the road of all three."""
+    head = ("car", "track", "preset", "flying lap [s]", "mean [mph]", "top [mph]", "tyre to edge, least [m]", "times off the road",
+            "lap with the guard on [s]")
+    guarded = {tuple(setting(run, key) for key in ("car", "track", "preset")): run for run in runs if setting(run, "guard.mode") == "on"}
+    rows = []
+    for run in runs:
+        if setting(run, "guard.mode") == "on":
+            continue
+        key = tuple(setting(run, key) for key in ("car", "track", "preset"))
+        figures = [lap(run)]
+        if run["completed"]:
+            figures += [f"{run['lap_mean_speeds_mps'][-1] / MPH:.1f}", f"{run['lap_top_speeds_mps'][-1] / MPH:.1f}",
+                        f"{min(run['lap_min_edge_distances_m']):.2f}"]
+        figures += [""] * (4 - len(figures))
+        rows.append([key[0], key[1], f"`{key[2]}`", *figures, str(run["off_track_events"]), lap(guarded[key])])
+    return markdown(head, rows, 6)
+
+
+def pivot(runs, row, column, cell, heads):
+    """A row for each value of one setting, a column for each of another."""
+    columns = list(dict.fromkeys(column(run) for run in runs))
+    cells = {}
+    for run in runs:
+        cells.setdefault(row(run), {})[column(run)] = cell(run)
+    rows = [[name, *(found.get(each, "") for each in columns)] for name, found in cells.items()]
+    return markdown((heads[0], *(heads[1].format(each) for each in columns)), rows, len(columns))
+
+
+def pid(runs):
+    def cell(run):
+        return f"{run['rms_lateral_error_m']:.2f}" if is_clean(run) else f"**off** ({run['off_track_events']})"
+
+    def row(run):
+        period = setting(run, "control_period_ms")
+        return f"`{setting(run, 'preset')}`" + ("" if period == "120" else f", an answer every {period} ms")
+    return pivot(runs, row, lambda run: setting(run, "speed_mph"), cell, ("preset", "{} mph"))
+
+
+def cars(runs):
+    def cell(run):
+        return "refused" if "error" in run else lap(run) if is_clean(run) else "off"
+    return pivot(runs, lambda run: f"`{setting(run, 'car')}`", lambda run: Path(setting(run, "track")).stem, cell, ("car", "{}"))
+
+
+def sensors(runs):
+    def cell(run):
+        return f"{run['rms_lateral_error_m']:.2f} ({run['min_edge_distance_m']:.2f})" if is_clean(run) else "**off**"
+    return pivot(runs, lambda run: f"`{setting(run, 'preset')}`", lambda run: setting(run, "sensor.latency_ms"), cell, ("preset", "{} ms"))
+
+
+TABLES = {"numbers": numbers, "pid": pid, "cars": cars, "sensors": sensors}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("runs", type=Path, help="results of `chicane sweep`")
+    parser.add_argument("table", choices=TABLES)
+    arguments = parser.parse_args()
+    sys.stdout.write(TABLES[arguments.table](runs_of(arguments.runs)))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
