@@ -36,8 +36,8 @@ Result<std::unique_ptr<sim::Plant>> make_plant(const scenario::Scenario& scenari
 Result<path::Track> make_track(const scenario::Scenario& scenario) {
   Result<std::string> file = protocol::locate(protocol::Shelf::kTrack, scenario.track);
   if (!file) return fail(file.error());
-  Result<path::Track> track = protocol::read_track(*file);
   const double size = scenario.size_of_track();
+  Result<path::Track> track = protocol::read_track(*file, {.scale = scenario.vehicle.scale / size});
   return track && size != 1.0 ? track->scaled(size) : std::move(track);
 }
 
