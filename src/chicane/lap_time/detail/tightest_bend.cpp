@@ -49,40 +49,15 @@ struct BendModel {
   static constexpr double kSmooth = 1e-3;
 };
 
-constexpr double kPace = 4.0;  // of the nodes [m/s]
+constexpr double kPace = 4.0;   // of the nodes [m/s]
+constexpr int kNarrowings = 3;  // of the room, each to a half
 
-}  // namespace
-
-double CarSize::most_curvature() const noexcept {
-  const double rear = chicane::tan(steer_limit) / (front_axle + rear_axle);  // of the rear axle's middle
-  return rear / std::sqrt(1.0 + rear_axle * rear_axle * rear * rear);
-}
-
-Result<void> fits_road(const path::Track& track, const CarSize& car) { return fits_road(track, car, Fit{}); }
-
-Result<void> fits_road(const path::Track& track, const CarSize& car, const Fit& fit) {
-  const GuessCar pace{.grip = 2.0,
-                      .drive = 2.0,
-                      .brake = 2.0,
-                      .speed = kPace,
-                      .front_axle = car.front_axle,
-                      .rear_axle = car.rear_axle};
-  RoadNodes road = lay_nodes(track, pace, 0.25);
+/// Whether the car's lock suffices for the straightest line with its centre of mass at most `beside` from the
+/// middle.
+Result<void> bends_fit(RoadNodes road, const CarSize& car, const Fit& fit, double beside) {
   for (std::vector<double>* room : {&road.front_left, &road.front_right, &road.rear_left, &road.rear_right}) {
-    for (double& each : *room) each = std::min(each, fit.beside + car.half_width);
+    for (double& each : *room) each = std::min(each, beside + car.half_width);
   }
-  double sharpest = 0.0;
-  for (std::size_t k = 0; k < road.s.size(); ++k) {
-    const double width =
-        std::min(road.front_left[k] + road.front_right[k], road.rear_left[k] + road.rear_right[k]);
-    if (width <= 2.0 * car.half_width)
-      return fail(ErrorCode::kInvalidArgument,
-                  message("limit: the road is %.2f m wide at s = %.1f m, expected more than the car's %.2f m",
-                          fit.scale * width, fit.scale * road.s[k], fit.scale * 2.0 * car.half_width));
-    sharpest = std::max(sharpest, std::fabs(road.curvature[k]));
-  }
-  if (sharpest * fit.surely < car.most_curvature()) return {};
-
   BendModel model;
   model.car = car;
   model.road = &road;
@@ -112,6 +87,50 @@ Result<void> fits_road(const path::Track& track, const CarSize& car, const Fit& 
               "drives no less than %.2f m",
               fit.scale * road.s[worst], fit.scale / curvature(worst), fit.scale / car.most_curvature()) +
           (fit.reserve > 1.0 ? ", of which something must be left to steer by" : ""));
+}
+
+}  // namespace
+
+double CarSize::most_curvature() const noexcept {
+  const double rear = chicane::tan(steer_limit) / (front_axle + rear_axle);  // of the rear axle's middle
+  return rear / std::sqrt(1.0 + rear_axle * rear_axle * rear * rear);
+}
+
+Result<void> fits_road(const path::Track& track, const CarSize& car) { return fits_road(track, car, Fit{}); }
+
+Result<void> fits_road(const path::Track& track, const CarSize& car, const Fit& fit) {
+  const GuessCar pace{.grip = 2.0,
+                      .drive = 2.0,
+                      .brake = 2.0,
+                      .speed = kPace,
+                      .front_axle = car.front_axle,
+                      .rear_axle = car.rear_axle};
+  const RoadNodes road = lay_nodes(track, pace, 0.25);
+  double sharpest = 0.0;
+  double widest = 0.0;
+  for (std::size_t k = 0; k < road.s.size(); ++k) {
+    const double most = fit.beside + car.half_width;
+    const double front = std::min(road.front_left[k], most) + std::min(road.front_right[k], most);
+    const double rear = std::min(road.rear_left[k], most) + std::min(road.rear_right[k], most);
+    const double width = std::min(front, rear);
+    if (width <= 2.0 * car.half_width)
+      return fail(ErrorCode::kInvalidArgument,
+                  message("limit: the road is %.2f m wide at s = %.1f m, expected more than the car's %.2f m",
+                          fit.scale * width, fit.scale * road.s[k], fit.scale * 2.0 * car.half_width));
+    widest = std::max(widest, width);
+    sharpest = std::max(sharpest, std::fabs(road.curvature[k]));
+  }
+  if (sharpest * fit.surely < car.most_curvature()) return {};
+
+  // On a road that is wider than its bends are round, the search for the straightest line can end in a fold
+  // of the coordinates. A line that a narrower road leaves is one of the wider road, too.
+  Result<void> fits = bends_fit(road, car, fit, fit.beside);
+  double beside = std::min(fit.beside, widest);
+  for (int narrowing = 0; narrowing < kNarrowings && !fits; ++narrowing) {
+    beside *= 0.5;
+    if (bends_fit(road, car, fit, beside)) return {};
+  }
+  return fits;
 }
 
 }  // namespace chicane::lap_time
