@@ -41,6 +41,10 @@ struct Scenario {
   sim::SensorOptions sensor;
   std::vector<sim::FaultEvent> faults;  ///< that happen during the run; at most sim::FaultLab::kCapacity
 
+  /// What was assumed when it was composed, and which settings have no effect: a sentence each, for the
+  /// terminal, JSON and the dashboard alike. No setting.
+  std::vector<std::string> notices;
+
   [[nodiscard]] double size_of_track() const noexcept {
     return track_scale > 0.0 ? track_scale : vehicle.scale;
   }
