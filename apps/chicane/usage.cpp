@@ -76,11 +76,11 @@ std::string expectation(const CLI::Option& option) {
 /// The first word that is no option, and the one that it may have meant.
 std::string unexpected(const CLI::App& command) {
   const std::vector<std::string> unknown = command.remaining();
-  const auto option = std::find_if(unknown.begin(), unknown.end(),
-                                   [](const std::string& word) { return word.starts_with('-'); });
-  const std::string got = option != unknown.end() ? *option
-                          : unknown.empty()       ? "a word too many"
-                                                  : unknown.front();
+  const auto flag = std::find_if(unknown.begin(), unknown.end(),
+                                 [](const std::string& word) { return word.starts_with('-'); });
+  const std::string got = flag != unknown.end() ? *flag
+                          : unknown.empty()     ? "a word too many"
+                                                : unknown.front();
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) names.push_back(name_of(*option));
   const std::vector<std::string_view> views(names.begin(), names.end());
