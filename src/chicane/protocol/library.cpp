@@ -204,9 +204,8 @@ void note_track(bool is_asked_for, scenario::Scenario& scenario) {
   const double scale = scenario.vehicle.scale;
   if (is_path(scenario.track)) {
     const Result<std::string> text = read_file(scenario.track);
-    const auto content = text
-                             ? parse_track(*text, scenario.track, {.scale = scale / scenario.size_of_track()})
-                             : Result<TrackFile>{fail(text.error())};
+    const auto content = text ? parse_track(*text, scenario.track, {.scale = scenario.scale_of_file()})
+                              : Result<TrackFile>{fail(text.error())};
     if (content)  // what is wrong with it the run itself will tell
       scenario.notices.insert(scenario.notices.end(), content->warnings.begin(), content->warnings.end());
   }

@@ -37,7 +37,7 @@ Result<path::Track> make_track(const scenario::Scenario& scenario) {
   Result<std::string> file = protocol::locate(protocol::Shelf::kTrack, scenario.track);
   if (!file) return fail(file.error());
   const double size = scenario.size_of_track();
-  Result<path::Track> track = protocol::read_track(*file, {.scale = scenario.vehicle.scale / size});
+  Result<path::Track> track = protocol::read_track(*file, {.scale = scenario.scale_of_file()});
   return track && size != 1.0 ? track->scaled(size) : std::move(track);
 }
 
