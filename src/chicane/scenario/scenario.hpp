@@ -48,8 +48,8 @@ struct Scenario {
   [[nodiscard]] double size_of_track() const noexcept {
     return track_scale > 0.0 ? track_scale : vehicle.scale;
   }
-  /// Of what is assumed of a track's file: one that is driven in its own size has the noise of the car's size,
-  /// any other one is in full size.
+  /// Of what is assumed of a track's file: one that is driven in its own size has the noise of the car's
+  /// size, any other one is in full size.
   [[nodiscard]] double scale_of_file() const noexcept { return track_scale == 1.0 ? vehicle.scale : 1.0; }
 
   /// Of every controller, whichever drives: std::get<controller::PidOptions>(controllers).
