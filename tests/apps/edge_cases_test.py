@@ -207,7 +207,7 @@ class Files(unittest.TestCase):
 
     def test_check_refuses_what_drive_refuses(self):
         three = self.file("three.csv", "x_m,y_m\n0,0\n50,0\n25,40\n")
-        files = [three, "28_rect_0.7.csv", self.file("tight.csv", "x_m,y_m\n" + ring(lambda x, y: f"{0.05 * x},{0.05 * y}"))]
+        files = [three, "28_rect_0.7.csv", self.file("tight.csv", "x_m,y_m,w_tr_right_m,w_tr_left_m\n" + ring(lambda x, y: f"{x},{y},1.5,1.5", 2.5))]
         for file in files:
             check = run("check", file)
             drive = run("drive", "--fast", "--set", "time_limit_s=0.1", "--track", file)
