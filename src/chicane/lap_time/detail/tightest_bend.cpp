@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/lap_time/detail/collocation.hpp"
 #include "chicane/lap_time/detail/message.hpp"
 #include "chicane/lap_time/detail/plant_model.hpp"
@@ -54,7 +55,7 @@ constexpr int kNarrowings = 3;  // of the room, each to a half
 
 /// Whether the car's lock suffices for the straightest line with its centre of mass at most `beside` from the
 /// middle.
-Result<void> bends_fit(RoadNodes road, const CarSize& car, const Fit& fit, double beside) {
+Result<void> bends_fit(RoadNodes road, const CarSize& car, const Fit& fit, double beside, bool& has_answer) {
   for (std::vector<double>* room : {&road.front_left, &road.front_right, &road.rear_left, &road.rear_right}) {
     for (double& each : *room) each = std::min(each, beside + car.half_width);
   }
@@ -75,7 +76,8 @@ Result<void> bends_fit(RoadNodes road, const CarSize& car, const Fit& fit, doubl
                                                        .last_barrier = 1e-5,
                                                        .cost_scale = 1.0,
                                                        .most_iterations = 300});
-  if (report.violation > 1e-2) return {};  // no answer: the search itself will tell
+  has_answer = report.violation <= 1e-2;
+  if (!has_answer) return {};  // the search itself will tell
   std::size_t worst = 0;
   const auto curvature = [&](std::size_t k) { return std::fabs(z[k * BendModel::kVariables + 2]); };
   for (std::size_t k = 0; k < n; ++k)
@@ -122,13 +124,25 @@ Result<void> fits_road(const path::Track& track, const CarSize& car, const Fit& 
   }
   if (sharpest * fit.surely < car.most_curvature()) return {};
 
+  // Any closed line is at least as long as the circle of its tightest radius.
+  double turned = 0.0;
+  for (std::size_t k = 0; k < road.s.size(); ++k) turned += std::fabs(road.turn[k]);
+  const double longest = track.length() + (widest - 2.0 * car.half_width) * turned;
+  const double circle = 2.0 * kPi / car.most_curvature();
+  if (track.centre().is_closed() && longest < circle)
+    return fail(
+        ErrorCode::kInvalidArgument,
+        message("limit: the loop is %.1f m long, expected more than the car's circle at full lock, %.1f m",
+                fit.scale * track.length(), fit.scale * circle));
+
   // On a road that is wider than its bends are round, the search for the straightest line can end in a fold
   // of the coordinates. A line that a narrower road leaves is one of the wider road, too.
-  Result<void> fits = bends_fit(road, car, fit, fit.beside);
+  bool has_answer = false;
+  Result<void> fits = bends_fit(road, car, fit, fit.beside, has_answer);
   double beside = std::min(fit.beside, widest);
   for (int narrowing = 0; narrowing < kNarrowings && !fits; ++narrowing) {
     beside *= 0.5;
-    if (bends_fit(road, car, fit, beside)) return {};
+    if (bends_fit(road, car, fit, beside, has_answer) && has_answer) return {};
   }
   return fits;
 }
