@@ -34,7 +34,7 @@ std::string own_address() {
 
 /// The host that a browser is to ask for.
 std::string host_of(const std::string& address) {
-  if (address.starts_with("127.") || address == "::1") return "localhost";
+  if (address == "127.0.0.1") return "localhost";
   if (address == "0.0.0.0" || address == "::") {
     const std::string own = own_address();
     return own.empty() ? "localhost" : own;
@@ -49,6 +49,7 @@ Result<net::ServerOptions> server_options(const Options& options) {
   server.address = options.address;
   server.port = options.port;
   server.allowed_origins = options.allowed_origins;
+  server.allowed_hosts = options.allowed_hosts;
   server.goodbye = std::chrono::seconds{4};  // a page on a busy machine may be behind
   if (!options.needs_token) return server;
   Result<std::string> token = net::make_token();

@@ -10,28 +10,32 @@
 #include "chicane/protocol/yaml_codec.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
+#include "guard_notice.hpp"
 
 namespace chicane::apps {
 namespace {
 
-Result<std::string> check_track(const std::string& file) {
-  const Result<path::Track> track = protocol::read_track(file);
-  if (!track) return fail(track.error());
-  const double length = track->centre().length();
+/// With a digit more for lengths of model scale.
+std::string metres(double length) { return fmt::format("{:.{}f}", length, length < 3.0 ? 2 : 1); }
+
+/// The road in words, as the run has it.
+std::string road_in_words(const path::Track& track) {
+  const double length = track.centre().length();
+  const double step = std::min(1.0, length / 1000.0);
   double narrowest = 1e9;
-  double sharpest = 1e-9;
-  for (double s = 0.0; s < length; s += 1.0) {
-    narrowest = std::min(narrowest, track->left_width(s) + track->right_width(s));
-    sharpest = std::max(sharpest, std::abs(track->centre().at(s).curvature));
+  double sharpest = 0.0;
+  for (double s = 0.0; s < length; s += step) {
+    narrowest = std::min(narrowest, track.left_width(s) + track.right_width(s));
+    sharpest = std::max(sharpest, std::abs(track.centre().at(s).curvature));
   }
   std::string text =
-      fmt::format("{} track, {:.1f} m long, at least {:.1f} m wide, tightest radius {:.1f} m",
-                  track->centre().is_closed() ? "closed" : "open", length, narrowest, 1.0 / sharpest);
-  if (track->crossings() > 0)
-    text += fmt::format(", crosses itself in {} {}", track->crossings(),
-                        track->crossings() == 1 ? "place" : "places");
-  if (!track->centre().is_closed())
-    text += fmt::format(", {:.1f} m from start to finish", track->lap_length());
+      fmt::format("{} track, {:.1f} m long, at least {} m wide, {}",
+                  track.centre().is_closed() ? "closed" : "open", length, metres(narrowest),
+                  sharpest > 1e-6 ? fmt::format("tightest radius {} m", metres(1.0 / sharpest)) : "straight");
+  if (track.crossings() > 0)
+    text += fmt::format(", crosses itself in {} {}", track.crossings(),
+                        track.crossings() == 1 ? "place" : "places");
+  if (!track.centre().is_closed()) text += fmt::format(", {:.1f} m from start to finish", track.lap_length());
   return text;
 }
 
@@ -45,11 +49,11 @@ bool is_car(const protocol::Document& document, const std::string& file) {
   return has_plant && !document.preset && protocol::compose({"", {{"car", file}}}).has_value();
 }
 
-/// Kind of the file in words; adds it to the request.
+/// Adds the file to the request. Its kind in words; of a track nothing yet.
 Result<std::string> add_file(const std::string& file, protocol::Request& request) {
   if (protocol::track_format_of(file) != nullptr) {
     request.settings.emplace_back("track", file);
-    return check_track(file);
+    return std::string{};
   }
   const Result<std::string> text = protocol::read_file(file);
   if (!text) return fail(text.error());
@@ -69,9 +73,12 @@ Result<std::string> check_file(const std::string& file, protocol::Request reques
   Result<std::string> found = add_file(file, request);
   if (!found) return found;
   const auto run = prepared(request);
-  if (run) return found;
-  const std::string& message = run.error().message;
-  return fail(run.error().code, message.starts_with(file) ? message : fmt::format("{}: {}", file, message));
+  if (!run) {
+    const std::string& message = run.error().message;
+    return fail(run.error().code, message.starts_with(file) ? message : fmt::format("{}: {}", file, message));
+  }
+  print_notices((*run)->scenario());
+  return found->empty() ? road_in_words((*run)->track()) : found;
 }
 
 ExitCode check_experiment(const protocol::Request& request) {
@@ -80,6 +87,7 @@ ExitCode check_experiment(const protocol::Request& request) {
   const auto run = prepared(request);
   if (!run) return report(run.error());
   const scenario::Scenario& scenario = (*run)->scenario();
+  print_notices(scenario);
   fmt::print("ok, {} ({}) drives {} on {}\n", scenario.preset, scenario.controller, scenario.car,
              scenario.track);
   return kSuccess;

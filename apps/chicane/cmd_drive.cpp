@@ -97,10 +97,12 @@ Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const ru
 
 Result<Outcome> run(const Options& options) {
   static run::RunControls controls;  // as long as signals may come
-  catch_interrupts(controls.wants_stop);
+  let_interrupts_end();
   Result<std::unique_ptr<run::ClosedLoop>> loop = prepared(request_of(options));
   if (!loop) return fail(loop.error());
+  catch_interrupts(controls.wants_stop);
   print_guard_notice(options, (*loop)->scenario().guard);
+  print_notices((*loop)->scenario());
   return options.is_fast ? run_fast(options, **loop, controls)
                          : run_live(options, std::move(*loop), controls);
 }

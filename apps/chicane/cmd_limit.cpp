@@ -7,6 +7,7 @@
 #include "chicane/run/make.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
+#include "guard_notice.hpp"
 #include "interrupt.hpp"
 #include "limit_of.hpp"
 #include "limit_report.hpp"
@@ -22,6 +23,7 @@ Result<void> print_limit(const Options& options) {
   if (!scenario) return fail(scenario.error());
   const Result<path::Track> track = run::make_track(*scenario);
   if (!track) return fail(track.error());
+  print_notices(*scenario);
   if (!options.csv_file.empty()) {
     if (Result<void> writable = check_writable(options.csv_file); !writable) return writable;
   }

@@ -37,11 +37,8 @@ namespace {
 class Shown {
  public:
   Result<void> add(const std::string& file, std::string name) {
-    const Result<telemetry::McapReport> read = telemetry::read_mcap(file, {});
+    const Result<telemetry::McapReport> read = recording::check_recording(file);
     if (!read) return fail(read.error());
-    if (read->messages == 0) {
-      return fail(ErrorCode::kParse, file + ": messages: got none, expected a recording");
-    }
     if (read->damaged > 0) fmt::print(stderr, "{}: damaged parts left out: {}\n", file, read->damaged);
     std::string served = std::filesystem::absolute(file).string();
     if (!read->is_complete || read->is_compressed || read->damaged > 0) {

@@ -10,6 +10,7 @@
 #include "chicane/sweep/comparison.hpp"
 #include "chicane/sweep/summary_page.hpp"
 #include "commands.hpp"
+#include "many_runs.hpp"
 
 namespace chicane::apps {
 
@@ -59,7 +60,8 @@ ExitCode report_logs(const Options& options) {
   if (options.output_file.empty() && options.maps_page.empty())
     return report(Error{ErrorCode::kInvalidArgument,
                         "report: got none of --output, --page and --compare, expected one"});
-  if (are_results(options.log_files)) return report_sweep(options);
+  const Result<void> named = check_page_name("--output", options.output_file);
+  if (are_results(options.log_files)) return named ? report_sweep(options) : report(named.error());
   if (!options.maps_page.empty())
     return report(Error{ErrorCode::kInvalidArgument, "--page: got recordings, expected results of a sweep"});
   recording::ReportOptions reporting{
@@ -73,6 +75,7 @@ ExitCode report_logs(const Options& options) {
     }
     reporting.logs.push_back({std::filesystem::path(file).filename().string(), file});
   }
+  if (!named) return report(named.error());
   const Result<recording::ReportSummary> written = recording::write_report(reporting);
   if (!written) return report(written.error());
   fmt::print("{}: {:.1f} MB, {:g} messages a second; open it in a browser\n", options.output_file,

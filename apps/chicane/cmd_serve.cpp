@@ -27,7 +27,7 @@ Result<std::optional<path::Track>> told_track(const Options& options, const scen
 
 Result<wire::ServeSummary> serve_until_stopped(const Options& options) {
   static std::atomic<bool> stop{false};  // as long as signals may come
-  catch_interrupts(stop);
+  let_interrupts_end();
   Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
   Result<std::optional<path::Track>> track = told_track(options, *scenario);

@@ -15,6 +15,7 @@
 #include "chicane/run/racing.hpp"
 #include "experiment.hpp"
 #include "guard_notice.hpp"
+#include "interrupt.hpp"
 #include "progress.hpp"
 #include "record.hpp"
 
@@ -28,6 +29,7 @@ protocol::Run description_of_external(const scenario::Scenario& scenario, const 
   run.vehicle = scenario.vehicle;
   run.mode = recording::kSimulateMode;
   run.limit = live::RunLimit::first_answer(track);
+  run.notices = scenario.notices;
   live::describe(track, run);
   return run;
 }
@@ -37,8 +39,7 @@ protocol::Run description_of_external(const scenario::Scenario& scenario, const 
 Result<wire::ServeSummary> drive_external_car(const Options& options, scenario::Scenario scenario,
                                               std::optional<path::Track> track,
                                               const std::function<std::string(std::uint16_t)>& partner,
-                                              const std::atomic<bool>& stop,
-                                              const live::ServeFunction& serve) {
+                                              std::atomic<bool>& stop, const live::ServeFunction& serve) {
   Result<std::unique_ptr<controller::Controller>> controller = run::make_controller(scenario);
   if (!controller) return fail(controller.error());
   // Recorded: where the guard knew the road from; a replay computes the same by it.
@@ -47,11 +48,13 @@ Result<wire::ServeSummary> drive_external_car(const Options& options, scenario::
   if (!server) return fail(server.error());
   auto planned = run::plan_lap(scenario, track ? &*track : nullptr);
   if (!planned) return fail(planned.error());
+  catch_interrupts(stop);
   live::ServedRun served(*server, scenario, std::move(*controller), std::move(track), live::embedded_assets(),
                          std::move(*planned));
   const auto kept = KeptRun::start(options, served.description(), scenario, served.step_budget());
   if (!kept) return fail(kept.error());
   print_guard_notice(options, scenario.guard);
+  print_notices(scenario);
   Progress progress;
   auto summary = served.run(
       (*kept)->recorder(),
@@ -85,6 +88,7 @@ Result<wire::SimulateReport> drive_by_external(const Options& options, const Ext
   if (!track) return fail(track.error());
   const auto kept = KeptRun::start(options, description_of_external(*scenario, *track), *scenario, 0.0);
   if (!kept) return fail(kept.error());
+  print_notices(*scenario);
   live::RunLimit limit;
   if (external.wants_limit) limit.search(*track, *scenario);
   Result<wire::SimulateReport> done;

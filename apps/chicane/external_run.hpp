@@ -20,10 +20,11 @@ namespace chicane::apps {
 
 /// The controller of `scenario` drives a car that another program simulates, until `stop`: recorded, on the
 /// terminal and in the dashboard. Without a track the road is what the simulator sends. `partner` completes
-/// "default (tracking-mpc) waits for ...", and knows the port of the dashboard.
+/// "default (tracking-mpc) waits for ...", and knows the port of the dashboard. Ctrl-C sets
+/// `stop`, which is static or one of main's, once the controller is ready.
 [[nodiscard]] Result<wire::ServeSummary> drive_external_car(
     const Options& options, scenario::Scenario scenario, std::optional<path::Track> track,
-    const std::function<std::string(std::uint16_t)>& partner, const std::atomic<bool>& stop,
+    const std::function<std::string(std::uint16_t)>& partner, std::atomic<bool>& stop,
     const live::ServeFunction& serve = wire::serve);
 /// Results on stdout, and a sentence like "5 answers to 1 simulators; ..." on stderr, with these two nouns.
 ExitCode print(const Options& options, const wire::ServeSummary& summary, std::string_view answers,

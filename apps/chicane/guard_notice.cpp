@@ -26,4 +26,8 @@ void print_guard_notice(const Options& options, const safety::GuardOptions& guar
   if (!options.is_json && !notice.empty()) fmt::print(stderr, "{}\n", notice);
 }
 
+void print_notices(const scenario::Scenario& scenario) {
+  for (const std::string& notice : scenario.notices) fmt::print(stderr, "{}\n", notice);
+}
+
 }  // namespace chicane::apps

@@ -34,6 +34,11 @@ void interrupt(int signal) {
 
 }  // namespace
 
+void let_interrupts_end() {
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
 void catch_interrupts(std::atomic<bool>& flag) {
   wanted = &flag;
   std::signal(SIGINT, interrupt);

@@ -51,6 +51,16 @@ Result<void> check_writable(const std::string& file) {
   return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, std::strerror(reason)));
 }
 
+Result<void> check_page_name(std::string_view option, const std::string& file) {
+  const std::filesystem::path extension = std::filesystem::path(file).extension();
+  std::error_code error;
+  const bool is_device =
+      std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error);
+  if (file.empty() || extension == ".html" || extension == ".htm" || is_device) return {};
+  return fail(ErrorCode::kInvalidArgument,
+              fmt::format("{}: got {}, expected a name that ends in .html", option, file));
+}
+
 RunCounter::RunCounter(const char* what) : what_{what}, is_terminal_{isatty(STDERR_FILENO) == 1} {
   next_ = started_ + (is_terminal_ ? std::chrono::milliseconds{0} : std::chrono::milliseconds{10000});
 }

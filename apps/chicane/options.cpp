@@ -21,6 +21,7 @@
 #include "ros_options.hpp"
 #include "setting_options.hpp"
 #include "sweep_options.hpp"
+#include "usage.hpp"
 #include "video_options.hpp"
 
 namespace chicane::apps {
@@ -79,13 +80,18 @@ void add_port(CLI::App& command, Options& options) {
       ->type_name("A")
       ->capture_default_str();
   command
+      .add_option("--allow-host", options.allowed_hosts,
+                  "A host name by which this program may be reached, as in containers; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  command
       .add_option(
           "--allow-origin", options.allowed_origins,
           "A web page that may connect beside our own, like https://app.foxglove.dev; may be repeated")
       ->type_name("ORIGIN")
       ->allow_extra_args(false);
-  command.add_flag("!--no-token", options.needs_token,
-                   "Every program of this machine may control, without the token of the printed link");
+  add_negation(command, "--no-token", options.needs_token,
+               "Every program of this machine may control, without the token of the printed link");
 }
 
 void add_record(CLI::App& command, Options& options) {
@@ -233,11 +239,11 @@ void add_replay(CLI::App& command, Options& options) {
       ->type_name("N")
       ->check(CLI::PositiveNumber)
       ->needs("--branch-at");
-  command.add_option("--output", options.output_file, "Keep the branch in a new MCAP file")
+  command.add_option("-o,--output", options.output_file, "Keep the branch in a new MCAP file")
       ->type_name("FILE")
       ->needs("--branch-at");
   add_port(command, options);
-  command.add_flag("!--no-serve", options.is_served, "Show nothing in a browser");
+  add_negation(command, "--no-serve", options.is_served, "Show nothing in a browser");
   command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr; shows nothing");
   command.footer("Example: chicane replay run.mcap --branch-at 12 --set plant_options.friction_scale=0.5");
 }
@@ -400,17 +406,6 @@ OptionText text_of(const CLI::Option& option) {
   return text;
 }
 
-/// The option nearest to the first word that is not one.
-std::string correction(const CLI::App& app, const std::vector<std::string>& unknown) {
-  if (unknown.empty()) return "";
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name());
-  const std::vector<std::string_view> views(names.begin(), names.end());
-  const std::string word = unknown.front().substr(0, unknown.front().find('='));
-  const std::string_view best = protocol::nearest(word, views);
-  return best.empty() ? "" : fmt::format(" (did you mean {}?)", best);
-}
-
 Done explain(const CLI::App& app, const CLI::ParseError& error) {
   const auto chosen = app.get_subcommands();
   const CLI::App& at = chosen.empty() ? app : *chosen.front();
@@ -419,8 +414,7 @@ Done explain(const CLI::App& app, const CLI::ParseError& error) {
     return {kSuccess};
   }
   const std::string name = chosen.empty() ? "chicane" : fmt::format("chicane {}", at.get_name());
-  fmt::print(stderr, "{}: {}{}\nSee `{} --help`.\n", name, error.what(), correction(at, at.remaining()),
-             name);
+  fmt::print(stderr, "{}: {}\nSee `{} --help`.\n", name, usage_fault(at, error), name);
   return {kUsage};
 }
 

@@ -41,6 +41,7 @@ struct Options {
   std::string address = "127.0.0.1";
   std::uint16_t port = 4567;
   bool needs_token = true;                     ///< to change something (docs/security.md)
+  std::vector<std::string> allowed_hosts{};    ///< names by which the port may be asked for
   std::vector<std::string> allowed_origins{};  ///< pages that may connect, beside our own
 
   bool wants_limit = false;       ///< drive --fast: the gaps of its laps to the limit

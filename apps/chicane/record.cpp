@@ -13,6 +13,7 @@
 #include "chicane/live/assets.hpp"
 #include "chicane/recording/bag_metadata.hpp"
 #include "chicane/recording/html_report.hpp"
+#include "many_runs.hpp"
 
 namespace chicane::apps {
 
@@ -41,6 +42,8 @@ Result<std::unique_ptr<KeptRun>> KeptRun::start(const Options& options, protocol
     return fail(ErrorCode::kInvalidArgument,
                 fmt::format("--report: got {}, expected another file than --record", options.report_file));
   }
+  if (const Result<void> named = check_page_name("--report", options.report_file); !named)
+    return fail(named.error());
   if (options.is_bag) {
     if (const Result<void> possible = recording::can_be_bag(options.record_file); !possible)
       return fail(possible.error());
@@ -79,7 +82,12 @@ Result<void> KeptRun::finish() {
     if (const Result<void> written = recording::write_bag_metadata(record_file_); !written)
       return fail(written.error());
   }
-  return report_file_.empty() ? Result<void>{} : write_report();
+  if (report_file_.empty()) return {};
+  if (report->frames > 0) return write_report();
+  return fail(
+      ErrorCode::kInvalidArgument,
+      fmt::format("--report: got a run without a control step, expected one at least; {} is not written",
+                  report_file_));
 }
 
 Result<void> KeptRun::write_report() const {

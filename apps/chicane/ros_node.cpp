@@ -123,7 +123,7 @@ ExitCode simulate_node(const Options& options, const ros::NodeOptions& node) {
 }  // namespace
 
 ExitCode ros_node(const Options& told) {
-  catch_interrupts(ros_stop);
+  if (told.ros.is_simulator) catch_interrupts(ros_stop);
   const Options options = with_car(told);
   const ros::NodeOptions node = node_of(options);
   if (const Result<void> sound = check_topics(node.topics); !sound) return report(sound.error());

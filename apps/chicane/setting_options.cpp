@@ -17,12 +17,18 @@ void add_setting(CLI::App& command, Options& options, const std::string& name, c
       ->type_name(type);
 }
 
+void add_negation(CLI::App& command, const std::string& name, bool& value, const std::string& help) {
+  command.add_flag_callback(
+      name, [&value] { value = false; }, help);
+}
+
 void add_set(CLI::App& command, Options& options) {
   const auto take = [&options](const std::vector<std::string>& texts) {
     for (const std::string& text : texts) {
       const std::size_t equals = text.find('=');
       if (equals == std::string::npos || equals == 0) {
-        throw CLI::ValidationError("--set", fmt::format("got {}, expected key=value", printable(text)));
+        throw CLI::ValidationError("--set",
+                                   fmt::format("got {}, expected key=value without blanks", printable(text)));
       }
       options.settings.emplace_back(text.substr(0, equals), text.substr(equals + 1));
     }

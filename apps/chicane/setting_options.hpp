@@ -15,4 +15,7 @@ void add_setting(CLI::App& command, Options& options, const std::string& name, c
 /// --set comes after all named options: the last one wins.
 void add_set(CLI::App& command, Options& options);
 
+/// A flag that makes `value` false. CLI11's own "!--name" shows as --name{false} in the help.
+void add_negation(CLI::App& command, const std::string& name, bool& value, const std::string& help);
+
 }  // namespace chicane::apps

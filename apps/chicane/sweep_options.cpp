@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "chicane/sweep/shard.hpp"
+#include "setting_options.hpp"
 
 namespace chicane::apps {
 
@@ -101,7 +102,7 @@ void add_league(CLI::App& command, Options& options) {
       ->type_name("S")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
-  command.add_flag("!--no-programs", league.wants_programs, "Start no programs, also none of the file");
+  add_negation(command, "--no-programs", league.wants_programs, "Start no programs, also none of the file");
   command.add_option("--page", league.page, "Write the tables into this page, below its marker")
       ->type_name("FILE.md");
   add_jobs(command, options.jobs);

@@ -26,8 +26,7 @@ struct Known {
 };
 
 void expect_road(const std::string& file, const Known& known) {
-  std::vector<std::string> warnings;
-  const Result<Track> track = protocol::read_track(file, {}, &warnings);
+  const Result<Track> track = protocol::read_track(file);
   ASSERT_TRUE(track) << track.error().message;
   EXPECT_EQ(track->centre().is_closed(), !file.ends_with("stage.csv"));
   EXPECT_NEAR(track->length(), known.length, 0.002 * known.length)

@@ -64,6 +64,80 @@ TEST(CsvTrack, MatchesNamesNotPositions) {
   EXPECT_THAT(file.warnings, ::testing::Contains("a.csv:1: note: unknown column, ignored"));
 }
 
+TEST(CsvTrack, NamesAllUnknownColumnsInOneWarning) {
+  const TrackFile file = parse_track("x,y,z,yaw,velocity\n0,1,18,0,30\n4,2,18,0,30\n", "a.csv").value();
+  EXPECT_EQ(file.warnings.front(), "a.csv:1: z, yaw, velocity: unknown columns, ignored");
+}
+
+TEST(CsvTrack, ReadsTheCommentsOfMatlab) {
+  const TrackFile file = parse_track(ring("% x_m y_m\n% a ring\n", " "), "a.csv").value();
+  EXPECT_EQ(file.points.size(), 40U);
+  EXPECT_EQ(file.lines[0], 3);
+}
+
+TEST(CsvTrack, KeepsTheLineOfNamesAboveRowsThatBeginWithText) {
+  EXPECT_EQ(parse_track("stamp,x,y\n2024-05-01 12:00,0,1\n2024-05-01 12:01,5,1\n", "a.csv")->points.size(),
+            2U);
+  EXPECT_EQ(parse_track("x_m,y_m\nnan,1\n", "a.csv").error().message,
+            "a.csv:2: x_m: got nan, expected a finite number with a decimal point");
+  EXPECT_EQ(parse_track("# x_m,y_m\n\n,2\n", "a.csv").error().message,
+            "a.csv:3: x_m: got nothing, expected a finite number with a decimal point");
+  EXPECT_EQ(parse_track("None,1\n2,3\n", "a.csv").error().message,
+            "a.csv:1: x_m: got None, expected a finite number with a decimal point")
+      << "no line of names";
+  EXPECT_EQ(parse_track("x,y\nx_m,y_m\n0,1\n5,1\n", "a.csv")->points.size(), 2U) << "a second one may follow";
+}
+
+TEST(CsvTrack, NamesAMapOfCones) {
+  EXPECT_THAT(parse_track("tag,x,y\nblue,0,1\n", "a.csv").error().message,
+              HasSubstr("a.csv:2: tag: got blue, a map of cones, expected the points of one line"));
+  EXPECT_THAT(parse_track("x,y,colour\n0,1,Yellow\n", "a.csv").error().message,
+              HasSubstr("a.csv:2: colour: got Yellow, a map of cones"));
+}
+
+TEST(CsvTrack, GuessesNoColumnsButTwo) {
+  for (const char* row : {"0,0,18.3,30\n2,0,18.3,30\n", "0;0;8;3.2\n2;0;8;3.2\n", "0,0,1\n", "0 0 1 2 3\n"})
+    EXPECT_THAT(parse_track(row, "a.csv").error().message,
+                HasSubstr("expected a line that names them, like x_m,y_m,w_tr_right_m,w_tr_left_m"));
+  EXPECT_THAT(parse_track("0,0\n2,0\n", "a.csv")->warnings.front(),
+              HasSubstr("header: none, read as x_m,y_m"));
+}
+
+TEST(CsvTrack, BelievesACommentThatNamesOtherColumns) {
+  EXPECT_EQ(parse_track("# v_mps, ax_max_machines_mps2\n0,9\n1,8\n", "a.csv").error().message,
+            "a.csv:1: header: got v_mps, ax_max_machines_mps2, expected columns x and y (or x_m and y_m) in "
+            "metres");
+  EXPECT_FALSE(parse_track("# speed_mps time_s\n0 9\n1 8\n", "a.csv"));
+  EXPECT_TRUE(parse_track("# my track\n0 9\n1 8\n", "a.csv")) << "words are no names of columns";
+  EXPECT_TRUE(parse_track("# of Monza, the old one, in 2D\n0,9\n1,8\n", "a.csv"));
+  EXPECT_TRUE(parse_track("# a,b,c\n0,9\n1,8\n", "a.csv")) << "another number of columns";
+}
+
+TEST(CsvTrack, RefusesDegreesOfLatitudeAndLongitude) {
+  std::string text = "x,y\n";
+  for (int i = 0; i < 40; ++i)
+    text += std::to_string(11.57 + 0.01 * std::cos(0.157 * i)) + "," +
+            std::to_string(48.13 + 0.01 * std::sin(0.157 * i)) + "\n";
+  EXPECT_THAT(
+      parse_track(text, "a.csv").error().message,
+      HasSubstr("a.csv:2: x_m: got a road within 0.02 m round 11.58, 48.13, like degrees of longitude and "
+                "latitude, expected metres"));
+}
+
+TEST(CsvTrack, AssumesLengthsOfTheRoadsOwnScale) {
+  std::string text = "x_m,y_m\n";
+  for (int i = 0; i < 40; ++i)
+    text += std::to_string(6.0 * std::cos(kPi * i / 20.0)) + "," +
+            std::to_string(6.0 * std::sin(kPi * i / 20.0)) + "\n";
+  const TrackFile model = parse_track(text, "a.csv", {.scale = 0.1}).value();
+  EXPECT_DOUBLE_EQ(model.points[0].left, 0.45);
+  EXPECT_DOUBLE_EQ(model.options.smoothing_sigma, 0.01);
+  const path::Track small = make_track(model).value();
+  const path::Track large = make_track(parse_track(ring("x,y\n", ","), "a.csv").value()).value();
+  EXPECT_NEAR(10.0 * small.length(), large.length(), 1e-3) << "six digits in the text";
+  EXPECT_NEAR(0.1 * small.centre().at(1.0).curvature, large.centre().at(10.0).curvature, 1e-4);
+}
+
 TEST(CsvTrack, ReadsTumRaceLinesAndRecomputesTheirHeading) {
   std::string text =
       "# 7daf4d34-e3c1-4827-9777-a6793ffc3440\n# 603fd3987364b09f\n# s_m; x_m; y_m; psi_rad; kappa_radpm; "
@@ -176,7 +250,12 @@ TEST(CsvTrack, RefusesTooManyPoints) {
 TEST(CsvTrack, WarningsAndColumnsHaveALimit) {
   std::string text;
   for (int i = 0; i < 2000; ++i) text += "# x,y,mood,colour\n";
-  EXPECT_EQ(parse_track(text + "1,2,3,4\n5,6,7,8\n", "a.csv")->warnings.size(), 50U);
+  EXPECT_LE(parse_track(text + "1,2,3,4\n5,6,7,8\n", "a.csv")->warnings.size(), 4U)
+      << "of the last line of names";
+  std::string many = "x,y";
+  for (int i = 0; i < 900; ++i) many += ",c" + std::to_string(i);
+  EXPECT_LT(parse_track(many + "\n1,2" + std::string(900, ',') + "\n", "a.csv")->warnings.front().size(),
+            200U);
   std::string header = "x,y";
   for (int i = 0; i < 1000; ++i) header += ",c";
   EXPECT_EQ(parse_track(header, "a.csv").error().message,

@@ -46,11 +46,13 @@ TEST(JsonReport, HasEveryDocumentedKey) {
                           "preset",
                           "seed",
                           "latency_ms",
+                          "notices",
                           "completed",
                           "laps_completed",
                           "off_track_events",
                           "out_of_track_time_s",
                           "laps",
+                          "step_time_is",
                           "step_time_us",
                           "solve_time_us",
                           "solver",
@@ -88,6 +90,10 @@ TEST(JsonReport, NamesTheGuardWithItsVersion) {
                                                       {"margin_m", 0.5},
                                                       {"blind_time_s", 2.0}}));
   EXPECT_THAT(to_table(run), HasSubstr("guard observe"));
+  EXPECT_THAT(to_table(run), HasSubstr("control step "));
+  run.guard.reset();
+  EXPECT_THAT(to_table(run), HasSubstr("round trip "));
+  EXPECT_EQ(Json::parse(to_json(run))["step_time_is"], "round trip");
 }
 
 TEST(JsonReport, ConvertsUnits) {

@@ -63,6 +63,8 @@ TEST(RosMessages, RunSaysWhatTheBitsAndTermsOfAFrameMean) {
   EXPECT_EQ(reader.text(), "waypoints");
   EXPECT_EQ(reader.get<std::uint32_t>(), 7U);
   EXPECT_EQ(reader.number(), samples::run().vehicle.brake_throttle_limit);
+  EXPECT_EQ(reader.get<std::uint32_t>(), 1U);
+  EXPECT_EQ(reader.text(), "pid.speed_reference_mps: has no effect");
   EXPECT_TRUE(reader.is_at_end());
 }
 

@@ -311,6 +311,30 @@ TEST(UdacityReplyFromController, TakesWhatElseTheOriginalTakes) {
   }
 }
 
+TEST(UdacityReplyFromController, SaysWhatWasClamped) {
+  const auto clamped = [](const std::string& steering) {
+    const auto reply =
+        parse_reply(R"(42["steer",{"next_x":[],"next_y":[],"mpc_x":[],"mpc_y":[],"throttle":0,)"
+                    R"("steering_angle":)" +
+                    steering + "}]");
+    return std::get<UdacitySteer>(reply).clamped;
+  };
+  EXPECT_EQ(clamped("12.5"), "steering_angle: got 12.5, expected a number in [-1, 1]");
+  EXPECT_EQ(clamped("-1.0000001"), "") << "rounding";
+  EXPECT_EQ(clamped("0.25"), "");
+}
+
+TEST(UdacityTelemetry, RoundingBeyondABorderIsTheBorder) {
+  const auto read = [](const std::string& throttle, const std::string& speed) {
+    return std::get<model::Measurement>(parse_telemetry(
+        R"(42["telemetry",{"ptsx":[],"ptsy":[],"psi":0,"x":0,"y":0,"steering_angle":0,"throttle":)" +
+        throttle + R"(,"speed":)" + speed + "}]"));
+  };
+  EXPECT_EQ(read("1.0000001", "-1e-7").speed, 0.0);
+  EXPECT_EQ(read("1.0000001", "-1e-7").throttle, 1.0);
+  EXPECT_EQ(read("-1.0000001", "-0.0").throttle, -1.0);
+}
+
 safety::StopPlan stop_of(int size) {
   safety::StopPlan stop;
   stop.size = size;
@@ -406,7 +430,7 @@ TEST(UdacityReplyFromController, WhatStallsTheOriginalIsSaidInWords) {
       {R"(42["steer",{},1])", "name and one value"},
       {R"(42["Steer",{}])", "got \"Steer\", expected \"steer\""},
       {"steer", "does not begin with a digit"},
-      {"42[\"steer\",{\"throttle\":nan}]", "not JSON at byte 2"},
+      {"42[\"steer\",{\"throttle\":nan}]", "throttle: got nan, expected a number"},
   };
   for (const auto& [text, words] : list) {
     const auto reply = parse_reply(text);

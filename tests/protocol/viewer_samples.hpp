@@ -111,6 +111,7 @@ inline Run run() {
   run.building = "track = oval";
   run.end = "failed";
   run.end_reason = "time limit reached";
+  run.notices = {"pid.speed_reference_mps: has no effect"};
   run.guard = {.mode = "observe", .road = "waypoints", .version = 7};
   lap_time::Limit limit;
   limit.times = {.lap = 25.0, .sectors = {8.0, 9.5, 7.5}};

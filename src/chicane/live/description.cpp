@@ -24,6 +24,7 @@ protocol::Run description(const run::ClosedLoop& loop) {
   run.mode = "drive";
   run.guard = protocol::guard_facts(scenario.guard);
   describe(loop.track(), run);
+  run.notices = scenario.notices;
   protocol::describe(loop.controller(), run);
   run.faults = protocol::fault_names();
   return run;

@@ -44,13 +44,7 @@ LiveRun::LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop>
                      [this](const std::string& what) {
                        viewer_.change_run([what](protocol::Run& run) { run.building = what; });
                      },
-                 .say =
-                     [this](std::string_view line) {
-                       std::unique_lock lock(mutex_);  // viewers may come before run() does
-                       const auto say = hooks_.say;
-                       lock.unlock();
-                       if (say) say(line);
-                     },
+                 .say = [this](std::string_view line) { say(line); },
                  .on_accepted =
                      [this](const scenario::Scenario& now) {
                        viewer_.change_run([latency = now.latency, vehicle = now.vehicle](protocol::Run& run) {
@@ -62,7 +56,7 @@ LiveRun::LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop>
       viewer_{{.run = live_description(*loop_),
                .services = services(controls, what_if_, rival_, settings_),
                .parameters = &settings_}},
-      router_{nullptr, &viewer_},
+      router_{nullptr, &viewer_, [this](std::string_view line) { say(line); }},
       builder_{&live_description},
       what_if_{[this](const WhatIfQuestion& question, const recording::BranchHooks& hooks) {
         return follower_.branch(question.options, hooks);
@@ -98,6 +92,13 @@ Result<void> LiveRun::open() {
   if (!server) return fail(server.error());
   server_ = std::move(*server);
   return {};
+}
+
+void LiveRun::say(std::string_view line) {
+  std::unique_lock lock(mutex_);  // viewers may come before run() does
+  const auto say = hooks_.say;
+  lock.unlock();
+  if (say) say(line);
 }
 
 protocol::Run LiveRun::description() const { return live_description(*loop_); }

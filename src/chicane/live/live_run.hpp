@@ -75,6 +75,7 @@ class LiveRun {
   LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop> loop, run::RunControls& controls);
   [[nodiscard]] Result<void> open();
   [[nodiscard]] telemetry::RunSummary drive(RunOutputs& outputs);
+  void say(std::string_view line);
   void note(const telemetry::Change& change, RunOutputs& outputs);
   [[nodiscard]] bool take_over(RunOutputs& outputs);
   [[nodiscard]] std::optional<Result<void>> built();

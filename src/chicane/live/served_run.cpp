@@ -30,6 +30,7 @@ protocol::Run describe_served(const scenario::Scenario& scenario, const controll
   run.latency = scenario.latency;
   run.control_period = scenario.control_period;
   run.vehicle = scenario.vehicle;
+  run.notices = scenario.notices;
   if (track) describe(*track, run);
   run.limit = track ? RunLimit::first_answer(*track) : lap_time::LimitAnswer{.why_not = kUnknownRoad};
   return run;

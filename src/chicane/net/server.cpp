@@ -29,6 +29,7 @@
 #include "chicane/net/detail/gunzip.hpp"
 #include "chicane/net/detail/port_holder.hpp"
 #include "chicane/net/detail/send_queue.hpp"
+#include "chicane/net/detail/server_limits.hpp"
 #include "chicane/net/detail/site.hpp"
 #include "chicane/net/detail/watched_stream.hpp"
 #include "chicane/net/http_response.hpp"
@@ -42,13 +43,6 @@ namespace http = beast::http;
 namespace websocket = beast::websocket;
 using Tcp = asio::ip::tcp;
 using ErrorCodeBoost = boost::system::error_code;
-
-constexpr int kSendBuffer = 32 * 1024;  // a reader that stalls holds this much kernel memory, not megabytes
-constexpr std::chrono::seconds kAnswerTimeout{30};      // for one piece of an answer on a slow line
-constexpr std::chrono::seconds kLingerTimeout{1};       // so that a refusal is read before the socket goes
-constexpr std::chrono::milliseconds kAcceptPause{100};  // when descriptors are used up, for example
-constexpr std::size_t kKeptBuffer = 4096;               // between two messages [byte]
-constexpr std::size_t kMostReserved = 8;                // connections that viewers leave to others
 std::string_view view(boost::string_view text) { return {text.data(), text.size()}; }
 boost::string_view view(std::string_view text) { return {text.data(), text.size()}; }
 struct Parts {
@@ -282,8 +276,12 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
       return refuse(http::status::method_not_allowed, "only GET and HEAD");
     if (admission.status == 303)
       return reply(HttpResponse::see_other(admission.location, core_.door.cookie()), {});
-    if (admission.status == 200) return serve(request);
-    refuse(http::int_to_status(admission.status), admission.words);
+    if (admission.status == 200) {
+      const auto& why = core_.handlers.on_no_upgrade;
+      std::string words = why ? why(view(request.target())) : "";
+      return words.empty() ? serve(request) : turn_away(http::status::bad_request, std::move(words));
+    }
+    turn_away(http::int_to_status(admission.status), admission.words);
   }
 
   void upgrade(const http::request<http::empty_body>& request, const Admission& admission) {
@@ -318,6 +316,14 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
                             .if_range = view(request[http::field::if_range]),
                             .if_none_match = view(request[http::field::if_none_match])};
     reply(core_.site.answer(view(request.target()), asked), asked);
+  }
+
+  /// Refuses what whoever started the program can change, and may want to know.
+  void turn_away(http::status status, std::string words) {
+    ErrorCodeBoost ignored;
+    const std::string peer = stream_.socket().remote_endpoint(ignored).address().to_string(ignored);
+    if (const auto& tell = core_.handlers.on_refused) tell(peer, words);
+    refuse(status, std::move(words));
   }
 
   /// Answers in words and ends the connection.
@@ -406,14 +412,9 @@ class BeastServer final : public Server {
       acceptor_.set_option(asio::ip::v6_only(false), ec);
     if (!ec) acceptor_.bind(endpoint, ec);
     if (!ec) acceptor_.listen(asio::socket_base::max_listen_connections, ec);
-    if (ec == asio::error::address_in_use) {
-      return fail(ErrorCode::kIo, fmt::format("port {} is in use by {}", core_.options.port,
-                                              port_holder(core_.options.port)));
-    }
-    if (ec) {
-      return fail(ErrorCode::kIo, fmt::format("cannot listen on {}:{}: {}", core_.options.address,
-                                              core_.options.port, ec.message()));
-    }
+    if (ec)
+      return fail(cannot_listen(core_.options.address, core_.options.port, ec == asio::error::address_in_use,
+                                ec.message()));
     port_ = acceptor_.local_endpoint(ec).port();
     const ServerOptions& o = core_.options;
     core_.door = {o.address, o.allowed_hosts, o.allowed_origins, o.token, port_};

@@ -94,6 +94,11 @@ struct ServerHandlers {
   /// What a GET or HEAD of `path` (no query) is answered with; none: the asset of that name, or 404. Compare
   /// whole paths with the few you offer, and never make a file's name of one. May be empty.
   std::function<std::optional<Content>(std::string_view path)> on_get{};
+  /// Why a GET of `target` (path and query) without an upgrade should have asked for one, with the remedy;
+  /// empty: it need not. May be empty.
+  std::function<std::string(std::string_view target)> on_no_upgrade{};
+  /// A request of `peer` was refused at the door, in these words. May be empty.
+  std::function<void(std::string_view peer, std::string_view words)> on_refused{};
 };
 
 /// How a message waits for a slow reader.

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/protocol/detail/csv_text.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -43,74 +43,25 @@ constexpr std::array kAliases{
     Alias{"ax_mps2", Column::kDerived},
 };
 
-constexpr std::size_t kMaxLine = 65536;    // [bytes]
-constexpr std::size_t kMostWarnings = 50;  // of one file: memory is not for its author to fill
+constexpr std::size_t kMaxLine = 65536;  // [bytes]
 constexpr std::size_t kMostColumns = 1000;
 constexpr double kSameAngle = 0.3;     // headings from points scatter by this [rad]
 constexpr double kClosingCopy = 1e-3;  // a last point this near to the first repeats it [m]
 constexpr double kLoopGap = 1.5;       // a loop's last gap is at most this times the longest other one
+constexpr std::size_t kMostNamed = 8;  // unknown columns in one warning
+constexpr double kLeastRoad = 0.5;     // a full-size road within so small a square is in degrees [m]
 
-std::string_view trim(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\v\f\r";
-  const std::size_t begin = text.find_first_not_of(kBlank);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
-}
-
-char separator_of(std::string_view line) {
-  for (const char candidate : {';', ',', '\t'}) {
-    if (line.find(candidate) != std::string_view::npos) return candidate;
-  }
-  return ' ';
-}
-
-std::vector<std::string_view> split(std::string_view line, char separator) {
-  std::vector<std::string_view> fields;
-  std::size_t begin = 0;
-  while (begin <= line.size()) {
-    const std::size_t end = std::min(line.find(separator, begin), line.size());
-    std::string_view field = trim(line.substr(begin, end - begin));
-    if (field.size() >= 2 && field.front() == '"' && field.back() == '"')
-      field = trim(field.substr(1, field.size() - 2));
-    if (separator != ' ' || !field.empty()) fields.push_back(field);
-    begin = end + 1;
-  }
-  return fields;
-}
-
-/// A finite number or nothing.
-std::optional<double> number(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0.0;
-  const std::from_chars_result end = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end.ec != std::errc{} || end.ptr != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
-}
-
-/// Foreign text as messages show it: short, printable.
-std::string shown(std::string_view text) {
-  if (text.empty()) return "nothing";
-  constexpr std::size_t kMost = 32;
-  std::string result{text.substr(0, kMost)};
-  for (char& c : result) {
-    if (c < ' ' || c > '~') c = '?';
-  }
-  return text.size() > kMost ? result.append("...") : result;
-}
-
-std::string lower(std::string_view text) {
-  std::string result{text};
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
+/// What tags a cone's side in maps of cones (Formula Student): their rows follow no line.
+constexpr std::array<std::string_view, 7> kConeTags{"blue",       "yellow",     "orange", "big_orange",
+                                                    "orange_big", "big-orange", "cone"};
 
 class TrackParser {
  public:
   TrackParser(const std::string& file, const TrackReadOptions& options) : options_{options} {
     content_.file = file;
+    content_.scale = options.scale;
+    content_.options.spacing *= options.scale;
+    content_.options.smoothing_sigma *= options.scale;
     closed_ = options.is_closed;
   }
 
@@ -129,6 +80,7 @@ class TrackParser {
       line_ = 0;
       return fail(fault("file", "no points", "lines of numbers below a line that names them, like x_m,y_m"));
     }
+    if (Result<void> checked = check_extent(); !checked) return fail(std::move(checked.error()));
     compare_headings();
     settle_ends();
     return std::move(content_);
@@ -147,7 +99,6 @@ class TrackParser {
     return {ErrorCode::kParse, fmt::format("{}{}: got {}, expected {}", place(), column, got, expected)};
   }
   void warn(std::string_view column, std::string_view what) {
-    if (content_.warnings.size() >= kMostWarnings) return;
     content_.warnings.push_back(fmt::format("{}{}: {}", place(), column, what));
   }
 
@@ -155,18 +106,23 @@ class TrackParser {
     if (line.size() > kMaxLine) {
       return fail(fault("line", fmt::format("{} bytes", line.size()), fmt::format("at most {}", kMaxLine)));
     }
-    if (line.starts_with('#')) {
-      return read_comment(trim(line.substr(std::min(line.find_first_not_of('#'), line.size()))));
-    }
-    if (content_.points.empty() && !line.empty()) {
-      const std::vector<std::string_view> values = split(line, separator_of(line));
-      if (values.empty() || !number(values.front())) return read_header(line);
-    }
-    return line.empty() ? Result<void>{} : read_point(line);
+    if (line.empty()) return {};
+    if (line.front() == '#' || line.front() == '%')
+      return read_comment(trim(line.substr(std::min(line.find_first_not_of("#%"), line.size()))));
+    return content_.points.empty() && is_header(line) ? read_header(line) : read_point(line);
+  }
+
+  /// Of a line above the first point: the first one without a number in front, and each that names x and y.
+  [[nodiscard]] bool is_header(std::string_view line) const {
+    if (names_a_plane(line)) return true;
+    const std::vector<std::string_view> values = split(line, separator_of(line));
+    return fields_.empty() && (values.empty() || !stands_for_a_number(values.front()));
   }
 
   Result<void> read_comment(std::string_view comment) {
     if (content_.points.empty() && names_a_plane(comment)) return read_header(comment);
+    if (content_.points.empty() && fields_.empty() && names_columns(comment))
+      other_names_ = {line_, std::string{comment}, split_names(comment).size()};
     for (const std::string_view field : split(comment, separator_of(comment))) {
       const std::size_t equals = field.find('=');
       if (equals == std::string_view::npos) continue;
@@ -222,6 +178,17 @@ class TrackParser {
     return has_x && has_y;
   }
 
+  /// Whether a comment looks like the names of columns, whatever they are: "v_mps, ax_max_machines_mps2".
+  static bool names_columns(std::string_view comment) {
+    const std::vector<std::string_view> names = split_names(comment);
+    const bool has_separator = separator_of(comment) != ' ';
+    const bool has_unit = std::any_of(names.begin(), names.end(), [](std::string_view name) {
+      return name.find('_') != std::string_view::npos;
+    });
+    return names.size() > 1 && (has_separator || has_unit) &&
+           std::all_of(names.begin(), names.end(), is_name);
+  }
+
   /// Headers of the wild mix their separators: "ax_mps2, w_tr_right_m" after semicolons.
   static std::vector<std::string_view> split_names(std::string_view header) {
     std::vector<std::string_view> names;
@@ -243,22 +210,35 @@ class TrackParser {
 
   Result<void> read_header(std::string_view header) {
     fields_.clear();
+    content_.warnings.clear();  // of the line of names that this one takes the place of
     const std::string text = lower(header);
     const std::vector<std::string_view> names = split_names(text);
     if (names.size() > kMostColumns) {
       return fail(
           fault("header", fmt::format("{} columns", names.size()), fmt::format("at most {}", kMostColumns)));
     }
+    std::vector<std::string> unknown;
     for (const std::string_view name : names) {
       const Column column = column_of(name);
       const bool is_once = column == Column::kUnknown || column == Column::kDerived || !has(column);
       if (!is_once) return fail(fault(shown(name), "a second such column", "one"));
-      if (column == Column::kUnknown) warn(shown(name), "unknown column, ignored");
+      if (column == Column::kUnknown) unknown.push_back(shown(name));
       fields_.push_back({std::string{name}, column});
     }
-    if (!has(Column::kX) || !has(Column::kY))
-      return fail(fault("header", shown(header), "columns x and y (or x_m and y_m)"));
+    if (!has(Column::kX) || !has(Column::kY)) return fail(fault("header", shown(header), kPlane));
+    warn_of_unknown(unknown);
     return check_widths();
+  }
+
+  void warn_of_unknown(std::vector<std::string>& names) {
+    if (names.empty()) return;
+    if (names.size() > kMostNamed) {
+      const std::size_t more = names.size() - kMostNamed;
+      names.resize(kMostNamed);
+      names.push_back(fmt::format("and {} more", more));
+    }
+    warn(fmt::format("{}", fmt::join(names, ", ")),
+         names.size() == 1 ? "unknown column, ignored" : "unknown columns, ignored");
   }
 
   Result<void> check_widths() {
@@ -268,22 +248,26 @@ class TrackParser {
                         "both w_tr_right_m and w_tr_left_m, or none"));
     }
     if (!has_right) {
-      warn("width", fmt::format("not in the file, {} m left and {} m right assumed", options_.default_left,
-                                options_.default_right));
+      warn("width",
+           fmt::format("not in the file, {} m left and {} m right assumed",
+                       options_.scale * options_.default_left, options_.scale * options_.default_right));
     }
     return {};
   }
 
-  /// Numbers without a header: the two common layouts.
+  /// Numbers without a line of names: two columns can hardly be anything but a line of points. What more
+  /// columns are is never guessed: widths, height, speed and heading look alike.
   Result<void> assume_header(std::size_t count) {
-    if (count != 2 && count != 4) {
+    if (other_names_.count == count) {
+      line_ = other_names_.line;
+      return fail(fault("header", shown(other_names_.text), kPlane));
+    }
+    if (count != 2) {
       return fail(fault("header", fmt::format("none for {} columns", count),
                         "a line that names them, like x_m,y_m,w_tr_right_m,w_tr_left_m"));
     }
     fields_ = {{"x_m", Column::kX}, {"y_m", Column::kY}};
-    if (count == 4)
-      fields_.insert(fields_.end(), {{"w_tr_right_m", Column::kRight}, {"w_tr_left_m", Column::kLeft}});
-    warn("header", count == 4 ? "none, read as x_m,y_m,w_tr_right_m,w_tr_left_m" : "none, read as x_m,y_m");
+    warn("header", "none, read as x_m,y_m");
     return check_widths();
   }
 
@@ -300,7 +284,8 @@ class TrackParser {
     if (content_.points.size() == kMaxTrackPoints)
       return fail(fault("row", "another point", "at most 1000000"));
 
-    path::TrackPoint point{Vec2{}, options_.default_left, options_.default_right};
+    path::TrackPoint point{Vec2{}, options_.scale * options_.default_left,
+                           options_.scale * options_.default_right};
     for (std::size_t i = 0; i < fields_.size(); ++i) {
       if (Result<void> read = read_value(fields_[i], values[i], point); !read) return read;
     }
@@ -310,7 +295,8 @@ class TrackParser {
   }
 
   Result<void> read_value(const Field& field, std::string_view text, path::TrackPoint& point) {
-    if (field.column == Column::kUnknown || field.column == Column::kDerived) return {};
+    if (field.column == Column::kDerived) return {};
+    if (field.column == Column::kUnknown) return check_tag(field, text);
     const std::optional<double> value = number(text);
     if (field.column == Column::kHeading) {
       headings_.push_back(value.value_or(0.0));
@@ -336,6 +322,34 @@ class TrackParser {
         point.left = *value;
     }
     return {};
+  }
+
+  [[nodiscard]] Result<void> check_tag(const Field& field, std::string_view text) const {
+    const std::string tag = lower(text);
+    if (std::find(kConeTags.begin(), kConeTags.end(), tag) == kConeTags.end()) return {};
+    return fail(fault(field.name, shown(text) + ", a map of cones",
+                      "the points of one line in the order of driving, x_m,y_m,w_tr_right_m,w_tr_left_m"));
+  }
+
+  /// Degrees of latitude and longitude in columns that are taken for metres.
+  Result<void> check_extent() {
+    Vec2 low = content_.points.front().position;
+    Vec2 high = low;
+    for (const path::TrackPoint& point : content_.points) {
+      low = {std::min(low.x(), point.position.x()), std::min(low.y(), point.position.y())};
+      high = {std::max(high.x(), point.position.x()), std::max(high.y(), point.position.y())};
+    }
+    const double most = std::max(high.x() - low.x(), high.y() - low.y());
+    const Vec2& first = content_.points.front().position;
+    const bool may_be_degrees =
+        first.norm() > 1.0 && std::max(std::fabs(first.x()), std::fabs(first.y())) <= 180.0;
+    if (!(most > 0.0 && most < kLeastRoad * options_.scale && may_be_degrees)) return {};
+    line_ = content_.lines.front();
+    return fail(
+        fault("x_m",
+              fmt::format("a road within {:.2g} m round {}, {}, like degrees of longitude and latitude", most,
+                          first.x(), first.y()),
+              "metres: project the points to a plane first"));
   }
 
   /// Headings are always recomputed; a column that counts from elsewhere is worth a word.
@@ -381,8 +395,18 @@ class TrackParser {
     }
   }
 
+  static constexpr std::string_view kPlane = "columns x and y (or x_m and y_m) in metres";
+
+  /// A comment that names columns, but not x and y.
+  struct OtherNames {
+    int line = 0;
+    std::string text;
+    std::size_t count = 0;
+  };
+
   TrackReadOptions options_;
   TrackFile content_;
+  OtherNames other_names_;
   std::optional<bool> closed_;
   std::vector<Field> fields_;
   std::vector<double> headings_;

@@ -13,7 +13,8 @@
 namespace chicane::protocol {
 
 /// What TrackFormat::parse describes. Numbers have a decimal point in every locale; `;`, `,`, tab or blanks
-/// separate them; CRLF, a byte-order mark, blank lines and `#` comments are fine.
+/// separate them; CRLF, a byte-order mark, blank lines and comments behind `#` or `%` are fine. Nothing is
+/// guessed but that two columns without names are x and y.
 [[nodiscard]] Result<TrackFile> parse_csv_track(std::string_view text, const std::string& file,
                                                 const TrackReadOptions& options);
 

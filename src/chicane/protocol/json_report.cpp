@@ -131,6 +131,21 @@ TimeSummary times_of(const Json& json) {
           .max = 1e-6 * number_in(json, "max")};
 }
 
+/// How long it took, and how it ended.
+std::string outcome(const RunSummary& run) {
+  std::string text;
+  if (run.wall_time > 0.0) {
+    text += fmt::format("simulated          {:.1f} s in {:.2f} s ({:.0f} times real time)\n", run.duration,
+                        run.wall_time, run.duration / run.wall_time);
+  }
+  if (run.laps_wanted == 0) return text + fmt::format("{} laps until stopped\n", run.laps_completed);
+  const std::string how =
+      completed_on_road(run) ? "completed, all tyres on the road"
+      : run.completed        ? "completed, but left the road"
+                      : fmt::format("not completed: {}", run.end_reason.empty() ? "stopped" : run.end_reason);
+  return text + fmt::format("{} of {} laps, {}\n", run.laps_completed, run.laps_wanted, how);
+}
+
 }  // namespace
 
 Result<RunSummary> read_run(std::string_view text) {
@@ -174,6 +189,7 @@ std::string to_json(const RunSummary& run) {
       {"guard", to_object(run.guard)},
       {"seed", run.seed},
       {"latency_ms", number(1e3 * run.latency)},
+      {"notices", run.notices},
       {"completed", run.completed},
       {"end_reason", run.end_reason},
       {"laps_completed", run.laps_completed},
@@ -183,6 +199,7 @@ std::string to_json(const RunSummary& run) {
       {"total", to_object(run.total)},
       {"limit", to_object(run.limit)},
       {"why_no_limit", run.why_no_limit.empty() ? Json(nullptr) : Json(run.why_no_limit)},
+      {"step_time_is", run.guard ? "control step" : "round trip"},
       {"step_time_us", to_object(run.step_time)},
       {"solve_time_us", to_object(run.solve_time)},
       {"solver", {{"mean_iterations", number(run.mean_iterations)}, {"not_usable", run.not_usable}}},
@@ -222,6 +239,11 @@ std::string to_table(const RunSummary& run) {
   }
   text +=
       fmt::format("\noff track          {} times, {:.2f} s\n", run.off_track_events, run.out_of_track_time);
+  if (!run.guard) {  // another program drives: nothing is known of it but when it answers
+    text += fmt::format("round trip         {} µs (p50 / p99 / p99.9 / max), {} answers\n",
+                        times(run.step_time), run.cycles);
+    return text + outcome(run);
+  }
   text += fmt::format("control step       {} µs (p50 / p99 / p99.9 / max), {} steps, {} late\n",
                       times(run.step_time), run.cycles, run.deadline_misses);
   text += fmt::format("optimisation       {} µs, {:.1f} iterations, {} without an answer\n",
@@ -231,16 +253,7 @@ std::string to_table(const RunSummary& run) {
   const Json reasons = guard_reasons(run);
   for (const auto& [reason, steps] : reasons.items())
     text += fmt::format("guard              {}: {} steps\n", reason, steps.get<std::uint64_t>());
-  if (run.wall_time > 0.0) {
-    text += fmt::format("simulated          {:.1f} s in {:.2f} s ({:.0f} times real time)\n", run.duration,
-                        run.wall_time, run.duration / run.wall_time);
-  }
-  if (run.laps_wanted == 0) return text + fmt::format("{} laps until stopped\n", run.laps_completed);
-  const std::string outcome =
-      completed_on_road(run) ? "completed, all tyres on the road"
-      : run.completed        ? "completed, but left the road"
-                      : fmt::format("not completed: {}", run.end_reason.empty() ? "stopped" : run.end_reason);
-  return text + fmt::format("{} of {} laps, {}\n", run.laps_completed, run.laps_wanted, outcome);
+  return text + outcome(run);
 }
 
 }  // namespace chicane::protocol

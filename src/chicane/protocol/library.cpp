@@ -84,8 +84,16 @@ Error unknown_name(Shelf shelf, std::string_view name, const std::vector<Entry>&
   known_names.reserve(known.size());
   for (const Entry& entry : known) known_names.push_back(entry.name);
   const std::string_view best = nearest(name, known_names);
-  return {ErrorCode::kNotFound, fmt::format("{}{}one of {}{}", got, or_what, fmt::join(known_names, ", "),
-                                            best.empty() ? "" : fmt::format(" (did you mean {}?)", best))};
+  std::string hint = best.empty() ? "" : fmt::format(" (did you mean {}?)", best);
+  for (const Shelf other : {Shelf::kTrack, Shelf::kCar, Shelf::kPreset}) {
+    const std::vector<Entry> there = entries(other);
+    const bool has_it =
+        std::any_of(there.begin(), there.end(), [&](const Entry& each) { return each.name == name; });
+    if (shelf == Shelf::kScenario && has_it)
+      hint = fmt::format(" (did you mean --{} {}?)", names(other).singular, name);
+  }
+  return {ErrorCode::kNotFound,
+          fmt::format("{}{}one of {}{}", got, or_what, fmt::join(known_names, ", "), hint)};
 }
 
 /// A name and who asks for it: "runs/wet.yaml:3: ", nothing for the command line and for defaults.
@@ -133,6 +141,13 @@ Wish last_wish(const std::vector<Document>& layers, std::string_view key, const 
   return found;
 }
 
+bool is_set(const std::vector<Document>& layers, std::string_view key) {
+  return std::any_of(layers.begin(), layers.end(), [&](const Document& layer) {
+    return std::any_of(layer.assignments.begin(), layer.assignments.end(),
+                       [&](const Assignment& assignment) { return assignment.parameter->key == key; });
+  });
+}
+
 /// Collects the faults of independent steps, so that a user sees all of them at once.
 class Faults {
  public:
@@ -152,6 +167,7 @@ Document parse_settings(const Request& request, Faults& faults) {
   Document document;
   for (const auto& [key, text] : request.settings) {
     const Parameter* parameter = find(key);
+    if (parameter == nullptr) continue;  // of refuse_unknown()
     scenario::Scenario scratch;
     if (const Result<void> checked = set_text(scratch, key, text); !checked) {
       faults.add(checked.error());
@@ -162,6 +178,43 @@ Document parse_settings(const Request& request, Faults& faults) {
     }
   }
   return document;
+}
+
+/// Settings with a key that there is none of; who drives is known only when all files are read.
+void refuse_unknown(const Request& request, std::string_view driver, Faults& faults) {
+  for (const auto& [key, text] : request.settings) {
+    if (find(key) == nullptr)
+      faults.add({ErrorCode::kNotFound, fmt::format("{}: {}", printable(key), unknown_key(key, driver))});
+  }
+}
+
+/// Settings that were asked for and do nothing: those of controllers that do not drive.
+void note_idle(const Document& asked, scenario::Scenario& scenario) {
+  for (const Assignment& assignment : asked.assignments) {
+    const Parameter& parameter = *assignment.parameter;
+    if (parameter.controller.empty() || parameter.controller == scenario.controller) continue;
+    scenario.notices.push_back(fmt::format("{}{}: has no effect: {} drives, not {}",
+                                           place(asked.file, assignment.line), parameter.key,
+                                           scenario.controller, parameter.controller));
+  }
+}
+
+/// What was assumed of the road: by its reader, where it is no shipped one; and of its size.
+void note_track(bool is_asked_for, scenario::Scenario& scenario) {
+  const double scale = scenario.vehicle.scale;
+  if (is_path(scenario.track)) {
+    const Result<std::string> text = read_file(scenario.track);
+    const auto content = text ? parse_track(*text, scenario.track, {.scale = scenario.scale_of_file()})
+                              : Result<TrackFile>{fail(text.error())};
+    if (content)  // what is wrong with it the run itself will tell
+      scenario.notices.insert(scenario.notices.end(), content->warnings.begin(), content->warnings.end());
+  }
+  if (is_asked_for && scale != 1.0 && scenario.track_scale == 0.0)
+    scenario.notices.push_back(
+        fmt::format("track_scale: got none, so {} is driven at {:g} of its size, the scale of the car {}; "
+                    "track_scale=1 is for a "
+                    "road in the car's own size",
+                    scenario.track, scale, scenario.car));
 }
 
 /// A file named in a scenario file may be meant relative to it.
@@ -260,8 +313,12 @@ Result<std::string> locate(Shelf shelf, std::string_view name_or_file) {
   std::error_code ignored;
   if (is_path(name_or_file)) {
     if (fs::is_regular_file(fs::path(name_or_file), ignored)) return std::string(name_or_file);
-    return fail(ErrorCode::kNotFound,
-                fmt::format("{}: got {}, expected a file that exists", singular, printable(name_or_file)));
+    std::string message =
+        fmt::format("{}: got {}, expected a file that exists", singular, printable(name_or_file));
+    const std::string name = fs::path(name_or_file).stem().string();
+    if (name_or_file.find('/') == std::string_view::npos && check_name(shelf, name))
+      message += fmt::format(" (did you mean {}?)", name);
+    return fail(ErrorCode::kNotFound, std::move(message));
   }
   for (const std::string& place : folders(shelf)) {
     for (const std::string_view extension : extensions) {
@@ -337,6 +394,7 @@ Result<scenario::Scenario> compose(const Request& request, RememberedFiles& file
     }
   }
   layers.push_back(std::move(settings));
+  const std::size_t asked = layers.size();  // by the user, apart from presets and car
 
   std::vector<Document> presets = read_presets(preset, files, faults);
   layers.insert(layers.begin(), std::make_move_iterator(presets.begin()),
@@ -346,6 +404,7 @@ Result<scenario::Scenario> compose(const Request& request, RememberedFiles& file
   if (const auto track = find_track(last_wish(layers, "track", defaults.track), files); !track)
     faults.add(track.error());
 
+  refuse_unknown(request, last_wish(layers, "controller", defaults.controller).name, faults);
   scenario::Scenario scenario;
   scenario.preset = preset.name;
   if (const Result<void> applied = apply_layers(layers, scenario); !applied) faults.add(applied.error());
@@ -358,6 +417,9 @@ Result<scenario::Scenario> compose(const Request& request, RememberedFiles& file
     if (const Result<void> done = set_speed(scenario, request.speed_mps); !done) faults.add(done.error());
   }
   if (!faults.empty()) return faults.failure();
+  for (auto layer = layers.end() - static_cast<std::ptrdiff_t>(asked); layer != layers.end(); ++layer)
+    note_idle(*layer, scenario);
+  note_track(is_set(layers, "track"), scenario);
   return scenario;
 }
 

@@ -57,7 +57,8 @@ struct Request {
 
 /// The experiment asked for. Later layers win: defaults, car file, preset (with the presets it builds on),
 /// scenario file, settings, speed. The names `preset`, `car` and `track` may be files, relative to the
-/// working directory or to the scenario file. All faults at once, each with its file and line.
+/// working directory or to the scenario file. All faults at once, each with its file and line. Its
+/// notices are the warnings of the track's reader, and settings that have no effect.
 [[nodiscard]] Result<scenario::Scenario> compose(const Request& request);
 
 }  // namespace chicane::protocol

@@ -91,6 +91,7 @@ std::string encode_run(const Frame&, const Run& run) {
       .text(run.guard.road)
       .put(static_cast<std::uint32_t>(run.guard.version))
       .put(car.brake_throttle_limit)
+      .texts(run.notices)
       .bytes();
 }
 

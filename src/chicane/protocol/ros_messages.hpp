@@ -60,6 +60,7 @@ struct Run {
   std::string end_reason{};  ///< why it is over, in one sentence; empty when it finished
   GuardFacts guard{};        ///< what watches over the controller
   FrameNames frames{};
+  std::vector<std::string> notices{};  ///< of the scenario, a sentence each
 };
 
 /// What a controller says about itself, copied into a run.

@@ -89,20 +89,31 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
   return best;
 }
 
-std::string suggestion(std::string_view key) {
-  std::vector<std::string_view> keys;
-  for (const Parameter& parameter : list()) keys.push_back(parameter.key);
-  std::string_view best = nearest(key, keys);
-  const std::string_view name =
-      key.substr(key.rfind('.') + 1);  // the right name in the wrong group, or without one
-  for (const std::string_view known : keys) {
-    if (best.empty() && known.ends_with(fmt::format(".{}", name))) best = known;
+std::string suggestion(std::string_view key, std::string_view driver) {
+  std::vector<std::string_view> in_use;
+  std::vector<std::string_view> others;
+  for (const Parameter& parameter : list()) {
+    const bool is_used = driver.empty() || parameter.controller.empty() || parameter.controller == driver;
+    (is_used ? in_use : others).push_back(parameter.key);
   }
-  return best.empty() ? "" : fmt::format(" (did you mean {}?)", best);
+  const auto name_of = [](std::string_view each) { return each.substr(each.rfind('.') + 1); };
+  for (const auto* keys : {&in_use, &others}) {
+    std::string_view best = nearest(key, *keys);
+    if (best.empty()) {  // the right name, or almost, in the wrong group or without one
+      std::vector<std::string_view> names;
+      for (const std::string_view known : *keys) names.push_back(name_of(known));
+      const std::string_view name = nearest(name_of(key), names);
+      const auto it = std::find(names.begin(), names.end(), name);
+      if (!name.empty()) best = (*keys)[static_cast<std::size_t>(it - names.begin())];
+    }
+    if (!best.empty()) return fmt::format(" (did you mean {}?)", best);
+  }
+  return "";
 }
 
-std::string unknown_key(std::string_view key) {
-  return fmt::format("got an unknown key, expected one of `chicane list parameters`{}", suggestion(key));
+std::string unknown_key(std::string_view key, std::string_view driver) {
+  return fmt::format("got an unknown key, expected one of `chicane list parameters`{}",
+                     suggestion(key, driver));
 }
 
 Value get(const Scenario& scenario, const Parameter& parameter) {

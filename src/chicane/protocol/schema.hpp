@@ -40,10 +40,11 @@ struct Parameter {
 [[nodiscard]] const Parameter* find_option(std::string_view controller, std::string_view name);
 /// The most similar thing among `known` when a typing mistake could explain `word`; otherwise empty.
 [[nodiscard]] std::string_view nearest(std::string_view word, std::span<const std::string_view> known);
-/// For messages: " (did you mean cubic_mpc.horizon_steps?)", or empty when nothing is similar.
-[[nodiscard]] std::string suggestion(std::string_view key);
+/// For messages: " (did you mean cubic_mpc.horizon_steps?)", or empty when nothing is similar. Where it is
+/// known who drives, options of other controllers come last: they would have no effect.
+[[nodiscard]] std::string suggestion(std::string_view key, std::string_view driver = {});
 /// For messages: "got an unknown key, expected ...", with the suggestion.
-[[nodiscard]] std::string unknown_key(std::string_view key);
+[[nodiscard]] std::string unknown_key(std::string_view key, std::string_view driver = {});
 [[nodiscard]] Value get(const scenario::Scenario& scenario, const Parameter& parameter);
 /// kInvalidArgument "latency_ms: got 900, expected a number in [0, 500] ms", and no change, for a wrong type
 /// or range.

@@ -39,6 +39,22 @@ std::string with_line(const std::string& message, const TrackFile& content) {
   return fmt::format("{}: {}", content.file, message);
 }
 
+std::vector<path::TrackPoint> full_size_points(const TrackFile& content) {
+  const double scale = content.scale;
+  std::vector<path::TrackPoint> points = content.points;
+  for (path::TrackPoint& point : points)
+    point = {(1.0 / scale) * point.position, point.left / scale, point.right / scale};
+  return points;
+}
+
+path::TrackOptions full_size_options(const TrackFile& content) {
+  path::TrackOptions options = content.options;
+  for (double* length : {&options.spacing, &options.smoothing_sigma, &options.kerb_width, &options.start_s,
+                         &options.start_d, &options.finish_s})
+    *length /= content.scale;
+  return options;
+}
+
 }  // namespace
 
 std::span<const TrackFormat> track_formats() noexcept { return kFormats; }
@@ -59,6 +75,10 @@ Result<TrackFile> parse_track(std::string_view text, const std::string& file,
                   fmt::format("default width: got {}, expected a width > 0 and <= 1000 m", width));
     }
   }
+  if (!(options.scale > 0.0 && options.scale <= kMaxTrackScale)) {
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("scale: got {}, expected a number > 0 and <= {}", options.scale, kMaxTrackScale));
+  }
   if (text.size() > kMaxTrackBytes) {
     return fail(ErrorCode::kParse,
                 fmt::format("{}: file: got {} bytes, expected at most 64 MiB", file, text.size()));
@@ -68,21 +88,25 @@ Result<TrackFile> parse_track(std::string_view text, const std::string& file,
 }
 
 Result<path::Track> make_track(const TrackFile& content) {
-  Result<path::Track> track = path::Track::create(std::filesystem::path{content.file}.stem().string(),
-                                                  content.points, content.is_closed, content.options);
-  if (!track) return fail(ErrorCode::kParse, with_line(track.error().message, content));
-  return track;
+  const std::string name = std::filesystem::path{content.file}.stem().string();
+  const bool is_model = content.scale != 1.0;
+  Result<path::Track> track =
+      is_model ? path::Track::create(name, full_size_points(content), content.is_closed,
+                                     full_size_options(content))
+               : path::Track::create(name, content.points, content.is_closed, content.options);
+  if (!track) {
+    const std::string size =
+        is_model ? fmt::format(" (in full size: metres of the file / {})", content.scale) : "";
+    return fail(ErrorCode::kParse, with_line(track.error().message, content) + size);
+  }
+  return is_model ? track->scaled(content.scale) : std::move(track);
 }
 
-Result<path::Track> read_track(const std::string& file, const TrackReadOptions& options,
-                               std::vector<std::string>* warnings) {
+Result<path::Track> read_track(const std::string& file, const TrackReadOptions& options) {
   const Result<std::string> text = read_file(file);
   if (!text) return fail(text.error());
   const Result<TrackFile> content = parse_track(*text, file, options);
-  if (!content) return fail(content.error());
-  if (warnings != nullptr)
-    warnings->insert(warnings->end(), content->warnings.begin(), content->warnings.end());
-  return make_track(*content);
+  return content ? make_track(*content) : fail(content.error());
 }
 
 }  // namespace chicane::protocol

@@ -19,6 +19,9 @@ struct TrackReadOptions {
   double default_right = 4.5;  ///< [m]; the same
   std::optional<bool> is_closed =
       std::nullopt;  ///< forces it; else the file says it, or the gap from last to first point does
+  /// Of the file's metres: 0.1 where the file has the road of a tenth of the size. What is assumed (widths,
+  /// noise and spacing of the points) is that of a full-size road times this; (0, 1000].
+  double scale = 1.0;
 };
 
 /// What a file holds, before it becomes a road.
@@ -28,10 +31,12 @@ struct TrackFile {
   std::vector<int> lines;                ///< of each point in the file, from 1
   bool is_closed = true;
   path::TrackOptions options;         ///< what the file says of them, else the defaults
+  double scale = 1.0;                 ///< as TrackReadOptions has it
   std::vector<std::string> warnings;  ///< "file:line: column: what was assumed or ignored"
 };
 
 inline constexpr double kMaxTrackWidth = 1000.0;  ///< to one side [m]
+inline constexpr double kMaxTrackScale = 1000.0;
 inline constexpr std::size_t kMaxTrackPoints = 1'000'000;
 inline constexpr std::size_t kMaxTrackBytes = std::size_t{64} << 20U;
 
@@ -59,8 +64,7 @@ struct TrackFormat {
 /// point have its line.
 [[nodiscard]] Result<path::Track> make_track(const TrackFile& content);
 
-/// Reads, parses and makes. Also kNotFound and kIo. Warnings are appended to `warnings` when given.
-[[nodiscard]] Result<path::Track> read_track(const std::string& file, const TrackReadOptions& options = {},
-                                             std::vector<std::string>* warnings = nullptr);
+/// Reads, parses and makes. Also kNotFound and kIo.
+[[nodiscard]] Result<path::Track> read_track(const std::string& file, const TrackReadOptions& options = {});
 
 }  // namespace chicane::protocol

@@ -12,6 +12,8 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/base/assert.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/base/range.hpp"
+#include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
 
 namespace chicane::protocol {
@@ -49,6 +51,8 @@ std::string shown(const Json& value) {
   return fmt::format("{}…", std::string_view(text).substr(0, kMaxWords));
 }
 
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
 UdacityBroken unexpected(std::string_view field, const Json& value, std::string_view expected) {
   return {fmt::format("{}: got {}, expected {}", field, shown(value), expected)};
 }
@@ -64,6 +68,44 @@ bool has_decimal_comma(std::string_view text) {
     if (k > first && k + 1 < text.size() && text[k] == ',' && is_digit(text[k + 1])) return true;
   }
   return false;
+}
+
+/// Where a text that is no JSON has a word in a number's place: "speed: got NaN", "ptsx[1]: got Infinity".
+/// Empty where it has none.
+std::string bare_word(std::string_view text) {
+  static constexpr std::array<std::string_view, 9> kWords{"NaN", "nan",       "Infinity", "infinity", "Inf",
+                                                          "inf", "undefined", "None",     "Nan"};
+  std::string key;
+  std::string last_text;
+  int index = -1;  // in an array of numbers
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') {
+      const std::size_t end = std::min(text.find('"', i + 1), text.size());
+      last_text = text.substr(i + 1, end - i - 1);
+      i = end;
+    } else if (c == ':') {
+      key = last_text;
+      index = -1;
+    } else if (c == '[') {
+      index = 0;
+    } else if (c == ',' && index >= 0) {
+      ++index;
+    } else if (c == ']') {
+      index = -1;
+    } else if (is_letter(c)) {
+      std::size_t end = i;
+      while (end < text.size() && is_letter(text[end])) ++end;
+      const std::string_view word = text.substr(i, end - i);
+      if (std::find(kWords.begin(), kWords.end(), word) != kWords.end()) {
+        const std::string_view sign = i > 0 && text[i - 1] == '-' ? "-" : "";
+        const std::string place = index >= 0 ? fmt::format("{}[{}]", key, index) : key;
+        return fmt::format("{}: got {}{}, expected a number", printable(place), sign, word.substr(0, 20));
+      }
+      i = end - 1;
+    }
+  }
+  return "";
 }
 
 struct Event {
@@ -82,6 +124,8 @@ tl::expected<Event, UdacityBroken> parse_event(std::string_view text) {
       return tl::unexpected(
           UdacityBroken{"decimal comma: the simulator runs with a comma locale; start it with LC_NUMERIC=C"});
     }
+    if (std::string word = bare_word(text.substr(start)); !word.empty())
+      return tl::unexpected(UdacityBroken{std::move(word)});
     return tl::unexpected(UdacityBroken{fmt::format("not JSON at byte {}", *read.error().byte + start)});
   }
   if (!read) return tl::unexpected(UdacityBroken{"a number is too large for JSON"});
@@ -238,7 +282,7 @@ class FieldReader {
       return 0.0;
     }
     const double number = value.get<double>();
-    if (number >= range.low && number <= range.high) return number;
+    if (const std::optional<double> inside = within(number, range.low, range.high)) return *inside;
     refuse(unexpected(key, value, fmt::format("a number in [{}, {}]", range.low, range.high)));
     return 0.0;
   }
@@ -397,8 +441,14 @@ UdacityReply parse_reply(std::string_view text) {
   constexpr Range kAnything{-3.4e38, 3.4e38};  // a larger number does not fit the original's float
   FieldReader fields(event->payload);
   UdacitySteer steer;
-  steer.command.steer = 0.0 - std::clamp(fields.number("steering_angle", kAnything), -1.0, 1.0) * kSteerUnit;
-  steer.command.throttle = std::clamp(fields.number("throttle", kAnything), -1.0, 1.0);
+  const auto share = [&](const char* key) {
+    const double number = fields.number(key, kAnything);
+    if (!within(number, -1.0, 1.0) && steer.clamped.empty())
+      steer.clamped = fmt::format("{}: got {:g}, expected a number in [-1, 1]", key, number);
+    return std::clamp(number, -1.0, 1.0);
+  };
+  steer.command.steer = 0.0 - share("steering_angle") * kSteerUnit;
+  steer.command.throttle = share("throttle");
   steer.reference = fields.line("next_x", "next_y", kAnything);
   steer.plan = fields.line("mpc_x", "mpc_y", kAnything);
   steer.stop = read_stop(fields);

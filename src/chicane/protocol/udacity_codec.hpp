@@ -75,6 +75,8 @@ struct UdacitySteer {
   std::vector<Vec2> plan{};       ///< mpc_*, in B at receipt [m]
   std::vector<Vec2> reference{};  ///< next_*, in B at receipt [m]
   safety::StopPlan stop{};  ///< its times [s] count from when the telemetry was sampled; size 0: none came
+  /// What was clamped, in words: "steering_angle: got 12.5, expected a number in [-1, 1]"; empty: nothing.
+  std::string clamped{};
 };
 using UdacityReply = std::variant<UdacitySteer, UdacityManual, UdacityPacket, UdacityBroken>;
 [[nodiscard]] UdacityReply parse_reply(std::string_view text);

@@ -15,6 +15,7 @@
 #include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/excerpt.hpp"
+#include "chicane/recording/reader.hpp"
 #include "chicane/recording/temporary_file.hpp"
 
 namespace chicane::recording {
@@ -86,10 +87,6 @@ Result<std::string> logs_json(const ReportOptions& options, double rate) {
     const TemporaryFile thinned(".mcap");
     const auto read = excerpt(log.file, thinned.path(), {.topics = kTopics, .rate = rate});
     if (!read) return fail(read.error());
-    if (read->messages == 0) {
-      return fail(ErrorCode::kParse,
-                  fmt::format("{}: has none of the topics that chicane records", log.name));
-    }
     const Result<std::string> content = read_all(thinned.path());
     if (!content) return fail(content.error());
     bytes += content->size();
@@ -144,6 +141,9 @@ Result<ReportSummary> write_report(const ReportOptions& options) {
     return fail(
         ErrorCode::kNotFound,
         "report: this program was built without its dashboard: install Node.js and npm, and build again");
+  }
+  for (const ReportedLog& log : options.logs) {
+    if (const auto read = check_recording(log.file); !read) return fail(read.error());
   }
   for (const double rate : kRates) {
     const Result<std::string> logs = logs_json(options, rate);

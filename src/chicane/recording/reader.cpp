@@ -129,4 +129,16 @@ Result<scenario::Scenario> recorded_scenario(const std::string& path) {
   return *first;
 }
 
+Result<telemetry::McapReport> check_recording(const std::string& path) {
+  std::uint64_t steps = 0;
+  telemetry::McapVisitor visitor;
+  visitor.on_message = [&](const telemetry::McapMessage& message) {
+    steps += message.channel.topic == "/chicane/frame" ? 1U : 0U;
+  };
+  const Result<telemetry::McapReport> read = telemetry::read_mcap(path, visitor);
+  if (read && steps == 0)
+    return fail(ErrorCode::kParse, path + ": got no control step, expected a recording of ours");
+  return read;
+}
+
 }  // namespace chicane::recording

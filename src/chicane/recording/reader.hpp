@@ -48,4 +48,8 @@ struct RecordingHead {
 /// kInvalidArgument for a recording of `serve`, whose car is not here to drive on.
 [[nodiscard]] Result<scenario::Scenario> recorded_scenario(const std::string& path);
 
+/// Whether a file can be shown: how much of it there is. Also kParse "x.mcap: got no control step, expected a
+/// recording of ours" for bags of other programs, and for a recording cut before its first step is whole.
+[[nodiscard]] Result<telemetry::McapReport> check_recording(const std::string& path);
+
 }  // namespace chicane::recording

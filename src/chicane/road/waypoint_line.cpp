@@ -25,7 +25,7 @@ bool WaypointLine::extend(const WaypointMap& map, int newest) noexcept {
   const auto points = map.points();
   const int first = std::max(0, settled_ - kSettled);
   const int count = newest - first + 1;
-  if (count < 3 || count > kWindow || newest >= kMostWaypoints) return false;
+  if (count < 2 || count > kWindow || newest >= kMostWaypoints) return false;
   std::array<Vec2, kWindow> window;
   for (int i = 0; i < count; ++i)
     window[static_cast<std::size_t>(i)] = points[static_cast<std::size_t>(first + i) % points.size()];

@@ -30,7 +30,7 @@ class WaypointLine {
   void clear() noexcept;
 
   /// Draws the line on to waypoint number `newest`. False, and nothing changed, when that is no curve: fewer
-  /// than three waypoints, coordinates out of range, more than kReach not settled, or beyond the capacity.
+  /// than two waypoints, coordinates out of range, more than kReach not settled, or beyond the capacity.
   bool extend(const WaypointMap& map, int newest) noexcept;
 
   [[nodiscard]] int newest() const noexcept { return newest_; }  ///< waypoint drawn to; −1 for none

@@ -427,7 +427,7 @@ Result<wire::ServeSummary> drive(const NodeOptions& node, const wire::ServeOptio
   run.frames = node.frames;
   auto publisher = RunPublisher::create(**participant, run);
   if (!publisher) return fail(publisher.error());
-  wire::Router router(nullptr, viewer);
+  wire::Router router(nullptr, viewer, hooks.log);
   auto server =
       net::Server::create(options.server, router.handlers(std::move(hooks.pages)), std::move(assets));
   if (!server) return fail(server.error());

@@ -5,9 +5,13 @@
 #include <cmath>
 #include <utility>
 
+#include "chicane/base/text.hpp"
+
 namespace chicane::run {
 namespace {
 
+constexpr double kStanding = 0.02;  // [m/s]
+constexpr const char* kTimeLimit = "time limit reached";
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 telemetry::Metrics empty_metrics(const AccountTerms& terms) {
@@ -30,6 +34,7 @@ AccountTerms terms_of(const scenario::Scenario& scenario, const std::string& tra
           .car = scenario.car,
           .controller = scenario.controller,
           .preset = scenario.preset,
+          .notices = scenario.notices,
           .seed = scenario.seed,
           .scale = scenario.vehicle.scale,
           .guard = scenario.guard,
@@ -47,7 +52,7 @@ void Account::restart() {
   has_new_lap_ = false;
   laps_seen_ = 0;
   nearest_ = kNever;
-  lost_for_ = 0.0;
+  lost_for_ = stood_for_ = 0.0;
   is_over_ = has_finished_ = false;
   end_reason_ = "";
 }
@@ -67,6 +72,9 @@ void Account::set_terms(int laps, double time_limit, double latency) noexcept {
 
 void Account::add_physics(const sim::World& world, bool is_manual) noexcept {
   metrics_.add_physics(physics_sample(world));
+  edge_distance_ = world.state().edge_distance;
+  const bool stands = std::fabs(world.plant().output().speed) < kStanding;
+  stood_for_ = stands ? stood_for_ + world.plant().step_length() : 0.0;
   count_laps(world.state());
   look_for_end(world.state(), world.time(), world.plant().step_length(), is_manual);
 }
@@ -115,7 +123,7 @@ void Account::look_for_end(const sim::WorldState& car, double time, double step,
     end_reason_ = "the car left the road and did not come back";
   } else if (!is_endless_ && time >= time_limit()) {
     is_over_ = true;
-    end_reason_ = "time limit reached";
+    end_reason_ = kTimeLimit;
   }
 }
 
@@ -136,6 +144,7 @@ telemetry::RunSummary Account::summary(std::optional<double> duration) const {
   run.controller = terms_.controller;
   run.preset = terms_.preset;
   run.guard = terms_.guard;
+  run.notices = terms_.notices;
   run.seed = terms_.seed;
   run.latency = terms_.latency;
   run.laps_wanted = terms_.laps;
@@ -143,6 +152,12 @@ telemetry::RunSummary Account::summary(std::optional<double> duration) const {
   if (has_finished_) run.laps_wanted = 1;  // an open road has no more
   run.completed = terms_.laps > 0 && run.laps_completed >= run.laps_wanted;
   run.end_reason = end_reason_;
+  if (end_reason_ == kTimeLimit && stood_for_ > kStoodTime) {
+    const std::string edge = number_text(0.01 * std::round(100.0 * std::fabs(edge_distance_)));
+    run.end_reason += ": the car stood for the last " + number_text(std::round(stood_for_)) +
+                      " s, its outermost tyre " + edge + " m " +
+                      (edge_distance_ < 0.0 ? "beyond" : "inside") + " the edge";
+  }
   if (!run.completed && run.end_reason.empty()) run.end_reason = "stopped";
   return run;
 }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/world.hpp"
@@ -15,6 +16,7 @@ namespace chicane::run {
 /// What the account of a run is told of it beforehand.
 struct AccountTerms {
   std::string track{}, car{}, controller{}, preset{};  ///< names in the report
+  std::vector<std::string> notices{};                  ///< scenario.notices
   std::uint64_t seed = 0;
   double scale = 1.0;                           ///< of the car: what is far is so many times as far
   std::optional<safety::GuardOptions> guard{};  ///< none where another program drives
@@ -41,6 +43,7 @@ class Account {
   static constexpr double kLostDistance = 25.0;  ///< [m]
   static constexpr double kLostTime = 30.0;      ///< [s]
   static constexpr double kNearer = 1.0;         ///< [m] that count as coming nearer
+  static constexpr double kStoodTime = 3.0;      ///< [s] of standing that a time limit's sentence tells
   static constexpr double kTimePerLap = 600.0;   ///< [s] where no time limit was given
   static constexpr int kLapsRemembered = 1000;   ///< one by one, beyond those asked for
 
@@ -88,6 +91,8 @@ class Account {
   int laps_seen_ = 0;                                         ///< by the judge since restart() or resume()
   double nearest_ = std::numeric_limits<double>::infinity();  ///< to the line while far from it [m]
   double lost_for_ = 0.0;                                     ///< far, and not coming nearer [s]
+  double edge_distance_ = 0.0;                                ///< of our plant [m]
+  double stood_for_ = 0.0;                                    ///< until now [s]
   bool is_endless_ = false;
   bool is_over_ = false;
   bool has_finished_ = false;  ///< an open road

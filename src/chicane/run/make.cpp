@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/make.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@ namespace chicane::run {
 namespace {
 
 constexpr double kWaypointSpacing = 12.0;  // [m] the median of the original's waypoints
+constexpr double kFewestWaypoints = 8.0;   // of a road, however short it is
 
 }  // namespace
 
@@ -36,13 +38,13 @@ Result<std::unique_ptr<sim::Plant>> make_plant(const scenario::Scenario& scenari
 Result<path::Track> make_track(const scenario::Scenario& scenario) {
   Result<std::string> file = protocol::locate(protocol::Shelf::kTrack, scenario.track);
   if (!file) return fail(file.error());
-  Result<path::Track> track = protocol::read_track(*file);
   const double size = scenario.size_of_track();
+  Result<path::Track> track = protocol::read_track(*file, {.scale = scenario.scale_of_file()});
   return track && size != 1.0 ? track->scaled(size) : std::move(track);
 }
 
 Result<path::Track> make_waypoints(const path::Track& track, double scale) {
-  const double spacing = kWaypointSpacing * scale;
+  const double spacing = std::min(kWaypointSpacing * scale, track.length() / kFewestWaypoints);
   const std::vector<path::TrackPoint>& raw = track.raw_points();
   const double mean_spacing = track.centre().length() / static_cast<double>(raw.size());
   if (mean_spacing > 0.6 * spacing) return track;

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "chicane/base/text.hpp"
 #include "chicane/controller/registry.hpp"
 #include "chicane/lap_time/racing_plan.hpp"
 #include "chicane/model/grip.hpp"
@@ -15,6 +16,7 @@
 namespace chicane::run {
 namespace {
 
+constexpr double kModelRoad = 2.5;      // [m] a narrower road may be a model's
 constexpr double kShareAtTheEnd = 0.9;  // of the braking of the plan, where an open road ends
 
 const controller::TrackingMpcOptions& options_of(const scenario::Scenario& scenario) {
@@ -45,6 +47,19 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const path::Track& track
                                                   planned);
 }
 
+/// What may be wrong with the road's size: a file in model size taken for one in full size, or the other way
+/// round.
+std::string size_remedy(const scenario::Scenario& scenario, const path::Track& track) {
+  const double scale = scenario.vehicle.scale;
+  if (scale != 1.0 && scenario.track_scale == 0.0)
+    return "; the road is driven at " + number_text(scale) +
+           " of its file's size, the car's scale: track_scale=1 takes it as it is";
+  const bool may_be_model = scale == 1.0 && track.left_width(0.0) + track.right_width(0.0) < kModelRoad;
+  return may_be_model
+             ? "; a road of model size needs a model car and its own size: --car f1tenth --set track_scale=1"
+             : "";
+}
+
 /// As the controller of a model car sees the road.
 path::Track in_full_size(const path::Track& track, const scenario::Scenario& scenario) {
   const model::Similarity similarity(scenario.vehicle);
@@ -66,7 +81,7 @@ Result<void> check_room(const scenario::Scenario& scenario, const path::Track& t
                                                     beside, scenario.vehicle.scale);
   if (fits) return {};
   return fail(fits.error().code, "track: " + track.name() + " is not for the car " + scenario.vehicle.name +
-                                     ": " + fits.error().message);
+                                     ": " + fits.error().message + size_remedy(scenario, track));
 }
 
 Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenario& scenario,

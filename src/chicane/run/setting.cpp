@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "chicane/base/range.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 #include "chicane/run/lap_planner.hpp"
@@ -28,7 +29,7 @@ Result<double> number_in(std::string_view key, std::string_view text, double low
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool is_number = error == std::errc{} && end == text.data() + text.size();
-  if (is_number && value >= low && value <= high) return value;
+  if (const auto inside = within(value, low, high); is_number && inside) return *inside;
   return refuse_setting(key, text, "a number in [" + number_text(low) + ", " + number_text(high) + "]");
 }
 

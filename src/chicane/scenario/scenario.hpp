@@ -41,9 +41,16 @@ struct Scenario {
   sim::SensorOptions sensor;
   std::vector<sim::FaultEvent> faults;  ///< that happen during the run; at most sim::FaultLab::kCapacity
 
+  /// What was assumed when it was composed, and which settings have no effect: a sentence each, for the
+  /// terminal, JSON and the dashboard alike. No setting.
+  std::vector<std::string> notices;
+
   [[nodiscard]] double size_of_track() const noexcept {
     return track_scale > 0.0 ? track_scale : vehicle.scale;
   }
+  /// Of what is assumed of a track's file: one that is driven in its own size has the noise of the car's
+  /// size, any other one is in full size.
+  [[nodiscard]] double scale_of_file() const noexcept { return track_scale == 1.0 ? vehicle.scale : 1.0; }
 
   /// Of every controller, whichever drives: std::get<controller::PidOptions>(controllers).
   controller::Registry::Options controllers;

@@ -58,6 +58,7 @@ struct TimeSummary {
 struct RunSummary {
   std::string track, car, controller, preset;
   std::optional<safety::GuardOptions> guard;  ///< none where another program drives
+  std::vector<std::string> notices;           ///< of the scenario, a sentence each
   std::uint64_t seed = 0;
   double latency = 0.0;    ///< actuation delay of the plant [s]
   int laps_wanted = 0;     ///< 0 = until stopped

@@ -12,6 +12,7 @@
 
 #include "chicane/net/http_response.hpp"
 #include "chicane/net/server.hpp"
+#include "chicane/wire/sparse_log.hpp"
 
 namespace chicane::wire {
 
@@ -45,7 +46,9 @@ inline constexpr std::array<std::string_view, 2> kViewerSubprotocols{"foxglove.s
 /// Either may be null: its clients are refused in words.
 class Router {
  public:
-  Router(Endpoint* simulator, Endpoint* viewer) : endpoints_{simulator, viewer} {}
+  /// `say` is told why somebody was refused, once for each reason, on the network thread. May be empty.
+  Router(Endpoint* simulator, Endpoint* viewer, std::function<void(std::string_view)> say = {})
+      : endpoints_{simulator, viewer}, log_{std::move(say)} {}
 
   /// The router must outlive the server that was created with them. `pages` are answered to GET.
   [[nodiscard]] net::ServerHandlers handlers(Pages pages = {}) {
@@ -66,6 +69,15 @@ class Router {
           if (page == pages.end()) return std::nullopt;
           return page->second();
         },
+        .on_no_upgrade = [](std::string_view target) -> std::string {
+          if (!target.starts_with(kSocketIoPath)) return "";
+          return "Socket.IO by polling is not served: use transport=websocket, in a client {transports: "
+                 "[\"websocket\"]}";
+        },
+        .on_refused =
+            [this](std::string_view peer, std::string_view words) {
+              log_.say_once(words, "refused " + std::string(peer) + ": " + std::string(words));
+            },
     };
   }
 
@@ -93,7 +105,10 @@ class Router {
     return answer;
   }
 
+  static constexpr std::string_view kSocketIoPath = "/socket.io/";
+
   std::array<Endpoint*, 2> endpoints_;
+  SparseLog log_;
 };
 
 }  // namespace chicane::wire

@@ -370,8 +370,9 @@ Result<ServeSummary> serve(const ServeOptions& options, std::unique_ptr<controll
   const auto announce = hooks.on_listening;
   const auto end = hooks.on_end;
   Pages pages = std::move(hooks.pages);
+  const auto say = hooks.log;
   UdacityEndpoint simulator(options, std::move(controller), std::move(hooks));
-  Router router(&simulator, viewer);
+  Router router(&simulator, viewer, say);
   auto server = net::Server::create(options.server, router.handlers(std::move(pages)), std::move(assets));
   if (!server) return fail(server.error());
   if (announce) announce((*server)->port());

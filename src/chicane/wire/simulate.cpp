@@ -309,6 +309,11 @@ class Simulation {
 
   void accept(const protocol::UdacitySteer& steer, double waited) {
     ++report_.answers;
+    if (!steer.clamped.empty())
+      log_.complain(
+          fmt::format("{}: clamped, as the original does. The answer is a share of full lock (25°, 0.436 "
+                      "rad) or of the pedal, not degrees",
+                      steer.clamped));
     last_answer_ = Clock::now();
     scene_.receiver().answered(steer);
     ++frame_.cycle;

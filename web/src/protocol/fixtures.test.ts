@@ -121,6 +121,7 @@ describe('messages of the C++ side', () => {
       guard_road: 'waypoints',
       guard_version: 7,
       brake_throttle_limit: 0.04,
+      notices: ['pid.speed_reference_mps: has no effect'],
     });
   });
 

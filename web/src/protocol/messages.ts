@@ -611,6 +611,8 @@ export interface Run {
   guard_version: number;
   /** the throttle that brakes fully is minus this */
   brake_throttle_limit: number;
+  /** what was assumed, and what has no effect: a sentence each */
+  notices: string[];
 }
 
 /** What a Run says when nothing is known. */
@@ -643,6 +645,7 @@ export const UNKNOWN_RUN: Run = {
   guard_road: '',
   guard_version: 0,
   brake_throttle_limit: NaN,
+  notices: [],
 };
 
 /** chicane_msgs/msg/Lap. One completed lap, sent when it is. */

@@ -1,5 +1,5 @@
 import type { Change, Frame, Lap, Limit, Path, Plan, Run, TopicName, Topics } from '../protocol/topics';
-import { forgetEvents, forgetFrameEvents, noteChange, noteEvents, setFaultNames } from './event_log';
+import { forgetEvents, forgetFrameEvents, noteChange, noteEvents, noteNotices, setFaultNames } from './event_log';
 import { forgetFaultMarks, forgetFaults, noteFaultChange, noteFaultMarks } from './faults';
 import { forgetLaps, forgetSamples, noteLap, receiveLap } from './laps';
 import { noteScore } from './leaderboard';
@@ -41,6 +41,7 @@ export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: num
     case '/chicane/run':
       receiveRun(message as Run);
       setFaultNames(run.value?.fault_names ?? []);
+      noteNotices(run.value?.notices ?? []);
       break;
     case '/chicane/lap':
       receiveLap(message as Lap);
@@ -71,6 +72,7 @@ function receiveFrame(frame: Frame, now: number): void {
   let before = newest;
   if (before && frame.time_s < before.time_s) {
     forget();
+    noteNotices(run.value?.notices ?? []);
     past.drop();
     for (const listener of restartListeners) listener();
     before = null;
@@ -142,6 +144,7 @@ export function beginSession(isOtherRun = true): void {
 /** Jumps to another time of a recording: its history is cleared and sent again. */
 export function rewind(): void {
   forget();
+  noteNotices(run.value?.notices ?? []);
   newest = null;
   live.frame = null;
 }

@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import type { Frame } from '../protocol/topics';
-import { events, forgetEvents, noteChange, noteEvents, setFaultNames } from './event_log';
+import { events, forgetEvents, noteChange, noteEvents, noteNotices, setFaultNames } from './event_log';
 
 const frame = (change: Partial<Frame>): Frame =>
   ({
@@ -60,6 +60,17 @@ describe('event log', () => {
     expect(events.value).toMatchObject([{ text: 'latency_ms set to 150', time: 3.5 }]);
     noteChange({ stamp: { sec: 5, nsec: 0 }, cycle: 92n, name: 'run.racing_line', value: '0.87' });
     expect(events.value[0]?.text).toBe('Races by a new lap, planned with 87 % of the grip');
+  });
+
+  it('lists once what was assumed as the run began', () => {
+    see({ time_s: 1 });
+    see({ time_s: 2, is_gated: true });
+    noteNotices(['a.csv:1: width: not in the file, 4.5 m left and 4.5 m right assumed']);
+    noteNotices(['a.csv:1: width: not in the file, 4.5 m left and 4.5 m right assumed']);
+    expect(events.value).toMatchObject([
+      { text: 'The gate changed the command' },
+      { text: 'a.csv:1: width: not in the file, 4.5 m left and 4.5 m right assumed', time: 0, severity: 'warning' },
+    ]);
   });
 
   it('does not grow', () => {

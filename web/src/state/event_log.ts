@@ -91,6 +91,14 @@ export function noteEvents(frame: Frame, before: Frame | null): void {
   }
 }
 
+/** What the program assumed when the run began; it comes with each description of the run. */
+export function noteNotices(notices: readonly string[]): void {
+  for (const text of notices) {
+    if (events.value.some((event) => event.text === text)) continue;
+    add({ id: nextId++, severity: 'warning', text, time: 0, duration: null, isChange: true });
+  }
+}
+
 export const faultInWords = (name: string): string => nameInWords(name.replace(/^fault\./, ''));
 
 export function noteChange({ stamp, name, value }: Change): void {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/lap_time/detail/collocation.hpp"
 #include "chicane/lap_time/detail/message.hpp"
 #include "chicane/lap_time/detail/plant_model.hpp"
@@ -49,40 +50,15 @@ struct BendModel {
   static constexpr double kSmooth = 1e-3;
 };
 
-constexpr double kPace = 4.0;  // of the nodes [m/s]
+constexpr double kPace = 4.0;   // of the nodes [m/s]
+constexpr int kNarrowings = 3;  // of the room, each to a half
 
-}  // namespace
-
-double CarSize::most_curvature() const noexcept {
-  const double rear = chicane::tan(steer_limit) / (front_axle + rear_axle);  // of the rear axle's middle
-  return rear / std::sqrt(1.0 + rear_axle * rear_axle * rear * rear);
-}
-
-Result<void> fits_road(const path::Track& track, const CarSize& car) { return fits_road(track, car, Fit{}); }
-
-Result<void> fits_road(const path::Track& track, const CarSize& car, const Fit& fit) {
-  const GuessCar pace{.grip = 2.0,
-                      .drive = 2.0,
-                      .brake = 2.0,
-                      .speed = kPace,
-                      .front_axle = car.front_axle,
-                      .rear_axle = car.rear_axle};
-  RoadNodes road = lay_nodes(track, pace, 0.25);
+/// Whether the car's lock suffices for the straightest line with its centre of mass at most `beside` from the
+/// middle.
+Result<void> bends_fit(RoadNodes road, const CarSize& car, const Fit& fit, double beside, bool& has_answer) {
   for (std::vector<double>* room : {&road.front_left, &road.front_right, &road.rear_left, &road.rear_right}) {
-    for (double& each : *room) each = std::min(each, fit.beside + car.half_width);
+    for (double& each : *room) each = std::min(each, beside + car.half_width);
   }
-  double sharpest = 0.0;
-  for (std::size_t k = 0; k < road.s.size(); ++k) {
-    const double width =
-        std::min(road.front_left[k] + road.front_right[k], road.rear_left[k] + road.rear_right[k]);
-    if (width <= 2.0 * car.half_width)
-      return fail(ErrorCode::kInvalidArgument,
-                  message("limit: the road is %.2f m wide at s = %.1f m, expected more than the car's %.2f m",
-                          fit.scale * width, fit.scale * road.s[k], fit.scale * 2.0 * car.half_width));
-    sharpest = std::max(sharpest, std::fabs(road.curvature[k]));
-  }
-  if (sharpest * fit.surely < car.most_curvature()) return {};
-
   BendModel model;
   model.car = car;
   model.road = &road;
@@ -100,7 +76,8 @@ Result<void> fits_road(const path::Track& track, const CarSize& car, const Fit& 
                                                        .last_barrier = 1e-5,
                                                        .cost_scale = 1.0,
                                                        .most_iterations = 300});
-  if (report.violation > 1e-2) return {};  // no answer: the search itself will tell
+  has_answer = report.violation <= 1e-2;
+  if (!has_answer) return {};  // the search itself will tell
   std::size_t worst = 0;
   const auto curvature = [&](std::size_t k) { return std::fabs(z[k * BendModel::kVariables + 2]); };
   for (std::size_t k = 0; k < n; ++k)
@@ -112,6 +89,62 @@ Result<void> fits_road(const path::Track& track, const CarSize& car, const Fit& 
               "drives no less than %.2f m",
               fit.scale * road.s[worst], fit.scale / curvature(worst), fit.scale / car.most_curvature()) +
           (fit.reserve > 1.0 ? ", of which something must be left to steer by" : ""));
+}
+
+}  // namespace
+
+double CarSize::most_curvature() const noexcept {
+  const double rear = chicane::tan(steer_limit) / (front_axle + rear_axle);  // of the rear axle's middle
+  return rear / std::sqrt(1.0 + rear_axle * rear_axle * rear * rear);
+}
+
+Result<void> fits_road(const path::Track& track, const CarSize& car) { return fits_road(track, car, Fit{}); }
+
+Result<void> fits_road(const path::Track& track, const CarSize& car, const Fit& fit) {
+  const GuessCar pace{.grip = 2.0,
+                      .drive = 2.0,
+                      .brake = 2.0,
+                      .speed = kPace,
+                      .front_axle = car.front_axle,
+                      .rear_axle = car.rear_axle};
+  const RoadNodes road = lay_nodes(track, pace, 0.25);
+  double sharpest = 0.0;
+  double widest = 0.0;
+  for (std::size_t k = 0; k < road.s.size(); ++k) {
+    const double most = fit.beside + car.half_width;
+    const double front = std::min(road.front_left[k], most) + std::min(road.front_right[k], most);
+    const double rear = std::min(road.rear_left[k], most) + std::min(road.rear_right[k], most);
+    const double width = std::min(front, rear);
+    if (width <= 2.0 * car.half_width)
+      return fail(ErrorCode::kInvalidArgument,
+                  message("limit: the road is %.2f m wide at s = %.1f m, expected more than the car's %.2f m",
+                          fit.scale * width, fit.scale * road.s[k], fit.scale * 2.0 * car.half_width));
+    widest = std::max(widest, width);
+    sharpest = std::max(sharpest, std::fabs(road.curvature[k]));
+  }
+  if (sharpest * fit.surely < car.most_curvature()) return {};
+
+  // Any closed line is at least as long as the circle of its tightest radius.
+  double turned = 0.0;
+  for (std::size_t k = 0; k < road.s.size(); ++k) turned += std::fabs(road.turn[k]);
+  const double longest = track.length() + (widest - 2.0 * car.half_width) * turned;
+  const double circle = 2.0 * kPi / car.most_curvature();
+  if (track.centre().is_closed() && longest < circle)
+    return fail(
+        ErrorCode::kInvalidArgument,
+        message("limit: the loop is %.1f m long, expected more than the car's circle at full lock, %.1f m",
+                fit.scale * track.length(), fit.scale * circle));
+
+  // On a road that is wider than its bends are round, the search for the straightest line can end in a fold
+  // of the coordinates. A line that a narrower road leaves is one of the wider road, too.
+  bool has_answer = false;
+  Result<void> fits = bends_fit(road, car, fit, fit.beside, has_answer);
+  double beside = std::min(fit.beside, widest);
+  for (int narrowing = 0; narrowing < kNarrowings && !fits; ++narrowing) {
+    beside *= 0.5;
+    if (bends_fit(road, car, fit, beside, has_answer) && has_answer) return {};
+  }
+  return fits;
 }
 
 }  // namespace chicane::lap_time

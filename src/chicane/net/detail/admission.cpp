@@ -39,12 +39,16 @@ std::string page_of(std::string_view path) {
 Admission Doorkeeper::admit(const Visitor& visitor) const {
   if (visitor.hosts != 1) return refuse(400, "one Host header is needed");
   if (!host_is_allowed(visitor.host, address, allowed_hosts))
-    return refuse(403, fmt::format("host '{}' is not allowed here", visitor.host));
+    return refuse(
+        403,
+        fmt::format("host '{}' is not allowed here: use a numeric address, or start with --allow-host {}",
+                    visitor.host, visitor.host.substr(0, visitor.host.find(':'))));
   const bool is_foreign = !visitor.origin.empty() && !is_own(visitor.origin, visitor.host);
   const bool is_let_in =
       std::find(allowed_origins.begin(), allowed_origins.end(), visitor.origin) != allowed_origins.end();
   if (visitor.is_upgrade && is_foreign && !is_let_in)
-    return refuse(403, fmt::format("pages of '{}' may not connect here", visitor.origin));
+    return refuse(403, fmt::format("pages of '{0}' may not connect here: start with --allow-origin {0}",
+                                   visitor.origin));
 
   const std::size_t question = std::min(visitor.target.find('?'), visitor.target.size());
   const std::string_view path = visitor.target.substr(0, question);

@@ -61,4 +61,10 @@ std::string port_holder(std::uint16_t port) {
   return "another program";
 }
 
+Error cannot_listen(const std::string& address, std::uint16_t port, bool is_in_use,
+                    const std::string& words) {
+  if (is_in_use) return {ErrorCode::kIo, fmt::format("port {} is in use by {}", port, port_holder(port))};
+  return {ErrorCode::kIo, fmt::format("cannot listen on {}:{}: {}", address, port, words)};
+}
+
 }  // namespace chicane::net

@@ -160,6 +160,7 @@ string guard_mode                       # "on", "observe", "off"; empty: not kno
 string guard_road                       # where the guard knows the road from: "track", "waypoints"
 uint32 guard_version                    # 0: not known
 float64 brake_throttle_limit            # the throttle that brakes fully is minus this
+string[] notices                        # what was assumed, and what has no effect: a sentence each
 )"},
     RosDefinition{"chicane_msgs/Lap", R"(# One completed lap, sent when it is.
 uint32 lap                              # its number, from 1

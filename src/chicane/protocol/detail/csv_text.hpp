@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Lines of text files as fields, of csv_track.cpp.
+namespace chicane::protocol {
+
+inline std::string_view trim(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\v\f\r";
+  const std::size_t begin = text.find_first_not_of(kBlank);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
+}
+
+inline char separator_of(std::string_view line) {
+  for (const char candidate : {';', ',', '\t'}) {
+    if (line.find(candidate) != std::string_view::npos) return candidate;
+  }
+  return ' ';
+}
+
+inline std::vector<std::string_view> split(std::string_view line, char separator) {
+  std::vector<std::string_view> fields;
+  std::size_t begin = 0;
+  while (begin <= line.size()) {
+    const std::size_t end = std::min(line.find(separator, begin), line.size());
+    std::string_view field = trim(line.substr(begin, end - begin));
+    if (field.size() >= 2 && field.front() == '"' && field.back() == '"')
+      field = trim(field.substr(1, field.size() - 2));
+    if (separator != ' ' || !field.empty()) fields.push_back(field);
+    begin = end + 1;
+  }
+  return fields;
+}
+
+/// A finite number or nothing.
+inline std::optional<double> number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const std::from_chars_result end = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end.ec != std::errc{} || end.ptr != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+/// A number as it is meant, finite or not, or its place left empty: the field of a row, never of a header.
+inline bool stands_for_a_number(std::string_view text) {
+  return text.empty() || number(text) || text == "nan" || text == "NaN" || text == "inf" || text == "-inf" ||
+         text == "None";
+}
+
+/// "v_mps", "x[m]": a word that may name a column.
+inline bool is_name(std::string_view text) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  const auto may_follow = [&](char c) {
+    return is_letter(c) || (c >= '0' && c <= '9') ||
+           std::string_view("[]()/.-").find(c) != std::string_view::npos;
+  };
+  return !text.empty() && is_letter(text.front()) && std::all_of(text.begin(), text.end(), may_follow);
+}
+
+/// Foreign text as messages show it: short, printable.
+inline std::string shown(std::string_view text) {
+  if (text.empty()) return "nothing";
+  constexpr std::size_t kMost = 32;
+  std::string result{text.substr(0, kMost)};
+  for (char& c : result) {
+    if (c < ' ' || c > '~') c = '?';
+  }
+  return text.size() > kMost ? result.append("...") : result;
+}
+
+inline std::string lower(std::string_view text) {
+  std::string result{text};
+  for (char& c : result) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return result;
+}
+
+}  // namespace chicane::protocol

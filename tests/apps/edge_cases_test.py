@@ -1,0 +1,310 @@
+# SPDX-License-Identifier: MIT
+"""Situations from public files and bug reports, against the program as users start it: `edge_cases_test.py PROGRAM`. Each case is one
+that once ended in a wrong guess or in a message that did not help. Inputs that are not made here lie in tests/apps/edges (made up, like
+files of the wild)."""
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import urllib.error
+import urllib.request
+from pathlib import Path
+
+from edge_sockets import Controller, WebSocket, steering_of, telemetry
+
+PROGRAM = sys.argv.pop(1)
+HERE = Path(__file__).resolve().parent
+DATA = HERE / "edges"
+MODEL = ["--car", "f1tenth", "--set", "track_scale=1"]
+
+
+def environment():
+    return {**os.environ, "CHICANE_DATA_DIR": str(HERE.parent.parent)}
+
+
+def run(*words, cwd=DATA):
+    done = subprocess.run([PROGRAM, *map(str, words)], cwd=cwd, env=environment(), capture_output=True, text=True, timeout=120)
+    return done.returncode, done.stdout, done.stderr
+
+
+class Serving:
+    """`chicane serve` on a free port; `said()`: its messages so far."""
+
+    def __init__(self, *words, address="127.0.0.1"):
+        self.file = tempfile.NamedTemporaryFile("w+", suffix=f".{os.getpid()}", delete=False)
+        self.process = subprocess.Popen([PROGRAM, "serve", "--latency-ms", "0", "--port", "0", "--address", address, *words], cwd=DATA,
+                                        env=environment(), stdout=subprocess.DEVNULL, stderr=self.file)
+        self.wait_for("waits for")
+        self.port = int(re.search(r"port (\d+)", self.said())[1])
+
+    def said(self):
+        return Path(self.file.name).read_text(errors="replace")
+
+    def wait_for(self, words, seconds=30):
+        end = time.monotonic() + seconds
+        while words not in self.said():
+            if time.monotonic() > end or self.process.poll() is not None:
+                raise AssertionError(f"did not say {words!r}: {self.said()}")
+            time.sleep(0.02)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGINT)
+        self.process.wait(30)
+        self.file.close()
+        os.unlink(self.file.name)
+
+
+def ring(rows, radius=60.0, count=40):
+    from math import cos, pi, sin
+    return "\n".join(rows(radius * cos(2 * pi * i / count), radius * sin(2 * pi * i / count)) for i in range(count)) + "\n"
+
+
+class Files(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory(suffix=f".{os.getpid()}")
+        self.addCleanup(self.folder.cleanup)
+
+    def file(self, name, text):
+        path = Path(self.folder.name) / name
+        path.write_text(text)
+        return path
+
+    def assert_refused(self, file, *parts, words=()):
+        code, out, err = run("check", file, *words)
+        self.assertEqual(code, 2, f"{out}{err}")
+        for part in parts:
+            self.assertIn(part, err)
+
+    def assert_read(self, file, *parts, words=()):
+        code, out, err = run("check", file, *words)
+        self.assertEqual(code, 0, f"{out}{err}")
+        for part in parts:
+            self.assertIn(part, out + err)
+        return err
+
+    # 7. Warnings of readers reach people, by each command and as JSON.
+    def test_warnings_are_told(self):
+        self.assert_read("01_total_width.csv", "width_m: unknown column, ignored", "4.5 m left and 4.5 m right assumed")
+        self.assert_read("01_header_after_uuid.csv", "psi_rad: counts from +y", "4.5 m left and 4.5 m right assumed")
+        self.assert_read("01_autoware_saved.csv", "z, yaw, velocity, change_flag: unknown columns, ignored")
+        self.assertEqual(self.assert_read("28_rect_0.7.csv", "2.00 m wide", words=MODEL), "", "nothing was assumed")
+
+    def test_warnings_are_told_by_drive(self):
+        code, out, err = run("drive", "--fast", "--set", "time_limit_s=0.1", "--json", "--track", "01_total_width.csv")
+        self.assertEqual(code, 1, err)
+        for text in (out, err):
+            self.assertIn("width_m: unknown column, ignored", text)
+        self.assertIn('"notices": [', out)
+
+    def test_open_road_is_told(self):
+        self.assert_read(self.file("open.csv", "x_m,y_m\n0,0\n10,0\n20,1\n30,1\n40,2\n50,2\n"), "read as an open road")
+
+    def test_settings_without_effect_are_told(self):
+        code, _, err = run("check", "--set", "pid.proportional_gain=0.1", "--preset", "default")
+        self.assertEqual(code, 0, err)
+        self.assertIn("pid.proportional_gain: has no effect: tracking-mpc drives, not pid", err)
+        self.assertEqual(run("check", "--set", "pid.proportional_gain=0.1", "--controller", "pid")[2], "")
+        scenario = self.file("run.yaml", "controller: pid\ncubic_mpc:\n  horizon_steps: 12\n")
+        self.assertIn("run.yaml:3: cubic_mpc.horizon_steps: has no effect", run("check", scenario)[2])
+
+    def test_a_wrong_key_is_completed_to_one_that_has_an_effect(self):
+        for controller in ("tracking-mpc", "cubic-mpc"):
+            err = run("check", "--controller", controller, "--set", "horizon_step=12")[2]
+            self.assertIn(f"(did you mean {controller.replace('-', '_')}.horizon_steps?)", err)
+
+    # 8. Guesses.
+    def test_columns_without_names_are_not_guessed(self):
+        for name in ("03_xyz_velocity_no_header.csv", "03_xy_speed_yaw_no_header.csv"):
+            self.assert_refused(name, f"{name}:1: header: got none for 4 columns, expected a line that names them, like x_m,y_m")
+        self.assert_refused(self.file("three.csv", ring(lambda x, y: f"{x},{y},1.5")), "got none for 3 columns")
+        self.assert_read(self.file("two.csv", ring(lambda x, y: f"{x} {y}")), "header: none, read as x_m,y_m")
+
+    def test_comments_that_name_other_columns(self):
+        for name in ("05_engine_limits.csv", "05_velocity_first_comment.csv"):
+            self.assert_refused(name, f"{name}:1: header: got v_mps", "expected columns x and y")
+        self.assert_refused(self.file("speed.csv", "# time_s;speed_mps\n" + ring(lambda x, y: f"{x};{y}")), "got time_s;speed_mps")
+        self.assert_read(self.file("prose.csv", "# drawn by hand\n" + ring(lambda x, y: f"{x} {y}")), "closed track")
+
+    def test_degrees_are_no_metres(self):
+        file = self.file("gps.csv", "x,y\n" + ring(lambda x, y: f"{11.57 + 1e-4 * x},{48.13 + 1e-4 * y}"))
+        self.assert_refused(file, "gps.csv:2: x_m: got a road within", "degrees of longitude and latitude", "project the points")
+
+    def test_cone_maps_are_named(self):
+        self.assert_refused("07_cones.csv", "07_cones.csv:2: tag: got yellow, a map of cones, expected the points of one line")
+        self.assert_read("07_timestamped.csv", "stamp: unknown column, ignored")
+        self.assert_refused(self.file("cones.csv", "x,y,color\n" + ring(lambda x, y: f"{x},{y},big_orange")), "color: got big_orange")
+
+    def test_the_first_row_is_a_row(self):
+        self.assert_refused("09_nan_first.csv", "09_nan_first.csv:2: x_m: got nan, expected a finite number")
+        self.assert_refused("09_none_first.csv", "09_none_first.csv:2: x_m: got nothing, expected a finite number")
+        self.assert_refused(self.file("word.csv", "x_m,y_m\nstart,0\n" + ring(lambda x, y: f"{x},{y}")), "word.csv:2: x_m: got start")
+
+    def test_matlab_comments(self):
+        self.assert_read("10_matlab_percent.csv", "closed track, 428.5 m long")
+        self.assert_read(self.file("m.csv", "% x,y\n% of a simulation\n" + ring(lambda x, y: f"{x},{y}")), "closed track")
+
+    # 10. Lengths of model scale.
+    def test_a_scaled_road_is_told(self):
+        code, _, err = run("drive", "--fast", "--laps", "1", "--car", "f1tenth", "--track", "28_rect_0.7.csv")
+        self.assertEqual(code, 2)
+        self.assertIn("0.1 of its file's size, the car's scale: track_scale=1", err)
+        self.assert_read("01_total_width.csv", "is driven at 0.1 of its size, the scale of the car f1tenth", words=["--car", "f1tenth"])
+        self.assert_refused("28_rect_0.7.csv", "--car f1tenth --set track_scale=1")
+
+    def test_noise_is_assumed_in_the_roads_scale(self):
+        for name in ("28_rect_0.7.csv", "28_rect_0.7_s.csv"):
+            _, out, err = run("check", name, *MODEL)
+            radius = float(re.search(r"tightest radius ([\d.]+) m", out + err)[1])
+            self.assertAlmostEqual(radius, 0.7, delta=0.08)
+        file = self.file("ring.csv", "x,y\n" + ring(lambda x, y: f"{0.1 * x},{0.1 * y}"))
+        self.assert_read(file, "0.45 m left and 0.45 m right assumed", words=MODEL)
+
+    def test_more_room_leaves_no_smaller_radius(self):
+        for room in (3, 6, 10, 20):
+            words = [*MODEL, "--set", f"tracking_mpc.assumed_half_width_m={room}"]
+            self.assert_read("23_rect_0.6.csv", "ok", words=words)
+
+    def test_a_parked_car_is_named(self):
+        code, out, _ = run("drive", "--fast", "--laps", "1", *MODEL, "--set", "time_limit_s=15", "--track", "22_hair_0.75.csv")
+        drives = code == 0 or "0.0 mph" not in out
+        self.assertTrue(drives or "time limit reached: the car stood for the last" in out, out)
+
+    # 11. Nothing is no success.
+    def test_bags_of_other_programs(self):
+        page = Path(self.folder.name) / "page.html"
+        for words in (("report", "24_foreign.mcap", "-o", page), ("replay", "--port", "0", "24_foreign.mcap")):
+            code, _, err = run(*words)
+            self.assertEqual(code, 2, err)
+            self.assertIn("24_foreign.mcap: got no control step, expected a recording of ours", err)
+        self.assertFalse(page.exists())
+
+    def test_a_recording_cut_in_its_first_chunk(self):
+        whole = Path(self.folder.name) / "whole.mcap"
+        code, _, err = run("drive", "--fast", "--set", "time_limit_s=1", "--record", whole)
+        self.assertEqual(code, 1, err)
+        cut = Path(self.folder.name) / "cut.mcap"
+        cut.write_bytes(whole.read_bytes()[:20000])
+        code, _, err = run("report", cut, "-o", Path(self.folder.name) / "cut.html")
+        self.assertEqual(code, 2, err)
+        self.assertIn("cut.mcap: got no control step", err)
+
+    def test_ctrl_c_ends_planning(self):
+        process = subprocess.Popen([PROGRAM, "drive", "--fast", "--laps", "1", "--preset", "race", "--track", "speedway"], cwd=DATA,
+                                   env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                   preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN))
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        process.wait(10)
+        self.assertNotEqual(process.returncode, 0)
+
+    def test_check_refuses_what_drive_refuses(self):
+        three = self.file("three.csv", "x_m,y_m\n0,0\n50,0\n25,40\n")
+        files = [three, "28_rect_0.7.csv", self.file("tight.csv", "x_m,y_m,w_tr_right_m,w_tr_left_m\n" + ring(lambda x, y: f"{x},{y},1.5,1.5", 2.5))]
+        for file in files:
+            check = run("check", file)
+            drive = run("drive", "--fast", "--set", "time_limit_s=0.1", "--track", file)
+            self.assertEqual(check[0], 2, check)
+            self.assertEqual(drive[0], 2, drive)
+
+
+class Wire(unittest.TestCase):
+    def answer(self, port, **values):
+        with WebSocket(port) as simulator:
+            simulator.send("2")
+            for _ in range(12):
+                simulator.send(telemetry(**values))
+                answer = steering_of(simulator.receive())
+        return answer
+
+    def test_two_waypoints_are_enough(self):
+        road = dict(x=0.0, y=0.0, psi=0.0, speed=30.0)
+        with Serving() as server:
+            answer = self.answer(server.port, ptsx=[-5.0, 10.0], ptsy=[0.0, 0.0], **road)
+            self.assertGreater(answer["plan"], 0, server.said())
+            self.assertGreater(self.answer(server.port, ptsx=[-5.0, 10.0, 25.0], ptsy=[0.0] * 3, **road)["plan"], 0)
+        code, out, _ = run("drive", "--fast", "--laps", "1", "--track", "oval", "--set", "waypoints_sent=2", "--set", "time_limit_s=12")
+        self.assertNotIn("no_answer: ", out)
+        self.assertIn(code, (0, 1))
+
+    def test_rounding_at_borders(self):
+        with Serving() as server:
+            self.assertGreater(self.answer(server.port, speed=-1e-7, thr=1.0000001)["plan"], 0)
+            self.assertNotIn("broken telemetry", server.said())
+            self.answer(server.port, speed=-3.0)
+            server.wait_for("speed: got -3.0, expected a number in [0, 1000]; braking")
+
+    def test_not_a_number_names_its_key(self):
+        for values, words in (({"speed": float("nan")}, "speed: got NaN, expected a number"),
+                              ({"psi": float("inf")}, "psi: got Infinity, expected a number"),
+                              ({"ptsx": [1.0, float("nan"), 3.0], "ptsy": [1.0, 2.0, 3.0]}, "ptsx[1]: got NaN, expected a number")):
+            with Serving() as server:
+                self.answer(server.port, **values)
+                server.wait_for(f"broken telemetry: {words}; braking")
+
+    def test_polling_is_refused_with_the_remedy(self):
+        with Serving() as server:
+            for _ in range(3):
+                with self.assertRaises(urllib.error.HTTPError) as refused:
+                    urllib.request.urlopen(f"http://127.0.0.1:{server.port}/socket.io/?EIO=4&transport=polling", timeout=10)
+                self.assertEqual(refused.exception.code, 400)
+                self.assertIn('transports: ["websocket"]', refused.exception.read().decode())
+            server.wait_for("refused 127.0.0.1: Socket.IO by polling is not served: use transport=websocket")
+            self.assertEqual(server.said().count("polling is not served"), 1)
+
+    def test_foreign_host_names(self):
+        for words, is_let_in in (((), False), (("--allow-host", "car.local"), True)):
+            with Serving(*words) as server:
+                simulator = WebSocket(server.port, host="car.local")
+                self.assertEqual(simulator.is_open, is_let_in, server.said())
+                simulator.close()
+                if not is_let_in:
+                    server.wait_for("host 'car.local:", 5)
+                    self.assertIn("--allow-host car.local", server.said())
+
+    def test_the_link_leads_to_the_address(self):
+        for address in ("127.0.0.2", "127.0.0.1"):
+            with Serving("--no-token", address=address) as server:
+                link = re.search(r"dashboard at (\S+)", server.said())[1]
+                with urllib.request.urlopen(link, timeout=10) as page:
+                    self.assertEqual(page.status, 200)
+
+    def simulate(self, mode, seconds=2):
+        with Controller(mode) as controller:
+            return run("simulate", "--connect", f"ws://127.0.0.1:{controller.port}", "--track", "oval", "--laps", "1", "--set",
+                       f"time_limit_s={seconds}")
+
+    def test_answers_in_degrees(self):
+        _, out, err = self.simulate("degrees")
+        self.assertIn("steering_angle: got 12.5, expected a number in [-1, 1]: clamped", err)
+        self.assertIn("not degrees", err)
+        self.assertIn("round trip", out)
+        self.assertNotIn("control step", out)
+
+    def test_answers_that_are_no_numbers(self):
+        self.assertIn("broken answer: steering_angle: got NaN, expected a number", self.simulate("nan", 1)[2])
+
+    def test_the_second_reason_is_told_too(self):
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        simulator = subprocess.Popen([PROGRAM, "simulate", "--connect", f"ws://127.0.0.1:{port}", "--track", "oval"], cwd=DATA,
+                                     env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        said = simulator.stderr.readline()
+        self.assertIn("Connection refused", said)
+        with Controller("404", port):
+            said = simulator.stderr.readline()
+        simulator.send_signal(signal.SIGINT)
+        simulator.communicate(timeout=30)
+        self.assertIn("404", said)
+
+
+if __name__ == "__main__":
+    unittest.main()
