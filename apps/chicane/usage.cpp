@@ -110,7 +110,8 @@ std::string other(const std::string& sentence, std::string_view verb) {
 
 std::string usage_fault(const CLI::App& command, const CLI::ParseError& error) {
   const std::string sentence = error.what();
-  if (error.get_name() == "ExtrasError") return unexpected(command);
+  // Its name is that of the command.
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) return unexpected(command);
   const CLI::Option* option = option_in(command, sentence);
   if (option == nullptr) return sentence;
   const std::string name = name_of(*option);
