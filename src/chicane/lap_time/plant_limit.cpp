@@ -39,13 +39,15 @@ class Finder {
         options_{options},
         model_{model},
         plant_{plant},
-        search_{track, model, {.time_step = options.time_step,
-                               .budget = options.budget,
-                               .go_on =
-                                   [this](int iteration, double time) {
-                                     return !options_.go_on || options_.go_on(stage_, iteration, time);
-                                   },
-                               .on_progress = options.on_progress}} {
+        search_{track,
+                model,
+                {.time_step = options.time_step,
+                 .budget = options.budget,
+                 .go_on =
+                     [this](int iteration, double time) {
+                       return !options_.go_on || options_.go_on(stage_, iteration, time);
+                     },
+                 .on_progress = options.on_progress}} {
     plant_.deviate(deviation);
   }
 

@@ -35,7 +35,8 @@ struct RacingPlanOptions {
 ///
 /// kInvalidArgument for a road too narrow for the car or with a bend too tight for its full
 /// lock (names the place and the radius), parameters or options out of range, and for a search that was
-/// stopped. kNotFound for one that ended without a plan. RacingLine::is_best_so_far where the budget ended it.
+/// stopped. kNotFound for one that ended without a plan. RacingLine::is_best_so_far where the budget ended
+/// it.
 [[nodiscard]] Result<path::RacingLine> plan_racing_line(const path::Track& track,
                                                         const model::VehicleParams& vehicle,
                                                         const RacingPlanOptions& options = {});

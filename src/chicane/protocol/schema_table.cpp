@@ -25,13 +25,13 @@ auto run_options() {
       option<&S::controller>("controller", controller::Registry::kNames, "Who drives."),
       option<&S::laps>("laps", unit::kNone, 0, 10000,
                        "Laps to drive, the first from standstill; 0 drives until stopped."),
-      option<&S::seed>("seed", unit::kNone, 0, 9007199254740992.0, "Of everything random."),
+      option<&S::seed>("seed", unit::kNone, 0, 9007199254740992.0, "Seed of everything random."),
       option<&S::latency>("latency", unit::kMillisecond, 0, 500, "Actuation delay of the simulated car."),
       option<&S::control_period>("control_period", unit::kMillisecond, 5, 1000, "Time between measurements."),
       option<&S::time_limit>("time_limit", unit::kSecond, 0, 1e7,
                              "Ends the run; 0 allows ten minutes per lap."),
       option<&S::turn_around>("turn_around", unit::kMillisecond, 0, 500,
-                              "Of the simulator as a client, from reply to next telemetry."),
+                              "Pause of the simulator as a client, from reply to next telemetry."),
       option<&S::waypoints_sent>("waypoints_sent", unit::kNone, 2, 32, "Waypoints the telemetry shows."),
   };
 }

@@ -14,7 +14,7 @@ constexpr int kCoarseIterations = 260;
 constexpr double kCoarseTolerance = 1e-3;  // a start for the fine nodes needs no more
 constexpr int kFineIterations = 300;
 constexpr double kWarmBarrier = 1e-4;
-constexpr double kUsable = 1e-2;  // violation of an iterate that can be driven: some centimetres
+constexpr double kUsable = 1e-2;             // violation of an iterate that can be driven: some centimetres
 constexpr double kIterationsOfStart = 55.0;  // of a search that goes well, on coarse nodes
 constexpr double kIterationsOfFine = 35.0;
 constexpr const char* kStopped = "limit: stopped";
@@ -151,7 +151,8 @@ Result<NodePlan> PlanSearch::find() {
     if (found == kEnough) break;
   }
   if (found == 0)
-    return fail(ErrorCode::kNotFound, is_out_of_budget_ ? kNoBudget : "limit: no optimum from any first guess");
+    return fail(ErrorCode::kNotFound,
+                is_out_of_budget_ ? kNoBudget : "limit: no optimum from any first guess");
   if (is_out_of_budget_) return best_so_far(std::move(best));
   const auto variables = static_cast<std::size_t>(model_.functions().variables);
   for (const double barrier : {kWarmBarrier, 1e-2, 1e-3}) {

@@ -34,8 +34,8 @@ struct NodePlan {
 class PlanSearch {
  public:
   struct Options {
-    double time_step = 0.05;  ///< between nodes [s]
-    double tolerance = 1e-6;  ///< of an optimum (Collocation::Options)
+    double time_step = 0.05;                                  ///< between nodes [s]
+    double tolerance = 1e-6;                                  ///< of an optimum (Collocation::Options)
     double budget = std::numeric_limits<double>::infinity();  ///< of find() (seconds_of_work) [s]
     /// Told how far it has come in words, and the lap time; false ends the search. May be empty.
     std::function<bool(int iteration, double lap_time)> go_on{};
@@ -44,8 +44,8 @@ class PlanSearch {
   PlanSearch(const path::Track& track, PlanModel& model, const Options& options)
       : track_{track}, model_{model}, options_{options} {}
 
-  /// The best so far where the budget ends the search. kNotFound when there is none: no optimum from any first
-  /// guess, or no budget left for one.
+  /// The best so far where the budget ends the search. kNotFound when there is none: no optimum from any
+  /// first guess, or no budget left for one.
   [[nodiscard]] Result<NodePlan> find();
   /// The plan with that in reserve, from a neighbouring one.
   [[nodiscard]] Result<NodePlan> near(const NodePlan& plan, const Reserve& reserve);

@@ -82,7 +82,8 @@ struct OnRoad {
 
  private:
   /// Distance to the bend's centre over its radius. Below kNear it bends away from zero, with two continuous
-  /// derivatives, down to half of kNear: at the centre (eq. 8) has a pole that a search does not come back from.
+  /// derivatives, down to half of kNear: at the centre (eq. 8) has a pole that a search does not come back
+  /// from.
   static T off_centre(const T& share) {
     constexpr double kNear = 0.3;
     if (!(value_of(share) < kNear)) return share;

@@ -15,8 +15,8 @@ constexpr double kMostStep = 4.0;
 constexpr double kWindow = 6.0;  // over which the line's curvature is averaged [m]
 constexpr double kMostReach = 0.9;
 
-/// Width [m] on the side to which the line bends with `bend` [1/m], if positive: at most kMostReach of the way
-/// to the bend's centre. What lies beyond belongs to other places along the line.
+/// Width [m] on the side to which the line bends with `bend` [1/m], if positive: at most kMostReach of the
+/// way to the bend's centre. What lies beyond belongs to other places along the line.
 double reach(double width, double bend) {
   constexpr double kStraight = 1e-6;  // [1/m]
   return std::min(width, kMostReach / std::max(bend, kStraight));
