@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -39,7 +41,8 @@ std::uint64_t checksum(std::string_view bytes) {
 }
 
 void append(std::string& to, std::uint64_t value) {
-  to.append(reinterpret_cast<const char*>(&value), sizeof value);
+  const auto bytes = std::bit_cast<std::array<char, sizeof value>>(value);
+  to.append(bytes.data(), bytes.size());
 }
 
 std::uint64_t number_at(std::string_view bytes, std::size_t at) {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/plan_cache.hpp"
 
-#include <elf.h>
-#include <link.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -14,6 +11,7 @@
 
 #include "chicane/base/fnv.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/protocol/build_id.hpp"
 #include "chicane/sim/double_track.hpp"
 
 namespace chicane::run {
@@ -30,56 +28,15 @@ std::shared_ptr<const DiskCache> cache_in_use() {
   return the_cache;
 }
 
-/// The GNU build id of the file that this function is in: another code, another id.
-struct BuildId {
-  std::uintptr_t inside = 0;  ///< an address of the file
-  std::string bytes{};
-};
-
-int read_build_id(dl_phdr_info* info, std::size_t, void* data) {
-  auto& id = *static_cast<BuildId*>(data);
-  const std::span<const ElfW(Phdr)> segments{info->dlpi_phdr, info->dlpi_phnum};
-  const bool is_ours = std::any_of(segments.begin(), segments.end(), [&](const ElfW(Phdr) & segment) {
-    const std::uintptr_t begin = info->dlpi_addr + segment.p_vaddr;
-    return segment.p_type == PT_LOAD && id.inside >= begin && id.inside < begin + segment.p_memsz;
-  });
-  if (!is_ours) return 0;
-  for (const ElfW(Phdr) & segment : segments) {
-    if (segment.p_type != PT_NOTE) continue;
-    const char* at = reinterpret_cast<const char*>(info->dlpi_addr + segment.p_vaddr);
-    const char* const end = at + segment.p_memsz;
-    while (end - at > static_cast<std::ptrdiff_t>(sizeof(ElfW(Nhdr)))) {
-      ElfW(Nhdr) note;
-      std::memcpy(&note, at, sizeof note);
-      const auto padded = [](std::size_t size) { return (size + 3) & ~std::size_t{3}; };
-      const char* const name = at + sizeof note;
-      const char* const text = name + padded(note.n_namesz);
-      if (note.n_type == NT_GNU_BUILD_ID && note.n_namesz == 4 && std::memcmp(name, "GNU", 4) == 0) {
-        id.bytes.assign(text, note.n_descsz);
-        return 1;
-      }
-      at = text + padded(note.n_descsz);
-    }
-  }
-  return 1;
-}
-
-const std::string& build_id() {
-  static const std::string bytes = [] {
-    BuildId id{.inside = reinterpret_cast<std::uintptr_t>(&read_build_id)};
-    dl_iterate_phdr(&read_build_id, &id);
-    return id.bytes;
-  }();
-  return bytes;
-}
-
 /// Two hashes of 64 bits with different beginnings.
 class Name {
  public:
   explicit Name(std::string_view kind) {
     second_.add(std::uint64_t{0x9e3779b97f4a7c15ULL});
     add(kind);
-    add(std::string_view(build_id()));
+    const std::string ids = protocol::build_ids();
+    add(std::string_view(ids));
+    has_build_ = !ids.empty();
   }
   void add(double value) {
     first_.add(value);
@@ -118,7 +75,7 @@ class Name {
     }
   }
   [[nodiscard]] std::string text() const {
-    if (build_id().empty()) return {};
+    if (!has_build_) return {};
     constexpr std::string_view kDigits = "0123456789abcdef";
     std::string digits;
     for (const std::uint64_t part : {first_.value(), second_.value()})
@@ -128,11 +85,15 @@ class Name {
 
  private:
   Fnv first_, second_;
+  bool has_build_ = false;
 };
 
 class Writer {
  public:
-  void put(double value) { bytes_.append(reinterpret_cast<const char*>(&value), sizeof value); }
+  void put(double value) {
+    const auto bytes = std::bit_cast<std::array<char, sizeof value>>(value);
+    bytes_.append(bytes.data(), bytes.size());
+  }
   void put(std::string_view text) {
     put(static_cast<double>(text.size()));
     bytes_ += text;
