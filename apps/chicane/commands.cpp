@@ -22,7 +22,7 @@ constexpr Command kCommands[] = {
     {"campaign", "Prove", "Faults at every moment of a lap: where the car leaves the road", campaign},
     {"recover", "Prove", "From anywhere beside the road: whether the car comes back", recover},
     {"lane-change", "Prove", "Highest entry speed of the severe double lane change, ISO 3888-2", lane_change},
-    {"claims", "Prove", "What five write-ups say, each tried on its own terms", try_claims},
+    {"claims", "Prove", "Claims of five write-ups, each tried on its own terms", try_claims},
     {"bench", "Prove", "Times of solver and control step on this machine, beside Ipopt's", bench},
     {"check", "Tools", "Validate scenarios, presets, cars and tracks, and explain what is wrong", check},
     {"list", "Tools", "Presets, tracks, cars, scenarios, controllers and parameters", list},

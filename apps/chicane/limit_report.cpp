@@ -101,7 +101,8 @@ std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit) {
   std::string text = fmt::format("{} on {}: between {:.3f} s and ", run.car, run.track, limit.bound.lap);
   text += limit.witness
               ? fmt::format("{:.3f} s ({:+.2f} %)\n", limit.witness->lap_time, 100.0 * limit.bracket())
-              : "what could be driven: no plan could\n";
+          : limit.is_cut_short ? "what could be driven: the budget ended the search for that (--budget-s)\n"
+                               : "what could be driven: no plan could\n";
   text += fmt::format(
       "bound    {:.3f} s ({:.3f} {:.3f} {:.3f} by thirds): the optimum of the plant's own equations\n",
       limit.bound.lap, limit.bound.sectors[0], limit.bound.sectors[1], limit.bound.sectors[2]);

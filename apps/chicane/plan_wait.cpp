@@ -14,11 +14,11 @@
 namespace chicane::apps {
 namespace {
 
-constexpr std::chrono::milliseconds kTerminalPeriod{100};
-constexpr std::chrono::seconds kLinePeriod{10};
-constexpr std::chrono::milliseconds kGoodbye{50};
+constexpr std::chrono::milliseconds kRedrawPeriod{100};
+constexpr std::chrono::seconds kReportPeriod{10};
+constexpr std::chrono::milliseconds kGoodbyeOfPage{50};
 
-net::Content page_of(const std::string& line) {
+net::Content waiting_page(const std::string& line) {
   return {.content_type = "text/html; charset=utf-8",
           .bytes =
               fmt::format("<!doctype html><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" content=\"1\">"
@@ -67,7 +67,7 @@ void PlanWait::open() {
   if (server_ == nullptr || !server_->has_value()) return;
   page_ = std::make_unique<Page>();
   net::ServerOptions options = **server_;
-  options.goodbye = kGoodbye;
+  options.goodbye = kGoodbyeOfPage;
   net::ServerHandlers handlers;
   handlers.on_upgrade = [](const net::UpgradeRequest&) {
     return net::UpgradeAnswer{.status = 503, .reason = "the lap is being planned: try again in some seconds"};
@@ -78,7 +78,7 @@ void PlanWait::open() {
   handlers.on_get = [page = page_.get()](std::string_view path) -> std::optional<net::Content> {
     if (path != "/") return {};
     const std::lock_guard lock(page->mutex);
-    return page_of(page->line);
+    return waiting_page(page->line);
   };
   auto server = net::Server::create(options, std::move(handlers), {});
   if (!server) {
@@ -99,7 +99,7 @@ void PlanWait::show(const lap_time::PlanProgress& now) {
     const std::lock_guard lock(page_->mutex);
     page_->line = line;
   }
-  const Clock::duration period = is_terminal_ ? Clock::duration(kTerminalPeriod) : kLinePeriod;
+  const Clock::duration period = is_terminal_ ? Clock::duration(kRedrawPeriod) : kReportPeriod;
   if (shown_ && time - *shown_ < period) return;
   const bool is_first = !shown_.has_value();
   shown_ = time;

@@ -87,10 +87,10 @@ TEST(PlanCommand, ABudgetEndsPlanningWithTheBestSoFar) {
   const Outcome none = chicane_program(drive + "0.1");
   EXPECT_EQ(none.code, 0) << none.err;
   EXPECT_THAT(none.err, HasSubstr("plan: none found"));
-  const Outcome some = chicane_program(drive + "1");
+  const Outcome some = chicane_program(drive + "0.5");
   EXPECT_EQ(some.code, 0) << some.err;
   EXPECT_THAT(some.err, HasSubstr("plan: the best so far, no optimum: tracking_mpc.plan_budget_s"));
-  const Outcome limit = chicane_program("limit --track oval --no-cache --budget-s 1.5");
+  const Outcome limit = chicane_program("limit --track oval --no-cache --budget-s 0.4");
   EXPECT_EQ(limit.code, 0) << limit.err;
   EXPECT_THAT(limit.out, HasSubstr("is the best lap so far, no bound"));
 }
@@ -107,12 +107,13 @@ TEST(PlanCommand, ASecondStartTakesThePlanFromTheCache) {
   ASSERT_EQ(first.code, 0) << first.err;
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(cache / "chicane")) files.push_back(entry.path());
-  ASSERT_EQ(files.size(), 1U);
+  ASSERT_GE(files.size(), 1U);
   const Outcome second = shell(drive);
   EXPECT_EQ(lap_of(second), lap_of(first));
-  fs::resize_file(files[0], 100);
+  for (const fs::path& file : files) fs::resize_file(file, 10);
   const Outcome damaged = shell(drive);
-  EXPECT_THAT(damaged.err, HasSubstr(files[0].string() + " is damaged and ignored"));
+  for (const fs::path& file : files)
+    EXPECT_THAT(damaged.err, HasSubstr(file.string() + " is damaged and ignored"));
   EXPECT_EQ(lap_of(damaged), lap_of(first));
   EXPECT_EQ(shell(drive + " --no-cache").code, 0);
   fs::remove_all(cache);

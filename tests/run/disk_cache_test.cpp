@@ -89,6 +89,16 @@ TEST_F(DiskCacheTest, RemovesWhatWasUnusedForLongest) {
   EXPECT_TRUE(fs::exists(file("3c")));
 }
 
+TEST_F(DiskCacheTest, KeepsABoundedNumberOfFiles) {
+  fs::create_directories(folder_);
+  for (std::size_t i = 0; i < DiskCache::kMostFiles + 20; ++i) std::ofstream(file(std::to_string(i))) << "x";
+  cache().keep("abc", "x");
+  EXPECT_EQ(cache().find("abc"), "x");
+  std::size_t count = 0;
+  for ([[maybe_unused]] const auto& each : fs::directory_iterator(folder_)) ++count;
+  EXPECT_EQ(count, DiskCache::kMostFiles);
+}
+
 TEST_F(DiskCacheTest, TwoProcessesAndAKillLeaveWholeFiles) {
   const std::string bytes(200000, 'x');
   std::vector<pid_t> children;

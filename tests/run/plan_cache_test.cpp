@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -115,6 +116,22 @@ TEST_F(PlanCacheTest, KeepsLimitsWithTheirWitness) {
   const int needed = iterations;
   EXPECT_EQ(to_bytes(limit()), to_bytes(fresh));
   EXPECT_EQ(iterations, needed);
+}
+
+TEST_F(PlanCacheTest, ThatACarGetsRoundIsKeptAndThatItDoesNotIsComputedAnew) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(cached_room(ring(), model::udacity_params(), infinite, 1.0));
+  EXPECT_TRUE(cached_room(ring(), model::udacity_params(), infinite, 1.0)) << "from the cache";
+  model::VehicleParams stiff = model::udacity_params();
+  stiff.steer_limit = 0.03;
+  for (int i = 0; i < 2; ++i) {
+    const Result<void> fits = cached_room(ring(), stiff, infinite, 1.0);
+    ASSERT_FALSE(fits);
+    EXPECT_NE(fits.error().message.find("radius"), std::string::npos) << fits.error().message;
+  }
+  int files = 0;
+  for ([[maybe_unused]] const auto& each : std::filesystem::directory_iterator(folder_)) ++files;
+  EXPECT_EQ(files, 1);
 }
 
 TEST_F(PlanCacheTest, AStoppedSearchIsNotKept) {

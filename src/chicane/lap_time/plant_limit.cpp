@@ -63,6 +63,7 @@ class Finder {
     if (options_.wants_witness && !search_.is_out_of_budget()) {
       if (Result<void> driven = drive(*optimum, limit); !driven) return fail(driven.error());
     }
+    limit.is_cut_short = search_.is_out_of_budget();
     limit.iterations = search_.iterations();
     return limit;
   }

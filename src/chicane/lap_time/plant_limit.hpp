@@ -34,6 +34,7 @@ struct PlantLimit {
   path::RacingLine line;  ///< of the optimum, without any reserve; no bound where it is_best_so_far
   std::optional<Witness>
       witness{};              ///< none: no plan could be driven without an event, or none was asked for
+  bool is_cut_short = false;  ///< the budget ended the search for the witness
   int nodes = 0;              ///< of the optimum
   int iterations = 0;         ///< of all searches
   double stationarity = 0.0;  ///< of the optimum: largest slope of the Lagrangian, scaled

@@ -22,7 +22,7 @@ auto run_options() {
           "Size of the track over that of its file; 0 is the car's scale: 1 but for model cars."),
       option<&S::car>("car", "Shipped car by name, or a file."),
       option<&S::plant>("plant", sim::plant_names(), "Simulated car; normally set by the car file."),
-      option<&S::controller>("controller", controller::Registry::kNames, "Who drives."),
+      option<&S::controller>("controller", controller::Registry::kNames, "Name of the controller that drives."),
       option<&S::laps>("laps", unit::kNone, 0, 10000,
                        "Laps to drive, the first from standstill; 0 drives until stopped."),
       option<&S::seed>("seed", unit::kNone, 0, 9007199254740992.0, "Seed of everything random."),

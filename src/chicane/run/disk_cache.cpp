@@ -143,11 +143,13 @@ void DiskCache::make_room() const {
     all += size;
   }
   std::sort(files.begin(), files.end(), [](const File& a, const File& b) { return a.used < b.used; });
+  std::size_t left = files.size();
   for (const File& file : files) {
-    if (all <= most_bytes_) return;
+    if (all <= most_bytes_ && left <= kMostFiles) return;
     std::error_code gone;
     fs::remove(file.path, gone);
     all -= file.size;
+    --left;
   }
 }
 

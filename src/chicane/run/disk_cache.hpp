@@ -17,6 +17,7 @@ namespace chicane::run {
 class DiskCache {
  public:
   static constexpr std::uint64_t kMostBytes = 64U << 20U;
+  static constexpr std::size_t kMostFiles = 1000;
 
   /// `say`: lines for the user; may be empty. Creates the folder when the first result is kept.
   explicit DiskCache(std::string folder, std::function<void(std::string_view)> say = {},
@@ -28,7 +29,8 @@ class DiskCache {
 
   /// The result of that name (hexadecimal digits); none: not there, or damaged.
   [[nodiscard]] std::optional<std::string> find(std::string_view name) const;
-  /// Writes it, then removes the files unused for longest until no more than `most_bytes` are left.
+  /// Writes it, then removes the files unused for longest until no more than `most_bytes` and
+  /// kMostFiles are left.
   void keep(std::string_view name, std::string_view bytes) const;
   /// One line on a result whose file is whole, but whose content makes no sense.
   void report_damage(std::string_view name) const;

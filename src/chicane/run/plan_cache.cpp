@@ -251,6 +251,23 @@ Result<lap_time::PlantLimit> cached_limit(const path::Track& track, std::string_
       [&] { return lap_time::find_plant_limit(track, plant, deviation, options, params); });
 }
 
+Result<void> cached_room(const path::Track& track, const model::VehicleParams& car, double beside,
+                         double scale) {
+  constexpr std::string_view kFits = "fits";
+  const std::shared_ptr<const DiskCache> cache = cache_in_use();
+  if (!cache) return lap_time::can_be_driven(track, car, beside, scale);
+  Name name("room");
+  name.add(track);
+  name.add(model::vehicle_options(), &car);
+  name.add(beside);
+  name.add(scale);
+  const std::string text = name.text();
+  if (!text.empty() && cache->find(text) == kFits) return {};
+  Result<void> fits = lap_time::can_be_driven(track, car, beside, scale);
+  if (fits && !text.empty()) cache->keep(text, kFits);
+  return fits;
+}
+
 std::string to_bytes(const path::RacingLine& line) {
   Writer writer;
   put(writer, line);
@@ -270,8 +287,9 @@ std::string to_bytes(const lap_time::PlantLimit& limit) {
   writer.put(limit.bound.lap);
   for (const double sector : limit.bound.sectors) writer.put(sector);
   put(writer, limit.line);
-  for (const double value : {static_cast<double>(limit.nodes), static_cast<double>(limit.iterations),
-                             limit.stationarity, limit.violation, limit.witness ? 1.0 : 0.0})
+  for (const double value :
+       {static_cast<double>(limit.nodes), static_cast<double>(limit.iterations), limit.stationarity,
+        limit.violation, limit.is_cut_short ? 1.0 : 0.0, limit.witness ? 1.0 : 0.0})
     writer.put(value);
   if (limit.witness) {
     writer.put(limit.witness->lap_time);
@@ -293,6 +311,7 @@ std::optional<lap_time::PlantLimit> limit_from_bytes(std::string_view bytes) {
   reader.get(limit.iterations);
   reader.get(limit.stationarity);
   reader.get(limit.violation);
+  reader.get(limit.is_cut_short);
   bool has_witness = false;
   reader.get(has_witness);
   if (has_witness) {

@@ -40,6 +40,11 @@ void stop_planning_by(const std::atomic<bool>& flag) noexcept;
                                                         const lap_time::PlantLimitOptions& options,
                                                         const sim::DoubleTrackParams& params);
 
+/// lap_time::can_be_driven(); that a car gets round is kept, too, as it takes longer to find than to start a
+/// run.
+[[nodiscard]] Result<void> cached_room(const path::Track& track, const model::VehicleParams& car,
+                                       double beside, double scale);
+
 /// Results as bytes: numbers as they are in memory.
 [[nodiscard]] std::string to_bytes(const path::RacingLine& line);
 [[nodiscard]] std::string to_bytes(const lap_time::PlantLimit& limit);

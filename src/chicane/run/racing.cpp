@@ -90,8 +90,12 @@ Result<void> check_room(const scenario::Scenario& scenario, const path::Track& t
       scenario.controller == controller::TrackingMpcEntry::kName && !races(scenario);
   const double beside =
       keeps_to_the_middle ? options_of(scenario).assumed_half_width : std::numeric_limits<double>::infinity();
-  const Result<void> fits = lap_time::can_be_driven(in_full_size(track, scenario), full_size(scenario),
-                                                    beside, scenario.vehicle.scale);
+  const path::Track road = in_full_size(track, scenario);
+  const model::VehicleParams car = full_size(scenario);
+  // Kept for those alone whose start is to take no longer than the cached plan.
+  const Result<void> fits = races(scenario)
+                                ? cached_room(road, car, beside, scenario.vehicle.scale)
+                                : lap_time::can_be_driven(road, car, beside, scenario.vehicle.scale);
   if (fits) return {};
   return fail(fits.error().code, "track: " + track.name() + " is not for the car " + scenario.vehicle.name +
                                      ": " + fits.error().message + size_remedy(scenario, track));

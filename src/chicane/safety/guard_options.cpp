@@ -14,7 +14,7 @@ constexpr std::array<std::string_view, 3> kReceivers{"stop-plan", "brake", "hold
 constexpr std::array kOptions{
     option<&G::mode>(
         "mode", kModes,
-        "on: without a way to stop, or when sensors fail, the car is stopped on the road; observe: it "
+        "Mode. on: without a way to stop, or when sensors fail, the car is stopped on the road; observe: it "
         "is only reported; off: only range and rate of commands are limited."),
     option<&G::road>("road", kRoads,
                      "Source of the road for the guard and for racing: the track, or waypoints."),
