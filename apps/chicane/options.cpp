@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "bench_options.hpp"
 #include "campaign_options.hpp"
 #include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
@@ -18,6 +19,7 @@
 #include "chicane/version.hpp"
 #include "command_text.hpp"
 #include "commands.hpp"
+#include "limit_options.hpp"
 #include "ros_options.hpp"
 #include "setting_options.hpp"
 #include "sweep_options.hpp"
@@ -26,9 +28,6 @@
 
 namespace chicane::apps {
 namespace {
-
-constexpr int kLongestHorizon =
-    200;  ///< that of bench/problems/reference.hpp, which is not part of this program
 
 void add_speed(CLI::App& command, Options& options) {
   command.add_option("--speed-mps", options.speed_mps, "Speed reference of the controller [m/s]")
@@ -205,29 +204,6 @@ void add_logs(CLI::App& command, Options& options, const std::string& help) {
   command.add_option("logs", options.log_files, help)->type_name("LOG")->required();
 }
 
-void add_limit(CLI::App& command, Options& options) {
-  add_setting(command, options, "--track", "track", "NAME|FILE", "Track (chicane list tracks)");
-  add_setting(command, options, "--car", "car", "NAME|FILE", "Car (chicane list cars)");
-  command.add_option("--csv", options.csv_file, "Keep the racing line in this file, a track to drive on")
-      ->type_name("FILE");
-  command.add_flag("--quick", options.is_quick,
-                   "Find that of a simpler car, which follows its path: no bound");
-  command
-      .add_option("--spacing-m", options.spacing,
-                  "Distance between the places computed [m], default 2; with --quick")
-      ->type_name("X")
-      ->check(CLI::Range(0.5, 5.0));
-  command
-      .add_option("--budget-s", options.limit_budget,
-                  "Work of the search, in seconds of a reference core; the best lap so far is shown then")
-      ->type_name("X")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command.add_flag("--json", options.is_json, "Print one JSON object on stdout, all else on stderr");
-  add_set(command, options);
-  command.footer("Example: chicane limit --track lakeside --car road-car --csv line.csv");
-}
-
 void add_replay(CLI::App& command, Options& options) {
   add_logs(command, options, "Recordings by --record; several are shown beside each other");
   command.add_flag(
@@ -326,26 +302,6 @@ void add_list(CLI::App& command, Options& options) {
   command.add_flag("--markdown", options.is_markdown,
                    "parameters and faults: as in docs/configuration.md and docs/faults.md");
   command.footer("Example: chicane list presets");
-}
-
-void add_bench(CLI::App& command, Options& options) {
-  command
-      .add_option("--instances", options.instances,
-                  "Problems of each family and horizon; ours solves ten times as many")
-      ->type_name("N")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  command.add_option("--horizons", options.horizons, "Numbers of intervals, with commas")
-      ->type_name("N,...")
-      ->delimiter(',')
-      ->check(CLI::Range(2, kLongestHorizon))
-      ->capture_default_str();
-  command
-      .add_option("--reference", options.reference_folder,
-                  "Folder of recorded problems with known optima (lap_*.csv, golden_*.csv)")
-      ->type_name("FOLDER");
-  command.add_flag("--json", options.is_json, "Print one JSON object on stdout, all else on stderr");
-  command.footer("Example: chicane bench --instances 200 --horizons 10,20");
 }
 
 void add_completion(CLI::App& command, Options& options) {

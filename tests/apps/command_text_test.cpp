@@ -93,7 +93,7 @@ TEST(CommandText, TheHelpIsInGroups) {
   EXPECT_THAT(found, ElementsAre("Drive:", "drive", "serve", "simulate", "Look:", "replay", "report", "video",
                                  "Compare:", "limit", "league", "sweep", "merge", "tune",
                                  "Prove:", "campaign", "recover", "lane-change", "claims", "bench",
-                                 "Tools:", "check", "list", "ros", "completion", "manual"));
+                                 "Tools:", "check", "list", "identify", "ros", "completion", "manual"));
 }
 
 TEST(CommandText, WithoutACommandSixLinesForANewcomer) {

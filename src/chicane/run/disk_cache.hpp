@@ -10,7 +10,7 @@
 namespace chicane::run {
 
 /// Results that take long to compute, in files of one folder, each under a name made of all that it depends
-/// on (docs/decisions/0032-plans-are-cached-on-disk.md). A failure of the disk costs time, never a run.
+/// on (docs/decisions/0033-plans-are-cached-on-disk.md). A failure of the disk costs time, never a run.
 ///
 /// Several processes and threads may use one folder: a file is written beside its place and renamed, so that
 /// it is there whole or not at all. A file whose length or checksum is wrong is ignored, with one line.
