@@ -95,7 +95,7 @@ void add_recover(CLI::App& command, Options& options) {
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   command.add_option("--seed", recover.seed, "Seed of the starts")->type_name("N")->capture_default_str();
-  command.add_option("--only", recover.only, "This one of the starts alone")
+  command.add_option("--only", recover.only, "Number of the only start to drive")
       ->type_name("I")
       ->check(CLI::Range(1, 100000));
   add_setting(command, options, "--preset", "preset", "NAME",
@@ -107,7 +107,7 @@ void add_recover(CLI::App& command, Options& options) {
 void add_lane_change(CLI::App& command, Options& options) {
   Options::LaneChange& change = options.lane_change;
   add_names(command, "--cars", change.cars, "Names or files, with commas");
-  add_names(command, "--presets", change.presets, "Who steers: names or files, with commas");
+  add_names(command, "--presets", change.presets, "Presets that steer: names or files, with commas");
   command.add_flag("--json", options.is_json, "Print one JSON object on stdout, all else on stderr");
   add_set(command, options);
   command.footer("Example: chicane lane-change --cars road-car --presets default,stanley");

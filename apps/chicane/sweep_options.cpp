@@ -78,7 +78,7 @@ void add_search(CLI::App& command, Options& options) {
 
 void add_league(CLI::App& command, Options& options) {
   Options::League& league = options.league;
-  command.add_option("league", league.file, "Who drives where (docs/league.md)")
+  command.add_option("league", league.file, "League of who drives where (docs/league.md)")
       ->type_name("LEAGUE.yaml")
       ->required();
   command.add_option("-o,--output", options.output_file, "Page to write; an older one is replaced")
