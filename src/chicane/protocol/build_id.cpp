@@ -32,7 +32,7 @@ int add_build_ids(dl_phdr_info* info, std::size_t, void* data) {
   auto& ids = *static_cast<std::string*>(data);
   const bool is_program = ids.empty();
   for (int i = 0; i < info->dlpi_phnum; ++i) {
-    const ElfW(Phdr) & segment = info->dlpi_phdr[i];
+    const auto& segment = info->dlpi_phdr[i];
     if (segment.p_type != PT_NOTE) continue;
     const char* at = reinterpret_cast<const char*>(info->dlpi_addr + segment.p_vaddr);
     add_build_id(at, at + segment.p_memsz, ids);
