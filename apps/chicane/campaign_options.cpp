@@ -37,7 +37,7 @@ void add_where(CLI::App& command, Runs& runs, Options& options) {
   add_names(command, "--tracks", runs.tracks, "Names or files, with commas");
   add_names(command, "--cars", runs.cars, "Names or files, with commas");
   add_jobs(command, options.jobs);
-  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  command.add_flag("--json", options.is_json, "Print one JSON object on stdout, all else on stderr");
   add_set(command, options);
 }
 
@@ -45,37 +45,39 @@ void add_where(CLI::App& command, Runs& runs, Options& options) {
 
 void add_campaign(CLI::App& command, Options& options) {
   Options::Campaign& campaign = options.campaign;
-  command.add_option("--faults", campaign.faults, "With commas (chicane list faults); all when left out")
+  command
+      .add_option("--faults", campaign.faults, "Faults, with commas (chicane list faults); all when left out")
       ->type_name("NAME,...")
       ->delimiter(',');
-  command.add_flag(
-      "--pairs", campaign.has_pairs,
-      "Also each two of them at once; without --faults: of those of measurement, link, computer");
+  command.add_flag("--pairs", campaign.has_pairs,
+                   "Add each two of them at once; without --faults: of those of measurement, link, computer");
   command
       .add_option_function<std::vector<std::string>>(
           "--for-s",
           [&campaign](const std::vector<std::string>& texts) {
             for (const std::string& text : texts) campaign.durations.push_back(fault_duration(text));
           },
-          "How long the faults last [s], with commas; inf: to the end; each fault's own when left out")
+          "Durations of the faults [s], with commas; inf: to the end; each fault's own when left out")
       ->type_name("S,...")
       ->delimiter(',');
-  command.add_option("--every-s", campaign.step, "Between the moments of the flying lap [s]")
+  command.add_option("--every-s", campaign.step, "Time between the moments of the flying lap [s]")
       ->type_name("S")
       ->check(CLI::Range(0.02, 1000.0))
       ->capture_default_str();
   command
-      .add_option("--onsets", campaign.onsets,
-                  "In the place of --every-s so many moments by chance, for each fault, duration, track, car "
-                  "and preset")
+      .add_option(
+          "--onsets", campaign.onsets,
+          "Number of moments by chance in the place of --every-s, for each fault, duration, track, car "
+          "and preset")
       ->type_name("N")
       ->check(CLI::Range(1, 10000));
-  command.add_option("--seed", campaign.seed, "Of these moments")->type_name("N")->capture_default_str();
+  command.add_option("--seed", campaign.seed, "Seed of these moments")->type_name("N")->capture_default_str();
   command
-      .add_option("--results", campaign.results,
-                  "A line for each fault, duration, track, car and preset; a file that is there is completed")
+      .add_option(
+          "--results", campaign.results,
+          "File with a line for each fault, duration, track, car and preset; one that is there is completed")
       ->type_name("FILE.jsonl");
-  command.add_flag("--markdown", options.is_markdown, "The table of docs/safety.md on stdout");
+  command.add_flag("--markdown", options.is_markdown, "Print the table of docs/safety.md on stdout");
   add_names(command, "--preset", campaign.presets,
             "Controllers and their settings; as --tracks and --cars: all stands for those that ship");
   add_where(command, campaign, options);
@@ -88,12 +90,12 @@ void add_recover(CLI::App& command, Options& options) {
   Options::Recover& recover = options.recover;
   command
       .add_option("--starts", recover.starts,
-                  "For each car and track: standing, rolling, sliding, backwards, spun")
+                  "Starts for each car and track: standing, rolling, sliding, backwards, spun")
       ->type_name("N")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  command.add_option("--seed", recover.seed, "Of the starts")->type_name("N")->capture_default_str();
-  command.add_option("--only", recover.only, "This one of the starts alone")
+  command.add_option("--seed", recover.seed, "Seed of the starts")->type_name("N")->capture_default_str();
+  command.add_option("--only", recover.only, "Number of the only start to drive")
       ->type_name("I")
       ->check(CLI::Range(1, 100000));
   add_setting(command, options, "--preset", "preset", "NAME",
@@ -105,8 +107,8 @@ void add_recover(CLI::App& command, Options& options) {
 void add_lane_change(CLI::App& command, Options& options) {
   Options::LaneChange& change = options.lane_change;
   add_names(command, "--cars", change.cars, "Names or files, with commas");
-  add_names(command, "--presets", change.presets, "Who steers: names or files, with commas");
-  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  add_names(command, "--presets", change.presets, "Presets that steer: names or files, with commas");
+  command.add_flag("--json", options.is_json, "Print one JSON object on stdout, all else on stderr");
   add_set(command, options);
   command.footer("Example: chicane lane-change --cars road-car --presets default,stanley");
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "access.hpp"
@@ -12,12 +13,14 @@
 #include "chicane/live/live_run.hpp"
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "chicane/run/plan_cache.hpp"
 #include "chicane/run/realtime_loop.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "guard_notice.hpp"
 #include "interrupt.hpp"
 #include "limit_of.hpp"
+#include "plan_wait.hpp"
 #include "progress.hpp"
 #include "record.hpp"
 
@@ -40,13 +43,11 @@ struct Outcome {
 };
 
 Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop> loop,
-                         run::RunControls& controls) {
+                         net::ServerOptions server, run::RunControls& controls) {
   live::LiveRunOptions living{
       .stay_at_end = stays_up(options), .pace = options.pace, .is_manual = options.is_manual};
   living.assets = live::embedded_assets();
-  Result<net::ServerOptions> server = server_options(options);
-  if (!server) return fail(server.error());
-  living.server = std::move(*server);
+  living.server = std::move(server);
   if (options.step_budget_ms) living.step_budget = 1e-3 * *options.step_budget_ms;
   const scenario::Scenario scenario = loop->scenario();
   const auto live = live::LiveRun::create(living, std::move(loop), controls);
@@ -95,22 +96,42 @@ Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const ru
   return Outcome{std::move(summary), (*kept)->finish()};
 }
 
+/// The run with its planned lap, shown while it is planned.
+Result<std::unique_ptr<run::ClosedLoop>> planned(const scenario::Scenario& scenario,
+                                                 std::optional<net::ServerOptions>* server) {
+  PlanWait wait(run::plan_budget(scenario), server);
+  Result<std::unique_ptr<run::ClosedLoop>> loop = prepared(scenario, wait.hooks());
+  if (!wait.opened()) return fail(wait.opened().error());
+  return loop;
+}
+
 Result<Outcome> run(const Options& options) {
   static run::RunControls controls;  // as long as signals may come
-  let_interrupts_end();
-  Result<std::unique_ptr<run::ClosedLoop>> loop = prepared(request_of(options));
-  if (!loop) return fail(loop.error());
   catch_interrupts(controls.wants_stop);
+  const Result<scenario::Scenario> scenario = experiment(options);
+  if (!scenario) return fail(scenario.error());
+  std::optional<net::ServerOptions> server;
+  if (!options.is_fast) {
+    Result<net::ServerOptions> made = server_options(options);
+    if (!made) return fail(made.error());
+    server = std::move(*made);
+  }
+  Result<std::unique_ptr<run::ClosedLoop>> loop = planned(*scenario, &server);
+  if (!loop) return fail(loop.error());
   print_guard_notice(options, (*loop)->scenario().guard);
   print_notices((*loop)->scenario());
   return options.is_fast ? run_fast(options, **loop, controls)
-                         : run_live(options, std::move(*loop), controls);
+                         : run_live(options, std::move(*loop), std::move(*server), controls);
 }
 
 }  // namespace
 
 ExitCode drive(const Options& options) {
   const Result<Outcome> outcome = run(options);
+  if (!outcome && run::must_stop_planning()) {
+    fmt::print(stderr, "stopped before the run began\n");
+    return kRunFailed;
+  }
   if (!outcome) return report(outcome.error());
   const telemetry::RunSummary& summary = outcome->summary;
   fmt::print("{}", options.is_json ? protocol::to_json(summary) : protocol::to_table(summary));

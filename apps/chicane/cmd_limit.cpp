@@ -39,7 +39,7 @@ Result<void> print_limit(const Options& options) {
     const auto limit = limit_of(*scenario, *track, options.spacing, wants_stop, told.wall_time);
     return limit ? tell(**limit) : fail(limit.error());
   }
-  const auto limit = plant_limit_of(*scenario, *track, wants_stop, told.wall_time);
+  const auto limit = plant_limit_of(*scenario, *track, options.limit_budget, wants_stop, told.wall_time);
   return limit ? tell(*limit) : fail(limit.error());
 }
 

@@ -13,11 +13,12 @@ namespace chicane::apps {
 
 struct Command {
   std::string_view name;
+  std::string_view group;  ///< heading in the help
   std::string_view summary;
   ExitCode (*run)(const Options&) = nullptr;
 };
 
-/// All commands, in the order of the help (main.cpp).
+/// All commands, in the order of the help, group by group.
 [[nodiscard]] std::span<const Command> commands();
 
 [[nodiscard]] ExitCode drive(const Options& options);

@@ -6,6 +6,7 @@
 #include "chicane/base/result.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "chicane/run/racing.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "options.hpp"
 
@@ -17,7 +18,9 @@ namespace chicane::apps {
 [[nodiscard]] Result<scenario::Scenario> experiment(const Options& options);
 
 /// The run of an experiment, ready to start, or why it cannot be driven: `drive` starts it, `check` only
-/// asks.
+/// asks. `hooks`: while its lap is planned.
 [[nodiscard]] Result<std::unique_ptr<run::ClosedLoop>> prepared(const protocol::Request& request);
+[[nodiscard]] Result<std::unique_ptr<run::ClosedLoop>> prepared(const scenario::Scenario& scenario,
+                                                                const run::PlanHooks& hooks);
 
 }  // namespace chicane::apps

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "access.hpp"
@@ -16,6 +17,7 @@
 #include "experiment.hpp"
 #include "guard_notice.hpp"
 #include "interrupt.hpp"
+#include "plan_wait.hpp"
 #include "progress.hpp"
 #include "record.hpp"
 
@@ -44,11 +46,17 @@ Result<wire::ServeSummary> drive_external_car(const Options& options, scenario::
   if (!controller) return fail(controller.error());
   // Recorded: where the guard knew the road from; a replay computes the same by it.
   if (!track) scenario.guard.road = safety::GuardRoad::kWaypoints;
-  const Result<net::ServerOptions> server = server_options(options);
-  if (!server) return fail(server.error());
-  auto planned = run::plan_lap(scenario, track ? &*track : nullptr);
-  if (!planned) return fail(planned.error());
+  const Result<net::ServerOptions> listening = server_options(options);
+  if (!listening) return fail(listening.error());
+  std::optional<net::ServerOptions> server = *listening;
   catch_interrupts(stop);
+  Result<std::shared_ptr<const road::RacingRoad>> planned;
+  {
+    PlanWait wait(run::plan_budget(scenario), &server);
+    planned = run::plan_lap(scenario, track ? &*track : nullptr, wait.hooks());
+    if (!wait.opened()) return fail(wait.opened().error());
+  }
+  if (!planned) return fail(planned.error());
   live::ServedRun served(*server, scenario, std::move(*controller), std::move(track), live::embedded_assets(),
                          std::move(*planned));
   const auto kept = KeptRun::start(options, served.description(), scenario, served.step_budget());

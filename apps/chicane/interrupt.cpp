@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <ctime>
 
+#include "chicane/run/plan_cache.hpp"
+
 namespace chicane::apps {
 namespace {
 
@@ -41,6 +43,7 @@ void let_interrupts_end() {
 
 void catch_interrupts(std::atomic<bool>& flag) {
   wanted = &flag;
+  run::stop_planning_by(flag);
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "chicane/live/limit_search.hpp"
+#include "chicane/run/plan_cache.hpp"
 
 namespace chicane::apps {
 
@@ -40,7 +41,8 @@ Result<std::shared_ptr<const lap_time::Limit>> limit_of(const scenario::Scenario
 }
 
 Result<lap_time::PlantLimit> plant_limit_of(const scenario::Scenario& scenario, const path::Track& track,
-                                            const std::atomic<bool>& wants_stop, double& wall_time) {
+                                            double budget, const std::atomic<bool>& wants_stop,
+                                            double& wall_time) {
   if (scenario.vehicle.scale != 1.0)
     return fail(ErrorCode::kInvalidArgument,
                 fmt::format("limit: got a model car of scale {:g}, expected one in full size",
@@ -50,20 +52,25 @@ Result<lap_time::PlantLimit> plant_limit_of(const scenario::Scenario& scenario, 
   const auto start = Clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   double told = 0.0;
-  lap_time::PlantLimitOptions options;
+  lap_time::PlantLimitOptions options{.budget = budget};
+  lap_time::PlanProgress progress;
+  options.on_progress = [&](const lap_time::PlanProgress& come) { progress = come; };
   options.go_on = [&](std::string_view stage, int turn, double lap_time) {
     const double now = seconds();
     if (now - told >= (is_terminal ? 0.1 : 10.0)) {
       told = now;
-      fmt::print(stderr, "{}limit: {}, turn {}, {:.3f} s{}", is_terminal ? "\r" : "", stage, turn, lap_time,
-                 is_terminal ? "   " : "\n");
+      const bool is_far = progress.work >= progress.expected;
+      const std::string left =
+          is_far ? "" : fmt::format(", about {:.0f} s left", now * (progress.expected / progress.work - 1.0));
+      fmt::print(stderr, "{}limit: {}, turn {}, {:.3f} s{}{}", is_terminal ? "\r" : "", stage, turn, lap_time,
+                 left, is_terminal ? "\x1b[K" : "\n");
     }
     return !wants_stop.load();
   };
-  Result<lap_time::PlantLimit> limit = lap_time::find_plant_limit(
-      track, scenario.plant, scenario.plant_options, options, scenario.plant_params);
+  Result<lap_time::PlantLimit> limit =
+      run::cached_limit(track, scenario.plant, scenario.plant_options, options, scenario.plant_params);
   wall_time = seconds();
-  if (is_terminal && told > 0.0) fmt::print(stderr, "\r{:60}\r", "");
+  if (is_terminal && told > 0.0) fmt::print(stderr, "\r\x1b[K");
   return limit;
 }
 

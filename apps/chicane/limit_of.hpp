@@ -21,9 +21,10 @@ namespace chicane::apps {
                                                                       const std::atomic<bool>& wants_stop,
                                                                       double& wall_time);
 
-/// The bound of the experiment's plant and its witness; everything else as limit_of().
+/// The bound of the experiment's plant and its witness, or the best lap so far after `budget` of work [s];
+/// everything else as limit_of().
 [[nodiscard]] Result<lap_time::PlantLimit> plant_limit_of(const scenario::Scenario& scenario,
-                                                          const path::Track& track,
+                                                          const path::Track& track, double budget,
                                                           const std::atomic<bool>& wants_stop,
                                                           double& wall_time);
 

@@ -91,10 +91,18 @@ LineExtent extent_of(const path::RacingLine& line) {
 
 std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit) {
   const LineExtent extent = extent_of(limit.line);
+  if (limit.line.is_best_so_far)
+    return fmt::format(
+        "{} on {}: {:.3f} s is the best lap so far, no bound: the budget ended the search (--budget-s)\n"
+        "speed    {:.1f} mph at least, {:.1f} at most\n"
+        "searched {:.1f} s: {} nodes, {} turns; stationarity {:.1e}, violation {:.1e}\n",
+        run.car, run.track, limit.bound.lap, mps_to_mph(extent.least_speed), mps_to_mph(extent.top_speed),
+        run.wall_time, limit.nodes, limit.iterations, limit.stationarity, limit.violation);
   std::string text = fmt::format("{} on {}: between {:.3f} s and ", run.car, run.track, limit.bound.lap);
   text += limit.witness
               ? fmt::format("{:.3f} s ({:+.2f} %)\n", limit.witness->lap_time, 100.0 * limit.bracket())
-              : "what could be driven: no plan could\n";
+          : limit.is_cut_short ? "what could be driven: the budget ended the search for that (--budget-s)\n"
+                               : "what could be driven: no plan could\n";
   text += fmt::format(
       "bound    {:.3f} s ({:.3f} {:.3f} {:.3f} by thirds): the optimum of the plant's own equations\n",
       limit.bound.lap, limit.bound.sectors[0], limit.bound.sectors[1], limit.bound.sectors[2]);
@@ -125,6 +133,7 @@ std::string to_json(const LimitRun& run, const lap_time::PlantLimit& limit) {
                   {"car", run.car},
                   {"plant", limit.line.car},
                   {"lap_time_s", limit.bound.lap},
+                  {"is_best_so_far", limit.line.is_best_so_far},
                   {"sector_times_s", limit.bound.sectors},
                   {"witness", witness},
                   {"bracket_percent", limit.witness ? Json(100.0 * limit.bracket()) : Json()},

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "bench_options.hpp"
 #include "campaign_options.hpp"
 #include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
@@ -18,6 +19,7 @@
 #include "chicane/version.hpp"
 #include "command_text.hpp"
 #include "commands.hpp"
+#include "limit_options.hpp"
 #include "ros_options.hpp"
 #include "setting_options.hpp"
 #include "sweep_options.hpp"
@@ -26,9 +28,6 @@
 
 namespace chicane::apps {
 namespace {
-
-constexpr int kLongestHorizon =
-    200;  ///< that of bench/problems/reference.hpp, which is not part of this program
 
 void add_speed(CLI::App& command, Options& options) {
   command.add_option("--speed-mps", options.speed_mps, "Speed reference of the controller [m/s]")
@@ -45,7 +44,7 @@ void add_controller(CLI::App& command, Options& options) {
   add_setting(command, options, "--preset", "preset", "NAME",
               "Controller and its settings (chicane list presets)");
   add_setting(command, options, "--controller", "controller", "NAME",
-              "Another controller (chicane list controllers)");
+              "Controller in place of the preset's (chicane list controllers)");
   add_setting(command, options, "--car", "car", "NAME|FILE",
               "Car of the simulation and of the controller's model (chicane list cars)");
   add_speed(command, options);
@@ -54,7 +53,7 @@ void add_controller(CLI::App& command, Options& options) {
 void add_world(CLI::App& command, Options& options) {
   add_setting(command, options, "--track", "track", "NAME|FILE", "Track (chicane list tracks)");
   add_setting(command, options, "--laps", "laps", "N", "Laps to drive; 0 drives until stopped");
-  add_setting(command, options, "--seed", "seed", "N", "Of everything random");
+  add_setting(command, options, "--seed", "seed", "N", "Seed of everything random");
 }
 
 void add_latency(CLI::App& command, Options& options) {
@@ -66,7 +65,7 @@ void add_faults(CLI::App& command, Options& options) {
   command
       .add_option(
           "--fault", options.faults,
-          "A fault at a second of the run, for so long, so strong (chicane list faults); may be repeated")
+          "Fault at a second of the run, for so long, so strong (chicane list faults); may be repeated")
       ->type_name("NAME@S+S*X")
       ->take_all();
 }
@@ -81,23 +80,24 @@ void add_port(CLI::App& command, Options& options) {
       ->capture_default_str();
   command
       .add_option("--allow-host", options.allowed_hosts,
-                  "A host name by which this program may be reached, as in containers; may be repeated")
+                  "Host name by which this program may be reached, as in containers; may be repeated")
       ->type_name("NAME")
       ->allow_extra_args(false);
   command
-      .add_option(
-          "--allow-origin", options.allowed_origins,
-          "A web page that may connect beside our own, like https://app.foxglove.dev; may be repeated")
+      .add_option("--allow-origin", options.allowed_origins,
+                  "Web page that may connect beside our own, like https://app.foxglove.dev; may be repeated")
       ->type_name("ORIGIN")
       ->allow_extra_args(false);
   add_negation(command, "--no-token", options.needs_token,
-               "Every program of this machine may control, without the token of the printed link");
+               "Let every program of this machine control, without the token of the printed link");
 }
 
 void add_record(CLI::App& command, Options& options) {
   command.add_option("--record", options.record_file, "Record every control step in a new MCAP file")
       ->type_name("FILE");
-  command.add_flag("--compress", options.is_compressed, "The recording by Zstandard: about half the size")
+  command
+      .add_flag("--compress", options.is_compressed,
+                "Compress the recording by Zstandard: about half the size")
       ->needs("--record");
   command
       .add_flag("--bag", options.is_bag,
@@ -128,7 +128,7 @@ void add_drive(CLI::App& command, Options& options) {
   add_world(command, options);
   add_latency(command, options);
   CLI::Option* const fast =
-      command.add_flag("--fast", options.is_fast, "As fast as possible, deterministic, without sockets");
+      command.add_flag("--fast", options.is_fast, "Run as fast as possible, deterministic, without sockets");
   command.add_flag("--limit", options.wants_limit, "Find the limit first, for the gap of each lap to it")
       ->needs(fast);
   add_port(command, options);
@@ -145,12 +145,11 @@ void add_drive(CLI::App& command, Options& options) {
       ->check(CLI::Range(0.0, 1000.0))
       ->excludes("--fast");
   command
-      .add_flag("--manual", options.is_manual,
-                "A person drives, by the dashboard's arrow keys or \"manual.…\"")
+      .add_flag("--manual", options.is_manual, "Drive by hand, by the dashboard's arrow keys or \"manual.…\"")
       ->excludes("--fast");
   add_faults(command, options);
   add_record(command, options);
-  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  command.add_flag("--json", options.is_json, "Print one JSON object on stdout, all else on stderr");
   add_set(command, options);
   command.footer("Example: chicane drive --preset sixty-mph --track lakeside --laps 2 --fast");
 }
@@ -161,17 +160,18 @@ void add_serve(CLI::App& command, Options& options) {
               "Sleep before each answer [ms], default 100 as the original");
   add_setting(
       command, options, "--track", "track", "NAME|FILE",
-      "The simulator's road: judges tyres, tells the gap to the limit. For the original game its course's "
+      "Road of the simulator: judges tyres, tells the gap to the limit. For the original game its course's "
       "lake_track_waypoints.csv; lap times need none");
   add_port(command, options);
   add_record(command, options);
-  command.add_flag("--json", options.is_json, "One JSON object on stdout at the end, all else on stderr");
+  command.add_flag("--json", options.is_json,
+                   "Print one JSON object on stdout at the end, all else on stderr");
   add_set(command, options);
   command.footer("Example: chicane serve --preset weighted --port 4567");
 }
 
 void add_simulate(CLI::App& command, Options& options) {
-  command.add_option("--connect", options.connect, "The controller's address")
+  command.add_option("--connect", options.connect, "Address of the controller")
       ->type_name("URL")
       ->capture_default_str();
   command
@@ -181,7 +181,7 @@ void add_simulate(CLI::App& command, Options& options) {
   add_setting(command, options, "--car", "car", "NAME|FILE", "Simulated car (chicane list cars)");
   add_world(command, options);
   add_record(command, options);
-  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  command.add_flag("--json", options.is_json, "Print one JSON object on stdout, all else on stderr");
   add_set(command, options);
   command.footer("Example: chicane simulate --connect ws://127.0.0.1:4567 --track lakeside --laps 2");
 }
@@ -194,7 +194,8 @@ void add_ros(CLI::App& command, Options& options) {
   add_ros_network(command, options);
   add_port(command, options);
   add_record(command, options);
-  command.add_flag("--json", options.is_json, "One JSON object on stdout at the end, all else on stderr");
+  command.add_flag("--json", options.is_json,
+                   "Print one JSON object on stdout at the end, all else on stderr");
   add_set(command, options);
   command.footer("Example: chicane ros --car f1tenth --track oval --domain 7");
 }
@@ -203,23 +204,8 @@ void add_logs(CLI::App& command, Options& options, const std::string& help) {
   command.add_option("logs", options.log_files, help)->type_name("LOG")->required();
 }
 
-void add_limit(CLI::App& command, Options& options) {
-  add_setting(command, options, "--track", "track", "NAME|FILE", "Track (chicane list tracks)");
-  add_setting(command, options, "--car", "car", "NAME|FILE", "Car (chicane list cars)");
-  command.add_option("--csv", options.csv_file, "Keep the racing line in this file, a track to drive on")
-      ->type_name("FILE");
-  command.add_flag("--quick", options.is_quick, "That of a simpler car, which follows its path: no bound");
-  command
-      .add_option("--spacing-m", options.spacing, "With --quick: between the places computed [m], default 2")
-      ->type_name("X")
-      ->check(CLI::Range(0.5, 5.0));
-  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
-  add_set(command, options);
-  command.footer("Example: chicane limit --track lakeside --car road-car --csv line.csv");
-}
-
 void add_replay(CLI::App& command, Options& options) {
-  add_logs(command, options, "What --record wrote; several are shown beside each other");
+  add_logs(command, options, "Recordings by --record; several are shown beside each other");
   command.add_flag(
       "--verify", options.wants_verification,
       "Compute every recorded command again and compare it bit for bit; exit code 1 if one differs");
@@ -235,7 +221,7 @@ void add_replay(CLI::App& command, Options& options) {
       ->type_name("S")
       ->check(CLI::PositiveNumber)
       ->needs("--branch-at");
-  command.add_option("--laps", options.branch_laps, "The branch ends when the run has so many laps")
+  command.add_option("--laps", options.branch_laps, "End the branch when the run has so many laps")
       ->type_name("N")
       ->check(CLI::PositiveNumber)
       ->needs("--branch-at");
@@ -244,13 +230,14 @@ void add_replay(CLI::App& command, Options& options) {
       ->needs("--branch-at");
   add_port(command, options);
   add_negation(command, "--no-serve", options.is_served, "Show nothing in a browser");
-  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr; shows nothing");
+  command.add_flag("--json", options.is_json,
+                   "Print one JSON object on stdout, all else on stderr; shows nothing");
   command.footer("Example: chicane replay run.mcap --branch-at 12 --set plant_options.friction_scale=0.5");
 }
 
 void add_report(CLI::App& command, Options& options) {
-  add_logs(command, options, "What --record wrote, or the results of a sweep (.jsonl)");
-  command.add_option("-o,--output", options.output_file, "The page; an older one is replaced")
+  add_logs(command, options, "Recordings by --record, or the results of a sweep (.jsonl)");
+  command.add_option("-o,--output", options.output_file, "Page to write; an older one is replaced")
       ->type_name("FILE.html");
   command.add_option("--page", options.maps_page, "Write the heat maps of a sweep in letters into this page")
       ->type_name("FILE.md");
@@ -287,7 +274,7 @@ void add_identify(CLI::App& command, Options& options) {
       ->type_name("TOPIC");
   command.add_option("--drive-topic", options.identify.drive_topic, "Commands of a bag that has several")
       ->type_name("TOPIC");
-  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
+  command.add_flag("--json", options.is_json, "Print one JSON object on stdout, all else on stderr");
   add_set(command, options);
   command.footer("Example: chicane identify run.mcap --car road-car -o mine.yaml");
 }
@@ -317,28 +304,8 @@ void add_list(CLI::App& command, Options& options) {
   command.footer("Example: chicane list presets");
 }
 
-void add_bench(CLI::App& command, Options& options) {
-  command
-      .add_option("--instances", options.instances,
-                  "Problems of each family and horizon; ours solves ten times as many")
-      ->type_name("N")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  command.add_option("--horizons", options.horizons, "Numbers of intervals, with commas")
-      ->type_name("N,...")
-      ->delimiter(',')
-      ->check(CLI::Range(2, kLongestHorizon))
-      ->capture_default_str();
-  command
-      .add_option("--reference", options.reference_folder,
-                  "Folder of recorded problems with known optima (lap_*.csv, golden_*.csv)")
-      ->type_name("FOLDER");
-  command.add_flag("--json", options.is_json, "One JSON object on stdout, all else on stderr");
-  command.footer("Example: chicane bench --instances 200 --horizons 10,20");
-}
-
 void add_completion(CLI::App& command, Options& options) {
-  command.add_option("shell", options.shell, "The shell")
+  command.add_option("shell", options.shell, "Shell")
       ->type_name("SHELL")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
@@ -373,12 +340,20 @@ constexpr std::pair<std::string_view, void (*)(CLI::App&, Options&)> kOptionsOf[
     {"manual", add_manual},
 };
 
+/// Commands that plan laps or find limits.
+constexpr std::string_view kPlanning[] = {"drive", "serve",  "ros",    "limit",    "replay",  "sweep",
+                                          "tune",  "league", "claims", "campaign", "recover", "check"};
+
 void add_commands(CLI::App& app, Options& options) {
   for (const Command& command : commands()) {
     CLI::App* const sub = app.add_subcommand(std::string(command.name), std::string(command.summary));
+    sub->group(std::string(command.group));
     sub->footer("Example: chicane " + std::string(command.name));  // of a command without options
     for (const auto& [name, add] : kOptionsOf)
       if (name == command.name) add(*sub, options);
+    if (std::find(std::begin(kPlanning), std::end(kPlanning), command.name) != std::end(kPlanning))
+      add_negation(*sub, "--no-cache", options.uses_cache,
+                   "Compute plans and limits anew, and keep none in the cache folder");
   }
 }
 
@@ -418,9 +393,17 @@ Done explain(const CLI::App& app, const CLI::ParseError& error) {
   return {kUsage};
 }
 
+/// What a newcomer needs, in place of all commands.
+constexpr std::string_view kFirstSteps =
+    "chicane drive                        drives a lap; open the link that it prints\n"
+    "chicane drive --preset race --fast   races at once and prints the lap times\n"
+    "chicane list                         presets, tracks, cars and scenarios to choose from\n"
+    "chicane serve                        drives the car of another simulator, as Udacity's\n"
+    "chicane COMMAND --help               options of a command, with an example\n"
+    "chicane --help                       all commands\n";
+
 /// The first word must be a command; empty when it is, or an option.
-std::string command_fault(int count, const char* const* words) {
-  if (count < 2) return "chicane: got no command";
+std::string command_fault(const char* const* words) {
   const std::string_view word = words[1];
   std::vector<std::string_view> names;
   for (const Command& command : commands()) names.push_back(command.name);
@@ -447,7 +430,11 @@ std::variant<Options, Done> parse_command_line(int count, const char* const* wor
   app.require_subcommand(1);
   app.footer("Example: chicane drive");
   add_commands(app, options);
-  if (const std::string fault = command_fault(count, words); !fault.empty()) {
+  if (count < 2) {
+    fmt::print(stderr, "{}", kFirstSteps);
+    return Done{kUsage};
+  }
+  if (const std::string fault = command_fault(words); !fault.empty()) {
     fmt::print(stderr, "{}\nSee `chicane --help`.\n", fault);
     return Done{kUsage};
   }

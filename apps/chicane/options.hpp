@@ -47,6 +47,7 @@ struct Options {
   bool wants_limit = false;       ///< drive --fast: the gaps of its laps to the limit
   std::string csv_file;           ///< limit: the racing line; empty: not kept
   bool is_quick = false;          ///< limit: that of the car which follows its path
+  double limit_budget = 600.0;    ///< limit: work of the search [s]
   std::optional<double> spacing;  ///< limit: of the places computed by the quick one [m]
 
   std::string connect =
@@ -169,6 +170,8 @@ struct Options {
     std::vector<std::string> presets{"race", "pure-pursuit", "stanley"};
   };
   LaneChange lane_change{};
+
+  bool uses_cache = true;  ///< of plans and limits, on disk
 
   int instances = 100;                    ///< bench: of each family
   std::vector<int> horizons{10, 20, 50};  ///< bench

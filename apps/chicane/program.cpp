@@ -5,12 +5,25 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <memory>
+#include <string>
+#include <string_view>
 #include <variant>
 
 #include "chicane/base/instruction_set.hpp"
+#include "chicane/run/plan_cache.hpp"
 
 namespace chicane::apps {
 namespace {
+
+/// Plans and limits are kept where the user's caches are, unless told otherwise.
+void use_cache(const Options& options) {
+  const std::string folder = options.uses_cache ? run::DiskCache::default_folder() : "";
+  if (folder.empty()) return;
+  run::use_plan_cache(std::make_shared<const run::DiskCache>(folder, [](std::string_view line) {
+    std::fprintf(stderr, "%.*s\n", static_cast<int>(line.size()), line.data());
+  }));
+}
 
 ExitCode parse_and_run(int count, const char* const* words, ExitCode (*run)(const Options&)) {
   const std::variant<Options, Done> parsed = parse_command_line(count, words);
@@ -19,6 +32,7 @@ ExitCode parse_and_run(int count, const char* const* words, ExitCode (*run)(cons
     std::fprintf(stderr, "chicane: %s\n", set.error().message.c_str());
     return kUsage;
   }
+  use_cache(std::get<Options>(parsed));
   const ExitCode code = run(std::get<Options>(parsed));
   if (std::fflush(stdout) == 0) return code;
   std::fprintf(stderr, "chicane: the results could not be written: %s\n", std::strerror(errno));

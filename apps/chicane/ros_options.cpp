@@ -43,7 +43,7 @@ void add_ros_network(CLI::App& command, Options& options) {
       ->capture_default_str();
   command
       .add_option("--base-at", ros.base_at,
-                  "Where the car's frame is: in the middle of the rear axle, or in the "
+                  "Place of the car's frame: in the middle of the rear axle, or in the "
                   "centre of mass")
       ->check(CLI::IsMember({"rear-axle", "centre-of-mass"}))
       ->capture_default_str();
@@ -54,22 +54,22 @@ void add_ros_network(CLI::App& command, Options& options) {
       ->excludes(simulates);
   command
       .add_option("--pace", ros.pace,
-                  "With --simulate: seconds of the simulator in a second of the clock; sends /clock")
+                  "Seconds of the simulator in a second of the clock, with --simulate; sends /clock")
       ->type_name("X")
       ->check(CLI::Range(0.05, 20.0))
       ->needs(simulates);
   command
       .add_option("--map", ros.map_file,
-                  "With --simulate: /scan sees the walls of this occupancy map, as map_server reads it, in "
+                  "Occupancy map whose walls /scan sees, with --simulate, as map_server reads it, in "
                   "place of the track's edges")
       ->type_name("FILE.yaml")
       ->needs(simulates);
-  command.add_option("--drive-by", ros.drive_by, "What of a drive message the car follows")
+  command.add_option("--drive-by", ros.drive_by, "Part of a drive message that the car follows")
       ->check(CLI::IsMember({"speed", "acceleration"}))
       ->capture_default_str();
   command
       .add_option("--speed-lead-s", ros.speed_lead,
-                  "With --drive-by speed: time in which the car's speed controller closes a gap [s]")
+                  "Time in which the car's speed controller closes a gap, with --drive-by speed [s]")
       ->type_name("X")
       ->check(CLI::Range(0.02, 5.0))
       ->capture_default_str();

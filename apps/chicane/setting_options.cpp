@@ -35,7 +35,7 @@ void add_set(CLI::App& command, Options& options) {
   };
   command
       .add_option_function<std::vector<std::string>>("--set", take,
-                                                     "Any of `chicane list parameters`; may be repeated")
+                                                     "Setting of `chicane list parameters`; may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
 }

@@ -5,18 +5,16 @@ namespace chicane::apps {
 
 void add_video(CLI::App& command, Options& options) {
   Options::Video& video = options.video;
-  command.add_option("log", options.log_files, "What --record wrote")
+  command.add_option("log", options.log_files, "Recording by --record")
       ->type_name("LOG")
       ->required()
       ->expected(1);
   command
       .add_option("-o,--output", options.output_file,
-                  "The film: .mp4, .webm, .webp or .gif; an older one is replaced")
+                  "Film to write: .mp4, .webm, .webp or .gif; an older one is replaced")
       ->type_name("FILE")
       ->required();
-  command
-      .add_option("--ghost", video.ghost,
-                  "Another recording, whose car drives beside, from the same beginning")
+  command.add_option("--ghost", video.ghost, "Recording whose car drives beside, from the same beginning")
       ->type_name("LOG");
   command
       .add_option("--lap", video.lap, "Counted from 1; 0: the whole run; the last whole lap when left out")
@@ -36,7 +34,7 @@ void add_video(CLI::App& command, Options& options) {
       ->type_name("N")
       ->check(CLI::Range(1.0, 120.0))
       ->capture_default_str();
-  command.add_option("--width", video.width, "Of the picture [px]; its height is 9/16 of it")
+  command.add_option("--width", video.width, "Width of the picture [px]; its height is 9/16 of it")
       ->type_name("N")
       ->check([](const std::string& text) {
         int width = 0;
@@ -45,10 +43,10 @@ void add_video(CLI::App& command, Options& options) {
         return is_even ? std::string() : "got " + text + ", expected an even number from 160 to 3840";
       })
       ->capture_default_str();
-  command.add_option("--quality", video.quality, "Of .webp, 1 to 100")
+  command.add_option("--quality", video.quality, "Quality of .webp, 1 to 100")
       ->type_name("N")
       ->check(CLI::Range(1, 100));
-  command.add_flag("--whole", video.is_whole, "The whole road all the time, not the car from above");
+  command.add_flag("--whole", video.is_whole, "Show the whole road all the time, not the car from above");
   command.footer("Example: chicane video run.mcap -o lap.mp4 --ghost other.mcap");
 }
 

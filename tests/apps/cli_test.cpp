@@ -101,7 +101,7 @@ TEST(Cli, WrongUsageIsExplainedWithExitCodeTwo) {
     const char *arguments, *expected;
   };
   const Case cases[] = {
-      {"", "got no command"},
+      {"", "chicane --help "},
       {"drvie", "(did you mean drive?)"},
       {"drive --pressets x", "(did you mean --preset?)"},
       {"drive --laps", "--laps"},

@@ -45,7 +45,7 @@ std::vector<std::string> commands() {
   bool is_list = false;
   for (const std::string& line : lines_of(bash(kQuotedProgram + " --help"))) {
     if (is_list && line.starts_with("  ")) names.push_back(line.substr(2, line.find(' ', 2) - 2));
-    is_list = is_list || line == "Subcommands:";
+    is_list = is_list || line == "Drive:";
   }
   return names;
 }
@@ -81,6 +81,25 @@ TEST(CommandText, EveryCommandHasAnExampleOfItsOwnAndARowInTheDocs) {
     EXPECT_TRUE(std::regex_search(help, std::regex("Example: .*chicane " + command + "\\b"))) << command;
     EXPECT_TRUE(std::regex_search(page, std::regex("\\| `chicane " + command + "[ `]"))) << command;
   }
+}
+
+TEST(CommandText, TheHelpIsInGroups) {
+  std::vector<std::string> found;
+  for (const std::string& line : lines_of(bash(kQuotedProgram + " --help"))) {
+    if (line.ends_with(':') && line != "Options:") found.push_back(line);
+    if (line.starts_with("  ") && !line.starts_with("  -"))
+      found.push_back(line.substr(2, line.find(' ', 2) - 2));
+  }
+  EXPECT_THAT(found, ElementsAre("Drive:", "drive", "serve", "simulate", "Look:", "replay", "report", "video",
+                                 "Compare:", "limit", "league", "sweep", "merge", "tune",
+                                 "Prove:", "campaign", "recover", "lane-change", "claims", "bench",
+                                 "Tools:", "check", "list", "identify", "ros", "completion", "manual"));
+}
+
+TEST(CommandText, WithoutACommandSixLinesForANewcomer) {
+  const std::vector<std::string> lines = lines_of(bash(kQuotedProgram));
+  ASSERT_EQ(lines.size(), 6U);
+  for (const std::string& line : lines) EXPECT_TRUE(line.starts_with("chicane ")) << line;
 }
 
 TEST(CommandText, TheHelpIsRead) {

@@ -176,6 +176,32 @@ TEST(RacingPlan, EntersAnOpenRoadAsItLeavesIt) {
   EXPECT_LT(slowest, first.vx - 3.0) << "the bend";
 }
 
+// What model tracks have: maps of F1TENTH are 22 m wide in full size, around bends of 10 m.
+TEST(RacingPlan, TakesARoadThatIsWiderThanItsBendsAreTight) {
+  constexpr double kRadius = 9.0;
+  constexpr double kHalfWidth = 10.0;
+  std::vector<path::TrackPoint> points;
+  for (const double side : {1.0, -1.0}) {
+    for (int i = 0; i < 15; ++i) points.push_back({{side * (10.0 * i - 70.0), -side * kRadius}, 0.0, 0.0});
+    for (int i = 1; i < 8; ++i) {
+      const double angle = kPi * i / 8.0;
+      points.push_back(
+          {{side * (70.0 + kRadius * std::sin(angle)), -side * kRadius * std::cos(angle)}, 0.0, 0.0});
+    }
+  }
+  for (path::TrackPoint& point : points) point.left = point.right = kHalfWidth;
+  const path::Track track = path::Track::create("wide", points, true).value();
+  for (const std::string name : {"udacity", "road-car"}) {
+    const auto plan = plan_racing_line(track, car_named(name), {.margin = 0.25, .grip_share = 0.93});
+    ASSERT_TRUE(plan) << name << ": " << plan.error().message;
+    for (const path::RacingLinePoint& p : plan->points) {
+      const double bend = track.centre().at(p.s).curvature;
+      EXPECT_GT(1.0 - bend * p.offset, 0.0) << name << ": beyond the bend's centre at s = " << p.s;
+      EXPECT_LT(std::fabs(p.offset), kHalfWidth) << name;
+    }
+  }
+}
+
 TEST(RacingPlan, StopsWhenToldTo) {
   int told = 0;
   const auto plan =

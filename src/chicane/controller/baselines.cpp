@@ -281,7 +281,8 @@ constexpr auto kPidOptions = with_speed_hold<&PidOptions::speed>(std::array{
 constexpr auto kPurePursuitOptions = with_speed_hold<&PurePursuitOptions::speed>(std::array{
     option<&PurePursuitOptions::lookahead_time>("lookahead_time", unit::kSecond, 0, 5,
                                                 "Distance of the point aimed at, over speed."),
-    option<&PurePursuitOptions::lookahead_min>("lookahead_min", unit::kMetre, 0.5, 50, "Never aims closer."),
+    option<&PurePursuitOptions::lookahead_min>("lookahead_min", unit::kMetre, 0.5, 50,
+                                               "Distance at which it aims at least."),
 });
 constexpr auto kStanleyOptions = with_speed_hold<&StanleyOptions::speed>(std::array{
     option<&StanleyOptions::gain>("gain", unit::per("1/s"), 0, 50,

@@ -235,7 +235,7 @@ constexpr std::array kOptions{
     option<&C::speed_reference>("speed_reference", unit::kSpeed, 0, 110,
                                 "v_ref, the speed the cost pulls towards."),
     option<&C::latency_handling>("latency_handling", kLatencyHandlings,
-                                 "How the time between measurement and actuation is treated."),
+                                 "Treatment of the time between measurement and actuation."),
     option<&C::latency>("latency", unit::kMillisecond, 0, 500, "Compensated delay when it is not measured."),
     option<&C::polar_waypoints>("polar_waypoints",
                                 "Waypoints to the car's frame by radius and angle instead of a rotation."),
@@ -246,7 +246,7 @@ constexpr std::array kOptions{
         "cte is y − f(x), as write-up 1 has it; in f(x) − y its step has v sin eψ with the other sign."),
     option<&C::heading_error_integrated>(
         "heading_error_integrated",
-        "The heading error is that of the beginning plus what the car turns, as write-up 1 has it."),
+        "Take the heading error of the beginning plus what the car turns, as write-up 1 has it."),
     option<&C::lateral_error_integrated>("lateral_error_integrated",
                                          "cte is that of the beginning plus the sum of v sin eψ dt, as "
                                          "write-up 1 has it: the bend ahead is not "
@@ -255,9 +255,10 @@ constexpr std::array kOptions{
                            "Order of the polynomial that is fitted through the waypoints."),
     option<&C::latency_acceleration_term>(
         "latency_acceleration_term",
-        "The measured roll-forward has the term a tan δ τ² / (2 L_f) of write-up 1."),
-    option<&C::speed_in_mph>("speed_in_mph", "The model takes miles per hour for metres per second."),
-    option<&C::roll_forward_in_mph>("roll_forward_in_mph", "The roll-forward over the latency does so, too."),
+        "Give the measured roll-forward the term a tan δ τ² / (2 L_f) of write-up 1."),
+    option<&C::speed_in_mph>("speed_in_mph", "Let the model take miles per hour for metres per second."),
+    option<&C::roll_forward_in_mph>("roll_forward_in_mph",
+                                    "Let the roll-forward over the latency do so, too."),
     option<&C::weight_lateral>("weight_lateral", unit::per("1/m²"), 0, kHighestWeight,
                                "Price of the squared cross-track error."),
     option<&C::weight_heading>("weight_heading", unit::per("1/rad²"), 0, kHighestWeight,

@@ -39,9 +39,15 @@ class Finder {
         options_{options},
         model_{model},
         plant_{plant},
-        search_{track, model, {.time_step = options.time_step, .go_on = [this](int iteration, double time) {
-                                 return !options_.go_on || options_.go_on(stage_, iteration, time);
-                               }}} {
+        search_{track,
+                model,
+                {.time_step = options.time_step,
+                 .budget = options.budget,
+                 .go_on =
+                     [this](int iteration, double time) {
+                       return !options_.go_on || options_.go_on(stage_, iteration, time);
+                     },
+                 .on_progress = options.on_progress}} {
     plant_.deviate(deviation);
   }
 
@@ -54,9 +60,10 @@ class Finder {
     limit.nodes = static_cast<int>(optimum->road.s.size());
     limit.stationarity = search_.stationarity();
     limit.violation = search_.violation();
-    if (options_.wants_witness) {
+    if (options_.wants_witness && !search_.is_out_of_budget()) {
       if (Result<void> driven = drive(*optimum, limit); !driven) return fail(driven.error());
     }
+    limit.is_cut_short = search_.is_out_of_budget();
     limit.iterations = search_.iterations();
     return limit;
   }
@@ -69,6 +76,7 @@ class Finder {
     for (const Reserve& reserve : model_.reserves()) {
       Result<NodePlan> plan = search_.near(from, reserve);
       if (search_.is_stopped()) return fail(plan.error());
+      if (search_.is_out_of_budget()) break;
       if (!plan) continue;
       from = *plan;
       for (const Tuning& tuning : model_.tunings()) {
@@ -108,6 +116,7 @@ Result<PlantLimit> find_plant_limit(const path::Track& track, std::string_view p
                 track.name() + ": the road is open, expected a closed one: a lap has no end");
   if (!(options.time_step >= 0.01 && options.time_step <= 0.2))
     return fail(ErrorCode::kInvalidArgument, "limit: time step: expected 0.01 to 0.2 s");
+  if (!(options.budget > 0.0)) return fail(ErrorCode::kInvalidArgument, "limit: budget: expected > 0 s");
   Result<std::unique_ptr<LimitModel>> model = make_limit_model(plant, deviation, params);
   if (!model) return fail(model.error());
   Result<std::unique_ptr<sim::Plant>> car = sim::make_plant(plant, deviation, params);

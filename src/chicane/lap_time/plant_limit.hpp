@@ -2,12 +2,14 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "chicane/base/result.hpp"
 #include "chicane/lap_time/lap_times.hpp"
+#include "chicane/lap_time/plan_progress.hpp"
 #include "chicane/path/racing_line.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/sim/double_track.hpp"
@@ -29,9 +31,10 @@ struct Witness {
 /// equations, which no controller should beat, and the best lap that was driven. The truth lies between.
 struct PlantLimit {
   LapTimes bound;         ///< of the optimum [s]
-  path::RacingLine line;  ///< of the optimum, without any reserve
+  path::RacingLine line;  ///< of the optimum, without any reserve; no bound where it is_best_so_far
   std::optional<Witness>
       witness{};              ///< none: no plan could be driven without an event, or none was asked for
+  bool is_cut_short = false;  ///< the budget ended the search for the witness
   int nodes = 0;              ///< of the optimum
   int iterations = 0;         ///< of all searches
   double stationarity = 0.0;  ///< of the optimum: largest slope of the Lagrangian, scaled
@@ -45,8 +48,11 @@ struct PlantLimitOptions {
   double time_step = 0.08;  ///< between nodes, about [s]; [0.01, 0.2]
   bool wants_witness = true;
   int laps = 4;  ///< of the witness, after a flying start
+  /// Work after which the best lap so far is the answer (PlanProgress) [s], > 0.
+  double budget = std::numeric_limits<double>::infinity();
   /// Told how far it has come, and the lap time, after each iteration; false ends the search. May be empty.
   std::function<bool(std::string_view stage, int iteration, double lap_time)> go_on{};
+  std::function<void(const PlanProgress&)> on_progress{};  ///< of the optimum; may be empty
 };
 
 /// Finds it. Takes 1 to 60 s and some 10 MB. Deterministic. Keeps nothing between calls.

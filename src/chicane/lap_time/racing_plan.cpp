@@ -93,24 +93,36 @@ Result<path::RacingLine> plan_racing_line(const path::Track& track, const model:
   const auto is_share = [](double share, double most) { return share > 0.0 && share <= most; };
   if (!(options.margin >= 0.0 && is_share(options.grip_share, 1.0) && is_share(options.brake_share, 1.0) &&
         is_share(options.slip_share, 2.0) && options.speed_limit > 3.0 && options.time_step >= 0.01 &&
-        options.time_step <= 0.2))
+        options.time_step <= 0.2 && options.budget > 0.0))
     return fail(ErrorCode::kInvalidArgument, "racing plan: an option is out of its range");
   VehiclePlan model(vehicle, options.speed_limit);
   CarSize size = model.size();
   size.half_width += options.margin;
-  if (Result<void> fits = fits_road(track, size); !fits) return fail(fits.error());
+  Fit fit;
+  bool is_stopped = false;
+  if (options.go_on) fit.go_on = [&] { return !(is_stopped = is_stopped || !options.go_on(0, 0.0)); };
+  if (Result<void> fits = fits_road(track, size, fit); !fits) return fail(fits.error());
+  if (is_stopped) return fail(ErrorCode::kInvalidArgument, "limit: stopped");
   model.set_reserve({.margin = options.margin,
                      .grip_share = options.grip_share,
                      .slip_share = options.slip_share,
                      .brake_share = options.brake_share});
   // Where tyres saturate an optimum may not settle on some nodes: others are tried.
   Result<NodePlan> plan = fail(ErrorCode::kInvalidArgument, "");
+  double work = 0.0;
   for (const double step : {1.0, 0.85, 1.2}) {
-    PlanSearch search(
-        track, model,
-        {.time_step = step * options.time_step, .tolerance = kTolerance, .go_on = options.go_on});
+    PlanSearch search(track, model,
+                      {.time_step = step * options.time_step,
+                       .tolerance = kTolerance,
+                       .budget = options.budget - work,
+                       .go_on = options.go_on,
+                       .on_progress = [&](const PlanProgress& now) {
+                         if (options.on_progress)
+                           options.on_progress({work + now.work, work + now.expected, now.lap_time});
+                       }});
     plan = search.find();
-    if (plan || search.is_stopped()) break;
+    work += search.work();
+    if (plan || search.is_stopped() || search.is_out_of_budget()) break;
   }
   if (!plan) return fail(plan.error());
   return line_of(track, vehicle.name, model, *plan, options.margin);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 
 #include "chicane/base/result.hpp"
+#include "chicane/lap_time/plan_progress.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/path/racing_line.hpp"
 #include "chicane/path/track.hpp"
@@ -18,8 +20,11 @@ struct RacingPlanOptions {
   double brake_share = 1.0;    ///< of the largest useful deceleration, (0, 1]
   double speed_limit = 100.0;  ///< [m/s], > 3
   double time_step = 0.08;     ///< between nodes, about [s]; [0.01, 0.2]
+  /// Work after which the best plan so far is the answer (PlanProgress) [s], > 0. The same on every machine.
+  double budget = std::numeric_limits<double>::infinity();
   /// Told how far it has come, and the lap time, after each iteration; false ends the search. May be empty.
   std::function<bool(int iteration, double lap_time)> go_on{};
+  std::function<void(const PlanProgress&)> on_progress{};  ///< after each iteration; may be empty
 };
 
 /// The fastest lap of a car as a controller believes it to be (model::PredictionModel), with its yaw motion,
@@ -29,8 +34,9 @@ struct RacingPlanOptions {
 /// An open road's plan enters as it leaves: the same speed and place across the road at both ends.
 ///
 /// kInvalidArgument for a road too narrow for the car or with a bend too tight for its full
-/// lock (names the place and the radius), parameters or options out of range, and for a search that ended
-/// without an optimum.
+/// lock (names the place and the radius), parameters or options out of range, and for a search that was
+/// stopped. kNotFound for one that ended without a plan. RacingLine::is_best_so_far where the budget ended
+/// it.
 [[nodiscard]] Result<path::RacingLine> plan_racing_line(const path::Track& track,
                                                         const model::VehicleParams& vehicle,
                                                         const RacingPlanOptions& options = {});

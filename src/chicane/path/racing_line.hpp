@@ -31,6 +31,7 @@ struct RacingLine {
   double margin = 0.0;   ///< that each contact patch keeps from edge and kerb [m]
   bool has_body = true;  ///< false: a quick limit; vy, yaw rate, steering and throttle are those of a steady
                          ///< corner, not of a motion
+  bool is_best_so_far = false;            ///< the search ended by its budget, before the optimum
   std::vector<RacingLinePoint> points{};  ///< by rising s from 0 to length; the last repeats the first
 
   [[nodiscard]] double lap_time() const noexcept { return points.empty() ? 0.0 : points.back().time; }

@@ -12,6 +12,7 @@
 #include "chicane/model/grip.hpp"
 #include "chicane/model/similarity.hpp"
 #include "chicane/run/make.hpp"
+#include "chicane/run/plan_cache.hpp"
 
 namespace chicane::run {
 namespace {
@@ -26,17 +27,27 @@ const controller::TrackingMpcOptions& options_of(const scenario::Scenario& scena
 Result<std::shared_ptr<const road::RacingRoad>> plan_on(const path::Track& track,
                                                         const scenario::Scenario& scenario,
                                                         const road::RacingRoad::Basis& basis,
-                                                        const std::function<bool()>& go_on) {
+                                                        const std::function<bool()>& go_on,
+                                                        const PlanHooks& hooks) {
   const controller::TrackingMpcOptions& options = options_of(scenario);
   lap_time::RacingPlanOptions planning{.margin = options.edge_margin,
                                        .grip_share = options.grip_share,
                                        .slip_share = options.slip_share,
                                        .brake_share = options.brake_share,
-                                       .speed_limit = options.speed_limit};
-  if (go_on) planning.go_on = [&](int, double) { return go_on(); };
+                                       .speed_limit = options.speed_limit,
+                                       .budget = options.plan_budget};
+  planning.go_on = [&](int, double) { return !must_stop_planning() && (!go_on || go_on()); };
+  planning.on_progress = hooks.on_progress;
   const model::VehicleParams car = model::with_grip(full_size(scenario), basis.grip);
-  const Result<path::RacingLine> lap = lap_time::plan_racing_line(track, car, planning);
-  if (!lap) return fail(lap.error());
+  const Result<path::RacingLine> lap = cached_plan(track, car, planning);
+  if (!lap && lap.error().code != ErrorCode::kNotFound) return fail(lap.error());
+  if (!lap) {
+    if (hooks.say) hooks.say("plan: none found (" + lap.error().message + "): driving without one");
+    return std::shared_ptr<const road::RacingRoad>{};
+  }
+  if (lap->is_best_so_far && hooks.say)
+    hooks.say("plan: the best so far, no optimum: tracking_mpc.plan_budget_s ended the search after " +
+              number_text(options.plan_budget) + " s");
   road::RacingRoad::Basis planned = basis;
   planned.is_closed = track.centre().is_closed();
   planned.room_behind = track.length() - track.start_s() - track.lap_length();
@@ -72,23 +83,30 @@ bool races(const scenario::Scenario& scenario) noexcept {
   return scenario.controller == controller::TrackingMpcEntry::kName && options_of(scenario).racing_line;
 }
 
+double plan_budget(const scenario::Scenario& scenario) noexcept { return options_of(scenario).plan_budget; }
+
 Result<void> check_room(const scenario::Scenario& scenario, const path::Track& track) {
   const bool keeps_to_the_middle =
       scenario.controller == controller::TrackingMpcEntry::kName && !races(scenario);
   const double beside =
       keeps_to_the_middle ? options_of(scenario).assumed_half_width : std::numeric_limits<double>::infinity();
-  const Result<void> fits = lap_time::can_be_driven(in_full_size(track, scenario), full_size(scenario),
-                                                    beside, scenario.vehicle.scale);
+  const path::Track road = in_full_size(track, scenario);
+  const model::VehicleParams car = full_size(scenario);
+  // Kept for those alone whose start is to take no longer than the cached plan.
+  const Result<void> fits = races(scenario)
+                                ? cached_room(road, car, beside, scenario.vehicle.scale)
+                                : lap_time::can_be_driven(road, car, beside, scenario.vehicle.scale);
   if (fits) return {};
   return fail(fits.error().code, "track: " + track.name() + " is not for the car " + scenario.vehicle.name +
                                      ": " + fits.error().message + size_remedy(scenario, track));
 }
 
 Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenario& scenario,
-                                                         const path::Track* track) {
+                                                         const path::Track* track, const PlanHooks& hooks) {
   const bool is_known = track != nullptr && scenario.guard.road == safety::GuardRoad::kTrack;
   if (!races(scenario) || !is_known) return std::shared_ptr<const road::RacingRoad>{};
-  return plan_on(in_full_size(*track, scenario), scenario, {.grip = options_of(scenario).first_grip()}, {});
+  return plan_on(in_full_size(*track, scenario), scenario, {.grip = options_of(scenario).first_grip()}, {},
+                 hooks);
 }
 
 Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::Scenario& scenario,
@@ -97,7 +115,7 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::
                                                                 const std::function<bool()>& go_on) {
   const road::RacingRoad::Basis basis{.is_learned = !wish.waypoints.empty(), .grip = wish.grip};
   if (!basis.is_learned && track == nullptr) return std::shared_ptr<const road::RacingRoad>{};
-  if (!basis.is_learned) return plan_on(in_full_size(*track, scenario), scenario, basis, go_on);
+  if (!basis.is_learned) return plan_on(in_full_size(*track, scenario), scenario, basis, go_on, {});
   const model::VehicleParams car = full_size(scenario);
   const double beside = 0.5 * (car.track_width + car.tire_width);
   // No more road than the guard grants.
@@ -109,7 +127,7 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::
   for (const Vec2& waypoint : wish.waypoints) points.push_back({waypoint, half_width, half_width});
   const Result<path::Track> learned = path::Track::create("learned", points, true);
   if (!learned) return fail(learned.error());
-  return plan_on(*learned, scenario, basis, go_on);
+  return plan_on(*learned, scenario, basis, go_on, {});
 }
 
 }  // namespace chicane::run

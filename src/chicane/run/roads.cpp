@@ -41,7 +41,8 @@ bool needs_same_room(const scenario::Scenario& a, const scenario::Scenario& b) {
 
 }  // namespace
 
-Result<const Roads::Prepared*> Roads::of(const scenario::Scenario& scenario, const TrackFactory& make) {
+Result<const Roads::Prepared*> Roads::of(const scenario::Scenario& scenario, const TrackFactory& make,
+                                         const PlanHooks& hooks) {
   const auto known = std::find_if(entries_.begin(), entries_.end(),
                                   [&](const Entry& each) { return is_same_road(each.scenario, scenario); });
   if (known != entries_.end()) return &known->prepared;
@@ -50,7 +51,7 @@ Result<const Roads::Prepared*> Roads::of(const scenario::Scenario& scenario, con
   Result<path::Track> waypoints = make_waypoints(*track, scenario.vehicle.scale);
   if (!waypoints) return fail(waypoints.error());
   road::KnownRoad road = known_road(scenario, &*track);
-  auto lap = plan_lap(scenario, &*track);
+  auto lap = plan_lap(scenario, &*track, hooks);
   if (!lap) return fail(lap.error());
   if (entries_.size() == kRemembered) entries_.pop_back();
   entries_.push_front(

@@ -11,6 +11,7 @@
 #include "chicane/road/known_road.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "chicane/run/make.hpp"
+#include "chicane/run/racing.hpp"
 #include "chicane/scenario/scenario.hpp"
 
 namespace chicane::run {
@@ -30,9 +31,10 @@ class Roads {
     std::shared_ptr<const road::RacingRoad> lap;  ///< planned, of a controller that races; null of any other
   };
   /// Of scenario.track, for its guard and vehicle. Fails as `make` does. Valid until the next call. `make`
-  /// must be the same in all calls: a road is remembered by its scenario.
+  /// must be the same in all calls: a road is remembered by its scenario. `hooks`: of plan_lap().
   [[nodiscard]] Result<const Prepared*> of(const scenario::Scenario& scenario,
-                                           const TrackFactory& make = make_track);
+                                           const TrackFactory& make = make_track,
+                                           const PlanHooks& hooks = {});
   /// run::check_room() on `road`, which is of(scenario): remembered where it is the car of the call before,
   /// as it takes up to 0.1 s.
   [[nodiscard]] Result<void> check_room(const scenario::Scenario& scenario, const Prepared& road);

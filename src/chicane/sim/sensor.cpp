@@ -22,9 +22,9 @@ constexpr std::array kOptions{
     option<&S::position_quantum>("position_quantum", unit::kMetre, 0, 10,
                                  "x and y are rounded to multiples of it; 0 does not round."),
     option<&S::heading_quantum>("heading_quantum", unit::kDegree, 0, 28,
-                                "The yaw is rounded to multiples of it."),
+                                "Step to whose multiples the yaw is rounded."),
     option<&S::speed_quantum>("speed_quantum", unit::kSpeed, 0, 10,
-                              "The speed is rounded to multiples of it."),
+                              "Step to whose multiples the speed is rounded."),
     option<&S::latency>("latency", unit::kMillisecond, 0, 500,
                         "Age of what is measured when the controller gets it, which is not told of it."),
 };

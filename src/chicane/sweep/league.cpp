@@ -8,10 +8,10 @@
 #include <set>
 
 #include "chicane/base/text.hpp"
-#include "chicane/lap_time/plant_limit.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/run/make.hpp"
+#include "chicane/run/plan_cache.hpp"
 #include "chicane/sweep/detail/settings_reader.hpp"
 #include "chicane/sweep/trial.hpp"
 
@@ -266,8 +266,8 @@ Result<double> bound_of(const Settings& settings, const std::atomic<bool>& stop)
   lap_time::PlantLimitOptions options;
   options.wants_witness = false;
   options.go_on = [&](std::string_view, int, double) { return !stop.load(); };
-  const Result<lap_time::PlantLimit> limit = lap_time::find_plant_limit(
-      *track, scenario->plant, scenario->plant_options, options, scenario->plant_params);
+  const Result<lap_time::PlantLimit> limit =
+      run::cached_limit(*track, scenario->plant, scenario->plant_options, options, scenario->plant_params);
   return limit ? Result<double>(limit->bound.lap) : fail(limit.error());
 }
 

@@ -68,6 +68,11 @@ class Collocation::Search {
         report.is_stopped = true;
         break;
       }
+      if (options_.is_enough) {
+        write(z);
+        report.is_solved = options_.is_enough(z, violation_);
+        if (report.is_solved) break;
+      }
       if (error() <= options_.tolerance &&
           mu <= std::max(1.0001 * options_.last_barrier, kBarrierShare * options_.tolerance)) {
         report.is_solved = true;
@@ -81,11 +86,14 @@ class Collocation::Search {
       if (has_fallen) filter_.clear();
       if (!std::isfinite(error()) || !direction(mu) || !step(mu)) break;
     }
-    for (size_t i = 0; i < z.size(); ++i) z[i] = now_.w[i] * f_.scale[i % nz_];
+    write(z);
     return report;
   }
 
  private:
+  void write(std::vector<double>& z) const {
+    for (size_t i = 0; i < z.size(); ++i) z[i] = now_.w[i] * f_.scale[i % nz_];
+  }
   void begin(const std::vector<double>& z) {
     now_.w.resize(z.size());
     for (size_t i = 0; i < z.size(); ++i) now_.w[i] = z[i] / f_.scale[i % nz_];

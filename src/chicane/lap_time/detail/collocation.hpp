@@ -40,6 +40,9 @@ class Collocation {
     int most_iterations = 600;
     /// Told iteration, cost and the largest violated equation; false ends the search. May be empty.
     std::function<bool(int, double, double)> go_on{};
+    /// Told the variables and the largest violation before each iteration; true ends the search as solved,
+    /// where less than an optimum is enough. May be empty.
+    std::function<bool(const std::vector<double>&, double)> is_enough{};
   };
   struct Report {
     bool is_solved = false;

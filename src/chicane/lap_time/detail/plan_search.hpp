@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string_view>
 #include <vector>
 
 #include "chicane/base/result.hpp"
 #include "chicane/lap_time/detail/plan_model.hpp"
+#include "chicane/lap_time/plan_progress.hpp"
 #include "chicane/path/racing_line.hpp"
 #include "chicane/path/track.hpp"
 
@@ -17,6 +19,7 @@ struct NodePlan {
   RoadNodes road;
   std::vector<double> z;
   double lap_time = 0.0;
+  bool is_best_so_far = false;  ///< no optimum: the budget ended the search
 };
 
 /// Time round the ring by the trapezoidal rule [s].
@@ -31,20 +34,26 @@ struct NodePlan {
 class PlanSearch {
  public:
   struct Options {
-    double time_step = 0.05;  ///< between nodes [s]
-    double tolerance = 1e-6;  ///< of an optimum (Collocation::Options)
+    double time_step = 0.05;                                  ///< between nodes [s]
+    double tolerance = 1e-6;                                  ///< of an optimum (Collocation::Options)
+    double budget = std::numeric_limits<double>::infinity();  ///< of find() (seconds_of_work) [s]
     /// Told how far it has come in words, and the lap time; false ends the search. May be empty.
     std::function<bool(int iteration, double lap_time)> go_on{};
+    std::function<void(const PlanProgress&)> on_progress{};  ///< after each iteration; may be empty
   };
   PlanSearch(const path::Track& track, PlanModel& model, const Options& options)
       : track_{track}, model_{model}, options_{options} {}
 
-  /// kInvalidArgument when there is no optimum from any first guess.
+  /// The best so far where the budget ends the search. kNotFound when there is none: no optimum from any
+  /// first guess, or no budget left for one.
   [[nodiscard]] Result<NodePlan> find();
   /// The plan with that in reserve, from a neighbouring one.
   [[nodiscard]] Result<NodePlan> near(const NodePlan& plan, const Reserve& reserve);
 
   [[nodiscard]] bool is_stopped() const noexcept { return is_stopped_; }
+  [[nodiscard]] bool is_out_of_budget() const noexcept { return is_out_of_budget_; }
+  /// Work of all searches until now [s].
+  [[nodiscard]] double work() const noexcept { return work_; }
   [[nodiscard]] int iterations() const noexcept { return iterations_; }
   [[nodiscard]] double stationarity() const noexcept { return stationarity_; }
   [[nodiscard]] double violation() const noexcept { return violation_; }
@@ -52,13 +61,17 @@ class PlanSearch {
  private:
   [[nodiscard]] std::vector<double> first_guess(const RoadNodes& road, double share) const;
   [[nodiscard]] bool solve(NodePlan& plan, double barrier, int most_iterations, double tolerance);
+  [[nodiscard]] bool goes_on(double lap_time, std::size_t nodes);
 
   const path::Track& track_;
   PlanModel& model_;
   Options options_;
   int iterations_ = 0;
   double stationarity_ = 0.0, violation_ = 0.0;
+  double work_ = 0.0;
+  double expected_ = 0.0;  ///< work of a search that goes well [s]
   bool is_stopped_ = false;
+  bool is_out_of_budget_ = false;
 };
 
 }  // namespace chicane::lap_time

@@ -77,7 +77,18 @@ struct OnRoad {
   T offset_of(const T& offset, double x, double y, double bend) const {
     const T along = x * c - y * s;
     const T across = offset + x * s + y * c;
-    return across - (0.5 * bend) * (along * along) / (1.0 - bend * across);
+    return across - (0.5 * bend) * (along * along) / off_centre(T(1.0 - bend * across));
+  }
+
+ private:
+  /// Distance to the bend's centre over its radius. Below kNear it bends away from zero, with two continuous
+  /// derivatives, down to half of kNear: at the centre (eq. 8) has a pole that a search does not come back
+  /// from.
+  static T off_centre(const T& share) {
+    constexpr double kNear = 0.3;
+    if (!(value_of(share) < kNear)) return share;
+    const T t = (2.0 / kNear) * (kNear - share);
+    return 0.5 * kNear + (0.5 * kNear) / (1.0 + t + t * t);
   }
 };
 

@@ -13,6 +13,14 @@ constexpr double kSample = 1.0;      // of the speeds that decide the spacing [m
 constexpr double kLeastStep = 0.35;  // [m]
 constexpr double kMostStep = 4.0;
 constexpr double kWindow = 6.0;  // over which the line's curvature is averaged [m]
+constexpr double kMostReach = 0.9;
+
+/// Width [m] on the side to which the line bends with `bend` [1/m], if positive: at most kMostReach of the
+/// way to the bend's centre. What lies beyond belongs to other places along the line.
+double reach(double width, double bend) {
+  constexpr double kStraight = 1e-6;  // [1/m]
+  return std::min(width, kMostReach / std::max(bend, kStraight));
+}
 
 }  // namespace
 
@@ -71,10 +79,13 @@ RoadNodes lay_nodes(const path::Track& track, const GuessCar& car, double time_s
     const double b = car.rear_axle;
     road.front_bend.push_back(mean_bend(s + a / 3.0, 2.0 * a / 3.0));
     road.rear_bend.push_back(mean_bend(s - b / 3.0, 2.0 * b / 3.0));
-    road.front_left.push_back(track.left_width(s + a) + kerb);
-    road.front_right.push_back(track.right_width(s + a) + kerb);
-    road.rear_left.push_back(track.left_width(s - b) + kerb);
-    road.rear_right.push_back(track.right_width(s - b) + kerb);
+    const double here = road.curvature.back();
+    const double front = road.front_bend.back();
+    const double rear = road.rear_bend.back();
+    road.front_left.push_back(reach(track.left_width(s + a) + kerb, std::max(here, front)));
+    road.front_right.push_back(reach(track.right_width(s + a) + kerb, std::max(-here, -front)));
+    road.rear_left.push_back(reach(track.left_width(s - b) + kerb, std::max(here, rear)));
+    road.rear_right.push_back(reach(track.right_width(s - b) + kerb, std::max(-here, -rear)));
   }
   return road;
 }

@@ -50,8 +50,9 @@ struct BendModel {
   static constexpr double kSmooth = 1e-3;
 };
 
-constexpr double kPace = 4.0;   // of the nodes [m/s]
-constexpr int kNarrowings = 3;  // of the room, each to a half
+constexpr double kPace = 4.0;       // of the nodes [m/s]
+constexpr double kFollowed = 1e-3;  // violation of a line within the road: millimetres
+constexpr int kNarrowings = 3;      // of the room, each to a half
 
 /// Whether the car's lock suffices for the straightest line with its centre of mass at most `beside` from the
 /// middle.
@@ -71,18 +72,28 @@ Result<void> bends_fit(RoadNodes road, const CarSize& car, const Fit& fit, doubl
     changes[k * BendModel::kStates + 1] = -road.turn[k];
   }
   Collocation problem(functions, road.step, std::move(changes));
-  const Collocation::Report report = problem.solve(z, {.tolerance = 1e-4,
-                                                       .first_barrier = 0.1,
-                                                       .last_barrier = 1e-5,
-                                                       .cost_scale = 1.0,
-                                                       .most_iterations = 300});
-  has_answer = report.violation <= 1e-2;
-  if (!has_answer) return {};  // the search itself will tell
-  std::size_t worst = 0;
   const auto curvature = [&](std::size_t k) { return std::fabs(z[k * BendModel::kVariables + 2]); };
-  for (std::size_t k = 0; k < n; ++k)
-    if (curvature(k) > curvature(worst)) worst = k;
-  if (fit.reserve * curvature(worst) <= car.most_curvature()) return {};
+  std::size_t worst = 0;
+  const auto can_be_followed = [&] {
+    worst = 0;
+    for (std::size_t k = 0; k < n; ++k)
+      if (curvature(k) > curvature(worst)) worst = k;
+    return fit.reserve * curvature(worst) <= car.most_curvature();
+  };
+  Collocation::Options options{.tolerance = 1e-4,
+                               .first_barrier = 0.1,
+                               .last_barrier = 1e-5,
+                               .cost_scale = 1.0,
+                               .most_iterations = 300};
+  if (fit.go_on) options.go_on = [&](int, double, double) { return fit.go_on(); };
+  // One line that the car can follow is enough; the straightest of all takes ten times as long.
+  options.is_enough = [&](const std::vector<double>&, double violation) {
+    return violation <= kFollowed && can_be_followed();
+  };
+  const Collocation::Report report = problem.solve(z, options);
+  has_answer = !report.is_stopped && report.violation <= 1e-2;
+  if (!has_answer) return {};  // the search itself will tell
+  if (can_be_followed()) return {};
   return fail(
       ErrorCode::kInvalidArgument,
       message("limit: the bend at s = %.1f m leaves room for a radius of %.2f m, and the car's full lock "

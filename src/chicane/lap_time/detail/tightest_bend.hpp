@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <limits>
 
 #include "chicane/base/result.hpp"
@@ -29,6 +30,7 @@ struct Fit {
   double surely = 4.0;  ///< a middle of the road with so many times the radius at full lock needs no look
   double beside = std::numeric_limits<double>::infinity();  ///< that the car may be from the middle [m]
   double scale = 1.0;                                       ///< of the lengths in messages
+  std::function<bool()> go_on{};  ///< asked before each iteration; false: no answer, as if it fitted
 };
 [[nodiscard]] Result<void> fits_road(const path::Track& track, const CarSize& car, const Fit& fit);
 

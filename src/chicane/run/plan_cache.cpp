@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/run/plan_cache.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+#include <utility>
+
+#include "chicane/base/fnv.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/protocol/build_id.hpp"
+#include "chicane/sim/double_track.hpp"
+
+namespace chicane::run {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the cache's files would need another name");
+
+std::mutex mutex_of_cache;
+std::shared_ptr<const DiskCache> the_cache;
+std::atomic<const std::atomic<bool>*> stop_flag{nullptr};
+
+std::shared_ptr<const DiskCache> cache_in_use() {
+  const std::lock_guard lock(mutex_of_cache);
+  return the_cache;
+}
+
+/// Two hashes of 64 bits with different beginnings.
+class Name {
+ public:
+  explicit Name(std::string_view kind) {
+    second_.add(std::uint64_t{0x9e3779b97f4a7c15ULL});
+    add(kind);
+    const std::string ids = protocol::build_ids();
+    add(std::string_view(ids));
+    has_build_ = !ids.empty();
+  }
+  void add(double value) {
+    first_.add(value);
+    second_.add(value);
+  }
+  void add(std::string_view text) {
+    add(static_cast<double>(text.size()));
+    for (const char each : text) add(static_cast<double>(each));
+  }
+  void add(const OptionValue& value) {
+    if (const auto* number = std::get_if<double>(&value)) add(*number);
+    if (const auto* truth = std::get_if<bool>(&value)) add(*truth ? 1.0 : 0.0);
+    if (const auto* text = std::get_if<std::string>(&value)) add(std::string_view(*text));
+  }
+  void add(std::span<const Option> options, const void* owner) {
+    for (const Option& option : options) add(option.read(owner));
+  }
+  /// All that a search can ask of a road: its smoothed line and widths come of these points alone.
+  void add(const path::Track& track) {
+    constexpr double kSpacing = 1.0;  // [m]
+    add(std::string_view(track.name()));
+    add(track.centre().is_closed() ? 1.0 : 0.0);
+    for (const double value : {track.length(), track.kerb_width(), track.start_s(), track.start_d(),
+                               track.lap_length(), static_cast<double>(track.crossings())})
+      add(value);
+    for (const path::TrackPoint& p : track.raw_points()) {
+      for (const double value : {p.position.x(), p.position.y(), p.left, p.right}) add(value);
+    }
+    const auto count = static_cast<int>(std::ceil(track.length() / kSpacing));
+    for (int i = 0; i <= count; ++i) {
+      const double s = track.length() * i / count;
+      const path::PathPoint at = track.centre().at(s);
+      for (const double value : {at.position.x(), at.position.y(), at.heading, at.curvature,
+                                 track.left_width(s), track.right_width(s)})
+        add(value);
+    }
+  }
+  [[nodiscard]] std::string text() const {
+    if (!has_build_) return {};
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string digits;
+    for (const std::uint64_t part : {first_.value(), second_.value()})
+      for (int shift = 60; shift >= 0; shift -= 4) digits += kDigits[(part >> shift) & 0xfU];
+    return digits;
+  }
+
+ private:
+  Fnv first_, second_;
+  bool has_build_ = false;
+};
+
+class Writer {
+ public:
+  void put(double value) {
+    const auto bytes = std::bit_cast<std::array<char, sizeof value>>(value);
+    bytes_.append(bytes.data(), bytes.size());
+  }
+  void put(std::string_view text) {
+    put(static_cast<double>(text.size()));
+    bytes_ += text;
+  }
+  [[nodiscard]] std::string take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::string_view bytes) : rest_{bytes} {}
+  void get(double& value) {
+    if (rest_.size() < sizeof value) return give_up();
+    std::memcpy(&value, rest_.data(), sizeof value);
+    rest_.remove_prefix(sizeof value);
+  }
+  void get(std::string& text) {
+    const std::size_t size = count(1);
+    text = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+  }
+  void get(int& value) {
+    double number = 0.0;
+    get(number);
+    if (!(std::fabs(number) < 1e9)) return give_up();
+    value = static_cast<int>(number);
+  }
+  void get(bool& value) {
+    double number = 0.0;
+    get(number);
+    value = number != 0.0;
+  }
+  /// Of things with at least `size` bytes each; 0 where there are not so many.
+  [[nodiscard]] std::size_t count(std::size_t size) {
+    double number = 0.0;
+    get(number);
+    if (number >= 0.0 && number * static_cast<double>(size) <= static_cast<double>(rest_.size()))
+      return static_cast<std::size_t>(number);
+    give_up();
+    return 0;
+  }
+  [[nodiscard]] bool is_at_end() const { return is_good_ && rest_.empty(); }
+
+ private:
+  void give_up() {
+    is_good_ = false;
+    rest_ = {};
+  }
+  std::string_view rest_;
+  bool is_good_ = true;
+};
+
+constexpr std::array kFields{&path::RacingLinePoint::s,           &path::RacingLinePoint::time,
+                             &path::RacingLinePoint::offset,      &path::RacingLinePoint::heading,
+                             &path::RacingLinePoint::vx,          &path::RacingLinePoint::vy,
+                             &path::RacingLinePoint::yaw_rate,    &path::RacingLinePoint::steer,
+                             &path::RacingLinePoint::steer_asked, &path::RacingLinePoint::acceleration,
+                             &path::RacingLinePoint::throttle};
+static_assert(sizeof(path::RacingLinePoint) == kFields.size() * sizeof(double), "a field is missing here");
+
+void put(Writer& to, const path::RacingLine& line) {
+  to.put(std::string_view(line.car));
+  to.put(std::string_view(line.track));
+  to.put(line.length);
+  to.put(line.margin);
+  to.put(line.has_body ? 1.0 : 0.0);
+  to.put(line.is_best_so_far ? 1.0 : 0.0);
+  to.put(static_cast<double>(line.points.size()));
+  for (const path::RacingLinePoint& point : line.points)
+    for (const auto field : kFields) to.put(point.*field);
+}
+
+void get(Reader& from, path::RacingLine& line) {
+  from.get(line.car);
+  from.get(line.track);
+  from.get(line.length);
+  from.get(line.margin);
+  from.get(line.has_body);
+  from.get(line.is_best_so_far);
+  line.points.resize(from.count(sizeof(path::RacingLinePoint)));
+  for (path::RacingLinePoint& point : line.points)
+    for (const auto field : kFields) from.get(point.*field);
+}
+
+/// The result of that name, or what `search` finds, which is kept then.
+template <class T, class Read, class Search>
+Result<T> cached(const std::string& name, const Read& read, const Search& search) {
+  const std::shared_ptr<const DiskCache> cache = name.empty() ? nullptr : cache_in_use();
+  if (cache) {
+    if (const std::optional<std::string> bytes = cache->find(name)) {
+      if (std::optional<T> known = read(*bytes)) return std::move(*known);
+      cache->report_damage(name);
+    }
+  }
+  Result<T> found = search();
+  if (cache && found) cache->keep(name, to_bytes(*found));
+  return found;
+}
+
+}  // namespace
+
+void use_plan_cache(std::shared_ptr<const DiskCache> cache) {
+  const std::lock_guard lock(mutex_of_cache);
+  the_cache = std::move(cache);
+}
+
+void stop_planning_by(const std::atomic<bool>& flag) noexcept { stop_flag = &flag; }
+
+bool must_stop_planning() noexcept {
+  const std::atomic<bool>* flag = stop_flag.load();
+  return flag != nullptr && flag->load();
+}
+
+std::string name_of_plan(const path::Track& track, const model::VehicleParams& car,
+                         const lap_time::RacingPlanOptions& options) {
+  Name name("plan");
+  name.add(track);
+  name.add(model::vehicle_options(), &car);
+  name.add(std::string_view(car.name));
+  name.add(car.scale);
+  for (const double value : {options.margin, options.grip_share, options.slip_share, options.brake_share,
+                             options.speed_limit, options.time_step, options.budget})
+    name.add(value);
+  return name.text();
+}
+
+std::string name_of_limit(const path::Track& track, std::string_view plant,
+                          const sim::PlantDeviation& deviation, const lap_time::PlantLimitOptions& options,
+                          const sim::DoubleTrackParams& params) {
+  Name name("limit");
+  name.add(track);
+  name.add(plant);
+  name.add(sim::double_track_options(), &params);
+  for (const double value :
+       {deviation.friction_scale, deviation.mass_scale, options.time_step, options.wants_witness ? 1.0 : 0.0,
+        static_cast<double>(options.laps), options.budget})
+    name.add(value);
+  return name.text();
+}
+
+Result<path::RacingLine> cached_plan(const path::Track& track, const model::VehicleParams& car,
+                                     const lap_time::RacingPlanOptions& options) {
+  return cached<path::RacingLine>(name_of_plan(track, car, options), line_from_bytes,
+                                  [&] { return lap_time::plan_racing_line(track, car, options); });
+}
+
+Result<lap_time::PlantLimit> cached_limit(const path::Track& track, std::string_view plant,
+                                          const sim::PlantDeviation& deviation,
+                                          const lap_time::PlantLimitOptions& options,
+                                          const sim::DoubleTrackParams& params) {
+  return cached<lap_time::PlantLimit>(
+      name_of_limit(track, plant, deviation, options, params), limit_from_bytes,
+      [&] { return lap_time::find_plant_limit(track, plant, deviation, options, params); });
+}
+
+Result<void> cached_room(const path::Track& track, const model::VehicleParams& car, double beside,
+                         double scale) {
+  constexpr std::string_view kFits = "fits";
+  const std::shared_ptr<const DiskCache> cache = cache_in_use();
+  if (!cache) return lap_time::can_be_driven(track, car, beside, scale);
+  Name name("room");
+  name.add(track);
+  name.add(model::vehicle_options(), &car);
+  name.add(beside);
+  name.add(scale);
+  const std::string text = name.text();
+  if (!text.empty() && cache->find(text) == kFits) return {};
+  Result<void> fits = lap_time::can_be_driven(track, car, beside, scale);
+  if (fits && !text.empty()) cache->keep(text, kFits);
+  return fits;
+}
+
+std::string to_bytes(const path::RacingLine& line) {
+  Writer writer;
+  put(writer, line);
+  return writer.take();
+}
+
+std::optional<path::RacingLine> line_from_bytes(std::string_view bytes) {
+  Reader reader(bytes);
+  path::RacingLine line;
+  get(reader, line);
+  if (!reader.is_at_end() || line.is_empty()) return {};
+  return line;
+}
+
+std::string to_bytes(const lap_time::PlantLimit& limit) {
+  Writer writer;
+  writer.put(limit.bound.lap);
+  for (const double sector : limit.bound.sectors) writer.put(sector);
+  put(writer, limit.line);
+  for (const double value :
+       {static_cast<double>(limit.nodes), static_cast<double>(limit.iterations), limit.stationarity,
+        limit.violation, limit.is_cut_short ? 1.0 : 0.0, limit.witness ? 1.0 : 0.0})
+    writer.put(value);
+  if (limit.witness) {
+    writer.put(limit.witness->lap_time);
+    writer.put(limit.witness->worst);
+    writer.put(static_cast<double>(limit.witness->laps));
+    writer.put(limit.witness->least_edge);
+    put(writer, limit.witness->line);
+  }
+  return writer.take();
+}
+
+std::optional<lap_time::PlantLimit> limit_from_bytes(std::string_view bytes) {
+  Reader reader(bytes);
+  lap_time::PlantLimit limit;
+  reader.get(limit.bound.lap);
+  for (double& sector : limit.bound.sectors) reader.get(sector);
+  get(reader, limit.line);
+  reader.get(limit.nodes);
+  reader.get(limit.iterations);
+  reader.get(limit.stationarity);
+  reader.get(limit.violation);
+  reader.get(limit.is_cut_short);
+  bool has_witness = false;
+  reader.get(has_witness);
+  if (has_witness) {
+    limit.witness.emplace();
+    reader.get(limit.witness->lap_time);
+    reader.get(limit.witness->worst);
+    reader.get(limit.witness->laps);
+    reader.get(limit.witness->least_edge);
+    get(reader, limit.witness->line);
+  }
+  if (!reader.is_at_end() || limit.line.is_empty()) return {};
+  return limit;
+}
+
+}  // namespace chicane::run

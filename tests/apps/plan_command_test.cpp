@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// Planning as a user meets it: progress, signals, budgets and the cache.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace chicane {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+std::string read(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+/// A file of the current test alone.
+fs::path file_of_test(const std::string& kind) {
+  const std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  return fs::path(::testing::TempDir()) / ("chicane_" + test + "_" + kind + "_" + std::to_string(::getpid()));
+}
+
+/// Runs words of a shell in the root of the source tree.
+Outcome shell(const std::string& words) {
+  const fs::path errors = file_of_test("errors");
+  const std::string command =
+      "cd '" CHICANE_SOURCE_DIR "' && { " + words + "; } 2> '" + errors.string() + "'";
+  Outcome outcome;
+  FILE* pipe = ::popen(command.c_str(), "r");
+  if (pipe == nullptr) return outcome;
+  std::array<char, 4096> buffer{};
+  for (std::size_t count = 0; (count = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+    outcome.out.append(buffer.data(), count);
+  }
+  const int status = ::pclose(pipe);
+  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  outcome.err = read(errors);
+  fs::remove(errors);
+  return outcome;
+}
+
+/// The program's words for a shell that runs it in the background or under `timeout`.
+const std::string kProgram = std::string("'") + CHICANE_PROGRAM + "' ";
+
+Outcome chicane_program(const std::string& arguments) { return shell(kProgram + arguments); }
+
+/// Runs the program and interrupts it, as Ctrl-C does, when it has said `words`.
+Outcome interrupted_program(const std::string& arguments, const std::string& words) {
+  const std::string said = "'" + file_of_test("said").string() + "'";
+  return shell(kProgram + arguments + " 2> " + said + " & program=$!; while kill -0 $program && ! grep -q '" +
+               words + "' " + said +
+               "; do sleep 0.05; done; kill -INT $program; wait $program; code=$?; cat " + said +
+               " >&2; rm " + said + "; exit $code");
+}
+
+TEST(PlanCommand, CtrlCEndsPlanningAtOnce) {
+  const Outcome outcome = interrupted_program(
+      "drive --preset race --car road-car --track speedway --port 0 --no-cache", "the lap is planned first");
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("stopped before the run began"));
+  EXPECT_THAT(outcome.err, HasSubstr("dashboard will be at http://localhost:"));
+  EXPECT_THAT(outcome.out, IsEmpty());
+}
+
+TEST(PlanCommand, ABudgetEndsPlanningWithTheBestSoFar) {
+  const std::string drive =
+      "drive --preset race --track oval --fast --laps 1 --no-cache --json --set tracking_mpc.plan_budget_s=";
+  const Outcome none = chicane_program(drive + "0.1");
+  EXPECT_EQ(none.code, 0) << none.err;
+  EXPECT_THAT(none.err, HasSubstr("plan: none found"));
+  const Outcome some = chicane_program(drive + "0.5");
+  EXPECT_EQ(some.code, 0) << some.err;
+  EXPECT_THAT(some.err, HasSubstr("plan: the best so far, no optimum: tracking_mpc.plan_budget_s"));
+  const Outcome limit = chicane_program("limit --track oval --no-cache --budget-s 0.4");
+  EXPECT_EQ(limit.code, 0) << limit.err;
+  EXPECT_THAT(limit.out, HasSubstr("is the best lap so far, no bound"));
+}
+
+TEST(PlanCommand, ASecondStartTakesThePlanFromTheCache) {
+  const fs::path cache = file_of_test("cache");
+  fs::remove_all(cache);
+  const std::string drive = "XDG_CACHE_HOME='" + cache.string() + "' " + kProgram +
+                            "drive --preset race --track oval --fast --laps 1 --json";
+  const auto lap_of = [](const Outcome& outcome) {
+    return Json::parse(outcome.out, nullptr, false)["laps"][0]["lap_time_s"].dump();
+  };
+  const Outcome first = shell(drive);
+  ASSERT_EQ(first.code, 0) << first.err;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(cache / "chicane")) files.push_back(entry.path());
+  ASSERT_GE(files.size(), 1U);
+  const Outcome second = shell(drive);
+  EXPECT_EQ(lap_of(second), lap_of(first));
+  for (const fs::path& file : files) fs::resize_file(file, 10);
+  const Outcome damaged = shell(drive);
+  for (const fs::path& file : files)
+    EXPECT_THAT(damaged.err, HasSubstr(file.string() + " is damaged and ignored"));
+  EXPECT_EQ(lap_of(damaged), lap_of(first));
+  EXPECT_EQ(shell(drive + " --no-cache").code, 0);
+  fs::remove_all(cache);
+}
+
+}  // namespace
+}  // namespace chicane
