@@ -132,7 +132,7 @@ set(data_dir ${CMAKE_INSTALL_DATADIR}/chicane)
 configure_package_config_file(cmake/chicaneConfig.cmake.in chicaneConfig.cmake INSTALL_DESTINATION ${config_dir} PATH_VARS data_dir)
 write_basic_package_version_file(chicaneConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/chicaneConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/chicaneConfigVersion.cmake
-        cmake/InstructionSets.cmake tools/check_symbols.py DESTINATION ${config_dir})
+        cmake/InstructionSets.cmake tools/check_symbols.py tools/usage.py DESTINATION ${config_dir})
 
 # What the program can be told by name, and views for others' viewers. Programs in the build tree find the files by links that lie where
 # an installed program looks or one folder further up (protocol/data_folders.hpp): no binary knows the source tree.

@@ -2,6 +2,7 @@
 """Situations from public files and bug reports, against the program as users start it: `edge_cases_test.py PROGRAM`. Each case is one
 that once ended in a wrong guess or in a message that did not help. Inputs that are not made here lie in tests/apps/edges (made up, like
 files of the wild)."""
+import csv
 import os
 import re
 import signal
@@ -15,7 +16,7 @@ import urllib.error
 import urllib.request
 from pathlib import Path
 
-from edge_sockets import Controller, WebSocket, steering_of, telemetry
+from edge_sockets import Bicycle, Controller, WebSocket, steering_of, telemetry
 
 PROGRAM = sys.argv.pop(1)
 HERE = Path(__file__).resolve().parent
@@ -35,10 +36,10 @@ def run(*words, cwd=DATA):
 class Serving:
     """`chicane serve` on a free port; `said()`: its messages so far."""
 
-    def __init__(self, *words, address="127.0.0.1"):
+    def __init__(self, *words, address="127.0.0.1", latency_ms=0):
         self.file = tempfile.NamedTemporaryFile("w+", suffix=f".{os.getpid()}", delete=False)
-        self.process = subprocess.Popen([PROGRAM, "serve", "--latency-ms", "0", "--port", "0", "--address", address, *words], cwd=DATA,
-                                        env=environment(), stdout=subprocess.DEVNULL, stderr=self.file)
+        self.process = subprocess.Popen([PROGRAM, "serve", "--latency-ms", str(latency_ms), "--port", "0", "--address", address, *words],
+                                        cwd=DATA, env=environment(), stdout=subprocess.DEVNULL, stderr=self.file)
         self.wait_for("waits for")
         self.port = int(re.search(r"port (\d+)", self.said())[1])
 
@@ -233,6 +234,18 @@ class Wire(unittest.TestCase):
         code, out, _ = run("drive", "--fast", "--laps", "1", "--track", "oval", "--set", "waypoints_sent=2", "--set", "time_limit_s=12")
         self.assertNotIn("no_answer: ", out)
         self.assertIn(code, (0, 1))
+
+    def test_a_car_put_back_to_the_start_drives_on(self):
+        with open(DATA / "11_wp_stad.csv", encoding="utf-8") as file:
+            road = [(float(row["x"]), float(row["y"])) for row in csv.DictReader(file)]
+        with Serving(latency_ms=100) as server, WebSocket(server.port) as simulator:
+            simulator.send("2")
+            car = Bicycle(road)
+            car.drive(simulator, lambda: car.time >= 10.0)
+            self.assertGreater(car.speed, 15.0)
+            car.put(0)
+            car.drive(simulator, lambda: car.speed > 10.0 or car.time >= 25.0)
+            self.assertGreater(car.speed, 10.0, server.said())
 
     def test_rounding_at_borders(self):
         with Serving() as server:

@@ -8,6 +8,7 @@ import os
 import socket
 import struct
 import threading
+import time
 
 
 def frame(text, mask=b""):
@@ -96,6 +97,45 @@ def telemetry(x=-40.62, y=108.73, psi=3.733651, speed=20.0, ptsx=None, ptsy=None
 def steering_of(message):
     answer = json.loads(message[2:])[1]
     return {"steer": answer["steering_angle"], "throttle": answer["throttle"], "plan": len(answer["mpc_x"])}
+
+
+class Bicycle:
+    """A simulator's car on a closed road of waypoints, in real time, with six waypoints in each message."""
+
+    def __init__(self, road):
+        self.road = road
+        self.time = 0.0
+        self.put(0)
+
+    def put(self, i):
+        """Standing at a waypoint, along the road."""
+        (self.x, self.y), (x, y) = self.road[i], self.road[(i + 1) % len(self.road)]
+        self.psi = math.atan2(y - self.y, x - self.x)
+        self.speed = self.steer = self.throttle = 0.0
+
+    def message(self):
+        nearest = min(range(len(self.road)), key=lambda i: math.dist(self.road[i], (self.x, self.y)))
+        ahead = [self.road[(nearest - 1 + i) % len(self.road)] for i in range(6)]
+        return telemetry(self.x, self.y, self.psi, self.speed / 0.44704, [p[0] for p in ahead], [p[1] for p in ahead], max(0.0, self.throttle))
+
+    def move(self, seconds):
+        steps = max(1, int(seconds / 0.01))
+        for _ in range(steps):
+            push = self.throttle * 5.43 - 0.104 * self.speed if self.throttle >= 0 else max(-13.0, 218 * self.throttle)
+            self.speed = max(0.0, self.speed + push * seconds / steps)
+            self.psi += self.speed / 2.67 * math.tan(-self.steer * math.radians(25)) * seconds / steps
+            self.x += self.speed * math.cos(self.psi) * seconds / steps
+            self.y += self.speed * math.sin(self.psi) * seconds / steps
+        self.time += seconds
+
+    def drive(self, simulator, is_over):
+        while not is_over():
+            began = time.monotonic()
+            simulator.send(self.message())
+            answer = steering_of(simulator.receive())
+            time.sleep(0.02)
+            self.move(min(time.monotonic() - began, 0.33))
+            self.steer, self.throttle = answer["steer"], answer["throttle"]
 
 
 class Controller:

@@ -49,11 +49,11 @@ TEST(WaypointLine, GoesThroughTheWaypointsAtTheirArcLength) {
   }
 }
 
-TEST(WaypointLine, RefusesLessThanThreeWaypointsAndKeepsWhatItHas) {
+TEST(WaypointLine, RefusesASingleWaypointAndKeepsWhatItHas) {
   const WaypointMap map = map_of(12);
   WaypointLine line;
   line.clear();
-  EXPECT_FALSE(line.extend(map, 1));
+  EXPECT_FALSE(line.extend(map, 0));
   EXPECT_EQ(line.newest(), -1);
   ASSERT_TRUE(line.extend(map, 11));
   EXPECT_FALSE(line.extend(map, WaypointLine::kMostWaypoints));

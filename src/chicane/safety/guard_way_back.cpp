@@ -27,6 +27,7 @@ constexpr double kDrives = 0.1;        // pedal from which on a car should move
 constexpr double kMostAgainstRolling = 0.7;  // pedal against rolling back
 constexpr double kStillTime = 1.0;   // [s] a car stands before it is tried whether it was put elsewhere
 constexpr double kTrialWay = 0.5;    // share of the car's length that is driven for that
+constexpr double kTrialRoom = 1.0;   // to the edge [m], where no stop fits
 constexpr double kTrialSpeed = 1.0;  // [m/s]
 constexpr double kTrialPedal = 0.3;
 
@@ -56,7 +57,10 @@ bool Guard::try_reset(const StopStart& start, const Cycle& cycle, double time,
   if (!(time - still_since_ > kStillTime) || tried_ > kTrialWay * model_.vehicle().length) return false;
   const double speed = std::fabs(estimator_.state().vx);
   const model::Command command{0.0, speed < kTrialSpeed ? kTrialPedal : 0.0};
-  if (verify(start, cycle, command, result, true) == Fit::kNone) return false;
+  // A car that stopped where the known road ends has no stop ahead of it; well inside the edges and along the
+  // road the way of the trial does without.
+  const bool has_room = filter_.planner().edge(road_, start) >= kTrialRoom && std::fabs(start.e) < kAlong;
+  if (verify(start, cycle, command, result, true) == Fit::kNone && !has_room) return false;
   tried_ += std::max(speed, kTrialSpeed) * std::max(cycle.interval, 0.0);
   result.answer = Answer::kNone;
   result.command = command;
