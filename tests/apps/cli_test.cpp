@@ -7,7 +7,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -15,9 +14,9 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 
+#include "apps/program_outcome.hpp"
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/version.hpp"
 
@@ -29,55 +28,13 @@ using ::testing::IsEmpty;
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
-std::string read(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
-
-struct Outcome {
-  int code = -1;
-  std::string out, err;
-};
-
-/// A file of the current test alone.
-fs::path file_of_test(const std::string& kind) {
-  const std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-  return fs::path(::testing::TempDir()) / ("chicane_" + test + "_" + kind + "_" + std::to_string(::getpid()));
-}
-
-/// Runs words of a shell in the root of the source tree.
-Outcome shell(const std::string& words) {
-  const fs::path errors = file_of_test("errors");
-  const std::string command =
-      "cd '" CHICANE_SOURCE_DIR "' && { " + words + "; } 2> '" + errors.string() + "'";
-  Outcome outcome;
-  FILE* pipe = ::popen(command.c_str(), "r");
-  if (pipe == nullptr) return outcome;
-  std::array<char, 4096> buffer{};
-  for (std::size_t count = 0; (count = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
-    outcome.out.append(buffer.data(), count);
-  }
-  const int status = ::pclose(pipe);
-  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  outcome.err = read(errors);
-  fs::remove(errors);
-  return outcome;
-}
-
-/// The program's words for a shell that runs it in the background or under `timeout`.
-const std::string kProgram = std::string("'") + CHICANE_PROGRAM + "' ";
-
-Outcome chicane_program(const std::string& arguments) { return shell(kProgram + arguments); }
-
-/// Runs the program and interrupts it, as Ctrl-C does, when it has said `words`.
-Outcome interrupted_program(const std::string& arguments, const std::string& words) {
-  const std::string said = "'" + file_of_test("said").string() + "'";
-  return shell(kProgram + arguments + " 2> " + said + " & program=$!; while kill -0 $program && ! grep -q '" +
-               words + "' " + said +
-               "; do sleep 0.05; done; kill -INT $program; wait $program; code=$?; cat " + said +
-               " >&2; rm " + said + "; exit $code");
-}
+using test::chicane_program;
+using test::file_of_test;
+using test::interrupted_program;
+using test::kProgram;
+using test::Outcome;
+using test::read;
+using test::shell;
 
 TEST(Cli, HelpNamesEveryCommandAndGivesAnExample) {
   const Outcome help = chicane_program("--help");
