@@ -5,7 +5,7 @@ namespace chicane::apps {
 namespace {
 
 constexpr int kLongestHorizon =
-    200;  ///< that of bench/problems/reference.hpp, which is not part of this program
+    200;  ///< limit of bench/problems/reference.hpp, which is not part of this program
 
 }  // namespace
 

@@ -228,7 +228,7 @@ void tell_errors(const std::vector<CampaignGroup>& groups) {
 
 ExitCode campaign(const Options& options) {
   keep_memory();
-  static std::atomic<bool> wants_stop{false};  // as long as signals may come
+  static std::atomic<bool> wants_stop{false};  // static: must outlive the last signal
   catch_interrupts(wants_stop);
   const Result<sweep::Campaign> campaign = campaign_of(options);
   if (!campaign) return report(campaign.error());

@@ -15,7 +15,7 @@
 namespace chicane::apps {
 namespace {
 
-/// With a digit more for lengths of model scale.
+/// Length as text, with a digit more on roads of model scale.
 std::string metres(double length) { return fmt::format("{:.{}f}", length, length < 3.0 ? 2 : 1); }
 
 /// The road in words, as the run has it.

@@ -55,7 +55,7 @@ const Reading& own_reading(const Claim& claim) {
   return readings()[is_throughout ? 2 : is_set("cubic_mpc.speed_in_mph") ? 1 : 0];
 }
 
-/// Where a claim is tried: in all readings of speed, or in its preset's own alone.
+/// Readings of speed in which a claim is tried: all of them, or that of its preset alone.
 struct Lake {
   std::string_view name;
   std::string track;
@@ -318,7 +318,7 @@ ExitCode compare(const std::string& file, const std::string& older, const std::s
 
 ExitCode try_claims(const Options& options) {
   keep_memory();
-  static std::atomic<bool> stop{false};  // as long as signals may come
+  static std::atomic<bool> stop{false};  // static: must outlive the last signal
   catch_interrupts(stop);
   const auto claims = read_claims(options.claims.folder, options.claims.ids);
   if (!claims) return report(claims.error());

@@ -158,7 +158,7 @@ std::string to_car(const Identification& found, scenario::Scenario scenario, con
 }
 
 Result<void> identify_and_tell(const Options& options) {
-  static std::atomic<bool> wants_stop{false};  // as long as signals may come
+  static std::atomic<bool> wants_stop{false};  // static: must outlive the last signal
   catch_interrupts(wants_stop);
   const Result<scenario::Scenario> start =
       protocol::compose({.scenario_file = {}, .settings = options.settings});

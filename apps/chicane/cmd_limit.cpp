@@ -17,7 +17,7 @@ namespace chicane::apps {
 namespace {
 
 Result<void> print_limit(const Options& options) {
-  static std::atomic<bool> wants_stop{false};  // as long as signals may come
+  static std::atomic<bool> wants_stop{false};  // static: must outlive the last signal
   catch_interrupts(wants_stop);
   const Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());

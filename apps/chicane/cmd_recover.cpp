@@ -166,7 +166,7 @@ Result<std::vector<CarOnTrack>> recover_all(const Options& options, const std::a
 
 ExitCode recover(const Options& options) {
   keep_memory();
-  static std::atomic<bool> wants_stop{false};  // as long as signals may come
+  static std::atomic<bool> wants_stop{false};  // static: must outlive the last signal
   catch_interrupts(wants_stop);
   const Result<std::vector<CarOnTrack>> pairs = recover_all(options, wants_stop);
   if (!pairs) return report(pairs.error());

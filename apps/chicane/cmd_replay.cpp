@@ -77,7 +77,7 @@ class Shown {
 };
 
 Result<void> show(const Options& options, const Shown& shown, double start) {
-  static std::atomic<bool> stop{false};  // as long as signals may come
+  static std::atomic<bool> stop{false};  // static: must outlive the last signal
   catch_interrupts(stop);
   live::WhatIf what_if([&shown](const live::WhatIfQuestion& question, const recording::BranchHooks& hooks) {
     return shown.branch(question, hooks);

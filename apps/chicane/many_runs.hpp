@@ -19,8 +19,8 @@ void keep_memory();
 /// Replaces the file's content. kIo with the system's reason.
 [[nodiscard]] Result<void> write_file(const std::string& file, const std::string& text);
 
-/// That a page of HTML has a name that browsers open: `option`: got x.txt, expected a name that ends in
-/// .html. An empty name is no file; devices may have any.
+/// Checks that the name of an HTML page is one that browsers open: `option`: got x.txt, expected a name that
+/// ends in .html. An empty name is no file; devices may have any.
 [[nodiscard]] Result<void> check_page_name(std::string_view option, const std::string& file);
 
 /// Tells on stderr how many of many runs are done, how fast, and how long the rest will take: on a terminal

@@ -393,7 +393,7 @@ Done explain(const CLI::App& app, const CLI::ParseError& error) {
   return {kUsage};
 }
 
-/// What a newcomer needs, in place of all commands.
+/// Six lines for a newcomer, in place of all commands.
 constexpr std::string_view kFirstSteps =
     "chicane drive                        drives a lap; open the link that it prints\n"
     "chicane drive --preset race --fast   races at once and prints the lap times\n"

@@ -171,7 +171,7 @@ struct Options {
   };
   LaneChange lane_change{};
 
-  bool uses_cache = true;  ///< of plans and limits, on disk
+  bool uses_cache = true;  ///< plans and limits are kept on disk
 
   int instances = 100;                    ///< bench: of each family
   std::vector<int> horizons{10, 20, 50};  ///< bench

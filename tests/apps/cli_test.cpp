@@ -20,21 +20,12 @@
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/version.hpp"
 
-namespace chicane {
+namespace chicane::test {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using Json = nlohmann::json;
-namespace fs = std::filesystem;
-
-using test::chicane_program;
-using test::file_of_test;
-using test::interrupted_program;
-using test::kProgram;
-using test::Outcome;
-using test::read;
-using test::shell;
 
 TEST(Cli, HelpNamesEveryCommandAndGivesAnExample) {
   const Outcome help = chicane_program("--help");
@@ -461,4 +452,4 @@ TEST(Cli, NothingASimulatorStartedOutlivesIt) {
 }
 
 }  // namespace
-}  // namespace chicane
+}  // namespace chicane::test

@@ -11,20 +11,12 @@
 
 #include "apps/program_outcome.hpp"
 
-namespace chicane {
+namespace chicane::test {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using Json = nlohmann::json;
-namespace fs = std::filesystem;
-
-using test::chicane_program;
-using test::file_of_test;
-using test::interrupted_program;
-using test::kProgram;
-using test::Outcome;
-using test::shell;
 
 TEST(PlanCommand, CtrlCEndsPlanningAtOnce) {
   const Outcome outcome = interrupted_program(
@@ -74,4 +66,4 @@ TEST(PlanCommand, ASecondStartTakesThePlanFromTheCache) {
 }
 
 }  // namespace
-}  // namespace chicane
+}  // namespace chicane::test
