@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Prints the tables of docs/limit.md in Markdown: bound, witness and quick limit of two cars on four tracks, and `default` beside them.
+"""Prints the tables of docs/limit.md in Markdown: bound and witness of two cars on four tracks, and `default` beside them.
 
     tools/limit_tables.py --compute > limits.jsonl          drives `chicane limit` for each (two minutes)
     tools/limit_tables.py limits.jsonl                      table 1
@@ -17,8 +17,8 @@ CARS = ("udacity", "road-car")
 TRACKS = ("lakeside", "oval", "hairpins", "speedway")
 
 
-def limit(car, track, *options):
-    done = subprocess.run(["chicane", "limit", "--car", car, "--track", track, "--json", *options], check=True, capture_output=True, text=True)
+def limit(car, track):
+    done = subprocess.run(["chicane", "limit", "--car", car, "--track", track, "--json"], check=True, capture_output=True, text=True)
     return json.loads(done.stdout)
 
 
@@ -27,7 +27,7 @@ def compute():
         for track in TRACKS:
             found = limit(car, track)
             print(json.dumps({"car": car, "track": track, "bound": found["lap_time_s"], "witness": found["witness"]["lap_time_s"],
-                              "bracket": found["bracket_percent"], "quick": limit(car, track, "--quick")["lap_time_s"]}), flush=True)
+                              "bracket": found["bracket_percent"]}), flush=True)
 
 
 def lines_of(path):
@@ -35,18 +35,18 @@ def lines_of(path):
 
 
 def bounds(limits):
-    print("| car | track | bound | witness | bracket | quick limit |\n|---|---|--:|--:|--:|--:|")
+    print("| car | track | bound | witness | bracket |\n|---|---|--:|--:|--:|")
     for row in limits:
-        print(f"| {row['car']} | {row['track']} | {row['bound']:.3f} | {row['witness']:.3f} | {row['bracket']:.2f} % | {row['quick']:.2f} |")
+        print(f"| {row['car']} | {row['track']} | {row['bound']:.3f} | {row['witness']:.3f} | {row['bracket']:.2f} % |")
 
 
 def gaps(limits, runs):
     laps = {(run["settings"]["car"], run["settings"]["track"]): run["lap_time_s"] for run in runs
             if "run" in run and run["settings"]["preset"] == "default" and run["settings"]["guard.mode"] == "on"}
-    print("| car | track | limit | flying lap of `default` | gap |\n|---|---|--:|--:|--:|")
+    print("| car | track | bound | flying lap of `default` | gap |\n|---|---|--:|--:|--:|")
     for row in limits:
         lap = laps[row["car"], row["track"]]
-        print(f"| {row['car']} | {row['track']} | {row['quick']:.2f} | {lap:.2f} | {100.0 * (lap / row['quick'] - 1.0):.1f} % |")
+        print(f"| {row['car']} | {row['track']} | {row['bound']:.2f} | {lap:.2f} | {100.0 * (lap / row['bound'] - 1.0):.1f} % |")
 
 
 def main():

@@ -65,13 +65,22 @@ Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop
   return Outcome{std::move(summary), (*kept)->finish()};
 }
 
+constexpr const char* kNotAsked = "not asked for (--limit)";
+
+lap_time::LimitAnswer answer_of(const path::Track& track, const lap_time::PlantLimit& limit) {
+  if (!limit.is_whole())
+    return {.why_not = "its search has used up its budget; `chicane limit` has one to set"};
+  return {.found = std::make_shared<const lap_time::Limit>(lap_time::bound_from_start(track, limit))};
+}
+
 Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const run::RunControls& controls) {
-  lap_time::LimitAnswer limit{.why_not = "not asked for (--limit)"};
+  lap_time::LimitAnswer limit{.why_not = kNotAsked};
   if (options.wants_limit) {
     double wall_time = 0.0;
-    const auto found = limit_of(loop.scenario(), loop.track(), {}, controls.wants_stop, wall_time);
+    const auto found =
+        limit_of(loop.scenario(), loop.track(), {.wants_witness = false}, controls.wants_stop, wall_time);
     if (!found) return fail(found.error());
-    limit = {.found = *found};
+    limit = answer_of(loop.track(), *found);
   }
   protocol::Run description = live::description(loop);
   description.limit = limit;
@@ -91,6 +100,10 @@ Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const ru
                               .on_change = [&](const telemetry::Change& change) { (*kept)->record(change); }},
                              [&] { return controls.wants_stop.load(); });
   }
+  // For people only: what programs read and recordings hold does not depend on what is in a cache.
+  const bool may_know = !options.wants_limit && !options.is_json;
+  if (const auto known = may_know ? run::known_limit(loop.scenario(), loop.track()) : std::nullopt)
+    limit = answer_of(loop.track(), *known);
   if (limit.found) telemetry::compare_with_limit(summary, limit.found->times);
   summary.why_no_limit = limit.why_not;
   return Outcome{std::move(summary), (*kept)->finish()};

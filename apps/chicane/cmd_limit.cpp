@@ -27,20 +27,20 @@ Result<void> print_limit(const Options& options) {
   if (!options.csv_file.empty()) {
     if (Result<void> writable = check_writable(options.csv_file); !writable) return writable;
   }
-  LimitRun told{.track = track->name(), .car = scenario->car};
-  const auto tell = [&](const auto& limit) -> Result<void> {
-    if (!options.csv_file.empty()) {
-      if (Result<void> kept = write_file(options.csv_file, to_csv(told, *track, limit)); !kept) return kept;
-    }
-    fmt::print("{}", options.is_json ? to_json(told, limit) : to_table(told, limit));
-    return {};
-  };
-  if (options.is_quick || options.spacing) {
-    const auto limit = limit_of(*scenario, *track, options.spacing, wants_stop, told.wall_time);
-    return limit ? tell(**limit) : fail(limit.error());
+  if (options.is_quick)
+    fmt::print(stderr, "--quick: gives the bound without a witness now; it goes with the next version\n");
+  if (options.spacing)
+    fmt::print(stderr, "--spacing-m: has no effect any more; it goes with the next version\n");
+  LimitRun told{.track = track->name(), .car = scenario->car, .wants_witness = !options.is_quick};
+  const Result<lap_time::PlantLimit> limit =
+      limit_of(*scenario, *track, {.wants_witness = told.wants_witness, .budget = options.limit_budget},
+               wants_stop, told.wall_time);
+  if (!limit) return fail(limit.error());
+  if (!options.csv_file.empty()) {
+    if (Result<void> kept = write_file(options.csv_file, to_csv(told, *track, *limit)); !kept) return kept;
   }
-  const auto limit = plant_limit_of(*scenario, *track, options.limit_budget, wants_stop, told.wall_time);
-  return limit ? tell(*limit) : fail(limit.error());
+  fmt::print("{}", options.is_json ? to_json(told, *limit) : to_table(told, *limit));
+  return {};
 }
 
 }  // namespace

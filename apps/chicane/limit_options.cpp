@@ -11,10 +11,8 @@ void add_limit(CLI::App& command, Options& options) {
   command.add_option("--csv", options.csv_file, "Keep the racing line in this file, a track to drive on")
       ->type_name("FILE");
   command.add_flag("--quick", options.is_quick,
-                   "Find that of a simpler car, which follows its path: no bound");
-  command
-      .add_option("--spacing-m", options.spacing,
-                  "Distance between the places computed [m], default 2; with --quick")
+                   "Find the bound alone, without a lap that was driven; goes with the next version");
+  command.add_option("--spacing-m", options.spacing, "Nothing any more; goes with the next version")
       ->type_name("X")
       ->check(CLI::Range(0.5, 5.0));
   command

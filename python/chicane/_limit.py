@@ -36,8 +36,8 @@ def limit(track: AnyTrack | None = None, *, car: str | None = None, settings: Se
           witness: bool = True) -> Limit:
     """Finds the fastest lap of a car on a closed road: 1 to 60 s, as `chicane limit` does.
 
-    quick: that of a car which follows its path, in a second or less, as `chicane limit --quick`.
+    quick: the same as witness=False; goes with the next version.
     witness: also drives it, which takes most of the time.
     ValueError for an open road, a model car, or a road too narrow or with a bend too tight for the car."""
     request = make_request({"track": track, "car": car}, settings)
-    return Limit(_chicane.quick_limit(request) if quick else _chicane.limit(request, witness))
+    return Limit(_chicane.limit(request, witness and not quick))

@@ -3,11 +3,10 @@
 #include <string>
 
 #include "chicane/base/math.hpp"
-#include "chicane/lap_time/minimum_time.hpp"
 #include "chicane/lap_time/plant_limit.hpp"
-#include "chicane/live/limit_search.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/make.hpp"
+#include "chicane/run/plan_cache.hpp"
 #include "conversion.hpp"
 #include "faces.hpp"
 #include "signals.hpp"
@@ -67,14 +66,9 @@ std::vector<Vec2> points_of(const path::RacingLine& line, const path::Track& tra
 Result<FoundLimit> plant_limit(const protocol::Request& request, bool wants_witness, SignalWatch& signals) {
   const Result<Experiment> experiment = experiment_of(request);
   if (!experiment) return fail(experiment.error());
-  const scenario::Scenario& scenario = experiment->scenario;
-  if (scenario.vehicle.scale != 1.0)
-    return fail(ErrorCode::kInvalidArgument,
-                "limit: got the model car " + scenario.car + ", expected one in full size");
   lap_time::PlantLimitOptions options{.wants_witness = wants_witness};
   options.go_on = [&](std::string_view, int, double) { return !signals(); };
-  Result<lap_time::PlantLimit> limit = lap_time::find_plant_limit(
-      experiment->track, scenario.plant, scenario.plant_options, options, scenario.plant_params);
+  Result<lap_time::PlantLimit> limit = run::limit_of(experiment->scenario, experiment->track, options);
   if (!limit) return fail(limit.error());
   std::vector<Vec2> points = points_of(limit->line, experiment->track);
   return FoundLimit{std::move(*limit), std::move(points)};
@@ -91,40 +85,10 @@ py::dict limit(const protocol::Request& request, bool wants_witness) {
   told["sector_times_s"] = list_of(limit.bound.sectors);
   told["witness_s"] =
       limit.witness ? py::object(py::float_(limit.witness->lap_time)) : py::object(py::none());
-  told["iterations"] = limit.iterations;
+  told["iterations"] = limit.effort.iterations;
   told["violation"] = limit.violation;
   py::dict line = line_of(limit.line.points, std::pair("s_m", [](const Point& p) { return p.s; }),
                           std::pair("speed_mps", [](const Point& p) { return std::hypot(p.vx, p.vy); }));
-  line["xy_m"] = to_array(points);
-  told["line"] = line;
-  return told;
-}
-
-/// The limit of the car that follows its path: found in a second or less.
-Result<lap_time::Limit> find_quick_limit(const protocol::Request& request, SignalWatch& signals) {
-  const Result<Experiment> experiment = experiment_of(request);
-  if (!experiment) return fail(experiment.error());
-  lap_time::LimitOptions options;
-  options.go_on = [&](int, double) { return !signals(); };
-  return lap_time::find_limit(experiment->track, live::limit_vehicle(experiment->scenario), options);
-}
-
-py::dict quick_limit(const protocol::Request& request) {
-  SignalWatch signals;
-  Result<lap_time::Limit> found = unlocked([&] { return find_quick_limit(request, signals); });
-  signals.raise();
-  const lap_time::Limit limit = value_of(std::move(found));
-  using Point = path::LinePoint;
-  py::dict told;
-  told["bound_s"] = limit.times.lap;
-  told["sector_times_s"] = list_of(limit.times.sectors);
-  told["witness_s"] = py::none();
-  told["iterations"] = limit.report.iterations;
-  told["violation"] = limit.report.violation;
-  py::dict line = line_of(limit.line, std::pair("s_m", [](const Point& p) { return p.s; }),
-                          std::pair("speed_mps", [](const Point& p) { return p.speed; }));
-  std::vector<Vec2> points;
-  for (const Point& point : limit.line) points.push_back(point.position);
   line["xy_m"] = to_array(points);
   told["line"] = line;
   return told;
@@ -134,7 +98,6 @@ py::dict quick_limit(const protocol::Request& request) {
 
 void add_limit(py::module_& module) {
   module.def("limit", limit, py::arg("request"), py::arg("wants_witness"));
-  module.def("quick_limit", quick_limit, py::arg("request"));
 }
 
 }  // namespace chicane::python

@@ -105,7 +105,7 @@ class Tracks(unittest.TestCase):
             self.assertEqual(ch.drive(Path(folder) / "ring.csv", laps=1)["state_hash"], run["state_hash"])
             env = ch.Env(road)
             env.reset()
-            self.assertGreater(ch.limit(road, witness=False, quick=True).bound_s, 5.0)
+            self.assertGreater(ch.limit(road, witness=False).bound_s, 5.0)
 
     def test_a_reader_brings_its_files_along(self):
         with tempfile.TemporaryDirectory() as folder, mock.patch.dict(os.environ, {"XDG_CACHE_HOME": folder}):

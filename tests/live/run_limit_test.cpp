@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/make.hpp"
 
@@ -50,7 +52,7 @@ TEST(RunLimit, IsFoundBesideTheRunAndItsLapsAreSetBesideIt) {
   limit.compare(run, kGoOn);  // waits: there is a lap
   EXPECT_EQ(told, 1);
   ASSERT_TRUE(run.limit) << run.why_no_limit;
-  EXPECT_NEAR(run.limit->lap, 13.33, 0.05);  // chicane limit --track oval
+  EXPECT_NEAR(run.limit->lap, 12.93, 0.02);  // chicane limit --track oval
   EXPECT_EQ(run.why_no_limit, "");
   EXPECT_DOUBLE_EQ(run.laps[0].gap_to_limit.value_or(0.0), 20.0 / run.limit->lap - 1.0);
   EXPECT_DOUBLE_EQ(run.laps[0].sector_gaps[2], 20.0 / 3.0 / run.limit->sectors[2] - 1.0);
@@ -74,21 +76,27 @@ TEST(RunLimit, SaysWhyThereIsNone) {
   limit.compare(run, kGoOn);
   EXPECT_EQ(run.why_no_limit, "nobody knows the road");
 
-  scenario::Scenario wide = on("lakeside");
-  wide.vehicle.track_width = 10.0;
-  limit.search(*run::make_track(wide), wide);
+  std::vector<path::TrackPoint> points;
+  for (int i = 0; i < 60; ++i)
+    points.push_back({50.0 * Vec2{std::cos(i * kTwoPi / 60), std::sin(i * kTwoPi / 60)}, 0.6, 0.6});
+  limit.search(path::Track::create("narrow", points, true).value(), on("oval"));
   limit.compare(run, kGoOn);
   EXPECT_NE(run.why_no_limit.find("the road is"), std::string::npos) << run.why_no_limit;
 }
 
-TEST(RunLimit, DoesNotHoldUpARunThatEndsBeforeOrIsToStop) {
+TEST(RunLimit, DoesNotHoldUpARunThatEndsBeforeOrIsToStopOrHasWaitedLongEnough) {
   const auto track = run::make_track(on("lakeside"));
-  for (const bool is_to_stop : {false, true}) {
+  struct End {
+    bool has_lap, is_to_stop;
+    std::chrono::milliseconds patience;
+  };
+  for (const End& end :
+       {End{false, false, RunLimit::kPatience}, {true, true, RunLimit::kPatience}, {true, false, {}}}) {
     RunLimit limit;
     limit.search(*track, on("lakeside"));
-    const std::atomic<bool> wants_stop{is_to_stop};
-    telemetry::RunSummary run = is_to_stop ? one_lap(40.0) : telemetry::RunSummary{};
-    limit.compare(run, wants_stop);
+    const std::atomic<bool> wants_stop{end.is_to_stop};
+    telemetry::RunSummary run = end.has_lap ? one_lap(40.0) : telemetry::RunSummary{};
+    limit.compare(run, wants_stop, end.patience);
     EXPECT_FALSE(run.limit);
     EXPECT_EQ(run.why_no_limit, "the run ended before it was computed");
   }
@@ -106,7 +114,7 @@ TEST(RunLimit, OfTheRunBeforeIsForgotten) {
   telemetry::RunSummary run = one_lap(20.0);
   limit.compare(run, kGoOn);
   ASSERT_EQ(told.size(), 1U);
-  EXPECT_NEAR(told[0], 13.33, 0.05);
+  EXPECT_NEAR(told[0], 12.93, 0.02);
 }
 
 /// What is told next; nothing when no search goes on.

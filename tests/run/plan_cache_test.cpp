@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/protocol/library.hpp"
 
 namespace chicane::run {
 namespace {
@@ -116,6 +117,45 @@ TEST_F(PlanCacheTest, KeepsLimitsWithTheirWitness) {
   const int needed = iterations;
   EXPECT_EQ(to_bytes(limit()), to_bytes(fresh));
   EXPECT_EQ(iterations, needed);
+}
+
+TEST_F(PlanCacheTest, AWholeLimitAnswersWhateverNeedsNoMoreWork) {
+  int iterations = 0;
+  lap_time::PlantLimitOptions options{.time_step = 0.15};
+  options.go_on = [&](std::string_view, int, double) { return ++iterations > 0; };
+  const auto limit = [&] { return cached_limit(ring(), "udacity", {}, options, {}).value(); };
+  const lap_time::PlantLimit whole = limit();
+  ASSERT_TRUE(whole.is_whole());
+  ASSERT_GT(whole.effort.work, whole.of_optimum.work);
+  iterations = 0;
+
+  options.budget = whole.effort.work;
+  EXPECT_EQ(to_bytes(limit()), to_bytes(whole));
+  options.wants_witness = false;
+  options.budget = whole.of_optimum.work;
+  const lap_time::PlantLimit bound = limit();
+  EXPECT_EQ(iterations, 0) << "from the cache";
+  EXPECT_EQ(to_bytes(bound), to_bytes(*lap_time::find_plant_limit(ring(), "udacity", {}, options)));
+
+  options.budget = 0.5 * whole.of_optimum.work;  // less than it took: another answer
+  iterations = 0;
+  EXPECT_FALSE(limit().is_whole());
+  EXPECT_GT(iterations, 0);
+}
+
+TEST_F(PlanCacheTest, OfAScenarioOneIsKnownOnceItWasFound) {
+  const auto scenario = protocol::compose({.scenario_file = {}, .settings = {{"car", "udacity"}}}).value();
+  EXPECT_FALSE(known_limit(scenario, ring()));
+  const lap_time::PlantLimit found = limit_of(scenario, ring(), {.wants_witness = false}).value();
+  const auto known = known_limit(scenario, ring());
+  ASSERT_TRUE(known);
+  EXPECT_EQ(to_bytes(*known), to_bytes(found));
+
+  const auto small = protocol::compose({.scenario_file = {}, .settings = {{"car", "f1tenth"}}}).value();
+  EXPECT_FALSE(known_limit(small, ring()));
+  const auto refused = limit_of(small, ring(), {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "limit: got the model car f1tenth, expected one in full size");
 }
 
 TEST_F(PlanCacheTest, ThatACarGetsRoundIsKeptAndThatItDoesNotIsComputedAnew) {

@@ -60,15 +60,17 @@ class Finder {
     limit.nodes = static_cast<int>(optimum->road.s.size());
     limit.stationarity = search_.stationarity();
     limit.violation = search_.violation();
+    limit.of_optimum = effort();
     if (options_.wants_witness && !search_.is_out_of_budget()) {
       if (Result<void> driven = drive(*optimum, limit); !driven) return fail(driven.error());
     }
     limit.is_cut_short = search_.is_out_of_budget();
-    limit.iterations = search_.iterations();
+    limit.effort = effort();
     return limit;
   }
 
  private:
+  [[nodiscard]] SearchEffort effort() const { return {search_.iterations(), search_.work()}; }
   /// Plans with more and more in reserve, until one can be driven.
   Result<void> drive(const NodePlan& optimum, PlantLimit& limit) {
     stage_ = "witness";

@@ -27,6 +27,12 @@ struct Witness {
   path::RacingLine line;    ///< that was driven after; its margin is what it planned to keep
 };
 
+/// What a search took; work as PlanProgress counts it.
+struct SearchEffort {
+  int iterations = 0;
+  double work = 0.0;  ///< [s]
+};
+
 /// The fastest lap of a simulated car on a closed road (docs/limit.md): the optimum of the plant's own
 /// equations, which no controller should beat, and the best lap that was driven. The truth lies between.
 struct PlantLimit {
@@ -36,10 +42,13 @@ struct PlantLimit {
       witness{};              ///< none: no plan could be driven without an event, or none was asked for
   bool is_cut_short = false;  ///< the budget ended the search for the witness
   int nodes = 0;              ///< of the optimum
-  int iterations = 0;         ///< of all searches
+  SearchEffort effort{};      ///< of all searches
+  SearchEffort of_optimum{};  ///< of the one without reserve alone
   double stationarity = 0.0;  ///< of the optimum: largest slope of the Lagrangian, scaled
   double violation = 0.0;     ///< largest violated equation or inequality, scaled
 
+  /// No budget ended a search: the same answer as without one.
+  [[nodiscard]] bool is_whole() const noexcept { return !line.is_best_so_far && !is_cut_short; }
   /// How much slower the witness is than the bound, relative; not-a-number without one.
   [[nodiscard]] double bracket() const noexcept;
 };

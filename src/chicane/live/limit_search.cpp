@@ -3,28 +3,33 @@
 
 #include <sys/resource.h>
 
+#include <optional>
 #include <utility>
 
-#include "chicane/model/grip.hpp"
+#include "chicane/run/plan_cache.hpp"
 
 namespace chicane::live {
 
-model::VehicleParams limit_vehicle(const scenario::Scenario& scenario) {
-  model::VehicleParams car = model::with_grip(scenario.vehicle, scenario.plant_options.friction_scale);
-  const double mass = scenario.plant_options.mass_scale;
-  // Forces over mass; the yaw inertia deviates with the mass.
-  car.mass *= mass;
-  car.yaw_inertia *= mass;
-  car.drive_acceleration /= mass;
-  car.drive_power_per_mass /= mass;
-  car.brake_acceleration /= mass;
-  car.drag_quadratic /= mass;
-  return car;
+namespace {
+
+Result<lap_time::PlantLimit> bound_of(const path::Track& track, const scenario::Scenario& scenario,
+                                      const std::atomic<bool>& is_wanted) {
+  if (std::optional<lap_time::PlantLimit> known = run::known_limit(scenario, track)) return std::move(*known);
+  const lap_time::PlantLimitOptions options{
+      .wants_witness = false, .budget = LimitSearch::kBudget, .go_on = [&](std::string_view, int, double) {
+        return is_wanted.load();
+      }};
+  Result<lap_time::PlantLimit> limit = run::limit_of(scenario, track, options);
+  if (limit && !limit->is_whole())
+    return fail(ErrorCode::kNotFound, "its search takes longer than beside a run; `chicane limit` finds it");
+  return limit;
 }
 
+}  // namespace
+
 LimitSearch::LimitSearch(path::Track track, const scenario::Scenario& scenario, OnEnd on_end)
-    : on_end_{std::move(on_end)}, thread_{[this, track = std::move(track), car = limit_vehicle(scenario)] {
-        work(track, car);
+    : on_end_{std::move(on_end)}, thread_{[this, track = std::move(track), scenario] {
+        work(track, scenario);
       }} {}
 
 LimitSearch::~LimitSearch() {
@@ -37,17 +42,16 @@ void LimitSearch::cancel() {
   is_wanted_ = false;
 }
 
-void LimitSearch::work(const path::Track& track, const model::VehicleParams& car) {
+void LimitSearch::work(const path::Track& track, const scenario::Scenario& scenario) {
   // Behind everything else, yet not starved: on cores that others keep busy, a tenth of one thread's share.
   constexpr int kLowPriority = 10;
   static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // of this thread, on Linux
-  lap_time::LimitOptions options;
-  options.go_on = [this](int, double) { return is_wanted_.load(); };
-  Result<lap_time::Limit> limit = lap_time::find_limit(track, car, options);
+  const Result<lap_time::PlantLimit> limit = bound_of(track, scenario, is_wanted_);
   {
     const std::lock_guard lock(telling_);
     if (is_wanted_ && !limit) on_end_(fail(limit.error()));
-    if (is_wanted_ && limit) on_end_(std::make_shared<const lap_time::Limit>(std::move(*limit)));
+    if (is_wanted_ && limit)
+      on_end_(std::make_shared<const lap_time::Limit>(lap_time::bound_from_start(track, *limit)));
   }
   has_ended_.store(true, std::memory_order_release);
 }

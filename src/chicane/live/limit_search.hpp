@@ -8,24 +8,25 @@
 #include <thread>
 
 #include "chicane/base/result.hpp"
-#include "chicane/lap_time/minimum_time.hpp"
+#include "chicane/lap_time/limit.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/scenario/scenario.hpp"
 
 namespace chicane::live {
 
-/// The car of an experiment as its plant is: what is believed, with the plant's deviations in grip and mass.
-[[nodiscard]] model::VehicleParams limit_vehicle(const scenario::Scenario& scenario);
-
-/// Finds the limit of a run in a thread of its own, with low priority: control never waits for it.
+/// Finds the bound of a run's plant in a thread of its own, with low priority: control never waits for it.
+/// From the cache where it is known (run/plan_cache.hpp).
 class LimitSearch {
  public:
+  /// Work after which the search gives up (lap_time::PlanProgress) [s]: twice that of the slowest road and
+  /// car that ship.
+  static constexpr double kBudget = 60.0;
   using OnEnd = std::function<void(Result<std::shared_ptr<const lap_time::Limit>>)>;
 
   /// Begins. `on_end` is called once, on the other thread, unless the search was cancelled before.
   LimitSearch(path::Track track, const scenario::Scenario& scenario, OnEnd on_end);
-  /// Cancels, and waits for the thread: for the time of one round, some 10 ms on an idle machine, but as long
-  /// as others keep it from running on a busy one.
+  /// Cancels, and waits for the thread: for one iteration, 1 to 100 ms on an idle machine, but as long as
+  /// others keep it from running on a busy one.
   ~LimitSearch();
   LimitSearch(const LimitSearch&) = delete;
   LimitSearch& operator=(const LimitSearch&) = delete;
@@ -36,7 +37,7 @@ class LimitSearch {
   [[nodiscard]] bool has_ended() const noexcept { return has_ended_.load(std::memory_order_acquire); }
 
  private:
-  void work(const path::Track& track, const model::VehicleParams& car);
+  void work(const path::Track& track, const scenario::Scenario& scenario);
 
   OnEnd on_end_;
   std::mutex telling_;

@@ -99,9 +99,11 @@ bool RunLimit::is_awaited(const telemetry::RunSummary& run) const noexcept {
   return is_searching() && run.laps.size() >= static_cast<std::size_t>(first_lap_);
 }
 
-void RunLimit::compare(telemetry::RunSummary& run, const std::atomic<bool>& wants_stop) {
+void RunLimit::compare(telemetry::RunSummary& run, const std::atomic<bool>& wants_stop,
+                       std::chrono::milliseconds patience) {
   if (begins_at_ && is_awaited(run)) begin();
-  while (is_awaited(run) && !wants_stop) std::this_thread::sleep_for(kNap);
+  const Clock::time_point end_of_patience = Clock::now() + patience;
+  while (is_awaited(run) && !wants_stop && Clock::now() < end_of_patience) std::this_thread::sleep_for(kNap);
   const bool is_cut_short = is_searching();
   end();  // from here on no thread writes the answer
   if (is_cut_short || answer_ == nullptr) {

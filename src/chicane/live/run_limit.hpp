@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "chicane/lap_time/limit_answer.hpp"
+#include "chicane/lap_time/limit.hpp"
 #include "chicane/live/limit_search.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/scenario/scenario.hpp"
@@ -24,6 +24,9 @@ namespace chicane::live {
 /// thread, but for `on_news`.
 class RunLimit {
  public:
+  /// Longest wait for a limit behind the end of a run.
+  static constexpr std::chrono::seconds kPatience{15};
+
   /// `on_news` hears, mostly on another thread, what a search has found and what no longer holds; may be
   /// empty. It must stay callable as long as this lives.
   explicit RunLimit(std::function<void(const lap_time::LimitAnswer&)> on_news = {})
@@ -56,8 +59,9 @@ class RunLimit {
   /// No more news: ends a search that goes on. Does not wait.
   void end();
   /// The run has ended: sets its laps beside the limit, or says why not. Waits while is_awaited(), until
-  /// `wants_stop`.
-  void compare(telemetry::RunSummary& run, const std::atomic<bool>& wants_stop);
+  /// `wants_stop`, and for no longer than `patience`.
+  void compare(telemetry::RunSummary& run, const std::atomic<bool>& wants_stop,
+               std::chrono::milliseconds patience = kPatience);
 
  private:
   using Clock = std::chrono::steady_clock;

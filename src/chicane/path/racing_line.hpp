@@ -25,12 +25,10 @@ struct RacingLinePoint {
 /// A lap planned for one car on one closed road, as plain data: what a limit hands to controllers, files and
 /// views that do not know how it was found (docs/limit.md).
 struct RacingLine {
-  std::string car{};     ///< for which it was made: name of a plant
-  std::string track{};   ///< and of the road
-  double length = 0.0;   ///< of the road's centre line [m]
-  double margin = 0.0;   ///< that each contact patch keeps from edge and kerb [m]
-  bool has_body = true;  ///< false: a quick limit; vy, yaw rate, steering and throttle are those of a steady
-                         ///< corner, not of a motion
+  std::string car{};                      ///< for which it was made: name of a plant
+  std::string track{};                    ///< and of the road
+  double length = 0.0;                    ///< of the road's centre line [m]
+  double margin = 0.0;                    ///< that each contact patch keeps from edge and kerb [m]
   bool is_best_so_far = false;            ///< the search ended by its budget, before the optimum
   std::vector<RacingLinePoint> points{};  ///< by rising s from 0 to length; the last repeats the first
 

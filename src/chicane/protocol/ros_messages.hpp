@@ -9,7 +9,7 @@
 
 #include "chicane/base/vec2.hpp"
 #include "chicane/controller/controller.hpp"
-#include "chicane/lap_time/limit_answer.hpp"
+#include "chicane/lap_time/limit.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/protocol/guard_facts.hpp"

@@ -9,6 +9,8 @@
 #include <mutex>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "chicane/base/fnv.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/protocol/build_id.hpp"
@@ -161,7 +163,6 @@ void put(Writer& to, const path::RacingLine& line) {
   to.put(std::string_view(line.track));
   to.put(line.length);
   to.put(line.margin);
-  to.put(line.has_body ? 1.0 : 0.0);
   to.put(line.is_best_so_far ? 1.0 : 0.0);
   to.put(static_cast<double>(line.points.size()));
   for (const path::RacingLinePoint& point : line.points)
@@ -173,26 +174,46 @@ void get(Reader& from, path::RacingLine& line) {
   from.get(line.track);
   from.get(line.length);
   from.get(line.margin);
-  from.get(line.has_body);
   from.get(line.is_best_so_far);
   line.points.resize(from.count(sizeof(path::RacingLinePoint)));
   for (path::RacingLinePoint& point : line.points)
     for (const auto field : kFields) from.get(point.*field);
 }
 
-/// The result of that name, or what `search` finds, which is kept then.
-template <class T, class Read, class Search>
-Result<T> cached(const std::string& name, const Read& read, const Search& search) {
-  const std::shared_ptr<const DiskCache> cache = name.empty() ? nullptr : cache_in_use();
-  if (cache) {
-    if (const std::optional<std::string> bytes = cache->find(name)) {
-      if (std::optional<T> known = read(*bytes)) return std::move(*known);
-      cache->report_damage(name);
-    }
+/// The result of that name in the cache, if it is there and whole.
+template <class T, class Read>
+std::optional<T> kept(const DiskCache* cache, const std::string& name, const Read& read) {
+  if (cache == nullptr || name.empty()) return {};
+  const std::optional<std::string> bytes = cache->find(name);
+  if (!bytes) return {};
+  std::optional<T> known = read(*bytes);
+  if (!known) cache->report_damage(name);
+  return known;
+}
+
+/// A limit that no budget ended, in the cache under one of two names: one with a witness answers for one
+/// without, too.
+std::optional<lap_time::PlantLimit> whole_limit(const path::Track& track, std::string_view plant,
+                                                const sim::PlantDeviation& deviation,
+                                                lap_time::PlantLimitOptions options,
+                                                const sim::DoubleTrackParams& params) {
+  const std::shared_ptr<const DiskCache> cache = cache_in_use();
+  if (!cache) return {};
+  options.budget = lap_time::PlantLimitOptions{}.budget;
+  const bool wants_witness = std::exchange(options.wants_witness, true);
+  const auto find = [&] {
+    return kept<lap_time::PlantLimit>(cache.get(), name_of_limit(track, plant, deviation, options, params),
+                                      limit_from_bytes);
+  };
+  std::optional<lap_time::PlantLimit> known = find();
+  if (wants_witness) return known;
+  if (known) {
+    known->witness.reset();
+    known->effort = known->of_optimum;
+    return known;
   }
-  Result<T> found = search();
-  if (cache && found) cache->keep(name, to_bytes(*found));
-  return found;
+  options.wants_witness = false;
+  return find();
 }
 
 }  // namespace
@@ -238,17 +259,47 @@ std::string name_of_limit(const path::Track& track, std::string_view plant,
 
 Result<path::RacingLine> cached_plan(const path::Track& track, const model::VehicleParams& car,
                                      const lap_time::RacingPlanOptions& options) {
-  return cached<path::RacingLine>(name_of_plan(track, car, options), line_from_bytes,
-                                  [&] { return lap_time::plan_racing_line(track, car, options); });
+  const std::string name = name_of_plan(track, car, options);
+  const std::shared_ptr<const DiskCache> cache = name.empty() ? nullptr : cache_in_use();
+  if (std::optional<path::RacingLine> known = kept<path::RacingLine>(cache.get(), name, line_from_bytes))
+    return std::move(*known);
+  Result<path::RacingLine> found = lap_time::plan_racing_line(track, car, options);
+  if (cache && found) cache->keep(name, to_bytes(*found));
+  return found;
 }
 
 Result<lap_time::PlantLimit> cached_limit(const path::Track& track, std::string_view plant,
                                           const sim::PlantDeviation& deviation,
                                           const lap_time::PlantLimitOptions& options,
                                           const sim::DoubleTrackParams& params) {
-  return cached<lap_time::PlantLimit>(
-      name_of_limit(track, plant, deviation, options, params), limit_from_bytes,
-      [&] { return lap_time::find_plant_limit(track, plant, deviation, options, params); });
+  if (std::optional<lap_time::PlantLimit> known = whole_limit(track, plant, deviation, options, params);
+      known && known->effort.work <= options.budget)
+    return std::move(*known);
+  const std::shared_ptr<const DiskCache> cache = cache_in_use();
+  const std::string name = cache ? name_of_limit(track, plant, deviation, options, params) : "";
+  if (auto known = kept<lap_time::PlantLimit>(cache.get(), name, limit_from_bytes)) return std::move(*known);
+  Result<lap_time::PlantLimit> found = lap_time::find_plant_limit(track, plant, deviation, options, params);
+  if (name.empty() || !found) return found;
+  lap_time::PlantLimitOptions unlimited = options;
+  unlimited.budget = lap_time::PlantLimitOptions{}.budget;
+  cache->keep(found->is_whole() ? name_of_limit(track, plant, deviation, unlimited, params) : name,
+              to_bytes(*found));
+  return found;
+}
+
+Result<lap_time::PlantLimit> limit_of(const scenario::Scenario& scenario, const path::Track& track,
+                                      const lap_time::PlantLimitOptions& options) {
+  if (scenario.vehicle.scale != 1.0)
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("limit: got the model car {}, expected one in full size", scenario.car));
+  return cached_limit(track, scenario.plant, scenario.plant_options, options, scenario.plant_params);
+}
+
+std::optional<lap_time::PlantLimit> known_limit(const scenario::Scenario& scenario,
+                                                const path::Track& track) {
+  if (scenario.vehicle.scale != 1.0 || !track.centre().is_closed()) return {};
+  return whole_limit(track, scenario.plant, scenario.plant_options, {.wants_witness = false},
+                     scenario.plant_params);
 }
 
 Result<void> cached_room(const path::Track& track, const model::VehicleParams& car, double beside,
@@ -288,7 +339,8 @@ std::string to_bytes(const lap_time::PlantLimit& limit) {
   for (const double sector : limit.bound.sectors) writer.put(sector);
   put(writer, limit.line);
   for (const double value :
-       {static_cast<double>(limit.nodes), static_cast<double>(limit.iterations), limit.stationarity,
+       {static_cast<double>(limit.nodes), static_cast<double>(limit.effort.iterations), limit.effort.work,
+        static_cast<double>(limit.of_optimum.iterations), limit.of_optimum.work, limit.stationarity,
         limit.violation, limit.is_cut_short ? 1.0 : 0.0, limit.witness ? 1.0 : 0.0})
     writer.put(value);
   if (limit.witness) {
@@ -308,7 +360,10 @@ std::optional<lap_time::PlantLimit> limit_from_bytes(std::string_view bytes) {
   for (double& sector : limit.bound.sectors) reader.get(sector);
   get(reader, limit.line);
   reader.get(limit.nodes);
-  reader.get(limit.iterations);
+  reader.get(limit.effort.iterations);
+  reader.get(limit.effort.work);
+  reader.get(limit.of_optimum.iterations);
+  reader.get(limit.of_optimum.work);
   reader.get(limit.stationarity);
   reader.get(limit.violation);
   reader.get(limit.is_cut_short);

@@ -10,6 +10,7 @@
 #include "chicane/lap_time/racing_plan.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/run/disk_cache.hpp"
+#include "chicane/scenario/scenario.hpp"
 
 /// What every search of this process for a plan or a limit shares. Set by the program before its first
 /// thread; libraries start without a cache. A cached result has the bits of a computed one, so it changes
@@ -34,11 +35,20 @@ void stop_planning_by(const std::atomic<bool>& flag) noexcept;
 /// lap_time::plan_racing_line(), from the cache where it is known.
 [[nodiscard]] Result<path::RacingLine> cached_plan(const path::Track& track, const model::VehicleParams& car,
                                                    const lap_time::RacingPlanOptions& options);
-/// lap_time::find_plant_limit(), from the cache where it is known.
+/// lap_time::find_plant_limit(), from the cache where it is known. An answer that no budget ended is kept
+/// without regard to the budget it had, and answers every question with enough of it.
 [[nodiscard]] Result<lap_time::PlantLimit> cached_limit(const path::Track& track, std::string_view plant,
                                                         const sim::PlantDeviation& deviation,
                                                         const lap_time::PlantLimitOptions& options,
                                                         const sim::DoubleTrackParams& params);
+
+/// The limit of a scenario's plant on `track`: cached_limit(). kInvalidArgument for a model car, too.
+[[nodiscard]] Result<lap_time::PlantLimit> limit_of(const scenario::Scenario& scenario,
+                                                    const path::Track& track,
+                                                    const lap_time::PlantLimitOptions& options);
+/// The same from the cache alone, without a witness: whole, whatever it took.
+[[nodiscard]] std::optional<lap_time::PlantLimit> known_limit(const scenario::Scenario& scenario,
+                                                              const path::Track& track);
 
 /// lap_time::can_be_driven(); that a car gets round is kept, too, as it takes longer to find than to start a
 /// run.

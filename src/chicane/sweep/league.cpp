@@ -266,8 +266,7 @@ Result<double> bound_of(const Settings& settings, const std::atomic<bool>& stop)
   lap_time::PlantLimitOptions options;
   options.wants_witness = false;
   options.go_on = [&](std::string_view, int, double) { return !stop.load(); };
-  const Result<lap_time::PlantLimit> limit =
-      run::cached_limit(*track, scenario->plant, scenario->plant_options, options, scenario->plant_params);
+  const Result<lap_time::PlantLimit> limit = run::limit_of(*scenario, *track, options);
   return limit ? Result<double>(limit->bound.lap) : fail(limit.error());
 }
 

@@ -94,7 +94,7 @@ struct RunSummary {
   return (run.completed || run.laps_wanted == 0) && run.off_track_events == 0;
 }
 
-/// Sets a run beside the limit: its times, and the gap of each lap (docs/limit.md, eq. 19) from number
+/// Sets a run beside the limit: its times, and the gap of each lap (docs/limit.md, eq. 10) from number
 /// `first_lap`, counted from 1, on.
 void compare_with_limit(RunSummary& run, const lap_time::LapTimes& limit, int first_lap = 1);
 

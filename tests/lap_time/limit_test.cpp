@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/lap_time/limit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "chicane/base/angle.hpp"
+
+namespace chicane::lap_time {
+namespace {
+
+constexpr double kRadius = 50.0, kOffset = 2.0, kSpeed = 20.0;
+
+path::Track ring(double start_s) {
+  std::vector<path::TrackPoint> points;
+  for (int i = 0; i < 90; ++i) {
+    const double angle = kTwoPi * i / 90;
+    points.push_back({kRadius * Vec2{std::cos(angle), std::sin(angle)}, 5.0, 5.0});
+  }
+  path::TrackOptions options;
+  options.start_s = start_s;
+  return path::Track::create("ring", points, true, options).value();
+}
+
+/// A lap at a constant distance inside of the ring's centre line, at one speed.
+PlantLimit inner_lap(const path::Track& track) {
+  PlantLimit limit;
+  limit.line.length = track.length();
+  const double lap_time = kTwoPi * (kRadius - kOffset) / kSpeed;
+  for (int i = 0; i <= 100; ++i)
+    limit.line.points.push_back(
+        {.s = track.length() * i / 100, .time = lap_time * i / 100, .offset = kOffset, .vx = kSpeed});
+  limit.bound = {.lap = lap_time, .sectors = {lap_time / 3, lap_time / 3, lap_time / 3}};
+  return limit;
+}
+
+TEST(Limit, BeginsAtTheStartLineAndEndsThereALapLater) {
+  const path::Track track = ring(100.0);
+  const PlantLimit found = inner_lap(track);
+  const Limit limit = bound_from_start(track, found);
+  EXPECT_EQ(limit.times.lap, found.bound.lap);
+  ASSERT_GE(limit.line.size(), 101U);
+  const path::LinePoint &first = limit.line.front(), &last = limit.line.back();
+  EXPECT_NEAR(first.s, 100.0, 1e-9);
+  EXPECT_NEAR(last.s, 100.0, 1e-9);
+  EXPECT_EQ(first.time, 0.0);
+  EXPECT_DOUBLE_EQ(last.time, found.bound.lap);
+  EXPECT_EQ(last.position, first.position);
+  EXPECT_NEAR(last.heading - first.heading, kTwoPi, 1e-6) << "continuous along the lap";
+  for (std::size_t i = 1; i < limit.line.size(); ++i) {
+    const path::LinePoint &before = limit.line[i - 1], &now = limit.line[i];
+    EXPECT_GT(now.time, before.time) << i;
+    EXPECT_LT(std::fabs(now.heading - before.heading), 0.1) << i;
+    EXPECT_NEAR(now.curvature, 1.0 / (kRadius - kOffset), 2e-4) << i;  // from differences of headings
+    // The way that the time between two points says, along a chord: 1.5 m of 48 m of radius.
+    EXPECT_NEAR((now.position - before.position).norm(), kSpeed * (now.time - before.time), 0.01) << i;
+  }
+}
+
+TEST(Limit, OfARoadThatBeginsAtItsStartLineKeepsItsPoints) {
+  const path::Track track = ring(0.0);
+  const PlantLimit found = inner_lap(track);
+  const Limit limit = bound_from_start(track, found);
+  ASSERT_EQ(limit.line.size(), found.line.points.size());
+  for (std::size_t i = 0; i + 1 < limit.line.size(); ++i) {
+    EXPECT_DOUBLE_EQ(limit.line[i].s, found.line.points[i].s) << i;
+    EXPECT_DOUBLE_EQ(limit.line[i].time, found.line.points[i].time) << i;
+  }
+}
+
+TEST(Limit, WithoutALineHasTimesAlone) {
+  PlantLimit found;
+  found.bound.lap = 20.0;
+  const Limit limit = bound_from_start(ring(0.0), found);
+  EXPECT_EQ(limit.times.lap, 20.0);
+  EXPECT_TRUE(limit.line.empty());
+}
+
+}  // namespace
+}  // namespace chicane::lap_time
