@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "chicane/live/run_outputs.hpp"
+#include "chicane/live/run_publisher.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/replay.hpp"
 #include "telemetry/sample_mcap.hpp"

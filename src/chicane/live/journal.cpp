@@ -17,19 +17,12 @@ constexpr const char* kTooBusy = "the machine was too busy to keep what happened
 }  // namespace
 
 Journal::Journal()
-    : ring_(kRing), thread_{[this] {
-        std::unique_lock lock(mutex_);
-        while (!ending_.wait_for(lock, kCollectEvery, [this] { return is_ending_; })) collect();
-      }} {}
-
-Journal::~Journal() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_ending_ = true;
-  }
-  ending_.notify_one();
-  thread_.join();
-}
+    : ring_(kRing),
+      worker_{[this] {
+                const std::lock_guard lock(mutex_);
+                collect();
+              },
+              kCollectEvery} {}
 
 void Journal::begin(const scenario::Scenario& scenario) {
   {

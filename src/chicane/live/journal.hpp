@@ -3,17 +3,16 @@
 
 #include <array>
 #include <atomic>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <variant>
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/live/worker.hpp"
 #include "chicane/recording/branch.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/change.hpp"
@@ -35,9 +34,6 @@ class Journal {
   static constexpr std::size_t kMostEvents = 200'000;  ///< two hours with 25 steps a second
 
   Journal();
-  ~Journal();
-  Journal(const Journal&) = delete;
-  Journal& operator=(const Journal&) = delete;
 
   /// The control thread: another run begins. Waits for no more than a copy of a pointer.
   void begin(const scenario::Scenario& scenario);
@@ -97,16 +93,14 @@ class Journal {
   std::atomic<std::uint64_t> taken_{0};
   std::atomic<bool> has_lost_{false};  ///< something did not fit into the ring
 
-  std::mutex mutex_;  ///< of all below
-  std::condition_variable ending_;
-  bool is_ending_ = false;
+  std::mutex mutex_;                        ///< of all below
   std::deque<scenario::Scenario> waiting_;  ///< one for each kBegin in the ring
   scenario::Scenario scenario_;
   bool has_begun_ = false;
   const char* why_unknown_ = nullptr;
   std::deque<Event> events_;
-  Place first_;         ///< before the first of events_
-  std::thread thread_;  // last: it starts when everything else is there
+  Place first_;    ///< before the first of events_
+  Worker worker_;  // last
 };
 
 }  // namespace chicane::live

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/limit_search.hpp"
 
-#include <sys/resource.h>
-
 #include <optional>
 #include <utility>
 
@@ -28,14 +26,13 @@ Result<lap_time::PlantLimit> bound_of(const path::Track& track, const scenario::
 }  // namespace
 
 LimitSearch::LimitSearch(path::Track track, const scenario::Scenario& scenario, OnEnd on_end)
-    : on_end_{std::move(on_end)}, thread_{[this, track = std::move(track), scenario] {
+    : on_end_{std::move(on_end)}, worker_{[this, track = std::move(track), scenario] {
         work(track, scenario);
-      }} {}
-
-LimitSearch::~LimitSearch() {
-  cancel();
-  thread_.join();
+      }} {
+  worker_.wake();
 }
+
+LimitSearch::~LimitSearch() { cancel(); }
 
 void LimitSearch::cancel() {
   const std::lock_guard lock(telling_);
@@ -43,9 +40,6 @@ void LimitSearch::cancel() {
 }
 
 void LimitSearch::work(const path::Track& track, const scenario::Scenario& scenario) {
-  // Behind everything else, yet not starved: on cores that others keep busy, a tenth of one thread's share.
-  constexpr int kLowPriority = 10;
-  static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // of this thread, on Linux
   const Result<lap_time::PlantLimit> limit = bound_of(track, scenario, is_wanted_);
   {
     const std::lock_guard lock(telling_);

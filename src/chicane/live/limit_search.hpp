@@ -5,10 +5,10 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <thread>
 
 #include "chicane/base/result.hpp"
 #include "chicane/lap_time/limit.hpp"
+#include "chicane/live/worker.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/scenario/scenario.hpp"
 
@@ -43,7 +43,7 @@ class LimitSearch {
   std::mutex telling_;
   std::atomic<bool> is_wanted_{true};
   std::atomic<bool> has_ended_{false};
-  std::thread thread_;  // last: it starts when everything else is there
+  Worker worker_;  // last
 };
 
 }  // namespace chicane::live

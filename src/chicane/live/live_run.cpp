@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/live_run.hpp"
 
-#include <chrono>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "chicane/live/description.hpp"
 #include "chicane/live/pages.hpp"
+#include "chicane/live/run_hooks.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 
 namespace chicane::live {
@@ -113,53 +112,55 @@ telemetry::RunSummary LiveRun::run(recording::Recorder* recorder, const LiveHook
     const std::lock_guard lock(mutex_);
     hooks_ = hooks;
   }
-  RunOutputs outputs(recorder, viewer_, settings_, limit_, hooks_, &journal_);
+  recorder_ = recorder;
+  publisher_.emplace(
+      viewer_, settings_,
+      std::vector<LiveHooks>{recording_hooks(recorder, limit_), journal_hooks(journal_), hooks_});
   journal_.begin(loop_->scenario());
   limit_.search(loop_->track(), loop_->scenario());
-  telemetry::RunSummary summary = drive(outputs);
-  news_->end(summary);
+  telemetry::RunSummary summary = drive();
+  publisher_->end(summary);
   if (limit_.is_awaited(summary) && !controls_.wants_stop)
-    outputs.say("the limit is still being computed; Ctrl-C does without");
+    publisher_->say("the limit is still being computed; Ctrl-C does without");
   limit_.compare(summary, controls_.wants_stop);
-  outputs.record_limit();
+  record_news(recorder, limit_);
   viewer_.dismiss();
   return summary;
 }
 
-telemetry::RunSummary LiveRun::drive(RunOutputs& outputs) {
-  news_.emplace(viewer_, [&](const telemetry::Change& change) { outputs.change(change); });
+telemetry::RunSummary LiveRun::drive() {
   const run::RealtimeHooks hooks{.on_frame =
                                      [&](const telemetry::Frame& frame) {
                                        limit_.follow(loop_->scenario(), frame);
-                                       outputs.frame(frame);
-                                       news_->frame(frame);
+                                       publisher_->frame(frame);
                                        rival_.note(frame);
                                      },
                                  .on_lap =
                                      [&](const telemetry::CompletedLap& lap) {
-                                       outputs.lap(lap);
+                                       publisher_->lap(lap);
                                        rival_.note(lap);
                                      },
-                                 .on_change = [&](const telemetry::Change& change) { note(change, outputs); },
+                                 .on_change = [&](const telemetry::Change& change) { note(change); },
                                  .on_over =
                                      [&] {
-                                       if (!news_->has_told_end()) news_->end(loop_->summary());
+                                       if (!publisher_->has_told_end()) publisher_->end(loop_->summary());
                                      }};
   for (;;) {
     telemetry::RunSummary summary = run::run_realtime(
         *loop_, {.step_budget = step_budget(), .stay_at_end = options_.stay_at_end}, controls_, hooks);
-    if (!take_over(outputs)) return summary;
+    if (!take_over()) return summary;
   }
 }
 
-void LiveRun::note(const telemetry::Change& change, RunOutputs& outputs) {
-  news_->change(change);
+/// A change that was asked for: the second car hears of it, too, but not of faults that begin by themselves,
+/// which it has of its own.
+void LiveRun::note(const telemetry::Change& change) {
+  publisher_->change(change);
   rival_.note(change);
-  outputs.change(change);
 }
 
 /// Goes on with the run that the next change begins. False when there is none.
-bool LiveRun::take_over(RunOutputs& outputs) {
+bool LiveRun::take_over() {
   const run::Setting* next = controls_.settings.front();
   if (next == nullptr || !next->change.starts_anew || controls_.wants_stop) return false;
   std::unique_ptr<BuiltRun> run;
@@ -171,8 +172,9 @@ bool LiveRun::take_over(RunOutputs& outputs) {
   loop_ = std::move(run->loop);
   limit_.end();  // or its news could come after the description of another road
   viewer_.set_run(std::move(run->description));
-  outputs.begin(std::move(run->recorded));
-  for (const telemetry::Change& choice : run->choices) note(choice, outputs);
+  journal_.begin(run->recorded->scenario);
+  if (recorder_ != nullptr) recorder_->record(std::move(run->recorded));
+  for (const telemetry::Change& choice : run->choices) note(choice);
   controls_.settings.pop();
   rival_.end_race();
   limit_.search(loop_->track(), loop_->scenario());

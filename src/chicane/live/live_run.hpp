@@ -16,8 +16,7 @@
 #include "chicane/live/run_builder.hpp"
 #include "chicane/live/run_follower.hpp"
 #include "chicane/live/run_limit.hpp"
-#include "chicane/live/run_news.hpp"
-#include "chicane/live/run_outputs.hpp"
+#include "chicane/live/run_publisher.hpp"
 #include "chicane/live/what_if.hpp"
 #include "chicane/net/server.hpp"
 #include "chicane/protocol/ros_messages.hpp"
@@ -44,7 +43,7 @@ struct LiveRunOptions {
 /// A run with our simulator, paced by the clock, which people watch and change while it goes on: the loop,
 /// its viewers, recording, limit and settings, and what each thread hands to which.
 ///
-/// Threads, and what each owns: the thread of run() the loop, the recorder's input and RunOutputs; the
+/// Threads, and what each owns: the thread of run() the loop, the recorder's input and RunPublisher; the
 /// network thread LiveSettings, the viewers and RunBuilder's results; a builder, a searcher of the limit and
 /// the recorder's writer have one each, and so do the collector of the Journal, RunFollower, WhatIf and
 /// Rival. The network thread hands changes to the loop through RunControls::settings and built runs through a
@@ -74,10 +73,10 @@ class LiveRun {
  private:
   LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop> loop, run::RunControls& controls);
   [[nodiscard]] Result<void> open();
-  [[nodiscard]] telemetry::RunSummary drive(RunOutputs& outputs);
+  [[nodiscard]] telemetry::RunSummary drive();
   void say(std::string_view line);
-  void note(const telemetry::Change& change, RunOutputs& outputs);
-  [[nodiscard]] bool take_over(RunOutputs& outputs);
+  void note(const telemetry::Change& change);
+  [[nodiscard]] bool take_over();
   [[nodiscard]] std::optional<Result<void>> built();
 
   LiveRunOptions options_;
@@ -86,7 +85,8 @@ class LiveRun {
   LiveSettings settings_;
   wire::ViewerEndpoint viewer_;
   wire::Router router_;
-  std::optional<RunNews> news_;
+  std::optional<RunPublisher> publisher_;  ///< while run() drives
+  recording::Recorder* recorder_ = nullptr;
   std::mutex mutex_;
   std::deque<std::unique_ptr<BuiltRun>> built_;  ///< one for each change that starts anew
   RunBuilder builder_;                           ///< the network thread's

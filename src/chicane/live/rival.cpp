@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/rival.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -91,16 +89,7 @@ LapNotes LapNoter::finish(const telemetry::CompletedLap& lap) {
 }
 
 Rival::Rival(std::function<void()> begin_anew)
-    : begin_anew_{std::move(begin_anew)}, thread_{[this] { work(); }} {}
-
-Rival::~Rival() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_ending_ = true;
-  }
-  changed_.notify_one();
-  thread_.join();
-}
+    : begin_anew_{std::move(begin_anew)}, worker_{[this] { work(); }, kLook} {}
 
 Result<std::string> Rival::ask(std::string_view json, const scenario::Scenario& scenario) {
   const Result<WhatIfQuestion> question = read_question(json);
@@ -111,7 +100,7 @@ Result<std::string> Rival::ask(std::string_view json, const scenario::Scenario& 
   const std::lock_guard lock(mutex_);
   wish_ = Wish{*raced, settings};
   state_ = settings.empty() ? State::kNone : State::kBuilding;
-  changed_.notify_one();
+  worker_.wake();
   return std::to_string(++newest_);
 }
 
@@ -166,22 +155,16 @@ void Rival::end_race() noexcept {
 }
 
 void Rival::work() {
-  constexpr int kLowPriority = 10;
-  static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // of this thread, on Linux
   std::unique_lock lock(mutex_);
-  while (!is_ending_) {
-    changed_.wait_for(lock, kLook, [this] { return is_ending_ || wish_.has_value(); });
-    const std::optional<Wish> wish = std::exchange(wish_, std::nullopt);
-    lock.unlock();
-    while (const Entry* entry = entries_.front()) {
-      take(*entry);
-      entries_.pop();
-    }
-    if (wish) build(*wish);
-    if (has_lost_.exchange(false) && loop_)
-      end(State::kEnded, "this computer could not keep up with both cars");
-    lock.lock();
+  const std::optional<Wish> wish = std::exchange(wish_, std::nullopt);
+  lock.unlock();
+  while (const Entry* entry = entries_.front()) {
+    take(*entry);
+    entries_.pop();
   }
+  if (wish) build(*wish);
+  if (has_lost_.exchange(false) && loop_)
+    end(State::kEnded, "this computer could not keep up with both cars");
 }
 
 void Rival::build(const Wish& wish) {

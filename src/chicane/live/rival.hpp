@@ -3,7 +3,6 @@
 
 #include <array>
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -12,11 +11,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/live/worker.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/lap_planner.hpp"
 #include "chicane/run/setting.hpp"
@@ -64,9 +63,6 @@ class Rival {
 
   /// `begin_anew` is called on the rival's thread when it is ready: both begin at the line.
   explicit Rival(std::function<void()> begin_anew);
-  ~Rival();
-  Rival(const Rival&) = delete;
-  Rival& operator=(const Rival&) = delete;
 
   /// The network thread: {"settings":{"latency_ms":60}} begins a race of `scenario`, {} ends it. The number
   /// of the race, as a text. kInvalidArgument in a sentence for viewers: for a setting that is unknown, out
@@ -120,7 +116,6 @@ class Rival {
   LapNoter own_laps_, run_laps_;
 
   mutable std::mutex mutex_;  ///< of all below
-  std::condition_variable changed_;
   std::optional<Wish> wish_;
   std::uint64_t newest_ = 0;
   State state_ = State::kNone;
@@ -128,8 +123,7 @@ class Rival {
   std::vector<std::pair<std::string, std::string>> settings_;
   std::vector<LapNotes> laps_of_run_, laps_;
   std::deque<Pose> trace_;
-  bool is_ending_ = false;
-  std::thread thread_;  // last: it starts when everything else is there
+  Worker worker_;  // last
 };
 
 }  // namespace chicane::live

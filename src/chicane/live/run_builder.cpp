@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/run_builder.hpp"
 
-#include <sys/resource.h>
-
 #include <utility>
 
 namespace chicane::live {
 
 RunBuilder::RunBuilder(Describe describe, Create create)
-    : describe_{std::move(describe)}, create_{std::move(create)}, thread_{[this] { work(); }} {}
-
-RunBuilder::~RunBuilder() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_ending_ = true;
-  }
-  changed_.notify_one();
-  thread_.join();
-}
+    : describe_{std::move(describe)}, create_{std::move(create)}, worker_{[this] { work(); }} {}
 
 void RunBuilder::begin(ChosenRun run) {
   {
@@ -26,7 +15,7 @@ void RunBuilder::begin(ChosenRun run) {
     ++newest_;
     result_.reset();
   }
-  changed_.notify_one();
+  worker_.wake();
 }
 
 std::optional<Result<std::unique_ptr<BuiltRun>>> RunBuilder::take() {
@@ -35,20 +24,14 @@ std::optional<Result<std::unique_ptr<BuiltRun>>> RunBuilder::take() {
 }
 
 void RunBuilder::work() {
-  constexpr int kLowPriority = 10;
-  static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // of this thread, on Linux
   std::unique_lock lock(mutex_);
-  for (;;) {
-    changed_.wait(lock, [this] { return is_ending_ || wish_.has_value(); });
-    if (is_ending_) return;
-    ChosenRun run = std::move(*wish_);
-    wish_.reset();
-    const std::uint64_t number = newest_;
-    lock.unlock();
-    auto built = build(std::move(run), describe_, create_);
-    lock.lock();
-    if (number == newest_) result_ = std::move(built);
-  }
+  if (!wish_) return;
+  ChosenRun run = *std::exchange(wish_, std::nullopt);
+  const std::uint64_t number = newest_;
+  lock.unlock();
+  auto built = build(std::move(run), describe_, create_);
+  lock.lock();
+  if (number == newest_) result_ = std::move(built);
 }
 
 Result<std::unique_ptr<BuiltRun>> RunBuilder::build(ChosenRun run, const Describe& describe,

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/live/worker.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/run/closed_loop.hpp"
@@ -47,9 +46,7 @@ class RunBuilder {
       Describe describe,
       Create create = [](const scenario::Scenario& scenario) { return run::ClosedLoop::create(scenario); });
   /// Waits for a build under way.
-  ~RunBuilder();
-  RunBuilder(const RunBuilder&) = delete;
-  RunBuilder& operator=(const RunBuilder&) = delete;
+  ~RunBuilder() = default;
 
   /// What it makes, at once.
   [[nodiscard]] static Result<std::unique_ptr<BuiltRun>> build(
@@ -67,12 +64,10 @@ class RunBuilder {
   Describe describe_;
   Create create_;
   std::mutex mutex_;  ///< of all below
-  std::condition_variable changed_;
   std::optional<ChosenRun> wish_;
   std::uint64_t newest_ = 0;  ///< number of the last request
   std::optional<Result<std::unique_ptr<BuiltRun>>> result_;
-  bool is_ending_ = false;
-  std::thread thread_;  // last: it starts when everything else is there
+  Worker worker_;  // last
 };
 
 }  // namespace chicane::live

@@ -2,7 +2,6 @@
 #include "chicane/live/run_follower.hpp"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,28 +9,13 @@
 
 namespace chicane::live {
 
-RunFollower::RunFollower(Journal& journal) : journal_{journal}, thread_{[this] { work(); }} {}
-
-RunFollower::~RunFollower() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_ending_ = true;
-  }
-  ending_.notify_one();
-  thread_.join();
-}
+RunFollower::RunFollower(Journal& journal) : journal_{journal}, worker_{[this] { work(); }, kFollowEvery} {}
 
 void RunFollower::work() {
-  constexpr int kLowPriority = 10;
-  static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // of this thread, on Linux
-  std::unique_lock lock(mutex_);
-  while (!ending_.wait_for(lock, kFollowEvery, [this] { return is_ending_; })) {
-    lock.unlock();
-    follow();
-    lock.lock();
-    kept_ = following_.kept();
-    run_ = place_.run;
-  }
+  follow();
+  const std::lock_guard lock(mutex_);
+  kept_ = following_.kept();
+  run_ = place_.run;
 }
 
 /// The events since the last time. A run that cannot be followed, or not any more, has no new checkpoints.

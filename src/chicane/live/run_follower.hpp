@@ -2,13 +2,12 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <thread>
 
 #include "chicane/live/journal.hpp"
+#include "chicane/live/worker.hpp"
 #include "chicane/recording/branch.hpp"
 #include "chicane/recording/checkpoints.hpp"
 
@@ -23,9 +22,6 @@ class RunFollower {
 
   /// `journal` must outlive it.
   explicit RunFollower(Journal& journal);
-  ~RunFollower();
-  RunFollower(const RunFollower&) = delete;
-  RunFollower& operator=(const RunFollower&) = delete;
 
   /// Any thread: branches the run, from a checkpoint where there is one before `options.at`. Fails as
   /// recording::branch_run() and Journal::history() do.
@@ -43,9 +39,7 @@ class RunFollower {
   std::mutex mutex_;  ///< of all below
   recording::CheckpointList kept_;
   std::uint64_t run_ = 0;  ///< in which they are, Journal::Place::run
-  std::condition_variable ending_;
-  bool is_ending_ = false;
-  std::thread thread_;  // last: it starts when everything else is there
+  Worker worker_;          // last
 };
 
 }  // namespace chicane::live

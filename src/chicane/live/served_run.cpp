@@ -9,6 +9,7 @@
 #include "chicane/live/description.hpp"
 #include "chicane/live/live_settings.hpp"
 #include "chicane/live/pages.hpp"
+#include "chicane/live/run_hooks.hpp"
 #include "chicane/live/run_limit.hpp"
 #include "chicane/live/served_futures.hpp"
 #include "chicane/live/what_if.hpp"
@@ -79,25 +80,27 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
   wire::ViewerEndpoint viewer(std::move(viewing));
   RunLimit limit([&](const lap_time::LimitAnswer& news) { viewer.set_limit(news); });
   if (!track_) limit.give_up(kUnknownRoad);
-  RunOutputs outputs(recorder, viewer, settings, limit, hooks, track_ ? &journal : nullptr);
+  RunPublisher publisher(
+      viewer, settings,
+      {recording_hooks(recorder, limit), track_ ? journal_hooks(journal) : LiveHooks{}, hooks});
   if (track_) journal.begin(scenario_);
   wire::ServeHooks serving;
   serving.settings = &requests;
   serving.parameters = &settings;
   serving.description = &description_;
-  serving.on_change = [&](const telemetry::Change& change) { outputs.change(change); };
-  serving.on_frame = [&](const telemetry::Frame& frame) { outputs.frame(frame); };
-  serving.on_lap = [&](const telemetry::CompletedLap& lap) { outputs.lap(lap); };
+  serving.on_change = [&](const telemetry::Change& change) { publisher.change(change); };
+  serving.on_frame = [&](const telemetry::Frame& frame) { publisher.frame(frame); };
+  serving.on_lap = [&](const telemetry::CompletedLap& lap) { publisher.lap(lap); };
   serving.on_other_road = [&](double distance) {
     limit.give_up(kOtherRoad);
     futures.give_up(kOtherRoad);
     viewer.set_limit({.why_not = kOtherRoad});
-    outputs.say(
+    publisher.say(
         fmt::format("the simulator drives on another road than {}, up to {:.0f} m away: --track is not "
                     "used, and laps are taken from where the car drives",
                     track_->name(), distance));
   };
-  serving.log = [&](std::string_view line) { outputs.say(line); };
+  serving.log = [&](std::string_view line) { publisher.say(line); };
   serving.on_listening = on_listening;
   serving.on_end = [&] {
     limit.end();
@@ -111,9 +114,9 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
       serve(options_, std::move(controller_), std::move(serving), &viewer, std::move(assets_), stop);
   if (!summary) return summary;
   if (limit.is_awaited(summary->run) && !stop)
-    outputs.say("the limit is still being computed; Ctrl-C does without");
+    publisher.say("the limit is still being computed; Ctrl-C does without");
   limit.compare(summary->run, stop);
-  outputs.record_limit();
+  record_news(recorder, limit);
   return summary;
 }
 

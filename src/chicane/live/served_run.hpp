@@ -10,7 +10,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
-#include "chicane/live/run_outputs.hpp"
+#include "chicane/live/run_publisher.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/recording/recorder.hpp"

@@ -2,7 +2,6 @@
 #include "chicane/live/what_if.hpp"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -132,16 +131,12 @@ Result<WhatIfQuestion> read_question(std::string_view text) {
   return question;
 }
 
-WhatIf::WhatIf(Compute compute) : compute_{std::move(compute)}, thread_{[this] { work(); }} {}
+WhatIf::WhatIf(Compute compute) : compute_{std::move(compute)}, worker_{[this] { work(); }} {}
 
 WhatIf::~WhatIf() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_ending_ = true;
-    ++newest_;
-  }
-  changed_.notify_one();
-  thread_.join();
+  const std::lock_guard lock(mutex_);
+  wish_.reset();
+  ++newest_;
 }
 
 Result<std::string> WhatIf::ask(std::string_view json) {
@@ -150,7 +145,7 @@ Result<std::string> WhatIf::ask(std::string_view json) {
   const std::lock_guard lock(mutex_);
   wish_ = std::move(*question);
   share_ = 0.0;
-  changed_.notify_one();
+  worker_.wake();
   return fmt::format("{}", ++newest_);
 }
 
@@ -162,21 +157,16 @@ std::string WhatIf::answer() {
 }
 
 void WhatIf::work() {
-  constexpr int kLowPriority = 10;
-  static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // of this thread, on Linux
   std::unique_lock lock(mutex_);
-  for (;;) {
-    changed_.wait(lock, [this] { return is_ending_ || wish_.has_value(); });
-    if (is_ending_) return;
-    const WhatIfQuestion question = *std::exchange(wish_, std::nullopt);
-    const std::uint64_t number = newest_;
-    lock.unlock();
-    std::string answer = computed(number, question);
-    lock.lock();
-    if (number != newest_) continue;
-    answer_ = std::move(answer);
-    answered_ = number;
-  }
+  if (!wish_) return;
+  const WhatIfQuestion question = *std::exchange(wish_, std::nullopt);
+  const std::uint64_t number = newest_;
+  lock.unlock();
+  std::string answer = computed(number, question);
+  lock.lock();
+  if (number != newest_) return;
+  answer_ = std::move(answer);
+  answered_ = number;
 }
 
 std::string WhatIf::computed(std::uint64_t number, const WhatIfQuestion& question) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -10,10 +9,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <utility>
 
 #include "chicane/base/result.hpp"
+#include "chicane/live/worker.hpp"
 #include "chicane/recording/branch.hpp"
 
 namespace chicane::live {
@@ -72,12 +71,10 @@ class WhatIf {
       0};                           ///< number of the last question; the one being computed may be older
   std::atomic<double> share_{0.0};  ///< of it that is computed
   std::mutex mutex_;                ///< of all below
-  std::condition_variable changed_;
   std::optional<WhatIfQuestion> wish_;
   std::string answer_ = R"({"id":0,"state":"none"})";
   std::uint64_t answered_ = 0;
-  bool is_ending_ = false;
-  std::thread thread_;  // last: it starts when everything else is there
+  Worker worker_;  // last
 };
 
 }  // namespace chicane::live

@@ -52,18 +52,13 @@ WorkerRun::WorkerRun(std::unique_ptr<run::ClosedLoop> loop, WorkerServer::Send s
       viewer_{
           {.run = worker_description(*loop_), .services = run_services(controls_), .parameters = &settings_}},
       router_{nullptr, &viewer_},
-      news_{viewer_, [this](const telemetry::Change& change) { settings_.tell(change); }} {
+      publisher_{viewer_, settings_} {
   hooks_.on_frame = [this](const telemetry::Frame& frame) {
     if (frame.begins && frame.cycle == 0) ended_.reset();
-    viewer_.publish(frame);
-    time_ = frame.time;
-    news_.frame(frame);
+    publisher_.frame(frame);
   };
-  hooks_.on_lap = [this](const telemetry::CompletedLap& lap) { viewer_.publish(lap, time_); };
-  hooks_.on_change = [this](const telemetry::Change& change) {
-    news_.change(change);
-    settings_.tell(change);
-  };
+  hooks_.on_lap = [this](const telemetry::CompletedLap& lap) { publisher_.lap(lap); };
+  hooks_.on_change = [this](const telemetry::Change& change) { publisher_.change(change); };
   begin_steps();
   wire::Pages pages = live_pages(settings_);
   pages["/run.json"] = [this] {
@@ -100,9 +95,9 @@ void WorkerRun::drive(double until, const std::function<bool()>& go_on) {
     if (steps_->advance() && !go_on()) return;
     if (!loop_->is_over()) continue;
     if (!ended_) ended_ = loop_->summary();
-    news_.end(*ended_);
+    publisher_.end(*ended_);
     loop_->drive_on();
-    if (loop_->time() < time_) return;  // the car was lost and is at the start again
+    if (loop_->time() < publisher_.time()) return;  // the car was lost and is at the start again
   }
 }
 

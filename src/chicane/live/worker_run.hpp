@@ -9,7 +9,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/live/live_settings.hpp"
-#include "chicane/live/run_news.hpp"
+#include "chicane/live/run_publisher.hpp"
 #include "chicane/live/worker_server.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/live_steps.hpp"
@@ -62,11 +62,10 @@ class WorkerRun {
   LiveSettings settings_;
   wire::ViewerEndpoint viewer_;
   wire::Router router_;
-  RunNews news_;
+  RunPublisher publisher_;
   run::RealtimeHooks hooks_;
   std::optional<run::LiveSteps> steps_;
   std::optional<telemetry::RunSummary> ended_;  ///< the run as it was when it was over
-  double time_ = 0.0;                           ///< of the last frame [s]
   /// Where the run was at a moment of the clock, and how fast it goes on from there.
   struct Anchor {
     double time = 0.0;   ///< [s]

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/live/run_news.hpp"
+#include "chicane/live/run_publisher.hpp"
 
+#include <string>
 #include <utility>
 
 #include "chicane/protocol/fault_codec.hpp"
+#include "chicane/run/lap_planner.hpp"
 
 namespace chicane::live {
 
@@ -25,33 +27,56 @@ wire::ViewerServices run_services(run::RunControls& controls) {
   return services;
 }
 
-RunNews::RunNews(wire::ViewerEndpoint& viewer, std::function<void(const telemetry::Change&)> note)
-    : viewer_{viewer}, note_{std::move(note)}, faults_{protocol::fault_controls()} {}
+RunPublisher::RunPublisher(wire::ViewerEndpoint& viewer, LiveSettings& settings, std::vector<LiveHooks> hooks)
+    : viewer_{viewer}, settings_{settings}, hooks_{std::move(hooks)}, faults_{protocol::fault_controls()} {}
 
-void RunNews::frame(const telemetry::Frame& frame) {
+void RunPublisher::frame(const telemetry::Frame& frame) {
   if (frame.begins && frame.cycle == 0) has_told_end_ = false;
+  for (const LiveHooks& each : hooks_)
+    if (each.on_frame) each.on_frame(frame);
+  viewer_.publish(frame);
+  time_ = frame.time;
+  tell_faults(frame);
+}
+
+void RunPublisher::lap(const telemetry::CompletedLap& lap) {
+  for (const LiveHooks& each : hooks_)
+    if (each.on_lap) each.on_lap(lap);
+  viewer_.publish(lap, time_);
+}
+
+/// Faults that began or ended by themselves, as changes.
+void RunPublisher::tell_faults(const telemetry::Frame& frame) {
   const std::uint32_t changed = frame.active_faults ^ told_faults_;
   for (std::size_t i = 0; i < faults_.size() && changed != 0U; ++i) {
     if ((changed >> i & 1U) == 0U) continue;
     const bool is_on = (frame.active_faults >> i & 1U) != 0U;
-    const telemetry::Change happened{.cycle = frame.cycle + 1,
-                                     .time = frame.time,
-                                     .name = faults_[i].key,
-                                     .value = is_on ? "true" : "false"};
-    change(happened);
-    note_(happened);
+    change({.cycle = frame.cycle + 1,
+            .time = frame.time,
+            .name = faults_[i].key,
+            .value = is_on ? "true" : "false"});
   }
 }
 
-void RunNews::change(const telemetry::Change& change) {
+void RunPublisher::change(const telemetry::Change& change) {
   for (std::size_t i = 0; i < faults_.size(); ++i) {
     if (faults_[i].key != change.name.view()) continue;
     const bool is_on = change.value.view() != "false";
     told_faults_ = (told_faults_ & ~(1U << i)) | (is_on ? 1U << i : 0U);
   }
+  for (const LiveHooks& each : hooks_)
+    if (each.on_change) each.on_change(change);
+  settings_.tell(change);
+  if (change.name.view() == run::LapPlanner::kChange)
+    say("races by a new lap, planned with " + std::string(change.value.view()) + " of the believed grip");
 }
 
-bool RunNews::end(const telemetry::RunSummary& summary) {
+void RunPublisher::say(std::string_view line) const {
+  for (const LiveHooks& each : hooks_)
+    if (each.say) each.say(line);
+}
+
+bool RunPublisher::end(const telemetry::RunSummary& summary) {
   if (std::exchange(has_told_end_, true)) return false;
   if (summary.completed || summary.laps_wanted == 0) {
     viewer_.set_end(summary.completed ? "finished" : "stopped",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/live/run_news.hpp"
+#include "chicane/live/run_publisher.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,22 +11,27 @@
 namespace chicane::live {
 namespace {
 
-class News : public testing::Test {
+class Publisher : public testing::Test {
  protected:
   /// A frame with the first fault on or off.
   void drive(bool has_fault) {
     ++frame.cycle;
     frame.active_faults = has_fault ? 1U : 0U;
-    news.frame(frame);
+    publisher.frame(frame);
   }
 
   wire::ViewerEndpoint viewer{{}};
   std::vector<std::string> noted;
-  RunNews news{viewer, [this](const telemetry::Change& change) { noted.emplace_back(change.value.view()); }};
+  run::SettingQueue requests;
+  LiveSettings settings{{.scenario = {}, .has_world = false}, requests};
+  RunPublisher publisher{
+      viewer, settings, {LiveHooks{}, {.on_change = [this](const telemetry::Change& change) {
+                           noted.emplace_back(change.value.view());
+                         }}}};
   telemetry::Frame frame;
 };
 
-TEST_F(News, TellsOfFaultsThatBeganOrEndedByThemselvesOnly) {
+TEST_F(Publisher, TellsOfFaultsThatBeganOrEndedByThemselvesOnly) {
   drive(false);
   drive(true);
   drive(true);
@@ -34,23 +39,24 @@ TEST_F(News, TellsOfFaultsThatBeganOrEndedByThemselvesOnly) {
   drive(false);
   EXPECT_EQ(noted.size(), 2U);
   const auto key = std::string("fault.") + protocol::fault_names().front();
-  news.change({.name = key, .value = "1@2*3"});
+  publisher.change({.name = key, .value = "1@2*3"});
+  EXPECT_EQ(noted.size(), 3U);
   drive(true);
-  EXPECT_EQ(noted.size(), 2U) << "it was asked for";
+  EXPECT_EQ(noted.size(), 3U) << "it was asked for";
 }
 
-TEST_F(News, TellsTheEndOnceForEachRun) {
-  EXPECT_TRUE(news.end({}));
-  EXPECT_FALSE(news.end({}));
+TEST_F(Publisher, TellsTheEndOnceForEachRun) {
+  EXPECT_TRUE(publisher.end({}));
+  EXPECT_FALSE(publisher.end({}));
   drive(false);
-  EXPECT_TRUE(news.has_told_end()) << "a run that is driven on stays over";
+  EXPECT_TRUE(publisher.has_told_end()) << "a run that is driven on stays over";
   frame = {};
   frame.begins = true;
-  news.frame(frame);
-  EXPECT_TRUE(news.end({}));
+  publisher.frame(frame);
+  EXPECT_TRUE(publisher.end({}));
 }
 
-TEST_F(News, ServicesAskWhatTheControlsKnow) {
+TEST_F(Publisher, ServicesAskWhatTheControlsKnow) {
   run::RunControls controls;
   const wire::ViewerServices services = run_services(controls);
   EXPECT_FALSE(services.step()) << "it is not paused";

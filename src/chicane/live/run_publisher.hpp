@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "chicane/live/live_settings.hpp"
+#include "chicane/protocol/schema_json.hpp"
+#include "chicane/run/realtime_loop.hpp"
+#include "chicane/telemetry/change.hpp"
+#include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/metrics.hpp"
+#include "chicane/wire/viewer.hpp"
+
+namespace chicane::live {
+
+/// Who hears of a live run beside its viewers: a recording, a journal, the program. Empty functions are not
+/// called. All but `say` on the thread that drives.
+struct LiveHooks {
+  std::function<void(const telemetry::Frame&)> on_frame{};
+  std::function<void(const telemetry::CompletedLap&)> on_lap{};
+  std::function<void(const telemetry::Change&)> on_change{};
+  std::function<void(std::string_view)> say{};  ///< one line for people; any thread
+};
+
+/// Pause, step and reset of a run, which `controls` asks for.
+[[nodiscard]] wire::ViewerServices run_services(run::RunControls& controls);
+
+/// Hands what happens in a live run to viewers, to the settings that they see, and to its hooks. Adds what
+/// nobody asked for: that a fault began or ended by itself, and, once for each run, that it is over. One
+/// thread, the one that drives.
+class RunPublisher {
+ public:
+  /// `viewer` and `settings` outlive this.
+  RunPublisher(wire::ViewerEndpoint& viewer, LiveSettings& settings, std::vector<LiveHooks> hooks = {});
+
+  /// After each control cycle.
+  void frame(const telemetry::Frame& frame);
+  void lap(const telemetry::CompletedLap& lap);
+  /// A change was applied.
+  void change(const telemetry::Change& change);
+  /// The run is over: tells viewers why, and gives true, the first time. A run that is driven on stays over.
+  bool end(const telemetry::RunSummary& summary);
+  [[nodiscard]] bool has_told_end() const { return has_told_end_; }
+  void say(std::string_view line) const;
+
+  /// Of the last frame [s].
+  [[nodiscard]] double time() const { return time_; }
+
+ private:
+  void tell_faults(const telemetry::Frame& frame);
+
+  wire::ViewerEndpoint& viewer_;
+  LiveSettings& settings_;
+  std::vector<LiveHooks> hooks_;
+  const std::vector<protocol::Control> faults_;
+  std::uint32_t told_faults_ = 0;  ///< bits, as viewers know them
+  bool has_told_end_ = false;
+  double time_ = 0.0;
+};
+
+}  // namespace chicane::live

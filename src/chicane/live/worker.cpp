@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/live/worker.hpp"
+
+#include <sys/resource.h>
+
+#include <utility>
+
+namespace chicane::live {
+
+Worker::Worker(std::function<void()> work, Period period)
+    : work_{std::move(work)}, period_{period}, thread_{[this] { run(); }} {}
+
+Worker::~Worker() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+void Worker::wake() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_awake_ = true;
+  }
+  changed_.notify_one();
+}
+
+void Worker::run() {
+  // Behind everything else, yet not starved: on cores that others keep busy, a tenth of one thread's share.
+  constexpr int kLowPriority = 10;
+  static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // of this thread, on Linux
+  std::unique_lock lock(mutex_);
+  const auto is_due = [this] { return is_awake_ || is_ending_; };
+  for (;;) {
+    if (period_)
+      changed_.wait_for(lock, *period_, is_due);
+    else
+      changed_.wait(lock, is_due);
+    if (is_ending_) return;
+    is_awake_ = false;
+    lock.unlock();
+    work_();
+    lock.lock();
+  }
+}
+
+}  // namespace chicane::live
