@@ -72,11 +72,7 @@ void add_campaign(CLI::App& command, Options& options) {
       ->type_name("N")
       ->check(CLI::Range(1, 10000));
   command.add_option("--seed", campaign.seed, "Seed of these moments")->type_name("N")->capture_default_str();
-  command
-      .add_option(
-          "--results", campaign.results,
-          "File with a line for each fault, duration, track, car and preset; one that is there is completed")
-      ->type_name("FILE.jsonl");
+  add_results(command, campaign.results, "fault, duration, track, car and preset");
   command.add_flag("--markdown", options.is_markdown, "Print the table of docs/safety.md on stdout");
   add_names(command, "--preset", campaign.presets,
             "Controllers and their settings; as --tracks and --cars: all stands for those that ship");
@@ -98,6 +94,7 @@ void add_recover(CLI::App& command, Options& options) {
   command.add_option("--only", recover.only, "Number of the only start to drive")
       ->type_name("I")
       ->check(CLI::Range(1, 100000));
+  add_results(command, recover.results, "start");
   add_setting(command, options, "--preset", "preset", "NAME",
               "Controller and its settings (chicane list presets)");
   add_where(command, recover, options);
@@ -108,6 +105,8 @@ void add_lane_change(CLI::App& command, Options& options) {
   Options::LaneChange& change = options.lane_change;
   add_names(command, "--cars", change.cars, "Names or files, with commas");
   add_names(command, "--presets", change.presets, "Presets that steer: names or files, with commas");
+  add_results(command, change.results, "car and preset");
+  add_jobs(command, options.jobs);
   command.add_flag("--json", options.is_json, "Print one JSON object on stdout, all else on stderr");
   add_set(command, options);
   command.footer("Example: chicane lane-change --cars road-car --presets default,stanley");

@@ -21,6 +21,7 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "many_runs.hpp"
+#include "plan_runs.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -119,31 +120,35 @@ class Trials {
  public:
   void add(const Settings& settings) { wanted_.emplace(sweep::command_of(settings), settings); }
 
-  Result<void> drive(int jobs, const std::atomic<bool>& stop) {
-    const std::vector<std::pair<std::string, Settings>> all(wanted_.begin(), wanted_.end());
-    std::mutex mutex;
-    std::optional<Error> failure;
-    RunCounter counter;
-    run::for_each_run(all.size(), jobs, [&](std::uint64_t i, run::Roads& roads) {
-      auto run = sweep::drive(all[i].second, roads, stop);
-      const std::lock_guard lock(mutex);
-      if (!run) failure = Error{run.error().code, all[i].first + ": " + run.error().message};
-      if (run && *run) results_[all[i].first] = std::move(**run);
-      counter.show(results_.size(), all.size(), results_.size());
-      return !stop && !failure;
-    });
-    counter.end();
-    if (failure) return fail(*failure);
-    return {};
+  /// False: it was stopped.
+  Result<bool> drive(int jobs, const std::string& results, const std::atomic<bool>& stop) {
+    sweep::Axis axis = list_axis("trial", {});
+    axis.size = wanted_.size();
+    sweep::Dimension& trials = axis.dimensions.front();
+    for (const auto& [command, settings] : wanted_) {
+      trials.list.push_back(std::to_string(trials.list.size()));
+      trials.cases.push_back(settings);
+    }
+    PlanRuns runs;
+    runs.plan.name = "claims";
+    runs.plan.axes = {std::move(axis)};
+    const Result<RunLines> driven = drive_runs(runs, jobs, results, stop);
+    if (!driven) return fail(driven.error());
+    std::uint64_t run = 0;
+    for (const auto& [command, settings] : wanted_) {
+      const auto line = driven->lines.find(run++);
+      if (line != driven->lines.end()) lines_[command] = protocol::json_text(line->second);
+    }
+    return driven->progress.is_complete();
   }
 
-  [[nodiscard]] const telemetry::RunSummary& of(const Settings& settings) const {
-    return results_.at(sweep::command_of(settings));
+  [[nodiscard]] const std::string& of(const Settings& settings) const {
+    return lines_.at(sweep::command_of(settings));
   }
 
  private:
   std::map<std::string, Settings> wanted_;
-  std::map<std::string, telemetry::RunSummary> results_;
+  std::map<std::string, std::string> lines_;
 };
 
 /// Whether a claim holds on a lake, by reading; none where it is not tried.
@@ -191,7 +196,7 @@ std::string grid_figures(const Claim& claim, const Trials& trials, const Lake& l
                          const std::string& column) {
   std::vector<std::pair<double, std::string>> clean;
   for (std::size_t i = claim.cases.size() - claim.grid_size; i < claim.cases.size(); ++i) {
-    const auto& run = trials.of(settings_of(claim, claim.cases[i], lake, reading));
+    const std::string& run = trials.of(settings_of(claim, claim.cases[i], lake, reading));
     const double value = sweep::number_of(run, column);
     if (sweep::number_of(run, "clean") > 0.0 && !std::isnan(value))
       clean.emplace_back(value, claim.cases[i].name);
@@ -209,7 +214,7 @@ std::string figures_of(const Claim& claim, const Trials& trials, const Lake& lak
     text += fmt::format("{}`{}`", text.empty() ? "" : "; ", column);
     for (std::size_t i = 0; i < claim.cases.size() - claim.grid_size; ++i) {
       const sweep::Case& each = claim.cases[i];
-      const auto& run = trials.of(settings_of(claim, each, lake, reading));
+      const std::string& run = trials.of(settings_of(claim, each, lake, reading));
       text += fmt::format("{} {}: {}", i == 0 ? "" : ",", each.name, figure(sweep::number_of(run, column)));
     }
     if (claim.grid_size > 0) text += ", " + grid_figures(claim, trials, lake, reading, column);
@@ -335,9 +340,9 @@ ExitCode try_claims(const Options& options) {
   const std::string& page = options.claims.page;
   if (const Result<void> writable = check_writable(options.claims.is_check ? "" : page); !writable)
     return report(writable.error());
-  if (const Result<void> driven = trials.drive(run::threads_for(options.jobs), stop); !driven)
-    return report(driven.error());
-  if (stop) {
+  const Result<bool> is_whole = trials.drive(options.jobs, options.claims.results, stop);
+  if (!is_whole) return report(is_whole.error());
+  if (!*is_whole) {
     fmt::print(stderr, "stopped: nothing was compared or written\n");
     return kRunFailed;
   }

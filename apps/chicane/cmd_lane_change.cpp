@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,69 +14,125 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/lane_change.hpp"
 #include "commands.hpp"
+#include "interrupt.hpp"
+#include "many_runs.hpp"
+#include "plan_runs.hpp"
 
 namespace chicane::apps {
 namespace {
 
-struct CarAndDriver {
-  std::string car, preset;
-  run::LaneChangeLimit limit;
-};
+using protocol::Json;
 
 constexpr double kKmph = 3.6;
 
-void print_row(const CarAndDriver& row) {
-  const run::LaneChangeOutcome& next = row.limit.failed;
-  const std::string why = next.has_passed() ? "passed every speed tried"
-                          : next.room < 0.0 ? fmt::format("a cone is hit by {:.2f} m", -next.room)
-                                            : "does not arrive";
-  fmt::print("{:<16} {:<14} {:>7} {:>11.1f} {:>9.2f}   {}\n", row.car, row.preset, row.limit.passed_kmph,
-             kKmph * row.limit.passed.exit_speed, row.limit.passed_kmph > 0 ? row.limit.passed.room : 0.0,
-             why);
+/// The lane change of one car: its lines are planned once for all who drive it.
+struct CarOnCourse {
+  std::mutex mutex{};
+  std::optional<run::LaneChange> change{};
+
+  Result<run::LaneChangeLimit> find_limit(const scenario::Scenario& scenario) {
+    const std::lock_guard lock(mutex);
+    if (!change) {
+      Result<run::LaneChange> created = run::LaneChange::create(scenario.vehicle);
+      if (!created) return fail(created.error());
+      change.emplace(std::move(*created));
+    }
+    return change->find_limit(scenario);
+  }
+};
+
+Json json_of(const run::LaneChangeLimit& limit) {
+  return {{"entry_kmph", limit.passed_kmph},
+          {"exit_kmph", kKmph * limit.passed.exit_speed},
+          {"room_m", limit.passed_kmph > 0 ? Json(limit.passed.room) : Json()},
+          {"room_above_m", number_or_null(limit.failed.room)},
+          {"passed_above", limit.failed.has_passed()}};
 }
 
-protocol::Json json_of(const CarAndDriver& row) {
-  return {{"car", row.car},
-          {"preset", row.preset},
-          {"entry_kmph", row.limit.passed_kmph},
-          {"exit_kmph", kKmph * row.limit.passed.exit_speed},
-          {"room_m", row.limit.passed_kmph > 0 ? protocol::Json(row.limit.passed.room) : protocol::Json()},
-          {"room_above_m", row.limit.failed.room}};
+std::string why_not_faster(const Json& line) {
+  const Json& room = line.at("room_above_m");
+  if (line.at("passed_above").get<bool>()) return "passed every speed tried";
+  return room.is_number() && room.get<double>() < 0.0
+             ? fmt::format("a cone is hit by {:.2f} m", -room.get<double>())
+             : "does not arrive";
+}
+
+void print_row(const std::string& car, const std::string& preset, const Json& line) {
+  const Json& room = line.at("room_m");
+  fmt::print("{:<16} {:<14} {:>7} {:>11.1f} {:>9.2f}   {}\n", car, preset, line.at("entry_kmph").get<int>(),
+             line.at("exit_kmph").get<double>(), room.is_number() ? room.get<double>() : 0.0,
+             why_not_faster(line));
+}
+
+/// The experiments of all runs; a mistake is told before anything is driven.
+Result<std::vector<scenario::Scenario>> scenarios_of(const Options& options, const sweep::Plan& plan) {
+  std::vector<scenario::Scenario> scenarios;
+  for (std::uint64_t run = 0; run < plan.size(); ++run) {
+    auto settings = options.settings;
+    for (auto& setting : plan.at(run)) settings.push_back(std::move(setting));
+    Result<scenario::Scenario> scenario = protocol::compose({"", settings});
+    if (!scenario) return fail(scenario.error());
+    scenarios.push_back(std::move(*scenario));
+  }
+  return scenarios;
+}
+
+/// Cars turn fastest: threads drive different cars.
+sweep::Plan plan_of(const Options& options) {
+  sweep::Plan plan{.name = "lane-change", .fixed = options.settings, .keep = {"outcome"}};
+  plan.axes = {list_axis("preset", options.lane_change.presets), list_axis("car", options.lane_change.cars)};
+  return plan;
+}
+
+Result<RunLines> drive(const Options& options, const sweep::Plan& plan, const std::atomic<bool>& stop) {
+  const Result<std::vector<scenario::Scenario>> scenarios = scenarios_of(options, plan);
+  if (!scenarios) return fail(scenarios.error());
+  std::map<std::string, CarOnCourse> courses;
+  for (const std::string& car : options.lane_change.cars) courses[car];
+  const auto rule = [&](std::uint64_t run, run::Roads&) -> Result<std::optional<std::string>> {
+    const scenario::Scenario& scenario = scenarios->at(run);
+    const Result<run::LaneChangeLimit> limit = courses.at(scenario.car).find_limit(scenario);
+    if (!limit) return fail(limit.error());
+    return std::optional(members_of(json_of(*limit)));
+  };
+  return drive_runs({.plan = plan, .rule = rule}, options.jobs, options.lane_change.results, stop);
+}
+
+/// By car, then by preset.
+void print(const Options& options, const RunLines& driven) {
+  const auto& [cars, presets, results] = options.lane_change;
+  Json rows = Json::array();
+  if (!options.is_json)
+    fmt::print("{:<16} {:<14} {:>7} {:>11} {:>9}   {}\n", "car", "preset", "[km/h]", "exit [km/h]",
+               "room [m]", "1 km/h faster");
+  for (std::size_t car = 0; car < cars.size(); ++car) {
+    for (std::size_t preset = 0; preset < presets.size(); ++preset) {
+      const auto found = driven.lines.find(preset * cars.size() + car);
+      if (found == driven.lines.end()) continue;
+      if (!options.is_json) {
+        print_row(cars[car], presets[preset], found->second);
+        continue;
+      }
+      Json row{{"car", cars[car]}, {"preset", presets[preset]}};
+      for (const char* key : {"entry_kmph", "exit_kmph", "room_m", "room_above_m"})
+        row[key] = found->second.at(key);
+      rows.push_back(std::move(row));
+    }
+  }
+  if (options.is_json)
+    fmt::print("{}\n", protocol::json_text(Json{{"rows", std::move(rows)}}, protocol::JsonLayout::kIndented));
 }
 
 }  // namespace
 
 ExitCode lane_change(const Options& options) {
-  protocol::Json rows = protocol::Json::array();
-  if (!options.is_json)
-    fmt::print("{:<16} {:<14} {:>7} {:>11} {:>9}   {}\n", "car", "preset", "[km/h]", "exit [km/h]",
-               "room [m]", "1 km/h faster");
-  for (const std::string& car : options.lane_change.cars) {
-    std::optional<run::LaneChange> change;
-    for (const std::string& preset : options.lane_change.presets) {
-      auto settings = options.settings;
-      settings.emplace_back("preset", preset);
-      settings.emplace_back("car", car);
-      const Result<scenario::Scenario> scenario = protocol::compose({"", settings});
-      if (!scenario) return report(scenario.error());
-      if (!change) {
-        Result<run::LaneChange> created = run::LaneChange::create(scenario->vehicle);
-        if (!created) return report(created.error());
-        change.emplace(std::move(*created));
-      }
-      Result<run::LaneChangeLimit> limit = change->find_limit(*scenario);
-      if (!limit) return report(limit.error());
-      const CarAndDriver row{car, preset, *limit};
-      if (options.is_json)
-        rows.push_back(json_of(row));
-      else
-        print_row(row);
-    }
-  }
-  if (options.is_json)
-    fmt::print("{}\n", protocol::json_text(protocol::Json{{"rows", std::move(rows)}},
-                                           protocol::JsonLayout::kIndented));
-  return kSuccess;
+  keep_memory();
+  static std::atomic<bool> wants_stop{false};  // static: must outlive the last signal
+  catch_interrupts(wants_stop);
+  const Result<RunLines> driven = drive(options, plan_of(options), wants_stop);
+  if (!driven) return report(driven.error());
+  print(options, *driven);
+  return driven->progress.is_complete() ? kSuccess : kRunFailed;
 }
 
 }  // namespace chicane::apps

@@ -84,6 +84,7 @@ std::string to_json(const LimitRun& run, const lap_time::PlantLimit& limit) {
                   {"top_speed_mps", extent.top_speed},
                   {"nodes", limit.nodes},
                   {"iterations", limit.effort.iterations},
+                  {"work_s", limit.effort.work},
                   {"stationarity", limit.stationarity},
                   {"violation", limit.violation},
                   {"wall_time_s", run.wall_time}};

@@ -116,6 +116,7 @@ struct Options {
     std::string folder = "claims";
     std::string page{};     ///< to write; empty: details on stdout
     bool is_check = false;  ///< compare only
+    std::string results{};  ///< as Recover::results
   };
   Claims claims{};
 
@@ -162,12 +163,14 @@ struct Options {
     int only = 0;            ///< this start alone, from 1; 0: all
     std::vector<std::string> tracks{"lakeside", "oval", "hairpins", "speedway"};
     std::vector<std::string> cars{"udacity", "road-car"};
+    std::string results{};  ///< file of the outcomes; empty: not kept
   };
   Recover recover{};
 
   struct LaneChange {
     std::vector<std::string> cars{"udacity", "road-car", "bmw-320i"};
     std::vector<std::string> presets{"race", "pure-pursuit", "stanley"};
+    std::string results{};  ///< as Recover::results
   };
   LaneChange lane_change{};
 

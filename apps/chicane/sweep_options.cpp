@@ -15,6 +15,13 @@ void add_jobs(CLI::App& command, int& jobs) {
       ->capture_default_str();
 }
 
+void add_results(CLI::App& command, std::string& results, std::string_view each) {
+  command
+      .add_option("--results", results,
+                  fmt::format("File with a line for each {}; one that is there is completed", each))
+      ->type_name("FILE.jsonl");
+}
+
 void add_sweep(CLI::App& command, Options& options) {
   Options::Sweep& sweep = options.sweep;
   command.add_option("plan", sweep.plan_file, "Plan of what to drive (docs/sweep.md)")
@@ -122,6 +129,7 @@ void add_claims(CLI::App& command, Options& options) {
           ->type_name("FILE.md");
   command.add_flag("--check", claims.is_check, "Compare with the page only; exit code 1 where a row differs")
       ->needs(page);
+  add_results(command, claims.results, "run");
   add_jobs(command, options.jobs);
   command.footer("Example: chicane claims B7 D9");
 }

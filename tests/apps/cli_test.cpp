@@ -75,7 +75,7 @@ TEST(Cli, WrongUsageIsExplainedWithExitCodeTwo) {
       {"limit --track nowhere", "track: got \"nowhere\", expected a file or one of"},
       {"limit --car moped", "car: got \"moped\", expected a file or one of"},
       {"limit --spacing-m 50", "--spacing-m: got 50, expected a number in [0.5, 5]"},
-      {"limit --quick --car road-car --set vehicle.track_width_m=10", "the road is"},
+      {"limit --car f1tenth", "limit: got the model car f1tenth, expected one in full size"},
       {"drive --limit", "--limit: got it alone, expected --fast with it"},
   };
   for (const Case& one : cases) {
@@ -122,7 +122,7 @@ TEST(Cli, TheLimitIsPrintedAndItsLineIsATrack) {
 
 TEST(Cli, LapsAreComparedWithTheLimitAndDriveTheSame) {
   const std::string run = "drive --fast --laps 2 --track oval --car road-car --json";
-  const Json alone = Json::parse(chicane_program(run).out);
+  const Json alone = Json::parse(chicane_program(run).out);  // whatever the cache knows
   const Json compared = Json::parse(chicane_program(run + " --limit").out);
   EXPECT_EQ(alone["state_hash"], compared["state_hash"]);
   EXPECT_TRUE(alone["laps"][1]["gap_to_limit_percent"].is_null());
@@ -133,6 +133,23 @@ TEST(Cli, LapsAreComparedWithTheLimitAndDriveTheSame) {
               100.0 * (lap["lap_time_s"].get<double>() / limit - 1.0), 1e-9);
   EXPECT_GT(lap["gap_to_limit_percent"].get<double>(), 0.0);  // nothing that drives is faster
   EXPECT_GT(lap["sector_gaps_to_limit_percent"][0].get<double>(), 0.0);
+  EXPECT_NEAR(limit, 21.92, 0.02);  // docs/limit.md, table 1
+}
+
+TEST(Cli, AFastRunShowsPeopleALimitThatTheCacheKnows) {
+  const fs::path cache =
+      fs::path(::testing::TempDir()) / ("chicane_known_limit_" + std::to_string(::getpid()));
+  const std::string here = "XDG_CACHE_HOME='" + cache.string() + "' " + kProgram;
+  const std::string run = here + " drive --fast --laps 2 --track oval";
+  EXPECT_THAT(shell(run).out, HasSubstr("limit              not known: not asked for (--limit)"));
+  const Outcome quick = shell(here + " limit --track oval --quick");
+  EXPECT_THAT(quick.out, HasSubstr("what can be driven: --quick does not drive it"));
+  EXPECT_THAT(quick.err, HasSubstr("--quick: gives the bound without a witness now"));
+  EXPECT_THAT(shell(run).out, HasSubstr("limit              12.93"));
+  EXPECT_TRUE(Json::parse(shell(run + " --json").out)["limit"].is_null())
+      << "the same bytes, whatever it knows";
+  EXPECT_THAT(shell(run + " --no-cache").out, HasSubstr("not asked for"));
+  fs::remove_all(cache);
 }
 
 TEST(Cli, BothEndsOfTheSimulatorsSocketSetTheLapsBesideTheSameLimit) {

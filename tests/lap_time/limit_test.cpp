@@ -11,7 +11,7 @@
 namespace chicane::lap_time {
 namespace {
 
-constexpr double kRadius = 50.0, kOffset = 2.0, kSpeed = 20.0;
+constexpr double kRadius = 50.0, kInside = 2.0, kSpeed = 20.0;
 
 path::Track ring(double start_s) {
   std::vector<path::TrackPoint> points;
@@ -28,10 +28,10 @@ path::Track ring(double start_s) {
 PlantLimit inner_lap(const path::Track& track) {
   PlantLimit limit;
   limit.line.length = track.length();
-  const double lap_time = kTwoPi * (kRadius - kOffset) / kSpeed;
+  const double lap_time = kTwoPi * (kRadius - kInside) / kSpeed;
   for (int i = 0; i <= 100; ++i)
     limit.line.points.push_back(
-        {.s = track.length() * i / 100, .time = lap_time * i / 100, .offset = kOffset, .vx = kSpeed});
+        {.s = track.length() * i / 100, .time = lap_time * i / 100, .offset = kInside, .vx = kSpeed});
   limit.bound = {.lap = lap_time, .sectors = {lap_time / 3, lap_time / 3, lap_time / 3}};
   return limit;
 }
@@ -53,7 +53,7 @@ TEST(Limit, BeginsAtTheStartLineAndEndsThereALapLater) {
     const path::LinePoint &before = limit.line[i - 1], &now = limit.line[i];
     EXPECT_GT(now.time, before.time) << i;
     EXPECT_LT(std::fabs(now.heading - before.heading), 0.1) << i;
-    EXPECT_NEAR(now.curvature, 1.0 / (kRadius - kOffset), 2e-4) << i;  // from differences of headings
+    EXPECT_NEAR(now.curvature, 1.0 / (kRadius - kInside), 2e-4) << i;  // from differences of headings
     // The way that the time between two points says, along a chord: 1.5 m of 48 m of radius.
     EXPECT_NEAR((now.position - before.position).norm(), kSpeed * (now.time - before.time), 0.01) << i;
   }

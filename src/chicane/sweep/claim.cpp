@@ -16,6 +16,7 @@
 #include "chicane/protocol/yaml_tree.hpp"
 #include "chicane/sweep/outcome.hpp"
 #include "chicane/sweep/trial.hpp"
+#include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -206,7 +207,7 @@ class ClaimReader {
   std::vector<std::string> faults_;
 };
 
-bool is_clean(const telemetry::RunSummary& run) { return run.completed && run.off_track_events == 0; }
+bool is_clean(std::string_view line) { return number_of(line, "clean") > 0.0; }
 
 double value_of(const Condition::Value& value, const CaseResults& results) {
   if (value.name.empty()) return value.constant;
@@ -216,18 +217,20 @@ double value_of(const Condition::Value& value, const CaseResults& results) {
 
 }  // namespace
 
-double number_of(const telemetry::RunSummary& run, std::string_view column) {
-  if (column == "clean") return is_clean(run) ? 1.0 : 0.0;
+double number_of(std::string_view text, std::string_view column) {
+  const protocol::Json line = protocol::parse_json(text);
+  if (!line.is_object()) return telemetry::kNotMeasured;
+  if (column == "clean")
+    return line.value("completed", false) && line.value("off_track_events", 1) == 0 ? 1.0 : 0.0;
   const ColumnPlace at = place_in(column);
-  const Column* found = find_column(at.name);
-  if (found == nullptr) return telemetry::kNotMeasured;
-  if (!at.place) return found->number(run).value_or(telemetry::kNotMeasured);
-  const protocol::Json list = protocol::parse_json(found->text(run));
-  const int size = list.is_array() ? static_cast<int>(list.size()) : 0;
-  const int place = *at.place < 0 ? size + *at.place : *at.place;
-  if (place < 0 || place >= size || !list[static_cast<std::size_t>(place)].is_number())
-    return telemetry::kNotMeasured;
-  return list[static_cast<std::size_t>(place)].get<double>();
+  const auto found = line.find(at.name);
+  if (found == line.end()) return telemetry::kNotMeasured;
+  const int size = found->is_array() ? static_cast<int>(found->size()) : 0;
+  const int place = at.place ? (*at.place < 0 ? size + *at.place : *at.place) : 0;
+  if (at.place && (place < 0 || place >= size)) return telemetry::kNotMeasured;
+  const protocol::Json& value = at.place ? (*found)[static_cast<std::size_t>(place)] : *found;
+  if (value.is_boolean()) return value.get<bool>() ? 1.0 : 0.0;
+  return value.is_number() ? value.get<double>() : telemetry::kNotMeasured;
 }
 
 bool holds(const Claim& claim, const CaseResults& results) {

@@ -8,7 +8,6 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/sweep/plan.hpp"
-#include "chicane/telemetry/metrics.hpp"
 
 /// A statement of a write-up, and how it is tried.
 namespace chicane::sweep {
@@ -50,14 +49,14 @@ struct Claim {
   [[nodiscard]] bool is_tried() const noexcept { return !cases.empty(); }
 };
 
-/// The results of a claim's cases in one world, by their names.
-using CaseResults = std::map<std::string, telemetry::RunSummary>;
+/// The lines of a claim's cases in one world (sweep.hpp), by their names.
+using CaseResults = std::map<std::string, std::string>;
 
 /// Whether all conditions hold; a number that was not measured makes its condition false.
 [[nodiscard]] bool holds(const Claim& claim, const CaseResults& results);
-/// The number of a column, "clean" or a place in a list ("lap_times_s[-1]") included; NaN where there is
-/// none.
-[[nodiscard]] double number_of(const telemetry::RunSummary& run, std::string_view column);
+/// The number of a column in a line of results, "clean" or a place in a list ("lap_times_s[-1]") included;
+/// true is 1, and NaN where there is none.
+[[nodiscard]] double number_of(std::string_view line, std::string_view column);
 
 /// Reads the claims of one file: `settings`, and a list `claims` of {id, says, settings, cases: {name:
 /// {settings}}, grid: {key: [values]}, true_when: [conditions], shows: [columns]} or {id, says, found, see}.

@@ -40,11 +40,11 @@ class Tally {
  public:
   Tally(const SweepOptions& options, Progress progress) : options_{options}, progress_{progress} {}
 
-  void add(std::uint64_t run, const Result<RunOutcome>& result) {
+  /// `why` a run cannot be driven; null for one that was.
+  void add(const Error* why) {
     const std::lock_guard lock(mutex_);
-    if (result && options_.on_run) options_.on_run(run, result->run);
     ++progress_.driven;
-    if (!result && progress_.failed++ == 0) progress_.why = result.error().message;
+    if (why != nullptr && progress_.failed++ == 0) progress_.why = why->message;
     if (options_.on_progress) options_.on_progress(progress_);
   }
   void fail_with(const Error& error) {
@@ -78,6 +78,36 @@ Result<std::optional<telemetry::RunSummary>> drive_while(const Settings& setting
       **loop, {}, [&] { return stop.load() || (is_hasty && (*loop)->world().off_track_events > 0); });
   if (stop && !(*loop)->is_over()) return std::optional<telemetry::RunSummary>{};
   return std::optional(std::move(summary));
+}
+
+/// Line of a run with these members, or the reason why it cannot be driven.
+std::string line_with(std::uint64_t run, const Settings& varied, const Result<std::string>& members) {
+  std::string line = fmt::format("{{\"run\":{},\"settings\":{{", run);
+  for (std::size_t i = 0; i < varied.size(); ++i) {
+    const auto& [key, text] = varied[i];
+    line += fmt::format("{}{}:{}", i == 0 ? "" : ",", quoted(key), setting_json(key, text));
+  }
+  return line + (members ? fmt::format("}},{}}}", *members)
+                         : fmt::format("}},\"error\":{}}}", quoted(members.error().message)));
+}
+
+/// The columns that the plan keeps, as members of a JSON object.
+std::string columns_of(const Plan& plan, const RunOutcome& outcome) {
+  std::string text;
+  if (plan.search)
+    text += fmt::format("\"{}\":{},\"{}\":{}", kSearchValue,
+                        std::isnan(outcome.search_value) ? "null" : number_text(outcome.search_value),
+                        kSearchTrials, outcome.search_trials);
+  const auto add = [&](const Column& column) {
+    text += fmt::format("{}\"{}\":{}", text.empty() ? "" : ",", column.name, column.text(outcome.run));
+  };
+  if (plan.keep.empty())
+    for (const Column& column : columns()) add(column);
+  for (const std::string& name : plan.keep) add(*find_column(name));
+  const bool has_hash =
+      plan.keep.empty() || std::find(plan.keep.begin(), plan.keep.end(), "state_hash") != plan.keep.end();
+  if (!has_hash) add(*find_column("state_hash"));
+  return text;
 }
 
 /// One search of find_largest().
@@ -163,31 +193,12 @@ Result<std::optional<RunOutcome>> find_largest(const Search& search, const Setti
 
 std::string line_of(const Plan& plan, std::uint64_t run, const Settings& varied,
                     const Result<RunOutcome>& result) {
-  std::string line = fmt::format("{{\"run\":{},\"settings\":{{", run);
-  for (std::size_t i = 0; i < varied.size(); ++i) {
-    const auto& [key, text] = varied[i];
-    line += fmt::format("{}{}:{}", i == 0 ? "" : ",", quoted(key), setting_json(key, text));
-  }
-  line += '}';
-  if (!result) return line + fmt::format(",\"error\":{}}}", quoted(result.error().message));
-  if (plan.search)
-    line += fmt::format(",\"{}\":{},\"{}\":{}", kSearchValue,
-                        std::isnan(result->search_value) ? "null" : number_text(result->search_value),
-                        kSearchTrials, result->search_trials);
-  const auto add = [&](const Column& column) {
-    line += fmt::format(",\"{}\":{}", column.name, column.text(result->run));
-  };
-  if (plan.keep.empty())
-    for (const Column& column : columns()) add(column);
-  for (const std::string& name : plan.keep) add(*find_column(name));
-  const bool has_hash =
-      plan.keep.empty() || std::find(plan.keep.begin(), plan.keep.end(), "state_hash") != plan.keep.end();
-  if (!has_hash) add(*find_column("state_hash"));
-  return line + '}';
+  return line_with(run, varied,
+                   result ? Result<std::string>(columns_of(plan, *result)) : fail(result.error()));
 }
 
 Result<Progress> drive_plan(const Plan& plan, const Shard& shard, const SweepOptions& options,
-                            const std::atomic<bool>& stop) {
+                            const RunRule& rule, const std::atomic<bool>& stop) {
   Result<ResultFile> file = ResultFile::open(options.file, plan, shard);
   if (!file) return fail(file.error());
   const std::uint64_t ours = shard.size(plan.size());
@@ -196,17 +207,33 @@ Result<Progress> drive_plan(const Plan& plan, const Shard& shard, const SweepOpt
     const std::uint64_t run = i * shard.count + shard.index;
     if (file->has(run)) return !stop;
     if (stop) return false;
-    auto driven = outcome_of(plan, run, roads, stop);
+    const Result<std::optional<std::string>> driven = rule(run, roads);
     if (driven && !*driven) return false;
-    const Result<RunOutcome> result = driven ? Result<RunOutcome>(std::move(**driven)) : fail(driven.error());
-    if (const Result<void> written = file->append(line_of(plan, run, plan.at(run), result)); !written) {
+    const Result<std::string> members = driven ? Result<std::string>(**driven) : fail(driven.error());
+    if (const Result<void> written = file->append(line_with(run, plan.at(run), members)); !written) {
       tally.fail_with(written.error());
       return false;
     }
-    tally.add(run, result);
+    tally.add(members ? nullptr : &members.error());
     return true;
   });
   return tally.result();
+}
+
+Result<Progress> drive_plan(const Plan& plan, const Shard& shard, const SweepOptions& options,
+                            const std::atomic<bool>& stop) {
+  std::mutex mutex;  // of options.on_run
+  const RunRule rule = [&](std::uint64_t run, run::Roads& roads) -> Result<std::optional<std::string>> {
+    const auto driven = outcome_of(plan, run, roads, stop);
+    if (!driven) return fail(driven.error());
+    if (!*driven) return std::optional<std::string>{};
+    if (options.on_run) {
+      const std::lock_guard lock(mutex);
+      options.on_run(run, (*driven)->run);
+    }
+    return std::optional(columns_of(plan, **driven));
+  };
+  return drive_plan(plan, shard, options, rule, stop);
 }
 
 }  // namespace chicane::sweep

@@ -61,9 +61,17 @@ struct SweepOptions {
   std::function<void(std::uint64_t run, const telemetry::RunSummary&)> on_run{};
 };
 
-/// Drives the runs of a shard that are not in the file yet. Each run depends on the plan and its number
-/// alone: not on threads, shards, order or what was driven before. Ends early with what there is when `stop`
-/// is set; kIo when the file cannot be written, with all runs so far in it.
+/// What drives one run of a plan: gives the members of its line behind number and settings, such as
+/// `"back_s":12.5,"is_back":true`; none when it was stopped. An error: the run cannot be driven. Called by
+/// several threads, each with `roads` of its own.
+using RunRule = std::function<Result<std::optional<std::string>>(std::uint64_t run, run::Roads& roads)>;
+
+/// Drives the runs of a shard that are not in the file yet, each by `rule`. Each run depends on the plan and
+/// its number alone: not on threads, shards, order or what was driven before. Ends early with what there is
+/// when `stop` is set; kIo when the file cannot be written, with all runs so far in it.
+[[nodiscard]] Result<Progress> drive_plan(const Plan& plan, const Shard& shard, const SweepOptions& options,
+                                          const RunRule& rule, const std::atomic<bool>& stop);
+/// The same, each run driven once or searched as the plan says.
 [[nodiscard]] Result<Progress> drive_plan(const Plan& plan, const Shard& shard, const SweepOptions& options,
                                           const std::atomic<bool>& stop);
 

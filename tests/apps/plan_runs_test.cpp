@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// Commands that drive many runs by a plan: what they keep, and how they go on.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/program_outcome.hpp"
+
+namespace chicane::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+class PlanRuns : public testing::Test {
+ protected:
+  ~PlanRuns() override { fs::remove(file_); }
+
+  [[nodiscard]] std::vector<std::string> lines() const {
+    std::ifstream stream(file_);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+  }
+  void keep(const std::vector<std::string>& lines) const {
+    std::ofstream stream(file_, std::ios::trunc);
+    for (const std::string& line : lines) stream << line << '\n';
+  }
+
+  const fs::path file_ =
+      fs::path(::testing::TempDir()) / ("chicane_plan_runs_" + std::to_string(::getpid()) + ".jsonl");
+};
+
+TEST_F(PlanRuns, RecoverGoesOnWithWhatIsMissingAndSaysTheSame) {
+  const std::string command =
+      "recover --tracks oval --cars udacity --starts 3 --seed 2 --jobs 1 --json --results '" +
+      file_.string() + "'";
+  const Outcome whole = chicane_program(command);
+  const std::vector<std::string> told = lines();
+  ASSERT_EQ(told.size(), 4U) << whole.err;
+  const Json rows = Json::parse(whole.out)["rows"];
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0]["starts"], 3);
+  EXPECT_EQ(rows[0]["outcomes"][2]["number"], 3);
+
+  // The second start is missing, and the third has an outcome that only a file can have.
+  Json third = Json::parse(told[3]);
+  third["back_s"] = 12345.0;
+  keep({told[0], told[1], third.dump()});
+  const Outcome resumed = chicane_program(command);
+  EXPECT_EQ(lines().size(), 4U) << resumed.err;
+  EXPECT_EQ(lines()[3], told[2]) << "the same bytes";
+  Json expected = Json::parse(whole.out);
+  expected["rows"][0]["outcomes"][2]["back_s"] = 12345.0;
+  EXPECT_EQ(Json::parse(resumed.out), expected);
+
+  const Outcome other = chicane_program(command + " --set latency_ms=50");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr("got results of the plan"));
+}
+
+TEST_F(PlanRuns, OneStartIsThatOfAllStarts) {
+  const std::string command = "recover --tracks oval --cars udacity --starts 3 --seed 2 --json";
+  const Json all = Json::parse(chicane_program(command).out)["rows"][0]["outcomes"];
+  const Json one = Json::parse(chicane_program(command + " --only 2").out)["rows"][0]["outcomes"];
+  ASSERT_EQ(one.size(), 1U);
+  EXPECT_EQ(one[0], all[1]);
+  const Outcome none = chicane_program(command + " --only 4");
+  EXPECT_EQ(none.code, 2);
+  EXPECT_THAT(none.err, HasSubstr("--only: got 4, expected a start from 1 to 3"));
+}
+
+TEST_F(PlanRuns, ALaneChangeIsShownFromItsFile) {
+  const std::string command =
+      "lane-change --cars udacity --presets stanley --json --results '" + file_.string() + "'";
+  const Outcome mistake = chicane_program("lane-change --cars moped --presets stanley");
+  EXPECT_EQ(mistake.code, 2);
+  EXPECT_THAT(mistake.err, HasSubstr("car: got \"moped\""));
+  const Outcome first = chicane_program(command);
+  ASSERT_EQ(first.code, 0) << first.err;
+  const Json row = Json::parse(first.out)["rows"][0];
+  EXPECT_EQ(row["car"], "udacity");
+  EXPECT_EQ(row["preset"], "stanley");
+  EXPECT_GT(row["entry_kmph"], 30);
+  EXPECT_LT(row["room_above_m"], 0.0);
+  const std::vector<std::string> told = lines();
+  ASSERT_EQ(told.size(), 2U);
+  Json line = Json::parse(told[1]);
+  line["entry_kmph"] = 77;
+  keep({told[0], line.dump()});
+  EXPECT_EQ(Json::parse(chicane_program(command).out)["rows"][0]["entry_kmph"], 77);
+}
+
+}  // namespace
+}  // namespace chicane::test
