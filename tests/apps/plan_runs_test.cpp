@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;  // lines begin with their run
 
 class PlanRuns : public testing::Test {
  protected:
@@ -55,7 +55,7 @@ TEST_F(PlanRuns, RecoverGoesOnWithWhatIsMissingAndSaysTheSame) {
   third["back_s"] = 12345.0;
   keep({told[0], told[1], third.dump()});
   const Outcome resumed = chicane_program(command);
-  EXPECT_EQ(lines().size(), 4U) << resumed.err;
+  ASSERT_EQ(lines().size(), 4U) << resumed.err;
   EXPECT_EQ(lines()[3], told[2]) << "the same bytes";
   Json expected = Json::parse(whole.out);
   expected["rows"][0]["outcomes"][2]["back_s"] = 12345.0;

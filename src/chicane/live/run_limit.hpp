@@ -25,7 +25,7 @@ namespace chicane::live {
 class RunLimit {
  public:
   /// Longest wait for a limit behind the end of a run.
-  static constexpr std::chrono::seconds kPatience{15};
+  static constexpr std::chrono::seconds kPatience{60};
 
   /// `on_news` hears, mostly on another thread, what a search has found and what no longer holds; may be
   /// empty. It must stay callable as long as this lives.
