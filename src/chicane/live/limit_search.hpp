@@ -18,8 +18,8 @@ namespace chicane::live {
 /// From the cache where it is known (run/plan_cache.hpp).
 class LimitSearch {
  public:
-  /// Work after which the search gives up (lap_time::PlanProgress) [s]: twice that of the slowest road and
-  /// car that ship.
+  /// Work after which the search gives up (lap_time::PlanProgress) [s]: more than any car in full size needs
+  /// on a track that ships.
   static constexpr double kBudget = 60.0;
   using OnEnd = std::function<void(Result<std::shared_ptr<const lap_time::Limit>>)>;
 
