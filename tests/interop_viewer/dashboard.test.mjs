@@ -21,13 +21,15 @@ after(async () => {
 });
 
 async function open(options) {
-  dashboard = await DashboardPage.open(browser, demo.url, { fluent: true, ...options });
+  dashboard = await DashboardPage.open(browser, demo.url, options);
   page = dashboard.page;
 }
 
 describe('the dashboard', () => {
-  beforeEach(() => open());
-  afterEach(() => dashboard.close());
+  before(() => open());
+  beforeEach(() => dashboard.beginAt('drive'));
+  afterEach(() => dashboard.hadNothingToComplainOf());
+  after(() => dashboard.close());
 
   it('loads and says what runs', async () => {
     assert.equal(await page.locator('html').getAttribute('lang'), 'en');
@@ -111,6 +113,8 @@ describe('the dashboard', () => {
     await page.keyboard.press('/');
     await page.keyboard.type('squared rust');
     assert.equal(await page.locator('#tune-search').inputValue(), 'squared rust');
+    await page.reload();
+    await page.getByText('Live', { exact: true }).waitFor();
   });
 
   it('holds plots while the run goes on, and zooms by dragging', async () => {
@@ -225,6 +229,7 @@ describe('the dashboard', () => {
     await other.getByText('Paused', { exact: true }).waitFor();
     await other.getByRole('button', { name: 'Resume' }).click();
     await page.getByText('Live', { exact: true }).waitFor();
+    await other.close();
   });
 });
 
