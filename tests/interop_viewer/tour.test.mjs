@@ -55,7 +55,7 @@ describe('the tour', () => {
     await isDone(dashboard, 2, 'the pace of before');
 
     await next(dashboard, '4 of 7: Blind it');
-    await dashboard.button('4×').click();
+    for (let i = 0; i < 2; ++i) await page.locator('body').press(']'); // four times as fast
     await page.locator('[data-key="fault.link_lost"]').click();
     await isDone(dashboard, 2, 'a controller that sees again');
 
