@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // A headless Chromium of the system, as Debian installs it.
+import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 
 /** WebGL is drawn by the processor. `more`: further switches, e.g. '--disable-3d-apis'. */
 export const launch = (...more) =>
   chromium.launch({
-    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+    executablePath: fileURLToPath(new URL('chromium.sh', import.meta.url)),
     args: [
       '--headless',
       '--no-sandbox',

@@ -50,6 +50,17 @@ export async function startProgram(command, args, port = 0) {
   return program;
 }
 
+/** Changes a setting of the run. */
+export async function change(url, name, value) {
+  const socket = new WebSocket(url.replace('http', 'ws'), ['foxglove.sdk.v1']);
+  const client = new foxglove.FoxgloveClient({ ws: socket });
+  await once(socket, 'open');
+  const answer = new Promise((resolve) => client.on('parameterValues', resolve));
+  client.setParameters([{ name, value }], 'change');
+  await answer;
+  client.close();
+}
+
 /** Frames by cycle, the newest 2000 of them, and all changes. */
 export async function watch(url) {
   const socket = new WebSocket(url.replace('http', 'ws'), ['foxglove.sdk.v1']);

@@ -21,13 +21,15 @@ after(async () => {
 });
 
 async function open(options) {
-  dashboard = await DashboardPage.open(browser, demo.url, { fluent: true, ...options });
+  dashboard = await DashboardPage.open(browser, demo.url, options);
   page = dashboard.page;
 }
 
 describe('the dashboard', () => {
-  beforeEach(() => open());
-  afterEach(() => dashboard.close());
+  before(() => open());
+  beforeEach(() => dashboard.beginAt('drive'));
+  afterEach(() => dashboard.hadNothingToComplainOf());
+  after(() => dashboard.close());
 
   it('loads and says what runs', async () => {
     assert.equal(await page.locator('html').getAttribute('lang'), 'en');
@@ -111,6 +113,8 @@ describe('the dashboard', () => {
     await page.keyboard.press('/');
     await page.keyboard.type('squared rust');
     assert.equal(await page.locator('#tune-search').inputValue(), 'squared rust');
+    await page.reload();
+    await page.getByText('Live', { exact: true }).waitFor();
   });
 
   it('holds plots while the run goes on, and zooms by dragging', async () => {
@@ -164,6 +168,60 @@ describe('the dashboard', () => {
       'the other plot follows the cursor',
     );
     await dashboard.resume();
+  });
+
+  it('shows differences from a mark, the second cursor', async () => {
+    await dashboard.show('plots');
+    await dashboard.until(
+      () => dashboard.seconds(),
+      (now) => now > 1,
+      'some data',
+    );
+    await dashboard.pause();
+    const box = await page.locator('.plot[aria-label="Speed"] .u-over').boundingBox();
+    const at = (back) => [box.x + box.width - back, box.y + 20];
+    await page.mouse.click(...at(10));
+    const mark = page.getByRole('button', { name: /^Remove the mark/ });
+    await mark.waitFor();
+    await page.mouse.move(...at(30));
+    await dashboard.until(
+      () => page.locator('.plot[aria-label="Lateral error"] .key b').innerText(),
+      (text) => /\(Δ [+−]?\d+\.\d\d\)/.test(text),
+      'the difference in another plot',
+    );
+    await dashboard.until(
+      () => mark.innerText(),
+      (text) => /Δt −\d+\.\d\d s/.test(text),
+      'the time between both',
+    );
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await page.keyboard.press('x');
+    await mark.waitFor({ state: 'detached' });
+    await dashboard.resume();
+  });
+
+  it('plots a formula of the reader, says what is wrong with one, and keeps it', async () => {
+    await dashboard.show('plots');
+    const field = page.getByLabel('Plot a formula');
+    await field.fill('sped_mps * 2');
+    await field.press('Enter');
+    await page.getByRole('alert').filter({ hasText: 'did you mean speed_mps?' }).waitFor();
+    await field.fill('speed_mps * yaw_rate_radps');
+    await field.press('Enter');
+    const plot = page.locator('.plot[aria-label="Your own"]');
+    await plot.scrollIntoViewIfNeeded();
+    await dashboard.until(
+      () => dashboard.colours('.plot[aria-label="Your own"] canvas'),
+      (count) => count > 5,
+      'its line',
+    );
+    assert.match(await plot.locator('.key b').innerText(), /\d\.\d{3}/);
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await page.reload();
+    await plot.waitFor();
+    await field.fill('');
+    await field.press('Enter');
+    await plot.waitFor({ state: 'detached' });
   });
 
   it('can be used without a mouse', async () => {
@@ -225,6 +283,7 @@ describe('the dashboard', () => {
     await other.getByText('Paused', { exact: true }).waitFor();
     await other.getByRole('button', { name: 'Resume' }).click();
     await page.getByText('Live', { exact: true }).waitFor();
+    await other.close();
   });
 });
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A dashboard in a headless browser, with what its tests ask of it.
 import assert from 'node:assert/strict';
+import { once } from 'node:events';
 import { readFileSync } from 'node:fs';
+import { createServer } from 'node:http';
 import { createRequire } from 'node:module';
 import { PATIENCE } from './patience.mjs';
 
@@ -20,24 +22,76 @@ const workbench = readFileSync(new URL('../../web/src/views/workbench_view.tsx',
 export const TABS = [...workbench.matchAll(/^ {2}\{ name: '(\w+)', title: /gm)].map((row) => row[1]);
 assert.ok(TABS.length >= 6, 'workbench_view.tsx lists its panels otherwise than these tests read them');
 
-/** An init script: the page draws ten times a second. Drawing costs much without a graphics card. */
-function repaintSeldom() {
-  globalThis.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 100);
-  globalThis.cancelAnimationFrame = clearTimeout;
+/** Between two repaints of a page [ms]: drawing costs much without a graphics card. */
+const REPAINT_MS = 200;
+
+/** An init script: the page draws once in `interval` [ms], and not while `isHeld`. */
+export function repaintSeldom(interval) {
+  const due = new Map();
+  let last = 0;
+  globalThis.requestAnimationFrame = (draw) => {
+    due.set(++last, draw);
+    return last;
+  };
+  globalThis.cancelAnimationFrame = (which) => due.delete(which);
+  setInterval(() => {
+    if (globalThis.isHeld) return;
+    const drawings = [...due.values()];
+    due.clear();
+    for (const draw of drawings) draw(performance.now());
+  }, interval);
+}
+
+/**
+ * Pages that tests have left, by the browser and the options they were opened with. To load the page anew in one of
+ * them takes a third of the processor time of a context of its own.
+ */
+const left = new WeakMap();
+/** What they show meanwhile: a page of the same site as the program's, for which the browser keeps its process. */
+let restingPlace = null;
+async function rest() {
+  if (restingPlace === null) {
+    restingPlace = createServer((_, response) => response.end()).listen(0, '127.0.0.1');
+    await once(restingPlace, 'listening');
+    restingPlace.unref();
+  }
+  return `http://127.0.0.1:${restingPlace.address().port}/`;
 }
 
 export const differentFrom = (before) => (now) => now !== before;
 
 export class DashboardPage {
   /**
-   * Opens the page at a tab and waits until it says that it is live, or in another `state`. What the browser complains
-   * of is kept in `complaints`. The page draws ten times a second, or with `fluent` as often as the browser repaints.
+   * Opens the page at a tab and waits until it says that it is live, or in another `state`; the browser keeps nothing
+   * of tests before. What the browser complains of is kept in `complaints`. The page draws five times a second, or with
+   * `fluent` as often as the browser repaints.
    */
   static async open(browser, url, { tab = 'drive', state = 'Live', fluent = false, ...options } = {}) {
-    const context = await browser.newContext({ ...LAPTOP, ...options });
+    const shape = { ...LAPTOP, ...options };
+    const key = JSON.stringify([fluent, shape]);
+    const shelf = left.get(browser) ?? left.set(browser, new Map()).get(browser);
+    const dashboard = shelf.get(key) ?? (await DashboardPage.#fresh(browser, shape, fluent));
+    shelf.delete(key);
+    dashboard.leave = async () => {
+      const { page } = dashboard;
+      for (const other of page.context().pages()) if (other !== page) await other.close();
+      await page.evaluate(() => localStorage.clear()).catch(() => undefined); // a file has none
+      await page.goto(await rest());
+      await page.setViewportSize(shape.viewport);
+      await page.emulateMedia({ media: null, reducedMotion: null, colorScheme: shape.colorScheme });
+      shelf.set(key, dashboard);
+    };
+    dashboard.complaints.length = 0;
+    await dashboard.page.goto(`${url}#${tab}`);
+    await dashboard.page.getByText(state, { exact: true }).waitFor();
+    return dashboard;
+  }
+
+  static async #fresh(browser, shape, fluent) {
+    const context = await browser.newContext(shape);
     context.setDefaultTimeout(PATIENCE);
     const page = await context.newPage();
-    if (!fluent) await page.addInitScript(repaintSeldom);
+    if (!fluent) await page.addInitScript(repaintSeldom, REPAINT_MS);
     const complaints = [];
     page.on('console', (message) => {
       if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
@@ -46,22 +100,27 @@ export class DashboardPage {
     page.on('response', (response) => {
       if (response.status() >= 400) complaints.push(`${response.status()} ${response.url()}`);
     });
-    await page.goto(`${url}#${tab}`);
-    const dashboard = new DashboardPage(page, complaints);
-    await page.getByText(state, { exact: true }).waitFor();
-    return dashboard;
+    return new DashboardPage(page, complaints);
   }
 
   constructor(page, complaints) {
     this.page = page;
     this.complaints = complaints;
+    this.leave = () => page.context().close();
   }
 
-  /** Ends with the assertion that the browser had nothing to complain of, but for `expected`. */
-  async close(expected = () => false) {
-    const complaints = this.complaints.filter((each) => !expected(each));
-    await this.page.context().close();
-    assert.deepEqual(complaints, []);
+  /** Asserts that the browser had nothing to complain of, but for `expected`. */
+  hadNothingToComplainOf(expected = () => false) {
+    assert.deepEqual(
+      this.complaints.filter((each) => !expected(each)),
+      [],
+    );
+  }
+
+  /** Ends with that assertion. */
+  async close(expected) {
+    await this.leave();
+    this.hadNothingToComplainOf(expected);
   }
 
   text(id) {
@@ -80,6 +139,12 @@ export class DashboardPage {
 
   show(tab) {
     return this.page.locator(`#tab-${tab}`).click();
+  }
+
+  /** Of a page that several tests use: a tab as it is after loading, with nothing focused. */
+  async beginAt(tab) {
+    await this.show(tab);
+    await this.page.evaluate(() => document.activeElement.blur());
   }
 
   button(name) {
@@ -122,7 +187,7 @@ export class DashboardPage {
       const value = await read();
       if (accept(value)) return value;
       assert.ok(Date.now() < end, `${what}: still ${value}`);
-      await this.page.waitForTimeout(50);
+      await this.page.waitForTimeout(100);
     }
   }
 
@@ -144,9 +209,14 @@ export class DashboardPage {
   /** What axe objects to; `rules`: only these. */
   async accessibilityFindings(rules) {
     if (!(await this.page.evaluate(() => 'axe' in globalThis))) await this.page.evaluate(axe);
-    // Limits what axe describes of elements without findings; the findings are the same.
-    const options = { resultTypes: ['violations'], ...(rules && { runOnly: rules }) };
-    const { violations } = await this.page.evaluate((given) => globalThis.axe.run(given), options);
+    // Limits what axe describes of elements without findings, and what it loads; the findings are the same.
+    const options = { resultTypes: ['violations'], preload: false, ...(rules && { runOnly: rules }) };
+    const { violations } = await this.page.evaluate(async (given) => {
+      globalThis.isHeld = true;
+      const result = await globalThis.axe.run(given);
+      globalThis.isHeld = false;
+      return result;
+    }, options);
     return violations.map(
       ({ id, nodes }) =>
         `${id}: ${nodes.map(({ target, failureSummary }) => `${target} ${failureSummary}`).join(', ')}`,

@@ -32,7 +32,7 @@ describe('a lap', () => {
   const recording = join(folder, 'laps.mcap');
   let drive;
   before(async () => {
-    drive = await startDrive(['--track', 'oval', '--pace', '10', '--record', recording]);
+    drive = await startDrive(['--track', 'oval', '--pace', '20', '--record', recording]);
   });
   after(async () => {
     await drive.stop();
@@ -121,7 +121,7 @@ describe('a gamepad', () => {
 });
 
 it('sets people against controllers, on one track', async (t) => {
-  const drive = await startDrive(['--track', 'oval', '--pace', '10']);
+  const drive = await startDrive(['--track', 'oval', '--pace', '20']);
   t.after(() => drive.stop());
   const dashboard = await DashboardPage.open(here.browser, drive.url, { tab: 'laps' });
   const { page } = dashboard;

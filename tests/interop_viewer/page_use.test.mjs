@@ -1,22 +1,27 @@
 // SPDX-License-Identifier: MIT
 // The page in the hands of a reader: keys, tabs, addresses, searches and explanations do what they say.
 import assert from 'node:assert/strict';
-import { afterEach, beforeEach, describe, it } from 'node:test';
-import { DashboardPage } from './dashboard_page.mjs';
+import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
+import { DashboardPage, LAPTOP } from './dashboard_page.mjs';
 import { browserAndDrive } from './here.mjs';
 
 const here = browserAndDrive(['--track', 'lakeside']);
 let dashboard;
 let page;
 
-async function open(options) {
-  dashboard = await DashboardPage.open(here.browser, here.drive.url, options);
+async function open() {
+  dashboard = await DashboardPage.open(here.browser, here.drive.url);
   page = dashboard.page;
 }
 
 describe('the page', () => {
-  beforeEach(() => open());
-  afterEach(() => dashboard.close());
+  before(() => open());
+  beforeEach(async () => {
+    await page.setViewportSize(LAPTOP.viewport);
+    await dashboard.beginAt('drive');
+  });
+  afterEach(() => dashboard.hadNothingToComplainOf());
+  after(() => dashboard.close());
 
   it('pauses by Space, whatever was clicked last', async () => {
     await dashboard.show('faults');

@@ -12,7 +12,7 @@ const race = async () => (await fetch(new URL('rival.json', here.drive.url))).js
 it('drives a second car with other settings beside the run, tells where it gains, and keeps the winner', async () => {
   const dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'drive' });
   const { page } = dashboard;
-  await page.locator('.panel-body [data-key="run.pace"] .number-box').fill('10');
+  await page.locator('.panel-body [data-key="run.pace"] .number-box').fill('20');
   await page.locator('.panel-body [data-key="run.pace"] .number-box').press('Enter');
   await dashboard.show('whatif');
   assert.ok(await dashboard.button('Race A against B').isDisabled(), 'nothing to race with');

@@ -1,32 +1,29 @@
 // SPDX-License-Identifier: MIT
 // The line of the fastest lap, as the page draws it: on the map and in three dimensions, for who wants it.
 import assert from 'node:assert/strict';
-import { afterEach, beforeEach, it } from 'node:test';
-import { startDrive } from './chicane_drive.mjs';
+import { it } from 'node:test';
 import { DashboardPage, PHONE } from './dashboard_page.mjs';
-import { browserAlone } from './here.mjs';
+import { browserAndDrive } from './here.mjs';
 
-const here = browserAlone();
-let drive;
-beforeEach(async () => {
-  drive = await startDrive(['--track', 'hairpins']);
-});
-afterEach(() => drive.stop());
+const here = browserAndDrive(['--track', 'hairpins']);
 
 const line = (page) => page.locator('.legend button', { hasText: 'racing line' });
 const isOn = (page) => line(page).getAttribute('aria-pressed');
 
+let state = 'Live';
 /** The page with a run that stands still, once the program has found the line. */
 async function open(options) {
-  const dashboard = await DashboardPage.open(here.browser, drive.url, { fluent: true, ...options });
+  const dashboard = await DashboardPage.open(here.browser, here.drive.url, { state, ...options });
   const { page } = dashboard;
   await line(page).waitFor();
+  if (state === 'Paused') return dashboard;
   await dashboard.until(
     () => dashboard.number('speed'),
     (mph) => mph > 35,
     'a plan with little of the cyan of slow speeds',
   );
   await dashboard.pause();
+  state = 'Paused';
   return dashboard;
 }
 

@@ -5,7 +5,7 @@ import { describe, it } from 'node:test';
 import { DashboardPage, PHONE, TABS } from './dashboard_page.mjs';
 import { browserAndDrive } from './here.mjs';
 
-const here = browserAndDrive(['--track', 'oval']);
+const here = browserAndDrive(['--track', 'oval', '--pace', '3']);
 
 const open = (options = {}) => DashboardPage.open(here.browser, here.drive.url, { tab: 'laps', ...options });
 const box = (dashboard, selector) => dashboard.page.locator(selector).first().boundingBox();
@@ -82,7 +82,7 @@ describe('the cursor', () => {
       (mph) => mph > 60,
       'a car that drives',
     );
-    await page.waitForTimeout(1500); // a stretch behind the car to point at
+    await page.waitForTimeout(500); // a stretch behind the car to point at
     await dashboard.pause();
     await dashboard.button('Whole track').click();
     assert.equal(await pink(), 0);

@@ -4,8 +4,9 @@ import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { setTimeout as delay } from 'node:timers/promises';
 import { pathToFileURL } from 'node:url';
-import { startDrive, startProgram } from './chicane_drive.mjs';
+import { change, startDrive, startProgram, watch } from './chicane_drive.mjs';
 import { DashboardPage, PHONE, TABS } from './dashboard_page.mjs';
 
 export const SIZES = {
@@ -125,7 +126,11 @@ export async function startScenes() {
   run('drive', '--fast', '--track', 'oval', '--laps', '2', '--record', log);
   run('drive', '--fast', '--track', 'oval', '--laps', '2', '--preset', 'pid', '--record', other);
   run('report', log, other, '--output', report);
-  const live = await startDrive(['--track', 'oval', '--pace', '10']);
+  const live = await startDrive(['--track', 'oval', '--pace', '20']);
+  const viewer = await watch(live.url);
+  while (!(viewer.newest?.lap >= 2)) await delay(50); // as many as can be compared
+  viewer.close();
+  await change(live.url, 'run.pace', 1);
   const replay = await startProgram('replay', [log]);
   const ending = async () => (await startDrive(['--track', 'oval', '--laps', '3'])).url;
   return {

@@ -30,7 +30,7 @@ describe('what if, in a live run', () => {
   let drive;
   let dashboard;
   before(async () => {
-    drive = await startDrive(['--track', 'oval']);
+    drive = await startDrive(['--track', 'oval', '--pace', '4']);
     dashboard = await DashboardPage.open(here.browser, drive.url, { tab: 'whatif' });
     await dashboard.until(
       () => dashboard.number('speed'),

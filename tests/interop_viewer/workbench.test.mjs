@@ -3,7 +3,7 @@
 // page.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { afterEach, beforeEach, describe, it } from 'node:test';
+import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
 import { startDrive, watch } from './chicane_drive.mjs';
 import { DashboardPage, differentFrom, LAPTOP } from './dashboard_page.mjs';
 import { browserAndDrive } from './here.mjs';
@@ -56,8 +56,10 @@ async function download(name) {
 }
 
 describe('the workbench', () => {
-  beforeEach(() => open('drive'));
-  afterEach(() => dashboard.close());
+  before(() => open('drive'));
+  beforeEach(() => dashboard.beginAt('drive'));
+  afterEach(() => dashboard.hadNothingToComplainOf());
+  after(() => dashboard.close());
 
   it('changes the command from the next control step on', async () => {
     const other = await watch(here.drive.url);
@@ -179,9 +181,9 @@ describe('the workbench', () => {
     await page.getByText('4× speed').waitFor();
     const moment = async () => ({ run: await dashboard.seconds(), clock: performance.now() / 1000 });
     let last = await moment();
-    // Of the stretches of a second, one in which the machine does not hold up the run.
+    // Of the stretches of half a second, one in which the machine does not hold up the run.
     const pace = async () => {
-      await page.waitForTimeout(1000);
+      await page.waitForTimeout(500);
       const [before, now] = [last, await moment()];
       last = now;
       return (now.run - before.run) / (now.clock - before.clock);

@@ -16,7 +16,7 @@ import { toggleLayer } from './state/layers';
 import { ageAtArrival, attempt, link, notice, pastLeft, services } from './state/link';
 import { call, can, refresh } from './state/operate';
 import { rememberRun } from './state/other_run';
-import { toggleFrozen } from './state/plot_view';
+import { toggleFrozen, toggleMark } from './state/plot_view';
 import { togglePresentation } from './state/presentation';
 import { isPaused } from './state/run';
 import { schema } from './state/settings';
@@ -155,6 +155,13 @@ addShortcuts(
     },
   },
   { keys: ['p'], label: 'P', does: 'Hold the plots, or follow again', group: 'Panels', action: toggleFrozen },
+  {
+    keys: ['x'],
+    label: 'X',
+    does: 'Mark the moment under the cursor: plots show differences from it',
+    group: 'Panels',
+    action: toggleMark,
+  },
   { keys: ['d'], label: 'D', does: 'Panel below or on the right of the picture', group: 'Panels', action: toggleDock },
   {
     keys: ['f'],

@@ -17,6 +17,14 @@ export const zoomed = signal<readonly [number, number] | null>(null);
 /** Time under the cursor of any plot [s]; null when it is over none. */
 export const cursorTime = signal<number | null>(null);
 
+/** Time of the mark that a click sets, the second cursor [s]; null: none. Plots then show differences from it. */
+export const markTime = signal<number | null>(null);
+
+/** Sets the mark where the cursor is, or takes it away. */
+export function toggleMark(): void {
+  markTime.value = markTime.value === null ? (cursorTime.value ?? newestTime()) : null;
+}
+
 /** A place on a lap that is compared, under the cursor: the lap from 0, and metres along the road; null: over none. */
 export const cursorPlace = signal<{ readonly lap: number; readonly place: number } | null>(null);
 
@@ -24,6 +32,11 @@ let frozen: History | null = null;
 
 /** The history that plots draw: the live one, or a copy from the moment they were held. */
 export const plotted = (): History => (isFrozen.value && frozen ? frozen : live.plots);
+
+function newestTime(): number | null {
+  const newest = plotted().newest(Column.time_s);
+  return Number.isFinite(newest) ? newest : null;
+}
 
 export function freeze(): void {
   if (isFrozen.value) return;
@@ -36,6 +49,7 @@ export function thaw(): void {
   isFrozen.value = false;
   zoomed.value = null;
   cursorTime.value = null;
+  markTime.value = null;
 }
 
 export const toggleFrozen = (): void => (isFrozen.value ? thaw() : freeze());

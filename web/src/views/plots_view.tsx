@@ -1,14 +1,26 @@
 import { useComputed } from '@preact/signals';
 import { rangeAboutZero, rangeFromZero, rangeInSteps } from '../draw/axis';
 import { downloadPng, fileName } from '../lib/download';
+import { fixed } from '../lib/format';
 import { persisted } from '../lib/persisted';
 import { type SpeedUnit, speedUnit } from '../lib/units';
 import { nameInWords } from '../lib/words';
 import { COST_TERMS, Column, costColumn } from '../state/columns';
-import { isFrozen, thaw, toggleFrozen, WINDOWS_S, windowSeconds, zoomed } from '../state/plot_view';
+import {
+  cursorTime,
+  isFrozen,
+  markTime,
+  thaw,
+  toggleFrozen,
+  toggleMark,
+  WINDOWS_S,
+  windowSeconds,
+  zoomed,
+} from '../state/plot_view';
 import { run } from '../state/run';
 import { GgView } from './gg_view';
 import { HistogramView } from './histogram_view';
+import { OwnPlot } from './own_plot';
 import { pictureOfPlots } from './plot_picture';
 import { drawStatusStrip } from './status_strip';
 import { type PlotSpec, TimePlot } from './time_plot';
@@ -165,6 +177,11 @@ function Toolbar() {
       ) : (
         <span class="hint wide-only">Drag to zoom</span>
       )}
+      {markTime.value !== null && (
+        <button type="button" aria-keyshortcuts="X" onClick={toggleMark}>
+          Remove the mark{cursorTime.value === null ? '' : `, Δt ${fixed(cursorTime.value - markTime.value, 2)} s`}
+        </button>
+      )}
       <span class="spring" />
       <button type="button" title="All plots as a picture" onClick={() => void savePicture()}>
         PNG
@@ -192,6 +209,7 @@ export function PlotsView() {
           <TimePlot key={spec.title} spec={spec} />
         ))}
         <HistogramView />
+        <OwnPlot />
       </div>
     </div>
   );

@@ -7,7 +7,18 @@ import { onThemeChange } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { onScreen } from '../lib/on_screen';
 import { Column } from '../state/columns';
-import { cursorTime, isFrozen, plotted, thaw, timeRange, windowSeconds, zoomed, zoomTo } from '../state/plot_view';
+import type { History } from '../state/history';
+import {
+  cursorTime,
+  isFrozen,
+  markTime,
+  plotted,
+  thaw,
+  timeRange,
+  windowSeconds,
+  zoomed,
+  zoomTo,
+} from '../state/plot_view';
 import { shown } from '../state/shown';
 import { LONGEST_SILENCE_S } from '../state/silence';
 import { everyFrame } from '../state/ticker';
@@ -16,7 +27,8 @@ import { registerDrawing } from './picture_drawings';
 import { type ChartColours, chartColours } from './plot_colours';
 
 export interface Series {
-  readonly column: number;
+  readonly column: number; // one of them, or
+  readonly compute?: (history: History, first: number, end: number) => Float64Array; // from rows of all
   readonly label: string;
   readonly colour: number; // of --series-…, from 0
   readonly isDashed?: boolean;
@@ -66,9 +78,10 @@ function dataOf(spec: PlotSpec): Float64Array[] {
   const part = (column: number): Float64Array => history.column(column).subarray(first, end);
   return [
     part(Column.time_s),
-    ...spec.series.map(({ column, factor = 1 }) =>
-      factor === 1 ? part(column) : part(column).map((value) => value * factor),
-    ),
+    ...spec.series.map(({ column, compute, factor = 1 }) => {
+      if (compute) return compute(history, first, end);
+      return factor === 1 ? part(column) : part(column).map((value) => value * factor);
+    }),
   ];
 }
 
@@ -147,6 +160,8 @@ function optionsOf(spec: PlotSpec, colours: ChartColours): uPlot.Options {
     hooks: {
       drawClear: [(plot) => drawFaultBands(plot, colours)],
       drawAxes: [(plot) => spec.under?.(plot, colours)],
+      draw: [(plot) => drawMark(plot, colours)],
+      ready: [markByClick],
       setSelect: [
         (plot) => {
           const { left, width } = plot.select;
@@ -165,13 +180,49 @@ function optionsOf(spec: PlotSpec, colours: ChartColours): uPlot.Options {
   };
 }
 
-/** The value of a column under the cursor, or the newest. */
-export function readout(column: number): number {
+/** The value of a series at a time, or the newest. */
+function valueAt({ column, compute, factor = 1 }: Series, time: number | null): number {
   const history = plotted();
-  const time = cursorTime.value;
-  if (time === null) return history.newest(column);
-  const at = firstSince(history.column(Column.time_s), time - 1e-9);
-  return history.column(column)[at] ?? NaN;
+  const row = time === null ? history.length - 1 : firstSince(history.column(Column.time_s), time - 1e-9);
+  if (row < 0) return NaN;
+  return compute ? (compute(history, row, row + 1)[0] ?? NaN) : (history.column(column)[row] ?? NaN) * factor;
+}
+
+/** The value under the cursor, or the newest; with a mark, the difference from there, too. */
+function readout(series: Series, decimals: number): string {
+  const value = valueAt(series, cursorTime.value);
+  const mark = markTime.value;
+  if (mark === null) return fixed(value, decimals);
+  const difference = value - valueAt(series, mark);
+  return `${fixed(value, decimals)} (Δ ${difference > 0 ? '+' : ''}${fixed(difference, decimals)})`;
+}
+
+/** A dashed line where the mark is. */
+function drawMark(plot: uPlot, colours: ChartColours): void {
+  const time = markTime.value;
+  const { left, top, width, height } = plot.bbox;
+  if (time === null) return;
+  const x = Math.round(plot.valToPos(time, 'x', true));
+  if (x < left || x > left + width) return;
+  const { ctx } = plot;
+  ctx.save();
+  ctx.strokeStyle = colours.text;
+  ctx.lineWidth = devicePixelRatio;
+  ctx.setLineDash([4 * devicePixelRatio, 3 * devicePixelRatio]);
+  ctx.beginPath();
+  ctx.moveTo(x, top);
+  ctx.lineTo(x, top + height);
+  ctx.stroke();
+  ctx.restore();
+}
+
+/** A click, no drag, sets the mark where it is. */
+function markByClick(plot: uPlot): void {
+  let from = NaN;
+  plot.over.addEventListener('mousedown', ({ clientX }) => (from = clientX));
+  plot.over.addEventListener('mouseup', ({ clientX, detail }) => {
+    if (Math.abs(clientX - from) < 5 && detail === 1) markTime.value = cursorTime.value;
+  });
 }
 
 const PACE_MS = 100; // as often as text
@@ -213,7 +264,7 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
       fit();
     });
     const unfollow = effect(() => {
-      void [isFrozen.value, zoomed.value, windowSeconds.value];
+      void [isFrozen.value, zoomed.value, windowSeconds.value, markTime.value];
       drawn = NaN;
     });
     // A cursor that was set elsewhere, on the map for one.
@@ -241,16 +292,14 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
           {spec.title} <span class="unit">{spec.unit}</span>
         </h2>
         <p>
-          {spec.series.map(({ column, label, colour, isDashed, factor = 1 }) => (
-            <span key={label} class="key">
+          {spec.series.map((series) => (
+            <span key={series.label} class="key">
               <span
-                class={isDashed ? 'stroke dashed' : 'stroke'}
-                style={{ borderColor: `var(--series-${colour + 1})` }}
+                class={series.isDashed ? 'stroke dashed' : 'stroke'}
+                style={{ borderColor: `var(--series-${series.colour + 1})` }}
               />
-              {spec.series.length > 1 ? `${label} ` : ''}
-              {spec.series.some(({ isFilled }) => isFilled) ? null : (
-                <b>{fixed(readout(column) * factor, spec.decimals)}</b>
-              )}
+              {spec.series.length > 1 ? `${series.label} ` : ''}
+              {spec.series.some(({ isFilled }) => isFilled) ? null : <b>{readout(series, spec.decimals)}</b>}
             </span>
           ))}
         </p>
