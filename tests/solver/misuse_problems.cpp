@@ -68,8 +68,12 @@ struct CountWithoutConstraint : Base {
   static constexpr int kNc = 1;
   chicane::solver::SoftPenalty soft_penalty(int) const { return {}; }
 };
-struct ConstraintNotCounted : Soft {
+/// Well-formed: says that it leaves the other's out.
+struct WithoutConstraint : Soft {
   static constexpr int kNc = 0;
+};
+struct ConstraintTooMany : Soft {
+  static constexpr int kNc = 2;
 };
 struct NoPrice : Base {
   static constexpr int kNc = 1;
@@ -133,6 +137,7 @@ struct Solver {};
 
 Solver<Base> base;
 Solver<Soft> soft;
+Solver<WithoutConstraint> without;
 #ifdef MISUSE
 // expect: terminal_equality() needs its count: `static constexpr int kNeh
 Solver<EndWithoutCount> problem01;
@@ -147,7 +152,7 @@ Solver<CountWithoutEquality> problem05;
 // expect: kNc > 0: write `template <class K, class X, class U> auto constraint(
 Solver<CountWithoutConstraint> problem06;
 // expect: constraint() has to return kNc rows
-Solver<ConstraintNotCounted> problem07;
+Solver<ConstraintTooMany> problem07;
 // expect: kNc > 0: write `chicane::solver::SoftPenalty soft_penalty(int
 Solver<NoPrice> problem08;
 // expect: write `bool is_hard(int constraint) const`

@@ -115,8 +115,6 @@ CHICANE_END_FUNCTION(terminal_equality)
 CHICANE_END_FUNCTION(terminal_constraint)
 CHICANE_MEMBER(is_hard)
 CHICANE_MEMBER(kPreviousInput)
-CHICANE_MEMBER(input_rate_lower)
-CHICANE_MEMBER(input_rate_upper)
 CHICANE_MEMBER(constraint_name)
 CHICANE_MEMBER(constraint_unit)
 CHICANE_MEMBER(input_name)
@@ -206,7 +204,8 @@ consteval bool check_bounds() {
   static_assert(
       kHasBounds,
       "write `std::array<double, kNu> input_lower(int k) const` and the same of input_upper(int k)");
-  constexpr bool kHasRate = HasMember_input_rate_lower<P>::value || HasMember_input_rate_upper<P>::value;
+  constexpr bool kHasRate = requires(const P& p) { p.input_rate_lower(0); }
+  || requires(const P& p) { p.input_rate_upper(0); };
   static_assert(
       !kHasRate || HasMember_kPreviousInput<P>::value,
       "bounds on changes of inputs need `static constexpr std::array<int, kNu> kPreviousInput = {...};`: the "
@@ -246,78 +245,82 @@ consteval bool has_constraints() {
                 "U& u) const`");
   return kIsCallable;
 }
+// A count of 0 says that the function, which may be another class's, is left out: it is not called then.
 template <class P>
 consteval bool check_constraints() {
-  constexpr int kRows = rows_of<Call_constraint, P>();
-  static_assert(
-      kRows == kNotCallable || kRows == P::kNc,
-      "constraint() has to return kNc rows: std::make_tuple(...), or std::array<T, kNc> of arrays of T");
-  constexpr bool kHasPrice = P::kNc == 0 || requires(const P& p) {
-    { p.soft_penalty(0) } -> std::same_as<SoftPenalty>;
-  };
-  static_assert(kHasPrice,
-                "kNc > 0: write `chicane::solver::SoftPenalty soft_penalty(int constraint) const`");
+  bool is_good = true;
+  if constexpr (P::kNc > 0) {
+    constexpr int kRows = rows_of<Call_constraint, P>();
+    static_assert(
+        kRows == P::kNc,
+        "constraint() has to return kNc rows: std::make_tuple(...), or std::array<T, kNc> of arrays of T");
+    constexpr bool kHasPrice = requires(const P& p) {
+      { p.soft_penalty(0) } -> std::same_as<SoftPenalty>;
+    };
+    static_assert(kHasPrice,
+                  "kNc > 0: write `chicane::solver::SoftPenalty soft_penalty(int constraint) const`");
+    is_good = kRows == P::kNc && kHasPrice;
+  }
   constexpr bool kSaysHard = requires(const P& p) {
     { p.is_hard(0) } -> std::same_as<bool>;
   };
   static_assert(kSaysHard || !HasMember_is_hard<P>::value, "write `bool is_hard(int constraint) const`");
-  return (kRows == P::kNc || (P::kNc == 0 && kRows == kNotCallable)) && kHasPrice &&
-         (kSaysHard || !HasMember_is_hard<P>::value);
+  return is_good && (kSaysHard || !HasMember_is_hard<P>::value);
 }
-
 template <class P>
 consteval bool check_equalities() {
-  constexpr bool kIsNamed = HasMember_equality<P>::value;
-  if constexpr (requires { P::kNh; }) {
+  if constexpr (!requires { P::kNh; }) {
+    static_assert(!HasMember_equality<P>::value,
+                  "equality() needs its count: `static constexpr int kNh = ...;`");
+    return !HasMember_equality<P>::value;
+  } else if constexpr (P::kNh > 0) {
     constexpr int kRows = rows_of<Call_equality, P>();
-    static_assert(P::kNh == 0 || kRows != kNotCallable,
+    static_assert(kRows != kNotCallable,
                   "kNh > 0: write `template <class K, class X, class U> auto equality(K k, const X& x, const "
                   "U& u) const`");
     static_assert(
         kRows == kNotCallable || kRows == P::kNh,
         "equality() has to return kNh rows: std::make_tuple(...), or std::array<T, kNh> of arrays of T");
-    return P::kNh == 0 ? kRows <= 0 : kRows == P::kNh;
+    return kRows == P::kNh;
+  } else {
+    return true;
   }
-  static_assert(
-      requires { P::kNh; } || !kIsNamed, "equality() needs its count: `static constexpr int kNh = ...;`");
-  return requires { P::kNh; }
-  || !kIsNamed;
 }
 template <class P>
 consteval bool check_terminal_equalities() {
-  constexpr bool kIsNamed = HasMember_terminal_equality<P>::value;
-  if constexpr (requires { P::kNeh; }) {
+  if constexpr (!requires { P::kNeh; }) {
+    static_assert(!HasMember_terminal_equality<P>::value,
+                  "terminal_equality() needs its count: `static constexpr int kNeh = ...;`");
+    return !HasMember_terminal_equality<P>::value;
+  } else if constexpr (P::kNeh > 0) {
     constexpr int kRows = rows_of<Call_terminal_equality, P>();
-    static_assert(P::kNeh == 0 || kRows != kNotCallable,
+    static_assert(kRows != kNotCallable,
                   "kNeh > 0: write `template <class X> auto terminal_equality(const X& x) const`");
     static_assert(kRows == kNotCallable || kRows == P::kNeh,
                   "terminal_equality() has to return kNeh rows: std::make_tuple(...), or std::array<T, kNeh> "
                   "of arrays of T");
-    return P::kNeh == 0 ? kRows <= 0 : kRows == P::kNeh;
+    return kRows == P::kNeh;
+  } else {
+    return true;
   }
-  static_assert(
-      requires { P::kNeh; } || !kIsNamed,
-      "terminal_equality() needs its count: `static constexpr int kNeh = ...;`");
-  return requires { P::kNeh; }
-  || !kIsNamed;
 }
 template <class P>
 consteval bool check_terminal_constraints() {
-  constexpr bool kIsNamed = HasMember_terminal_constraint<P>::value;
-  if constexpr (requires { P::kNec; }) {
+  if constexpr (!requires { P::kNec; }) {
+    static_assert(!HasMember_terminal_constraint<P>::value,
+                  "terminal_constraint() needs its count: `static constexpr int kNec = ...;`");
+    return !HasMember_terminal_constraint<P>::value;
+  } else if constexpr (P::kNec > 0) {
     constexpr int kRows = rows_of<Call_terminal_constraint, P>();
-    static_assert(P::kNec == 0 || kRows != kNotCallable,
+    static_assert(kRows != kNotCallable,
                   "kNec > 0: write `template <class X> auto terminal_constraint(const X& x) const`");
     static_assert(kRows == kNotCallable || kRows == P::kNec,
                   "terminal_constraint() has to return kNec rows: std::make_tuple(...), or std::array<T, "
                   "kNec> of arrays of T");
-    return P::kNec == 0 ? kRows <= 0 : kRows == P::kNec;
+    return kRows == P::kNec;
+  } else {
+    return true;
   }
-  static_assert(
-      requires { P::kNec; } || !kIsNamed,
-      "terminal_constraint() needs its count: `static constexpr int kNec = ...;`");
-  return requires { P::kNec; }
-  || !kIsNamed;
 }
 
 /// Names and switches that would be left out in silence where their form is another one.
