@@ -233,17 +233,20 @@ consteval bool check_bounds() {
 /// By whatever level: without constraints that can be called a problem is of neither.
 template <class P>
 consteval bool has_constraints() {
-  constexpr bool kIsCallable =
-      P::kNc == 0 || requires(const P& p, const Symbols<P::kNx>& x, const Symbols<P::kNu>& u) {
-    p.constraint(0, x, u);
+  if constexpr (P::kNc > 0) {
+    constexpr bool kIsCallable = requires(const P& p, const Symbols<P::kNx>& x, const Symbols<P::kNu>& u) {
+      p.constraint(0, x, u);
+    }
+    || requires(const P& p, const std::array<double, P::kNx>& x, const std::array<double, P::kNu>& u) {
+      p.constraint(0, x, u);
+    };
+    static_assert(kIsCallable,
+                  "kNc > 0: write `template <class K, class X, class U> auto constraint(K k, const X& x, "
+                  "const U& u) const`");
+    return kIsCallable;
+  } else {
+    return true;
   }
-  || requires(const P& p, const std::array<double, P::kNx>& x, const std::array<double, P::kNu>& u) {
-    p.constraint(0, x, u);
-  };
-  static_assert(kIsCallable,
-                "kNc > 0: write `template <class K, class X, class U> auto constraint(K k, const X& x, const "
-                "U& u) const`");
-  return kIsCallable;
 }
 // A count of 0 says that the function, which may be another class's, is left out: it is not called then.
 template <class P>
