@@ -6,10 +6,12 @@ import json
 import sys
 
 report = json.load(sys.stdin)
-for key in ("processor", "compiler", "flags", "commit", "date", "ipopt", "load_before", "load_after", "growth_exponent"):
+for key in ("processor", "compiler", "flags", "commit", "date", "references", "load_before", "load_after", "growth_exponent"):
     print(f"# {key}: {report[key]}")
-for key in ("step_cpu_time_us", "step_time_us", "solve_time_us"):
-    print(f"# {key} of the control step:", ", ".join(f"{share} {time:.1f}" for share, time in report[key].items()))
+print(f"# form: {report['form']}")
+for guard in ("step_with_guard", "step_without_guard"):
+    for key in ("cpu_time_us", "wall_time_us", "solve_time_us"):
+        print(f"# {guard} {key}:", ", ".join(f"{share} {time:.1f}" for share, time in report[guard][key].items()))
 rows = report["solves"]
 columns = list(dict.fromkeys(key for row in rows for key in row))
 table = csv.DictWriter(sys.stdout, columns, lineterminator="\n")

@@ -16,6 +16,7 @@ struct TaggedDense {
   static constexpr int kNr = P::kNr;
   static constexpr int kNe = P::kNe;
   static constexpr int kNc = P::kNc;
+  static constexpr bool kRealTime = P::kRealTime;
   const P* problem = nullptr;
 
   template <class K, class T>

@@ -15,6 +15,7 @@ struct Tagged {
   static constexpr int kNr = P::kNr;
   static constexpr int kNe = P::kNe;
   static constexpr int kNc = P::kNc;
+  static constexpr bool kRealTime = P::kRealTime;
   const P* problem = nullptr;
 
   template <class K, class X, class U>

@@ -23,6 +23,7 @@ using namespace chicane;
 
 // Exit codes of `chicane`.
 constexpr int kSuccess = 0;
+constexpr int kWrong = 1;  // answers are
 constexpr int kUsage = 2;
 constexpr int kEnvironment = 3;
 
@@ -59,7 +60,14 @@ int run(const std::vector<std::string>& words) {
   const Result<bench::BenchReport> result = bench::measure(*request, references, stop);
   if (!result) return report(result.error());
   const std::string text = request->is_json ? to_json(*result) : to_markdown(*result);
-  if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return kSuccess;
+  if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) {
+    const int wrong = bench::wrong_answers(result->golden);
+    if (wrong == 0) return kSuccess;
+    std::fprintf(stderr,
+                 "chicane bench: %d of the recorded problems are not solved, or above their golden optimum\n",
+                 wrong);
+    return kWrong;
+  }
   std::fprintf(stderr, "chicane bench: the results could not be written: %s\n", std::strerror(errno));
   return kEnvironment;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <vector>
 
@@ -30,6 +31,15 @@ void measure_solves(const Request& request, References& references, const std::a
       if (row.instances > 0) report.solves.push_back(row);
     }
   }
+}
+
+/// The folder of problems with known optima beside the sources; empty where there is none.
+std::string recorded_problems() {
+  const std::filesystem::path folder = std::filesystem::path(CHICANE_SOURCE_DIR) / "../shared/reference_nlp";
+  std::error_code error;
+  if (std::filesystem::is_directory(folder, error)) return folder.string();
+  fmt::print(stderr, "golden optima are left out: {} is not there\n", folder.string());
+  return {};
 }
 
 /// Exponent of the least-squares line through (log N, log time).
@@ -60,10 +70,11 @@ void measure_growth(const std::atomic<bool>& stop, BenchReport& report) {
 
 /// Two laps of what `chicane drive` does by default, in virtual time, and again: every drive takes the same
 /// steps, and each counts with the least time it took.
-Result<void> measure_steps(const std::atomic<bool>& stop, BenchReport& report) {
-  if (stop) return {};
-  fmt::print(stderr, "control step of the default controller\n");
-  const Result<scenario::Scenario> scenario = protocol::compose({"", {{"laps", "2"}}});
+Result<StepTimes> measure_steps(std::string_view guard_mode, const std::atomic<bool>& stop) {
+  if (stop) return StepTimes{};
+  fmt::print(stderr, "control step of the default controller, guard {}\n", guard_mode);
+  const Result<scenario::Scenario> scenario =
+      protocol::compose({"", {{"laps", "2"}, {"guard.mode", std::string(guard_mode)}}});
   if (!scenario) return fail(scenario.error());
   std::vector<double> cpu;
   std::vector<double> wall;
@@ -85,11 +96,11 @@ Result<void> measure_steps(const std::atomic<bool>& stop, BenchReport& report) {
       ++step;
     }
   }
-  report.steps = cpu.size();
-  report.step_cpu_us = spread_of(std::move(cpu));
-  report.step_us = spread_of(std::move(wall));
-  report.step_solve_us = spread_of(std::move(solves));
-  return {};
+  StepTimes times{.steps = cpu.size()};
+  times.cpu_us = spread_of(std::move(cpu));
+  times.wall_us = spread_of(std::move(wall));
+  times.solve_us = spread_of(std::move(solves));
+  return times;
 }
 
 }  // namespace
@@ -99,13 +110,18 @@ Result<BenchReport> measure(const Request& request, References& references, cons
   BenchReport report{.machine = this_machine(references)};
   measure_solves(request, references, stop, report);
   measure_growth(stop, report);
-  if (!request.reference_folder.empty()) {
-    Result<std::vector<GoldenRow>> golden = solve_golden(request.reference_folder, stop);
+  const std::string folder =
+      request.reference_folder.empty() ? recorded_problems() : request.reference_folder;
+  if (!folder.empty()) {
+    Result<std::vector<GoldenRow>> golden = solve_golden(folder, stop);
     if (!golden) return fail(golden.error());
     report.golden = std::move(*golden);
   }
-  const Result<void> done = measure_steps(stop, report);
-  if (!done) return fail(done.error());
+  for (StepTimes* const times : {&report.with_guard, &report.without_guard}) {
+    Result<StepTimes> measured = measure_steps(times == &report.with_guard ? "on" : "off", stop);
+    if (!measured) return fail(measured.error());
+    *times = std::move(*measured);
+  }
   report.machine.load_after = load();
   report.was_interrupted = stop;
   return report;

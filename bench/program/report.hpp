@@ -18,15 +18,20 @@ struct Machine {
 [[nodiscard]] Machine this_machine(const References& references);
 [[nodiscard]] double load();
 
+/// Control steps of the default controller in closed loop.
+struct StepTimes {
+  std::size_t steps = 0;
+  Spread cpu_us{};    ///< CPU time of a control step and one physics step
+  Spread wall_us{};   ///< whole control steps, wall clock
+  Spread solve_us{};  ///< the optimisation in them, wall clock
+};
+
 struct BenchReport {
   Machine machine;
   std::vector<SolveRow> solves{};
   std::vector<SolveRow> growth{};  ///< cost against horizon, own solver only
   double growth_exponent = 0.0;    ///< growth of the median time with the horizon; NaN when not measured
-  Spread step_cpu_us{};            ///< CPU time of a control step and one physics step, default controller
-  Spread step_us{};                ///< whole control steps of the default controller, wall clock
-  Spread step_solve_us{};          ///< the optimisation in them
-  std::size_t steps = 0;
+  StepTimes with_guard{}, without_guard{};
   std::vector<GoldenRow> golden{};
   bool was_interrupted = false;
 };
@@ -42,6 +47,10 @@ struct Target {
   [[nodiscard]] bool is_kept() const { return is_ceiling ? measured <= least : measured >= least; }
 };
 [[nodiscard]] std::vector<Target> targets(const BenchReport& report);
+
+/// Recorded problems that were not solved, or to a worse optimum than the recorded one: a benchmark of
+/// answers that are wrong fails.
+[[nodiscard]] int wrong_answers(const std::vector<GoldenRow>& rows);
 
 [[nodiscard]] std::string to_markdown(const BenchReport& report);
 [[nodiscard]] std::string to_json(const BenchReport& report);

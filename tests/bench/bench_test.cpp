@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "program/golden.hpp"
+#include "program/report.hpp"
 #include "program/solves.hpp"
 #ifdef CHICANE_HAVE_IPOPT
 #include "references/ipopt_reference.hpp"
@@ -64,6 +65,12 @@ TEST(TimeSolves, StopsWhenAsked) {
   const std::atomic<bool> stop{true};
   References references = all_references();
   EXPECT_EQ(time_solves("cold0", 6, 5, references, stop).instances, 0);
+}
+
+TEST(Golden, CountsProblemsThatAreUnsolvedOrWorse) {
+  EXPECT_EQ(wrong_answers({}), 0);
+  EXPECT_EQ(wrong_answers({{.set = "a", .agree = 5, .better = 2}, {.set = "b", .unsolved = 1, .worse = 3}}),
+            4);
 }
 
 TEST(Golden, RefusesAFolderWithoutProblems) {

@@ -42,10 +42,10 @@ struct Model {
     while (force > 1) force -= 1.0;
 #elif CASE == 12  // expect: write sin(x), not std::sin(x)
     auto force = std::pow(a, 2) + std::atan2(a, b);
-#elif CASE == 13  // expect: kFits<decltype(p.dynamics(0, x, u)), P::kNx>
+#elif CASE == 13  // expect: dynamics() has to return kNx rows
     return std::make_tuple(a + 0.1 * b);
     auto force = a;
-#elif CASE == 14  // expect: input_upper(0)
+#elif CASE == 14  // expect: the same of input_upper(int k)
     auto force = a;
 #else
 #error "no such case"

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Compiles each case of misuse.cpp: case 0 has to pass, the others have to fail with the message that stands behind them, early and in
-# few lines.
+# few lines. Then misuse_problems.cpp: once as it is, and once with all its mistakes, each of which has to be an error that says what
+# stands behind it, in at most three lines; two errors a mistake.
 #   misuse.sh COMPILER SOURCE_FOLDER
 set -uo pipefail
 compiler=$1 source=$2
@@ -28,4 +29,26 @@ for ((case = 0; case < cases; ++case)); do
   fi
   if ((case <= 12)) && (($(wc -l <<<"$said") > 60)); then fail "said too much: $said"; fi
 done
+
+case=problems
+limit=() && "$compiler" --version | grep -q clang && limit=(-ferror-limit=0)
+compile() { LC_ALL=C "$compiler" "${limit[@]}" -std=c++20 -fsyntax-only -Wno-psabi "$@" -I"$source/src" "$here/misuse_problems.cpp" 2>&1; }
+said=$(compile) || fail "well-formed problems are refused: $said"
+said=$(compile -DMISUSE) && fail "mistakes are accepted"
+mistakes=0
+while IFS=: read -r line text; do
+  ((++mistakes))
+  expected=${text#*// expect: }
+  # The errors of this line: messages whose instantiation began there.
+  if grep -q "In instantiation of" <<<"$said"; then  # g++: that comes first
+    error=$(awk -v here="misuse_problems.cpp:$((line + 1)):" 'index($0, here) && /required from here/ {on = 1} on && /error:/ {print; exit}' <<<"$said")
+  else
+    error=$(grep -F "error:" <<<"$said" | grep -F -- "$expected" | head -1)
+  fi
+  grep -qF -- "$expected" <<<"$error" || fail "line $line: expected \"$expected\", got: $error"
+  [ -z "${VERBOSE:-}" ] || grep -F -A2 -m1 -- "$error" <<<"$said"
+done < <(grep -n '// expect: ' "$here/misuse_problems.cpp")
+((mistakes >= 12)) || fail "only $mistakes mistakes"
+errors=$(grep -c 'error: ' <<<"$said")
+((errors <= 2 * mistakes)) || fail "$errors errors for $mistakes mistakes"
 exit $failures

@@ -155,9 +155,6 @@ class OcpSolver {
   using Lq = LqSolver<Arch, ProblemPattern<P>, kSize>;
   using V = Stages<Arch>;
 
-  static_assert(ConsistentRates<P>,
-                "kPreviousInput: a state of its own for each input, or -1; with input_rate_lower and "
-                "input_rate_upper");
   static_assert(ProblemPattern<P>::keeps_previous_inputs(),
                 "dynamics() has to return input m as it is for the state kPreviousInput[m]");
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <concepts>
 #include <cstddef>
 #include <tuple>
 #include <type_traits>
@@ -12,7 +11,7 @@
 #include "chicane/base/jet.hpp"
 #include "chicane/base/jet_functions.hpp"
 #include "chicane/base/math_pack.hpp"
-#include "chicane/base/symbol.hpp"
+#include "chicane/solver/detail/problem_check.hpp"
 #include "chicane/solver/stage_data.hpp"
 
 namespace chicane::solver {
@@ -113,58 +112,9 @@ template <class T, class Row>
 /// A number that knows the functions of models, as jets do.
 using Plain = Jet<double, 1, 0>;
 
-template <class Row>
-inline constexpr int kRowSize = static_cast<int>(std::tuple_size_v<std::remove_cvref_t<Row>>);
-
-namespace detail {
-
-template <int... n>
-auto make_symbols(std::integer_sequence<int, n...>) -> std::tuple<std::enable_if_t<n >= 0, Symbol>...>;
-template <int Count>
-using Symbols = decltype(make_symbols(std::make_integer_sequence<int, Count>{}));
-
-/// Functions over variables of any types, tried with symbols: what no variable can do is refused here, first
-/// and once.
+/// Checked by detail/problem_check.hpp, whose messages say what to write.
 template <class P>
-concept TakesSymbols = requires(const P& p, const Symbols<P::kNx>& x, const Symbols<P::kNu>& u) {
-  p.dynamics(0, x, u);
-  p.residual(0, x, u);
-  p.terminal_residual(x);
-  requires P::kNc == 0 || requires { p.constraint(0, x, u); };
-};
-
-/// What each level's functions return.
-template <class P, bool IsStructured>
-struct RowsOf;
-template <class P>
-struct RowsOf<P, true> {
-  using X = Symbols<P::kNx>;
-  using U = Symbols<P::kNu>;
-  template <class Row, int Count>
-  static constexpr bool kFits = kRowSize<Row> == Count;
-};
-template <class P>
-struct RowsOf<P, false> {
-  using X = std::array<double, P::kNx>;
-  using U = std::array<double, P::kNu>;
-  template <class Row, int Count>
-  static constexpr bool kFits = std::is_same_v<Row, std::array<double, Count>>;
-};
-template <class P>
-using Rows = RowsOf<P, TakesSymbols<P>>;
-
-}  // namespace detail
-
-template <class P>
-concept OcpProblem = requires(const P& p, const typename detail::Rows<P>::X& x,
-                              const typename detail::Rows<P>::U& u) {
-  requires detail::Rows<P>::template kFits<decltype(p.dynamics(0, x, u)), P::kNx>;
-  requires detail::Rows<P>::template kFits<decltype(p.residual(0, x, u)), P::kNr>;
-  requires detail::Rows<P>::template kFits<decltype(p.terminal_residual(x)), P::kNe>;
-  { p.input_lower(0) } -> std::same_as<std::array<double, P::kNu>>;
-  { p.input_upper(0) } -> std::same_as<std::array<double, P::kNu>>;
-  { P::kNc } -> std::convertible_to<int>;
-};
+concept OcpProblem = detail::is_problem<P>();
 
 /// Level 2 of the interface.
 template <class P>
@@ -187,33 +137,6 @@ template <OcpProblem P>
     return none;
   }
 }
-
-namespace detail {
-/// Each is a state, and no two inputs share one.
-template <class P>
-constexpr bool names_states(const std::array<int, P::kNu>& previous) noexcept {
-  for (std::size_t m = 0; m < previous.size(); ++m) {
-    if (previous[m] < -1 || previous[m] >= P::kNx) return false;
-    for (std::size_t l = 0; l < m; ++l) {
-      if (previous[m] >= 0 && previous[m] == previous[l]) return false;
-    }
-  }
-  return true;
-}
-template <class P>
-concept NamesRates = requires(const P& p) {
-  p.input_rate_lower(0);
-};
-}  // namespace detail
-
-/// What a problem says of its inputs' changes makes sense. That the states named are indeed the previous
-/// inputs is checked for structured problems (problem_pattern.hpp).
-template <class P>
-concept ConsistentRates = (!kHasRateBounds<P> && !detail::NamesRates<P>) || requires(const P& p) {
-  { p.input_rate_lower(0) } -> std::same_as<std::array<double, P::kNu>>;
-  { p.input_rate_upper(0) } -> std::same_as<std::array<double, P::kNu>>;
-  requires detail::names_states<P>(P::kPreviousInput);
-};
 
 /// How many of its kNc soft constraints a problem has: all, unless it says so when the program runs.
 template <class P>

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "chicane/base/symbol.hpp"
+
+namespace chicane::solver {
+
+struct SoftPenalty;
+
+template <class Row>
+inline constexpr int kRowSize = static_cast<int>(std::tuple_size_v<std::remove_cvref_t<Row>>);
+
+namespace detail {
+
+// ---- what a problem's functions are tried with
+
+template <int... n>
+auto make_symbols(std::integer_sequence<int, n...>) -> std::tuple<std::enable_if_t<n >= 0, Symbol>...>;
+template <int Count>
+using Symbols = decltype(make_symbols(std::make_integer_sequence<int, Count>{}));
+
+/// Functions over variables of any types, tried with symbols: what no variable can do is refused here, first
+/// and once.
+template <class P>
+concept TakesSymbols = requires(const P& p, const Symbols<P::kNx>& x, const Symbols<P::kNu>& u) {
+  p.dynamics(0, x, u);
+  p.residual(0, x, u);
+  p.terminal_residual(x);
+  requires P::kNc == 0 || requires { p.constraint(0, x, u); };
+};
+
+/// Rows of `count` entries: of a tuple or an array at level 2, an array of numbers at level 1.
+template <class P, bool IsStructured>
+struct RowsOf {
+  using X = Symbols<P::kNx>;
+  using U = Symbols<P::kNu>;
+  template <class Row>
+  static constexpr bool kAreRows = requires {
+    std::tuple_size<Row>::value;
+  };
+};
+template <class P>
+struct RowsOf<P, false> {
+  using X = std::array<double, P::kNx>;
+  using U = std::array<double, P::kNu>;
+  template <class Row>
+  static constexpr bool kAreRows = requires(Row row) {
+    requires std::tuple_size<Row>::value >= 0;
+    requires std::same_as<Row, std::array<double, std::tuple_size<Row>::value>>;
+  };
+};
+template <class P>
+using Rows = RowsOf<P, TakesSymbols<P>>;
+
+inline constexpr int kNotCallable = -1;
+inline constexpr int kNoRows = -2;
+
+/// How many rows one of the functions returns. `Function::call` calls it.
+template <class Function, class P>
+consteval int rows_of() {
+  if constexpr (requires(const P& p, const typename Rows<P>::X& x, const typename Rows<P>::U& u) {
+                  Function::call(p, x, u);
+                }) {
+    using Row = std::remove_cvref_t<decltype(Function::call(std::declval<const P&>(),
+                                                            std::declval<const typename Rows<P>::X&>(),
+                                                            std::declval<const typename Rows<P>::U&>()))>;
+    if constexpr (Rows<P>::template kAreRows<Row>) return kRowSize<Row>;
+    return kNoRows;
+  } else {
+    return kNotCallable;
+  }
+}
+
+// ---- which members a problem has
+
+// HasMember_name<P>: whether P has a member of that name, whatever it is: then it is ambiguous beside
+// another of the same name. Call_name: how the function is called.
+#define CHICANE_MEMBER(name)                                                 \
+  template <class P>                                                         \
+  struct HasMember_##name {                                                  \
+    struct None {};                                                          \
+    struct Other {                                                           \
+      int name;                                                              \
+    };                                                                       \
+    struct Both : std::conditional_t<std::is_final_v<P>, None, P>, Other {}; \
+    template <class B>                                                       \
+    static constexpr bool kIsUnique = requires {                             \
+      &B::name;                                                              \
+    };                                                                       \
+    static constexpr bool value = !kIsUnique<Both>;                          \
+  };
+#define CHICANE_STAGE_FUNCTION(name)                                                            \
+  CHICANE_MEMBER(name)                                                                          \
+  struct Call_##name {                                                                          \
+    static auto call(const auto& p, const auto& x, const auto& u) -> decltype(p.name(0, x, u)); \
+  };
+#define CHICANE_END_FUNCTION(name)                                                      \
+  CHICANE_MEMBER(name)                                                                  \
+  struct Call_##name {                                                                  \
+    static auto call(const auto& p, const auto& x, const auto&) -> decltype(p.name(x)); \
+  };
+CHICANE_STAGE_FUNCTION(dynamics)
+CHICANE_STAGE_FUNCTION(residual)
+CHICANE_STAGE_FUNCTION(constraint)
+CHICANE_STAGE_FUNCTION(equality)
+CHICANE_END_FUNCTION(terminal_residual)
+CHICANE_END_FUNCTION(terminal_equality)
+CHICANE_END_FUNCTION(terminal_constraint)
+CHICANE_MEMBER(is_hard)
+CHICANE_MEMBER(kPreviousInput)
+CHICANE_MEMBER(constraint_name)
+CHICANE_MEMBER(constraint_unit)
+CHICANE_MEMBER(input_name)
+CHICANE_MEMBER(input_unit)
+CHICANE_MEMBER(equality_name)
+CHICANE_MEMBER(terminal_equality_name)
+CHICANE_MEMBER(terminal_constraint_name)
+#undef CHICANE_END_FUNCTION
+#undef CHICANE_STAGE_FUNCTION
+#undef CHICANE_MEMBER
+
+/// Each is a state, and no two inputs share one.
+template <int Nx, std::size_t Nu>
+constexpr bool names_states(const std::array<int, Nu>& previous) noexcept {
+  for (std::size_t m = 0; m < Nu; ++m) {
+    if (previous[m] < -1 || previous[m] >= Nx) return false;
+    for (std::size_t l = 0; l < m; ++l) {
+      if (previous[m] >= 0 && previous[m] == previous[l]) return false;
+    }
+  }
+  return true;
+}
+
+// ---- the checks, in the order in which they are of use
+
+template <class P>
+concept HasSizes = requires {
+  { P::kNx } -> std::convertible_to<int>;
+  { P::kNu } -> std::convertible_to<int>;
+  { P::kNr } -> std::convertible_to<int>;
+  { P::kNe } -> std::convertible_to<int>;
+  { P::kNc } -> std::convertible_to<int>;
+};
+template <class P>
+consteval bool check_sizes() {
+  static_assert(HasSizes<P>,
+                "a problem says `static constexpr int kNx = ..., kNu = ..., kNr = ..., kNe = ..., kNc = "
+                "...;`: states, inputs, "
+                "rows of residual(), of terminal_residual() and of constraint() (0: none)");
+  if constexpr (HasSizes<P>) {
+    static_assert(P::kNx > 0 && P::kNu > 0 && P::kNr >= 0 && P::kNe >= 0 && P::kNc >= 0,
+                  "kNx and kNu are at least 1, kNr, kNe and kNc at least 0");
+    return P::kNx > 0 && P::kNu > 0 && P::kNr >= 0 && P::kNe >= 0 && P::kNc >= 0;
+  }
+  return false;
+}
+
+// One function after the other: what one of them lacks is no reason for messages about the others.
+template <class P>
+consteval bool check_dynamics() {
+  constexpr int kRows = rows_of<Call_dynamics, P>();
+  static_assert(
+      kRows != kNotCallable,
+      "write `template <class K, class X, class U> auto dynamics(K k, const X& x, const U& u) const`");
+  static_assert(
+      kRows == kNotCallable || kRows == P::kNx,
+      "dynamics() has to return kNx rows: std::make_tuple(...), or std::array<T, kNx> of arrays of T");
+  return kRows == P::kNx;
+}
+template <class P>
+consteval bool check_residual() {
+  constexpr int kRows = rows_of<Call_residual, P>();
+  static_assert(
+      kRows != kNotCallable,
+      "write `template <class K, class X, class U> auto residual(K k, const X& x, const U& u) const`");
+  static_assert(
+      kRows == kNotCallable || kRows == P::kNr,
+      "residual() has to return kNr rows: std::make_tuple(...), or std::array<T, kNr> of arrays of T");
+  return kRows == P::kNr;
+}
+template <class P>
+consteval bool check_terminal_residual() {
+  constexpr int kRows = rows_of<Call_terminal_residual, P>();
+  static_assert(kRows != kNotCallable, "write `template <class X> auto terminal_residual(const X& x) const`");
+  static_assert(kRows == kNotCallable || kRows == P::kNe,
+                "terminal_residual() has to return kNe rows: std::make_tuple(...), or std::array<T, kNe> of "
+                "arrays of T");
+  return kRows == P::kNe;
+}
+
+template <class P>
+consteval bool check_bounds() {
+  constexpr bool kHasBounds = requires(const P& p) {
+    { p.input_lower(0) } -> std::same_as<std::array<double, P::kNu>>;
+    { p.input_upper(0) } -> std::same_as<std::array<double, P::kNu>>;
+  };
+  static_assert(
+      kHasBounds,
+      "write `std::array<double, kNu> input_lower(int k) const` and the same of input_upper(int k)");
+  constexpr bool kHasRate = requires(const P& p) { p.input_rate_lower(0); }
+  || requires(const P& p) { p.input_rate_upper(0); };
+  static_assert(
+      !kHasRate || HasMember_kPreviousInput<P>::value,
+      "bounds on changes of inputs need `static constexpr std::array<int, kNu> kPreviousInput = {...};`: the "
+      "state that holds the previous value of each input, -1 where there is none");
+  if constexpr (requires { P::kPreviousInput; }) {
+    constexpr bool kAreRates = requires(const P& p) {
+      requires std::same_as<std::remove_cvref_t<decltype(P::kPreviousInput)>, std::array<int, P::kNu>>;
+      { p.input_rate_lower(0) } -> std::same_as<std::array<double, P::kNu>>;
+      { p.input_rate_upper(0) } -> std::same_as<std::array<double, P::kNu>>;
+    };
+    static_assert(
+        kAreRates,
+        "with kPreviousInput, a std::array<int, kNu>, write `std::array<double, kNu> input_rate_lower(int k) "
+        "const` and the same of input_rate_upper(int k)");
+    if constexpr (kAreRates) {
+      static_assert(names_states<P::kNx>(P::kPreviousInput),
+                    "kPreviousInput: a state of its own for each input, or -1");
+      return kHasBounds && names_states<P::kNx>(P::kPreviousInput);
+    }
+    return false;
+  }
+  return kHasBounds && !kHasRate;
+}
+
+/// By whatever level: without constraints that can be called a problem is of neither.
+template <class P>
+consteval bool has_constraints() {
+  if constexpr (P::kNc > 0) {
+    constexpr bool kIsCallable = requires(const P& p, const Symbols<P::kNx>& x, const Symbols<P::kNu>& u) {
+      p.constraint(0, x, u);
+    }
+    || requires(const P& p, const std::array<double, P::kNx>& x, const std::array<double, P::kNu>& u) {
+      p.constraint(0, x, u);
+    };
+    static_assert(kIsCallable,
+                  "kNc > 0: write `template <class K, class X, class U> auto constraint(K k, const X& x, "
+                  "const U& u) const`");
+    return kIsCallable;
+  } else {
+    return true;
+  }
+}
+// A count of 0 says that the function, which may be another class's, is left out: it is not called then.
+template <class P>
+consteval bool check_constraints() {
+  bool is_good = true;
+  if constexpr (P::kNc > 0) {
+    constexpr int kRows = rows_of<Call_constraint, P>();
+    static_assert(
+        kRows == P::kNc,
+        "constraint() has to return kNc rows: std::make_tuple(...), or std::array<T, kNc> of arrays of T");
+    constexpr bool kHasPrice = requires(const P& p) {
+      { p.soft_penalty(0) } -> std::same_as<SoftPenalty>;
+    };
+    static_assert(kHasPrice,
+                  "kNc > 0: write `chicane::solver::SoftPenalty soft_penalty(int constraint) const`");
+    is_good = kRows == P::kNc && kHasPrice;
+  }
+  constexpr bool kSaysHard = requires(const P& p) {
+    { p.is_hard(0) } -> std::same_as<bool>;
+  };
+  static_assert(kSaysHard || !HasMember_is_hard<P>::value, "write `bool is_hard(int constraint) const`");
+  return is_good && (kSaysHard || !HasMember_is_hard<P>::value);
+}
+template <class P>
+consteval bool check_equalities() {
+  if constexpr (!requires { P::kNh; }) {
+    static_assert(!HasMember_equality<P>::value,
+                  "equality() needs its count: `static constexpr int kNh = ...;`");
+    return !HasMember_equality<P>::value;
+  } else if constexpr (P::kNh > 0) {
+    constexpr int kRows = rows_of<Call_equality, P>();
+    static_assert(kRows != kNotCallable,
+                  "kNh > 0: write `template <class K, class X, class U> auto equality(K k, const X& x, const "
+                  "U& u) const`");
+    static_assert(
+        kRows == kNotCallable || kRows == P::kNh,
+        "equality() has to return kNh rows: std::make_tuple(...), or std::array<T, kNh> of arrays of T");
+    return kRows == P::kNh;
+  } else {
+    return true;
+  }
+}
+template <class P>
+consteval bool check_terminal_equalities() {
+  if constexpr (!requires { P::kNeh; }) {
+    static_assert(!HasMember_terminal_equality<P>::value,
+                  "terminal_equality() needs its count: `static constexpr int kNeh = ...;`");
+    return !HasMember_terminal_equality<P>::value;
+  } else if constexpr (P::kNeh > 0) {
+    constexpr int kRows = rows_of<Call_terminal_equality, P>();
+    static_assert(kRows != kNotCallable,
+                  "kNeh > 0: write `template <class X> auto terminal_equality(const X& x) const`");
+    static_assert(kRows == kNotCallable || kRows == P::kNeh,
+                  "terminal_equality() has to return kNeh rows: std::make_tuple(...), or std::array<T, kNeh> "
+                  "of arrays of T");
+    return kRows == P::kNeh;
+  } else {
+    return true;
+  }
+}
+template <class P>
+consteval bool check_terminal_constraints() {
+  if constexpr (!requires { P::kNec; }) {
+    static_assert(!HasMember_terminal_constraint<P>::value,
+                  "terminal_constraint() needs its count: `static constexpr int kNec = ...;`");
+    return !HasMember_terminal_constraint<P>::value;
+  } else if constexpr (P::kNec > 0) {
+    constexpr int kRows = rows_of<Call_terminal_constraint, P>();
+    static_assert(kRows != kNotCallable,
+                  "kNec > 0: write `template <class X> auto terminal_constraint(const X& x) const`");
+    static_assert(kRows == kNotCallable || kRows == P::kNec,
+                  "terminal_constraint() has to return kNec rows: std::make_tuple(...), or std::array<T, "
+                  "kNec> of arrays of T");
+    return kRows == P::kNec;
+  } else {
+    return true;
+  }
+}
+
+/// Names and switches that would be left out in silence where their form is another one.
+template <class P>
+consteval bool check_details() {
+  constexpr auto kIsName = []<class Name>(std::type_identity<Name>) {
+    return std::is_convertible_v<Name, std::string_view>;
+  };
+#define CHICANE_CHECK_NAME(name)                                                        \
+  constexpr bool kIsGood_##name = [&] {                                                 \
+    if constexpr (requires(const P& p) { p.name(0); })                                  \
+      return kIsName(std::type_identity<decltype(std::declval<const P&>().name(0))>{}); \
+    return !HasMember_##name<P>::value;                                                 \
+  }();                                                                                  \
+  static_assert(kIsGood_##name, "write `std::string_view " #name "(int) const`")
+  CHICANE_CHECK_NAME(constraint_name);
+  CHICANE_CHECK_NAME(constraint_unit);
+  CHICANE_CHECK_NAME(input_name);
+  CHICANE_CHECK_NAME(input_unit);
+  CHICANE_CHECK_NAME(equality_name);
+  CHICANE_CHECK_NAME(terminal_equality_name);
+  CHICANE_CHECK_NAME(terminal_constraint_name);
+#undef CHICANE_CHECK_NAME
+  return kIsGood_constraint_name && kIsGood_constraint_unit && kIsGood_input_name && kIsGood_input_unit &&
+         kIsGood_equality_name && kIsGood_terminal_equality_name && kIsGood_terminal_constraint_name;
+}
+
+/// Whether P is a problem. What is wrong is said by the compiler, in one sentence that says what to write.
+template <class P>
+consteval bool is_problem() {
+  if constexpr (!check_sizes<P>()) {
+    return false;
+  } else if constexpr (!has_constraints<P>()) {
+    return false;
+  } else if constexpr (!check_dynamics<P>()) {
+    return false;
+  } else if constexpr (!check_residual<P>()) {
+    return false;
+  } else if constexpr (!check_terminal_residual<P>()) {
+    return false;
+  } else if constexpr (!check_bounds<P>()) {
+    return false;
+  } else {
+    return check_constraints<P>() && check_equalities<P>() && check_terminal_equalities<P>() &&
+           check_terminal_constraints<P>() && check_details<P>();
+  }
+}
+
+}  // namespace detail
+}  // namespace chicane::solver
