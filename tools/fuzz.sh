@@ -3,7 +3,7 @@
 #
 #   tools/fuzz.sh                    10,000,000 executions of each
 #   tools/fuzz.sh 200000             so many
-#   tools/fuzz.sh 200000 yaml mcap   of these: telemetry viewer http yaml track log mcap cdr plan
+#   tools/fuzz.sh 200000 yaml mcap   of these: telemetry viewer http yaml track map bag log mcap cdr plan
 #   tools/fuzz.sh --seconds 60       a minute of each
 #
 # What they find new stays in build/fuzz/corpus; an input that fails is kept as build/fuzz/NAME-crash-…: mend it, and put it
@@ -18,10 +18,10 @@ case "${1:-}" in
   [0-9]*) limit=(-runs="$1"); shift ;;
 esac
 names=("$@")
-[ $# -gt 0 ] || names=(telemetry viewer http yaml track log mcap cdr plan)
+[ $# -gt 0 ] || names=(telemetry viewer http yaml track map bag log mcap cdr plan)
 
 cmake --preset fuzz >/dev/null && cmake --build --preset fuzz --target fuzzers || exit 3
-declare -A longest=([telemetry]=8192 [viewer]=4096 [http]=4096 [yaml]=8192 [track]=4096 [log]=8192 [mcap]=65536 [cdr]=2048 [plan]=4096)
+declare -A longest=([telemetry]=8192 [viewer]=4096 [http]=4096 [yaml]=8192 [track]=16384 [map]=16384 [bag]=16384 [log]=8192 [mcap]=65536 [cdr]=2048 [plan]=4096)
 failed=()
 for name in "${names[@]}"; do
   mkdir -p "build/fuzz/corpus/$name"

@@ -5,11 +5,12 @@
 run_packages=(
   g++ cmake ninja-build ccache pkg-config
   libexpected-dev libboost-dev nlohmann-json3-dev libyaml-cpp-dev libcli11-dev libeigen3-dev libfmt-dev libzstd-dev
+  libpng-dev libexpat1-dev libsqlite3-dev
 )
 # To compare with Ipopt in `chicane bench`, on top of those.
 bench_packages=(coinor-libipopt-dev liblapack-dev libblas-dev)
 # For `chicane ros`, on top of the first.
-ros_packages=(cyclonedds-dev libssl-dev libpng-dev)
+ros_packages=(cyclonedds-dev libssl-dev)
 # For the Python module, on top of the first.
 python_packages=(python3 python3-dev python3-venv python3-pip python3-numpy pybind11-dev)
 # To make packages of all that the program can do, on top of the first.

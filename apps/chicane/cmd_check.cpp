@@ -57,6 +57,10 @@ Result<std::string> add_file(const std::string& file, protocol::Request& request
   }
   const Result<std::string> text = protocol::read_file(file);
   if (!text) return fail(text.error());
+  if (protocol::is_foreign_track(*text)) {
+    request.settings.emplace_back("track", file);
+    return std::string{};
+  }
   const Result<protocol::Document> document = protocol::parse_document(*text, file);
   if (!document) return fail(document.error());
   const bool car = is_car(*document, file);

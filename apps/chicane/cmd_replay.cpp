@@ -25,6 +25,7 @@
 #include "chicane/wire/endpoint.hpp"
 #include "chicane/wire/viewer.hpp"
 #include "commands.hpp"
+#include "foreign_log.hpp"
 #include "interrupt.hpp"
 #include "record.hpp"
 #include "replay_report.hpp"
@@ -36,7 +37,14 @@ namespace {
 /// writer was killed, or is compressed.
 class Shown {
  public:
-  Result<void> add(const std::string& file, std::string name) {
+  explicit Shown(const Options& options) : options_{options} {}
+
+  Result<void> add(std::string file, std::string name) {
+    if (may_be_foreign_log(file)) {
+      copies_.emplace_back(".mcap");
+      if (Result<void> made = convert_foreign_log(file, options_, copies_.back().path()); !made) return made;
+      file = copies_.back().path();
+    }
     const Result<telemetry::McapReport> read = recording::check_recording(file);
     if (!read) return fail(read.error());
     if (read->damaged > 0) fmt::print(stderr, "{}: damaged parts left out: {}\n", file, read->damaged);
@@ -72,6 +80,7 @@ class Shown {
   }
 
  private:
+  const Options& options_;
   std::list<recording::TemporaryFile> copies_;
   std::vector<live::ServedLog> logs_;
 };
@@ -161,7 +170,7 @@ Result<ExitCode> branch(const Options& options) {
   fmt::print("{}", options.is_json ? to_json(*report) : to_text(*report, options.settings));
   std::fflush(stdout);
   if (has_page(options)) {
-    Shown shown;
+    Shown shown(options);
     if (Result<void> added = shown.add(log, std::filesystem::path(log).filename().string()); !added)
       return fail(added.error());
     if (Result<void> added = shown.add(file, fmt::format("branch at {:.1f} s", report->at)); !added)
@@ -186,7 +195,7 @@ Result<ExitCode> show_logs(const Options& options) {
   if (!has_page(options)) {
     return fail(ErrorCode::kInvalidArgument, "replay: got nothing to do, expected --verify or --branch-at");
   }
-  Shown shown;
+  Shown shown(options);
   for (const std::string& log : options.log_files) {
     if (Result<void> added = shown.add(log, std::filesystem::path(log).filename().string()); !added)
       return fail(added.error());

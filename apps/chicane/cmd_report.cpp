@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <list>
 
 #include "chicane/base/text.hpp"
 #include "chicane/live/assets.hpp"
 #include "chicane/recording/html_report.hpp"
+#include "chicane/recording/temporary_file.hpp"
 #include "chicane/sweep/comparison.hpp"
 #include "chicane/sweep/summary_page.hpp"
 #include "commands.hpp"
+#include "foreign_log.hpp"
 #include "many_runs.hpp"
 
 namespace chicane::apps {
@@ -66,6 +69,7 @@ ExitCode report_logs(const Options& options) {
     return report(Error{ErrorCode::kInvalidArgument, "--page: got recordings, expected results of a sweep"});
   recording::ReportOptions reporting{
       .output = options.output_file, .logs = {}, .bundle = live::report_bundle()};
+  std::list<recording::TemporaryFile> copies;
   for (const std::string& file : options.log_files) {
     std::error_code error;  // of a file that is not there: no reason to stop
     if (std::filesystem::equivalent(file, options.output_file, error)) {
@@ -73,7 +77,14 @@ ExitCode report_logs(const Options& options) {
                           fmt::format("--output: got {}, expected another file than a recording that is read",
                                       options.output_file)});
     }
-    reporting.logs.push_back({std::filesystem::path(file).filename().string(), file});
+    std::string read = file;
+    if (named && may_be_foreign_log(file)) {
+      copies.emplace_back(".mcap");
+      read = copies.back().path();
+      if (const Result<void> made = convert_foreign_log(file, options, read); !made)
+        return report(made.error());
+    }
+    reporting.logs.push_back({std::filesystem::path(file).filename().string(), read});
   }
   if (!named) return report(named.error());
   const Result<recording::ReportSummary> written = recording::write_report(reporting);

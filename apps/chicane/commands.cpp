@@ -26,6 +26,7 @@ constexpr Command kCommands[] = {
     {"bench", "Prove", "Times of solver and control step on this machine, beside Ipopt's", bench},
     {"check", "Tools", "Validate scenarios, presets, cars and tracks, and explain what is wrong", check},
     {"list", "Tools", "Presets, tracks, cars, scenarios, controllers and parameters", list},
+    {"import", "Tools", "Road from a map, cones, coordinates or another program's file", import_road},
     {"identify", "Tools", "Model of a car from logs of driving it", identify_car},
     {"ros", "Tools", "Controller as a ROS 2 node without ROS, or the simulator for one", ros},
     {"completion", "Tools", "Script that completes command lines, for bash, zsh or fish", completion},

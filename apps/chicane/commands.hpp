@@ -28,6 +28,7 @@ struct Command {
 [[nodiscard]] ExitCode ros(const Options& options);
 [[nodiscard]] ExitCode limit(const Options& options);
 [[nodiscard]] ExitCode replay(const Options& options);
+[[nodiscard]] ExitCode import_road(const Options& options);
 [[nodiscard]] ExitCode identify_car(const Options& options);
 [[nodiscard]] ExitCode report_logs(const Options& options);
 [[nodiscard]] ExitCode make_video(const Options& options);

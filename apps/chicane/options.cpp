@@ -19,6 +19,7 @@
 #include "chicane/version.hpp"
 #include "command_text.hpp"
 #include "commands.hpp"
+#include "import_options.hpp"
 #include "limit_options.hpp"
 #include "ros_options.hpp"
 #include "setting_options.hpp"
@@ -204,8 +205,20 @@ void add_logs(CLI::App& command, Options& options, const std::string& help) {
   command.add_option("logs", options.log_files, help)->type_name("LOG")->required();
 }
 
+/// For logs of other programs.
+void add_foreign(CLI::App& command, Options& options) {
+  add_setting(command, options, "--track", "track", "NAME|FILE", "Road of a log of another program");
+  add_setting(command, options, "--car", "car", "NAME|FILE", "Car of a log of another program");
+  command.add_option("--odom-topic", options.identify.odom_topic, "Odometry of a bag that has several")
+      ->type_name("TOPIC");
+  command.add_option("--drive-topic", options.identify.drive_topic, "Commands of a bag that has several")
+      ->type_name("TOPIC");
+}
+
 void add_replay(CLI::App& command, Options& options) {
-  add_logs(command, options, "Recordings by --record; several are shown beside each other");
+  add_logs(
+      command, options,
+      "Recordings by --record, and bags and tables of other programs; several are shown beside each other");
   command.add_flag(
       "--verify", options.wants_verification,
       "Compute every recorded command again and compare it bit for bit; exit code 1 if one differs");
@@ -217,6 +230,8 @@ void add_replay(CLI::App& command, Options& options) {
       ->excludes("--verify");
   add_set(command, options);
   command.get_option("--set")->needs("--branch-at");
+  add_foreign(command, options);
+  for (const char* name : {"--track", "--car"}) command.get_option(name)->excludes("--branch-at");
   command.add_option("--for-s", options.for_s, "Length of the branch [s]; else to the end of the recording")
       ->type_name("S")
       ->check(CLI::PositiveNumber)
@@ -236,7 +251,8 @@ void add_replay(CLI::App& command, Options& options) {
 }
 
 void add_report(CLI::App& command, Options& options) {
-  add_logs(command, options, "Recordings by --record, or the results of a sweep (.jsonl)");
+  add_logs(command, options,
+           "Recordings by --record, bags and tables of other programs, or the results of a sweep (.jsonl)");
   command.add_option("-o,--output", options.output_file, "Page to write; an older one is replaced")
       ->type_name("FILE.html");
   command.add_option("--page", options.maps_page, "Write the heat maps of a sweep in letters into this page")
@@ -248,11 +264,13 @@ void add_report(CLI::App& command, Options& options) {
       ->type_name("KEY=VALUE")
       ->excludes("--output")
       ->excludes("--page");
+  add_foreign(command, options);
   command.footer("Example: chicane report run.mcap -o run.html");
 }
 
 void add_identify(CLI::App& command, Options& options) {
-  add_logs(command, options, "Recordings, bags (.mcap) and CSV files of one car; several count together");
+  add_logs(command, options,
+           "Recordings, bags (.mcap, .db3) and CSV files of one car; several count together");
   add_setting(command, options, "--car", "car", "NAME|FILE",
               "Car to begin with: mass, width, tyre shape and limits are not in a log");
   command
@@ -316,27 +334,17 @@ void add_manual(CLI::App& command, Options&) { command.footer("Example: chicane 
 
 /// The options of each command.
 constexpr std::pair<std::string_view, void (*)(CLI::App&, Options&)> kOptionsOf[] = {
-    {"drive", add_drive},
-    {"serve", add_serve},
-    {"simulate", add_simulate},
-    {"ros", add_ros},
-    {"limit", add_limit},
-    {"replay", add_replay},
-    {"report", add_report},
-    {"video", add_video},
-    {"sweep", add_sweep},
-    {"league", add_league},
-    {"claims", add_claims},
-    {"tune", add_tune},
-    {"merge", add_merge},
-    {"campaign", add_campaign},
-    {"recover", add_recover},
-    {"lane-change", add_lane_change},
-    {"identify", add_identify},
-    {"check", add_check},
-    {"list", add_list},
-    {"bench", add_bench},
-    {"completion", add_completion},
+    {"drive", add_drive},       {"serve", add_serve},
+    {"simulate", add_simulate}, {"ros", add_ros},
+    {"limit", add_limit},       {"replay", add_replay},
+    {"report", add_report},     {"video", add_video},
+    {"sweep", add_sweep},       {"league", add_league},
+    {"claims", add_claims},     {"tune", add_tune},
+    {"merge", add_merge},       {"campaign", add_campaign},
+    {"recover", add_recover},   {"lane-change", add_lane_change},
+    {"import", add_import},     {"identify", add_identify},
+    {"check", add_check},       {"list", add_list},
+    {"bench", add_bench},       {"completion", add_completion},
     {"manual", add_manual},
 };
 

@@ -95,6 +95,17 @@ struct Options {
   };
   Identify identify{};
 
+  struct Import {
+    std::string file{}, preview{};
+    std::optional<double> width{}, smoothing{}, spacing{};  ///< [m]
+    std::string direction{};                                ///< cw, ccw, reversed; empty: the file's
+    std::vector<double> start{};                            ///< x and y [m]; empty: the file's
+    double least_width = 0.4;                               ///< of a map's road [m]
+    std::string columns{};
+    bool is_closed = false, is_open = false;
+  };
+  Import import_{};  // `import` is a keyword of C++20
+
   struct Sweep {
     std::string plan_file{};
     std::string shard{};            ///< I/N; empty: as the environment says

@@ -91,9 +91,9 @@ TEST(CommandText, TheHelpIsInGroups) {
       found.push_back(line.substr(2, line.find(' ', 2) - 2));
   }
   EXPECT_THAT(found, ElementsAre("Drive:", "drive", "serve", "simulate", "Look:", "replay", "report", "video",
-                                 "Compare:", "limit", "league", "sweep", "merge", "tune",
-                                 "Prove:", "campaign", "recover", "lane-change", "claims", "bench",
-                                 "Tools:", "check", "list", "identify", "ros", "completion", "manual"));
+                                 "Compare:", "limit", "league", "sweep", "merge", "tune", "Prove:",
+                                 "campaign", "recover", "lane-change", "claims", "bench", "Tools:", "check",
+                                 "list", "import", "identify", "ros", "completion", "manual"));
 }
 
 TEST(CommandText, WithoutACommandSixLinesForANewcomer) {

@@ -93,7 +93,7 @@ class Files(unittest.TestCase):
 
     # 7. Warnings of readers reach people, by each command and as JSON.
     def test_warnings_are_told(self):
-        self.assert_read("01_total_width.csv", "width_m: unknown column, ignored", "4.5 m left and 4.5 m right assumed")
+        self.assert_read("01_total_width.csv", "width: of the whole road, half of it to each side")
         self.assert_read("01_header_after_uuid.csv", "psi_rad: counts from +y", "4.5 m left and 4.5 m right assumed")
         self.assert_read("01_autoware_saved.csv", "z, yaw, velocity, change_flag: unknown columns, ignored")
         self.assertEqual(self.assert_read("28_rect_0.7.csv", "2.00 m wide", words=MODEL), "", "nothing was assumed")

@@ -10,10 +10,13 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <variant>
 
+#include "chicane/identify/detail/log_rows.hpp"
 #include "chicane/identify/drive_log.hpp"
 #include "chicane/net/server.hpp"
 #include "chicane/protocol/foxglove_codec.hpp"
@@ -23,6 +26,8 @@
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/recording/reader.hpp"
+#include "chicane/survey/free_space.hpp"
+#include "chicane/survey/image.hpp"
 #include "chicane/sweep/claim.hpp"
 #include "chicane/sweep/league.hpp"
 #include "chicane/sweep/plan_codec.hpp"
@@ -133,6 +138,69 @@ void track(std::string_view bytes) {
   promise(std::isfinite(made->centre().length()) && made->centre().length() > 0.0);
 }
 
+/// The image of an occupancy map, and the road in it.
+void map(std::string_view bytes) {
+  const auto image = survey::read_image(bytes, "f.png");
+  if (!image) return check(image.error());
+  constexpr std::size_t kQuick = 40'000;  // cells
+  const std::size_t cells = static_cast<std::size_t>(image->width) * static_cast<std::size_t>(image->height);
+  promise(image->values.size() == cells);
+  if (cells > kQuick) return;
+  survey::FreeSpace space{.width = image->width, .height = image->height, .resolution = 0.1};
+  for (const char value : image->values) {
+    const int grey = static_cast<unsigned char>(value);
+    space.cells.push_back(grey > 220  ? survey::Cell::kFree
+                          : grey < 90 ? survey::Cell::kWall
+                                      : survey::Cell::kUnknown);
+  }
+  const auto loop = survey::find_loop(space, {});
+  if (!loop) return check(loop.error());
+  for (const path::TrackPoint& point : loop->points)
+    promise(point.position.is_finite() && point.left > 0.0 && point.right > 0.0 &&
+            std::isfinite(point.left + point.right));
+}
+
+/// A file of bytes that is in memory alone.
+class MemoryFile {
+ public:
+  MemoryFile() : file_{::memfd_create("fuzz", MFD_CLOEXEC)} { promise(file_ >= 0); }
+  std::string holding(std::string_view bytes) const {
+    promise(::ftruncate(file_, 0) == 0);
+    promise(::pwrite(file_, bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size()));
+    return "/proc/self/fd/" + std::to_string(file_);
+  }
+
+ private:
+  int file_;
+};
+
+/// A file of bytes in the folder for temporary files: SQLite follows links, and finds none in memory.
+class DiskFile {
+ public:
+  DiskFile()
+      : path_{
+            (std::filesystem::temp_directory_path() / ("chicane_fuzz_" + std::to_string(::getpid()) + ".db3"))
+                .string()} {}
+  ~DiskFile() { std::remove(path_.c_str()); }
+  DiskFile(const DiskFile&) = delete;
+  DiskFile& operator=(const DiskFile&) = delete;
+  const std::string& holding(std::string_view bytes) const {
+    std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes;
+    return path_;
+  }
+
+ private:
+  std::string path_;
+};
+
+/// A bag of rosbag2 in SQLite.
+void bag(std::string_view bytes) {
+  static const DiskFile file;
+  const auto rows = identify::read_sqlite_rows(file.holding(bytes), {});
+  if (!rows) return check(rows.error());
+  promise(!rows->samples.empty() && !rows->told.empty());
+}
+
 void log(std::string_view bytes) {
   const auto logs = identify::parse_csv_log(std::string(bytes), "f.csv", {});
   if (!logs) return check(logs.error());
@@ -144,11 +212,9 @@ void log(std::string_view bytes) {
 }
 
 void mcap(std::string_view bytes) {
-  static const int file = ::memfd_create("fuzz", MFD_CLOEXEC);
-  promise(file >= 0 && ::ftruncate(file, 0) == 0);
-  promise(::pwrite(file, bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size()));
+  static const MemoryFile file;
   recording::RecordingHead head;
-  const auto read = recording::read_recording("/proc/self/fd/" + std::to_string(file), head,
+  const auto read = recording::read_recording(file.holding(bytes), head,
                                               [](const recording::RecordedEvent&) { return Result<void>{}; });
   if (!read) check(read.error());
 }
@@ -202,9 +268,10 @@ void plan(std::string_view bytes) {
   }
 }
 
-constexpr std::array kTargets{Target{"telemetry", telemetry}, Target{"viewer", viewer}, Target{"http", http},
-                              Target{"yaml", yaml},           Target{"track", track},   Target{"log", log},
-                              Target{"mcap", mcap},           Target{"cdr", cdr},       Target{"plan", plan}};
+constexpr std::array kTargets{
+    Target{"telemetry", telemetry}, Target{"viewer", viewer}, Target{"http", http}, Target{"yaml", yaml},
+    Target{"track", track},         Target{"log", log},       Target{"map", map},   Target{"bag", bag},
+    Target{"mcap", mcap},           Target{"cdr", cdr},       Target{"plan", plan}};
 
 }  // namespace
 

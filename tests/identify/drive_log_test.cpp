@@ -205,5 +205,30 @@ TEST(DriveLog, IsPartedAtGapsAndJumps) {
   EXPECT_EQ((*logs)[2].samples.size(), 150U);
 }
 
+TEST(SqliteBag, HasItsOdometryAndCommands) {
+  const std::string folder = std::string(CHICANE_SOURCE_DIR) + "/tests/fuzz/corpus/bag/";
+  const auto log = read_plain_log(folder + "plain.db3", {});
+  ASSERT_TRUE(log) << log.error().message;
+  ASSERT_EQ(log->samples.size(), 6U);
+  EXPECT_NEAR(log->samples[5].time - log->samples[0].time, 0.5, 1e-9);
+  EXPECT_NEAR(log->samples[5].psi, 0.5, 1e-9);
+  EXPECT_NEAR(log->samples[5].x, 10.0 * std::sin(0.5), 1e-9);
+  EXPECT_EQ(log->samples[5].speed, 10.0);
+  ASSERT_EQ(log->told.size(), 6U);
+  EXPECT_NEAR(log->told[2].steer, 0.03, 1e-7) << "a float";
+  EXPECT_FALSE(log->has_throttle());
+  const auto two = read_plain_log(folder + "two_topics.db3", {});
+  EXPECT_TRUE(two) << "messages that cannot be read are none";
+  EXPECT_EQ(
+      read_plain_log(folder + "empty.db3", {}).error().message,
+      folder +
+          "empty.db3: got the topics none of nav_msgs/msg/Odometry, expected one; name it by --odom-topic");
+  EXPECT_EQ(
+      read_plain_log(folder + "other.db3", {}).error().message,
+      folder +
+          "other.db3: got a bag that cannot be read: no such table: topics, expected a database of rosbag2");
+  EXPECT_EQ(read_plain_log(folder + "none.db3", {}).error().code, ErrorCode::kIo);
+}
+
 }  // namespace
 }  // namespace chicane::identify

@@ -59,26 +59,6 @@ TEST_F(MapFile, PutsTheLowestRowFirstAndTakesUnknownCellsAsFree) {
   EXPECT_EQ(map->is_wall, (std::vector<bool>{false, false, true, true, false, false}));
 }
 
-TEST_F(MapFile, ReadsTextBinaryAndPngAlike) {
-  const auto text = read_image(kText, "m.pgm");
-  ASSERT_TRUE(text) << text.error().message;
-  using namespace std::string_view_literals;
-  const auto binary = read_image("P5 3 2 255\n\0\xcd\xfe\xfe\xfe\0"sv, "m.pgm");
-  ASSERT_TRUE(binary) << binary.error().message;
-  EXPECT_EQ(text->values, binary->values);
-#ifdef CHICANE_HAVE_PNG
-  // The same six values as an 8-bit grey PNG, by Python's zlib.
-  const auto png = read_image(
-      "\211\120\116\107\015\012\032\012\000\000\000\015\111\110\104\122\000\000\000\003"
-      "\000\000\000\002\010\000\000\000\000\270\037\071\306\000\000\000\020\111\104\101"
-      "\124\170\234\143\140\070\373\217\341\337\077\006\000\016\302\003\310\016\266\251"
-      "\064\000\000\000\000\111\105\116\104\256\102\140\202"sv,
-      "m.png");
-  ASSERT_TRUE(png) << png.error().message;
-  EXPECT_EQ(png->values, text->values);
-#endif
-}
-
 TEST_F(MapFile, SaysWhatIsWrongWithALine) {
   static_cast<void>(put("m.pgm", kText));
   EXPECT_EQ(fault_of("image: m.pgm\nresolution: -1\norigin: [0, 0]\n"),
@@ -90,19 +70,6 @@ TEST_F(MapFile, SaysWhatIsWrongWithALine) {
             "map.yaml:1: image: got none, expected the name of a PGM or PNG file");
   EXPECT_EQ(fault_of("- 1\n"),
             "map.yaml:1: got a list, expected a map with image, resolution and origin, as map_server has it");
-}
-
-TEST_F(MapFile, RefusesImagesThatAreCutOffTooLargeOrOfAnotherKind) {
-  const auto fault = [](std::string_view bytes) {
-    const auto image = read_image(bytes, "m.pgm");
-    return image ? std::string("nothing") : image.error().message;
-  };
-  EXPECT_EQ(fault("P5 3 2 255\nabc"), "m.pgm: grey value 4 of 6: got none, expected 0 to 255");
-  EXPECT_EQ(fault("P2 1 1 100 101"), "m.pgm: grey value 1 of 1: got 101, expected 0 to 100");
-  EXPECT_EQ(fault("P5 99999 99999 255\n"), "m.pgm: size: got 99999 x 99999, expected 1 to 64000000 cells");
-  EXPECT_EQ(fault("P5 3 2 65535\n"), "m.pgm: largest grey value: got 65535, expected 1 to 255");
-  EXPECT_EQ(fault("GIF89a"), "m.pgm: got other bytes, expected a PGM (P2, P5) or PNG image");
-  EXPECT_EQ(fault("\x89PNG and nothing").substr(0, 6), "m.pgm:");
 }
 
 }  // namespace

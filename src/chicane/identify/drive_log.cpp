@@ -128,6 +128,13 @@ Result<void> check(const Agreement& seen, const std::string& file) {
   return {};
 }
 
+Result<LogRows> read_rows(const std::string& file, const LogOptions& options) {
+  if (file.ends_with(".mcap")) return read_mcap_rows(file, options);
+  if (file.ends_with(".db3")) return read_sqlite_rows(file, options);
+  const Result<std::string> text = protocol::read_file(file);
+  return text ? read_csv_rows(*text, file, options) : fail(text.error());
+}
+
 Result<std::vector<DriveLog>> checked(Result<LogRows> rows, const std::string& file) {
   if (!rows) return fail(rows.error());
   std::vector<DriveLog> parts = parts_of(std::move(*rows), file);
@@ -145,9 +152,22 @@ Result<std::vector<DriveLog>> parse_csv_log(const std::string& text, const std::
 }
 
 Result<std::vector<DriveLog>> read_log(const std::string& file, const LogOptions& options) {
-  if (file.ends_with(".mcap")) return checked(read_mcap_rows(file, options), file);
-  const Result<std::string> text = protocol::read_file(file);
-  return text ? parse_csv_log(*text, file, options) : fail(text.error());
+  return checked(read_rows(file, options), file);
+}
+
+Result<DriveLog> read_plain_log(const std::string& file, const LogOptions& options) {
+  Result<LogRows> rows = read_rows(file, options);
+  if (!rows) return fail(rows.error());
+  std::erase_if(rows->samples, [](const Sample& each) {
+    return !std::isfinite(each.time + each.x + each.y + each.psi + each.speed);
+  });
+  std::erase_if(rows->told, [](const Told& each) { return !std::isfinite(each.time + each.steer); });
+  const auto earlier = [](const auto& a, const auto& b) { return a.time < b.time; };
+  std::stable_sort(rows->samples.begin(), rows->samples.end(), earlier);
+  std::stable_sort(rows->told.begin(), rows->told.end(), earlier);
+  if (rows->samples.empty())
+    return fail(ErrorCode::kParse, file + ": got no sample of a car, expected places and speeds");
+  return DriveLog{file, std::move(rows->samples), std::move(rows->told), rows->is_centre_of_mass};
 }
 
 }  // namespace chicane::identify

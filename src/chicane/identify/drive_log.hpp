@@ -44,10 +44,12 @@ struct LogOptions {
   std::map<std::string, std::string> columns{};  ///< of a CSV file: {"steer", "cmd_delta_rad"}
   std::string odom_topic{};                      ///< of a foreign MCAP file; empty: the only one of its type
   std::string drive_topic{};                     ///< the same
+  bool needs_commands = true;                    ///< false: a log of the car alone is one, too
 };
 
-/// Reads recordings of ours, MCAP files with nav_msgs/Odometry and ackermann_msgs/AckermannDriveStamped in
-/// CDR, and CSV files with a header. A log that jumps, or has no samples for half a second, becomes several.
+/// Reads recordings of ours, bags of ROS 2 (MCAP, SQLite) with nav_msgs/Odometry and
+/// ackermann_msgs/AckermannDriveStamped in CDR, and CSV files with a header. A log that jumps, or has no
+/// samples for half a second, becomes several.
 ///
 /// CSV columns are found by name, with their unit behind (`_deg`, `_rad`, `_mps`, `_kmh`, `_mph`, `_ms`,
 /// `_s`): time, x, y, psi (yaw, heading), speed (v, vx), yaw_rate, steer (steering, delta), throttle (pedal).
@@ -55,7 +57,10 @@ struct LogOptions {
 /// kIo; kParse with file and line for what is no log, and for values that cannot be what their column says:
 /// steering in degrees, a speed in other units than the path, steering or yaw positive to the right.
 [[nodiscard]] Result<std::vector<DriveLog>> read_log(const std::string& file, const LogOptions& options);
-/// The same of a CSV file's text; `file` is for messages.
+/// The samples and commands of a log in the order of time, as they are: for showing them. Values that are not
+/// finite are left out; without `needs_commands` there may be no commands.
+[[nodiscard]] Result<DriveLog> read_plain_log(const std::string& file, const LogOptions& options);
+/// What read_log() makes of a CSV file's text; `file` is for messages.
 [[nodiscard]] Result<std::vector<DriveLog>> parse_csv_log(const std::string& text, const std::string& file,
                                                           const LogOptions& options);
 

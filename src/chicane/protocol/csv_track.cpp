@@ -7,15 +7,17 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/protocol/detail/csv_text.hpp"
+#include "chicane/protocol/csv_text.hpp"
+#include "chicane/protocol/detail/track_order.hpp"
 
 namespace chicane::protocol {
 namespace {
 
-enum class Column { kX, kY, kRight, kLeft, kHeading, kDerived, kUnknown };
+enum class Column { kX, kY, kRight, kLeft, kWidth, kHeading, kDerived, kUnknown };
 
 struct Alias {
   std::string_view name;
@@ -25,17 +27,36 @@ constexpr std::array kAliases{
     Alias{"x_m", Column::kX},
     Alias{"x", Column::kX},
     Alias{"x_ref_m", Column::kX},
+    Alias{"x[m]", Column::kX},
+    Alias{"x(m)", Column::kX},
+    Alias{"pos_x", Column::kX},
+    Alias{"position_x", Column::kX},
+    Alias{"easting", Column::kX},
     Alias{"y_m", Column::kY},
     Alias{"y", Column::kY},
     Alias{"y_ref_m", Column::kY},
+    Alias{"y[m]", Column::kY},
+    Alias{"y(m)", Column::kY},
+    Alias{"pos_y", Column::kY},
+    Alias{"position_y", Column::kY},
+    Alias{"northing", Column::kY},
     Alias{"w_tr_right_m", Column::kRight},
     Alias{"w_right_m", Column::kRight},
     Alias{"width_right_m", Column::kRight},
     Alias{"d_right", Column::kRight},
+    Alias{"w_right", Column::kRight},
+    Alias{"width_right", Column::kRight},
+    Alias{"right_width", Column::kRight},
     Alias{"w_tr_left_m", Column::kLeft},
     Alias{"w_left_m", Column::kLeft},
     Alias{"width_left_m", Column::kLeft},
     Alias{"d_left", Column::kLeft},
+    Alias{"w_left", Column::kLeft},
+    Alias{"width_left", Column::kLeft},
+    Alias{"left_width", Column::kLeft},
+    Alias{"width_m", Column::kWidth},
+    Alias{"width", Column::kWidth},
+    Alias{"track_width_m", Column::kWidth},
     Alias{"psi_rad", Column::kHeading},
     Alias{"s_m", Column::kDerived},
     Alias{"kappa_radpm", Column::kDerived},
@@ -46,35 +67,23 @@ constexpr std::array kAliases{
 constexpr std::size_t kMaxLine = 65536;  // [bytes]
 constexpr std::size_t kMostColumns = 1000;
 constexpr double kSameAngle = 0.3;     // headings from points scatter by this [rad]
-constexpr double kClosingCopy = 1e-3;  // a last point this near to the first repeats it [m]
-constexpr double kLoopGap = 1.5;       // a loop's last gap is at most this times the longest other one
 constexpr std::size_t kMostNamed = 8;  // unknown columns in one warning
 constexpr double kLeastRoad = 0.5;     // a full-size road within so small a square is in degrees [m]
-
-/// What tags a cone's side in maps of cones (Formula Student): their rows follow no line.
-constexpr std::array<std::string_view, 7> kConeTags{"blue",       "yellow",     "orange", "big_orange",
-                                                    "orange_big", "big-orange", "cone"};
 
 class TrackParser {
  public:
   TrackParser(const std::string& file, const TrackReadOptions& options) : options_{options} {
-    content_.file = file;
-    content_.scale = options.scale;
-    content_.options.spacing *= options.scale;
-    content_.options.smoothing_sigma *= options.scale;
+    content_ = empty_track(file, options);
     closed_ = options.is_closed;
   }
 
   Result<TrackFile> parse(std::string_view text) {
     if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
       return fail(fault("file", "UTF-16", "UTF-8"));
-    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-    while (!text.empty()) {
-      ++line_;
-      const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-      if (Result<void> read = read_line(trim(text.substr(0, end))); !read)
-        return fail(std::move(read.error()));
-      text.remove_prefix(std::min(text.size(), end + (text.substr(end, 2) == "\r\n" ? 2U : 1U)));
+    CsvLines lines(text);
+    for (std::optional<std::string_view> line = lines.next(); line; line = lines.next()) {
+      line_ = lines.number();
+      if (Result<void> read = read_line(*line); !read) return fail(std::move(read.error()));
     }
     if (content_.points.empty()) {
       line_ = 0;
@@ -82,7 +91,7 @@ class TrackParser {
     }
     if (Result<void> checked = check_extent(); !checked) return fail(std::move(checked.error()));
     compare_headings();
-    settle_ends();
+    settle_ends(content_, closed_);
     return std::move(content_);
   }
 
@@ -137,6 +146,12 @@ class TrackParser {
     if (key == "closed") {
       if (value != "true" && value != "false") return fail(fault(key, shown(value), "true or false"));
       if (!options_.is_closed) closed_ = value == "true";
+      return {};
+    }
+    if (key == "track_scale") {
+      if (value != "1")
+        return fail(fault(key, shown(value), "1, for a road in the size in which it is driven"));
+      content_.is_own_size = true;
       return {};
     }
     struct Setting {
@@ -220,6 +235,10 @@ class TrackParser {
     std::vector<std::string> unknown;
     for (const std::string_view name : names) {
       const Column column = column_of(name);
+      if (name == "skip") {
+        fields_.push_back({std::string{name}, Column::kDerived});
+        continue;
+      }
       const bool is_once = column == Column::kUnknown || column == Column::kDerived || !has(column);
       if (!is_once) return fail(fault(shown(name), "a second such column", "one"));
       if (column == Column::kUnknown) unknown.push_back(shown(name));
@@ -247,9 +266,11 @@ class TrackParser {
       return fail(fault("header", has_right ? "only a right width" : "only a left width",
                         "both w_tr_right_m and w_tr_left_m, or none"));
     }
-    if (!has_right) {
+    if (!has_right && has(Column::kWidth)) {
+      warn("width", "of the whole road, half of it to each side");
+    } else if (!has_right) {
       warn("width",
-           fmt::format("not in the file, {} m left and {} m right assumed",
+           fmt::format("not in the file, {} m left and {} m right assumed (import --width-m sets it)",
                        options_.scale * options_.default_left, options_.scale * options_.default_right));
     }
     return {};
@@ -258,13 +279,15 @@ class TrackParser {
   /// Numbers without a line of names: two columns can hardly be anything but a line of points. What more
   /// columns are is never guessed: widths, height, speed and heading look alike.
   Result<void> assume_header(std::size_t count) {
+    if (!options_.columns.empty()) return read_header(options_.columns);
     if (other_names_.count == count) {
       line_ = other_names_.line;
       return fail(fault("header", shown(other_names_.text), kPlane));
     }
     if (count != 2) {
-      return fail(fault("header", fmt::format("none for {} columns", count),
-                        "a line that names them, like x_m,y_m,w_tr_right_m,w_tr_left_m"));
+      return fail(fault(
+          "header", fmt::format("none for {} columns", count),
+          "a line that names them, like x_m,y_m,w_tr_right_m,w_tr_left_m (import --columns names them)"));
     }
     fields_ = {{"x_m", Column::kX}, {"y_m", Column::kY}};
     warn("header", "none, read as x_m,y_m");
@@ -295,15 +318,15 @@ class TrackParser {
   }
 
   Result<void> read_value(const Field& field, std::string_view text, path::TrackPoint& point) {
-    if (field.column == Column::kDerived) return {};
-    if (field.column == Column::kUnknown) return check_tag(field, text);
-    const std::optional<double> value = number(text);
+    if (field.column == Column::kDerived || field.column == Column::kUnknown) return {};
+    const std::optional<double> value = number(text, separator_);
     if (field.column == Column::kHeading) {
       headings_.push_back(value.value_or(0.0));
       return {};
     }
     if (!value) return fail(fault(field.name, shown(text), "a finite number with a decimal point"));
-    const bool is_width = field.column == Column::kRight || field.column == Column::kLeft;
+    const bool is_width =
+        field.column == Column::kRight || field.column == Column::kLeft || field.column == Column::kWidth;
     if (is_width && !(*value > 0.0 && *value <= kMaxTrackWidth))
       return fail(fault(field.name, shown(text), "a width > 0 and <= 1000 m"));
     if (!is_width && std::fabs(*value) > path::Path::kMaxCoordinate)
@@ -318,17 +341,13 @@ class TrackParser {
       case Column::kRight:
         point.right = *value;
         break;
+      case Column::kWidth:
+        if (!has(Column::kRight)) point.left = point.right = 0.5 * *value;
+        break;
       default:
         point.left = *value;
     }
     return {};
-  }
-
-  [[nodiscard]] Result<void> check_tag(const Field& field, std::string_view text) const {
-    const std::string tag = lower(text);
-    if (std::find(kConeTags.begin(), kConeTags.end(), tag) == kConeTags.end()) return {};
-    return fail(fault(field.name, shown(text) + ", a map of cones",
-                      "the points of one line in the order of driving, x_m,y_m,w_tr_right_m,w_tr_left_m"));
   }
 
   /// Degrees of latitude and longitude in columns that are taken for metres.
@@ -372,29 +391,6 @@ class TrackParser {
                                   : "disagrees with the points, recomputed from them");
   }
 
-  /// Closed or open; and a closing copy of the first point goes.
-  void settle_ends() {
-    std::vector<path::TrackPoint>& points = content_.points;
-    double longest = 0.0;
-    for (std::size_t i = 1; i < points.size(); ++i) {
-      longest = std::max(longest, (points[i].position - points[i - 1].position).norm());
-    }
-    const double gap = (points.front().position - points.back().position).norm();
-    content_.is_closed = closed_.value_or(gap <= kLoopGap * longest);
-    line_ = content_.lines.back();
-    if (!content_.is_closed && !closed_) {
-      warn("row",
-           fmt::format(
-               "{:.1f} m from the last point to the first: read as an open road (closed=true forces a loop)",
-               gap));
-    }
-    while (content_.is_closed && points.size() > 1 &&
-           (points.front().position - points.back().position).norm() < kClosingCopy) {
-      points.pop_back();
-      content_.lines.pop_back();
-    }
-  }
-
   static constexpr std::string_view kPlane = "columns x and y (or x_m and y_m) in metres";
 
   /// A comment that names columns, but not x and y.
@@ -430,6 +426,7 @@ std::string write_csv_track(const TrackFile& content, std::string_view descripti
       std::back_inserter(text),
       "# closed={}, start_s_m={}, start_d_m={}, spacing_m={}, smoothing_sigma_m={}, kerb_width_m={}\n",
       content.is_closed, o.start_s, o.start_d, o.spacing, o.smoothing_sigma, o.kerb_width);
+  if (content.is_own_size) text += "# track_scale=1\n";
   if (o.finish_s != 0.0) fmt::format_to(std::back_inserter(text), "# finish_s_m={}\n", o.finish_s);
   text += "# x_m,y_m,w_tr_right_m,w_tr_left_m\n";
   for (const path::TrackPoint& p : content.points) {

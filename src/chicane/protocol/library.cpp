@@ -199,15 +199,21 @@ void note_idle(const Document& asked, scenario::Scenario& scenario) {
   }
 }
 
-/// What was assumed of the road: by its reader, where it is no shipped one; and of its size.
+/// What was assumed of the road: by its reader, where it is no shipped one; and of its size. A file that says
+/// so is driven in its own size.
 void note_track(bool is_asked_for, scenario::Scenario& scenario) {
   const double scale = scenario.vehicle.scale;
-  if (is_path(scenario.track)) {
-    const Result<std::string> text = read_file(scenario.track);
-    const auto content = text ? parse_track(*text, scenario.track, {.scale = scenario.scale_of_file()})
+  const bool is_file = is_path(scenario.track);
+  if (is_file || scale != 1.0) {
+    const Result<std::string> file = locate(Shelf::kTrack, scenario.track);
+    const Result<std::string> text = file ? read_file(*file) : fail(file.error());
+    const auto content = text ? parse_track(*text, *file, {.scale = scenario.scale_of_file()})
                               : Result<TrackFile>{fail(text.error())};
-    if (content)  // what is wrong with it the run itself will tell
-      scenario.notices.insert(scenario.notices.end(), content->warnings.begin(), content->warnings.end());
+    if (content) {  // what is wrong with it the run itself will tell
+      if (content->is_own_size && scenario.track_scale == 0.0) scenario.track_scale = 1.0;
+      if (is_file)
+        scenario.notices.insert(scenario.notices.end(), content->warnings.begin(), content->warnings.end());
+    }
   }
   if (is_asked_for && scale != 1.0 && scenario.track_scale == 0.0)
     scenario.notices.push_back(

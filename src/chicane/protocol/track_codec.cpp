@@ -9,6 +9,8 @@
 #include <filesystem>
 
 #include "chicane/protocol/csv_track.hpp"
+#include "chicane/protocol/detail/track_order.hpp"
+#include "chicane/protocol/foreign_tracks.hpp"
 #include "chicane/protocol/library.hpp"
 
 namespace chicane::protocol {
@@ -55,7 +57,15 @@ path::TrackOptions full_size_options(const TrackFile& content) {
   return options;
 }
 
+const TrackFormat* foreign_format_of(std::string_view text) noexcept {
+  for (const TrackFormat& format : foreign_tracks())
+    if (format.recognises(text)) return &format;
+  return nullptr;
+}
+
 }  // namespace
+
+bool is_foreign_track(std::string_view text) noexcept { return foreign_format_of(text) != nullptr; }
 
 std::span<const TrackFormat> track_formats() noexcept { return kFormats; }
 std::span<const std::string_view> track_extensions() noexcept { return kExtensions; }
@@ -83,8 +93,11 @@ Result<TrackFile> parse_track(std::string_view text, const std::string& file,
     return fail(ErrorCode::kParse,
                 fmt::format("{}: file: got {} bytes, expected at most 64 MiB", file, text.size()));
   }
-  const TrackFormat* format = track_format_of(file);
-  return (format != nullptr ? *format : kFormats.front()).parse(text, file, options);
+  const TrackFormat* format = foreign_format_of(text);
+  if (format == nullptr) format = track_format_of(file);
+  Result<TrackFile> content = (format != nullptr ? *format : kFormats.front()).parse(text, file, options);
+  if (content) arrange(*content, options);
+  return content;
 }
 
 Result<path::Track> make_track(const TrackFile& content) {

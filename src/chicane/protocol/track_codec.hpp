@@ -22,6 +22,15 @@ struct TrackReadOptions {
   /// Of the file's metres: 0.1 where the file has the road of a tenth of the size. What is assumed (widths,
   /// noise and spacing of the points) is that of a full-size road times this; (0, 1000].
   double scale = 1.0;
+
+  // What `chicane import` asks for.
+  enum class Direction { kOfTheFile, kReversed, kLeft, kRight };
+  Direction direction = Direction::kOfTheFile;  ///< kLeft: a loop to the left, counter-clockwise
+  std::optional<Vec2> start = std::nullopt;     ///< the point nearest to this place comes first [m]
+  std::optional<double> smoothing_sigma =
+      std::nullopt;          ///< in place of what the file says or a reader assumes [m]
+  double least_width = 0.4;  ///< of a map: narrower passages are no road [m]; > 0
+  std::string columns = {};  ///< "x_m,y_m,skip": names for a table that has none
 };
 
 /// What a file holds, before it becomes a road.
@@ -30,8 +39,10 @@ struct TrackFile {
   std::vector<path::TrackPoint> points;  ///< a closing copy of the first point is taken away
   std::vector<int> lines;                ///< of each point in the file, from 1
   bool is_closed = true;
-  path::TrackOptions options;         ///< what the file says of them, else the defaults
-  double scale = 1.0;                 ///< as TrackReadOptions has it
+  path::TrackOptions options;  ///< what the file says of them, else the defaults
+  double scale = 1.0;          ///< as TrackReadOptions has it
+  /// The road is in the size in which it is driven, as maps that a model car made are: track_scale=1.
+  bool is_own_size = false;
   std::vector<std::string> warnings;  ///< "file:line: column: what was assumed or ignored"
 };
 
@@ -47,6 +58,8 @@ struct TrackFormat {
   /// message "tracks/x.csv:14: w_tr_left_m: got -4, expected a width > 0 and <= 1000 m".
   Result<TrackFile> (*parse)(std::string_view text, const std::string& file,
                              const TrackReadOptions& options) = nullptr;
+  /// Whether a file is of this format by its content; nullptr where only its name tells.
+  bool (*recognises)(std::string_view text) noexcept = nullptr;
 };
 
 /// All of them. Where a name fits two files, the format that comes first wins.
@@ -56,7 +69,11 @@ struct TrackFormat {
 /// The format of a file by its name; null when there is none.
 [[nodiscard]] const TrackFormat* track_format_of(std::string_view file) noexcept;
 
-/// What the file's format makes of the text; a file without a known extension is read as the first format.
+/// Whether a format of other programs recognises the text (foreign_tracks.hpp).
+[[nodiscard]] bool is_foreign_track(std::string_view text) noexcept;
+
+/// What the file's format makes of the text: the format that recognises its content, else that of its name,
+/// else the first one.
 [[nodiscard]] Result<TrackFile> parse_track(std::string_view text, const std::string& file,
                                             const TrackReadOptions& options = {});
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -11,6 +10,7 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/identify/detail/log_rows.hpp"
+#include "chicane/protocol/csv_text.hpp"
 
 namespace chicane::identify {
 namespace {
@@ -49,23 +49,6 @@ struct Column {
   double factor = 1.0;
 };
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r\"";
-  const std::size_t from = text.find_first_not_of(kBlank);
-  if (from == std::string_view::npos) return {};
-  return text.substr(from, text.find_last_not_of(kBlank) - from + 1);
-}
-
-std::vector<std::string_view> cells(std::string_view line, char separator) {
-  std::vector<std::string_view> found;
-  for (std::size_t from = 0;;) {
-    const std::size_t to = line.find(separator, from);
-    found.push_back(trimmed(line.substr(from, to - from)));
-    if (to == std::string_view::npos) return found;
-    from = to + 1;
-  }
-}
-
 /// A name without its unit, and the factor of the unit.
 std::pair<std::string, double> parted(std::string_view name) {
   std::string lower(name);
@@ -81,13 +64,6 @@ std::pair<std::string, double> parted(std::string_view name) {
 bool means(const Meaning& meaning, std::string_view name) {
   return name == meaning.name || (!name.empty() && std::find(meaning.others.begin(), meaning.others.end(),
                                                              name) != meaning.others.end());
-}
-
-std::optional<double> number_in(std::string_view cell) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
 }
 
 struct Header {
@@ -111,7 +87,7 @@ Result<Header> read_header(const std::vector<std::string_view>& names, const std
     if (told != options.columns.end())
       return fail(ErrorCode::kParse, fmt::format("{}: header: got no column {}, expected one for {}", place,
                                                  printable(told->second), meaning.name));
-    if (!meaning.is_needed) continue;
+    if (!meaning.is_needed || (q == kSteer && !options.needs_commands)) continue;
     std::string got;
     for (const std::string_view name : names) got += (got.empty() ? "" : ",") + printable(name);
     return fail(ErrorCode::kParse,
@@ -127,43 +103,37 @@ Result<LogRows> read_csv_rows(const std::string& text, const std::string& file, 
   LogRows rows;
   std::optional<Header> header;
   char separator = ',';
-  std::size_t line_number = 0;
-  for (std::size_t from = 0; from < text.size();) {
-    const std::size_t end = std::min(text.find('\n', from), text.size());
-    std::string_view line = trimmed(std::string_view(text).substr(from, end - from));
-    from = end + 1;
-    ++line_number;
-    if (line_number == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
-    const std::string place = fmt::format("{}:{}", file, line_number);
+  protocol::CsvLines lines(text);
+  const auto place = [&] { return fmt::format("{}:{}", file, lines.number()); };
+  for (std::optional<std::string_view> next = lines.next(); next; next = lines.next()) {
+    std::string_view line = *next;
     if (!header) {
-      line = trimmed(line.starts_with('#') ? line.substr(1) : line);
+      line = protocol::trim(line.starts_with('#') ? line.substr(1) : line);
       if (line.empty()) continue;
-      for (const char each : {';', '\t'}) {
-        if (line.find(each) != std::string_view::npos) separator = each;
-      }
-      const auto read = read_header(cells(line, separator), place, options);
+      separator = protocol::separator_of(line);
+      const auto read = read_header(protocol::split(line, separator), place(), options);
       if (!read) return fail(read.error());
       header = *read;
       continue;
     }
     if (line.empty() || line.starts_with('#')) continue;
-    const std::vector<std::string_view> values = cells(line, separator);
+    const std::vector<std::string_view> values = protocol::split(line, separator);
     if (values.size() != header->count)
       return fail(ErrorCode::kParse,
-                  fmt::format("{}: row: got {} columns, expected {}", place, values.size(), header->count));
+                  fmt::format("{}: row: got {} columns, expected {}", place(), values.size(), header->count));
     std::array<double, kQuantities> row;
     row.fill(std::numeric_limits<double>::quiet_NaN());
     for (std::size_t q = 0; q < kQuantities; ++q) {
       if (!header->columns[q]) continue;
-      const std::optional<double> value = number_in(values[header->columns[q]->at]);
+      const std::optional<double> value = protocol::number(values[header->columns[q]->at], separator);
       if (!value)
         return fail(ErrorCode::kParse,
-                    fmt::format("{}: {}: got {}, expected a finite number", place, kMeanings[q].name,
+                    fmt::format("{}: {}: got {}, expected a finite number", place(), kMeanings[q].name,
                                 printable(values[header->columns[q]->at])));
       row[q] = *value * header->columns[q]->factor;
     }
     rows.samples.push_back({row[kTime], row[kX], row[kY], row[kPsi], row[kSpeed], row[kYawRate]});
-    rows.told.push_back({row[kTime], row[kSteer], row[kThrottle]});
+    if (header->columns[kSteer]) rows.told.push_back({row[kTime], row[kSteer], row[kThrottle]});
   }
   if (!header) return fail(ErrorCode::kParse, fmt::format("{}: got no header, expected one", file));
   return rows;

@@ -21,5 +21,7 @@ struct LogRows {
                                             const LogOptions& options);
 /// An MCAP file: of ours, or with messages of ROS 2 in CDR.
 [[nodiscard]] Result<LogRows> read_mcap_rows(const std::string& file, const LogOptions& options);
+/// A bag of rosbag2 in SQLite (`.db3`), with messages in CDR. Messages over 16 MiB are refused.
+[[nodiscard]] Result<LogRows> read_sqlite_rows(const std::string& file, const LogOptions& options);
 
 }  // namespace chicane::identify

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-/// Lines of text files as fields, of csv_track.cpp.
+/// Lines of text files as fields: tables of roads, of cones and of logs.
 namespace chicane::protocol {
 
 inline std::string_view trim(std::string_view text) {
@@ -50,6 +50,15 @@ inline std::optional<double> number(std::string_view text) {
   return value;
 }
 
+/// A finite number with a decimal point, or with a decimal comma where commas separate nothing.
+inline std::optional<double> number(std::string_view text, char separator) {
+  const std::size_t comma = text.find(',');
+  if (separator == ',' || comma == std::string_view::npos || text.size() > 40) return number(text);
+  std::string with_point{text};
+  with_point[comma] = '.';
+  return text.find('.') == std::string_view::npos ? number(with_point) : std::nullopt;
+}
+
 /// A number as it is meant, finite or not, or its place left empty: the field of a row, never of a header.
 inline bool stands_for_a_number(std::string_view text) {
   return text.empty() || number(text) || text == "nan" || text == "NaN" || text == "inf" || text == "-inf" ||
@@ -76,6 +85,29 @@ inline std::string shown(std::string_view text) {
   }
   return text.size() > kMost ? result.append("...") : result;
 }
+
+/// The lines of a text, trimmed, without a byte-order mark; ended by LF, CRLF or CR.
+class CsvLines {
+ public:
+  explicit CsvLines(std::string_view text) : rest_{text} {
+    if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
+  }
+  /// Nothing behind the last one.
+  std::optional<std::string_view> next() {
+    if (rest_.empty()) return std::nullopt;
+    ++number_;
+    const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
+    const std::string_view line = trim(rest_.substr(0, end));
+    rest_.remove_prefix(std::min(rest_.size(), end + (rest_.substr(end, 2) == "\r\n" ? 2U : 1U)));
+    return line;
+  }
+  /// Of the line that next() gave, from 1.
+  [[nodiscard]] int number() const noexcept { return number_; }
+
+ private:
+  std::string_view rest_;
+  int number_ = 0;
+};
 
 inline std::string lower(std::string_view text) {
   std::string result{text};

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "chicane/base/text.hpp"
+#include "chicane/protocol/csv_track.hpp"
+#include "chicane/protocol/library.hpp"
+#include "commands.hpp"
+#include "import_preview.hpp"
+#include "many_runs.hpp"
+
+namespace chicane::apps {
+namespace {
+
+using protocol::TrackFile;
+using protocol::TrackReadOptions;
+
+constexpr double kModelRoad = 3.0;     // a narrower road is that of a model car [m]
+constexpr double kModelScale = 0.1;    // of what is assumed of its noise and spacing
+constexpr double kPointsAcross = 5.0;  // spacing of the points is the width over this
+
+/// A road as it was read, and as it is written.
+struct Imported {
+  TrackFile content;
+  path::Track track;
+  double spacing = 0.0;                  ///< of the points written [m]
+  double rms = 0.0, most = 0.0;          ///< distance of the file's points from the line [m]
+  double narrowest = 1e9, widest = 0.0;  ///< [m]
+  double sharpest = 0.0;                 ///< curvature [1/m]
+};
+
+TrackReadOptions read_options(const Options::Import& import, double scale) {
+  using Direction = TrackReadOptions::Direction;
+  TrackReadOptions options{.scale = scale,
+                           .smoothing_sigma = import.smoothing,
+                           .least_width = import.least_width,
+                           .columns = import.columns};
+  if (import.width) options.default_left = options.default_right = 0.5 * *import.width / scale;
+  if (import.is_closed || import.is_open) options.is_closed = import.is_closed;
+  if (import.start.size() == 2) options.start = Vec2{import.start[0], import.start[1]};
+  options.direction = import.direction == "cw"         ? Direction::kRight
+                      : import.direction == "ccw"      ? Direction::kLeft
+                      : import.direction == "reversed" ? Direction::kReversed
+                                                       : Direction::kOfTheFile;
+  return options;
+}
+
+double mean_width(const TrackFile& content) {
+  double sum = 0.0;
+  for (const path::TrackPoint& point : content.points) sum += point.left + point.right;
+  return sum / static_cast<double>(content.points.size());
+}
+
+/// How far the points of the file are from the line, and what the road is like.
+void measure(Imported& road) {
+  const path::Path& centre = road.track.centre();
+  const std::vector<path::TrackPoint>& points = road.track.raw_points();
+  const std::vector<double>& places = road.track.raw_places();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < points.size() && i < places.size(); ++i) {
+    const double away = (centre.at(places[i]).position - points[i].position).norm();
+    sum += away * away;
+    road.most = std::max(road.most, away);
+  }
+  road.rms = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, points.size())));
+  const double step = road.track.length() / std::ceil(road.track.length() / (0.5 * road.spacing));
+  for (double s = 0.0; s < road.track.length(); s += step) {
+    const double width = road.track.left_width(s) + road.track.right_width(s);
+    road.narrowest = std::min(road.narrowest, width);
+    road.widest = std::max(road.widest, width);
+    road.sharpest = std::max(road.sharpest, std::fabs(centre.at(s).curvature));
+  }
+}
+
+Result<Imported> read_road(const Options::Import& import) {
+  const Result<std::string> text = protocol::read_file(import.file);
+  if (!text) return fail(text.error());
+  Result<TrackFile> content = protocol::parse_track(*text, import.file, read_options(import, 1.0));
+  if (!content) return fail(content.error());
+  if (mean_width(*content) < kModelRoad) {
+    content = protocol::parse_track(*text, import.file, read_options(import, kModelScale));
+    if (!content) return fail(content.error());
+    content->is_own_size = true;
+    content->warnings.push_back(fmt::format(
+        "{}: size: {:.2g} m wide, taken for the road of a model car in its own size (track_scale=1)",
+        import.file, mean_width(*content)));
+  }
+  const double usual = std::clamp(mean_width(*content) / kPointsAcross, 0.05, 2.0);
+  Result<path::Track> track = protocol::make_track(*content);
+  if (!track) return fail(track.error());
+  Imported road{
+      .content = std::move(*content), .track = std::move(*track), .spacing = import.spacing.value_or(usual)};
+  measure(road);
+  return road;
+}
+
+/// The smooth line as evenly spaced points, which need no smoothing any more.
+TrackFile resampled(const Imported& road) {
+  TrackFile out;
+  out.is_closed = road.track.centre().is_closed();
+  out.is_own_size = road.content.is_own_size;
+  out.options = road.content.options;
+  out.options.smoothing_sigma = 0.0;
+  out.options.spacing = road.spacing;
+  const double length = road.track.length();
+  const int count = std::max(8, static_cast<int>(std::lround(length / road.spacing)));
+  const auto rounded = [](double value) { return std::round(1e4 * value) / 1e4; };
+  for (int i = 0; i <= (out.is_closed ? count - 1 : count); ++i) {
+    const double s = length * i / count;
+    const Vec2 place = road.track.centre().at(s).position;
+    out.points.push_back({{rounded(place.x()), rounded(place.y())},
+                          rounded(road.track.left_width(s)),
+                          rounded(road.track.right_width(s))});
+  }
+  return out;
+}
+
+std::string in_words(const Imported& road) {
+  const bool is_model = road.content.is_own_size && road.widest < kModelRoad;
+  return fmt::format(
+      "{} road, {:.{}f} m long, {:.2f} to {:.2f} m wide, {}; {} points of the file are {:.3f} m from its "
+      "line (rms), {:.3f} m at most",
+      road.track.centre().is_closed() ? "closed" : "open", road.track.length(), is_model ? 2 : 1,
+      road.narrowest, road.widest,
+      road.sharpest > 1e-6 ? fmt::format("tightest radius {:.2f} m", 1.0 / road.sharpest) : "straight",
+      road.content.points.size(), road.rms, road.most);
+}
+
+std::string in_json(const Imported& road) {
+  nlohmann::ordered_json json;
+  json["is_closed"] = road.track.centre().is_closed();
+  json["length_m"] = road.track.length();
+  json["narrowest_m"] = road.narrowest;
+  json["widest_m"] = road.widest;
+  json["tightest_radius_m"] =
+      road.sharpest > 0.0 ? nlohmann::ordered_json(1.0 / road.sharpest) : nlohmann::ordered_json(nullptr);
+  json["points"] = road.content.points.size();
+  json["rms_m"] = road.rms;
+  json["max_m"] = road.most;
+  json["track_scale"] =
+      road.content.is_own_size ? nlohmann::ordered_json(1) : nlohmann::ordered_json(nullptr);
+  json["notices"] = road.content.warnings;
+  return json.dump(2) + "\n";
+}
+
+Result<void> import_and_tell(const Options& options) {
+  const Options::Import& import = options.import_;
+  for (const std::string& file : {options.output_file, import.preview})
+    if (Result<void> writable = check_writable(file); !writable) return writable;
+  if (!options.output_file.empty() && !options.output_file.ends_with(".csv"))
+    return fail(
+        ErrorCode::kInvalidArgument,
+        fmt::format("--output: got {}, expected a name that ends in .csv", printable(options.output_file)));
+  const Result<Imported> road = read_road(import);
+  if (!road) return fail(road.error());
+  for (const std::string& warning : road->content.warnings) fmt::print(stderr, "{}\n", warning);
+  const std::string csv = protocol::write_csv_track(
+      resampled(*road),
+      fmt::format("From {} by chicane import", std::filesystem::path(import.file).filename().string()));
+  // What is written has to be a road again.
+  const Result<TrackFile> again = protocol::parse_track(
+      csv, options.output_file.empty() ? import.file : options.output_file, {.scale = road->content.scale});
+  if (!again) return fail(again.error());
+  if (const Result<path::Track> made = protocol::make_track(*again); !made) return fail(made.error());
+  if (!options.output_file.empty())
+    if (Result<void> kept = write_file(options.output_file, csv); !kept) return kept;
+  if (!import.preview.empty())
+    if (Result<void> kept = write_file(import.preview, preview_of(road->track, road->content)); !kept)
+      return kept;
+  if (options.is_json) {
+    fmt::print("{}", in_json(*road));
+    return {};
+  }
+  fmt::print("{}: {}\n", import.file, in_words(*road));
+  if (!options.output_file.empty())
+    fmt::print("{}: chicane drive --track {}{}\n", options.output_file, options.output_file,
+               road->content.is_own_size && road->widest < kModelRoad ? " --car f1tenth" : "");
+  return {};
+}
+
+}  // namespace
+
+ExitCode import_road(const Options& options) {
+  const Result<void> done = import_and_tell(options);
+  return done ? kSuccess : report(done.error());
+}
+
+}  // namespace chicane::apps

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "chicane/base/result.hpp"
+#include "options.hpp"
+
+namespace chicane::apps {
+
+/// Writes what a log of another program says of a car as a recording into `output`: where it was, its speed,
+/// its commands; with --track also its place along the road and its laps, else laps by where it has been.
+/// What the log has not stays unknown (NaN). How it was read, in sentences, goes to stderr.
+///
+/// kParse for what is no log: neither a bag of ROS 2 with odometry, nor a CSV table of a car.
+[[nodiscard]] Result<void> convert_foreign_log(const std::string& file, const Options& options,
+                                               const std::string& output);
+
+/// Whether a file is no recording of ours, but may be a log of another program.
+[[nodiscard]] bool may_be_foreign_log(const std::string& file);
+
+}  // namespace chicane::apps

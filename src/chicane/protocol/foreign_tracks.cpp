@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/foreign_tracks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string>
+
+#include "chicane/protocol/csv_text.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+constexpr std::size_t kHead = 4096;  // bytes that are looked at
+
+std::string_view head_of(std::string_view text) noexcept {
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  text = text.substr(0, kHead);
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  return begin == std::string_view::npos ? std::string_view{} : text.substr(begin);
+}
+
+/// Whether a line of the head begins with the key of a YAML map.
+bool has_key(std::string_view head, std::string_view key) noexcept {
+  for (std::size_t at = head.find(key); at != std::string_view::npos; at = head.find(key, at + 1)) {
+    const std::size_t end = at + key.size();
+    if ((at == 0 || head[at - 1] == '\n') && end < head.size() && head[end] == ':') return true;
+  }
+  return false;
+}
+
+bool is_map(std::string_view text) noexcept {
+  if (text.starts_with("\x89PNG") || text.starts_with("P5\n") || text.starts_with("P2\n")) return true;
+  const std::string_view head = head_of(text);
+  return has_key(head, "image") && has_key(head, "resolution");
+}
+
+bool is_xml(std::string_view text) noexcept {
+  const std::string_view head = head_of(text);
+  return head.size() > 1 && head[0] == '<' &&
+         (head[1] == '?' || head[1] == '!' || (head[1] >= 'A' && head[1] <= 'z'));
+}
+
+/// An object: GeoJSON, or the way points of the ForzaETH race stack.
+bool is_json(std::string_view text) noexcept {
+  const std::string_view head = head_of(text);
+  if (head.empty() || head[0] != '{') return false;
+  const std::string_view body = text.substr(0, std::size_t{1} << 20U);
+  const auto has = [&](std::string_view word) { return body.find(word) != std::string_view::npos; };
+  return has("\"type\"") || has("wpnts") || has("map_info_str");
+}
+
+bool is_yaml_cones(std::string_view text) noexcept {
+  const std::string_view head = head_of(text);
+  return has_key(head, "cones_left") || has_key(head, "cones_right");
+}
+
+/// A table whose first row of numbers names a colour.
+bool is_csv_cones(std::string_view text) noexcept {
+  std::string_view head = head_of(text);
+  for (int row = 0; row < 4 && !head.empty(); ++row) {
+    const std::size_t end = std::min(head.find_first_of("\r\n"), head.size());
+    const std::string_view line = head.substr(0, end);
+    head.remove_prefix(end);
+    head.remove_prefix(std::min(head.find_first_not_of("\r\n"), head.size()));
+    if (line.empty() || line.front() == '#' || line.front() == '%') continue;
+    std::size_t numbers = 0;
+    bool has_colour = false;
+    for (const std::string_view field : split(line, separator_of(line))) {
+      numbers += number(field) ? 1U : 0U;
+      const std::string word = lower(field);
+      has_colour = has_colour || word == "blue" || word == "yellow" ||
+                   word.find("orange") != std::string::npos || word == "blue_cone" || word == "yellow_cone" ||
+                   word == "cone_blue" || word == "cone_yellow";
+    }
+    if (numbers >= 2) return has_colour;
+  }
+  return false;
+}
+
+constexpr std::array kForeign{
+    TrackFormat{"", &parse_map_track, &is_map},       TrackFormat{"", &parse_xml_track, &is_xml},
+    TrackFormat{"", &parse_json_track, &is_json},     TrackFormat{"", &parse_yaml_cones, &is_yaml_cones},
+    TrackFormat{"", &parse_csv_cones, &is_csv_cones},
+};
+
+}  // namespace
+
+std::span<const TrackFormat> foreign_tracks() noexcept { return kForeign; }
+
+}  // namespace chicane::protocol

@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chicane/base/math.hpp"
+#include "chicane/base/text.hpp"
+#include "chicane/protocol/detail/geo_lines.hpp"
+#include "chicane/protocol/detail/track_order.hpp"
+#include "chicane/survey/sampled_line.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+using survey::XmlNode;
+
+constexpr double kMostLength = 100e3;  // [m]
+constexpr double kLeastWidth = 0.5;    // of a cross-section [m]
+
+tl::unexpected<Error> fault(const std::string& file, const XmlNode& node, std::string_view key,
+                            std::string_view got, std::string_view expected) {
+  return fail(ErrorCode::kParse,
+              fmt::format("{}:{}: {}: got {}, expected {}", file, node.line, key, printable(got), expected));
+}
+
+// OpenDRIVE: a reference line of lines, arcs, spirals and polynomials, with lanes beside it.
+
+/// a + b s + c s² + d s³ from a place on.
+struct Cubic {
+  double from = 0.0;
+  std::array<double, 4> factors{};
+  [[nodiscard]] double at(double s) const {
+    const double u = s - from;
+    return factors[0] + u * (factors[1] + u * (factors[2] + u * factors[3]));
+  }
+};
+
+Cubic cubic_of(const XmlNode& node, const char* from_key, double from) {
+  Cubic cubic{from + node.number(from_key).value_or(0.0), {}};
+  constexpr std::array kNames{"a", "b", "c", "d"};
+  for (std::size_t i = 0; i < kNames.size(); ++i) cubic.factors[i] = node.number(kNames[i]).value_or(0.0);
+  return cubic;
+}
+
+/// The last one that begins at or before s; 0 where there is none.
+double value_at(const std::vector<Cubic>& pieces, double s) {
+  const Cubic* found = nullptr;
+  for (const Cubic& piece : pieces)
+    if (piece.from <= s + 1e-9 || found == nullptr) found = &piece;
+  return found != nullptr ? found->at(s) : 0.0;
+}
+
+struct Lane {
+  int id = 0;
+  bool is_driven = false;
+  std::vector<Cubic> width;
+};
+struct LaneSection {
+  double from = 0.0;
+  std::vector<Lane> lanes;  ///< the inner ones first, left ones before right ones
+};
+
+struct OpenDriveRoad {
+  const XmlNode* node = nullptr;
+  std::string next = {}, previous = {};  ///< roads; empty: none
+  bool next_begins = true, previous_ends = true;
+  bool meets_junction = false;
+  std::vector<path::TrackPoint> points = {};  ///< middle of the lanes that are driven
+};
+
+/// Heading and place along one geometry element.
+class Geometry {
+ public:
+  explicit Geometry(const XmlNode& node) : node_{node} {
+    place_ = {node.number("x").value_or(NAN), node.number("y").value_or(NAN)};
+    heading_ = node.number("hdg").value_or(NAN);
+    length_ = node.number("length").value_or(NAN);
+    if (const XmlNode* const arc = node.child("arc")) {
+      begin_ = end_ = arc->number("curvature").value_or(NAN);
+    } else if (const XmlNode* const spiral = node.child("spiral")) {
+      begin_ = spiral->number("curvStart").value_or(NAN);
+      end_ = spiral->number("curvEnd").value_or(NAN);
+    } else if (const XmlNode* const poly = node.child("paramPoly3")) {
+      poly_ = poly;
+      is_normalised_ = poly->attribute("pRange") != "arcLength";
+    } else if (const XmlNode* const poly3 = node.child("poly3")) {
+      poly_ = poly3;
+      is_explicit_ = true;
+    }
+  }
+  [[nodiscard]] bool is_sound() const {
+    return place_.is_finite() && std::fabs(place_.x()) < 1e7 && std::fabs(place_.y()) < 1e7 &&
+           std::isfinite(heading_) && length_ >= 0.0 && length_ < kMostLength && std::fabs(begin_) < 10.0 &&
+           std::fabs(end_) < 10.0;
+  }
+  [[nodiscard]] double length() const { return length_; }
+
+  /// Place and heading at `count` + 1 evenly spaced lengths.
+  [[nodiscard]] std::vector<std::pair<Vec2, double>> sampled(int count) const {
+    std::vector<std::pair<Vec2, double>> samples;
+    Vec2 at = place_;
+    const double step = length_ / count;
+    for (int i = 0; i <= count; ++i) {
+      const double s = step * i;
+      if (poly_ != nullptr) {
+        samples.push_back(polynomial_at(s));
+        continue;
+      }
+      samples.emplace_back(at, heading_at(s));
+      constexpr int kParts = 4;  // of a step: Simpson's rule
+      for (int part = 0; part < kParts; ++part) {
+        const double h = step / kParts, u = s + part * h;
+        const double a = heading_at(u), b = heading_at(u + 0.5 * h), c = heading_at(u + h);
+        at += h / 6.0 * Vec2{cos(a) + 4.0 * cos(b) + cos(c), sin(a) + 4.0 * sin(b) + sin(c)};
+      }
+    }
+    return samples;
+  }
+
+ private:
+  [[nodiscard]] double heading_at(double s) const {
+    return heading_ + begin_ * s + (length_ > 0.0 ? 0.5 * (end_ - begin_) / length_ * s * s : 0.0);
+  }
+  [[nodiscard]] std::pair<Vec2, double> polynomial_at(double s) const {
+    const double p = is_normalised_ && length_ > 0.0 ? s / length_ : s;
+    const auto value = [&](const char* a, const char* b, const char* c, const char* d) {
+      const double fa = poly_->number(a).value_or(0.0), fb = poly_->number(b).value_or(0.0),
+                   fc = poly_->number(c).value_or(0.0), fd = poly_->number(d).value_or(0.0);
+      return std::pair(fa + p * (fb + p * (fc + p * fd)), fb + p * (2.0 * fc + p * 3.0 * fd));
+    };
+    const auto [u, du] = is_explicit_ ? std::pair(s, 1.0) : value("aU", "bU", "cU", "dU");
+    const auto [v, dv] = is_explicit_ ? value("a", "b", "c", "d") : value("aV", "bV", "cV", "dV");
+    const double c = cos(heading_), si = sin(heading_);
+    return {place_ + Vec2{c * u - si * v, si * u + c * v}, heading_ + atan2(dv, du)};
+  }
+
+  const XmlNode& node_;
+  Vec2 place_{};
+  double heading_ = 0.0, length_ = 0.0, begin_ = 0.0, end_ = 0.0;
+  const XmlNode* poly_ = nullptr;
+  bool is_normalised_ = false, is_explicit_ = false;
+};
+
+std::vector<LaneSection> sections_of(const XmlNode& lanes) {
+  std::vector<LaneSection> sections;
+  for (const XmlNode* node : lanes.children) {
+    if (node->name != "laneSection") continue;
+    LaneSection section{node->number("s").value_or(0.0), {}};
+    for (const char* side : {"left", "right"}) {
+      const XmlNode* const group = node->child(side);
+      if (group == nullptr) continue;
+      for (const XmlNode* each : group->children) {
+        if (each->name != "lane") continue;
+        const std::string_view type = each->attribute("type");
+        Lane lane{static_cast<int>(std::clamp(each->number("id").value_or(0.0), -1000.0, 1000.0)),
+                  type == "driving" || type == "bidirectional",
+                  {}};
+        for (const XmlNode* width : each->children)
+          if (width->name == "width") lane.width.push_back(cubic_of(*width, "sOffset", section.from));
+        section.lanes.push_back(std::move(lane));
+      }
+    }
+    std::sort(section.lanes.begin(), section.lanes.end(),
+              [](const Lane& a, const Lane& b) { return std::abs(a.id) < std::abs(b.id); });
+    sections.push_back(std::move(section));
+  }
+  return sections;
+}
+
+/// From the outer edge of the rightmost lane that is driven to that of the leftmost one, left positive [m].
+std::optional<std::pair<double, double>> driven_at(const std::vector<LaneSection>& sections,
+                                                   const std::vector<Cubic>& offsets, double s) {
+  const LaneSection* section = nullptr;
+  for (const LaneSection& each : sections)
+    if (each.from <= s + 1e-9 || section == nullptr) section = &each;
+  if (section == nullptr) return std::nullopt;
+  const double offset = value_at(offsets, s);
+  double left = offset, right = offset;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Lane& lane : section->lanes) {
+    const double width = std::max(0.0, value_at(lane.width, s));
+    double& edge = lane.id > 0 ? left : right;
+    const double outer = edge + (lane.id > 0 ? width : -width);
+    if (lane.is_driven) {
+      low = std::min({low, edge, outer});
+      high = std::max({high, edge, outer});
+    }
+    edge = outer;
+  }
+  return high - low >= kLeastWidth && high - low <= kMaxTrackWidth ? std::optional(std::pair(low, high))
+                                                                   : std::nullopt;
+}
+
+/// Points in the middle of a road's lanes.
+Result<void> lay_out(OpenDriveRoad& road, const std::string& file) {
+  const XmlNode* const plan = road.node->child("planView");
+  const XmlNode* const lanes = road.node->child("lanes");
+  if (plan == nullptr || lanes == nullptr)
+    return fault(file, *road.node, "road", "no planView and lanes", "both");
+  std::vector<Cubic> offsets;
+  for (const XmlNode* node : lanes->children)
+    if (node->name == "laneOffset") offsets.push_back(cubic_of(*node, "s", 0.0));
+  const std::vector<LaneSection> sections = sections_of(*lanes);
+  double passed = 0.0;
+  for (const XmlNode* node : plan->children) {
+    if (node->name != "geometry") continue;
+    const Geometry geometry(*node);
+    if (!geometry.is_sound())
+      return fault(file, *node, "geometry", "numbers out of range",
+                   "x, y, hdg, length and curvature of a road");
+    if (geometry.length() < 1e-6) continue;
+    if (passed > kMostLength) return fault(file, *node, "geometry", "more than 100 km", "a course");
+    const int count = std::max(1, static_cast<int>(std::ceil(geometry.length() / 2.0)));
+    const std::vector<std::pair<Vec2, double>> samples = geometry.sampled(count);
+    for (int i = 0; i < count; ++i) {
+      const auto& [place, heading] = samples[static_cast<std::size_t>(i)];
+      const double s = passed + geometry.length() * i / count;
+      const auto driven = driven_at(sections, offsets, s);
+      if (!driven)
+        return fault(file, *node, "lane", "none to drive on, or too narrow",
+                     "lanes of type driving, 0.5 to 1000 m in all");
+      const auto [low, high] = *driven;
+      const double middle = 0.5 * (low + high);
+      road.points.push_back(
+          {place + middle * Vec2{-sin(heading), cos(heading)}, 0.5 * (high - low), 0.5 * (high - low)});
+      if (road.points.size() > kMaxTrackPoints)
+        return fault(file, *node, "road", "more than 1000000 points", "a course");
+    }
+    passed += geometry.length();
+  }
+  return {};
+}
+
+OpenDriveRoad road_of(const XmlNode& node) {
+  OpenDriveRoad road{.node = &node};
+  const XmlNode* const link = node.child("link");
+  if (link == nullptr) return road;
+  for (const XmlNode* each : link->children) {
+    const bool is_road = each->attribute("elementType") == "road";
+    if (each->name == "successor") {
+      if (is_road) road.next = each->attribute("elementId");
+      road.next_begins = each->attribute("contactPoint") != "end";
+      road.meets_junction = !is_road;
+    } else if (each->name == "predecessor" && is_road) {
+      road.previous = each->attribute("elementId");
+      road.previous_ends = each->attribute("contactPoint") != "start";
+    }
+  }
+  return road;
+}
+
+}  // namespace
+
+Result<TrackFile> track_of_opendrive(const XmlNode& root, const std::string& file,
+                                     const TrackReadOptions& options) {
+  std::map<std::string, OpenDriveRoad> roads;
+  std::string at;
+  std::size_t count = 0;
+  for (const XmlNode* node : root.children) {
+    if (node->name != "road") continue;
+    ++count;
+    const std::string id{node->attribute("id")};
+    roads.emplace(id, road_of(*node));
+    const std::string_view junction = node->attribute("junction");
+    if (at.empty() && (junction.empty() || junction == "-1")) at = id;
+  }
+  if (at.empty())
+    return fail(ErrorCode::kParse, file + ": road: got none outside of junctions, expected one");
+  TrackFile content = empty_track(file, options);
+  const std::string first = at;
+  std::set<std::string> driven;
+  bool is_forward = true, is_closed = false, ends_at_junction = false;
+  while (!at.empty() && roads.contains(at) && driven.insert(at).second) {
+    OpenDriveRoad& road = roads.at(at);
+    if (const Result<void> laid = lay_out(road, file); !laid) return fail(laid.error());
+    if (!is_forward) std::reverse(road.points.begin(), road.points.end());
+    content.points.insert(content.points.end(), road.points.begin(), road.points.end());
+    if (content.points.size() > kMaxTrackPoints)
+      return fault(file, *road.node, "road", "more than 1000000 points", "a course");
+    ends_at_junction = is_forward && road.meets_junction;
+    at = is_forward ? road.next : road.previous;
+    is_forward = is_forward ? road.next_begins : !road.previous_ends;
+    is_closed = at == first && is_forward;
+  }
+  if (content.points.size() < 4)
+    return fail(ErrorCode::kParse,
+                fmt::format("{}: road: got {} points, expected at least 4", file, content.points.size()));
+  settle_ends(content, options.is_closed ? options.is_closed
+                       : is_closed       ? std::optional(true)
+                                         : std::nullopt);
+  warn(content, fmt::format("lanes: those of type driving, of both directions, taken as one road; heights "
+                            "and banking left out"));
+  if (driven.size() < count)
+    warn(content, fmt::format("road: {} of {} roads taken, from {} along its successors", driven.size(),
+                              count, printable(first)));
+  if (ends_at_junction) warn(content, "road: ends at a junction, which is not followed");
+  content.options.smoothing_sigma = 0.02 * options.scale;
+  return content;
+}
+
+namespace {
+
+// CommonRoad: lanelets, each with a left and a right bound.
+
+struct Lanelet {
+  const XmlNode* node = nullptr;
+  std::vector<std::string> next, previous;
+};
+
+Result<std::vector<Vec2>> bound_of(const XmlNode& lanelet, const char* name, const std::string& file) {
+  const XmlNode* const bound = lanelet.child(name);
+  std::vector<Vec2> line;
+  if (bound != nullptr)
+    for (const XmlNode* point : bound->children) {
+      if (point->name != "point") continue;
+      const XmlNode* const x = point->child("x");
+      const XmlNode* const y = point->child("y");
+      const auto number = [](const XmlNode* node) {
+        return node != nullptr ? survey::number_in(node->text) : std::nullopt;
+      };
+      const std::optional<double> px = number(x), py = number(y);
+      if (!px || !py || std::fabs(*px) > path::Path::kMaxCoordinate ||
+          std::fabs(*py) > path::Path::kMaxCoordinate)
+        return fault(file, *point, "point", "something else", "x and y within 1e7 m");
+      line.push_back({*px, *py});
+    }
+  if (line.size() < 2 || survey::length_of(line, false) < 1e-3)
+    return fault(file, lanelet, name, "fewer than two points", "a line");
+  return line;
+}
+
+std::vector<std::string> references(const XmlNode& node, std::string_view name) {
+  std::vector<std::string> found;
+  for (const XmlNode* child : node.children)
+    if (child->name == name) found.emplace_back(child->attribute("ref"));
+  return found;
+}
+
+}  // namespace
+
+Result<TrackFile> track_of_commonroad(const XmlNode& root, const std::string& file,
+                                      const TrackReadOptions& options) {
+  std::map<std::string, Lanelet> lanelets;
+  std::string first;
+  for (const XmlNode* node : root.children) {
+    if (node->name != "lanelet") continue;
+    const std::string id{node->attribute("id")};
+    lanelets.emplace(id, Lanelet{node, references(*node, "successor"), references(*node, "predecessor")});
+    if (first.empty()) first = id;
+  }
+  if (first.empty()) return fail(ErrorCode::kParse, file + ": lanelet: got none, expected at least one");
+  // Back to where the chain begins.
+  std::set<std::string> seen{first};
+  std::string begin = first;
+  while (!lanelets.at(begin).previous.empty()) {
+    const std::string& before = lanelets.at(begin).previous.front();
+    if (!lanelets.contains(before)) break;
+    if (!seen.insert(before).second) {  // round to where it began
+      begin = first;
+      break;
+    }
+    begin = before;
+  }
+  first = begin;
+  TrackFile content = empty_track(file, options);
+  std::set<std::string> driven;
+  std::size_t forks = 0;
+  std::string at = first;
+  while (lanelets.contains(at) && driven.insert(at).second) {
+    const Lanelet& lanelet = lanelets.at(at);
+    Result<std::vector<Vec2>> left = bound_of(*lanelet.node, "leftBound", file);
+    if (!left) return fail(left.error());
+    Result<std::vector<Vec2>> right = bound_of(*lanelet.node, "rightBound", file);
+    if (!right) return fail(right.error());
+    if (left->size() != right->size()) {
+      const double spacing = std::max(survey::length_of(*left, false), survey::length_of(*right, false)) /
+                             static_cast<double>(std::max(left->size(), right->size()));
+      const double count = std::max(2.0, std::round(survey::length_of(*left, false) / spacing));
+      *left = survey::sampled(*left, false, survey::length_of(*left, false) / count);
+      *right = survey::sampled(*right, false, survey::length_of(*right, false) / count);
+    }
+    for (std::size_t i = 0; i < std::min(left->size(), right->size()); ++i) {
+      const double half = 0.5 * ((*left)[i] - (*right)[i]).norm();
+      if (!(2.0 * half >= kLeastWidth && half <= kMaxTrackWidth))
+        return fault(file, *lanelet.node, "lanelet", fmt::format("{:.2f} m of width", 2.0 * half),
+                     "0.5 to 1000 m");
+      const Vec2 middle = 0.5 * ((*left)[i] + (*right)[i]);
+      if (!content.points.empty() && (content.points.back().position - middle).norm() < 1e-3) continue;
+      content.points.push_back({middle, half, half});
+    }
+    if (content.points.size() > kMaxTrackPoints)
+      return fault(file, *lanelet.node, "lanelet", "more than 1000000 points", "a course");
+    forks += lanelet.next.size() > 1 ? 1U : 0U;
+    at = lanelet.next.empty() ? "" : lanelet.next.front();
+  }
+  if (content.points.size() < 4)
+    return fail(ErrorCode::kParse,
+                fmt::format("{}: lanelet: got {} points, expected at least 4", file, content.points.size()));
+  settle_ends(content, options.is_closed ? options.is_closed
+                       : at == first     ? std::optional(true)
+                                         : std::nullopt);
+  if (driven.size() < lanelets.size())
+    warn(content,
+         fmt::format("lanelet: {} of {} taken, from {} along successors; lanes beside them are no road",
+                     driven.size(), lanelets.size(), printable(first)));
+  if (forks > 0) warn(content, fmt::format("lanelet: the first successor taken at {} forks", forks));
+  content.options.smoothing_sigma = 0.05 * options.scale;
+  return content;
+}
+
+}  // namespace chicane::protocol

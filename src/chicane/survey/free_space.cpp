@@ -1,0 +1,470 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/survey/free_space.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "chicane/base/math.hpp"
+#include "chicane/survey/detail/regions.hpp"
+#include "chicane/survey/distance_field.hpp"
+#include "chicane/survey/sampled_line.hpp"
+
+namespace chicane::survey {
+namespace {
+
+constexpr std::size_t kMostFine = 16'000'000;   // cells of the distance field
+constexpr std::size_t kMostCoarse = 1'000'000;  // cells in which the way round is searched
+constexpr double kLeastInfield = 1.0;           // diagonal of what can be driven round [m]
+constexpr double kMostReach = 1.6;  // a side is at most this many clearances wide: pockets are no road
+constexpr int kRounds = 40;         // of moving the line to the middle
+
+/// A road that may be gone round: cells of the coarse grid, and the obstacle inside.
+struct Ring {
+  Mask road;
+  std::size_t centre = 0;    ///< the rightmost cell of the obstacle
+  double infield = 0.0;      ///< its diagonal [cells]
+  bool is_at_border = true;  ///< the road reaches the edge of the map
+};
+
+/// The steps from free space to a loop. Places are in fine cells unless a name says otherwise.
+class LoopFinder {
+ public:
+  LoopFinder(const FreeSpace& space, const LoopOptions& options) : space_{space}, options_{options} {
+    while (space.width / join_ * static_cast<double>(space.height / join_) > static_cast<double>(kMostFine))
+      ++join_;
+    fine_ = {std::max(1, space.width / join_), std::max(1, space.height / join_)};
+    cell_ = space.resolution * join_;
+    while (static_cast<std::size_t>(fine_.width / stride_) *
+                   static_cast<std::size_t>(fine_.height / stride_) >
+               kMostCoarse &&
+           cell_ * (stride_ + 1) * 3.0 < options.least_width)
+      ++stride_;
+    coarse_ = {std::max(1, fine_.width / stride_), std::max(1, fine_.height / stride_)};
+  }
+
+  Result<FreeLoop> find() {
+    block();
+    const double clearance = 0.5 * options_.least_width / cell_;
+    const std::optional<Ring> ring = find_ring(clearance);
+    if (!ring) return fail(ErrorCode::kParse, why_none());
+    std::vector<Vec2> line = way_round(*ring);
+    if (line.size() < 8) return fail(ErrorCode::kParse, why_none());
+    line = moved_to_the_middle(std::move(line));
+    return measured(line);
+  }
+
+ private:
+  /// Joins cells: a cell is blocked where one of those it is made of is; and the distances to what is
+  /// blocked.
+  void block() {
+    blocked_.assign(fine_.size(), 0);
+    for (int y = 0; y < fine_.height * join_ && y < space_.height; ++y)
+      for (int x = 0; x < fine_.width * join_ && x < space_.width; ++x) {
+        const Cell cell = space_.cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(space_.width) +
+                                       static_cast<std::size_t>(x)];
+        if (cell != Cell::kFree) blocked_[fine_.at(x / join_, y / join_)] = 1;
+      }
+    remove_spots();
+    field_ = distance_field(blocked_, fine_.width, fine_.height);
+  }
+
+  /// Small spots that free cells surround are noise.
+  void remove_spots() {
+    spots_ = 0;
+    std::vector<int> labels;
+    const std::vector<Region> spots = regions_of(blocked_, fine_, 8, labels);
+    const double most = options_.least_obstacle / cell_;
+    Mask is_noise(spots.size() + 1, 0);
+    for (std::size_t i = 0; i < spots.size(); ++i) {
+      if (spots[i].is_at_border || spots[i].diagonal() > most) continue;
+      is_noise[i + 1] = 1;
+      ++spots_;
+    }
+    for (std::size_t i = 0; i < blocked_.size(); ++i)
+      if (labels[i] != 0 && is_noise[static_cast<std::size_t>(labels[i])] != 0) blocked_[i] = 0;
+  }
+
+  /// Free room around a cell [cells].
+  [[nodiscard]] double clearance_at(std::size_t coarse) const {
+    const Place at = coarse_.place(coarse);
+    const int x = std::min(fine_.width - 1, at.x * stride_ + stride_ / 2);
+    const int y = std::min(fine_.height - 1, at.y * stride_ + stride_ / 2);
+    return static_cast<double>(field_[fine_.at(x, y)]) - 0.5;
+  }
+
+  std::optional<Ring> find_ring(double clearance) {
+    Mask passable(coarse_.size(), 0);
+    for (std::size_t i = 0; i < passable.size(); ++i) passable[i] = clearance_at(i) >= clearance ? 1 : 0;
+    std::vector<int> labels;
+    std::vector<Region> roads = regions_of(passable, coarse_, 8, labels);
+    std::vector<int> order;
+    for (std::size_t i = 0; i < roads.size(); ++i) order.push_back(static_cast<int>(i));
+    std::sort(order.begin(), order.end(), [&](int a, int b) {
+      return roads[static_cast<std::size_t>(a)].count > roads[static_cast<std::size_t>(b)].count;
+    });
+    constexpr std::size_t kMostRoads = 6;  // that are looked at, the largest first
+    if (order.size() > kMostRoads) order.resize(kMostRoads);
+    if (options_.start) {
+      const int wanted = labels[coarse_of(space_.to_cells(*options_.start) / join_)];
+      if (wanted == 0) return std::nullopt;
+      order = {wanted - 1};
+    }
+    if (!order.empty()) largest_ = {labels, order.front() + 1};
+    std::optional<Ring> best;
+    for (const int road : order) {
+      std::optional<Ring> ring =
+          ring_of(labels, road + 1, roads[static_cast<std::size_t>(road)].is_at_border, clearance);
+      if (!ring) continue;
+      const bool is_better = !best || (best->is_at_border && !ring->is_at_border) ||
+                             (best->is_at_border == ring->is_at_border && ring->infield > best->infield);
+      if (is_better) best = std::move(ring);
+    }
+    return best;
+  }
+
+  std::optional<Ring> ring_of(const std::vector<int>& labels, int label, bool is_at_border,
+                              double clearance) const {
+    Ring ring{.road = Mask(coarse_.size(), 0), .is_at_border = is_at_border};
+    Mask others(coarse_.size(), 1);
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      if (labels[i] != label) continue;
+      ring.road[i] = 1;
+      others[i] = 0;
+    }
+    std::vector<int> holes;
+    for (const Region& hole : regions_of(others, coarse_, 4, holes)) {
+      const double size = hole.diagonal() - 2.0 * clearance / stride_;
+      if (hole.is_at_border || size * cell_ * stride_ < kLeastInfield || size <= ring.infield) continue;
+      ring.infield = size;
+      ring.centre = hole.rightmost;
+    }
+    return ring.infield > 0.0 ? std::optional<Ring>(std::move(ring)) : std::nullopt;
+  }
+
+  [[nodiscard]] std::size_t coarse_of(const Vec2& fine) const {
+    const auto clamped = [](double value, int most) {
+      return static_cast<int>(std::clamp(value, 0.0, most - 1.0));
+    };
+    return coarse_.at(clamped(fine.x() / stride_, coarse_.width),
+                      clamped(fine.y() / stride_, coarse_.height));
+  }
+
+  /// The roomiest cell of the road right of the obstacle.
+  [[nodiscard]] std::size_t gate_of(const Ring& ring) const {
+    const Place centre = coarse_.place(ring.centre);
+    std::size_t best = ring.centre;
+    double most = -1.0;
+    for (int x = centre.x + 1; x < coarse_.width; ++x) {
+      const std::size_t index = coarse_.at(x, centre.y);
+      if (ring.road[index] == 0) {
+        if (most >= 0.0) break;
+        continue;
+      }
+      if (clearance_at(index) > most) {
+        most = clearance_at(index);
+        best = index;
+      }
+    }
+    return best;
+  }
+
+  /// The cheapest way from the gate round the obstacle and back (Dijkstra): a step costs its length, more
+  /// near walls. How often a way has gone round is counted on a ray that begins at the obstacle.
+  [[nodiscard]] std::vector<Vec2> way_round(const Ring& ring) const {
+    const std::size_t gate = gate_of(ring);
+    if (gate == ring.centre) return {};
+    const Place centre = coarse_.place(ring.centre);
+    const double roomy = std::max(1.0, clearance_at(gate));
+    const auto crossing = [&](const Place& from, const Place& to) {
+      const bool is_above = 0.5 * (from.x + to.x) > centre.x;
+      if (!is_above) return 0;
+      return from.y == centre.y && to.y == centre.y + 1   ? 1
+             : from.y == centre.y + 1 && to.y == centre.y ? -1
+                                                          : 0;
+    };
+    constexpr float kUnseen = std::numeric_limits<float>::infinity();
+    std::vector<float> cost(coarse_.size(), kUnseen);
+    std::vector<std::int8_t> turns(coarse_.size(), 0);
+    std::vector<std::int8_t> back(coarse_.size(), -1);
+    std::vector<float> price(coarse_.size(), 0.0F);
+    for (std::size_t i = 0; i < price.size(); ++i) {
+      if (ring.road[i] == 0) continue;
+      const double near = roomy / std::max(0.5, clearance_at(i));
+      price[i] = static_cast<float>(1.0 + near * near);
+    }
+    const auto step_cost = [&](std::size_t a, std::size_t b, int n) {
+      return 0.5F * (price[a] + price[b]) * (n < 4 ? 1.0F : 1.41421356F);
+    };
+    using Entry = std::pair<float, std::size_t>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+    cost[gate] = 0.0F;
+    open.emplace(0.0F, gate);
+    while (!open.empty()) {
+      const auto [so_far, index] = open.top();
+      open.pop();
+      if (so_far > cost[index]) continue;
+      const Place at = coarse_.place(index);
+      for (int n = 0; n < 8; ++n) {
+        const Place to{at.x + kNeighbours[n].x, at.y + kNeighbours[n].y};
+        if (!coarse_.has(to.x, to.y)) continue;
+        const std::size_t next = coarse_.at(to.x, to.y);
+        if (ring.road[next] == 0) continue;
+        const float total = so_far + step_cost(index, next, n);
+        if (total >= cost[next]) continue;
+        cost[next] = total;
+        turns[next] = static_cast<std::int8_t>(std::clamp(turns[index] + crossing(at, to), -100, 100));
+        back[next] = static_cast<std::int8_t>(n);
+        open.emplace(total, next);
+      }
+    }
+    // The cheapest step that joins two ways which together go round once.
+    float best = kUnseen;
+    std::size_t one = gate, other = gate;
+    for (std::size_t i = 0; i < cost.size(); ++i) {
+      if (cost[i] == kUnseen) continue;
+      const Place at = coarse_.place(i);
+      for (int n = 0; n < 8; ++n) {
+        const Place to{at.x + kNeighbours[n].x, at.y + kNeighbours[n].y};
+        if (!coarse_.has(to.x, to.y)) continue;
+        const std::size_t next = coarse_.at(to.x, to.y);
+        if (ring.road[next] == 0 || turns[i] + crossing(at, to) - turns[next] != 1) continue;
+        const float total = cost[i] + step_cost(i, next, n) + cost[next];
+        if (total < best) {
+          best = total;
+          one = i;
+          other = next;
+        }
+      }
+    }
+    if (best == kUnseen) return {};
+    std::vector<Vec2> line;
+    trace(back, gate, one, line);
+    std::reverse(line.begin(), line.end());
+    trace(back, gate, other, line);
+    if (!line.empty()) line.pop_back();  // the gate again
+    return line;
+  }
+
+  void trace(const std::vector<std::int8_t>& back, std::size_t gate, std::size_t from,
+             std::vector<Vec2>& line) const {
+    for (std::size_t i = from;;) {
+      const Place at = coarse_.place(i);
+      line.push_back({(at.x + 0.5) * stride_, (at.y + 0.5) * stride_});
+      if (i == gate || back[i] < 0) return;
+      const Place& step = kNeighbours[back[i]];
+      i = coarse_.at(at.x - step.x, at.y - step.y);
+    }
+  }
+
+  /// Free room around a place, between the centres of cells [cells].
+  [[nodiscard]] double room_at(const Vec2& place) const {
+    const double x = std::clamp(place.x() - 0.5, 0.0, fine_.width - 1.001);
+    const double y = std::clamp(place.y() - 0.5, 0.0, fine_.height - 1.001);
+    const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
+    const int x1 = std::min(x0 + 1, fine_.width - 1), y1 = std::min(y0 + 1, fine_.height - 1);
+    const double u = x - x0, v = y - y0;
+    const auto value = [&](int column, int row) {
+      return static_cast<double>(field_[fine_.at(column, row)]);
+    };
+    return (1.0 - v) * ((1.0 - u) * value(x0, y0) + u * value(x1, y0)) +
+           v * ((1.0 - u) * value(x0, y1) + u * value(x1, y1)) - 0.5;
+  }
+
+  static Vec2 left_of(const std::vector<Vec2>& line, std::size_t i, std::size_t reach) {
+    const std::size_t count = line.size();
+    const Vec2 along = line[(i + reach) % count] - line[(i + count - reach) % count];
+    const double length = along.norm();
+    return length > 0.0 ? Vec2{-along.y() / length, along.x() / length} : Vec2{0.0, 1.0};
+  }
+
+  /// Each point climbs across the line to where there is most room, and the line is kept even and smooth.
+  [[nodiscard]] std::vector<Vec2> moved_to_the_middle(std::vector<Vec2> line) const {
+    std::vector<double> room;
+    for (const Vec2& point : line) room.push_back(room_at(point));
+    const double half_width = std::max(2.0, median(room));
+    const double spacing = std::clamp(0.3 * half_width, 1.5, 200.0);
+    line = sampled(line, true, spacing);
+    for (int round = 0; round < kRounds; ++round) {
+      const std::vector<Vec2> before = line;
+      const std::size_t count = line.size();
+      const double reach = round < kRounds / 2 ? 0.3 * half_width : 0.1 * half_width;
+      for (std::size_t i = 0; i < count; ++i) {
+        const Vec2 left = left_of(before, i, 2);
+        double best = room_at(before[i]);
+        double offset = 0.0;
+        for (int k = -4; k <= 4; ++k) {
+          const double tried = reach * k / 4.0;
+          const double there = room_at(before[i] + tried * left) - 1e-3 * std::fabs(tried);
+          if (there > best) {
+            best = there;
+            offset = tried;
+          }
+        }
+        line[i] = before[i] + 0.5 * offset * left;
+      }
+      const std::vector<Vec2> moved = line;
+      for (std::size_t i = 0; i < count; ++i)
+        line[i] = 0.5 * moved[i] + 0.25 * (moved[(i + 1) % count] + moved[(i + count - 1) % count]);
+      line = sampled(line, true, spacing);
+    }
+    return line;
+  }
+
+  /// Distance to what is blocked in a direction [cells].
+  [[nodiscard]] double cast(const Vec2& from, const Vec2& direction, double most) const {
+    double away = 0.0;
+    while (away < most) {
+      const Vec2 at = from + away * direction;
+      const int x = static_cast<int>(std::floor(at.x())), y = static_cast<int>(std::floor(at.y()));
+      if (!fine_.has(x, y) || blocked_[fine_.at(x, y)] != 0) return away;
+      away += std::max(0.1, static_cast<double>(field_[fine_.at(x, y)]) - 1.5);
+    }
+    return most;
+  }
+
+  /// Cells make teeth of an oblique wall: the edge runs along their tips. The least of three neighbours, and
+  /// the mean of five of those.
+  static std::vector<double> without_teeth(const std::vector<double>& side) {
+    const std::size_t count = side.size();
+    std::vector<double> least(count), even(count);
+    for (std::size_t i = 0; i < count; ++i)
+      least[i] = std::min({side[(i + count - 1) % count], side[i], side[(i + 1) % count]});
+    for (std::size_t i = 0; i < count; ++i) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < 5; ++k) sum += least[(i + count + k - 2) % count];
+      even[i] = std::min(0.2 * sum, side[i]);
+    }
+    return even;
+  }
+
+  [[nodiscard]] FreeLoop measured(const std::vector<Vec2>& line) const {
+    FreeLoop loop{.spots = spots_};
+    const std::size_t count = line.size();
+    std::vector<double> to_left, to_right, widths;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec2 left = left_of(line, i, 2);
+      const double most = kMostReach * std::max(0.5, room_at(line[i]));
+      to_left.push_back(std::max(0.2, cast(line[i], left, most)));
+      to_right.push_back(std::max(0.2, cast(line[i], -left, most)));
+    }
+    to_left = without_teeth(to_left);
+    to_right = without_teeth(to_right);
+    for (std::size_t i = 0; i < count; ++i) {
+      loop.points.push_back({space_.to_world(join_ * line[i]), to_left[i] * cell_, to_right[i] * cell_});
+      widths.push_back((to_left[i] + to_right[i]) * cell_);
+    }
+    loop.median_width = median(widths);
+    return loop;
+  }
+
+  [[nodiscard]] std::string shown(const Vec2& fine) const {
+    const Vec2 world = space_.to_world(join_ * fine);
+    return fmt::format("({:.2f}, {:.2f})", world.x(), world.y());
+  }
+
+  /// Where the road ends, or is too narrow, or was not seen.
+  std::string why_none() {
+    if (options_.start && clearance_at(coarse_of(space_.to_cells(*options_.start) / join_)) <= 0.0)
+      return fmt::format("start: got ({}, {}), expected a place in free space", options_.start->x(),
+                         options_.start->y());
+    const std::pair<std::vector<int>, int> largest = largest_;
+    if (const std::optional<Ring> narrow = find_ring(0.6)) {
+      const std::vector<Vec2> line = way_round(*narrow);
+      if (!line.empty()) {
+        const auto tightest = std::min_element(
+            line.begin(), line.end(), [&](const Vec2& a, const Vec2& b) { return room_at(a) < room_at(b); });
+        return fmt::format("free space: got a loop that is {:.2f} m wide at {}, expected at least {} m",
+                           2.0 * cell_ * room_at(*tightest), shown(*tightest), options_.least_width);
+      }
+    }
+    if (largest.second == 0)
+      return fmt::format("free space: got no room of {} m, expected a closed loop of free cells",
+                         options_.least_width);
+    const auto [one, other] = ends_of(largest.first, largest.second);
+    const bool is_unseen = ends_unseen(one) || ends_unseen(other);
+    return fmt::format(
+        "free space: got no loop, open between {} and {}, {:.1f} m apart{}; expected a closed loop",
+        shown(one), shown(other), (one - other).norm() * cell_, is_unseen ? ", where cells are unknown" : "");
+  }
+
+  /// Whether the room at an end of a road stops at cells that nobody has seen.
+  [[nodiscard]] bool ends_unseen(const Vec2& end) const {
+    const double reach = std::min(room_at(end) + 2.0, 200.0);
+    const int most = static_cast<int>(reach);
+    for (int dy = -most; dy <= most; ++dy)
+      for (int dx = -most; dx <= most; ++dx) {
+        const int x = static_cast<int>(end.x()) + dx, y = static_cast<int>(end.y()) + dy;
+        if (hypot(dx, dy) > reach || !fine_.has(x, y) || blocked_[fine_.at(x, y)] == 0) continue;
+        const auto column = static_cast<std::size_t>(x * join_), row = static_cast<std::size_t>(y * join_);
+        if (space_.cells[row * static_cast<std::size_t>(space_.width) + column] == Cell::kUnknown)
+          return true;
+      }
+    return false;
+  }
+
+  /// Two places of a region that are farthest from each other within it.
+  [[nodiscard]] std::pair<Vec2, Vec2> ends_of(const std::vector<int>& labels, int label) const {
+    const auto farthest = [&](std::size_t from) {
+      Mask is_seen(labels.size(), 0);
+      std::vector<std::size_t> open{from};
+      is_seen[from] = 1;
+      for (std::size_t i = 0; i < open.size(); ++i) {
+        const Place at = coarse_.place(open[i]);
+        for (int n = 0; n < 4; ++n) {
+          const int x = at.x + kNeighbours[n].x, y = at.y + kNeighbours[n].y;
+          if (!coarse_.has(x, y)) continue;
+          const std::size_t next = coarse_.at(x, y);
+          if (labels[next] != label || is_seen[next] != 0) continue;
+          is_seen[next] = 1;
+          open.push_back(next);
+        }
+      }
+      return open.back();
+    };
+    const auto any =
+        static_cast<std::size_t>(std::find(labels.begin(), labels.end(), label) - labels.begin());
+    const std::size_t one = farthest(any);
+    const std::size_t other = farthest(one);
+    const auto centre = [&](std::size_t index) {
+      const Place at = coarse_.place(index);
+      return Vec2{(at.x + 0.5) * stride_, (at.y + 0.5) * stride_};
+    };
+    return {centre(one), centre(other)};
+  }
+
+  const FreeSpace& space_;
+  LoopOptions options_;
+  int join_ = 1;       ///< cells of the map in one of the fine grid
+  int stride_ = 1;     ///< fine cells between two of the coarse grid
+  double cell_ = 0.0;  ///< side of a fine cell [m]
+  Grid fine_, coarse_;
+  Mask blocked_;
+  std::vector<float> field_;
+  int spots_ = 0;
+  std::pair<std::vector<int>, int> largest_{};  ///< labels of the coarse grid and that of its largest road
+};
+
+}  // namespace
+
+Vec2 FreeSpace::to_world(const Vec2& in_cells) const noexcept {
+  const Vec2 there = resolution * in_cells;
+  const double c = cos(yaw), s = sin(yaw);
+  return origin + Vec2{c * there.x() - s * there.y(), s * there.x() + c * there.y()};
+}
+
+Vec2 FreeSpace::to_cells(const Vec2& in_world) const noexcept {
+  const Vec2 there = in_world - origin;
+  const double c = cos(yaw), s = sin(yaw);
+  return Vec2{c * there.x() + s * there.y(), -s * there.x() + c * there.y()} / resolution;
+}
+
+Result<FreeLoop> find_loop(const FreeSpace& space, const LoopOptions& options) {
+  return LoopFinder(space, options).find();
+}
+
+}  // namespace chicane::survey

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/survey/image.hpp"
+
+#include <fmt/format.h>
+#include <png.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "chicane/base/text.hpp"
+
+namespace chicane::survey {
+namespace {
+
+std::optional<double> number_of(std::string_view text) {
+  double value = 0.0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+Result<void> check_size(double width, double height, const std::string& file) {
+  const bool is_sound =
+      width >= 1.0 && height >= 1.0 && width * height <= static_cast<double>(GreyImage::kMostCells);
+  if (is_sound) return {};
+  return fail(ErrorCode::kParse, fmt::format("{}: size: got {} x {}, expected 1 to {} cells", file, width,
+                                             height, GreyImage::kMostCells));
+}
+
+/// The next word of a PGM header; comments go from # to the end of the line.
+std::string_view next_word(std::string_view& rest) {
+  const auto is_space = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
+  while (!rest.empty() && (is_space(rest.front()) || rest.front() == '#')) {
+    const std::size_t end = rest.front() == '#' ? rest.find('\n') : 0;
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+  }
+  std::size_t size = 0;
+  while (size < rest.size() && !is_space(rest[size])) ++size;
+  const std::string_view word = rest.substr(0, size);
+  rest.remove_prefix(size);
+  return word;
+}
+
+Result<GreyImage> read_pgm(std::string_view bytes, const std::string& file) {
+  const bool is_text = bytes.starts_with("P2");
+  std::string_view rest = bytes.substr(2);
+  const double width = number_of(next_word(rest)).value_or(0.0);
+  const double height = number_of(next_word(rest)).value_or(0.0);
+  if (const Result<void> sound = check_size(width, height, file); !sound) return fail(sound.error());
+  const std::string_view most_text = next_word(rest);
+  const double most = number_of(most_text).value_or(0.0);
+  if (!(most >= 1.0 && most <= 255.0))
+    return fail(ErrorCode::kParse,
+                fmt::format("{}: largest grey value: got {}, expected 1 to 255", file, printable(most_text)));
+  GreyImage image{.width = static_cast<int>(width), .height = static_cast<int>(height)};
+  const auto cells = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  if (!is_text && !rest.empty()) rest.remove_prefix(1);  // the one space behind the header
+  image.values.reserve(std::min(cells, rest.size()));
+  for (std::size_t i = 0; i < cells; ++i) {
+    const std::optional<double> value = is_text ? number_of(next_word(rest))
+                                        : i < rest.size()
+                                            ? std::optional<double>(static_cast<unsigned char>(rest[i]))
+                                            : std::nullopt;
+    if (!value || *value < 0.0 || *value > most)
+      return fail(ErrorCode::kParse,
+                  fmt::format("{}: grey value {} of {}: got {}, expected 0 to {:.0f}", file, i + 1, cells,
+                              value ? fmt::format("{}", *value) : "none", most));
+    image.values += static_cast<char>(static_cast<unsigned char>(std::lround(*value * 255.0 / most)));
+  }
+  return image;
+}
+
+Result<GreyImage> read_png(std::string_view bytes, const std::string& file) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) == 0)
+    return fail(ErrorCode::kParse, fmt::format("{}: got a PNG that cannot be read: {}", file, png.message));
+  if (const Result<void> sound = check_size(png.width, png.height, file); !sound) {
+    png_image_free(&png);
+    return fail(sound.error());
+  }
+  png.format = PNG_FORMAT_GRAY;
+  GreyImage image{.width = static_cast<int>(png.width), .height = static_cast<int>(png.height)};
+  image.values.resize(PNG_IMAGE_SIZE(png));
+  const png_color white{255, 255, 255};
+  if (png_image_finish_read(&png, &white, image.values.data(), 0, nullptr) == 0)
+    return fail(ErrorCode::kParse, fmt::format("{}: got a PNG that cannot be read: {}", file, png.message));
+  return image;
+}
+
+}  // namespace
+
+Result<GreyImage> read_image(std::string_view bytes, const std::string& file) {
+  if (bytes.starts_with("P2") || bytes.starts_with("P5")) return read_pgm(bytes, file);
+  if (bytes.starts_with("\x89PNG")) return read_png(bytes, file);
+  return fail(ErrorCode::kParse,
+              fmt::format("{}: got other bytes, expected a PGM (P2, P5) or PNG image", file));
+}
+
+Picture::Picture(int width, int height, Colour ground)
+    : width_{width}, height_{height}, bytes_(3U * static_cast<std::size_t>(width * height)) {
+  for (std::size_t i = 0; i < bytes_.size(); ++i) bytes_[i] = ground[i % 3];
+}
+
+void Picture::set(int x, int y, Colour colour) noexcept {
+  if (x < 0 || y < 0 || x >= width_ || y >= height_) return;
+  const auto at =
+      3U * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
+  std::copy(colour.begin(), colour.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(at));
+}
+
+void Picture::draw_line(double x0, double y0, double x1, double y1, Colour colour, int thickness) noexcept {
+  const double length = std::max(std::fabs(x1 - x0), std::fabs(y1 - y0));
+  constexpr double kMost = 20000.0;  // [px]; longer ones leave the picture on both sides
+  if (!(length < kMost)) return;
+  const int steps = std::max(1, static_cast<int>(std::ceil(length)));
+  for (int i = 0; i <= steps; ++i) {
+    const double share = static_cast<double>(i) / steps;
+    const int x = static_cast<int>(std::floor(x0 + share * (x1 - x0))) - (thickness - 1) / 2;
+    const int y = static_cast<int>(std::floor(y0 + share * (y1 - y0))) - (thickness - 1) / 2;
+    for (int dy = 0; dy < thickness; ++dy)
+      for (int dx = 0; dx < thickness; ++dx) set(x + dx, y + dy, colour);
+  }
+}
+
+std::string Picture::png() const {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = static_cast<png_uint_32>(width_);
+  png.height = static_cast<png_uint_32>(height_);
+  png.format = PNG_FORMAT_RGB;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::string bytes(size, '\0');
+  if (png_image_write_to_memory(&png, bytes.data(), &size, 0, bytes_.data(), 0, nullptr) == 0) return {};
+  bytes.resize(size);
+  return bytes;
+}
+
+}  // namespace chicane::survey

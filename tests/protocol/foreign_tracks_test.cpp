@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/protocol/foreign_tracks.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "chicane/base/random.hpp"
+#include "chicane/protocol/library.hpp"
+
+namespace chicane::protocol {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using Direction = TrackReadOptions::Direction;
+
+const std::string kData = std::string(CHICANE_SOURCE_DIR) + "/tests/data/";
+
+double turned(const path::Track& track) {
+  return track.centre().at(track.length() - 1e-6).heading - track.centre().at(0.0).heading;
+}
+
+/// One file of tests/data/tracks and what it has to become. The road is a stadium 245.66 m long and 6 m wide,
+/// for model cars a tenth of that (tools/make_foreign_tracks.py).
+struct Kind {
+  std::string file;
+  double length, length_tolerance;  ///< [m]
+  double width, width_tolerance;    ///< everywhere [m]
+  bool is_left = true;              ///< driven counter-clockwise
+  TrackReadOptions options = {};
+  std::string said = {};  ///< in one of the warnings; empty: there are none
+};
+
+class ForeignTrack : public ::testing::TestWithParam<Kind> {};
+
+TEST_P(ForeignTrack, HasTheLengthTheWidthAndTheDirectionOfTheRoad) {
+  const Kind& kind = GetParam();
+  const std::string file = kData + "tracks/" + kind.file;
+  const Result<std::string> text = read_file(file);
+  ASSERT_TRUE(text) << text.error().message;
+  const Result<TrackFile> content = parse_track(*text, file, kind.options);
+  ASSERT_TRUE(content) << content.error().message;
+  if (kind.said.empty()) {
+    EXPECT_THAT(content->warnings, ::testing::IsEmpty());
+  } else {
+    EXPECT_THAT(content->warnings, Contains(AllOf(::testing::StartsWith(file), HasSubstr(kind.said))));
+  }
+  const Result<path::Track> track = make_track(*content);
+  ASSERT_TRUE(track) << track.error().message;
+  EXPECT_TRUE(track->centre().is_closed());
+  EXPECT_NEAR(track->length(), kind.length, kind.length_tolerance);
+  EXPECT_GT(kind.is_left ? turned(*track) : -turned(*track), 6.0);
+  for (double s = 0.0; s < track->length(); s += 0.01 * track->length()) {
+    EXPECT_NEAR(track->left_width(s) + track->right_width(s), kind.width, kind.width_tolerance) << s;
+    EXPECT_LT(std::fabs(track->centre().at(s).curvature) * kind.length, 40.0)
+        << "the tightest bend has 12.3 of this";
+  }
+}
+
+constexpr double kLength = 245.664, kModel = 0.1 * kLength;
+const TrackReadOptions kSmall{.scale = 0.1};
+
+INSTANTIATE_TEST_SUITE_P(
+    Files, ForeignTrack,
+    ::testing::Values(
+        // Tables: exact but for chords and the smoothing of the corners where straights meet half circles.
+        Kind{"f1tenth_centerline.csv", kModel, 0.03, 0.6, 0.02, true, kSmall},
+        Kind{"f1tenth_raceline.csv", kModel, 0.03, 0.9, 0.02, true, kSmall,
+             "0.45 m left and 0.45 m right assumed (import --width-m sets it)"},
+        Kind{"tum_centre_line.csv", kLength + 3.14, 0.3, 6.0, 0.1},
+        Kind{"tum_race_line.csv", kLength, 0.3, 9.0, 0.1, true, {}, "counts from +y"},
+        Kind{"gym_waypoints.csv",
+             kModel,
+             0.03,
+             0.9,
+             0.02,
+             true,
+             {.scale = 0.1, .columns = "x_m,y_m,skip,skip"},
+             "assumed"},
+        Kind{
+            "matlab_writematrix.txt", kLength, 0.3, 9.0, 0.1, true, {}, "4.5 m left and 4.5 m right assumed"},
+        Kind{"matlab_writetable.csv",
+             kLength,
+             0.3,
+             6.0,
+             0.1,
+             true,
+             {},
+             "of the whole road, half of it to each side"},
+        Kind{"decimal_commas.csv", kLength, 0.3, 6.0, 0.1},
+        Kind{"clockwise.csv", kLength, 0.3, 9.0, 0.1, false, {}, "assumed"},
+        Kind{"utm.csv", kLength, 0.3, 6.0, 0.1},
+        Kind{"autoware.csv", kLength, 0.3, 9.0, 0.1, true, {}, "unknown columns, ignored"},
+        Kind{"global_waypoints.json", kModel, 0.03, 0.6, 0.02, true, kSmall,
+             "centerline_waypoints: taken of the file's lines"},
+        // Cones stand 4 m apart, so fences are chords: 0.1 m of the width in bends, more where cones are
+        // missing.
+        Kind{"cones.csv", kLength, 2.0, 6.0, 0.9, true, {}, "none on the left side for 1"},
+        Kind{"fssim.yaml", kLength, 2.0, 6.0, 0.9, true, {}, "none on the right side for 8."},
+        Kind{"cones.sdf", kLength, 2.0, 6.0, 0.9, true, {}, "start: not in the file"},
+        // Satellite noise of 0.3 m.
+        Kind{"three_laps.gpx", kLength, 3.0, 9.0, 2.0, true, {}, "laps: the first of 3.0 taken"},
+        Kind{"course.kml",
+             kLength,
+             0.5,
+             9.0,
+             0.7,
+             true,
+             {},
+             "noise of 0.5 m assumed (import --smoothing-m sets it)"},
+        Kind{"course.osm", kLength, 0.5, 6.0, 0.7, true, {}, "way: 2 of 3 ways taken"},
+        Kind{"course.geojson", kLength, 0.5, 6.0, 0.7, true, {}, "metres east and north of 48.2001"},
+        Kind{"course.xodr", kLength, 0.2, 6.0, 0.1, true, {}, "lanes: those of type driving"},
+        Kind{"course.commonroad.xml", kLength, 0.3, 6.0, 0.1},
+        // What is asked for.
+        Kind{"course.xodr", kLength, 0.2, 6.0, 0.1, false, {.direction = Direction::kReversed}, "lanes"},
+        Kind{"clockwise.csv",
+             kLength,
+             0.3,
+             4.0,
+             0.1,
+             true,
+             {.default_left = 2.0, .default_right = 2.0, .direction = Direction::kLeft},
+             "2 m left"}),
+    [](const auto& each) {
+      std::string name = each.param.file + "_" + std::to_string(each.index);
+      std::replace_if(
+          name.begin(), name.end(), [](char c) { return c == '.'; }, '_');
+      return name;
+    });
+
+TEST(ForeignTracks, RefusesInWordsWhatIsNoRoad) {
+  const std::map<std::string, std::string> expected{
+      {"gym_waypoints.csv",
+       ":1: header: got none for 4 columns, expected a line that names them, like "
+       "x_m,y_m,w_tr_right_m,w_tr_left_m (import "
+       "--columns names them)"},
+      {"one_side.csv",
+       ": cones: got 58 of the left side and 0 of the right one, expected at least 3 of each"},
+      {"no_loop.yaml", ": free space: got no loop, open between ("},
+      {"no_loop.pgm", ": file: got an image, expected the YAML file beside it that says its resolution"},
+  };
+  for (const auto& [name, words] : expected) {
+    const auto track = read_track(kData + "tracks/" + name);
+    ASSERT_FALSE(track) << name;
+    EXPECT_THAT(track.error().message,
+                AllOf(::testing::StartsWith(kData + "tracks/" + name), HasSubstr(words)));
+    EXPECT_EQ(track.error().code, ErrorCode::kParse);
+  }
+}
+
+TEST(ForeignTracks, NamesElementAndLineOfAFault) {
+  const auto message = [](std::string_view text) { return parse_track(text, "f.xml").error().message; };
+  EXPECT_THAT(message("<?xml version='1.0'?>\n<gpx>\n<trkpt lat='x' lon='1'/></gpx>"),
+              HasSubstr("f.xml:3: trkpt: got x, expected latitude and longitude in degrees"));
+  EXPECT_THAT(
+      message("<svg>\n</svg>"),
+      HasSubstr("f.xml:1: got the element svg, expected gpx, kml, osm, OpenDRIVE, commonRoad or sdf"));
+  EXPECT_THAT(message("<osm>\n<way id='1'><nd ref='1'/><nd ref='2'/></way></osm>"),
+              HasSubstr("f.xml: way: got a node "));
+  EXPECT_THAT(message("<OpenDRIVE>\n<road id='1'>\n</road></OpenDRIVE>"),
+              HasSubstr("f.xml:2: road: got no planView and lanes, expected both"));
+  EXPECT_THAT(message("<commonRoad><lanelet "
+                      "id='1'>\n<leftBound><point><x>0</x></point></leftBound></lanelet></commonRoad>"),
+              HasSubstr("f.xml:2: point: got something else, expected x and y"));
+  EXPECT_THAT(message("{\"type\": \"Feature\",\n oops"), HasSubstr("f.xml:2: got text that is no JSON"));
+  EXPECT_THAT(message("{\"centerline_waypoints\": {\"wpnts\": [{\"x_m\": 1}]}}"),
+              HasSubstr("centerline_waypoints.wpnts[0]: x_m, y_m: got"));
+  EXPECT_THAT(message("tag,x,y\nblue,0,1\nblue,0,zero\n"),
+              HasSubstr("f.xml:3: y: got zero, expected a coordinate"));
+}
+
+/// Names, lengths and widths of tests/data/maps/expected.csv.
+struct Map {
+  std::string name;
+  double length = 0.0, width = 0.0;
+};
+std::vector<Map> maps() {
+  std::ifstream file(kData + "maps/expected.csv");
+  std::vector<Map> all;
+  std::string line;
+  while (std::getline(file, line)) {
+    std::istringstream row(line);
+    Map map;
+    char comma = 0;
+    if (std::getline(row, map.name, ',') && row >> map.length >> comma >> map.width) all.push_back(map);
+  }
+  return all;
+}
+
+TEST(OccupancyMaps, BecomeRoadsWithTheDrawnLengthAndWidth) {
+  const std::vector<Map> all = maps();
+  ASSERT_EQ(all.size(), 10U);
+  for (const Map& map : all) {
+    const std::string file = kData + "maps/" + map.name + ".yaml";
+    const auto content = parse_track(read_file(file).value(), file, {.scale = 0.1});
+    ASSERT_TRUE(content) << content.error().message;
+    EXPECT_TRUE(content->is_own_size);
+    const auto track = make_track(*content);
+    ASSERT_TRUE(track) << track.error().message;
+    EXPECT_TRUE(track->centre().is_closed());
+    // Smoothing rounds bends by up to a cell, and the corners of square corridors.
+    const bool is_square = map.name == "corridors";
+    EXPECT_NEAR(track->length(), map.length, is_square ? 4.0 : 0.02 * map.length) << map.name;
+    EXPECT_GT(turned(*track), 6.0) << map.name << ": towards +x from the origin, which is counter-clockwise";
+    EXPECT_NEAR(track->centre().at(0.0).position.norm(), 0.0, 0.3 * map.width) << map.name;
+    std::vector<double> widths;
+    for (double s = 0.0; s < track->length(); s += 0.2) {
+      widths.push_back(track->left_width(s) + track->right_width(s));
+      EXPECT_GT(widths.back(), 0.8 * map.width) << map.name << " at " << s;
+      EXPECT_LT(widths.back(), (is_square ? 1.7 : 1.25) * map.width) << map.name << " at " << s;
+    }
+    std::nth_element(widths.begin(), widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2),
+                     widths.end());
+    EXPECT_NEAR(widths[widths.size() / 2], map.width, 0.1) << map.name;
+  }
+}
+
+TEST(OccupancyMaps, TakeDirectionAndStartFromTheOptions) {
+  const std::string file = kData + "maps/ring.yaml";
+  const std::string text = read_file(file).value();
+  const auto right = make_track(
+      *parse_track(text, file, {.scale = 0.1, .direction = Direction::kRight, .start = Vec2{7.0, 4.5}}));
+  ASSERT_TRUE(right) << right.error().message;
+  EXPECT_LT(turned(*right), -6.0);
+  EXPECT_NEAR((right->centre().at(0.0).position - Vec2{7.2, 4.5}).norm(), 0.0, 0.5);
+  EXPECT_THAT(parse_track(text, file, {.least_width = 3.0}).error().message, HasSubstr("m wide at ("));
+}
+
+TEST(ForeignTracks, SurviveMutilatedFiles) {
+  Random random{35};
+  const auto below = [&](std::size_t count) {
+    return static_cast<std::size_t>(random.uniform() * static_cast<double>(count));
+  };
+  for (const char* name : {"global_waypoints.json", "course.osm", "course.xodr", "course.commonroad.xml",
+                           "course.geojson", "course.kml", "fssim.yaml"}) {
+    const std::string good = read_file(kData + "tracks/" + name).value();
+    for (int round = 0; round < 60; ++round) {
+      std::string text = good;
+      for (std::size_t change = 0; change <= below(4); ++change) {
+        const std::size_t at = below(text.size());
+        if (below(2) == 0) {
+          text[at] = "0123456789-.<>\"{}[]e"[below(20)];
+        } else {
+          text.erase(at, 1 + below(60));
+        }
+      }
+      const auto content = parse_track(text, "f");
+      if (!content) {
+        EXPECT_THAT(content.error().message, AllOf(::testing::StartsWith("f:"), HasSubstr("got ")));
+        continue;
+      }
+      for (const path::TrackPoint& point : content->points)
+        EXPECT_TRUE(point.position.is_finite() && std::isfinite(point.left + point.right));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chicane::protocol

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/survey/cone_line.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "chicane/base/angle.hpp"
+
+namespace chicane::survey {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Cones of a ring of radius 20 m, 4 m wide, driven counter-clockwise: the blue ones are inside.
+Cones ring() {
+  Cones cones;
+  for (int i = 0; i < 30; ++i) {
+    const double a = kTwoPi * i / 30.0, b = kTwoPi * (i + 0.5) / 30.0;
+    cones.left.push_back({18.0 * std::cos(a), 18.0 * std::sin(a)});
+    cones.right.push_back({22.0 * std::cos(b), 22.0 * std::sin(b)});
+  }
+  return cones;
+}
+
+TEST(ConeLine, IsBetweenTheTwoSidesWithBlueOnTheLeft) {
+  const auto road = line_between(ring());
+  ASSERT_TRUE(road) << road.error().message;
+  EXPECT_TRUE(road->is_closed);
+  EXPECT_TRUE(road->gaps.empty());
+  EXPECT_NEAR(road->median_width, 4.0, 0.2);
+  for (std::size_t i = 0; i < road->points.size(); ++i) {
+    // Fences are chords: up to 12 cm inside of the circle.
+    EXPECT_NEAR(road->points[i].position.norm(), 20.0, 0.2);
+    const Vec2 along = road->points[(i + 1) % road->points.size()].position - road->points[i].position;
+    EXPECT_GT(road->points[i].position.x() * along.y() - road->points[i].position.y() * along.x(), 0.0);
+  }
+}
+
+TEST(ConeLine, OtherColoursGoTheOtherWayRound) {
+  Cones cones = ring();
+  std::swap(cones.left, cones.right);
+  const auto road = line_between(cones);
+  ASSERT_TRUE(road) << road.error().message;
+  const Vec2 along = road->points[1].position - road->points[0].position;
+  EXPECT_LT(road->points[0].position.x() * along.y() - road->points[0].position.y() * along.x(), 0.0);
+}
+
+TEST(ConeLine, MissingConesAreNamedAndBridged) {
+  Cones cones = ring();
+  cones.left.erase(cones.left.begin() + 7, cones.left.begin() + 9);
+  const auto road = line_between(cones);
+  ASSERT_TRUE(road) << road.error().message;
+  ASSERT_EQ(road->gaps.size(), 1U);
+  EXPECT_TRUE(road->gaps[0].is_left);
+  EXPECT_NEAR(road->gaps[0].length, 2.0 * 18.0 * std::sin(0.5 * kTwoPi / 10.0), 1e-9);
+  for (const path::TrackPoint& point : road->points) EXPECT_NEAR(point.position.norm(), 20.0, 0.8);
+}
+
+TEST(ConeLine, OrangeConesBelongToTheNearerSide) {
+  Cones cones = ring();
+  cones.either = {cones.left[3], cones.right[3]};
+  cones.left.erase(cones.left.begin() + 3);
+  cones.right.erase(cones.right.begin() + 3);
+  const auto road = line_between(cones);
+  ASSERT_TRUE(road) << road.error().message;
+  EXPECT_TRUE(road->gaps.empty());
+}
+
+TEST(ConeLine, AStraightCourseIsOpen) {
+  Cones cones;
+  for (int i = 0; i < 16; ++i) {
+    cones.left.push_back({5.0 * i, 1.5});
+    cones.right.push_back({5.0 * i, -1.5});
+  }
+  const auto road = line_between(cones);
+  ASSERT_TRUE(road) << road.error().message;
+  EXPECT_FALSE(road->is_closed);
+  EXPECT_NEAR(road->points.front().position.y(), 0.0, 0.1);
+  EXPECT_LT(road->points.front().position.x(), road->points.back().position.x()) << "blue is left";
+  EXPECT_NEAR(road->points.back().position.x() - road->points.front().position.x(), 75.0, 8.0);
+}
+
+TEST(ConeLine, RefusesTooFew) {
+  EXPECT_THAT(
+      line_between({.left = {{0, 0}}, .right = ring().right}).error().message,
+      HasSubstr("cones: got 1 of the left side and 30 of the right one, expected at least 3 of each"));
+}
+
+}  // namespace
+}  // namespace chicane::survey
