@@ -96,8 +96,9 @@ class Guard {
   [[nodiscard]] bool filter(const StopStart& start, const Cycle& cycle,
                             controller::StepResult& result) noexcept;
   [[nodiscard]] Fit verify(const StopStart& start, const Cycle& cycle, const model::Command& command,
-                           controller::StepResult& result, bool is_led = false) noexcept;
-  [[nodiscard]] bool slow_down(const StopStart& start, const Cycle& cycle,
+                           const controller::Plan* plan, controller::StepReport& report,
+                           bool is_led = false) noexcept;
+  [[nodiscard]] bool slow_down(const StopStart& start, const Cycle& cycle, const controller::Plan* plan,
                                controller::StepResult& result) noexcept;
   [[nodiscard]] model::Command limited(const model::Command& command, double interval) const noexcept;
   void accept(const model::Measurement& seen, controller::StepResult& result) noexcept;
