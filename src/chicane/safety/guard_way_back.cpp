@@ -72,6 +72,8 @@ bool Guard::try_reset(const StopStart& start, const Cycle& cycle, double time,
 /// A car off the road or across it is astray until it is along the road again.
 void Guard::watch_course(const std::optional<StopStart>& start) noexcept {
   const double least = options_.road == GuardRoad::kWaypoints ? -kGuessedWidth : 0.0;
+  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed;
+  has_stood_astray_ = is_astray_ && (has_stood_astray_ || stands);
   if (!start) {
     is_astray_ = is_far_;
     return;
@@ -106,9 +108,11 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const std::optional<StopStart> start = place_on_road(act);
   if (is_astray_) filter_.forget();
   const Fit fit = start ? verify(*start, cycle, result.command, nullptr, result.report, true) : Fit::kNone;
-  // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there.
+  // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there, and
+  // once it stands.
   const bool is_off = start && filter_.planner().edge(road_, *start) < 0.0;
-  if (start && !is_off && fit == Fit::kNone && (!is_astray_ || result.answer == Answer::kDrive)) return false;
+  if (start && !is_off && fit == Fit::kNone && (!has_stood_astray_ || result.answer == Answer::kDrive))
+    return false;
   if (fit == Fit::kNone) filter_.forget();
   result.answer = Answer::kNone;
   result.plan.size = result.plan.reference_size = 0;
