@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
@@ -12,8 +13,8 @@
 namespace chicane::controller {
 
 /// What leads a slow car back to a line, from anywhere beside it and in any direction: walking pace, on a
-/// course that is at 45° to the line kApproach beside it, and along it on it. `place`: where the car is along
-/// the line.
+/// course that is at 45° to the line kApproach beside it, and along it on it. A car whose wheels turn slowly
+/// waits for them. `place`: where the car is along the line.
 [[nodiscard]] inline model::Command way_back(const road::ReferenceLine& line,
                                              const road::ReferenceLine::Projection& place,
                                              const model::State& car,
@@ -23,10 +24,14 @@ namespace chicane::controller {
   constexpr double kMostBraking = -2.0;  // [m/s²]
   constexpr double kMostDrive = 1.0;     // [m/s²]
   constexpr double kFullLock = 0.5;      // [rad] off its course the wheel is turned as far as it goes
+  constexpr double kWheelOff = 0.5;      // [rad] the wheel is from where it is told to, and the car stands
   const double course = line.at(place.s).heading - atan(place.d / kApproach);
   const double turn = std::clamp(angle_difference(course, car.psi) / kFullLock, -1.0, 1.0);
-  const double acceleration = std::clamp(kWalkingPace - car.vx, kMostBraking, kMostDrive);
-  return {turn * vehicle.steer_limit, throttle_for(vehicle, acceleration, car.vx)};
+  const double steer = turn * vehicle.steer_limit;
+  const double pace = kWalkingPace * std::max(1.0 - std::fabs(steer - car.steer) / kWheelOff, 0.0);
+  const double acceleration = std::clamp(pace - car.vx, kMostBraking, kMostDrive);
+  if (!(acceleration > 0.0)) return {steer, throttle_to_rest(vehicle, acceleration, car.vx)};
+  return {steer, throttle_for(vehicle, acceleration, car.vx)};
 }
 
 }  // namespace chicane::controller

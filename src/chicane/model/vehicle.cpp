@@ -126,7 +126,8 @@ double throttle_for(const VehicleParams& p, double acceleration, double v) noexc
 }
 
 double throttle_to_rest(const VehicleParams& p, double acceleration, double v) noexcept {
-  return std::min(throttle_for(p, std::max(acceleration, -std::max(v, 0.0) / kRestTime), v), 0.0);
+  const double rest_time = kRestTime * std::sqrt(p.scale);
+  return std::min(throttle_for(p, std::max(acceleration, -std::max(v, 0.0) / rest_time), v), 0.0);
 }
 
 VehicleParams udacity_params() { return {}; }

@@ -21,6 +21,8 @@ constexpr int kShown = 64;             // points of a backup that is drawn
 constexpr double kShownStep = 0.1;     // [s]
 constexpr double kFarFromRoad = 20.0;  // [m] beside its line there is no stop along the road
 constexpr double kMostDoubt = 0.5;     // [s] by which a controller's own time may differ from the measured
+constexpr double kSameSteer = 0.01;    // [rad] by which a plan's first command may differ from the answer
+constexpr double kSamePedal = 0.05;
 // Braking of a car that is too fast for a silence: gentle, and stable without feedback.
 constexpr Braking kHeldBack{0.8, 1.6, 0.7};
 
@@ -30,6 +32,14 @@ bool is_finite(const model::Command& command) noexcept {
 
 bool is_same(const model::Command& a, const model::Command& b) noexcept {
   return a.steer == b.steer && a.throttle == b.throttle;
+}
+
+/// Whether the published plan begins with the command that is answered (Plan::points[0]).
+bool is_of(const controller::Plan& plan, const model::Command& answered) noexcept {
+  if (plan.size < 1) return false;
+  const model::Command& planned = plan.points[0].command;
+  return std::fabs(planned.steer - answered.steer) < kSameSteer &&
+         std::fabs(planned.throttle - answered.throttle) < kSamePedal;
 }
 
 /// When the command of this cycle acts [s]: what the controller says, where that is near what was measured.
@@ -260,10 +270,11 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
 
 /// Whether the answer may be sent; slowed down where it leaves only a closed-loop backup.
 bool Guard::filter(const StopStart& start, const Cycle& cycle, controller::StepResult& result) noexcept {
-  const Fit fit = verify(start, cycle, result.command, result);
+  const controller::Plan* plan = is_of(result.plan, result.command) ? &result.plan : nullptr;
+  const Fit fit = verify(start, cycle, result.command, plan, result.report);
   if (fit == Fit::kOpen) return true;
   result.report.reason = GuardReason::kTooFastForSilence;
-  if (fit == Fit::kSeen && (options_.mode == GuardMode::kObserve || slow_down(start, cycle, result)))
+  if (fit == Fit::kSeen && (options_.mode == GuardMode::kObserve || slow_down(start, cycle, plan, result)))
     return true;
   result.report.reason = GuardReason::kNoWayToStop;
   return false;
@@ -271,22 +282,23 @@ bool Guard::filter(const StopStart& start, const Cycle& cycle, controller::StepR
 
 /// Of the command as the gate would send it.
 Fit Guard::verify(const StopStart& start, const Cycle& cycle, const model::Command& command,
-                  controller::StepResult& result, bool is_led) noexcept {
+                  const controller::Plan* plan, controller::StepReport& report, bool is_led) noexcept {
   return filter_.verify({.road = road_,
                          .start = start,
                          .command = limited(command, cycle.interval),
-                         .intended = result.plan,
+                         .intended = plan,
                          .interval = cycle.interval,
                          .is_led = is_led},
-                        result.report);
+                        report);
 }
 
 /// The controller steers; the pedal is limited to gentle braking. False where that leaves no backup at all.
-bool Guard::slow_down(const StopStart& start, const Cycle& cycle, controller::StepResult& result) noexcept {
+bool Guard::slow_down(const StopStart& start, const Cycle& cycle, const controller::Plan* plan,
+                      controller::StepResult& result) noexcept {
   model::Command slower = result.command;
   const double slowing = filter_.planner().slowing(road_, start, kHeldBack);
   slower.throttle = std::min(slower.throttle, throttle_for(model_.vehicle(), slowing, start.body.vx));
-  if (slower.throttle < result.command.throttle && verify(start, cycle, slower, result) == Fit::kNone)
+  if (slower.throttle < result.command.throttle && verify(start, cycle, slower, plan, result.report) == Fit::kNone)
     return false;
   result.command = slower;
   return true;

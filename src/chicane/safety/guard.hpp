@@ -96,8 +96,9 @@ class Guard {
   [[nodiscard]] bool filter(const StopStart& start, const Cycle& cycle,
                             controller::StepResult& result) noexcept;
   [[nodiscard]] Fit verify(const StopStart& start, const Cycle& cycle, const model::Command& command,
-                           controller::StepResult& result, bool is_led = false) noexcept;
-  [[nodiscard]] bool slow_down(const StopStart& start, const Cycle& cycle,
+                           const controller::Plan* plan, controller::StepReport& report,
+                           bool is_led = false) noexcept;
+  [[nodiscard]] bool slow_down(const StopStart& start, const Cycle& cycle, const controller::Plan* plan,
                                controller::StepResult& result) noexcept;
   [[nodiscard]] model::Command limited(const model::Command& command, double interval) const noexcept;
   void accept(const model::Measurement& seen, controller::StepResult& result) noexcept;
@@ -141,6 +142,7 @@ class Guard {
   bool has_place_ = false;
   bool is_far_ = false;         ///< the car is far from the known road
   bool is_astray_ = false;      ///< it is off the road or across it
+  bool has_stood_astray_ = false;  ///< since it is astray; from then on it may leave the road to turn
   bool is_led_ = false;         ///< it stood while commands were refused, and is led back to the line
   bool rests_ = false;          ///< it came to rest, and has not been asked to drive since
   double tried_ = 0.0;          ///< way driven to see whether the car was put elsewhere, by the model [m]

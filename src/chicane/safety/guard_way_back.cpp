@@ -60,7 +60,7 @@ bool Guard::try_reset(const StopStart& start, const Cycle& cycle, double time,
   // A car that stopped where the known road ends has no stop ahead of it; well inside the edges and along the
   // road the way of the trial does without.
   const bool has_room = filter_.planner().edge(road_, start) >= kTrialRoom && std::fabs(start.e) < kAlong;
-  if (verify(start, cycle, command, result, true) == Fit::kNone && !has_room) return false;
+  if (verify(start, cycle, command, nullptr, result.report, true) == Fit::kNone && !has_room) return false;
   tried_ += std::max(speed, kTrialSpeed) * std::max(cycle.interval, 0.0);
   result.answer = Answer::kNone;
   result.command = command;
@@ -72,6 +72,8 @@ bool Guard::try_reset(const StopStart& start, const Cycle& cycle, double time,
 /// A car off the road or across it is astray until it is along the road again.
 void Guard::watch_course(const std::optional<StopStart>& start) noexcept {
   const double least = options_.road == GuardRoad::kWaypoints ? -kGuessedWidth : 0.0;
+  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed;
+  has_stood_astray_ = is_astray_ && (has_stood_astray_ || stands);
   if (!start) {
     is_astray_ = is_far_;
     return;
@@ -105,10 +107,12 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
                               : controller::way_back(line, place, car, model_.vehicle());
   const std::optional<StopStart> start = place_on_road(act);
   if (is_astray_) filter_.forget();
-  const Fit fit = start ? verify(*start, cycle, result.command, result, true) : Fit::kNone;
-  // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there.
+  const Fit fit = start ? verify(*start, cycle, result.command, nullptr, result.report, true) : Fit::kNone;
+  // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there, and
+  // once it stands.
   const bool is_off = start && filter_.planner().edge(road_, *start) < 0.0;
-  if (start && !is_off && fit == Fit::kNone && (!is_astray_ || result.answer == Answer::kDrive)) return false;
+  if (start && !is_off && fit == Fit::kNone && (!has_stood_astray_ || result.answer == Answer::kDrive))
+    return false;
   if (fit == Fit::kNone) filter_.forget();
   result.answer = Answer::kNone;
   result.plan.size = result.plan.reference_size = 0;

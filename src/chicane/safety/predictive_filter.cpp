@@ -38,6 +38,11 @@ constexpr double kLapAcross = 1.5;  // [m/s]
 constexpr double kLapFaster = 1.0;  // [m/s]
 constexpr double kWideLap = 4.0;    // times as much where no verified backup is in store
 
+// By how much the beginning of a published plan may be off the car's estimated place and speed.
+constexpr double kPlanLate = 0.02;   // [s]
+constexpr double kPlanOffset = 0.4;  // of the car's width
+constexpr double kPlanFaster = 1.5;  // [m/s]
+
 // What a stop brakes with, tried in turn: gently and stable without feedback, hard, hard with less and less
 // static stability left (docs/safety_derivation.md, eq. 5).
 constexpr double kGentle = 0.8;
@@ -101,8 +106,7 @@ Fit PredictiveFilter::verify(const Request& request, controller::StepReport& rep
   undriven.acceleration = std::min(undriven.acceleration, 0.0);
   const auto tires = model_.tire_use(undriven);
   const double use = next.body.vx > kWalkingPace ? std::max(tires.front, tires.rear) : 0.0;
-  planner_.course_of(road, request.start, request.intended, *intended_);
-  const bool plans = goal.is_planned = intended_->stop.size > 1;
+  const bool plans = goal.is_planned = intends(request);
 
   Fit fit = Fit::kNone;
   if (use < kMostUse && goal.edge_before >= goal.margin) {
@@ -124,6 +128,18 @@ Fit PredictiveFilter::verify(const Request& request, controller::StepReport& rep
   if (!drives_planned_lap(road, next, wide)) return fit;
   forget();
   return Fit::kOpen;
+}
+
+/// Whether the published plan begins where the car is, so that a backup may go on along it.
+bool PredictiveFilter::intends(const Request& request) noexcept {
+  if (request.intended == nullptr) return false;
+  planner_.course_of(request.road, request.start, *request.intended, *intended_);
+  if (intended_->stop.size < 2) return false;
+  const StopStart& first = intended_->places[0];
+  const StopStart& car = request.start;
+  const double near = kPlanOffset * model_.vehicle().width;
+  return std::fabs(first.time - car.time) < kPlanLate && std::fabs(first.d - car.d) < near &&
+         std::fabs(first.s - car.s) < near && std::fabs(first.body.vx - car.body.vx) < kPlanFaster;
 }
 
 /// Whether the car drives a planned lap: near its line, along it, no faster than planned. The lap itself is a

@@ -63,7 +63,7 @@ class PredictiveFilter {
     const road::KnownRoad& road;
     const StopStart& start;
     model::Command command;
-    const controller::Plan& intended;  ///< published by the controller; size 0: none
+    const controller::Plan* intended;  ///< published by the controller for this command; null: none
     double interval = 0.0;             ///< between two commands [s]; <= 0: not known
     bool is_led = false;               ///< the guard's own, at walking pace
   };
@@ -107,6 +107,7 @@ class PredictiveFilter {
                                controller::StepReport& report) noexcept;
   [[nodiscard]] Fit stop_searched(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
                                   controller::StepReport& report) noexcept;
+  [[nodiscard]] bool intends(const Request& request) noexcept;
   [[nodiscard]] bool is_in_tube(const road::KnownRoad& road, const StopStart& at) const noexcept;
   [[nodiscard]] bool drives_planned_lap(const road::KnownRoad& road, const StopStart& at,
                                         double wide) const noexcept;

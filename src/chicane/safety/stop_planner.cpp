@@ -16,6 +16,8 @@ namespace {
 constexpr double kStep = 0.05;      // [s] of the simulation
 constexpr int kStepsPerPoint = 2;   // of the simulation, in the plan
 constexpr double kStanding = 0.3;   // [m/s] slower than that the car counts as standing
+constexpr double kSlipSpeed = 1.0;  // [m/s] at which PredictionModel takes the slip of a car that stands
+constexpr double kSlow = 3.0;       // [m/s] below which its turning is corrected
 constexpr double kBandwidth = 1.0;  // [rad/s] of the feedback to the line
 constexpr double kDamping = 0.7;
 constexpr double kYawBandwidth = 6.0;      // [rad/s] of the feedback to the yaw rate
@@ -257,8 +259,10 @@ void StopPlanner::move(const StopCar& car, const road::KnownRoad& road, StopStar
   model::BodyMotion<double>& to = moved.body;
   to.vx = std::max(to.vx, 0.0);
   const double vx = 0.5 * (at.body.vx + to.vx);
-  const double vy = 0.5 * (at.body.vy + to.vy);
-  const double turned = 0.5 * dt * (at.body.r + to.r);
+  // The model turns a car that stands with its wheels turned as if it rolled with kSlipSpeed.
+  const double rolls = vx < kSlow ? vx / hypot(vx, kSlipSpeed) : 1.0;
+  const double vy = rolls * 0.5 * (at.body.vy + to.vy);
+  const double turned = rolls * 0.5 * dt * (at.body.r + to.r);
   const double curvature = road.line().demand(at.s).curvature;
   const double shrink = std::max(1.0 - curvature * at.d, 0.2);
   const double e = at.e + 0.5 * turned - 0.5 * dt * curvature * vx / shrink;

@@ -7,6 +7,7 @@
 namespace chicane::safety {
 namespace {
 
+// Of a car in full size; those of a model car are shorter by the root of its scale.
 constexpr double kSpeedTime = 0.4;  // [s] in which the planned speed is met again
 constexpr double kStanding = 0.5;   // [m/s] a plan that ends faster is not complete
 
@@ -20,10 +21,11 @@ model::Command played(const StopPlan& stop, double distance, double speed,
   const StopPoint& next = stop.points[static_cast<std::size_t>(std::min(i + 1, stop.size - 1))];
   const double length = next.distance - here.distance;
   const double share = length > 1e-6 ? std::clamp((distance - here.distance) / length, 0.0, 1.0) : 0.0;
-  const bool ends_rolling = i + 1 == stop.size && here.speed >= kStanding;  // where the known road ended
+  const double size = std::sqrt(vehicle.scale);
+  const bool ends_rolling = i + 1 == stop.size && here.speed >= size * kStanding;  // where the road ended
   const double planned = ends_rolling ? 0.0 : here.speed + share * (next.speed - here.speed);
   const double wanted =
-      longitudinal_acceleration(vehicle, here.command.throttle, speed) + (planned - speed) / kSpeedTime;
+      longitudinal_acceleration(vehicle, here.command.throttle, speed) + (planned - speed) / (size * kSpeedTime);
   return {std::clamp(here.command.steer, -vehicle.steer_limit, vehicle.steer_limit),
           throttle_to_rest(vehicle, wanted, speed)};
 }
