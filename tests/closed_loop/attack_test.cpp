@@ -24,6 +24,27 @@ TEST(Attack, LeavesTheRoadWithoutAGuard) {
   }
 }
 
+/// Plans that are not the ones driven, model cars, and cars whose wheels turn slowly.
+TEST(Attack, DoesNotLeadOffTheRoad) {
+  run::Roads roads;
+  struct Trial {
+    const char *adversary, *car, *track;
+    double seconds;
+  };
+  for (const Trial& trial : {Trial{"frozen_output", "road-car", "lakeside", 25.0},
+                             {"full_throttle", "road-car", "lakeside", 20.0},
+                             {"creep", "road-car", "lakeside", 12.0},
+                             {"lock", "f1tenth", "lakeside", 8.0},
+                             {"rock", "f1tenth", "lakeside", 8.0},
+                             {"stop_on_road", "bmw-320i", "speedway", 10.0}}) {
+    const auto scenario = scenario_of({.car = trial.car, .track = trial.track});
+    ASSERT_TRUE(scenario);
+    const auto outcome = drive_adversary(*scenario, roads, *adversary_named(trial.adversary), 0, trial.seconds);
+    ASSERT_TRUE(outcome);
+    EXPECT_GE(outcome->least_edge, 0.0) << trial.adversary << " with " << trial.car;
+  }
+}
+
 TEST(Attack, OfTheSameSeedIsTheSame) {
   run::Roads roads;
   const auto scenario = scenario_of({});

@@ -41,5 +41,20 @@ TEST(WayBackLaw, GoesAtWalkingPace) {
   EXPECT_LT(back_from(5.0, 0.0, 6.0).throttle, 0.0);
 }
 
+/// A car whose wheels turn at 0.4 rad/s is 3 m farther by the time that they are where they shall be.
+TEST(WayBackLaw, WaitsForWheelsThatTurnSlowly) {
+  const road::ReferenceLine line = straight();
+  const model::VehicleParams vehicle = model::udacity_params();
+  model::State car{.x = 50.0, .y = 5.0, .psi = 1.5, .vx = 1.0};
+  const auto pedal = [&](double steer) {
+    car.steer = steer;
+    return way_back(line, line.project({car.x, car.y}), car, vehicle).throttle;
+  };
+  EXPECT_LT(pedal(0.2), 0.0) << "it brakes, the wheel is turned the wrong way";
+  EXPECT_GT(pedal(-vehicle.steer_limit), 0.0);
+  car.vx = 0.0;
+  EXPECT_EQ(pedal(0.2), 0.0) << "it stands, and does not roll back";
+}
+
 }  // namespace
 }  // namespace chicane::controller

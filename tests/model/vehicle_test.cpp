@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "chicane/base/random.hpp"
+#include "chicane/model/similarity.hpp"
 
 namespace chicane::model {
 namespace {
@@ -19,6 +20,17 @@ TEST(Vehicle, ShippedCarsAreValidAndNamed) {
   EXPECT_EQ(road_car_params().name, "road-car");
   EXPECT_TRUE(validate(udacity_params()));
   EXPECT_TRUE(validate(road_car_params()));
+}
+
+/// A model car comes to rest as the car in full size does, in its own time.
+TEST(Vehicle, BringsModelCarsToRestAsThoseInFullSize) {
+  VehicleParams model_car = road_car_params();
+  model_car.scale = 0.1;
+  const VehicleParams full = Similarity(model_car).full_size(model_car);
+  const double faster = std::sqrt(10.0);
+  for (const double v : {0.05, 0.3, 0.8, 1.2, 3.0})
+    for (const double a : {-1.0, -4.0, -9.0})
+      EXPECT_NEAR(throttle_to_rest(model_car, a, v), throttle_to_rest(full, a, faster * v), 1e-9) << v << ", " << a;
 }
 
 TEST(Vehicle, RefusesEachUnphysicalFieldByName) {

@@ -38,7 +38,7 @@ StopStart driving(double speed, double side) {
 }
 
 const model::VehicleParams kBoth[] = {model::udacity_params(), model::road_car_params()};
-const controller::Plan kNoPlan{};
+const controller::Plan* const kNoPlan = nullptr;
 
 TEST(PredictiveFilter, StoresABackupAfterACommandThatLeavesOne) {
   for (const double side : {1.0, -1.0}) {
