@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
-using Json = nlohmann::ordered_json;  // lines begin with their run
+using OrderedJson = nlohmann::ordered_json;  // lines begin with their run
 
 class PlanRuns : public testing::Test {
  protected:
@@ -45,21 +45,21 @@ TEST_F(PlanRuns, RecoverGoesOnWithWhatIsMissingAndSaysTheSame) {
   const Outcome whole = chicane_program(command);
   const std::vector<std::string> told = lines();
   ASSERT_EQ(told.size(), 4U) << whole.err;
-  const Json rows = Json::parse(whole.out)["rows"];
+  const OrderedJson rows = OrderedJson::parse(whole.out)["rows"];
   ASSERT_EQ(rows.size(), 1U);
   EXPECT_EQ(rows[0]["starts"], 3);
   EXPECT_EQ(rows[0]["outcomes"][2]["number"], 3);
 
   // The second start is missing, and the third has an outcome that only a file can have.
-  Json third = Json::parse(told[3]);
+  OrderedJson third = OrderedJson::parse(told[3]);
   third["back_s"] = 12345.0;
   keep({told[0], told[1], third.dump()});
   const Outcome resumed = chicane_program(command);
   ASSERT_EQ(lines().size(), 4U) << resumed.err;
   EXPECT_EQ(lines()[3], told[2]) << "the same bytes";
-  Json expected = Json::parse(whole.out);
+  OrderedJson expected = OrderedJson::parse(whole.out);
   expected["rows"][0]["outcomes"][2]["back_s"] = 12345.0;
-  EXPECT_EQ(Json::parse(resumed.out), expected);
+  EXPECT_EQ(OrderedJson::parse(resumed.out), expected);
 
   const Outcome other = chicane_program(command + " --set latency_ms=50");
   EXPECT_EQ(other.code, 2);
@@ -68,8 +68,8 @@ TEST_F(PlanRuns, RecoverGoesOnWithWhatIsMissingAndSaysTheSame) {
 
 TEST_F(PlanRuns, OneStartIsThatOfAllStarts) {
   const std::string command = "recover --tracks oval --cars udacity --starts 3 --seed 2 --json";
-  const Json all = Json::parse(chicane_program(command).out)["rows"][0]["outcomes"];
-  const Json one = Json::parse(chicane_program(command + " --only 2").out)["rows"][0]["outcomes"];
+  const OrderedJson all = OrderedJson::parse(chicane_program(command).out)["rows"][0]["outcomes"];
+  const OrderedJson one = OrderedJson::parse(chicane_program(command + " --only 2").out)["rows"][0]["outcomes"];
   ASSERT_EQ(one.size(), 1U);
   EXPECT_EQ(one[0], all[1]);
   const Outcome none = chicane_program(command + " --only 4");
@@ -85,17 +85,17 @@ TEST_F(PlanRuns, ALaneChangeIsShownFromItsFile) {
   EXPECT_THAT(mistake.err, HasSubstr("car: got \"moped\""));
   const Outcome first = chicane_program(command);
   ASSERT_EQ(first.code, 0) << first.err;
-  const Json row = Json::parse(first.out)["rows"][0];
+  const OrderedJson row = OrderedJson::parse(first.out)["rows"][0];
   EXPECT_EQ(row["car"], "udacity");
   EXPECT_EQ(row["preset"], "stanley");
   EXPECT_GT(row["entry_kmph"], 30);
   EXPECT_LT(row["room_above_m"], 0.0);
   const std::vector<std::string> told = lines();
   ASSERT_EQ(told.size(), 2U);
-  Json line = Json::parse(told[1]);
+  OrderedJson line = OrderedJson::parse(told[1]);
   line["entry_kmph"] = 77;
   keep({told[0], line.dump()});
-  EXPECT_EQ(Json::parse(chicane_program(command).out)["rows"][0]["entry_kmph"], 77);
+  EXPECT_EQ(OrderedJson::parse(chicane_program(command).out)["rows"][0]["entry_kmph"], 77);
 }
 
 }  // namespace
