@@ -69,7 +69,8 @@ TEST_F(PlanRuns, RecoverGoesOnWithWhatIsMissingAndSaysTheSame) {
 TEST_F(PlanRuns, OneStartIsThatOfAllStarts) {
   const std::string command = "recover --tracks oval --cars udacity --starts 3 --seed 2 --json";
   const OrderedJson all = OrderedJson::parse(chicane_program(command).out)["rows"][0]["outcomes"];
-  const OrderedJson one = OrderedJson::parse(chicane_program(command + " --only 2").out)["rows"][0]["outcomes"];
+  const OrderedJson one =
+      OrderedJson::parse(chicane_program(command + " --only 2").out)["rows"][0]["outcomes"];
   ASSERT_EQ(one.size(), 1U);
   EXPECT_EQ(one[0], all[1]);
   const Outcome none = chicane_program(command + " --only 4");

@@ -39,7 +39,8 @@ TEST(Attack, DoesNotLeadOffTheRoad) {
                              {"stop_on_road", "bmw-320i", "speedway", 10.0}}) {
     const auto scenario = scenario_of({.car = trial.car, .track = trial.track});
     ASSERT_TRUE(scenario);
-    const auto outcome = drive_adversary(*scenario, roads, *adversary_named(trial.adversary), 0, trial.seconds);
+    const auto outcome =
+        drive_adversary(*scenario, roads, *adversary_named(trial.adversary), 0, trial.seconds);
     ASSERT_TRUE(outcome);
     EXPECT_GE(outcome->least_edge, 0.0) << trial.adversary << " with " << trial.car;
   }

@@ -30,7 +30,8 @@ TEST(Vehicle, BringsModelCarsToRestAsThoseInFullSize) {
   const double faster = std::sqrt(10.0);
   for (const double v : {0.05, 0.3, 0.8, 1.2, 3.0})
     for (const double a : {-1.0, -4.0, -9.0})
-      EXPECT_NEAR(throttle_to_rest(model_car, a, v), throttle_to_rest(full, a, faster * v), 1e-9) << v << ", " << a;
+      EXPECT_NEAR(throttle_to_rest(model_car, a, v), throttle_to_rest(full, a, faster * v), 1e-9)
+          << v << ", " << a;
 }
 
 TEST(Vehicle, RefusesEachUnphysicalFieldByName) {

@@ -298,7 +298,8 @@ bool Guard::slow_down(const StopStart& start, const Cycle& cycle, const controll
   model::Command slower = result.command;
   const double slowing = filter_.planner().slowing(road_, start, kHeldBack);
   slower.throttle = std::min(slower.throttle, throttle_for(model_.vehicle(), slowing, start.body.vx));
-  if (slower.throttle < result.command.throttle && verify(start, cycle, slower, plan, result.report) == Fit::kNone)
+  if (slower.throttle < result.command.throttle &&
+      verify(start, cycle, slower, plan, result.report) == Fit::kNone)
     return false;
   result.command = slower;
   return true;

@@ -108,8 +108,8 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const std::optional<StopStart> start = place_on_road(act);
   if (is_astray_) filter_.forget();
   const Fit fit = start ? verify(*start, cycle, result.command, nullptr, result.report, true) : Fit::kNone;
-  // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there, and
-  // once it stands.
+  // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there,
+  // and once it stands.
   const bool is_off = start && filter_.planner().edge(road_, *start) < 0.0;
   if (start && !is_off && fit == Fit::kNone && (!has_stood_astray_ || result.answer == Answer::kDrive))
     return false;

@@ -24,8 +24,8 @@ model::Command played(const StopPlan& stop, double distance, double speed,
   const double size = std::sqrt(vehicle.scale);
   const bool ends_rolling = i + 1 == stop.size && here.speed >= size * kStanding;  // where the road ended
   const double planned = ends_rolling ? 0.0 : here.speed + share * (next.speed - here.speed);
-  const double wanted =
-      longitudinal_acceleration(vehicle, here.command.throttle, speed) + (planned - speed) / (size * kSpeedTime);
+  const double wanted = longitudinal_acceleration(vehicle, here.command.throttle, speed) +
+                        (planned - speed) / (size * kSpeedTime);
   return {std::clamp(here.command.steer, -vehicle.steer_limit, vehicle.steer_limit),
           throttle_to_rest(vehicle, wanted, speed)};
 }
