@@ -10,7 +10,10 @@ import struct
 import sys
 import zlib
 
-import numpy as np
+try:
+    import numpy as np
+except ImportError:  # --help does without
+    np = None
 
 HERE = pathlib.Path(__file__).resolve().parent.parent / "tests/data/maps"
 FREE, WALL, UNKNOWN = 254, 0, 205
@@ -123,6 +126,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--check", action="store_true", help="compare with the files, write nothing")
     check = parser.parse_args().check
+    if np is None:
+        parser.error("numpy: got none, expected Debian's python3-numpy and /usr/bin/python3")
     table = "# made by tools/make_maps.py\nname,length_m,width_m\n"
     files = {}
     for name, corners, width, cell, how in MAPS:
