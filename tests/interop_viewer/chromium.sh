@@ -1,7 +1,8 @@
 #!/bin/sh
-# Chromium (its path in CHROMIUM) at a low priority: at that of root's Chromium, which raises it, the program's searches
-# beside a run would stand still for minutes on a busy machine.
-calm="nice -n 5"
+# Chromium (its path in CHROMIUM) at niceness 5, or at the caller's if that is more: at the priority to which root's
+# Chromium raises itself, the program's searches beside a run would stand still for minutes on a busy machine.
+niceness=$(nice)
+calm="nice -n $((niceness < 5 ? 5 - niceness : 0))"
 lowered="setpriv --bounding-set -sys_nice --inh-caps -sys_nice"
 if $lowered true 2>/dev/null; then calm="$lowered $calm"; fi
 # shellcheck disable=SC2086  # two commands and their words

@@ -178,11 +178,13 @@ describe('the dashboard', () => {
       'some data',
     );
     await dashboard.pause();
-    const box = await page.locator('.plot[aria-label="Speed"] .u-over').boundingBox();
+    const place = () => page.locator('.plot[aria-label="Speed"] .u-over').boundingBox();
+    const box = await place();
     const at = (back) => [box.x + box.width - back, box.y + 20];
     await page.mouse.click(...at(10));
     const mark = page.getByRole('button', { name: /^Remove the mark/ });
     await mark.waitFor();
+    assert.deepEqual(await place(), box, 'the plot stays under the mouse');
     await page.mouse.move(...at(30));
     await dashboard.until(
       () => page.locator('.plot[aria-label="Lateral error"] .key b').innerText(),

@@ -177,14 +177,21 @@ function Toolbar() {
       ) : (
         <span class="hint wide-only">Drag to zoom</span>
       )}
-      {markTime.value !== null && (
-        <button type="button" aria-keyshortcuts="X" onClick={toggleMark}>
-          Remove the mark{cursorTime.value === null ? '' : `, Δt ${fixed(cursorTime.value - markTime.value, 2)} s`}
-        </button>
-      )}
       <span class="spring" />
       <button type="button" title="All plots as a picture" onClick={() => void savePicture()}>
         PNG
+      </button>
+    </div>
+  );
+}
+
+/** Lies on the plots: in the toolbar it would take a row, and the plots would move away under the click. */
+function Mark() {
+  if (markTime.value === null) return null;
+  return (
+    <div class="plot-mark">
+      <button type="button" aria-keyshortcuts="X" onClick={toggleMark}>
+        Remove the mark{cursorTime.value === null ? '' : `, Δt ${fixed(cursorTime.value - markTime.value, 2)} s`}
       </button>
     </div>
   );
@@ -211,6 +218,7 @@ export function PlotsView() {
         <HistogramView />
         <OwnPlot />
       </div>
+      <Mark />
     </div>
   );
 }
