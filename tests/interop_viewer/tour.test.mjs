@@ -108,6 +108,9 @@ describe('the tour', () => {
     const dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'plots' });
     const { page } = dashboard;
     await dashboard.button('Tour').waitFor();
+    // A car that drives meanwhile would finish "Let it drive", which then offers Next instead of Skip.
+    await page.keyboard.press('Space');
+    await page.getByText('Paused', { exact: true }).waitFor();
     await page.keyboard.press('h');
     const focused = () => page.evaluate(() => document.activeElement.textContent);
     for (const title of ['Drive', 'Let', 'Slow', 'Blind', 'Break', 'Tune', 'Compare']) {
@@ -121,6 +124,8 @@ describe('the tour', () => {
     assert.match(await tour(dashboard).innerText(), /Left out: Drive it yourself, .*, Compare\./);
     await page.keyboard.press('h');
     await tour(dashboard).waitFor({ state: 'detached' });
+    await page.keyboard.press('Space');
+    await page.getByText('Live', { exact: true }).waitFor();
     await dashboard.close();
   });
 
