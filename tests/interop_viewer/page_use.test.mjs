@@ -26,6 +26,10 @@ describe('the page', () => {
   it('pauses by Space, whatever was clicked last', async () => {
     await dashboard.show('faults');
     const fault = page.locator('.panel-body button[aria-pressed]').first();
+    await page
+      .getByLabel(/^Duration of/)
+      .first()
+      .fill('600'); // it lasts until it is cleared, however slow the machine is
     await fault.click();
     const name = await fault.innerText();
     await page.keyboard.press('Space');
@@ -33,6 +37,8 @@ describe('the page', () => {
     assert.equal(await fault.getAttribute('aria-pressed'), 'true', `${name} goes on`);
     await page.keyboard.press('Space');
     await page.getByText('Live', { exact: true }).waitFor();
+    await dashboard.button('Clear all').click();
+    await page.locator('.panel-body button[aria-pressed="true"]').waitFor({ state: 'detached' });
   });
 
   it('gives the stage three fifths of a laptop', async () => {
