@@ -104,7 +104,11 @@ describe('the end of a run', () => {
     await dashboard.show('laps');
     await page.getByTestId('end-card').waitFor();
     assert.equal(await dashboard.text('end-title'), 'Finished');
-    assert.equal(await dashboard.text('end-laps'), '2');
+    await dashboard.until(
+      () => dashboard.text('end-laps'),
+      (count) => count === '2',
+      'both laps', // the table follows its laps a moment later
+    );
     await dashboard.until(
       () => lapRows(dashboard),
       (count) => count === 2,
