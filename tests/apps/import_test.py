@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+"""`chicane import` as users start it: `import_test.py PROGRAM`."""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = sys.argv.pop(1)
+ROOT = Path(__file__).resolve().parent.parent.parent
+TRACKS, MAPS = ROOT / "tests/data/tracks", ROOT / "tests/data/maps"
+LENGTH = 245.664  # of the stadium that tools/make_foreign_tracks.py writes [m]
+FILES = {"tum_centre_line.csv": 0.02, "decimal_commas.csv": 0.005, "utm.csv": 0.005, "cones.csv": 0.01, "fssim.yaml": 0.01, "cones.sdf": 0.01,
+         "three_laps.gpx": 0.015, "course.kml": 0.005, "course.osm": 0.005, "course.geojson": 0.005, "course.xodr": 0.005,
+         "course.commonroad.xml": 0.005}
+
+
+def run(*words):
+    environment = {**os.environ, "CHICANE_DATA_DIR": str(ROOT)}
+    done = subprocess.run([PROGRAM, *map(str, words)], env=environment, capture_output=True, text=True, timeout=120)
+    return done.returncode, done.stdout, done.stderr
+
+
+class Import(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory(suffix=f".{os.getpid()}")
+        self.out = Path(self.folder.name)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def test_each_kind_of_file_has_the_length_of_its_road(self):
+        for name, tolerance in FILES.items():
+            with self.subTest(name):
+                code, out, err = run("import", TRACKS / name, "--json")
+                self.assertEqual(code, 0, err)
+                self.assertAlmostEqual(json.loads(out)["length_m"] / LENGTH, 1.0, delta=tolerance)
+
+    def test_a_map_becomes_a_picture_and_a_road_that_is_driven(self):
+        road, picture = self.out / "bean.csv", self.out / "bean.png"
+        code, _, err = run("import", MAPS / "bean.yaml", "-o", road, "--preview", picture)
+        self.assertEqual(code, 0, err)
+        self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(picture.read_bytes()[-8:-4], b"IEND")
+        self.assertEqual(run("check", road, "--car", "f1tenth")[0], 0)
+        for track in (road, MAPS / "bean.yaml"):
+            code, out, err = run("drive", "--fast", "--laps", "1", "--car", "f1tenth", "--track", track)
+            self.assertEqual(code, 0, err)
+            self.assertIn("all tyres on the road", out)
+
+    def test_refusals_name_the_file_and_the_remedy(self):
+        for name, words in {"gym_waypoints.csv": "gym_waypoints.csv:1: header: got none for 4 columns",
+                            "no_loop.yaml": "no_loop.yaml: free space: got no loop, open between (",
+                            "no_loop.pgm": "expected the YAML file beside it",
+                            "one_side.csv": "one_side.csv: cones: got 58 of the left side and 0 of the right one"}.items():
+            with self.subTest(name):
+                code, out, err = run("import", TRACKS / name, "-o", self.out / "none.csv")
+                self.assertEqual((code, out), (2, ""))
+                self.assertIn(words, err)
+                self.assertFalse((self.out / "none.csv").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
