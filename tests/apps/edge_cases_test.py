@@ -102,7 +102,7 @@ class Files(unittest.TestCase):
         code, out, err = run("drive", "--fast", "--set", "time_limit_s=0.1", "--json", "--track", "01_total_width.csv")
         self.assertEqual(code, 1, err)
         for text in (out, err):
-            self.assertIn("width_m: unknown column, ignored", text)
+            self.assertIn("width: of the whole road, half of it to each side", text)
         self.assertIn('"notices": [', out)
 
     def test_open_road_is_told(self):
@@ -139,9 +139,9 @@ class Files(unittest.TestCase):
         self.assert_refused(file, "gps.csv:2: x_m: got a road within", "degrees of longitude and latitude", "project the points")
 
     def test_cone_maps_are_named(self):
-        self.assert_refused("07_cones.csv", "07_cones.csv:2: tag: got yellow, a map of cones, expected the points of one line")
+        self.assert_refused("07_cones.csv", "07_cones.csv: cones: got sides that cross each other, expected a course between them")
         self.assert_read("07_timestamped.csv", "stamp: unknown column, ignored")
-        self.assert_refused(self.file("cones.csv", "x,y,color\n" + ring(lambda x, y: f"{x},{y},big_orange")), "color: got big_orange")
+        self.assert_refused(self.file("cones.csv", "x,y,color\n" + ring(lambda x, y: f"{x},{y},big_orange")), "cones: got 0 of the left side and 0 of the right one, expected at least 3 of each")
 
     def test_the_first_row_is_a_row(self):
         self.assert_refused("09_nan_first.csv", "09_nan_first.csv:2: x_m: got nan, expected a finite number")

@@ -20,7 +20,7 @@ FILES = {
     "nan.csv": "x_m,y_m\nnan,0\n0,50\n50,50\n50,0\n",
     "width.csv": "x_m,y_m,w_tr_right_m,w_tr_left_m\n0,0,4,4\n50,0,4,-4\n50,50,4,4\n0,50,4,4\n",
     "gps.csv": "lat,lon\n48.1,11.5\n48.2,11.6\n",
-    "commas.csv": "x_m;y_m\n0,5;0\n50;0\n50;50\n",
+    "commas.csv": "x_m;y_m\n1,000.5;0\n50;0\n50;50\n",
     "cones.csv": "tag,x,y\nblue,0,0\nyellow,5,0\n",
     "key.yaml": "preset: default\ntracking_mpc:\n  horizon_stepz: 12\n",
     "range.yaml": "preset: default\ntracking_mpc:\n  horizon_steps: 900\n",
@@ -87,8 +87,8 @@ check {{names.csv}} | names.csv:1: header | got v_mps | expected columns x and y
 check {{nan.csv}} | nan.csv:2: x_m | got nan | expected a finite number |
 check {{width.csv}} | width.csv:3: w_tr_left_m | got -4 | expected a width > 0 |
 check {{gps.csv}} | gps.csv:1: header | got lat,lon | expected columns x and y (or x_m and y_m) in metres |
-check {{commas.csv}} | commas.csv:2: x_m | got 0,5 | expected a finite number with a decimal point |
-check {{cones.csv}} | cones.csv:2: tag | got blue, a map of cones | expected the points of one line |
+check {{commas.csv}} | commas.csv:2: x_m | got 1,000.5 | expected a finite number with a decimal point |
+check {{cones.csv}} | cones.csv: cones | got 1 of the left side and 1 of the right one | expected at least 3 of each |
 check {{empty.csv}} | empty.csv: file | got no points | expected lines of numbers |
 check {{key.yaml}} | key.yaml:3: tracking_mpc.horizon_stepz | got an unknown key | expected one of | (did you mean tracking_mpc.horizon_steps?)
 check {{range.yaml}} | range.yaml:3: tracking_mpc.horizon_steps | got 900 | expected an integer in [5, 100] |
