@@ -105,8 +105,8 @@ TEST(CommandText, WithoutACommandSixLinesForANewcomer) {
 TEST(CommandText, TheHelpIsRead) {
   EXPECT_THAT(commands(), IsSupersetOf({"drive", "serve", "replay", "list", "completion", "manual"}));
   EXPECT_THAT(options_of("drive"), IsSupersetOf({"--preset", "--laps", "--fast", "--set"}));
-  EXPECT_THAT(options_of("report"),
-              ElementsAre("--car", "--compare", "--drive-topic", "--odom-topic", "--output", "--page", "--track"));
+  EXPECT_THAT(options_of("report"), ElementsAre("--car", "--compare", "--drive-topic", "--odom-topic",
+                                                "--output", "--page", "--track"));
 }
 
 TEST(CommandText, TheManualNamesEveryCommandAndOption) {
