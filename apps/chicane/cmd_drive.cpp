@@ -100,7 +100,7 @@ Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const ru
                               .on_change = [&](const telemetry::Change& change) { (*kept)->record(change); }},
                              [&] { return controls.wants_stop.load(); });
   }
-  // For people only: what programs read and recordings hold does not depend on what is in a cache.
+  // The gap to a cached limit is for people: JSON and recordings must not depend on a cache.
   const bool may_know = !options.wants_limit && !options.is_json;
   if (const auto known = may_know ? run::known_limit(loop.scenario(), loop.track()) : std::nullopt)
     limit = answer_of(loop.track(), *known);

@@ -20,14 +20,14 @@ using protocol::TrackFile;
 using protocol::TrackReadOptions;
 
 constexpr double kModelRoad = 3.0;     // a narrower road is that of a model car [m]
-constexpr double kModelScale = 0.1;    // of what is assumed of its noise and spacing
+constexpr double kModelScale = 0.1;    // scale of its assumed noise and spacing
 constexpr double kPointsAcross = 5.0;  // spacing of the points is the width over this
 
 /// A road as it was read, and as it is written.
 struct Imported {
   TrackFile content;
   path::Track track;
-  double spacing = 0.0;                  ///< of the points written [m]
+  double spacing = 0.0;                  ///< distance between the written points [m]
   double rms = 0.0, most = 0.0;          ///< distance of the file's points from the line [m]
   double narrowest = 1e9, widest = 0.0;  ///< [m]
   double sharpest = 0.0;                 ///< curvature [1/m]
@@ -161,7 +161,7 @@ Result<void> import_and_tell(const Options& options) {
   const std::string csv = protocol::write_csv_track(
       resampled(*road),
       fmt::format("From {} by chicane import", std::filesystem::path(import.file).filename().string()));
-  // What is written has to be a road again.
+  // The written file is read again: it has to be a road.
   const Result<TrackFile> again = protocol::parse_track(
       csv, options.output_file.empty() ? import.file : options.output_file, {.scale = road->content.scale});
   if (!again) return fail(again.error());

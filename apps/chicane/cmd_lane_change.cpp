@@ -98,7 +98,7 @@ Result<RunLines> drive(const Options& options, const sweep::Plan& plan, const st
   return drive_runs({.plan = plan, .rule = rule}, options.jobs, options.lane_change.results, stop);
 }
 
-/// By car, then by preset.
+/// Prints a row for each car, with a column for each preset.
 void print(const Options& options, const RunLines& driven) {
   const auto& [cars, presets, results] = options.lane_change;
   Json rows = Json::array();

@@ -9,8 +9,8 @@
 namespace chicane::apps {
 
 /// Writes what a log of another program says of a car as a recording into `output`: where it was, its speed,
-/// its commands; with --track also its place along the road and its laps, else laps by where it has been.
-/// What the log has not stays unknown (NaN). How it was read, in sentences, goes to stderr.
+/// its commands; place along the road and laps where --track is given, else laps by where it has been.
+/// Values that the log lacks stay unknown (NaN). Sentences on stderr tell how it was read.
 ///
 /// kParse for what is no log: neither a bag of ROS 2 with odometry, nor a CSV table of a car.
 [[nodiscard]] Result<void> convert_foreign_log(const std::string& file, const Options& options,

@@ -7,7 +7,7 @@
 
 namespace chicane::apps {
 
-/// What `chicane import` takes.
+/// Adds the command `chicane import` with its options.
 void add_import(CLI::App& command, Options& options);
 
 }  // namespace chicane::apps

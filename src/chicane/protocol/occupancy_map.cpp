@@ -3,27 +3,18 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/csv_text.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/yaml_tree.hpp"
 
 namespace chicane::protocol {
 namespace {
-
-std::optional<double> number_of(std::string_view text) {
-  double value = 0.0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
-}
 
 std::string shown_value(const YamlNode& node) {
   return node.is_scalar() ? printable(node.text)
@@ -84,7 +75,7 @@ class MapReader {
   }
 
   void read_number(const YamlEntry& entry, double least, double most, double& to) {
-    const auto value = entry.value.is_scalar() ? number_of(entry.value.text) : std::nullopt;
+    const auto value = entry.value.is_scalar() ? number(entry.value.text) : std::nullopt;
     if (value && *value >= least && *value <= most) return void(to = *value);
     fault(entry.value.line, entry.key.text,
           fmt::format("got {}, expected a number in [{}, {}]", shown_value(entry.value), least, most));
@@ -95,8 +86,7 @@ class MapReader {
     has_origin_ = true;
     std::vector<double> numbers;
     for (const YamlNode* node : entry.value.children)
-      if (const auto number = node->is_scalar() ? number_of(node->text) : std::nullopt)
-        numbers.push_back(*number);
+      if (const auto read = node->is_scalar() ? number(node->text) : std::nullopt) numbers.push_back(*read);
     const bool is_sound = entry.value.is_list() && numbers.size() == entry.value.children.size() &&
                           (numbers.size() == 2 || numbers.size() == 3);
     if (!is_sound) return fault(entry.value.line, "origin", "got something else, expected [x, y, yaw]");

@@ -187,7 +187,7 @@ Result<ResultFile> ResultFile::open(const std::string& path, const Plan& plan, c
     const Result<Header> got = parse_header(contents->header, path);
     if (!got) return fail(got.error());
     return fail(ErrorCode::kInvalidArgument,
-                fmt::format("{}: got results of {}; --output names another file", path,
+                fmt::format("{}: got results of {}; choose another file", path,
                             difference_text(*got, parse_header(header, path).value())));
   }
   file.size_ = contents->whole;
