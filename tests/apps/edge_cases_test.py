@@ -7,6 +7,7 @@ import os
 import re
 import signal
 import socket
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -66,6 +67,17 @@ class Serving:
 def ring(rows, radius=60.0, count=40):
     from math import cos, pi, sin
     return "\n".join(rows(radius * cos(2 * pi * i / count), radius * sin(2 * pi * i / count)) for i in range(count)) + "\n"
+
+
+def stadium(radius, length=6.0, step=0.1, half_width=0.55):
+    """Two straights and two half circles, with widths."""
+    from math import cos, pi, sin
+    bend = max(8, int(pi * radius / step))
+    points = [(i * step, -radius) for i in range(int(length / step))]
+    points += [(length + radius * sin(pi * i / bend), -radius * cos(pi * i / bend)) for i in range(bend)]
+    points += [(length - i * step, radius) for i in range(int(length / step))]
+    points += [(-radius * sin(pi * i / bend), radius * cos(pi * i / bend)) for i in range(bend)]
+    return "x_m,y_m,w_tr_right_m,w_tr_left_m\n" + "".join(f"{x:.4f},{y:.4f},{half_width},{half_width}\n" for x, y in points)
 
 
 class Files(unittest.TestCase):
@@ -151,6 +163,8 @@ class Files(unittest.TestCase):
     def test_matlab_comments(self):
         self.assert_read("10_matlab_percent.csv", "closed track, 428.5 m long")
         self.assert_read(self.file("m.csv", "% x,y\n% of a simulation\n" + ring(lambda x, y: f"{x},{y}")), "closed track")
+        self.assert_read(self.file("glued.csv", "%x,y\n" + ring(lambda x, y: f"{x},{y} % measured")), "closed track, 377.0 m long")
+        self.assert_read(self.file("within.csv", "x,y\n% half of it\n" + ring(lambda x, y: f"{x},{y}  # by hand")), "closed track, 377.0 m long")
 
     # 10. Lengths of model scale.
     def test_a_scaled_road_is_told(self):
@@ -171,12 +185,14 @@ class Files(unittest.TestCase):
     def test_more_room_leaves_no_smaller_radius(self):
         for room in (3, 6, 10, 20):
             words = [*MODEL, "--set", f"tracking_mpc.assumed_half_width_m={room}"]
-            self.assert_read("23_rect_0.6.csv", "ok", words=words)
+            for file in ("23_rect_0.6.csv", self.file("u.csv", stadium(0.6)), self.file("wide.csv", stadium(0.7, half_width=0.65))):
+                self.assert_read(file, "ok", words=words)
 
     def test_a_parked_car_is_named(self):
-        code, out, _ = run("drive", "--fast", "--laps", "1", *MODEL, "--set", "time_limit_s=15", "--track", "22_hair_0.75.csv")
-        drives = code == 0 or "0.0 mph" not in out
-        self.assertTrue(drives or "time limit reached: the car stood for the last" in out, out)
+        for file in ("22_hair_0.75.csv", self.file("tight.csv", stadium(0.65)), self.file("open.csv", stadium(0.9))):
+            code, out, _ = run("drive", "--fast", "--laps", "1", *MODEL, "--set", "time_limit_s=15", "--track", file)
+            drives = code == 0 or "0.0 mph" not in out
+            self.assertTrue(drives or "time limit reached: the car stood for the last" in out, out)
 
     # 11. Nothing is no success.
     def test_bags_of_other_programs(self):
@@ -185,6 +201,24 @@ class Files(unittest.TestCase):
             code, _, err = run(*words)
             self.assertEqual(code, 2, err)
             self.assertIn("24_foreign.mcap: got no control step, expected a recording of ours", err)
+        self.assertFalse(page.exists())
+
+    def test_bags_without_a_way(self):
+        inertial = Path(self.folder.name) / "inertial.db3"
+        with sqlite3.connect(inertial) as bag:
+            bag.executescript("""
+                create table topics(id integer primary key, name text, type text, serialization_format text, offered_qos_profiles text);
+                create table messages(id integer primary key, topic_id integer, timestamp integer, data blob);
+                insert into topics values(1, '/imu', 'sensor_msgs/msg/Imu', 'cdr', '');
+                insert into messages values(1, 1, 1000000000, x'0001');""")
+        begun = Path(self.folder.name) / "begun.mcap"
+        begun.write_bytes((DATA / "24_foreign.mcap").read_bytes()[:300])
+        page = Path(self.folder.name) / "page.html"
+        for bag in (inertial, begun):
+            for words in (("report", bag, "-o", page), ("replay", "--port", "0", bag)):
+                code, _, err = run(*words)
+                self.assertEqual(code, 2, err)
+                self.assertIn(f"{bag.name}: got no control step, expected a recording of ours, or a bag with nav_msgs/msg/Odometry", err)
         self.assertFalse(page.exists())
 
     def test_a_recording_cut_in_its_first_chunk(self):
@@ -197,14 +231,19 @@ class Files(unittest.TestCase):
         self.assertEqual(code, 2, err)
         self.assertIn("cut.mcap: got no control step", err)
 
-    def test_ctrl_c_ends_planning(self):
-        process = subprocess.Popen([PROGRAM, "drive", "--fast", "--laps", "1", "--preset", "race", "--track", "speedway"], cwd=DATA,
-                                   env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                                   preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN))
+    def assert_ended_while_planning(self, how, *words):
+        process = subprocess.Popen([PROGRAM, *map(str, words)], cwd=DATA, env=environment(), stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN))
         time.sleep(0.3)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(how)
         process.wait(10)
         self.assertNotEqual(process.returncode, 0)
+
+    def test_ctrl_c_ends_planning(self):
+        race = ("drive", "--fast", "--laps", "1", "--preset", "race")
+        self.assert_ended_while_planning(signal.SIGINT, *race, "--track", "speedway")
+        self.assert_ended_while_planning(signal.SIGINT, *race, *MODEL, "--no-cache", "--track", self.file("u.csv", stadium(0.8)))
+        self.assert_ended_while_planning(signal.SIGTERM, "limit", "--no-cache", "speedway")
 
     def test_check_refuses_what_drive_refuses(self):
         three = self.file("three.csv", "x_m,y_m\n0,0\n50,0\n25,40\n")
@@ -231,6 +270,9 @@ class Wire(unittest.TestCase):
             answer = self.answer(server.port, ptsx=[-5.0, 10.0], ptsy=[0.0, 0.0], **road)
             self.assertGreater(answer["plan"], 0, server.said())
             self.assertGreater(self.answer(server.port, ptsx=[-5.0, 10.0, 25.0], ptsy=[0.0] * 3, **road)["plan"], 0)
+            across = dict(x=-820.0, y=440.0, psi=2.2, speed=12.0)
+            self.assertGreater(self.answer(server.port, ptsx=[-817.0, -826.0], ptsy=[436.0, 448.0], **across)["plan"], 0)
+            self.assertGreater(self.answer(server.port, ptsx=[0.0, 0.0], ptsy=[-2.0, 40.0], x=0.3, y=0.0, psi=1.57, speed=0.0)["plan"], 0)
         code, out, _ = run("drive", "--fast", "--laps", "1", "--track", "oval", "--set", "waypoints_sent=2", "--set", "time_limit_s=12")
         self.assertNotIn("no_answer: ", out)
         self.assertIn(code, (0, 1))
@@ -283,7 +325,10 @@ class Wire(unittest.TestCase):
                     self.assertIn("--allow-host car.local", server.said())
 
     def test_the_link_leads_to_the_address(self):
-        for address in ("127.0.0.2", "127.0.0.1"):
+        addresses = ["127.0.0.2", "127.0.0.1", "127.0.0.3"]
+        if Path("/proc/net/if_inet6").exists() and Path("/proc/net/if_inet6").read_text():
+            addresses.append("::1")
+        for address in addresses:
             with Serving("--no-token", address=address) as server:
                 link = re.search(r"dashboard at (\S+)", server.said())[1]
                 with urllib.request.urlopen(link, timeout=10) as page:

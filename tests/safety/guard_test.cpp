@@ -181,6 +181,28 @@ TEST(GuardOnARoad, KeepsACarThatStandsOutOfReverse) {
 }
 
 /// The original car keeps its brakes applied at rest until they are released.
+/// No prediction holds for a car whose driven wheels spin (docs/safety_derivation.md, eq. 14).
+TEST(GuardOnARoad, AsksForNoMoreDriveThanTheTyresHave) {
+  const path::RoadData road = straight_road(100);
+  Scripted scripted;
+  scripted.result.command = {.steer = 0.0, .throttle = 1.0};
+  const auto sent = [&](const model::VehicleParams& vehicle) {
+    Guard guard{std::make_unique<test::Borrowed>(scripted), vehicle, {.blind_time = 0.0}, &road};
+    controller::StepResult result;
+    for (int i = 0; i < 20; ++i) guard.step(at(0.04 * i), Deadline::never(), {.interval = 0.04}, result);
+    return result.command.throttle;
+  };
+  model::VehicleParams vehicle = model::road_car_params();
+  EXPECT_EQ(sent(vehicle), 1.0) << "has more grip than drive";
+  vehicle.drive_power_per_mass = std::numeric_limits<double>::infinity();
+  vehicle.drive_acceleration = 15.0;
+  vehicle.drive_share_front = 0.0;
+  const double grip = vehicle.friction * vehicle.load(20.0) * vehicle.front_axle / vehicle.wheelbase();
+  EXPECT_NEAR(15.0 * sent(vehicle), 0.9 * grip, 0.3);
+  vehicle.drive_share_front = 1.0;
+  EXPECT_GT(15.0 * sent(vehicle), 0.9 * grip) << "there is more load in front";
+}
+
 TEST(GuardOnARoad, ReleasesTheBrakesOfACarThatStandsThoughItShouldDrive) {
   const path::RoadData straight = straight_road(100);
   Scripted scripted;

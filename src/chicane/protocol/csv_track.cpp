@@ -118,7 +118,8 @@ class TrackParser {
     if (line.empty()) return {};
     if (line.front() == '#' || line.front() == '%')
       return read_comment(trim(line.substr(std::min(line.find_first_not_of("#%"), line.size()))));
-    return content_.points.empty() && is_header(line) ? read_header(line) : read_point(line);
+    if (content_.points.empty() && is_header(line)) return read_header(line);
+    return read_point(trim(line.substr(0, line.find_first_of("#%"))));  // a remark may follow the numbers
   }
 
   /// Of a line above the first point: the first one without a number in front, and each that names x and y.

@@ -23,6 +23,8 @@ constexpr double kFarFromRoad = 20.0;  // [m] beside its line there is no stop a
 constexpr double kMostDoubt = 0.5;     // [s] by which a controller's own time may differ from the measured
 constexpr double kSameSteer = 0.01;    // [rad] by which a plan's first command may differ from the answer
 constexpr double kSamePedal = 0.05;
+constexpr double kTraction = 0.9;        // of the grip of a driven axle: beyond it no prediction holds
+constexpr double kLeastTraction = 0.04;  // square of what is left of an axle that slides
 // Braking of a car that is too fast for a silence: gentle, and stable without feedback.
 constexpr Braking kHeldBack{0.8, 1.6, 0.7};
 
@@ -40,6 +42,20 @@ bool is_of(const controller::Plan& plan, const model::Command& answered) noexcep
   const model::Command& planned = plan.points[0].command;
   return std::fabs(planned.steer - answered.steer) < kSameSteer &&
          std::fabs(planned.throttle - answered.throttle) < kSamePedal;
+}
+
+/// The acceleration [m/s²] that the driven axles can give beside the force that they carry sideways
+/// (docs/safety_derivation.md, eq. 14). Infinite for cars whose tyres share nothing between the directions.
+double traction(const model::PredictionModel& model, model::BodyMotion<double> body) noexcept {
+  const model::VehicleParams& car = model.vehicle();
+  if (!(car.friction_coupling > 0.0)) return std::numeric_limits<double>::infinity();
+  body.acceleration = 0.0;
+  const auto tires = model.tire_use(body);
+  const double grip = kTraction * car.friction * model.load(body.vx) / car.wheelbase();
+  const auto left = [](double use) { return std::sqrt(std::max(1.0 - use * use, kLeastTraction)); };
+  const double front = left(tires.front) * grip * car.rear_axle / std::max(car.drive_share_front, 1e-6);
+  const double rear = left(tires.rear) * grip * car.front_axle / std::max(1.0 - car.drive_share_front, 1e-6);
+  return std::min(front, rear) + longitudinal_acceleration(car, 0.0, body.vx);
 }
 
 /// When the command of this cycle acts [s]: what the controller says, where that is near what was measured.
@@ -310,6 +326,10 @@ model::Command Guard::limited(const model::Command& command, double interval) co
   model::Command inside = answer().effect_of(gate_.limited(answer().command_for(command), interval).command);
   const model::VehicleParams& car = model_.vehicle();
   const double v = act_speed_;
+  if (inside.throttle > 0.0) {
+    const double most = throttle_for(car, traction(model_, act_body_), v);
+    inside.throttle = std::min(inside.throttle, std::max(most, 0.0));
+  }
   if (car.latches_brakes() && inside.throttle == car.brake_release_throttle) return inside;
   if (rests_ && car.reverse_speed > 0.0) inside.throttle = std::max(inside.throttle, 0.0);
   if (v < car.reverse_speed && inside.throttle < 0.0)
@@ -389,12 +409,14 @@ void Guard::show_backup(const StopStart& start, controller::Plan& plan) const no
 std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   const road::ReferenceLine& line = road_.line();
   is_far_ = false;
+  act_body_ = {};
   act_speed_ = estimator_.is_started() ? estimator_.state().vx : std::numeric_limits<double>::infinity();
   if (line.is_empty() || !estimator_.is_started() || !std::isfinite(act_time)) return std::nullopt;
   const controller::StateEstimator::Prediction at = estimator_.predict(act_time, sent_);
   const model::State& car = at.state;
   if (!std::isfinite(car.x + car.y + car.psi + car.vx + car.vy + car.r)) return std::nullopt;
   act_speed_ = car.vx;
+  act_body_ = {car.vx, car.vy, car.r, car.steer, at.acceleration};
   if (revision_ != road_.revision()) {
     has_place_ = false;
     filter_.forget();

@@ -143,7 +143,8 @@ model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams b
   m.drag_linear = 0.0;
   m.drag_quadratic = (p.drag + p.rolling_resistance * (p.downforce_front + p.downforce_rear)) / inertia;
   m.brake_acceleration = p.brake_force / inertia;
-  m.brake_throttle_limit = 1.0;
+  // Anti-lock takes what the tyres cannot give.
+  m.brake_throttle_limit = std::min(1.0, p.friction * DoubleTrackParams::kGravity / m.brake_acceleration);
   m.drive_lag = p.drive_lag;
   m.roll_share_front = p.roll_share_front;
   m.brake_share_front = p.brake_share_front;
