@@ -26,6 +26,14 @@ TEST(FaultCampaign, FindsTheFlyingLap) {
   EXPECT_LT(lap->time, lap->begins) << "the first lap is from standstill";
 }
 
+TEST(FaultCampaign, TakesAnOpenRoadFromItsStartToItsEnd) {
+  const auto stage = protocol::compose({.scenario_file = {}, .settings = {{"track", "stage"}}}).value();
+  const auto lap = find_flying_lap(stage);
+  ASSERT_TRUE(lap) << lap.error().message;
+  EXPECT_EQ(lap->begins, 0.0);
+  EXPECT_GT(lap->time, 30.0);
+}
+
 TEST(FaultCampaign, TriesEveryMomentOfTheLap) {
   const auto trials =
       trials_over_lap({.begins = 30.0, .time = 2.1}, *sim::fault_named("half_grip"), 3.0, 0.5);

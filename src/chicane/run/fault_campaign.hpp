@@ -51,7 +51,8 @@ inline constexpr double kLongestWait = 30.0;  ///< [s]
 struct Excursion {
   double from = 0.0, to = 0.0;
 };
-/// When the flying lap of a scenario, the second one, begins, and how long it takes, without a fault.
+/// When the flying lap of a scenario, the second one, begins, and how long it takes, without a fault. On an
+/// open road: the way from standstill to its end.
 struct FlyingLap {
   double begins = 0.0;           ///< clock of the run [s]
   double time = 0.0;             ///< [s]
@@ -59,10 +60,10 @@ struct FlyingLap {
   [[nodiscard]] bool is_off_within(double from, double to) const noexcept;
 };
 /// Drives the scenario without a fault, for `wait` [s] longer than the flying lap. kInvalidArgument when two
-/// laps are not driven in half an hour.
+/// laps, or an open road, are not driven in half an hour.
 [[nodiscard]] Result<FlyingLap> drive_undisturbed(const scenario::Scenario& scenario,
                                                   double wait = kLongestWait, const Factories& make = {});
-/// The same; kInvalidArgument also when two laps are not driven without leaving the road.
+/// The same; kInvalidArgument also when the car leaves the road.
 [[nodiscard]] Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario,
                                                 const Factories& make = {});
 
