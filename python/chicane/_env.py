@@ -97,10 +97,11 @@ class Env(BaseEnv):
 
     def step(self, action: npt.ArrayLike) -> tuple[Array, float, bool, bool, Info]:
         """One control period with this command. Beyond the end of an episode nothing moves: truncated."""
-        observation, reward, terminated, truncated, info = self._core.step(action)
-        if self._reward is not None:
-            reward = self._reward(observation, info)
-        return observation, reward, terminated, truncated, info
+        outcome = self._core.step(action)
+        if self._reward is None:
+            return outcome
+        observation, _, terminated, truncated, info = outcome
+        return observation, self._reward(observation, info), terminated, truncated, info
 
     def set(self, key: str, value: Any) -> None:
         """Changes a setting of the episode that goes on, or switches a fault: set("fault.half_grip", True)."""

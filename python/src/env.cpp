@@ -2,14 +2,16 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "chicane/protocol/library.hpp"
 #include "conversion.hpp"
+#include "crew.hpp"
 #include "environment.hpp"
 #include "faces.hpp"
 
@@ -56,24 +58,33 @@ void check_action(double steer, double throttle) {
                           ", expected two finite numbers: steer [rad], throttle [-1, 1]");
 }
 
+void check_shape(const Numbers& actions, std::size_t count) {
+  if (actions.ndim() == 2 && static_cast<std::size_t>(actions.shape(0)) == count && actions.shape(1) == 2)
+    return;
+  throw py::value_error("actions: got an array of another shape, expected (" + std::to_string(count) + ", 2)");
+}
+
 Numbers observation_of(const Environment& environment) {
   Numbers observation(static_cast<py::ssize_t>(environment.size()));
   environment.observe({observation.mutable_data(), environment.size()});
   return observation;
 }
 
+/// A key that is made once; keys of each step cost as much as the values.
+py::handle key(const char* name) { return PyUnicode_InternFromString(name); }
+
 /// The truth, which an agent is not told.
 py::dict info_of(const Environment& environment) {
+  static const std::array keys{key("time_s"),    key("s_m"), key("lateral_error_m"), key("edge_distance_m"),
+                               key("speed_mps"), key("lap"), key("is_off_track")};
   const run::ClosedLoop& loop = environment.loop();
   const sim::WorldState& world = loop.world();
+  const std::array<py::object, keys.size()> values{
+      py::float_(loop.time()),         py::float_(world.s),        py::float_(world.lateral_error),
+      py::float_(world.edge_distance), py::float_(loop.car().vx), py::int_(world.lap),
+      py::bool_(world.is_off_track)};
   py::dict info;
-  info["time_s"] = loop.time();
-  info["s_m"] = world.s;
-  info["lateral_error_m"] = world.lateral_error;
-  info["edge_distance_m"] = world.edge_distance;
-  info["speed_mps"] = loop.car().vx;
-  info["lap"] = world.lap;
-  info["is_off_track"] = world.is_off_track;
+  for (std::size_t n = 0; n < keys.size(); ++n) PyDict_SetItem(info.ptr(), keys[n].ptr(), values[n].ptr());
   return info;
 }
 
@@ -88,12 +99,17 @@ py::tuple step(Environment& environment, const Numbers& action) {
                         info_of(environment));
 }
 
-/// The same action for up to `count` periods without Python between them: what steps cost in C++
-/// (speed_table.py). Returns how many there were.
-int repeat(Environment& environment, double steer, double throttle, int count) {
+/// Actions (n, 2), each with its observation, without Python between them: what steps cost in C++
+/// (speed_table.py). Returns how many there were before the episode ended.
+int repeat(Environment& environment, const Numbers& actions) {
+  check_shape(actions, static_cast<std::size_t>(actions.ndim() == 2 ? actions.shape(0) : 1));
+  const double* const commands = actions.data();
+  const auto count = static_cast<int>(actions.shape(0));
   return unlocked([&] {
+    std::array<double, Environment::kMostSize> seen{};
     for (int n = 0; n < count; ++n) {
-      const StepOutcome outcome = environment.step({steer, throttle});
+      const StepOutcome outcome = environment.step({commands[2 * n], commands[2 * n + 1]});
+      environment.observe({seen.data(), environment.size()});
       if (outcome.terminated || outcome.truncated) return n + 1;
     }
     return count;
@@ -104,12 +120,13 @@ int repeat(Environment& environment, double steer, double throttle, int count) {
 class Batch {
  public:
   Batch(const protocol::Request& request, const py::dict& given, int count, int threads)
-      : threads_{std::max(1, threads)} {
+      : crew_{threads} {
     const auto roads = std::make_shared<run::Roads>();
     for (int i = 0; i < count; ++i) environments_.push_back(make_environment(request, given, roads));
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return environments_.size(); }
+  [[nodiscard]] int threads() const noexcept { return crew_.threads(); }
   [[nodiscard]] Environment& at(std::size_t i) const { return *environments_.at(i); }
 
   Numbers reset(std::uint64_t seed) {
@@ -123,14 +140,18 @@ class Batch {
   /// Observation, reward, terminated, truncated and the last observation of episodes that ended: those begin
   /// anew at once.
   py::tuple step(const Numbers& actions) {
-    if (actions.ndim() != 2 || static_cast<std::size_t>(actions.shape(0)) != size() || actions.shape(1) != 2)
-      throw py::value_error("actions: got an array of another shape, expected (" + std::to_string(size()) +
-                            ", 2)");
+    check_shape(actions, size());
     for (py::ssize_t i = 0; i < actions.shape(0); ++i) check_action(actions.at(i, 0), actions.at(i, 1));
     std::vector<StepOutcome> outcomes(size());
-    unlocked([&] { step_all(actions.data(), outcomes.data()); });
     Numbers last = make_observations();
-    write(last);
+    const double* const commands = actions.data();
+    double* const seen = last.mutable_data();
+    const std::size_t width = environments_[0]->size();
+    const std::function<void(std::size_t)> step = [&](std::size_t i) {
+      outcomes[i] = environments_[i]->step({commands[2 * i], commands[2 * i + 1]});
+      environments_[i]->observe({seen + i * width, width});
+    };
+    unlocked([&] { crew_.run(size(), step); });
     const bool has_ended = std::any_of(outcomes.begin(), outcomes.end(), [](const StepOutcome& outcome) {
       return outcome.terminated || outcome.truncated;
     });
@@ -142,16 +163,6 @@ class Batch {
   }
 
  private:
-  void step_all(const double* actions, StepOutcome* outcomes) {
-    const std::size_t threads = std::min(static_cast<std::size_t>(threads_), size());
-    const auto step_part = [&](std::size_t part) {
-      for (std::size_t i = size() * part / threads; i < size() * (part + 1) / threads; ++i)
-        outcomes[i] = environments_[i]->step({actions[2 * i], actions[2 * i + 1]});
-    };
-    std::vector<std::jthread> others;
-    for (std::size_t part = 1; part < threads; ++part) others.emplace_back(step_part, part);
-    step_part(0);
-  }
   void begin_anew(const std::vector<StepOutcome>& outcomes) {
     for (std::size_t i = 0; i < size(); ++i) {
       if (outcomes[i].terminated || outcomes[i].truncated) check(environments_[i]->reset(next_seed_++));
@@ -179,7 +190,7 @@ class Batch {
     return py::make_tuple(observations, rewards, terminated, truncated, last);
   }
 
-  int threads_;
+  Crew crew_;
   std::uint64_t next_seed_ = 0;
   std::vector<std::unique_ptr<Environment>> environments_;
 };
@@ -195,7 +206,7 @@ void add_environment(py::module_& module) {
       .def("reset",
            [](Environment& self, std::uint64_t seed) { check(unlocked([&] { return self.reset(seed); })); })
       .def("step", step, py::arg("action"))
-      .def("repeat", repeat, py::arg("steer"), py::arg("throttle"), py::arg("count"))
+      .def("repeat", repeat, py::arg("actions"))
       .def("observe", observation_of)
       .def("info", info_of)
       .def("set", [](Environment& self, const std::string& key,
@@ -213,6 +224,7 @@ void add_environment(py::module_& module) {
       .def("reset", &Batch::reset, py::arg("seed"))
       .def("step", &Batch::step, py::arg("actions"))
       .def("at", &Batch::at, py::return_value_policy::reference_internal)
+      .def_property_readonly("threads", &Batch::threads)
       .def("__len__", &Batch::size);
 }
 

@@ -18,6 +18,8 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kOfEpisodes = 0x65706973;  // keeps the draws apart from the noise of the same seed
 constexpr double kCrossing = 10.0;                 // [m] within which roads that cross are told apart
+constexpr double kNear = 5.0;                      // [m] of road that are searched first, beyond what is driven
+constexpr double kRounding = 1e-6;                 // [m]
 
 std::size_t size_of(Observation observation, const scenario::Scenario& scenario) {
   const auto waypoints = static_cast<std::size_t>(scenario.waypoints_sent);
@@ -106,6 +108,8 @@ Result<void> Environment::reset(std::uint64_t seed) {
   agent_ = agent;
   if (options_.starts_anywhere) place(random);
   seen_ = loop_->look();
+  foot_ = {.distance = kUnknown};
+  find_foot();
   progress_ = loop_->world().progress;
   off_track_events_ = 0;
   has_ended_ = false;
@@ -120,6 +124,26 @@ void Environment::place(Random& random) {
   loop_->restart_at({.x = at.position.x(), .y = at.position.y(), .psi = at.heading});
 }
 
+/// The foot of the measured place on the centre line. A place on the road near the foot before is that of no
+/// other road, as roads keep apart (path::Track): the whole line is searched for others only.
+void Environment::find_foot() noexcept {
+  if (options_.observation != Observation::kTrack || !std::isfinite(seen_.x + seen_.y + seen_.psi)) return;
+  const path::Track& track = loop_->track();
+  const scenario::Scenario& scenario = loop_->scenario();
+  const Vec2 at(seen_.x, seen_.y);
+  if (std::isfinite(foot_.distance)) {
+    const double driven = std::fabs(seen_.speed) * scenario.control_period;
+    const path::Projection near =
+        track.centre().project(at, foot_.s, kNear * scenario.vehicle.scale + 2.0 * driven);
+    const bool is_foot = near.distance <= std::fabs(near.d) + kRounding;  // not the end of what was searched
+    if (is_foot && track.edge_distance(near) >= 0.0) {
+      foot_ = near;
+      return;
+    }
+  }
+  foot_ = track.centre().project_along(at, seen_.psi, kCrossing * scenario.vehicle.scale);
+}
+
 StepOutcome Environment::step(const model::Command& action) noexcept {
   if (has_ended_) return {.truncated = true};
   agent_->set(action);
@@ -127,6 +151,7 @@ StepOutcome Environment::step(const model::Command& action) noexcept {
     loop_->advance();
   } while (!loop_->is_control_due() && !loop_->is_over());
   seen_ = loop_->look();
+  find_foot();
   ++steps_;
   const sim::WorldState& world = loop_->world();
   StepOutcome outcome{.reward = world.progress - progress_};
@@ -162,11 +187,10 @@ void Environment::observe_track(std::span<double> to) const noexcept {
   if (!std::isfinite(seen_.x + seen_.y + seen_.psi)) return;
   const path::Path& centre = loop_->track().centre();
   const double scale = loop_->scenario().vehicle.scale;
-  const path::Projection place = centre.project_along({seen_.x, seen_.y}, seen_.psi, kCrossing * scale);
-  to[1] = place.d;
-  to[2] = wrap_angle(seen_.psi - centre.at(place.s).heading);
+  to[1] = foot_.d;
+  to[2] = wrap_angle(seen_.psi - centre.at(foot_.s).heading);
   for (int i = 0; i < kCurvatures; ++i)
-    to[static_cast<std::size_t>(5 + i)] = centre.at(place.s + kSpacing * scale * (i + 1)).curvature;
+    to[static_cast<std::size_t>(5 + i)] = centre.at(foot_.s + kSpacing * scale * (i + 1)).curvature;
 }
 
 void Environment::observe_waypoints(std::span<double> to) const noexcept {

@@ -12,6 +12,7 @@
 #include "chicane/base/random.hpp"
 #include "chicane/base/result.hpp"
 #include "chicane/model/state.hpp"
+#include "chicane/path/path.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/roads.hpp"
 #include "chicane/scenario/scenario.hpp"
@@ -88,6 +89,7 @@ class Environment {
               std::shared_ptr<run::Roads> roads);
   [[nodiscard]] Result<scenario::Scenario> draw(Random& random);
   void place(Random& random);
+  void find_foot() noexcept;
   void observe_track(std::span<double> to) const noexcept;
   void observe_waypoints(std::span<double> to) const noexcept;
   void observe_pose(std::span<double> to) const noexcept;
@@ -99,6 +101,7 @@ class Environment {
   std::unique_ptr<run::ClosedLoop> loop_;
   Agent* agent_ = nullptr;  ///< the controller of loop_
   model::Measurement seen_;
+  path::Projection foot_;  ///< of what is seen, where that says a place and kTrack asks for it
   double progress_ = 0.0;
   int off_track_events_ = 0;
   bool has_ended_ = true;
