@@ -15,6 +15,9 @@ namespace chicane::bench {
 /// A structured problem, or one over lanes, as functions of arrays of one scalar: for Ipopt and for checks.
 template <solver::OcpProblem P>
 struct OverArrays : P {
+  static constexpr int kNh = solver::equality_count<P>();
+  static constexpr int kNeh = solver::terminal_equality_count<P>();
+  static constexpr int kNec = solver::terminal_constraint_count<P>();
   template <class T>
   using X = std::array<T, P::kNx>;
   template <class T>

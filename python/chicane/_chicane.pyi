@@ -109,6 +109,8 @@ class Batch:
 TAPE_OPERATIONS: list[str]
 SOLVE_STATUSES: dict[int, tuple[str, str]]
 
+def solve_banded(rows: npt.NDArray[np.int_], columns: npt.NDArray[np.int_], values: Array, right: Array) -> Array: ...
+
 class Interpreter:
     def __init__(self, nx: int, nu: int, parameters: int, horizon: int, ops: npt.NDArray[np.int32], operands: npt.NDArray[np.int32],
                  values: Array, outputs: list[list[int]], is_to_solve: bool) -> None: ...

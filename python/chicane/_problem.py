@@ -38,11 +38,11 @@ class Problem:
     (parameters,) and k, the number of the stage. Functions at the end are called with x, and p and k where they take them.
     What they do with them is recorded and differentiated; what cannot be recorded is refused with its line.
 
-    nx, nu: at most 24 and 8. horizon: intervals N, at most 200. parameters: how many numbers solve() gets as p.
+    nx, nu: at most 52 and 8. horizon: intervals N, at most 200. parameters: how many numbers solve() gets as p.
     One thread at a time; the interpreter's lock is released while C++ works."""
 
     def __init__(self, nx: int, nu: int, horizon: int, parameters: int = 0) -> None:
-        for name, value, least, most in (("nx", nx, 1, 24), ("nu", nu, 1, 8), ("horizon", horizon, 1, 200), ("parameters", parameters, 0, 1000)):
+        for name, value, least, most in (("nx", nx, 1, 52), ("nu", nu, 1, 8), ("horizon", horizon, 1, 200), ("parameters", parameters, 0, 1000)):
             if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
                 raise ValueError(f"Problem: {name}: got {value!r}, expected a whole number from {least} to {most}")
         self.nx, self.nu, self.horizon, self.parameters = int(nx), int(nu), int(horizon), int(parameters)

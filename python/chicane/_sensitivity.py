@@ -7,26 +7,26 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from . import _chicane
+
 if TYPE_CHECKING:
     from ._problem import Problem
     from ._solution import Solution
 
 Array = npt.NDArray[np.float64]
-_CLEAR = 5e-3
+Integers = npt.NDArray[np.int_]
+_Entries = tuple[Integers, Integers, Array]
+_CLEAR = 3e-4
 """Constraint and multiplier both below this: which of them is zero cannot be told."""
-
-
-def is_unclear(room: float, multiplier: float) -> bool:
-    """Whether a constraint may as well become active as inactive. The solver ends with room · multiplier at its last barrier."""
-    return max(room, multiplier) < max(_CLEAR, 10.0 * float(np.sqrt(max(0.0, room * multiplier))))
 
 
 class Sensitivity:
     """How a solution changes: u of shape (horizon, nu, n) and x of shape (horizon + 1, nx, n) are derivatives by the n numbers of x0
-    or p. is_one_sided: a constraint is about to become active or inactive, so that the derivative on one side is another one."""
+    or p. is_one_sided: a constraint is about to become active or inactive, so that the derivative on one side is another one.
+    margin: of the constraint that is nearest to that, what it has of room or of price, whichever is more."""
 
-    def __init__(self, u: Array, x: Array, is_one_sided: bool) -> None:
-        self.u, self.x, self.is_one_sided = u, x, is_one_sided
+    def __init__(self, u: Array, x: Array, is_one_sided: bool, margin: float) -> None:
+        self.u, self.x, self.is_one_sided, self.margin = u, x, is_one_sided, margin
 
     def __repr__(self) -> str:
         return f"<Sensitivity: u {self.u.shape}, x {self.x.shape}{', one-sided' if self.is_one_sided else ''}>"
@@ -45,15 +45,22 @@ class _Conditions:
         self.full = solution.full_parameters
         self.np = self.full.shape[1]
         count = self.nx + self.np
-        self.hessian = np.zeros((self.size, self.size))
+        self.hessian: list[_Entries] = []
         self.mixed = np.zeros((self.size, count))                      # by x0 and by p of every stage alike
         self.gradient = np.zeros(self.size)
-        self.rows: list[Array] = []
+        self.rows: list[tuple[Integers, Array]] = []                   # where a row of the conditions has entries, and which
         self.row_changes: list[Array] = []
         self.curved: list[tuple[int, int, int]] = []                   # function, stage and row that a multiplier belongs to
         self.is_one_sided = False
+        self.margin = np.inf
 
-    def place(self, stage: int) -> npt.NDArray[np.int_]:
+    def see(self, room: float, price: float) -> None:
+        """A constraint. The solver ends with room · price at its last barrier: neither is told from zero below its root."""
+        larger = max(room, price)
+        self.margin = min(self.margin, larger)
+        self.is_one_sided = self.is_one_sided or larger < max(_CLEAR, 10.0 * float(np.sqrt(max(0.0, room * price))))
+
+    def place(self, stage: int) -> Integers:
         """Where the variables (x_k, u_k, p) of a stage are; x_0 and p behind the unknowns."""
         first = self.size if stage == 0 else stage * self.block - self.nx
         states = np.arange(first, first + self.nx)
@@ -72,19 +79,24 @@ class _Conditions:
         at = self.place(stage)
         inside = at < self.size
         rows = at[inside]
-        self.hessian[np.ix_(rows, rows)] += matrix[np.ix_(inside, inside)]
+        self.hessian.append((np.repeat(rows, len(rows)), np.tile(rows, len(rows)), matrix[np.ix_(inside, inside)].ravel()))
         self.mixed[np.ix_(rows, at[~inside] - self.size)] += matrix[np.ix_(inside, ~inside)]
 
     def add_gradient(self, stage: int, slope: Array) -> None:
         at = self.place(stage)
         np.add.at(self.gradient, at[at < self.size], slope[at < self.size])
 
-    def add_row(self, stage: int, slope: Array, curved: tuple[int, int, int]) -> None:
-        row, change = np.zeros(self.size), np.zeros(self.nx + self.np)
+    def add_row(self, slope: Array, curved: tuple[int, int, int], next_state: int = -1) -> None:
+        """slope · (x, u, p) of a stage, less a state of the next one where that has a number."""
+        stage = curved[1]
         at = self.place(stage)
-        row[at[at < self.size]] = slope[at < self.size]
-        change[at[at >= self.size] - self.size] = slope[at >= self.size]
-        self.rows.append(row)
+        inside = at < self.size
+        columns, values = at[inside], slope[inside]
+        if next_state >= 0:
+            columns, values = np.append(columns, stage * self.block + self.nu + next_state), np.append(values, -1.0)
+        change = np.zeros(self.nx + self.np)
+        change[at[~inside] - self.size] = slope[~inside]
+        self.rows.append((columns, values))
         self.row_changes.append(change)
         self.curved.append(curved)
 
@@ -103,8 +115,7 @@ class _Conditions:
         _, slopes, _ = self.evaluate(0, range(self.horizon), np.zeros((self.horizon, self.nx)))
         for k in range(self.horizon):
             for i in range(self.nx):
-                self.add_row(k, slopes[k, i], (0, k, i))
-                self.rows[-1][k * self.block + self.nu + i] -= 1.0
+                self.add_row(slopes[k, i], (0, k, i), next_state=i)
 
     def add_constraints(self) -> None:
         """Soft ones: nothing where they hold with room, a price where they are violated, an equality at the edge."""
@@ -125,9 +136,12 @@ class _Conditions:
                     self.add_curvature(k, quadratic * np.outer(slopes[k, c], slopes[k, c]))
                     self.add_gradient(k, weights[k, c] * slopes[k, c])
                 elif z > -value:
-                    self.add_row(k, slopes[k, c], (2, k, c))
+                    self.add_row(slopes[k, c], (2, k, c))
                 is_beyond = value > 0.0 and not self.problem.is_hard[c]
-                self.is_one_sided = self.is_one_sided or (is_unclear(value, left) if is_beyond else is_unclear(-value, z))
+                if is_beyond:
+                    self.see(value, left)
+                else:
+                    self.see(-value, z)
         _, _, curvatures = self.evaluate(2, range(self.horizon), weights)
         for k in range(self.horizon):
             self.add_curvature(k, curvatures[k])
@@ -143,10 +157,10 @@ class _Conditions:
                 for row in range(count):
                     if name == "terminal_constraint":
                         y = s.multipliers[name][row]
-                        self.is_one_sided = self.is_one_sided or is_unclear(-values[n, row], y)
+                        self.see(-values[n, row], y)
                         if y <= -values[n, row]:
                             continue
-                    self.add_row(k, slopes[n, row], (function, k, row))
+                    self.add_row(slopes[n, row], (function, k, row))
 
     def add_bounds(self) -> None:
         lower, upper = self.problem.input_bounds
@@ -155,27 +169,43 @@ class _Conditions:
                 room = min(self.solution.u[k, m] - lower[k, m], upper[k, m] - self.solution.u[k, m])
                 price = abs(self.solution.multipliers["bounds"][k, m])
                 if room <= 1e-9 * (1.0 + abs(self.solution.u[k, m])):
-                    row = np.zeros(self.size)
-                    row[k * self.block + m] = 1.0
-                    self.rows.append(row)
+                    self.rows.append((np.array([k * self.block + m]), np.ones(1)))
                     self.row_changes.append(np.zeros(self.nx + self.np))
                     self.curved.append((-1, k, m))
-                self.is_one_sided = self.is_one_sided or (room < 1e-4 and price < 1e-4 and lower[k, m] < upper[k, m])
+                if lower[k, m] < upper[k, m] and np.isfinite(room):
+                    self.see(room, price)
 
-    def add_curvature_of_rows(self, jacobian: Array) -> None:
-        """Second derivatives of what is an equality, by the multipliers that make the gradient vanish."""
-        multipliers = np.linalg.lstsq(jacobian.T, -self.gradient, rcond=None)[0]
-        weights: dict[tuple[int, int], dict[int, float]] = {}
-        for (function, stage, row), value in zip(self.curved, multipliers):
-            if function >= 0:
-                weights.setdefault((function, stage), {})[row] = value
-        counts = {0: self.nx, 2: len(self.problem.rows["constraint"]), 3: len(self.problem.rows["equality"]),
-                  5: len(self.problem.rows["terminal_equality"]), 6: len(self.problem.rows["terminal_constraint"])}
-        for (function, stage), of_rows in weights.items():
-            own = np.zeros((1, counts[function]))
-            for row, value in of_rows.items():
-                own[0, row] = value
-            self.add_curvature(stage, self.evaluate(function, range(stage, stage + 1), own)[2][0])
+    def add_curvature_of_rows(self) -> None:
+        """Second derivatives of what is an equality, by the multipliers that make the gradient vanish: those of least squares."""
+        identity = np.arange(self.size)
+        right = np.concatenate([-self.gradient, np.zeros(len(self.rows))])[:, None]
+        multipliers = self.solve_with([(identity, identity, np.ones(self.size))], right)[self.size:, 0]
+        rows, end = self.problem.all_rows(), range(self.horizon, self.horizon + 1)
+        for function, name in ((0, "dynamics"), (2, "constraint"), (3, "equality"), (5, "terminal_equality"), (6, "terminal_constraint")):
+            stages = end if name.startswith("terminal") else range(self.horizon)
+            weights = np.zeros((len(stages), len(rows[name])))
+            for (of, stage, row), value in zip(self.curved, multipliers):
+                if of == function:
+                    weights[stage - stages[0], row] = value
+            if weights.any():
+                for stage, curvature in zip(stages, self.evaluate(function, stages, weights)[2]):
+                    self.add_curvature(stage, curvature)
+
+    def solve_with(self, upper_left: list[_Entries], right: Array) -> Array:
+        """Of the matrix (upper_left Jᵀ; J 0), J being the rows. Stage by stage its unknowns and rows make a band."""
+        number = np.repeat(np.arange(len(self.rows)), [len(columns) for columns, _ in self.rows]) + self.size
+        columns, values = (np.concatenate(parts) for parts in zip(*self.rows))
+        parts = [*upper_left, (number, columns, values), (columns, number, values)]
+        rows, columns, values = (np.concatenate(part) for part in zip(*parts))
+        unknowns = np.arange(self.size)
+        stage = np.concatenate([unknowns // self.block, [of for _, of, _ in self.curved]])
+        kind = np.concatenate([np.where(unknowns % self.block < self.nu, 0, 2), np.ones(len(self.rows), int)])
+        order = np.lexsort((kind, stage))
+        place = np.empty_like(order)
+        place[order] = np.arange(len(order))
+        is_entry = values != 0.0
+        solved = _chicane.solve_banded(place[rows[is_entry]], place[columns[is_entry]], values[is_entry], np.ascontiguousarray(right[order]))
+        return solved[place]
 
     def solve(self) -> Array:
         """Derivatives of the unknowns by x_0 and by p, (size, nx + np)."""
@@ -184,13 +214,9 @@ class _Conditions:
         self.add_constraints()
         self.add_equalities()
         self.add_bounds()
-        jacobian = np.array(self.rows)
-        self.add_curvature_of_rows(jacobian)
-        zero = np.zeros((len(jacobian), len(jacobian)))
-        matrix = np.block([[self.hessian, jacobian.T], [jacobian, zero]])
-        right = -np.vstack([self.mixed, np.array(self.row_changes)])
         try:
-            return np.asarray(np.linalg.solve(matrix, right)[:self.size])
+            self.add_curvature_of_rows()
+            return self.solve_with(self.hessian, -np.vstack([self.mixed, np.array(self.row_changes)]))[:self.size]
         except np.linalg.LinAlgError:
             raise ValueError("sensitivity: got a solution whose active constraints depend on each other or whose optimum is not unique, "
                              "expected one with a regular system of conditions") from None
@@ -209,4 +235,4 @@ def find(problem: Problem, solution: Solution, of: str) -> Sensitivity:
     columns = slice(0, nx) if of == "x0" else slice(nx, nx + problem.parameters)
     steps = change[:, columns].reshape(problem.horizon, inputs + nx, -1)
     first = np.eye(nx)[None] if of == "x0" else np.zeros((1, nx, problem.parameters))
-    return Sensitivity(np.ascontiguousarray(steps[:, :nu]), np.vstack([first, steps[:, inputs:]]), conditions.is_one_sided)
+    return Sensitivity(np.ascontiguousarray(steps[:, :nu]), np.vstack([first, steps[:, inputs:]]), conditions.is_one_sided, float(conditions.margin))

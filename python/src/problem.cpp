@@ -6,14 +6,18 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string>
 #include <thread>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "chicane/base/instruction_set.hpp"
 #include "conversion.hpp"
 #include "faces.hpp"
 #include "signals.hpp"
+#include "traced/banded.hpp"
 #include "traced/run_program.hpp"
 #include "traced/traced_solver.hpp"
 
@@ -30,7 +34,6 @@ bool fits(const TracedProblem& problem, const SizeClass& sizes) {
     fits = fits && problem.rows(static_cast<Function>(f)) <= rows[f];
   return fits;
 }
-constexpr std::array<const SizeClass*, 3> kClasses{&kSmall, &kMedium, &kLarge};
 /// Derivatives by inputs get the numbers that these have behind the states of the size class.
 void number_as_in(const SizeClass& sizes, TracedProblem& problem) {
   const auto shift = [&](std::uint16_t& i) {
@@ -49,20 +52,24 @@ void number_as_in(const SizeClass& sizes, TracedProblem& problem) {
 }
 /// The smallest size class that a problem fits in; -1 when none is large enough.
 int size_class(const TracedProblem& problem) {
-  int number = 0;
-  for (const SizeClass* sizes : kClasses) {
-    if (fits(problem, *sizes)) return number;
-    ++number;
-  }
-  return -1;
+  const auto* const found =
+      std::find_if(kSizeClasses.begin(), kSizeClasses.end(),
+                   [&](const SizeClass& sizes) { return fits(problem, sizes); });
+  return found == kSizeClasses.end() ? -1 : static_cast<int>(found - kSizeClasses.begin());
 }
 
+template <class Arch, std::size_t... Class>
+std::unique_ptr<TracedSolver> make_one(std::size_t kind, const TracedProblem& problem,
+                                       const Workspace& workspace, std::index_sequence<Class...>) {
+  using Make = std::unique_ptr<TracedSolver> (*)(const TracedProblem&, const Workspace&);
+  static constexpr Make kMakers[]{make_sized_solver<Arch, Class>...};
+  return kMakers[kind](problem, workspace);
+}
 template <class Arch>
 std::unique_ptr<TracedSolver> make_solver(int kind, const TracedProblem& problem,
                                           const Workspace& workspace) {
-  if (kind == 0) return make_small_solver<Arch>(problem, workspace);
-  if (kind == 1) return make_medium_solver<Arch>(problem, workspace);
-  return make_large_solver<Arch>(problem, workspace);
+  return make_one<Arch>(static_cast<std::size_t>(kind), problem, workspace,
+                        std::make_index_sequence<kSizeClasses.size()>{});
 }
 /// Solver for the chosen instruction set, or the best one below it that the interpreter was compiled for.
 std::unique_ptr<TracedSolver> make_solver(int kind, const TracedProblem& problem,
@@ -141,7 +148,7 @@ class Interpreter {
     kind_ = size_class(problem_);
     if (is_to_solve && (kind_ < 0 || horizon < 1 || horizon > kMostStages))
       throw py::value_error(too_large());
-    if (is_to_solve) number_as_in(*kClasses[static_cast<std::size_t>(kind_)], problem_);
+    if (is_to_solve) number_as_in(kSizeClasses[static_cast<std::size_t>(kind_)], problem_);
   }
 
   void set(const Array& lower, const Array& upper, const Array& prices, const std::vector<bool>& is_hard,
@@ -395,13 +402,26 @@ class Interpreter {
     return told;
   }
   [[nodiscard]] std::string too_large() const {
-    const auto rows = [&](Function f) { return std::to_string(problem_.rows(f)); };
-    return "Problem: got nx " + std::to_string(problem_.nx) + ", nu " + std::to_string(problem_.nu) +
-           ", horizon " + std::to_string(horizon_) + ", residuals " + rows(Function::kResidual) +
-           ", constraints " + rows(Function::kConstraint) + ", equalities " + rows(Function::kEquality) +
-           ", at the end residuals " + rows(Function::kTerminalResidual) + ", equalities " +
-           rows(Function::kTerminalEquality) + ", constraints " + rows(Function::kTerminalConstraint) +
-           "; expected at most nx 24, nu 8, horizon 200, 48, 48, 8, 48, 24, 48";
+    const auto& most = kSizeClasses.back();
+    const auto rows = [&](Function f) { return problem_.rows(f); };
+    const std::tuple<const char*, int, int> sizes[] = {
+        {"nx", problem_.nx, most.nx},
+        {"nu", problem_.nu, most.nu},
+        {"horizon", horizon_, kMostStages},
+        {"residuals", rows(Function::kResidual), most.nr},
+        {"constraints", rows(Function::kConstraint), most.nc},
+        {"equalities", rows(Function::kEquality), most.nh},
+        {"residuals at the end", rows(Function::kTerminalResidual), most.ne},
+        {"equalities at the end", rows(Function::kTerminalEquality), most.neh},
+        {"constraints at the end", rows(Function::kTerminalConstraint), most.nec}};
+    std::string text = "Problem:";
+    for (const auto& [name, got, limit] : sizes) {
+      if (got > limit)
+        text += std::string(" ") + name + ": got " + std::to_string(got) + ", expected at most " +
+                std::to_string(limit) + ";";
+    }
+    text.pop_back();
+    return text;
   }
 
   TracedProblem problem_;
@@ -413,7 +433,30 @@ class Interpreter {
 
 }  // namespace
 
+namespace {
+
+/// X of A X = B, A by entries. numpy's LinAlgError where A is singular.
+py::array_t<double> solve_band(const Integers& rows, const Integers& columns, const Array& values,
+                               const Array& right) {
+  std::vector<BandEntry> entries;
+  for (py::ssize_t e = 0; e < values.size(); ++e)
+    entries.push_back({rows.at(e), columns.at(e), values.at(e)});
+  py::array_t<double> solved({right.shape(0), right.shape(1)});
+  std::copy_n(right.data(), right.size(), solved.mutable_data());
+  const auto n = static_cast<std::size_t>(right.shape(0));
+  const std::span<double> numbers{solved.mutable_data(), static_cast<std::size_t>(solved.size())};
+  if (!unlocked([&] { return solve_banded(n, entries, numbers); })) {
+    PyErr_SetString(py::module_::import("numpy.linalg").attr("LinAlgError").ptr(), "singular matrix");
+    throw py::error_already_set();
+  }
+  return solved;
+}
+
+}  // namespace
+
 void add_problem(py::module_& module) {
+  module.def("solve_banded", solve_band, py::arg("rows"), py::arg("columns"), py::arg("values"),
+             py::arg("right"));
   py::list names;
   for (const std::string_view name : kOpNames) names.append(to_text(name));
   module.attr("TAPE_OPERATIONS") = names;

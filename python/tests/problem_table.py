@@ -77,34 +77,55 @@ def many(count):
     return is_same
 
 
+def solved(ocp, x0, p, start=None):
+    """As far as rounding lets it be."""
+    for tolerance in (1e-10, 1e-9):
+        solution = ocp.solve(x0, p, start=start, tolerance=tolerance)
+        if solution.status == "optimal":
+            break
+    return solution
+
+
+def slope(ocp, solution, p, number, step):
+    """Of the inputs by a number of x0, by central differences; None where a neighbour is at another optimum."""
+    change = step * np.eye(len(solution.x0))[number]
+    ends = [solved(ocp, solution.x0 + sign * change, p, solution) for sign in (1, -1)]
+    bend = abs(ends[0].cost + ends[1].cost - 2 * solution.cost)
+    if not all(end.status == "optimal" for end in ends) or bend > 1e-4 * abs(solution.cost):
+        return None
+    return (ends[0].u - ends[1].u) / (2 * step)
+
+
 def changes(count):
-    worst, one_sided, compared, missed = 0.0, 0, 0, 0
+    """`count` instances of all families in turns, each constraint clearly active or clearly not: differences of a solver that ends
+    with room · price at 1e-10 have five digits where either is above 5e-3."""
+    worst, one_sided, narrow, compared, missed = 0.0, 0, 0, 0, 0
     random = np.random.default_rng(5)
-    makers = [families.cart_pole, families.rocket, families.crane, families.parking, families.race_car]
-    while compared < count:
-        ocp, x0, p = makers[compared % len(makers)]()
-        x0 = x0 + 0.1 * random.standard_normal(len(x0))
-        solution = ocp.solve(x0, p, tolerance=1e-10)
-        if solution.status != "optimal":                     # to that tolerance
+    makers = list(families.FAMILIES.values())
+    for n in range(20 * count):
+        ocp, x0, p = makers[n % len(makers)]()
+        solution = solved(ocp, x0 + 0.1 * random.standard_normal(len(x0)), p)
+        number = int(random.integers(1, len(x0)))           # of a race car, the first one matters to nothing
+        if solution.status != "optimal":
             missed += 1
             continue
-        compared += 1
         change = solution.sensitivity("x0")
-        if change.is_one_sided:
-            one_sided += 1
+        if change.is_one_sided or change.margin < 5e-3:
+            one_sided += change.is_one_sided
+            narrow += not change.is_one_sided
             continue
-        n = int(random.integers(1, len(x0)))                # of a race car, the first one matters to nothing
-        step = np.zeros(len(x0))
-        step[n] = 1e-5
-        ends = [ocp.solve(x0 + sign * step, p, start=solution, tolerance=1e-10) for sign in (1, -1)]
-        bend = abs(ends[0].cost + ends[1].cost - 2 * solution.cost)
-        if not all(end.status == "optimal" for end in ends) or bend > 1e-5 * solution.cost:       # at another optimum
+        near, far = (slope(ocp, solution, p, number, step) for step in (2e-4, 4e-4))
+        if near is None or far is None or np.abs(near - far).max() > 1e-3 * np.abs(near).max():
             missed += 1
             continue
-        numeric = (ends[0].u - ends[1].u) / 2e-5
-        worst = max(worst, float(np.abs(numeric - change.u[:, :, n]).max() / np.abs(numeric).max()))
-    print(f"{compared} instances, {one_sided} said to be one-sided, {missed} not solved to 1e-10 or with a neighbour at another optimum; of the others the largest relative error {worst:.1e}")
-    return worst <= 1e-5
+        numeric = (4 * near - far) / 3                       # of fourth order
+        worst = max(worst, float(np.abs(numeric - change.u[:, :, number]).max() / np.abs(numeric).max()))
+        compared += 1
+        if compared == count:
+            break
+    print(f"{compared} instances of {len(makers)} families, largest relative error {worst:.1e}. Left out: {one_sided} that say that they are one-sided, "
+          f"{narrow} with less margin than differences need, {missed} not solved to 1e-9 or with differences that do not agree with each other")
+    return compared == count and worst <= 1e-5
 
 
 def reference(name, make):

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: MIT
+#include "traced/solver_of_size.hpp"
+
+namespace chicane::python {
+
+template std::unique_ptr<TracedSolver> make_sized_solver<arch::Native, 5>(const TracedProblem&,
+                                                                          const Workspace&);
+
+}  // namespace chicane::python
