@@ -144,7 +144,7 @@ class Problem:
         tolerance: of the conditions of optimality, (0, 1e-2]. budget_s: when to stop, best answer so far [s]; 0: never.
         log: the turns are in the solution's log, one row each (Turns); the problem is interpreted then."""
         state = self._array("x0", x0, (self.nx,))
-        if not np.all(np.isfinite(state)):
+        if not np.isfinite(state).all():
             raise ValueError(f"x0: got {state}, expected finite numbers")
         inputs = self._array("u", 0.0 if start is None and u is None else start.u if start is not None else u, (self.horizon, self.nu))
         has_states = start is not None or x is not None
@@ -202,7 +202,7 @@ class Problem:
         if self._prepared is None:
             raise ValueError("feedback: got no preparation, expected prepare() after the last solve() or change")
         state = self._array("x0", x0, (self.nx,))
-        if not np.all(np.isfinite(state)):
+        if not np.isfinite(state).all():
             raise ValueError(f"x0: got {state}, expected finite numbers")
         told = self._prepared.feedback(state)
         self._course = Feedback(told | {"u": np.ascontiguousarray(told["u"][:, :self.nu])}, state)
@@ -376,7 +376,10 @@ class Problem:
     @staticmethod
     def _array(name: str, given: Any, shape: tuple[int, ...]) -> Array:
         try:
-            return np.ascontiguousarray(np.broadcast_to(np.asarray(given, float), shape))
+            array = np.asarray(given, float)
+            if array.ndim == 0:
+                return np.full(shape, array)
+            return np.ascontiguousarray(array if array.shape == shape else np.broadcast_to(array, shape))
         except (ValueError, TypeError):
             got = f"shape {np.shape(given)}" if isinstance(given, (np.ndarray, list, tuple, float, int)) else repr(given)
             raise ValueError(f"{name}: got {got}, expected numbers of shape {shape}") from None
@@ -391,12 +394,14 @@ class Problem:
         """p by stage: (horizon + 1, parameters)."""
         if p is None and self.parameters > 0:
             raise ValueError(f"p: got none, expected {self.parameters} numbers")
-        values = np.asarray([] if p is None else p, float)
+        if p is None:
+            return np.zeros((self.horizon + 1, 0))
+        values = np.asarray(p, float)
         if self.parameters == 0 and values.size > 0:
             raise ValueError("p: got numbers, expected none: Problem(…, parameters=n) has some")
         if values.ndim == 2 and values.shape == (self.horizon, self.parameters):
             values = np.vstack([values, values[-1:]])
-        if not np.all(np.isfinite(values)):
+        if not np.isfinite(values).all():
             raise ValueError("p: got a number that is not finite")
         return self._array("p", values, (self.horizon + 1, self.parameters))
 
@@ -475,6 +480,8 @@ class Problem:
     @property
     def input_bounds(self) -> tuple[Array, Array]:
         """Lower and upper bounds of all inputs, (horizon, all_inputs) each."""
+        if self.unknowns == 0:
+            return self._lower, self._upper
         none = np.full((self.horizon, self.unknowns), np.inf)
         return np.hstack([self._lower, -none]), np.hstack([self._upper, none])
 

@@ -204,8 +204,8 @@ class _Conditions:
         place = np.empty_like(order)
         place[order] = np.arange(len(order))
         is_entry = values != 0.0
-        solved = _chicane.solve_banded(place[rows[is_entry]], place[columns[is_entry]], values[is_entry], np.ascontiguousarray(right[order]))
-        return solved[place]
+        solved: Array = _chicane.solve_banded(place[rows[is_entry]], place[columns[is_entry]], values[is_entry], np.ascontiguousarray(right[order]))
+        return np.ascontiguousarray(solved[place])
 
     def solve(self) -> Array:
         """Derivatives of the unknowns by x_0 and by p, (size, nx + np)."""
