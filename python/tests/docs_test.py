@@ -34,6 +34,13 @@ class Pages(unittest.TestCase):
     def test_problems(self):
         self.assertRegex(self.run_page("python_problems.md"), r"optimal after 65 turns, cost 89\.58(.|\n)*got a branch on a symbol, expected ch\.where")
 
+    def test_the_packages_to_install_are_those_that_are_needed(self):
+        listed = set(re.search(r"apt-get install --no-install-recommends (.*?)\n/usr", (DOCS / "python.md").read_text(encoding="utf-8"), re.DOTALL)[1]
+                     .replace("\\", " ").split())
+        script = (DOCS.parent / "tools/install_packages.sh").read_text(encoding="utf-8")
+        needed = {name for group in ("run_packages", "python_packages") for name in re.search(rf"^{group}=\((.*?)\)", script, re.DOTALL | re.M)[1].split()}
+        self.assertEqual(needed - listed, {"ccache", "libcli11-dev", "python3"})     # for others, the program, and there already
+
 
 if __name__ == "__main__":
     unittest.main()

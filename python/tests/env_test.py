@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The environment: the loop of drive(), step by step."""
+import os
 import subprocess
 import sys
 import unittest
@@ -71,6 +72,16 @@ class Environment(unittest.TestCase):
         self.assertNotEqual(episode(1)[1], episode(2)[1])
         self.assertTrue(all(0.6 <= episode(seed)[0][0] <= 1.0 for seed in (3, 4)))
 
+    def test_the_car_is_looked_for_where_it_was_as_in_all_of_the_road(self):
+        noise = {"sensor.position_noise_m": 0.2}
+        run = ch.drive("crossover", laps=1, seed=3, settings={**noise, "guard.mode": "off", "control_period_ms": 50})
+        env = ch.Env("crossover", noise=noise, seed=3, settings={"laps": 1})
+        env.reset()
+        for action in zip(run.frames["steer_asked_rad"], run.frames["throttle_asked"]):
+            observation, _, _, _, info = env.step(action)
+            self.assertLess(abs(observation[1] - info["lateral_error_m"]), 1.2)      # six times the noise, also where roads cross
+        self.assertEqual(env.state_hash, run["state_hash"])
+
     def test_ends_where_a_tyre_leaves_the_road(self):
         env = ch.Env("oval", off_road_cost=50.0, reward=lambda observation, info: info["speed_mps"])
         env.reset()
@@ -126,6 +137,18 @@ class Many(unittest.TestCase):
         ends, told = episodes(1)
         self.assertGreater(ends, 3)
         self.assertEqual(episodes(3), (ends, told))
+
+    def test_works_in_a_process_that_was_forked(self):
+        envs = ch.VecEnv(4, "oval", threads=2)
+        envs.reset()
+        actions = np.tile([0.0, 0.5], (4, 1))
+        expected = envs.step(actions)[0]
+        envs.reset(seed=1)
+        child = os.fork()                                   # which has none of the threads
+        if child == 0:
+            os._exit(0 if np.array_equal(envs.step(actions)[0], expected) else 1)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+        self.assertEqual(ch.VecEnv(2, "oval")._core.threads, os.cpu_count())
 
     def test_each_is_an_env(self):
         envs = ch.VecEnv(3, "oval", noise=True, seed=10)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The package: built by pip without network, at home anywhere, typed."""
+import ast
 import os
 import subprocess
 import sys
@@ -36,6 +37,26 @@ class Package(unittest.TestCase):
             [sys.executable, "-m", "mypy", "--config-file", str(ROOT / "pyproject.toml"), "--cache-dir",
              str(Path(os.environ["CHICANE_PYTHON_BUILD_DIR"]) / "mypy"), str(ROOT / "python" / "chicane")], capture_output=True, text=True)
         self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+
+    def test_the_stub_has_the_names_that_are_there(self):
+        from chicane import _chicane
+        stub = ast.parse((ROOT / "python/chicane/_chicane.pyi").read_text(encoding="utf-8"))
+
+        def names_in(body):
+            return {node.name if isinstance(node, (ast.ClassDef, ast.FunctionDef)) else node.target.id
+                    for node in body if isinstance(node, (ast.ClassDef, ast.FunctionDef, ast.AnnAssign))}
+
+        def public(thing):
+            return {name for name in vars(thing) if not name.startswith("_")}
+        own = {name for name in names_in(stub.body) if hasattr(_chicane, name)}
+        self.assertEqual(public(_chicane) - own, set())
+        for node in stub.body:
+            if isinstance(node, ast.FunctionDef):
+                self.assertIn(node.name, own)
+            if isinstance(node, ast.ClassDef) and node.name in own:
+                there = getattr(_chicane, node.name)
+                with self.subTest(node.name):
+                    self.assertEqual(public(there), {name for name in names_in(node.body) if not name.startswith("_")})
 
     def test_data_that_the_environment_names_win(self):
         with mock.patch.dict(os.environ, {"CHICANE_DATA_DIR": "/mine"}):

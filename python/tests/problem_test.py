@@ -112,6 +112,25 @@ class Solving(unittest.TestCase):
         self.assertRegex(repr(impossible), "infeasible|stalled")
         self.assertGreater(impossible.violation, 0.1)
 
+    def test_of_every_size_it_is_the_regulator_of_riccati(self):
+        random = np.random.default_rng(6)
+        for nx, nu in ((1, 1), (2, 2), (4, 1), (6, 2), (7, 1), (8, 4), (20, 3), (52, 8)):
+            with self.subTest(f"{nx} + {nu}"):
+                a, b = np.eye(nx) + 0.1 * random.standard_normal((nx, nx)) / np.sqrt(nx), 0.3 * random.standard_normal((nx, nu))
+                ocp = ch.Problem(nx, nu, 12)
+                ocp.dynamics(lambda x, u, a=a, b=b: a @ x + b @ u)
+                ocp.cost(lambda x, u: x @ x + 0.5 * u @ u)
+                ocp.terminal(lambda x: 3 * x @ x)
+                value, gains = 6.0 * np.eye(nx), []
+                for _ in range(12):
+                    gains.append(np.linalg.solve(np.eye(nu) + b.T @ value @ b, b.T @ value @ a))
+                    value = 2.0 * np.eye(nx) + a.T @ value @ (a - b @ gains[-1])
+                x0 = random.standard_normal(nx)
+                solution = ocp.solve(x0, tolerance=1e-9)
+                self.assertEqual(solution.status, "optimal")
+                np.testing.assert_allclose(solution.u[0], -gains[-1] @ x0, atol=1e-8)
+                self.assertAlmostEqual(solution.cost, 0.5 * x0 @ value @ x0, delta=1e-9 * solution.cost)
+
     def test_stages_have_numbers_and_parameters_of_their_own(self):
         ocp = ch.Problem(1, 1, 8, parameters=1)
         ocp.dynamics(lambda x, u: [x[0] + u[0]])
@@ -424,6 +443,11 @@ class Misuses(unittest.TestCase):
         self.refuse("p: got numbers, expected none", lambda: ocp.solve([0, 0], [1.0]))
         self.refuse("got a lower bound above the upper one", lambda: ocp.bounds(u=(1, -1)))
         self.refuse("horizon: got 500, expected a whole number from 1 to 200", lambda: ch.Problem(2, 1, 500))
+        self.refuse("nx: got 53, expected a whole number from 1 to 52", lambda: ch.Problem(53, 1, 5))
+        many = ch.Problem(2, 1, 5)
+        many.dynamics(lambda x, u: x)
+        many.cost(lambda x, u: [x[0] - n for n in range(70)])
+        self.refuse(r"^Problem: residuals: got 70, expected at most 64$", lambda: many.solve([0, 0]))
         self.refuse("nx: got 2.5", lambda: ch.Problem(2.5, 1, 5))
         self.refuse("tolerance: got 1", lambda: ocp.solve([0, 0], tolerance=1.0))
         self.refuse('sensitivity: got "p", expected a problem with parameters', lambda: ocp.solve([0, 0]).sensitivity("p"))
