@@ -230,7 +230,7 @@ struct LqProblem {
   CHICANE_INLINE void set(std::size_t k, const std::array<Pack<Arch, 8>, Layout::kFCount>& f,
                           const std::array<Pack<Arch, 8>, Layout::kLCount>& l) noexcept {
     unroll<Layout::kNumbers / 8>([&](auto line) CHICANE_INLINE {
-      write<sources_of_numbers(line)>(k, f, l, [=](Stage& s) { return s.number + line * 8; });
+      write<kSourcesOfNumbers[line]>(k, f, l, [=](Stage& s) { return s.number + line * 8; });
     });
     unroll<kNx>([&](auto i) CHICANE_INLINE {
       if constexpr (Layout::is_wide_state(i)) write_row<i, true>(k, f, l);
@@ -289,19 +289,22 @@ struct LqProblem {
     sources.l.fill(Layout::kNone);
     return sources;
   }
-  static constexpr Sources sources_of_numbers(std::size_t line) noexcept {
-    Sources sources = nothing();
-    const auto in_line = [&](std::size_t n) { return n != Layout::kNone && n / 8 == line; };
+  /// Of all lines of numbers, in one pass: line by line it takes the compiler 20 s for 60 variables.
+  static constexpr auto kSourcesOfNumbers = [] {
+    std::array<Sources, Layout::kNumbers / 8> lines{};
+    lines.fill(nothing());
     for (std::size_t j = 0; j < Layout::kNz; ++j) {
       for (std::size_t i = 0; i < kNx; ++i) {
-        if (const std::size_t n = Layout::kNumber.f[i][j]; in_line(n)) sources.f[n % 8] = Layout::kF[i][j];
+        if (const std::size_t n = Layout::kNumber.f[i][j]; n != Layout::kNone)
+          lines[n / 8].f[n % 8] = Layout::kF[i][j];
       }
       for (std::size_t i = 0; i < Layout::kNz; ++i) {
-        if (const std::size_t n = Layout::kNumber.l[i][j]; in_line(n)) sources.l[n % 8] = Layout::kL[i][j];
+        if (const std::size_t n = Layout::kNumber.l[i][j]; n != Layout::kNone)
+          lines[n / 8].l[n % 8] = Layout::kL[i][j];
       }
     }
-    return sources;
-  }
+    return lines;
+  }();
   static constexpr Sources sources_of_row(std::size_t i, bool of_f, std::size_t block) noexcept {
     Sources sources = nothing();
     for (std::size_t lane = 0; lane < 8 && block * 8 + lane < kNx; ++lane) {
@@ -342,7 +345,7 @@ struct LqProblem {
     constexpr std::size_t kNumberLines = Layout::kNumbers / 8;
     std::array<Line, kNumberLines + Layout::kWideRows*(kLanes / 8)> lines{};
     std::size_t at = 0;
-    for (; at < kNumberLines; ++at) lines[at] = line_of(sources_of_numbers(at), false, 0, 8 * at);
+    for (; at < kNumberLines; ++at) lines[at] = line_of(kSourcesOfNumbers[at], false, 0, 8 * at);
     const auto add = [&](std::size_t i, bool of_f, std::size_t row) {
       for (std::size_t block = 0; block < kLanes / 8; ++block)
         lines[at++] = line_of(sources_of_row(i, of_f, block), true, row, 8 * block);
