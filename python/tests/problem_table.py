@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Problems written in Python, interpreted and compiled, side by side: the tables of docs/python_problems.md.
+"""Problems written in Python, interpreted and compiled, side by side: the tables of docs/python_interpreter.md.
 
-    ./run.sh python python/tests/problem_table.py             a row for each family
+    ./run.sh python python/tests/problem_table.py [NAME...]   a row for each family
     ./run.sh python python/tests/problem_table.py --many      10,000 cart-poles at once
     ./run.sh python python/tests/problem_table.py --changes   sensitivities of 200 instances against differences
     ./run.sh python python/tests/problem_table.py --references   Ipopt, and cart-pole written by hand (needs bench's packages)
@@ -49,10 +49,10 @@ def row(name, make):
     return cold.status == cold_compiled.status == "optimal" and apart < 1e-9, waited, warm.time / warm_compiled.time
 
 
-def table():
+def table(names):
     print("| family | status | cost | apart | first answer [ms] | cold [ms] | warm [ms] | compiled cold [ms] | warm [ms] | ratio | compiler [s] |")
     print("|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|")
-    rows = [row(name, make) for name, make in families.FAMILIES.items()]
+    rows = [row(name, make) for name, make in families.FAMILIES.items() if not names or name in names]
     print(f"\nmedian ratio {np.median([ratio for _, _, ratio in rows]):.2f}, longest wait {1e3 * max(waited for _, waited, _ in rows):.0f} ms")
     return all(right for right, _, _ in rows)
 
@@ -193,6 +193,7 @@ def feedback():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME", help="families of the table; all")
     parser.add_argument("--many", type=int, nargs="?", const=10000, default=0)
     parser.add_argument("--changes", type=int, nargs="?", const=200, default=0)
     parser.add_argument("--references", nargs="*")
@@ -207,7 +208,7 @@ def main():
         return 0 if feedback() else 1
     if given.changes:
         return 0 if changes(given.changes) else 1
-    return 0 if table() else 1
+    return 0 if table(given.names) else 1
 
 
 if __name__ == "__main__":
