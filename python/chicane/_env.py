@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ._types import npt
 from . import _chicane
 from ._request import Settings, make_request
 from ._track import AnyTrack

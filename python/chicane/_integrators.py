@@ -6,7 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
+
+from ._types import npt
 
 Array = npt.NDArray[np.float64]
 _ROOT = float(np.sqrt(3.0))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy.typing as npt
 
+from ._types import npt
 from . import _chicane
 from ._request import Settings, make_request
 from ._track import AnyTrack

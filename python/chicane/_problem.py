@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ._types import npt
 from . import _chicane, _cost
 from ._integrators import Implicit
 from ._solution import Feedback, Solution, Solutions

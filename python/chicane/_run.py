@@ -7,8 +7,8 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ._types import npt
 from . import _chicane
 
 if TYPE_CHECKING:

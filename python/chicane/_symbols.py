@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
+
+from ._types import npt
 
 Objects = npt.NDArray[np.object_]
 _OWN_FOLDERS = (str(Path(__file__).parent), str(Path(np.__file__).parent))

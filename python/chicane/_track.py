@@ -7,7 +7,8 @@ import os
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
+
+from ._types import npt
 
 
 class Track:
